@@ -1,0 +1,32 @@
+#pragma once
+
+#include "algorithms/rendering_config.hpp"
+#include "sim/loop/force_algorithm.hpp"
+
+namespace hapbench {
+
+/// Damping, friction and limits of METHOD section 5 (thesis 2.5, 2.6, A.2.1, B.2, C.4.3), the same for every law:
+///
+///   f_dn = -B S v, B = 2 zeta sqrt(K M);  v_t = v - S v, f_dt = -(mu_s + mu_f |f_spring|) v_t
+///
+/// Max damping: the normal damping is scaled by B_max / lambda_max(B S) when that is below 1. Max force: f_render is
+/// scaled to norm F_max when it is longer. The friction coefficients are viscous, whatever the thesis calls them.
+class DampingAndLimits {
+ public:
+  explicit DampingAndLimits(const RenderingConfig& config);
+
+  /// f_render [N] from f_spring [N], S and the tool's velocity [m/s]. Friction and eigenvalues are computed only when
+  /// the configuration asks for them.
+  Vec3 rendered_force(const Vec3& spring, const Mat3& S, const Vec3& velocity) const noexcept;
+
+  double damping() const { return B_; }  ///< B [N s/m]
+
+ private:
+  double B_;
+  double mu_s_;
+  double mu_f_;
+  std::optional<double> max_damping_;
+  std::optional<double> max_force_;
+};
+
+}  // namespace hapbench

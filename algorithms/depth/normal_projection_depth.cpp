@@ -1,0 +1,78 @@
+#include "algorithms/depth/normal_projection_depth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hapbench {
+
+const ModelInfo kNormalProjectionDepthInfo = {
+    .name = "normal_projection",
+    .summary = "distance along the inverse surface normal to where it leaves the tool",
+    .formula = "u = -n, d = smallest exit of the ray x + d u through side (F.7), tip (F.9) and bottom (F.12); "
+               "a round tip replaces the tip plane by the half ball",
+    .source = "thesis F.1 with the sign of METHOD section 10 for F.6",
+    .known_failure = "a point that appears at a corner can start with a large depth: the force jumps (Fig. F.4)",
+};
+
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// The larger root d >= 0 of a d^2 + 2 b d - c = 0 with a > 0, c >= 0, without cancellation for b > 0.
+double exit_root(double a, double b, double c) {
+  const double root = std::sqrt(b * b + a * c);
+  return b > 0.0 ? c / (b + root) : (root - b) / a;
+}
+
+/// Exit through the side wall, F.7; never when the ray runs along the axis.
+double exit_side(const Tool& tool, const Vec3& rho, const Vec3& radial_u) {
+  const double a = radial_u.squaredNorm();
+  const double c = std::max(0.0, tool.radius * tool.radius - rho.squaredNorm());
+  return a == 0.0 ? kNever : exit_root(a, rho.dot(radial_u), c);
+}
+
+/// Exit through the half ball beyond the tip plane; never when the ray misses the ball or leaves it behind the plane.
+double exit_half_ball(const Tool& tool, const Vec3& x, const Vec3& u, double s, double slope) {
+  const double b = x.dot(u);
+  const double c = tool.radius * tool.radius - x.squaredNorm();
+  const double discriminant = b * b + c;
+  if (discriminant < 0.0) return kNever;
+  const double d = c >= 0.0 ? exit_root(1.0, b, c) : std::sqrt(discriminant) - b;
+  return d >= 0.0 && s + d * slope >= 0.0 ? d : kNever;
+}
+
+double exit_distance(const Tool& tool, const ToolPose& pose, const Vec3& point, const Vec3& u) {
+  const Vec3 x = point - pose.position;
+  const double s = x.dot(pose.axis);
+  const double slope = u.dot(pose.axis);
+  double d = exit_side(tool, x - s * pose.axis, u - slope * pose.axis);
+  // A ray leaves through the tip only forwards and through the bottom only backwards: that picks the positive root.
+  if (tool.tip == Tip::round) {
+    d = std::min(d, exit_half_ball(tool, x, u, s, slope));
+  } else if (slope > 0.0) {
+    d = std::min(d, std::max(0.0, -s) / slope);
+  }
+  if (slope < 0.0) d = std::min(d, std::max(0.0, tool.length + s) / -slope);
+  return d == kNever ? 0.0 : d;  // only a zero normal never leaves
+}
+
+class NormalProjectionDepth final : public DepthModel {
+ public:
+  void evaluate(const Tool& tool, const ToolPose& pose, ContactBuffer& contacts) const noexcept override {
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const Vec3 u = -contacts.normal(i);
+      contacts.set_gradient(i, u);
+      contacts.depth[i] = exit_distance(tool, pose, contacts.point(i), u);
+    }
+    contacts.pad();
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<DepthModel> make_normal_projection_depth() {
+  return std::make_unique<NormalProjectionDepth>();
+}
+
+}  // namespace hapbench

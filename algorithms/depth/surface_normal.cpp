@@ -1,0 +1,32 @@
+#include "algorithms/depth/surface_normal.hpp"
+
+#include "algorithms/depth/shortest_distance.hpp"
+
+namespace hapbench {
+
+const ModelInfo kSurfaceNormalInfo = {
+    .name = "surface_normal",
+    .summary = "depth of shortest_distance, gradient against the surface normal (default)",
+    .formula = "d as in shortest_distance, u = -n",
+    .source = "thesis C.1, 2.3",
+    .known_failure = "underestimates the depth; on a flat it saturates at the tool's radius (thesis C.1, F.1)",
+};
+
+namespace {
+
+class SurfaceNormal final : public DepthModel {
+ public:
+  void evaluate(const Tool& tool, const ToolPose& pose, ContactBuffer& contacts) const noexcept override {
+    shortest_distance_depths(tool, pose, contacts);
+    for (std::size_t i = 0; i < contacts.size(); ++i) contacts.set_gradient(i, -contacts.normal(i));
+    contacts.pad();
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<DepthModel> make_surface_normal() {
+  return std::make_unique<SurfaceNormal>();
+}
+
+}  // namespace hapbench

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "algorithms/info.hpp"
+#include "algorithms/rendering_config.hpp"
+#include "sim/contact/contact_buffer.hpp"
+#include "sim/contact/stiffness_tensor.hpp"
+
+namespace hapbench {
+
+/// What a force law makes of the contacts.
+struct LawForce {
+  Vec3 spring = Vec3::Zero();  ///< f_spring on the tool [N]
+  Mat3 S = Mat3::Zero();       ///< stiffness tensor in units of K
+};
+
+/// A force law: merges the penalty springs of all contacts into one force (METHOD section 4). All laws but
+/// `original_averaging` and `virtual_coupling` are f_spring = -K sum c_i d_i u_i and S = sum c_i u_i u_i^T and differ
+/// in the weights c_i only. Per-run state; one virtual call per step.
+class ForceLaw {
+ public:
+  virtual ~ForceLaw() = default;
+  /// Before the first step; may allocate for up to `capacity` contacts.
+  virtual void prepare(std::size_t capacity) { static_cast<void>(capacity); }
+  virtual void reset() noexcept { iterations_ = 0; }
+  /// Precondition: contacts are padded and not empty. Leaves the weights in the buffer.
+  virtual LawForce evaluate(ContactBuffer& contacts) noexcept = 0;
+  /// Inner iterations since the last reset.
+  std::uint64_t iterations() const noexcept { return iterations_; }
+
+ protected:
+  std::uint64_t iterations_ = 0;
+};
+
+/// Gives every contact the weight c and keeps the padding at zero. O(n).
+void set_weights(ContactBuffer& contacts, double c) noexcept;
+
+/// f_spring and S of the weights in the buffer. O(n).
+LawForce weighted_force(const ContactBuffer& contacts, double K) noexcept;
+
+}  // namespace hapbench

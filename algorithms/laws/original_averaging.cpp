@@ -1,0 +1,52 @@
+#include "algorithms/laws/original_averaging.hpp"
+
+#include "sim/core/simd.hpp"
+
+namespace hapbench {
+
+const ModelInfo kOriginalAveragingInfo = {
+    .name = "original_averaging",
+    .summary = "the trainer's original algorithm (DP): depths summed, gradients averaged",
+    .formula = "u_r = sum u_i / |sum u_i|, d_r = sum d_i / |sum u_i|, f = -K d_r u_r, S = u_r u_r^T; "
+               "zero force when |sum u_i| <= 1e-9 n",
+    .source = "thesis B.2, Eq. B.1; always with depth model shortest_distance and without reduction",
+    .known_failure = "opposite gradients make d_r explode and u_r flip by 180 degrees (thesis B.3.3): vibration",
+};
+
+namespace {
+
+/// Below this mean gradient the direction is rounding noise.
+constexpr double kCancelledBelow = 1e-9;
+
+class OriginalAveraging final : public ForceLaw {
+ public:
+  explicit OriginalAveraging(double stiffness) : K_(stiffness) {}
+
+  LawForce evaluate(ContactBuffer& contacts) noexcept override {
+    set_weights(contacts, 1.0);
+    using simd::load, simd::Pack;
+    Pack x(0.0), y(0.0), z(0.0), d(0.0);
+    for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+      x += load(&contacts.ux[i]);
+      y += load(&contacts.uy[i]);
+      z += load(&contacts.uz[i]);
+      d += load(&contacts.depth[i]);
+    }
+    const Vec3 gradients(simd::sum(x), simd::sum(y), simd::sum(z));
+    const double length = gradients.norm();
+    if (length <= kCancelledBelow * static_cast<double>(contacts.size())) return {};
+    const Vec3 u = gradients / length;
+    return {-K_ * (simd::sum(d) / length) * u, u * u.transpose()};
+  }
+
+ private:
+  double K_;
+};
+
+}  // namespace
+
+std::unique_ptr<ForceLaw> make_original_averaging(const RenderingConfig& config) {
+  return std::make_unique<OriginalAveraging>(config.stiffness);
+}
+
+}  // namespace hapbench

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "algorithms/laws/force_law.hpp"
+
+namespace hapbench {
+
+extern const ModelInfo kShapedStiffnessInfo;
+
+std::unique_ptr<ForceLaw> make_shaped_stiffness(const RenderingConfig& config);
+
+/// Weights after `iterations` updates c_i <- c_i / rho_i from c = 1 (thesis C.4.2), left in the buffer; returns their
+/// stiffness tensor. Precondition: padded contacts. O(n) per iteration; a zero gradient gets weight zero.
+Mat3 shape_weights(ContactBuffer& contacts, int iterations) noexcept;
+
+/// One update c_i <- c_i / (u_i^T S u_i); S must be the tensor of the weights in the buffer. Returns the new tensor.
+Mat3 update_shaped_weights(ContactBuffer& contacts, const Mat3& S) noexcept;
+
+}  // namespace hapbench

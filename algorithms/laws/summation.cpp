@@ -1,0 +1,35 @@
+#include "algorithms/laws/summation.hpp"
+
+namespace hapbench {
+
+const ModelInfo kSummationInfo = {
+    .name = "summation",
+    .summary = "all penalty springs added",
+    .formula = "c_i = 1",
+    .source = "thesis 1.2, Fig. 2b",
+    .known_failure = "stiffness and damping grow with the number of points: unstable once lambda_max(S) K passes the "
+                     "integrator's limit (thesis A.3)",
+};
+
+namespace {
+
+class Summation final : public ForceLaw {
+ public:
+  explicit Summation(double stiffness) : K_(stiffness) {}
+
+  LawForce evaluate(ContactBuffer& contacts) noexcept override {
+    set_weights(contacts, 1.0);
+    return weighted_force(contacts, K_);
+  }
+
+ private:
+  double K_;
+};
+
+}  // namespace
+
+std::unique_ptr<ForceLaw> make_summation(const RenderingConfig& config) {
+  return std::make_unique<Summation>(config.stiffness);
+}
+
+}  // namespace hapbench

@@ -1,0 +1,79 @@
+#include "algorithms/laws/tandpasta.hpp"
+
+#include "sim/core/simd.hpp"
+
+namespace hapbench {
+
+const ModelInfo kTandpastaInfo = {
+    .name = "tandpasta",
+    .summary = "elastic energy moved from springs that fight each other to those that do not",
+    .formula = "beta_i = |sum_j <u_i,u_j>| / sum_j |<u_i,u_j>|, sigma_E = sum beta_i d_i^2 / sum d_i^2, "
+               "c_i = beta_i / sigma_E; zero force when sigma_E <= 1e-12",
+    .source = "thesis F.2",
+    .known_failure = "boosts the outward force until the tool jumps out; O(n^2)",
+};
+
+namespace {
+
+/// Below this scaled energy every spring is cancelled by another and the normalisation would divide by rounding noise.
+constexpr double kNoEnergyBelow = 1e-12;
+
+class Tandpasta final : public ForceLaw {
+ public:
+  explicit Tandpasta(double stiffness) : K_(stiffness) {}
+
+  LawForce evaluate(ContactBuffer& contacts) noexcept override {
+    const Vec3 total = gradient_sum(contacts);
+    double scaled = 0.0;
+    double energy = 0.0;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const double beta = cancelling_ratio(contacts, contacts.gradient(i), total);
+      const double d2 = contacts.depth[i] * contacts.depth[i];
+      contacts.weight[i] = beta;
+      scaled += beta * d2;
+      energy += d2;
+    }
+    const double sigma = energy > 0.0 ? scaled / energy : 0.0;
+    if (!(sigma > kNoEnergyBelow)) {
+      set_weights(contacts, 0.0);
+      return {};
+    }
+    for (std::size_t i = 0; i < contacts.size(); ++i) contacts.weight[i] /= sigma;
+    return weighted_force(contacts, K_);
+  }
+
+ private:
+  static Vec3 gradient_sum(const ContactBuffer& c) noexcept {
+    using simd::load, simd::Pack;
+    Pack x(0.0), y(0.0), z(0.0);
+    for (std::size_t i = 0; i < c.padded_size(); i += simd::lanes) {
+      x += load(&c.ux[i]);
+      y += load(&c.uy[i]);
+      z += load(&c.uz[i]);
+    }
+    return {simd::sum(x), simd::sum(y), simd::sum(z)};
+  }
+
+  /// beta: 1 when no other gradient opposes u, 0 when all cancel. The sum of inner products is the inner product with
+  /// the sum; only the sum of their magnitudes needs the O(n) loop.
+  static double cancelling_ratio(const ContactBuffer& c, const Vec3& u, const Vec3& total) noexcept {
+    using simd::load, simd::Pack;
+    const Pack x(u.x()), y(u.y()), z(u.z());
+    Pack magnitudes(0.0);
+    for (std::size_t j = 0; j < c.padded_size(); j += simd::lanes) {
+      magnitudes += simd::abs(x * load(&c.ux[j]) + y * load(&c.uy[j]) + z * load(&c.uz[j]));
+    }
+    const double denominator = simd::sum(magnitudes);
+    return denominator > 0.0 ? std::abs(u.dot(total)) / denominator : 0.0;
+  }
+
+  double K_;
+};
+
+}  // namespace
+
+std::unique_ptr<ForceLaw> make_tandpasta(const RenderingConfig& config) {
+  return std::make_unique<Tandpasta>(config.stiffness);
+}
+
+}  // namespace hapbench

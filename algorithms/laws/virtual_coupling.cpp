@@ -1,0 +1,50 @@
+#include "algorithms/laws/virtual_coupling.hpp"
+
+#include <Eigen/Cholesky>
+
+namespace hapbench {
+namespace {
+
+constexpr ParameterInfo kParameters[] = {
+    {"rendering.virtual_coupling_N_per_m", "N/m", "null (= K)", "> 0", "K_vc: stiffness of the coupling spring"},
+};
+
+}  // namespace
+
+const ModelInfo kVirtualCouplingInfo = {
+    .name = "virtual_coupling",
+    .summary = "all springs in series with one quasi-static coupling spring",
+    .formula = "f = -K_vc (K_vc I + K S_sum)^-1 K sum d_i u_i, S = K_vc (K_vc I + K S_sum)^-1 S_sum, S_sum = sum u u^T",
+    .source = "thesis Fig. 2d",
+    .known_failure = "bounds the stiffness, but the force still follows the direction with most points",
+    .parameters = kParameters,
+};
+
+namespace {
+
+class VirtualCoupling final : public ForceLaw {
+ public:
+  VirtualCoupling(double stiffness, double coupling) : K_(stiffness), K_vc_(coupling) {}
+
+  LawForce evaluate(ContactBuffer& contacts) noexcept override {
+    set_weights(contacts, 1.0);
+    const Mat3 S_sum = stiffness_tensor(contacts);
+    // Positive definite: K_vc > 0 and S_sum is a sum of u u^T.
+    const Eigen::LLT<Mat3> series(K_vc_ * Mat3::Identity() + K_ * S_sum);
+    const Mat3 S = K_vc_ * series.solve(S_sum);
+    // S_sum and the inverse commute, so S is symmetric; averaging removes the rounding of the solve.
+    return {-K_vc_ * series.solve(K_ * weighted_depth(contacts)), 0.5 * (S + S.transpose())};
+  }
+
+ private:
+  double K_;
+  double K_vc_;
+};
+
+}  // namespace
+
+std::unique_ptr<ForceLaw> make_virtual_coupling(const RenderingConfig& config) {
+  return std::make_unique<VirtualCoupling>(config.stiffness, config.virtual_coupling.value_or(config.stiffness));
+}
+
+}  // namespace hapbench

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+
+#include "algorithms/damping_and_limits.hpp"
+#include "algorithms/depth/depth_model.hpp"
+#include "algorithms/laws/force_law.hpp"
+#include "algorithms/points/point_stage.hpp"
+
+namespace hapbench {
+
+/// Penalty-based rendering, the thesis's pipeline, as one force algorithm:
+///
+///   contacts -> depth model -> (local average) -> (reduction) -> force law -> damping, friction, limits
+///
+/// One virtual call per stage and step; stages that the configuration does not ask for do not exist.
+class PenaltyRendering final : public ForceAlgorithm {
+ public:
+  PenaltyRendering(std::unique_ptr<DepthModel> depth_model, std::unique_ptr<ForceLaw> law, const RenderingConfig& config);
+
+  void prepare(const Scene& scene) override;
+  void reset() noexcept override;
+  void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept override;
+  AlgorithmWork work() const noexcept override;
+
+ private:
+  std::unique_ptr<DepthModel> depth_model_;
+  std::unique_ptr<PointStage> local_average_;  ///< may be null
+  std::unique_ptr<PointStage> reduction_;      ///< may be null
+  std::unique_ptr<ForceLaw> law_;
+  DampingAndLimits damping_and_limits_;
+  Tool tool_;
+  bool depth_is_given_ = false;
+};
+
+}  // namespace hapbench

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "sim/contact/contact_buffer.hpp"
+#include "sim/loop/force_algorithm.hpp"
+
+namespace hapbench {
+
+/// An optional stage between depth model and force law that merges or drops contacts in place (METHOD section 3).
+class PointStage {
+ public:
+  virtual ~PointStage() = default;
+  /// The only call that may allocate; throws std::invalid_argument when the scene lacks what the stage needs.
+  virtual void prepare(const Scene& scene) = 0;
+  virtual void reset() noexcept { dropped_ = 0; }
+  /// Reads padded contacts, leaves padded contacts, never more than before.
+  virtual void process(ContactBuffer& contacts) noexcept = 0;
+  /// Contacts lost because a buffer was full, since the last reset.
+  std::uint64_t dropped() const noexcept { return dropped_; }
+
+ protected:
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace hapbench

@@ -1,0 +1,93 @@
+#include "algorithms/registry.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "algorithms/depth/normal_projection_depth.hpp"
+#include "algorithms/depth/shortest_distance.hpp"
+#include "algorithms/depth/surface_normal.hpp"
+#include "algorithms/laws/exact_shaping.hpp"
+#include "algorithms/laws/mean.hpp"
+#include "algorithms/laws/normal_projection.hpp"
+#include "algorithms/laws/original_averaging.hpp"
+#include "algorithms/laws/shaped_stiffness.hpp"
+#include "algorithms/laws/summation.hpp"
+#include "algorithms/laws/tandpasta.hpp"
+#include "algorithms/laws/virtual_coupling.hpp"
+#include "algorithms/penalty_rendering.hpp"
+#include "algorithms/points/gradient_reduction.hpp"
+#include "algorithms/points/local_average.hpp"
+
+namespace hapbench {
+namespace {
+
+/// A force law on the penalty pipeline.
+template <auto make_law>
+std::unique_ptr<ForceAlgorithm> penalty(const RenderingConfig& config) {
+  const DepthModelEntry* depth = find_depth_model(config.depth_model);
+  if (depth == nullptr) throw std::invalid_argument("unknown depth model " + config.depth_model);
+  return std::make_unique<PenaltyRendering>(depth->make(), make_law(config), config);
+}
+
+constexpr AlgorithmEntry kAlgorithms[] = {
+    {&kOriginalAveragingInfo, penalty<make_original_averaging>, "shortest_distance", false},
+    {&kSummationInfo, penalty<make_summation>},
+    {&kMeanInfo, penalty<make_mean>},
+    {&kVirtualCouplingInfo, penalty<make_virtual_coupling>},
+    {&kShapedStiffnessInfo, penalty<make_shaped_stiffness>},
+    {&kTandpastaInfo, penalty<make_tandpasta>},
+    {&kNormalProjectionInfo, penalty<make_normal_projection>, "normal_projection"},
+    {&kExactShapingInfo, penalty<make_exact_shaping>},
+};
+
+constexpr DepthModelEntry kDepthModels[] = {
+    {&kShortestDistanceInfo, make_shortest_distance},
+    {&kSurfaceNormalInfo, make_surface_normal},
+    {&kNormalProjectionDepthInfo, make_normal_projection_depth},
+};
+
+constexpr const ModelInfo* kPointStages[] = {&kLocalAverageInfo, &kGradientReductionInfo};
+
+template <class Entry>
+const Entry* find(std::span<const Entry> table, std::string_view name) {
+  const auto found = std::find_if(table.begin(), table.end(), [name](const Entry& e) { return e.info->name == name; });
+  return found == table.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::span<const AlgorithmEntry> algorithms() {
+  return kAlgorithms;
+}
+
+std::span<const DepthModelEntry> depth_models() {
+  return kDepthModels;
+}
+
+std::span<const ModelInfo* const> point_stages() {
+  return kPointStages;
+}
+
+const AlgorithmEntry* find_algorithm(std::string_view name) {
+  return find(algorithms(), name);
+}
+
+const DepthModelEntry* find_depth_model(std::string_view name) {
+  return find(depth_models(), name);
+}
+
+RenderingConfig with_fixed_stages(RenderingConfig config) {
+  const AlgorithmEntry& entry = *find_algorithm(config.algorithm);
+  if (!entry.fixed_depth_model.empty()) config.depth_model = entry.fixed_depth_model;
+  if (!entry.may_reduce) config.reduction.reset();
+  return config;
+}
+
+std::unique_ptr<ForceAlgorithm> make_algorithm(const RenderingConfig& config) {
+  const AlgorithmEntry* entry = find_algorithm(config.algorithm);
+  if (entry == nullptr) throw std::invalid_argument("unknown algorithm " + config.algorithm);
+  return entry->make(with_fixed_stages(config));
+}
+
+}  // namespace hapbench

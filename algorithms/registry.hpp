@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "algorithms/depth/depth_model.hpp"
+#include "algorithms/info.hpp"
+#include "algorithms/rendering_config.hpp"
+#include "sim/loop/force_algorithm.hpp"
+
+/// The one table of names. Adding an algorithm is one line in registry.cpp.
+namespace hapbench {
+
+struct AlgorithmEntry {
+  const ModelInfo* info;
+  /// A new force algorithm for one run; throws std::invalid_argument for a depth model that is not in the table.
+  std::unique_ptr<ForceAlgorithm> (*make)(const RenderingConfig&);
+  /// The depth model that is part of the algorithm's definition; empty when the scenario chooses.
+  std::string_view fixed_depth_model = {};
+  /// False when the algorithm's definition excludes the reduction.
+  bool may_reduce = true;
+};
+
+struct DepthModelEntry {
+  const ModelInfo* info;
+  std::unique_ptr<DepthModel> (*make)();
+};
+
+std::span<const AlgorithmEntry> algorithms();
+std::span<const DepthModelEntry> depth_models();
+/// Stages between depth model and law, for the documentation.
+std::span<const ModelInfo* const> point_stages();
+
+/// Null when the table has no such name.
+const AlgorithmEntry* find_algorithm(std::string_view name);
+const DepthModelEntry* find_depth_model(std::string_view name);
+
+/// `config` with what its algorithm fixes put in place: depth model and reduction. Precondition: the name is known.
+RenderingConfig with_fixed_stages(RenderingConfig config);
+
+/// The algorithm `config` names, on the stages it fixes. Throws std::invalid_argument for unknown names.
+std::unique_ptr<ForceAlgorithm> make_algorithm(const RenderingConfig& config);
+
+}  // namespace hapbench

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace hapbench {
+
+/// Gradient-based point reduction (thesis C.3, 2.8).
+struct ReductionConfig {
+  double threshold = 0.995;      ///< alpha_TH: a larger inner product of two gradients means "similar"
+  std::size_t max_points = 100;  ///< n_ext
+  /// Off: contacts are visited in ascending shell index. A seed: in a fixed random order of the shell points, to study
+  /// how the greedy filter depends on it (the thesis starts at a random point).
+  std::optional<std::uint64_t> shuffle_seed;
+};
+
+/// How contacts become a force. Names are those of registry.hpp; units N, m, s, kg.
+struct RenderingConfig {
+  std::string algorithm = "shaped_stiffness";
+  int iterations = 3;  ///< m of the shaping iteration, for the laws that iterate
+  std::string depth_model = "surface_normal";
+  bool local_average = false;
+  std::optional<ReductionConfig> reduction;
+
+  double stiffness = 20000.0;         ///< K [N/m]
+  double damping_ratio = 0.7;         ///< zeta
+  double mass = 0.2;                  ///< M of the virtual tool [kg]
+  std::optional<double> damping;      ///< B [N s/m]; off: 2 zeta sqrt(K M)
+  double mu_s = 0.0;                  ///< viscous friction [N s/m]
+  double mu_f = 0.0;                  ///< viscous friction per newton of spring force [s/m]
+  std::optional<double> max_damping;  ///< B_max [N s/m]
+  std::optional<double> max_force;    ///< F_max [N]
+  std::optional<double> virtual_coupling;  ///< K_vc [N/m]; off: K
+};
+
+}  // namespace hapbench

@@ -1,0 +1,56 @@
+#include "sim/contact/contact_buffer.hpp"
+
+#include "sim/core/simd.hpp"
+
+namespace hapbench {
+
+ContactBuffer::ContactBuffer(std::size_t capacity) : capacity_(capacity) {
+  const std::size_t padded = simd::padded(capacity);
+  index.assign(padded, 0);
+  for (AlignedDoubles* column : {&x, &y, &z, &nx, &ny, &nz, &depth, &ux, &uy, &uz, &weight}) column->assign(padded, 0.0);
+}
+
+std::size_t ContactBuffer::padded_size() const {
+  return simd::padded(size_);
+}
+
+void ContactBuffer::push(std::uint32_t i, const Vec3& point, const Vec3& normal) {
+  const std::size_t k = size_++;
+  index[k] = i;
+  x[k] = point.x();
+  y[k] = point.y();
+  z[k] = point.z();
+  nx[k] = normal.x();
+  ny[k] = normal.y();
+  nz[k] = normal.z();
+  depth[k] = ux[k] = uy[k] = uz[k] = weight[k] = 0.0;
+}
+
+void ContactBuffer::push_copy_of(const ContactBuffer& other, std::size_t from) {
+  push(other.index[from], other.point(from), other.normal(from));
+  const std::size_t k = size_ - 1;
+  depth[k] = other.depth[from];
+  set_gradient(k, other.gradient(from));
+  weight[k] = other.weight[from];
+}
+
+void ContactBuffer::copy(std::size_t from, std::size_t to) {
+  index[to] = index[from];
+  for (AlignedDoubles* column : {&x, &y, &z, &nx, &ny, &nz, &depth, &ux, &uy, &uz, &weight}) (*column)[to] = (*column)[from];
+}
+
+void ContactBuffer::shrink(std::size_t n) {
+  size_ = n;
+}
+
+void ContactBuffer::pad() {
+  for (std::size_t i = size_; i < padded_size(); ++i) depth[i] = ux[i] = uy[i] = uz[i] = weight[i] = 0.0;
+}
+
+void ContactBuffer::set_gradient(std::size_t i, const Vec3& u) {
+  ux[i] = u.x();
+  uy[i] = u.y();
+  uz[i] = u.z();
+}
+
+}  // namespace hapbench

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/core/aligned.hpp"
+#include "sim/core/types.hpp"
+
+namespace hapbench {
+
+/// The contacts of one step, one array per quantity, reused from step to step. The contact search fills index, point
+/// and normal; the depth model fills depth and gradient; point stages compact it in place; a force law that weighs its
+/// springs leaves the weights.
+///
+/// Penetration depth d_i >= 0 (springs may have negative ones); gradient u_i: unit vector from the colliding point to
+/// where it would leave the tool, so moving the tool along +u_i makes the penetration deeper and the penalty force on
+/// the tool is -K d_i u_i.
+///
+/// Arrays have room for whole packs (see simd.hpp). After `pad`, depth, gradient and weight are zero beyond size(), the
+/// neutral element of every sum, so that no loop has a tail.
+class ContactBuffer {
+ public:
+  /// The only place that allocates. No contact search may return more than `capacity` contacts.
+  explicit ContactBuffer(std::size_t capacity);
+
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  std::size_t capacity() const { return capacity_; }
+  std::size_t padded_size() const;
+
+  void clear() { size_ = 0; }
+  /// Appends a contact with zero depth, gradient and weight. Precondition: size() < capacity().
+  void push(std::uint32_t index, const Vec3& point, const Vec3& normal);
+  /// Appends a copy of contact `from` of another buffer. Precondition: size() < capacity().
+  void push_copy_of(const ContactBuffer& other, std::size_t from);
+  /// Overwrites contact `to` with contact `from`.
+  void copy(std::size_t from, std::size_t to);
+  /// Keeps the first n contacts. Precondition: n <= size().
+  void shrink(std::size_t n);
+  /// Zeroes depth, gradient and weight in the last pack beyond size().
+  void pad();
+
+  Vec3 point(std::size_t i) const { return {x[i], y[i], z[i]}; }
+  Vec3 normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }
+  Vec3 gradient(std::size_t i) const { return {ux[i], uy[i], uz[i]}; }
+  void set_gradient(std::size_t i, const Vec3& u);
+
+  std::vector<std::uint32_t> index;  ///< of the shell point or spring
+  AlignedDoubles x, y, z;            ///< colliding point, world [m]
+  AlignedDoubles nx, ny, nz;         ///< outward surface normal of the environment
+  AlignedDoubles depth;              ///< d_i [m]
+  AlignedDoubles ux, uy, uz;         ///< gradient u_i
+  AlignedDoubles weight;             ///< c_i of the force law
+
+ private:
+  std::size_t size_ = 0;
+  std::size_t capacity_;
+};
+
+}  // namespace hapbench

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+
+#include "sim/contact/contact_buffer.hpp"
+#include "sim/tool/tool.hpp"
+
+namespace hapbench {
+
+/// What a contact query has done since its last reset.
+struct SearchWork {
+  std::uint64_t queries = 0;
+  std::uint64_t points_tested = 0;  ///< shell points compared with the tool, padding not counted
+  std::uint64_t lists_rebuilt = 0;  ///< neighbour lists; 0 for a search without one
+};
+
+/// Answers which points of the environment a tool in a given pose touches. The step loop asks at the tool's pose; a
+/// force algorithm that keeps a proxy may ask again at a pose of its choosing.
+class ContactQuery {
+ public:
+  virtual ~ContactQuery() = default;
+
+  /// Replaces the contents of `contacts` by the colliding points (inside the tool or on its surface) in ascending index.
+  /// Precondition: contacts.capacity() >= capacity(). Allocates nothing.
+  virtual void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept = 0;
+  /// The most contacts a query can return.
+  virtual std::size_t capacity() const noexcept = 0;
+  /// True when the query itself fills depth and gradient (springs), so that no depth model applies.
+  virtual bool gives_depth() const noexcept = 0;
+  /// Back to t = 0, counters included.
+  virtual void reset() noexcept = 0;
+
+  const SearchWork& work() const noexcept { return work_; }
+
+ protected:
+  SearchWork work_;
+};
+
+}  // namespace hapbench

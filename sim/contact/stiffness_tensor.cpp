@@ -1,0 +1,62 @@
+#include "sim/contact/stiffness_tensor.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <limits>
+
+#include "sim/core/simd.hpp"
+
+namespace hapbench {
+
+using simd::load;
+using simd::Pack;
+
+Mat3 stiffness_tensor(const ContactBuffer& contacts) {
+  Pack xx(0.0), xy(0.0), xz(0.0), yy(0.0), yz(0.0), zz(0.0);
+  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    const Pack x = load(&contacts.ux[i]), y = load(&contacts.uy[i]), z = load(&contacts.uz[i]);
+    const Pack c = load(&contacts.weight[i]);
+    const Pack cx = c * x, cy = c * y;
+    xx += cx * x;
+    xy += cx * y;
+    xz += cx * z;
+    yy += cy * y;
+    yz += cy * z;
+    zz += c * z * z;
+  }
+  Mat3 S;
+  S(0, 0) = simd::sum(xx);
+  S(0, 1) = S(1, 0) = simd::sum(xy);
+  S(0, 2) = S(2, 0) = simd::sum(xz);
+  S(1, 1) = simd::sum(yy);
+  S(1, 2) = S(2, 1) = simd::sum(yz);
+  S(2, 2) = simd::sum(zz);
+  return S;
+}
+
+Vec3 weighted_depth(const ContactBuffer& contacts) {
+  Pack gx(0.0), gy(0.0), gz(0.0);
+  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    const Pack cd = load(&contacts.weight[i]) * load(&contacts.depth[i]);
+    gx += cd * load(&contacts.ux[i]);
+    gy += cd * load(&contacts.uy[i]);
+    gz += cd * load(&contacts.uz[i]);
+  }
+  return {simd::sum(gx), simd::sum(gy), simd::sum(gz)};
+}
+
+RatioRange ratio_range(const ContactBuffer& contacts, const Mat3& S) {
+  RatioRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Vec3 u = contacts.gradient(i);
+    const double rho = u.dot(S * u);
+    range.min = rho < range.min ? rho : range.min;
+    range.max = rho > range.max ? rho : range.max;
+  }
+  return contacts.empty() ? RatioRange{} : range;
+}
+
+double lambda_max(const Mat3& S) {
+  return Eigen::SelfAdjointEigenSolver<Mat3>(S, Eigen::EigenvaluesOnly).eigenvalues()[2];
+}
+
+}  // namespace hapbench

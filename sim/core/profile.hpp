@@ -1,0 +1,46 @@
+#pragma once
+
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace hapbench {
+
+/// A scalar function of time, evaluated at any t [s] in O(1), for waypoints O(log n). The value's unit is the owner's.
+class Profile {
+ public:
+  struct Constant {
+    double value = 0.0;
+  };
+  /// start + rate_per_s * t
+  struct Ramp {
+    double start = 0.0;
+    double rate_per_s = 0.0;
+  };
+  /// mean + amplitude * sin(2 pi t / period_s + phase_rad)
+  struct Sine {
+    double mean = 0.0;
+    double amplitude = 0.0;
+    double period_s = 1.0;
+    double phase_rad = 0.0;
+  };
+  enum class Interpolation { linear, cosine };
+  /// (t [s], value) with strictly increasing times, held constant outside; `cosine` starts and ends each leg at rest.
+  struct Waypoints {
+    std::vector<std::pair<double, double>> points;
+    Interpolation interpolation = Interpolation::linear;
+  };
+  using Shape = std::variant<Constant, Ramp, Sine, Waypoints>;
+
+  Profile() = default;
+  Profile(double value) : shape_(Constant{value}) {}  // NOLINT: a number is a profile
+  Profile(Shape shape) : shape_(std::move(shape)) {}  // NOLINT: so is every shape
+
+  double operator()(double t) const noexcept;
+  const Shape& shape() const { return shape_; }
+
+ private:
+  Shape shape_{Constant{}};
+};
+
+}  // namespace hapbench

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <random>
+
+#include "sim/core/types.hpp"
+
+namespace hapbench {
+
+/// Seeded random numbers that are the same with every standard library: the engine is pinned (std::mt19937_64, whose
+/// output the standard fixes) and the distributions are ours, because the standard leaves its own unspecified.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+
+  /// Uniform in [0, 1), 53 bits.
+  double uniform() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
+  /// Uniform in [low, high).
+  double uniform(double low, double high) { return low + (high - low) * uniform(); }
+  /// Uniform integer in [0, n); n > 0. The modulo bias is below n / 2^64.
+  std::uint64_t below(std::uint64_t n) { return engine_() % n; }
+
+  /// Uniform on the unit circle in the plane z = 0.
+  Vec3 direction_in_plane() {
+    const double a = 2.0 * std::numbers::pi * uniform();
+    return {std::cos(a), std::sin(a), 0.0};
+  }
+  /// Uniform on the unit sphere.
+  Vec3 direction() {
+    const double z = uniform(-1.0, 1.0);
+    const double a = 2.0 * std::numbers::pi * uniform();
+    const double r = std::sqrt(1.0 - z * z);
+    return {r * std::cos(a), r * std::sin(a), z};
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+}  // namespace hapbench

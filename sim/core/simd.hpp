@@ -1,0 +1,162 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#if HAPBENCH_SIMD
+#include <experimental/simd>
+#endif
+
+/// Eight doubles at a time, the same arithmetic in every build.
+///
+/// Sums over contacts always keep eight partial sums (element i goes to partial sum i mod 8) and `sum` adds those in
+/// one fixed order, whatever the register width. Together with -ffp-contract=off this makes the scalar build and every
+/// SIMD build agree bit for bit. Include from source files only: the type of Pack differs between the two builds.
+namespace hapbench::simd {
+
+inline constexpr std::size_t lanes = 8;
+
+/// n rounded up to whole packs.
+constexpr std::size_t padded(std::size_t n) {
+  return (n + lanes - 1) / lanes * lanes;
+}
+
+#if HAPBENCH_SIMD
+
+using Pack = std::experimental::simd<double, std::experimental::simd_abi::deduce_t<double, lanes>>;
+using Mask = Pack::mask_type;
+
+inline Pack load(const double* p) {
+  return Pack(p, std::experimental::overaligned<64>);
+}
+inline void store(const Pack& a, double* p) {
+  a.copy_to(p, std::experimental::overaligned<64>);
+}
+inline Pack select(const Mask& m, const Pack& yes, const Pack& no) {
+  Pack r = no;
+  std::experimental::where(m, r) = yes;
+  return r;
+}
+inline Pack sqrt(const Pack& a) {
+  return std::experimental::sqrt(a);
+}
+inline bool any(const Mask& m) {
+  return std::experimental::any_of(m);
+}
+inline bool lane(const Mask& m, std::size_t i) {
+  return m[i];
+}
+
+#else
+
+struct Mask {
+  std::array<bool, lanes> v;
+};
+
+/// The reference: plain loops over eight lanes.
+struct Pack {
+  std::array<double, lanes> v;
+
+  Pack() = default;
+  Pack(double a) { v.fill(a); }  // NOLINT: broadcasts implicitly, as the library type does
+
+  template <class F>
+  static Pack map(const Pack& a, const Pack& b, F f) {
+    Pack r;
+    for (std::size_t i = 0; i < lanes; ++i) r.v[i] = f(a.v[i], b.v[i]);
+    return r;
+  }
+  template <class F>
+  static Mask test(const Pack& a, const Pack& b, F f) {
+    Mask r;
+    for (std::size_t i = 0; i < lanes; ++i) r.v[i] = f(a.v[i], b.v[i]);
+    return r;
+  }
+  friend Pack operator+(const Pack& a, const Pack& b) { return map(a, b, [](double x, double y) { return x + y; }); }
+  friend Pack operator-(const Pack& a, const Pack& b) { return map(a, b, [](double x, double y) { return x - y; }); }
+  friend Pack operator*(const Pack& a, const Pack& b) { return map(a, b, [](double x, double y) { return x * y; }); }
+  friend Pack operator/(const Pack& a, const Pack& b) { return map(a, b, [](double x, double y) { return x / y; }); }
+  friend Pack operator-(const Pack& a) { return map(a, a, [](double x, double) { return -x; }); }
+  Pack& operator+=(const Pack& b) { return *this = *this + b; }
+  friend Mask operator<(const Pack& a, const Pack& b) { return test(a, b, [](double x, double y) { return x < y; }); }
+  friend Mask operator<=(const Pack& a, const Pack& b) { return test(a, b, [](double x, double y) { return x <= y; }); }
+  friend Mask operator>(const Pack& a, const Pack& b) { return b < a; }
+  friend Mask operator>=(const Pack& a, const Pack& b) { return b <= a; }
+};
+
+inline Mask operator&&(const Mask& a, const Mask& b) {
+  Mask r;
+  for (std::size_t i = 0; i < lanes; ++i) r.v[i] = a.v[i] && b.v[i];
+  return r;
+}
+inline Mask operator||(const Mask& a, const Mask& b) {
+  Mask r;
+  for (std::size_t i = 0; i < lanes; ++i) r.v[i] = a.v[i] || b.v[i];
+  return r;
+}
+inline Mask operator!(const Mask& a) {
+  Mask r;
+  for (std::size_t i = 0; i < lanes; ++i) r.v[i] = !a.v[i];
+  return r;
+}
+inline Pack load(const double* p) {
+  Pack r;
+  for (std::size_t i = 0; i < lanes; ++i) r.v[i] = p[i];
+  return r;
+}
+inline void store(const Pack& a, double* p) {
+  for (std::size_t i = 0; i < lanes; ++i) p[i] = a.v[i];
+}
+inline Pack select(const Mask& m, const Pack& yes, const Pack& no) {
+  Pack r;
+  for (std::size_t i = 0; i < lanes; ++i) r.v[i] = m.v[i] ? yes.v[i] : no.v[i];
+  return r;
+}
+inline Pack sqrt(const Pack& a) {
+  return Pack::map(a, a, [](double x, double) { return std::sqrt(x); });
+}
+inline bool any(const Mask& m) {
+  bool r = false;
+  for (bool b : m.v) r |= b;
+  return r;
+}
+inline bool lane(const Mask& m, std::size_t i) {
+  return m.v[i];
+}
+
+#endif
+
+inline Pack abs(const Pack& a) {
+  return select(a < Pack(0.0), -a, a);
+}
+inline Pack min(const Pack& a, const Pack& b) {
+  return select(b < a, b, a);
+}
+inline Pack max(const Pack& a, const Pack& b) {
+  return select(a < b, b, a);
+}
+
+/// The eight partial sums added pairwise in one fixed order.
+inline double sum(const Pack& a) {
+  alignas(64) double v[lanes];
+  store(a, v);
+  return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+}
+inline double min_lane(const Pack& a) {
+  alignas(64) double v[lanes];
+  store(a, v);
+  double m = v[0];
+  for (double x : v) m = x < m ? x : m;
+  return m;
+}
+inline double max_lane(const Pack& a) {
+  alignas(64) double v[lanes];
+  store(a, v);
+  double m = v[0];
+  for (double x : v) m = m < x ? x : m;
+  return m;
+}
+
+}  // namespace hapbench::simd

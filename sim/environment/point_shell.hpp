@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/core/aligned.hpp"
+#include "sim/core/types.hpp"
+
+namespace hapbench {
+
+/// A point of an environment object's surface: position [m] and unit outward normal, world frame.
+struct SurfacePoint {
+  Vec3 position = Vec3::Zero();
+  Vec3 normal = {0.0, 0.0, 1.0};
+};
+
+/// The environment object as points with normals, laid out for the contact search: one array per coordinate, 64-byte
+/// aligned, padded to whole packs with points far outside any scene, so that no loop has a tail.
+class PointShell {
+ public:
+  /// Coordinate of the padding points [m]: finite, because infinities breed NaN, and beyond every tool.
+  static constexpr double kFarAway = 1e9;
+
+  /// cell_size is the edge [m] of the grid cells in which the local average merges points; 0 when there is no grid.
+  PointShell(const std::vector<SurfacePoint>& points, double cell_size);
+
+  std::size_t size() const { return size_; }
+  std::size_t padded_size() const { return x_.size(); }
+  double cell_size() const { return cell_size_; }
+
+  const double* x() const { return x_.data(); }
+  const double* y() const { return y_.data(); }
+  const double* z() const { return z_.data(); }
+  const double* nx() const { return nx_.data(); }
+  const double* ny() const { return ny_.data(); }
+  const double* nz() const { return nz_.data(); }
+
+  SurfacePoint point(std::size_t i) const;
+
+  /// Number of each point's grid cell, 0 … cells - 1 in order of first appearance. A cell is the cube between
+  /// half-integer multiples of cell_size, which is the cube of the marching-cubes grid of METHOD's block and holds one
+  /// lattice point of the planar scenes. O(size log size); call it in preparation, not in a step.
+  std::vector<std::uint32_t> cell_of_points() const;
+
+ private:
+  std::size_t size_;
+  double cell_size_;
+  AlignedDoubles x_, y_, z_, nx_, ny_, nz_;
+};
+
+}  // namespace hapbench

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+
+#include "sim/contact/contact_buffer.hpp"
+#include "sim/contact/contact_query.hpp"
+#include "sim/environment/point_shell.hpp"
+#include "sim/tool/tool.hpp"
+
+namespace hapbench {
+
+/// What a force algorithm may know of the scene before the first step. Everything pointed to outlives the algorithm.
+struct Scene {
+  Tool tool;
+  ContactQuery* query = nullptr;      ///< for algorithms that ask for contacts at a pose of their own; never null
+  const PointShell* shell = nullptr;  ///< null for springs
+};
+
+/// What an algorithm answers for one step.
+struct RenderedForce {
+  Vec3 spring = Vec3::Zero();    ///< f_spring [N], on the tool
+  Vec3 rendered = Vec3::Zero();  ///< f_render = spring + damping + friction, limited [N]
+  Mat3 S = Mat3::Zero();         ///< stiffness tensor in units of K
+  double depth_max = 0.0;        ///< largest penetration depth of the colliding points [m], before any point stage
+};
+
+/// What an algorithm has done since its last reset.
+struct AlgorithmWork {
+  std::uint64_t iterations = 0;      ///< of the law's inner solver (shaping, Newton), over all steps
+  std::uint64_t points_dropped = 0;  ///< contacts a full buffer refused (reduction's max_points)
+};
+
+/// A force algorithm: contacts and the tool's state to a force on the tool. One object is the state of one run.
+class ForceAlgorithm {
+ public:
+  virtual ~ForceAlgorithm() = default;
+
+  /// Once before the first step; the only call that may allocate or throw.
+  virtual void prepare(const Scene& scene) = 0;
+  /// Back to t = 0, bit for bit.
+  virtual void reset() noexcept = 0;
+  /// One step. `contacts` holds the colliding points at the tool's pose; on return it holds the rendered ones, with
+  /// depth, gradient and weight.
+  virtual void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept = 0;
+  virtual AlgorithmWork work() const noexcept { return {}; }
+};
+
+}  // namespace hapbench

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+
+#include "sim/contact/stiffness_tensor.hpp"
+#include "sim/loop/device.hpp"
+#include "sim/loop/force_algorithm.hpp"
+
+namespace hapbench {
+
+/// Row k of a run: everything evaluated from (p_k, v_k, axis(t_k)), before the integrator moves the tool.
+struct StepRecord {
+  std::uint64_t step = 0;
+  double time = 0.0;  ///< t_k = k dt [s]
+  ToolState tool;
+  RenderedForce force;
+  MeasuredForce hand;
+  HandleState handle;
+  std::size_t colliding = 0;                ///< colliding points before any point stage
+  const ContactBuffer* rendered = nullptr;  ///< contacts the law saw; valid during on_step only
+  RatioRange ratio;                         ///< over the rendered contacts; filled only if an observer wants it
+};
+
+/// Watches a run without changing it.
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  /// True when on_step reads `ratio`; otherwise nobody computes it.
+  virtual bool wants_ratio() const noexcept { return false; }
+  virtual void on_step(const StepRecord& record) noexcept = 0;
+};
+
+}  // namespace hapbench

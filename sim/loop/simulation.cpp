@@ -1,0 +1,109 @@
+#include "sim/loop/simulation.hpp"
+
+#include <utility>
+
+#include "sim/loop/leapfrog.hpp"
+
+namespace hapbench {
+
+Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vector<Observer*> observers)
+    : config_(std::move(config)),
+      parts_(std::move(parts)),
+      observers_(std::move(observers)),
+      contacts_(parts_.query->capacity()) {
+  for (const Observer* observer : observers_) ratio_wanted_ |= observer->wants_ratio();
+  parts_.algorithm->prepare({parts_.tool, parts_.query.get(), parts_.shell.get()});
+  reset();
+}
+
+void Simulation::reset() noexcept {
+  row_ = 0;
+  ended_ = config_.steps == 0;
+  result_ = {};
+  tool_ = {{config_.position, Vec3::Zero()}, config_.velocity};
+  move_tool_by_script();
+  parts_.query->reset();
+  parts_.algorithm->reset();
+  parts_.hand->reset();
+  parts_.device->reset(tool_);
+}
+
+/// Orientation always follows the script; a prescribed position also gives the velocity, (p_k - p_{k-1}) / dt, v_0 = 0.
+void Simulation::move_tool_by_script() noexcept {
+  const double t = static_cast<double>(row_) * config_.dt;
+  tool_.pose.axis = parts_.motion->axis_at(t);
+  if (parts_.motion->position_is_free()) return;
+  const Vec3 position = parts_.motion->position_at(t);
+  tool_.velocity = row_ == 0 ? Vec3::Zero() : Vec3((position - tool_.pose.position) / config_.dt);
+  tool_.pose.position = position;
+}
+
+bool Simulation::step() noexcept {
+  if (ended_) return false;
+
+  StepRecord& r = record_;
+  r.step = row_;
+  r.time = static_cast<double>(row_) * config_.dt;
+  r.tool = tool_;
+  r.handle = parts_.device->handle();
+  const Vec3 hand_force = parts_.hand->force(r.time, r.handle);
+  r.hand = parts_.device->measure(hand_force);
+
+  parts_.query->contacts_at(tool_.pose, contacts_);
+  r.colliding = contacts_.size();
+  parts_.algorithm->compute(tool_, contacts_, r.force);
+  if (!check_bounds()) return true;
+
+  r.rendered = &contacts_;
+  if (ratio_wanted_) r.ratio = ratio_range(contacts_, r.force.S);
+  for (Observer* observer : observers_) observer->on_step(r);
+  ++result_.rows;
+  if (check_stop_conditions()) return true;
+
+  if (parts_.motion->position_is_free()) leapfrog(tool_, r.hand.input + r.force.rendered, config_.mass, config_.dt);
+  ++row_;
+  if (row_ == config_.steps) {
+    end(Outcome::completes);
+    return true;
+  }
+  move_tool_by_script();
+  parts_.device->advance(tool_, hand_force, config_.dt);
+  return true;
+}
+
+SimulationResult Simulation::run() noexcept {
+  while (step()) {
+  }
+  return result_;
+}
+
+bool Simulation::check_bounds() noexcept {
+  const auto within = [this](const char* quantity, double magnitude, double bound) {
+    if (magnitude <= bound) return true;  // false for NaN
+    result_.divergence = {row_, record_.time, quantity, magnitude, bound};
+    return false;
+  };
+  if (within("position", tool_.pose.position.norm(), config_.bounds.position) &&
+      within("velocity", tool_.velocity.norm(), config_.bounds.speed) &&
+      within("rendered force", record_.force.rendered.norm(), config_.bounds.force)) {
+    return true;
+  }
+  end(Outcome::diverges);
+  return false;
+}
+
+bool Simulation::check_stop_conditions() noexcept {
+  if (config_.stop_when_leaves_hole && tool_.pose.position.dot(config_.up) > 0.0) {
+    end(Outcome::leaves_hole);
+  } else if (config_.stop_when_horizontal && tool_.pose.axis.dot(config_.up) >= 0.0) {
+    end(Outcome::tool_horizontal);
+  }
+  return ended_;
+}
+
+void Simulation::end(Outcome outcome) noexcept {
+  ended_ = true;
+  result_.outcome = outcome;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/contact/contact_query.hpp"
+#include "sim/loop/device.hpp"
+#include "sim/loop/force_algorithm.hpp"
+#include "sim/loop/hand.hpp"
+#include "sim/loop/observer.hpp"
+#include "sim/tool/motion.hpp"
+
+namespace hapbench {
+
+/// How a run ended.
+enum class Outcome {
+  completes,        ///< all steps done
+  leaves_hole,      ///< the tip centre rose above height 0 along `up`
+  tool_horizontal,  ///< the axis reached the plane perpendicular to `up`
+  diverges          ///< a value stopped being finite or left its bound
+};
+
+/// A run beyond these is stopped as diverged: absurd for a dental drill, still far from overflow.
+struct DivergenceBounds {
+  double position = 1e3;  ///< [m]
+  double speed = 1e6;     ///< [m/s]
+  double force = 1e12;    ///< f_render [N]
+};
+
+/// Numbers of one run.
+struct SimulationConfig {
+  double dt = 0.0005;          ///< [s]
+  std::uint64_t steps = 0;     ///< rows 0 … steps - 1
+  double mass = 0.2;           ///< of the virtual tool [kg]
+  Vec3 position = Vec3::Zero();  ///< of the tip centre at t = 0 [m]; ignored when the motion prescribes it
+  Vec3 velocity = Vec3::Zero();  ///< [m/s]
+  Vec3 up = {0.0, 0.0, 1.0};     ///< unit; what the stop conditions call height
+  bool stop_when_leaves_hole = false;
+  bool stop_when_horizontal = false;
+  DivergenceBounds bounds;
+};
+
+/// The parts a run is made of; the simulation owns them.
+struct SimulationParts {
+  Tool tool;
+  std::shared_ptr<const PointShell> shell;  ///< null for springs
+  std::unique_ptr<ContactQuery> query;
+  std::unique_ptr<ForceAlgorithm> algorithm;
+  std::unique_ptr<Motion> motion;
+  std::unique_ptr<Hand> hand;
+  std::unique_ptr<Device> device;
+};
+
+/// Where a diverged run left its bounds; the row is not passed to observers.
+struct Divergence {
+  std::uint64_t step = 0;
+  double time = 0.0;         ///< [s]
+  const char* quantity = ""; ///< "position", "velocity" or "rendered force"
+  double magnitude = 0.0;    ///< its norm, possibly not finite
+  double bound = 0.0;
+};
+
+struct SimulationResult {
+  Outcome outcome = Outcome::completes;
+  std::uint64_t rows = 0;  ///< rows observed
+  Divergence divergence;   ///< meaningful when the outcome is `diverges`
+};
+
+/// The step loop: hand -> device -> contacts -> force algorithm -> observers -> integrator. Owns the contact buffer and
+/// allocates only in the constructor.
+class Simulation {
+ public:
+  /// Prepares the algorithm. Observers must outlive the simulation. Throws what `prepare` throws.
+  Simulation(SimulationConfig config, SimulationParts parts, std::vector<Observer*> observers);
+
+  /// Back to t = 0, bit for bit (observers keep what they saw).
+  void reset() noexcept;
+  /// Evaluates row k, shows it to the observers and moves on to row k + 1. Returns false, and does nothing, once the
+  /// run has ended. Allocates nothing.
+  bool step() noexcept;
+  /// Steps to the end.
+  SimulationResult run() noexcept;
+
+  const SimulationResult& result() const { return result_; }
+  std::uint64_t next_row() const { return row_; }
+  const ToolState& tool() const { return tool_; }
+  const ContactQuery& query() const { return *parts_.query; }
+  const ForceAlgorithm& algorithm() const { return *parts_.algorithm; }
+
+ private:
+  void move_tool_by_script() noexcept;
+  bool check_bounds() noexcept;
+  bool check_stop_conditions() noexcept;
+  void end(Outcome outcome) noexcept;
+
+  SimulationConfig config_;
+  SimulationParts parts_;
+  std::vector<Observer*> observers_;
+  bool ratio_wanted_ = false;
+  ContactBuffer contacts_;
+
+  std::uint64_t row_ = 0;
+  bool ended_ = false;
+  ToolState tool_;
+  StepRecord record_;
+  SimulationResult result_;
+};
+
+}  // namespace hapbench

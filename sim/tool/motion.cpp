@@ -1,0 +1,58 @@
+#include "sim/tool/motion.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace hapbench {
+
+ScriptedMotion::ScriptedMotion(Orientation orientation, std::optional<std::array<Profile, 3>> position)
+    : orientation_(std::move(orientation)), position_(std::move(position)) {}
+
+Vec3 ScriptedMotion::axis_at(double t) const noexcept {
+  const double tilt = orientation_.tilt(t);
+  const double azimuth = orientation_.azimuth(t);
+  const Vec3 sideways = orientation_.up.cross(orientation_.lean);
+  const Vec3 lean = std::cos(azimuth) * orientation_.lean + std::sin(azimuth) * sideways;
+  return -(std::cos(tilt) * orientation_.up + std::sin(tilt) * lean);
+}
+
+Vec3 ScriptedMotion::position_at(double t) const noexcept {
+  const auto& profiles = *position_;
+  return {profiles[0](t), profiles[1](t), profiles[2](t)};
+}
+
+RecordedMotion::RecordedMotion(std::vector<Sample> samples) : samples_(std::move(samples)) {
+  if (samples_.empty()) throw std::invalid_argument("a recorded motion needs at least one sample");
+  for (std::size_t i = 1; i < samples_.size(); ++i) {
+    if (!(samples_[i - 1].time < samples_[i].time)) {
+      throw std::invalid_argument("the times of a recorded motion must increase strictly");
+    }
+  }
+}
+
+RecordedMotion::Leg RecordedMotion::leg_at(double t) const noexcept {
+  const auto next = std::upper_bound(samples_.begin(), samples_.end(), t,
+                                     [](double time, const Sample& sample) { return time < sample.time; });
+  if (next == samples_.begin()) return {&samples_.front(), &samples_.front(), 0.0};
+  if (next == samples_.end()) return {&samples_.back(), &samples_.back(), 0.0};
+  const Sample& from = *(next - 1);
+  return {&from, &*next, (t - from.time) / (next->time - from.time)};
+}
+
+Vec3 RecordedMotion::axis_at(double t) const noexcept {
+  const Leg leg = leg_at(t);
+  const Vec3 axis = leg.from->axis + leg.fraction * (leg.to->axis - leg.from->axis);
+  const double norm = axis.norm();
+  // Opposite neighbours pass through zero half-way: keep the last direction there.
+  return norm > 0.0 ? Vec3(axis / norm) : leg.from->axis;
+}
+
+Vec3 RecordedMotion::position_at(double t) const noexcept {
+  const Leg leg = leg_at(t);
+  return leg.from->position + leg.fraction * (leg.to->position - leg.from->position);
+}
+
+}  // namespace hapbench
