@@ -24,9 +24,16 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr double kEps = kExactShapingEpsilon;
-constexpr int kMaxNewtonSteps = 100;
+/// Newton steps tried at once; nearly all scenes need one or two.
+constexpr int kDirectSteps = 6;
+/// What epsilon starts from and is multiplied by when those are not enough (see solve_exact_shaping).
+constexpr double kPathStart = 1e-2;
+constexpr double kPathFactor = 1e-2;
+constexpr int kMaxNewtonSteps = 100;  ///< for one epsilon; a bound that exact arithmetic never reaches
 constexpr int kMaxLineSearchSteps = 40;
-constexpr int kRefinements = 2;
+constexpr int kMaxRefinements = 5;
+/// Residual of the optimality condition that is left to rounding: S sums up to n terms of at most 1 in eight parts.
+constexpr double kResidualRounding = 1e-14;
 
 /// The identity in the basis below.
 const Vec6& identity6() {
@@ -55,14 +62,16 @@ struct TensorPack {
   }
 };
 
-/// One pass over the contacts at the point w of the dual: c_i = max(0, a_i . w).
+/// What one pass over the contacts leaves beside their weights.
 struct Pass {
   Mat6 G;           ///< sum a a^T over the active contacts, c_i > 0
   Vec6 S;           ///< sum c_i a_i
   bool same_active; ///< no contact changed between active and inactive
 };
 
-Pass evaluate(ContactBuffer& contacts, const Vec6& w) noexcept {
+/// Gives every contact the weight c_i = max(0, weight_of(u_i, c_i before)).
+template <class WeightOf>
+Pass sweep(ContactBuffer& contacts, WeightOf weight_of) noexcept {
   using simd::Pack;
   Pack g[21], s[6];
   std::fill(std::begin(g), std::end(g), Pack(0.0));
@@ -71,9 +80,9 @@ Pass evaluate(ContactBuffer& contacts, const Vec6& w) noexcept {
   bool same = true;
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
     const TensorPack u(contacts, i);
-    const Pack t = u.dot(w);
-    const simd::Mask active = t > zero;
-    const simd::Mask before = simd::load(&contacts.weight[i]) > zero;
+    const Pack c_before = simd::load(&contacts.weight[i]);
+    const Pack t = weight_of(u, c_before);
+    const simd::Mask active = t > zero, before = c_before > zero;
     same = same && !simd::any((active && !before) || (before && !active));
     const Pack c = simd::select(active, t, zero), on = simd::select(active, one, zero);
     simd::store(c, &contacts.weight[i]);
@@ -92,52 +101,76 @@ Pass evaluate(ContactBuffer& contacts, const Vec6& w) noexcept {
   return pass;
 }
 
-Eigen::LDLT<Mat6> regularised(const Mat6& G) {
-  return Eigen::LDLT<Mat6>(G + kEps * Mat6::Identity());
+/// The pass at the point w of the dual: c_i = max(0, a_i . w).
+Pass evaluate(ContactBuffer& contacts, const Vec6& w) noexcept {
+  return sweep(contacts, [&w](const TensorPack& u, const simd::Pack&) { return u.dot(w); });
+}
+
+/// (eps I + G)^-1 b
+Vec6 solve(const Mat6& G, double eps, const Vec6& b) noexcept {
+  return Eigen::LDLT<Mat6>(G + eps * Mat6::Identity()).solve(b);
 }
 
 /// Gradient of the convex dual ½|eps w - I|² / eps + ½ sum max(0, a_i . w)²: zero at the optimum.
-Vec6 dual_gradient(const Vec6& w, const Pass& pass) {
-  return kEps * w - identity6() + pass.S;
+Vec6 dual_gradient(const Vec6& w, double eps, const Pass& pass) noexcept {
+  return eps * w - identity6() + pass.S;
 }
 
-/// Moves from w towards `target` until the dual's slope along the way is no longer steep (bisection on a monotone
-/// slope). The dual is convex and piecewise quadratic, so this descends and Newton's method converges from anywhere.
-/// `pass` comes in evaluated at `target` and goes out evaluated at the returned point.
-Vec6 line_search(ContactBuffer& contacts, const Vec6& w, const Vec6& target, double slope_at_w, Pass& pass) noexcept {
-  const Vec6 way = target - w;
-  Vec6 trial = target;
+/// Moves w towards `target` until the dual's slope along the way is no longer steep (bisection on a monotone slope).
+/// The dual is convex and piecewise quadratic, so this descends and Newton's method converges from anywhere. `pass`
+/// comes in evaluated at `target` and goes out evaluated at w. False when the slope is lost in rounding.
+bool line_search(ContactBuffer& contacts, const Vec6& target, double eps, double slope_at_w, Vec6& w,
+                 Pass& pass) noexcept {
+  const Vec6 start = w, way = target - w;
+  w = target;
   double low = 0.0, high = 1.0, fraction = 1.0;
   for (int i = 0; i < kMaxLineSearchSteps; ++i) {
-    const double slope = dual_gradient(trial, pass).dot(way);
+    const double slope = dual_gradient(w, eps, pass).dot(way);
     const bool still_descending_at_target = fraction == 1.0 && slope <= 0.0;
-    if (still_descending_at_target || std::abs(slope) <= 0.5 * std::abs(slope_at_w)) break;
+    if (still_descending_at_target || std::abs(slope) <= 0.5 * std::abs(slope_at_w)) return true;
     (slope > 0.0 ? high : low) = fraction;
     fraction = 0.5 * (low + high);
-    trial = w + fraction * way;
-    pass = evaluate(contacts, trial);
+    w = start + fraction * way;
+    pass = evaluate(contacts, w);
   }
-  return trial;
+  return false;
+}
+
+/// Newton's method for one epsilon from w, where `pass` is evaluated; both go out at the last point. Counts its steps.
+/// True when it has converged to rounding.
+bool newton(ContactBuffer& contacts, double eps, int max_steps, Vec6& w, Pass& pass, int& steps) noexcept {
+  // A contact whose exact weight is zero may flicker between active and inactive by rounding, 1e-16 / eps a contact.
+  const double rounding = 1e-15 / eps * (1.0 + static_cast<double>(contacts.size()));
+  for (int step = 0; step < max_steps; ++step) {
+    ++steps;
+    // On a fixed active set the dual is quadratic; its minimum is where (eps I + G) w = identity.
+    const Vec6 target = solve(pass.G, eps, identity6());
+    const double slope = dual_gradient(w, eps, pass).dot(target - w);
+    pass = evaluate(contacts, target);
+    const bool flickers_only = pass.same_active || dual_gradient(target, eps, pass).norm() <= rounding;
+    // In exact arithmetic the slope is negative short of the optimum: otherwise rounding is all that is left of it.
+    if (flickers_only || slope >= 0.0) {
+      w = target;
+      return true;
+    }
+    if (!line_search(contacts, target, eps, slope, w, pass)) return true;
+  }
+  return false;
 }
 
 /// Removes the rounding of the last solve, which the factor 1/eps has amplified: with R the residual of the optimality
-/// condition, c_i += a_i . (eps I + G)^-1 R on the active contacts.
-void refine(ContactBuffer& contacts, const Eigen::LDLT<Mat6>& system, Vec6 w, Vec6 S) noexcept {
-  using simd::Pack;
-  const Pack zero(0.0);
-  for (int round = 0; round < kRefinements; ++round) {
-    const Vec6 correction = system.solve(identity6() - kEps * w - S);
+/// condition, w += (eps I + G)^-1 R, and the weights follow by adding the small a_i . correction, which keeps the
+/// digits that a_i . w loses.
+void refine(ContactBuffer& contacts, Vec6 w, Pass pass) noexcept {
+  const simd::Pack zero(0.0);
+  for (int round = 0; round < kMaxRefinements; ++round) {
+    const Vec6 residual = -dual_gradient(w, kEps, pass);
+    if (residual.norm() <= kResidualRounding) return;
+    const Vec6 correction = solve(pass.G, kEps, residual);
     w += correction;
-    Pack s[6];
-    std::fill(std::begin(s), std::end(s), zero);
-    for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
-      const TensorPack u(contacts, i);
-      const Pack c = simd::load(&contacts.weight[i]);
-      const Pack refined = simd::select(c > zero, simd::max(zero, c + u.dot(correction)), zero);
-      simd::store(refined, &contacts.weight[i]);
-      for (int j = 0; j < 6; ++j) s[j] += refined * u.a[j];
-    }
-    for (int j = 0; j < 6; ++j) S[j] = simd::sum(s[j]);
+    pass = sweep(contacts, [&](const TensorPack& u, const simd::Pack& c) {
+      return simd::select(c > zero, c + u.dot(correction), u.dot(w));
+    });
   }
 }
 
@@ -145,23 +178,29 @@ void refine(ContactBuffer& contacts, const Eigen::LDLT<Mat6>& system, Vec6 w, Ve
 
 int solve_exact_shaping(ContactBuffer& contacts) noexcept {
   set_weights(contacts, 1.0);
-  // A contact whose exact weight is zero may flicker between active and inactive by rounding, 1e-16 / eps a contact.
-  const double rounding = 1e-15 / kEps * (1.0 + static_cast<double>(contacts.size()));
   // Every contact is active at w = identity, because a_i . identity = |u_i|² = 1.
   Vec6 w = identity6();
   Pass pass = evaluate(contacts, w);
-  for (int step = 1; step <= kMaxNewtonSteps; ++step) {
-    // On a fixed active set the dual is quadratic; its minimum is where (eps I + G) w = identity.
-    const Vec6 target = regularised(pass.G).solve(identity6());
-    const double slope = dual_gradient(w, pass).dot(target - w);
-    pass = evaluate(contacts, target);
-    if (pass.same_active || dual_gradient(target, pass).norm() <= rounding) {
-      refine(contacts, regularised(pass.G), target, pass.S);
-      return step;
+  int steps = 0;
+  if (!newton(contacts, kEps, kDirectSteps, w, pass, steps)) {
+    // Dense clusters of nearly equal gradients: the optimum keeps a handful of hundreds, and Newton's method would
+    // find them one by one. Following the optimum from a large epsilon down takes a few steps each: at most 36 in
+    // 9e6 adversarial sets, against a hundred.
+    double eps = kPathStart;
+    w = identity6() / eps;
+    pass = evaluate(contacts, w);
+    newton(contacts, eps, kMaxNewtonSteps, w, pass, steps);
+    while (eps > kEps) {
+      // The same Y = eps w at the next epsilon: weights scale, and the active set stays.
+      const double next = std::max(kEps, eps * kPathFactor);
+      w *= eps / next;
+      pass.S *= eps / next;
+      eps = next;
+      newton(contacts, eps, kMaxNewtonSteps, w, pass, steps);
     }
-    w = line_search(contacts, w, target, slope, pass);
   }
-  return kMaxNewtonSteps;
+  refine(contacts, w, pass);
+  return steps;
 }
 
 namespace {

@@ -24,27 +24,28 @@ namespace {
 
 class VirtualCoupling final : public ForceLaw {
  public:
-  VirtualCoupling(double stiffness, double coupling) : K_(stiffness), K_vc_(coupling) {}
+  VirtualCoupling(double stiffness, std::optional<double> coupling)
+      : K_(stiffness), K_over_K_vc_(coupling ? stiffness / *coupling : 1.0) {}
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     set_weights(contacts, 1.0);
     const Mat3 S_sum = stiffness_tensor(contacts);
-    // Positive definite: K_vc > 0 and S_sum is a sum of u u^T.
-    const Eigen::LLT<Mat3> series(K_vc_ * Mat3::Identity() + K_ * S_sum);
-    const Mat3 S = K_vc_ * series.solve(S_sum);
+    // The formula divided by K_vc, so that K = 0 needs no case of its own. Positive definite: S_sum is a sum of u u^T.
+    const Eigen::LLT<Mat3> series(Mat3::Identity() + K_over_K_vc_ * S_sum);
+    const Mat3 S = series.solve(S_sum);
     // S_sum and the inverse commute, so S is symmetric; averaging removes the rounding of the solve.
-    return {-K_vc_ * series.solve(K_ * weighted_depth(contacts)), 0.5 * (S + S.transpose())};
+    return {-K_ * series.solve(weighted_depth(contacts)), 0.5 * (S + S.transpose())};
   }
 
  private:
   double K_;
-  double K_vc_;
+  double K_over_K_vc_;
 };
 
 }  // namespace
 
 std::unique_ptr<ForceLaw> make_virtual_coupling(const RenderingConfig& config) {
-  return std::make_unique<VirtualCoupling>(config.stiffness, config.virtual_coupling.value_or(config.stiffness));
+  return std::make_unique<VirtualCoupling>(config.stiffness, config.virtual_coupling);
 }
 
 }  // namespace hapbench

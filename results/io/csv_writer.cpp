@@ -1,0 +1,65 @@
+#include "results/io/csv_writer.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "results/io/number_text.hpp"
+
+namespace hapbench {
+
+CsvWriter::CsvWriter(std::filesystem::path file, std::string_view header)
+    : file_(std::move(file)), columns_(static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')) + 1) {
+  file_.append(header);
+  file_.append("\n");
+}
+
+void CsvWriter::put(double value) noexcept {
+  begin_cell();
+  file_.append(NumberText(value));
+}
+
+void CsvWriter::put(std::uint64_t value) noexcept {
+  begin_cell();
+  file_.append(NumberText(value));
+}
+
+void CsvWriter::put(const Vec3& value) noexcept {
+  put(value.x());
+  put(value.y());
+  put(value.z());
+}
+
+void CsvWriter::put(const std::optional<double>& value) noexcept {
+  if (value) {
+    put(*value);
+  } else {
+    begin_cell();
+  }
+}
+
+void CsvWriter::put(std::string_view text) noexcept {
+  begin_cell();
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
+    file_.append(text);
+    return;
+  }
+  // Quoted, with quotes inside doubled.
+  file_.append("\"");
+  for (const char& c : text) {
+    if (c == '"') file_.append("\"");
+    file_.append({&c, 1});
+  }
+  file_.append("\"");
+}
+
+void CsvWriter::begin_cell() noexcept {
+  if (cells_++ > 0) file_.append(",");
+}
+
+void CsvWriter::end_row() noexcept {
+  assert(cells_ == columns_);
+  file_.append("\n");
+}
+
+}  // namespace hapbench

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "results/io/atomic_file.hpp"
+#include "sim/core/types.hpp"
+
+namespace hapbench {
+
+/// A comma-separated table with a header line, written row by row into an AtomicFile (RFC 4180, lines end in "\n").
+/// Numbers are the shortest decimals that read back as the same double; 0 and -0 differ, non-finite ones are "inf",
+/// "-inf" and "nan". Allocates in the constructor only; about 30 ns a number.
+class CsvWriter {
+ public:
+  /// `header` is the first line, column names separated by commas. Throws IoError.
+  CsvWriter(std::filesystem::path file, std::string_view header);
+
+  /// One row: numbers, Vec3 (three cells), text (quoted if it must be), std::optional<double> (an empty cell for none).
+  /// Precondition: as many cells as the header has columns. Errors are kept for `finish`.
+  template <class... Cells>
+  void row(const Cells&... cells) noexcept {
+    cells_ = 0;
+    (put(cells), ...);
+    end_row();
+  }
+
+  /// Puts the table under its final name. Throws IoError, also for the errors of earlier rows.
+  void finish() { file_.commit(); }
+
+ private:
+  void put(double value) noexcept;
+  void put(std::uint64_t value) noexcept;
+  void put(const Vec3& value) noexcept;
+  void put(const std::optional<double>& value) noexcept;
+  void put(std::string_view text) noexcept;
+  void begin_cell() noexcept;
+  void end_row() noexcept;
+
+  AtomicFile file_;
+  std::size_t columns_;
+  std::size_t cells_ = 0;  ///< of the row being written
+};
+
+}  // namespace hapbench

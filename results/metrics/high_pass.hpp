@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+
+#include "sim/core/types.hpp"
+
+namespace hapbench {
+
+/// A Butterworth high-pass of fourth order for a sampled vector signal, component by component: two biquads, from the
+/// analogue prototype by the bilinear transform with the cutoff prewarped. Its gain is
+///
+///     |H(f)|^2 = 1 / (1 + (tan(pi fc / fs) / tan(pi f / fs))^8),
+///
+/// so exactly 1/2 (-3 dB) at the cutoff fc, 0 at f = 0 and 1 at half the sampling rate fs.
+class HighPass {
+ public:
+  /// Cutoff and sampling rate [Hz]. Precondition: 0 < cutoff < sampling_rate / 2.
+  HighPass(double cutoff, double sampling_rate);
+
+  /// As if the input had been `value` for ever: the output stays exactly zero until the input changes.
+  void settle_at(const Vec3& value) noexcept;
+  /// The next sample in, the next sample out.
+  Vec3 filter(const Vec3& sample) noexcept;
+
+ private:
+  /// y = (b0 + b1 z^-1 + b2 z^-2) / (1 + a1 z^-1 + a2 z^-2) x, transposed direct form II, with b1 = -2 b0 and b2 = b0.
+  struct Biquad {
+    double b0 = 0.0, a1 = 0.0, a2 = 0.0;
+    Vec3 s1 = Vec3::Zero(), s2 = Vec3::Zero();
+  };
+
+  std::array<Biquad, 2> biquads_;
+};
+
+}  // namespace hapbench

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "results/metrics/metrics.hpp"
+#include "results/provenance.hpp"
+#include "sim/loop/simulation.hpp"
+
+namespace hapbench {
+
+/// What the run cost in counted work. Counts are exact and repeatable; times are in timing.json.
+struct RunWork {
+  SearchWork search;
+  std::uint64_t steps_skipped = 0;  ///< steps without any contact search
+  AlgorithmWork algorithm;
+  std::uint64_t allocations = 0;  ///< on the heap, inside the step loop
+};
+
+/// Everything summary.json says about one run.
+struct RunSummary {
+  std::string name;       ///< of the scenario
+  std::string algorithm;  ///< as registered
+  SimulationResult result;
+  bool expected = false;  ///< the outcome is the one the scenario expects
+  double duration = 0.0;  ///< simulated time: rows x dt [s]
+  Metrics metrics;
+  RunWork work;
+  Provenance provenance;
+  std::string scenario_hash;  ///< of the effective scenario
+};
+
+/// summary.json. The same run gives the same bytes: no time stamps, no timings, no instruction set. What does not exist
+/// (a ratio without contact, the final position of no row) or is not finite is null.
+nlohmann::ordered_json summary_json(const RunSummary& run);
+std::string summary_text(const RunSummary& run);
+
+}  // namespace hapbench

@@ -1,0 +1,30 @@
+#include "results/timing.hpp"
+
+#include "results/io/json_text.hpp"
+
+namespace hapbench {
+
+using nlohmann::ordered_json;
+
+ordered_json timing_json(const RunTiming& timing, const InstructionSet& instructions, const Provenance& provenance) {
+  ordered_json mean = nullptr;
+  if (timing.steps > 0) mean = timing.loop / static_cast<double>(timing.steps);
+  return {{"loop_s", timing.loop},
+          {"steps", timing.steps},
+          {"step_mean_s", mean},
+          {"build",
+           {{"march", instructions.march},
+            {"instruction_set", instructions.widest},
+            {"simd", instructions.simd},
+            {"compiler", provenance.compiler},
+            {"build_type", provenance.build_type},
+            {"flags", provenance.flags},
+            {"commit", provenance.commit}}},
+          {"cpu", provenance.cpu}};
+}
+
+std::string timing_text(const RunTiming& timing, const InstructionSet& instructions, const Provenance& provenance) {
+  return json_text(timing_json(timing, instructions, provenance));
+}
+
+}  // namespace hapbench

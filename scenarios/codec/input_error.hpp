@@ -1,0 +1,45 @@
+#pragma once
+
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hapbench {
+
+/// Bad input: a file, an argument or a field the program refuses. Exit status 2. The message is one line that names the
+/// place, the value given, what is allowed and, for names, the nearest valid one.
+class InputError : public std::runtime_error {
+ public:
+  enum class Kind {
+    shape,     ///< one field by itself is wrong; the JSON Schema refuses it too
+    relation,  ///< fields contradict each other, or the world (a missing file); beyond what a schema can say
+  };
+
+  InputError(Kind kind, std::string place, const std::string& problem)
+      : std::runtime_error(place.empty() ? problem : place + ": " + problem), kind_(kind), place_(std::move(place)), problem_(problem) {}
+  /// A relation without a field of its own.
+  explicit InputError(const std::string& problem) : InputError(Kind::relation, "", problem) {}
+
+  Kind kind() const { return kind_; }
+  /// JSON pointer of the field; empty for the whole file.
+  const std::string& place() const { return place_; }
+  const std::string& problem() const { return problem_; }
+
+ private:
+  Kind kind_;
+  std::string place_;
+  std::string problem_;
+};
+
+/// The valid name nearest to `given` in edit distance, or empty when none is near enough to suggest.
+std::string nearest_name(std::string_view given, std::span<const std::string> valid);
+
+/// `; nearest valid name: "x"`, or empty.
+std::string nearest_name_hint(std::string_view given, std::span<const std::string> valid);
+
+/// "a", "b", "c"
+std::string quoted_list(std::span<const std::string> names);
+
+}  // namespace hapbench

@@ -1,0 +1,67 @@
+#include "scenarios/commands/command.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "results/io/json_text.hpp"
+
+namespace hapbench {
+
+namespace fs = std::filesystem;
+
+void add_output_options(CLI::App& command, OutputOptions& options) {
+  command.add_flag("--quiet", options.quiet, "nothing on standard output, no progress bar");
+  command.add_flag("--json", options.json, "JSON on standard output instead of a table");
+}
+
+void print(const OutputOptions& options, const std::string& text, const Json& json) {
+  if (options.quiet) return;
+  const std::string output = options.json ? json_text(json) : text;
+  std::fwrite(output.data(), 1, output.size(), stdout);
+}
+
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) fmt::print(stderr, "hapbench: warning: {}\n", warning);
+}
+
+std::vector<BundledScenario> bundled_scenarios() {
+  std::vector<BundledScenario> found;
+  for (const char* group : {"thesis", "limits", "examples"}) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(fs::path(HAPBENCH_SCENARIO_DIR) / group, error)) {
+      if (entry.path().extension() == ".json") found.push_back({entry.path().stem().string(), group, entry.path()});
+    }
+  }
+  std::stable_sort(found.begin(), found.end(), [](const BundledScenario& a, const BundledScenario& b) {
+    return a.group == b.group ? a.name < b.name : false;
+  });
+  return found;
+}
+
+fs::path find_scenario(const std::string& argument) {
+  std::error_code error;
+  if (fs::exists(argument, error)) return argument;
+  std::vector<std::string> names;
+  for (const BundledScenario& bundled : bundled_scenarios()) {
+    if (bundled.name == argument) return bundled.file;
+    names.push_back(bundled.name);
+  }
+  const std::string stem = fs::path(argument).stem().string();
+  throw InputError(fmt::format("{}: no such file and no bundled scenario{}; \"hapbench list\" shows them", argument,
+                               nearest_name_hint(stem, names)));
+}
+
+void require_writable_directory(const fs::path& directory) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) throw InputError(fmt::format("--out {}: cannot be created: {}", directory.string(), error.message()));
+  if (!fs::is_directory(directory)) throw InputError(fmt::format("--out {}: is not a directory", directory.string()));
+  if (access(directory.c_str(), W_OK | X_OK) != 0) {
+    throw InputError(fmt::format("--out {}: cannot be written to", directory.string()));
+  }
+}
+
+}  // namespace hapbench

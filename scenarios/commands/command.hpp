@@ -1,0 +1,64 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "scenarios/codec/codec.hpp"
+
+/// The command line: each command adds its options to the parser and says what to do when it is chosen.
+namespace hapbench {
+
+/// Exit status of the program.
+enum ExitStatus : int {
+  kSuccess = 0,
+  kInternalFault = 1,
+  kBadInput = 2,
+  kUnexpectedOutcome = 3,  ///< a simulation diverged, or missed another expectation of its scenario
+};
+
+/// Options every command understands.
+struct OutputOptions {
+  bool quiet = false;  ///< nothing on standard output, no progress bar
+  bool json = false;   ///< JSON instead of tables on standard output
+};
+
+/// What the chosen command does; returns the exit status.
+using Action = std::function<int()>;
+
+void add_run(CLI::App& app, Action& chosen);
+void add_compare(CLI::App& app, Action& chosen);
+void add_stability(CLI::App& app, Action& chosen);
+void add_shell(CLI::App& app, Action& chosen);
+void add_list(CLI::App& app, Action& chosen);
+void add_describe(CLI::App& app, Action& chosen);
+void add_validate(CLI::App& app, Action& chosen);
+
+/// Adds --quiet and --json.
+void add_output_options(CLI::App& command, OutputOptions& options);
+
+/// Prints `text`, or `json` under --json, or nothing under --quiet.
+void print(const OutputOptions& options, const std::string& text, const Json& json);
+
+/// Prints warnings, one line each, on standard error.
+void print_warnings(const std::vector<std::string>& warnings);
+
+/// A bundled scenario.
+struct BundledScenario {
+  std::string name;  ///< file name without extension
+  std::string group; ///< thesis, limits, examples
+  std::filesystem::path file;
+};
+
+/// The scenarios that come with hapbench, by group and name.
+std::vector<BundledScenario> bundled_scenarios();
+
+/// The file a scenario argument means: a path, or the name of a bundled scenario. Throws InputError.
+std::filesystem::path find_scenario(const std::string& argument);
+
+/// Makes sure results can be written to `directory`; throws InputError otherwise. Creates it.
+void require_writable_directory(const std::filesystem::path& directory);
+
+}  // namespace hapbench

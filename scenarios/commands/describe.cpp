@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "algorithms/registry.hpp"
+#include "results/io/json_text.hpp"
+#include "scenarios/commands/command.hpp"
+#include "scenarios/commands/schema_text.hpp"
+#include "scenarios/commands/table.hpp"
+#include "scenarios/config/environment_codec.hpp"
+#include "scenarios/config/load_scenario.hpp"
+
+namespace hapbench {
+namespace {
+
+struct Description {
+  std::string text;
+  Json json;
+};
+
+Description describe_model(const char* kind, const ModelInfo& info) {
+  Description d;
+  d.text = fmt::format("{} {}\n  {}\n\n  formula        {}\n  source         {}\n  known failure  {}\n", kind, info.name,
+                       info.summary, info.formula, info.source, info.known_failure);
+  d.json = {{"kind", kind}, {"name", info.name}, {"summary", info.summary}, {"formula", info.formula},
+            {"source", info.source}, {"known_failure", info.known_failure}, {"parameters", Json::array()}};
+  if (info.parameters.empty()) return d;
+  Table table({{"parameter", false}, {"unit", false}, {"default", false}, {"range", false}, {"meaning", false}});
+  for (const ParameterInfo& p : info.parameters) {
+    table.add({p.name, p.unit, p.default_value, p.range, p.meaning});
+    d.json["parameters"].push_back({{"name", p.name}, {"unit", p.unit}, {"default", p.default_value}, {"range", p.range}, {"meaning", p.meaning}});
+  }
+  d.text += "\n" + table.text();
+  return d;
+}
+
+const ModelInfo* find_stage(const std::string& name) {
+  for (const ModelInfo* stage : point_stages()) {
+    if (stage->name == name) return stage;
+  }
+  return nullptr;
+}
+
+Description describe_scenario(const std::filesystem::path& file) {
+  const LoadedScenario loaded = load_scenario(file);
+  const Json effective = effective_scenario(loaded.scenario, loaded.scenario.directory);
+  return {fmt::format("scenario {}\n  {}\n  source: {}\n\n{}", loaded.scenario.name, loaded.scenario.description,
+                      loaded.scenario.source, json_text(effective)),
+          effective};
+}
+
+std::vector<std::string> all_names() {
+  std::vector<std::string> names = {"scenario", "schema"};
+  for (const AlgorithmEntry& entry : algorithms()) names.emplace_back(entry.info->name);
+  for (const DepthModelEntry& entry : depth_models()) names.emplace_back(entry.info->name);
+  for (const ModelInfo* stage : point_stages()) names.emplace_back(stage->name);
+  for (const std::string& name : environment_names()) names.push_back(name);
+  for (const BundledScenario& bundled : bundled_scenarios()) names.push_back(bundled.name);
+  return names;
+}
+
+Description describe_name(const std::string& name) {
+  if (name == "schema") return {json_text(scenario_schema()), scenario_schema()};
+  Description d;
+  const auto add = [&d](Description more) {
+    d.text += (d.text.empty() ? "" : "\n") + more.text;
+    d.json = d.json.is_null() ? more.json : Json::array({d.json, more.json});
+  };
+  // A name may mean two things: normal_projection is an algorithm and a depth model.
+  if (const AlgorithmEntry* entry = find_algorithm(name)) add(describe_model("algorithm", *entry->info));
+  if (const DepthModelEntry* entry = find_depth_model(name)) add(describe_model("depth model", *entry->info));
+  if (const ModelInfo* stage = find_stage(name)) add(describe_model("point stage", *stage));
+  if (!d.text.empty()) return d;
+  if (const Json* fields = find_in_schema(scenario_schema_once(), name)) return {fields_text(name, *fields), *fields};
+  for (const BundledScenario& bundled : bundled_scenarios()) {
+    if (bundled.name == name) return describe_scenario(bundled.file);
+  }
+  if (std::filesystem::exists(name)) return describe_scenario(name);
+  throw InputError(fmt::format("nothing is called \"{}\"{}; \"hapbench list\" shows the names, \"hapbench describe scenario\" "
+                               "the fields of a scenario file",
+                               name, nearest_name_hint(name, all_names())));
+}
+
+}  // namespace
+
+void add_describe(CLI::App& app, Action& chosen) {
+  struct Options {
+    std::string name;
+    OutputOptions output;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("describe", "Explain an algorithm, a depth model, an environment, a field or a scenario");
+  command->add_option("name", options->name,
+                      "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), or \"schema\"")
+      ->required();
+  add_output_options(*command, options->output);
+  command->callback([options, &chosen] {
+    chosen = [options] {
+      const Description d = describe_name(options->name);
+      print(options->output, d.text, d.json);
+      return kSuccess;
+    };
+  });
+}
+
+}  // namespace hapbench

@@ -1,0 +1,52 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "algorithms/registry.hpp"
+#include "scenarios/commands/command.hpp"
+#include "scenarios/commands/table.hpp"
+#include "scenarios/config/environment_codec.hpp"
+#include "scenarios/config/load_scenario.hpp"
+
+namespace hapbench {
+namespace {
+
+void add_models(Table& table, Json& json, const char* kind, const ModelInfo& info) {
+  table.add({kind, info.name, info.summary});
+  json.push_back({{"kind", kind}, {"name", info.name}, {"summary", info.summary}});
+}
+
+int list(const OutputOptions& options) {
+  Table table({{"kind", false}, {"name", false}, {"what it is", false}});
+  Json json = Json::array();
+  for (const AlgorithmEntry& entry : algorithms()) add_models(table, json, "algorithm", *entry.info);
+  for (const DepthModelEntry& entry : depth_models()) add_models(table, json, "depth model", *entry.info);
+  for (const ModelInfo* stage : point_stages()) add_models(table, json, "point stage", *stage);
+  for (const std::string& name : environment_names()) {
+    table.add({"environment", name, ""});
+    json.push_back({{"kind", "environment"}, {"name", name}});
+  }
+  for (const BundledScenario& bundled : bundled_scenarios()) {
+    std::string description;
+    try {
+      description = load_scenario(bundled.file).scenario.source;
+    } catch (const InputError& error) {
+      description = error.what();
+    }
+    table.add({"scenario/" + bundled.group, bundled.name, description});
+    json.push_back({{"kind", "scenario"}, {"group", bundled.group}, {"name", bundled.name}, {"source", description}});
+  }
+  print(options, table.text(), json);
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_list(CLI::App& app, Action& chosen) {
+  auto options = std::make_shared<OutputOptions>();
+  CLI::App* command = app.add_subcommand("list", "List algorithms, depth models, environments and bundled scenarios");
+  add_output_options(*command, *options);
+  command->callback([options, &chosen] { chosen = [options] { return list(*options); }; });
+}
+
+}  // namespace hapbench

@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <set>
+
+#include "results/io/io_error.hpp"
+#include "scenarios/commands/command.hpp"
+#include "scenarios/commands/run_table.hpp"
+#include "scenarios/run/assemble.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RunOptions {
+  std::vector<std::string> scenarios;
+  std::string out;
+  std::vector<std::string> overrides;
+  OutputOptions output;
+};
+
+/// One directory a scenario: --out itself for a single one, a subdirectory named after the file for several.
+std::vector<fs::path> output_directories(const RunOptions& options, const std::vector<LoadedScenario>& scenarios) {
+  const fs::path root = options.out.empty() ? fs::path("results") / "out" : fs::path(options.out);
+  if (scenarios.size() == 1 && !options.out.empty()) return {root};
+  std::vector<fs::path> directories;
+  std::set<std::string> stems;
+  for (const LoadedScenario& scenario : scenarios) {
+    const std::string stem = scenario.file.stem().string();
+    if (!stems.insert(stem).second) {
+      throw InputError(fmt::format("{}: a second scenario named \"{}\"; allowed: one of each name in a run",
+                                   scenario.file.string(), stem));
+    }
+    directories.push_back(root / stem);
+  }
+  return directories;
+}
+
+int run(const RunOptions& options) {
+  // All input is checked before anything runs or is written.
+  std::vector<LoadedScenario> scenarios;
+  for (const std::string& argument : options.scenarios) {
+    scenarios.push_back(load_scenario(find_scenario(argument), options.overrides));
+  }
+  const std::vector<fs::path> directories = output_directories(options, scenarios);
+  for (const LoadedScenario& scenario : scenarios) {
+    check_named_files(scenario);
+    print_warnings(scenario.warnings);
+  }
+  for (const fs::path& directory : directories) require_writable_directory(directory);
+
+  std::vector<Table::Column> columns = run_columns();
+  columns.insert(columns.begin(), {{"scenario", false}, {"algorithm", false}});
+  Table table(columns);
+  Json summaries = Json::array();
+  int status = kSuccess;
+  for (std::size_t i = 0; i < scenarios.size(); ++i) {
+    const RunReport report = run_scenario(scenarios[i], directories[i], !options.output.quiet);
+    std::vector<std::string> cells = run_cells(report);
+    cells.insert(cells.begin(), {report.summary.name, report.summary.algorithm});
+    table.add(std::move(cells));
+    summaries.push_back(summary_json(report.summary));
+    for (const std::string& unmet : report.unmet) {
+      fmt::print(stderr, "hapbench: {}: {}\n", scenarios[i].file.string(), unmet);
+      status = kUnexpectedOutcome;
+    }
+  }
+  const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
+  print(options.output, table.text() + fmt::format("\nresults in {}\n", where.string()), summaries);
+  return status;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& chosen) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand("run", "Run scenarios and write their results");
+  command->add_option("scenarios", options->scenarios, "scenario files, or names of bundled scenarios")->required();
+  command->add_option("--out", options->out,
+                      "directory of the results; several scenarios get a subdirectory each (default: results/out/NAME)");
+  command->add_option("--set", options->overrides, "override a field: path=value, as in time.steps=100")
+      ->allow_extra_args(false)
+      ->take_all();
+  add_output_options(*command, options->output);
+  command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+}
+
+}  // namespace hapbench

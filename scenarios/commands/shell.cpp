@@ -1,0 +1,50 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "results/io/atomic_file.hpp"
+#include "scenarios/commands/command.hpp"
+#include "scenarios/config/load_scenario.hpp"
+#include "scenarios/files/shell_file.hpp"
+#include "scenarios/run/assemble.hpp"
+
+namespace hapbench {
+namespace {
+
+struct ShellOptions {
+  std::string scenario;
+  std::string out;
+  std::vector<std::string> overrides;
+  OutputOptions output;
+};
+
+int shell(const ShellOptions& options) {
+  const LoadedScenario loaded = load_scenario(find_scenario(options.scenario), options.overrides);
+  if (std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment)) {
+    throw InputError(loaded.file.string() + ": /environment/type: got \"springs\", which have no point shell");
+  }
+  check_named_files(loaded);
+  const std::vector<SurfacePoint> points = environment_points(loaded.scenario);
+  const std::filesystem::path file = options.out;
+  const std::string text = point_shell_text(points, file);
+  const std::filesystem::path directory = file.has_parent_path() ? file.parent_path() : ".";
+  require_writable_directory(directory);
+  write_file_atomically(file, text);
+  print(options.output, fmt::format("{} points in {}\n", points.size(), file.string()),
+        {{"points", points.size()}, {"file", file.string()}});
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_shell(CLI::App& app, Action& chosen) {
+  auto options = std::make_shared<ShellOptions>();
+  CLI::App* command = app.add_subcommand("shell", "Write the environment's point shell: positions and normals");
+  command->add_option("scenario", options->scenario, "scenario file, or name of a bundled scenario")->required();
+  command->add_option("--out", options->out, "FILE.csv (exact) or FILE.ply (single precision, for viewers)")->required();
+  command->add_option("--set", options->overrides, "override a field: path=value")->allow_extra_args(false)->take_all();
+  add_output_options(*command, options->output);
+  command->callback([options, &chosen] { chosen = [options] { return shell(*options); }; });
+}
+
+}  // namespace hapbench

@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "results/io/atomic_file.hpp"
+#include "results/io/csv_writer.hpp"
+#include "results/io/json_text.hpp"
+#include "scenarios/commands/command.hpp"
+#include "scenarios/commands/table.hpp"
+#include "scenarios/config/load_scenario.hpp"
+#include "scenarios/experiments/stability_limits.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct StabilityOptions {
+  std::vector<std::string> scenarios;
+  std::string out;
+  std::vector<std::string> overrides;
+  OutputOptions output;
+};
+
+std::string_view case_name(StabilityCase which) {
+  switch (which) {
+    case StabilityCase::stiffness_undamped: return "stiffness_undamped";
+    case StabilityCase::damping_alone: return "damping_alone";
+    case StabilityCase::stiffness_damped: return "stiffness_damped";
+    case StabilityCase::time_step: return "time_step";
+  }
+  return "";
+}
+
+void write_limits(const fs::path& file, const std::vector<StabilityLimit>& limits) {
+  CsvWriter csv(file, "case,unit,analytic,eigenvalue,simulation,damping_at_limit_N_s_per_m,lambda_max");
+  for (const StabilityLimit& limit : limits) {
+    csv.row(case_name(limit.which), std::string_view(limit.unit), limit.analytic, limit.eigenvalue, limit.simulation,
+            limit.damping_at_limit, limit.lambda);
+  }
+  csv.finish();
+}
+
+void write_root_locus(const fs::path& file, const std::vector<RootLocusPoint>& locus) {
+  CsvWriter csv(file, "case,value,first_real,first_imaginary,second_real,second_imaginary,spectral_radius");
+  for (const RootLocusPoint& point : locus) {
+    csv.row(case_name(point.which), point.value, point.first.real(), point.first.imag(), point.second.real(),
+            point.second.imag(), std::max(std::abs(point.first), std::abs(point.second)));
+  }
+  csv.finish();
+}
+
+Json limits_json(const LoadedScenario& loaded, const std::vector<StabilityLimit>& limits) {
+  Json rows = Json::array();
+  for (const StabilityLimit& limit : limits) {
+    rows.push_back({{"case", case_name(limit.which)},
+                    {"unit", limit.unit},
+                    {"analytic", limit.analytic},
+                    {"eigenvalue", limit.eigenvalue},
+                    {"simulation", limit.simulation},
+                    {"damping_at_limit_N_s_per_m", limit.damping_at_limit},
+                    {"lambda_max", limit.lambda}});
+  }
+  return {{"name", loaded.scenario.name}, {"algorithm", loaded.scenario.rendering.config.algorithm}, {"limits", std::move(rows)}};
+}
+
+std::string limits_text(const LoadedScenario& loaded, const std::vector<StabilityLimit>& limits) {
+  Table table({{"limit", false}, {"analytic"}, {"eigenvalues"}, {"simulation"}, {"unit", false}, {"B there N s/m"}});
+  for (const StabilityLimit& limit : limits) {
+    table.add({limit.name, significant(limit.analytic, 6), significant(limit.eigenvalue, 6),
+               significant(limit.simulation, 6), limit.unit, significant(limit.damping_at_limit, 5)});
+  }
+  const RenderingFields& rendering = loaded.scenario.rendering;
+  return fmt::format("{}: {}, M = {} kg, dt = {} s, zeta = {}, lambda_max(S) = {}\n\n{}", loaded.scenario.name,
+                     rendering.config.algorithm, *rendering.mass, loaded.scenario.time.step,
+                     rendering.config.damping_ratio, significant(limits.front().lambda, 6), table.text());
+}
+
+int stability(const StabilityOptions& options) {
+  std::vector<LoadedScenario> scenarios;
+  for (const std::string& argument : options.scenarios) {
+    scenarios.push_back(load_scenario(find_scenario(argument), options.overrides));
+  }
+  std::string text;
+  Json json = Json::array();
+  for (const LoadedScenario& loaded : scenarios) {
+    const std::vector<StabilityLimit> limits = with_file(loaded, [&] { return stability_limits(loaded.scenario); });
+    const fs::path directory = options.out.empty() ? fs::path("results") / "out" / ("stability_" + loaded.file.stem().string())
+                               : scenarios.size() == 1 ? fs::path(options.out)
+                                                       : fs::path(options.out) / loaded.file.stem();
+    require_writable_directory(directory);
+    write_limits(directory / "limits.csv", limits);
+    write_root_locus(directory / "root_locus.csv", root_locus(loaded.scenario, limits));
+    write_file_atomically(directory / "scenario.effective.json", json_text(effective_scenario(loaded.scenario, directory)));
+    text += limits_text(loaded, limits) + fmt::format("\nroot locus in {}\n", (directory / "root_locus.csv").string());
+    json.push_back(limits_json(loaded, limits));
+  }
+  print(options.output, text, json);
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_stability(CLI::App& app, Action& chosen) {
+  auto options = std::make_shared<StabilityOptions>();
+  CLI::App* command =
+      app.add_subcommand("stability", "Largest stable stiffness, damping and time step of a springs scenario (thesis A.3)");
+  command->add_option("scenarios", options->scenarios, "springs scenarios: files, or names of bundled ones")->required();
+  command->add_option("--out", options->out, "directory of limits.csv and root_locus.csv (default: results/out/stability_NAME)");
+  command->add_option("--set", options->overrides, "override a field: path=value")->allow_extra_args(false)->take_all();
+  add_output_options(*command, options->output);
+  command->callback([options, &chosen] { chosen = [options] { return stability(*options); }; });
+}
+
+}  // namespace hapbench

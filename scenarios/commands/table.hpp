@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace hapbench {
+
+/// A table for the terminal: columns as wide as their widest cell, a rule under the header. Numbers to the right, text
+/// to the left.
+class Table {
+ public:
+  /// One column: its title, and whether its cells are numbers.
+  struct Column {
+    std::string title;
+    bool number = true;
+  };
+
+  explicit Table(std::vector<Column> columns);
+  /// Precondition: one cell per column.
+  void add(std::vector<std::string> cells);
+  std::string text() const;
+
+ private:
+  std::vector<Column> columns_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+/// A number for people: `digits` significant ones, "-" for none.
+std::string significant(double value, int digits = 4);
+
+}  // namespace hapbench

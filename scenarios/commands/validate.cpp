@@ -1,0 +1,49 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "scenarios/commands/command.hpp"
+#include "scenarios/config/load_scenario.hpp"
+#include "scenarios/run/assemble.hpp"
+
+namespace hapbench {
+namespace {
+
+struct ValidateOptions {
+  std::vector<std::string> files;
+  OutputOptions output;
+};
+
+int validate(const ValidateOptions& options) {
+  std::string text;
+  Json verdicts = Json::array();
+  int status = kSuccess;
+  for (const std::string& argument : options.files) {
+    try {
+      const LoadedScenario loaded = load_scenario(find_scenario(argument));
+      check_named_files(loaded);
+      print_warnings(loaded.warnings);
+      text += fmt::format("{}: valid\n", argument);
+      verdicts.push_back({{"file", argument}, {"valid", true}});
+    } catch (const InputError& error) {
+      fmt::print(stderr, "hapbench: error: {}\n", error.what());
+      verdicts.push_back({{"file", argument}, {"valid", false}, {"error", error.what()}});
+      status = kBadInput;
+    }
+  }
+  print(options.output, text, verdicts);
+  return status;
+}
+
+}  // namespace
+
+void add_validate(CLI::App& app, Action& chosen) {
+  auto options = std::make_shared<ValidateOptions>();
+  CLI::App* command = app.add_subcommand("validate", "Check scenario files and the files they name, without running them");
+  command->add_option("files", options->files, "scenario files")->required();
+  add_output_options(*command, options->output);
+  command->callback([options, &chosen] { chosen = [options] { return validate(*options); }; });
+}
+
+}  // namespace hapbench

@@ -1,0 +1,100 @@
+#include "scenarios/config/load_scenario.hpp"
+
+#include <fmt/format.h>
+
+#include "results/hash.hpp"
+#include "results/io/json_text.hpp"
+#include "scenarios/codec/values.hpp"
+#include "scenarios/files/json_file.hpp"
+#include "scenarios/files/number_table.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Sets the field at a dotted path; a number in the path indexes a list.
+void apply_override(Json& json, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == 0 || equals == std::string::npos) {
+    throw InputError("--set: got \"" + text + "\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000");
+  }
+  Json* node = &json;
+  std::string path = text.substr(0, equals);
+  for (std::size_t start = 0; start != std::string::npos;) {
+    const std::size_t dot = path.find('.', start);
+    const std::string key = path.substr(start, dot == std::string::npos ? dot : dot - start);
+    start = dot == std::string::npos ? dot : dot + 1;
+    if (node->is_array()) {
+      const bool digits = !key.empty() && key.size() < 9 && key.find_first_not_of("0123456789") == std::string::npos;
+      if (!digits || std::stoul(key) >= node->size()) {
+        throw InputError("--set " + path + ": got list index \"" + key + "\"; allowed: 0 ... " +
+                         std::to_string(static_cast<long>(node->size()) - 1));
+      }
+      node = &(*node)[std::stoul(key)];
+    } else {
+      if (!node->is_object()) *node = Json::object();  // null or a number gives way to an object
+      node = &(*node)[key];
+    }
+  }
+  const std::string value = text.substr(equals + 1);
+  *node = Json::accept(value) ? parse_json(value) : Json(value);
+}
+
+std::string* named_file(Scenario& scenario) {
+  if (auto* shell = std::get_if<PointShellEnvironment>(&scenario.environment)) return &shell->file;
+  return nullptr;
+}
+
+std::string* named_motion(Scenario& scenario) {
+  if (auto* recorded = std::get_if<RecordedPosition>(&scenario.motion.position)) return &recorded->file;
+  return nullptr;
+}
+
+}  // namespace
+
+void rethrow_with_file(const InputError& error, const std::filesystem::path& file) {
+  const std::string place = error.place().empty() ? file.string() : file.string() + ": " + error.place();
+  throw InputError(error.kind(), place, error.problem());
+}
+
+LoadedScenario read_scenario(const Json& json, const std::filesystem::path& directory) {
+  LoadedScenario loaded;
+  loaded.scenario.directory = directory;
+  scenario_codec().read(json, "", loaded.scenario);
+  loaded.warnings = fill_defaults(loaded.scenario);
+  return loaded;
+}
+
+LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  try {
+    Json json = parse_json(read_text_file(file, kLargestJsonFile));
+    for (const std::string& override : overrides) apply_override(json, override);
+    LoadedScenario loaded = read_scenario(json, file.parent_path());
+    loaded.file = file;
+    if (loaded.scenario.name.empty()) loaded.scenario.name = file.stem().string();
+    for (std::string& warning : loaded.warnings) warning = file.string() + ": " + warning;
+    return loaded;
+  } catch (const InputError& error) {
+    rethrow_with_file(error, file);
+  }
+}
+
+Json effective_scenario(const Scenario& scenario, const std::filesystem::path& directory) {
+  Scenario effective = scenario;
+  for (std::string* file : {named_file(effective), named_motion(effective)}) {
+    if (file == nullptr) continue;
+    const auto target = std::filesystem::absolute(resolve_path(scenario, *file)).lexically_normal();
+    *file = target.lexically_proximate(std::filesystem::absolute(directory).lexically_normal()).generic_string();
+  }
+  return scenario_codec().write(effective);
+}
+
+std::string scenario_hash(const Scenario& scenario) {
+  Scenario content = scenario;
+  for (std::string* file : {named_file(content), named_motion(content)}) {
+    if (file == nullptr) continue;
+    *file = hash_text(hash_of(read_text_file(resolve_path(scenario, *file), kLargestTable)));
+  }
+  return hash_text(hash_of(json_text(scenario_codec().write(content))));
+}
+
+}  // namespace hapbench

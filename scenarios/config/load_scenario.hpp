@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenarios/config/scenario_codec.hpp"
+
+namespace hapbench {
+
+/// A checked scenario with every default filled in.
+struct LoadedScenario {
+  Scenario scenario;
+  std::filesystem::path file;
+  std::vector<std::string> warnings;  ///< given values that the algorithm's definition overrides, with file and pointer
+};
+
+/// Throws the error again with the file in front.
+[[noreturn]] void rethrow_with_file(const InputError& error, const std::filesystem::path& file);
+
+/// Reads a scenario file, applies overrides `path=value` (dotted path, value as JSON or else as text; later ones win)
+/// and checks it. Throws InputError whose message starts with the file's name.
+LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+
+/// The same from JSON in memory; `directory` is what relative paths start from.
+LoadedScenario read_scenario(const Json& json, const std::filesystem::path& directory);
+
+/// Calls `work` and puts the scenario's file in front of the message of an InputError.
+template <class Work>
+auto with_file(const LoadedScenario& loaded, Work work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    rethrow_with_file(error, loaded.file);
+  }
+}
+
+/// The scenario with every default filled in, as JSON: reading it again gives the same run. File paths are rewritten to
+/// start from `directory`.
+Json effective_scenario(const Scenario& scenario, const std::filesystem::path& directory);
+
+/// Identifies what is simulated: FNV-1a over the effective scenario, with the contents of named files in place of their
+/// paths, as 16 hexadecimal digits.
+std::string scenario_hash(const Scenario& scenario);
+
+}  // namespace hapbench

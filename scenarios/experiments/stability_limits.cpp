@@ -1,0 +1,204 @@
+#include "scenarios/experiments/stability_limits.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <limits>
+
+#include "scenarios/codec/input_error.hpp"
+#include "scenarios/run/assemble.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+/// Relative width at which bisection stops: a hundredth of the 1 % within which the three ways must agree.
+constexpr double kPrecision = 1e-4;
+/// A run counts as unstable when it has grown by this factor: beyond what a stable run near its limit swings to
+/// (about 1 / sqrt of the relative distance to it, at most 1e2 at kPrecision).
+constexpr double kGrowth = 1e6;
+/// Steps of one probe: at kPrecision beyond the limit the slowest case grows by kPrecision per step, e^4 in this time
+/// short of kGrowth, so the simulated limit may lie up to 14 / kProbeSteps = 0.07 % above the exact one.
+constexpr std::int64_t kProbeSteps = 20'000;
+/// Values beyond this are taken for "never unstable".
+constexpr double kLargestProbe = 1e15;
+constexpr int kLocusPoints = 400;
+
+/// The spring-damper of one case at one value of what is raised.
+SpringDamper at_value(StabilityCase which, double value, const Scenario& scenario, double lambda) {
+  const RenderingConfig& config = scenario.rendering.config;
+  SpringDamper system{config.stiffness, 0.0, *scenario.rendering.mass, scenario.time.step, lambda};
+  const auto damping = [&] { return config.damping.value_or(2.0 * config.damping_ratio * std::sqrt(system.K * system.M)); };
+  switch (which) {
+    case StabilityCase::stiffness_undamped:
+      system.K = value;
+      break;
+    case StabilityCase::damping_alone:
+      system.K = 0.0;
+      system.B = value;
+      break;
+    case StabilityCase::stiffness_damped:
+      system.K = value;
+      system.B = damping();
+      break;
+    case StabilityCase::time_step:
+      system.dt = value;
+      system.B = damping();
+      break;
+  }
+  return system;
+}
+
+/// Positive root of a x^2 + 2 b x = 4; infinite when there is none.
+double positive_root(double a, double b) {
+  if (a == 0.0) return b == 0.0 ? kNever : 2.0 / b;
+  return 4.0 / (b + std::sqrt(b * b + 4.0 * a));
+}
+
+double analytic_limit(StabilityCase which, const Scenario& scenario, double lambda) {
+  const RenderingConfig& config = scenario.rendering.config;
+  const double M = *scenario.rendering.mass, dt = scenario.time.step;
+  const SpringDamper given = at_value(StabilityCase::time_step, dt, scenario, lambda);
+  const double b = config.damping ? 0.0 : 2.0 * config.damping_ratio * lambda * dt / std::sqrt(M);
+  switch (which) {
+    case StabilityCase::stiffness_undamped:
+      return lambda == 0.0 ? kNever : 4.0 * M / (lambda * dt * dt);
+    case StabilityCase::damping_alone:
+      return lambda == 0.0 ? kNever : 2.0 * M / (lambda * dt);
+    case StabilityCase::stiffness_damped:
+      if (lambda == 0.0) return kNever;
+      // With a fixed B the inequality is linear in K, with B = 2 zeta sqrt(K M) quadratic in sqrt K.
+      if (config.damping) return std::max(0.0, (4.0 - 2.0 * lambda * *config.damping * dt / M) * M / (lambda * dt * dt));
+      return std::pow(positive_root(lambda * dt * dt / M, b), 2);
+    case StabilityCase::time_step:
+      return positive_root(lambda * given.K / M, lambda * given.B / M);
+  }
+  return kNever;
+}
+
+/// The largest value for which `stable` holds, by doubling from `start` and bisection of the ratio.
+template <class Stable>
+double largest_stable(double start, Stable stable) {
+  double low = start;
+  while (!stable(low)) {
+    low /= 2.0;
+    if (low < 1.0 / kLargestProbe) return 0.0;
+  }
+  double high = low;
+  while (stable(high)) {
+    low = high;
+    high *= 2.0;
+    if (high > kLargestProbe) return kNever;
+  }
+  while (high / low > 1.0 + kPrecision) {
+    const double middle = std::sqrt(low * high);
+    (stable(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+/// Picks up the stiffness tensor of the first step.
+class FirstTensor final : public Observer {
+ public:
+  void on_step(const StepRecord& record) noexcept override {
+    if (record.step == 0) S = record.force.S;
+  }
+  Mat3 S = Mat3::Zero();
+};
+
+Mat3 stiffness_tensor_of(Scenario scenario) {
+  scenario.time.steps = 1;
+  scenario.initial.position = Vec3(1e-3, 1e-3, 1e-3);
+  FirstTensor tensor;
+  Simulation(simulation_config(scenario), assemble(scenario), {&tensor}).run();
+  return tensor.S;
+}
+
+/// Runs the scenario's own simulation with the case's numbers, from a small displacement and velocity along
+/// `direction`, and sees whether it blows up.
+bool simulation_stays_bounded(Scenario scenario, const SpringDamper& system, const Vec3& direction) {
+  constexpr double kAmplitude = 1e-3;
+  scenario.rendering.config.stiffness = system.K;
+  scenario.rendering.config.damping = system.B;
+  scenario.time.step = system.dt;
+  scenario.time.steps = kProbeSteps;
+  scenario.time.stop_when.clear();
+  scenario.initial.position = kAmplitude * direction;
+  scenario.initial.velocity = kAmplitude * direction;
+  scenario.bounds.position = kGrowth * kAmplitude;
+  scenario.bounds.speed = kGrowth * kAmplitude / system.dt;
+  scenario.bounds.force = kNever;
+  Simulation simulation(simulation_config(scenario), assemble(scenario), {});
+  return simulation.run().outcome != Outcome::diverges;
+}
+
+void check_scene(const Scenario& scenario) {
+  const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment);
+  const auto fail = [](const char* place, const char* problem) {
+    throw InputError(InputError::Kind::relation, place, problem);
+  };
+  if (springs == nullptr) fail("/environment/type", "stability limits exist for \"springs\" only: elsewhere contacts come and go");
+  if (!springs->bilateral) fail("/environment/bilateral", "got false; allowed for stability: true");
+  if (*scenario.rendering.mu_s != 0.0 || *scenario.rendering.mu_f != 0.0) fail("/rendering/friction", "allowed for stability: none");
+  if (scenario.rendering.config.max_damping) fail("/rendering/limits/max_damping_N_s_per_m", "allowed for stability: null");
+  if (scenario.rendering.config.max_force) fail("/rendering/limits/max_force_N", "allowed for stability: null");
+  if (!std::holds_alternative<FreePosition>(scenario.motion.position)) fail("/motion/position/type", "allowed for stability: \"free\"");
+}
+
+}  // namespace
+
+std::pair<std::complex<double>, std::complex<double>> SpringDamper::eigenvalues() const {
+  const double k = lambda * K * dt / M, b = lambda * B * dt / M;
+  Eigen::Matrix2d A;
+  A << 1.0 - k * dt, dt - b * dt, -k, 1.0 - b;
+  const Eigen::Vector2cd values = Eigen::EigenSolver<Eigen::Matrix2d>(A, false).eigenvalues();
+  return {values[0], values[1]};
+}
+
+double SpringDamper::spectral_radius() const {
+  const auto [first, second] = eigenvalues();
+  return std::max(std::abs(first), std::abs(second));
+}
+
+std::vector<StabilityLimit> stability_limits(const Scenario& scenario) {
+  check_scene(scenario);
+  const Eigen::SelfAdjointEigenSolver<Mat3> S(stiffness_tensor_of(scenario));
+  const double lambda = S.eigenvalues()[2];
+  const Vec3 stiffest = S.eigenvectors().col(2);
+  // Undamped runs lie on the unit circle to rounding.
+  constexpr double kOnCircle = 1.0 + 1e-12;
+
+  std::vector<StabilityLimit> limits = {
+      {StabilityCase::stiffness_undamped, "largest K, B = 0", "N/m"},
+      {StabilityCase::damping_alone, "largest B, K = 0", "N s/m"},
+      {StabilityCase::stiffness_damped, "largest K, B from zeta", "N/m"},
+      {StabilityCase::time_step, "largest time step", "s"},
+  };
+  for (StabilityLimit& limit : limits) {
+    const auto system = [&](double value) { return at_value(limit.which, value, scenario, lambda); };
+    const double start = limit.which == StabilityCase::time_step ? 1e-9 : 1.0;
+    limit.lambda = lambda;
+    limit.analytic = analytic_limit(limit.which, scenario, lambda);
+    limit.damping_at_limit = system(limit.analytic).B;
+    limit.eigenvalue = largest_stable(start, [&](double value) { return system(value).spectral_radius() <= kOnCircle; });
+    limit.simulation = largest_stable(
+        start, [&](double value) { return simulation_stays_bounded(scenario, system(value), stiffest); });
+  }
+  return limits;
+}
+
+std::vector<RootLocusPoint> root_locus(const Scenario& scenario, const std::vector<StabilityLimit>& limits) {
+  std::vector<RootLocusPoint> locus;
+  for (const StabilityLimit& limit : limits) {
+    if (!std::isfinite(limit.analytic)) continue;
+    for (int i = 0; i <= kLocusPoints; ++i) {
+      const double value = 1.25 * limit.analytic * i / kLocusPoints;
+      if (value == 0.0 && limit.which == StabilityCase::time_step) continue;
+      const auto [first, second] = at_value(limit.which, value, scenario, limit.lambda).eigenvalues();
+      locus.push_back({limit.which, value, first, second});
+    }
+  }
+  return locus;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hapbench {
+
+/// Largest table read [bytes].
+inline constexpr std::uintmax_t kLargestTable = std::uintmax_t{4} << 30;
+
+/// A CSV file of numbers with a fixed header.
+struct NumberTable {
+  std::size_t columns = 0;
+  std::vector<double> values;  ///< row by row
+
+  std::size_t rows() const { return columns == 0 ? 0 : values.size() / columns; }
+  std::span<const double> row(std::size_t i) const { return {values.data() + i * columns, columns}; }
+};
+
+/// Reads a CSV file whose first line is exactly `header`; blank lines are skipped, line ends may be CR LF. Throws
+/// InputError that names file, line and column for a wrong header, a wrong number of cells, a cell that is no finite
+/// number, or more than `most_rows` rows.
+NumberTable read_number_table(const std::filesystem::path& file, const std::string& header, std::size_t most_rows);
+
+}  // namespace hapbench

@@ -1,0 +1,45 @@
+#include "scenarios/run/expectation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "results/outcome_names.hpp"
+#include "scenarios/codec/input_error.hpp"
+
+namespace hapbench {
+
+std::vector<std::string> metric_names() {
+  std::vector<std::string> names;
+  const auto summary = summary_json(RunSummary{});
+  for (const auto& metric : summary["metrics"].items()) {
+    if (metric.key() != "final_position_m") names.push_back(metric.key());
+  }
+  return names;
+}
+
+bool outcome_is_expected(const ExpectFields& expect, Outcome outcome) {
+  return std::find(expect.outcomes.begin(), expect.outcomes.end(), outcome_name(outcome)) != expect.outcomes.end();
+}
+
+std::vector<std::string> unmet_expectations(const ExpectFields& expect, const RunSummary& run) {
+  std::vector<std::string> unmet;
+  if (!outcome_is_expected(expect, run.result.outcome)) {
+    unmet.push_back(fmt::format("outcome is \"{}\"; expected {}", outcome_name(run.result.outcome), quoted_list(expect.outcomes)));
+  }
+  const auto summary = summary_json(run);
+  for (const auto& [name, bound] : expect.metrics) {
+    if (!bound) continue;
+    const auto& value = summary["metrics"][name];
+    if (!value.is_number()) {
+      unmet.push_back(fmt::format("{} has no value; expected one", name));
+      continue;
+    }
+    const double number = value.get<double>();
+    if (bound->min && number < *bound->min) unmet.push_back(fmt::format("{} is {}; expected at least {}", name, number, *bound->min));
+    if (bound->max && number > *bound->max) unmet.push_back(fmt::format("{} is {}; expected at most {}", name, number, *bound->max));
+  }
+  return unmet;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,100 @@
+#include "results/io/csv_writer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "tests/results/allocation_counter.hpp"
+#include "tests/results/files.hpp"
+
+namespace hapbench {
+namespace {
+
+using test::lines_of;
+using test::read_file;
+using test::TemporaryDirectory;
+
+TEST(CsvWriter, WritesHeaderAndRowsWithEmptyCells) {
+  const TemporaryDirectory dir;
+  CsvWriter csv(dir / "a.csv", "n,x,y,z,maybe,name");
+  csv.row(std::uint64_t{18446744073709551615u}, Vec3(1.0, -0.5, 0.0), std::optional<double>(), "plain");
+  csv.row(std::uint64_t{0}, Vec3(0.1, 1e-5, 1e300), std::optional(0.25), "");
+  csv.finish();
+  EXPECT_EQ(read_file(dir / "a.csv"),
+            "n,x,y,z,maybe,name\n"
+            "18446744073709551615,1,-0.5,0,,plain\n"
+            "0,0.1,1e-05,1e+300,0.25,\n");
+}
+
+TEST(CsvWriter, QuotesTextThatWouldBreakTheTable) {
+  const TemporaryDirectory dir;
+  CsvWriter csv(dir / "a.csv", "text");
+  csv.row("a,b");
+  csv.row("say \"x\"");
+  csv.row("two\nlines");
+  csv.finish();
+  EXPECT_EQ(read_file(dir / "a.csv"), "text\n\"a,b\"\n\"say \"\"x\"\"\"\n\"two\nlines\"\n");
+}
+
+TEST(CsvWriter, WritesNumbersThatAreNotFiniteAsWords) {
+  const TemporaryDirectory dir;
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  CsvWriter csv(dir / "a.csv", "a,b,c,d");
+  csv.row(inf, -inf, std::numeric_limits<double>::quiet_NaN(), -0.0);
+  csv.finish();
+  EXPECT_EQ(lines_of(read_file(dir / "a.csv")).at(1), "inf,-inf,nan,-0");
+}
+
+// Random bit patterns reach every exponent, subnormal numbers included.
+TEST(CsvWriter, NumbersReadBackBitForBit) {
+  const TemporaryDirectory dir;
+  std::mt19937_64 bits(1);
+  std::vector<double> numbers = {0.0, -0.0, 0.1, std::numeric_limits<double>::denorm_min(),
+                                 std::numeric_limits<double>::max()};
+  while (numbers.size() < 5000) {
+    const auto number = std::bit_cast<double>(bits());
+    if (std::isfinite(number)) numbers.push_back(number);
+  }
+  CsvWriter csv(dir / "a.csv", "number");
+  for (const double number : numbers) csv.row(number);
+  csv.finish();
+
+  const auto lines = lines_of(read_file(dir / "a.csv"));
+  ASSERT_EQ(lines.size(), numbers.size() + 1);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const double read = test::number_in(lines[i + 1]);
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(read), std::bit_cast<std::uint64_t>(numbers[i])) << lines[i + 1];
+  }
+}
+
+TEST(CsvWriter, AllocatesNothingInRows) {
+  const TemporaryDirectory dir;
+  CsvWriter csv(dir / "a.csv", "n,x,y,z,maybe,name");
+  const std::size_t before = test::allocation_count();
+  // About 300 kB, several times the buffer.
+  for (std::uint64_t i = 0; i < 5000; ++i) {
+    csv.row(i, Vec3(0.1, 0.2, 1.0 / 3.0), std::optional(static_cast<double>(i) / 7.0), "a,b");
+  }
+  EXPECT_EQ(test::allocation_count(), before);
+  csv.finish();
+  EXPECT_EQ(lines_of(read_file(dir / "a.csv")).size(), 5001u);
+}
+
+TEST(CsvWriter, KeepsAnErrorOfItsRowsForFinish) {
+  const TemporaryDirectory dir;
+  CsvWriter csv(dir / "a.csv", "x");
+  {
+    const test::FileSizeLimit limit(1000);
+    for (int i = 0; i < 100'000; ++i) csv.row(0.123456789);
+  }
+  // There is room again, but rows are missing.
+  csv.row(1.0);
+  EXPECT_THROW(csv.finish(), IoError);
+  EXPECT_TRUE(dir.entries().empty());
+}
+
+}  // namespace
+}  // namespace hapbench

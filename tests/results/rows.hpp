@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/loop/observer.hpp"
+
+namespace hapbench::test {
+
+/// A row as the step loop would show it, at rest at the origin and without force; `contacts` must outlive it.
+inline StepRecord row(std::uint64_t step, double time, const ContactBuffer& contacts) {
+  StepRecord r;
+  r.step = step;
+  r.time = time;
+  r.colliding = contacts.size();
+  r.rendered = &contacts;
+  return r;
+}
+
+/// Padded contacts with these gradients, shell index 10, 11, …, depth 1 mm and weight 1, all at (0.5, 0.25, 0).
+inline ContactBuffer contacts_along(const std::vector<Vec3>& gradients) {
+  ContactBuffer contacts(gradients.size());
+  for (std::size_t i = 0; i < gradients.size(); ++i) {
+    contacts.push(static_cast<std::uint32_t>(10 + i), {0.5, 0.25, 0.0}, -gradients[i]);
+    contacts.depth[i] = 0.001;
+    contacts.set_gradient(i, gradients[i]);
+    contacts.weight[i] = 1.0;
+  }
+  contacts.pad();
+  return contacts;
+}
+
+}  // namespace hapbench::test

@@ -1,0 +1,63 @@
+#include "sim/core/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace hapbench {
+namespace {
+
+TEST(Random, UniformIsTheTop53BitsOfMt19937_64) {
+  // The standard ([rand.predef]) fixes the 10000th number of the default seed 5489.
+  Random random(5489);
+  for (int i = 1; i < 10000; ++i) random.uniform();
+  EXPECT_EQ(random.uniform(), static_cast<double>(9981545732273789042u >> 11) * 0x1.0p-53);
+}
+
+TEST(Random, SameSeedGivesSameNumbers) {
+  Random a(7), b(7), c(8);
+  bool differs = false;
+  for (int i = 0; i < 100; ++i) {
+    const double x = a.uniform();
+    EXPECT_EQ(x, b.uniform());
+    differs |= x != c.uniform();
+  }
+  EXPECT_TRUE(differs);
+}
+
+TEST(Random, NumbersStayInTheirRange) {
+  Random random(1);
+  for (int i = 0; i < 100000; ++i) {
+    const double x = random.uniform(-3.0, 5.0);
+    ASSERT_GE(x, -3.0);
+    ASSERT_LT(x, 5.0);
+    ASSERT_LT(random.below(7), 7u);
+  }
+}
+
+TEST(Random, DirectionsAreUnitVectors) {
+  Random random(2);
+  // Three rounded squares and a rounded root.
+  const double tolerance = 4 * std::numeric_limits<double>::epsilon();
+  for (int i = 0; i < 10000; ++i) {
+    ASSERT_NEAR(random.direction().norm(), 1.0, tolerance);
+    const Vec3 planar = random.direction_in_plane();
+    ASSERT_NEAR(planar.norm(), 1.0, tolerance);
+    ASSERT_EQ(planar.z(), 0.0);
+  }
+}
+
+TEST(Random, DirectionsFavourNoOctant) {
+  Random random(3);
+  constexpr int n = 80000;
+  std::array<int, 8> octants{};
+  for (int i = 0; i < n; ++i) {
+    const Vec3 u = random.direction();
+    ++octants[(u.x() > 0) + 2u * (u.y() > 0) + 4u * (u.z() > 0)];
+  }
+  // Binomial with p = 1/8: standard deviation 94; six of them.
+  for (const int count : octants) EXPECT_NEAR(count, n / 8, 6 * 94);
+}
+
+}  // namespace
+}  // namespace hapbench

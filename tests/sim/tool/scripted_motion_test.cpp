@@ -1,0 +1,89 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "sim/tool/motion.hpp"
+#include "tests/support/contact_sets.hpp"
+
+namespace hapbench {
+namespace {
+
+using std::numbers::pi;
+
+// One rounding each in a sine, a cosine, two products and a sum of numbers of at most 1.
+constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
+
+ScriptedMotion motion(Orientation orientation) {
+  return ScriptedMotion(std::move(orientation), std::nullopt);
+}
+
+void expect_near(const Vec3& a, const Vec3& b) {
+  EXPECT_LE((a - b).norm(), kRounding) << a.transpose() << " instead of " << b.transpose();
+}
+
+TEST(ScriptedMotion, WithoutTiltTheTipPointsDown) {
+  expect_near(motion({{0, 0, 1}, {1, 0, 0}, {}, {}}).axis_at(0.0), {0, 0, -1});
+  expect_near(motion({{0, 1, 0}, {1, 0, 0}, {}, {}}).axis_at(0.0), {0, -1, 0});
+}
+
+TEST(ScriptedMotion, TiltLeansTheHandleTowardsLean) {
+  // The tip points away from where the handle leans: axis = -(cos up + sin lean).
+  const double tilt = 0.3;
+  expect_near(motion({{0, 0, 1}, {1, 0, 0}, tilt, {}}).axis_at(0.0), {-std::sin(tilt), 0, -std::cos(tilt)});
+  expect_near(motion({{0, 1, 0}, {1, 0, 0}, tilt, {}}).axis_at(0.0), {-std::sin(tilt), -std::cos(tilt), 0});
+}
+
+TEST(ScriptedMotion, AQuarterTurnOfTiltLaysTheToolDown) {
+  expect_near(motion({{0, 0, 1}, {1, 0, 0}, pi / 2, {}}).axis_at(0.0), {-1, 0, 0});
+}
+
+TEST(ScriptedMotion, AzimuthTurnsLeanRightHandedAboutUp) {
+  // About +z, a quarter turn takes +x to +y, another one to -x.
+  expect_near(motion({{0, 0, 1}, {1, 0, 0}, pi / 2, pi / 2}).axis_at(0.0), {0, -1, 0});
+  expect_near(motion({{0, 0, 1}, {1, 0, 0}, pi / 2, pi}).axis_at(0.0), {1, 0, 0});
+  // About +y, +x goes to -z.
+  expect_near(motion({{0, 1, 0}, {1, 0, 0}, pi / 2, pi / 2}).axis_at(0.0), {0, 0, 1});
+}
+
+TEST(ScriptedMotion, AzimuthIsARotationOfTheWholeOrientation) {
+  Random random(1);
+  for (int i = 0; i < 100; ++i) {
+    const Mat3 frame = test::random_rotation(random);
+    const Vec3 up = frame.col(0), lean = frame.col(1);
+    const double tilt = random.uniform(-pi, pi), azimuth = random.uniform(-10.0, 10.0);
+    const Vec3 without = motion({up, lean, tilt, {}}).axis_at(0.0);
+    const Vec3 with = motion({up, lean, tilt, azimuth}).axis_at(0.0);
+    // The random frame is itself orthonormal only to rounding.
+    EXPECT_LE((with - Eigen::AngleAxisd(azimuth, up) * without).norm(), 4 * kRounding);
+  }
+}
+
+TEST(ScriptedMotion, AxisIsAUnitVectorAtAllTimes) {
+  const ScriptedMotion m =
+      motion({{0, 0, 1}, {1, 0, 0}, Profile::Shape(Profile::Ramp{0.1, 1.2}), Profile::Shape(Profile::Ramp{-2.0, 7.0})});
+  for (int k = 0; k < 1000; ++k) EXPECT_NEAR(m.axis_at(0.01 * k).norm(), 1.0, kRounding);
+}
+
+TEST(ScriptedMotion, FollowsItsProfilesInTime) {
+  // The 2-D peg of METHOD section 9: 0.1 rad at the start, 1.2 rad/s.
+  const ScriptedMotion m = motion({{0, 1, 0}, {1, 0, 0}, Profile::Shape(Profile::Ramp{0.1, 1.2}), {}});
+  const double tilt = 0.1 + 1.2 * 0.5;
+  expect_near(m.axis_at(0.5), {-std::sin(tilt), -std::cos(tilt), 0});
+}
+
+TEST(ScriptedMotion, PlanarScenesStayInTheirPlane) {
+  const ScriptedMotion m = motion({{0, 1, 0}, {1, 0, 0}, Profile::Shape(Profile::Ramp{0.1, 1.2}), {}});
+  for (int k = 0; k < 1000; ++k) EXPECT_EQ(m.axis_at(0.001 * k).z(), 0.0);
+}
+
+TEST(ScriptedMotion, PositionIsFreeUnlessPrescribed) {
+  EXPECT_TRUE(motion({}).position_is_free());
+  const ScriptedMotion prescribed({}, std::array<Profile, 3>{1.0, Profile::Shape(Profile::Ramp{0.0, 2.0}), -1.0});
+  EXPECT_FALSE(prescribed.position_is_free());
+  EXPECT_EQ(prescribed.position_at(3.0), Vec3(1.0, 6.0, -1.0));
+}
+
+}  // namespace
+}  // namespace hapbench

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include "sim/core/types.hpp"
+#include "sim/loop/observer.hpp"
+
+/// Bit-for-bit comparison: where a claim says "the same", no tolerance hides a difference.
+namespace hapbench::test {
+
+/// FNV-1a over the bits of what it is fed. Distinguishes -0 from 0 and one NaN from another.
+class Hash {
+ public:
+  void add(std::uint64_t word) {
+    for (int byte = 0; byte < 8; ++byte) value_ = (value_ ^ ((word >> (8 * byte)) & 0xff)) * 0x100000001b3u;
+  }
+  void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
+  template <class Derived>
+  void add(const Eigen::MatrixBase<Derived>& matrix) {
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+      for (Eigen::Index i = 0; i < matrix.rows(); ++i) add(static_cast<double>(matrix(i, j)));
+    }
+  }
+  void add(const ContactBuffer& contacts) {
+    add(std::uint64_t{contacts.size()});
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      add(std::uint64_t{contacts.index[i]});
+      add(contacts.point(i));
+      add(contacts.normal(i));
+      add(contacts.gradient(i));
+      add(contacts.depth[i]);
+      add(contacts.weight[i]);
+    }
+  }
+  void add(const RenderedForce& force) {
+    add(force.spring);
+    add(force.rendered);
+    add(force.S);
+    add(force.depth_max);
+  }
+  void add(const StepRecord& record) {
+    add(record.step);
+    add(record.time);
+    add(record.tool.pose.position);
+    add(record.tool.pose.axis);
+    add(record.tool.velocity);
+    add(record.force);
+    add(record.hand.measured);
+    add(record.hand.input);
+    add(record.handle.position);
+    add(record.handle.velocity);
+    add(std::uint64_t{record.colliding});
+    add(*record.rendered);
+    add(record.ratio.min);
+    add(record.ratio.max);
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325u;
+};
+
+/// The hash of all arguments in turn.
+template <class... T>
+std::uint64_t hash_of(const T&... values) {
+  Hash hash;
+  (hash.add(values), ...);
+  return hash.value();
+}
+
+/// Hashes every row of a run and asks for the ratio, so that the ratio is part of it.
+class HashingObserver final : public Observer {
+ public:
+  bool wants_ratio() const noexcept override { return true; }
+  void on_step(const StepRecord& record) noexcept override { hash_.add(record); }
+  std::uint64_t value() const { return hash_.value(); }
+  void clear() { hash_ = {}; }
+
+ private:
+  Hash hash_;
+};
+
+}  // namespace hapbench::test

@@ -1,0 +1,208 @@
+#include "tests/support/contact_sets.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+namespace hapbench::test {
+
+ContactBuffer contacts_of(const std::vector<Vec3>& gradients, const std::vector<double>& depths) {
+  ContactBuffer contacts(gradients.size());
+  for (std::size_t i = 0; i < gradients.size(); ++i) {
+    contacts.push(static_cast<std::uint32_t>(i), Vec3::Zero(), -gradients[i]);
+    contacts.set_gradient(i, gradients[i]);
+    contacts.depth[i] = i < depths.size() ? depths[i] : 0.001;
+  }
+  contacts.pad();
+  return contacts;
+}
+
+std::vector<double> random_depths(Random& random, std::size_t n) {
+  std::vector<double> depths(n);
+  for (double& d : depths) d = 0.001 * (1.0 - random.uniform());
+  return depths;
+}
+
+std::size_t random_size(Random& random, std::size_t largest) {
+  const double n = std::exp(random.uniform() * std::log(static_cast<double>(largest) + 1.0));
+  return std::min(largest, static_cast<std::size_t>(n));
+}
+
+Mat3 random_rotation(Random& random) {
+  // A normalised Gaussian quaternion is uniform; four directions on the sphere S^3 need two pairs of Box-Muller.
+  const double a = std::sqrt(-2.0 * std::log(1.0 - random.uniform()));
+  const double b = std::sqrt(-2.0 * std::log(1.0 - random.uniform()));
+  const Vec3 p = random.direction_in_plane();
+  const Vec3 q = random.direction_in_plane();
+  return Eigen::Quaterniond(a * p.x(), a * p.y(), b * q.x(), b * q.y()).normalized().toRotationMatrix();
+}
+
+namespace {
+
+using Gradients = std::vector<Vec3>;
+
+/// n gradients, each drawn on its own.
+template <class Draw>
+Gradients fill(std::size_t n, Draw draw) {
+  Gradients gradients(n);
+  for (Vec3& u : gradients) u = draw();
+  return gradients;
+}
+
+/// 10^-k with k uniform in 0 … 12: the scales at which near-degeneracy may hurt.
+double small_angle(Random& random) {
+  return std::pow(10.0, random.uniform(-12.0, 0.0));
+}
+
+Vec3 sign_of(Random& random, const Vec3& u) {
+  return random.uniform() < 0.5 ? u : Vec3(-u);
+}
+
+/// u turned by about `angle` in a random way.
+Vec3 tilted(Random& random, const Vec3& u, double angle) {
+  return (u + angle * random.direction()).normalized();
+}
+
+Gradients uniform(Random& random, std::size_t n) {
+  return fill(n, [&] { return random.direction(); });
+}
+
+Gradients planar(Random& random, std::size_t n) {
+  return fill(n, [&] { return random.direction_in_plane(); });
+}
+
+Gradients parallel(Random& random, std::size_t n) {
+  return Gradients(n, random.direction());
+}
+
+Gradients opposite(Random& random, std::size_t n) {
+  const Vec3 u = random.direction();
+  return fill(n, [&] { return sign_of(random, u); });
+}
+
+Gradients axis_aligned(Random& random, std::size_t n) {
+  return fill(n, [&] { return sign_of(random, Vec3::Unit(static_cast<Eigen::Index>(random.below(3)))); });
+}
+
+Gradients axis_aligned_planar(Random& random, std::size_t n) {
+  return fill(n, [&] { return sign_of(random, Vec3::Unit(static_cast<Eigen::Index>(random.below(2)))); });
+}
+
+Gradients nearly_parallel(Random& random, std::size_t n) {
+  const Vec3 u = random.direction();
+  const double angle = small_angle(random);
+  return fill(n, [&] { return tilted(random, u, angle); });
+}
+
+Gradients nearly_opposite(Random& random, std::size_t n) {
+  const Vec3 u = random.direction();
+  return fill(n, [&] { return sign_of(random, tilted(random, u, small_angle(random))); });
+}
+
+/// All scales of nearness in one set.
+Gradients graded(Random& random, std::size_t n) {
+  const Vec3 u = random.direction();
+  return fill(n, [&] { return tilted(random, u, small_angle(random)); });
+}
+
+Gradients nearly_parallel_planar(Random& random, std::size_t n) {
+  const double angle = small_angle(random);
+  const double start = random.uniform(-4.0, 4.0);
+  return fill(n, [&] {
+    const double a = start + angle * random.uniform(-1.0, 1.0);
+    return Vec3(std::cos(a), std::sin(a), 0.0);
+  });
+}
+
+Gradients duplicated(Random& random, std::size_t n) {
+  const Gradients few = uniform(random, 1 + random.below(12));
+  return fill(n, [&] { return few[random.below(few.size())]; });
+}
+
+/// Many copies of one gradient beside a few others.
+Gradients lopsided(Random& random, std::size_t n) {
+  const Vec3 u = random.direction();
+  return fill(n, [&] { return random.uniform() < 0.99 ? u : random.direction(); });
+}
+
+Gradients coplanar(Random& random, std::size_t n) {
+  const Mat3 frame = random_rotation(random);
+  return fill(n, [&] { return Vec3(frame * random.direction_in_plane()); });
+}
+
+Gradients nearly_coplanar(Random& random, std::size_t n) {
+  const Mat3 frame = random_rotation(random);
+  const double height = small_angle(random);
+  return fill(n, [&] { return tilted(random, frame * random.direction_in_plane(), height); });
+}
+
+Gradients clusters(Random& random, std::size_t n) {
+  const Gradients centres = uniform(random, 2 + random.below(8));
+  const double spread = small_angle(random);
+  return fill(n, [&] { return tilted(random, centres[random.below(centres.size())], spread); });
+}
+
+/// A ring around an axis: the wall of a hole, with infinitely many optimal weights but for epsilon.
+Gradients cone(Random& random, std::size_t n) {
+  const Mat3 frame = random_rotation(random);
+  const double z = random.uniform(-1.0, 1.0);
+  return fill(n, [&] { return Vec3(frame * (std::sqrt(1.0 - z * z) * random.direction_in_plane() + z * Vec3::UnitZ())); });
+}
+
+/// An orthonormal frame among others: every ratio is 1 at the optimum for epsilon = 0, so every contact sits on the
+/// boundary between active and inactive.
+Gradients orthonormal_and_more(Random& random, std::size_t n) {
+  const Mat3 frame = random_rotation(random);
+  std::size_t k = 0;
+  return fill(n, [&]() -> Vec3 {
+    const std::size_t i = k++;
+    return i < 3 ? Vec3(frame.col(static_cast<Eigen::Index>(i))) : random.direction();
+  });
+}
+
+/// Nearly orthogonal pairs: couplings of 1e-24 … 1 between otherwise independent springs.
+Gradients nearly_orthogonal(Random& random, std::size_t n) {
+  const Mat3 frame = random_rotation(random);
+  const double angle = small_angle(random);
+  return fill(n, [&] { return tilted(random, sign_of(random, frame.col(static_cast<Eigen::Index>(random.below(3)))), angle); });
+}
+
+/// Two faces of a wedge that is almost closed or almost flat, planar.
+Gradients wedge(Random& random, std::size_t n) {
+  const double angle = small_angle(random);
+  const double share = small_angle(random);
+  return fill(n, [&] {
+    const double a = random.uniform() < share ? angle : -angle;
+    return Vec3(std::cos(a), std::sin(a), 0.0);
+  });
+}
+
+constexpr GradientFamily kFamilies[] = {
+    {"uniform", false, uniform},
+    {"planar", true, planar},
+    {"parallel", false, parallel},
+    {"opposite", false, opposite},
+    {"axis_aligned", false, axis_aligned},
+    {"axis_aligned_planar", true, axis_aligned_planar},
+    {"nearly_parallel", false, nearly_parallel},
+    {"nearly_opposite", false, nearly_opposite},
+    {"graded", false, graded},
+    {"nearly_parallel_planar", true, nearly_parallel_planar},
+    {"duplicated", false, duplicated},
+    {"lopsided", false, lopsided},
+    {"coplanar", false, coplanar},
+    {"nearly_coplanar", false, nearly_coplanar},
+    {"clusters", false, clusters},
+    {"cone", false, cone},
+    {"orthonormal_and_more", false, orthonormal_and_more},
+    {"nearly_orthogonal", false, nearly_orthogonal},
+    {"wedge", true, wedge},
+};
+
+}  // namespace
+
+std::span<const GradientFamily> gradient_families() {
+  return kFamilies;
+}
+
+}  // namespace hapbench::test

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "device_model/ideal_device.hpp"
+#include "device_model/scripted_hands.hpp"
+#include "sim/loop/simulation.hpp"
+#include "tests/support/setting.hpp"
+
+/// Stand-ins for the parts of a simulation, so that a test of the loop depends on the loop alone.
+namespace hapbench::test {
+
+/// An environment that is never touched, or always by the given number of contacts at the tool's position.
+class FakeQuery final : public ContactQuery {
+ public:
+  explicit FakeQuery(std::size_t contacts = 0) : contacts_(contacts) {}
+
+  void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override {
+    contacts.clear();
+    for (std::size_t i = 0; i < contacts_; ++i) {
+      contacts.push(static_cast<std::uint32_t>(i), pose.position, Vec3::UnitZ());
+      contacts.set_gradient(i, -Vec3::UnitZ());
+    }
+    contacts.pad();
+    ++work_.queries;
+  }
+  std::size_t capacity() const noexcept override { return contacts_; }
+  bool gives_depth() const noexcept override { return true; }
+  void reset() noexcept override { work_ = {}; }
+
+ private:
+  std::size_t contacts_;
+};
+
+/// What the loop did to a FakeAlgorithm.
+struct Calls {
+  int prepare = 0;
+  int reset = 0;
+  int compute = 0;
+};
+
+/// Renders a given function of the tool's state, with the stiffness tensor 2 I.
+class FakeAlgorithm final : public ForceAlgorithm {
+ public:
+  using Law = std::function<Vec3(const ToolState&)>;
+  explicit FakeAlgorithm(Law law, Calls* calls = nullptr) : law_(std::move(law)), calls_(calls) {}
+
+  void prepare(const Scene&) override {
+    if (calls_ != nullptr) ++calls_->prepare;
+  }
+  void reset() noexcept override {
+    if (calls_ != nullptr) ++calls_->reset;
+  }
+  void compute(const ToolState& tool, ContactBuffer&, RenderedForce& out) noexcept override {
+    if (calls_ != nullptr) ++calls_->compute;
+    out = {};
+    out.spring = out.rendered = law_(tool);
+    out.S = 2.0 * Mat3::Identity();
+  }
+
+ private:
+  Law law_;
+  Calls* calls_;
+};
+
+/// Keeps every row; `rendered` of a kept row is null, because the buffer does not outlive the step.
+class Recorder final : public Observer {
+ public:
+  explicit Recorder(bool wants_ratio = false) : wants_ratio_(wants_ratio) {}
+
+  bool wants_ratio() const noexcept override { return wants_ratio_; }
+  void on_step(const StepRecord& record) noexcept override {
+    rows.push_back(record);
+    rendered.push_back(record.rendered->size());
+    rows.back().rendered = nullptr;
+  }
+
+  std::vector<StepRecord> rows;
+  std::vector<std::size_t> rendered;
+
+ private:
+  bool wants_ratio_;
+};
+
+/// A free tool with the axis -z that feels `law` and nothing else.
+inline SimulationParts fake_parts(FakeAlgorithm::Law law, Calls* calls = nullptr) {
+  SimulationParts parts;
+  parts.query = std::make_unique<FakeQuery>();
+  parts.algorithm = std::make_unique<FakeAlgorithm>(std::move(law), calls);
+  parts.motion = constant_axis(-Vec3::UnitZ());
+  parts.hand = std::make_unique<NoHand>();
+  parts.device = std::make_unique<IdealDevice>(std::nullopt);
+  return parts;
+}
+
+/// No force at all.
+inline Vec3 weightless(const ToolState&) {
+  return Vec3::Zero();
+}
+
+}  // namespace hapbench::test
