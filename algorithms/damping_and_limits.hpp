@@ -5,7 +5,7 @@
 
 namespace hapbench {
 
-/// Damping, friction and limits of METHOD section 5 (thesis 2.5, 2.6, A.2.1, B.2, C.4.3), the same for every law:
+/// Damping, friction and limits, the same for every law (thesis 2.5, 2.6, A.2.1, B.2, C.4.3):
 ///
 ///   f_dn = -B S v, B = 2 zeta sqrt(K M);  v_t = v - S v, f_dt = -(mu_s + mu_f |f_spring|) v_t
 ///

@@ -11,13 +11,19 @@ const ModelInfo kNormalProjectionDepthInfo = {
     .summary = "distance along the inverse surface normal to where it leaves the tool",
     .formula = "u = -n, d = smallest exit of the ray x + d u through side (F.7), tip (F.9) and bottom (F.12); "
                "a round tip replaces the tip plane by the half ball",
-    .source = "thesis F.1 with the sign of METHOD section 10 for F.6",
+    .source = "thesis F.1 (F.6 printed with a minus; F.7 shows that r_p + d r_n is meant)",
     .known_failure = "a point that appears at a corner can start with a large depth: the force jumps (Fig. F.4)",
 };
 
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// Only positive exits count, as the thesis says ("the minimal positive value"): a point exactly on one surface whose
+/// ray points outwards there takes the next surface, or depth 0 when there is none.
+double if_positive(double d) {
+  return d > 0.0 ? d : kNever;
+}
 
 /// The larger root d >= 0 of a d^2 + 2 b d - c = 0 with a > 0, c >= 0, without cancellation for b > 0.
 double exit_root(double a, double b, double c) {
@@ -29,7 +35,7 @@ double exit_root(double a, double b, double c) {
 double exit_side(const Tool& tool, const Vec3& rho, const Vec3& radial_u) {
   const double a = radial_u.squaredNorm();
   const double c = std::max(0.0, tool.radius * tool.radius - rho.squaredNorm());
-  return a == 0.0 ? kNever : exit_root(a, rho.dot(radial_u), c);
+  return a == 0.0 ? kNever : if_positive(exit_root(a, rho.dot(radial_u), c));
 }
 
 /// Exit through the half ball beyond the tip plane; never when the ray misses the ball or leaves it behind the plane.
@@ -39,7 +45,7 @@ double exit_half_ball(const Tool& tool, const Vec3& x, const Vec3& u, double s, 
   const double discriminant = b * b + c;
   if (discriminant < 0.0) return kNever;
   const double d = c >= 0.0 ? exit_root(1.0, b, c) : std::sqrt(discriminant) - b;
-  return d >= 0.0 && s + d * slope >= 0.0 ? d : kNever;
+  return s + d * slope >= 0.0 ? if_positive(d) : kNever;
 }
 
 double exit_distance(const Tool& tool, const ToolPose& pose, const Vec3& point, const Vec3& u) {
@@ -47,14 +53,13 @@ double exit_distance(const Tool& tool, const ToolPose& pose, const Vec3& point, 
   const double s = x.dot(pose.axis);
   const double slope = u.dot(pose.axis);
   double d = exit_side(tool, x - s * pose.axis, u - slope * pose.axis);
-  // A ray leaves through the tip only forwards and through the bottom only backwards: that picks the positive root.
   if (tool.tip == Tip::round) {
     d = std::min(d, exit_half_ball(tool, x, u, s, slope));
-  } else if (slope > 0.0) {
-    d = std::min(d, std::max(0.0, -s) / slope);
+  } else if (slope != 0.0) {
+    d = std::min(d, if_positive(-s / slope));
   }
-  if (slope < 0.0) d = std::min(d, std::max(0.0, tool.length + s) / -slope);
-  return d == kNever ? 0.0 : d;  // only a zero normal never leaves
+  if (slope != 0.0) d = std::min(d, if_positive(-(tool.length + s) / slope));
+  return d == kNever ? 0.0 : d;
 }
 
 class NormalProjectionDepth final : public DepthModel {

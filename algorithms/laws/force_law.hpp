@@ -16,7 +16,7 @@ struct LawForce {
   Mat3 S = Mat3::Zero();       ///< stiffness tensor in units of K
 };
 
-/// A force law: merges the penalty springs of all contacts into one force (METHOD section 4). All laws but
+/// A force law: merges the penalty springs of all contacts into one force (thesis C.4). All laws but
 /// `original_averaging` and `virtual_coupling` are f_spring = -K sum c_i d_i u_i and S = sum c_i u_i u_i^T and differ
 /// in the weights c_i only. Per-run state; one virtual call per step.
 class ForceLaw {

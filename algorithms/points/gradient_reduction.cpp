@@ -22,7 +22,7 @@ const ModelInfo kGradientReductionInfo = {
     .summary = "of colliding points with similar gradients only the deepest is kept",
     .formula = "visit contacts in order; the first kept k with <u_i, u_k> > alpha_TH absorbs i (replaced if d_i > d_k); "
                "none similar: append, or drop when n_ext are kept",
-    .source = "thesis C.3, 2.8, with METHOD section 10 for algorithm C.1",
+    .source = "thesis C.3, 2.8; algorithm C.1 as printed appends replaced points and compares on after a similar one, which cannot be meant",
     .known_failure = "depends on the order of the points; collapses gradually curved surfaces (thesis 4.1)",
     .parameters = kParameters,
 };

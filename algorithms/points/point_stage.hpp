@@ -8,7 +8,7 @@
 
 namespace hapbench {
 
-/// An optional stage between depth model and force law that merges or drops contacts in place (METHOD section 3).
+/// An optional stage between depth model and force law that merges or drops contacts in place (thesis C.2, C.3).
 class PointStage {
  public:
   virtual ~PointStage() = default;

@@ -31,7 +31,8 @@ std::string nearest_name(std::string_view given, std::span<const std::string> va
   // A hostile name may be megabytes long; nothing that long is near a name of ours.
   if (given.size() > 200) return "";
   std::string best;
-  std::size_t best_distance = std::max<std::size_t>(3, given.size() / 2) + 1;
+  // A third of the letters may be wrong; in a short name more than one would match anything.
+  std::size_t best_distance = std::max<std::size_t>(given.size() > 4 ? 2 : 1, given.size() / 3) + 1;
   for (const std::string& name : valid) {
     const bool contains = given.size() >= 3 && name.find(given) != std::string::npos;
     const std::size_t distance = contains ? 1 : edit_distance(given, name);

@@ -38,8 +38,8 @@ class PointShell {
   SurfacePoint point(std::size_t i) const;
 
   /// Number of each point's grid cell, 0 … cells - 1 in order of first appearance. A cell is the cube between
-  /// half-integer multiples of cell_size, which is the cube of the marching-cubes grid of METHOD's block and holds one
-  /// lattice point of the planar scenes. O(size log size); call it in preparation, not in a step.
+  /// half-integer multiples of cell_size, so a shell spaced by cell_size from the origin has one
+  /// point in each cell. O(size log size); call it in preparation, not in a step.
   std::vector<std::uint32_t> cell_of_points() const;
 
  private:

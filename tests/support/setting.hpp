@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "algorithms/registry.hpp"
+#include "sim/core/random.hpp"
 #include "sim/environment/springs.hpp"
 #include "sim/loop/simulation.hpp"
 

@@ -1,0 +1,71 @@
+#include "sim/contact/spring_query.hpp"
+
+#include <gtest/gtest.h>
+
+namespace hapbench {
+namespace {
+
+// Gradients whose inner products with dyadic positions are exact.
+const std::vector<Vec3> kGradients = {{1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
+
+ContactBuffer contacts_at(const Vec3& position, bool bilateral) {
+  SpringQuery query({kGradients, bilateral});
+  ContactBuffer contacts(query.capacity());
+  query.contacts_at({position, -Vec3::UnitZ()}, contacts);
+  return contacts;
+}
+
+TEST(SpringQuery, BilateralSpringsAlwaysActWithDepthsOfEitherSign) {
+  const Vec3 p(0.25, -0.5, 0.125);
+  const ContactBuffer contacts = contacts_at(p, true);
+  ASSERT_EQ(contacts.size(), 4u);
+  const std::vector<double> depths = {0.25, -0.25, 0.5, 0.125};
+  for (std::size_t j = 0; j < 4; ++j) {
+    EXPECT_EQ(contacts.index[j], j);
+    EXPECT_EQ(contacts.depth[j], depths[j]);
+    EXPECT_EQ(contacts.gradient(j), kGradients[j]);
+    EXPECT_EQ(contacts.normal(j), Vec3(-kGradients[j]));
+    EXPECT_EQ(contacts.point(j), p);
+  }
+}
+
+TEST(SpringQuery, UnilateralSpringsActOnlyWhenCompressed) {
+  const ContactBuffer contacts = contacts_at({0.25, 0.5, 0.125}, false);
+  ASSERT_EQ(contacts.size(), 2u);
+  EXPECT_EQ(contacts.index[0], 0u);
+  EXPECT_EQ(contacts.index[1], 3u);
+  EXPECT_EQ(contacts.depth[0], 0.25);
+  EXPECT_EQ(contacts.depth[1], 0.125);
+}
+
+TEST(SpringQuery, AUnilateralSpringAtItsNaturalLengthDoesNotAct) {
+  EXPECT_TRUE(contacts_at(Vec3::Zero(), false).empty());
+  EXPECT_EQ(contacts_at(Vec3::Zero(), true).size(), 4u);
+}
+
+TEST(SpringQuery, ANonFinitePositionCompressesNoUnilateralSpring) {
+  EXPECT_TRUE(contacts_at(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), false).empty());
+}
+
+TEST(SpringQuery, GivesDepthsItselfAndPadsThem) {
+  SpringQuery query({kGradients, true});
+  EXPECT_TRUE(query.gives_depth());
+  EXPECT_EQ(query.capacity(), 4u);
+  ContactBuffer contacts(8);
+  contacts.depth.assign(8, 1.0);
+  query.contacts_at({}, contacts);
+  for (std::size_t i = 4; i < 8; ++i) EXPECT_EQ(contacts.depth[i], 0.0);
+}
+
+TEST(SpringQuery, CountsQueriesAndSpringsTested) {
+  SpringQuery query({kGradients, true});
+  ContactBuffer contacts(query.capacity());
+  for (int i = 0; i < 3; ++i) query.contacts_at({}, contacts);
+  EXPECT_EQ(query.work().queries, 3u);
+  EXPECT_EQ(query.work().points_tested, 12u);
+  query.reset();
+  EXPECT_EQ(query.work().queries, 0u);
+}
+
+}  // namespace
+}  // namespace hapbench

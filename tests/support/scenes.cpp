@@ -1,0 +1,199 @@
+#include "tests/support/scenes.hpp"
+
+#include <cmath>
+
+#include "algorithms/laws/exact_shaping.hpp"
+#include "sim/environment/analytic_shells.hpp"
+
+namespace hapbench::test {
+namespace {
+
+constexpr double kDeep = 0.001;  ///< compression of the springs [m]
+constexpr double kEps = kExactShapingEpsilon;
+const Vec3 kFarAway(1.0, 1.0, 1.0);
+
+Setting springs(std::vector<Vec3> gradients, const Vec3& position, bool bilateral) {
+  Setting setting;
+  setting.pose.position = position;
+  setting.springs = SpringSet{std::move(gradients), bilateral};
+  return setting;
+}
+
+// K_vc = K by default, so a stack of springs of stiffness k K renders k K in series with K: k / (k + 1).
+
+const Vec3 kOblique(0.6, 0.64, 0.48);
+
+Setting single_spring() {
+  return springs({kOblique}, kDeep * kOblique, false);
+}
+Answer single_spring_answer() {
+  const double d = kDeep;
+  return {-kOblique, false, false,
+          {{"original_averaging", d}, {"summation", d}, {"mean", d}, {"virtual_coupling", d / 2}, {"shaped_stiffness", d},
+           {"tandpasta", d}, {"normal_projection", d}, {"exact_shaping", d / (1 + kEps)}}};
+}
+
+Setting parallel_springs() {
+  return springs(std::vector<Vec3>(5, kOblique), kDeep * kOblique, false);
+}
+Answer parallel_springs_answer() {
+  const double d = kDeep;
+  return {-kOblique, false, false,
+          {{"original_averaging", d}, {"summation", 5 * d}, {"mean", d}, {"virtual_coupling", d * 5 / 6}, {"shaped_stiffness", d},
+           {"tandpasta", 5 * d}, {"normal_projection", d}, {"exact_shaping", d * 5 / (5 + kEps)}}};
+}
+
+// Three orthogonal springs, equally compressed: S_sum = I, sum u = (1, 1, 1).
+Setting corner_springs() {
+  return springs({Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, Vec3::Constant(kDeep), false);
+}
+Answer corner_springs_answer() {
+  const double d = kDeep * std::sqrt(3.0);
+  return {Vec3::Constant(-std::sqrt(1.0 / 3.0)), false, false,
+          {{"original_averaging", d}, {"summation", d}, {"mean", d / 3}, {"virtual_coupling", d / 2}, {"shaped_stiffness", d},
+           {"tandpasta", d}, {"normal_projection", d}, {"exact_shaping", d / (1 + kEps)}}};
+}
+
+// One spring pushes, the other pulls: depths d and -d on gradients x and -x.
+Setting opposite_springs() {
+  return springs({Vec3::UnitX(), -Vec3::UnitX()}, kDeep * Vec3::UnitX(), true);
+}
+Answer opposite_springs_answer() {
+  const double d = kDeep;
+  return {-Vec3::UnitX(), true, false,
+          {{"original_averaging", 0.0}, {"summation", 2 * d}, {"mean", d}, {"virtual_coupling", d * 2 / 3}, {"shaped_stiffness", d},
+           {"tandpasta", 0.0}, {"normal_projection", d}, {"exact_shaping", d * 2 / (2 + kEps)}}};
+}
+
+// Two faces 120 degrees apart, the tool pressed straight in: depths d/2, <u_1, u_2> = -1/2, and along the way out each
+// spring counts with half of its depth.
+Setting wedge_springs() {
+  const double s = std::sqrt(0.75);
+  return springs({{0.5, s, 0.0}, {0.5, -s, 0.0}}, kDeep * Vec3::UnitX(), false);
+}
+Answer wedge_springs_answer() {
+  const double d = kDeep;
+  return {-Vec3::UnitX(), false, false,
+          {{"original_averaging", d}, {"summation", d / 2}, {"mean", d / 4}, {"virtual_coupling", d / 3},
+           {"shaped_stiffness", d * 0.4}, {"tandpasta", d / 2}, {"normal_projection", d * 0.4},
+           {"exact_shaping", d * 0.5 / (1.25 + kEps)}}};
+}
+
+Setting springs_at_rest() {
+  return springs({Vec3::UnitX(), -Vec3::UnitX(), -Vec3::UnitY(), kOblique}, Vec3::Zero(), true);
+}
+
+Answer no_force() {
+  return {};
+}
+
+/// Cells and points of a grid that the tool's radius is no multiple of: no point lies on the side, and none has two
+/// nearest surfaces, so that depths and gradients change smoothly when a scene is turned.
+constexpr double kSpacing = 0.00013;
+
+// The flat tool pressed into the plane, in the middle of the grid: by symmetry the force is normal to it.
+Setting pressed_plane() {
+  Setting setting;
+  setting.points = surface_points(Plane{20 * kSpacing, kSpacing});
+  setting.cell_size = kSpacing;
+  setting.pose.position = {0.0, 0.0, -0.000121};
+  return setting;
+}
+Answer pressed_plane_answer() {
+  return {Vec3::UnitZ()};
+}
+
+Setting slot(double x) {
+  Setting setting;
+  setting.points = surface_points(Slot{0.0008, 0.004, 0.002, kSpacing});
+  setting.cell_size = kSpacing;
+  // The tool goes all the way through: its tip is below the faces, its bottom above.
+  setting.pose.position = {x, 0.0, -0.0047};
+  return setting;
+}
+// A tool wider than the slot, in its middle: the faces push equally.
+Setting centred_slot() {
+  return slot(0.0);
+}
+// The tool touches the right face only.
+Setting one_sided_slot() {
+  return slot(0.000217);
+}
+Answer one_sided_slot_answer() {
+  return {-Vec3::UnitX()};
+}
+
+/// The 2-D peg of METHOD section 9, tip centre 4 mm deep.
+Setting peg(double tilt, double diameter, double y) {
+  Setting setting;
+  setting.tool = {diameter / 2, 0.005, Tip::round};
+  setting.points = surface_points(Hole2d{});
+  setting.cell_size = Hole2d{}.spacing;
+  setting.pose = {{0.0, y, 0.0}, {-std::sin(tilt), -std::cos(tilt), 0.0}};
+  return setting;
+}
+Setting peg_start() {
+  return peg(0.1, 0.001, -0.004);
+}
+Answer in_plane() {
+  Answer answer;
+  answer.only_in_plane = true;
+  return answer;
+}
+// Upright, the peg fits exactly: it touches both walls with depth zero.
+Setting upright_peg() {
+  return peg(0.0, 0.001, -0.004);
+}
+// A thinner peg pressed on the bottom: by symmetry the force is straight up.
+Setting pressed_peg() {
+  return peg(0.0, 0.00083, -0.0047);
+}
+Answer pressed_peg_answer() {
+  return {Vec3::UnitY()};
+}
+
+const AnalyticScene kScenes[] = {
+    {"single_spring", "surface_normal", single_spring, single_spring_answer, -kDeep * kOblique},
+    {"parallel_springs", "surface_normal", parallel_springs, parallel_springs_answer, -kDeep * kOblique},
+    {"corner_springs", "surface_normal", corner_springs, corner_springs_answer, Vec3::Constant(-kDeep)},
+    {"opposite_springs", "surface_normal", opposite_springs, opposite_springs_answer, Vec3::Zero()},
+    {"wedge_springs", "surface_normal", wedge_springs, wedge_springs_answer, -kDeep * Vec3::UnitX()},
+    {"springs_at_rest", "surface_normal", springs_at_rest, no_force, Vec3::Zero()},
+    {"pressed_plane", "surface_normal", pressed_plane, pressed_plane_answer, kFarAway},
+    {"pressed_plane_by_shortest_distance", "shortest_distance", pressed_plane, pressed_plane_answer, kFarAway},
+    {"pressed_plane_by_normal_projection", "normal_projection", pressed_plane, pressed_plane_answer, kFarAway},
+    {"centred_slot", "surface_normal", centred_slot, no_force, kFarAway},
+    {"one_sided_slot", "surface_normal", one_sided_slot, one_sided_slot_answer, kFarAway},
+    {"one_sided_slot_by_shortest_distance", "shortest_distance", one_sided_slot, one_sided_slot_answer, kFarAway},
+    {"peg_start", "surface_normal", peg_start, in_plane, kFarAway},
+    {"peg_start_by_normal_projection", "normal_projection", peg_start, in_plane, kFarAway},
+    {"upright_peg", "surface_normal", upright_peg, no_force, kFarAway},
+    {"pressed_peg", "surface_normal", pressed_peg, pressed_peg_answer, kFarAway},
+};
+
+}  // namespace
+
+std::span<const AnalyticScene> analytic_scenes() {
+  return kScenes;
+}
+
+RenderingConfig config_for(std::string_view algorithm, const AnalyticScene& scene) {
+  RenderingConfig config;
+  config.algorithm = algorithm;
+  config.depth_model = scene.depth_model;
+  return config;
+}
+
+double total_depth(const Setting& setting, const RenderingConfig& config) {
+  // `summation` leaves every contact in the buffer as its depth model has it.
+  RenderingConfig plain;
+  plain.algorithm = "summation";
+  plain.depth_model = with_fixed_stages(config).depth_model;
+  Probe probe(setting, plain);
+  probe.force_at(setting.pose);
+  double total = 0.0;
+  for (std::size_t i = 0; i < probe.contacts().size(); ++i) total += std::abs(probe.contacts().depth[i]);
+  return total;
+}
+
+}  // namespace hapbench::test
