@@ -131,7 +131,7 @@ TEST_P(ShellQueryForTip, ReportsPointsInAscendingOrderAsTheShellHasThem) {
   query.contacts_at(pose, contacts);
   ASSERT_GT(contacts.size(), 100u);
   for (std::size_t k = 0; k < contacts.size(); ++k) {
-    if (k > 0) EXPECT_LT(contacts.index[k - 1], contacts.index[k]);
+    ASSERT_TRUE(k == 0 || contacts.index[k - 1] < contacts.index[k]);
     EXPECT_EQ(contacts.point(k), points[contacts.index[k]].position);
     EXPECT_EQ(contacts.normal(k), points[contacts.index[k]].normal);
   }
