@@ -7,7 +7,6 @@
 #include <cstring>
 #include <fstream>
 #include <set>
-#include <sstream>
 #include <vector>
 
 namespace hapbench {
@@ -25,36 +24,73 @@ std::string line_and_column(const std::string& text, std::size_t byte) {
   return fmt::format("line {}, column {}", line, std::max<std::size_t>(column, 1));
 }
 
-/// Watches the parser's events for what the parser itself would accept.
+/// The number in the parser's message "… number overflow parsing '1e999'".
+std::string number_in(const std::string& message) {
+  constexpr std::size_t kLongest = 80;
+  const std::size_t start = message.find('\'');
+  const std::string number = start == std::string::npos ? "a number too large" : message.substr(start + 1, message.rfind('\'') - start - 1);
+  return number.size() > kLongest ? number.substr(0, kLongest) + "..." : number;
+}
+
+/// Watches the parser's events for what the parser itself would accept, and knows where in the document it is.
 class Guard {
  public:
   bool operator()(int depth, Json::parse_event_t event, Json& parsed) {
     using Event = Json::parse_event_t;
-    if (event == Event::object_start || event == Event::array_start) {
-      if (depth >= kDeepestNesting) {
-        throw InputError(InputError::Kind::shape, "", fmt::format("nested too deeply; allowed: {} levels", kDeepestNesting));
-      }
-      if (event == Event::object_start) keys_.emplace_back();
-    } else if (event == Event::object_end) {
-      keys_.pop_back();
-    } else if (event == Event::key) {
-      check_key(parsed.get_ref<const std::string&>());
+    switch (event) {
+      case Event::object_start:
+      case Event::array_start:
+        if (depth >= kDeepestNesting) refuse_here(fmt::format("nested too deeply; allowed: {} levels", kDeepestNesting));
+        levels_.push_back({event == Event::array_start, "", 0, {}});
+        break;
+      case Event::object_end:
+      case Event::array_end:
+        levels_.pop_back();
+        next_element();
+        break;
+      case Event::key:
+        enter_key(parsed.get_ref<const std::string&>());
+        break;
+      case Event::value:
+        next_element();
+        break;
     }
     return true;
   }
 
- private:
-  void check_key(const std::string& key) {
-    std::set<std::string>& seen = keys_.back();
-    if (!seen.insert(key).second) {
-      throw InputError(InputError::Kind::shape, "", "the key " + shown(Json(key)) + " stands twice in one object");
+  /// JSON pointer of the value the parser is at; shortened where it is deep.
+  std::string pointer() const {
+    std::string at;
+    for (std::size_t i = 0; i < levels_.size() && i < 8; ++i) {
+      at = levels_[i].is_array ? element(at, levels_[i].index) : member(at, levels_[i].key);
     }
-    if (seen.size() > kMostKeys) {
-      throw InputError(InputError::Kind::shape, "", fmt::format("an object has more than {} keys", kMostKeys));
-    }
+    return at;
   }
 
-  std::vector<std::set<std::string>> keys_;  ///< of the objects that are open
+  [[noreturn]] void refuse_here(const std::string& problem) const {
+    throw InputError(InputError::Kind::shape, pointer(), problem);
+  }
+
+ private:
+  struct Level {
+    bool is_array;
+    std::string key;
+    std::size_t index;
+    std::set<std::string> seen;
+  };
+
+  void next_element() {
+    if (!levels_.empty() && levels_.back().is_array) ++levels_.back().index;
+  }
+
+  void enter_key(const std::string& key) {
+    Level& object = levels_.back();
+    object.key = key;
+    if (!object.seen.insert(key).second) refuse_here("the key stands twice in one object; allowed: once");
+    if (object.seen.size() > kMostKeys) refuse_here(fmt::format("more than {} keys in one object", kMostKeys));
+  }
+
+  std::vector<Level> levels_;  ///< objects and arrays that are open
 };
 
 }  // namespace
@@ -80,8 +116,8 @@ Json parse_json(const std::string& text) {
     return Json::parse(text, [&guard](int depth, Json::parse_event_t event, Json& parsed) { return guard(depth, event, parsed); });
   } catch (const Json::parse_error& error) {
     throw InputError(InputError::Kind::shape, "", fmt::format("is not JSON: syntax error at {}", line_and_column(text, error.byte)));
-  } catch (const Json::out_of_range&) {
-    throw InputError(InputError::Kind::shape, "", "has a number that is too large; allowed: finite numbers");
+  } catch (const Json::out_of_range& error) {
+    guard.refuse_here(fmt::format("got {}; allowed: finite numbers", number_in(error.what())));
   }
 }
 

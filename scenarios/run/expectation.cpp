@@ -8,6 +8,15 @@
 #include "scenarios/codec/input_error.hpp"
 
 namespace hapbench {
+namespace {
+
+std::string divergence_text(const SimulationResult& result) {
+  if (result.outcome != Outcome::diverges) return "";
+  const Divergence& d = result.divergence;
+  return fmt::format(" ({} reached {:.4g} at step {}, beyond {:.4g})", d.quantity, d.magnitude, d.step, d.bound);
+}
+
+}  // namespace
 
 std::vector<std::string> metric_names() {
   std::vector<std::string> names;
@@ -25,7 +34,8 @@ bool outcome_is_expected(const ExpectFields& expect, Outcome outcome) {
 std::vector<std::string> unmet_expectations(const ExpectFields& expect, const RunSummary& run) {
   std::vector<std::string> unmet;
   if (!outcome_is_expected(expect, run.result.outcome)) {
-    unmet.push_back(fmt::format("outcome is \"{}\"; expected {}", outcome_name(run.result.outcome), quoted_list(expect.outcomes)));
+    unmet.push_back(fmt::format("outcome is \"{}\"{}; expected {}", outcome_name(run.result.outcome), divergence_text(run.result),
+                                quoted_list(expect.outcomes)));
   }
   const auto summary = summary_json(run);
   for (const auto& [name, bound] : expect.metrics) {

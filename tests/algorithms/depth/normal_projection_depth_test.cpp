@@ -1,0 +1,135 @@
+#include "algorithms/depth/normal_projection_depth.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/scale.hpp"
+#include "tests/support/tool_geometry.hpp"
+
+namespace hapbench {
+namespace {
+
+using test::Vec3L;
+
+double depth_at(const Tool& tool, const ToolPose& pose, const Vec3& point, const Vec3& normal) {
+  ContactBuffer contacts(1);
+  contacts.push(0, point, normal);
+  make_normal_projection_depth()->evaluate(tool, pose, contacts);
+  EXPECT_EQ(contacts.gradient(0), Vec3(-normal));
+  return contacts.depth[0];
+}
+
+class NormalProjectionDepthForTip : public testing::TestWithParam<Tip> {};
+INSTANTIATE_TEST_SUITE_P(BothTips, NormalProjectionDepthForTip, testing::Values(Tip::flat, Tip::round),
+                         [](const auto& tip) { return tip.param == Tip::flat ? "flat" : "round"; });
+
+/// Checks that the ray from the point against its normal leaves the tool after `depth`: there the slack is zero, and
+/// not yet before nor any more after. Slacks carry a few roundings of coordinates up to 1 m.
+void expect_exit(const Tool& tool, const ToolPose& pose, const Vec3& point, const Vec3& normal, double depth) {
+  constexpr long double rounding = 2e-15L;
+  const Vec3L x = point.cast<long double>(), u = -normal.cast<long double>();
+  const auto slack_at = [&](long double d) { return test::slack(tool, pose, x + d * u); };
+  ASSERT_GE(depth, 0.0);
+  ASSERT_LE(std::abs(slack_at(depth)), rounding);
+  // The slack is concave along the ray: inside half-way, and if the ray went on inside it would show a little later.
+  ASSERT_GE(slack_at(0.5L * depth), -rounding);
+  ASSERT_LE(slack_at(depth + 0.001L * tool.radius), rounding);
+}
+
+TEST_P(NormalProjectionDepthForTip, IsWhereTheRayAgainstTheNormalLeavesTheTool) {
+  Random random(1);
+  for (std::size_t i = 0; i < test::cases(100000); ++i) {
+    const Tool tool = test::random_tool(random, GetParam());
+    const ToolPose pose = test::random_pose(random);
+    const Vec3 point = test::random_point_near(tool, pose, random);
+    if (test::slack(tool, pose, point.cast<long double>()) < 0.0L) continue;
+    const Vec3 normal = random.direction();
+    const double depth = depth_at(tool, pose, point, normal);
+    expect_exit(tool, pose, point, normal, depth);
+    // Marching along the ray by bisection, to the rounding of the slack over the rate at which it falls at the exit.
+    const long double marched = test::exit_along(tool, pose, point.cast<long double>(), -normal.cast<long double>());
+    const long double h = 1e-9L * tool.radius;
+    const long double rate =
+        -test::slack(tool, pose, point.cast<long double>() - (marched + h) * normal.cast<long double>()) / h;
+    ASSERT_NEAR(static_cast<double>(marched - depth), 0.0, static_cast<double>(2e-15L / rate));
+  }
+}
+
+TEST_P(NormalProjectionDepthForTip, IsRightForPointsOnTheSurface) {
+  Random random(2);
+  for (std::size_t i = 0; i < test::cases(100000); ++i) {
+    const Tool tool = test::random_tool(random, GetParam());
+    const ToolPose pose = test::random_pose(random);
+    const Vec3 point = test::random_point_on(tool, pose, random);
+    const Vec3 normal = random.direction();
+    expect_exit(tool, pose, point, normal, depth_at(tool, pose, point, normal));
+  }
+}
+
+TEST_P(NormalProjectionDepthForTip, HandlesRaysAlongAndAcrossTheAxis) {
+  // Where one of (F.7), (F.12) has a zero denominator, and nearly so.
+  Random random(3);
+  for (std::size_t i = 0; i < test::cases(20000); ++i) {
+    const Tool tool = test::random_tool(random, GetParam());
+    const ToolPose pose{Vec3::Zero(), random.uniform() < 0.5 ? Vec3(0, 0, -1) : Vec3(1, 0, 0)};
+    const Vec3 point = test::random_point_near(tool, pose, random);
+    if (test::slack(tool, pose, point.cast<long double>()) < 0.0L) continue;
+    const double tiny = std::pow(10.0, random.uniform(-18.0, -3.0));
+    for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(0, 1, 0)}) {
+      expect_exit(tool, pose, point, direction, depth_at(tool, pose, point, direction));
+      const Vec3 nearly = (direction + tiny * random.direction()).normalized();
+      expect_exit(tool, pose, point, nearly, depth_at(tool, pose, point, nearly));
+    }
+  }
+}
+
+// Dyadic sizes and a pose along the axes, so that the closed forms are exact.
+constexpr double kUnit = 0x1p-13;
+const ToolPose kPose{Vec3::Zero(), {0, 0, -1}};
+
+TEST(NormalProjectionDepth, LeavesTheFlatToolThroughTheNearestSurfaceOnItsWay) {
+  const Tool tool{4 * kUnit, 16 * kUnit, Tip::flat};
+  const Vec3 point(kUnit, 0, 3 * kUnit);  // 3 units above the tip plane
+  EXPECT_EQ(depth_at(tool, kPose, point, {-1, 0, 0}), 3 * kUnit) << "side, forwards";
+  EXPECT_EQ(depth_at(tool, kPose, point, {1, 0, 0}), 5 * kUnit) << "side, across the axis";
+  EXPECT_EQ(depth_at(tool, kPose, point, {0, 0, 1}), 3 * kUnit) << "tip";
+  EXPECT_EQ(depth_at(tool, kPose, point, {0, 0, -1}), 13 * kUnit) << "bottom";
+}
+
+TEST(NormalProjectionDepth, LeavesTheRoundToolThroughTheHalfBall) {
+  const Tool tool{5 * kUnit, 16 * kUnit, Tip::round};
+  // Down along x = 3 units from 3 units above the tip plane: the ball is 4 units below it there.
+  EXPECT_EQ(depth_at(tool, kPose, {3 * kUnit, 0, 3 * kUnit}, {0, 0, 1}), 7 * kUnit);
+  // From inside the ball sideways, at 4 units below the plane: 3 units to its surface.
+  EXPECT_EQ(depth_at(tool, kPose, {0, 0, -4 * kUnit}, {-1, 0, 0}), 3 * kUnit);
+  // From inside the ball upwards: through the plane, which is no surface, to the bottom.
+  EXPECT_EQ(depth_at(tool, kPose, {kUnit, 0, -2 * kUnit}, {0, 0, -1}), 18 * kUnit);
+}
+
+TEST(NormalProjectionDepth, OnTheRoundTipsSurfaceARayOutwardsLeavesAtOnce) {
+  // Whatever the rounding of |x|^2 against r^2 says.
+  Random random(4);
+  for (std::size_t i = 0; i < test::cases(20000); ++i) {
+    const Tool tool = test::random_tool(random, Tip::round);
+    const double s = random.uniform();
+    const Vec3 circle = random.direction_in_plane();
+    const Vec3 outwards = std::sqrt(1.0 - s * s) * circle - s * Vec3::UnitZ();
+    const double depth = depth_at(tool, kPose, tool.radius * outwards, -outwards);
+    ASSERT_LE(depth, 4 * std::numeric_limits<double>::epsilon() * tool.radius) << "s = " << s;
+  }
+}
+
+TEST(NormalProjectionDepth, GrowsPastTheRadiusWhereSurfaceNormalSaturates) {
+  // Thesis F.1: on a flat the depth is what the tool is pressed in by.
+  for (const double pressed : {0.0001, 0.0004, 0.002, 0.005}) {
+    EXPECT_EQ(depth_at(Tool{}, {{0, 0, -pressed}, {0, 0, -1}}, Vec3::Zero(), Vec3::UnitZ()), pressed);
+  }
+}
+
+TEST(NormalProjectionDepth, OfAZeroNormalIsZero) {
+  EXPECT_EQ(depth_at(Tool{}, kPose, {0, 0, 0.001}, Vec3::Zero()), 0.0);
+}
+
+}  // namespace
+}  // namespace hapbench
