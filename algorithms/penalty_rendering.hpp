@@ -16,7 +16,8 @@ namespace hapbench {
 /// One virtual call per stage and step; stages that the configuration does not ask for do not exist.
 class PenaltyRendering final : public ForceAlgorithm {
  public:
-  PenaltyRendering(std::unique_ptr<DepthModel> depth_model, std::unique_ptr<ForceLaw> law, const RenderingConfig& config);
+  PenaltyRendering(std::unique_ptr<DepthModel> depth_model, std::unique_ptr<ForceLaw> law,
+                   const RenderingConfig& config);
 
   void prepare(const Scene& scene) override;
   void reset() noexcept override;

@@ -24,14 +24,14 @@ struct RenderingConfig {
   bool local_average = false;
   std::optional<ReductionConfig> reduction;
 
-  double stiffness = 20000.0;         ///< K [N/m]
-  double damping_ratio = 0.7;         ///< zeta
-  double mass = 0.2;                  ///< M of the virtual tool [kg]
-  std::optional<double> damping;      ///< B [N s/m]; off: 2 zeta sqrt(K M)
-  double mu_s = 0.0;                  ///< viscous friction [N s/m]
-  double mu_f = 0.0;                  ///< viscous friction per newton of spring force [s/m]
-  std::optional<double> max_damping;  ///< B_max [N s/m]
-  std::optional<double> max_force;    ///< F_max [N]
+  double stiffness = 20000.0;              ///< K [N/m]
+  double damping_ratio = 0.7;              ///< zeta
+  double mass = 0.2;                       ///< M of the virtual tool [kg]
+  std::optional<double> damping;           ///< B [N s/m]; off: 2 zeta sqrt(K M)
+  double mu_s = 0.0;                       ///< viscous friction [N s/m]
+  double mu_f = 0.0;                       ///< viscous friction per newton of spring force [s/m]
+  std::optional<double> max_damping;       ///< B_max [N s/m]
+  std::optional<double> max_force;         ///< F_max [N]
   std::optional<double> virtual_coupling;  ///< K_vc [N/m]; off: K
 };
 

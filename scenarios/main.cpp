@@ -21,7 +21,8 @@ int run_program(int argc, char** argv) {
   const Provenance program = provenance();
   app.set_version_flag("--version", fmt::format("hapbench {} ({})", program.version, program.commit));
   app.require_subcommand(1);
-  app.footer("Exit status: 0 success, 1 internal fault, 2 bad input or usage, 3 a run did not end as its scenario expects.");
+  app.footer(
+      "Exit status: 0 success, 1 internal fault, 2 bad input or usage, 3 a run did not end as its scenario expects.");
   Action chosen;
   add_run(app, chosen);
   add_compare(app, chosen);

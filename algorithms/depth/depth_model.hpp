@@ -7,8 +7,8 @@
 
 namespace hapbench {
 
-/// Gives every colliding point its penetration depth d_i [m] >= 0 and its gradient u_i (thesis B.1, C.1, F.1; see ContactBuffer
-/// for the signs). Stateless; one virtual call per step.
+/// Gives every colliding point its penetration depth d_i [m] >= 0 and its gradient u_i (thesis B.1, C.1, F.1; see
+/// ContactBuffer for the signs). Stateless; one virtual call per step.
 class DepthModel {
  public:
   virtual ~DepthModel() = default;

@@ -9,8 +9,9 @@ namespace hapbench {
 const ModelInfo kNormalProjectionDepthInfo = {
     .name = "normal_projection",
     .summary = "distance along the inverse surface normal to where it leaves the tool",
-    .formula = "u = -n, d = smallest exit of the ray x + d u through side (F.7), tip (F.9) and bottom (F.12); "
-               "a round tip replaces the tip plane by the half ball",
+    .formula =
+        "u = -n, d = smallest exit of the ray x + d u through side (F.7), tip (F.9) and bottom (F.12); "
+        "a round tip replaces the tip plane by the half ball",
     .source = "thesis F.1 (F.6 printed with a minus; F.7 shows that r_p + d r_n is meant)",
     .known_failure = "a point that appears at a corner can start with a large depth: the force jumps (Fig. F.4)",
 };
@@ -41,7 +42,9 @@ double exit_side(const Tool& tool, const Vec3& rho, const Vec3& radial_u) {
 /// Exit through the half ball beyond the tip plane; never when the ray misses the ball or leaves it behind the plane.
 double exit_half_ball(const Tool& tool, const Vec3& x, const Vec3& u, double s, double slope) {
   const double b = x.dot(u);
-  const double c = tool.radius * tool.radius - x.squaredNorm();
+  double c = tool.radius * tool.radius - x.squaredNorm();
+  // A colliding point beyond the tip plane lies in the ball, also where rounding puts it just outside.
+  if (s > 0.0) c = std::max(0.0, c);
   const double discriminant = b * b + c;
   if (discriminant < 0.0) return kNever;
   const double d = c >= 0.0 ? exit_root(1.0, b, c) : std::sqrt(discriminant) - b;
@@ -53,12 +56,14 @@ double exit_distance(const Tool& tool, const ToolPose& pose, const Vec3& point, 
   const double s = x.dot(pose.axis);
   const double slope = u.dot(pose.axis);
   double d = exit_side(tool, x - s * pose.axis, u - slope * pose.axis);
+  // A ray leaves through the tip only forwards and through the bottom only backwards. For points inside that is what
+  // "positive" means; for a point on such a surface, s is known to rounding only and its sign proves nothing.
   if (tool.tip == Tip::round) {
     d = std::min(d, exit_half_ball(tool, x, u, s, slope));
-  } else if (slope != 0.0) {
+  } else if (slope > 0.0) {
     d = std::min(d, if_positive(-s / slope));
   }
-  if (slope != 0.0) d = std::min(d, if_positive(-(tool.length + s) / slope));
+  if (slope < 0.0) d = std::min(d, if_positive(-(tool.length + s) / slope));
   return d == kNever ? 0.0 : d;
 }
 

@@ -9,13 +9,21 @@
 
 namespace hapbench {
 
+namespace {
+
+constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
+
+}  // namespace
+
 const ModelInfo kExactShapingInfo = {
     .name = "exact_shaping",
     .summary = "what the shaping iteration converges to, computed exactly",
-    .formula = "c = argmin ½|S - I|²_F + (epsilon/2)|c|² over c >= 0, epsilon = 1e-6: the projection of the identity onto "
-               "the cone of contact tensors u u^T",
+    .formula =
+        "c = argmin ½|S - I|²_F + (epsilon/2)|c|² over c >= 0, epsilon = 1e-6: the projection of the identity onto "
+        "the cone of contact tensors u u^T",
     .source = "ours; the iteration is the multiplicative update of Sha, Lin, Saul, Lee, Neural Computation 2007",
     .known_failure = "as shaped_stiffness: ratios above 1 where the weight is zero, soft along the way out of a wedge",
+    .parameters = kParameters,
 };
 
 namespace {
@@ -64,9 +72,9 @@ struct TensorPack {
 
 /// What one pass over the contacts leaves beside their weights.
 struct Pass {
-  Mat6 G;           ///< sum a a^T over the active contacts, c_i > 0
-  Vec6 S;           ///< sum c_i a_i
-  bool same_active; ///< no contact changed between active and inactive
+  Mat6 G;            ///< sum a a^T over the active contacts, c_i > 0
+  Vec6 S;            ///< sum c_i a_i
+  bool same_active;  ///< no contact changed between active and inactive
 };
 
 /// Gives every contact the weight c_i = max(0, weight_of(u_i, c_i before)).

@@ -2,12 +2,20 @@
 
 namespace hapbench {
 
+namespace {
+
+constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
+
+}  // namespace
+
 const ModelInfo kMeanInfo = {
     .name = "mean",
     .summary = "penalty springs averaged over the number of points",
     .formula = "c_i = 1/n",
     .source = "thesis Fig. 2c",
-    .known_failure = "directions with few points get almost no stiffness: the tool sinks in where most points are parallel",
+    .known_failure =
+        "directions with few points get almost no stiffness: the tool sinks in where most points are parallel",
+    .parameters = kParameters,
 };
 
 namespace {

@@ -4,13 +4,21 @@
 
 namespace hapbench {
 
+namespace {
+
+constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
+
+}  // namespace
+
 const ModelInfo kOriginalAveragingInfo = {
     .name = "original_averaging",
     .summary = "the trainer's original algorithm (DP): depths summed, gradients averaged",
-    .formula = "u_r = sum u_i / |sum u_i|, d_r = sum d_i / |sum u_i|, f = -K d_r u_r, S = u_r u_r^T; "
-               "zero force when |sum u_i| <= 1e-9 n",
+    .formula =
+        "u_r = sum u_i / |sum u_i|, d_r = sum d_i / |sum u_i|, f = -K d_r u_r, S = u_r u_r^T; "
+        "zero force when |sum u_i| <= 1e-9 n",
     .source = "thesis B.2, Eq. B.1; always with depth model shortest_distance and without reduction",
     .known_failure = "opposite gradients make d_r explode and u_r flip by 180 degrees (thesis B.3.3): vibration",
+    .parameters = kParameters,
 };
 
 namespace {

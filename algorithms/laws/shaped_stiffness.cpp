@@ -6,7 +6,8 @@ namespace hapbench {
 namespace {
 
 constexpr ParameterInfo kParameters[] = {
-    {"rendering.iterations", "1", "3", "0 ... 100000", "m: updates of the weights; 0 is summation"},
+    kStiffnessParameter,
+    {"rendering.iterations", "1", "3", "integer >= 0 <= 100000", "m: updates of the weights; 0 is summation"},
 };
 
 }  // namespace
@@ -16,8 +17,9 @@ const ModelInfo kShapedStiffnessInfo = {
     .summary = "the thesis's stiffness shaping (HS): the combined stiffness along every contact is drawn to K",
     .formula = "c = 1; m times: rho_i = sum_j c_j <u_i, u_j>^2 = u_i^T S u_i, c_i <- c_i / rho_i",
     .source = "thesis 2.4, C.4.2; rho through the 3x3 tensor, Eq. 3 and 4",
-    .known_failure = "rho_i stays above 1 where the weight dies out (it is a projection onto a cone); soft along the way "
-                     "out of a wedge",
+    .known_failure =
+        "rho_i stays above 1 where the weight dies out (it is a projection onto a cone); soft along the way "
+        "out of a wedge",
     .parameters = kParameters,
 };
 

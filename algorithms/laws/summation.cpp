@@ -2,13 +2,21 @@
 
 namespace hapbench {
 
+namespace {
+
+constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
+
+}  // namespace
+
 const ModelInfo kSummationInfo = {
     .name = "summation",
     .summary = "all penalty springs added",
     .formula = "c_i = 1",
     .source = "thesis 1.2, Fig. 2b",
-    .known_failure = "stiffness and damping grow with the number of points: unstable once lambda_max(S) K passes the "
-                     "integrator's limit (thesis A.3)",
+    .known_failure =
+        "stiffness and damping grow with the number of points: unstable once lambda_max(S) K passes the "
+        "integrator's limit (thesis A.3)",
+    .parameters = kParameters,
 };
 
 namespace {

@@ -4,13 +4,21 @@
 
 namespace hapbench {
 
+namespace {
+
+constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
+
+}  // namespace
+
 const ModelInfo kTandpastaInfo = {
     .name = "tandpasta",
     .summary = "elastic energy moved from springs that fight each other to those that do not",
-    .formula = "beta_i = |sum_j <u_i,u_j>| / sum_j |<u_i,u_j>|, sigma_E = sum beta_i d_i^2 / sum d_i^2, "
-               "c_i = beta_i / sigma_E; zero force when sigma_E <= 1e-12",
+    .formula =
+        "beta_i = |sum_j <u_i,u_j>| / sum_j |<u_i,u_j>|, sigma_E = sum beta_i d_i^2 / sum d_i^2, "
+        "c_i = beta_i / sigma_E; zero force when sigma_E <= 1e-12",
     .source = "thesis F.2",
     .known_failure = "boosts the outward force until the tool jumps out; O(n^2)",
+    .parameters = kParameters,
 };
 
 namespace {

@@ -6,7 +6,9 @@ namespace hapbench {
 namespace {
 
 constexpr ParameterInfo kParameters[] = {
-    {"rendering.virtual_coupling_N_per_m", "N/m", "null (= K)", "> 0", "K_vc: stiffness of the coupling spring"},
+    kStiffnessParameter,
+    {"rendering.virtual_coupling_N_per_m", "N/m", "null", "null | number > 0 <= 1e+12",
+     "K_vc: stiffness of the coupling spring; null: K"},
 };
 
 }  // namespace

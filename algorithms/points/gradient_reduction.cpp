@@ -10,9 +10,12 @@ namespace hapbench {
 namespace {
 
 constexpr ParameterInfo kParameters[] = {
-    {"rendering.reduction.threshold", "1", "0.995", "(-1, 1]", "alpha_TH: gradients with a larger inner product are similar"},
-    {"rendering.reduction.max_points", "1", "100", "1 ... 100000", "n_ext: most points kept; further ones are dropped and counted"},
-    {"rendering.reduction.shuffle_seed", "1", "null", "0 ... 2^53", "visit the shell points in a fixed random order instead of ascending index"},
+    {"rendering.reduction.threshold", "1", "0.995", "number > -1 <= 1",
+     "alpha_TH: gradients with a larger inner product are similar"},
+    {"rendering.reduction.max_points", "1", "100", "integer >= 1 <= 100000",
+     "n_ext: most points kept; further ones are dropped and counted"},
+    {"rendering.reduction.shuffle_seed", "1", "null", "null | integer >= 0 <= 9007199254740992",
+     "visit the shell points in a fixed random order instead of ascending index"},
 };
 
 }  // namespace
@@ -20,9 +23,12 @@ constexpr ParameterInfo kParameters[] = {
 const ModelInfo kGradientReductionInfo = {
     .name = "reduction",
     .summary = "of colliding points with similar gradients only the deepest is kept",
-    .formula = "visit contacts in order; the first kept k with <u_i, u_k> > alpha_TH absorbs i (replaced if d_i > d_k); "
-               "none similar: append, or drop when n_ext are kept",
-    .source = "thesis C.3, 2.8; algorithm C.1 as printed appends replaced points and compares on after a similar one, which cannot be meant",
+    .formula =
+        "visit contacts in order; the first kept k with <u_i, u_k> > alpha_TH absorbs i (replaced if d_i > d_k); "
+        "none similar: append, or drop when n_ext are kept",
+    .source =
+        "thesis C.3, 2.8; algorithm C.1 as printed appends replaced points and compares on after a similar one, which "
+        "cannot be meant",
     .known_failure = "depends on the order of the points; collapses gradually curved surfaces (thesis 4.1)",
     .parameters = kParameters,
 };
@@ -73,9 +79,8 @@ class GradientReduction final : public PointStage {
   void shuffle(ContactBuffer& contacts) noexcept {
     const auto end = order_.begin() + static_cast<std::ptrdiff_t>(contacts.size());
     std::iota(order_.begin(), end, 0u);
-    std::sort(order_.begin(), end, [&](std::uint32_t a, std::uint32_t b) {
-      return rank_[contacts.index[a]] < rank_[contacts.index[b]];
-    });
+    std::sort(order_.begin(), end,
+              [&](std::uint32_t a, std::uint32_t b) { return rank_[contacts.index[a]] < rank_[contacts.index[b]]; });
     shuffled_->clear();
     for (auto slot = order_.begin(); slot != end; ++slot) shuffled_->push_copy_of(contacts, *slot);
     contacts.clear();

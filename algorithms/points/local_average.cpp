@@ -5,6 +5,13 @@
 #include <vector>
 
 namespace hapbench {
+namespace {
+
+constexpr ParameterInfo kParameters[] = {
+    {"rendering.local_average", "1", "false", "boolean", "switches the stage on"},
+};
+
+}  // namespace
 
 const ModelInfo kLocalAverageInfo = {
     .name = "local_average",
@@ -12,6 +19,7 @@ const ModelInfo kLocalAverageInfo = {
     .formula = "D = mean of d_i u_i over the cell's colliding points; d = |D|, u = D/|D|; dropped when D = 0",
     .source = "thesis C.2 (optional step, off by default)",
     .known_failure = "opposite points in one cell cancel",
+    .parameters = kParameters,
 };
 
 namespace {

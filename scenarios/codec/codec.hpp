@@ -35,7 +35,8 @@ using CodecPtr = std::shared_ptr<const Codec<T>>;
 std::string shown(const Json& json);
 
 /// Throws the error "got VALUE; allowed: …" for a field of the wrong type or range.
-[[noreturn]] void refuse(const Json& json, const std::string& at, const std::string& allowed, const std::string& hint = "");
+[[noreturn]] void refuse(const Json& json, const std::string& at, const std::string& allowed,
+                         const std::string& hint = "");
 
 /// Pointer of a member or an element; `~` and `/` escaped as RFC 6901 says.
 std::string member(const std::string& at, const std::string& name);

@@ -27,6 +27,11 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+std::string one_line(std::string text) {
+  std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  return text;
+}
+
 std::string nearest_name(std::string_view given, std::span<const std::string> valid) {
   // A hostile name may be megabytes long; nothing that long is near a name of ours.
   if (given.size() > 200) return "";

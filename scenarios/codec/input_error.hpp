@@ -8,6 +8,9 @@
 
 namespace hapbench {
 
+/// `text` with a '?' in place of each control character (file names and values from outside may have some).
+std::string one_line(std::string text);
+
 /// Bad input: a file, an argument or a field the program refuses. Exit status 2. The message is one line that names the
 /// place, the value given, what is allowed and, for names, the nearest valid one.
 class InputError : public std::runtime_error {
@@ -18,7 +21,10 @@ class InputError : public std::runtime_error {
   };
 
   InputError(Kind kind, std::string place, const std::string& problem)
-      : std::runtime_error(place.empty() ? problem : place + ": " + problem), kind_(kind), place_(std::move(place)), problem_(problem) {}
+      : std::runtime_error(one_line(place.empty() ? problem : place + ": " + problem)),
+        kind_(kind),
+        place_(std::move(place)),
+        problem_(problem) {}
   /// A relation without a field of its own.
   explicit InputError(const std::string& problem) : InputError(Kind::relation, "", problem) {}
 

@@ -78,7 +78,8 @@ class ObjectCodec final : public Codec<T> {
   void read_fields(const Json& json, const std::string& at, T& out, const std::string& tag) const {
     if (!json.is_object()) refuse(json, at, allowed());
     for (const auto& entry : json.items()) {
-      if (entry.key() != tag && find(entry.key()) == nullptr) refuse_unknown(entry.key(), at, tag);
+      const bool is_tag = !tag.empty() && entry.key() == tag;
+      if (!is_tag && find(entry.key()) == nullptr) refuse_unknown(entry.key(), at, tag);
     }
     for (const Field& field : fields_) {
       const auto entry = json.find(field.name);
@@ -144,7 +145,9 @@ class ObjectCodec final : public Codec<T> {
     field.doc = std::move(doc);
     field.allowed = codec->allowed();
     field.required = required;
-    field.read = [access, codec](const Json& json, const std::string& at, T& out) { codec->read(json, at, access(out)); };
+    field.read = [access, codec](const Json& json, const std::string& at, T& out) {
+      codec->read(json, at, access(out));
+    };
     field.write = [access, codec](const T& value, const std::string& key, Json& json) {
       json[key] = codec->write(access(const_cast<T&>(value)));
     };
@@ -181,7 +184,8 @@ class ObjectCodec final : public Codec<T> {
                          "got both \"" + a + "\" and \"" + b + "\", which contradict; allowed: exactly one of them");
       }
       if (!has_a && !has_b) {
-        throw InputError(InputError::Kind::shape, at, "missing field; allowed: exactly one of \"" + a + "\" and \"" + b + "\"");
+        throw InputError(InputError::Kind::shape, at,
+                         "missing field; allowed: exactly one of \"" + a + "\" and \"" + b + "\"");
       }
     }
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -55,7 +56,8 @@ class NumberCodec final : public Codec<double> {
   }
   Json write(const double& value) const override { return value; }
   Json schema() const override {
-    return {{"type", "number"}, {range_.above_min ? "exclusiveMinimum" : "minimum", range_.min}, {"maximum", range_.max}};
+    return {
+        {"type", "number"}, {range_.above_min ? "exclusiveMinimum" : "minimum", range_.min}, {"maximum", range_.max}};
   }
   std::string allowed() const override {
     const std::string unit = *range_.unit == '\0' ? "" : fmt::format(" [{}]", range_.unit);
@@ -72,12 +74,14 @@ class IntegerCodec final : public Codec<std::int64_t> {
 
   void read(const Json& json, const std::string& at, std::int64_t& out) const override {
     if (!json.is_number()) refuse(json, at, allowed());
-    // Through double: exact for every integer the ranges below allow, and it sees unsigned and 1e3 alike.
+    // Through double, which sees unsigned and 1e3 alike and is exact for every integer the ranges below allow.
     const double value = json.get<double>();
     const auto low = static_cast<double>(min_);
     const auto high = static_cast<double>(max_);
     if (!(value >= low && value <= high) || value != std::floor(value)) refuse(json, at, allowed());
     out = static_cast<std::int64_t>(value);
+    // 2^53 + 1 would round to 2^53.
+    if (json.is_number_integer() && json != Json(out)) refuse(json, at, allowed());
   }
   Json write(const std::int64_t& value) const override { return value; }
   Json schema() const override { return {{"type", "integer"}, {"minimum", min_}, {"maximum", max_}}; }
@@ -103,14 +107,20 @@ class TextCodec final : public Codec<std::string> {
   explicit TextCodec(std::size_t max_length) : max_length_(max_length) {}
 
   void read(const Json& json, const std::string& at, std::string& out) const override {
-    if (!json.is_string() || json.get_ref<const std::string&>().size() > max_length_) refuse(json, at, allowed());
+    if (!json.is_string() || characters(json.get_ref<const std::string&>()) > max_length_) refuse(json, at, allowed());
     out = json.get<std::string>();
   }
   Json write(const std::string& value) const override { return value; }
   Json schema() const override { return {{"type", "string"}, {"maxLength", max_length_}}; }
-  std::string allowed() const override { return fmt::format("a text of at most {} bytes", max_length_); }
+  std::string allowed() const override { return fmt::format("a text of at most {} characters", max_length_); }
 
  private:
+  /// Code points of a UTF-8 text, which is what a schema counts.
+  static std::size_t characters(const std::string& text) {
+    const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; };
+    return text.size() - static_cast<std::size_t>(std::count_if(text.begin(), text.end(), continues));
+  }
+
   std::size_t max_length_;
 };
 

@@ -23,7 +23,7 @@ CodecPtr<double> number(NumberRange range);
 /// min … max as integers; a value such as 1e3 counts as one.
 CodecPtr<std::int64_t> integer(std::int64_t min, std::int64_t max);
 CodecPtr<bool> boolean();
-/// Any text up to `max_length` bytes.
+/// Any text up to `max_length` characters (code points).
 CodecPtr<std::string> text(std::size_t max_length);
 /// One of `names`; `what` says of what kind, for messages.
 CodecPtr<std::string> name_of(std::vector<std::string> names, std::string what);

@@ -47,8 +47,8 @@ void print_warnings(const std::vector<std::string>& warnings);
 
 /// A bundled scenario.
 struct BundledScenario {
-  std::string name;  ///< file name without extension
-  std::string group; ///< thesis, limits, examples
+  std::string name;   ///< file name without extension
+  std::string group;  ///< thesis, limits, examples
   std::filesystem::path file;
 };
 

@@ -60,7 +60,8 @@ int compare(const CompareOptions& options) {
     scenarios.push_back(load_scenario(file, overrides));
     check_named_files(scenarios.back());
   }
-  const fs::path out = options.out.empty() ? fs::path("results") / "out" / ("compare_" + file.stem().string()) : fs::path(options.out);
+  const fs::path out =
+      options.out.empty() ? fs::path("results") / "out" / ("compare_" + file.stem().string()) : fs::path(options.out);
   for (const std::string& algorithm : options.algorithms) require_writable_directory(out / algorithm);
 
   std::vector<Table::Column> columns = run_columns();
@@ -85,7 +86,8 @@ int compare(const CompareOptions& options) {
     reports.push_back(std::move(report));
   }
   write_comparison(out / "comparison.csv", reports);
-  print(options.output, fmt::format("{}\n\n{}\nresults in {}\n", scenarios[0].scenario.name, table.text(), out.string()), summaries);
+  print(options.output,
+        fmt::format("{}\n\n{}\nresults in {}\n", scenarios[0].scenario.name, table.text(), out.string()), summaries);
   return status;
 }
 

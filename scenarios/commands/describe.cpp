@@ -20,15 +20,21 @@ struct Description {
 
 Description describe_model(const char* kind, const ModelInfo& info) {
   Description d;
-  d.text = fmt::format("{} {}\n  {}\n\n  formula        {}\n  source         {}\n  known failure  {}\n", kind, info.name,
-                       info.summary, info.formula, info.source, info.known_failure);
-  d.json = {{"kind", kind}, {"name", info.name}, {"summary", info.summary}, {"formula", info.formula},
-            {"source", info.source}, {"known_failure", info.known_failure}, {"parameters", Json::array()}};
+  d.text = fmt::format("{} {}\n  {}\n\n  formula        {}\n  source         {}\n  known failure  {}\n", kind,
+                       info.name, info.summary, info.formula, info.source, info.known_failure);
+  d.json = {{"kind", kind},
+            {"name", info.name},
+            {"summary", info.summary},
+            {"formula", info.formula},
+            {"source", info.source},
+            {"known_failure", info.known_failure},
+            {"parameters", Json::array()}};
   if (info.parameters.empty()) return d;
   Table table({{"parameter", false}, {"unit", false}, {"default", false}, {"range", false}, {"meaning", false}});
   for (const ParameterInfo& p : info.parameters) {
     table.add({p.name, p.unit, p.default_value, p.range, p.meaning});
-    d.json["parameters"].push_back({{"name", p.name}, {"unit", p.unit}, {"default", p.default_value}, {"range", p.range}, {"meaning", p.meaning}});
+    d.json["parameters"].push_back(
+        {{"name", p.name}, {"unit", p.unit}, {"default", p.default_value}, {"range", p.range}, {"meaning", p.meaning}});
   }
   d.text += "\n" + table.text();
   return d;
@@ -76,9 +82,10 @@ Description describe_name(const std::string& name) {
     if (bundled.name == name) return describe_scenario(bundled.file);
   }
   if (std::filesystem::exists(name)) return describe_scenario(name);
-  throw InputError(fmt::format("nothing is called \"{}\"{}; \"hapbench list\" shows the names, \"hapbench describe scenario\" "
-                               "the fields of a scenario file",
-                               name, nearest_name_hint(name, all_names())));
+  throw InputError(
+      fmt::format("nothing is called \"{}\"{}; \"hapbench list\" shows the names, \"hapbench describe scenario\" "
+                  "the fields of a scenario file",
+                  name, nearest_name_hint(name, all_names())));
 }
 
 }  // namespace
@@ -89,9 +96,12 @@ void add_describe(CLI::App& app, Action& chosen) {
     OutputOptions output;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("describe", "Explain an algorithm, a depth model, an environment, a field or a scenario");
-  command->add_option("name", options->name,
-                      "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), or \"schema\"")
+  CLI::App* command =
+      app.add_subcommand("describe", "Explain an algorithm, a depth model, an environment, a field or a scenario");
+  command
+      ->add_option(
+          "name", options->name,
+          "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), or \"schema\"")
       ->required();
   add_output_options(*command, options->output);
   command->callback([options, &chosen] {

@@ -77,8 +77,9 @@ void add_run(CLI::App& app, Action& chosen) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "Run scenarios and write their results");
   command->add_option("scenarios", options->scenarios, "scenario files, or names of bundled scenarios")->required();
-  command->add_option("--out", options->out,
-                      "directory of the results; several scenarios get a subdirectory each (default: results/out/NAME)");
+  command->add_option(
+      "--out", options->out,
+      "directory of the results; several scenarios get a subdirectory each (default: results/out/NAME)");
   command->add_option("--set", options->overrides, "override a field: path=value, as in time.steps=100")
       ->allow_extra_args(false)
       ->take_all();

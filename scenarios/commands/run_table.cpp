@@ -9,7 +9,7 @@
 namespace hapbench {
 
 std::vector<Table::Column> run_columns() {
-  return {{"outcome", false}, {"steps"},          {"max force N"}, {"velocity TV m/s"}, {"reversals"},
+  return {{"outcome", false},  {"steps"},        {"max force N"}, {"velocity TV m/s"}, {"reversals"},
           {"vibration m2/s2"}, {"max depth mm"}, {"ratio"},       {"us/step"}};
 }
 

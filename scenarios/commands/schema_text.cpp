@@ -37,6 +37,21 @@ const Json* find_type(const Json& schema, const std::string& type) {
   return nullptr;
 }
 
+/// The fields themselves: of an object, or of the object in "null or an object"; null for anything else.
+const Json* plain_object(const Json& schema) {
+  if (schema.contains("properties")) return &schema;
+  if (!schema.contains("anyOf") || schema["anyOf"].size() != 2) return nullptr;
+  const Json& second = schema["anyOf"][1];
+  return second.contains("properties") && tag_of(second).empty() ? &second : nullptr;
+}
+
+/// A bound without the ".0" that JSON gives to whole numbers.
+std::string bound_text(const Json& bound) {
+  return bound.is_number_float() ? fmt::format("{}", bound.get<double>()) : bound.dump();
+}
+
+}  // namespace
+
 std::string allowed_text(const Json& schema) {
   if (schema.contains("enum")) return shown(schema["enum"]);
   if (const std::string tag = tag_of(schema); !tag.empty()) return "type \"" + tag + "\"";
@@ -47,22 +62,25 @@ std::string allowed_text(const Json& schema) {
     return text;
   }
   std::string text = schema.value("type", "anything");
-  if (schema.contains("exclusiveMinimum")) text += fmt::format(" > {}", schema["exclusiveMinimum"].dump());
-  if (schema.contains("minimum")) text += fmt::format(" >= {}", schema["minimum"].dump());
-  if (schema.contains("maximum")) text += fmt::format(" <= {}", schema["maximum"].dump());
+  if (schema.contains("exclusiveMinimum")) text += fmt::format(" > {}", bound_text(schema["exclusiveMinimum"]));
+  if (schema.contains("minimum")) text += fmt::format(" >= {}", bound_text(schema["minimum"]));
+  if (schema.contains("maximum")) text += fmt::format(" <= {}", bound_text(schema["maximum"]));
   if (text.rfind("array", 0) == 0 && schema.contains("items") && schema["items"].is_object()) {
     text += " of " + allowed_text(schema["items"]);
   }
   return text;
 }
 
+namespace {
+
 void add_fields(Table& table, const std::string& prefix, const Json& schema) {
   for (const auto& [name, field] : schema["properties"].items()) {
     if (field.contains("const")) continue;
-    const bool nested = field.contains("properties");
-    const std::string initial = field.contains("default") && !nested ? shown(field["default"]) : "";
-    table.add({prefix + name, initial, nested ? "" : allowed_text(field), field.value("description", "")});
-    if (nested) add_fields(table, prefix + name + ".", field);
+    const Json* nested = plain_object(field);
+    const bool is_object = nested == &field;
+    const std::string initial = field.contains("default") && nested == nullptr ? shown(field["default"]) : "";
+    table.add({prefix + name, initial, is_object ? "" : allowed_text(field), field.value("description", "")});
+    if (nested != nullptr) add_fields(table, prefix + name + ".", *nested);
   }
 }
 
@@ -89,9 +107,9 @@ const Json* find_in_schema(const Json& schema, const std::string& name) {
 std::string fields_text(const std::string& title, const Json& schema) {
   std::string text = title + "\n";
   if (schema.contains("description")) text += "  " + schema["description"].get<std::string>() + "\n";
-  const Json* object = schema.contains("properties") ? &schema : nullptr;
+  const Json* object = plain_object(schema);
+  if (object != &schema) text += "  allowed: " + allowed_text(schema) + "\n";
   if (object == nullptr) {
-    text += "  allowed: " + allowed_text(schema) + "\n";
     if (schema.contains("default")) text += "  default: " + shown(schema["default"]) + "\n";
     return text;
   }

@@ -41,7 +41,8 @@ void add_shell(CLI::App& app, Action& chosen) {
   auto options = std::make_shared<ShellOptions>();
   CLI::App* command = app.add_subcommand("shell", "Write the environment's point shell: positions and normals");
   command->add_option("scenario", options->scenario, "scenario file, or name of a bundled scenario")->required();
-  command->add_option("--out", options->out, "FILE.csv (exact) or FILE.ply (single precision, for viewers)")->required();
+  command->add_option("--out", options->out, "FILE.csv (exact) or FILE.ply (single precision, for viewers)")
+      ->required();
   command->add_option("--set", options->overrides, "override a field: path=value")->allow_extra_args(false)->take_all();
   add_output_options(*command, options->output);
   command->callback([options, &chosen] { chosen = [options] { return shell(*options); }; });

@@ -25,10 +25,14 @@ struct StabilityOptions {
 
 std::string_view case_name(StabilityCase which) {
   switch (which) {
-    case StabilityCase::stiffness_undamped: return "stiffness_undamped";
-    case StabilityCase::damping_alone: return "damping_alone";
-    case StabilityCase::stiffness_damped: return "stiffness_damped";
-    case StabilityCase::time_step: return "time_step";
+    case StabilityCase::stiffness_undamped:
+      return "stiffness_undamped";
+    case StabilityCase::damping_alone:
+      return "damping_alone";
+    case StabilityCase::stiffness_damped:
+      return "stiffness_damped";
+    case StabilityCase::time_step:
+      return "time_step";
   }
   return "";
 }
@@ -62,7 +66,9 @@ Json limits_json(const LoadedScenario& loaded, const std::vector<StabilityLimit>
                     {"damping_at_limit_N_s_per_m", limit.damping_at_limit},
                     {"lambda_max", limit.lambda}});
   }
-  return {{"name", loaded.scenario.name}, {"algorithm", loaded.scenario.rendering.config.algorithm}, {"limits", std::move(rows)}};
+  return {{"name", loaded.scenario.name},
+          {"algorithm", loaded.scenario.rendering.config.algorithm},
+          {"limits", std::move(rows)}};
 }
 
 std::string limits_text(const LoadedScenario& loaded, const std::vector<StabilityLimit>& limits) {
@@ -86,13 +92,15 @@ int stability(const StabilityOptions& options) {
   Json json = Json::array();
   for (const LoadedScenario& loaded : scenarios) {
     const std::vector<StabilityLimit> limits = with_file(loaded, [&] { return stability_limits(loaded.scenario); });
-    const fs::path directory = options.out.empty() ? fs::path("results") / "out" / ("stability_" + loaded.file.stem().string())
+    const fs::path directory = options.out.empty()
+                                   ? fs::path("results") / "out" / ("stability_" + loaded.file.stem().string())
                                : scenarios.size() == 1 ? fs::path(options.out)
                                                        : fs::path(options.out) / loaded.file.stem();
     require_writable_directory(directory);
     write_limits(directory / "limits.csv", limits);
     write_root_locus(directory / "root_locus.csv", root_locus(loaded.scenario, limits));
-    write_file_atomically(directory / "scenario.effective.json", json_text(effective_scenario(loaded.scenario, directory)));
+    write_file_atomically(directory / "scenario.effective.json",
+                          json_text(effective_scenario(loaded.scenario, directory)));
     text += limits_text(loaded, limits) + fmt::format("\nroot locus in {}\n", (directory / "root_locus.csv").string());
     json.push_back(limits_json(loaded, limits));
   }
@@ -104,10 +112,12 @@ int stability(const StabilityOptions& options) {
 
 void add_stability(CLI::App& app, Action& chosen) {
   auto options = std::make_shared<StabilityOptions>();
-  CLI::App* command =
-      app.add_subcommand("stability", "Largest stable stiffness, damping and time step of a springs scenario (thesis A.3)");
-  command->add_option("scenarios", options->scenarios, "springs scenarios: files, or names of bundled ones")->required();
-  command->add_option("--out", options->out, "directory of limits.csv and root_locus.csv (default: results/out/stability_NAME)");
+  CLI::App* command = app.add_subcommand(
+      "stability", "Largest stable stiffness, damping and time step of a springs scenario (thesis A.3)");
+  command->add_option("scenarios", options->scenarios, "springs scenarios: files, or names of bundled ones")
+      ->required();
+  command->add_option("--out", options->out,
+                      "directory of limits.csv and root_locus.csv (default: results/out/stability_NAME)");
   command->add_option("--set", options->overrides, "override a field: path=value")->allow_extra_args(false)->take_all();
   add_output_options(*command, options->output);
   command->callback([options, &chosen] { chosen = [options] { return stability(*options); }; });

@@ -40,7 +40,8 @@ int validate(const ValidateOptions& options) {
 
 void add_validate(CLI::App& app, Action& chosen) {
   auto options = std::make_shared<ValidateOptions>();
-  CLI::App* command = app.add_subcommand("validate", "Check scenario files and the files they name, without running them");
+  CLI::App* command =
+      app.add_subcommand("validate", "Check scenario files and the files they name, without running them");
   command->add_option("files", options->files, "scenario files")->required();
   add_output_options(*command, options->output);
   command->callback([options, &chosen] { chosen = [options] { return validate(*options); }; });

@@ -42,10 +42,11 @@ void fill_orientation(Scenario& scenario, const SceneDefaults& defaults) {
   fill(orientation.up, defaults.up);
   const double up = orientation.up->norm(), lean = orientation.lean.norm();
   // 1e-9 forgives the rounding of directions that were normalised by somebody else.
-  if (up > 0.0 && lean > 0.0 && std::abs(orientation.up->dot(orientation.lean)) <= 1e-9 * up * lean) return;
+  if (up >= 1e-12 && lean >= 1e-12 && std::abs(orientation.up->dot(orientation.lean)) <= 1e-9 * up * lean) return;
   throw InputError(InputError::Kind::relation, "/motion/orientation",
                    "got up " + shown(vector3({0, 0})->write(*orientation.up)) + " and lean " +
-                       shown(vector3({0, 0})->write(orientation.lean)) + "; allowed: two perpendicular directions, not zero");
+                       shown(vector3({0, 0})->write(orientation.lean)) +
+                       "; allowed: two perpendicular directions, not zero");
 }
 
 /// Puts what the algorithm's definition fixes in place of what was given.

@@ -64,22 +64,29 @@ class ProfileCodec final : public Codec<Profile> {
  public:
   explicit ProfileCodec(const char* unit) : number_(number({-kLargestValue, kLargestValue, unit})) {
     auto ramp = object<Profile::Ramp>();
-    ramp->required("start", [](auto& r) -> double& { return r.start; }, number_, "value at t = 0");
-    ramp->required("rate_per_s", [](auto& r) -> double& { return r.rate_per_s; }, number_, "slope, per second");
+    ramp->required(
+        "start", [](auto& r) -> double& { return r.start; }, number_, "value at t = 0");
+    ramp->required(
+        "rate_per_s", [](auto& r) -> double& { return r.rate_per_s; }, number_, "slope, per second");
     auto sine = object<Profile::Sine>();
-    sine->required("mean", [](auto& s) -> double& { return s.mean; }, number_, "m of m + a sin(2 pi t / T + phase)");
-    sine->required("amplitude", [](auto& s) -> double& { return s.amplitude; }, number_, "a");
-    sine->required("period_s", [](auto& s) -> double& { return s.period_s; },
-                   number({0.0, kLargestValue, "s", true}), "T");
-    sine->optional("phase_rad", [](auto& s) -> double& { return s.phase_rad; },
-                   number({-kLargestValue, kLargestValue, "rad"}), "phase at t = 0");
+    sine->required(
+        "mean", [](auto& s) -> double& { return s.mean; }, number_, "m of m + a sin(2 pi t / T + phase)");
+    sine->required(
+        "amplitude", [](auto& s) -> double& { return s.amplitude; }, number_, "a");
+    sine->required(
+        "period_s", [](auto& s) -> double& { return s.period_s; }, number({0.0, kLargestValue, "s", true}), "T");
+    sine->optional(
+        "phase_rad", [](auto& s) -> double& { return s.phase_rad; }, number({-kLargestValue, kLargestValue, "rad"}),
+        "phase at t = 0");
     auto waypoints = object<Profile::Waypoints>();
-    waypoints->required("points", [](auto& w) -> std::vector<Point>& { return w.points; },
-                        list_of<Point>(std::make_shared<PointCodec>(number_), 1, 1'000'000),
-                        "[t, v] pairs, t increasing; held constant outside");
-    waypoints->optional("interpolation", [](auto& w) -> Profile::Interpolation& { return w.interpolation; },
-                        CodecPtr<Profile::Interpolation>(std::make_shared<InterpolationCodec>()),
-                        "between the points: straight, or cosine (at rest in each point)");
+    waypoints->required(
+        "points", [](auto& w) -> std::vector<Point>& { return w.points; },
+        list_of<Point>(std::make_shared<PointCodec>(number_), 1, 1'000'000),
+        "[t, v] pairs, t increasing; held constant outside");
+    waypoints->optional(
+        "interpolation", [](auto& w) -> Profile::Interpolation& { return w.interpolation; },
+        CodecPtr<Profile::Interpolation>(std::make_shared<InterpolationCodec>()),
+        "between the points: straight, or cosine (at rest in each point)");
     waypoints->relation(check_times);
     auto moving = tagged<MovingShape>("profile");
     moving->alternative("ramp", ramp).alternative("sine", sine).alternative("waypoints", waypoints);

@@ -28,7 +28,9 @@ constexpr int kLocusPoints = 400;
 SpringDamper at_value(StabilityCase which, double value, const Scenario& scenario, double lambda) {
   const RenderingConfig& config = scenario.rendering.config;
   SpringDamper system{config.stiffness, 0.0, *scenario.rendering.mass, scenario.time.step, lambda};
-  const auto damping = [&] { return config.damping.value_or(2.0 * config.damping_ratio * std::sqrt(system.K * system.M)); };
+  const auto damping = [&] {
+    return config.damping.value_or(2.0 * config.damping_ratio * std::sqrt(system.K * system.M));
+  };
   switch (which) {
     case StabilityCase::stiffness_undamped:
       system.K = value;
@@ -68,7 +70,8 @@ double analytic_limit(StabilityCase which, const Scenario& scenario, double lamb
     case StabilityCase::stiffness_damped:
       if (lambda == 0.0) return kNever;
       // With a fixed B the inequality is linear in K, with B = 2 zeta sqrt(K M) quadratic in sqrt K.
-      if (config.damping) return std::max(0.0, (4.0 - 2.0 * lambda * *config.damping * dt / M) * M / (lambda * dt * dt));
+      if (config.damping)
+        return std::max(0.0, (4.0 - 2.0 * lambda * *config.damping * dt / M) * M / (lambda * dt * dt));
       return std::pow(positive_root(lambda * dt * dt / M, b), 2);
     case StabilityCase::time_step:
       return positive_root(lambda * given.K / M, lambda * given.B / M);
@@ -137,12 +140,16 @@ void check_scene(const Scenario& scenario) {
   const auto fail = [](const char* place, const char* problem) {
     throw InputError(InputError::Kind::relation, place, problem);
   };
-  if (springs == nullptr) fail("/environment/type", "stability limits exist for \"springs\" only: elsewhere contacts come and go");
+  if (springs == nullptr)
+    fail("/environment/type", "stability limits exist for \"springs\" only: elsewhere contacts come and go");
   if (!springs->bilateral) fail("/environment/bilateral", "got false; allowed for stability: true");
-  if (*scenario.rendering.mu_s != 0.0 || *scenario.rendering.mu_f != 0.0) fail("/rendering/friction", "allowed for stability: none");
-  if (scenario.rendering.config.max_damping) fail("/rendering/limits/max_damping_N_s_per_m", "allowed for stability: null");
+  if (*scenario.rendering.mu_s != 0.0 || *scenario.rendering.mu_f != 0.0)
+    fail("/rendering/friction", "allowed for stability: none");
+  if (scenario.rendering.config.max_damping)
+    fail("/rendering/limits/max_damping_N_s_per_m", "allowed for stability: null");
   if (scenario.rendering.config.max_force) fail("/rendering/limits/max_force_N", "allowed for stability: null");
-  if (!std::holds_alternative<FreePosition>(scenario.motion.position)) fail("/motion/position/type", "allowed for stability: \"free\"");
+  if (!std::holds_alternative<FreePosition>(scenario.motion.position))
+    fail("/motion/position/type", "allowed for stability: \"free\"");
 }
 
 }  // namespace
@@ -180,7 +187,8 @@ std::vector<StabilityLimit> stability_limits(const Scenario& scenario) {
     limit.lambda = lambda;
     limit.analytic = analytic_limit(limit.which, scenario, lambda);
     limit.damping_at_limit = system(limit.analytic).B;
-    limit.eigenvalue = largest_stable(start, [&](double value) { return system(value).spectral_radius() <= kOnCircle; });
+    limit.eigenvalue =
+        largest_stable(start, [&](double value) { return system(value).spectral_radius() <= kOnCircle; });
     limit.simulation = largest_stable(
         start, [&](double value) { return simulation_stays_bounded(scenario, system(value), stiffest); });
   }

@@ -6,10 +6,10 @@
 
 #include "scenarios/config/scenario.hpp"
 
-/// The integrator's stability on a set of bilateral springs (thesis A.3): how stiff, how damped and how coarse in time a
-/// run may be before it blows up. Along the stiffest direction the springs act as one spring lambda K with one damper
-/// lambda B, lambda = lambda_max(S), and the step (x, v) -> A (x, v) of Eq. A.2 is stable while no eigenvalue of A leaves
-/// the unit circle, that is while 4 - 2 lambda B dt / M - lambda K dt^2 / M > 0.
+/// The integrator's stability on a set of bilateral springs (thesis A.3): how stiff, how damped and how coarse in time
+/// a run may be before it blows up. Along the stiffest direction the springs act as one spring lambda K with one damper
+/// lambda B, lambda = lambda_max(S), and the step (x, v) -> A (x, v) of Eq. A.2 is stable while no eigenvalue of A
+/// leaves the unit circle, that is while 4 - 2 lambda B dt / M - lambda K dt^2 / M > 0.
 namespace hapbench {
 
 /// One spring-damper under the leapfrog integrator.
@@ -42,11 +42,11 @@ struct StabilityLimit {
   StabilityCase which;
   std::string name;
   std::string unit;
-  double analytic = 0.0;     ///< from the inequality above
-  double eigenvalue = 0.0;   ///< bisection on the spectral radius of A
-  double simulation = 0.0;   ///< bisection on runs of the real simulation
+  double analytic = 0.0;          ///< from the inequality above
+  double eigenvalue = 0.0;        ///< bisection on the spectral radius of A
+  double simulation = 0.0;        ///< bisection on runs of the real simulation
   double damping_at_limit = 0.0;  ///< B at the analytic limit [N s/m]
-  double lambda = 1.0;       ///< lambda_max(S) of the springs under the scenario's algorithm
+  double lambda = 1.0;            ///< lambda_max(S) of the springs under the scenario's algorithm
 };
 
 /// A point of the root locus: the eigenvalues as the case's number grows.

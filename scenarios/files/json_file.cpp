@@ -28,7 +28,8 @@ std::string line_and_column(const std::string& text, std::size_t byte) {
 std::string number_in(const std::string& message) {
   constexpr std::size_t kLongest = 80;
   const std::size_t start = message.find('\'');
-  const std::string number = start == std::string::npos ? "a number too large" : message.substr(start + 1, message.rfind('\'') - start - 1);
+  const std::string number =
+      start == std::string::npos ? "a number too large" : message.substr(start + 1, message.rfind('\'') - start - 1);
   return number.size() > kLongest ? number.substr(0, kLongest) + "..." : number;
 }
 
@@ -40,7 +41,8 @@ class Guard {
     switch (event) {
       case Event::object_start:
       case Event::array_start:
-        if (depth >= kDeepestNesting) refuse_here(fmt::format("nested too deeply; allowed: {} levels", kDeepestNesting));
+        if (depth >= kDeepestNesting)
+          refuse_here(fmt::format("nested too deeply; allowed: {} levels", kDeepestNesting));
         levels_.push_back({event == Event::array_start, "", 0, {}});
         break;
       case Event::object_end:
@@ -96,6 +98,8 @@ class Guard {
 }  // namespace
 
 std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest) {
+  // The system would read the name up to the zero byte, which is another file.
+  if (file.native().find('\0') != std::string::npos) throw InputError("cannot be read: the name has a zero byte");
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) throw InputError("is a directory, not a file");
   std::ifstream stream(file, std::ios::binary);
@@ -113,9 +117,11 @@ std::string read_text_file(const std::filesystem::path& file, std::uintmax_t lar
 Json parse_json(const std::string& text) {
   Guard guard;
   try {
-    return Json::parse(text, [&guard](int depth, Json::parse_event_t event, Json& parsed) { return guard(depth, event, parsed); });
+    return Json::parse(
+        text, [&guard](int depth, Json::parse_event_t event, Json& parsed) { return guard(depth, event, parsed); });
   } catch (const Json::parse_error& error) {
-    throw InputError(InputError::Kind::shape, "", fmt::format("is not JSON: syntax error at {}", line_and_column(text, error.byte)));
+    throw InputError(InputError::Kind::shape, "",
+                     fmt::format("is not JSON: syntax error at {}", line_and_column(text, error.byte)));
   } catch (const Json::out_of_range& error) {
     guard.refuse_here(fmt::format("got {}; allowed: finite numbers", number_in(error.what())));
   }

@@ -25,9 +25,12 @@ RecordedMotion read_motion(const std::filesystem::path& file) {
     const auto row = table.row(i);
     const Vec3 axis(row[4], row[5], row[6]);
     const double length = axis.norm();
-    if (!(length > 1e-12)) fail(file, i, "got an axis of length zero; allowed: a direction");
+    if (!(length > 1e-12 && length < 1e12)) {
+      fail(file, i, fmt::format("got an axis of length {}; allowed: 1e-12 ... 1e12", length));
+    }
     if (i > 0 && !(samples.back().time < row[0])) {
-      fail(file, i, fmt::format("got time {} after {}; allowed: strictly increasing times", row[0], samples.back().time));
+      fail(file, i,
+           fmt::format("got time {} after {}; allowed: strictly increasing times", row[0], samples.back().time));
     }
     samples.push_back({row[0], {row[1], row[2], row[3]}, axis / length});
   }

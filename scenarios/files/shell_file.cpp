@@ -5,12 +5,12 @@
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 
 #include "scenarios/codec/input_error.hpp"
 #include "scenarios/config/scenario_codec.hpp"
 #include "scenarios/files/number_table.hpp"
+#include "scenarios/files/ply_points.hpp"
 
 namespace hapbench {
 namespace {
@@ -34,40 +34,6 @@ std::vector<SurfacePoint> read_csv(const std::filesystem::path& file) {
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const auto row = table.row(i);
     points.push_back({{row[0], row[1], row[2]}, {row[3], row[4], row[5]}});
-  }
-  return points;
-}
-
-/// The library believes the header's vertex count and allocates: refuse absurd ones first.
-void check_ply_header(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail(file, "cannot be read");
-  std::string line;
-  for (int i = 0; i < 1000 && std::getline(stream, line) && line.compare(0, 10, "end_header") != 0; ++i) {
-    std::istringstream words(line);
-    std::string element, what;
-    double count = 0;
-    if (words >> element >> what >> count && element == "element" && !(count <= kMostPoints)) {
-      fail(file, fmt::format("got {:.3g} {} elements; allowed: at most {:.0g}", count, what, kMostPoints));
-    }
-  }
-}
-
-std::vector<SurfacePoint> read_ply(const std::filesystem::path& file) {
-  check_ply_header(file);
-  omerr().disable();  // what is wrong with the file is for our message to say
-  omlog().disable();
-  Mesh mesh;
-  mesh.request_vertex_normals();
-  OpenMesh::IO::Options options(OpenMesh::IO::Options::VertexNormal);
-  if (!OpenMesh::IO::read_mesh(mesh, file.string(), options)) fail(file, "is not a PLY file that can be read");
-  if (!options.vertex_has_normal()) fail(file, "has no vertex normals; allowed: PLY with properties nx, ny, nz");
-  std::vector<SurfacePoint> points;
-  points.reserve(mesh.n_vertices());
-  for (const auto vertex : mesh.vertices()) {
-    const auto& p = mesh.point(vertex);
-    const auto& n = mesh.normal(vertex);
-    points.push_back({{p[0], p[1], p[2]}, {n[0], n[1], n[2]}});
   }
   return points;
 }
@@ -121,7 +87,7 @@ std::vector<SurfacePoint> read_point_shell(const std::filesystem::path& file) {
   if (file.extension() == ".csv") {
     points = read_csv(file);
   } else if (file.extension() == ".ply") {
-    points = read_ply(file);
+    points = read_ply_points(file);
   } else {
     fail(file, "has another extension; allowed: .csv or .ply");
   }

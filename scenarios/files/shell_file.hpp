@@ -8,9 +8,9 @@
 
 namespace hapbench {
 
-/// Reads a point shell: CSV with header x_m,y_m,z_m,nx,ny,nz (exact) or PLY with vertex normals (single precision, as
-/// the mesh library reads it). Normals must be unit to 1e-3 and are normalised unless they are unit to rounding;
-/// coordinates must be finite and within 1 km. Throws InputError that names file and point.
+/// Reads a point shell: CSV with header x_m,y_m,z_m,nx,ny,nz or PLY with vertex normals (ply_points.hpp). Normals must
+/// be unit to 1e-3 and are normalised unless they are unit to rounding; coordinates must be finite and within 1 km.
+/// Throws InputError that names file and point.
 std::vector<SurfacePoint> read_point_shell(const std::filesystem::path& file);
 
 /// The shell as the text of a .csv (shortest round-trip numbers) or .ply file (single precision, for viewers), by the

@@ -62,10 +62,11 @@ std::unique_ptr<Motion> make_motion(const Scenario& scenario) {
 }
 
 std::unique_ptr<Hand> make_hand(const HandFields& fields) {
-  return std::visit(
-      Overloaded{[](const NoHandFields&) -> std::unique_ptr<Hand> { return std::make_unique<NoHand>(); },
-                 [](const ForceHandFields& f) -> std::unique_ptr<Hand> { return std::make_unique<ForceHand>(f.force); }},
-      fields);
+  return std::visit(Overloaded{[](const NoHandFields&) -> std::unique_ptr<Hand> { return std::make_unique<NoHand>(); },
+                               [](const ForceHandFields& f) -> std::unique_ptr<Hand> {
+                                 return std::make_unique<ForceHand>(f.force);
+                               }},
+                    fields);
 }
 
 std::unique_ptr<Device> make_device(const DeviceFields& fields) {

@@ -34,8 +34,8 @@ bool outcome_is_expected(const ExpectFields& expect, Outcome outcome) {
 std::vector<std::string> unmet_expectations(const ExpectFields& expect, const RunSummary& run) {
   std::vector<std::string> unmet;
   if (!outcome_is_expected(expect, run.result.outcome)) {
-    unmet.push_back(fmt::format("outcome is \"{}\"{}; expected {}", outcome_name(run.result.outcome), divergence_text(run.result),
-                                quoted_list(expect.outcomes)));
+    unmet.push_back(fmt::format("outcome is \"{}\"{}; expected {}", outcome_name(run.result.outcome),
+                                divergence_text(run.result), quoted_list(expect.outcomes)));
   }
   const auto summary = summary_json(run);
   for (const auto& [name, bound] : expect.metrics) {
@@ -46,8 +46,10 @@ std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Ru
       continue;
     }
     const double number = value.get<double>();
-    if (bound->min && number < *bound->min) unmet.push_back(fmt::format("{} is {}; expected at least {}", name, number, *bound->min));
-    if (bound->max && number > *bound->max) unmet.push_back(fmt::format("{} is {}; expected at most {}", name, number, *bound->max));
+    if (bound->min && number < *bound->min)
+      unmet.push_back(fmt::format("{} is {}; expected at least {}", name, number, *bound->min));
+    if (bound->max && number > *bound->max)
+      unmet.push_back(fmt::format("{} is {}; expected at most {}", name, number, *bound->max));
   }
   return unmet;
 }

@@ -7,7 +7,8 @@ namespace hapbench {
 ContactBuffer::ContactBuffer(std::size_t capacity) : capacity_(capacity) {
   const std::size_t padded = simd::padded(capacity);
   index.assign(padded, 0);
-  for (AlignedDoubles* column : {&x, &y, &z, &nx, &ny, &nz, &depth, &ux, &uy, &uz, &weight}) column->assign(padded, 0.0);
+  for (AlignedDoubles* column : {&x, &y, &z, &nx, &ny, &nz, &depth, &ux, &uy, &uz, &weight})
+    column->assign(padded, 0.0);
 }
 
 std::size_t ContactBuffer::padded_size() const {
@@ -36,7 +37,8 @@ void ContactBuffer::push_copy_of(const ContactBuffer& other, std::size_t from) {
 
 void ContactBuffer::copy(std::size_t from, std::size_t to) {
   index[to] = index[from];
-  for (AlignedDoubles* column : {&x, &y, &z, &nx, &ny, &nz, &depth, &ux, &uy, &uz, &weight}) (*column)[to] = (*column)[from];
+  for (AlignedDoubles* column : {&x, &y, &z, &nx, &ny, &nz, &depth, &ux, &uy, &uz, &weight})
+    (*column)[to] = (*column)[from];
 }
 
 void ContactBuffer::shrink(std::size_t n) {

@@ -20,8 +20,8 @@ class ContactQuery {
  public:
   virtual ~ContactQuery() = default;
 
-  /// Replaces the contents of `contacts` by the colliding points (inside the tool or on its surface) in ascending index.
-  /// Precondition: contacts.capacity() >= capacity(). Allocates nothing.
+  /// Replaces the contents of `contacts` by the colliding points (inside the tool or on its surface) in ascending
+  /// index. Precondition: contacts.capacity() >= capacity(). Allocates nothing.
   virtual void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept = 0;
   /// The most contacts a query can return.
   virtual std::size_t capacity() const noexcept = 0;

@@ -74,14 +74,28 @@ struct Pack {
     for (std::size_t i = 0; i < lanes; ++i) r.v[i] = f(a.v[i], b.v[i]);
     return r;
   }
-  friend Pack operator+(const Pack& a, const Pack& b) { return map(a, b, [](double x, double y) { return x + y; }); }
-  friend Pack operator-(const Pack& a, const Pack& b) { return map(a, b, [](double x, double y) { return x - y; }); }
-  friend Pack operator*(const Pack& a, const Pack& b) { return map(a, b, [](double x, double y) { return x * y; }); }
-  friend Pack operator/(const Pack& a, const Pack& b) { return map(a, b, [](double x, double y) { return x / y; }); }
-  friend Pack operator-(const Pack& a) { return map(a, a, [](double x, double) { return -x; }); }
+  friend Pack operator+(const Pack& a, const Pack& b) {
+    return map(a, b, [](double x, double y) { return x + y; });
+  }
+  friend Pack operator-(const Pack& a, const Pack& b) {
+    return map(a, b, [](double x, double y) { return x - y; });
+  }
+  friend Pack operator*(const Pack& a, const Pack& b) {
+    return map(a, b, [](double x, double y) { return x * y; });
+  }
+  friend Pack operator/(const Pack& a, const Pack& b) {
+    return map(a, b, [](double x, double y) { return x / y; });
+  }
+  friend Pack operator-(const Pack& a) {
+    return map(a, a, [](double x, double) { return -x; });
+  }
   Pack& operator+=(const Pack& b) { return *this = *this + b; }
-  friend Mask operator<(const Pack& a, const Pack& b) { return test(a, b, [](double x, double y) { return x < y; }); }
-  friend Mask operator<=(const Pack& a, const Pack& b) { return test(a, b, [](double x, double y) { return x <= y; }); }
+  friend Mask operator<(const Pack& a, const Pack& b) {
+    return test(a, b, [](double x, double y) { return x < y; });
+  }
+  friend Mask operator<=(const Pack& a, const Pack& b) {
+    return test(a, b, [](double x, double y) { return x <= y; });
+  }
   friend Mask operator>(const Pack& a, const Pack& b) { return b < a; }
   friend Mask operator>=(const Pack& a, const Pack& b) { return b <= a; }
 };

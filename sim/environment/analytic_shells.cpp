@@ -34,8 +34,8 @@ std::vector<SurfacePoint> surface_points(const Hole2d& h) {
   const double half = h.width / 2;
   const Vec3 up(0, 1, 0), right(1, 0, 0), left(-1, 0, 0);
   // Corners of the profile from left to right, and the normal of the face that starts at each.
-  const std::vector<Vec3> corners = {{-half - h.mouth, 0, 0}, {-half, 0, 0},       {-half, -h.depth, 0},
-                                     {half, -h.depth, 0},     {half, 0, 0}, {half + h.mouth, 0, 0}};
+  const std::vector<Vec3> corners = {{-half - h.mouth, 0, 0}, {-half, 0, 0}, {-half, -h.depth, 0},
+                                     {half, -h.depth, 0},     {half, 0, 0},  {half + h.mouth, 0, 0}};
   const std::vector<Vec3> faces = {up, right, up, left, up};
 
   std::vector<SurfacePoint> points;

@@ -14,10 +14,10 @@ namespace hapbench {
 /// wall, to the right end. Depth, mouth and the edges' 45 degree normals are our choices; the thesis gives the width
 /// (1 mm) and the spacing (0.1 mm).
 struct Hole2d {
-  double width = 0.001;    ///< [m]
-  double depth = 0.005;    ///< [m]
-  double spacing = 0.0001; ///< [m]
-  double mouth = 0.003;    ///< flat top either side of the hole [m]
+  double width = 0.001;     ///< [m]
+  double depth = 0.005;     ///< [m]
+  double spacing = 0.0001;  ///< [m]
+  double mouth = 0.003;     ///< flat top either side of the hole [m]
 };
 
 /// The square |x|, |y| <= size / 2 in the plane z = 0, normal +z. Point order: y fastest.

@@ -30,9 +30,9 @@ struct DivergenceBounds {
 
 /// Numbers of one run.
 struct SimulationConfig {
-  double dt = 0.0005;          ///< [s]
-  std::uint64_t steps = 0;     ///< rows 0 … steps - 1
-  double mass = 0.2;           ///< of the virtual tool [kg]
+  double dt = 0.0005;            ///< [s]
+  std::uint64_t steps = 0;       ///< rows 0 … steps - 1
+  double mass = 0.2;             ///< of the virtual tool [kg]
   Vec3 position = Vec3::Zero();  ///< of the tip centre at t = 0 [m]; ignored when the motion prescribes it
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
   Vec3 up = {0.0, 0.0, 1.0};     ///< unit; what the stop conditions call height
@@ -55,9 +55,9 @@ struct SimulationParts {
 /// Where a diverged run left its bounds; the row is not passed to observers.
 struct Divergence {
   std::uint64_t step = 0;
-  double time = 0.0;         ///< [s]
-  const char* quantity = ""; ///< "position", "velocity" or "rendered force"
-  double magnitude = 0.0;    ///< its norm, possibly not finite
+  double time = 0.0;          ///< [s]
+  const char* quantity = "";  ///< "position", "velocity" or "rendered force"
+  double magnitude = 0.0;     ///< its norm, possibly not finite
   double bound = 0.0;
 };
 

@@ -23,8 +23,8 @@ struct Tool {
 
 /// Where the tool is, in the world frame.
 struct ToolPose {
-  Vec3 position = Vec3::Zero();     ///< centre of the tip [m]
-  Vec3 axis = {0.0, 0.0, -1.0};     ///< unit vector out of the tip
+  Vec3 position = Vec3::Zero();  ///< centre of the tip [m]
+  Vec3 axis = {0.0, 0.0, -1.0};  ///< unit vector out of the tip
 };
 
 /// Pose and translational velocity; the orientation is scripted, so there is no angular velocity to integrate.

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "sim/contact/shell_query.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_geometry.hpp"
 
@@ -18,6 +19,15 @@ double depth_at(const Tool& tool, const ToolPose& pose, const Vec3& point, const
   make_normal_projection_depth()->evaluate(tool, pose, contacts);
   EXPECT_EQ(contacts.gradient(0), Vec3(-normal));
   return contacts.depth[0];
+}
+
+/// Whether the search reports the point, as it does for every point a depth model sees.
+bool collides(const Tool& tool, const ToolPose& pose, const Vec3& point) {
+  const PointShell shell({{point, Vec3::UnitZ()}}, 0.0);
+  ShellQuery query(shell, tool);
+  ContactBuffer contacts(query.capacity());
+  query.contacts_at(pose, contacts);
+  return !contacts.empty();
 }
 
 class NormalProjectionDepthForTip : public testing::TestWithParam<Tip> {};
@@ -56,15 +66,23 @@ TEST_P(NormalProjectionDepthForTip, IsWhereTheRayAgainstTheNormalLeavesTheTool) 
   }
 }
 
-TEST_P(NormalProjectionDepthForTip, IsRightForPointsOnTheSurface) {
+TEST_P(NormalProjectionDepthForTip, ARayInwardsFromTheSurfaceCrossesTheTool) {
+  // Whatever rounding says about the side of the surface on which the point lies.
   Random random(2);
+  std::size_t inwards = 0;
   for (std::size_t i = 0; i < test::cases(100000); ++i) {
     const Tool tool = test::random_tool(random, GetParam());
     const ToolPose pose = test::random_pose(random);
     const Vec3 point = test::random_point_on(tool, pose, random);
     const Vec3 normal = random.direction();
-    expect_exit(tool, pose, point, normal, depth_at(tool, pose, point, normal));
+    const Vec3L a_little_on = point.cast<long double>() - 0.001L * tool.radius * normal.cast<long double>();
+    if (!collides(tool, pose, point) || test::slack(tool, pose, a_little_on) < 1e-12L) continue;
+    ++inwards;
+    const double depth = depth_at(tool, pose, point, normal);
+    ASSERT_GE(depth, 0.001 * tool.radius);
+    expect_exit(tool, pose, point, normal, depth);
   }
+  EXPECT_GT(inwards, test::cases(100000) / 8);
 }
 
 TEST_P(NormalProjectionDepthForTip, HandlesRaysAlongAndAcrossTheAxis) {
@@ -107,17 +125,14 @@ TEST(NormalProjectionDepth, LeavesTheRoundToolThroughTheHalfBall) {
   EXPECT_EQ(depth_at(tool, kPose, {kUnit, 0, -2 * kUnit}, {0, 0, -1}), 18 * kUnit);
 }
 
-TEST(NormalProjectionDepth, OnTheRoundTipsSurfaceARayOutwardsLeavesAtOnce) {
-  // Whatever the rounding of |x|^2 against r^2 says.
-  Random random(4);
-  for (std::size_t i = 0; i < test::cases(20000); ++i) {
-    const Tool tool = test::random_tool(random, Tip::round);
-    const double s = random.uniform();
-    const Vec3 circle = random.direction_in_plane();
-    const Vec3 outwards = std::sqrt(1.0 - s * s) * circle - s * Vec3::UnitZ();
-    const double depth = depth_at(tool, kPose, tool.radius * outwards, -outwards);
-    ASSERT_LE(depth, 4 * std::numeric_limits<double>::epsilon() * tool.radius) << "s = " << s;
-  }
+TEST(NormalProjectionDepth, OnlyPositiveExitsCount) {
+  // METHOD section 2: a point exactly on a surface whose ray points outwards there has passed it already. It meets the
+  // next surface of (F.7), (F.9), (F.12) instead, beyond the body, or none.
+  const Tool tool{4 * kUnit, 16 * kUnit, Tip::flat};
+  EXPECT_EQ(depth_at(tool, kPose, {4 * kUnit, 0, 8 * kUnit}, {-1, 0, 0}), 0.0) << "side, straight out: none left";
+  EXPECT_EQ(depth_at(tool, kPose, {kUnit, 0, 0}, {0, 0, 1}), 0.0) << "tip, straight out: none left";
+  // From the tip plane downwards along 3 : 4, the infinite side wall is met after 5 units sideways 3.
+  EXPECT_NEAR(depth_at(tool, kPose, {kUnit, 0, 0}, {-0.6, 0, 0.8}), 5 * kUnit, 4e-16 * kUnit * 16);
 }
 
 TEST(NormalProjectionDepth, GrowsPastTheRadiusWhereSurfaceNormalSaturates) {

@@ -1,0 +1,59 @@
+// summation (c = 1) and mean (c = 1/n).
+#include <gtest/gtest.h>
+
+#include "algorithms/laws/mean.hpp"
+#include "algorithms/laws/summation.hpp"
+#include "tests/support/contact_sets.hpp"
+#include "tests/support/dense_laws.hpp"
+
+namespace hapbench {
+namespace {
+
+// Sums of n <= 300 products, each rounded: below 2 n eps of the sum of magnitudes.
+constexpr double kRounding = 600 * std::numeric_limits<double>::epsilon();
+
+/// Evaluates the law on random sets of all families and compares with weights c(n) by dense matrices.
+void expect_constant_weights(std::unique_ptr<ForceLaw> (*make)(const RenderingConfig&), double (*c_of_n)(double)) {
+  Random random(1);
+  RenderingConfig config;
+  config.stiffness = 1234.5;
+  for (const auto& family : test::gradient_families()) {
+    for (int i = 0; i < 30; ++i) {
+      const auto gradients = family.draw(random, test::random_size(random, 300));
+      ContactBuffer contacts = test::contacts_of(gradients, test::random_depths(random, gradients.size()));
+      const LawForce force = make(config)->evaluate(contacts);
+
+      const test::Dense dense(contacts);
+      const Eigen::VectorXd c = Eigen::VectorXd::Constant(dense.n(), c_of_n(static_cast<double>(dense.n())));
+      ASSERT_EQ(test::weights(contacts), c) << family.name;
+      ASSERT_LE((force.spring - dense.spring(config.stiffness, c)).norm(),
+                kRounding * config.stiffness * dense.magnitude(c));
+      ASSERT_LE((force.S - dense.S(c)).norm(), kRounding * c.sum());
+    }
+  }
+}
+
+TEST(Summation, AddsAllSprings) {
+  expect_constant_weights(make_summation, [](double) { return 1.0; });
+}
+
+TEST(Mean, DividesTheSumByTheNumberOfContacts) {
+  expect_constant_weights(make_mean, [](double n) { return 1.0 / n; });
+}
+
+TEST(Summation, GrowsWithTheNumberOfParallelContacts) {
+  RenderingConfig config;
+  ContactBuffer contacts = test::contacts_of(std::vector<Vec3>(64, Vec3::UnitX()), std::vector<double>(64, 0x1p-10));
+  EXPECT_EQ(make_summation(config)->evaluate(contacts).spring, Vec3(-config.stiffness * 64 * 0x1p-10, 0, 0));
+}
+
+TEST(Mean, IsSoftWhereMostContactsPointElsewhere) {
+  // METHOD 9, springs demo: one upward spring among 64 gets 1/64 of its stiffness.
+  std::vector<Vec3> gradients(63, Vec3::UnitX());
+  gradients.push_back(Vec3::UnitY());
+  ContactBuffer contacts = test::contacts_of(gradients);
+  EXPECT_EQ(make_mean({})->evaluate(contacts).S(1, 1), 1.0 / 64);
+}
+
+}  // namespace
+}  // namespace hapbench

@@ -1,0 +1,92 @@
+#include "algorithms/laws/original_averaging.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/contact_sets.hpp"
+#include "tests/support/dense_laws.hpp"
+
+namespace hapbench {
+namespace {
+
+LawForce evaluate(ContactBuffer& contacts, double K = 1.0) {
+  RenderingConfig config;
+  config.stiffness = K;
+  return make_original_averaging(config)->evaluate(contacts);
+}
+
+LawForce evaluate(const std::vector<Vec3>& gradients, const std::vector<double>& depths = {}) {
+  ContactBuffer contacts = test::contacts_of(gradients, depths);
+  return evaluate(contacts);
+}
+
+TEST(OriginalAveraging, DividesSummedDepthsAndGradientsByTheLengthOfTheSummedGradient) {
+  Random random(1);
+  for (const auto& family : test::gradient_families()) {
+    for (int i = 0; i < 30; ++i) {
+      const auto gradients = family.draw(random, test::random_size(random, 300));
+      ContactBuffer contacts = test::contacts_of(gradients, test::random_depths(random, gradients.size()));
+      const test::Dense dense(contacts);
+      const Vec3 sum = dense.U.rowwise().sum();
+      const double n = static_cast<double>(dense.n());
+      // Where gradients cancel down to rounding, the definition (1e-9 n) and rounding (n eps each) are far apart.
+      if (sum.norm() < 1e-6 * n) continue;
+      const Vec3 u = sum / sum.norm();
+      const double d = dense.d.sum() / sum.norm();
+
+      const LawForce force = evaluate(contacts, 1234.5);
+      // The sum is off by up to n eps per component, its direction and inverse length by that over its length.
+      const double rounding = 4 * n * n * std::numeric_limits<double>::epsilon() / sum.norm();
+      ASSERT_LE((force.spring + 1234.5 * d * u).norm(), rounding * 1234.5 * d) << family.name;
+      ASSERT_LE((force.S - u * u.transpose()).norm(), rounding) << family.name;
+    }
+  }
+}
+
+/// n unit gradients along -x and m along +x, all of depth 1.
+LawForce opposed(std::size_t n, std::size_t m) {
+  std::vector<Vec3> gradients(n, -Vec3::UnitX());
+  gradients.insert(gradients.end(), m, Vec3::UnitX());
+  return evaluate(gradients, std::vector<double>(n + m, 1.0));
+}
+
+TEST(OriginalAveraging, OneOpposedContactTooManyMultipliesTheDepthByTheirNumber) {
+  // Thesis B.3.3, with K = 1: n one way, n + 1 the other, d_r = 2 n + 1.
+  for (const std::size_t n : {0u, 1u, 5u, 50u}) {
+    const double count = static_cast<double>(n);
+    EXPECT_EQ(opposed(n, n + 1).spring, Vec3(-(2 * count + 1), 0, 0)) << "n = " << n;
+  }
+}
+
+TEST(OriginalAveraging, TwoMoreContactsFlipTheForceBy180Degrees) {
+  // Thesis B.3.3: two more points on the first side give d_r = 2 n + 3 the other way.
+  for (const std::size_t n : {0u, 1u, 5u, 50u}) {
+    const double count = static_cast<double>(n);
+    EXPECT_EQ(opposed(n + 2, n + 1).spring, Vec3(2 * count + 3, 0, 0)) << "n = " << n;
+  }
+}
+
+TEST(OriginalAveraging, CancelledGradientsGiveNoForce) {
+  for (const std::size_t n : {1u, 5u, 50u}) {
+    const LawForce force = opposed(n, n);
+    EXPECT_EQ(force.spring, Vec3(0, 0, 0));
+    EXPECT_EQ(force.S, Mat3::Zero());
+  }
+}
+
+TEST(OriginalAveraging, GradientsCountAsCancelledUpToABillionthOfTheirNumber) {
+  // Two opposite gradients and one of length t: |sum| = t against 3e-9.
+  const auto with_rest = [](double t) { return evaluate({Vec3::UnitX(), -Vec3::UnitX(), t * Vec3::UnitY()}).spring.norm(); };
+  EXPECT_EQ(with_rest(2.9e-9), 0.0);
+  EXPECT_GT(with_rest(3.1e-9), 0.0);
+}
+
+TEST(OriginalAveraging, StiffnessIsOneAlongTheMeanGradientAndZeroAcross) {
+  const Mat3 S = evaluate({{1, 0, 0}, {0, 1, 0}}).S;
+  const Vec3 along = Vec3(1, 1, 0).normalized(), across = Vec3(1, -1, 0).normalized();
+  EXPECT_NEAR(along.dot(S * along), 1.0, 8 * std::numeric_limits<double>::epsilon());
+  EXPECT_NEAR(across.dot(S * across), 0.0, 8 * std::numeric_limits<double>::epsilon());
+  EXPECT_EQ(S(2, 2), 0.0);
+}
+
+}  // namespace
+}  // namespace hapbench

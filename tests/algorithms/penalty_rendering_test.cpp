@@ -1,0 +1,129 @@
+#include "algorithms/penalty_rendering.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "algorithms/registry.hpp"
+#include "sim/environment/analytic_shells.hpp"
+#include "tests/support/setting.hpp"
+
+namespace hapbench {
+namespace {
+
+/// A flat tool 0.3 mm into a plane with a point every 0.1 mm.
+test::Setting pressed_plane() {
+  test::Setting setting;
+  setting.points = surface_points(Plane{0.002, 0.0001});
+  setting.cell_size = 0.0002;
+  setting.pose.position = {0.00001, 0.00002, -0.0003};
+  return setting;
+}
+
+test::Setting three_springs() {
+  test::Setting setting;
+  setting.springs = SpringSet{{{1, 0, 0}, {-1, 0, 0}, {0, -1, 0}}, true};
+  setting.pose.position = {0.001, -0.002, 0.0};
+  return setting;
+}
+
+TEST(PenaltyRendering, WithoutContactsRendersNothingNotEvenFriction) {
+  RenderingConfig config;
+  config.mu_s = 5.0;
+  test::Probe probe(pressed_plane(), config);
+  const RenderedForce force = probe.force_at({{0, 0, 1}, {0, 0, -1}}, {1, 1, 1});
+  EXPECT_EQ(force.spring, Vec3(0, 0, 0));
+  EXPECT_EQ(force.rendered, Vec3(0, 0, 0));
+  EXPECT_EQ(force.S, Mat3::Zero());
+  EXPECT_EQ(force.depth_max, 0.0);
+}
+
+TEST(PenaltyRendering, NothingOfAStepIsLeftForTheNext) {
+  test::Probe probe(pressed_plane(), {});
+  const Vec3 first = probe.force_at(pressed_plane().pose).rendered;
+  EXPECT_NE(first, Vec3(0, 0, 0));
+  EXPECT_EQ(probe.force_at({{0, 0, 1}, {0, 0, -1}}).rendered, Vec3(0, 0, 0));
+  EXPECT_EQ(probe.force_at(pressed_plane().pose).rendered, first);
+}
+
+TEST(PenaltyRendering, DepthMaxIsTheDeepestCollidingPointBeforeAnyStage) {
+  // The deepest point is merged with shallower ones of its cell, and reduction leaves one point of all.
+  RenderingConfig config;
+  test::Probe plain(pressed_plane(), config);
+  const double depth = plain.force_at(pressed_plane().pose).depth_max;
+  EXPECT_NEAR(depth, 0.0003, 1e-18);
+  config.local_average = true;
+  config.reduction = ReductionConfig{};
+  test::Probe staged(pressed_plane(), config);
+  EXPECT_EQ(staged.force_at(pressed_plane().pose).depth_max, depth);
+  EXPECT_EQ(staged.contacts().size(), 1u);
+}
+
+TEST(PenaltyRendering, LocalAverageComesBeforeReduction) {
+  RenderingConfig config;
+  config.local_average = true;
+  test::Probe averaged(pressed_plane(), config);
+  averaged.force_at(pressed_plane().pose);
+  double deepest_mean = 0.0;
+  for (std::size_t i = 0; i < averaged.contacts().size(); ++i) {
+    deepest_mean = std::max(deepest_mean, averaged.contacts().depth[i]);
+  }
+  config.reduction = ReductionConfig{};
+  test::Probe both(pressed_plane(), config);
+  both.force_at(pressed_plane().pose);
+  ASSERT_EQ(both.contacts().size(), 1u);
+  EXPECT_EQ(both.contacts().depth[0], deepest_mean);
+}
+
+TEST(PenaltyRendering, SpringsBringTheirOwnDepths) {
+  for (const DepthModelEntry& model : depth_models()) {
+    RenderingConfig config;
+    config.algorithm = "summation";
+    config.depth_model = model.info->name;
+    test::Probe probe(three_springs(), config);
+    // -K (2 x + y): the pair along x counts twice, the spring along -y is 2 mm deep.
+    const Vec3 force = probe.force_at(three_springs().pose).spring;
+    EXPECT_LE((force - Vec3(-40.0, 40.0, 0.0)).norm(), 1e-13);
+    EXPECT_EQ(probe.contacts().depth[1], -0.001);
+  }
+}
+
+TEST(PenaltyRendering, DepthMaxOfStretchedSpringsIsTheLargestSignedDepth) {
+  test::Probe probe(three_springs(), {});
+  EXPECT_EQ(probe.force_at(three_springs().pose).depth_max, 0.002);
+}
+
+TEST(PenaltyRendering, RendersDampingOfTheLawsTensor) {
+  RenderingConfig config;
+  config.algorithm = "summation";
+  config.damping = 10.0;
+  test::Probe probe(three_springs(), config);
+  const RenderedForce force = probe.force_at(three_springs().pose, {1.0, 1.0, 1.0});
+  // S = diag(2, 1, 0).
+  EXPECT_LE((force.rendered - (force.spring - Vec3(20.0, 10.0, 0.0))).norm(), 1e-13);
+}
+
+TEST(PenaltyRendering, CountsIterationsAndDroppedPointsUntilReset) {
+  RenderingConfig config;
+  config.iterations = 4;
+  config.reduction = ReductionConfig{0.995, 1, {}};
+  test::Probe probe(three_springs(), config);
+  for (int step = 0; step < 3; ++step) probe.force_at(three_springs().pose);
+  EXPECT_EQ(probe.algorithm().work().iterations, 12u);
+  EXPECT_EQ(probe.algorithm().work().points_dropped, 6u);
+  probe.algorithm().reset();
+  EXPECT_EQ(probe.algorithm().work().iterations, 0u);
+  EXPECT_EQ(probe.algorithm().work().points_dropped, 0u);
+}
+
+TEST(PenaltyRendering, LocalAverageNeedsAShellWithAGrid) {
+  RenderingConfig config;
+  config.local_average = true;
+  EXPECT_THROW(test::Probe(three_springs(), config), std::invalid_argument);
+  test::Setting without_grid = pressed_plane();
+  without_grid.cell_size = 0.0;
+  EXPECT_THROW(test::Probe(without_grid, config), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace hapbench

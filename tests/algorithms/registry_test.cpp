@@ -1,0 +1,144 @@
+#include "algorithms/registry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include "sim/environment/analytic_shells.hpp"
+#include "tests/support/bits.hpp"
+#include "tests/support/setting.hpp"
+
+namespace hapbench {
+namespace {
+
+TEST(Registry, ListsTheAlgorithmsOfTheMethod) {
+  for (const char* name : {"original_averaging", "summation", "mean", "virtual_coupling", "shaped_stiffness", "tandpasta",
+                           "normal_projection", "exact_shaping"}) {
+    EXPECT_NE(find_algorithm(name), nullptr) << name;
+  }
+}
+
+TEST(Registry, ListsTheDepthModelsAndPointStagesOfTheMethod) {
+  for (const char* name : {"shortest_distance", "surface_normal", "normal_projection"}) {
+    EXPECT_NE(find_depth_model(name), nullptr) << name;
+  }
+  std::set<std::string> stages;
+  for (const ModelInfo* stage : point_stages()) stages.insert(stage->name);
+  EXPECT_EQ(stages, (std::set<std::string>{"local_average", "reduction"}));
+}
+
+TEST(Registry, EveryListedNameIsFoundAndBuilds) {
+  for (const AlgorithmEntry& entry : algorithms()) {
+    EXPECT_EQ(find_algorithm(entry.info->name), &entry);
+    RenderingConfig config;
+    config.algorithm = entry.info->name;
+    EXPECT_NE(make_algorithm(config), nullptr) << entry.info->name;
+    EXPECT_TRUE(entry.fixed_depth_model.empty() || find_depth_model(entry.fixed_depth_model) != nullptr);
+  }
+  for (const DepthModelEntry& entry : depth_models()) {
+    EXPECT_EQ(find_depth_model(entry.info->name), &entry);
+    EXPECT_NE(entry.make(), nullptr) << entry.info->name;
+  }
+}
+
+TEST(Registry, NamesAreUnique) {
+  std::set<std::string> names;
+  for (const AlgorithmEntry& entry : algorithms()) EXPECT_TRUE(names.insert(entry.info->name).second) << entry.info->name;
+  names.clear();
+  for (const DepthModelEntry& entry : depth_models()) EXPECT_TRUE(names.insert(entry.info->name).second);
+}
+
+TEST(Registry, EveryModelDocumentsItself) {
+  std::vector<const ModelInfo*> models(point_stages().begin(), point_stages().end());
+  for (const AlgorithmEntry& entry : algorithms()) models.push_back(entry.info);
+  for (const DepthModelEntry& entry : depth_models()) models.push_back(entry.info);
+  for (const ModelInfo* model : models) {
+    for (const char* text : {model->name, model->summary, model->formula, model->source, model->known_failure}) {
+      ASSERT_NE(text, nullptr);
+      EXPECT_FALSE(std::string(text).empty()) << model->name;
+    }
+    for (const ParameterInfo& parameter : model->parameters) {
+      for (const char* text : {parameter.name, parameter.unit, parameter.default_value, parameter.range, parameter.meaning}) {
+        ASSERT_NE(text, nullptr);
+        EXPECT_FALSE(std::string(text).empty()) << model->name;
+      }
+      EXPECT_EQ(std::string(parameter.name).rfind("rendering.", 0), 0u) << parameter.name;
+    }
+  }
+}
+
+TEST(Registry, UnknownNamesAreNotFoundAndThrow) {
+  EXPECT_EQ(find_algorithm("no_such"), nullptr);
+  EXPECT_EQ(find_algorithm(""), nullptr);
+  EXPECT_EQ(find_algorithm("Summation"), nullptr);
+  EXPECT_EQ(find_depth_model("no_such"), nullptr);
+  RenderingConfig config;
+  config.algorithm = "no_such";
+  EXPECT_THROW(static_cast<void>(make_algorithm(config)), std::invalid_argument);
+  config = {};
+  config.depth_model = "no_such";
+  EXPECT_THROW(static_cast<void>(make_algorithm(config)), std::invalid_argument);
+}
+
+TEST(Registry, AnAlgorithmsFixedStagesReplaceTheConfiguredOnes) {
+  RenderingConfig config;
+  config.depth_model = "surface_normal";
+  config.reduction = ReductionConfig{};
+
+  config.algorithm = "original_averaging";
+  EXPECT_EQ(with_fixed_stages(config).depth_model, "shortest_distance");
+  EXPECT_FALSE(with_fixed_stages(config).reduction);
+
+  config.algorithm = "normal_projection";
+  EXPECT_EQ(with_fixed_stages(config).depth_model, "normal_projection");
+  EXPECT_TRUE(with_fixed_stages(config).reduction);
+
+  config.algorithm = "shaped_stiffness";
+  EXPECT_EQ(with_fixed_stages(config).depth_model, "surface_normal");
+  EXPECT_TRUE(with_fixed_stages(config).reduction);
+}
+
+/// The contacts of the peg, tilted in its hole, as the algorithm leaves them.
+std::uint64_t rendered_contacts(const RenderingConfig& config) {
+  test::Setting setting;
+  setting.tool = {0.0005, 0.005, Tip::round};
+  setting.points = surface_points(Hole2d{});
+  setting.pose = {{0.0, -0.004, 0.0}, {-std::sin(0.1), -std::cos(0.1), 0.0}};
+  test::Probe probe(setting, config);
+  const RenderedForce force = probe.force_at(setting.pose);
+  EXPECT_GT(probe.contacts().size(), 0u);
+  return test::hash_of(force, probe.contacts());
+}
+
+TEST(Registry, BuiltAlgorithmsUseTheirFixedStages) {
+  for (const AlgorithmEntry& entry : algorithms()) {
+    RenderingConfig config;
+    config.algorithm = entry.info->name;
+    if (!entry.fixed_depth_model.empty()) {
+      config.depth_model = entry.fixed_depth_model;
+      const std::uint64_t fixed = rendered_contacts(config);
+      for (const DepthModelEntry& other : depth_models()) {
+        config.depth_model = other.info->name;
+        EXPECT_EQ(rendered_contacts(config), fixed) << entry.info->name << " on " << other.info->name;
+      }
+    }
+    const std::uint64_t without = rendered_contacts(config);
+    config.reduction = ReductionConfig{};
+    EXPECT_EQ(rendered_contacts(config) == without, !entry.may_reduce) << entry.info->name;
+  }
+}
+
+TEST(Registry, TheDepthModelOfTheConfigurationIsUsedWhereItIsFree) {
+  std::set<std::uint64_t> different;
+  for (const DepthModelEntry& model : depth_models()) {
+    RenderingConfig config;
+    config.depth_model = model.info->name;
+    different.insert(rendered_contacts(config));
+  }
+  EXPECT_EQ(different.size(), depth_models().size());
+}
+
+}  // namespace
+}  // namespace hapbench

@@ -1,0 +1,126 @@
+#include "tests/scenarios/support/program.hpp"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <thread>
+
+namespace hapbench::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+/// A nameless file: unlike a pipe it never blocks its writer.
+File nameless_file() {
+  File file(std::tmpfile(), std::fclose);
+  if (!file) throw std::runtime_error("no temporary file");
+  return file;
+}
+
+std::string contents(std::FILE* file) {
+  std::string text;
+  std::rewind(file);
+  char piece[1 << 14];
+  for (std::size_t n; (n = std::fread(piece, 1, sizeof piece, file)) > 0;) text.append(piece, n);
+  return text;
+}
+
+/// Between fork and exec only calls that are safe there; the strings are made before.
+pid_t start(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+            const ProgramOptions& options, int out, int err) {
+  std::vector<std::string> words = {program.string()};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const std::string directory = options.directory.string();
+
+  const pid_t child = ::fork();
+  if (child < 0) throw std::runtime_error("cannot fork");
+  if (child > 0) return child;
+  const int null = ::open("/dev/null", O_RDONLY);
+  ::dup2(null, STDIN_FILENO);
+  ::dup2(out, STDOUT_FILENO);
+  ::dup2(err, STDERR_FILENO);
+  if (options.memory_limit != 0) {
+    const rlimit limit{options.memory_limit, options.memory_limit};
+    ::setrlimit(RLIMIT_AS, &limit);
+  }
+  const rlimit no_core{0, 0};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+  if (!directory.empty() && ::chdir(directory.c_str()) != 0) ::_exit(127);
+  ::execv(argv[0], argv.data());
+  ::_exit(127);
+}
+
+}  // namespace
+
+ProgramRun run_program(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                       const ProgramOptions& options) {
+  const File out = nameless_file(), err = nameless_file();
+  const auto begin = Clock::now();
+  const pid_t child = start(program, arguments, options, ::fileno(out.get()), ::fileno(err.get()));
+  const auto deadline = begin + std::chrono::duration<double>(options.patience_s);
+  int status = 0;
+  while (::waitpid(child, &status, WNOHANG) == 0) {
+    if (Clock::now() > deadline) {
+      ::kill(child, SIGKILL);
+      ::waitpid(child, &status, 0);
+      break;
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(300));
+  }
+  ProgramRun run;
+  run.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  if (WIFEXITED(status)) run.status = WEXITSTATUS(status);
+  if (WIFSIGNALED(status)) run.signal = WTERMSIG(status);
+  run.out = contents(out.get());
+  run.err = contents(err.get());
+  return run;
+}
+
+std::filesystem::path hapbench_program() {
+  return HAPBENCH_PROGRAM;
+}
+
+std::filesystem::path hapbench_scalar_program() {
+  return HAPBENCH_SCALAR_PROGRAM;
+}
+
+ProgramRun hapbench(const std::vector<std::string>& arguments, const ProgramOptions& options) {
+  return run_program(hapbench_program(), arguments, options);
+}
+
+RunningProgram::RunningProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments) {
+  const int null = ::open("/dev/null", O_WRONLY);
+  process_ = start(program, arguments, {}, null, null);
+  ::close(null);
+}
+
+RunningProgram::~RunningProgram() {
+  kill();
+}
+
+bool RunningProgram::is_running() {
+  if (!reaped_ && ::waitpid(process_, nullptr, WNOHANG) == process_) reaped_ = true;
+  return !reaped_;
+}
+
+bool RunningProgram::kill() {
+  if (reaped_) return false;
+  int status = 0;
+  ::kill(process_, SIGKILL);
+  ::waitpid(process_, &status, 0);
+  reaped_ = true;
+  return WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+}
+
+}  // namespace hapbench::test

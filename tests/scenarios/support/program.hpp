@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+/// Runs the built programs as a user's shell would, but without a shell: arguments arrive as they are given.
+namespace hapbench::test {
+
+/// What a finished process left.
+struct ProgramRun {
+  int status = -1;  ///< exit status; -1 when a signal ended it
+  int signal = 0;   ///< the signal that ended it, or 0
+  std::string out;  ///< standard output
+  std::string err;  ///< standard error
+  double seconds = 0.0;
+};
+
+struct ProgramOptions {
+  std::filesystem::path directory = {};  ///< where it runs; empty: here
+  double patience_s = 60.0;              ///< a process that takes longer is killed and counts as ended by SIGKILL
+  std::size_t memory_limit = 0;          ///< of address space [bytes]; 0: none. Not with sanitizers, which reserve a lot
+};
+
+ProgramRun run_program(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                       const ProgramOptions& options = {});
+
+/// The program people run, and the same from the scalar reference build.
+std::filesystem::path hapbench_program();
+std::filesystem::path hapbench_scalar_program();
+/// `hapbench ARGUMENTS…`
+ProgramRun hapbench(const std::vector<std::string>& arguments, const ProgramOptions& options = {});
+
+/// A process that goes on while the test does something else; killed, if need be, by the destructor.
+class RunningProgram {
+ public:
+  RunningProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments);
+  ~RunningProgram();
+  RunningProgram(const RunningProgram&) = delete;
+  RunningProgram& operator=(const RunningProgram&) = delete;
+
+  bool is_running();
+  /// SIGKILL, and waits for the end. Returns true when that ended it, false when it had ended before.
+  bool kill();
+
+ private:
+  int process_;
+  bool reaped_ = false;
+};
+
+}  // namespace hapbench::test

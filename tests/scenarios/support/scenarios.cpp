@@ -1,0 +1,85 @@
+#include "tests/scenarios/support/scenarios.hpp"
+
+#include "scenarios/commands/command.hpp"
+#include "scenarios/config/scenario_codec.hpp"
+#include "scenarios/files/json_file.hpp"
+
+namespace hapbench::test {
+
+std::vector<NamedScenario> minimal_scenarios() {
+  const char* environments[] = {
+      R"({"type": "springs"})",
+      R"({"type": "hole_2d"})",
+      R"({"type": "plane"})",
+      R"({"type": "slot", "gap_m": 0.001, "depth_m": 0.005, "length_m": 0.01, "spacing_m": 0.0005})",
+      R"({"type": "point_shell", "file": "shell.csv"})",
+  };
+  std::vector<NamedScenario> scenarios;
+  for (const char* environment : environments) {
+    Json json = {{"time", {{"step_s", 0.0005}, {"steps", 20}}}, {"environment", Json::parse(environment)}};
+    std::string name = json["environment"]["type"];
+    scenarios.push_back({std::move(name), std::move(json)});
+  }
+  return scenarios;
+}
+
+Json minimal_scenario(const std::string& environment_type) {
+  for (NamedScenario& scenario : minimal_scenarios()) {
+    if (scenario.name == environment_type) return std::move(scenario.json);
+  }
+  throw std::invalid_argument(environment_type);
+}
+
+std::vector<NamedScenario> rich_scenarios() {
+  return {{"prescribed_slot", Json::parse(R"({
+      "$schema": "anything", "name": "prescribed_slot", "description": "\u00e4", "source": "s", "seed": 9007199254740992,
+      "time": {"step_s": 1, "duration_s": 3.4, "stop_when": ["tool_horizontal"]},
+      "environment": {"type": "slot", "gap_m": 0.001, "depth_m": 0.005, "length_m": 0.01, "spacing_m": 0.0005},
+      "tool": {"diameter_m": 0.0012, "length_m": 0.02, "tip": "round"},
+      "motion": {
+        "orientation": {"up": [0, 0, 2], "lean": [0, 3, 0], "tilt_rad": 0.1,
+          "azimuth_rad": {"type": "sine", "mean": 0, "amplitude": 1, "period_s": 2, "phase_rad": 0.5}},
+        "position": {"type": "prescribed", "x_m": {"type": "ramp", "start": 0, "rate_per_s": 1e-4}, "y_m": 0,
+          "z_m": {"type": "waypoints", "points": [[0, 0.001], [1.5, -0.001], [2, 0]], "interpolation": "cosine"}}},
+      "rendering": {"algorithm": "virtual_coupling", "depth_model": "shortest_distance", "local_average": true,
+        "reduction": {"threshold": 0.9, "max_points": 7, "shuffle_seed": 5}, "virtual_coupling_N_per_m": 1000,
+        "damping_N_s_per_m": 3, "limits": {"max_damping_N_s_per_m": 0, "max_force_N": 2.5}},
+      "record": {"trajectory": true, "every": 2, "ratio_iterations": [0, 3], "contacts": true, "timing": true},
+      "expect": {"outcome": ["completes", "diverges"], "metrics": {"force_max_N": {"min": 0, "max": 1e6},
+        "ratio_max": {}}}})")},
+          {"recorded_shell", Json::parse(R"({
+      "time": {"step_s": 0.0005, "steps": 1e2, "stop_when": []},
+      "environment": {"type": "point_shell", "file": "shell.csv", "grid_m": 0.0005},
+      "motion": {"position": {"type": "file", "file": "stroke.csv"}},
+      "device": {"type": "ideal", "force_limit_N": null},
+      "rendering": {"algorithm": "exact_shaping", "local_average": true, "reduction": null},
+      "record": {"contacts": true}})")},
+          {"pushed_springs", Json::parse(R"({
+      "time": {"step_s": 0.0005, "steps": 50},
+      "environment": {"type": "springs", "bilateral": false, "groups": [{"direction": [0, -2, 0], "count": 0},
+        {"direction": [1, 1, 1], "count": 3}], "random": {"count": 20, "planar": false}},
+      "initial": {"position_m": [0.001, 0, 0], "velocity_m_per_s": [0, 0.1, 0]},
+      "hand": {"type": "force", "x_N": 1, "y_N": {"type": "sine", "mean": 0, "amplitude": 3, "period_s": 0.01},
+        "z_N": {"type": "waypoints", "points": [[0, 0]]}},
+      "device": {"type": "ideal", "force_limit_N": 2},
+      "rendering": {"algorithm": "shaped_stiffness", "iterations": 0, "stiffness_N_per_m": 0, "damping_ratio": 0,
+        "mass_kg": 1, "friction": {"mu_s_N_s_per_m": 1, "mu_f_s_per_m": 1},
+        "limits": {"max_damping_N_s_per_m": null, "max_force_N": null}},
+      "integrator": {"type": "leapfrog"},
+      "bounds": {"position_m": 10, "speed_m_per_s": 20, "force_N": 30},
+      "expect": {"outcome": "completes"}})")}};
+}
+
+std::vector<NamedScenario> bundled_scenario_files() {
+  std::vector<NamedScenario> scenarios;
+  for (const BundledScenario& bundled : bundled_scenarios()) {
+    scenarios.push_back({bundled.name, parse_json(read_text_file(bundled.file, kLargestJsonFile))});
+  }
+  return scenarios;
+}
+
+std::filesystem::path data_directory() {
+  return HAPBENCH_TEST_DATA;
+}
+
+}  // namespace hapbench::test

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenarios/codec/codec.hpp"
+
+/// Scenarios to test with.
+namespace hapbench::test {
+
+struct NamedScenario {
+  std::string name;
+  Json json;
+};
+
+/// Only what must be there: time, and the environment of each type.
+std::vector<NamedScenario> minimal_scenarios();
+/// The minimal scenario of one environment type.
+Json minimal_scenario(const std::string& environment_type);
+
+/// Scenarios that between them give every field of the schema a value, in valid ways that the bundled ones do not use.
+/// They name the files shell.csv and stroke.csv, which tests/data holds.
+std::vector<NamedScenario> rich_scenarios();
+
+/// Every scenario that comes with the program.
+std::vector<NamedScenario> bundled_scenario_files();
+
+/// tests/data
+std::filesystem::path data_directory();
+
+}  // namespace hapbench::test

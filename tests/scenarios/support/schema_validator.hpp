@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "scenarios/codec/codec.hpp"
+
+namespace hapbench::test {
+
+/// An independent JSON Schema validator (valijson, draft 7).
+///
+/// valijson 1.0 takes 1e3 and 5.0 for no integers, where draft 7 counts every number with a zero fractional part as one
+/// ("integer", JSON Schema Validation 6.1.1); documents are handed to it with such numbers written as integers.
+class SchemaValidator {
+ public:
+  /// Throws std::runtime_error for what is no schema.
+  explicit SchemaValidator(const Json& schema);
+  ~SchemaValidator();
+
+  bool accepts(const Json& document) const;
+  /// What is wrong with a document, for messages of tests; empty when nothing is.
+  std::string complaints(const Json& document) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace hapbench::test
