@@ -5,6 +5,35 @@
 #include "sim/contact/stiffness_tensor.hpp"
 
 namespace hapbench {
+namespace {
+
+constexpr ParameterInfo kParameters[] = {
+    {"rendering.damping_ratio", "1", "0.7", "number >= 0 <= 1e+06", "zeta of one spring-damper of stiffness K"},
+    {"rendering.damping_N_s_per_m", "N s/m", "null", "null | number >= 0 <= 1e+12", "B itself; null: from zeta"},
+    {"rendering.mass_kg", "kg", "by scene", "number > 0 <= 1e+06",
+     "M of the virtual tool; default 0.2 in planar scenes, else 0.1"},
+    {"rendering.friction.mu_s_N_s_per_m", "N s/m", "by scene", "number >= 0 <= 1e+09",
+     "mu_s; default 0 for springs, else 5"},
+    {"rendering.friction.mu_f_s_per_m", "s/m", "by scene", "number >= 0 <= 1e+09",
+     "mu_f; default 0 for springs, else 10"},
+    {"rendering.limits.max_damping_N_s_per_m", "N s/m", "null", "null | number >= 0 <= 1e+12", "B_max; null: off"},
+    {"rendering.limits.max_force_N", "N", "null", "null | number >= 0 <= 1e+12", "F_max; null: off"},
+};
+
+}  // namespace
+
+const ModelInfo kDampingAndLimitsInfo = {
+    .name = "damping_and_limits",
+    .summary = "normal damping, tangential friction and the optional limits that every law shares",
+    .formula =
+        "f_dn = -B S v, B = 2 zeta sqrt(K M); f_dt = -(mu_s + mu_f |f_spring|)(v - S v); B scaled to "
+        "lambda_max(B S) <= B_max; |f_render| <= F_max",
+    .source = "thesis 2.5, 2.6, A.2.1, B.2, C.4.3; mu_s and mu_f, called Coulomb friction there, are viscous",
+    .known_failure =
+        "a tool that only turns has no velocity to damp (thesis 4.4); limits leave stiff scenes "
+        "under-damped (A.2)",
+    .parameters = kParameters,
+};
 
 DampingAndLimits::DampingAndLimits(const RenderingConfig& config)
     : B_(config.damping.value_or(2.0 * config.damping_ratio * std::sqrt(config.stiffness * config.mass))),

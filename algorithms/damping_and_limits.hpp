@@ -1,9 +1,12 @@
 #pragma once
 
+#include "algorithms/info.hpp"
 #include "algorithms/rendering_config.hpp"
 #include "sim/loop/force_algorithm.hpp"
 
 namespace hapbench {
+
+extern const ModelInfo kDampingAndLimitsInfo;
 
 /// Damping, friction and limits, the same for every law (thesis 2.5, 2.6, A.2.1, B.2, C.4.3):
 ///

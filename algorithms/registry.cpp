@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "algorithms/damping_and_limits.hpp"
 #include "algorithms/depth/normal_projection_depth.hpp"
 #include "algorithms/depth/shortest_distance.hpp"
 #include "algorithms/depth/surface_normal.hpp"
@@ -47,7 +48,7 @@ constexpr DepthModelEntry kDepthModels[] = {
     {&kNormalProjectionDepthInfo, make_normal_projection_depth},
 };
 
-constexpr const ModelInfo* kPointStages[] = {&kLocalAverageInfo, &kGradientReductionInfo};
+constexpr const ModelInfo* kStages[] = {&kLocalAverageInfo, &kGradientReductionInfo, &kDampingAndLimitsInfo};
 
 template <class Entry>
 const Entry* find(std::span<const Entry> table, std::string_view name) {
@@ -65,8 +66,8 @@ std::span<const DepthModelEntry> depth_models() {
   return kDepthModels;
 }
 
-std::span<const ModelInfo* const> point_stages() {
-  return kPointStages;
+std::span<const ModelInfo* const> stages() {
+  return kStages;
 }
 
 const AlgorithmEntry* find_algorithm(std::string_view name) {

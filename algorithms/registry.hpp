@@ -29,8 +29,8 @@ struct DepthModelEntry {
 
 std::span<const AlgorithmEntry> algorithms();
 std::span<const DepthModelEntry> depth_models();
-/// Stages between depth model and law, for the documentation.
-std::span<const ModelInfo* const> point_stages();
+/// The other stages of the penalty pipeline, for the documentation.
+std::span<const ModelInfo* const> stages();
 
 /// Null when the table has no such name.
 const AlgorithmEntry* find_algorithm(std::string_view name);

@@ -41,7 +41,7 @@ Description describe_model(const char* kind, const ModelInfo& info) {
 }
 
 const ModelInfo* find_stage(const std::string& name) {
-  for (const ModelInfo* stage : point_stages()) {
+  for (const ModelInfo* stage : stages()) {
     if (stage->name == name) return stage;
   }
   return nullptr;
@@ -59,7 +59,7 @@ std::vector<std::string> all_names() {
   std::vector<std::string> names = {"scenario", "schema"};
   for (const AlgorithmEntry& entry : algorithms()) names.emplace_back(entry.info->name);
   for (const DepthModelEntry& entry : depth_models()) names.emplace_back(entry.info->name);
-  for (const ModelInfo* stage : point_stages()) names.emplace_back(stage->name);
+  for (const ModelInfo* stage : stages()) names.emplace_back(stage->name);
   for (const std::string& name : environment_names()) names.push_back(name);
   for (const BundledScenario& bundled : bundled_scenarios()) names.push_back(bundled.name);
   return names;
@@ -75,7 +75,7 @@ Description describe_name(const std::string& name) {
   // A name may mean two things: normal_projection is an algorithm and a depth model.
   if (const AlgorithmEntry* entry = find_algorithm(name)) add(describe_model("algorithm", *entry->info));
   if (const DepthModelEntry* entry = find_depth_model(name)) add(describe_model("depth model", *entry->info));
-  if (const ModelInfo* stage = find_stage(name)) add(describe_model("point stage", *stage));
+  if (const ModelInfo* stage = find_stage(name)) add(describe_model("stage", *stage));
   if (!d.text.empty()) return d;
   if (const Json* fields = find_in_schema(scenario_schema_once(), name)) return {fields_text(name, *fields), *fields};
   for (const BundledScenario& bundled : bundled_scenarios()) {

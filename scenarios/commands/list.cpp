@@ -21,7 +21,7 @@ int list(const OutputOptions& options) {
   Json json = Json::array();
   for (const AlgorithmEntry& entry : algorithms()) add_models(table, json, "algorithm", *entry.info);
   for (const DepthModelEntry& entry : depth_models()) add_models(table, json, "depth model", *entry.info);
-  for (const ModelInfo* stage : point_stages()) add_models(table, json, "point stage", *stage);
+  for (const ModelInfo* stage : stages()) add_models(table, json, "stage", *stage);
   for (const std::string& name : environment_names()) {
     table.add({"environment", name, ""});
     json.push_back({{"kind", "environment"}, {"name", name}});

@@ -47,7 +47,7 @@ const Json* plain_object(const Json& schema) {
 
 /// A bound without the ".0" that JSON gives to whole numbers.
 std::string bound_text(const Json& bound) {
-  return bound.is_number_float() ? fmt::format("{}", bound.get<double>()) : bound.dump();
+  return bound.is_number_float() ? fmt::format("{:g}", bound.get<double>()) : bound.dump();
 }
 
 }  // namespace

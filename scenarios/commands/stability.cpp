@@ -71,6 +71,15 @@ Json limits_json(const LoadedScenario& loaded, const std::vector<StabilityLimit>
           {"limits", std::move(rows)}};
 }
 
+/// Said when theory and runs disagree by more than a percent: the theory is that of a constant stiffness.
+std::string disagreement_text(const std::vector<StabilityLimit>& limits) {
+  for (const StabilityLimit& limit : limits) {
+    if (std::abs(limit.simulation / limit.analytic - 1.0) <= 0.01 || limit.simulation == limit.analytic) continue;
+    return "\nThe runs differ from the analytic limit by more than 1 %: this algorithm's stiffness is not constant.\n";
+  }
+  return "";
+}
+
 std::string limits_text(const LoadedScenario& loaded, const std::vector<StabilityLimit>& limits) {
   Table table({{"limit", false}, {"analytic"}, {"eigenvalues"}, {"simulation"}, {"unit", false}, {"B there N s/m"}});
   for (const StabilityLimit& limit : limits) {
@@ -80,7 +89,8 @@ std::string limits_text(const LoadedScenario& loaded, const std::vector<Stabilit
   const RenderingFields& rendering = loaded.scenario.rendering;
   return fmt::format("{}: {}, M = {} kg, dt = {} s, zeta = {}, lambda_max(S) = {}\n\n{}", loaded.scenario.name,
                      rendering.config.algorithm, *rendering.mass, loaded.scenario.time.step,
-                     rendering.config.damping_ratio, significant(limits.front().lambda, 6), table.text());
+                     rendering.config.damping_ratio, significant(limits.front().lambda, 6), table.text()) +
+         disagreement_text(limits);
 }
 
 int stability(const StabilityOptions& options) {

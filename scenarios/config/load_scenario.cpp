@@ -39,6 +39,14 @@ void apply_override(Json& json, const std::string& text) {
   *node = Json::accept(value) ? parse_json(value) : Json(value);
 }
 
+/// The absolute path with links followed, because ".." behind a link leads elsewhere than its spelling says.
+std::filesystem::path without_links(const std::filesystem::path& path) {
+  const auto absolute = std::filesystem::current_path() / path;  // fs::absolute refuses the empty path
+  std::error_code error;
+  const auto canonical = std::filesystem::weakly_canonical(absolute, error);
+  return error ? absolute.lexically_normal() : canonical;
+}
+
 std::string* named_file(Scenario& scenario) {
   if (auto* shell = std::get_if<PointShellEnvironment>(&scenario.environment)) return &shell->file;
   return nullptr;
@@ -82,8 +90,8 @@ Json effective_scenario(const Scenario& scenario, const std::filesystem::path& d
   Scenario effective = scenario;
   for (std::string* file : {named_file(effective), named_motion(effective)}) {
     if (file == nullptr) continue;
-    const auto target = std::filesystem::absolute(resolve_path(scenario, *file)).lexically_normal();
-    *file = target.lexically_proximate(std::filesystem::absolute(directory).lexically_normal()).generic_string();
+    const auto target = without_links(resolve_path(scenario, *file));
+    *file = target.lexically_proximate(without_links(directory)).generic_string();
   }
   return scenario_codec().write(effective);
 }

@@ -12,14 +12,19 @@ namespace hapbench {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-/// Relative width at which bisection stops: a hundredth of the 1 % within which the three ways must agree.
+/// Relative width at which bisection stops: of runs a hundredth of the 1 % within which the three ways must agree, of
+/// eigenvalues, which cost nothing, near rounding.
 constexpr double kPrecision = 1e-4;
-/// A run counts as unstable when it has grown by this factor: beyond what a stable run near its limit swings to
-/// (about 1 / sqrt of the relative distance to it, at most 1e2 at kPrecision).
+constexpr double kEigenvaluePrecision = 1e-10;
+/// A probe is cut short as unstable when it has grown by this factor; a stable one swings to 1 / sqrt of its relative
+/// distance to the limit, at most 1e2 at kPrecision.
 constexpr double kGrowth = 1e6;
-/// Steps of one probe: at kPrecision beyond the limit the slowest case grows by kPrecision per step, e^4 in this time
-/// short of kGrowth, so the simulated limit may lie up to 14 / kProbeSteps = 0.07 % above the exact one.
+/// Steps of one probe, and how much the largest energy of the last quarter may exceed that of the quarter before. A run
+/// that is unstable by a factor 1 + e per step multiplies its energy by 1 + 10 000 e, so the limit is found where e
+/// passes 1e-6; a stable run repeats its largest energy much closer, because it beats in 1 / sqrt(kPrecision) steps or
+/// fewer.
 constexpr std::int64_t kProbeSteps = 20'000;
+constexpr double kLateGrowth = 1.01;
 /// Values beyond this are taken for "never unstable".
 constexpr double kLargestProbe = 1e15;
 constexpr int kLocusPoints = 400;
@@ -79,21 +84,21 @@ double analytic_limit(StabilityCase which, const Scenario& scenario, double lamb
   return kNever;
 }
 
-/// The largest value for which `stable` holds, by doubling from `start` and bisection of the ratio.
+/// The largest value for which `stable` holds, by powers of ten from `start` and bisection of the logarithm.
 template <class Stable>
-double largest_stable(double start, Stable stable) {
+double largest_stable(double start, double precision, Stable stable) {
   double low = start;
   while (!stable(low)) {
-    low /= 2.0;
+    low /= 10.0;
     if (low < 1.0 / kLargestProbe) return 0.0;
   }
   double high = low;
   while (stable(high)) {
     low = high;
-    high *= 2.0;
+    high *= 10.0;
     if (high > kLargestProbe) return kNever;
   }
-  while (high / low > 1.0 + kPrecision) {
+  while (high / low > 1.0 + precision) {
     const double middle = std::sqrt(low * high);
     (stable(middle) ? low : high) = middle;
   }
@@ -107,6 +112,27 @@ class FirstTensor final : public Observer {
     if (record.step == 0) S = record.force.S;
   }
   Mat3 S = Mat3::Zero();
+};
+
+/// Largest mechanical energy in the last two quarters of a probe: it follows growth whatever the frequency, where the
+/// position alone may still be on its first swing.
+class LateEnergy final : public Observer {
+ public:
+  explicit LateEnergy(const SpringDamper& system) : stiffness_(system.lambda * system.K), mass_(system.M) {}
+
+  void on_step(const StepRecord& record) noexcept override {
+    const auto quarter = record.step * 4 / static_cast<std::uint64_t>(kProbeSteps);
+    if (quarter < 2) return;
+    const ToolState& tool = record.tool;
+    const double energy = stiffness_ * tool.pose.position.squaredNorm() + mass_ * tool.velocity.squaredNorm();
+    double& largest = quarter == 2 ? third_ : fourth_;
+    largest = std::max(largest, energy);
+  }
+  bool grows() const { return fourth_ > kLateGrowth * third_; }
+
+ private:
+  double stiffness_, mass_;
+  double third_ = 0.0, fourth_ = 0.0;
 };
 
 Mat3 stiffness_tensor_of(Scenario scenario) {
@@ -131,8 +157,9 @@ bool simulation_stays_bounded(Scenario scenario, const SpringDamper& system, con
   scenario.bounds.position = kGrowth * kAmplitude;
   scenario.bounds.speed = kGrowth * kAmplitude / system.dt;
   scenario.bounds.force = kNever;
-  Simulation simulation(simulation_config(scenario), assemble(scenario), {});
-  return simulation.run().outcome != Outcome::diverges;
+  LateEnergy energy(system);
+  Simulation simulation(simulation_config(scenario), assemble(scenario), {&energy});
+  return simulation.run().outcome != Outcome::diverges && !energy.grows();
 }
 
 void check_scene(const Scenario& scenario) {
@@ -187,10 +214,10 @@ std::vector<StabilityLimit> stability_limits(const Scenario& scenario) {
     limit.lambda = lambda;
     limit.analytic = analytic_limit(limit.which, scenario, lambda);
     limit.damping_at_limit = system(limit.analytic).B;
-    limit.eigenvalue =
-        largest_stable(start, [&](double value) { return system(value).spectral_radius() <= kOnCircle; });
+    limit.eigenvalue = largest_stable(start, kEigenvaluePrecision,
+                                      [&](double value) { return system(value).spectral_radius() <= kOnCircle; });
     limit.simulation = largest_stable(
-        start, [&](double value) { return simulation_stays_bounded(scenario, system(value), stiffest); });
+        start, kPrecision, [&](double value) { return simulation_stays_bounded(scenario, system(value), stiffest); });
   }
   return limits;
 }

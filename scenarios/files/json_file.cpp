@@ -24,6 +24,11 @@ std::string line_and_column(const std::string& text, std::size_t byte) {
   return fmt::format("line {}, column {}", line, std::max<std::size_t>(column, 1));
 }
 
+[[noreturn]] void refuse_syntax(const std::string& text, std::size_t byte) {
+  throw InputError(InputError::Kind::shape, "",
+                   fmt::format("is not JSON: syntax error at {}", line_and_column(text, byte)));
+}
+
 /// The number in the parser's message "… number overflow parsing '1e999'".
 std::string number_in(const std::string& message) {
   constexpr std::size_t kLongest = 80;
@@ -115,13 +120,14 @@ std::string read_text_file(const std::filesystem::path& file, std::uintmax_t lar
 }
 
 Json parse_json(const std::string& text) {
+  // The parser takes a zero byte for the end and would not see what follows.
+  if (const std::size_t zero = text.find('\0'); zero != std::string::npos) refuse_syntax(text, zero + 1);
   Guard guard;
   try {
     return Json::parse(
         text, [&guard](int depth, Json::parse_event_t event, Json& parsed) { return guard(depth, event, parsed); });
   } catch (const Json::parse_error& error) {
-    throw InputError(InputError::Kind::shape, "",
-                     fmt::format("is not JSON: syntax error at {}", line_and_column(text, error.byte)));
+    refuse_syntax(text, error.byte);
   } catch (const Json::out_of_range& error) {
     guard.refuse_here(fmt::format("got {}; allowed: finite numbers", number_in(error.what())));
   }

@@ -8,11 +8,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <string_view>
 
-#include "scenarios/codec/values.hpp"
+#include "scenarios/codec/codec.hpp"
 #include "scenarios/config/scenario_codec.hpp"
 #include "scenarios/files/json_file.hpp"
 #include "scenarios/files/number_table.hpp"
@@ -44,10 +43,10 @@ std::optional<Property> property_of_type(std::string_view type) {
     std::string_view name, alias;
     Kind kind;
     std::size_t size;
-  } kTypes[] = {{"char", "int8", Kind::signed_integer, 1},     {"uchar", "uint8", Kind::unsigned_integer, 1},
-                {"short", "int16", Kind::signed_integer, 2},   {"ushort", "uint16", Kind::unsigned_integer, 2},
-                {"int", "int32", Kind::signed_integer, 4},     {"uint", "uint32", Kind::unsigned_integer, 4},
-                {"float", "float32", Kind::real, 4},           {"double", "float64", Kind::real, 8}};
+  } kTypes[] = {{"char", "int8", Kind::signed_integer, 1},   {"uchar", "uint8", Kind::unsigned_integer, 1},
+                {"short", "int16", Kind::signed_integer, 2}, {"ushort", "uint16", Kind::unsigned_integer, 2},
+                {"int", "int32", Kind::signed_integer, 4},   {"uint", "uint32", Kind::unsigned_integer, 4},
+                {"float", "float32", Kind::real, 4},         {"double", "float64", Kind::real, 8}};
   for (const auto& t : kTypes) {
     if (type == t.name || type == t.alias) return Property{t.kind, t.size, {}};
   }
@@ -139,7 +138,8 @@ class Reader {
       const auto count = std::count_if(header.properties.begin(), header.properties.end(),
                                        [w](const Property& p) { return p.wanted == static_cast<int>(w); });
       if (count != 1) {
-        fail_in_header(fmt::format("got {} vertex properties \"{}\"; allowed: one each of x, y, z, nx, ny, nz", count, kWanted[w]));
+        fail_in_header(fmt::format("got {} vertex properties \"{}\"; allowed: one each of x, y, z, nx, ny, nz", count,
+                                   kWanted[w]));
       }
     }
     return header;
@@ -155,7 +155,8 @@ class Reader {
   }
 
   std::size_t read_vertex_count(const Words& words) const {
-    if (words.size() != 3 || words[1] != "vertex") fail_in_header("allowed: \"element vertex COUNT\" as the first element");
+    if (words.size() != 3 || words[1] != "vertex")
+      fail_in_header("allowed: \"element vertex COUNT\" as the first element");
     std::size_t count = 0;
     const auto [end, error] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), count);
     const bool number = error == std::errc() && end == words[2].data() + words[2].size();
@@ -169,8 +170,9 @@ class Reader {
   Property read_property(const Words& words) const {
     auto property = words.size() == 3 ? property_of_type(words[1]) : std::nullopt;
     if (!property) {
-      fail_in_header("allowed for a vertex: \"property TYPE NAME\" with a type char, uchar, short, ushort, int, uint, "
-                     "float or double");
+      fail_in_header(
+          "allowed for a vertex: \"property TYPE NAME\" with a type char, uchar, short, ushort, int, uint, "
+          "float or double");
     }
     const auto wanted = std::find(kWanted.begin(), kWanted.end(), words[2]);
     if (wanted != kWanted.end()) property->wanted = static_cast<int>(wanted - kWanted.begin());
@@ -196,7 +198,8 @@ class Reader {
       double value = 0.0;
       const auto [end, error] = std::from_chars(words[p].data(), words[p].data() + words[p].size(), value);
       if (error != std::errc() || end != words[p].data() + words[p].size() || !std::isfinite(value)) {
-        fail(where, fmt::format("vertex {}: got {}; allowed: a finite number", index, shown(Json(words[p].substr(0, 60)))));
+        fail(where,
+             fmt::format("vertex {}: got {}; allowed: a finite number", index, shown(Json(words[p].substr(0, 60)))));
       }
       if (header.properties[p].wanted) values[static_cast<std::size_t>(*header.properties[p].wanted)] = value;
     }
@@ -217,22 +220,22 @@ class Reader {
 
   /// Precondition: enough bytes are left.
   double read_binary(const Property& property, Format format) {
-    const bool swap = (format == Format::big_endian) != (std::endian::native == std::endian::big);
-    std::array<char, 8> bytes{};
-    std::copy_n(rest_.data(), property.size, bytes.data());
-    if (swap) std::reverse(bytes.data(), bytes.data() + property.size);
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < property.size; ++i) {
+      const std::size_t from = format == Format::big_endian ? i : property.size - 1 - i;
+      bits = bits << 8 | static_cast<unsigned char>(rest_[from]);
+    }
     rest_.remove_prefix(property.size);
-    const auto as = [&bytes](auto type) {
-      std::memcpy(&type, bytes.data(), sizeof type);
-      return static_cast<double>(type);
-    };
     switch (property.kind) {
       case Kind::signed_integer:
-        return property.size == 1 ? as(std::int8_t{}) : property.size == 2 ? as(std::int16_t{}) : as(std::int32_t{});
+        return property.size == 1   ? static_cast<std::int8_t>(bits)
+               : property.size == 2 ? static_cast<std::int16_t>(bits)
+                                    : static_cast<std::int32_t>(bits);
       case Kind::unsigned_integer:
-        return property.size == 1 ? as(std::uint8_t{}) : property.size == 2 ? as(std::uint16_t{}) : as(std::uint32_t{});
+        return static_cast<double>(bits);
       case Kind::real:
-        return property.size == 4 ? as(float{}) : as(double{});
+        return property.size == 4 ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)))
+                                  : std::bit_cast<double>(bits);
     }
     return 0.0;
   }

@@ -20,13 +20,13 @@ TEST(Registry, ListsTheAlgorithmsOfTheMethod) {
   }
 }
 
-TEST(Registry, ListsTheDepthModelsAndPointStagesOfTheMethod) {
+TEST(Registry, ListsTheDepthModelsAndStagesOfTheMethod) {
   for (const char* name : {"shortest_distance", "surface_normal", "normal_projection"}) {
     EXPECT_NE(find_depth_model(name), nullptr) << name;
   }
-  std::set<std::string> stages;
-  for (const ModelInfo* stage : point_stages()) stages.insert(stage->name);
-  EXPECT_EQ(stages, (std::set<std::string>{"local_average", "reduction"}));
+  std::set<std::string> names;
+  for (const ModelInfo* stage : stages()) names.insert(stage->name);
+  EXPECT_EQ(names, (std::set<std::string>{"damping_and_limits", "local_average", "reduction"}));
 }
 
 TEST(Registry, EveryListedNameIsFoundAndBuilds) {
@@ -51,7 +51,7 @@ TEST(Registry, NamesAreUnique) {
 }
 
 TEST(Registry, EveryModelDocumentsItself) {
-  std::vector<const ModelInfo*> models(point_stages().begin(), point_stages().end());
+  std::vector<const ModelInfo*> models(stages().begin(), stages().end());
   for (const AlgorithmEntry& entry : algorithms()) models.push_back(entry.info);
   for (const DepthModelEntry& entry : depth_models()) models.push_back(entry.info);
   for (const ModelInfo* model : models) {
