@@ -1,7 +1,9 @@
 #include "tests/support/contact_sets.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 namespace hapbench::test {
@@ -142,6 +144,12 @@ Gradients clusters(Random& random, std::size_t n) {
   return fill(n, [&] { return tilted(random, centres[random.below(centres.size())], spread); });
 }
 
+/// Clusters with contacts at every distance from their centres.
+Gradients graded_clusters(Random& random, std::size_t n) {
+  const Gradients centres = uniform(random, 2 + random.below(8));
+  return fill(n, [&] { return tilted(random, centres[random.below(centres.size())], small_angle(random)); });
+}
+
 /// A ring around an axis: the wall of a hole, with infinitely many optimal weights but for epsilon.
 Gradients cone(Random& random, std::size_t n) {
   const Mat3 frame = random_rotation(random);
@@ -177,6 +185,18 @@ Gradients wedge(Random& random, std::size_t n) {
   });
 }
 
+/// A set of one of the families above beside a set of another.
+Gradients mixture(Random& random, std::size_t n) {
+  constexpr Gradients (*draws[])(Random&, std::size_t) = {
+      uniform,    planar,   parallel, opposite,        axis_aligned, nearly_parallel, nearly_opposite,      graded,
+      duplicated, lopsided, coplanar, nearly_coplanar, clusters,     cone,            orthonormal_and_more, nearly_orthogonal};
+  const std::size_t first = random.below(n + 1);
+  Gradients gradients = draws[random.below(std::size(draws))](random, first);
+  const Gradients others = draws[random.below(std::size(draws))](random, n - first);
+  gradients.insert(gradients.end(), others.begin(), others.end());
+  return gradients;
+}
+
 constexpr GradientFamily kFamilies[] = {
     {"uniform", false, uniform},
     {"planar", true, planar},
@@ -193,10 +213,12 @@ constexpr GradientFamily kFamilies[] = {
     {"coplanar", false, coplanar},
     {"nearly_coplanar", false, nearly_coplanar},
     {"clusters", false, clusters},
+    {"graded_clusters", false, graded_clusters},
     {"cone", false, cone},
     {"orthonormal_and_more", false, orthonormal_and_more},
     {"nearly_orthogonal", false, nearly_orthogonal},
     {"wedge", true, wedge},
+    {"mixture", false, mixture},
 };
 
 }  // namespace

@@ -132,8 +132,12 @@ Setting peg(double tilt, double diameter, double y) {
   setting.pose = {{0.0, y, 0.0}, {-std::sin(tilt), -std::cos(tilt), 0.0}};
   return setting;
 }
+// The wall points at the height of the tip centre touch the half ball.
 Setting peg_start() {
   return peg(0.1, 0.001, -0.004);
+}
+Setting tilted_peg() {
+  return peg(0.1, 0.001, -0.00403);
 }
 Answer in_plane() {
   Answer answer;
@@ -165,9 +169,10 @@ const AnalyticScene kScenes[] = {
     {"centred_slot", "surface_normal", centred_slot, no_force, kFarAway},
     {"one_sided_slot", "surface_normal", one_sided_slot, one_sided_slot_answer, kFarAway},
     {"one_sided_slot_by_shortest_distance", "shortest_distance", one_sided_slot, one_sided_slot_answer, kFarAway},
-    {"peg_start", "surface_normal", peg_start, in_plane, kFarAway},
-    {"peg_start_by_normal_projection", "normal_projection", peg_start, in_plane, kFarAway},
-    {"upright_peg", "surface_normal", upright_peg, no_force, kFarAway},
+    {"peg_start", "surface_normal", peg_start, in_plane, kFarAway, true},
+    {"tilted_peg", "surface_normal", tilted_peg, in_plane, kFarAway},
+    {"tilted_peg_by_normal_projection", "normal_projection", tilted_peg, in_plane, kFarAway},
+    {"upright_peg", "surface_normal", upright_peg, no_force, kFarAway, true},
     {"pressed_peg", "surface_normal", pressed_peg, pressed_peg_answer, kFarAway},
 };
 

@@ -30,6 +30,8 @@ struct AnalyticScene {
   Answer (*answer)();
   /// Where the tool has to go for all force to vanish.
   Vec3 position_without_force;
+  /// A point lies on the tool's surface to the last bit: once the scene is moved, rounding decides whether it collides.
+  bool touches = false;
 };
 
 std::span<const AnalyticScene> analytic_scenes();

@@ -23,8 +23,8 @@ TEST(InputError, WithoutAPlaceSaysOnlyTheProblem) {
 }
 
 TEST(InputError, IsOneLineWhateverNamesAndValuesHold) {
-  const InputError error(InputError::Kind::relation, "a\nb.csv", std::string("got \"\r\x1b[31m\0\x7f\"", 12));
-  EXPECT_STREQ(error.what(), "a?b.csv: got \"??[31m??");
+  const InputError error(InputError::Kind::relation, "a\nb.csv", std::string("got \"\r\x1b[31m\0\x7f\"", 14));
+  EXPECT_STREQ(error.what(), "a?b.csv: got \"??[31m??\"");
 }
 
 TEST(NearestName, ForgivesOneSlipOfTheFingers) {

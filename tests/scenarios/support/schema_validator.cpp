@@ -30,6 +30,7 @@ nlohmann::json plain(const Json& json) {
     if (value == std::floor(value) && std::abs(value) < 0x1p62) return static_cast<std::int64_t>(value);
     return value;
   }
+  if (json.is_number_unsigned() && json.get<std::uint64_t>() > INT64_MAX) return json.get<double>();
   return nlohmann::json::parse(json.dump());
 }
 
