@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "scenarios/codec/object.hpp"
+#include "scenarios/codec/size_limits.hpp"
 #include "scenarios/codec/values.hpp"
-#include "scenarios/config/scenario_codec.hpp"
 
 namespace hapbench {
 namespace {

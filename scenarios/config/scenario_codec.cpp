@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "algorithms/registry.hpp"
+#include "scenarios/codec/size_limits.hpp"
 #include "scenarios/codec/values.hpp"
 #include "scenarios/config/environment_codec.hpp"
 #include "scenarios/config/motion_codec.hpp"

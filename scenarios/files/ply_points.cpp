@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "scenarios/codec/codec.hpp"
-#include "scenarios/config/scenario_codec.hpp"
+#include "scenarios/codec/size_limits.hpp"
 #include "scenarios/files/json_file.hpp"
 #include "scenarios/files/number_table.hpp"
 

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "scenarios/codec/input_error.hpp"
-#include "scenarios/config/scenario_codec.hpp"
+#include "scenarios/codec/size_limits.hpp"
 #include "scenarios/files/number_table.hpp"
 #include "scenarios/files/ply_points.hpp"
 

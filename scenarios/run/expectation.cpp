@@ -18,15 +18,6 @@ std::string divergence_text(const SimulationResult& result) {
 
 }  // namespace
 
-std::vector<std::string> metric_names() {
-  std::vector<std::string> names;
-  const auto summary = summary_json(RunSummary{});
-  for (const auto& metric : summary["metrics"].items()) {
-    if (metric.key() != "final_position_m") names.push_back(metric.key());
-  }
-  return names;
-}
-
 bool outcome_is_expected(const ExpectFields& expect, Outcome outcome) {
   return std::find(expect.outcomes.begin(), expect.outcomes.end(), outcome_name(outcome)) != expect.outcomes.end();
 }
