@@ -8,7 +8,7 @@
 #include "device_model/scripted_hands.hpp"
 #include "scenarios/files/motion_file.hpp"
 #include "scenarios/files/shell_file.hpp"
-#include "sim/contact/shell_query.hpp"
+#include "sim/contact/neighbour_list_query.hpp"
 #include "sim/contact/spring_query.hpp"
 #include "sim/core/random.hpp"
 
@@ -135,7 +135,7 @@ SimulationParts assemble(const Scenario& scenario) {
     parts.query = std::make_unique<SpringQuery>(make_springs(*springs, static_cast<std::uint64_t>(scenario.seed)));
   } else {
     parts.shell = std::make_shared<const PointShell>(environment_points(scenario), cell_size(scenario.environment));
-    parts.query = std::make_unique<ShellQuery>(*parts.shell, parts.tool);
+    parts.query = std::make_unique<NeighbourListQuery>(*parts.shell, parts.tool);
   }
   parts.algorithm = make_algorithm(rendering_config(scenario.rendering));
   parts.motion = make_motion(scenario);

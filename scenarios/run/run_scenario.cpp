@@ -65,6 +65,7 @@ RunSummary summarise(const Scenario& scenario, const Simulation& simulation, con
   summary.duration = static_cast<double>(summary.result.rows) * scenario.time.step;
   summary.metrics = metrics.metrics();
   summary.work.search = simulation.query().work();
+  summary.work.steps_skipped = summary.work.search.skipped;
   summary.work.algorithm = simulation.algorithm().work();
   summary.work.allocations = allocations;
   summary.provenance = provenance();

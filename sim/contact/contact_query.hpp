@@ -12,6 +12,7 @@ struct SearchWork {
   std::uint64_t queries = 0;
   std::uint64_t points_tested = 0;  ///< shell points compared with the tool, padding not counted
   std::uint64_t lists_rebuilt = 0;  ///< neighbour lists; 0 for a search without one
+  std::uint64_t skipped = 0;        ///< queries answered "nothing" from a clearance bound, without testing a point
 };
 
 /// Answers which points of the environment a tool in a given pose touches. The step loop asks at the tool's pose; a

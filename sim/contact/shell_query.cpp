@@ -20,16 +20,12 @@ ShellQuery::ShellQuery(const PointShell& shell, const Tool& tool)
     : shell_(&shell), tool_(tool), radius2_(largest_square_within(tool.radius)) {}
 
 void ShellQuery::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
-  using simd::Pack;
   const PointShell& shell = *shell_;
-  const Pack radius2(radius2_), bottom(-tool_.length), zero(0.0);
-  const bool round = tool_.tip == Tip::round;
+  const ToolTest touches(tool_, radius2_);
 
   contacts.clear();
   for (std::size_t i = 0; i < shell.padded_size(); i += simd::lanes) {
-    const AxialPack q(pose, shell.x() + i, shell.y() + i, shell.z() + i);
-    simd::Mask hit = q.s <= zero && q.s >= bottom && q.rho2 <= radius2;
-    if (round) hit = hit || (q.s > zero && q.distance2() <= radius2);
+    const simd::Mask hit = touches(AxialPack(pose, shell.x() + i, shell.y() + i, shell.z() + i));
     if (!simd::any(hit)) continue;
     for (std::size_t lane = 0; lane < simd::lanes; ++lane) {
       if (!simd::lane(hit, lane)) continue;

@@ -29,4 +29,21 @@ struct AxialPack {
   simd::Pack distance2() const { return x * x + y * y + z * z; }
 };
 
+/// Which of eight points lie in the tool or on its surface. `radius2` is the largest square whose root is at most the
+/// tool's radius (largest_square_within).
+class ToolTest {
+ public:
+  ToolTest(const Tool& tool, double radius2)
+      : bottom_(-tool.length), radius2_(radius2), zero_(0.0), round_(tool.tip == Tip::round) {}
+
+  simd::Mask operator()(const AxialPack& q) const {
+    const simd::Mask in_cylinder = q.s <= zero_ && q.s >= bottom_ && q.rho2 <= radius2_;
+    return round_ ? in_cylinder || (q.s > zero_ && q.distance2() <= radius2_) : in_cylinder;
+  }
+
+ private:
+  simd::Pack bottom_, radius2_, zero_;
+  bool round_;
+};
+
 }  // namespace hapbench

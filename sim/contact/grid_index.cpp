@@ -1,0 +1,83 @@
+#include "sim/contact/grid_index.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace hapbench {
+namespace {
+
+/// Edge of a cell in distances of neighbouring points.
+constexpr double kSpacingsPerCell = 2.5;
+/// Cells per point at most; shells are surfaces, so most cells of their box are empty anyway.
+constexpr double kCellsPerPoint = 8.0;
+constexpr double kFewestCells = 4096.0;
+
+/// Distance of neighbours if the points were spread evenly over the faces of their box.
+double even_spacing(const Vec3& extent, double points) {
+  const double area = 2.0 * (extent.x() * extent.y() + extent.y() * extent.z() + extent.z() * extent.x());
+  return area > 0.0 ? std::sqrt(area / points) : extent.maxCoeff() / points;
+}
+
+}  // namespace
+
+GridIndex::GridIndex(const PointShell& shell)
+    : x_(shell.padded_size(), PointShell::kFarAway),
+      y_(shell.padded_size(), PointShell::kFarAway),
+      z_(shell.padded_size(), PointShell::kFarAway),
+      shell_index_(shell.size()) {
+  choose_cells(shell);
+  std::vector<std::uint32_t> cell(shell.size());
+  for (std::size_t i = 0; i < shell.size(); ++i) cell[i] = cell_of(shell.point(i).position);
+
+  std::iota(shell_index_.begin(), shell_index_.end(), 0u);
+  std::stable_sort(shell_index_.begin(), shell_index_.end(),
+                   [&cell](std::uint32_t a, std::uint32_t b) { return cell[a] < cell[b]; });
+  keeps_order_ = std::is_sorted(shell_index_.begin(), shell_index_.end());
+  start_.assign(count_[0] * count_[1] * count_[2] + 1, 0);
+  for (std::size_t i = 0; i < shell.size(); ++i) {
+    const Vec3 point = shell.point(shell_index_[i]).position;
+    x_[i] = point.x();
+    y_[i] = point.y();
+    z_[i] = point.z();
+    ++start_[cell[i] + 1];
+  }
+  std::partial_sum(start_.begin(), start_.end(), start_.begin());
+}
+
+void GridIndex::choose_cells(const PointShell& shell) {
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+  for (std::size_t i = 0; i < shell.size(); ++i) {
+    const Vec3 p = shell.point(i).position;
+    low = i == 0 ? p : Vec3(low.cwiseMin(p));
+    high = i == 0 ? p : Vec3(high.cwiseMax(p));
+  }
+  const Vec3 extent = high - low;
+  const double points = std::max(1.0, static_cast<double>(shell.size()));
+  const double spacing = shell.cell_size() > 0.0 ? shell.cell_size() : even_spacing(extent, points);
+  cell_ = spacing > 0.0 ? kSpacingsPerCell * spacing : 1.0;
+  origin_ = low;
+  const auto cells = [&](int axis) { return std::floor(extent[axis] / cell_) + 1.0; };
+  while (cells(0) * cells(1) * cells(2) > std::max(kFewestCells, kCellsPerPoint * points)) cell_ *= 1.25;
+  for (int axis = 0; axis < 3; ++axis) count_[axis] = static_cast<std::size_t>(cells(axis));
+}
+
+std::uint32_t GridIndex::cell_of(const Vec3& point) const {
+  std::size_t index = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double along = std::floor((point[axis] - origin_[axis]) / cell_);
+    const auto last = static_cast<double>(count_[axis] - 1);
+    index = index * count_[axis] + static_cast<std::size_t>(std::clamp(along, 0.0, last));
+  }
+  return static_cast<std::uint32_t>(index);
+}
+
+GridIndex::Range GridIndex::range(double low, double high, int axis) const {
+  // The same expression as cell_of, which is monotone in the coordinate: no point in the box can be in a cell outside.
+  const double first = std::floor((low - origin_[axis]) / cell_), last = std::floor((high - origin_[axis]) / cell_);
+  const auto end = static_cast<double>(count_[axis] - 1);
+  if (!(last >= 0.0 && first <= end)) return {};
+  return {static_cast<std::size_t>(std::max(first, 0.0)), static_cast<std::size_t>(std::min(last, end))};
+}
+
+}  // namespace hapbench

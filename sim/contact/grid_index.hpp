@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/environment/point_shell.hpp"
+
+namespace hapbench {
+
+/// An axis-aligned box in the world frame [m].
+struct Box {
+  Vec3 min = Vec3::Zero();
+  Vec3 max = Vec3::Zero();
+};
+
+/// The points of a shell sorted by the cells of a uniform grid, in compressed sparse rows: the points of the cells
+/// (i, j, k0 … k1) are one contiguous range of a copy of the shell, so that a search in a box reads one run of memory
+/// per column. Cells are a few points wide: for shells spaced by 0.1 mm, 0.25 mm was the fastest size measured.
+class GridIndex {
+ public:
+  /// O(n log n). The number of cells is bounded by a few times the number of points, whatever the extent of the shell.
+  explicit GridIndex(const PointShell& shell);
+
+  /// Calls `visit(first, last)` for each column of cells that meets the box, with the range of its points in the sorted
+  /// arrays. Ranges ascend.
+  template <class Visit>
+  void for_each_run(const Box& box, Visit visit) const {
+    const Range x = range(box.min.x(), box.max.x(), 0), y = range(box.min.y(), box.max.y(), 1);
+    const Range z = range(box.min.z(), box.max.z(), 2);
+    if (x.empty() || y.empty() || z.empty()) return;
+    for (std::size_t i = x.first; i <= x.last; ++i) {
+      for (std::size_t j = y.first; j <= y.last; ++j) {
+        const std::size_t column = (i * count_[1] + j) * count_[2];
+        const std::uint32_t first = start_[column + z.first], last = start_[column + z.last + 1];
+        if (first != last) visit(first, last);
+      }
+    }
+  }
+
+  /// Sorted copies of the coordinates, padded as the shell's, and the shell index of each.
+  const double* x() const { return x_.data(); }
+  const double* y() const { return y_.data(); }
+  const double* z() const { return z_.data(); }
+  std::uint32_t shell_index(std::size_t sorted) const { return shell_index_[sorted]; }
+  /// True when sorting changed nothing, so that runs come in ascending shell index.
+  bool keeps_order() const { return keeps_order_; }
+  double cell_size() const { return cell_; }
+
+ private:
+  struct Range {
+    std::size_t first = 1, last = 0;
+    bool empty() const { return first > last; }
+  };
+  Range range(double low, double high, int axis) const;
+  void choose_cells(const PointShell& shell);
+  std::uint32_t cell_of(const Vec3& point) const;
+
+  double cell_ = 1.0;
+  Vec3 origin_ = Vec3::Zero();
+  std::size_t count_[3] = {0, 0, 0};
+  std::vector<std::uint32_t> start_;  ///< first point of each cell, one more at the end
+  AlignedDoubles x_, y_, z_;
+  std::vector<std::uint32_t> shell_index_;
+  bool keeps_order_ = true;
+};
+
+}  // namespace hapbench

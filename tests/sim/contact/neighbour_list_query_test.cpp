@@ -1,0 +1,183 @@
+#include "sim/contact/neighbour_list_query.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "sim/contact/shell_query.hpp"
+#include "sim/core/random.hpp"
+#include "sim/environment/analytic_shells.hpp"
+#include "tests/support/scale.hpp"
+
+/// The contact search of a run must answer exactly as brute force does, whatever the tool did before: same points, same
+/// order, same bits.
+namespace hapbench {
+namespace {
+
+using test::cases;
+
+bool same(const ContactBuffer& a, const ContactBuffer& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a.index[i] != b.index[i] || a.point(i) != b.point(i) || a.normal(i) != b.normal(i)) return false;
+  }
+  return true;
+}
+
+/// Both searches side by side over one shell.
+class Pair {
+ public:
+  Pair(const std::vector<SurfacePoint>& points, double cell_size, const Tool& tool)
+      : shell_(points, cell_size),
+        list_(shell_, tool),
+        brute_(shell_, tool),
+        found_(points.size()),
+        all_(points.size()) {}
+
+  bool agree_at(const ToolPose& pose) {
+    list_.contacts_at(pose, found_);
+    brute_.contacts_at(pose, all_);
+    contacts_ += all_.size();
+    return same(found_, all_);
+  }
+  void reset() { list_.reset(); }
+  std::uint64_t contacts() const { return contacts_; }
+  const SearchWork& work() const { return list_.work(); }
+
+ private:
+  PointShell shell_;
+  NeighbourListQuery list_;
+  ShellQuery brute_;
+  ContactBuffer found_, all_;
+  std::uint64_t contacts_ = 0;
+};
+
+/// Points on a rough sheet, in a ball, on a lattice (cell borders) or along a line, `size` metres wide.
+std::vector<SurfacePoint> random_shell(Random& random, double size) {
+  const std::size_t n = 1 + random.below(400);
+  const std::uint64_t kind = random.below(4);
+  std::vector<SurfacePoint> points(n);
+  for (SurfacePoint& point : points) {
+    const double x = random.uniform(-size, size), y = random.uniform(-size, size), z = random.uniform(-size, size);
+    if (kind == 0) point.position = {x, y, 0.05 * z};
+    if (kind == 1) point.position = {x, y, z};
+    if (kind == 2)
+      point.position = size / 8.0 * Vec3(std::round(8 * x / size), std::round(8 * y / size), std::round(8 * z / size));
+    if (kind == 3) point.position = {x, 0.0, 0.0};
+    point.normal = random.direction();
+  }
+  return points;
+}
+
+/// The next pose of a walk: mostly small steps, sometimes none, a jump, a turn on the spot, or far away.
+ToolPose next_pose(const ToolPose& pose, Random& random, double size, double step) {
+  ToolPose next = pose;
+  const double choice = random.uniform();
+  if (choice < 0.05) return next;
+  if (choice < 0.10)
+    return {size * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)), random.direction()};
+  if (choice < 0.12) return {1e3 * size * random.direction(), random.direction()};
+  if (choice < 0.14)
+    return {size / 8.0 * Vec3(std::round(random.uniform(-8, 8)), std::round(random.uniform(-8, 8)), 0.0), {0, 0, -1}};
+  if (choice < 0.70) next.position += step * random.uniform() * random.direction();
+  if (choice > 0.50) next.axis = (next.axis + 0.02 * random.uniform() * random.direction()).normalized();
+  return next;
+}
+
+TEST(NeighbourListQuery, FindsWhatBruteForceFindsAtAMillionPoses) {
+  Random random(3);
+  std::uint64_t poses = 0, contacts = 0, rebuilt = 0;
+  const std::size_t shells = cases(2000);
+  for (std::size_t s = 0; s < shells; ++s) {
+    const double size = std::pow(10.0, random.uniform(-4.0, 0.0));
+    const Tool tool{size * random.uniform(0.02, 0.5), size * random.uniform(0.05, 3.0),
+                    random.below(2) == 0 ? Tip::flat : Tip::round};
+    Pair pair(random_shell(random, size), random.below(2) == 0 ? 0.0 : size * random.uniform(0.01, 1.0), tool);
+    ToolPose pose{Vec3::Zero(), random.direction()};
+    for (int k = 0; k < 500; ++k, ++poses) {
+      pose = next_pose(pose, random, size, 0.2 * tool.radius);
+      ASSERT_TRUE(pair.agree_at(pose)) << "shell " << s << ", pose " << k;
+    }
+    contacts += pair.contacts();
+    rebuilt += pair.work().lists_rebuilt;
+  }
+  EXPECT_GE(poses, cases(2000) * 500);
+  // The walks touch something, and the lists are used more than once.
+  EXPECT_GT(contacts, poses);
+  EXPECT_LT(rebuilt, poses / 2);
+}
+
+TEST(NeighbourListQuery, HoldsToItsInequalityWhenTheToolTurnsAboutItsTip) {
+  // The bottom end, 10 mm from the tip, sweeps furthest: a list that ignored rotation would miss these points.
+  const Tool tool{0.0005, 0.01, Tip::flat};
+  std::vector<SurfacePoint> arc;
+  for (int k = 0; k < 360; ++k) {
+    const double a = k * std::numbers::pi / 180.0;
+    arc.push_back({{0.0098 * std::sin(a), 0.0, 0.0098 * std::cos(a)}, {0, 0, 1}});
+  }
+  Pair pair(arc, 0.0001, tool);
+  for (double tilt = 0.0; tilt < 6.0; tilt += 0.001) {
+    ASSERT_TRUE(pair.agree_at({Vec3::Zero(), {-std::sin(tilt), 0.0, -std::cos(tilt)}})) << tilt;
+  }
+  EXPECT_GT(pair.contacts(), 6000u);
+}
+
+TEST(NeighbourListQuery, AgreesOnTheAnalyticShells) {
+  Random random(5);
+  const Tool round{0.0005, 0.005, Tip::round}, flat{0.0005, 0.01, Tip::flat};
+  Pair hole(surface_points(Hole2d{}), 0.0001, round);
+  Pair plane(surface_points(Plane{0.004, 0.0001}), 0.0001, flat);
+  Pair slot(surface_points(Slot{0.001, 0.003, 0.004, 0.0001}), 0.0001, flat);
+  ToolPose pose{{0, -0.004, 0}, {0, -1, 0}}, pose_3d{{0, 0, 0}, {0, 0, -1}};
+  for (std::size_t k = 0; k < cases(20'000); ++k) {
+    pose = next_pose(pose, random, 0.004, 0.00005);
+    pose_3d = next_pose(pose_3d, random, 0.002, 0.00005);
+    ASSERT_TRUE(hole.agree_at(pose));
+    ASSERT_TRUE(plane.agree_at(pose_3d));
+    ASSERT_TRUE(slot.agree_at(pose_3d));
+  }
+  EXPECT_GT(hole.contacts() + plane.contacts() + slot.contacts(), 1000u);
+}
+
+TEST(NeighbourListQuery, TestsNothingInFreeAir) {
+  const Tool tool{0.0005, 0.01, Tip::flat};
+  Pair pair(surface_points(Plane{0.004, 0.0001}), 0.0001, tool);
+  ASSERT_TRUE(pair.agree_at({{0, 0, 0.05}, {0, 0, -1}}));
+  const std::uint64_t tested = pair.work().points_tested;
+  for (int k = 0; k < 1000; ++k) ASSERT_TRUE(pair.agree_at({{1e-6 * k, 0, 0.05 - 1e-6 * k}, {0, 0, -1}}));
+  EXPECT_EQ(pair.work().points_tested, tested);
+  EXPECT_EQ(pair.work().skipped, 1000u);
+}
+
+TEST(NeighbourListQuery, AfterResetDoesTheSameWorkAgain) {
+  const Tool tool{0.0005, 0.01, Tip::flat};
+  Pair pair(surface_points(Plane{0.004, 0.0001}), 0.0001, tool);
+  const auto walk = [&pair] {
+    for (int k = 0; k < 100; ++k) EXPECT_TRUE(pair.agree_at({{1e-5 * k, 0, 0.0003 - 1e-5 * k}, {0, 0, -1}}));
+    return pair.work();
+  };
+  const SearchWork first = walk();
+  pair.reset();
+  const SearchWork second = walk();
+  EXPECT_EQ(first.points_tested, second.points_tested);
+  EXPECT_EQ(first.lists_rebuilt, second.lists_rebuilt);
+  EXPECT_GT(first.lists_rebuilt, 0u);
+}
+
+TEST(NeighbourListQuery, SurvivesAnEmptyShellAndPosesThatAreNotFinite) {
+  const Tool tool{0.0005, 0.01, Tip::flat};
+  Pair empty({}, 0.0001, tool);
+  EXPECT_TRUE(empty.agree_at({Vec3::Zero(), {0, 0, -1}}));
+  Pair pair(surface_points(Plane{0.004, 0.0001}), 0.0001, tool);
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  for (const double bad : {nan, inf, -inf, 1e300}) {
+    EXPECT_TRUE(pair.agree_at({{bad, 0, 0}, {0, 0, -1}}));
+    EXPECT_TRUE(pair.agree_at({{0, 0, bad}, {0, 0, -1}}));
+    EXPECT_TRUE(pair.agree_at({{0, 0, 0}, {0, 0, -1}}));
+  }
+}
+
+}  // namespace
+}  // namespace hapbench
