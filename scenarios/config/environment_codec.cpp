@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "scenarios/codec/object.hpp"
 #include "scenarios/codec/size_limits.hpp"
 #include "scenarios/codec/values.hpp"
@@ -103,6 +105,46 @@ std::shared_ptr<ObjectCodec<Slot>> slot() {
   return slot;
 }
 
+void check_block(const BlockEnvironment& environment, const std::string& at) {
+  const auto& [block, grid, density] = environment;
+  const Vec3& size = block.size;
+  // Cells smaller than this cannot be numbered; thinner walls have no nodes on both sides.
+  const double longest = 1e5 * grid, thinnest = 3.0 * grid;
+  const auto fail = [&at](const char* field, const std::string& problem) {
+    throw InputError(InputError::Kind::relation, member(at, field), problem);
+  };
+  if (size.maxCoeff() > longest) fail("grid_m", fmt::format("got {}; allowed: at least size_m / 1e5", grid));
+  const double area = 2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
+  refuse_too_many(area / (grid * grid), at, "shell points (from size_m and grid_m)");
+  if (block.hole_diameter > std::min(size.x(), size.y()) - 2.0 * thinnest || block.hole_diameter < thinnest) {
+    fail("hole_diameter_m",
+         fmt::format("got {}; allowed: at least 3 grid_m, leaving walls of 3 grid_m", block.hole_diameter));
+  }
+  if (block.hole_depth > size.z() - thinnest || block.hole_depth < thinnest) {
+    fail("hole_depth_m",
+         fmt::format("got {}; allowed: at least 3 grid_m, leaving a bottom of 3 grid_m", block.hole_depth));
+  }
+}
+
+std::shared_ptr<ObjectCodec<BlockEnvironment>> block_with_hole() {
+  auto block = object<BlockEnvironment>();
+  block->optional(
+      "size_m", [](auto& b) -> Vec3& { return b.block.size; }, vector3(kLength),
+      "edges of the block, centred at x = y = 0, top face in z = 0");
+  block->optional(
+      "hole_diameter_m", [](auto& b) -> double& { return b.block.hole_diameter; }, number(kLength), "round blind hole");
+  block->optional(
+      "hole_depth_m", [](auto& b) -> double& { return b.block.hole_depth; }, number(kLength), "below the top face");
+  block->optional(
+      "grid_m", [](auto& b) -> double& { return b.grid; }, number(kLength),
+      "grid of the density field; its nodes lie at half-integer multiples");
+  block->optional(
+      "density", [](auto& b) -> std::string& { return b.density; }, name_of({"signed_distance", "binary"}, "density"),
+      "what the nodes store: minus the signed distance, or 1 and 0");
+  block->relation(check_block);
+  return block;
+}
+
 std::shared_ptr<ObjectCodec<PointShellEnvironment>> point_shell() {
   auto shell = object<PointShellEnvironment>();
   shell->required(
@@ -120,6 +162,7 @@ std::shared_ptr<TaggedCodec<Environment>> make_codec() {
       .alternative("hole_2d", hole_2d())
       .alternative("plane", plane())
       .alternative("slot", slot())
+      .alternative("block_with_hole", block_with_hole())
       .alternative("point_shell", point_shell());
   return codec;
 }

@@ -13,6 +13,7 @@
 #include "sim/core/profile.hpp"
 #include "sim/core/types.hpp"
 #include "sim/environment/analytic_shells.hpp"
+#include "sim/environment/block_with_hole.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/tool/tool.hpp"
 
@@ -40,11 +41,16 @@ struct SpringsEnvironment {
   std::vector<SpringGroup> groups;
   RandomSprings random;
 };
+struct BlockEnvironment {
+  BlockWithHole block;
+  double grid = 0.0001;                     ///< of the density field [m]
+  std::string density = "signed_distance";  ///< or "binary"
+};
 struct PointShellEnvironment {
   std::string file;            ///< CSV or PLY, relative to the scenario file
   std::optional<double> grid;  ///< cell of the local average [m]
 };
-using Environment = std::variant<SpringsEnvironment, Hole2d, Plane, Slot, PointShellEnvironment>;
+using Environment = std::variant<SpringsEnvironment, Hole2d, Plane, Slot, BlockEnvironment, PointShellEnvironment>;
 
 struct InitialFields {
   Vec3 position = Vec3::Zero();

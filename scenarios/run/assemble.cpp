@@ -11,6 +11,7 @@
 #include "sim/contact/neighbour_list_query.hpp"
 #include "sim/contact/spring_query.hpp"
 #include "sim/core/random.hpp"
+#include "sim/environment/marching_cubes.hpp"
 
 namespace hapbench {
 namespace {
@@ -36,10 +37,23 @@ SpringSet make_springs(const SpringsEnvironment& fields, std::uint64_t seed) {
   return springs;
 }
 
+/// The vertices of the surface of the density field, in the order that the contact search likes best.
+std::vector<SurfacePoint> block_points(const BlockEnvironment& environment) {
+  const BlockWithHole& block = environment.block;
+  DensityField field;
+  field.signed_distance = [&block](const Vec3& point) { return signed_distance(block, point); };
+  field.min = {-block.size.x() / 2, -block.size.y() / 2, -block.size.z()};
+  field.max = {block.size.x() / 2, block.size.y() / 2, 0.0};
+  field.spacing = environment.grid;
+  field.density = environment.density == "binary" ? Density::binary : Density::signed_distance;
+  return in_grid_order(vertices_with_normals(marching_cubes(field)), environment.grid);
+}
+
 /// Edge of the grid cells the local average merges in.
 double cell_size(const Environment& environment) {
   return std::visit(Overloaded{[](const SpringsEnvironment&) { return 0.0; },
                                [](const PointShellEnvironment& shell) { return shell.grid.value_or(0.0); },
+                               [](const BlockEnvironment& block) { return block.grid; },
                                [](const auto& analytic) { return analytic.spacing; }},
                     environment);
 }
@@ -93,6 +107,7 @@ std::vector<SurfacePoint> environment_points(const Scenario& scenario) {
   return std::visit(
       Overloaded{[](const SpringsEnvironment&) { return std::vector<SurfacePoint>{}; },
                  [&](const PointShellEnvironment& s) { return read_point_shell(resolve_path(scenario, s.file)); },
+                 [](const BlockEnvironment& block) { return block_points(block); },
                  [](const auto& analytic) { return surface_points(analytic); }},
       scenario.environment);
 }

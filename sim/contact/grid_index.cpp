@@ -72,6 +72,14 @@ std::uint32_t GridIndex::cell_of(const Vec3& point) const {
   return static_cast<std::uint32_t>(index);
 }
 
+std::vector<SurfacePoint> in_grid_order(const std::vector<SurfacePoint>& points, double cell_size) {
+  const GridIndex grid(PointShell(points, cell_size));
+  std::vector<SurfacePoint> ordered;
+  ordered.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) ordered.push_back(points[grid.shell_index(i)]);
+  return ordered;
+}
+
 GridIndex::Range GridIndex::range(double low, double high, int axis) const {
   // The same expression as cell_of, which is monotone in the coordinate: no point in the box can be in a cell outside.
   const double first = std::floor((low - origin_[axis]) / cell_), last = std::floor((high - origin_[axis]) / cell_);

@@ -14,13 +14,15 @@ constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 // Random sizes, most of which are no multiple of the spacing.
 Hole2d random_hole(Random& random) {
-  return {random.uniform(1e-4, 2e-3), random.uniform(1e-4, 1e-2), random.uniform(2e-5, 5e-4), random.uniform(1e-4, 4e-3)};
+  return {random.uniform(1e-4, 2e-3), random.uniform(1e-4, 1e-2), random.uniform(2e-5, 5e-4),
+          random.uniform(1e-4, 4e-3)};
 }
 Plane random_plane(Random& random) {
   return {random.uniform(1e-4, 5e-3), random.uniform(5e-5, 5e-4)};
 }
 Slot random_slot(Random& random) {
-  return {random.uniform(1e-4, 2e-3), random.uniform(1e-4, 4e-3), random.uniform(1e-4, 4e-3), random.uniform(5e-5, 5e-4)};
+  return {random.uniform(1e-4, 2e-3), random.uniform(1e-4, 4e-3), random.uniform(1e-4, 4e-3),
+          random.uniform(5e-5, 5e-4)};
 }
 
 // Longest allowed distance of neighbours: the spacing, 1e-9 of it forgiven by design, and the rounding of two
@@ -58,7 +60,8 @@ TEST(AnalyticShells, AbsurdSizesAreCountedWithoutBeingBuilt) {
 }
 
 // Air just outside along the normal, material just inside.
-void expect_outward(const std::vector<SurfacePoint>& points, double probe, const std::function<bool(const Vec3&)>& air) {
+void expect_outward(const std::vector<SurfacePoint>& points, double probe,
+                    const std::function<bool(const Vec3&)>& air) {
   for (const SurfacePoint& point : points) {
     EXPECT_TRUE(air(point.position + probe * point.normal)) << point.position.transpose();
     EXPECT_FALSE(air(point.position - probe * point.normal)) << point.position.transpose();
