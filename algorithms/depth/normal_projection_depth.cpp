@@ -42,9 +42,7 @@ double exit_side(const Tool& tool, const Vec3& rho, const Vec3& radial_u) {
 /// Exit through the half ball beyond the tip plane; never when the ray misses the ball or leaves it behind the plane.
 double exit_half_ball(const Tool& tool, const Vec3& x, const Vec3& u, double s, double slope) {
   const double b = x.dot(u);
-  double c = tool.radius * tool.radius - x.squaredNorm();
-  // A colliding point beyond the tip plane lies in the ball, also where rounding puts it just outside.
-  if (s > 0.0) c = std::max(0.0, c);
+  const double c = tool.radius * tool.radius - x.squaredNorm();
   const double discriminant = b * b + c;
   if (discriminant < 0.0) return kNever;
   const double d = c >= 0.0 ? exit_root(1.0, b, c) : std::sqrt(discriminant) - b;

@@ -14,8 +14,8 @@ namespace hapbench {
 namespace {
 
 TEST(Registry, ListsTheAlgorithmsOfTheMethod) {
-  for (const char* name : {"original_averaging", "summation", "mean", "virtual_coupling", "shaped_stiffness", "tandpasta",
-                           "normal_projection", "exact_shaping"}) {
+  for (const char* name : {"original_averaging", "summation", "mean", "virtual_coupling", "shaped_stiffness",
+                           "tandpasta", "normal_projection", "exact_shaping"}) {
     EXPECT_NE(find_algorithm(name), nullptr) << name;
   }
 }
@@ -45,7 +45,8 @@ TEST(Registry, EveryListedNameIsFoundAndBuilds) {
 
 TEST(Registry, NamesAreUnique) {
   std::set<std::string> names;
-  for (const AlgorithmEntry& entry : algorithms()) EXPECT_TRUE(names.insert(entry.info->name).second) << entry.info->name;
+  for (const AlgorithmEntry& entry : algorithms())
+    EXPECT_TRUE(names.insert(entry.info->name).second) << entry.info->name;
   names.clear();
   for (const DepthModelEntry& entry : depth_models()) EXPECT_TRUE(names.insert(entry.info->name).second);
 }
@@ -60,7 +61,8 @@ TEST(Registry, EveryModelDocumentsItself) {
       EXPECT_FALSE(std::string(text).empty()) << model->name;
     }
     for (const ParameterInfo& parameter : model->parameters) {
-      for (const char* text : {parameter.name, parameter.unit, parameter.default_value, parameter.range, parameter.meaning}) {
+      for (const char* text :
+           {parameter.name, parameter.unit, parameter.default_value, parameter.range, parameter.meaning}) {
         ASSERT_NE(text, nullptr);
         EXPECT_FALSE(std::string(text).empty()) << model->name;
       }

@@ -154,7 +154,8 @@ Gradients graded_clusters(Random& random, std::size_t n) {
 Gradients cone(Random& random, std::size_t n) {
   const Mat3 frame = random_rotation(random);
   const double z = random.uniform(-1.0, 1.0);
-  return fill(n, [&] { return Vec3(frame * (std::sqrt(1.0 - z * z) * random.direction_in_plane() + z * Vec3::UnitZ())); });
+  return fill(n,
+              [&] { return Vec3(frame * (std::sqrt(1.0 - z * z) * random.direction_in_plane() + z * Vec3::UnitZ())); });
 }
 
 /// An orthonormal frame among others: every ratio is 1 at the optimum for epsilon = 0, so every contact sits on the
@@ -172,7 +173,8 @@ Gradients orthonormal_and_more(Random& random, std::size_t n) {
 Gradients nearly_orthogonal(Random& random, std::size_t n) {
   const Mat3 frame = random_rotation(random);
   const double angle = small_angle(random);
-  return fill(n, [&] { return tilted(random, sign_of(random, frame.col(static_cast<Eigen::Index>(random.below(3)))), angle); });
+  return fill(
+      n, [&] { return tilted(random, sign_of(random, frame.col(static_cast<Eigen::Index>(random.below(3)))), angle); });
 }
 
 /// Two faces of a wedge that is almost closed or almost flat, planar.
@@ -188,8 +190,10 @@ Gradients wedge(Random& random, std::size_t n) {
 /// A set of one of the families above beside a set of another.
 Gradients mixture(Random& random, std::size_t n) {
   constexpr Gradients (*draws[])(Random&, std::size_t) = {
-      uniform,    planar,   parallel, opposite,        axis_aligned, nearly_parallel, nearly_opposite,      graded,
-      duplicated, lopsided, coplanar, nearly_coplanar, clusters,     cone,            orthonormal_and_more, nearly_orthogonal};
+      uniform,          planar,          parallel, opposite,   axis_aligned,
+      nearly_parallel,  nearly_opposite, graded,   duplicated, lopsided,
+      coplanar,         nearly_coplanar, clusters, cone,       orthonormal_and_more,
+      nearly_orthogonal};
   const std::size_t first = random.below(n + 1);
   Gradients gradients = draws[random.below(std::size(draws))](random, first);
   const Gradients others = draws[random.below(std::size(draws))](random, n - first);

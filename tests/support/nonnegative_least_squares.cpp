@@ -29,7 +29,8 @@ Eigen::VectorXd nonnegative_least_squares(const Eigen::MatrixXd& A, const Eigen:
     const Eigen::VectorXd gain = A.transpose() * (b - A * c);
     Eigen::Index best = -1;
     for (Eigen::Index i = 0; i < A.cols(); ++i) {
-      if (!is_passive[static_cast<std::size_t>(i)] && gain[i] > tolerance && (best < 0 || gain[i] > gain[best])) best = i;
+      if (!is_passive[static_cast<std::size_t>(i)] && gain[i] > tolerance && (best < 0 || gain[i] > gain[best]))
+        best = i;
     }
     if (best < 0) break;
     passive.push_back(best);

@@ -28,9 +28,17 @@ Setting single_spring() {
 }
 Answer single_spring_answer() {
   const double d = kDeep;
-  return {-kOblique, false, false,
-          {{"original_averaging", d}, {"summation", d}, {"mean", d}, {"virtual_coupling", d / 2}, {"shaped_stiffness", d},
-           {"tandpasta", d}, {"normal_projection", d}, {"exact_shaping", d / (1 + kEps)}}};
+  return {-kOblique,
+          false,
+          false,
+          {{"original_averaging", d},
+           {"summation", d},
+           {"mean", d},
+           {"virtual_coupling", d / 2},
+           {"shaped_stiffness", d},
+           {"tandpasta", d},
+           {"normal_projection", d},
+           {"exact_shaping", d / (1 + kEps)}}};
 }
 
 Setting parallel_springs() {
@@ -38,9 +46,17 @@ Setting parallel_springs() {
 }
 Answer parallel_springs_answer() {
   const double d = kDeep;
-  return {-kOblique, false, false,
-          {{"original_averaging", d}, {"summation", 5 * d}, {"mean", d}, {"virtual_coupling", d * 5 / 6}, {"shaped_stiffness", d},
-           {"tandpasta", 5 * d}, {"normal_projection", d}, {"exact_shaping", d * 5 / (5 + kEps)}}};
+  return {-kOblique,
+          false,
+          false,
+          {{"original_averaging", d},
+           {"summation", 5 * d},
+           {"mean", d},
+           {"virtual_coupling", d * 5 / 6},
+           {"shaped_stiffness", d},
+           {"tandpasta", 5 * d},
+           {"normal_projection", d},
+           {"exact_shaping", d * 5 / (5 + kEps)}}};
 }
 
 // Three orthogonal springs, equally compressed: S_sum = I, sum u = (1, 1, 1).
@@ -49,9 +65,17 @@ Setting corner_springs() {
 }
 Answer corner_springs_answer() {
   const double d = kDeep * std::sqrt(3.0);
-  return {Vec3::Constant(-std::sqrt(1.0 / 3.0)), false, false,
-          {{"original_averaging", d}, {"summation", d}, {"mean", d / 3}, {"virtual_coupling", d / 2}, {"shaped_stiffness", d},
-           {"tandpasta", d}, {"normal_projection", d}, {"exact_shaping", d / (1 + kEps)}}};
+  return {Vec3::Constant(-std::sqrt(1.0 / 3.0)),
+          false,
+          false,
+          {{"original_averaging", d},
+           {"summation", d},
+           {"mean", d / 3},
+           {"virtual_coupling", d / 2},
+           {"shaped_stiffness", d},
+           {"tandpasta", d},
+           {"normal_projection", d},
+           {"exact_shaping", d / (1 + kEps)}}};
 }
 
 // One spring pushes, the other pulls: depths d and -d on gradients x and -x.
@@ -60,9 +84,17 @@ Setting opposite_springs() {
 }
 Answer opposite_springs_answer() {
   const double d = kDeep;
-  return {-Vec3::UnitX(), true, false,
-          {{"original_averaging", 0.0}, {"summation", 2 * d}, {"mean", d}, {"virtual_coupling", d * 2 / 3}, {"shaped_stiffness", d},
-           {"tandpasta", 0.0}, {"normal_projection", d}, {"exact_shaping", d * 2 / (2 + kEps)}}};
+  return {-Vec3::UnitX(),
+          true,
+          false,
+          {{"original_averaging", 0.0},
+           {"summation", 2 * d},
+           {"mean", d},
+           {"virtual_coupling", d * 2 / 3},
+           {"shaped_stiffness", d},
+           {"tandpasta", 0.0},
+           {"normal_projection", d},
+           {"exact_shaping", d * 2 / (2 + kEps)}}};
 }
 
 // Two faces 120 degrees apart, the tool pressed straight in: depths d/2, <u_1, u_2> = -1/2, and along the way out each
@@ -73,9 +105,16 @@ Setting wedge_springs() {
 }
 Answer wedge_springs_answer() {
   const double d = kDeep;
-  return {-Vec3::UnitX(), false, false,
-          {{"original_averaging", d}, {"summation", d / 2}, {"mean", d / 4}, {"virtual_coupling", d / 3},
-           {"shaped_stiffness", d * 0.4}, {"tandpasta", d / 2}, {"normal_projection", d * 0.4},
+  return {-Vec3::UnitX(),
+          false,
+          false,
+          {{"original_averaging", d},
+           {"summation", d / 2},
+           {"mean", d / 4},
+           {"virtual_coupling", d / 3},
+           {"shaped_stiffness", d * 0.4},
+           {"tandpasta", d / 2},
+           {"normal_projection", d * 0.4},
            {"exact_shaping", d * 0.5 / (1.25 + kEps)}}};
 }
 
@@ -157,11 +196,11 @@ Answer pressed_peg_answer() {
 }
 
 const AnalyticScene kScenes[] = {
-    {"single_spring", "surface_normal", single_spring, single_spring_answer, -kDeep * kOblique},
-    {"parallel_springs", "surface_normal", parallel_springs, parallel_springs_answer, -kDeep * kOblique},
+    {"single_spring", "surface_normal", single_spring, single_spring_answer, -kDeep* kOblique},
+    {"parallel_springs", "surface_normal", parallel_springs, parallel_springs_answer, -kDeep* kOblique},
     {"corner_springs", "surface_normal", corner_springs, corner_springs_answer, Vec3::Constant(-kDeep)},
     {"opposite_springs", "surface_normal", opposite_springs, opposite_springs_answer, Vec3::Zero()},
-    {"wedge_springs", "surface_normal", wedge_springs, wedge_springs_answer, -kDeep * Vec3::UnitX()},
+    {"wedge_springs", "surface_normal", wedge_springs, wedge_springs_answer, -kDeep* Vec3::UnitX()},
     {"springs_at_rest", "surface_normal", springs_at_rest, no_force, Vec3::Zero()},
     {"pressed_plane", "surface_normal", pressed_plane, pressed_plane_answer, kFarAway},
     {"pressed_plane_by_shortest_distance", "shortest_distance", pressed_plane, pressed_plane_answer, kFarAway},

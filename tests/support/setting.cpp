@@ -4,7 +4,7 @@
 
 #include "device_model/ideal_device.hpp"
 #include "device_model/scripted_hands.hpp"
-#include "sim/contact/shell_query.hpp"
+#include "sim/contact/neighbour_list_query.hpp"
 #include "sim/contact/spring_query.hpp"
 #include "tests/support/contact_sets.hpp"
 
@@ -17,7 +17,7 @@ std::shared_ptr<const PointShell> shell_of(const Setting& setting) {
 
 std::unique_ptr<ContactQuery> query_of(const Setting& setting, const PointShell* shell) {
   if (setting.springs) return std::make_unique<SpringQuery>(*setting.springs);
-  return std::make_unique<ShellQuery>(*shell, setting.tool);
+  return std::make_unique<NeighbourListQuery>(*shell, setting.tool);
 }
 
 }  // namespace

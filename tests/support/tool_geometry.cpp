@@ -46,9 +46,12 @@ Vec3 random_point_on(const Tool& tool, const ToolPose& pose, Random& random) {
   const Vec3 circle = random.direction_in_plane();
   const Vec3 outwards = circle.x() * frame.e1 + circle.y() * frame.e2;
   switch (random.below(3)) {
-    case 0: return pose.position - random.uniform(0.0, tool.length) * pose.axis + tool.radius * outwards;
-    case 1: return pose.position - tool.length * pose.axis + random.uniform(0.0, tool.radius) * outwards;
-    default: break;
+    case 0:
+      return pose.position - random.uniform(0.0, tool.length) * pose.axis + tool.radius * outwards;
+    case 1:
+      return pose.position - tool.length * pose.axis + random.uniform(0.0, tool.radius) * outwards;
+    default:
+      break;
   }
   if (tool.tip == Tip::flat) return pose.position + random.uniform(0.0, tool.radius) * outwards;
   const double s = random.uniform();

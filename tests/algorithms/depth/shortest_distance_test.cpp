@@ -109,7 +109,8 @@ TEST(ShortestDistance, TiesPreferTheSideThenTheTipThenTheBottom) {
 
 TEST(ShortestDistance, OnTheSurfaceTheDepthIsZeroAndTheGradientStillPointsOut) {
   const Tool tool{4 * kUnit, 16 * kUnit, Tip::flat};
-  for (const auto& [s, a, gradient] : {std::tuple{-8.0, 4.0, Vec3(1, 0, 0)}, {0.0, 1.0, kAxis}, {-16.0, 1.0, Vec3(-kAxis)}}) {
+  for (const auto& [s, a, gradient] :
+       {std::tuple{-8.0, 4.0, Vec3(1, 0, 0)}, {0.0, 1.0, kAxis}, {-16.0, 1.0, Vec3(-kAxis)}}) {
     const auto contact = evaluate(tool, kPose, at(s, a));
     EXPECT_EQ(contact.depth, 0.0);
     EXPECT_EQ(contact.gradient, gradient);

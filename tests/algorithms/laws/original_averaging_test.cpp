@@ -75,7 +75,9 @@ TEST(OriginalAveraging, CancelledGradientsGiveNoForce) {
 
 TEST(OriginalAveraging, GradientsCountAsCancelledUpToABillionthOfTheirNumber) {
   // Two opposite gradients and one of length t: |sum| = t against 3e-9.
-  const auto with_rest = [](double t) { return evaluate({Vec3::UnitX(), -Vec3::UnitX(), t * Vec3::UnitY()}).spring.norm(); };
+  const auto with_rest = [](double t) {
+    return evaluate({Vec3::UnitX(), -Vec3::UnitX(), t * Vec3::UnitY()}).spring.norm();
+  };
   EXPECT_EQ(with_rest(2.9e-9), 0.0);
   EXPECT_GT(with_rest(3.1e-9), 0.0);
 }

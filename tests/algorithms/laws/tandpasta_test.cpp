@@ -38,7 +38,8 @@ TEST(Tandpasta, IsTheFormulaOfTheMethod) {
   for_random_contacts([](ContactBuffer contacts, const char* name) {
     const test::Dense dense(contacts);
     const double s = sigma(dense);
-    // Betas are off by up to n eps (sums of n inner products over a sum of at least 1); c = beta / sigma amplifies that.
+    // Betas are off by up to n eps (sums of n inner products over a sum of at least 1); c = beta / sigma amplifies
+    // that.
     const double rounding = 8 * static_cast<double>(dense.n()) * kEps / s;
     if (s < 1e-9) return;  // near the threshold rounding decides
     const Eigen::VectorXd c = test::tandpasta_weights(dense);

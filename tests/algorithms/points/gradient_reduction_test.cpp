@@ -101,8 +101,8 @@ TEST(GradientReduction, TheFirstSimilarKeptContactAbsorbsEvenIfALaterOneIsMoreSi
   const auto at = [](double degrees) {
     return Vec3(std::cos(degrees * std::numbers::pi / 180), std::sin(degrees * std::numbers::pi / 180), 0);
   };
-  const ContactBuffer contacts =
-      reduced({std::cos(10 * std::numbers::pi / 180), 100, {}}, test::contacts_of({at(0), at(12), at(8)}, {1.0, 1.0, 7.0}));
+  const ContactBuffer contacts = reduced({std::cos(10 * std::numbers::pi / 180), 100, {}},
+                                         test::contacts_of({at(0), at(12), at(8)}, {1.0, 1.0, 7.0}));
   EXPECT_EQ(indices(contacts), (std::vector<std::uint32_t>{2, 1}));
 }
 
@@ -111,13 +111,14 @@ TEST(GradientReduction, AReplacementIsComparedWithFromThenOn) {
   const auto at = [](double degrees) {
     return Vec3(std::cos(degrees * std::numbers::pi / 180), std::sin(degrees * std::numbers::pi / 180), 0);
   };
-  const ContactBuffer contacts =
-      reduced({std::cos(10 * std::numbers::pi / 180), 100, {}}, test::contacts_of({at(0), at(8), at(16)}, {1.0, 2.0, 1.5}));
+  const ContactBuffer contacts = reduced({std::cos(10 * std::numbers::pi / 180), 100, {}},
+                                         test::contacts_of({at(0), at(8), at(16)}, {1.0, 2.0, 1.5}));
   EXPECT_EQ(indices(contacts), std::vector<std::uint32_t>{1});
 }
 
 TEST(GradientReduction, ContactsBeyondMaxPointsAreDroppedAndCountedUntilReset) {
-  const ContactBuffer contacts = test::contacts_of({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {1, 0, 0}}, {1, 1, 1, 1, 3});
+  const ContactBuffer contacts =
+      test::contacts_of({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {1, 0, 0}}, {1, 1, 1, 1, 3});
   const auto stage = reduction({0.995, 2, {}}, 5);
   for (int step = 1; step <= 3; ++step) {
     ContactBuffer actual = contacts;

@@ -75,9 +75,10 @@ TEST(ObjectCodec, ReadsGivenFieldsInAnyOrder) {
 }
 
 TEST(ObjectCodec, NamesAnUnknownFieldAndTheNearest) {
-  EXPECT_EQ(refusal_of(R"({"mas_kg": 3, "steps": 2})"),
-            "/o/mas_kg: unknown field; allowed here: \"$schema\", \"mass_kg\", \"name\", \"inner\", \"later\", \"steps\", "
-            "\"duration_s\"; nearest valid name: \"mass_kg\"");
+  EXPECT_EQ(
+      refusal_of(R"({"mas_kg": 3, "steps": 2})"),
+      "/o/mas_kg: unknown field; allowed here: \"$schema\", \"mass_kg\", \"name\", \"inner\", \"later\", \"steps\", "
+      "\"duration_s\"; nearest valid name: \"mass_kg\"");
   EXPECT_EQ(refusal_of(R"({"mass_kg": 3, "steps": 2, "inner": {"widht_m": 1}})"),
             "/o/inner/widht_m: unknown field; allowed here: \"width_m\"; nearest valid name: \"width_m\"");
   EXPECT_EQ(refusal_of(R"({"mass_kg": 3, "steps": 2, "colour": 1})").find("nearest"), std::string::npos);
@@ -99,9 +100,10 @@ TEST(ObjectCodec, NamesAMissingFieldAndWhatIsAllowed) {
 
 TEST(ObjectCodec, RefusesWhatIsNoObject) {
   for (const char* text : {"[]", "null", "1", "\"x\"", "true"}) {
-    EXPECT_EQ(refusal_of(text), std::string("/o: got ") + text +
-                                    "; allowed: an object with the fields \"$schema\", \"mass_kg\", \"name\", \"inner\", "
-                                    "\"later\", \"steps\", \"duration_s\"");
+    EXPECT_EQ(refusal_of(text),
+              std::string("/o: got ") + text +
+                  "; allowed: an object with the fields \"$schema\", \"mass_kg\", \"name\", \"inner\", "
+                  "\"later\", \"steps\", \"duration_s\"");
   }
 }
 
@@ -140,8 +142,9 @@ TEST(ObjectCodec, DescribesFieldsDefaultsAndRequirementsAsASchema) {
   EXPECT_EQ(schema["additionalProperties"], false);
   EXPECT_EQ(schema["required"], Json::array({"mass_kg"}));
   EXPECT_EQ(schema["oneOf"], Json::parse(R"([{"required": ["steps"]}, {"required": ["duration_s"]}])"));
-  EXPECT_EQ(schema["properties"]["name"],
-            Json::parse(R"({"type": "string", "maxLength": 10, "description": "what it is called", "default": "unnamed"})"));
+  EXPECT_EQ(
+      schema["properties"]["name"],
+      Json::parse(R"({"type": "string", "maxLength": 10, "description": "what it is called", "default": "unnamed"})"));
   EXPECT_FALSE(schema["properties"]["later"].contains("default"));
   EXPECT_EQ(schema["properties"]["inner"]["default"], Json::parse(R"({"width_m": 2.0})"));
 }

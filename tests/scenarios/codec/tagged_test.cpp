@@ -68,8 +68,7 @@ TEST(TaggedCodec, WantsAType) {
 TEST(TaggedCodec, RefusesFieldsOfTheOtherAlternative) {
   EXPECT_EQ(refusal_of(R"({"type": "ball", "radius_m": 3, "edge_m": 1})"),
             R"(/s/edge_m: unknown field; allowed here: "type", "radius_m")");
-  EXPECT_EQ(refusal_of(R"({"type": "ball"})"),
-            R"(/s: missing field "radius_m"; allowed: a number >= 0 and <= 9 [m])");
+  EXPECT_EQ(refusal_of(R"({"type": "ball"})"), R"(/s: missing field "radius_m"; allowed: a number >= 0 and <= 9 [m])");
 }
 
 TEST(TaggedCodec, SuggestsTypeForAMisspeltTag) {

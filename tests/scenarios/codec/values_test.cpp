@@ -71,8 +71,8 @@ TEST(IntegerCodec, AcceptsWholeNumbersHoweverTheyAreWritten) {
 }
 
 TEST(IntegerCodec, RefusesFractionsAndWhatIsBeyondItsBounds) {
-  for (const char* text : {"1.5", "0", "-1", "9007199254740994", "1e300", "-1e300",
-                           "18446744073709551615", "-9223372036854775808"}) {
+  for (const char* text :
+       {"1.5", "0", "-1", "9007199254740994", "1e300", "-1e300", "18446744073709551615", "-9223372036854775808"}) {
     EXPECT_NE(refusal_of(kCount, text).find("allowed: an integer 1 ... 9007199254740992"), std::string::npos);
   }
 }

@@ -80,7 +80,8 @@ void expect_agreement(const test::Mutation& mutant, const std::string& name) {
   const bool accepted = schema().accepts(mutant.document);
   const std::optional<InputError> objection = objection_to(mutant.document);
   const bool wrong_shape = objection && objection->kind() == InputError::Kind::shape;
-  EXPECT_EQ(wrong_shape, !accepted) << name << " " << mutant.change << "\n reader: " << (objection ? objection->what() : "fine")
+  EXPECT_EQ(wrong_shape, !accepted) << name << " " << mutant.change
+                                    << "\n reader: " << (objection ? objection->what() : "fine")
                                     << "\n schema: " << schema().complaints(mutant.document);
   if (!objection) return;
   const std::string message = objection->what();

@@ -30,13 +30,21 @@ std::vector<std::string> keys_of(const Json& object) {
 
 std::string misspelt(std::string word, Random& random) {
   // Half a character would be no text any more, and no parser lets that through.
-  if (std::any_of(word.begin(), word.end(), [](char c) { return static_cast<unsigned char>(c) > 0x7f; })) return word + "x";
+  if (std::any_of(word.begin(), word.end(), [](char c) { return static_cast<unsigned char>(c) > 0x7f; }))
+    return word + "x";
   const std::size_t i = word.empty() ? 0 : random.below(word.size());
   switch (word.empty() ? 1 : random.below(4)) {
-    case 0: word.erase(i, 1); break;
-    case 1: word.insert(i, 1, static_cast<char>('a' + random.below(26))); break;
-    case 2: word[i] = static_cast<char>(word[i] ^ 0x20); break;
-    default: std::swap(word[i], word[(i + 1) % word.size()]);
+    case 0:
+      word.erase(i, 1);
+      break;
+    case 1:
+      word.insert(i, 1, static_cast<char>('a' + random.below(26)));
+      break;
+    case 2:
+      word[i] = static_cast<char>(word[i] ^ 0x20);
+      break;
+    default:
+      std::swap(word[i], word[(i + 1) % word.size()]);
   }
   return word;
 }
@@ -45,14 +53,53 @@ std::string misspelt(std::string word, Random& random) {
 /// valijson compares as the double 2^53.
 const std::vector<Json>& odd_values() {
   static const std::vector<Json> values = {
-      nullptr, true, false, 0, 1, 2, -1, 100000, 100001, 0.5, 2.5, 1e3, 5.0, -0.0, 1e-300, 1e300, -1e300, 1e9, 1e12,
-      std::uint64_t{1} << 53, (std::uint64_t{1} << 53) + 2, UINT64_MAX, INT64_MIN, "", "5", "null", "mean", "free",
-      "diverges", "leaves_hole", "linear", "round", std::string(199, 'x') + "\xc3\xa4", std::string(201, 'x'),
-      std::string(10'001, 'x'), Json::array(), Json::object(), Json::array({0, 0, 1}), Json::array({1, 2}),
-      Json::array({"leaves_hole"}), Json::array({"diverges", "completes"}), Json::array({Json::array({0, 1})}),
+      nullptr,
+      true,
+      false,
+      0,
+      1,
+      2,
+      -1,
+      100000,
+      100001,
+      0.5,
+      2.5,
+      1e3,
+      5.0,
+      -0.0,
+      1e-300,
+      1e300,
+      -1e300,
+      1e9,
+      1e12,
+      std::uint64_t{1} << 53,
+      (std::uint64_t{1} << 53) + 2,
+      UINT64_MAX,
+      INT64_MIN,
+      "",
+      "5",
+      "null",
+      "mean",
+      "free",
+      "diverges",
+      "leaves_hole",
+      "linear",
+      "round",
+      std::string(199, 'x') + "\xc3\xa4",
+      std::string(201, 'x'),
+      std::string(10'001, 'x'),
+      Json::array(),
+      Json::object(),
+      Json::array({0, 0, 1}),
+      Json::array({1, 2}),
+      Json::array({"leaves_hole"}),
+      Json::array({"diverges", "completes"}),
+      Json::array({Json::array({0, 1})}),
       Json::object({{"type", "sine"}, {"mean", 0}, {"amplitude", 1}, {"period_s", 1}}),
-      Json::object({{"type", "ramp"}, {"start", 0}, {"rate_per_s", 1}}), Json::object({{"type", "plane"}}),
-      Json::object({{"min", 0}}), Json::object({{"threshold", 0.9}})};
+      Json::object({{"type", "ramp"}, {"start", 0}, {"rate_per_s", 1}}),
+      Json::object({{"type", "plane"}}),
+      Json::object({{"min", 0}}),
+      Json::object({{"threshold", 0.9}})};
   return values;
 }
 
@@ -72,8 +119,9 @@ std::string change_object(Json& object, const Json& document, Random& random) {
   switch (keys.empty() ? 0 : random.below(4)) {
     case 0: {  // a name from somewhere else in the document, or one that is valid nowhere
       const std::string path = any_of(pointers_in(document), random);
-      const std::string name = path.empty() || random.below(4) == 0 ? any_of<std::string>({"", "type", "x", "a/b~c"}, random)
-                                                                    : Pointer(path).back();
+      const std::string name = path.empty() || random.below(4) == 0
+                                   ? any_of<std::string>({"", "type", "x", "a/b~c"}, random)
+                                   : Pointer(path).back();
       object[name] = any_of(odd_values(), random);
       return "adds \"" + name + "\"";
     }
@@ -91,10 +139,18 @@ std::string change_object(Json& object, const Json& document, Random& random) {
 
 std::string change_array(Json& array, Random& random) {
   switch (array.empty() ? 2 : random.below(4)) {
-    case 0: array.erase(random.below(array.size())); return "deletes an entry";
-    case 1: array.push_back(array[random.below(array.size())]); return "repeats an entry";
-    case 2: array.push_back(any_of(odd_values(), random)); return "appends a value";
-    default: array = Json::array(); return "empties the list";
+    case 0:
+      array.erase(random.below(array.size()));
+      return "deletes an entry";
+    case 1:
+      array.push_back(array[random.below(array.size())]);
+      return "repeats an entry";
+    case 2:
+      array.push_back(any_of(odd_values(), random));
+      return "appends a value";
+    default:
+      array = Json::array();
+      return "empties the list";
   }
 }
 
@@ -102,10 +158,18 @@ std::string change_number(Json& number, Random& random) {
   const double value = number.get<double>();
   const double factors[] = {-1.0, 0.0, 1e-9, 0.1, 1.5, 10.0, 1e6, 1e15, 1e200};
   switch (random.below(4)) {
-    case 0: number = number.dump(); return "a number as text";
-    case 1: number = value + 0.5; return "half more";
-    case 2: number = Json::array({value}); return "a number as list";
-    default: number = value * factors[random.below(std::size(factors))]; return "another size";
+    case 0:
+      number = number.dump();
+      return "a number as text";
+    case 1:
+      number = value + 0.5;
+      return "half more";
+    case 2:
+      number = Json::array({value});
+      return "a number as list";
+    default:
+      number = value * factors[random.below(std::size(factors))];
+      return "another size";
   }
 }
 
@@ -158,14 +222,25 @@ std::string mutated_text(std::string text, Random& random) {
     const std::size_t i = text.empty() ? 0 : random.below(text.size());
     const std::size_t length = std::min<std::size_t>(1 + random.below(random.below(8) == 0 ? 200 : 4), text.size() - i);
     switch (random.below(6)) {
-      case 0: text.erase(i, length); break;
-      case 1: text.insert(i, text.substr(i, length)); break;
-      case 2: text.insert(i, 1, kTelling[random.below(kTelling.size())]); break;
-      case 3: text.insert(i, text.substr(random.below(text.size() + 1), length)); break;
-      case 4: text.resize(i); break;
+      case 0:
+        text.erase(i, length);
+        break;
+      case 1:
+        text.insert(i, text.substr(i, length));
+        break;
+      case 2:
+        text.insert(i, 1, kTelling[random.below(kTelling.size())]);
+        break;
+      case 3:
+        text.insert(i, text.substr(random.below(text.size() + 1), length));
+        break;
+      case 4:
+        text.resize(i);
+        break;
       default:
-        if (!text.empty()) text[i] = random.below(2) == 0 ? kTelling[random.below(kTelling.size())]
-                                                          : static_cast<char>(text[i] ^ (1 << random.below(8)));
+        if (!text.empty())
+          text[i] = random.below(2) == 0 ? kTelling[random.below(kTelling.size())]
+                                         : static_cast<char>(text[i] ^ (1 << random.below(8)));
     }
   }
   return text;

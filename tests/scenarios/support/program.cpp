@@ -1,6 +1,9 @@
 #include "tests/scenarios/support/program.hpp"
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
+#include <linux/securebits.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -23,6 +26,10 @@ File nameless_file() {
   File file(std::tmpfile(), std::fclose);
   if (!file) throw std::runtime_error("no temporary file");
   return file;
+}
+
+double seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
 std::string contents(std::FILE* file) {
@@ -56,6 +63,7 @@ pid_t start(const std::filesystem::path& program, const std::vector<std::string>
   }
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
+  if (!options.as_root_may && ::geteuid() == 0 && ::prctl(PR_SET_SECUREBITS, SECBIT_NOROOT) != 0) ::_exit(126);
   if (!directory.empty() && ::chdir(directory.c_str()) != 0) ::_exit(127);
   ::execv(argv[0], argv.data());
   ::_exit(127);
@@ -63,23 +71,29 @@ pid_t start(const std::filesystem::path& program, const std::vector<std::string>
 
 }  // namespace
 
+Json ProgramRun::json() const {
+  const Json json = Json::parse(out, nullptr, false);
+  EXPECT_FALSE(json.is_discarded()) << "no JSON: " << out << err;
+  return json;
+}
+
 ProgramRun run_program(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                        const ProgramOptions& options) {
   const File out = nameless_file(), err = nameless_file();
-  const auto begin = Clock::now();
   const pid_t child = start(program, arguments, options, ::fileno(out.get()), ::fileno(err.get()));
-  const auto deadline = begin + std::chrono::duration<double>(options.patience_s);
+  const auto deadline = Clock::now() + std::chrono::duration<double>(options.patience_s);
   int status = 0;
-  while (::waitpid(child, &status, WNOHANG) == 0) {
+  rusage usage{};
+  while (::wait4(child, &status, WNOHANG, &usage) == 0) {
     if (Clock::now() > deadline) {
       ::kill(child, SIGKILL);
-      ::waitpid(child, &status, 0);
+      ::wait4(child, &status, 0, &usage);
       break;
     }
     std::this_thread::sleep_for(std::chrono::microseconds(300));
   }
   ProgramRun run;
-  run.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  run.cpu_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   if (WIFEXITED(status)) run.status = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) run.signal = WTERMSIG(status);
   run.out = contents(out.get());

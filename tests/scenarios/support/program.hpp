@@ -4,22 +4,28 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/codec/codec.hpp"
+
 /// Runs the built programs as a user's shell would, but without a shell: arguments arrive as they are given.
 namespace hapbench::test {
 
 /// What a finished process left.
 struct ProgramRun {
-  int status = -1;  ///< exit status; -1 when a signal ended it
-  int signal = 0;   ///< the signal that ended it, or 0
-  std::string out;  ///< standard output
-  std::string err;  ///< standard error
-  double seconds = 0.0;
+  /// Standard output as JSON; fails the test when it is none.
+  Json json() const;
+
+  int status = -1;           ///< exit status; -1 when a signal ended it
+  int signal = 0;            ///< the signal that ended it, or 0
+  std::string out;           ///< standard output
+  std::string err;           ///< standard error
+  double cpu_seconds = 0.0;  ///< user and system time: unlike the wall's, the same on a busy machine
 };
 
 struct ProgramOptions {
   std::filesystem::path directory = {};  ///< where it runs; empty: here
   double patience_s = 60.0;              ///< a process that takes longer is killed and counts as ended by SIGKILL
-  std::size_t memory_limit = 0;          ///< of address space [bytes]; 0: none. Not with sanitizers, which reserve a lot
+  bool as_root_may = true;       ///< false: root has no privileges either; status 126 when they cannot be dropped
+  std::size_t memory_limit = 0;  ///< of address space [bytes]; 0: none. Not with sanitizers, which reserve a lot
 };
 
 ProgramRun run_program(const std::filesystem::path& program, const std::vector<std::string>& arguments,

@@ -12,6 +12,7 @@ std::vector<NamedScenario> minimal_scenarios() {
       R"({"type": "hole_2d"})",
       R"({"type": "plane"})",
       R"({"type": "slot", "gap_m": 0.001, "depth_m": 0.005, "length_m": 0.01, "spacing_m": 0.0005})",
+      R"({"type": "block_with_hole"})",
       R"({"type": "point_shell", "file": "shell.csv"})",
   };
   std::vector<NamedScenario> scenarios;
@@ -47,6 +48,12 @@ std::vector<NamedScenario> rich_scenarios() {
       "record": {"trajectory": true, "every": 2, "ratio_iterations": [0, 3], "contacts": true, "timing": true},
       "expect": {"outcome": ["completes", "diverges"], "metrics": {"force_max_N": {"min": 0, "max": 1e6},
         "ratio_max": {}}}})")},
+          {"drilled_block", Json::parse(R"({
+      "time": {"step_s": 0.0005, "steps": 10},
+      "environment": {"type": "block_with_hole", "size_m": [0.006, 0.006, 0.004], "hole_diameter_m": 0.002,
+        "hole_depth_m": 0.002, "grid_m": 0.0002, "density": "binary"},
+      "initial": {"position_m": [0.0006, 0, -0.001]},
+      "rendering": {"local_average": true}})")},
           {"recorded_shell", Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 1e2, "stop_when": []},
       "environment": {"type": "point_shell", "file": "shell.csv", "grid_m": 0.0005},

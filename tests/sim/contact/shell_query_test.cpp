@@ -72,17 +72,18 @@ struct AxisFrame {
 std::vector<AxisFrame> axis_frames() {
   std::vector<AxisFrame> frames;
   for (Eigen::Index k = 0; k < 3; ++k) {
-    for (const double sign : {-1.0, 1.0}) frames.push_back({sign * Vec3::Unit(k), Vec3::Unit((k + 1) % 3), Vec3::Unit((k + 2) % 3)});
+    for (const double sign : {-1.0, 1.0})
+      frames.push_back({sign * Vec3::Unit(k), Vec3::Unit((k + 1) % 3), Vec3::Unit((k + 2) % 3)});
   }
   return frames;
 }
 
 TEST_P(ShellQueryForTip, PointsExactlyOnTheSurfaceCollide) {
   const Tool tool{kRadius, kLength, GetParam()};
-  for (const auto& [axis, e1, e2] : axis_frames()) {
-    const ToolPose pose{kPosition, axis};
+  for (const AxisFrame& f : axis_frames()) {
+    const ToolPose pose{kPosition, f.axis};
     const auto expect_hit = [&](double s, double a, double b) {
-      EXPECT_TRUE(collides(tool, pose, kPosition + s * axis + a * e1 + b * e2)) << s << ' ' << a << ' ' << b;
+      EXPECT_TRUE(collides(tool, pose, kPosition + s * f.axis + a * f.e1 + b * f.e2)) << s << ' ' << a << ' ' << b;
     };
     for (const double s : {0.0, -kLength / 2, -kLength}) {
       expect_hit(s, kRadius, 0.0);
@@ -102,10 +103,10 @@ TEST_P(ShellQueryForTip, PointsJustOutsideTheSurfaceDoNotCollide) {
   const Tool tool{kRadius, kLength, GetParam()};
   // One unit in the last place of the coordinates, which are below 1/2; the radius is far above it.
   const double out = 0x1p-53;
-  for (const auto& [axis, e1, e2] : axis_frames()) {
-    const ToolPose pose{kPosition, axis};
+  for (const AxisFrame& f : axis_frames()) {
+    const ToolPose pose{kPosition, f.axis};
     const auto expect_miss = [&](double s, double a, double b) {
-      EXPECT_FALSE(collides(tool, pose, kPosition + s * axis + a * e1 + b * e2)) << s << ' ' << a << ' ' << b;
+      EXPECT_FALSE(collides(tool, pose, kPosition + s * f.axis + a * f.e1 + b * f.e2)) << s << ' ' << a << ' ' << b;
     };
     expect_miss(-kLength - out, 0.0, 0.0);
     expect_miss(-kLength / 2, kRadius + out, 0.0);

@@ -48,11 +48,15 @@ TEST(AnalyticShells, PointCountIsTheNumberOfPointsAndNormalsAreUnit) {
 }
 
 TEST(AnalyticShells, DefaultSizesAreMultiplesOfTheSpacing) {
-  // 30 + 50 + 10 + 50 + 30 intervals; 101 x 101 points; two faces of 101 x 51 points. 0.001 / 0.0001 is not 10 in
-  // doubles, so this fails unless rounding is forgiven.
+  // 30 + 50 + 10 + 50 + 30 intervals; 101 x 101 points; two faces of 101 x 51 points.
   EXPECT_EQ(point_count(Hole2d{}), 171);
   EXPECT_EQ(point_count(Plane{}), 10201);
   EXPECT_EQ(point_count(Slot{}), 10302);
+}
+
+TEST(AnalyticShells, AMultipleOfTheSpacingButForRoundingIsDividedIntoThatMany) {
+  ASSERT_GT(0.0007 / 0.0001, 7.0) << "in doubles";
+  EXPECT_EQ(point_count(Plane{0.0007, 0.0001}), 8 * 8);
 }
 
 TEST(AnalyticShells, AbsurdSizesAreCountedWithoutBeingBuilt) {

@@ -110,9 +110,7 @@ TEST(Divergence, OfAPrescribedPositionIsFoundToo) {
 TEST(Divergence, IsForgottenByReset) {
   SimulationConfig config = config_of(10);
   int rows = 0;
-  Simulation simulation(config, fake_parts([&rows](const ToolState&) {
-                          return Vec3(0, 0, rows++ == 3 ? kNaN : 0.0);
-                        }),
+  Simulation simulation(config, fake_parts([&rows](const ToolState&) { return Vec3(0, 0, rows++ == 3 ? kNaN : 0.0); }),
                         {});
   EXPECT_EQ(simulation.run().outcome, Outcome::diverges);
   simulation.reset();
@@ -127,7 +125,8 @@ TEST(Divergence, OfAnUnstableSpringComesFromTheIntegratorAlone) {
   const double K = 40 * config.mass / (config.dt * config.dt);
   Recorder recorder;
   const auto result =
-      Simulation(config, fake_parts([K](const ToolState& tool) { return Vec3(-K * tool.pose.position); }), {&recorder}).run();
+      Simulation(config, fake_parts([K](const ToolState& tool) { return Vec3(-K * tool.pose.position); }), {&recorder})
+          .run();
   EXPECT_EQ(result.outcome, Outcome::diverges);
   EXPECT_LT(result.rows, 10u);
   EXPECT_EQ(recorder.rows.size(), result.rows);

@@ -49,8 +49,8 @@ TEST(Leapfrog, LeavesTheAxisAlone) {
 }
 
 TEST(Leapfrog, FollowsTheClosedFormOfItsRecurrence) {
-  // With b = B dt/M and k = K dt^2/M the positions obey x_{j+1} = (2 - b - k) x_j - (1 - b) x_{j-1}: powers of the roots
-  // of z^2 - (2 - b - k) z + (1 - b), from x_0 and x_1.
+  // With b = B dt/M and k = K dt^2/M the positions obey x_{j+1} = (2 - b - k) x_j - (1 - b) x_{j-1}: powers of the
+  // roots of z^2 - (2 - b - k) z + (1 - b), from x_0 and x_1.
   for (const double B : {0.0, 5.0, 88.5}) {
     Oscillator o = oscillator(B, 0.0005, 0.001, 0.3);
     const double b = o.B * o.dt / o.M, k = o.K * o.dt * o.dt / o.M;

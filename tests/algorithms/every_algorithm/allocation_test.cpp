@@ -1,0 +1,193 @@
+// No heap allocation in a step, for every algorithm with every stage on springs and on a shell.
+#include "tests/support/allocation_counter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cstdlib>
+#include <memory>
+#include <ostream>
+
+#include "sim/core/aligned.hpp"
+#include "sim/environment/analytic_shells.hpp"
+#include "tests/support/setting.hpp"
+
+namespace hapbench {
+namespace {
+
+// ---- The counter counts.
+
+/// Keeps the compiler from removing an allocation that nobody reads.
+void use(const void* block) {
+  asm volatile("" : : "g"(block) : "memory");
+}
+
+TEST(AllocationCounter, CountsEveryWayToAllocate) {
+  const auto count_of = [](auto allocate) {
+    const test::AllocationCount count;
+    allocate();
+    return count.value();
+  };
+  EXPECT_EQ(count_of([] {}), 0u);
+  EXPECT_EQ(count_of([] { use(std::make_unique<int>(1).get()); }), 1u) << "new";
+  EXPECT_EQ(count_of([] { use(std::make_unique<int[]>(7).get()); }), 1u) << "new[]";
+  EXPECT_EQ(count_of([] { use(AlignedDoubles(3).data()); }), 1u) << "aligned new";
+  EXPECT_EQ(count_of([] {
+              void* block = std::malloc(10);
+              use(block);
+              std::free(block);
+            }),
+            1u)
+      << "malloc";
+  EXPECT_EQ(count_of([] {
+              void* block = std::calloc(10, 1);
+              use(block);
+              std::free(block);
+            }),
+            1u)
+      << "calloc";
+  EXPECT_EQ(count_of([] {
+              void* block = std::aligned_alloc(64, 64);
+              use(block);
+              std::free(block);
+            }),
+            1u)
+      << "aligned_alloc";
+  EXPECT_GE(count_of([] {
+              void* block = std::malloc(10);
+              use(block);
+              block = std::realloc(block, 100000);
+              use(block);
+              std::free(block);
+            }),
+            2u)
+      << "realloc";
+  EXPECT_EQ(count_of([] { use(Eigen::MatrixXd(3, 3).data()); }), 1u) << "Eigen";
+}
+
+TEST(AllocationCounter, SeesAnAllocationInsideAStep) {
+  // A simulation whose observer allocates: what the tests below would find.
+  class Allocating final : public Observer {
+   public:
+    void on_step(const StepRecord& record) noexcept override { rows.push_back(record.time); }
+    std::vector<double> rows;
+  } observer;
+  test::Setting setting;
+  setting.springs = SpringSet{{Vec3::UnitX()}, true};
+  Simulation simulation(test::free_run_config(setting, {}, 10), test::free_run(setting, {}), {&observer});
+  const test::AllocationCount count;
+  simulation.run();
+  EXPECT_GE(count.value(), 1u);
+}
+
+// ---- The claim.
+
+struct Stages {
+  const char* name;
+  bool local_average;
+  std::optional<ReductionConfig> reduction;
+};
+const Stages kStages[] = {
+    {"plain", false, {}},
+    {"reduced", false, ReductionConfig{}},
+    {"shuffled_and_reduced", false, ReductionConfig{0.995, 5, 42}},
+    {"averaged", true, {}},
+    {"averaged_and_reduced", true, ReductionConfig{}},
+};
+
+struct Instance {
+  std::string_view algorithm;
+  std::string_view depth_model;
+  const Stages* stages;
+  bool springs;
+
+  std::string name() const {
+    return std::string(algorithm) + (springs ? "_on_springs_" : "_on_shell_" + std::string(depth_model) + "_") +
+           stages->name;
+  }
+};
+
+void PrintTo(const Instance& instance, std::ostream* out) {
+  *out << instance.name();
+}
+
+std::vector<Instance> instances() {
+  std::vector<Instance> all;
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    for (const Stages& stages : kStages) {
+      if (!stages.local_average) all.push_back({algorithm.info->name, "surface_normal", &stages, true});
+      for (const DepthModelEntry& model : depth_models()) {
+        if (!algorithm.fixed_depth_model.empty() && algorithm.fixed_depth_model != model.info->name) continue;
+        all.push_back({algorithm.info->name, model.info->name, &stages, false});
+      }
+    }
+  }
+  return all;
+}
+
+/// The thesis's springs, or its 2-D peg, wide enough to touch many points.
+test::Setting setting_of(const Instance& instance) {
+  test::Setting setting;
+  if (instance.springs) {
+    setting.springs = SpringSet{{}, true};
+    setting.springs->gradients.assign(100, Vec3::UnitX());
+    setting.springs->gradients.insert(setting.springs->gradients.end(), 100, -Vec3::UnitX());
+    setting.springs->gradients.insert(setting.springs->gradients.end(), 10, -Vec3::UnitY());
+    setting.pose.position = {-0.005, -0.005, 0.0};
+  } else {
+    setting.tool = {0.0005, 0.005, Tip::round};
+    setting.points = surface_points(Hole2d{});
+    setting.cell_size = 0.0003;
+  }
+  return setting;
+}
+
+SimulationParts parts_of(const Instance& instance, const RenderingConfig& config) {
+  const test::Setting setting = setting_of(instance);
+  SimulationParts parts = test::free_run(setting, config);
+  if (!instance.springs) {
+    // Led through the hole, or laws that push the peg out would soon be done.
+    parts.motion = std::make_unique<ScriptedMotion>(
+        Orientation{{0, 1, 0}, {1, 0, 0}, Profile::Shape(Profile::Ramp{0.1, 1.2}), {}},
+        std::array<Profile, 3>{Profile::Shape(Profile::Sine{0.0, 0.0001, 0.05, 0.0}), -0.004, 0.0});
+  }
+  return parts;
+}
+
+/// Asks for the ratio, so that computing it is part of the step, and sees whether the run touched anything.
+class ContactCounter final : public Observer {
+ public:
+  bool wants_ratio() const noexcept override { return true; }
+  void on_step(const StepRecord& record) noexcept override { rows_with_contact += record.colliding > 0; }
+  int rows_with_contact = 0;
+};
+
+class NoAllocation : public testing::TestWithParam<Instance> {};
+INSTANTIATE_TEST_SUITE_P(Every, NoAllocation, testing::ValuesIn(instances()),
+                         [](const auto& instance) { return instance.param.name(); });
+
+TEST_P(NoAllocation, InAStepOrAReset) {
+  RenderingConfig config;
+  config.algorithm = GetParam().algorithm;
+  config.depth_model = GetParam().depth_model;
+  config.local_average = GetParam().stages->local_average;
+  config.reduction = GetParam().stages->reduction;
+  config.mu_s = 5.0;
+  config.mu_f = 10.0;
+  config.max_damping = 100.0;
+  config.max_force = 30.0;
+  ContactCounter observer;
+  const SimulationConfig run = test::free_run_config(setting_of(GetParam()), config, 300);
+  Simulation simulation(run, parts_of(GetParam(), config), {&observer});
+
+  // From the very first step: nothing warms up.
+  const test::AllocationCount count;
+  simulation.run();
+  simulation.reset();
+  simulation.run();
+  EXPECT_EQ(count.value(), 0u);
+  EXPECT_EQ(observer.rows_with_contact, 600);
+}
+
+}  // namespace
+}  // namespace hapbench

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+/// Inputs the program must refuse, and what its one line of message must hold.
+namespace hapbench::test {
+
+struct BadInput {
+  std::string name;                               ///< of the test
+  std::string scenario;                           ///< text of the scenario file
+  std::string place;                              ///< in the message behind the file's name: a JSON pointer, mostly
+  std::string says;                               ///< in the message behind the place
+  std::map<std::string, std::string> files = {};  ///< others beside the scenario
+  std::string (*make)() = nullptr;                ///< makes the scenario's text when it is too large to keep
+};
+
+/// The minimal scenario of an environment type with `value`, JSON or not, at the pointer.
+std::string with_value(const std::string& environment, const std::string& pointer, const std::string& value);
+
+std::vector<BadInput> malformed_texts();
+std::vector<BadInput> wrong_values();
+std::vector<BadInput> wrong_structures();
+std::vector<BadInput> contradictions();
+std::vector<BadInput> absurd_sizes();
+std::vector<BadInput> bad_shell_files();
+std::vector<BadInput> bad_motion_files();
+
+}  // namespace hapbench::test

@@ -1,0 +1,111 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+#include "scenarios/commands/command.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/file_tree.hpp"
+#include "tests/scenarios/support/program.hpp"
+
+/// Every scenario that comes with the program, run by the program.
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+using test::lines_of;
+using test::ProgramRun;
+
+ProgramRun run_all_into(const fs::path& directory, const fs::path& program = test::hapbench_program()) {
+  std::vector<std::string> arguments = {"run", "--out", directory.string()};
+  for (const BundledScenario& bundled : bundled_scenarios()) arguments.push_back(bundled.file.string());
+  test::ProgramOptions options;
+  options.patience_s = 280.0;
+  return run_program(program, arguments, options);
+}
+
+TEST(BundledScenarios, EndAsTheirExpectBlocksSay) {
+  const test::TemporaryDirectory directory;
+  const ProgramRun run = run_all_into(directory.path());
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  for (const BundledScenario& bundled : bundled_scenarios()) {
+    const Json summary = Json::parse(test::read_file(directory.path() / bundled.name / "summary.json"));
+    EXPECT_EQ(summary["expected"], true) << bundled.name;
+    EXPECT_EQ(summary["name"], bundled.name) << "the name in the file is the file's";
+  }
+}
+
+TEST(BundledScenarios, AllocateNothingInTheirStepLoops) {
+  const test::TemporaryDirectory directory;
+  run_all_into(directory.path());
+  for (const BundledScenario& bundled : bundled_scenarios()) {
+    const Json summary = Json::parse(test::read_file(directory.path() / bundled.name / "summary.json"));
+    EXPECT_EQ(summary["work"]["allocations"], 0) << bundled.name;
+  }
+}
+
+TEST(BundledScenarios, GiveTheSameBytesTwice) {
+  const test::TemporaryDirectory directory;
+  run_all_into(directory / "a");
+  run_all_into(directory / "b");
+  test::expect_same_files(directory / "a", directory / "b", {"timing.json"});
+}
+
+TEST(BundledScenarios, GiveTheSameBytesInTheScalarBuild) {
+  const test::TemporaryDirectory directory;
+  EXPECT_EQ(run_all_into(directory / "simd").status, 0);
+  EXPECT_EQ(run_all_into(directory / "scalar", test::hapbench_scalar_program()).status, 0);
+  test::expect_same_files(directory / "simd", directory / "scalar", {"timing.json"});
+}
+
+TEST(BundledScenarios, WriteTheColumnsOfTheTrajectoryInTheirOrder) {
+  const test::TemporaryDirectory directory;
+  run_all_into(directory.path());
+  for (const BundledScenario& bundled : bundled_scenarios()) {
+    const fs::path file = directory.path() / bundled.name / "trajectory.csv";
+    if (!fs::exists(file)) continue;
+    EXPECT_EQ(
+        lines_of(test::read_file(file))[0],
+        "step,time_s,px_m,py_m,pz_m,vx_m_per_s,vy_m_per_s,vz_m_per_s,axis_x,axis_y,axis_z,"
+        "fx_N,fy_N,fz_N,fspring_x_N,fspring_y_N,fspring_z_N,fmeas_x_N,fmeas_y_N,fmeas_z_N,fin_x_N,fin_y_N,fin_z_N,"
+        "hx_m,hy_m,hz_m,colliding,rendered,depth_max_m,ratio_min,ratio_max")
+        << bundled.name;
+  }
+}
+
+/// The shortest decimals that read back as the same double, however they are spelt: none with one digit less does.
+void expect_shortest(const std::string& cell) {
+  const double value = test::number_in(cell);
+  const auto digits = static_cast<int>(std::count_if(cell.begin(), std::find(cell.begin(), cell.end(), 'e'),
+                                                     [](char c) { return c >= '0' && c <= '9'; }));
+  for (int precision = 1; precision < 17; ++precision) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.*e", precision - 1, value);
+    if (std::strtod(text, nullptr) != value) continue;
+    // Zeros before the first digit or after the last are no digits of the number.
+    EXPECT_LE(precision, digits) << cell;
+    std::string significant(cell.substr(0, cell.find('e')));
+    std::erase_if(significant, [](char c) { return c == '.' || c == '-'; });
+    significant.erase(0, std::min(significant.find_first_not_of('0'), significant.size()));
+    while (significant.ends_with('0')) significant.pop_back();
+    EXPECT_LE(significant.size(), static_cast<std::size_t>(precision)) << cell;
+    return;
+  }
+}
+
+TEST(BundledScenarios, WriteTheShortestNumbersThatReadBackTheSame) {
+  const test::TemporaryDirectory directory;
+  test::hapbench({"run", "peg_in_hole_2d_shaped_stiffness", "--out", (directory / "out").string()});
+  const auto rows = lines_of(test::read_file(directory / "out/trajectory.csv"));
+  ASSERT_GT(rows.size(), 100u);
+  for (std::size_t i = 1; i < rows.size(); i += 7) {
+    for (const std::string& cell : test::cells_of(rows[i])) {
+      if (!cell.empty()) expect_shortest(cell);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hapbench

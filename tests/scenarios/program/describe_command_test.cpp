@@ -1,0 +1,151 @@
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "algorithms/registry.hpp"
+#include "results/io/json_text.hpp"
+#include "scenarios/commands/command.hpp"
+#include "scenarios/config/environment_codec.hpp"
+#include "scenarios/config/scenario_codec.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/program.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+/// list, describe, validate
+namespace hapbench {
+namespace {
+
+using test::hapbench;
+using test::lines_of;
+using test::ProgramRun;
+
+TEST(ListCommand, NamesAllThereIs) {
+  const ProgramRun run = hapbench({"list"});
+  EXPECT_EQ(run.status, 0);
+  std::set<std::string> names;
+  for (const Json& entry : hapbench({"list", "--json"}).json()) {
+    names.insert(entry["name"]);
+    EXPECT_NE(run.out.find(entry["name"].get<std::string>()), std::string::npos) << entry;
+  }
+  for (const AlgorithmEntry& entry : algorithms()) EXPECT_TRUE(names.contains(entry.info->name)) << entry.info->name;
+  for (const DepthModelEntry& entry : depth_models()) EXPECT_TRUE(names.contains(entry.info->name)) << entry.info->name;
+  for (const std::string& name : environment_names()) EXPECT_TRUE(names.contains(name)) << name;
+  for (const BundledScenario& bundled : bundled_scenarios()) EXPECT_TRUE(names.contains(bundled.name)) << bundled.name;
+  EXPECT_EQ(hapbench({"list", "--quiet"}).out, "");
+}
+
+TEST(DescribeCommand, ExplainsEveryListedName) {
+  for (const Json& entry : hapbench({"list", "--json"}).json()) {
+    const std::string name = entry["name"];
+    const ProgramRun run = hapbench({"describe", name});
+    EXPECT_EQ(run.status, 0) << name << run.err;
+    EXPECT_NE(run.out.find(name), std::string::npos) << run.out;
+    EXPECT_EQ(run.err, "") << name;
+    EXPECT_TRUE(hapbench({"describe", name, "--json"}).json().is_structured()) << name;
+  }
+}
+
+TEST(DescribeCommand, GivesTheFormulaTheSourceAndTheParametersOfAnAlgorithm) {
+  const ProgramRun run = hapbench({"describe", "shaped_stiffness"});
+  for (const char* part : {"formula", "source", "known failure", "rendering.iterations", "default", "range", "unit"}) {
+    EXPECT_NE(run.out.find(part), std::string::npos) << part;
+  }
+}
+
+TEST(DescribeCommand, GivesBothMeaningsOfAName) {
+  const ProgramRun run = hapbench({"describe", "normal_projection"});
+  EXPECT_NE(run.out.find("algorithm normal_projection"), std::string::npos);
+  EXPECT_NE(run.out.find("depth model normal_projection"), std::string::npos);
+  EXPECT_EQ(hapbench({"describe", "normal_projection", "--json"}).json().size(), 2u);
+}
+
+TEST(DescribeCommand, GivesFieldsWithDefaultRangeAndMeaning) {
+  const ProgramRun run = hapbench({"describe", "rendering.stiffness_N_per_m"});
+  EXPECT_EQ(run.status, 0);
+  EXPECT_NE(run.out.find("number >= 0 <= 1"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("20000"), std::string::npos) << run.out;
+  const std::string all = hapbench({"describe", "scenario"}).out;
+  for (const char* field : {"time.step_s", "rendering.limits.max_force_N", "record.every", "bounds.speed_m_per_s"}) {
+    EXPECT_NE(all.find(field), std::string::npos) << field;
+  }
+}
+
+TEST(DescribeCommand, PrintsTheSchema) {
+  EXPECT_EQ(hapbench({"describe", "schema"}).out, json_text(scenario_schema()));
+}
+
+TEST(DescribeCommand, ExplainsAScenarioFileOfTheCurrentDirectory) {
+  const test::TemporaryDirectory directory;
+  test::write_plainly(directory / "mine.json", test::minimal_scenario("point_shell").dump());
+  test::ProgramOptions options;
+  options.directory = directory.path();
+  const ProgramRun run = hapbench({"describe", "mine.json"}, options);
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("scenario mine"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("\"file\": \"shell.csv\""), std::string::npos) << run.out;
+}
+
+TEST(DescribeCommand, RefusesAnUnknownNameAndSuggestsTheNearest) {
+  const ProgramRun run = hapbench({"describe", "shaped_stifness"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.err.find("nearest valid name: \"shaped_stiffness\""), std::string::npos) << run.err;
+  EXPECT_EQ(lines_of(run.err).size(), 1u);
+  for (const char* name : {"", "rendering.", "rendering.stiffness", "time.step_s.x", "no such thing"}) {
+    EXPECT_EQ(hapbench({"describe", name}).status, 2) << name;
+  }
+}
+
+class ValidateCommand : public testing::Test {
+ protected:
+  std::string write(const std::string& name, const std::string& text) const {
+    test::write_plainly(directory_ / name, text);
+    return (directory_ / name).string();
+  }
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(ValidateCommand, AcceptsEveryBundledScenario) {
+  std::vector<std::string> arguments = {"validate"};
+  for (const BundledScenario& bundled : bundled_scenarios()) arguments.push_back(bundled.file.string());
+  const ProgramRun run = hapbench(arguments);
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  EXPECT_EQ(lines_of(run.out).size(), arguments.size() - 1);
+}
+
+TEST_F(ValidateCommand, JudgesEachFileAndGoesOnAfterABadOne) {
+  const std::string good = write("good.json", test::minimal_scenario("plane").dump()), bad = write("bad.json", "{}");
+  const ProgramRun run = hapbench({"validate", bad, good, "no_such_scenario"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_EQ(run.out, good + ": valid\n");
+  const auto errors = lines_of(run.err);
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_EQ(errors[0].find("hapbench: error: " + bad + ": missing field \"time\""), 0u);
+  EXPECT_EQ(errors[1].find("hapbench: error: no_such_scenario: "), 0u);
+}
+
+TEST_F(ValidateCommand, ReadsTheFilesAScenarioNames) {
+  const std::string file = write("shell.json", test::minimal_scenario("point_shell").dump());
+  EXPECT_EQ(hapbench({"validate", file}).status, 2);
+  write("shell.csv", "x_m,y_m,z_m,nx,ny,nz\n0,0,0,0,0,1\n");
+  EXPECT_EQ(hapbench({"validate", file}).status, 0);
+}
+
+TEST_F(ValidateCommand, PrintsVerdictsAsJson) {
+  const std::string good = write("good.json", test::minimal_scenario("plane").dump()), bad = write("bad.json", "{}");
+  const Json verdicts = hapbench({"validate", good, bad, "--json"}).json();
+  EXPECT_EQ(verdicts[0], (Json{{"file", good}, {"valid", true}}));
+  EXPECT_EQ(verdicts[1]["valid"], false);
+  EXPECT_NE(verdicts[1]["error"].get<std::string>().find("missing field"), std::string::npos);
+  EXPECT_EQ(hapbench({"validate", good, "--quiet"}).out, "");
+}
+
+TEST_F(ValidateCommand, WritesNothing) {
+  test::ProgramOptions options;
+  options.directory = directory_.path();
+  hapbench({"validate", "single_spring"}, options);
+  EXPECT_EQ(directory_.entries(), std::vector<std::string>{});
+}
+
+}  // namespace
+}  // namespace hapbench

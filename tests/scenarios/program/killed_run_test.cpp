@@ -1,0 +1,73 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/file_tree.hpp"
+#include "tests/scenarios/support/program.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+/// A run of minutes, killed once it has begun to write.
+class KilledRun : public testing::Test {
+ protected:
+  /// Names of what it left.
+  Names kill_a_run() const {
+    test::RunningProgram run(test::hapbench_program(),
+                             {"run", "single_spring", "--out", out_.string(), "--set", "time.steps=20000000"});
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (bytes_written() < 100'000 && run.is_running() && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_GE(bytes_written(), 100'000u);
+    EXPECT_TRUE(run.kill()) << "it had ended before it was killed";
+    return test::names_below(out_);
+  }
+  std::uintmax_t bytes_written() const {
+    std::uintmax_t bytes = 0;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(out_, ignored)) {
+      const auto size = entry.file_size(ignored);
+      if (!ignored) bytes += size;
+    }
+    return bytes;
+  }
+
+  test::TemporaryDirectory directory_;
+  fs::path out_ = directory_ / "out";
+};
+
+TEST_F(KilledRun, LeavesNoFileUnderAFinalName) {
+  const Names left = kill_a_run();
+  EXPECT_FALSE(left.empty());
+  for (const std::string& name : left) {
+    EXPECT_TRUE(name.starts_with('.') && name.ends_with(".tmp")) << name;
+  }
+}
+
+TEST_F(KilledRun, IsCleanedUpByTheNext) {
+  kill_a_run();
+  const test::ProgramRun run = test::hapbench({"run", "single_spring", "--out", out_.string()});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(test::names_below(out_), (Names{"scenario.effective.json", "summary.json", "trajectory.csv"}));
+  // Nothing of the killed run is in the new one.
+  test::hapbench({"run", "single_spring", "--out", (directory_ / "fresh").string()});
+  test::expect_same_files(out_, directory_ / "fresh");
+}
+
+TEST_F(KilledRun, LeavesTheResultsOfAnEarlierRunComplete) {
+  test::hapbench({"run", "single_spring", "--out", out_.string()});
+  const auto before = test::files_below(out_);
+  kill_a_run();
+  auto after = test::files_below(out_);
+  std::erase_if(after, [](const auto& file) { return file.first.ends_with(".tmp"); });
+  EXPECT_EQ(after, before);
+}
+
+}  // namespace
+}  // namespace hapbench

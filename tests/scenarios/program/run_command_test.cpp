@@ -1,0 +1,224 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/file_tree.hpp"
+#include "tests/scenarios/support/program.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+using test::hapbench;
+using test::lines_of;
+using test::ProgramRun;
+
+class RunCommand : public testing::Test {
+ protected:
+  std::string write_scenario(const std::string& name, const Json& json) const {
+    fs::create_directories((directory_.path() / name).parent_path());
+    test::write_plainly(directory_.path() / name, json.dump());
+    return (directory_.path() / name).string();
+  }
+  std::string out(const std::string& name = "out") const { return (directory_ / name).string(); }
+  Json summary(const std::string& directory = "out") const {
+    return Json::parse(test::read_file(directory_.path() / directory / "summary.json"));
+  }
+
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(RunCommand, WritesOneScenarioIntoTheGivenDirectory) {
+  const ProgramRun run = hapbench({"run", "single_spring", "--out", out()});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  EXPECT_EQ(test::names_below(out()), (Names{"scenario.effective.json", "summary.json", "trajectory.csv"}));
+}
+
+TEST_F(RunCommand, WritesSeveralScenariosIntoADirectoryEach) {
+  const std::string file = write_scenario("my scene.json", test::minimal_scenario("plane"));
+  const ProgramRun run = hapbench({"run", "single_spring", file, "--out", out()});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(test::names_below(out()), (Names{"my scene/scenario.effective.json", "my scene/summary.json",
+                                             "my scene/trajectory.csv", "single_spring/scenario.effective.json",
+                                             "single_spring/summary.json", "single_spring/trajectory.csv"}));
+}
+
+TEST_F(RunCommand, WritesBelowResultsOutWithoutAGivenDirectory) {
+  test::ProgramOptions options;
+  options.directory = directory_.path();
+  EXPECT_EQ(hapbench({"run", "single_spring"}, options).status, 0);
+  EXPECT_EQ(test::names_below(directory_ / "results/out/single_spring").size(), 3u);
+}
+
+TEST_F(RunCommand, WritesWhatTheScenarioRecords) {
+  Json json = test::minimal_scenario("plane");
+  json["record"] =
+      Json::parse(R"({"trajectory": false, "contacts": true, "ratio_iterations": [0, 3], "timing": true})");
+  EXPECT_EQ(hapbench({"run", write_scenario("a.json", json), "--out", out()}).status, 0);
+  EXPECT_EQ(test::names_below(out()),
+            (Names{"contacts.csv", "ratios.csv", "scenario.effective.json", "summary.json", "timing.json"}));
+  // Another run into the same directory leaves no file that is not its own.
+  json["record"] = Json::object();
+  EXPECT_EQ(hapbench({"run", write_scenario("a.json", json), "--out", out()}).status, 0);
+  EXPECT_EQ(test::names_below(out()), (Names{"scenario.effective.json", "summary.json", "trajectory.csv"}));
+}
+
+TEST_F(RunCommand, RecordsEachNthRow) {
+  Json json = test::minimal_scenario("springs");
+  json["record"]["every"] = 7;
+  EXPECT_EQ(hapbench({"run", write_scenario("a.json", json), "--out", out()}).status, 0);
+  const auto rows = lines_of(test::read_file(directory_ / "out/trajectory.csv"));
+  ASSERT_EQ(rows.size(), 4u);  // header, rows 0, 7, 14 of 20
+  EXPECT_EQ(rows[3].substr(0, 3), "14,");
+  EXPECT_EQ(summary()["steps"], 20);
+}
+
+TEST_F(RunCommand, ShowsATableRowForEachScenario) {
+  const ProgramRun run = hapbench({"run", "single_spring", "single_damper", "--out", out()});
+  const auto lines = lines_of(run.out);
+  ASSERT_EQ(lines.size(), 6u) << run.out;
+  for (const char* column : {"scenario", "algorithm", "outcome", "steps", "max force N", "velocity TV m/s", "reversals",
+                             "vibration m2/s2", "max depth mm", "ratio", "us/step"}) {
+    EXPECT_NE(lines[0].find(column), std::string::npos) << column;
+  }
+  EXPECT_EQ(lines[2].find("single_spring  summation  completes"), 0u) << lines[2];
+  EXPECT_EQ(lines[3].find("single_damper  summation  completes"), 0u) << lines[3];
+  EXPECT_EQ(lines[5], "results in " + out());
+}
+
+TEST_F(RunCommand, PrintsNothingUnderQuiet) {
+  const ProgramRun run = hapbench({"run", "single_spring", "--out", out(), "--quiet"});
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.out + run.err, "");
+}
+
+TEST_F(RunCommand, PrintsTheSummariesUnderJson) {
+  const ProgramRun run = hapbench({"run", "single_spring", "single_damper", "--out", out(), "--json"});
+  const Json json = run.json();
+  ASSERT_EQ(json.size(), 2u);
+  EXPECT_EQ(json[0], summary("out/single_spring"));
+  EXPECT_EQ(json[1]["name"], "single_damper");
+}
+
+TEST_F(RunCommand, OverridesFieldsForEveryScenario) {
+  const ProgramRun run = hapbench({"run", "single_spring", "single_damper", "--out", out(), "--set", "time.steps=5",
+                                   "--set", "initial.position_m=[0.002, 0, 0]", "--json"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  for (const Json& one : run.json()) EXPECT_EQ(one["steps"], 5);
+  const auto rows = lines_of(test::read_file(directory_ / "out/single_damper/trajectory.csv"));
+  ASSERT_EQ(rows.size(), 6u);
+  EXPECT_EQ(test::cells_of(rows[1])[2], "0.002");
+}
+
+TEST_F(RunCommand, TakesTheFilesNameForANamelessScenario) {
+  hapbench({"run", write_scenario("nameless.json", test::minimal_scenario("plane")), "--out", out()});
+  EXPECT_EQ(summary()["name"], "nameless");
+}
+
+TEST_F(RunCommand, FindsFilesBesideTheScenarioFromAnywhere) {
+  write_scenario("deep/er/scene.json", test::minimal_scenario("point_shell"));
+  fs::copy_file(test::data_directory() / "shell.csv", directory_ / "deep/er/shell.csv");
+  test::ProgramOptions options;
+  options.directory = directory_ / "deep";
+  EXPECT_EQ(hapbench({"run", "er/scene.json", "--out", "../out"}, options).status, 0);
+  EXPECT_TRUE(fs::exists(directory_ / "out/summary.json"));
+}
+
+TEST_F(RunCommand, RefusesTwoScenariosOfOneName) {
+  const std::string a = write_scenario("a/x.json", test::minimal_scenario("plane"));
+  const std::string b = write_scenario("b/x.json", test::minimal_scenario("plane"));
+  const ProgramRun run = hapbench({"run", a, b, "--out", out()});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.err.find(b + ": a second scenario named \"x\""), std::string::npos) << run.err;
+  EXPECT_FALSE(fs::exists(out()));
+}
+
+TEST_F(RunCommand, WarnsOnStandardErrorOfWhatTheAlgorithmOverrides) {
+  Json json = test::minimal_scenario("plane");
+  json["rendering"] = {{"algorithm", "original_averaging"}, {"depth_model", "surface_normal"}};
+  const std::string file = write_scenario("a.json", json);
+  const ProgramRun run = hapbench({"run", file, "--out", out()});
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.err,
+            "hapbench: warning: " + file +
+                ": /rendering/depth_model: \"surface_normal\" is not used: algorithm \"original_averaging\" is "
+                "defined with \"shortest_distance\"\n");
+}
+
+TEST_F(RunCommand, ExitsWith3WhenARunDivergesUnexpectedlyAndKeepsWhatWasRecorded) {
+  const ProgramRun run =
+      hapbench({"run", "single_spring_unstable", "--out", out(), "--set", "expect.outcome=completes"});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_NE(run.err.find("outcome is \"diverges\""), std::string::npos) << run.err;
+  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1);
+  const Json s = summary();
+  EXPECT_EQ(s["outcome"], "diverges");
+  EXPECT_EQ(s["expected"], false);
+  const Json& divergence = s["divergence"];
+  const std::string quantity = divergence["quantity"];
+  EXPECT_TRUE(quantity == "position" || quantity == "velocity" || quantity == "rendered force") << quantity;
+  EXPECT_GT(divergence["magnitude"], divergence["bound"]);
+  // All rows before the one that diverged are there.
+  const std::size_t step = divergence["step"];
+  const auto rows = lines_of(test::read_file(directory_ / "out/trajectory.csv"));
+  EXPECT_EQ(rows.size(), 1 + step);
+  EXPECT_EQ(s["steps"], step);
+  EXPECT_EQ(test::cells_of(rows.back())[0], std::to_string(step - 1));
+  EXPECT_NEAR(divergence["time_s"].get<double>(), 0.0005 * static_cast<double>(step), 1e-12);
+}
+
+TEST_F(RunCommand, ExitsWith0WhenADivergenceIsExpected) {
+  const ProgramRun run = hapbench({"run", "single_spring_unstable", "--out", out()});
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.err, "");
+  EXPECT_EQ(summary()["expected"], true);
+  EXPECT_EQ(summary()["outcome"], "diverges");
+}
+
+TEST_F(RunCommand, ExitsWith3WhenAnExpectedDivergenceFailsToCome) {
+  const ProgramRun run = hapbench({"run", "single_spring", "--out", out(), "--set", "expect.outcome=diverges"});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_NE(run.err.find("outcome is \"completes\"; expected \"diverges\""), std::string::npos) << run.err;
+}
+
+TEST_F(RunCommand, GoesOnAfterAnUnexpectedOutcome) {
+  const ProgramRun run =
+      hapbench({"run", "single_spring", "single_damper", "--out", out(), "--set", "expect.outcome=diverges"});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_TRUE(fs::exists(directory_ / "out/single_damper/summary.json"));
+  EXPECT_EQ(lines_of(run.err).size(), 2u);
+}
+
+TEST_F(RunCommand, ExitsWith3AndNamesEachMetricOutOfItsBounds) {
+  const ProgramRun run =
+      hapbench({"run", "single_spring", "--out", out(), "--set", "expect.metrics.force_max_N.max=1", "--set",
+                "expect.metrics.steps_in_contact.min=401", "--set", "expect.metrics.depth_max_m.max=0.5"});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_NE(run.err.find("force_max_N is 20; expected at most 1"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("steps_in_contact is 400; expected at least 401"), std::string::npos) << run.err;
+  EXPECT_EQ(lines_of(run.err).size(), 2u);
+  EXPECT_EQ(summary()["expected"], false);
+}
+
+TEST_F(RunCommand, ExitsWith3WhenABoundedMetricHasNoValue) {
+  // Nothing is touched, so there is no ratio.
+  const ProgramRun run = hapbench({"run", "single_spring", "--out", out(), "--set", "environment.groups=[]", "--set",
+                                   "expect.metrics.ratio_max.max=2"});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_NE(run.err.find("ratio_max has no value"), std::string::npos) << run.err;
+}
+
+TEST_F(RunCommand, StopsADivergenceOfTheFirstRow) {
+  const ProgramRun run = hapbench({"run", "single_spring", "--out", out(), "--set", "bounds.position_m=1e-9"});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_EQ(summary()["divergence"]["step"], 0);
+  EXPECT_EQ(summary()["metrics"]["final_position_m"], nullptr);
+  EXPECT_EQ(lines_of(test::read_file(directory_ / "out/trajectory.csv")).size(), 1u);
+}
+
+}  // namespace
+}  // namespace hapbench

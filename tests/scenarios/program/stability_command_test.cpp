@@ -1,0 +1,109 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/file_tree.hpp"
+#include "tests/scenarios/support/program.hpp"
+
+namespace hapbench {
+namespace {
+
+using test::cells_of;
+using test::hapbench;
+using test::lines_of;
+using test::number_in;
+using test::ProgramRun;
+using Names = std::vector<std::string>;
+
+class StabilityCommand : public testing::Test {
+ protected:
+  test::TemporaryDirectory directory_;
+  std::string out_ = (directory_ / "out").string();
+};
+
+TEST_F(StabilityCommand, FindsTheThreeLimitsOfA3ThreeWays) {
+  const ProgramRun run = hapbench({"stability", "single_spring", "--out", out_});
+  EXPECT_EQ(run.status, 0) << run.err;
+  const auto rows = lines_of(test::read_file(directory_ / "out/limits.csv"));
+  ASSERT_EQ(rows.size(), 5u);
+  EXPECT_EQ(rows[0], "case,unit,analytic,eigenvalue,simulation,damping_at_limit_N_s_per_m,lambda_max");
+  const struct {
+    const char *name, *unit;
+    double limit, tolerance;
+  } kCases[] = {{"stiffness_undamped", "N/m", 1.6e6, 1e-3},
+                {"damping_alone", "N s/m", 400.0, 1e-9},
+                {"stiffness_damped", "N/m", 433731.0, 1.0}};  // METHOD 8.5 gives whole numbers
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto cells = cells_of(rows[1 + i]);
+    EXPECT_EQ(cells[0], kCases[i].name);
+    EXPECT_EQ(cells[1], kCases[i].unit);
+    EXPECT_NEAR(number_in(cells[2]), kCases[i].limit, kCases[i].tolerance);
+    EXPECT_NEAR(number_in(cells[3]), kCases[i].limit, 0.01 * kCases[i].limit);
+    EXPECT_NEAR(number_in(cells[4]), kCases[i].limit, 0.01 * kCases[i].limit);
+    EXPECT_EQ(cells[6], "1");
+  }
+  EXPECT_NEAR(number_in(cells_of(rows[3])[5]), 291.6, 0.05);
+}
+
+TEST_F(StabilityCommand, WritesRootLociThatLeaveTheUnitCircle) {
+  hapbench({"stability", "single_spring", "--out", out_});
+  EXPECT_EQ(test::names_below(out_), (Names{"limits.csv", "root_locus.csv", "scenario.effective.json"}));
+  const auto rows = lines_of(test::read_file(directory_ / "out/root_locus.csv"));
+  EXPECT_EQ(rows[0], "case,value,first_real,first_imaginary,second_real,second_imaginary,spectral_radius");
+  EXPECT_GT(rows.size(), 1000u);
+  std::size_t beyond = 0;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const auto cells = cells_of(rows[i]);
+    const double radius = std::max(std::hypot(number_in(cells[2]), number_in(cells[3])),
+                                   std::hypot(number_in(cells[4]), number_in(cells[5])));
+    ASSERT_NEAR(number_in(cells[6]), radius, 1e-14 * radius) << rows[i];
+    if (radius > 1.001) ++beyond;
+  }
+  EXPECT_GT(beyond, rows.size() / 10);  // a fifth of the values lies beyond the limit
+}
+
+TEST_F(StabilityCommand, DividesByLambdaForSeveralSprings) {
+  const ProgramRun run =
+      hapbench({"stability", "single_spring", "--set", "environment.groups.0.count=8", "--json", "--out", out_});
+  const Json limits = run.json()[0]["limits"];
+  EXPECT_EQ(limits[0]["lambda_max"], 8.0);
+  EXPECT_NEAR(limits[0]["analytic"].get<double>(), 2e5, 1e-3);
+  EXPECT_NEAR(limits[0]["simulation"].get<double>(), 2e5, 2e3);
+  EXPECT_NEAR(limits[1]["analytic"].get<double>(), 50.0, 1e-9);
+  EXPECT_NEAR(limits[1]["simulation"].get<double>(), 50.0, 0.5);
+  EXPECT_NEAR(limits[2]["simulation"].get<double>(), limits[2]["analytic"].get<double>(),
+              0.01 * limits[2]["analytic"].get<double>());
+}
+
+TEST_F(StabilityCommand, PrintsATable) {
+  const ProgramRun run = hapbench({"stability", "single_spring", "--out", out_});
+  EXPECT_NE(run.out.find("M = 0.1 kg, dt = 0.0005 s, zeta = 0.7"), std::string::npos) << run.out;
+  for (const char* column : {"analytic", "eigenvalues", "simulation", "unit"}) {
+    EXPECT_NE(run.out.find(column), std::string::npos) << column;
+  }
+  EXPECT_NE(run.out.find("1.6e+06"), std::string::npos);
+  EXPECT_EQ(hapbench({"stability", "single_spring", "--out", out_, "--quiet"}).out, "");
+}
+
+TEST_F(StabilityCommand, GivesEachOfSeveralScenariosADirectory) {
+  const ProgramRun run = hapbench({"stability", "single_spring", "single_spring_damped", "--out", out_});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_TRUE(std::filesystem::exists(directory_ / "out/single_spring/limits.csv"));
+  EXPECT_TRUE(std::filesystem::exists(directory_ / "out/single_spring_damped/limits.csv"));
+}
+
+TEST_F(StabilityCommand, RefusesScenesWithoutALimitAndWritesNothing) {
+  for (const char* scenario : {"peg_in_hole_2d_mean", "springs_limited_mean"}) {
+    const ProgramRun run = hapbench({"stability", scenario, "--out", out_});
+    EXPECT_EQ(run.status, 2) << scenario;
+    EXPECT_EQ(lines_of(run.err).size(), 1u) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(out_));
+  }
+  // Nothing is written either when the good one comes first.
+  EXPECT_EQ(hapbench({"stability", "single_spring", "springs_limited_mean", "--out", out_}).status, 2);
+  EXPECT_FALSE(std::filesystem::exists(out_));
+}
+
+}  // namespace
+}  // namespace hapbench
