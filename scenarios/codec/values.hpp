@@ -86,7 +86,11 @@ class NullableCodec final : public Codec<std::optional<T>> {
       return;
     }
     T value = initial_;
-    inner_->read(json, at, value);
+    try {
+      inner_->read(json, at, value);
+    } catch (const InputError& error) {
+      throw with_null(error, at);
+    }
     out = std::move(value);
   }
   Json write(const std::optional<T>& value) const override { return value ? inner_->write(*value) : Json(nullptr); }
@@ -94,6 +98,15 @@ class NullableCodec final : public Codec<std::optional<T>> {
   std::string allowed() const override { return "null or " + inner_->allowed(); }
 
  private:
+  /// The inner codec's objection to the value itself does not know that null is allowed too.
+  InputError with_null(const InputError& error, const std::string& at) const {
+    const std::string allowed_inside = "allowed: " + inner_->allowed();
+    const std::size_t start = error.problem().find(allowed_inside);
+    if (error.place() != at || start == std::string::npos) return error;
+    std::string problem = error.problem();
+    return {error.kind(), at, problem.replace(start, allowed_inside.size(), "allowed: " + allowed())};
+  }
+
   CodecPtr<T> inner_;
   T initial_;
 };

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <set>
 
 #include "algorithms/registry.hpp"
 #include "results/io/atomic_file.hpp"
@@ -27,10 +28,14 @@ struct CompareOptions {
 void check_algorithms(const std::vector<std::string>& names) {
   std::vector<std::string> valid;
   for (const AlgorithmEntry& entry : algorithms()) valid.emplace_back(entry.info->name);
+  std::set<std::string> seen;
   for (const std::string& name : names) {
-    if (find_algorithm(name) != nullptr) continue;
-    throw InputError(fmt::format("--algorithms: got \"{}\"; allowed: {}{}", name, quoted_list(valid),
-                                 nearest_name_hint(name, valid)));
+    if (find_algorithm(name) == nullptr) {
+      throw InputError(fmt::format("--algorithms: got \"{}\"; allowed: {}{}", name, quoted_list(valid),
+                                   nearest_name_hint(name, valid)));
+    }
+    // Each has a directory of its name.
+    if (!seen.insert(name).second) throw InputError(fmt::format("--algorithms: got \"{}\" twice; allowed: once", name));
   }
 }
 

@@ -101,7 +101,7 @@ const Json* find_in_schema(const Json& schema, const std::string& name) {
     const Json* object = with_properties(*node);
     node = object != nullptr && (*object)["properties"].contains(key) ? &(*object)["properties"][key] : nullptr;
   }
-  return node != nullptr ? node : find_type(schema, name);
+  return node != nullptr || name.empty() ? node : find_type(schema, name);
 }
 
 std::string fields_text(const std::string& title, const Json& schema) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <memory>
+#include <set>
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/csv_writer.hpp"
@@ -93,20 +94,43 @@ std::string limits_text(const LoadedScenario& loaded, const std::vector<Stabilit
          disagreement_text(limits);
 }
 
+/// One directory a scenario: --out itself for a single one, a subdirectory named after the file for several.
+std::vector<fs::path> output_directories(const StabilityOptions& options,
+                                         const std::vector<LoadedScenario>& scenarios) {
+  std::vector<fs::path> directories;
+  std::set<std::string> stems;
+  for (const LoadedScenario& scenario : scenarios) {
+    const std::string stem = scenario.file.stem().string();
+    if (!stems.insert(stem).second) {
+      throw InputError(
+          fmt::format("{}: a second scenario named \"{}\"; allowed: one of each name", scenario.file.string(), stem));
+    }
+    directories.push_back(options.out.empty()     ? fs::path("results") / "out" / ("stability_" + stem)
+                          : scenarios.size() == 1 ? fs::path(options.out)
+                                                  : fs::path(options.out) / stem);
+  }
+  return directories;
+}
+
 int stability(const StabilityOptions& options) {
   std::vector<LoadedScenario> scenarios;
   for (const std::string& argument : options.scenarios) {
     scenarios.push_back(load_scenario(find_scenario(argument), options.overrides));
   }
+  // All of it is found before anything is written.
+  std::vector<std::vector<StabilityLimit>> all_limits;
+  for (const LoadedScenario& loaded : scenarios) {
+    all_limits.push_back(with_file(loaded, [&] { return stability_limits(loaded.scenario); }));
+  }
+  const std::vector<fs::path> directories = output_directories(options, scenarios);
+  for (const fs::path& directory : directories) require_writable_directory(directory);
+
   std::string text;
   Json json = Json::array();
-  for (const LoadedScenario& loaded : scenarios) {
-    const std::vector<StabilityLimit> limits = with_file(loaded, [&] { return stability_limits(loaded.scenario); });
-    const fs::path directory = options.out.empty()
-                                   ? fs::path("results") / "out" / ("stability_" + loaded.file.stem().string())
-                               : scenarios.size() == 1 ? fs::path(options.out)
-                                                       : fs::path(options.out) / loaded.file.stem();
-    require_writable_directory(directory);
+  for (std::size_t i = 0; i < scenarios.size(); ++i) {
+    const LoadedScenario& loaded = scenarios[i];
+    const std::vector<StabilityLimit>& limits = all_limits[i];
+    const fs::path& directory = directories[i];
     write_limits(directory / "limits.csv", limits);
     write_root_locus(directory / "root_locus.csv", root_locus(loaded.scenario, limits));
     write_file_atomically(directory / "scenario.effective.json",

@@ -147,8 +147,8 @@ TEST(NullableCodec, ReadsNullAsNoneAndAnythingElseAsTheValue) {
   const auto codec = nullable(kForce);
   EXPECT_EQ(value_of(codec, "null", {5.0}), std::nullopt);
   EXPECT_EQ(value_of(codec, "5"), 5.0);
-  EXPECT_EQ(refusal_of(codec, "11"), "/v: got 11; allowed: a number >= 0 and <= 10 [N]");
-  EXPECT_EQ(codec->allowed(), "null or a number >= 0 and <= 10 [N]");
+  EXPECT_EQ(refusal_of(codec, "11"), "/v: got 11; allowed: null or a number >= 0 and <= 10 [N]");
+  EXPECT_EQ(refusal_of(nullable(vector3({0, 1})), "[0, 2, 0]"), "/v/1: got 2; allowed: a number >= 0 and <= 1");
 }
 
 /// Reading what was written gives the value again.

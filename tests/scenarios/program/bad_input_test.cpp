@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 using test::BadInput;
 
 /// Processor time within which bad input must be refused; sanitized code is some thirty times slower.
-constexpr double kMostSeconds = test::kSanitized ? 60.0 : 2.0;
+constexpr double kMostSeconds = HAPBENCH_TEST_SANITIZED ? 60.0 : 2.0;
 /// Address space it may take: the largest file read is 64 MiB, and 16 bytes a value of it are a gigabyte.
-constexpr std::size_t kMostMemory = test::kSanitized ? 0 : std::size_t{3} << 30;
+constexpr std::size_t kMostMemory = HAPBENCH_TEST_SANITIZED ? 0 : std::size_t{3} << 30;
 
 class BadInputs : public testing::TestWithParam<BadInput> {};
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <iosfwd>
 #include <map>
 #include <string>
 #include <vector>
@@ -15,6 +16,9 @@ struct BadInput {
   std::map<std::string, std::string> files = {};  ///< others beside the scenario
   std::string (*make)() = nullptr;                ///< makes the scenario's text when it is too large to keep
 };
+
+/// So that test listings show the name.
+void PrintTo(const BadInput& input, std::ostream* out);  // NOLINT: GoogleTest's name
 
 /// The minimal scenario of an environment type with `value`, JSON or not, at the pointer.
 std::string with_value(const std::string& environment, const std::string& pointer, const std::string& value);

@@ -1,7 +1,13 @@
+#include <ostream>
+
 #include "tests/scenarios/program/bad_inputs.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
 namespace hapbench::test {
+
+void PrintTo(const BadInput& input, std::ostream* out) {
+  *out << input.name;
+}
 
 std::string with_value(const std::string& environment, const std::string& pointer, const std::string& value) {
   Json json = minimal_scenario(environment);

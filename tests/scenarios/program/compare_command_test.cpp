@@ -107,12 +107,6 @@ TEST_F(CompareCommand, RefusesUnknownAlgorithmsBeforeAnythingIsWritten) {
   EXPECT_FALSE(fs::exists(out_));
 }
 
-TEST_F(CompareCommand, WarnsOfWhatAnAlgorithmOverrides) {
-  const ProgramRun run = compare({"--algorithms", "mean,normal_projection"});
-  EXPECT_EQ(run.status, 0);
-  EXPECT_NE(run.err.find("warning"), std::string::npos) << "the depth model given in the scenario is not used";
-}
-
 TEST_F(CompareCommand, RefusesOneAlgorithmTwice) {
   // The second would overwrite the files of the first.
   EXPECT_EQ(compare({"--algorithms", "mean,mean"}).status, 2);

@@ -55,8 +55,8 @@ TEST(AnalyticShells, DefaultSizesAreMultiplesOfTheSpacing) {
 }
 
 TEST(AnalyticShells, AMultipleOfTheSpacingButForRoundingIsDividedIntoThatMany) {
-  ASSERT_GT(0.0007 / 0.0001, 7.0) << "in doubles";
-  EXPECT_EQ(point_count(Plane{0.0007, 0.0001}), 8 * 8);
+  ASSERT_GT(0.0015 / 0.0003, 5.0) << "in doubles";
+  EXPECT_EQ(point_count(Plane{0.0015, 0.0003}), 6 * 6);
 }
 
 TEST(AnalyticShells, AbsurdSizesAreCountedWithoutBeingBuilt) {

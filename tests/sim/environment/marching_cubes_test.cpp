@@ -28,7 +28,7 @@ DensityField block_field(const BlockWithHole& block, double spacing, Density den
 
 std::size_t boundary_edges(const HalfEdgeMesh& mesh) {
   std::size_t count = 0;
-  for (const auto edge : mesh.edges()) count += mesh.is_boundary(edge) ? 1 : 0;
+  for (const auto edge : mesh.edges()) count += mesh.is_boundary(edge) ? 1u : 0u;
   return count;
 }
 
