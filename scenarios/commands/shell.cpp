@@ -27,6 +27,8 @@ int shell(const ShellOptions& options) {
   const std::vector<SurfacePoint> points = environment_points(loaded.scenario);
   const std::filesystem::path file = options.out;
   const std::string text = point_shell_text(points, file);
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) throw InputError(fmt::format("--out {}: is a directory", file.string()));
   const std::filesystem::path directory = file.has_parent_path() ? file.parent_path() : ".";
   require_writable_directory(directory);
   write_file_atomically(file, text);

@@ -26,8 +26,8 @@ void apply_override(Json& json, const std::string& text) {
     if (node->is_array()) {
       const bool digits = !key.empty() && key.size() < 9 && key.find_first_not_of("0123456789") == std::string::npos;
       if (!digits || std::stoul(key) >= node->size()) {
-        throw InputError("--set " + path + ": got list index \"" + key + "\"; allowed: 0 ... " +
-                         std::to_string(static_cast<long>(node->size()) - 1));
+        throw InputError("--set " + path + ": got list index \"" + key + "\"; allowed: " +
+                         (node->empty() ? "none, the list is empty" : "0 ... " + std::to_string(node->size() - 1)));
       }
       node = &(*node)[std::stoul(key)];
     } else {

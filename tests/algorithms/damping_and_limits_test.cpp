@@ -29,7 +29,7 @@ Vec3 rendered(const RenderingConfig& config) {
 
 TEST(Damping, IsTwoZetaRootKM) {
   EXPECT_EQ(DampingAndLimits(dyadic()).damping(), 96.0);
-  // METHOD section 8.5: zeta = 0.7 at K = 433731 N/m, M = 0.1 kg.
+  // Thesis A.3: zeta = 0.7 at K = 433731 N/m, M = 0.1 kg.
   RenderingConfig config;
   config.stiffness = 433731.0;
   config.mass = 0.1;

@@ -13,14 +13,14 @@
 namespace hapbench {
 namespace {
 
-TEST(Registry, ListsTheAlgorithmsOfTheMethod) {
+TEST(Registry, ListsTheAlgorithmsOfTheThesisAndOurOwn) {
   for (const char* name : {"original_averaging", "summation", "mean", "virtual_coupling", "shaped_stiffness",
                            "tandpasta", "normal_projection", "exact_shaping"}) {
     EXPECT_NE(find_algorithm(name), nullptr) << name;
   }
 }
 
-TEST(Registry, ListsTheDepthModelsAndStagesOfTheMethod) {
+TEST(Registry, ListsTheDepthModelsAndStages) {
   for (const char* name : {"shortest_distance", "surface_normal", "normal_projection"}) {
     EXPECT_NE(find_depth_model(name), nullptr) << name;
   }

@@ -4,7 +4,7 @@
 
 #include "sim/contact/contact_buffer.hpp"
 
-/// The force laws of METHOD section 4 as they are written there, with dense matrices over all pairs of contacts: slow,
+/// The force laws as their formulas are written, with dense matrices over all pairs of contacts: slow,
 /// and independent of how the library computes them.
 namespace hapbench::test {
 

@@ -162,7 +162,7 @@ Answer one_sided_slot_answer() {
   return {-Vec3::UnitX()};
 }
 
-/// The 2-D peg of METHOD section 9, tip centre 4 mm deep.
+/// The 2-D peg of thesis A.1, tip centre 4 mm deep.
 Setting peg(double tilt, double diameter, double y) {
   Setting setting;
   setting.tool = {diameter / 2, 0.005, Tip::round};

@@ -11,7 +11,7 @@ struct ShapingOptimality {
   /// Largest violation of the optimality condition, in units of the ratio: |u_i|^2 - rho_i = eps c_i where c_i > 0 and
   /// |u_i|^2 - rho_i <= 0 where c_i = 0. (|u_i|^2 is 1 to rounding.)
   double violation = 0.0;
-  /// The smallest rho_i + eps max(c) - |u_i|^2: METHOD 8.3 says that it is never negative.
+  /// The smallest rho_i + eps max(c) - |u_i|^2: by the condition it is never negative.
   double ratio_margin = 0.0;
   /// |tr S - |S|^2 - eps |c|^2|, zero at the optimum.
   double trace_identity = 0.0;

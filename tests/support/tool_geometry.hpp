@@ -3,7 +3,7 @@
 #include "sim/core/random.hpp"
 #include "sim/tool/tool.hpp"
 
-/// The tool's body straight from its definition (METHOD section 1), in long double: what searches and depth models are
+/// The tool's body straight from its definition (see Tool), in long double: what searches and depth models are
 /// checked against.
 namespace hapbench::test {
 

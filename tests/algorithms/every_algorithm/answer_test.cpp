@@ -76,7 +76,7 @@ TEST_P(Answer, DampingAndFrictionNeverDriveTheTool) {
   config.mu_f = 10.0;
   test::Probe probe(setting, config);
   const RenderedForce at_rest = probe.force_at(setting.pose);
-  // Friction is on v - S v: it brakes where S <= 1, METHOD section 5, which laws that add springs up do not promise.
+  // Friction is on v - S v: it brakes where S <= 1, which laws that add springs up do not promise.
   if (lambda_max(at_rest.S) > 1.0 + 1e-12) config.mu_s = config.mu_f = 0.0;
   test::Probe braked(setting, config);
   for (int i = 0; i < 20; ++i) {

@@ -48,7 +48,7 @@ TEST(Summation, GrowsWithTheNumberOfParallelContacts) {
 }
 
 TEST(Mean, IsSoftWhereMostContactsPointElsewhere) {
-  // METHOD 9, springs demo: one upward spring among 64 gets 1/64 of its stiffness.
+  // As in the springs demo of thesis A.2: one upward spring among 64 gets 1/64 of its stiffness.
   std::vector<Vec3> gradients(63, Vec3::UnitX());
   gradients.push_back(Vec3::UnitY());
   ContactBuffer contacts = test::contacts_of(gradients);

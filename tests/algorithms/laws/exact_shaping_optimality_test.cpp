@@ -1,4 +1,4 @@
-// METHOD 8.2 and 8.3 on 525 000 seeded sets, 25 000 of each of 21 families.
+// The optimality conditions and the bounds they imply on 525 000 seeded sets, 25 000 of each of 21 families.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -15,7 +15,7 @@ LawForce evaluate(ContactBuffer& contacts) {
   return make_tandpasta({})->evaluate(contacts);
 }
 
-/// sigma_E of METHOD section 4, from dense matrices.
+/// sigma_E of thesis F.2, from dense matrices.
 double sigma(const test::Dense& dense) {
   const Eigen::MatrixXd inner = dense.U.transpose() * dense.U;
   const Eigen::VectorXd beta = inner.rowwise().sum().cwiseAbs().cwiseQuotient(inner.cwiseAbs().rowwise().sum());
@@ -34,7 +34,7 @@ void for_random_contacts(F f) {
   }
 }
 
-TEST(Tandpasta, IsTheFormulaOfTheMethod) {
+TEST(Tandpasta, IsItsFormula) {
   for_random_contacts([](ContactBuffer contacts, const char* name) {
     const test::Dense dense(contacts);
     const double s = sigma(dense);

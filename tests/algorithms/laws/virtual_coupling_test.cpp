@@ -37,7 +37,7 @@ double rounding(const test::Dense& dense, double coupling) {
   return 4 * n * kEps * (1 + n * kK / coupling);
 }
 
-TEST(VirtualCoupling, IsTheFormulaOfTheMethod) {
+TEST(VirtualCoupling, IsItsFormula) {
   for_random_contacts([](ContactBuffer contacts, const char* name) {
     for (const double coupling : {kK / 10, kK, 10 * kK}) {
       const LawForce force = evaluate(contacts, coupling);

@@ -31,7 +31,7 @@ std::vector<std::uint32_t> indices(const ContactBuffer& contacts) {
   return {contacts.index.begin(), contacts.index.begin() + static_cast<std::ptrdiff_t>(contacts.size())};
 }
 
-/// METHOD section 3 word by word, on positions in the given visiting order.
+/// Thesis C.3 with its errata (see the source) word by word, on positions in the given visiting order.
 struct Reference {
   std::vector<std::size_t> kept;
   std::uint64_t dropped = 0;
@@ -52,7 +52,7 @@ struct Reference {
   }
 };
 
-TEST(GradientReduction, IsTheAlgorithmOfTheMethodOnRandomSets) {
+TEST(GradientReduction, IsTheAlgorithmOfTheThesisOnRandomSets) {
   Random random(1);
   for (const auto& family : test::gradient_families()) {
     for (int i = 0; i < 30; ++i) {

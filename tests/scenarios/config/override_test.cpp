@@ -106,6 +106,13 @@ TEST_F(Override, OutsideAListNamesTheIndicesThatExist) {
   }
 }
 
+TEST_F(Override, IntoAnEmptyListSaysSo) {
+  EXPECT_EQ(refusal("time.stop_when.0=leaves_hole").find("/time/stop_when: got {"), 0u);  // absent: an object is made
+  const auto error = test::input_error_of([&] { with({"environment.groups=[]", "environment.groups.0.count=1"}); });
+  ASSERT_TRUE(error);
+  EXPECT_NE(std::string(error->what()).find("allowed: none, the list is empty"), std::string::npos) << error->what();
+}
+
 TEST_F(Override, ThatIsMalformedSaysWhatIsAllowed) {
   for (const char* override : {"", "=", "=5", "time.steps", "time"}) {
     EXPECT_EQ(refusal(override), std::string("--set: got \"") + override +

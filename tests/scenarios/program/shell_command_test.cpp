@@ -88,6 +88,13 @@ TEST_F(ShellCommand, RefusesSpringsAndOtherExtensionsAndWritesNothing) {
   EXPECT_FALSE(fs::exists(path("new")));
 }
 
+TEST_F(ShellCommand, RefusesADirectoryInPlaceOfItsFile) {
+  fs::create_directory(path("d.csv"));
+  const ProgramRun run = hapbench({"shell", "peg_in_hole_2d_mean", "--out", path("d.csv")});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.err.find("is a directory"), std::string::npos) << run.err;
+}
+
 TEST_F(ShellCommand, NeedsAFile) {
   EXPECT_EQ(hapbench({"shell", "peg_in_hole_2d_mean"}).status, 2);
 }

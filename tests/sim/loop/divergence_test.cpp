@@ -119,7 +119,7 @@ TEST(Divergence, IsForgottenByReset) {
 }
 
 TEST(Divergence, OfAnUnstableSpringComesFromTheIntegratorAlone) {
-  // 10 times the stability limit of METHOD 8.5: the displacement multiplies by about 38 a step.
+  // 10 times the stability limit 4 M/dt^2: the displacement multiplies by about 38 a step.
   SimulationConfig config = config_of(1000);
   config.position = {0.001, 0, 0};
   const double K = 40 * config.mass / (config.dt * config.dt);

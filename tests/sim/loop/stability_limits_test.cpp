@@ -1,4 +1,4 @@
-// METHOD 8.5: stable while 4 - 2 B dt/M - K dt^2/M > 0. Runs a thousandth below and above each limit.
+// Thesis A.3: stable while 4 - 2 B dt/M - K dt^2/M > 0. Runs a thousandth below and above each limit.
 #include <gtest/gtest.h>
 
 #include <cmath>

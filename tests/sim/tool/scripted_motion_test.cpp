@@ -67,7 +67,7 @@ TEST(ScriptedMotion, AxisIsAUnitVectorAtAllTimes) {
 }
 
 TEST(ScriptedMotion, FollowsItsProfilesInTime) {
-  // The 2-D peg of METHOD section 9: 0.1 rad at the start, 1.2 rad/s.
+  // The 2-D peg of thesis A.1: 0.1 rad at the start, 1.2 rad/s.
   const ScriptedMotion m = motion({{0, 1, 0}, {1, 0, 0}, Profile::Shape(Profile::Ramp{0.1, 1.2}), {}});
   const double tilt = 0.1 + 1.2 * 0.5;
   expect_near(m.axis_at(0.5), {-std::sin(tilt), -std::cos(tilt), 0});
