@@ -81,7 +81,8 @@ Description describe_name(const std::string& name) {
   for (const BundledScenario& bundled : bundled_scenarios()) {
     if (bundled.name == name) return describe_scenario(bundled.file);
   }
-  if (std::filesystem::exists(name)) return describe_scenario(name);
+  std::error_code ignored;
+  if (std::filesystem::exists(name, ignored)) return describe_scenario(name);
   throw InputError(
       fmt::format("nothing is called \"{}\"{}; \"hapbench list\" shows the names, \"hapbench describe scenario\" "
                   "the fields of a scenario file",

@@ -36,7 +36,8 @@ struct AnalyticScene {
 
 std::span<const AnalyticScene> analytic_scenes();
 
-/// The configuration of `algorithm` in a scene: the thesis's K = 20000 N/m, shaping with the default m = 3, no friction.
+/// The configuration of `algorithm` in a scene: the thesis's K = 20000 N/m, shaping with the default m = 3, no
+/// friction.
 RenderingConfig config_for(std::string_view algorithm, const AnalyticScene& scene);
 
 /// Sum of |d_i| over the scene's contacts under the algorithm's depth model [m]: no law renders more than K times this

@@ -126,8 +126,8 @@ TEST(NormalProjectionDepth, LeavesTheRoundToolThroughTheHalfBall) {
 }
 
 TEST(NormalProjectionDepth, OnlyPositiveExitsCount) {
-  // The minimal positive value, thesis F.1: a point exactly on a surface whose ray points outwards there has passed it already. It meets the
-  // next surface of (F.7), (F.9), (F.12) instead, beyond the body, or none.
+  // The minimal positive value, thesis F.1: a point exactly on a surface whose ray points outwards there has passed it
+  // already. It meets the next surface of (F.7), (F.9), (F.12) instead, beyond the body, or none.
   const Tool tool{4 * kUnit, 16 * kUnit, Tip::flat};
   EXPECT_EQ(depth_at(tool, kPose, {4 * kUnit, 0, 8 * kUnit}, {-1, 0, 0}), 0.0) << "side, straight out: none left";
   EXPECT_EQ(depth_at(tool, kPose, {kUnit, 0, 0}, {0, 0, 1}), 0.0) << "tip, straight out: none left";

@@ -10,8 +10,8 @@ namespace hapbench {
 namespace {
 
 // Without iterations 20 roundings of a tensor below n = 100, 2e-13, in ratios of at least 1; with them the tensor is of
-// the order of 1 and a ratio off by some 1e-15. An update of the weights does not amplify relative errors (in logarithms
-// it is I minus a matrix with eigenvalues in [0, 1]), so after 20 of them the errors have at most added up.
+// the order of 1 and a ratio off by some 1e-15. An update of the weights does not amplify relative errors (in
+// logarithms it is I minus a matrix with eigenvalues in [0, 1]), so after 20 of them the errors have at most added up.
 constexpr double kTolerance = 1e-12;
 
 ContactBuffer random_contacts(const test::GradientFamily& family, Random& random) {

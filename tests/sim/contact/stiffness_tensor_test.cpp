@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
-// An entry of S adds n / 8 <= 13 products in each of eight partial sums, and u^T S u a few more: 20 roundings of numbers
-// below n = 100, 2e-13, in a ratio that is at least its own weight, 1/2. The dense sums round as much again.
+// An entry of S adds n / 8 <= 13 products in each of eight partial sums, and u^T S u a few more: 20 roundings of
+// numbers below n = 100, 2e-13, in a ratio that is at least its own weight, 1/2. The dense sums round as much again.
 constexpr double kTolerance = 1e-12;
 
 /// A random set with random weights in [1/2, 1).
