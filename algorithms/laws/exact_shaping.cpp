@@ -192,8 +192,8 @@ int solve_exact_shaping(ContactBuffer& contacts) noexcept {
   int steps = 0;
   if (!newton(contacts, kEps, kDirectSteps, w, pass, steps)) {
     // Dense clusters of nearly equal gradients: the optimum keeps a handful of hundreds, and Newton's method would
-    // find them one by one. Following the optimum from a large epsilon down takes a few steps each: at most 36 in
-    // all for 9e6 adversarial sets instead of a hundred, 135 for the worst of 8e5 mixtures of such sets.
+    // find them one by one. Following the optimum from a large epsilon down takes a few steps each: at most 32 in
+    // all for 6e6 adversarial sets instead of a hundred, 135 for the worst of 1e6 mixtures of such sets.
     double eps = kPath[0];
     w = identity6() / eps;
     pass = evaluate(contacts, w);

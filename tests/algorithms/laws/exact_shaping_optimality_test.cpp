@@ -24,7 +24,7 @@ constexpr double kTraceRounding = 2.4 * test::kShapingRounding;
 void expect_optimal(const test::GradientFamily& family, ContactBuffer& contacts) {
   const int steps = solve_exact_shaping(contacts);
   // Typical are one to five, see TakesAboutTwoNewtonSteps below. Clusters at several scales beside many duplicates,
-  // which only the mixtures have, make the active set change contact by contact: 135 steps were the worst of 8e5.
+  // which only the mixtures have, make the active set change contact by contact: 135 steps were the worst of 1e6.
   ASSERT_LT(steps, std::string(family.name) == "mixture" ? 200 : 60);
   const auto optimality = test::shaping_optimality(contacts, kExactShapingEpsilon);
   // In this order NaN fails too.
