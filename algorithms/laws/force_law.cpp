@@ -2,12 +2,25 @@
 
 #include <algorithm>
 
+#include "sim/core/simd.hpp"
+
 namespace hapbench {
 
 void set_weights(ContactBuffer& contacts, double c) noexcept {
   std::fill_n(contacts.weight.begin(), contacts.size(), c);
   std::fill(contacts.weight.begin() + static_cast<std::ptrdiff_t>(contacts.size()),
             contacts.weight.begin() + static_cast<std::ptrdiff_t>(contacts.padded_size()), 0.0);
+}
+
+Vec3 gradient_sum(const ContactBuffer& contacts) noexcept {
+  using simd::load, simd::Pack;
+  Pack x(0.0), y(0.0), z(0.0);
+  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    x += load(&contacts.ux[i]);
+    y += load(&contacts.uy[i]);
+    z += load(&contacts.uz[i]);
+  }
+  return {simd::sum(x), simd::sum(y), simd::sum(z)};
 }
 
 LawForce weighted_force(const ContactBuffer& contacts, double K) noexcept {

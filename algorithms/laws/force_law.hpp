@@ -11,8 +11,8 @@
 namespace hapbench {
 
 /// The parameter all laws share, for their parameter blocks.
-inline constexpr ParameterInfo kStiffnessParameter = {
-    "rendering.stiffness_N_per_m", "N/m", "20000", "number >= 0 <= 1e+12", "K of one penalty spring"};
+inline constexpr ParameterInfo kStiffnessParameter = {"rendering.stiffness_N_per_m", "N/m", "20000",
+                                                      "number >= 0 <= 1e+12", "K of one penalty spring"};
 
 /// What a force law makes of the contacts.
 struct LawForce {
@@ -40,6 +40,9 @@ class ForceLaw {
 
 /// Gives every contact the weight c and keeps the padding at zero. O(n).
 void set_weights(ContactBuffer& contacts, double c) noexcept;
+
+/// Sum of the gradients u_i. O(n).
+Vec3 gradient_sum(const ContactBuffer& contacts) noexcept;
 
 /// f_spring and S of the weights in the buffer. O(n).
 LawForce weighted_force(const ContactBuffer& contacts, double K) noexcept;

@@ -32,19 +32,13 @@ class OriginalAveraging final : public ForceLaw {
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     set_weights(contacts, 1.0);
-    using simd::load, simd::Pack;
-    Pack x(0.0), y(0.0), z(0.0), d(0.0);
-    for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
-      x += load(&contacts.ux[i]);
-      y += load(&contacts.uy[i]);
-      z += load(&contacts.uz[i]);
-      d += load(&contacts.depth[i]);
-    }
-    const Vec3 gradients(simd::sum(x), simd::sum(y), simd::sum(z));
+    simd::Pack depths(0.0);
+    for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) depths += simd::load(&contacts.depth[i]);
+    const Vec3 gradients = gradient_sum(contacts);
     const double length = gradients.norm();
     if (length <= kCancelledBelow * static_cast<double>(contacts.size())) return {};
     const Vec3 u = gradients / length;
-    return {-K_ * (simd::sum(d) / length) * u, u * u.transpose()};
+    return {-K_ * (simd::sum(depths) / length) * u, u * u.transpose()};
   }
 
  private:

@@ -51,17 +51,6 @@ class Tandpasta final : public ForceLaw {
   }
 
  private:
-  static Vec3 gradient_sum(const ContactBuffer& c) noexcept {
-    using simd::load, simd::Pack;
-    Pack x(0.0), y(0.0), z(0.0);
-    for (std::size_t i = 0; i < c.padded_size(); i += simd::lanes) {
-      x += load(&c.ux[i]);
-      y += load(&c.uy[i]);
-      z += load(&c.uz[i]);
-    }
-    return {simd::sum(x), simd::sum(y), simd::sum(z)};
-  }
-
   /// beta: 1 when no other gradient opposes u, 0 when all cancel. The sum of inner products is the inner product with
   /// the sum; only the sum of their magnitudes needs the O(n) loop.
   static double cancelling_ratio(const ContactBuffer& c, const Vec3& u, const Vec3& total) noexcept {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "tests/results/allocation_counter.hpp"
+#include "tests/support/allocation_counter.hpp"
 #include "tests/results/rows.hpp"
 
 namespace hapbench {
@@ -206,10 +206,10 @@ TEST(MetricsObserver, AsksForTheRatio) {
 TEST(MetricsObserver, AllocatesNothing) {
   const ContactBuffer contacts = contacts_along({Vec3::UnitX()});
   const StepRecord r = row(0, 0.0, contacts);
-  const std::size_t before = test::allocation_count();
+  const std::size_t before = test::heap_allocations();
   MetricsObserver observer(kDt);
   for (int k = 0; k < 100; ++k) observer.on_step(r);
-  EXPECT_EQ(test::allocation_count(), before);
+  EXPECT_EQ(test::heap_allocations(), before);
   EXPECT_EQ(observer.metrics().rows, 100u);
 }
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/results/allocation_counter.hpp"
+#include "tests/support/allocation_counter.hpp"
 #include "tests/results/files.hpp"
 #include "tests/results/rows.hpp"
 
@@ -46,9 +46,9 @@ TEST(ContactRecorder, AllocatesNothingInAStep) {
   const ContactBuffer contacts = test::contacts_along(std::vector<Vec3>(100, Vec3::UnitX()));
   ContactRecorder recorder(dir / "contacts.csv");
   const StepRecord r = test::row(0, 0.0, contacts);
-  const std::size_t before = test::allocation_count();
+  const std::size_t before = test::heap_allocations();
   for (int k = 0; k < 100; ++k) recorder.on_step(r);
-  EXPECT_EQ(test::allocation_count(), before);
+  EXPECT_EQ(test::heap_allocations(), before);
 }
 
 }  // namespace
