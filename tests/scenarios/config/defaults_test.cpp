@@ -4,7 +4,7 @@
 #include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-/// What is filled in where a scenario says nothing: the thesis's numbers for that kind of scene (METHOD section 9).
+/// What is filled in where a scenario says nothing: the thesis's numbers for that kind of scene (Tables A.1, A.2, B.1).
 namespace hapbench {
 namespace {
 

@@ -33,7 +33,7 @@ TEST_F(StabilityCommand, FindsTheThreeLimitsOfA3ThreeWays) {
     double limit, tolerance;
   } kCases[] = {{"stiffness_undamped", "N/m", 1.6e6, 1e-3},
                 {"damping_alone", "N s/m", 400.0, 1e-9},
-                {"stiffness_damped", "N/m", 433731.0, 1.0}};  // METHOD 8.5 gives whole numbers
+                {"stiffness_damped", "N/m", 433731.0, 1.0}};  // A.3 gives whole numbers
   for (std::size_t i = 0; i < 3; ++i) {
     const auto cells = cells_of(rows[1 + i]);
     EXPECT_EQ(cells[0], kCases[i].name);
