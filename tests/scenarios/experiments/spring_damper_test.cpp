@@ -40,8 +40,9 @@ TEST(SpringDamper, IsStableExactlyWhileTheInequalityOfA3Holds) {
     EXPECT_EQ(with(kappa, beta).spectral_radius() < 1.0, margin > 0.0) << kappa << " " << beta;
     if (margin > 0.0) ++stable;
   }
-  EXPECT_GT(stable, n / 4);
-  EXPECT_LT(stable, n * 3 / 4);
+  // The stable triangle is 4 of the 15 that are sampled.
+  EXPECT_GT(stable, n / 5);
+  EXPECT_LT(stable, n / 3);
 }
 
 TEST(SpringDamper, WithoutDampingStaysOnTheUnitCircleUntilItsLimit) {
