@@ -37,6 +37,8 @@ class Profile {
   Profile(Shape shape) : shape_(std::move(shape)) {}  // NOLINT: so is every shape
 
   double operator()(double t) const noexcept;
+  /// Time derivative at t [unit of the value / s]; at a corner of waypoints that of the leg that begins there.
+  double rate(double t) const noexcept;
   const Shape& shape() const { return shape_; }
 
  private:

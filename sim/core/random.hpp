@@ -21,6 +21,12 @@ class Random {
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// Uniform integer in [0, n); n > 0. The modulo bias is below n / 2^64.
   std::uint64_t below(std::uint64_t n) { return engine_() % n; }
+  /// Normal with mean 0 and standard deviation 1 (Box and Muller; the second number is not kept, so that the stream
+  /// does not depend on who asked before).
+  double normal() {
+    const double r = std::sqrt(-2.0 * std::log(1.0 - uniform()));
+    return r * std::cos(2.0 * std::numbers::pi * uniform());
+  }
 
   /// Uniform on the unit circle in the plane z = 0.
   Vec3 direction_in_plane() {

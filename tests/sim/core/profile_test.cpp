@@ -95,6 +95,22 @@ TEST(Profile, ASingleWaypointIsAConstant) {
   for (const double t : {0.0, 1.0, 2.0}) EXPECT_EQ(profile(t), 4.0);
 }
 
+TEST(Profile, RateIsTheTimeDerivativeOfEveryShape) {
+  const Profile profiles[] = {3.0, Profile::Shape(Profile::Ramp{1.0, -2.0}),
+                              Profile::Shape(Profile::Sine{1.0, 2.0, 3.0, 0.5}),
+                              Profile::Shape(Waypoints{{{0.0, 0.0}, {1.0, 8.0}, {3.0, 4.0}}, kLinear}),
+                              Profile::Shape(Waypoints{{{0.0, 0.0}, {1.0, 8.0}, {3.0, 4.0}}, kCosine})};
+  for (const Profile& profile : profiles) {
+    for (const double t : {-1.0, 0.3, 0.7, 1.4, 2.2, 5.0}) {
+      // Third derivatives stay below 4 pi^3 = 125: the central difference errs by less than 25 h^2 and 1e-15 / h.
+      const double h = 1e-5;
+      EXPECT_NEAR(profile.rate(t), (profile(t + h) - profile(t - h)) / (2.0 * h), 25 * h * h + 1e-9) << t;
+    }
+  }
+  EXPECT_EQ(profiles[3].rate(1.0), -2.0) << "a corner belongs to the leg that begins there";
+  EXPECT_EQ(profiles[3].rate(3.0), 0.0);
+}
+
 TEST(Profile, KeepsTheShapeItWasGiven) {
   const Profile profile = Profile::Shape(Profile::Ramp{0.5, -2.0});
   ASSERT_TRUE(std::holds_alternative<Profile::Ramp>(profile.shape()));

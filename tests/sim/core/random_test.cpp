@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 
 namespace hapbench {
 namespace {
@@ -33,6 +34,22 @@ TEST(Random, NumbersStayInTheirRange) {
     ASSERT_LT(x, 5.0);
     ASSERT_LT(random.below(7), 7u);
   }
+}
+
+TEST(Random, NormalNumbersHaveTheMomentsOfTheNormalDistribution) {
+  Random random(4);
+  constexpr int n = 200'000;
+  std::array<double, 5> moments{};
+  for (int i = 0; i < n; ++i) {
+    const double x = random.normal();
+    for (std::size_t k = 1; k < moments.size(); ++k) moments[k] += std::pow(x, static_cast<double>(k)) / n;
+  }
+  // Expected 0, 1, 0, 3 with variances 1, 2, 15, 96 over n; five standard errors.
+  const double root = std::sqrt(n);
+  EXPECT_NEAR(moments[1], 0.0, 5 * 1.0 / root);
+  EXPECT_NEAR(moments[2], 1.0, 5 * std::sqrt(2.0) / root);
+  EXPECT_NEAR(moments[3], 0.0, 5 * std::sqrt(15.0) / root);
+  EXPECT_NEAR(moments[4], 3.0, 5 * std::sqrt(96.0) / root);
 }
 
 TEST(Random, DirectionsAreUnitVectors) {
