@@ -1,0 +1,50 @@
+#include "sim/task/target_task.hpp"
+
+#include <utility>
+
+namespace hapbench {
+
+TargetTask::TargetTask(TargetRules rules, std::uint64_t seed) : rules_(std::move(rules)) {
+  for (std::size_t place = 0; place < rules_.places.size(); ++place) {
+    order_.insert(order_.end(), rules_.targets_per_place, place);
+  }
+  // Fisher and Yates; std::shuffle may differ between standard libraries.
+  Random random(seed);
+  for (std::size_t i = order_.size(); i > 1; --i) std::swap(order_[i - 1], order_[random.below(i)]);
+  results_.reserve(order_.size());
+}
+
+void TargetTask::reset() noexcept {
+  results_.clear();
+  active_ = false;
+  shown_ = held_ = 0.0;
+}
+
+Vec3 TargetTask::error(const Vec3& tip) const noexcept {
+  const Vec3 error = rules_.places[place()] - tip;
+  return rules_.display == TargetDisplay::panel ? Vec3(error.x(), error.y(), 0.0) : Vec3(0.0, 0.0, error.z());
+}
+
+void TargetTask::advance(const Vec3& tip, double press, double dt) noexcept {
+  if (finished()) return;
+  const bool pressed = press >= rules_.least_press;
+  if (pressed && !active_) {
+    active_ = true;
+    shown_ = 0.0;
+  }
+  shown_ += dt;
+  held_ = pressed && on_target(tip) ? held_ + dt : 0.0;
+  if (held_ >= rules_.hold) {
+    next_target(true, shown_);
+  } else if (shown_ >= rules_.time_limit) {
+    next_target(false, rules_.time_limit);
+  }
+}
+
+void TargetTask::next_target(bool removed, double time) noexcept {
+  results_.push_back({place(), removed, time});
+  active_ = false;
+  shown_ = held_ = 0.0;
+}
+
+}  // namespace hapbench
