@@ -43,9 +43,13 @@ void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, R
   if (contacts.empty()) return;
 
   const LawForce law = law_->evaluate(contacts);
-  out.spring = law.spring;
+  out.spring = spring_ = law.spring;
   out.S = law.S;
   out.rendered = damping_and_limits_.rendered_force(law.spring, law.S, tool.velocity);
+}
+
+SpringState PenaltyRendering::spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept {
+  return contacts.empty() ? SpringState{} : law_->spring_state(contacts, spring_, tool.pose.position);
 }
 
 AlgorithmWork PenaltyRendering::work() const noexcept {

@@ -22,6 +22,7 @@ class PenaltyRendering final : public ForceAlgorithm {
   void prepare(const Scene& scene) override;
   void reset() noexcept override;
   void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept override;
+  SpringState spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept override;
   AlgorithmWork work() const noexcept override;
 
  private:
@@ -32,6 +33,7 @@ class PenaltyRendering final : public ForceAlgorithm {
   DampingAndLimits damping_and_limits_;
   Tool tool_;
   bool depth_is_given_ = false;
+  Vec3 spring_ = Vec3::Zero();  ///< of the last step with contacts
 };
 
 }  // namespace hapbench

@@ -12,7 +12,7 @@ namespace hapbench {
 class NoHand final : public Hand {
  public:
   void reset() noexcept override {}
-  Vec3 force(double, const HandleState&) noexcept override { return Vec3::Zero(); }
+  Vec3 force(double, const HandView&) noexcept override { return Vec3::Zero(); }
 };
 
 /// A hand that pushes with a scripted force, whatever the handle does.
@@ -22,7 +22,7 @@ class ForceHand final : public Hand {
   explicit ForceHand(std::array<Profile, 3> force) : force_(std::move(force)) {}
 
   void reset() noexcept override {}
-  Vec3 force(double t, const HandleState&) noexcept override { return {force_[0](t), force_[1](t), force_[2](t)}; }
+  Vec3 force(double t, const HandView&) noexcept override { return {force_[0](t), force_[1](t), force_[2](t)}; }
 
  private:
   std::array<Profile, 3> force_;

@@ -213,15 +213,12 @@ namespace {
 
 class ExactShaping final : public ForceLaw {
  public:
-  explicit ExactShaping(double stiffness) : K_(stiffness) {}
+  explicit ExactShaping(double stiffness) : ForceLaw(stiffness) {}
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     iterations_ += static_cast<std::uint64_t>(solve_exact_shaping(contacts));
     return weighted_force(contacts, K_);
   }
-
- private:
-  double K_;
 };
 
 }  // namespace

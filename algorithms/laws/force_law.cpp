@@ -1,5 +1,6 @@
 #include "algorithms/laws/force_law.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "sim/core/simd.hpp"
@@ -25,6 +26,16 @@ Vec3 gradient_sum(const ContactBuffer& contacts) noexcept {
 
 LawForce weighted_force(const ContactBuffer& contacts, double K) noexcept {
   return {-K * weighted_depth(contacts), stiffness_tensor(contacts)};
+}
+
+SpringState ForceLaw::spring_state(const ContactBuffer& contacts, const Vec3&, const Vec3& tip) const noexcept {
+  SpringState state;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Vec3 force = -K_ * contacts.weight[i] * contacts.depth[i] * contacts.gradient(i);
+    state.energy += 0.5 * K_ * contacts.weight[i] * contacts.depth[i] * contacts.depth[i];
+    state.moment += (contacts.point(i) - tip).cross(force);
+  }
+  return state;
 }
 
 }  // namespace hapbench

@@ -5,8 +5,8 @@
 
 #include "algorithms/info.hpp"
 #include "algorithms/rendering_config.hpp"
-#include "sim/contact/contact_buffer.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
+#include "sim/loop/force_algorithm.hpp"
 
 namespace hapbench {
 
@@ -25,16 +25,22 @@ struct LawForce {
 /// in the weights c_i only. Per-run state; one virtual call per step.
 class ForceLaw {
  public:
+  explicit ForceLaw(double stiffness) : K_(stiffness) {}
   virtual ~ForceLaw() = default;
   /// Before the first step; may allocate for up to `capacity` contacts.
   virtual void prepare(std::size_t capacity) { static_cast<void>(capacity); }
   virtual void reset() noexcept { iterations_ = 0; }
   /// Precondition: contacts are padded and not empty. Leaves the weights in the buffer.
   virtual LawForce evaluate(ContactBuffer& contacts) noexcept = 0;
+  /// The springs behind the last `evaluate`, whose contacts and spring force [N] are handed in: their elastic energy and
+  /// their moment about the tip centre `tip`. Of weighted springs: 1/2 K sum c_i d_i^2, and each force at its colliding
+  /// point.
+  virtual SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept;
   /// Inner iterations since the last reset.
   std::uint64_t iterations() const noexcept { return iterations_; }
 
  protected:
+  double K_;  ///< of one penalty spring [N/m]
   std::uint64_t iterations_ = 0;
 };
 

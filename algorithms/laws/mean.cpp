@@ -22,15 +22,12 @@ namespace {
 
 class Mean final : public ForceLaw {
  public:
-  explicit Mean(double stiffness) : K_(stiffness) {}
+  explicit Mean(double stiffness) : ForceLaw(stiffness) {}
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     set_weights(contacts, 1.0 / static_cast<double>(contacts.size()));
     return weighted_force(contacts, K_);
   }
-
- private:
-  double K_;
 };
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "algorithms/laws/original_averaging.hpp"
 
+#include <Eigen/Geometry>
+
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
@@ -28,7 +30,7 @@ constexpr double kCancelledBelow = 1e-9;
 
 class OriginalAveraging final : public ForceLaw {
  public:
-  explicit OriginalAveraging(double stiffness) : K_(stiffness) {}
+  explicit OriginalAveraging(double stiffness) : ForceLaw(stiffness) {}
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     set_weights(contacts, 1.0);
@@ -41,8 +43,14 @@ class OriginalAveraging final : public ForceLaw {
     return {-K_ * (simd::sum(depths) / length) * u, u * u.transpose()};
   }
 
- private:
-  double K_;
+  /// One spring, compressed by d_r. It has no point of attack of its own; the middle of the contacts is as good as any.
+  SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
+    if (K_ == 0.0) return {};
+    Vec3 arms = Vec3::Zero();
+    for (std::size_t i = 0; i < contacts.size(); ++i) arms += contacts.point(i) - tip;
+    const Vec3 middle = arms / static_cast<double>(contacts.size());
+    return {spring.squaredNorm() / (2.0 * K_), middle.cross(spring)};
+  }
 };
 
 }  // namespace

@@ -48,7 +48,7 @@ namespace {
 
 class ShapedStiffness final : public ForceLaw {
  public:
-  ShapedStiffness(double stiffness, int iterations) : K_(stiffness), m_(iterations) {}
+  ShapedStiffness(double stiffness, int iterations) : ForceLaw(stiffness), m_(iterations) {}
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     iterations_ += static_cast<std::uint64_t>(m_);
@@ -57,7 +57,6 @@ class ShapedStiffness final : public ForceLaw {
   }
 
  private:
-  double K_;
   int m_;
 };
 

@@ -23,15 +23,12 @@ namespace {
 
 class Summation final : public ForceLaw {
  public:
-  explicit Summation(double stiffness) : K_(stiffness) {}
+  explicit Summation(double stiffness) : ForceLaw(stiffness) {}
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     set_weights(contacts, 1.0);
     return weighted_force(contacts, K_);
   }
-
- private:
-  double K_;
 };
 
 }  // namespace

@@ -28,7 +28,7 @@ constexpr double kNoEnergyBelow = 1e-12;
 
 class Tandpasta final : public ForceLaw {
  public:
-  explicit Tandpasta(double stiffness) : K_(stiffness) {}
+  explicit Tandpasta(double stiffness) : ForceLaw(stiffness) {}
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     const Vec3 total = gradient_sum(contacts);
@@ -63,8 +63,6 @@ class Tandpasta final : public ForceLaw {
     const double denominator = simd::sum(magnitudes);
     return denominator > 0.0 ? std::abs(u.dot(total)) / denominator : 0.0;
   }
-
-  double K_;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "algorithms/laws/virtual_coupling.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 
 namespace hapbench {
 namespace {
@@ -27,7 +28,7 @@ namespace {
 class VirtualCoupling final : public ForceLaw {
  public:
   VirtualCoupling(double stiffness, std::optional<double> coupling)
-      : K_(stiffness), K_over_K_vc_(coupling ? stiffness / *coupling : 1.0) {}
+      : ForceLaw(stiffness), K_over_K_vc_(coupling ? stiffness / *coupling : 1.0) {}
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     set_weights(contacts, 1.0);
@@ -39,8 +40,20 @@ class VirtualCoupling final : public ForceLaw {
     return {-K_ * series.solve(weighted_depth(contacts)), 0.5 * (S + S.transpose())};
   }
 
+  /// The coupling spring is stretched by f / K_vc, which relieves every penalty spring: depth d_i + <u_i, f> / K_vc.
+  SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
+    if (K_ == 0.0) return {};
+    const Vec3 stretch = spring * (K_over_K_vc_ / K_);
+    SpringState state{0.5 * spring.dot(stretch), Vec3::Zero()};
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const double depth = contacts.depth[i] + contacts.gradient(i).dot(stretch);
+      state.energy += 0.5 * K_ * depth * depth;
+      state.moment -= (contacts.point(i) - tip).cross(K_ * depth * contacts.gradient(i));
+    }
+    return state;
+  }
+
  private:
-  double K_;
   double K_over_K_vc_;
 };
 

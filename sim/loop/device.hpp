@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "sim/loop/hand.hpp"
 #include "sim/tool/tool.hpp"
 
@@ -9,6 +11,15 @@ namespace hapbench {
 struct MeasuredForce {
   Vec3 measured = Vec3::Zero();  ///< f_meas: what the sensor reads
   Vec3 input = Vec3::Zero();     ///< f_meas*: what drives the virtual mass, after the input-force limiter
+};
+
+/// Energy that went into the moving parts of a device since its last reset [J]. Without rounding,
+/// stored = hand + actuator + dissipated.
+struct DeviceEnergy {
+  double hand = 0.0;        ///< work of the hand on the handle
+  double actuator = 0.0;    ///< work of the actuator
+  double dissipated = 0.0;  ///< work of friction and of the damping in the structure; never positive
+  double stored = 0.0;      ///< kinetic and elastic energy of the parts, above that at the reset
 };
 
 /// The haptic device in the admittance loop: it measures the hand's force and moves the handle after the tool.
@@ -21,6 +32,8 @@ class Device {
   /// Follows the tool's motion over one step of dt seconds, while the hand pushes on the handle.
   virtual void advance(const ToolState& tool, const Vec3& hand_force, double dt) noexcept = 0;
   virtual HandleState handle() const noexcept = 0;
+  /// None when the handle is the tool itself, without mass and friction of its own.
+  virtual std::optional<DeviceEnergy> energy() const noexcept { return std::nullopt; }
 };
 
 }  // namespace hapbench

@@ -24,6 +24,12 @@ struct RenderedForce {
   double depth_max = 0.0;        ///< largest penetration depth of the colliding points [m], before any point stage
 };
 
+/// The penalty springs of one step as a store of energy.
+struct SpringState {
+  double energy = 0.0;         ///< elastic energy [J]
+  Vec3 moment = Vec3::Zero();  ///< of the spring forces on the tool about its tip centre [N m]; the device renders none
+};
+
 /// What an algorithm has done since its last reset.
 struct AlgorithmWork {
   std::uint64_t iterations = 0;      ///< of the law's inner solver (shaping, Newton), over all steps
@@ -42,6 +48,9 @@ class ForceAlgorithm {
   /// One step. `contacts` holds the colliding points at the tool's pose; on return it holds the rendered ones, with
   /// depth, gradient and weight.
   virtual void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept = 0;
+  /// Elastic energy and moment of the springs behind the last `compute`, whose contacts are handed in. Called only when
+  /// somebody keeps accounts.
+  virtual SpringState spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept = 0;
   virtual AlgorithmWork work() const noexcept { return {}; }
 };
 

@@ -14,11 +14,15 @@ struct StepRecord {
   double time = 0.0;  ///< t_k = k dt [s]
   ToolState tool;
   RenderedForce force;
-  MeasuredForce hand;
+  Vec3 hand_force = Vec3::Zero();  ///< what the hand pushes with [N]
+  MeasuredForce hand;              ///< what the device makes of it
   HandleState handle;
+  const TargetTask* task = nullptr;         ///< what the hand works on at this row; null without such a task
   std::size_t colliding = 0;                ///< colliding points before any point stage
   const ContactBuffer* rendered = nullptr;  ///< contacts the law saw; valid during on_step only
   RatioRange ratio;                         ///< over the rendered contacts; filled only if an observer wants it
+  SpringState springs;                      ///< filled only if an observer wants energy
+  std::optional<DeviceEnergy> device;       ///< filled only if an observer wants energy
 };
 
 /// Watches a run without changing it.
@@ -27,6 +31,8 @@ class Observer {
   virtual ~Observer() = default;
   /// True when on_step reads `ratio`; otherwise nobody computes it.
   virtual bool wants_ratio() const noexcept { return false; }
+  /// True when on_step reads `springs` and `device`; otherwise nobody computes them.
+  virtual bool wants_energy() const noexcept { return false; }
   virtual void on_step(const StepRecord& record) noexcept = 0;
 };
 

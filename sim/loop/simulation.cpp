@@ -11,7 +11,10 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
       parts_(std::move(parts)),
       observers_(std::move(observers)),
       contacts_(parts_.query->capacity()) {
-  for (const Observer* observer : observers_) ratio_wanted_ |= observer->wants_ratio();
+  for (const Observer* observer : observers_) {
+    ratio_wanted_ |= observer->wants_ratio();
+    energy_wanted_ |= observer->wants_energy();
+  }
   parts_.algorithm->prepare({parts_.tool, parts_.query.get(), parts_.shell.get()});
   reset();
 }
@@ -20,11 +23,12 @@ void Simulation::reset() noexcept {
   row_ = 0;
   ended_ = config_.steps == 0;
   result_ = {};
+  record_ = {};
   tool_ = {{config_.position, Vec3::Zero()}, config_.velocity};
+  parts_.hand->reset();  // first, because a hand may steer the orientation
   move_tool_by_script();
   parts_.query->reset();
   parts_.algorithm->reset();
-  parts_.hand->reset();
   parts_.device->reset(tool_);
 }
 
@@ -46,8 +50,9 @@ bool Simulation::step() noexcept {
   r.time = static_cast<double>(row_) * config_.dt;
   r.tool = tool_;
   r.handle = parts_.device->handle();
-  const Vec3 hand_force = parts_.hand->force(r.time, r.handle);
-  r.hand = parts_.device->measure(hand_force);
+  r.hand_force = parts_.hand->force(r.time, {r.handle, tool_.pose, r.force.rendered});
+  r.task = parts_.hand->task();
+  r.hand = parts_.device->measure(r.hand_force);
 
   parts_.query->contacts_at(tool_.pose, contacts_);
   r.colliding = contacts_.size();
@@ -56,6 +61,10 @@ bool Simulation::step() noexcept {
 
   r.rendered = &contacts_;
   if (ratio_wanted_) r.ratio = ratio_range(contacts_, r.force.S);
+  if (energy_wanted_) {
+    r.springs = parts_.algorithm->spring_state(tool_, contacts_);
+    r.device = parts_.device->energy();
+  }
   for (Observer* observer : observers_) observer->on_step(r);
   ++result_.rows;
   if (check_stop_conditions()) return true;
@@ -67,7 +76,7 @@ bool Simulation::step() noexcept {
     return true;
   }
   move_tool_by_script();
-  parts_.device->advance(tool_, hand_force, config_.dt);
+  parts_.device->advance(tool_, r.hand_force, config_.dt);
   return true;
 }
 
@@ -97,6 +106,8 @@ bool Simulation::check_stop_conditions() noexcept {
     end(Outcome::leaves_hole);
   } else if (config_.stop_when_horizontal && tool_.pose.axis.dot(config_.up) >= 0.0) {
     end(Outcome::tool_horizontal);
+  } else if (parts_.hand->finished()) {
+    end(Outcome::completes);
   }
   return ended_;
 }

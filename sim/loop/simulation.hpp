@@ -15,7 +15,7 @@ namespace hapbench {
 
 /// How a run ended.
 enum class Outcome {
-  completes,        ///< all steps done
+  completes,        ///< all steps done, or the hand has finished its task
   leaves_hole,      ///< the tip centre rose above height 0 along `up`
   tool_horizontal,  ///< the axis reached the plane perpendicular to `up`
   diverges          ///< a value stopped being finite or left its bound
@@ -98,6 +98,7 @@ class Simulation {
   SimulationParts parts_;
   std::vector<Observer*> observers_;
   bool ratio_wanted_ = false;
+  bool energy_wanted_ = false;
   ContactBuffer contacts_;
 
   std::uint64_t row_ = 0;

@@ -8,15 +8,17 @@
 
 namespace hapbench {
 
+Vec3 tool_axis(const Orientation& orientation, double tilt, double azimuth) noexcept {
+  const Vec3 sideways = orientation.up.cross(orientation.lean);
+  const Vec3 lean = std::cos(azimuth) * orientation.lean + std::sin(azimuth) * sideways;
+  return -(std::cos(tilt) * orientation.up + std::sin(tilt) * lean);
+}
+
 ScriptedMotion::ScriptedMotion(Orientation orientation, std::optional<std::array<Profile, 3>> position)
     : orientation_(std::move(orientation)), position_(std::move(position)) {}
 
 Vec3 ScriptedMotion::axis_at(double t) const noexcept {
-  const double tilt = orientation_.tilt(t);
-  const double azimuth = orientation_.azimuth(t);
-  const Vec3 sideways = orientation_.up.cross(orientation_.lean);
-  const Vec3 lean = std::cos(azimuth) * orientation_.lean + std::sin(azimuth) * sideways;
-  return -(std::cos(tilt) * orientation_.up + std::sin(tilt) * lean);
+  return tool_axis(orientation_, orientation_.tilt(t), orientation_.azimuth(t));
 }
 
 Vec3 ScriptedMotion::position_at(double t) const noexcept {

@@ -30,6 +30,9 @@ struct Orientation {
   Profile azimuth;              ///< [rad], right-handed about up
 };
 
+/// The tool's axis at a tilt and an azimuth [rad] of its own, whatever the profiles say.
+Vec3 tool_axis(const Orientation& orientation, double tilt, double azimuth) noexcept;
+
 /// Orientation from profiles; position free, or three profiles [m].
 class ScriptedMotion final : public Motion {
  public:

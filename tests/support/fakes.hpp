@@ -59,6 +59,7 @@ class FakeAlgorithm final : public ForceAlgorithm {
     out.spring = out.rendered = law_(tool);
     out.S = 2.0 * Mat3::Identity();
   }
+  SpringState spring_state(const ToolState&, const ContactBuffer&) const noexcept override { return {}; }
 
  private:
   Law law_;

@@ -101,7 +101,9 @@ TEST(Simulation, TheLimitedHandForceDrivesTheTool) {
 TEST(Simulation, TheHandFeelsTheHandleOfTheSameRow) {
   struct Spring final : Hand {
     void reset() noexcept override {}
-    Vec3 force(double t, const HandleState& handle) noexcept override { return t * handle.position + handle.velocity; }
+    Vec3 force(double t, const HandView& view) noexcept override {
+      return t * view.handle.position + view.handle.velocity;
+    }
   };
   SimulationParts parts = fake_parts(test::weightless);
   parts.hand = std::make_unique<Spring>();
@@ -112,6 +114,54 @@ TEST(Simulation, TheHandFeelsTheHandleOfTheSameRow) {
     EXPECT_EQ(row.handle.velocity, row.tool.velocity);
     EXPECT_EQ(row.hand.measured, Vec3(row.time * row.handle.position + row.handle.velocity));
   }
+}
+
+TEST(Simulation, TheHandSeesTheToolOfItsRowAndTheForceOfTheRowBefore) {
+  struct Viewer final : Hand {
+    void reset() noexcept override {}
+    Vec3 force(double t, const HandView& view) noexcept override {
+      views.push_back(view);
+      return {t, 0, 0};
+    }
+    std::vector<HandView> views;
+  };
+  auto viewer = std::make_unique<Viewer>();
+  const std::vector<HandView>& views = viewer->views;
+  SimulationParts parts = fake_parts([](const ToolState& tool) { return Vec3(Vec3::Ones() - tool.pose.position); });
+  parts.hand = std::move(viewer);
+  Recorder recorder;
+  Simulation simulation(config_of(10), std::move(parts), {&recorder});
+  simulation.run();
+  ASSERT_EQ(views.size(), 10u);
+  EXPECT_EQ(views[0].model_force, Vec3(0, 0, 0));
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    EXPECT_EQ(views[k].tool.position, recorder.rows[k].tool.pose.position);
+    EXPECT_EQ(recorder.rows[k].hand_force, Vec3(recorder.rows[k].time, 0, 0));
+    if (k == 0) continue;
+    EXPECT_EQ(views[k].model_force, recorder.rows[k - 1].force.rendered);
+  }
+  simulation.reset();
+  simulation.step();
+  EXPECT_EQ(views.back().model_force, Vec3(0, 0, 0)) << "a reset forgets the last force";
+}
+
+TEST(Simulation, EndsWithTheRowInWhichTheHandHasFinishedItsTask) {
+  struct Worker final : Hand {
+    void reset() noexcept override { task_.reset(); }
+    Vec3 force(double, const HandView&) noexcept override {
+      task_.advance({0, 0, 0}, 2.0, 0.5);
+      return {0, 0, 0};
+    }
+    const TargetTask* task() const noexcept override { return &task_; }
+    TargetTask task_{{.places = {Vec3(0, 0, 0)}, .targets_per_place = 2, .hold = 1.0}, 1};
+  };
+  SimulationParts parts = fake_parts(test::weightless);
+  parts.hand = std::make_unique<Worker>();
+  Recorder recorder;
+  const SimulationResult result = Simulation(config_of(10), std::move(parts), {&recorder}).run();
+  EXPECT_EQ(result.outcome, Outcome::completes);
+  EXPECT_EQ(result.rows, 4u) << "two targets, two samples each";
+  EXPECT_EQ(recorder.rows.back().task->results().size(), 2u);
 }
 
 /// Notes the order in which observers see rows.
