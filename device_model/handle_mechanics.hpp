@@ -1,0 +1,43 @@
+#pragma once
+
+#include "sim/loop/device.hpp"
+
+namespace hapbench {
+
+/// The moving parts of the device: a carriage that the actuators push, and on an elastic structure the handle that the
+/// hand holds. All values are ours; the handle weighs what the thesis compensates (0.7 N).
+struct HandleMechanicsConfig {
+  double carriage_mass = 0.25;  ///< [kg]
+  double handle_mass = 0.07;    ///< [kg]
+  double friction = 2.0;        ///< viscous, on the carriage [N s/m]
+  double structure_stiffness =
+      200000.0;                     ///< between carriage and handle; the structure's compliance is its inverse [N/m]
+  double structure_damping = 40.0;  ///< [N s/m]
+};
+
+/// Two masses on a line in each axis, advanced by the implicit midpoint rule: stable for every step, and exact in its
+/// energy balance for this linear system. Gravity is balanced.
+class HandleMechanics {
+ public:
+  explicit HandleMechanics(const HandleMechanicsConfig& config) : config_(config) {}
+
+  /// Carriage and handle at the tool, with its velocity and nothing stretched.
+  void reset(const ToolState& tool) noexcept;
+  /// One step of dt seconds under constant forces of the hand (on the handle) and the actuators (on the carriage) [N].
+  void advance(const Vec3& hand, const Vec3& actuator, double dt) noexcept;
+
+  const HandleState& carriage() const noexcept { return carriage_; }
+  const HandleState& handle() const noexcept { return handle_; }
+  DeviceEnergy energy() const noexcept;
+
+ private:
+  double stored() const noexcept;
+
+  HandleMechanicsConfig config_;
+  HandleState carriage_;
+  HandleState handle_;
+  DeviceEnergy work_;  ///< its `stored` is not kept up
+  double stored_at_reset_ = 0.0;
+};
+
+}  // namespace hapbench

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "sim/core/random.hpp"
+#include "sim/loop/hand.hpp"
+#include "sim/tool/motion.hpp"
+
+namespace hapbench {
+
+/// A simulated subject of the man-machine experiments. Every value is ours: the thesis's subjects were not measured.
+/// The defaults lie inside what the motor-control literature reports for a hand that holds a pen.
+struct Subject {
+  double reaction_delay = 0.2;     ///< from the display to the hand [s]
+  double bandwidth = 0.6;          ///< of following the target on the display [Hz]
+  double stiffness = 300.0;        ///< of the hand about its intended position [N/m]
+  double damping = 6.0;            ///< of the hand [N s/m]
+  double press = 1.7;              ///< model force along +z the subject wants to see on the gauge [N]
+  double press_bandwidth = 0.4;    ///< of correcting it [Hz]
+  double motor_noise = 0.04;       ///< standard deviation of each force component [N]
+  double tilt_noise = 0.004;       ///< standard deviation of the wrist's angle, when it turns the tool [rad]
+  double noise_bandwidth = 8.0;    ///< of both noises, first order [Hz]
+  double height_per_tilt = 0.004;  ///< how much the subject expects the tip to rise with the tilt [m/rad]
+  double max_speed = 0.02;         ///< of the intended position [m/s]
+  double max_turn = 1.0;           ///< of the wrist [rad/s]
+  double max_force = 6.0;          ///< the arm yields rather than push harder in any axis [N]
+};
+
+/// The subject at the display: follows one target after the other and presses the tool down. Perceives only what the
+/// thesis's subjects saw, one reaction delay late: the distance from tip to target on the panel or height meter, and
+/// the force gauge; and, without delay, the handle between the fingers. Acts through an intended (equilibrium) position
+/// x_e:
+///
+///   f = k (x_e - x_handle) - b v_handle + motor noise
+///
+///   panel:  dx_e/dt = 2 pi f_v (target - tip) in x and y
+///   height: dtilt/dt = 2 pi f_v (target - tip) / height_per_tilt, by the wrist; x_e rests in x and y
+///   both:   dz_e/dt = -2 pi f_p (press - gauge) / k
+///
+/// each limited by the subject's speed and strength. Allocates in the constructor only.
+class TrackingHand final : public Hand {
+ public:
+  /// `initial_tilt` [rad]: of the wrist; it turns only with the height display. dt: sampling interval [s].
+  TrackingHand(const Subject& subject, TargetTask task, double initial_tilt, double dt, std::uint64_t seed);
+
+  void reset() noexcept override;
+  Vec3 force(double t, const HandView& view) noexcept override;
+  const TargetTask* task() const noexcept override { return &task_; }
+
+  /// Of the tool, as the wrist holds it now [rad].
+  double tilt() const noexcept { return tilt_; }
+
+ private:
+  /// What the display shows at one sample.
+  struct Seen {
+    Vec3 error = Vec3::Zero();  ///< from tip to target, components on display only
+    double gauge = 0.0;
+  };
+
+  Seen look(const HandView& view) noexcept;
+  void follow(const Seen& seen) noexcept;
+  void hold_within_strength(const HandleState& handle) noexcept;
+  double coloured(double state) noexcept;
+
+  Subject subject_;
+  TargetTask task_;
+  double initial_tilt_;
+  double dt_;
+  std::uint64_t seed_;
+  double noise_memory_;  ///< correlation of the noise from sample to sample
+
+  std::vector<Seen> seen_;  ///< ring of the samples on their way from the eye to the hand
+  std::size_t next_ = 0;
+  bool started_ = false;
+  Random random_;
+  Vec3 intended_ = Vec3::Zero();
+  double wrist_ = 0.0;  ///< tilt without noise
+  double tilt_ = 0.0;
+  Vec3 force_noise_ = Vec3::Zero();  ///< in units of its standard deviation
+  double tilt_noise_ = 0.0;          ///< in units of its standard deviation
+};
+
+/// The orientation of a tool that a tracking hand turns; the position is free.
+class HeldOrientation final : public Motion {
+ public:
+  /// Tilt comes from the hand, everything else from `orientation`. The hand must outlive the motion.
+  HeldOrientation(Orientation orientation, const TrackingHand& hand);
+
+  Vec3 axis_at(double t) const noexcept override;
+  bool position_is_free() const noexcept override { return true; }
+  Vec3 position_at(double) const noexcept override { return Vec3::Zero(); }
+
+ private:
+  Orientation orientation_;
+  const TrackingHand* hand_;
+};
+
+}  // namespace hapbench
