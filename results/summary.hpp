@@ -2,9 +2,14 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "results/metrics/energy_ledger.hpp"
+#include "results/metrics/ideal_trajectory.hpp"
 #include "results/metrics/metrics.hpp"
+#include "results/metrics/target_metrics.hpp"
 #include "results/provenance.hpp"
 #include "sim/loop/simulation.hpp"
 
@@ -26,6 +31,9 @@ struct RunSummary {
   bool expected = false;  ///< the outcome is the one the scenario expects
   double duration = 0.0;  ///< simulated time: rows x dt [s]
   Metrics metrics;
+  std::optional<EnergyMetrics> energy;                     ///< when the scenario asks for it
+  std::optional<IdealTrajectoryMetrics> ideal_trajectory;  ///< when the scenario asks for it
+  std::optional<std::vector<PlaceMetrics>> targets;        ///< of a tracking hand
   RunWork work;
   Provenance provenance;
   std::string scenario_hash;  ///< of the effective scenario
@@ -34,6 +42,11 @@ struct RunSummary {
 /// summary.json. The same run gives the same bytes: no time stamps, no timings, no instruction set. What does not exist
 /// (a ratio without contact, the final position of no row) or is not finite is null.
 nlohmann::ordered_json summary_json(const RunSummary& run);
+
+/// The numbers of a summary that a scenario's `expect` may bound, by name: those of "metrics" under their own names,
+/// those of the sections "energy", "ideal_trajectory" and "targets", which not every run has, with dots between the
+/// keys, as in "energy.created_sum_J" or "targets.0.success_rate.mean". Null for none.
+nlohmann::ordered_json boundable_metrics(const RunSummary& run);
 std::string summary_text(const RunSummary& run);
 
 }  // namespace hapbench

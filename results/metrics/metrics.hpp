@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "results/hash.hpp"
 #include "results/metrics/high_pass.hpp"
@@ -17,6 +18,7 @@ inline constexpr double kVibrationCutoff = 30.0;
 struct Metrics {
   std::uint64_t rows = 0;
   double force_max = 0.0;                 ///< largest ||f_render|| [N]
+  double force_step_max = 0.0;            ///< largest ||f_render_k - f_render_(k-1)|| [N]
   double velocity_total_variation = 0.0;  ///< sum ||v_k - v_(k-1)|| [m/s]: what a smooth motion has little of
   std::uint64_t force_reversals = 0;      ///< rows whose f_render has a negative inner product with the previous row's
   /// Mean of ||v||^2 after the 30 Hz high-pass, started as if v_0 had been held for ever [m^2/s^2]; none when the
@@ -34,6 +36,10 @@ struct Metrics {
   Vec3 final_position = Vec3::Zero();  ///< of the last row [m]
   std::uint64_t state_hash = 0;        ///< over the bit patterns of p, v and f_render of every row
 };
+
+/// Of several runs, one after the other: sums and means over the rows of all, the final position of the last one; steps
+/// from one run to the next count for nothing. Precondition: at least one.
+Metrics merged(const std::vector<Metrics>& runs) noexcept;
 
 /// Computes the metrics while a run goes on, in constant memory; about 20 ns a row.
 class MetricsObserver final : public Observer {
@@ -58,6 +64,7 @@ class MetricsObserver final : public Observer {
   Vec3 last_velocity_ = Vec3::Zero();
   Vec3 last_force_ = Vec3::Zero();
   double force_max_squared_ = 0.0;
+  double force_step_max_squared_ = 0.0;
   double speed_max_squared_ = 0.0;
   double vibration_sum_ = 0.0;
   std::uint64_t colliding_sum_ = 0;

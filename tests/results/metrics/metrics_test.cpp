@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "tests/support/allocation_counter.hpp"
 #include "tests/results/rows.hpp"
+#include "tests/support/allocation_counter.hpp"
 
 namespace hapbench {
 namespace {
@@ -55,6 +55,39 @@ TEST(Metrics, ForceReversalsCountNegativeInnerProductsOfConsecutiveRows) {
       metrics_of_forces({{1, 0, 0}, {-2, 0, 0}, {0, 0, 0}, {-1, 0, 0}, {0, 3, 0}, {0, -1, 0}, {0.5, -1, 0}, {0, 1, 0}});
   EXPECT_EQ(m.force_reversals, 3u);
   EXPECT_EQ(m.force_max, 3.0);
+}
+
+TEST(Metrics, ForceStepMaxIsTheLargestChangeFromRowToRow) {
+  EXPECT_EQ(metrics_of_forces({{9, 0, 0}, {9, 3, 4}, {9, 3, 4}, {9, 0, 4}}).force_step_max, 5.0);
+  EXPECT_EQ(metrics_of_forces({{9, 0, 0}}).force_step_max, 0.0) << "a first row changes nothing";
+}
+
+TEST(Metrics, MergedRunsAreOneLongRunButForTheSeams) {
+  const ContactBuffer none(1);
+  const std::vector<Vec3> velocities = {{3, 4, 0}, {3, 4, 0}, {0, 0, 0}, {0, 0, 8}, {0, 0, 2}};
+  const auto run = [&](std::size_t from, std::size_t to, std::size_t colliding) {
+    MetricsObserver observer(kDt);
+    for (std::size_t k = from; k < to; ++k) {
+      StepRecord r = row(k, 0.0, none);
+      r.tool.velocity = velocities[k];
+      r.force.rendered = velocities[k];
+      r.colliding = colliding;
+      observer.on_step(r);
+    }
+    return observer.metrics();
+  };
+  const Metrics first = run(0, 2, 3), second = run(2, 5, 8), both = merged({first, second});
+  EXPECT_EQ(both.rows, 5u);
+  EXPECT_EQ(both.velocity_total_variation, 0.0 + 8.0 + 6.0) << "without the seam's 5";
+  EXPECT_EQ(both.force_max, 8.0);
+  EXPECT_EQ(both.force_step_max, 8.0);
+  EXPECT_EQ(both.colliding_mean, (2 * 3 + 3 * 8) / 5.0);
+  EXPECT_EQ(both.colliding_max, 8u);
+  EXPECT_EQ(both.steps_in_contact, 5u);
+  EXPECT_NEAR(*both.vibration_power, (2 * *first.vibration_power + 3 * *second.vibration_power) / 5.0, 1e-15);
+  EXPECT_NE(both.state_hash, merged({second, first}).state_hash);
+  EXPECT_EQ(merged({first}).state_hash, first.state_hash);
+  EXPECT_FALSE(both.ratio);
 }
 
 TEST(Metrics, AForceThatStartsAgainstNothingIsNoReversal) {

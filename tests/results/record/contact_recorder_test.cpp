@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/allocation_counter.hpp"
 #include "tests/results/files.hpp"
 #include "tests/results/rows.hpp"
+#include "tests/support/allocation_counter.hpp"
 
 namespace hapbench {
 namespace {

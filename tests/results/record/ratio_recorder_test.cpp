@@ -7,9 +7,9 @@
 
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/core/random.hpp"
-#include "tests/support/allocation_counter.hpp"
 #include "tests/results/files.hpp"
 #include "tests/results/rows.hpp"
+#include "tests/support/allocation_counter.hpp"
 
 namespace hapbench {
 namespace {

@@ -1,0 +1,127 @@
+#include "results/metrics/energy_ledger.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace hapbench {
+namespace {
+
+/// The rotation vector that turns unit vector a to unit vector b the short way.
+Vec3 turn(const Vec3& a, const Vec3& b) noexcept {
+  const Vec3 cross = a.cross(b);
+  const double sine = cross.norm();
+  return sine > 0.0 ? Vec3(cross * (std::atan2(sine, a.dot(b)) / sine)) : Vec3::Zero();
+}
+
+/// How many of the sorted numbers `a` are not among the sorted numbers `b`.
+std::size_t missing(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) noexcept {
+  std::size_t count = 0;
+  auto other = b.begin();
+  for (const std::uint32_t i : a) {
+    while (other != b.end() && *other < i) ++other;
+    if (other == b.end() || *other != i) ++count;
+  }
+  return count;
+}
+
+}  // namespace
+
+EnergyLedger::EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity)
+    : mass_(mass), dt_(dt), free_(position_is_free) {
+  last_.rendered.reserve(capacity);
+  rendered_.reserve(capacity);
+}
+
+void EnergyLedger::on_step(const StepRecord& record) noexcept {
+  const auto& index = record.rendered->index;
+  rendered_.assign(index.begin(), index.begin() + static_cast<std::ptrdiff_t>(record.rendered->size()));
+  std::sort(rendered_.begin(), rendered_.end());
+  balance_.kinetic = 0.5 * mass_ * record.tool.velocity.squaredNorm();
+  balance_.stored = record.springs.energy;
+  if (has_row_) {
+    add_step(record);
+  } else {
+    kinetic_at_start_ = balance_.kinetic;
+  }
+  keep(record);
+}
+
+void EnergyLedger::add_step(const StepRecord& now) noexcept {
+  EnergyBalance& b = balance_;
+  const Vec3 path = 0.5 * (last_.tool.velocity + now.tool.velocity) * dt_;
+  b.input += last_.input.dot(path);
+  b.spring += last_.force.spring.dot(path);
+  b.damping += (last_.force.rendered - last_.force.spring).dot(path);
+  const double left = b.kinetic - kinetic_at_start_ - b.input - b.spring - b.damping;
+  (free_ ? b.residual : b.script) = left;
+  if (free_) residual_max_ = std::max(residual_max_, std::abs(left));
+  if (now.device) {
+    b.device = now.device;
+    b.hand = now.device->hand;
+    b.actuator = now.device->actuator;
+  } else {
+    b.hand += last_.hand.dot(path);
+    b.actuator += (last_.input - last_.hand).dot(path);
+  }
+
+  const double created = created_in_step(now);
+  b.created += created;
+  if (created > 0.0) created_sum_ += created;
+  created_max_ = std::max(created_max_, created);
+  if (created > events_.back().created) note_event(now, created);
+}
+
+/// Also adds up what translation and rotation did to the springs.
+double EnergyLedger::created_in_step(const StepRecord& now) noexcept {
+  const Vec3 moved = now.tool.pose.position - last_.tool.pose.position;
+  const Vec3 turned = turn(last_.tool.pose.axis, now.tool.pose.axis);
+  const double translation = -0.5 * (last_.force.spring + now.force.spring).dot(moved);
+  const double rotation = -0.5 * (last_.springs.moment + now.springs.moment).dot(turned);
+  const Vec3 path = 0.5 * (last_.tool.velocity + now.tool.velocity) * dt_;
+  balance_.rotation += rotation;
+  balance_.integration += last_.force.spring.dot(path) + translation;
+  return now.springs.energy - last_.springs.energy - translation - rotation;
+}
+
+void EnergyLedger::note_event(const StepRecord& now, double created) noexcept {
+  EnergyEvent event;
+  event.step = now.step;
+  event.time = now.time;
+  event.created = created;
+  event.colliding_before = last_.colliding;
+  event.colliding_after = now.colliding;
+  event.rendered_before = last_.rendered.size();
+  event.rendered_after = rendered_.size();
+  event.appeared = missing(rendered_, last_.rendered);
+  event.vanished = missing(last_.rendered, rendered_);
+  events_.back() = event;
+  for (std::size_t i = events_.size() - 1; i > 0 && events_[i].created > events_[i - 1].created; --i) {
+    std::swap(events_[i], events_[i - 1]);
+  }
+}
+
+void EnergyLedger::keep(const StepRecord& record) noexcept {
+  has_row_ = true;
+  last_.tool = record.tool;
+  last_.force = record.force;
+  last_.input = record.hand.input;
+  last_.hand = record.hand_force;
+  last_.springs = record.springs;
+  last_.colliding = record.colliding;
+  std::swap(last_.rendered, rendered_);
+}
+
+EnergyMetrics EnergyLedger::metrics() const {
+  EnergyMetrics metrics;
+  metrics.balance = balance_;
+  metrics.created_sum = created_sum_;
+  metrics.created_max = created_max_;
+  metrics.residual_max = residual_max_;
+  for (const EnergyEvent& event : events_) {
+    if (event.created > 0.0) metrics.events.push_back(event);
+  }
+  return metrics;
+}
+
+}  // namespace hapbench

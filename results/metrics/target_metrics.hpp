@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "sim/loop/observer.hpp"
+
+namespace hapbench {
+
+/// What the thesis measures of one target (D.4): model force and speed are means over the rows in which the tip was on
+/// it, whether pressed or not.
+struct TargetRow {
+  std::size_t subject = 0;  ///< from 0, as are trial and target
+  std::size_t trial = 0;
+  std::size_t target = 0;
+  TargetResult result;
+  std::uint64_t rows_on_target = 0;
+  double model_force = 0.0;  ///< mean |f_render| [N]
+  double speed = 0.0;        ///< mean speed of the handle [m/s]
+};
+
+/// Measures the targets of one trial while it runs.
+class TargetMetricsObserver final : public Observer {
+ public:
+  /// Which trial it is; a scenario's runs of several trials have one observer each.
+  TargetMetricsObserver(std::size_t subject, std::size_t trial, std::size_t targets);
+
+  /// Precondition: record.task is not null.
+  void on_step(const StepRecord& record) noexcept override;
+
+  /// One for each target that has ended.
+  const std::vector<TargetRow>& rows() const noexcept { return rows_; }
+
+ private:
+  TargetRow current_;  ///< sums where a finished row has means
+  std::vector<TargetRow> rows_;
+};
+
+/// A mean over subjects and its standard error; none without subjects that have a value.
+struct SubjectMean {
+  std::size_t subjects = 0;
+  double mean = 0.0;
+  double standard_error = 0.0;  ///< 0 for one subject
+};
+
+/// One target place over all subjects. Each subject counts with the mean over its targets there, as in Table A.1; force
+/// and speed leave out targets the tip never was on.
+struct PlaceMetrics {
+  std::size_t place = 0;
+  SubjectMean success_rate;
+  SubjectMean completion_time;  ///< [s]; a target that disappeared counts with the time limit
+  SubjectMean model_force;      ///< [N]
+  SubjectMean speed;            ///< [m/s]
+};
+
+/// The tables of thesis D.4, a line for each place that occurs.
+std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows);
+
+}  // namespace hapbench

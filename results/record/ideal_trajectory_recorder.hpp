@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "results/io/csv_writer.hpp"
+#include "results/metrics/ideal_trajectory.hpp"
+#include "results/record/recorder.hpp"
+
+namespace hapbench {
+
+/// ideal_trajectory.csv: the recorded rows at whose tilt the ideal trajectory exists, beside it (thesis Fig. 7).
+/// Lateral distances count towards where the tool leans, heights from the hole's mouth.
+class IdealTrajectoryRecorder final : public Recorder {
+ public:
+  static constexpr const char* kHeader =
+      "step,time_s,tilt_rad,height_m,ideal_height_m,lateral_m,ideal_lateral_m,interpenetration_m,hand_force_N";
+
+  /// Keeps rows 0, every, 2 every, … Must observe after `observer`, which it reads. Precondition: every > 0. Throws
+  /// IoError.
+  IdealTrajectoryRecorder(std::filesystem::path file, std::uint64_t every, const IdealTrajectoryObserver& observer);
+
+  void on_step(const StepRecord& record) noexcept override;
+  void finish() override { csv_.finish(); }
+
+ private:
+  CsvWriter csv_;
+  std::uint64_t every_;
+  const IdealTrajectoryObserver* observer_;
+};
+
+}  // namespace hapbench
