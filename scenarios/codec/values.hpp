@@ -22,11 +22,17 @@ struct NumberRange {
 CodecPtr<double> number(NumberRange range);
 /// min … max as integers; a value such as 1e3 counts as one.
 CodecPtr<std::int64_t> integer(std::int64_t min, std::int64_t max);
+/// The same for another integer type of the configuration.
+template <class Integer>
+CodecPtr<Integer> integer_as(std::int64_t min, std::int64_t max);
 CodecPtr<bool> boolean();
 /// Any text up to `max_length` characters (code points).
 CodecPtr<std::string> text(std::size_t max_length);
 /// One of `names`; `what` says of what kind, for messages.
 CodecPtr<std::string> name_of(std::vector<std::string> names, std::string what);
+/// A value chosen by its name; `what` says of what kind, for messages.
+template <class T>
+CodecPtr<T> choice(std::vector<std::pair<std::string, T>> values, std::string what);
 /// Three numbers [x, y, z].
 CodecPtr<Vec3> vector3(NumberRange component);
 
@@ -41,6 +47,54 @@ CodecPtr<std::optional<T>> nullable(CodecPtr<T> inner, T initial = {});
 // ---- implementation of the templates ----
 
 namespace detail {
+
+template <class Integer>
+class IntegerAs final : public Codec<Integer> {
+ public:
+  IntegerAs(std::int64_t min, std::int64_t max) : inner_(integer(min, max)) {}
+
+  void read(const Json& json, const std::string& at, Integer& out) const override {
+    std::int64_t value = 0;
+    inner_->read(json, at, value);
+    out = static_cast<Integer>(value);
+  }
+  Json write(const Integer& value) const override { return value; }
+  Json schema() const override { return inner_->schema(); }
+  std::string allowed() const override { return inner_->allowed(); }
+
+ private:
+  CodecPtr<std::int64_t> inner_;
+};
+
+template <class T>
+class ChoiceCodec final : public Codec<T> {
+ public:
+  ChoiceCodec(std::vector<std::pair<std::string, T>> values, std::string what) : values_(std::move(values)) {
+    std::vector<std::string> names;
+    for (const auto& value : values_) names.push_back(value.first);
+    name_ = name_of(std::move(names), std::move(what));
+  }
+
+  void read(const Json& json, const std::string& at, T& out) const override {
+    std::string name;
+    name_->read(json, at, name);
+    for (const auto& value : values_) {
+      if (value.first == name) out = value.second;
+    }
+  }
+  Json write(const T& value) const override {
+    for (const auto& choice : values_) {
+      if (choice.second == value) return choice.first;
+    }
+    return nullptr;
+  }
+  Json schema() const override { return name_->schema(); }
+  std::string allowed() const override { return name_->allowed(); }
+
+ private:
+  std::vector<std::pair<std::string, T>> values_;
+  CodecPtr<std::string> name_;
+};
 
 template <class T>
 class ListCodec final : public Codec<std::vector<T>> {
@@ -112,6 +166,16 @@ class NullableCodec final : public Codec<std::optional<T>> {
 };
 
 }  // namespace detail
+
+template <class Integer>
+CodecPtr<Integer> integer_as(std::int64_t min, std::int64_t max) {
+  return std::make_shared<detail::IntegerAs<Integer>>(min, max);
+}
+
+template <class T>
+CodecPtr<T> choice(std::vector<std::pair<std::string, T>> values, std::string what) {
+  return std::make_shared<detail::ChoiceCodec<T>>(std::move(values), std::move(what));
+}
 
 template <class T>
 CodecPtr<std::vector<T>> list_of(CodecPtr<T> item, std::size_t min_items, std::size_t max_items) {

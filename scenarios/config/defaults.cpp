@@ -1,11 +1,16 @@
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "algorithms/registry.hpp"
+#include "scenarios/codec/size_limits.hpp"
 #include "scenarios/codec/values.hpp"
 #include "scenarios/config/scenario.hpp"
 
 namespace hapbench {
 namespace {
+
+constexpr double kMostDelaySamples = 1e6;  ///< that a simulated subject keeps in mind
 
 /// What the thesis uses in each kind of scene (Tables A.1, A.2, B.1; reduction 2.8).
 struct SceneDefaults {
@@ -83,6 +88,34 @@ void check_local_average(const Scenario& scenario) {
                            : "got true; allowed: false, unless environment.grid_m gives the cells");
 }
 
+void check_ideal_trajectory(const Scenario& scenario) {
+  if (!scenario.record.ideal_trajectory) return;
+  const bool block = std::holds_alternative<BlockEnvironment>(scenario.environment);
+  if (block && *scenario.tool.tip == "flat") return;
+  throw InputError(InputError::Kind::relation, "/record/ideal_trajectory",
+                   "got true; allowed: false, unless the environment is block_with_hole and the tool's tip flat");
+}
+
+void check_tracking_hand(const Scenario& scenario) {
+  const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
+  if (hand == nullptr) return;
+  if (!std::holds_alternative<FreePosition>(scenario.motion.position)) {
+    throw InputError(InputError::Kind::relation, "/motion/position/type",
+                     "got a prescribed position; allowed: \"free\" with hand \"tracking\", which moves the tool");
+  }
+  for (std::size_t i = 0; i < hand->subjects.size(); ++i) {
+    const double samples = hand->subjects[i].reaction_delay / scenario.time.step;
+    if (samples <= kMostDelaySamples) continue;
+    throw InputError(InputError::Kind::relation, fmt::format("/hand/subjects/{}/reaction_delay_s", i),
+                     fmt::format("got {:.3g} time steps; allowed: at most {:.0g}", samples, kMostDelaySamples));
+  }
+  const double trials = static_cast<double>(hand->subjects.size()) * static_cast<double>(hand->trials);
+  const double steps = trials * static_cast<double>(*scenario.time.steps);
+  if (steps <= kMostSteps) return;
+  throw InputError(InputError::Kind::relation, "/hand/trials",
+                   fmt::format("got {:.3g} steps in all trials; allowed: at most {:.0g}", steps, kMostSteps));
+}
+
 }  // namespace
 
 std::filesystem::path resolve_path(const Scenario& scenario, const std::string& file) {
@@ -102,6 +135,8 @@ std::vector<std::string> fill_defaults(Scenario& scenario) {
   fill(scenario.rendering.mu_f, defaults.mu_f);
   fill_stages(scenario, defaults, warnings);
   check_local_average(scenario);
+  check_ideal_trajectory(scenario);
+  check_tracking_hand(scenario);
   return warnings;
 }
 

@@ -14,30 +14,6 @@ std::vector<std::string> names(const Table& table) {
   return names;
 }
 
-/// An integer of the file as another integer type of the configuration.
-template <class Integer>
-class IntegerAs final : public Codec<Integer> {
- public:
-  IntegerAs(std::int64_t min, std::int64_t max) : inner_(integer(min, max)) {}
-
-  void read(const Json& json, const std::string& at, Integer& out) const override {
-    std::int64_t value = 0;
-    inner_->read(json, at, value);
-    out = static_cast<Integer>(value);
-  }
-  Json write(const Integer& value) const override { return value; }
-  Json schema() const override { return inner_->schema(); }
-  std::string allowed() const override { return inner_->allowed(); }
-
- private:
-  CodecPtr<std::int64_t> inner_;
-};
-
-template <class Integer>
-CodecPtr<Integer> integer_as(std::int64_t min, std::int64_t max) {
-  return std::make_shared<IntegerAs<Integer>>(min, max);
-}
-
 CodecPtr<std::optional<ReductionConfig>> reduction_codec() {
   auto reduction = object<ReductionConfig>();
   reduction->optional(

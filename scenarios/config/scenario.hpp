@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "algorithms/rendering_config.hpp"
+#include "device_model/admittance_device.hpp"
+#include "device_model/tracking_hand.hpp"
 #include "sim/core/profile.hpp"
 #include "sim/core/types.hpp"
 #include "sim/environment/analytic_shells.hpp"
@@ -86,12 +88,23 @@ struct NoHandFields {};
 struct ForceHandFields {
   std::array<Profile, 3> force;  ///< [N]
 };
-using HandFields = std::variant<NoHandFields, ForceHandFields>;
+struct ImpedanceHandFields {
+  double stiffness = 300.0;       ///< [N/m]
+  double damping = 6.0;           ///< [N s/m]
+  std::array<Profile, 3> target;  ///< [m]
+};
+/// The man-machine experiments: every subject does every trial from the initial state.
+struct TrackingHandFields {
+  TargetRules task;
+  std::vector<Subject> subjects = {Subject{}};
+  std::int64_t trials = 1;
+};
+using HandFields = std::variant<NoHandFields, ForceHandFields, ImpedanceHandFields, TrackingHandFields>;
 
 struct IdealDeviceFields {
   std::optional<double> force_limit;  ///< [N]
 };
-using DeviceFields = std::variant<IdealDeviceFields>;
+using DeviceFields = std::variant<IdealDeviceFields, AdmittanceDeviceConfig>;
 
 struct LeapfrogFields {};
 using IntegratorFields = std::variant<LeapfrogFields>;
@@ -112,6 +125,8 @@ struct RecordFields {
   std::vector<std::int64_t> ratio_iterations;
   bool contacts = false;
   bool timing = false;
+  bool energy = false;
+  bool ideal_trajectory = false;
 };
 
 struct MetricBound {

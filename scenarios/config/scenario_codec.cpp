@@ -7,10 +7,11 @@
 #include "algorithms/registry.hpp"
 #include "scenarios/codec/size_limits.hpp"
 #include "scenarios/codec/values.hpp"
+#include "scenarios/config/device_codec.hpp"
 #include "scenarios/config/environment_codec.hpp"
+#include "scenarios/config/hand_codec.hpp"
 #include "scenarios/config/motion_codec.hpp"
 #include "scenarios/config/outcome_codec.hpp"
-#include "scenarios/config/profile_codec.hpp"
 #include "scenarios/config/rendering_codec.hpp"
 
 namespace hapbench {
@@ -59,30 +60,6 @@ std::shared_ptr<ObjectCodec<ToolFields>> tool_codec() {
   return tool;
 }
 
-CodecPtr<HandFields> hand_codec() {
-  auto none = object<NoHandFields>();
-  auto force = object<ForceHandFields>();
-  force->optional(
-      "x_N", [](auto& f) -> Profile& { return f.force[0]; }, profile("N"), "force on the handle over time");
-  force->optional(
-      "y_N", [](auto& f) -> Profile& { return f.force[1]; }, profile("N"), "force on the handle over time");
-  force->optional(
-      "z_N", [](auto& f) -> Profile& { return f.force[2]; }, profile("N"), "force on the handle over time");
-  auto hand = tagged<HandFields>("hand");
-  hand->alternative("none", none).alternative("force", force);
-  return hand;
-}
-
-CodecPtr<DeviceFields> device_codec() {
-  auto ideal = object<IdealDeviceFields>();
-  ideal->optional(
-      "force_limit_N", [](auto& d) -> std::optional<double>& { return d.force_limit; },
-      nullable(number({0.0, 1e9, "N", true})), "input force limit f_th; null: off");
-  auto device = tagged<DeviceFields>("device");
-  device->alternative("ideal", ideal);
-  return device;
-}
-
 CodecPtr<IntegratorFields> integrator_codec() {
   auto integrator = tagged<IntegratorFields>("integrator");
   integrator->alternative("leapfrog", object<LeapfrogFields>());
@@ -117,6 +94,11 @@ std::shared_ptr<ObjectCodec<RecordFields>> record_codec() {
       "contacts", [](auto& r) -> bool& { return r.contacts; }, boolean(), "write contacts.csv");
   record->optional(
       "timing", [](auto& r) -> bool& { return r.timing; }, boolean(), "write timing.json");
+  record->optional(
+      "energy", [](auto& r) -> bool& { return r.energy; }, boolean(), "keep the energy ledger and write energy.csv");
+  record->optional(
+      "ideal_trajectory", [](auto& r) -> bool& { return r.ideal_trajectory; }, boolean(),
+      "block_with_hole only: compare with the ideal trajectory and write ideal_trajectory.csv");
   return record;
 }
 

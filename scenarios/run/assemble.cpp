@@ -4,8 +4,11 @@
 #include <cmath>
 
 #include "algorithms/registry.hpp"
+#include "device_model/admittance_device.hpp"
 #include "device_model/ideal_device.hpp"
+#include "device_model/impedance_hand.hpp"
 #include "device_model/scripted_hands.hpp"
+#include "device_model/tracking_hand.hpp"
 #include "scenarios/files/motion_file.hpp"
 #include "scenarios/files/shell_file.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
@@ -62,29 +65,71 @@ Tool make_tool(const ToolFields& fields) {
   return {*fields.diameter / 2.0, *fields.length, *fields.tip == "round" ? Tip::round : Tip::flat};
 }
 
+Orientation make_orientation(const OrientationFields& fields) {
+  return {fields.up->normalized(), fields.lean.normalized(), fields.tilt, fields.azimuth};
+}
+
 std::unique_ptr<Motion> make_motion(const Scenario& scenario) {
   if (const auto* recorded = std::get_if<RecordedPosition>(&scenario.motion.position)) {
     return std::make_unique<RecordedMotion>(read_motion(resolve_path(scenario, recorded->file)));
   }
-  const OrientationFields& fields = *scenario.motion.orientation;
-  Orientation orientation{fields.up->normalized(), fields.lean.normalized(), fields.tilt, fields.azimuth};
   std::optional<std::array<Profile, 3>> position;
   if (const auto* prescribed = std::get_if<PrescribedPosition>(&scenario.motion.position)) {
     position = prescribed->coordinates;
   }
-  return std::make_unique<ScriptedMotion>(std::move(orientation), std::move(position));
+  return std::make_unique<ScriptedMotion>(make_orientation(*scenario.motion.orientation), std::move(position));
 }
 
-std::unique_ptr<Hand> make_hand(const HandFields& fields) {
-  return std::visit(Overloaded{[](const NoHandFields&) -> std::unique_ptr<Hand> { return std::make_unique<NoHand>(); },
-                               [](const ForceHandFields& f) -> std::unique_ptr<Hand> {
-                                 return std::make_unique<ForceHand>(f.force);
-                               }},
-                    fields);
+/// A seed of its own for each use of randomness in each trial: far apart in the 64 bits, whatever the scenario's seed.
+std::uint64_t derived_seed(const Scenario& scenario, Trial trial, std::uint64_t use) {
+  constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15;  // 2^64 / golden ratio
+  std::uint64_t seed = static_cast<std::uint64_t>(scenario.seed);
+  for (const std::uint64_t part : {use, std::uint64_t{trial.subject}, std::uint64_t{trial.number}}) {
+    seed = (seed ^ (seed >> 29)) * kGolden + part;
+  }
+  return seed;
 }
 
-std::unique_ptr<Device> make_device(const DeviceFields& fields) {
-  return std::make_unique<IdealDevice>(std::get<IdealDeviceFields>(fields).force_limit);
+constexpr std::uint64_t kSensorNoise = 1, kMotorNoise = 2, kTargetOrder = 3;
+
+std::unique_ptr<TrackingHand> make_tracking_hand(const Scenario& scenario, const TrackingHandFields& fields,
+                                                 Trial trial) {
+  // The same subject gets the same order of targets with every algorithm, as the scenario's seed is the same.
+  return std::make_unique<TrackingHand>(
+      fields.subjects[trial.subject], TargetTask(fields.task, derived_seed(scenario, trial, kTargetOrder)),
+      scenario.motion.orientation->tilt(0.0), scenario.time.step, derived_seed(scenario, trial, kMotorNoise));
+}
+
+/// The hand, and the motion, which a tracking hand may steer.
+void add_hand_and_motion(const Scenario& scenario, Trial trial, SimulationParts& parts) {
+  if (const auto* fields = std::get_if<TrackingHandFields>(&scenario.hand)) {
+    auto hand = make_tracking_hand(scenario, *fields, trial);
+    if (fields->task.display == TargetDisplay::height) {
+      parts.motion = std::make_unique<HeldOrientation>(make_orientation(*scenario.motion.orientation), *hand);
+    } else {
+      parts.motion = make_motion(scenario);
+    }
+    parts.hand = std::move(hand);
+    return;
+  }
+  parts.motion = make_motion(scenario);
+  if (const auto* force = std::get_if<ForceHandFields>(&scenario.hand)) {
+    parts.hand = std::make_unique<ForceHand>(force->force);
+  } else if (const auto* impedance = std::get_if<ImpedanceHandFields>(&scenario.hand)) {
+    parts.hand = std::make_unique<ImpedanceHand>(impedance->stiffness, impedance->damping, impedance->target);
+  } else {
+    parts.hand = std::make_unique<NoHand>();
+  }
+}
+
+std::unique_ptr<Device> make_device(const Scenario& scenario, Trial trial) {
+  if (const auto* ideal = std::get_if<IdealDeviceFields>(&scenario.device)) {
+    return std::make_unique<IdealDevice>(ideal->force_limit);
+  }
+  AdmittanceDeviceConfig config = std::get<AdmittanceDeviceConfig>(scenario.device);
+  if (scenario.motion.orientation) config.sensor.down = -scenario.motion.orientation->up->normalized();
+  config.sensor.seed = derived_seed(scenario, trial, kSensorNoise);
+  return std::make_unique<AdmittanceDevice>(config);
 }
 
 RenderingConfig rendering_config(const RenderingFields& fields) {
@@ -143,20 +188,28 @@ SimulationConfig simulation_config(const Scenario& scenario) {
   return config;
 }
 
-SimulationParts assemble(const Scenario& scenario) {
+std::shared_ptr<const PointShell> make_shell(const Scenario& scenario) {
+  if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return nullptr;
+  return std::make_shared<const PointShell>(environment_points(scenario), cell_size(scenario.environment));
+}
+
+SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial) {
   SimulationParts parts;
   parts.tool = make_tool(scenario.tool);
+  parts.shell = std::move(shell);
   if (const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment)) {
     parts.query = std::make_unique<SpringQuery>(make_springs(*springs, static_cast<std::uint64_t>(scenario.seed)));
   } else {
-    parts.shell = std::make_shared<const PointShell>(environment_points(scenario), cell_size(scenario.environment));
     parts.query = std::make_unique<NeighbourListQuery>(*parts.shell, parts.tool);
   }
   parts.algorithm = make_algorithm(rendering_config(scenario.rendering));
-  parts.motion = make_motion(scenario);
-  parts.hand = make_hand(scenario.hand);
-  parts.device = make_device(scenario.device);
+  add_hand_and_motion(scenario, trial, parts);
+  parts.device = make_device(scenario, trial);
   return parts;
+}
+
+SimulationParts assemble(const Scenario& scenario) {
+  return assemble(scenario, make_shell(scenario), {});
 }
 
 }  // namespace hapbench

@@ -17,8 +17,20 @@ void check_named_files(const LoadedScenario& loaded);
 /// Numbers of the run. Precondition: defaults are filled in.
 SimulationConfig simulation_config(const Scenario& scenario);
 
-/// Everything the run is made of. Precondition: defaults are filled in. Throws InputError when a named file cannot be
+/// One run of a scenario that has several: a simulated subject's trial. Both count from 0.
+struct Trial {
+  std::size_t subject = 0;
+  std::size_t number = 0;
+};
+
+/// The environment as the contact search wants it; null for springs. Throws InputError when a named file cannot be
 /// used.
+std::shared_ptr<const PointShell> make_shell(const Scenario& scenario);
+
+/// Everything the run is made of. Preconditions: defaults are filled in, `shell` is make_shell of this scenario. Throws
+/// InputError when a named file cannot be used.
+SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial);
+/// The only or first run, with a shell of its own.
 SimulationParts assemble(const Scenario& scenario);
 
 }  // namespace hapbench

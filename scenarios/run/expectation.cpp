@@ -28,10 +28,10 @@ std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Ru
     unmet.push_back(fmt::format("outcome is \"{}\"{}; expected {}", outcome_name(run.result.outcome),
                                 divergence_text(run.result), quoted_list(expect.outcomes)));
   }
-  const auto summary = summary_json(run);
+  const auto metrics = boundable_metrics(run);
   for (const auto& [name, bound] : expect.metrics) {
     if (!bound) continue;
-    const auto& value = summary["metrics"][name];
+    const auto value = metrics.value(name, nlohmann::ordered_json(nullptr));
     if (!value.is_number()) {
       unmet.push_back(fmt::format("{} has no value; expected one", name));
       continue;

@@ -1,52 +1,44 @@
 #include "scenarios/run/run_scenario.hpp"
 
-#include <chrono>
-#include <memory>
+#include <fmt/format.h>
 
-#include "algorithms/laws/shaped_stiffness.hpp"
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "results/io/stale_temporaries.hpp"
-#include "results/record/contact_recorder.hpp"
-#include "results/record/ratio_recorder.hpp"
-#include "results/record/trajectory_recorder.hpp"
+#include "results/record/target_table.hpp"
 #include "results/timing.hpp"
-#include "scenarios/run/allocations.hpp"
-#include "scenarios/run/assemble.hpp"
 #include "scenarios/run/expectation.hpp"
-#include "scenarios/run/progress.hpp"
+#include "scenarios/run/run_trial.hpp"
 
 namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
 
-Mat3 start_shaping(ContactBuffer& contacts) noexcept {
-  return shape_weights(contacts, 0);
+/// The trials of a scenario, subject by subject.
+std::vector<Trial> trials_of(const Scenario& scenario) {
+  const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
+  if (hand == nullptr) return {Trial{}};
+  std::vector<Trial> trials;
+  for (std::size_t subject = 0; subject < hand->subjects.size(); ++subject) {
+    for (std::size_t number = 0; number < static_cast<std::size_t>(hand->trials); ++number) {
+      trials.push_back({subject, number});
+    }
+  }
+  return trials;
 }
 
-/// Recorders for what the scenario asks for. Throws IoError.
-std::vector<std::unique_ptr<Recorder>> make_recorders(const RecordFields& record, const fs::path& directory,
-                                                      std::size_t contact_capacity) {
-  const auto every = static_cast<std::uint64_t>(record.every);
-  std::vector<std::unique_ptr<Recorder>> recorders;
-  if (record.trajectory) recorders.push_back(std::make_unique<TrajectoryRecorder>(directory / "trajectory.csv", every));
-  if (record.contacts) recorders.push_back(std::make_unique<ContactRecorder>(directory / "contacts.csv", every));
-  if (!record.ratio_iterations.empty()) {
-    const std::vector<int> iterations(record.ratio_iterations.begin(), record.ratio_iterations.end());
-    const ShapingOperations shaping{start_shaping, update_shaped_weights};
-    recorders.push_back(
-        std::make_unique<RatioRecorder>(directory / "ratios.csv", every, iterations, shaping, contact_capacity));
-  }
-  return recorders;
+constexpr const char* kTrialDirectory = "subject_";
+
+/// Where a trial records: the scenario's directory itself when it is the only one.
+fs::path trial_directory(const fs::path& directory, Trial trial, std::size_t trials) {
+  if (trials == 1) return directory;
+  return directory / fmt::format("{}{}_trial_{}", kTrialDirectory, trial.subject, trial.number);
 }
 
-/// Optional files that an earlier run with other settings may have left: they would not belong to this run.
-void remove_files_of_earlier_runs(const fs::path& directory) {
-  for (const char* name : {"summary.json", "trajectory.csv", "contacts.csv", "ratios.csv", "timing.json"}) {
-    std::error_code ignored;
-    fs::remove(directory / name, ignored);
-  }
+bool records(const RecordFields& record) {
+  return record.trajectory || record.contacts || !record.ratio_iterations.empty() || record.energy ||
+         record.ideal_trajectory;
 }
 
 void create_output(const fs::path& directory) {
@@ -56,28 +48,76 @@ void create_output(const fs::path& directory) {
   remove_stale_temporaries(directory);
 }
 
-RunSummary summarise(const Scenario& scenario, const Simulation& simulation, const MetricsObserver& metrics,
-                     std::uint64_t allocations) {
+/// Optional files that an earlier run with other settings may have left: they would not belong to this run.
+void remove_files_of_earlier_runs(const fs::path& directory) {
+  std::error_code ignored;
+  for (const char* name : {"summary.json", "trajectory.csv", "contacts.csv", "ratios.csv", "energy.csv",
+                           "ideal_trajectory.csv", "targets.csv", "timing.json"}) {
+    fs::remove(directory / name, ignored);
+  }
+  for (const auto& entry : fs::directory_iterator(directory, ignored)) {
+    if (!entry.is_directory(ignored) || !entry.path().filename().string().starts_with(kTrialDirectory)) continue;
+    remove_files_of_earlier_runs(entry.path());
+    fs::remove(entry.path(), ignored);  // unless somebody keeps other files there
+  }
+}
+
+/// Several trials end as the worst of them does.
+SimulationResult merged_result(const std::vector<TrialResult>& trials) {
+  SimulationResult all = trials.front().result;
+  for (std::size_t i = 1; i < trials.size(); ++i) {
+    const SimulationResult& result = trials[i].result;
+    const std::uint64_t rows = all.rows + result.rows;
+    if (static_cast<int>(result.outcome) > static_cast<int>(all.outcome)) all = result;
+    all.rows = rows;
+  }
+  return all;
+}
+
+RunWork merged_work(const std::vector<TrialResult>& trials) {
+  RunWork all;
+  for (const TrialResult& trial : trials) {
+    all.search.queries += trial.work.search.queries;
+    all.search.points_tested += trial.work.search.points_tested;
+    all.search.lists_rebuilt += trial.work.search.lists_rebuilt;
+    all.search.skipped += trial.work.search.skipped;
+    all.steps_skipped += trial.work.steps_skipped;
+    all.algorithm.iterations += trial.work.algorithm.iterations;
+    all.algorithm.points_dropped += trial.work.algorithm.points_dropped;
+    all.allocations += trial.work.allocations;
+  }
+  return all;
+}
+
+RunSummary summarise(const Scenario& scenario, const std::vector<TrialResult>& trials,
+                     const std::vector<TargetRow>& targets) {
+  std::vector<Metrics> metrics;
+  for (const TrialResult& trial : trials) metrics.push_back(trial.metrics);
   RunSummary summary;
   summary.name = scenario.name;
   summary.algorithm = scenario.rendering.config.algorithm;
-  summary.result = simulation.result();
+  summary.result = merged_result(trials);
   summary.duration = static_cast<double>(summary.result.rows) * scenario.time.step;
-  summary.metrics = metrics.metrics();
-  summary.work.search = simulation.query().work();
-  summary.work.steps_skipped = summary.work.search.skipped;
-  summary.work.algorithm = simulation.algorithm().work();
-  summary.work.allocations = allocations;
+  summary.metrics = merged(metrics);
+  if (trials.size() == 1) {
+    summary.energy = trials.front().energy;
+    summary.ideal_trajectory = trials.front().ideal_trajectory;
+  }
+  if (std::holds_alternative<TrackingHandFields>(scenario.hand)) summary.targets = place_metrics(targets);
+  summary.work = merged_work(trials);
   summary.provenance = provenance();
   summary.scenario_hash = scenario_hash(scenario);
   return summary;
 }
 
 void write_results(const fs::path& directory, const Scenario& scenario, const RunReport& report,
-                   std::vector<std::unique_ptr<Recorder>>& recorders) {
+                   std::vector<TrialResult>& trials) {
   remove_files_of_earlier_runs(directory);
-  for (const auto& recorder : recorders) recorder->finish();
+  for (TrialResult& trial : trials) {
+    for (const auto& recorder : trial.recorders) recorder->finish();
+  }
   write_file_atomically(directory / "scenario.effective.json", json_text(effective_scenario(scenario, directory)));
+  if (report.summary.targets) write_target_table(directory / "targets.csv", report.targets);
   if (scenario.record.timing) {
     const RunTiming timing{report.loop_seconds, report.summary.result.rows};
     write_file_atomically(directory / "timing.json", timing_text(timing, instruction_set(), provenance()));
@@ -89,28 +129,29 @@ void write_results(const fs::path& directory, const Scenario& scenario, const Ru
 
 RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress) {
   const Scenario& scenario = loaded.scenario;
-  SimulationParts parts = assemble(scenario);
+  const std::vector<Trial> trials = trials_of(scenario);
+  const auto shell = make_shell(scenario);
   if (output) create_output(*output);
 
-  std::vector<std::unique_ptr<Recorder>> recorders;
-  if (output) recorders = make_recorders(scenario.record, *output, parts.query->capacity());
-  MetricsObserver metrics(scenario.time.step);
-  Progress bar(scenario.name, static_cast<std::uint64_t>(*scenario.time.steps), progress);
-  std::vector<Observer*> observers = {&metrics, &bar};
-  for (const auto& recorder : recorders) observers.push_back(recorder.get());
-  Simulation simulation(simulation_config(scenario), std::move(parts), observers);
+  std::vector<TrialResult> results;
+  for (const Trial trial : trials) {
+    std::optional<fs::path> directory;
+    if (output && records(scenario.record)) directory = trial_directory(*output, trial, trials.size());
+    if (directory) create_output(*directory);
+    std::string label = progress ? scenario.name : "";
+    if (progress && trials.size() > 1) label += fmt::format(" {}/{}", results.size() + 1, trials.size());
+    results.push_back(run_trial(scenario, shell, trial, directory, label));
+  }
 
-  const std::uint64_t allocations_before = heap_allocations();
-  const auto start = std::chrono::steady_clock::now();
-  simulation.run();
   RunReport report;
-  report.loop_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const std::uint64_t allocations = heap_allocations() - allocations_before;
-
-  report.summary = summarise(scenario, simulation, metrics, allocations);
+  for (const TrialResult& result : results) {
+    report.targets.insert(report.targets.end(), result.targets.begin(), result.targets.end());
+    report.loop_seconds += result.loop_seconds;
+  }
+  report.summary = summarise(scenario, results, report.targets);
   report.unmet = unmet_expectations(scenario.expect, report.summary);
   report.summary.expected = report.unmet.empty();
-  if (output) write_results(*output, scenario, report, recorders);
+  if (output) write_results(*output, scenario, report, results);
   return report;
 }
 
