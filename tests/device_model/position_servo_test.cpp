@@ -25,7 +25,7 @@ TEST(PositionServo, SaturatesAtTheNormOfItsForce) {
 }
 
 TEST(PositionServo, ACommandArrivesAfterTheDelay) {
-  for (const std::size_t delay : {0, 1, 2, 7}) {
+  for (const std::size_t delay : {0u, 1u, 2u, 7u}) {
     PositionServo servo({.stiffness = 1, .damping = 0, .max_force = 1e9, .delay = delay});
     for (int round = 0; round < 2; ++round) {
       for (int k = 0; k < 20; ++k) {

@@ -55,6 +55,7 @@ TEST(Summary, TextHoldsEveryField) {
   "divergence": null,
   "metrics": {
     "force_max_N": 1.5,
+    "force_step_max_N": 0.75,
     "velocity_total_variation_m_per_s": 0.1,
     "force_reversals": 2,
     "vibration_power_above_30Hz_m2_per_s2": 1e-07,
