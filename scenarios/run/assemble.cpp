@@ -7,11 +7,10 @@
 #include "device_model/ideal_device.hpp"
 #include "device_model/scripted_hands.hpp"
 #include "scenarios/files/motion_file.hpp"
-#include "scenarios/files/shell_file.hpp"
+#include "scenarios/run/environment_points.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "sim/contact/spring_query.hpp"
 #include "sim/core/random.hpp"
-#include "sim/environment/marching_cubes.hpp"
 
 namespace hapbench {
 namespace {
@@ -35,18 +34,6 @@ SpringSet make_springs(const SpringsEnvironment& fields, std::uint64_t seed) {
     springs.gradients.push_back(fields.random.planar ? random.direction_in_plane() : random.direction());
   }
   return springs;
-}
-
-/// The vertices of the surface of the density field, in the order that the contact search likes best.
-std::vector<SurfacePoint> block_points(const BlockEnvironment& environment) {
-  const BlockWithHole& block = environment.block;
-  DensityField field;
-  field.signed_distance = [&block](const Vec3& point) { return signed_distance(block, point); };
-  field.min = {-block.size.x() / 2, -block.size.y() / 2, -block.size.z()};
-  field.max = {block.size.x() / 2, block.size.y() / 2, 0.0};
-  field.spacing = environment.grid;
-  field.density = environment.density == "binary" ? Density::binary : Density::signed_distance;
-  return in_grid_order(vertices_with_normals(marching_cubes(field)), environment.grid);
 }
 
 /// Edge of the grid cells the local average merges in.
@@ -103,15 +90,6 @@ bool contains(const std::vector<std::string>& list, const char* name) {
 
 }  // namespace
 
-std::vector<SurfacePoint> environment_points(const Scenario& scenario) {
-  return std::visit(
-      Overloaded{[](const SpringsEnvironment&) { return std::vector<SurfacePoint>{}; },
-                 [&](const PointShellEnvironment& s) { return read_point_shell(resolve_path(scenario, s.file)); },
-                 [](const BlockEnvironment& block) { return block_points(block); },
-                 [](const auto& analytic) { return surface_points(analytic); }},
-      scenario.environment);
-}
-
 void check_named_files(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
   const auto at = [&loaded](const char* pointer, auto read) {
@@ -122,7 +100,7 @@ void check_named_files(const LoadedScenario& loaded) {
     }
   };
   if (std::holds_alternative<PointShellEnvironment>(scenario.environment)) {
-    at("/environment/file", [&] { environment_points(scenario); });
+    at("/environment/file", [&] { environment_points(scenario, ShellCache()); });
   }
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
     at("/motion/position/file", [&] { make_motion(scenario); });
@@ -144,12 +122,16 @@ SimulationConfig simulation_config(const Scenario& scenario) {
 }
 
 SimulationParts assemble(const Scenario& scenario) {
+  return assemble(scenario, environment_points(scenario, ShellCache()).points);
+}
+
+SimulationParts assemble(const Scenario& scenario, const std::vector<SurfacePoint>& points) {
   SimulationParts parts;
   parts.tool = make_tool(scenario.tool);
   if (const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment)) {
     parts.query = std::make_unique<SpringQuery>(make_springs(*springs, static_cast<std::uint64_t>(scenario.seed)));
   } else {
-    parts.shell = std::make_shared<const PointShell>(environment_points(scenario), cell_size(scenario.environment));
+    parts.shell = std::make_shared<const PointShell>(points, cell_size(scenario.environment));
     parts.query = std::make_unique<NeighbourListQuery>(*parts.shell, parts.tool);
   }
   parts.algorithm = make_algorithm(rendering_config(scenario.rendering));

@@ -7,10 +7,6 @@
 
 namespace hapbench {
 
-/// The point shell of the scenario's environment, in the order in which `hapbench shell` writes it; empty for springs.
-/// Throws InputError when a named file cannot be used.
-std::vector<SurfacePoint> environment_points(const Scenario& scenario);
-
 /// Reads the files the scenario names, to find what is wrong with them before anything is written. Throws InputError.
 void check_named_files(const LoadedScenario& loaded);
 
@@ -20,5 +16,8 @@ SimulationConfig simulation_config(const Scenario& scenario);
 /// Everything the run is made of. Precondition: defaults are filled in. Throws InputError when a named file cannot be
 /// used.
 SimulationParts assemble(const Scenario& scenario);
+
+/// The same from the points of its environment (environment_points.hpp).
+SimulationParts assemble(const Scenario& scenario, const std::vector<SurfacePoint>& points);
 
 }  // namespace hapbench

@@ -10,9 +10,9 @@
 #include "results/record/contact_recorder.hpp"
 #include "results/record/ratio_recorder.hpp"
 #include "results/record/trajectory_recorder.hpp"
-#include "results/timing.hpp"
 #include "scenarios/run/allocations.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/environment_points.hpp"
 #include "scenarios/run/expectation.hpp"
 #include "scenarios/run/progress.hpp"
 
@@ -20,6 +20,20 @@ namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::vector<SurfacePoint> timed_environment_points(const Scenario& scenario, const ShellCache& cache,
+                                                   RunTiming& timing) {
+  const auto start = Clock::now();
+  EnvironmentPoints shell = environment_points(scenario, cache);
+  timing.shell = seconds_since(start);
+  timing.shell_from_cache = shell.from_cache;
+  return std::move(shell.points);
+}
 
 Mat3 start_shaping(ContactBuffer& contacts) noexcept {
   return shape_weights(contacts, 0);
@@ -79,17 +93,18 @@ void write_results(const fs::path& directory, const Scenario& scenario, const Ru
   for (const auto& recorder : recorders) recorder->finish();
   write_file_atomically(directory / "scenario.effective.json", json_text(effective_scenario(scenario, directory)));
   if (scenario.record.timing) {
-    const RunTiming timing{report.loop_seconds, report.summary.result.rows};
-    write_file_atomically(directory / "timing.json", timing_text(timing, instruction_set(), provenance()));
+    write_file_atomically(directory / "timing.json", timing_text(report.timing, instruction_set(), provenance()));
   }
   write_file_atomically(directory / "summary.json", summary_text(report.summary));
 }
 
 }  // namespace
 
-RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress) {
+RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,
+                       const ShellCache& cache) {
   const Scenario& scenario = loaded.scenario;
-  SimulationParts parts = assemble(scenario);
+  RunReport report;
+  SimulationParts parts = assemble(scenario, timed_environment_points(scenario, cache, report.timing));
   if (output) create_output(*output);
 
   std::vector<std::unique_ptr<Recorder>> recorders;
@@ -101,10 +116,9 @@ RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::pat
   Simulation simulation(simulation_config(scenario), std::move(parts), observers);
 
   const std::uint64_t allocations_before = heap_allocations();
-  const auto start = std::chrono::steady_clock::now();
-  simulation.run();
-  RunReport report;
-  report.loop_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const auto start = Clock::now();
+  report.timing.steps = simulation.run().rows;
+  report.timing.loop = seconds_since(start);
   const std::uint64_t allocations = heap_allocations() - allocations_before;
 
   report.summary = summarise(scenario, simulation, metrics, allocations);
