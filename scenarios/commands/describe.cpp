@@ -67,9 +67,9 @@ Description describe_cache() {
       "  of another build of hapbench are not used. The directory may be deleted at any time.\n\n"
       "  directory  {}\n"
       "             ($HAPBENCH_CACHE_DIR, else $XDG_CACHE_HOME/hapbench, else $HOME/.cache/hapbench)\n"
-      "  holds      {} shells, {:.1f} MB; beyond {} MB the ones used longest ago go\n"
+      "  holds      {} shells, {:.1f} MB; beyond {} GiB those used longest ago go\n"
       "  off        --no-cache, or HAPBENCH_CACHE_DIR set to nothing\n",
-      directory, shells, 1e-6 * static_cast<double>(bytes), ShellCache::kLargest / 1'000'000);
+      directory, shells, 1e-6 * static_cast<double>(bytes), ShellCache::kLargest >> 30);
   d.json = {{"kind", "cache"}, {"directory", cache.directory().string()}, {"shells", shells}, {"bytes", bytes}};
   return d;
 }
