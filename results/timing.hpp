@@ -8,10 +8,12 @@
 
 namespace hapbench {
 
-/// Wall time of the step loop, observers included.
+/// Wall times of a run.
 struct RunTiming {
-  double loop = 0.0;        ///< [s]
-  std::uint64_t steps = 0;  ///< rows computed in that time
+  double shell = 0.0;             ///< to come by the environment's points [s]
+  bool shell_from_cache = false;  ///< they were read from the cache
+  double loop = 0.0;              ///< of the step loop, observers included [s]
+  std::uint64_t steps = 0;        ///< rows computed in that time
 };
 
 /// timing.json: apart from summary.json because no two runs take the same time. Names the build's instruction set and

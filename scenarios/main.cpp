@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 
@@ -45,6 +46,8 @@ int run_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace hapbench;
+  // A file that becomes larger than the user's limit is an error of writing like others, not the end of the process.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     return run_program(argc, argv);
   } catch (const InputError& error) {

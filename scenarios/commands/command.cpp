@@ -17,6 +17,14 @@ void add_output_options(CLI::App& command, OutputOptions& options) {
   command.add_flag("--json", options.json, "JSON on standard output instead of a table");
 }
 
+void add_cache_option(CLI::App& command, bool& no_cache) {
+  command.add_flag("--no-cache", no_cache, "build the shell anew and keep none (see \"hapbench describe cache\")");
+}
+
+ShellCache shell_cache(bool no_cache) {
+  return no_cache ? ShellCache() : ShellCache(shell_cache_directory());
+}
+
 void print(const OutputOptions& options, const std::string& text, const Json& json) {
   if (options.quiet) return;
   const std::string output = options.json ? json_text(json) : text;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenarios/codec/codec.hpp"
+#include "scenarios/files/shell_cache.hpp"
 
 /// The command line: each command adds its options to the parser and says what to do when it is chosen.
 namespace hapbench {
@@ -38,6 +39,11 @@ void add_validate(CLI::App& app, Action& chosen);
 
 /// Adds --quiet and --json.
 void add_output_options(CLI::App& command, OutputOptions& options);
+
+/// Adds --no-cache.
+void add_cache_option(CLI::App& command, bool& no_cache);
+/// The user's cache of point shells; none with --no-cache.
+ShellCache shell_cache(bool no_cache);
 
 /// Prints `text`, or `json` under --json, or nothing under --quiet.
 void print(const OutputOptions& options, const std::string& text, const Json& json);

@@ -55,8 +55,27 @@ Description describe_scenario(const std::filesystem::path& file) {
           effective};
 }
 
+/// Where the user's point shells are kept and how to be rid of them.
+Description describe_cache() {
+  const ShellCache cache(shell_cache_directory());
+  const auto [shells, bytes] = cache.contents();
+  const std::string directory = cache.is_on() ? cache.directory().string() : "none: nothing is kept";
+  Description d;
+  d.text = fmt::format(
+      "shell cache\n"
+      "  Point shells that take long to build are kept on disk and read back bit for bit. Files that are damaged or\n"
+      "  of another build of hapbench are not used. The directory may be deleted at any time.\n\n"
+      "  directory  {}\n"
+      "             ($HAPBENCH_CACHE_DIR, else $XDG_CACHE_HOME/hapbench, else $HOME/.cache/hapbench)\n"
+      "  holds      {} shells, {:.1f} MB; beyond {} GiB those used longest ago go\n"
+      "  off        --no-cache, or HAPBENCH_CACHE_DIR set to nothing\n",
+      directory, shells, 1e-6 * static_cast<double>(bytes), ShellCache::kLargest >> 30);
+  d.json = {{"kind", "cache"}, {"directory", cache.directory().string()}, {"shells", shells}, {"bytes", bytes}};
+  return d;
+}
+
 std::vector<std::string> all_names() {
-  std::vector<std::string> names = {"scenario", "schema"};
+  std::vector<std::string> names = {"cache", "scenario", "schema"};
   for (const AlgorithmEntry& entry : algorithms()) names.emplace_back(entry.info->name);
   for (const DepthModelEntry& entry : depth_models()) names.emplace_back(entry.info->name);
   for (const ModelInfo* stage : stages()) names.emplace_back(stage->name);
@@ -66,6 +85,7 @@ std::vector<std::string> all_names() {
 }
 
 Description describe_name(const std::string& name) {
+  if (name == "cache") return describe_cache();
   if (name == "schema") return {json_text(scenario_schema()), scenario_schema()};
   Description d;
   const auto add = [&d](Description more) {
@@ -97,12 +117,13 @@ void add_describe(CLI::App& app, Action& chosen) {
     OutputOptions output;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("describe", "Explain an algorithm, a depth model, an environment, a field or a scenario");
+  CLI::App* command = app.add_subcommand(
+      "describe", "Explain an algorithm, a depth model, an environment, a field, a scenario or the cache");
   command
       ->add_option(
           "name", options->name,
-          "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), or \"schema\"")
+          "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", or "
+          "\"cache\"")
       ->required();
   add_output_options(*command, options->output);
   command->callback([options, &chosen] {

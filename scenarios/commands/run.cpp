@@ -17,6 +17,7 @@ struct RunOptions {
   std::vector<std::string> scenarios;
   std::string out;
   std::vector<std::string> overrides;
+  bool no_cache = false;
   OutputOptions output;
 };
 
@@ -54,9 +55,10 @@ int run(const RunOptions& options) {
   columns.insert(columns.begin(), {{"scenario", false}, {"algorithm", false}});
   Table table(columns);
   Json summaries = Json::array();
+  const ShellCache cache = shell_cache(options.no_cache);
   int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
-    const RunReport report = run_scenario(scenarios[i], directories[i], !options.output.quiet);
+    const RunReport report = run_scenario(scenarios[i], directories[i], !options.output.quiet, cache);
     std::vector<std::string> cells = run_cells(report);
     cells.insert(cells.begin(), {report.summary.name, report.summary.algorithm});
     table.add(std::move(cells));
@@ -83,6 +85,7 @@ void add_run(CLI::App& app, Action& chosen) {
   command->add_option("--set", options->overrides, "override a field: path=value, as in time.steps=100")
       ->allow_extra_args(false)
       ->take_all();
+  add_cache_option(*command, options->no_cache);
   add_output_options(*command, options->output);
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }

@@ -25,7 +25,7 @@ std::vector<std::string> run_cells(const RunReport& report) {
           significant(m.vibration_power.value_or(none), 3),
           significant(1e3 * m.depth_max),
           m.ratio ? fmt::format("{} ... {}", significant(m.ratio->min, 3), significant(m.ratio->max, 3)) : "-",
-          significant(1e6 * report.loop_seconds / rows, 3)};
+          significant(1e6 * report.timing.loop / rows, 3)};
 }
 
 }  // namespace hapbench

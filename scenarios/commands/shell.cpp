@@ -7,6 +7,7 @@
 #include "scenarios/config/load_scenario.hpp"
 #include "scenarios/files/shell_file.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/environment_points.hpp"
 
 namespace hapbench {
 namespace {
@@ -15,6 +16,7 @@ struct ShellOptions {
   std::string scenario;
   std::string out;
   std::vector<std::string> overrides;
+  bool no_cache = false;
   OutputOptions output;
 };
 
@@ -24,11 +26,12 @@ int shell(const ShellOptions& options) {
     throw InputError(loaded.file.string() + ": /environment/type: got \"springs\", which have no point shell");
   }
   check_named_files(loaded);
-  const std::vector<SurfacePoint> points = environment_points(loaded.scenario);
+  const std::vector<SurfacePoint> points = environment_points(loaded.scenario, shell_cache(options.no_cache)).points;
   const std::filesystem::path file = options.out;
   const std::string text = point_shell_text(points, file);
   std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) throw InputError(fmt::format("--out {}: is a directory", file.string()));
+  if (std::filesystem::is_directory(file, ignored))
+    throw InputError(fmt::format("--out {}: is a directory", file.string()));
   const std::filesystem::path directory = file.has_parent_path() ? file.parent_path() : ".";
   require_writable_directory(directory);
   write_file_atomically(file, text);
@@ -46,6 +49,7 @@ void add_shell(CLI::App& app, Action& chosen) {
   command->add_option("--out", options->out, "FILE.csv (exact) or FILE.ply (single precision, for viewers)")
       ->required();
   command->add_option("--set", options->overrides, "override a field: path=value")->allow_extra_args(false)->take_all();
+  add_cache_option(*command, options->no_cache);
   add_output_options(*command, options->output);
   command->callback([options, &chosen] { chosen = [options] { return shell(*options); }; });
 }

@@ -5,6 +5,7 @@
 #include "results/hash.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/codec/values.hpp"
+#include "scenarios/config/environment_codec.hpp"
 #include "scenarios/files/json_file.hpp"
 #include "scenarios/files/number_table.hpp"
 
@@ -57,6 +58,11 @@ std::string* named_motion(Scenario& scenario) {
   return nullptr;
 }
 
+/// Puts the hash of a named file's contents in place of its path.
+void name_by_content(std::string* file, const Scenario& scenario) {
+  if (file != nullptr) *file = hash_text(hash_of(read_text_file(resolve_path(scenario, *file), kLargestTable)));
+}
+
 }  // namespace
 
 void rethrow_with_file(const InputError& error, const std::filesystem::path& file) {
@@ -96,12 +102,15 @@ Json effective_scenario(const Scenario& scenario, const std::filesystem::path& d
   return scenario_codec().write(effective);
 }
 
+Json environment_content(const Scenario& scenario) {
+  Scenario content = scenario;
+  name_by_content(named_file(content), scenario);
+  return environment_codec()->write(content.environment);
+}
+
 std::string scenario_hash(const Scenario& scenario) {
   Scenario content = scenario;
-  for (std::string* file : {named_file(content), named_motion(content)}) {
-    if (file == nullptr) continue;
-    *file = hash_text(hash_of(read_text_file(resolve_path(scenario, *file), kLargestTable)));
-  }
+  for (std::string* file : {named_file(content), named_motion(content)}) name_by_content(file, scenario);
   return hash_text(hash_of(json_text(scenario_codec().write(content))));
 }
 

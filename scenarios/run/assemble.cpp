@@ -10,11 +10,10 @@
 #include "device_model/scripted_hands.hpp"
 #include "device_model/tracking_hand.hpp"
 #include "scenarios/files/motion_file.hpp"
-#include "scenarios/files/shell_file.hpp"
+#include "scenarios/run/environment_points.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "sim/contact/spring_query.hpp"
 #include "sim/core/random.hpp"
-#include "sim/environment/marching_cubes.hpp"
 
 namespace hapbench {
 namespace {
@@ -38,18 +37,6 @@ SpringSet make_springs(const SpringsEnvironment& fields, std::uint64_t seed) {
     springs.gradients.push_back(fields.random.planar ? random.direction_in_plane() : random.direction());
   }
   return springs;
-}
-
-/// The vertices of the surface of the density field, in the order that the contact search likes best.
-std::vector<SurfacePoint> block_points(const BlockEnvironment& environment) {
-  const BlockWithHole& block = environment.block;
-  DensityField field;
-  field.signed_distance = [&block](const Vec3& point) { return signed_distance(block, point); };
-  field.min = {-block.size.x() / 2, -block.size.y() / 2, -block.size.z()};
-  field.max = {block.size.x() / 2, block.size.y() / 2, 0.0};
-  field.spacing = environment.grid;
-  field.density = environment.density == "binary" ? Density::binary : Density::signed_distance;
-  return in_grid_order(vertices_with_normals(marching_cubes(field)), environment.grid);
 }
 
 /// Edge of the grid cells the local average merges in.
@@ -148,15 +135,6 @@ bool contains(const std::vector<std::string>& list, const char* name) {
 
 }  // namespace
 
-std::vector<SurfacePoint> environment_points(const Scenario& scenario) {
-  return std::visit(
-      Overloaded{[](const SpringsEnvironment&) { return std::vector<SurfacePoint>{}; },
-                 [&](const PointShellEnvironment& s) { return read_point_shell(resolve_path(scenario, s.file)); },
-                 [](const BlockEnvironment& block) { return block_points(block); },
-                 [](const auto& analytic) { return surface_points(analytic); }},
-      scenario.environment);
-}
-
 void check_named_files(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
   const auto at = [&loaded](const char* pointer, auto read) {
@@ -167,7 +145,7 @@ void check_named_files(const LoadedScenario& loaded) {
     }
   };
   if (std::holds_alternative<PointShellEnvironment>(scenario.environment)) {
-    at("/environment/file", [&] { environment_points(scenario); });
+    at("/environment/file", [&] { environment_points(scenario, ShellCache()); });
   }
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
     at("/motion/position/file", [&] { make_motion(scenario); });
@@ -188,9 +166,9 @@ SimulationConfig simulation_config(const Scenario& scenario) {
   return config;
 }
 
-std::shared_ptr<const PointShell> make_shell(const Scenario& scenario) {
+std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const std::vector<SurfacePoint>& points) {
   if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return nullptr;
-  return std::make_shared<const PointShell>(environment_points(scenario), cell_size(scenario.environment));
+  return std::make_shared<const PointShell>(points, cell_size(scenario.environment));
 }
 
 SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial) {
@@ -209,7 +187,7 @@ SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointSh
 }
 
 SimulationParts assemble(const Scenario& scenario) {
-  return assemble(scenario, make_shell(scenario), {});
+  return assemble(scenario, make_shell(scenario, environment_points(scenario, ShellCache()).points), {});
 }
 
 }  // namespace hapbench

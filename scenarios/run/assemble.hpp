@@ -7,10 +7,6 @@
 
 namespace hapbench {
 
-/// The point shell of the scenario's environment, in the order in which `hapbench shell` writes it; empty for springs.
-/// Throws InputError when a named file cannot be used.
-std::vector<SurfacePoint> environment_points(const Scenario& scenario);
-
 /// Reads the files the scenario names, to find what is wrong with them before anything is written. Throws InputError.
 void check_named_files(const LoadedScenario& loaded);
 
@@ -23,9 +19,9 @@ struct Trial {
   std::size_t number = 0;
 };
 
-/// The environment as the contact search wants it; null for springs. Throws InputError when a named file cannot be
-/// used.
-std::shared_ptr<const PointShell> make_shell(const Scenario& scenario);
+/// The points of the scenario's environment (environment_points.hpp) as the contact search wants them; null for
+/// springs.
+std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const std::vector<SurfacePoint>& points);
 
 /// Everything the run is made of. Preconditions: defaults are filled in, `shell` is make_shell of this scenario. Throws
 /// InputError when a named file cannot be used.

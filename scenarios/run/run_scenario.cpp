@@ -6,7 +6,7 @@
 #include "results/io/json_text.hpp"
 #include "results/io/stale_temporaries.hpp"
 #include "results/record/target_table.hpp"
-#include "results/timing.hpp"
+#include "scenarios/run/environment_points.hpp"
 #include "scenarios/run/expectation.hpp"
 #include "scenarios/run/run_trial.hpp"
 
@@ -14,6 +14,20 @@ namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::vector<SurfacePoint> timed_environment_points(const Scenario& scenario, const ShellCache& cache,
+                                                   RunTiming& timing) {
+  const auto start = Clock::now();
+  EnvironmentPoints shell = environment_points(scenario, cache);
+  timing.shell = seconds_since(start);
+  timing.shell_from_cache = shell.from_cache;
+  return std::move(shell.points);
+}
 
 /// The trials of a scenario, subject by subject.
 std::vector<Trial> trials_of(const Scenario& scenario) {
@@ -119,18 +133,19 @@ void write_results(const fs::path& directory, const Scenario& scenario, const Ru
   write_file_atomically(directory / "scenario.effective.json", json_text(effective_scenario(scenario, directory)));
   if (report.summary.targets) write_target_table(directory / "targets.csv", report.targets);
   if (scenario.record.timing) {
-    const RunTiming timing{report.loop_seconds, report.summary.result.rows};
-    write_file_atomically(directory / "timing.json", timing_text(timing, instruction_set(), provenance()));
+    write_file_atomically(directory / "timing.json", timing_text(report.timing, instruction_set(), provenance()));
   }
   write_file_atomically(directory / "summary.json", summary_text(report.summary));
 }
 
 }  // namespace
 
-RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress) {
+RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,
+                       const ShellCache& cache) {
   const Scenario& scenario = loaded.scenario;
+  RunReport report;
   const std::vector<Trial> trials = trials_of(scenario);
-  const auto shell = make_shell(scenario);
+  const auto shell = make_shell(scenario, timed_environment_points(scenario, cache, report.timing));
   if (output) create_output(*output);
 
   std::vector<TrialResult> results;
@@ -143,10 +158,10 @@ RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::pat
     results.push_back(run_trial(scenario, shell, trial, directory, label));
   }
 
-  RunReport report;
   for (const TrialResult& result : results) {
     report.targets.insert(report.targets.end(), result.targets.begin(), result.targets.end());
-    report.loop_seconds += result.loop_seconds;
+    report.timing.loop += result.loop_seconds;
+    report.timing.steps += result.result.rows;
   }
   report.summary = summarise(scenario, results, report.targets);
   report.unmet = unmet_expectations(scenario.expect, report.summary);

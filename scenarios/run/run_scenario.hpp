@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "results/summary.hpp"
+#include "results/timing.hpp"
 #include "scenarios/config/load_scenario.hpp"
+#include "scenarios/files/shell_cache.hpp"
 
 namespace hapbench {
 
@@ -15,13 +17,14 @@ struct RunReport {
   RunSummary summary;
   std::vector<std::string> unmet;  ///< expectations the run did not meet
   std::vector<TargetRow> targets;  ///< of a tracking hand, all subjects and trials
-  double loop_seconds = 0.0;       ///< wall time of the step loops
+  RunTiming timing;                ///< of a tracking hand, all trials together
 };
 
 /// Runs a scenario. With `output`, writes summary.json, scenario.effective.json and what the scenario records into that
 /// directory, which is created, records of several trials into a subdirectory each; each file appears complete or not
-/// at all, the summary last. `progress` allows a progress bar. Throws InputError for files it cannot use (before
-/// anything is written), IoError when writing fails.
-RunReport run_scenario(const LoadedScenario& loaded, const std::optional<std::filesystem::path>& output, bool progress);
+/// at all, the summary last. `progress` allows a progress bar. The environment's shell may come from `cache`. Throws
+/// InputError for files it cannot use (before anything is written), IoError when writing fails.
+RunReport run_scenario(const LoadedScenario& loaded, const std::optional<std::filesystem::path>& output, bool progress,
+                       const ShellCache& cache);
 
 }  // namespace hapbench

@@ -27,28 +27,29 @@ GridIndex::GridIndex(const PointShell& shell)
       z_(shell.padded_size(), PointShell::kFarAway),
       shell_index_(shell.size()) {
   choose_cells(shell);
-  std::vector<std::uint32_t> cell(shell.size());
-  for (std::size_t i = 0; i < shell.size(); ++i) cell[i] = cell_of(shell.point(i).position);
-
-  std::iota(shell_index_.begin(), shell_index_.end(), 0u);
-  std::stable_sort(shell_index_.begin(), shell_index_.end(),
-                   [&cell](std::uint32_t a, std::uint32_t b) { return cell[a] < cell[b]; });
-  keeps_order_ = std::is_sorted(shell_index_.begin(), shell_index_.end());
   start_.assign(count_[0] * count_[1] * count_[2] + 1, 0);
+  std::vector<std::uint32_t> cell(shell.size());
   for (std::size_t i = 0; i < shell.size(); ++i) {
-    const Vec3 point = shell.point(shell_index_[i]).position;
-    x_[i] = point.x();
-    y_[i] = point.y();
-    z_[i] = point.z();
+    cell[i] = cell_of({shell.x()[i], shell.y()[i], shell.z()[i]});
     ++start_[cell[i] + 1];
   }
   std::partial_sum(start_.begin(), start_.end(), start_.begin());
+  // Counting sort: each point goes to the next place of its cell, so those of a cell keep their order.
+  std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
+  for (std::size_t i = 0; i < shell.size(); ++i) {
+    const std::uint32_t sorted = next[cell[i]]++;
+    keeps_order_ = keeps_order_ && sorted == i;
+    shell_index_[sorted] = static_cast<std::uint32_t>(i);
+    x_[sorted] = shell.x()[i];
+    y_[sorted] = shell.y()[i];
+    z_[sorted] = shell.z()[i];
+  }
 }
 
 void GridIndex::choose_cells(const PointShell& shell) {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   for (std::size_t i = 0; i < shell.size(); ++i) {
-    const Vec3 p = shell.point(i).position;
+    const Vec3 p(shell.x()[i], shell.y()[i], shell.z()[i]);
     low = i == 0 ? p : Vec3(low.cwiseMin(p));
     high = i == 0 ? p : Vec3(high.cwiseMax(p));
   }

@@ -18,7 +18,7 @@ struct Box {
 /// per column. Cells are a few points wide: for shells spaced by 0.1 mm, 0.25 mm was the fastest size measured.
 class GridIndex {
  public:
-  /// O(n log n). The number of cells is bounded by a few times the number of points, whatever the extent of the shell.
+  /// O(n). The number of cells is bounded by a few times the number of points, whatever the extent of the shell.
   explicit GridIndex(const PointShell& shell);
 
   /// Calls `visit(first, last)` for each column of cells that meets the box, with the range of its points in the sorted

@@ -24,7 +24,7 @@ namespace hapbench {
 /// the tool may go before anything has to be searched again: in free air a step costs one comparison.
 class NeighbourListQuery final : public ContactQuery {
  public:
-  /// The shell must outlive the query. Builds the grid: O(n log n).
+  /// The shell must outlive the query. Builds the grid: O(n).
   NeighbourListQuery(const PointShell& shell, const Tool& tool);
 
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;

@@ -17,6 +17,7 @@ RunSummary example() {
   run.duration = 0.2;
   run.metrics = {.rows = 400,
                  .force_max = 1.5,
+                 .force_step_max = 0.75,
                  .velocity_total_variation = 0.1,
                  .force_reversals = 2,
                  .vibration_power = 1e-7,

@@ -13,8 +13,11 @@ const Provenance kProvenance = {.version = "1.2.3",
                                 .cpu = "Some CPU"};
 
 TEST(Timing, TextHoldsMeanTimeInstructionSetAndCpu) {
-  EXPECT_EQ(timing_text({.loop = 0.5, .steps = 2000}, {.march = "native", .widest = "avx2", .simd = true}, kProvenance),
+  EXPECT_EQ(timing_text({.shell = 0.25, .shell_from_cache = true, .loop = 0.5, .steps = 2000},
+                        {.march = "native", .widest = "avx2", .simd = true}, kProvenance),
             R"({
+  "shell_s": 0.25,
+  "shell_from_cache": true,
   "loop_s": 0.5,
   "steps": 2000,
   "step_mean_s": 0.00025,

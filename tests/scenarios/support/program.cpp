@@ -61,6 +61,10 @@ pid_t start(const std::filesystem::path& program, const std::vector<std::string>
     const rlimit limit{options.memory_limit, options.memory_limit};
     ::setrlimit(RLIMIT_AS, &limit);
   }
+  if (options.file_limit != 0) {
+    const rlimit limit{options.file_limit, options.file_limit};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
   if (!options.as_root_may && ::geteuid() == 0 && ::prctl(PR_SET_SECUREBITS, SECBIT_NOROOT) != 0) ::_exit(126);

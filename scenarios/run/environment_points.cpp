@@ -1,0 +1,63 @@
+#include "scenarios/run/environment_points.hpp"
+
+#include "results/io/json_text.hpp"
+#include "scenarios/files/loaded_code.hpp"
+#include "scenarios/files/shell_file.hpp"
+#include "sim/contact/grid_index.hpp"
+#include "sim/environment/marching_cubes.hpp"
+
+namespace hapbench {
+namespace {
+
+/// The vertices of the surface of the density field, in the order that the contact search likes best.
+std::vector<SurfacePoint> block_points(const BlockEnvironment& environment) {
+  const BlockWithHole& block = environment.block;
+  DensityField field;
+  field.signed_distance = [&block](const Vec3& point) { return signed_distance(block, point); };
+  field.min = {-block.size.x() / 2, -block.size.y() / 2, -block.size.z()};
+  field.max = {block.size.x() / 2, block.size.y() / 2, 0.0};
+  field.spacing = environment.grid;
+  field.density = environment.density == "binary" ? Density::binary : Density::signed_distance;
+  return in_grid_order(vertices_with_normals(marching_cubes(field)), environment.grid);
+}
+
+/// Builds the points of each type of environment.
+struct Build {
+  const Scenario& scenario;
+
+  std::vector<SurfacePoint> operator()(const SpringsEnvironment&) const { return {}; }
+  std::vector<SurfacePoint> operator()(const PointShellEnvironment& shell) const {
+    return read_point_shell(resolve_path(scenario, shell.file));
+  }
+  std::vector<SurfacePoint> operator()(const BlockEnvironment& block) const { return block_points(block); }
+  template <class Analytic>
+  std::vector<SurfacePoint> operator()(const Analytic& shape) const {
+    return surface_points(shape);
+  }
+};
+
+/// Whether building takes longer than reading what was built.
+bool is_worth_keeping(const Environment& environment) {
+  return std::holds_alternative<BlockEnvironment>(environment);
+}
+
+}  // namespace
+
+std::string shell_definition(const Scenario& scenario) {
+  const std::string code = loaded_code_id();
+  if (code.empty()) return "";
+  return json_text({{"environment", environment_content(scenario)}, {"code", code}});
+}
+
+EnvironmentPoints environment_points(const Scenario& scenario, const ShellCache& cache) {
+  const auto build = [&scenario] { return std::visit(Build{scenario}, scenario.environment); };
+  if (!cache.is_on() || !is_worth_keeping(scenario.environment)) return {build()};
+  const std::string definition = shell_definition(scenario);
+  if (definition.empty()) return {build()};
+  if (auto points = cache.find(definition)) return {std::move(*points), true};
+  EnvironmentPoints built{build()};
+  cache.keep(definition, built.points);
+  return built;
+}
+
+}  // namespace hapbench
