@@ -6,6 +6,7 @@
 #include "algorithms/registry.hpp"
 #include "device_model/ideal_device.hpp"
 #include "device_model/scripted_hands.hpp"
+#include "scenarios/files/mesh_file.hpp"
 #include "scenarios/files/motion_file.hpp"
 #include "scenarios/files/shell_file.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
@@ -49,10 +50,17 @@ std::vector<SurfacePoint> block_points(const BlockEnvironment& environment) {
   return in_grid_order(vertices_with_normals(marching_cubes(field)), environment.grid);
 }
 
+MeshPoints mesh_points(const Scenario& scenario, const MeshEnvironment& mesh) {
+  MeshPoints read = read_mesh_points(resolve_path(scenario, mesh.file), {mesh.scale, mesh.spacing});
+  read.points = in_grid_order(read.points, mesh.grid.value_or(0.0));
+  return read;
+}
+
 /// Edge of the grid cells the local average merges in.
 double cell_size(const Environment& environment) {
   return std::visit(Overloaded{[](const SpringsEnvironment&) { return 0.0; },
                                [](const PointShellEnvironment& shell) { return shell.grid.value_or(0.0); },
+                               [](const MeshEnvironment& mesh) { return mesh.grid.value_or(0.0); },
                                [](const BlockEnvironment& block) { return block.grid; },
                                [](const auto& analytic) { return analytic.spacing; }},
                     environment);
@@ -107,13 +115,15 @@ std::vector<SurfacePoint> environment_points(const Scenario& scenario) {
   return std::visit(
       Overloaded{[](const SpringsEnvironment&) { return std::vector<SurfacePoint>{}; },
                  [&](const PointShellEnvironment& s) { return read_point_shell(resolve_path(scenario, s.file)); },
+                 [&](const MeshEnvironment& mesh) { return mesh_points(scenario, mesh).points; },
                  [](const BlockEnvironment& block) { return block_points(block); },
                  [](const auto& analytic) { return surface_points(analytic); }},
       scenario.environment);
 }
 
-void check_named_files(const LoadedScenario& loaded) {
+std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
+  std::vector<std::string> warnings;
   const auto at = [&loaded](const char* pointer, auto read) {
     try {
       read();
@@ -124,9 +134,14 @@ void check_named_files(const LoadedScenario& loaded) {
   if (std::holds_alternative<PointShellEnvironment>(scenario.environment)) {
     at("/environment/file", [&] { environment_points(scenario); });
   }
+  if (const auto* mesh = std::get_if<MeshEnvironment>(&scenario.environment)) {
+    at("/environment/file", [&] { warnings = mesh_points(scenario, *mesh).warnings; });
+    for (std::string& warning : warnings) warning = loaded.file.string() + ": /environment/file: " + warning;
+  }
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
     at("/motion/position/file", [&] { make_motion(scenario); });
   }
+  return warnings;
 }
 
 SimulationConfig simulation_config(const Scenario& scenario) {
