@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 #include "scenarios/codec/codec.hpp"
 #include "scenarios/files/number_table.hpp"
@@ -155,15 +156,21 @@ class Reducer {
   throw InputError(InputError::Kind::relation, file.string(), problem);
 }
 
+/// Four bytes from `start` on, the lowest first; none beyond the end.
+std::optional<std::size_t> binary_count(std::string_view text, std::size_t start) {
+  if (text.size() < 4 || start > text.size() - 4) return std::nullopt;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    count |= static_cast<std::size_t>(static_cast<unsigned char>(text[start + i])) << (8 * i);
+  return count;
+}
+
 constexpr std::size_t kStlHeader = 84, kStlTriangle = 50;
 
 /// Size of a binary STL file with as many triangles as this one declares.
 std::size_t stl_size(std::string_view text) {
-  if (text.size() < kStlHeader) return std::numeric_limits<std::size_t>::max();
-  std::size_t triangles = 0;
-  for (std::size_t i = 0; i < 4; ++i)
-    triangles |= static_cast<std::size_t>(static_cast<unsigned char>(text[80 + i])) << (8 * i);
-  return kStlHeader + kStlTriangle * triangles;
+  const auto triangles = binary_count(text, kStlHeader - 4);
+  return triangles ? kStlHeader + kStlTriangle * *triangles : std::numeric_limits<std::size_t>::max();
 }
 
 MeshText stl_text(const fs::path& file, std::string text) {
@@ -183,6 +190,20 @@ MeshText stl_text(const fs::path& file, std::string text) {
   return {MeshFormat::binary_stl, std::move(text)};
 }
 
+/// The library goes on at the end of the file, with old values, for as many faces and corners as are declared.
+void check_binary_off(std::string_view text, const fs::path& file) {
+  const std::size_t counts = text.find('\n') + 1;
+  const auto vertices = binary_count(text, counts), faces = binary_count(text, counts + 4);
+  std::size_t start = counts + 12 + 12 * vertices.value_or(0);
+  for (std::size_t i = 0; i < faces.value_or(1); ++i) {
+    const auto corners = binary_count(text, start);
+    if (!corners || *corners > text.size())
+      fail(file, "ends before its faces; allowed: a complete, little endian file");
+    start += 4 * (1 + *corners);
+  }
+  if (start > text.size()) fail(file, "ends before its last face; allowed: a complete, little endian file");
+}
+
 MeshText off_text(const fs::path& file, std::string text) {
   const std::string_view first_line = std::string_view(text).substr(0, text.find('\n'));
   const Words header = words_of(first_line.substr(0, first_line.find('#')));
@@ -193,6 +214,7 @@ MeshText off_text(const fs::path& file, std::string text) {
   if (header.size() == 1 || header[1] != "BINARY") return {MeshFormat::off, Reducer(file, text).off()};
   if (header[0] != "OFF")
     fail_in_line(file, 1, "allowed for a binary file: no normals, colours or texture coordinates");
+  check_binary_off(text, file);
   return {MeshFormat::binary_off, std::move(text)};
 }
 
