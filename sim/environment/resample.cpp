@@ -46,7 +46,11 @@ void refine(HalfEdgeMesh& mesh, double longest_edge) {
 
 double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double most) {
   const double largest = longest_edge * longest_edge;
-  double count = 0.0;
+  double area = 0.0, count = 0.0;
+  for (const auto face : mesh.faces()) area += mesh.calc_face_area(face);
+  // No triangle is larger than the equilateral one.
+  const double fewest = area / (std::sqrt(3.0) / 4.0 * largest);
+  if (fewest > most) return fewest;
   std::vector<SquaredLengths> open;
   for (const auto face : mesh.faces()) {
     open.push_back(squared_lengths(mesh, face));

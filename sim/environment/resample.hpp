@@ -9,8 +9,8 @@ namespace hapbench {
 /// Splits the longest edges in two until none is longer than `longest_edge` [m], > 0. The surface stays the same.
 void refine(HalfEdgeMesh& mesh, double longest_edge);
 
-/// Number of faces `refine` would leave, without making them; counted up to `most` only, because absurd numbers are to
-/// be refused.
+/// Number of faces `refine` would leave, without making them. Beyond `most` it is some number above that, found soon,
+/// because absurd numbers are to be refused.
 double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double most);
 
 /// Thins the points to one in each cube between half-integer multiples of `spacing` [m] and each main direction of the
