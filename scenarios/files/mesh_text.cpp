@@ -37,12 +37,14 @@ class Reducer {
   Reducer(const fs::path& file, std::string_view text) : file_(file), lines_(text) {}
 
   std::string obj() {
+    int vertices = 0;
     while (next_words()) {
       if (words_[0] == "v") {
         add("v", position(1));
+        ++vertices;
       } else if (words_[0] == "f") {
         if (words_.size() < 4) fail(fmt::format("got a face with {} corners; allowed: at least 3", words_.size() - 1));
-        for (std::size_t i = 1; i < words_.size(); ++i) words_[i] = obj_vertex(words_[i]);
+        for (std::size_t i = 1; i < words_.size(); ++i) words_[i] = obj_vertex(words_[i], vertices);
         add("f", {words_.begin() + 1, words_.end()});
       }
     }
@@ -119,13 +121,13 @@ class Reducer {
     return {begin, begin + 3};
   }
 
-  /// "7/1/3" names the vertex 7; "-1" the last one.
-  std::string_view obj_vertex(std::string_view word) const {
+  /// "7/1/3" names the vertex 7, which may come later; "-1" the last one of those so far.
+  std::string_view obj_vertex(std::string_view word, int vertices) const {
     const std::string_view vertex = word.substr(0, word.find('/'));
     int index = 0;
     const auto [end, error] = std::from_chars(vertex.data(), vertex.data() + vertex.size(), index);
-    if (error != std::errc() || end != vertex.data() + vertex.size() || index == 0)
-      fail(fmt::format("got {}; allowed: the number of a vertex, from 1, or from the last one, -1", quoted(word)));
+    if (error != std::errc() || end != vertex.data() + vertex.size() || index == 0 || index < -vertices)
+      fail(fmt::format("got {}; allowed: the number of a vertex, from 1, or back from -1, the last one", quoted(word)));
     return vertex;
   }
 
