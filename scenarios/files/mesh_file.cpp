@@ -53,29 +53,36 @@ std::vector<std::string> warnings_about(const MeshFindings& found, const fs::pat
   return warnings;
 }
 
-void resample(HalfEdgeMesh& mesh, double spacing, const fs::path& file) {
+/// Precondition of resampling.
+void check_spacing(const HalfEdgeMesh& mesh, double spacing, const fs::path& file) {
   // A triangle mesh has half as many vertices as faces, more only in so far as it is open.
-  const double faces = refined_face_count(mesh, spacing, 2.0 * kMostPoints);
-  if (faces > 2.0 * kMostPoints) {
-    fail(file, fmt::format("spacing_m {} would need more than {:.0g} points; allowed: a wider spacing", spacing,
-                           kMostPoints));
-  }
-  refine(mesh, spacing);
+  constexpr double kMostFaces = 2.0 * kMostPoints;
+  if (refined_face_count(mesh, spacing, kMostFaces) <= kMostFaces) return;
+  fail(file,
+       fmt::format("spacing_m {} would need more than {:.0g} points; allowed: a wider spacing", spacing, kMostPoints));
+}
+
+/// The surface in the file, all checks done.
+CheckedMesh read_surface(const fs::path& file, const MeshSampling& sampling) {
+  TriangleSoup soup = read_with_mesh_library(read_mesh_text(file), file);
+  scale_and_check(soup, sampling.scale, file);
+  CheckedMesh surface = connect(soup, file);
+  if (vertices_with_normals(surface.mesh).empty()) fail(file, "has no faces with an area; allowed: at least one");
+  if (sampling.spacing) check_spacing(surface.mesh, *sampling.spacing, file);
+  return surface;
 }
 
 }  // namespace
 
-MeshPoints read_mesh_points(const fs::path& file, const MeshSampling& sampling) {
-  TriangleSoup soup = read_with_mesh_library(read_mesh_text(file), file);
-  scale_and_check(soup, sampling.scale, file);
-  CheckedMesh checked = connect(soup, file);
-  MeshPoints result;
-  result.warnings = warnings_about(checked.findings, file);
-  if (sampling.spacing) resample(checked.mesh, *sampling.spacing, file);
-  result.points = vertices_with_normals(checked.mesh);
-  if (sampling.spacing) result.points = thinned(result.points, *sampling.spacing);
-  if (result.points.empty()) fail(file, "has no faces with an area; allowed: at least one");
-  return result;
+std::vector<SurfacePoint> read_mesh_points(const fs::path& file, const MeshSampling& sampling) {
+  HalfEdgeMesh mesh = read_surface(file, sampling).mesh;
+  if (!sampling.spacing) return vertices_with_normals(mesh);
+  refine(mesh, *sampling.spacing);
+  return thinned(vertices_with_normals(mesh), *sampling.spacing);
+}
+
+std::vector<std::string> mesh_warnings(const fs::path& file, const MeshSampling& sampling) {
+  return warnings_about(read_surface(file, sampling).findings, file);
 }
 
 }  // namespace hapbench

@@ -50,10 +50,9 @@ std::vector<SurfacePoint> block_points(const BlockEnvironment& environment) {
   return in_grid_order(vertices_with_normals(marching_cubes(field)), environment.grid);
 }
 
-MeshPoints mesh_points(const Scenario& scenario, const MeshEnvironment& mesh) {
-  MeshPoints read = read_mesh_points(resolve_path(scenario, mesh.file), {mesh.scale, mesh.spacing});
-  read.points = in_grid_order(read.points, mesh.grid.value_or(0.0));
-  return read;
+std::vector<SurfacePoint> mesh_points(const Scenario& scenario, const MeshEnvironment& mesh) {
+  return in_grid_order(read_mesh_points(resolve_path(scenario, mesh.file), {mesh.scale, mesh.spacing}),
+                       mesh.grid.value_or(0.0));
 }
 
 /// Edge of the grid cells the local average merges in.
@@ -115,7 +114,7 @@ std::vector<SurfacePoint> environment_points(const Scenario& scenario) {
   return std::visit(
       Overloaded{[](const SpringsEnvironment&) { return std::vector<SurfacePoint>{}; },
                  [&](const PointShellEnvironment& s) { return read_point_shell(resolve_path(scenario, s.file)); },
-                 [&](const MeshEnvironment& mesh) { return mesh_points(scenario, mesh).points; },
+                 [&](const MeshEnvironment& mesh) { return mesh_points(scenario, mesh); },
                  [](const BlockEnvironment& block) { return block_points(block); },
                  [](const auto& analytic) { return surface_points(analytic); }},
       scenario.environment);
@@ -135,7 +134,8 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
     at("/environment/file", [&] { environment_points(scenario); });
   }
   if (const auto* mesh = std::get_if<MeshEnvironment>(&scenario.environment)) {
-    at("/environment/file", [&] { warnings = mesh_points(scenario, *mesh).warnings; });
+    const MeshSampling sampling{mesh->scale, mesh->spacing};
+    at("/environment/file", [&] { warnings = mesh_warnings(resolve_path(scenario, mesh->file), sampling); });
     for (std::string& warning : warnings) warning = loaded.file.string() + ": /environment/file: " + warning;
   }
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {

@@ -15,20 +15,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct MeshPoints {
+  std::vector<SurfacePoint> points;
+  std::vector<std::string> warnings;
+};
+
 class MeshFile : public testing::Test {
  protected:
   MeshPoints read(const std::string& name, const std::string& text, const MeshSampling& sampling = {}) const {
     test::write_plainly(directory_ / name, text);
-    return read_mesh_points(directory_ / name, sampling);
+    return {read_mesh_points(directory_ / name, sampling), mesh_warnings(directory_ / name, sampling)};
   }
 
   /// The message behind the file's name.
   std::string refusal_of(const std::string& name, const std::string& text, const MeshSampling& sampling = {}) const {
     const auto error = test::input_error_of([&] { read(name, text, sampling); });
     if (!error) return "";
+    EXPECT_EQ(warnings_refusal_of(name, sampling), error->what()) << "found without resampling, too";
     const std::string file = (directory_ / name).string(), message = error->what();
     EXPECT_EQ(message.substr(0, file.size()), file);
     return message.substr(file.size());
+  }
+
+  std::string warnings_refusal_of(const std::string& name, const MeshSampling& sampling) const {
+    const auto error = test::input_error_of([&] { mesh_warnings(directory_ / name, sampling); });
+    return error ? error->what() : "";
   }
 
   /// The one warning behind the file's name.
