@@ -26,11 +26,11 @@ enum ChildStatus : int { kAnswered = 0, kFailed = 1, kOutOfMemory = 2 };
 }
 
 /// The soft limit may only go down.
-void limit(int resource, rlim_t most) {
+void limit(decltype(RLIMIT_CPU) resource, rlim_t most) {
   rlimit limit{};
-  ::getrlimit(static_cast<__rlimit_resource>(resource), &limit);
+  ::getrlimit(resource, &limit);
   if (most < limit.rlim_cur) limit.rlim_cur = most;
-  ::setrlimit(static_cast<__rlimit_resource>(resource), &limit);
+  ::setrlimit(resource, &limit);
 }
 
 void restrict_child(const ChildLimits& limits) {
