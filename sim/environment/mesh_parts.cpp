@@ -9,6 +9,8 @@ namespace hapbench {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
+/// Each part is looked for in each of these; with all of them a mesh of a million crumbs would take minutes.
+constexpr std::size_t kMostHolders = 1000;
 
 /// Indices of the hinges of each triangle, at its corners.
 std::vector<std::array<std::uint32_t, 3>> hinges_at_triangles(std::size_t triangles, const std::vector<Hinge>& hinges) {
@@ -116,7 +118,7 @@ std::size_t MeshParts::turn_outwards(const std::vector<Vec3>& vertices,
     const auto outer =
         std::find_if(outermost.begin(), outermost.end(), [&](std::uint32_t q) { return shapes[q].holds(shapes[p]); });
     inside_out[p] = outer == outermost.end() ? shapes[p].is_inside_out() : inside_out[*outer];
-    if (outer == outermost.end()) outermost.push_back(p);
+    if (outer == outermost.end() && outermost.size() < kMostHolders) outermost.push_back(p);
   }
   turn(inside_out);
   return static_cast<std::size_t>(std::count(inside_out.begin(), inside_out.end(), true));

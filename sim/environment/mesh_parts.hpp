@@ -28,7 +28,8 @@ class MeshParts {
   /// Turns the parts of which most triangles were turned, so that most keep their winding; how many do not.
   std::size_t follow_majority();
 
-  /// Turns closed parts that enclose a negative volume, with the parts in their bounding box; how many were.
+  /// Turns closed parts that enclose a negative volume, with the parts in the bounding box of one of the thousand
+  /// largest; how many were.
   std::size_t turn_outwards(const std::vector<Vec3>& vertices,
                             const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
