@@ -100,7 +100,8 @@ bool take(std::string_view& bytes, std::vector<T>& values) {
   bytes.remove_prefix(sizeof count);
   if (count > bytes.size() / sizeof(T)) return false;
   values.resize(count);
-  std::memcpy(values.data(), bytes.data(), count * sizeof(T));
+  // An empty vector may have no address, which memcpy must not get.
+  if (count > 0) std::memcpy(values.data(), bytes.data(), count * sizeof(T));
   bytes.remove_prefix(count * sizeof(T));
   return true;
 }
