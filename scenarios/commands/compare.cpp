@@ -64,7 +64,9 @@ int compare(const CompareOptions& options) {
     std::vector<std::string> overrides = options.overrides;
     overrides.push_back("rendering.algorithm=" + algorithm);
     scenarios.push_back(load_scenario(file, overrides));
-    check_named_files(scenarios.back());
+    const std::vector<std::string> warnings = check_named_files(scenarios.back());
+    // All have the same files.
+    if (scenarios.size() == 1) print_warnings(warnings);
   }
   const fs::path out =
       options.out.empty() ? fs::path("results") / "out" / ("compare_" + file.stem().string()) : fs::path(options.out);

@@ -46,8 +46,9 @@ int run(const RunOptions& options) {
   }
   const std::vector<fs::path> directories = output_directories(options, scenarios);
   for (const LoadedScenario& scenario : scenarios) {
-    check_named_files(scenario);
+    const std::vector<std::string> warnings = check_named_files(scenario);
     print_warnings(scenario.warnings);
+    print_warnings(warnings);
   }
   for (const fs::path& directory : directories) require_writable_directory(directory);
 

@@ -25,7 +25,7 @@ int shell(const ShellOptions& options) {
   if (std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment)) {
     throw InputError(loaded.file.string() + ": /environment/type: got \"springs\", which have no point shell");
   }
-  check_named_files(loaded);
+  print_warnings(check_named_files(loaded));
   const std::vector<SurfacePoint> points = environment_points(loaded.scenario, shell_cache(options.no_cache)).points;
   const std::filesystem::path file = options.out;
   const std::string text = point_shell_text(points, file);

@@ -22,8 +22,9 @@ int validate(const ValidateOptions& options) {
   for (const std::string& argument : options.files) {
     try {
       const LoadedScenario loaded = load_scenario(find_scenario(argument));
-      check_named_files(loaded);
+      const std::vector<std::string> warnings = check_named_files(loaded);
       print_warnings(loaded.warnings);
+      print_warnings(warnings);
       text += fmt::format("{}: valid\n", argument);
       verdicts.push_back({{"file", argument}, {"valid", true}});
     } catch (const InputError& error) {

@@ -81,8 +81,10 @@ void fill_stages(Scenario& scenario, const SceneDefaults& defaults, std::vector<
 void check_local_average(const Scenario& scenario) {
   if (!scenario.rendering.config.local_average) return;
   const auto* shell = std::get_if<PointShellEnvironment>(&scenario.environment);
+  const auto* mesh = std::get_if<MeshEnvironment>(&scenario.environment);
   const bool springs = std::holds_alternative<SpringsEnvironment>(scenario.environment);
-  if (!springs && !(shell != nullptr && !shell->grid)) return;
+  const bool no_grid = (shell != nullptr && !shell->grid) || (mesh != nullptr && !mesh->grid);
+  if (!springs && !no_grid) return;
   throw InputError(InputError::Kind::relation, "/rendering/local_average",
                    springs ? "got true; allowed: false, because springs have no grid cells"
                            : "got true; allowed: false, unless environment.grid_m gives the cells");

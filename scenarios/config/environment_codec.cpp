@@ -156,6 +156,23 @@ std::shared_ptr<ObjectCodec<PointShellEnvironment>> point_shell() {
   return shell;
 }
 
+std::shared_ptr<ObjectCodec<MeshEnvironment>> mesh() {
+  auto mesh = object<MeshEnvironment>();
+  mesh->required(
+      "file", [](auto& m) -> std::string& { return m.file; }, text(4096),
+      "surface as OBJ, PLY, STL or OFF, ASCII or binary; relative to the scenario file");
+  mesh->required(
+      "scale", [](auto& m) -> double& { return m.scale; }, number({0.0, 1e6, "m", true}),
+      "length of the file's unit: 0.001 for millimetres");
+  mesh->optional(
+      "spacing_m", [](auto& m) -> std::optional<double>& { return m.spacing; }, nullable<double>(number(kLength)),
+      "resamples: no edge longer, one point in a cube of this size; null: the mesh's own vertices");
+  mesh->optional(
+      "grid_m", [](auto& m) -> std::optional<double>& { return m.grid; }, nullable<double>(number(kLength)),
+      "cell of the local average; null: no grid");
+  return mesh;
+}
+
 std::shared_ptr<TaggedCodec<Environment>> make_codec() {
   auto codec = tagged<Environment>("environment");
   codec->alternative("springs", springs())
@@ -163,7 +180,8 @@ std::shared_ptr<TaggedCodec<Environment>> make_codec() {
       .alternative("plane", plane())
       .alternative("slot", slot())
       .alternative("block_with_hole", block_with_hole())
-      .alternative("point_shell", point_shell());
+      .alternative("point_shell", point_shell())
+      .alternative("mesh", mesh());
   return codec;
 }
 

@@ -50,6 +50,7 @@ std::filesystem::path without_links(const std::filesystem::path& path) {
 
 std::string* named_file(Scenario& scenario) {
   if (auto* shell = std::get_if<PointShellEnvironment>(&scenario.environment)) return &shell->file;
+  if (auto* mesh = std::get_if<MeshEnvironment>(&scenario.environment)) return &mesh->file;
   return nullptr;
 }
 

@@ -52,7 +52,14 @@ struct PointShellEnvironment {
   std::string file;            ///< CSV or PLY, relative to the scenario file
   std::optional<double> grid;  ///< cell of the local average [m]
 };
-using Environment = std::variant<SpringsEnvironment, Hole2d, Plane, Slot, BlockEnvironment, PointShellEnvironment>;
+struct MeshEnvironment {
+  std::string file;               ///< OBJ, PLY, STL or OFF, relative to the scenario file
+  double scale = 1.0;             ///< [m] for each unit of the file
+  std::optional<double> spacing;  ///< resampled to this [m]
+  std::optional<double> grid;     ///< cell of the local average [m]
+};
+using Environment =
+    std::variant<SpringsEnvironment, Hole2d, Plane, Slot, BlockEnvironment, PointShellEnvironment, MeshEnvironment>;
 
 struct InitialFields {
   Vec3 position = Vec3::Zero();

@@ -50,13 +50,16 @@ void read_row(std::string_view row, NumberTable& table, const std::filesystem::p
 
 }  // namespace
 
-NumberTable read_number_table(const std::filesystem::path& file, const std::string& header, std::size_t most_rows) {
-  std::string text;
+std::string read_named_file(const std::filesystem::path& file) {
   try {
-    text = read_text_file(file, kLargestTable);
+    return read_text_file(file, kLargestTable);
   } catch (const InputError& error) {
     throw InputError(InputError::Kind::relation, file.string(), error.problem());
   }
+}
+
+NumberTable read_number_table(const std::filesystem::path& file, const std::string& header, std::size_t most_rows) {
+  const std::string text = read_named_file(file);
   NumberTable table;
   table.columns = static_cast<std::size_t>(1 + std::count(header.begin(), header.end(), ','));
   std::string_view rest = text;

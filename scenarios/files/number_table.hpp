@@ -11,6 +11,9 @@ namespace hapbench {
 /// Largest table read [bytes].
 inline constexpr std::uintmax_t kLargestTable = std::uintmax_t{4} << 30;
 
+/// The bytes of a file that a scenario names. Throws InputError that names the file.
+std::string read_named_file(const std::filesystem::path& file);
+
 /// A CSV file of numbers with a fixed header.
 struct NumberTable {
   std::size_t columns = 0;

@@ -9,6 +9,7 @@
 #include "device_model/impedance_hand.hpp"
 #include "device_model/scripted_hands.hpp"
 #include "device_model/tracking_hand.hpp"
+#include "scenarios/files/mesh_file.hpp"
 #include "scenarios/files/motion_file.hpp"
 #include "scenarios/run/environment_points.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
@@ -43,6 +44,7 @@ SpringSet make_springs(const SpringsEnvironment& fields, std::uint64_t seed) {
 double cell_size(const Environment& environment) {
   return std::visit(Overloaded{[](const SpringsEnvironment&) { return 0.0; },
                                [](const PointShellEnvironment& shell) { return shell.grid.value_or(0.0); },
+                               [](const MeshEnvironment& mesh) { return mesh.grid.value_or(0.0); },
                                [](const BlockEnvironment& block) { return block.grid; },
                                [](const auto& analytic) { return analytic.spacing; }},
                     environment);
@@ -135,8 +137,9 @@ bool contains(const std::vector<std::string>& list, const char* name) {
 
 }  // namespace
 
-void check_named_files(const LoadedScenario& loaded) {
+std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
+  std::vector<std::string> warnings;
   const auto at = [&loaded](const char* pointer, auto read) {
     try {
       read();
@@ -147,9 +150,15 @@ void check_named_files(const LoadedScenario& loaded) {
   if (std::holds_alternative<PointShellEnvironment>(scenario.environment)) {
     at("/environment/file", [&] { environment_points(scenario, ShellCache()); });
   }
+  if (const auto* mesh = std::get_if<MeshEnvironment>(&scenario.environment)) {
+    const MeshSampling sampling{mesh->scale, mesh->spacing};
+    at("/environment/file", [&] { warnings = mesh_warnings(resolve_path(scenario, mesh->file), sampling); });
+    for (std::string& warning : warnings) warning = loaded.file.string() + ": /environment/file: " + warning;
+  }
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
     at("/motion/position/file", [&] { make_motion(scenario); });
   }
+  return warnings;
 }
 
 SimulationConfig simulation_config(const Scenario& scenario) {

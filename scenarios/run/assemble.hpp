@@ -7,8 +7,9 @@
 
 namespace hapbench {
 
-/// Reads the files the scenario names, to find what is wrong with them before anything is written. Throws InputError.
-void check_named_files(const LoadedScenario& loaded);
+/// Reads the files the scenario names, to find what is wrong with them before anything is written. Returns warnings
+/// about what is odd, each with file and pointer. Throws InputError.
+std::vector<std::string> check_named_files(const LoadedScenario& loaded);
 
 /// Numbers of the run. Precondition: defaults are filled in.
 SimulationConfig simulation_config(const Scenario& scenario);

@@ -2,6 +2,7 @@
 
 #include "results/io/json_text.hpp"
 #include "scenarios/files/loaded_code.hpp"
+#include "scenarios/files/mesh_file.hpp"
 #include "scenarios/files/shell_file.hpp"
 #include "sim/contact/grid_index.hpp"
 #include "sim/environment/marching_cubes.hpp"
@@ -29,6 +30,10 @@ struct Build {
   std::vector<SurfacePoint> operator()(const PointShellEnvironment& shell) const {
     return read_point_shell(resolve_path(scenario, shell.file));
   }
+  std::vector<SurfacePoint> operator()(const MeshEnvironment& mesh) const {
+    return in_grid_order(read_mesh_points(resolve_path(scenario, mesh.file), {mesh.scale, mesh.spacing}),
+                         mesh.grid.value_or(0.0));
+  }
   std::vector<SurfacePoint> operator()(const BlockEnvironment& block) const { return block_points(block); }
   template <class Analytic>
   std::vector<SurfacePoint> operator()(const Analytic& shape) const {
@@ -38,7 +43,7 @@ struct Build {
 
 /// Whether building takes longer than reading what was built.
 bool is_worth_keeping(const Environment& environment) {
-  return std::holds_alternative<BlockEnvironment>(environment);
+  return std::holds_alternative<BlockEnvironment>(environment) || std::holds_alternative<MeshEnvironment>(environment);
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ TEST(Defaults, OfTheHoleAreThoseOfTableA1) {
 }
 
 TEST(Defaults, OfSpatialScenesAreThoseOfThePlatform) {
-  for (const char* environment : {"plane", "slot", "block_with_hole", "point_shell"}) {
+  for (const char* environment : {"plane", "slot", "block_with_hole", "point_shell", "mesh"}) {
     SCOPED_TRACE(environment);
     expect_fields(effective(test::minimal_scenario(environment)),
                   {{"/tool", R"({"diameter_m": 0.001, "length_m": 0.01, "tip": "flat"})"},
@@ -197,15 +197,17 @@ TEST(Orientation, ForgivesTheRoundingOfNormalisedDirections) {
 
 TEST(LocalAverage, NeedsAGrid) {
   Json springs = test::minimal_scenario("springs"), shell = test::minimal_scenario("point_shell");
-  springs["rendering"]["local_average"] = true;
-  shell["rendering"]["local_average"] = true;
-  for (const Json& json : {springs, shell}) {
+  Json mesh = test::minimal_scenario("mesh");
+  for (Json* json : {&springs, &shell, &mesh}) (*json)["rendering"]["local_average"] = true;
+  for (const Json& json : {springs, shell, mesh}) {
     const auto error = test::input_error_of([&] { loaded(json); });
     ASSERT_TRUE(error);
     EXPECT_EQ(error->place(), "/rendering/local_average");
   }
-  shell["environment"]["grid_m"] = 0.001;
-  EXPECT_NO_THROW(loaded(shell));
+  for (Json* json : {&shell, &mesh}) {
+    (*json)["environment"]["grid_m"] = 0.001;
+    EXPECT_NO_THROW(loaded(*json));
+  }
 }
 
 }  // namespace

@@ -114,6 +114,17 @@ TEST(ScenarioHash, FollowsContentsNotPaths) {
   EXPECT_NE(hash_with("b.csv"), hash);
 }
 
+TEST(ScenarioHash, FollowsTheContentsOfMeshes) {
+  const test::TemporaryDirectory directory;
+  const auto hash_of_text = [&directory](const std::string& text) {
+    test::write_plainly(directory / "cube.obj", text);
+    return scenario_hash(read_scenario(test::minimal_scenario("mesh"), directory.path()).scenario);
+  };
+  const std::string cube = test::read_file(test::data_directory() / "cube.obj");
+  EXPECT_EQ(hash_of_text(cube), hash_of_text(cube));
+  EXPECT_NE(hash_of_text(cube), hash_of_text(cube + "# more\n"));
+}
+
 TEST(ScenarioHash, DiffersWhenAnyFieldDiffers) {
   const auto hash_with = [](const char* patch) {
     Json json = test::minimal_scenario("plane");

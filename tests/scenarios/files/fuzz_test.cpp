@@ -1,15 +1,20 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "results/io/json_text.hpp"
 #include "scenarios/config/load_scenario.hpp"
 #include "scenarios/files/json_file.hpp"
+#include "scenarios/files/mesh_file.hpp"
 #include "scenarios/files/motion_file.hpp"
 #include "scenarios/files/shell_file.hpp"
 #include "tests/results/files.hpp"
+#include "tests/scenarios/support/mesh_texts.hpp"
 #include "tests/scenarios/support/mutation.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
+#include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 
 /// Valid files with a few bytes changed at random. Whatever they have become, they are read or refused: no crash, no
@@ -108,6 +113,35 @@ TEST(Fuzz, PointShellsInPlyAreReadOrRefused) {
   }));
 }
 
+class MeshFuzz : public testing::TestWithParam<test::NamedText> {};
+INSTANTIATE_TEST_SUITE_P(Formats, MeshFuzz, testing::ValuesIn(test::mesh_texts(test::sphere(1.0, 1))),
+                         [](const auto& format) {
+                           std::string name = format.param.name;
+                           std::replace(name.begin(), name.end(), '.', '_');
+                           return name;
+                         });
+
+TEST_P(MeshFuzz, MeshesAreReadOrRefusedSoon) {
+  using Clock = std::chrono::steady_clock;
+  const test::TemporaryDirectory directory;
+  const fs::path file = directory / GetParam().name;
+  const Tally tally = fuzz({GetParam().text}, test::cases(2000), 6, [&file](const std::string& mutant) {
+    write_anew(file, mutant);
+    const auto start = Clock::now();
+    const auto points = read_mesh_points(file, {});
+    // Of a file this small the reader has one second of processor time.
+    EXPECT_LT(Clock::now() - start, std::chrono::seconds(30));
+    EXPECT_FALSE(points.empty());
+    for (const SurfacePoint& point : points) {
+      EXPECT_TRUE(point.position.cwiseAbs().maxCoeff() <= 1000.0);
+      EXPECT_NEAR(point.normal.norm(), 1.0, 1e-12);
+    }
+  });
+  // A byte more or less makes most binary files another size than they declare.
+  EXPECT_GT(tally.accepted, 0u);
+  EXPECT_GT(tally.refused, tally.accepted / 4);
+}
+
 TEST(Fuzz, RecordedMotionsAreReadOrRefused) {
   const test::TemporaryDirectory directory;
   const fs::path file = directory / "stroke.csv";
@@ -132,6 +166,11 @@ TEST(Fuzz, GarbageIsRefused) {
       EXPECT_THROW(read_point_shell(directory / name), InputError);
     }
     EXPECT_THROW(read_motion(directory / "g.csv"), InputError);
+    if (i % 10 != 0) continue;  // each starts a process
+    for (const char* name : {"g.obj", "g.off", "g.stl", "g.ply"}) {
+      write_anew(directory / name, garbage);
+      EXPECT_THROW(read_mesh_points(directory / name, {}), InputError);
+    }
   }
 }
 

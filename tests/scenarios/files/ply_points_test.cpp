@@ -135,8 +135,9 @@ TEST_F(PlyPoints, AreRefusedWithABrokenHeader) {
             std::string::npos);
   EXPECT_NE(refusal_of("ply\nformat ascii 2.0\nend_header\n").find(", line 2: unknown format"), std::string::npos);
   EXPECT_NE(refusal_of("ply\nformat utf8 1.0\nend_header\n").find(", line 2: unknown format"), std::string::npos);
-  EXPECT_NE(refusal_of("ply\nformat ascii 1.0\nelement face 1\nelement vertex 1\n").find("as the first element"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal_of("ply\nformat ascii 1.0\nelement face 1\nelement vertex 1\nend_header\n").find("as the first element"),
+      std::string::npos);
   EXPECT_NE(refusal_of(header("ascii", "1", kSixFloats + "end_headerfoo\n")).find("got \"end_headerfoo\""),
             std::string::npos);
   EXPECT_NE(refusal_of(header("ascii", "1 element vertex 3000000000")).find("as the first element"), std::string::npos);

@@ -77,6 +77,7 @@ INSTANTIATE_TEST_SUITE_P(Structures, BadInputs, testing::ValuesIn(test::wrong_st
 INSTANTIATE_TEST_SUITE_P(Contradictions, BadInputs, testing::ValuesIn(test::contradictions()), name_of_case);
 INSTANTIATE_TEST_SUITE_P(Sizes, BadInputs, testing::ValuesIn(test::absurd_sizes()), name_of_case);
 INSTANTIATE_TEST_SUITE_P(ShellFiles, BadInputs, testing::ValuesIn(test::bad_shell_files()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(MeshFiles, BadInputs, testing::ValuesIn(test::bad_mesh_files()), name_of_case);
 INSTANTIATE_TEST_SUITE_P(MotionFiles, BadInputs, testing::ValuesIn(test::bad_motion_files()), name_of_case);
 
 /// A scenario argument that is no readable file.

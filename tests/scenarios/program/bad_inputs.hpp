@@ -29,6 +29,7 @@ std::vector<BadInput> wrong_structures();
 std::vector<BadInput> contradictions();
 std::vector<BadInput> absurd_sizes();
 std::vector<BadInput> bad_shell_files();
+std::vector<BadInput> bad_mesh_files();
 std::vector<BadInput> bad_motion_files();
 
 }  // namespace hapbench::test

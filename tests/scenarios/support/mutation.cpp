@@ -1,6 +1,7 @@
 #include "tests/scenarios/support/mutation.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 
 namespace hapbench::test {
@@ -41,7 +42,8 @@ std::string misspelt(std::string word, Random& random) {
       word.insert(i, 1, static_cast<char>('a' + random.below(26)));
       break;
     case 2:
-      word[i] = static_cast<char>(word[i] ^ 0x20);
+      // The other case of a letter. Of other characters that may be control characters, which no message shows as such.
+      word[i] = std::isalpha(static_cast<unsigned char>(word[i])) != 0 ? static_cast<char>(word[i] ^ 0x20) : '_';
       break;
     default:
       std::swap(word[i], word[(i + 1) % word.size()]);

@@ -14,6 +14,7 @@ std::vector<NamedScenario> minimal_scenarios() {
       R"({"type": "slot", "gap_m": 0.001, "depth_m": 0.005, "length_m": 0.01, "spacing_m": 0.0005})",
       R"({"type": "block_with_hole"})",
       R"({"type": "point_shell", "file": "shell.csv"})",
+      R"({"type": "mesh", "file": "cube.obj", "scale": 0.001})",
   };
   std::vector<NamedScenario> scenarios;
   for (const char* environment : environments) {
@@ -74,7 +75,12 @@ std::vector<NamedScenario> rich_scenarios() {
         "limits": {"max_damping_N_s_per_m": null, "max_force_N": null}},
       "integrator": {"type": "leapfrog"},
       "bounds": {"position_m": 10, "speed_m_per_s": 20, "force_N": 30},
-      "expect": {"outcome": "completes"}})")}};
+      "expect": {"outcome": "completes"}})")},
+          {"scanned_cube", Json::parse(R"({
+      "time": {"step_s": 0.0005, "steps": 10},
+      "environment": {"type": "mesh", "file": "cube.obj", "scale": 0.001, "spacing_m": 0.0003, "grid_m": 0.0005},
+      "initial": {"position_m": [0, 0, 0.0049]},
+      "rendering": {"local_average": true}})")}};
 }
 
 std::vector<NamedScenario> bundled_scenario_files() {

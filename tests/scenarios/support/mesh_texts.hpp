@@ -1,0 +1,31 @@
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "sim/environment/mesh_from_triangles.hpp"
+
+/// Mesh files, written without the library that reads them.
+namespace hapbench::test {
+
+std::string obj_text(const TriangleSoup& soup);
+std::string off_text(const TriangleSoup& soup);
+std::string stl_text(const TriangleSoup& soup);
+std::string ply_text(const TriangleSoup& soup);
+/// The dialect of the library: little endian, no colours.
+std::string binary_off_text(const TriangleSoup& soup);
+std::string binary_stl_text(const TriangleSoup& soup);
+/// Coordinates as float or double, indices as int.
+std::string binary_ply_text(const TriangleSoup& soup, bool little_endian, bool doubles);
+
+struct NamedText {
+  std::string name;  ///< of a file, with its extension
+  std::string text;
+};
+/// So that test listings show the name.
+void PrintTo(const NamedText& text, std::ostream* out);  // NOLINT: GoogleTest's name
+/// The same mesh in every format and encoding.
+std::vector<NamedText> mesh_texts(const TriangleSoup& soup);
+
+}  // namespace hapbench::test

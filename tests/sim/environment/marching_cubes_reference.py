@@ -1,0 +1,104 @@
+"""Compares marching cubes of the block with a hole with scikit-image's, which shares no line with it.
+
+marching_cubes_reference.py BLOCK_MESH: the program that prints our mesh. Exit status 0 when they agree.
+"""
+import itertools
+import subprocess
+import sys
+
+import numpy as np
+from scipy.spatial import cKDTree
+from skimage import measure
+
+
+def distance(block, p):
+    """Signed distance to box minus cylinder: exact in the material, and outside at all nodes next to it."""
+    sx, sy, sz, diameter, depth = block
+    q = np.abs(p + [0, 0, sz / 2]) - np.array([sx, sy, sz]) / 2
+    box = np.linalg.norm(np.maximum(q, 0), axis=-1) + np.minimum(q.max(axis=-1), 0)
+    c = np.stack([np.hypot(p[..., 0], p[..., 1]) - diameter / 2, -depth - p[..., 2]], axis=-1)
+    hole = np.linalg.norm(np.maximum(c, 0), axis=-1) + np.minimum(c.max(axis=-1), 0)
+    return np.maximum(box, -hole)
+
+
+def our_mesh(program, block, spacing, density):
+    arguments = [program, *(repr(float(n)) for n in (*block, spacing)), density]
+    numbers = subprocess.run(arguments, check=True, capture_output=True, text=True).stdout.split()
+    count, faces = int(numbers[0]), int(numbers[1])
+    end = 2 + 3 * count
+    return (np.array(numbers[2:end], float).reshape(-1, 3) / spacing,
+            np.array(numbers[end:end + 3 * faces], int).reshape(-1, 3))
+
+
+def their_mesh(block, spacing, density):
+    """In units of the spacing, like ours. Nodes lie at half-integer multiples of it."""
+    low = np.floor(np.array([-block[0] / 2, -block[1] / 2, -block[2]]) / spacing) - 1.5
+    high = np.ceil(np.array([block[0] / 2, block[1] / 2, 0]) / spacing) + 1.5
+    axes = [np.arange(a, b + 1) for a, b in zip(low, high)]
+    nodes = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    field = -distance(block, nodes * spacing) / spacing
+    if density == "binary":
+        field = np.where(field > 0, 0.5, -0.5)
+    # The classic method: the newer one adds vertices inside ambiguous cells.
+    vertices, faces, _, _ = measure.marching_cubes(field, 0.0, method="lorensen")
+    return vertices + low, faces, max(field.shape)
+
+
+def volume(vertices, faces):
+    a, b, c = (vertices[faces[:, i]] for i in range(3))
+    return abs(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)
+
+
+def area(vertices, faces):
+    a, b, c = (vertices[faces[:, i]] for i in range(3))
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
+
+
+def freedom(vertices, faces):
+    """How much volume and area may depend on how the cells' polygons are cut into triangles."""
+    cells = {}
+    for face in faces:
+        cells.setdefault(tuple(np.floor(vertices[face].mean(axis=0) + 0.5).astype(int)), set()).update(face)
+    most_volume = most_area = 0.0
+    for corners in cells.values():
+        p = vertices[sorted(corners)]
+        if len(p) < 4:
+            continue
+        # Two ways to cut differ by tetrahedra of the corners.
+        most_volume += sum(abs(np.linalg.det(p[list(t[1:])] - p[t[0]])) / 6
+                           for t in itertools.combinations(range(len(p)), 4))
+        areas = [np.linalg.norm(np.cross(p[j] - p[i], p[k] - p[i])) / 2
+                 for i, j, k in itertools.combinations(range(len(p)), 3)]
+        most_area += (len(p) - 2) * (max(areas) - min(areas))
+    return most_volume, most_area
+
+
+def compare(program, block, spacing, density):
+    ours, our_faces = our_mesh(program, block, spacing, density)
+    theirs, their_faces, nodes = their_mesh(block, spacing, density)
+    # They compute in single precision: half a unit in the last place of an index up to `nodes`, and a few of the field,
+    # which is of the order of one next to the surface.
+    tolerance = (nodes + 8) * 2.0 ** -24
+    gap, partner = cKDTree(theirs).query(ours)
+    volume_tolerance, area_tolerance = freedom(ours, our_faces)
+    agree = {
+        "vertices": len(ours) == len(theirs) == len(set(partner)),
+        "positions": gap.max() <= tolerance,
+        "faces": len(our_faces) == len(their_faces),
+        "volume": abs(volume(ours, our_faces) - volume(theirs, their_faces)) <= volume_tolerance,
+        "area": abs(area(ours, our_faces) - area(theirs, their_faces)) <= area_tolerance,
+    }
+    print(f"{density}, spacing {spacing}: {len(ours)} and {len(theirs)} vertices, at most {gap.max():.2e} of a cell apart "
+          f"(allowed {tolerance:.2e}); {agree}")
+    return all(agree.values())
+
+
+def main():
+    small = (0.004, 0.005, 0.004, 0.002, 0.002)
+    verdicts = [compare(sys.argv[1], small, spacing, density)
+                for density in ("signed_distance", "binary") for spacing in (0.0001, 0.00025)]
+    return 0 if all(verdicts) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,128 @@
+#include "tests/support/meshes.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace hapbench::test {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+}  // namespace
+
+TriangleSoup cube(double half, const Vec3& centre) {
+  TriangleSoup soup;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 signs((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1, (corner & 4) != 0 ? 1 : -1);
+    soup.vertices.push_back(centre + half * signs);
+  }
+  const std::uint32_t quads[][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  for (const auto& q : quads) {
+    soup.triangles.push_back({q[0], q[1], q[2]});
+    soup.triangles.push_back({q[0], q[2], q[3]});
+  }
+  return soup;
+}
+
+TriangleSoup sphere(double radius, int levels) {
+  TriangleSoup soup;
+  for (const double sign : {1.0, -1.0}) {
+    for (int axis = 0; axis < 3; ++axis) soup.vertices.push_back(sign * Vec3::Unit(axis));
+  }
+  // One triangle an octant; an odd number of negative axes turns it over.
+  for (std::uint32_t octant = 0; octant < 8; ++octant) {
+    const std::uint32_t x = 3 * (octant & 1), y = 1 + 3 * (octant >> 1 & 1), z = 2 + 3 * (octant >> 2 & 1);
+    const bool odd = ((octant ^ octant >> 1 ^ octant >> 2) & 1) != 0;
+    soup.triangles.push_back(odd ? TriangleSoup::Triangle{x, z, y} : TriangleSoup::Triangle{x, y, z});
+  }
+  for (int level = 0; level < levels; ++level) {
+    for (const TriangleSoup::Triangle& t : std::exchange(soup.triangles, {})) {
+      const auto base = static_cast<std::uint32_t>(soup.vertices.size());
+      for (std::size_t i = 0; i < 3; ++i)
+        soup.vertices.push_back((soup.vertices[t[i]] + soup.vertices[t[(i + 1) % 3]]).normalized());
+      soup.triangles.push_back({t[0], base, base + 2});
+      soup.triangles.push_back({base, t[1], base + 1});
+      soup.triangles.push_back({base + 2, base + 1, t[2]});
+      soup.triangles.push_back({base, base + 1, base + 2});
+    }
+  }
+  for (Vec3& v : soup.vertices) v *= radius;
+  return soup;
+}
+
+TriangleSoup sheet(int n, int m, const std::function<Vec3(int, int)>& position) {
+  TriangleSoup soup;
+  const auto index = [m](int i, int j) { return static_cast<std::uint32_t>(i * (m + 1) + j); };
+  for (int i = 0; i <= n; ++i) {
+    for (int j = 0; j <= m; ++j) soup.vertices.push_back(position(i, j));
+  }
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < m; ++j) {
+      soup.triangles.push_back({index(i, j), index(i + 1, j), index(i + 1, j + 1)});
+      soup.triangles.push_back({index(i, j), index(i + 1, j + 1), index(i, j + 1)});
+    }
+  }
+  return soup;
+}
+
+TriangleSoup torus(int n, int m) {
+  return sheet(n, m, [=](int i, int j) {
+    const double a = kTurn * (i % n) / n, b = kTurn * (j % m) / m;
+    return Vec3((2 + std::cos(b)) * std::cos(a), (2 + std::cos(b)) * std::sin(a), std::sin(b));
+  });
+}
+
+TriangleSoup moebius_band(int n) {
+  return sheet(n, 2, [n](int i, int j) {
+    // After one turn the two edges have changed places: the same point again, bit for bit.
+    const int across = i == n ? 1 - j : j - 1;
+    const double a = kTurn * (i % n) / n;
+    const double r = 2 + across * std::cos(a / 2);
+    return Vec3(r * std::cos(a), r * std::sin(a), across * std::sin(a / 2));
+  });
+}
+
+TriangleSoup klein_bottle(int n, int m) {
+  return sheet(n, m, [=](int i, int j) {
+    const int around = i == n ? (2 * m - j) % m : j % m;
+    const double a = kTurn * (i % n) / n, b = kTurn * around / m;
+    const double r = 3 + std::cos(a / 2) * std::sin(b) - std::sin(a / 2) * std::sin(2 * b);
+    return Vec3(r * std::cos(a), r * std::sin(a), std::sin(a / 2) * std::sin(b) + std::cos(a / 2) * std::sin(2 * b));
+  });
+}
+
+TriangleSoup together(TriangleSoup a, const TriangleSoup& b) {
+  const auto offset = static_cast<std::uint32_t>(a.vertices.size());
+  a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
+  for (const TriangleSoup::Triangle& t : b.triangles)
+    a.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  return a;
+}
+
+TriangleSoup reversed(TriangleSoup soup) {
+  for (TriangleSoup::Triangle& t : soup.triangles) std::swap(t[1], t[2]);
+  return soup;
+}
+
+double enclosed_volume(const HalfEdgeMesh& mesh) {
+  double sum = 0.0;
+  for (const auto face : mesh.faces()) {
+    auto corner = mesh.cfv_begin(face);
+    const auto a = mesh.point(*corner++), b = mesh.point(*corner++), c = mesh.point(*corner);
+    sum += (a | (b % c)) / 6.0;
+  }
+  return sum;
+}
+
+double surface_area(const HalfEdgeMesh& mesh) {
+  double sum = 0.0;
+  for (const auto face : mesh.faces()) sum += mesh.calc_face_area(face);
+  return sum;
+}
+
+long euler_characteristic(const HalfEdgeMesh& mesh) {
+  return static_cast<long>(mesh.n_vertices()) - static_cast<long>(mesh.n_edges()) + static_cast<long>(mesh.n_faces());
+}
+
+}  // namespace hapbench::test

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+
+#include "sim/environment/mesh_from_triangles.hpp"
+
+/// Surfaces to test with, as loose triangles. Closed ones are wound counter-clockwise from outside.
+namespace hapbench::test {
+
+/// The cube with corners at +-half around `centre`: 8 vertices, 12 triangles.
+TriangleSoup cube(double half = 1.0, const Vec3& centre = Vec3::Zero());
+/// An octahedron whose triangles are quartered `levels` times and pushed out to the sphere around the origin.
+TriangleSoup sphere(double radius, int levels);
+/// A grid of `n` x `m` quads, bent by `position(i, j)`, i = 0 ... n, j = 0 ... m, each cut into two triangles. Equal
+/// positions are for the code under test to weld.
+TriangleSoup sheet(int n, int m, const std::function<Vec3(int, int)>& position);
+TriangleSoup torus(int n, int m);
+/// One-sided: a band with half a twist, and a tube that meets its own end inside out (it passes through itself).
+TriangleSoup moebius_band(int n);
+TriangleSoup klein_bottle(int n, int m);
+
+/// Both in one soup.
+TriangleSoup together(TriangleSoup a, const TriangleSoup& b);
+/// Every triangle the other way round.
+TriangleSoup reversed(TriangleSoup soup);
+
+/// By the divergence theorem; positive for closed surfaces with outward winding.
+double enclosed_volume(const HalfEdgeMesh& mesh);
+double surface_area(const HalfEdgeMesh& mesh);
+/// Vertices - edges + faces: 2 for a sphere, 0 for a torus.
+long euler_characteristic(const HalfEdgeMesh& mesh);
+
+}  // namespace hapbench::test
