@@ -190,7 +190,7 @@ std::vector<BadInput> contradictions() {
        "/motion/position/type", "got a prescribed position; allowed: \"free\""},
       {"ReactionOfTooManySteps",
        with_patch("plane", R"({"time": {"step_s": 1e-7, "steps": 10}, "hand": {"type": "tracking",
-         "task": {"places_m": [[0, 0, 0]]}, "subjects": [{}, {"reaction_delay_s": 1}]}})"),
+         "task": {"places_m": [[0, 0, 0]]}, "subjects": [{"reaction_delay_s": 0}, {"reaction_delay_s": 1}]}})"),
        "/hand/subjects/1/reaction_delay_s", "got 1e+07 time steps; allowed: at most 1e+06"},
       {"TooManyStepsInAllTrials",
        with_patch("plane", R"({"time": {"step_s": 0.001, "steps": 10000000}, "hand": {"type": "tracking",
