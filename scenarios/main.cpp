@@ -29,6 +29,7 @@ int run_program(int argc, char** argv) {
   add_compare(app, chosen);
   add_stability(app, chosen);
   add_precision(app, chosen);
+  add_reproduce(app, chosen);
   add_shell(app, chosen);
   add_list(app, chosen);
   add_describe(app, chosen);

@@ -114,6 +114,11 @@ Scenario drill_in_hole(Scenario scenario) {
 std::vector<ContactBuffer> contact_sets(Scenario scenario, const PrecisionOptions& options, std::uint64_t stride) {
   scenario.rendering.reduction = std::optional<ReductionConfig>{};
   scenario.rendering.config.local_average = false;
+  return rendered_contact_sets(scenario, options, stride);
+}
+
+std::vector<ContactBuffer> rendered_contact_sets(const Scenario& scenario, const PrecisionOptions& options,
+                                                 std::uint64_t stride) {
   std::vector<ContactBuffer> sets;
   ContactSampler sampler(stride, sets);
   Simulation(simulation_config(scenario), assemble(scenario, shell_of(scenario, options), {}), {&sampler}).run();

@@ -63,4 +63,8 @@ Scenario drill_in_hole(Scenario scenario);
 /// without contact are left out.
 std::vector<ContactBuffer> contact_sets(Scenario scenario, const PrecisionOptions& options, std::uint64_t stride);
 
+/// The same after the point stages of the scenario.
+std::vector<ContactBuffer> rendered_contact_sets(const Scenario& scenario, const PrecisionOptions& options,
+                                                 std::uint64_t stride);
+
 }  // namespace hapbench
