@@ -3,15 +3,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim/contact/tool_box.hpp"
 #include "sim/environment/point_shell.hpp"
 
 namespace hapbench {
-
-/// An axis-aligned box in the world frame [m].
-struct Box {
-  Vec3 min = Vec3::Zero();
-  Vec3 max = Vec3::Zero();
-};
 
 /// The points of a shell sorted by the cells of a uniform grid, in compressed sparse rows: the points of the cells
 /// (i, j, k0 … k1) are one contiguous range of a copy of the shell, so that a search in a box reads one run of memory

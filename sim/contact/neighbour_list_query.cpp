@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "sim/contact/shell_query.hpp"
+#include "sim/contact/tool_box.hpp"
 #include "sim/core/simd.hpp"
 #include "sim/tool/axial.hpp"
 
@@ -17,17 +18,6 @@ constexpr double kSkinPerRadius = 0.4;
 constexpr int kMostDoublings = 12;
 /// Relative slack for the rounding of `moved` and of the search itself, far above both.
 constexpr double kSlack = 1e-9;
-
-/// The box around the tool grown by `margin` on all sides.
-Box box_around(const Tool& tool, const ToolPose& pose, double margin) {
-  const double radius = tool.radius + margin;
-  const double beyond_tip = tool.tip == Tip::round ? radius : margin;
-  const Vec3 tip = pose.position + beyond_tip * pose.axis;
-  const Vec3 bottom = pose.position - (tool.length + margin) * pose.axis;
-  // Of a disc with normal a, the half extent along e is radius sqrt(1 - <a, e>^2).
-  const Vec3 disc = radius * (Vec3::Ones() - pose.axis.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
-  return {tip.cwiseMin(bottom) - disc, tip.cwiseMax(bottom) + disc};
-}
 
 }  // namespace
 
