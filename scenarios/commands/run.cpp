@@ -5,6 +5,7 @@
 
 #include "results/io/io_error.hpp"
 #include "scenarios/commands/command.hpp"
+#include "scenarios/commands/latency_table.hpp"
 #include "scenarios/commands/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
 
@@ -18,6 +19,7 @@ struct RunOptions {
   std::string out;
   std::vector<std::string> overrides;
   bool no_cache = false;
+  bool latency = false;
   OutputOptions output;
 };
 
@@ -40,9 +42,11 @@ std::vector<fs::path> output_directories(const RunOptions& options, const std::v
 
 int run(const RunOptions& options) {
   // All input is checked before anything runs or is written.
+  std::vector<std::string> overrides = options.overrides;
+  if (options.latency) overrides.emplace_back("record.timing=true");
   std::vector<LoadedScenario> scenarios;
   for (const std::string& argument : options.scenarios) {
-    scenarios.push_back(load_scenario(find_scenario(argument), options.overrides));
+    scenarios.push_back(load_scenario(find_scenario(argument), overrides));
   }
   const std::vector<fs::path> directories = output_directories(options, scenarios);
   for (const LoadedScenario& scenario : scenarios) {
@@ -55,6 +59,7 @@ int run(const RunOptions& options) {
   std::vector<Table::Column> columns = run_columns();
   columns.insert(columns.begin(), {{"scenario", false}, {"algorithm", false}});
   Table table(columns);
+  LatencyTable latencies;
   Json summaries = Json::array();
   const ShellCache cache = shell_cache(options.no_cache);
   int status = kSuccess;
@@ -64,13 +69,18 @@ int run(const RunOptions& options) {
     cells.insert(cells.begin(), {report.summary.name, report.summary.algorithm});
     table.add(std::move(cells));
     summaries.push_back(summary_json(report.summary));
+    if (options.latency) {
+      latencies.add(report.summary.name, *report.timing.latency);
+      summaries.back()["step_latency"] = step_latency_json(*report.timing.latency);
+    }
     for (const std::string& unmet : report.unmet) {
       fmt::print(stderr, "hapbench: {}: {}\n", scenarios[i].file.string(), unmet);
       status = kUnexpectedOutcome;
     }
   }
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
-  print(options.output, table.text() + fmt::format("\nresults in {}\n", where.string()), summaries);
+  const std::string latency_text = options.latency ? "\n" + latencies.text() : "";
+  print(options.output, table.text() + latency_text + fmt::format("\nresults in {}\n", where.string()), summaries);
   return status;
 }
 
@@ -86,6 +96,8 @@ void add_run(CLI::App& app, Action& chosen) {
   command->add_option("--set", options->overrides, "override a field: path=value, as in time.steps=100")
       ->allow_extra_args(false)
       ->take_all();
+  command->add_flag("--latency", options->latency,
+                    "time every step (as record.timing does) and print percentiles and deadline misses");
   add_cache_option(*command, options->no_cache);
   add_output_options(*command, options->output);
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
