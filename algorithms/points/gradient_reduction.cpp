@@ -52,7 +52,6 @@ class GradientReduction final : public PointStage {
   }
 
   void process(ContactBuffer& contacts) noexcept override {
-    if (contacts.size() <= 1) return;
     if (shuffled_) shuffle(contacts);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < contacts.size(); ++i) {

@@ -19,6 +19,7 @@ struct RunOptions {
   std::string out;
   std::vector<std::string> overrides;
   bool no_cache = false;
+  Skips skips = Skips::taken;
   bool latency = false;
   OutputOptions output;
 };
@@ -61,10 +62,10 @@ int run(const RunOptions& options) {
   Table table(columns);
   LatencyTable latencies;
   Json summaries = Json::array();
-  const ShellCache cache = shell_cache(options.no_cache);
+  const ShellCache cache = shell_cache(options.no_cache || options.skips == Skips::off);
   int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
-    const RunReport report = run_scenario(scenarios[i], directories[i], !options.output.quiet, cache);
+    const RunReport report = run_scenario(scenarios[i], directories[i], !options.output.quiet, cache, options.skips);
     std::vector<std::string> cells = run_cells(report);
     cells.insert(cells.begin(), {report.summary.name, report.summary.algorithm});
     table.add(std::move(cells));
@@ -99,6 +100,7 @@ void add_run(CLI::App& app, Action& chosen) {
   command->add_flag("--latency", options->latency,
                     "time every step (as record.timing does) and print percentiles and deadline misses");
   add_cache_option(*command, options->no_cache);
+  add_skip_option(*command, options->skips);
   add_output_options(*command, options->output);
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }

@@ -141,7 +141,7 @@ void write_results(const fs::path& directory, const Scenario& scenario, const Ru
 }  // namespace
 
 RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,
-                       const ShellCache& cache) {
+                       const ShellCache& cache, Skips skips) {
   const Scenario& scenario = loaded.scenario;
   RunReport report;
   const std::vector<Trial> trials = trials_of(scenario);
@@ -153,6 +153,7 @@ RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::pat
   std::vector<TrialResult> results;
   for (const Trial trial : trials) {
     TrialOptions options;
+    options.skips = skips;
     if (output && records(scenario.record)) options.directory = trial_directory(*output, trial, trials.size());
     if (options.directory) create_output(*options.directory);
     if (progress) options.label = scenario.name;

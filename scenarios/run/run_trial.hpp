@@ -32,6 +32,7 @@ struct TrialOptions {
   std::optional<std::filesystem::path> directory;  ///< exists; what the scenario records goes there
   std::string label;                               ///< of the progress bar; none when empty
   StepTimes* times = nullptr;                      ///< when not null, every step is timed into it
+  Skips skips = Skips::taken;
 };
 
 /// Runs one trial. `shell` is make_shell of the scenario. Throws InputError for files it cannot use and IoError when a

@@ -11,6 +11,7 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
       parts_(std::move(parts)),
       observers_(std::move(observers)),
       contacts_(parts_.query->capacity()) {
+  ratio_wanted_ = energy_wanted_ = config_.skips == Skips::off;
   for (const Observer* observer : observers_) {
     ratio_wanted_ |= observer->wants_ratio();
     energy_wanted_ |= observer->wants_energy();
