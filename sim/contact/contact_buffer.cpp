@@ -5,7 +5,8 @@
 namespace hapbench {
 
 ContactBuffer::ContactBuffer(std::size_t capacity) : capacity_(capacity) {
-  const std::size_t padded = simd::padded(capacity);
+  // Points are written by whole packs wherever the last one ended.
+  const std::size_t padded = simd::padded(capacity) + simd::lanes;
   index.assign(padded, 0);
   for (AlignedDoubles* column : {&x, &y, &z, &nx, &ny, &nz, &depth, &ux, &uy, &uz, &weight})
     column->assign(padded, 0.0);

@@ -37,9 +37,12 @@ class GridIndex {
   const double* y() const { return y_.data(); }
   const double* z() const { return z_.data(); }
   std::uint32_t shell_index(std::size_t sorted) const { return shell_index_[sorted]; }
+  const std::uint32_t* shell_indices() const { return shell_index_.data(); }
   /// True when sorting changed nothing, so that runs come in ascending shell index.
   bool keeps_order() const { return keeps_order_; }
   double cell_size() const { return cell_; }
+  /// The box of all points.
+  const Box& bounds() const { return bounds_; }
 
  private:
   struct Range {
@@ -52,6 +55,7 @@ class GridIndex {
 
   double cell_ = 1.0;
   Vec3 origin_ = Vec3::Zero();
+  Box bounds_;
   std::size_t count_[3] = {0, 0, 0};
   std::vector<std::uint32_t> start_;  ///< first point of each cell, one more at the end
   AlignedDoubles x_, y_, z_;

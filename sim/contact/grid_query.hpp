@@ -20,15 +20,16 @@ class GridQuery final : public ContactQuery {
   void reset() noexcept override { work_ = {}; }
 
  private:
-  void collect(const ToolPose& pose) noexcept;
+  template <class Take>
+  void for_each_hit(const ToolPose& pose, Take take) noexcept;
+  void push_sorted(const ToolPose& pose, ContactBuffer& contacts) noexcept;
 
   const PointShell* shell_;
   Tool tool_;
   double radius2_;  ///< largest square whose root is at most the radius
   double reach_;    ///< the tool's furthest point from its tip centre
   GridIndex grid_;
-  std::vector<std::uint32_t> found_;  ///< shell indices of the colliding points
-  std::size_t found_size_ = 0;
+  std::vector<std::uint32_t> found_;  ///< shell indices of the colliding points, when they have to be sorted
 };
 
 }  // namespace hapbench

@@ -11,7 +11,9 @@ struct Box {
   Vec3 max = Vec3::Zero();
 };
 
-/// The box around the tool grown by `margin` [m] on all sides.
-Box box_around(const Tool& tool, const ToolPose& pose, double margin) noexcept;
+/// A box that holds every point of `bounds` that lies in the tool grown by `margin` [m] on all sides: the box around
+/// the part of the tool near `bounds`, since most of a tilted tool sticks out of what it works on. Empty, with min >
+/// max, when no part is near.
+Box box_around(const Tool& tool, const ToolPose& pose, double margin, const Box& bounds) noexcept;
 
 }  // namespace hapbench
