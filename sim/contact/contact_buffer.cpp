@@ -1,7 +1,5 @@
 #include "sim/contact/contact_buffer.hpp"
 
-#include "sim/core/simd.hpp"
-
 namespace hapbench {
 
 ContactBuffer::ContactBuffer(std::size_t capacity) : capacity_(capacity) {
@@ -10,10 +8,6 @@ ContactBuffer::ContactBuffer(std::size_t capacity) : capacity_(capacity) {
   index.assign(padded, 0);
   for (AlignedDoubles* column : {&x, &y, &z, &nx, &ny, &nz, &depth, &ux, &uy, &uz, &weight})
     column->assign(padded, 0.0);
-}
-
-std::size_t ContactBuffer::padded_size() const {
-  return simd::padded(size_);
 }
 
 void ContactBuffer::push(std::uint32_t i, const Vec3& point, const Vec3& normal) {

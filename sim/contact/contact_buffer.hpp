@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/core/aligned.hpp"
+#include "sim/core/lanes.hpp"
 #include "sim/core/types.hpp"
 
 namespace hapbench {
@@ -26,7 +27,8 @@ class ContactBuffer {
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
   std::size_t capacity() const { return capacity_; }
-  std::size_t padded_size() const;
+  /// Inline, or every loop that ends by it would spill its registers around the call.
+  std::size_t padded_size() const { return simd::padded(size_); }
 
   void clear() { size_ = 0; }
   /// Appends a contact with zero depth, gradient and weight. Precondition: size() < capacity().

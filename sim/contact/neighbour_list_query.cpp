@@ -14,7 +14,7 @@ namespace hapbench {
 namespace {
 
 /// Skin in tool radii: thicker, and every step tests more points; thinner, and lists are made more often.
-constexpr double kSkinPerRadius = 0.4;
+constexpr double kSkinPerRadius = 0.2;
 /// How often an empty skin is doubled when the tool is in free air.
 constexpr int kMostDoublings = 12;
 /// Relative slack for the rounding of `moved` and of the search itself, far above both.

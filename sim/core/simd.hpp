@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "sim/core/lanes.hpp"
+
 #if HAPBENCH_SIMD
 #include <experimental/simd>
 #ifdef __AVX512VL__
@@ -18,13 +20,6 @@
 /// one fixed order, whatever the register width. Together with -ffp-contract=off this makes the scalar build and every
 /// SIMD build agree bit for bit. Include from source files only: the type of Pack differs between the two builds.
 namespace hapbench::simd {
-
-inline constexpr std::size_t lanes = 8;
-
-/// n rounded up to whole packs.
-constexpr std::size_t padded(std::size_t n) {
-  return (n + lanes - 1) / lanes * lanes;
-}
 
 #if HAPBENCH_SIMD
 
@@ -182,6 +177,13 @@ inline Mask lanes_between(std::size_t first, std::size_t last) {
   alignas(64) static constexpr double kNumber[lanes] = {0, 1, 2, 3, 4, 5, 6, 7};
   const Pack number = load(kNumber);
   return number >= Pack(static_cast<double>(first)) && number < Pack(static_cast<double>(last));
+}
+
+/// The lowest lane that is set. Precondition: any(m).
+inline std::size_t first(const Mask& m) {
+  std::size_t i = 0;
+  while (!lane(m, i)) ++i;
+  return i;
 }
 
 inline Pack abs(const Pack& a) {

@@ -32,7 +32,7 @@ LoadedScenario load_step_scenario(const std::string& name) {
   if (name == "T3") return load("task3_spin_signed_distance", {});
   if (name == "unreduced_1000") {
     return load("task3_spin_signed_distance",
-                {"tool.diameter_m=0.00196", "initial.position_m=[0.00002,0,-0.0049]", "rendering.reduction=null"});
+                {"tool.diameter_m=0.00184", "initial.position_m=[0.00002,0,-0.0049]", "rendering.reduction=null"});
   }
   return load("task3_spin_signed_distance",
               {"hand={\"type\":\"none\"}", "device={\"type\":\"ideal\"}", "initial.position_m=[0,0,0.05]"});
