@@ -7,6 +7,12 @@
 #include "algorithms/points/local_average.hpp"
 
 namespace hapbench {
+namespace {
+
+/// Copied instead of made: zeros written one by one and read by pairs would stall the step.
+const RenderedForce kNoForce;
+
+}  // namespace
 
 PenaltyRendering::PenaltyRendering(std::unique_ptr<DepthModel> depth_model, std::unique_ptr<ForceLaw> law,
                                    const RenderingConfig& config)
@@ -32,7 +38,7 @@ void PenaltyRendering::reset() noexcept {
 }
 
 void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
-  out = {};
+  out = kNoForce;
   if (contacts.empty() && skips_ == Skips::taken) return;
 
   if (!depth_is_given_) depth_model_->evaluate(tool_, tool.pose, contacts);
