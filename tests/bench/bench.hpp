@@ -19,6 +19,5 @@ void register_skips();      ///< skip/<what>/{taken,off}
 /// Every benchmark proves its answer before it is timed. One that cannot is ended by this, and the program with it by
 /// status 1.
 void refute(benchmark::State& state, const std::string& what);
-bool anything_refuted();
 
 }  // namespace hapbench::bench

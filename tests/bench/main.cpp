@@ -29,10 +29,6 @@ void refute(benchmark::State& state, const std::string& what) {
   state.SkipWithError(what.c_str());
 }
 
-bool anything_refuted() {
-  return refuted;
-}
-
 }  // namespace hapbench::bench
 
 /// `hapbench_bench [--benchmark_…]` runs the benchmarks, `hapbench_bench --table` measures the targets.
