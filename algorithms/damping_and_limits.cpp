@@ -40,7 +40,8 @@ DampingAndLimits::DampingAndLimits(const RenderingConfig& config)
       mu_s_(config.mu_s),
       mu_f_(config.mu_f),
       max_damping_(config.max_damping),
-      max_force_(config.max_force) {}
+      max_force_(config.max_force),
+      skips_(config.skips) {}
 
 Vec3 DampingAndLimits::rendered_force(const Vec3& spring, const Mat3& S, const Vec3& velocity) const noexcept {
   double B = B_;
@@ -50,7 +51,12 @@ Vec3 DampingAndLimits::rendered_force(const Vec3& spring, const Mat3& S, const V
   }
   const Vec3 normal_velocity = S * velocity;
   Vec3 force = spring - B * normal_velocity;
-  if (mu_s_ != 0.0 || mu_f_ != 0.0) force -= (mu_s_ + mu_f_ * spring.norm()) * (velocity - normal_velocity);
+  const auto friction = [&]() -> Vec3 { return (mu_s_ + mu_f_ * spring.norm()) * (velocity - normal_velocity); };
+  if (mu_s_ != 0.0 || mu_f_ != 0.0) {
+    force -= friction();
+  } else if (skips_ == Skips::off) {
+    force -= friction() + Vec3::Zero();  // 0 and never -0, which would turn a -0 of the force into 0
+  }
   if (max_force_) {
     const double length = force.norm();
     if (length > *max_force_) force *= *max_force_ / length;

@@ -18,8 +18,8 @@ class DampingAndLimits {
  public:
   explicit DampingAndLimits(const RenderingConfig& config);
 
-  /// f_render [N] from f_spring [N], S and the tool's velocity [m/s]. Friction and eigenvalues are computed only when
-  /// the configuration asks for them.
+  /// f_render [N] from f_spring [N], S and the tool's velocity [m/s]. Eigenvalues are computed only when there is
+  /// a limit, friction that is none only when skips are off.
   Vec3 rendered_force(const Vec3& spring, const Mat3& S, const Vec3& velocity) const noexcept;
 
   double damping() const { return B_; }  ///< B [N s/m]
@@ -30,6 +30,7 @@ class DampingAndLimits {
   double mu_f_;
   std::optional<double> max_damping_;
   std::optional<double> max_force_;
+  Skips skips_;
 };
 
 }  // namespace hapbench

@@ -7,6 +7,12 @@
 #include "algorithms/points/local_average.hpp"
 
 namespace hapbench {
+namespace {
+
+/// Copied instead of made: zeros written one by one and read by pairs would stall the step.
+const RenderedForce kNoForce;
+
+}  // namespace
 
 PenaltyRendering::PenaltyRendering(std::unique_ptr<DepthModel> depth_model, std::unique_ptr<ForceLaw> law,
                                    const RenderingConfig& config)
@@ -14,7 +20,8 @@ PenaltyRendering::PenaltyRendering(std::unique_ptr<DepthModel> depth_model, std:
       local_average_(config.local_average ? make_local_average() : nullptr),
       reduction_(config.reduction ? make_gradient_reduction(*config.reduction) : nullptr),
       law_(std::move(law)),
-      damping_and_limits_(config) {}
+      damping_and_limits_(config),
+      skips_(config.skips) {}
 
 void PenaltyRendering::prepare(const Scene& scene) {
   tool_ = scene.tool;
@@ -31,21 +38,30 @@ void PenaltyRendering::reset() noexcept {
 }
 
 void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
-  out = {};
-  if (contacts.empty()) return;
+  out = kNoForce;
+  if (contacts.empty() && skips_ == Skips::taken) return;
 
   if (!depth_is_given_) depth_model_->evaluate(tool_, tool.pose, contacts);
   const auto depths = contacts.depth.begin();
-  out.depth_max = *std::max_element(depths, depths + static_cast<std::ptrdiff_t>(contacts.size()));
-
+  if (!contacts.empty()) {
+    out.depth_max = *std::max_element(depths, depths + static_cast<std::ptrdiff_t>(contacts.size()));
+  }
   if (local_average_) local_average_->process(contacts);
-  if (reduction_) reduction_->process(contacts);
-  if (contacts.empty()) return;
+  if (reduction_) reduce(contacts);
+  if (contacts.empty() && skips_ == Skips::taken) return;
 
   const LawForce law = law_->evaluate(contacts);
-  out.spring = spring_ = law.spring;
+  // -K times an empty sum is -0; a step that evaluates nothing says 0.
+  out.spring = spring_ = contacts.empty() ? Vec3(law.spring + Vec3::Zero()) : law.spring;
   out.S = law.S;
+  // Not a skip but what friction is: S of no contact is zero, and all velocity would count as tangential.
+  if (contacts.empty()) return;
   out.rendered = damping_and_limits_.rendered_force(law.spring, law.S, tool.velocity);
+}
+
+/// A single contact has none that it could be similar to.
+void PenaltyRendering::reduce(ContactBuffer& contacts) noexcept {
+  if (contacts.size() > 1 || skips_ == Skips::off) reduction_->process(contacts);
 }
 
 SpringState PenaltyRendering::spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept {

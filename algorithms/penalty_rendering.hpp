@@ -13,7 +13,8 @@ namespace hapbench {
 ///
 ///   contacts -> depth model -> (local average) -> (reduction) -> force law -> damping, friction, limits
 ///
-/// One virtual call per stage and step; stages that the configuration does not ask for do not exist.
+/// One virtual call per stage and step; stages that the configuration does not ask for do not exist,
+/// and steps without contact, or with too few to reduce, pass over what would do nothing (Skips).
 class PenaltyRendering final : public ForceAlgorithm {
  public:
   PenaltyRendering(std::unique_ptr<DepthModel> depth_model, std::unique_ptr<ForceLaw> law,
@@ -26,12 +27,15 @@ class PenaltyRendering final : public ForceAlgorithm {
   AlgorithmWork work() const noexcept override;
 
  private:
+  void reduce(ContactBuffer& contacts) noexcept;
+
   std::unique_ptr<DepthModel> depth_model_;
   std::unique_ptr<PointStage> local_average_;  ///< may be null
   std::unique_ptr<PointStage> reduction_;      ///< may be null
   std::unique_ptr<ForceLaw> law_;
   DampingAndLimits damping_and_limits_;
   Tool tool_;
+  Skips skips_;
   bool depth_is_given_ = false;
   Vec3 spring_ = Vec3::Zero();  ///< of the last step with contacts
 };

@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "sim/core/skips.hpp"
+
 namespace hapbench {
 
 /// Gradient-based point reduction (thesis C.3, 2.8).
@@ -33,6 +35,8 @@ struct RenderingConfig {
   std::optional<double> max_damping;       ///< B_max [N s/m]
   std::optional<double> max_force;         ///< F_max [N]
   std::optional<double> virtual_coupling;  ///< K_vc [N/m]; off: K
+
+  Skips skips = Skips::taken;  ///< stages without contacts, the reduction of one, friction with coefficients of zero
 };
 
 }  // namespace hapbench

@@ -14,6 +14,8 @@ ordered_json timing_json(const RunTiming& timing, const InstructionSet& instruct
           {"loop_s", timing.loop},
           {"steps", timing.steps},
           {"step_mean_s", mean},
+          {"step_latency", timing.latency ? step_latency_json(*timing.latency) : ordered_json(nullptr)},
+          {"preemptions", timing.preemptions},
           {"build",
            {{"march", instructions.march},
             {"instruction_set", instructions.widest},

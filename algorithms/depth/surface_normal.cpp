@@ -1,6 +1,7 @@
 #include "algorithms/depth/surface_normal.hpp"
 
 #include "algorithms/depth/shortest_distance.hpp"
+#include "sim/core/simd.hpp"
 
 namespace hapbench {
 
@@ -18,7 +19,11 @@ class SurfaceNormal final : public DepthModel {
  public:
   void evaluate(const Tool& tool, const ToolPose& pose, ContactBuffer& contacts) const noexcept override {
     shortest_distance_depths(tool, pose, contacts);
-    for (std::size_t i = 0; i < contacts.size(); ++i) contacts.set_gradient(i, -contacts.normal(i));
+    for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+      simd::store(-simd::load(&contacts.nx[i]), &contacts.ux[i]);
+      simd::store(-simd::load(&contacts.ny[i]), &contacts.uy[i]);
+      simd::store(-simd::load(&contacts.nz[i]), &contacts.uz[i]);
+    }
     contacts.pad();
   }
 };

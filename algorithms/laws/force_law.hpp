@@ -30,11 +30,11 @@ class ForceLaw {
   /// Before the first step; may allocate for up to `capacity` contacts.
   virtual void prepare(std::size_t capacity) { static_cast<void>(capacity); }
   virtual void reset() noexcept { iterations_ = 0; }
-  /// Precondition: contacts are padded and not empty. Leaves the weights in the buffer.
+  /// Precondition: contacts are padded; without any, the force is zero. Leaves the weights in the buffer.
   virtual LawForce evaluate(ContactBuffer& contacts) noexcept = 0;
-  /// The springs behind the last `evaluate`, whose contacts and spring force [N] are handed in: their elastic energy and
-  /// their moment about the tip centre `tip`. Of weighted springs: 1/2 K sum c_i d_i^2, and each force at its colliding
-  /// point.
+  /// The springs behind the last `evaluate`, whose contacts and spring force [N] are handed in: their elastic energy
+  /// and their moment about the tip centre `tip`. Of weighted springs: 1/2 K sum c_i d_i^2, and each force at its
+  /// colliding point.
   virtual SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept;
   /// Inner iterations since the last reset.
   std::uint64_t iterations() const noexcept { return iterations_; }

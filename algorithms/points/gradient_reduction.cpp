@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/core/random.hpp"
+#include "sim/core/simd.hpp"
 
 namespace hapbench {
 namespace {
@@ -52,7 +53,6 @@ class GradientReduction final : public PointStage {
   }
 
   void process(ContactBuffer& contacts) noexcept override {
-    if (contacts.size() <= 1) return;
     if (shuffled_) shuffle(contacts);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -71,9 +71,15 @@ class GradientReduction final : public PointStage {
 
  private:
   std::size_t first_similar(const ContactBuffer& c, std::size_t i, std::size_t kept) const noexcept {
-    std::size_t k = 0;
-    while (k < kept && !(c.ux[i] * c.ux[k] + c.uy[i] * c.uy[k] + c.uz[i] * c.uz[k] > config_.threshold)) ++k;
-    return k;
+    using simd::load, simd::Pack;
+    const Pack x(c.ux[i]), y(c.uy[i]), z(c.uz[i]), threshold(config_.threshold);
+    for (std::size_t k = 0; k < kept; k += simd::lanes) {
+      const Pack inner = x * load(&c.ux[k]) + y * load(&c.uy[k]) + z * load(&c.uz[k]);
+      // Beyond `kept` lie contacts that are still to be visited.
+      const simd::Mask similar = inner > threshold && simd::lanes_between(0, kept - k);
+      if (simd::any(similar)) return k + simd::first(similar);
+    }
+    return kept;
   }
 
   void shuffle(ContactBuffer& contacts) noexcept {

@@ -21,6 +21,12 @@ void add_cache_option(CLI::App& command, bool& no_cache) {
   command.add_flag("--no-cache", no_cache, "build the shell anew and keep none (see \"hapbench describe cache\")");
 }
 
+void add_skip_option(CLI::App& command, Skips& skips) {
+  command.add_flag_callback(
+      "--no-skip", [&skips] { skips = Skips::off; },
+      "compute everything, also what cannot change the results, by brute force; no cache");
+}
+
 ShellCache shell_cache(bool no_cache) {
   return no_cache ? ShellCache() : ShellCache(shell_cache_directory());
 }

@@ -8,6 +8,7 @@
 
 #include "scenarios/codec/codec.hpp"
 #include "scenarios/files/shell_cache.hpp"
+#include "sim/core/skips.hpp"
 
 /// The command line: each command adds its options to the parser and says what to do when it is chosen.
 namespace hapbench {
@@ -44,6 +45,8 @@ void add_output_options(CLI::App& command, OutputOptions& options);
 
 /// Adds --no-cache.
 void add_cache_option(CLI::App& command, bool& no_cache);
+/// Adds --no-skip.
+void add_skip_option(CLI::App& command, Skips& skips);
 /// The user's cache of point shells; none with --no-cache.
 ShellCache shell_cache(bool no_cache);
 

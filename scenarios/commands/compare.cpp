@@ -23,6 +23,7 @@ struct CompareOptions {
   std::string out;
   std::vector<std::string> overrides;
   bool no_cache = false;
+  Skips skips = Skips::taken;
   OutputOptions output;
 };
 
@@ -77,10 +78,11 @@ int compare(const CompareOptions& options) {
   Table table(columns);
   Json summaries = Json::array();
   std::vector<RunReport> reports;
-  const ShellCache cache = shell_cache(options.no_cache);
+  const ShellCache cache = shell_cache(options.no_cache || options.skips == Skips::off);
   int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
-    RunReport report = run_scenario(scenarios[i], out / options.algorithms[i], !options.output.quiet, cache);
+    RunReport report =
+        run_scenario(scenarios[i], out / options.algorithms[i], !options.output.quiet, cache, options.skips);
     std::vector<std::string> cells = run_cells(report);
     cells.insert(cells.begin(), report.summary.algorithm);
     table.add(std::move(cells));
@@ -110,6 +112,7 @@ void add_compare(CLI::App& app, Action& chosen) {
   command->add_option("--out", options->out, "directory of the results (default: results/out/compare_NAME)");
   command->add_option("--set", options->overrides, "override a field: path=value")->allow_extra_args(false)->take_all();
   add_cache_option(*command, options->no_cache);
+  add_skip_option(*command, options->skips);
   add_output_options(*command, options->output);
   command->callback([options, &chosen] { chosen = [options] { return compare(*options); }; });
 }

@@ -5,6 +5,7 @@
 
 #include "results/io/io_error.hpp"
 #include "scenarios/commands/command.hpp"
+#include "scenarios/commands/latency_table.hpp"
 #include "scenarios/commands/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
 
@@ -18,6 +19,8 @@ struct RunOptions {
   std::string out;
   std::vector<std::string> overrides;
   bool no_cache = false;
+  Skips skips = Skips::taken;
+  bool latency = false;
   OutputOptions output;
 };
 
@@ -40,9 +43,11 @@ std::vector<fs::path> output_directories(const RunOptions& options, const std::v
 
 int run(const RunOptions& options) {
   // All input is checked before anything runs or is written.
+  std::vector<std::string> overrides = options.overrides;
+  if (options.latency) overrides.emplace_back("record.timing=true");
   std::vector<LoadedScenario> scenarios;
   for (const std::string& argument : options.scenarios) {
-    scenarios.push_back(load_scenario(find_scenario(argument), options.overrides));
+    scenarios.push_back(load_scenario(find_scenario(argument), overrides));
   }
   const std::vector<fs::path> directories = output_directories(options, scenarios);
   for (const LoadedScenario& scenario : scenarios) {
@@ -55,24 +60,30 @@ int run(const RunOptions& options) {
   std::vector<Table::Column> columns = run_columns();
   columns.insert(columns.begin(), {{"scenario", false}, {"algorithm", false}});
   Table table(columns);
+  LatencyTable latencies;
   Json summaries = Json::array();
-  const ShellCache cache = shell_cache(options.no_cache);
+  const ShellCache cache = shell_cache(options.no_cache || options.skips == Skips::off);
   std::string targets;
   int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
-    const RunReport report = run_scenario(scenarios[i], directories[i], !options.output.quiet, cache);
+    const RunReport report = run_scenario(scenarios[i], directories[i], !options.output.quiet, cache, options.skips);
     std::vector<std::string> cells = run_cells(report);
     cells.insert(cells.begin(), {report.summary.name, report.summary.algorithm});
     table.add(std::move(cells));
     targets += targets_text(report);
     summaries.push_back(summary_json(report.summary));
+    if (options.latency) {
+      latencies.add(report.summary.name, *report.timing.latency);
+      summaries.back()["step_latency"] = step_latency_json(*report.timing.latency);
+    }
     for (const std::string& unmet : report.unmet) {
       fmt::print(stderr, "hapbench: {}: {}\n", scenarios[i].file.string(), unmet);
       status = kUnexpectedOutcome;
     }
   }
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
-  print(options.output, table.text() + targets + fmt::format("\nresults in {}\n", where.string()), summaries);
+  const std::string latency_text = options.latency ? "\n" + latencies.text() : "";
+  print(options.output, table.text() + targets + latency_text + fmt::format("\nresults in {}\n", where.string()), summaries);
   return status;
 }
 
@@ -88,7 +99,10 @@ void add_run(CLI::App& app, Action& chosen) {
   command->add_option("--set", options->overrides, "override a field: path=value, as in time.steps=100")
       ->allow_extra_args(false)
       ->take_all();
+  command->add_flag("--latency", options->latency,
+                    "time every step (as record.timing does) and print percentiles and deadline misses");
   add_cache_option(*command, options->no_cache);
+  add_skip_option(*command, options->skips);
   add_output_options(*command, options->output);
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }

@@ -93,7 +93,7 @@ std::shared_ptr<ObjectCodec<RecordFields>> record_codec() {
   record->optional(
       "contacts", [](auto& r) -> bool& { return r.contacts; }, boolean(), "write contacts.csv");
   record->optional(
-      "timing", [](auto& r) -> bool& { return r.timing; }, boolean(), "write timing.json");
+      "timing", [](auto& r) -> bool& { return r.timing; }, boolean(), "time every step and write timing.json");
   record->optional(
       "energy", [](auto& r) -> bool& { return r.energy; }, boolean(), "keep the energy ledger and write energy.csv");
   record->optional(
@@ -132,6 +132,12 @@ double step_count(const TimeFields& time) {
   return time.steps ? static_cast<double>(*time.steps) : std::round(*time.duration / time.step);
 }
 
+double trial_count(const HandFields& hand) {
+  const auto* tracking = std::get_if<TrackingHandFields>(&hand);
+  return tracking == nullptr ? 1.0
+                             : static_cast<double>(tracking->subjects.size()) * static_cast<double>(tracking->trials);
+}
+
 void check_sizes(const Scenario& scenario, const std::string& at) {
   const double steps = step_count(scenario.time);
   if (!(steps >= 1.0 && steps <= kMostSteps)) {
@@ -145,6 +151,12 @@ void check_sizes(const Scenario& scenario, const std::string& at) {
     throw InputError(
         InputError::Kind::relation, member(member(at, "record"), "every"),
         fmt::format("got {:.3g} recorded rows; allowed: at most {:.0g}, record less often or less", rows, kMostRows));
+  }
+  // Every step of every trial has its time in memory.
+  const double timed = steps * trial_count(scenario.hand);
+  if (scenario.record.timing && timed > kMostRows) {
+    throw InputError(InputError::Kind::relation, member(member(at, "record"), "timing"),
+                     fmt::format("got {:.3g} timed steps; allowed: at most {:.0g}", timed, kMostRows));
   }
 }
 

@@ -13,6 +13,7 @@
 #include "scenarios/files/motion_file.hpp"
 #include "scenarios/run/environment_points.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
+#include "sim/contact/shell_query.hpp"
 #include "sim/contact/spring_query.hpp"
 #include "sim/core/random.hpp"
 
@@ -121,8 +122,9 @@ std::unique_ptr<Device> make_device(const Scenario& scenario, Trial trial) {
   return std::make_unique<AdmittanceDevice>(config);
 }
 
-RenderingConfig rendering_config(const RenderingFields& fields) {
+RenderingConfig rendering_config(const RenderingFields& fields, Skips skips) {
   RenderingConfig config = fields.config;
+  config.skips = skips;
   config.depth_model = *fields.depth_model;
   config.reduction = *fields.reduction;
   config.mass = *fields.mass;
@@ -161,8 +163,9 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
   return warnings;
 }
 
-SimulationConfig simulation_config(const Scenario& scenario) {
+SimulationConfig simulation_config(const Scenario& scenario, Skips skips) {
   SimulationConfig config;
+  config.skips = skips;
   config.dt = scenario.time.step;
   config.steps = static_cast<std::uint64_t>(*scenario.time.steps);
   config.mass = *scenario.rendering.mass;
@@ -180,16 +183,18 @@ std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const std
   return std::make_shared<const PointShell>(points, cell_size(scenario.environment));
 }
 
-SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial) {
+SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial, Skips skips) {
   SimulationParts parts;
   parts.tool = make_tool(scenario.tool);
   parts.shell = std::move(shell);
   if (const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment)) {
     parts.query = std::make_unique<SpringQuery>(make_springs(*springs, static_cast<std::uint64_t>(scenario.seed)));
+  } else if (skips == Skips::off) {
+    parts.query = std::make_unique<ShellQuery>(*parts.shell, parts.tool);
   } else {
     parts.query = std::make_unique<NeighbourListQuery>(*parts.shell, parts.tool);
   }
-  parts.algorithm = make_algorithm(rendering_config(scenario.rendering));
+  parts.algorithm = make_algorithm(rendering_config(scenario.rendering, skips));
   add_hand_and_motion(scenario, trial, parts);
   parts.device = make_device(scenario, trial);
   return parts;

@@ -12,7 +12,7 @@ namespace hapbench {
 std::vector<std::string> check_named_files(const LoadedScenario& loaded);
 
 /// Numbers of the run. Precondition: defaults are filled in.
-SimulationConfig simulation_config(const Scenario& scenario);
+SimulationConfig simulation_config(const Scenario& scenario, Skips skips = Skips::taken);
 
 /// One run of a scenario that has several: a simulated subject's trial. Both count from 0.
 struct Trial {
@@ -25,8 +25,9 @@ struct Trial {
 std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const std::vector<SurfacePoint>& points);
 
 /// Everything the run is made of. Preconditions: defaults are filled in, `shell` is make_shell of this scenario. Throws
-/// InputError when a named file cannot be used.
-SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial);
+/// InputError when a named file cannot be used. With skips off, every step compares every point with the tool.
+SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial,
+                         Skips skips = Skips::taken);
 /// The only or first run, with a shell of its own.
 SimulationParts assemble(const Scenario& scenario);
 

@@ -141,28 +141,34 @@ void write_results(const fs::path& directory, const Scenario& scenario, const Ru
 }  // namespace
 
 RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,
-                       const ShellCache& cache) {
+                       const ShellCache& cache, Skips skips) {
   const Scenario& scenario = loaded.scenario;
   RunReport report;
   const std::vector<Trial> trials = trials_of(scenario);
   const auto shell = make_shell(scenario, timed_environment_points(scenario, cache, report.timing));
   if (output) create_output(*output);
 
+  std::optional<StepTimes> times;
+  if (scenario.record.timing) times.emplace(static_cast<std::size_t>(*scenario.time.steps) * trials.size());
   std::vector<TrialResult> results;
   for (const Trial trial : trials) {
-    std::optional<fs::path> directory;
-    if (output && records(scenario.record)) directory = trial_directory(*output, trial, trials.size());
-    if (directory) create_output(*directory);
-    std::string label = progress ? scenario.name : "";
-    if (progress && trials.size() > 1) label += fmt::format(" {}/{}", results.size() + 1, trials.size());
-    results.push_back(run_trial(scenario, shell, trial, directory, label));
+    TrialOptions options;
+    options.skips = skips;
+    if (output && records(scenario.record)) options.directory = trial_directory(*output, trial, trials.size());
+    if (options.directory) create_output(*options.directory);
+    if (progress) options.label = scenario.name;
+    if (progress && trials.size() > 1) options.label += fmt::format(" {}/{}", results.size() + 1, trials.size());
+    if (times) options.times = &*times;
+    results.push_back(run_trial(scenario, shell, trial, options));
   }
 
   for (const TrialResult& result : results) {
     report.targets.insert(report.targets.end(), result.targets.begin(), result.targets.end());
     report.timing.loop += result.loop_seconds;
     report.timing.steps += result.result.rows;
+    report.timing.preemptions += result.preemptions;
   }
+  if (times) report.timing.latency = step_latency(times->nanoseconds(), times->overhead());
   report.summary = summarise(scenario, results, report.targets);
   report.unmet = unmet_expectations(scenario.expect, report.summary);
   report.summary.expected = report.unmet.empty();

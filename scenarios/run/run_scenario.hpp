@@ -9,6 +9,7 @@
 #include "results/timing.hpp"
 #include "scenarios/config/load_scenario.hpp"
 #include "scenarios/files/shell_cache.hpp"
+#include "sim/core/skips.hpp"
 
 namespace hapbench {
 
@@ -22,9 +23,10 @@ struct RunReport {
 
 /// Runs a scenario. With `output`, writes summary.json, scenario.effective.json and what the scenario records into that
 /// directory, which is created, records of several trials into a subdirectory each; each file appears complete or not
-/// at all, the summary last. `progress` allows a progress bar. The environment's shell may come from `cache`. Throws
-/// InputError for files it cannot use (before anything is written), IoError when writing fails.
+/// at all, the summary last. `progress` allows a progress bar. The environment's shell may come from `cache`. With
+/// skips off, the results are the same but for the counted work. Throws InputError for files it cannot use (before
+/// anything is written), IoError when writing fails.
 RunReport run_scenario(const LoadedScenario& loaded, const std::optional<std::filesystem::path>& output, bool progress,
-                       const ShellCache& cache);
+                       const ShellCache& cache, Skips skips = Skips::taken);
 
 }  // namespace hapbench

@@ -1,5 +1,7 @@
 #include "scenarios/run/run_trial.hpp"
 
+#include <sys/resource.h>
+
 #include <chrono>
 
 #include "algorithms/laws/shaped_stiffness.hpp"
@@ -80,22 +82,37 @@ class TrialObservers {
   std::vector<Observer*> observers_;
 };
 
+SimulationResult run_timed(Simulation& simulation, StepTimes& times) noexcept {
+  times.start();
+  while (simulation.step()) times.lap();
+  return simulation.result();
+}
+
+/// Of this process so far.
+std::uint64_t involuntary_context_switches() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_nivcsw);
+}
+
 }  // namespace
 
 TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial,
-                      const std::optional<fs::path>& directory, const std::string& label) {
-  SimulationParts parts = assemble(scenario, std::move(shell), trial);
+                      const TrialOptions& options) {
+  SimulationParts parts = assemble(scenario, std::move(shell), trial, options.skips);
   TrialObservers observers(scenario, parts, trial);
-  if (directory) observers.record(scenario.record, *directory, parts.query->capacity());
-  Progress bar(label, static_cast<std::uint64_t>(*scenario.time.steps), !label.empty());
+  if (options.directory) observers.record(scenario.record, *options.directory, parts.query->capacity());
+  Progress bar(options.label, static_cast<std::uint64_t>(*scenario.time.steps), !options.label.empty());
   observers.add(bar);
-  Simulation simulation(simulation_config(scenario), std::move(parts), observers.all());
+  Simulation simulation(simulation_config(scenario, options.skips), std::move(parts), observers.all());
 
   TrialResult out;
   const std::uint64_t allocations_before = heap_allocations();
+  const std::uint64_t preemptions_before = involuntary_context_switches();
   const auto start = std::chrono::steady_clock::now();
-  out.result = simulation.run();
+  out.result = options.times != nullptr ? run_timed(simulation, *options.times) : simulation.run();
   out.loop_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  out.preemptions = involuntary_context_switches() - preemptions_before;
   out.work.allocations = heap_allocations() - allocations_before;
   out.work.search = simulation.query().work();
   out.work.steps_skipped = out.work.search.skipped;

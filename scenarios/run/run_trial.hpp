@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "results/record/recorder.hpp"
+#include "results/step_times.hpp"
 #include "results/summary.hpp"
 #include "scenarios/run/assemble.hpp"
 
@@ -20,15 +21,23 @@ struct TrialResult {
   std::optional<IdealTrajectoryMetrics> ideal_trajectory;
   std::vector<TargetRow> targets;  ///< of a tracking hand
   RunWork work;
-  double loop_seconds = 0.0;  ///< wall time of the step loop
+  double loop_seconds = 0.0;      ///< wall time of the step loop
+  std::uint64_t preemptions = 0;  ///< involuntary context switches in it
   /// Files of what was recorded, complete but under temporary names until `finish`.
   std::vector<std::unique_ptr<Recorder>> recorders;
 };
 
-/// Runs one trial. `shell` is make_shell of the scenario. With `directory`, which exists, records there what the
-/// scenario asks for. A progress bar is drawn with `label`, unless that is empty. Throws InputError for files it cannot
-/// use and IoError when a record cannot be written.
+/// How a trial runs, beside what its scenario says.
+struct TrialOptions {
+  std::optional<std::filesystem::path> directory;  ///< exists; what the scenario records goes there
+  std::string label;                               ///< of the progress bar; none when empty
+  StepTimes* times = nullptr;                      ///< when not null, every step is timed into it
+  Skips skips = Skips::taken;
+};
+
+/// Runs one trial. `shell` is make_shell of the scenario. Throws InputError for files it cannot use and IoError when a
+/// record cannot be written.
 TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial,
-                      const std::optional<std::filesystem::path>& directory, const std::string& label);
+                      const TrialOptions& options);
 
 }  // namespace hapbench

@@ -1,18 +1,13 @@
 #include "sim/contact/contact_buffer.hpp"
 
-#include "sim/core/simd.hpp"
-
 namespace hapbench {
 
 ContactBuffer::ContactBuffer(std::size_t capacity) : capacity_(capacity) {
-  const std::size_t padded = simd::padded(capacity);
+  // Points are written by whole packs wherever the last one ended.
+  const std::size_t padded = simd::padded(capacity) + simd::lanes;
   index.assign(padded, 0);
   for (AlignedDoubles* column : {&x, &y, &z, &nx, &ny, &nz, &depth, &ux, &uy, &uz, &weight})
     column->assign(padded, 0.0);
-}
-
-std::size_t ContactBuffer::padded_size() const {
-  return simd::padded(size_);
 }
 
 void ContactBuffer::push(std::uint32_t i, const Vec3& point, const Vec3& normal) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/core/aligned.hpp"
+#include "sim/core/lanes.hpp"
 #include "sim/core/types.hpp"
 
 namespace hapbench {
@@ -16,8 +17,8 @@ namespace hapbench {
 /// where it would leave the tool, so moving the tool along +u_i makes the penetration deeper and the penalty force on
 /// the tool is -K d_i u_i.
 ///
-/// Arrays have room for whole packs (see simd.hpp). After `pad`, depth, gradient and weight are zero beyond size(), the
-/// neutral element of every sum, so that no loop has a tail.
+/// Arrays have room for whole packs and one more (see simd.hpp). After `pad`, depth, gradient and weight are zero
+/// beyond size(), the neutral element of every sum, so that no loop has a tail.
 class ContactBuffer {
  public:
   /// The only place that allocates. No contact search may return more than `capacity` contacts.
@@ -26,11 +27,14 @@ class ContactBuffer {
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
   std::size_t capacity() const { return capacity_; }
-  std::size_t padded_size() const;
+  /// Inline, or every loop that ends by it would spill its registers around the call.
+  std::size_t padded_size() const { return simd::padded(size_); }
 
   void clear() { size_ = 0; }
   /// Appends a contact with zero depth, gradient and weight. Precondition: size() < capacity().
   void push(std::uint32_t index, const Vec3& point, const Vec3& normal);
+  /// Makes the n contacts behind the last one, already written, part of the buffer. Precondition: there is room.
+  void extend(std::size_t n) { size_ += n; }
   /// Appends a copy of contact `from` of another buffer. Precondition: size() < capacity().
   void push_copy_of(const ContactBuffer& other, std::size_t from);
   /// Overwrites contact `to` with contact `from`.

@@ -25,7 +25,7 @@ GridIndex::GridIndex(const PointShell& shell)
     : x_(shell.padded_size(), PointShell::kFarAway),
       y_(shell.padded_size(), PointShell::kFarAway),
       z_(shell.padded_size(), PointShell::kFarAway),
-      shell_index_(shell.size()) {
+      shell_index_(shell.padded_size()) {
   choose_cells(shell);
   start_.assign(count_[0] * count_[1] * count_[2] + 1, 0);
   std::vector<std::uint32_t> cell(shell.size());
@@ -58,6 +58,7 @@ void GridIndex::choose_cells(const PointShell& shell) {
   const double spacing = shell.cell_size() > 0.0 ? shell.cell_size() : even_spacing(extent, points);
   cell_ = spacing > 0.0 ? kSpacingsPerCell * spacing : 1.0;
   origin_ = low;
+  bounds_ = {low, high};
   const auto cells = [&](int axis) { return std::floor(extent[axis] / cell_) + 1.0; };
   while (cells(0) * cells(1) * cells(2) > std::max(kFewestCells, kCellsPerPoint * points)) cell_ *= 1.25;
   for (int axis = 0; axis < 3; ++axis) count_[axis] = static_cast<std::size_t>(cells(axis));

@@ -3,15 +3,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim/contact/tool_box.hpp"
 #include "sim/environment/point_shell.hpp"
 
 namespace hapbench {
-
-/// An axis-aligned box in the world frame [m].
-struct Box {
-  Vec3 min = Vec3::Zero();
-  Vec3 max = Vec3::Zero();
-};
 
 /// The points of a shell sorted by the cells of a uniform grid, in compressed sparse rows: the points of the cells
 /// (i, j, k0 … k1) are one contiguous range of a copy of the shell, so that a search in a box reads one run of memory
@@ -42,9 +37,12 @@ class GridIndex {
   const double* y() const { return y_.data(); }
   const double* z() const { return z_.data(); }
   std::uint32_t shell_index(std::size_t sorted) const { return shell_index_[sorted]; }
+  const std::uint32_t* shell_indices() const { return shell_index_.data(); }
   /// True when sorting changed nothing, so that runs come in ascending shell index.
   bool keeps_order() const { return keeps_order_; }
   double cell_size() const { return cell_; }
+  /// The box of all points.
+  const Box& bounds() const { return bounds_; }
 
  private:
   struct Range {
@@ -57,6 +55,7 @@ class GridIndex {
 
   double cell_ = 1.0;
   Vec3 origin_ = Vec3::Zero();
+  Box bounds_;
   std::size_t count_[3] = {0, 0, 0};
   std::vector<std::uint32_t> start_;  ///< first point of each cell, one more at the end
   AlignedDoubles x_, y_, z_;

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/contact/push_hits.hpp"
 #include "sim/contact/shell_query.hpp"
+#include "sim/contact/tool_box.hpp"
 #include "sim/core/simd.hpp"
 #include "sim/tool/axial.hpp"
 
@@ -12,22 +14,11 @@ namespace hapbench {
 namespace {
 
 /// Skin in tool radii: thicker, and every step tests more points; thinner, and lists are made more often.
-constexpr double kSkinPerRadius = 0.4;
+constexpr double kSkinPerRadius = 0.2;
 /// How often an empty skin is doubled when the tool is in free air.
 constexpr int kMostDoublings = 12;
 /// Relative slack for the rounding of `moved` and of the search itself, far above both.
 constexpr double kSlack = 1e-9;
-
-/// The box around the tool grown by `margin` on all sides.
-Box box_around(const Tool& tool, const ToolPose& pose, double margin) {
-  const double radius = tool.radius + margin;
-  const double beyond_tip = tool.tip == Tip::round ? radius : margin;
-  const Vec3 tip = pose.position + beyond_tip * pose.axis;
-  const Vec3 bottom = pose.position - (tool.length + margin) * pose.axis;
-  // Of a disc with normal a, the half extent along e is radius sqrt(1 - <a, e>^2).
-  const Vec3 disc = radius * (Vec3::Ones() - pose.axis.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
-  return {tip.cwiseMin(bottom) - disc, tip.cwiseMax(bottom) + disc};
-}
 
 }  // namespace
 
@@ -40,7 +31,10 @@ NeighbourListQuery::NeighbourListQuery(const PointShell& shell, const Tool& tool
       index_(shell.padded_size()),
       x_(shell.padded_size()),
       y_(shell.padded_size()),
-      z_(shell.padded_size()) {}
+      z_(shell.padded_size()),
+      nx_(shell.padded_size()),
+      ny_(shell.padded_size()),
+      nz_(shell.padded_size()) {}
 
 void NeighbourListQuery::reset() noexcept {
   work_ = {};
@@ -85,7 +79,7 @@ void NeighbourListQuery::collect(const ToolPose& pose, double skin) noexcept {
   const Pack radius2(radius * radius), low(-tool_.length - margin);
   const Pack high(tool_.tip == Tip::round ? radius : margin);
   list_size_ = 0;
-  grid_.for_each_run(box_around(tool_, pose, margin), [&](std::uint32_t first, std::uint32_t last) {
+  grid_.for_each_run(box_around(tool_, pose, margin, grid_.bounds()), [&](std::uint32_t first, std::uint32_t last) {
     // Whole packs, so the first and last one may reach into neighbouring columns: those lanes are passed over.
     for (std::size_t i = first / simd::lanes * simd::lanes; i < last; i += simd::lanes) {
       const AxialPack q(pose, grid_.x() + i, grid_.y() + i, grid_.z() + i);
@@ -104,21 +98,19 @@ void NeighbourListQuery::collect(const ToolPose& pose, double skin) noexcept {
     x_[k] = shell_->x()[index_[k]];
     y_[k] = shell_->y()[index_[k]];
     z_[k] = shell_->z()[index_[k]];
+    nx_[k] = shell_->nx()[index_[k]];
+    ny_[k] = shell_->ny()[index_[k]];
+    nz_[k] = shell_->nz()[index_[k]];
   }
   for (std::size_t k = list_size_; k < simd::padded(list_size_); ++k) x_[k] = y_[k] = z_[k] = PointShell::kFarAway;
 }
 
 void NeighbourListQuery::test_list(const ToolPose& pose, ContactBuffer& contacts) noexcept {
   const ToolTest touches(tool_, radius2_);
+  const PointColumns points{index_.data(), x_.data(), y_.data(), z_.data(), nx_.data(), ny_.data(), nz_.data()};
   for (std::size_t k = 0; k < list_size_; k += simd::lanes) {
     const simd::Mask hit = touches(AxialPack(pose, &x_[k], &y_[k], &z_[k]));
-    if (!simd::any(hit)) continue;
-    for (std::size_t lane = 0; lane < simd::lanes; ++lane) {
-      if (!simd::lane(hit, lane)) continue;
-      const std::uint32_t i = index_[k + lane];
-      const SurfacePoint point = shell_->point(i);
-      contacts.push(i, point.position, point.normal);
-    }
+    if (simd::any(hit)) push_hits(hit, points, k, contacts);
   }
   work_.points_tested += list_size_;
 }

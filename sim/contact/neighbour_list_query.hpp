@@ -50,7 +50,7 @@ class NeighbourListQuery final : public ContactQuery {
   double skin_ = 0.0;
   std::size_t list_size_ = 0;
   std::vector<std::uint32_t> index_;
-  AlignedDoubles x_, y_, z_;
+  AlignedDoubles x_, y_, z_, nx_, ny_, nz_;
 };
 
 }  // namespace hapbench

@@ -45,14 +45,19 @@ Vec3 weighted_depth(const ContactBuffer& contacts) {
 }
 
 RatioRange ratio_range(const ContactBuffer& contacts, const Mat3& S) {
-  RatioRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const Vec3 u = contacts.gradient(i);
-    const double rho = u.dot(S * u);
-    range.min = rho < range.min ? rho : range.min;
-    range.max = rho > range.max ? rho : range.max;
+  if (contacts.empty()) return {};
+  constexpr double never = std::numeric_limits<double>::infinity();
+  Pack smallest(never), largest(-never);
+  for (std::size_t i = 0; i < contacts.size(); i += simd::lanes) {
+    const Pack x = load(&contacts.ux[i]), y = load(&contacts.uy[i]), z = load(&contacts.uz[i]);
+    // Row by row in the order of Eigen's inner products, a + (b + c).
+    const auto along = [&](int row) { return Pack(S(row, 0)) * x + (Pack(S(row, 1)) * y + Pack(S(row, 2)) * z); };
+    const Pack rho = x * along(0) + (y * along(1) + z * along(2));
+    const simd::Mask counts = simd::lanes_between(0, contacts.size() - i);  // not the padding
+    smallest = simd::min(smallest, simd::select(counts, rho, Pack(never)));
+    largest = simd::max(largest, simd::select(counts, rho, Pack(-never)));
   }
-  return contacts.empty() ? RatioRange{} : range;
+  return {simd::min_lane(smallest), simd::max_lane(largest)};
 }
 
 double lambda_max(const Mat3& S) {

@@ -5,8 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "sim/core/lanes.hpp"
+
 #if HAPBENCH_SIMD
 #include <experimental/simd>
+#ifdef __AVX512VL__
+#include <immintrin.h>
+#endif
 #endif
 
 /// Eight doubles at a time, the same arithmetic in every build.
@@ -15,13 +20,6 @@
 /// one fixed order, whatever the register width. Together with -ffp-contract=off this makes the scalar build and every
 /// SIMD build agree bit for bit. Include from source files only: the type of Pack differs between the two builds.
 namespace hapbench::simd {
-
-inline constexpr std::size_t lanes = 8;
-
-/// n rounded up to whole packs.
-constexpr std::size_t padded(std::size_t n) {
-  return (n + lanes - 1) / lanes * lanes;
-}
 
 #if HAPBENCH_SIMD
 
@@ -47,6 +45,9 @@ inline bool any(const Mask& m) {
 }
 inline bool lane(const Mask& m, std::size_t i) {
   return m[i];
+}
+inline std::size_t count(const Mask& m) {
+  return static_cast<std::size_t>(std::experimental::popcount(m));
 }
 
 #else
@@ -139,8 +140,51 @@ inline bool any(const Mask& m) {
 inline bool lane(const Mask& m, std::size_t i) {
   return m.v[i];
 }
+inline std::size_t count(const Mask& m) {
+  std::size_t n = 0;
+  for (const bool b : m.v) n += b;
+  return n;
+}
 
 #endif
+
+/// Moves the selected ones of eight aligned elements to `to`, in their order and without gaps. May write eight
+/// elements, whatever is selected.
+#if HAPBENCH_SIMD && defined(__AVX512VL__)
+inline __mmask8 bits(const Mask& m) {
+  const Pack ones = select(m, Pack(1.0), Pack(0.0));
+  return _mm512_cmp_pd_mask(static_cast<__m512d>(ones), _mm512_setzero_pd(), _CMP_NEQ_OQ);
+}
+inline void store_selected(const Mask& m, const double* from, double* to) {
+  _mm512_storeu_pd(to, _mm512_maskz_compress_pd(bits(m), _mm512_load_pd(from)));
+}
+inline void store_selected(const Mask& m, const std::uint32_t* from, std::uint32_t* to) {
+  const __m256i all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_maskz_compress_epi32(bits(m), all));
+}
+#else
+template <class T>
+void store_selected(const Mask& m, const T* from, T* to) {
+  for (std::size_t i = 0; i < lanes; ++i) {
+    *to = from[i];
+    to += lane(m, i);
+  }
+}
+#endif
+
+/// The lanes first … last - 1.
+inline Mask lanes_between(std::size_t first, std::size_t last) {
+  alignas(64) static constexpr double kNumber[lanes] = {0, 1, 2, 3, 4, 5, 6, 7};
+  const Pack number = load(kNumber);
+  return number >= Pack(static_cast<double>(first)) && number < Pack(static_cast<double>(last));
+}
+
+/// The lowest lane that is set. Precondition: any(m).
+inline std::size_t first(const Mask& m) {
+  std::size_t i = 0;
+  while (!lane(m, i)) ++i;
+  return i;
+}
 
 inline Pack abs(const Pack& a) {
   return select(a < Pack(0.0), -a, a);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/contact/contact_query.hpp"
+#include "sim/core/skips.hpp"
 #include "sim/loop/device.hpp"
 #include "sim/loop/force_algorithm.hpp"
 #include "sim/loop/hand.hpp"
@@ -39,6 +40,7 @@ struct SimulationConfig {
   bool stop_when_leaves_hole = false;
   bool stop_when_horizontal = false;
   DivergenceBounds bounds;
+  Skips skips = Skips::taken;  ///< ratios and energies that no observer wants
 };
 
 /// The parts a run is made of; the simulation owns them.

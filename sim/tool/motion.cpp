@@ -15,9 +15,17 @@ Vec3 tool_axis(const Orientation& orientation, double tilt, double azimuth) noex
 }
 
 ScriptedMotion::ScriptedMotion(Orientation orientation, std::optional<std::array<Profile, 3>> position)
-    : orientation_(std::move(orientation)), position_(std::move(position)) {}
+    : orientation_(std::move(orientation)), position_(std::move(position)) {
+  const auto is_constant = [](const Profile& profile) {
+    return std::holds_alternative<Profile::Constant>(profile.shape());
+  };
+  if (is_constant(orientation_.tilt) && is_constant(orientation_.azimuth)) {
+    held_axis_ = tool_axis(orientation_, orientation_.tilt(0.0), orientation_.azimuth(0.0));
+  }
+}
 
 Vec3 ScriptedMotion::axis_at(double t) const noexcept {
+  if (held_axis_) return *held_axis_;
   return tool_axis(orientation_, orientation_.tilt(t), orientation_.azimuth(t));
 }
 

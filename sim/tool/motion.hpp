@@ -44,6 +44,7 @@ class ScriptedMotion final : public Motion {
 
  private:
   Orientation orientation_;
+  std::optional<Vec3> held_axis_;  ///< when neither tilt nor azimuth changes
   std::optional<std::array<Profile, 3>> position_;
 };
 

@@ -13,14 +13,17 @@ const Provenance kProvenance = {.version = "1.2.3",
                                 .cpu = "Some CPU"};
 
 TEST(Timing, TextHoldsMeanTimeInstructionSetAndCpu) {
-  EXPECT_EQ(timing_text({.shell = 0.25, .shell_from_cache = true, .loop = 0.5, .steps = 2000},
-                        {.march = "native", .widest = "avx2", .simd = true}, kProvenance),
+  EXPECT_EQ(timing_text(
+                {.shell = 0.25, .shell_from_cache = true, .loop = 0.5, .steps = 2000, .latency = {}, .preemptions = 3},
+                {.march = "native", .widest = "avx2", .simd = true}, kProvenance),
             R"({
   "shell_s": 0.25,
   "shell_from_cache": true,
   "loop_s": 0.5,
   "steps": 2000,
   "step_mean_s": 0.00025,
+  "step_latency": null,
+  "preemptions": 3,
   "build": {
     "march": "native",
     "instruction_set": "avx2",
@@ -33,6 +36,12 @@ TEST(Timing, TextHoldsMeanTimeInstructionSetAndCpu) {
   "cpu": "Some CPU"
 }
 )");
+}
+
+TEST(Timing, HoldsTheLatencyOfTimedSteps) {
+  RunTiming timing;
+  timing.latency = step_latency(std::vector<std::uint32_t>{1000, 2000}, 20);
+  EXPECT_EQ(timing_json(timing, {}, kProvenance)["step_latency"], step_latency_json(*timing.latency));
 }
 
 TEST(Timing, OfNoStepsHasNoMean) {

@@ -36,6 +36,13 @@ TEST(Trials, EverySubjectDoesEveryTrialOnce) {
   EXPECT_EQ(report.summary.result.outcome, Outcome::completes);
 }
 
+TEST(Trials, EveryStepOfEveryTrialIsTimed) {
+  const RunReport report = run_scenario(study(R"({"trajectory": false, "timing": true})"), std::nullopt, false, {});
+  ASSERT_TRUE(report.timing.latency);
+  EXPECT_EQ(report.timing.latency->steps, report.summary.result.rows);
+  EXPECT_FALSE(run_scenario(study(), std::nullopt, false, {}).timing.latency);
+}
+
 TEST(Trials, TrialsDifferAndAnotherRunRepeatsThem) {
   const RunReport first = run_scenario(study(), std::nullopt, false, {}),
                   again = run_scenario(study(), std::nullopt, false, {});

@@ -85,7 +85,8 @@ ProgramRun run_program(const std::filesystem::path& program, const std::vector<s
                        const ProgramOptions& options) {
   const File out = nameless_file(), err = nameless_file();
   const pid_t child = start(program, arguments, options, ::fileno(out.get()), ::fileno(err.get()));
-  const auto deadline = Clock::now() + std::chrono::duration<double>(options.patience_s);
+  const auto started = Clock::now();
+  const auto deadline = started + std::chrono::duration<double>(options.patience_s);
   int status = 0;
   rusage usage{};
   while (::wait4(child, &status, WNOHANG, &usage) == 0) {
@@ -97,6 +98,8 @@ ProgramRun run_program(const std::filesystem::path& program, const std::vector<s
     std::this_thread::sleep_for(std::chrono::microseconds(300));
   }
   ProgramRun run;
+  run.wall_seconds = std::chrono::duration<double>(Clock::now() - started).count();
+  run.peak_memory = static_cast<std::size_t>(usage.ru_maxrss) * 1024;
   run.cpu_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   if (WIFEXITED(status)) run.status = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) run.signal = WTERMSIG(status);

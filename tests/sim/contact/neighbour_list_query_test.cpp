@@ -6,10 +6,9 @@
 #include <limits>
 #include <numbers>
 
-#include "sim/contact/shell_query.hpp"
-#include "sim/core/random.hpp"
 #include "sim/environment/analytic_shells.hpp"
 #include "tests/support/scale.hpp"
+#include "tests/support/searches.hpp"
 
 /// The contact search of a run must answer exactly as brute force does, whatever the tool did before: same points, same
 /// order, same bits.
@@ -18,73 +17,9 @@ namespace {
 
 using test::cases;
 
-bool same(const ContactBuffer& a, const ContactBuffer& b) {
-  if (a.size() != b.size()) return false;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (a.index[i] != b.index[i] || a.point(i) != b.point(i) || a.normal(i) != b.normal(i)) return false;
-  }
-  return true;
-}
-
-/// Both searches side by side over one shell.
-class Pair {
- public:
-  Pair(const std::vector<SurfacePoint>& points, double cell_size, const Tool& tool)
-      : shell_(points, cell_size),
-        list_(shell_, tool),
-        brute_(shell_, tool),
-        found_(points.size()),
-        all_(points.size()) {}
-
-  bool agree_at(const ToolPose& pose) {
-    list_.contacts_at(pose, found_);
-    brute_.contacts_at(pose, all_);
-    contacts_ += all_.size();
-    return same(found_, all_);
-  }
-  void reset() { list_.reset(); }
-  std::uint64_t contacts() const { return contacts_; }
-  const SearchWork& work() const { return list_.work(); }
-
- private:
-  PointShell shell_;
-  NeighbourListQuery list_;
-  ShellQuery brute_;
-  ContactBuffer found_, all_;
-  std::uint64_t contacts_ = 0;
-};
-
-/// Points on a rough sheet, in a ball, on a lattice (cell borders) or along a line, `size` metres wide.
-std::vector<SurfacePoint> random_shell(Random& random, double size) {
-  const std::size_t n = 1 + random.below(400);
-  const std::uint64_t kind = random.below(4);
-  std::vector<SurfacePoint> points(n);
-  for (SurfacePoint& point : points) {
-    const double x = random.uniform(-size, size), y = random.uniform(-size, size), z = random.uniform(-size, size);
-    if (kind == 0) point.position = {x, y, 0.05 * z};
-    if (kind == 1) point.position = {x, y, z};
-    if (kind == 2)
-      point.position = size / 8.0 * Vec3(std::round(8 * x / size), std::round(8 * y / size), std::round(8 * z / size));
-    if (kind == 3) point.position = {x, 0.0, 0.0};
-    point.normal = random.direction();
-  }
-  return points;
-}
-
-/// The next pose of a walk: mostly small steps, sometimes none, a jump, a turn on the spot, or far away.
-ToolPose next_pose(const ToolPose& pose, Random& random, double size, double step) {
-  ToolPose next = pose;
-  const double choice = random.uniform();
-  if (choice < 0.05) return next;
-  if (choice < 0.10)
-    return {size * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)), random.direction()};
-  if (choice < 0.12) return {1e3 * size * random.direction(), random.direction()};
-  if (choice < 0.14)
-    return {size / 8.0 * Vec3(std::round(random.uniform(-8, 8)), std::round(random.uniform(-8, 8)), 0.0), {0, 0, -1}};
-  if (choice < 0.70) next.position += step * random.uniform() * random.direction();
-  if (choice > 0.50) next.axis = (next.axis + 0.02 * random.uniform() * random.direction()).normalized();
-  return next;
-}
+using Pair = test::SearchPair<NeighbourListQuery>;
+using test::next_pose;
+using test::random_shell;
 
 TEST(NeighbourListQuery, FindsWhatBruteForceFindsAtAMillionPoses) {
   Random random(3);

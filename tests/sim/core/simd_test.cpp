@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "sim/core/aligned.hpp"
 
@@ -87,6 +89,45 @@ TEST(Simd, AnyIsTrueForASingleLane) {
     EXPECT_TRUE(any(pack(v) > Pack(0.5)));
   }
   EXPECT_FALSE(any(Pack(0.0) > Pack(0.5)));
+}
+
+/// The mask of the lanes whose bits are set.
+Mask mask_of(unsigned bits) {
+  AlignedDoubles ones(lanes);
+  for (std::size_t i = 0; i < lanes; ++i) ones[i] = (bits >> i) % 2;
+  return pack(ones) > Pack(0.0);
+}
+
+TEST(Simd, StoreSelectedClosesTheGapsOfEveryMask) {
+  alignas(64) const std::uint32_t numbers[lanes] = {10, 11, 12, 13, 14, 15, 16, 17};
+  for (unsigned bits = 0; bits < 256; ++bits) {
+    std::vector<double> expected;
+    std::vector<std::uint32_t> expected_numbers;
+    for (std::size_t i = 0; i < lanes; ++i) {
+      if ((bits >> i) % 2 == 0) continue;
+      expected.push_back(kA[i]);
+      expected_numbers.push_back(numbers[i]);
+    }
+    const std::size_t n = count(mask_of(bits));
+    ASSERT_EQ(n, expected.size());
+    double to[lanes];
+    std::uint32_t to_numbers[lanes];
+    store_selected(mask_of(bits), kA.data(), to);
+    store_selected(mask_of(bits), numbers, to_numbers);
+    EXPECT_TRUE(std::equal(to, to + n, expected.begin())) << bits;
+    EXPECT_TRUE(std::equal(to_numbers, to_numbers + n, expected_numbers.begin())) << bits;
+    if (bits == 0) continue;
+    const std::size_t lowest = first(mask_of(bits));
+    EXPECT_TRUE((bits >> lowest) % 2 == 1 && bits % (1u << lowest) == 0) << bits;
+  }
+}
+
+TEST(Simd, LanesBetweenAreTheFirstUpToTheLast) {
+  for (std::size_t from = 0; from < 10; ++from) {
+    for (std::size_t to = 0; to < 20; ++to) {
+      for (std::size_t i = 0; i < lanes; ++i) EXPECT_EQ(lane(lanes_between(from, to), i), from <= i && i < to);
+    }
+  }
 }
 
 TEST(Simd, SelectTakesYesWhereTheMaskIsSet) {

@@ -1,0 +1,98 @@
+#include <fmt/format.h>
+
+#include <functional>
+
+#include "algorithms/laws/exact_shaping.hpp"
+#include "algorithms/registry.hpp"
+#include "tests/bench/bench.hpp"
+#include "tests/bench/contact_samples.hpp"
+#include "tests/support/dense_laws.hpp"
+#include "tests/support/fakes.hpp"
+#include "tests/support/shaping_optimality.hpp"
+
+namespace hapbench::bench {
+namespace {
+
+using test::Dense;
+
+/// The spring force in units of K as the law's formula is written.
+Vec3 original_averaging(const Dense& c) {
+  const Vec3 sum = c.U.rowwise().sum();
+  return -c.d.sum() / sum.norm() * sum.normalized();
+}
+
+Vec3 virtual_coupling(const Dense& c) {
+  const Mat3 series = Mat3::Identity() + c.S(Eigen::VectorXd::Ones(c.n()));
+  return series.inverse() * c.spring(1.0, Eigen::VectorXd::Ones(c.n()));
+}
+
+/// Of a law that is weights on penalty springs.
+using Weights = std::function<Eigen::VectorXd(const Dense&)>;
+Vec3 weighted(const Dense& c, const Weights& weights) {
+  return c.spring(1.0, weights(c));
+}
+
+/// Empty for algorithms that are not in here: add the formula with the algorithm.
+std::function<Vec3(const Dense&)> reference(std::string_view algorithm) {
+  const auto ones = [](const Dense& c) -> Eigen::VectorXd { return Eigen::VectorXd::Ones(c.n()); };
+  const auto shaped = [](const Dense& c) { return test::shaped_weights(c.A(), 3); };
+  if (algorithm == "original_averaging") return original_averaging;
+  if (algorithm == "virtual_coupling") return virtual_coupling;
+  if (algorithm == "summation") return [=](const Dense& c) { return weighted(c, ones); };
+  if (algorithm == "mean") return [=](const Dense& c) -> Vec3 { return weighted(c, ones) / double(c.n()); };
+  if (algorithm == "tandpasta") return [](const Dense& c) { return weighted(c, test::tandpasta_weights); };
+  if (algorithm == "shaped_stiffness" || algorithm == "normal_projection") {
+    return [=](const Dense& c) { return weighted(c, shaped); };
+  }
+  return {};
+}
+
+/// What the algorithm gets wrong; empty when nothing.
+std::string wrong(std::string_view algorithm, const ContactBuffer& contacts, const RenderedForce& force, double K) {
+  if (algorithm == "exact_shaping") {
+    const double violation = test::shaping_optimality(contacts, kExactShapingEpsilon).violation;
+    return violation > test::kShapingRounding ? fmt::format("optimality violated by {}", violation) : "";
+  }
+  const auto formula = reference(algorithm);
+  if (!formula) return force.spring.allFinite() ? "" : "force not finite";
+  const Dense dense(contacts);
+  const Vec3 expected = K * formula(dense);
+  // Sums of n terms of at most a depth each, in another order.
+  const double rounding = 1e-12 * K * dense.magnitude(Eigen::VectorXd::Ones(dense.n()));
+  return (force.spring - expected).norm() <= rounding ? "" : "not the formula's force";
+}
+
+void law(benchmark::State& state, const std::string& algorithm, std::size_t n) {
+  RenderingConfig config;
+  config.algorithm = algorithm;
+  const auto rendering = make_algorithm(config);
+  // The contacts bring their depths, so that the law is what remains.
+  ContactBuffer contacts = task_contacts(n);
+  test::FakeQuery query(n);
+  rendering->prepare({Tool{}, &query, nullptr});
+  rendering->reset();
+  const ToolState tool;
+  RenderedForce force;
+  rendering->compute(tool, contacts, force);
+  if (const std::string what = wrong(algorithm, contacts, force, config.stiffness); !what.empty()) {
+    return refute(state, what);
+  }
+  for (auto _ : state) {
+    rendering->compute(tool, contacts, force);
+    benchmark::DoNotOptimize(force);
+  }
+  state.counters["contacts"] = static_cast<double>(n);
+}
+
+}  // namespace
+
+void register_laws() {
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    for (const std::size_t n : {50u, 250u, 1000u}) {
+      const std::string name(algorithm.info->name);
+      benchmark::RegisterBenchmark(fmt::format("law/{}/{}", name, n).c_str(), law, name, n);
+    }
+  }
+}
+
+}  // namespace hapbench::bench

@@ -1,0 +1,88 @@
+#include "tests/bench/step.hpp"
+
+#include <fmt/format.h>
+
+#include "tests/bench/bench.hpp"
+#include "tests/bench/task_scene.hpp"
+
+namespace hapbench::bench {
+
+/// Writes the numbers of a row of trajectory.csv into memory that was there before.
+class TimedRun::MemoryRecorder final : public Observer {
+ public:
+  explicit MemoryRecorder(std::size_t rows) : rows_(rows) {}
+
+  bool wants_ratio() const noexcept override { return true; }
+  void on_step(const StepRecord& r) noexcept override {
+    rows_[r.step] = {r.time,   r.tool,      r.force.rendered,   r.force.spring,    r.hand,
+                     r.handle, r.colliding, r.rendered->size(), r.force.depth_max, r.ratio};
+  }
+
+ private:
+  struct Row {
+    double time = 0.0;
+    ToolState tool;
+    Vec3 rendered, spring;
+    MeasuredForce hand;
+    HandleState handle;
+    std::size_t colliding = 0, kept = 0;
+    double depth_max = 0.0;
+    RatioRange ratio;
+  };
+  std::vector<Row> rows_;
+};
+
+TimedRun::TimedRun(const std::string& name, Skips skips) {
+  const Scenario& scenario = step_scenario(name).scenario;
+  const SimulationConfig config = simulation_config(scenario, skips);
+  steps_ = config.steps;
+  metrics_ = std::make_unique<MetricsObserver>(config.dt);
+  recorder_ = std::make_unique<MemoryRecorder>(steps_);
+  simulation_ = std::make_unique<Simulation>(config, assemble(scenario, block_shell(), {}, skips),
+                                             std::vector<Observer*>{metrics_.get(), recorder_.get()});
+}
+
+TimedRun::~TimedRun() = default;
+
+void TimedRun::rewind() noexcept {
+  simulation_->reset();
+  for (std::uint64_t k = 0; k < kWarmUp; ++k) simulation_->step();
+}
+
+std::string wrong_run(const std::string& name) {
+  TimedRun run(name), reference(name, Skips::off);
+  for (int k = 0; k < 2048; ++k) {
+    run.simulation().step();
+    reference.simulation().step();
+  }
+  const bool same = run.metrics().metrics().state_hash == reference.metrics().metrics().state_hash;
+  return same ? "" : "not the run without skips";
+}
+
+namespace {
+
+void step_benchmark(benchmark::State& state, const std::string& name) {
+  if (const std::string wrong = wrong_run(name); !wrong.empty()) return refute(state, wrong);
+  TimedRun run(name);
+  while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(run.steps_left()))) {
+    state.PauseTiming();
+    run.rewind();
+    state.ResumeTiming();
+    while (run.simulation().step()) {
+    }
+  }
+  const Metrics metrics = run.metrics().metrics();
+  const SearchWork& work = run.simulation().query().work();
+  state.counters["contacts"] = metrics.colliding_mean;
+  state.counters["points_tested"] = static_cast<double>(work.points_tested) / static_cast<double>(work.queries);
+}
+
+}  // namespace
+
+void register_steps() {
+  for (const char* name : kSteps) {
+    benchmark::RegisterBenchmark(fmt::format("step/{}", name).c_str(), step_benchmark, std::string(name));
+  }
+}
+
+}  // namespace hapbench::bench

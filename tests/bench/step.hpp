@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "results/metrics/metrics.hpp"
+#include "sim/loop/simulation.hpp"
+
+namespace hapbench::bench {
+
+/// The runs whose steps are timed.
+inline constexpr const char* kSteps[] = {"T1", "T2", "T3", "unreduced_1000", "free_air"};
+
+/// Steps before the first that is timed: by then T1 has touched the block and every buffer has been used.
+inline constexpr std::uint64_t kWarmUp = 1024;
+
+/// A run of one of kSteps as `hapbench run` makes it, with its metrics, and a recorder that keeps in memory what
+/// trajectory.csv would say.
+class TimedRun {
+ public:
+  explicit TimedRun(const std::string& name, Skips skips = Skips::taken);
+  ~TimedRun();
+
+  /// Back to the state after kWarmUp steps.
+  void rewind() noexcept;
+  /// The rest of the run after rewinding.
+  std::uint64_t steps_left() const { return steps_ - kWarmUp; }
+  Simulation& simulation() { return *simulation_; }
+  const MetricsObserver& metrics() const { return *metrics_; }
+
+ private:
+  class MemoryRecorder;
+
+  std::uint64_t steps_ = 0;
+  std::unique_ptr<MetricsObserver> metrics_;
+  std::unique_ptr<MemoryRecorder> recorder_;
+  std::unique_ptr<Simulation> simulation_;
+};
+
+/// What is wrong with the first second of the run; empty when nothing. The reference is the run without any skip: brute
+/// force, everything computed. Position, velocity and force of every row must be the same bits.
+std::string wrong_run(const std::string& name);
+
+}  // namespace hapbench::bench

@@ -1,0 +1,90 @@
+#include "tests/bench/task_scene.hpp"
+
+#include <map>
+
+#include "scenarios/commands/command.hpp"
+#include "scenarios/run/environment_points.hpp"
+
+namespace hapbench::bench {
+namespace {
+
+using Overrides = std::vector<std::string>;
+
+/// Where the poses start and how many there are [steps]: T1 from its start, the others one period of 6 s later on.
+struct Window {
+  std::uint64_t first, count;
+};
+Window window_of(const std::string& task) {
+  return task == "T1" ? Window{0, 10'240} : Window{12'288, 12'288};
+}
+
+LoadedScenario load(const char* bundled, Overrides overrides) {
+  // What is recorded costs what is recorded: the summary alone.
+  for (const char* off : {"record.trajectory=false", "record.ratio_iterations=[]", "record.ideal_trajectory=false"}) {
+    overrides.emplace_back(off);
+  }
+  return load_scenario(find_scenario(bundled), overrides);
+}
+
+LoadedScenario load_step_scenario(const std::string& name) {
+  if (name == "T1") return load("task1_flat_signed_distance", {});
+  if (name == "T2") return load("task2_rotate_signed_distance", {});
+  if (name == "T3") return load("task3_spin_signed_distance", {});
+  if (name == "unreduced_1000") {
+    return load("task3_spin_signed_distance",
+                {"tool.diameter_m=0.00184", "initial.position_m=[0.00002,0,-0.0049]", "rendering.reduction=null"});
+  }
+  return load("task3_spin_signed_distance",
+              {"hand={\"type\":\"none\"}", "device={\"type\":\"ideal\"}", "initial.position_m=[0,0,0.05]"});
+}
+
+class PoseRecorder final : public Observer {
+ public:
+  PoseRecorder(Window window, std::vector<ToolPose>& poses) : window_(window), poses_(poses) {}
+  void on_step(const StepRecord& record) noexcept override {
+    if (record.step >= window_.first) poses_.push_back(record.tool.pose);
+  }
+
+ private:
+  Window window_;
+  std::vector<ToolPose>& poses_;
+};
+
+TaskScene make_task_scene(const std::string& task) {
+  TaskScene scene;
+  scene.loaded = step_scenario(task);
+  scene.shell = block_shell();
+  const Window window = window_of(task);
+  scene.poses.reserve(window.count);
+  PoseRecorder recorder(window, scene.poses);
+  SimulationConfig config = simulation_config(scene.loaded.scenario);
+  config.steps = window.first + window.count;
+  SimulationParts parts = assemble(scene.loaded.scenario, scene.shell, {});
+  scene.tool = parts.tool;
+  Simulation(config, std::move(parts), {&recorder}).run();
+  return scene;
+}
+
+}  // namespace
+
+const LoadedScenario& step_scenario(const std::string& name) {
+  static std::map<std::string, LoadedScenario> loaded;
+  const auto found = loaded.find(name);
+  return found != loaded.end() ? found->second : loaded.emplace(name, load_step_scenario(name)).first->second;
+}
+
+const TaskScene& task_scene(const std::string& task) {
+  static std::map<std::string, TaskScene> scenes;
+  const auto found = scenes.find(task);
+  return found != scenes.end() ? found->second : scenes.emplace(task, make_task_scene(task)).first->second;
+}
+
+std::shared_ptr<const PointShell> block_shell() {
+  static const auto shell = [] {
+    const Scenario& scenario = step_scenario("T1").scenario;
+    return make_shell(scenario, environment_points(scenario, ShellCache()).points);
+  }();
+  return shell;
+}
+
+}  // namespace hapbench::bench

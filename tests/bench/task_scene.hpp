@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "scenarios/config/load_scenario.hpp"
+#include "scenarios/run/assemble.hpp"
+
+/// The scenes that searches and steps are timed in, assembled as the program assembles them.
+namespace hapbench::bench {
+
+/// Names of the thesis's tasks: T1 drags the tip over a flat, T2 turns it in the hole, T3 leads it along the wall.
+inline constexpr const char* kTasks[] = {"T1", "T2", "T3"};
+
+/// A scenario with its shell and where its tool went.
+struct TaskScene {
+  LoadedScenario loaded;
+  std::shared_ptr<const PointShell> shell;
+  Tool tool;
+  std::vector<ToolPose> poses;  ///< consecutive, 2048 a second, in contact most of the time
+};
+
+/// The scene of one of kTasks, made once. The poses of T2 and T3 are one period of the script.
+const TaskScene& task_scene(const std::string& task);
+
+/// The scenario a step is timed in: one of kTasks, `unreduced_1000` (a drill that nearly fills the hole touches about
+/// 1000 points, none of them reduced away) or `free_air` (an upright drill at rest 5 cm above the block). Nothing is
+/// recorded.
+const LoadedScenario& step_scenario(const std::string& name);
+
+/// Its shell, made once for all scenes of the same block.
+std::shared_ptr<const PointShell> block_shell();
+
+}  // namespace hapbench::bench

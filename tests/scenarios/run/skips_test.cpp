@@ -1,0 +1,101 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "algorithms/registry.hpp"
+#include "scenarios/commands/command.hpp"
+#include "scenarios/files/json_file.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/file_tree.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+/// Skipped work must not change results: with every skip off, a run writes the same bytes, but for the counted work.
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Long enough for the tasks of the thesis to touch the block; brute force takes 30 us a step there.
+constexpr std::int64_t kSteps = 1500;
+
+Json shortened(Json scenario) {
+  Json& time = scenario["time"];
+  const double steps = time.contains("steps") ? time["steps"].get<double>()
+                                              : time["duration_s"].get<double>() / time["step_s"].get<double>();
+  time.erase("duration_s");
+  time["steps"] = std::max<std::int64_t>(1, std::min(kSteps, static_cast<std::int64_t>(steps)));
+  return scenario;
+}
+
+/// summary.json without the counted work, which goes out in `work`; still text, so that every digit counts.
+std::string summary_without_work(const fs::path& file, Json& work) {
+  Json summary = Json::parse(test::read_file(file));
+  work = summary["work"];
+  summary.erase("work");
+  return summary.dump();
+}
+
+class WithAndWithoutSkips : public testing::Test {
+ protected:
+  void expect_same_results(const Json& scenario, const fs::path& from) {
+    const LoadedScenario loaded = read_scenario(shortened(scenario), from);
+    const fs::path taken = directory_ / "taken", off = directory_ / "off";
+    for (const fs::path& old : {taken, off}) fs::remove_all(old);
+    run_scenario(loaded, taken, false, ShellCache(directory_ / "cache"));
+    run_scenario(loaded, off, false, ShellCache(), Skips::off);
+    test::expect_same_files(taken, off, {"summary.json", "timing.json"});
+    Json work_taken, work_off;
+    EXPECT_EQ(summary_without_work(taken / "summary.json", work_taken),
+              summary_without_work(off / "summary.json", work_off));
+    EXPECT_EQ(work_off["steps_skipped"], 0);
+    EXPECT_EQ(work_off["lists_rebuilt"], 0);
+    EXPECT_EQ(work_off["allocations"], work_taken["allocations"]);
+    tested_taken_ += work_taken["points_tested"].get<std::uint64_t>();
+    tested_off_ += work_off["points_tested"].get<std::uint64_t>();
+    skipped_ += work_taken["steps_skipped"].get<std::uint64_t>();
+  }
+
+  test::TemporaryDirectory directory_;
+  std::uint64_t tested_taken_ = 0, tested_off_ = 0, skipped_ = 0;
+};
+
+TEST_F(WithAndWithoutSkips, BundledScenariosGiveTheSameBytes) {
+  for (const BundledScenario& bundled : bundled_scenarios()) {
+    SCOPED_TRACE(bundled.name);
+    expect_same_results(parse_json(read_text_file(bundled.file, kLargestJsonFile)), bundled.file.parent_path());
+  }
+  // There was something to skip.
+  EXPECT_LT(100 * tested_taken_, tested_off_);
+  EXPECT_GT(skipped_, 0u);
+}
+
+TEST_F(WithAndWithoutSkips, ScenariosOfEveryFieldGiveTheSameBytes) {
+  for (const test::NamedScenario& scenario : test::rich_scenarios()) {
+    SCOPED_TRACE(scenario.name);
+    expect_same_results(scenario.json, test::data_directory());
+  }
+}
+
+// Free air, touch and free air again, through every algorithm with and without damping and friction.
+TEST_F(WithAndWithoutSkips, EveryAlgorithmGivesTheSameBytes) {
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    for (const char* friction : {"0", "5"}) {
+      SCOPED_TRACE(std::string(algorithm.info->name) + " with friction " + friction);
+      Json json = Json::parse(std::string(R"({
+          "time": {"step_s": 0.0005, "steps": 600}, "environment": {"type": "hole_2d"},
+          "initial": {"position_m": [0.0001, 0.001, 0], "velocity_m_per_s": [0, -0.05, 0]},
+          "motion": {"orientation": {"tilt_rad": {"type": "ramp", "start": 0.3, "rate_per_s": -1}}},
+          "hand": {"type": "force", "y_N": {"type": "sine", "mean": 0, "amplitude": 2, "period_s": 0.1}},
+          "record": {"contacts": true},
+          "rendering": {"friction": {"mu_s_N_s_per_m": )") +
+                              friction + R"(, "mu_f_s_per_m": )" + friction + "}}}");
+      json["rendering"]["algorithm"] = algorithm.info->name;
+      expect_same_results(json, directory_.path());
+    }
+  }
+  EXPECT_GT(skipped_, 0u);
+}
+
+}  // namespace
+}  // namespace hapbench
