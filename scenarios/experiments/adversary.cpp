@@ -43,6 +43,7 @@ class Bench {
     TrialResult trial = run_trial(with_trajectory(scenario_, trajectory), shell_, {}, std::nullopt, "");
     RunSummary summary;
     summary.result = trial.result;
+    summary.duration = static_cast<double>(trial.result.rows) * scenario_.time.step;
     summary.metrics = trial.metrics;
     summary.energy = trial.energy;
     return summary;
@@ -165,7 +166,7 @@ Scenario with_trajectory(Scenario scenario, const Trajectory& trajectory) {
 }
 
 double badness_of(Badness badness, const RunSummary& run) {
-  if (badness == Badness::vibration) return run.metrics.vibration_power.value_or(0.0);
+  if (badness == Badness::vibration) return run.duration * run.metrics.vibration_power.value_or(0.0);
   const EnergyBalance& balance = run.energy->balance;
   const double put_in = std::max(0.0, balance.input) + std::max(0.0, balance.rotation) + kLeastWork;
   return run.energy->created_sum / put_in;

@@ -17,7 +17,7 @@ namespace hapbench {
 /// What "worst" means.
 enum class Badness {
   created,   ///< energy that the rendering created, per energy that hand and rotation put in (and 1 mJ)
-  vibration  ///< vibration power above 30 Hz [m^2/s^2]
+  vibration  ///< vibration power above 30 Hz times the run's duration [m^2/s]: a run gains nothing by ending early
 };
 
 /// Where the hand turns the tool and pushes it at a time; between two of them by cosines, at rest in each.

@@ -154,7 +154,7 @@ void draw_tool(Random& random, ContactSet& set) {
 
 void draw_rendering(Random& random, RenderingConfig& config) {
   config.depth_model = depth_models()[random.below(depth_models().size())].info->name;
-  config.iterations = static_cast<int>(chance(random, 0.8) ? 3 : random.below(50));
+  config.iterations = static_cast<int>(chance(random, 0.8) ? 3 : 1 + random.below(50));
   if (chance(random, 0.3)) config.stiffness = log_uniform(random, 1.0, 1e12);
   // n_ext far below the number of contacts overflows.
   if (chance(random, 0.5)) config.reduction = ReductionConfig{0.995, chance(random, 0.5) ? 3u : 100u, std::nullopt};

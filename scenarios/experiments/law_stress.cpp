@@ -42,10 +42,10 @@ bool finite(const RenderedForce& force) {
          std::isfinite(force.depth_max);
 }
 
-/// No point is deeper than the longest way through the tool.
-bool depth_in_bound(const ContactSet& set, double depth) {
-  const double across = std::hypot(set.tool.length + set.tool.radius, 2.0 * set.tool.radius);
-  return depth >= 0.0 && depth <= (1.0 + kRounding) * across;
+/// No depth is longer than the tool is long and wide, with room for normal_projection, which meets surfaces of the tool
+/// that go on beyond the body.
+bool depth_in_bound(const Tool& tool, double depth) {
+  return depth >= 0.0 && depth <= (1.0 + kRounding) * (tool.length + 3.0 * tool.radius);
 }
 
 /// Damping is B S v, and friction is off: |f_render| <= |f_spring| + B lambda_max(S) |v|.
@@ -66,7 +66,7 @@ void count_answer(const ContactSet& set, const RenderingConfig& config, std::uin
   const double bound = force_bound(config, answer.rendered) * unit;
   if (!finite(force)) {
     ++counts.non_finite;
-  } else if (force.spring.norm() > (1.0 + kRounding) * bound || !depth_in_bound(set, force.depth_max) ||
+  } else if (force.spring.norm() > (1.0 + kRounding) * bound || !depth_in_bound(set.tool, force.depth_max) ||
              !damping_in_bound(set, force)) {
     ++counts.out_of_bound;
   }

@@ -105,7 +105,7 @@ constexpr StabilityMap kMaps[] = {
      nullptr},
     {"device",
      "stiffness of the hand over the delay of the servo, K = 20 000 N/m, admittance device",
-     {"delay_samples", 0.0, 20.0, Scale::linear, true},
+     {"delay_samples", 0.0, 16.0, Scale::linear, true},
      {"hand_stiffness_N_per_m", 30.0, 3e5, Scale::logarithmic},
      device_scene,
      "servo, handle and hand are part of the loop"},
