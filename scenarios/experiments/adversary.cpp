@@ -16,8 +16,9 @@ namespace {
 
 constexpr double kKept = 0.9;          ///< of the badness, that minimising must keep
 constexpr std::size_t kChildren = 16;  ///< of a generation; fixed, so that the search does not depend on the machine
-constexpr double kRandomShare = 0.25;  ///< of the evaluations go to random trajectories
-constexpr double kLeastWork = 1e-3;    ///< [J], added to the energy put in, so that doing nothing is not infinitely bad
+constexpr std::uint64_t kRound = 400;  ///< evaluations of a round
+constexpr std::uint64_t kRandomOfARound = 100;  ///< of which are random trajectories
+constexpr double kLeastWork = 1e-3;  ///< [J], added to the energy put in, so that doing nothing is not infinitely bad
 
 void check_scene(const Scenario& scenario) {
   const bool hole = std::holds_alternative<Hole2d>(scenario.environment) ||
@@ -78,27 +79,41 @@ struct Best {
   }
 };
 
-Best search(const Bench& bench, const TrajectoryDraws& draws, const SearchOptions& options, std::uint64_t& runs) {
+/// One round of the search, from run number `begin` to before `end`.
+Best search_round(const Bench& bench, const TrajectoryDraws& draws, const SearchOptions& options, std::uint64_t begin,
+                  std::uint64_t end) {
   // Each trajectory has random numbers of its own, by its place in the search.
-  const auto random = [&](std::uint64_t i) { return Random(options.seed * 0x9e3779b97f4a7c15 + i); };
+  const auto random = [&](std::uint64_t run) { return Random(options.seed * 0x9e3779b97f4a7c15 + run); };
   Best best;
   std::vector<Trajectory> batch;
-  const auto first = static_cast<std::uint64_t>(std::ceil(kRandomShare * static_cast<double>(options.evaluations)));
-  while (runs < first) {
-    Random numbers = random(runs++);
+  std::uint64_t run = begin;
+  for (; run < std::min(end, begin + kRandomOfARound); ++run) {
+    Random numbers = random(run);
     batch.push_back(draws.random(numbers));
   }
   best.improve(batch, bench.badness(batch, options.jobs));
   // Steps grow after a success and shrink otherwise.
   double step = 0.3;
-  while (runs < options.evaluations) {
+  while (run < end) {
     batch.clear();
-    while (batch.size() < kChildren && runs < options.evaluations) {
-      Random numbers = random(runs++);
+    for (; batch.size() < kChildren && run < end; ++run) {
+      Random numbers = random(run);
       batch.push_back(draws.changed(best.trajectory, step, numbers));
     }
     const bool better = best.improve(batch, bench.badness(batch, options.jobs));
     step = std::clamp(step * (better ? 1.5 : 0.8), 0.01, 1.0);
+  }
+  return best;
+}
+
+/// Round after round, each from new random trajectories, so that one hill does not hide the others: more evaluations
+/// never find less.
+Best search(const Bench& bench, const TrajectoryDraws& draws, const SearchOptions& options) {
+  Best best;
+  for (std::uint64_t begin = 0; begin < options.evaluations; begin += kRound) {
+    const std::uint64_t end = std::min(options.evaluations, begin + kRound);
+    Best round = search_round(bench, draws, options, begin, end);
+    if (round.badness > best.badness) best = std::move(round);
   }
   return best;
 }
@@ -181,7 +196,8 @@ SearchResult search_adversary(const Scenario& scenario, const SearchOptions& opt
 
   SearchResult result;
   result.at_rest = bench.badness(draws.at_rest());
-  Best best = search(bench, draws, options, result.evaluations);
+  Best best = search(bench, draws, options);
+  result.evaluations = options.evaluations;
   result.found = best.badness;
   minimise(bench, draws, options.evaluations, best, result.evaluations);
   result.evaluations += 2;
