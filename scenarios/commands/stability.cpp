@@ -141,7 +141,15 @@ int limits(const StabilityOptions& options) {
 }
 
 int stability(const StabilityOptions& options) {
-  if (!options.algorithms.empty()) require_algorithms(options.algorithms);
+  require_algorithms(options.algorithms);
+  const bool has_algorithms = !options.maps.empty() || options.search;
+  if (!options.algorithms.empty() && !has_algorithms) {
+    throw InputError("--algorithms: got names; allowed: with --map and --search only");
+  }
+  const bool has_scenarios = options.maps.empty() && !options.stress;
+  if (!options.overrides.empty() && !has_scenarios) {
+    throw InputError("--set: got an override; allowed: with scenarios only");
+  }
   if (!options.maps.empty()) return stability_maps_command(options);
   if (options.stress) return stability_stress_command(options);
   if (options.search) return stability_search_command(options);
@@ -176,7 +184,8 @@ void add_experiments(CLI::App& command, StabilityOptions& options) {
   command.add_option("--evaluations", options.evaluations, "runs of --search before minimising (default: 400)")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
       ->needs(search);
-  command.add_option("--seed", options.seed, "of --stress and --search (default: 1)");
+  command.add_option("--seed", options.seed, "of --stress and --search (default: 1)")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53));
   command.add_option("--jobs", options.jobs, "threads (default: as many as the machine has)")
       ->check(CLI::Range(1, 1024));
   command

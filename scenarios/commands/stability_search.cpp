@@ -26,6 +26,7 @@ std::vector<LoadedScenario> scenes_of(const StabilityOptions& options) {
     overrides.push_back("rendering.algorithm=" + algorithm);
     scenes.push_back(load_scenario(file, overrides));
   }
+  for (const LoadedScenario& scene : scenes) with_file(scene, [&] { check_adversary_scene(scene.scenario); });
   return scenes;
 }
 

@@ -41,9 +41,6 @@ Json counts_json(const StressCounts& c) {
 }  // namespace
 
 int stability_stress_command(const StabilityOptions& options) {
-  if (!options.algorithms.empty()) {
-    throw InputError("--algorithms: got names; allowed: none with --stress, which takes every algorithm");
-  }
   const fs::path out = options.directory("stability_stress");
   require_writable_directory(out);
   const std::vector<StressCounts> all = stress_laws(options.count, options.seed, options.job_options("stress"));

@@ -20,18 +20,6 @@ constexpr std::uint64_t kRound = 400;  ///< evaluations of a round
 constexpr std::uint64_t kRandomOfARound = 100;  ///< of which are random trajectories
 constexpr double kLeastWork = 1e-3;  ///< [J], added to the energy put in, so that doing nothing is not infinitely bad
 
-void check_scene(const Scenario& scenario) {
-  const bool hole = std::holds_alternative<Hole2d>(scenario.environment) ||
-                    std::holds_alternative<BlockEnvironment>(scenario.environment);
-  if (!hole) {
-    throw InputError(InputError::Kind::relation, "/environment/type",
-                     "allowed for --search: \"hole_2d\", \"block_with_hole\"");
-  }
-  if (!std::holds_alternative<FreePosition>(scenario.motion.position)) {
-    throw InputError(InputError::Kind::relation, "/motion/position/type", "allowed for --search: \"free\"");
-  }
-}
-
 /// Runs trajectories in one scene.
 class Bench {
  public:
@@ -187,8 +175,20 @@ double badness_of(Badness badness, const RunSummary& run) {
   return run.energy->created_sum / put_in;
 }
 
+void check_adversary_scene(const Scenario& scenario) {
+  const bool hole = std::holds_alternative<Hole2d>(scenario.environment) ||
+                    std::holds_alternative<BlockEnvironment>(scenario.environment);
+  if (!hole) {
+    throw InputError(InputError::Kind::relation, "/environment/type",
+                     "allowed for --search: \"hole_2d\", \"block_with_hole\"");
+  }
+  if (!std::holds_alternative<FreePosition>(scenario.motion.position)) {
+    throw InputError(InputError::Kind::relation, "/motion/position/type", "allowed for --search: \"free\"");
+  }
+}
+
 SearchResult search_adversary(const Scenario& scenario, const SearchOptions& options) {
-  check_scene(scenario);
+  check_adversary_scene(scenario);
   const bool planar = std::holds_alternative<Hole2d>(scenario.environment);
   const OrientationFields& orientation = *scenario.motion.orientation;
   const TrajectoryDraws draws(options.bounds, planar, orientation.tilt(0.0), orientation.azimuth(0.0));

@@ -62,8 +62,11 @@ Scenario with_trajectory(Scenario scenario, const Trajectory& trajectory);
 /// The badness of a finished run; needs its energy for `created`.
 double badness_of(Badness badness, const RunSummary& run);
 
+/// Throws InputError unless the scene is a hole_2d or block_with_hole with a free position.
+void check_adversary_scene(const Scenario& scenario);
+
 /// Searches in a scene, from its initial position and orientation on. The same for the same seed, whatever the number
-/// of threads. Throws InputError unless the scene is a hole_2d or block_with_hole with a free position. Costs a run of
+/// of threads. Throws as check_adversary_scene does. Costs a run of
 /// the scene, at most bounds.duration long, for every evaluation.
 SearchResult search_adversary(const Scenario& scenario, const SearchOptions& options);
 
