@@ -75,7 +75,8 @@ std::size_t count_of(const MapResult& result, MotionClass motion) {
                                                 [motion](const MapPoint& p) { return p.motion == motion; }));
 }
 
-/// The map as characters, y upwards, the analytic limit as the first '=' cell beyond it.
+/// The map as characters, y upwards. The analytic limit is drawn where the runs confirm it: '=' is the first run
+/// beyond.
 std::string drawing(const MapResult& result) {
   const std::size_t n = result.size;
   const MapAxis &x = result.map->x, &y = result.map->y;
@@ -85,13 +86,15 @@ std::string drawing(const MapResult& result) {
     for (std::size_t column = 0; column < n; ++column) {
       const MotionClass motion = result.points[column * n + row].motion;
       const auto beyond = [&](std::size_t j) { return y.at(j, n) > result.boundary[column].analytic.value_or(1e300); };
-      const bool limit = beyond(row) && (row == 0 || !beyond(row - 1));
+      const bool limit = motion == MotionClass::diverged && beyond(row) && (row == 0 || !beyond(row - 1));
       text += limit ? " =" : motion == MotionClass::stable ? " ." : motion == MotionClass::vibrating ? " ~" : " #";
     }
     text += row == n - 1 ? fmt::format("  {}\n", y.name) : "\n";
   }
-  return text + fmt::format("             {} ... {}  {}\n  . stable  ~ vibrating  # diverged  = analytic limit\n\n",
-                            significant(x.low, 3), significant(x.high, 3), x.name);
+  return text + fmt::format(
+                    "             {} ... {}  {}\n  . stable  ~ vibrating  # diverged  = diverged, first beyond the "
+                    "analytic limit\n\n",
+                    significant(x.low, 3), significant(x.high, 3), x.name);
 }
 
 Json result_json(const MapResult& result) {
