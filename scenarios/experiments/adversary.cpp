@@ -18,6 +18,7 @@ constexpr double kKept = 0.9;          ///< of the badness, that minimising must
 constexpr std::size_t kChildren = 16;  ///< of a generation; fixed, so that the search does not depend on the machine
 constexpr std::uint64_t kRound = 400;  ///< evaluations of a round
 constexpr std::uint64_t kRandomOfARound = 100;  ///< of which are random trajectories
+constexpr double kMostSteps = 1e5;              ///< of one run, or a search would take days
 constexpr double kLeastWork = 1e-3;  ///< [J], added to the energy put in, so that doing nothing is not infinitely bad
 
 /// Runs trajectories in one scene.
@@ -37,7 +38,11 @@ class Bench {
     summary.energy = trial.energy;
     return summary;
   }
-  double badness(const Trajectory& trajectory) const { return badness_of(badness_, run(trajectory)); }
+  /// Zero when it is not finite: a search cannot climb there.
+  double badness(const Trajectory& trajectory) const {
+    const double value = badness_of(badness_, run(trajectory));
+    return std::isfinite(value) ? value : 0.0;
+  }
 
   /// The badness of each, on several threads.
   std::vector<double> badness(const std::vector<Trajectory>& trajectories, const JobOptions& jobs) const {
@@ -181,6 +186,11 @@ void check_adversary_scene(const Scenario& scenario) {
   if (!hole) {
     throw InputError(InputError::Kind::relation, "/environment/type",
                      "allowed for --search: \"hole_2d\", \"block_with_hole\"");
+  }
+  const double least = TrajectoryBounds{}.duration / kMostSteps;
+  if (scenario.time.step < least) {
+    throw InputError(InputError::Kind::relation, "/time/step_s",
+                     fmt::format("got {}; allowed for --search: at least {}", scenario.time.step, least));
   }
   if (!std::holds_alternative<FreePosition>(scenario.motion.position)) {
     throw InputError(InputError::Kind::relation, "/motion/position/type", "allowed for --search: \"free\"");

@@ -42,7 +42,8 @@ Vec3 at(Random& random, const ContactSet& set, double radius, double height) {
 }
 
 Vec3 in_tool(Random& random, const ContactSet& set) {
-  return at(random, set, set.tool.radius * std::sqrt(random.uniform()), -set.tool.length * random.uniform());
+  const double radius = set.tool.radius * std::sqrt(random.uniform());
+  return at(random, set, radius, -set.tool.length * random.uniform());
 }
 
 using Points = std::vector<SurfacePoint>;

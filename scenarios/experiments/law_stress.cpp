@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "algorithms/registry.hpp"
 #include "sim/contact/shell_query.hpp"
@@ -82,17 +83,17 @@ std::vector<StressCounts> no_counts() {
   return counts;
 }
 
-/// Adds the counts of later sets.
-void add(const StressCounts& later, StressCounts& all) {
-  const bool bad = all.non_finite + all.out_of_bound > 0;
-  if (!bad) all.first_bad = later.first_bad;
-  all.sets += later.sets;
-  all.in_contact += later.in_contact;
-  all.non_finite += later.non_finite;
-  all.out_of_bound += later.out_of_bound;
-  all.points_dropped += later.points_dropped;
-  all.largest_force = std::max(all.largest_force, later.largest_force);
-  all.largest_share = std::max(all.largest_share, later.largest_share);
+/// Adds the counts of other sets, in whatever order they come.
+void add(const StressCounts& other, StressCounts& all) {
+  const bool bad = all.non_finite + all.out_of_bound > 0, other_bad = other.non_finite + other.out_of_bound > 0;
+  if (other_bad) all.first_bad = bad ? std::min(all.first_bad, other.first_bad) : other.first_bad;
+  all.sets += other.sets;
+  all.in_contact += other.in_contact;
+  all.non_finite += other.non_finite;
+  all.out_of_bound += other.out_of_bound;
+  all.points_dropped += other.points_dropped;
+  all.largest_force = std::max(all.largest_force, other.largest_force);
+  all.largest_share = std::max(all.largest_share, other.largest_share);
 }
 
 }  // namespace
@@ -124,23 +125,23 @@ ContactSet stress_set(std::uint64_t seed, std::uint64_t i) {
 }
 
 std::vector<StressCounts> stress_laws(std::uint64_t count, std::uint64_t seed, const JobOptions& options) {
-  std::vector<std::vector<StressCounts>> parts((count + kSetsOfAJob - 1) / kSetsOfAJob, no_counts());
-  for_each_job(parts.size(), options, [&](std::size_t job) {
+  std::vector<StressCounts> all = no_counts();
+  std::mutex mutex;
+  for_each_job((count + kSetsOfAJob - 1) / kSetsOfAJob, options, [&](std::size_t job) {
+    std::vector<StressCounts> part = no_counts();
     const std::uint64_t end = std::min(count, (job + 1) * kSetsOfAJob);
     for (std::uint64_t i = job * kSetsOfAJob; i < end; ++i) {
       const ContactSet set = stress_set(seed, i);
       const PointShell shell(set.points, 0.0);
-      for (StressCounts& counts : parts[job]) {
+      for (StressCounts& counts : part) {
         RenderingConfig config = set.rendering;
         config.algorithm = counts.algorithm;
         count_answer(set, config, i, answer(set, config, shell), counts);
       }
     }
-  });
-  std::vector<StressCounts> all = no_counts();
-  for (const auto& part : parts) {
+    const std::lock_guard lock(mutex);
     for (std::size_t i = 0; i < all.size(); ++i) add(part[i], all[i]);
-  }
+  });
   return all;
 }
 

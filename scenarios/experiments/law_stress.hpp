@@ -31,7 +31,7 @@ double force_bound(const RenderingConfig& config, std::size_t n) noexcept;
 ContactSet stress_set(std::uint64_t seed, std::uint64_t i);
 
 /// Sends sets 0 … count - 1 of the seed through every algorithm of the registry; one entry each, in its order. The same
-/// counts whatever the number of threads. About 5 us a set and algorithm.
+/// counts whatever the number of threads. About 2.5 us a set and algorithm.
 std::vector<StressCounts> stress_laws(std::uint64_t count, std::uint64_t seed, const JobOptions& options);
 
 }  // namespace hapbench

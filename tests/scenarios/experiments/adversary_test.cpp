@@ -105,6 +105,10 @@ TEST(Adversary, IsRefusedWhereNoHandMovesAToolInAHole) {
     ASSERT_TRUE(error) << c.scenario;
     EXPECT_EQ(error->place(), c.place);
   }
+  const auto too_fine =
+      test::input_error_of([&] { search_adversary(scene("mean", {"time.step_s=1e-9"}), options(1)); });
+  ASSERT_TRUE(too_fine);
+  EXPECT_EQ(too_fine->place(), "/time/step_s");
   const Scenario led = scene("mean", {R"(motion={"position":{"type":"prescribed","x_m":0,"y_m":0,"z_m":0}})"});
   const auto error = test::input_error_of([&] { search_adversary(led, options(1)); });
   ASSERT_TRUE(error);
