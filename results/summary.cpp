@@ -168,6 +168,12 @@ ordered_json boundable_metrics(const RunSummary& run) {
   const ordered_json summary = summary_json(run);
   ordered_json out = ordered_json::object();
   flatten(summary["metrics"], "", out);
+  const char* const axes[] = {"x", "y", "z"};
+  for (int i = 0; i < 3; ++i) {
+    const bool any = run.metrics.rows > 0;
+    const double coordinate = run.metrics.final_position[i];
+    out[std::string("final_position_m.") + axes[i]] = any ? number_or_null(coordinate) : ordered_json(nullptr);
+  }
   for (const char* section : {"energy", "ideal_trajectory", "targets"}) {
     if (summary.contains(section)) flatten(summary[section], section, out);
   }

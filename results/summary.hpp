@@ -45,7 +45,8 @@ nlohmann::ordered_json summary_json(const RunSummary& run);
 
 /// The numbers of a summary that a scenario's `expect` may bound, by name: those of "metrics" under their own names,
 /// those of the sections "energy", "ideal_trajectory" and "targets", which not every run has, with dots between the
-/// keys, as in "energy.created_sum_J" or "targets.0.success_rate.mean". Null for none.
+/// keys, as in "energy.created_sum_J" or "targets.0.success_rate.mean", and the final position's coordinates, as
+/// "final_position_m.x". Null for none.
 nlohmann::ordered_json boundable_metrics(const RunSummary& run);
 std::string summary_text(const RunSummary& run);
 

@@ -21,7 +21,7 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Only positive exits count, as the thesis says ("the minimal positive value"): a point exactly on one surface whose
-/// ray points outwards there takes the next surface, or depth 0 when there is none.
+/// ray points outwards there takes the next surface, or depth 0 when there is none within reach.
 double if_positive(double d) {
   return d > 0.0 ? d : kNever;
 }
@@ -62,7 +62,9 @@ double exit_distance(const Tool& tool, const ToolPose& pose, const Vec3& point, 
     d = std::min(d, if_positive(-s / slope));
   }
   if (slope < 0.0) d = std::min(d, if_positive(-(tool.length + s) / slope));
-  return d == kNever ? 0.0 : d;
+  // Only a surface that goes on beyond the body is met further away than the longest way through it, which is shorter
+  // than this: the point lies on another surface, almost along which the ray points. Such depths have no bound.
+  return d > tool.length + 3.0 * tool.radius ? 0.0 : d;
 }
 
 class NormalProjectionDepth final : public DepthModel {

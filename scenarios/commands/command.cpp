@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <set>
 
+#include "algorithms/registry.hpp"
 #include "results/io/json_text.hpp"
 
 namespace hapbench {
@@ -66,6 +68,19 @@ fs::path find_scenario(const std::string& argument) {
   const std::string stem = fs::path(argument).stem().string();
   throw InputError(fmt::format("{}: no such file and no bundled scenario{}; \"hapbench list\" shows them", argument,
                                nearest_name_hint(stem, names)));
+}
+
+void require_algorithms(const std::vector<std::string>& names) {
+  std::vector<std::string> valid;
+  for (const AlgorithmEntry& entry : algorithms()) valid.emplace_back(entry.info->name);
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    if (find_algorithm(name) == nullptr) {
+      throw InputError(fmt::format("--algorithms: got \"{}\"; allowed: {}{}", name, quoted_list(valid),
+                                   nearest_name_hint(name, valid)));
+    }
+    if (!seen.insert(name).second) throw InputError(fmt::format("--algorithms: got \"{}\" twice; allowed: once", name));
+  }
 }
 
 void require_writable_directory(const fs::path& directory) {

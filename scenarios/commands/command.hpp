@@ -69,6 +69,10 @@ std::vector<BundledScenario> bundled_scenarios();
 /// The file a scenario argument means: a path, or the name of a bundled scenario. Throws InputError.
 std::filesystem::path find_scenario(const std::string& argument);
 
+/// Makes sure the names given to --algorithms are those of registered algorithms, each once; throws InputError
+/// otherwise.
+void require_algorithms(const std::vector<std::string>& names);
+
 /// Makes sure results can be written to `directory`; throws InputError otherwise. Creates it.
 void require_writable_directory(const std::filesystem::path& directory);
 

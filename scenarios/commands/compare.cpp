@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <set>
 
-#include "algorithms/registry.hpp"
 #include "results/io/atomic_file.hpp"
 #include "results/io/csv_writer.hpp"
 #include "results/outcome_names.hpp"
@@ -27,20 +25,6 @@ struct CompareOptions {
   OutputOptions output;
 };
 
-void check_algorithms(const std::vector<std::string>& names) {
-  std::vector<std::string> valid;
-  for (const AlgorithmEntry& entry : algorithms()) valid.emplace_back(entry.info->name);
-  std::set<std::string> seen;
-  for (const std::string& name : names) {
-    if (find_algorithm(name) == nullptr) {
-      throw InputError(fmt::format("--algorithms: got \"{}\"; allowed: {}{}", name, quoted_list(valid),
-                                   nearest_name_hint(name, valid)));
-    }
-    // Each has a directory of its name.
-    if (!seen.insert(name).second) throw InputError(fmt::format("--algorithms: got \"{}\" twice; allowed: once", name));
-  }
-}
-
 /// The table as a file, without the time: the same comparison gives the same bytes.
 void write_comparison(const fs::path& file, const std::vector<RunReport>& reports) {
   CsvWriter csv(file,
@@ -58,7 +42,7 @@ void write_comparison(const fs::path& file, const std::vector<RunReport>& report
 }
 
 int compare(const CompareOptions& options) {
-  check_algorithms(options.algorithms);
+  require_algorithms(options.algorithms);
   const fs::path file = find_scenario(options.scenario);
   std::vector<LoadedScenario> scenarios;
   for (const std::string& algorithm : options.algorithms) {

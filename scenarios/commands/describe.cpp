@@ -9,6 +9,7 @@
 #include "scenarios/commands/table.hpp"
 #include "scenarios/config/environment_codec.hpp"
 #include "scenarios/config/load_scenario.hpp"
+#include "scenarios/experiments/map_scenes.hpp"
 
 namespace hapbench {
 namespace {
@@ -74,8 +75,32 @@ Description describe_cache() {
   return d;
 }
 
+/// The maps of "hapbench stability --map" and how their runs are judged.
+Description describe_stability() {
+  Table table({{"map", false}, {"x", false}, {"y", false}, {"what it shows", false}});
+  Description d;
+  d.json = {{"kind", "stability"}, {"maps", Json::array()}};
+  for (const StabilityMap& map : stability_maps()) {
+    table.add({map.name, map.x.name, map.y.name, map.summary});
+    d.json["maps"].push_back({{"name", map.name}, {"x", map.x.name}, {"y", map.y.name}, {"summary", map.summary}});
+  }
+  d.text = fmt::format(
+      "stability maps\n"
+      "  A run of {} steps is judged by its motion alone, quarter by quarter; the amplitude is the largest speed.\n\n"
+      "  diverged   left its bounds, or oscillates with an amplitude that grows by 1 % from each quarter to the next\n"
+      "  vibrating  oscillates in the last quarter with at least 1 % of the first quarter's amplitude\n"
+      "  stable     all else: at rest, dying out, creeping\n\n"
+      "  The analytic limit, 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = lambda_max(S), is given "
+      "where\n"
+      "  the tool is alone with springs that stay in contact and the force is -K S p. The edge by bisection is that "
+      "of\n"
+      "  \"diverged\", in the map of the device that of \"stable\".\n\n{}",
+      kMapSteps, table.text());
+  return d;
+}
+
 std::vector<std::string> all_names() {
-  std::vector<std::string> names = {"cache", "scenario", "schema"};
+  std::vector<std::string> names = {"cache", "scenario", "schema", "stability"};
   for (const AlgorithmEntry& entry : algorithms()) names.emplace_back(entry.info->name);
   for (const DepthModelEntry& entry : depth_models()) names.emplace_back(entry.info->name);
   for (const ModelInfo* stage : stages()) names.emplace_back(stage->name);
@@ -86,6 +111,7 @@ std::vector<std::string> all_names() {
 
 Description describe_name(const std::string& name) {
   if (name == "cache") return describe_cache();
+  if (name == "stability") return describe_stability();
   if (name == "schema") return {json_text(scenario_schema()), scenario_schema()};
   Description d;
   const auto add = [&d](Description more) {
@@ -118,12 +144,13 @@ void add_describe(CLI::App& app, Action& chosen) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
-      "describe", "Explain an algorithm, a depth model, an environment, a field, a scenario or the cache");
+      "describe",
+      "Explain an algorithm, a depth model, an environment, a field, a scenario, the cache or the stability maps");
   command
       ->add_option(
           "name", options->name,
-          "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", or "
-          "\"cache\"")
+          "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
+          "\"stability\", or \"cache\"")
       ->required();
   add_output_options(*command, options->output);
   command->callback([options, &chosen] {

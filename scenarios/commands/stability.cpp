@@ -3,11 +3,13 @@
 #include <cmath>
 #include <memory>
 #include <set>
+#include <thread>
 
+#include "algorithms/registry.hpp"
 #include "results/io/atomic_file.hpp"
 #include "results/io/csv_writer.hpp"
 #include "results/io/json_text.hpp"
-#include "scenarios/commands/command.hpp"
+#include "scenarios/commands/stability.hpp"
 #include "scenarios/commands/table.hpp"
 #include "scenarios/config/load_scenario.hpp"
 #include "scenarios/experiments/stability_limits.hpp"
@@ -16,13 +18,6 @@ namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct StabilityOptions {
-  std::vector<std::string> scenarios;
-  std::string out;
-  std::vector<std::string> overrides;
-  OutputOptions output;
-};
 
 std::string_view case_name(StabilityCase which) {
   switch (which) {
@@ -112,7 +107,10 @@ std::vector<fs::path> output_directories(const StabilityOptions& options,
   return directories;
 }
 
-int stability(const StabilityOptions& options) {
+int limits(const StabilityOptions& options) {
+  if (options.scenarios.empty()) {
+    throw InputError("stability: got no scenario; allowed: springs scenarios, --map, --stress, --search");
+  }
   std::vector<LoadedScenario> scenarios;
   for (const std::string& argument : options.scenarios) {
     scenarios.push_back(load_scenario(find_scenario(argument), options.overrides));
@@ -142,16 +140,84 @@ int stability(const StabilityOptions& options) {
   return kSuccess;
 }
 
+int stability(const StabilityOptions& options) {
+  require_algorithms(options.algorithms);
+  const bool has_algorithms = !options.maps.empty() || options.search;
+  if (!options.algorithms.empty() && !has_algorithms) {
+    throw InputError("--algorithms: got names; allowed: with --map and --search only");
+  }
+  const bool has_scenarios = options.maps.empty() && !options.stress;
+  if (!options.overrides.empty() && !has_scenarios) {
+    throw InputError("--set: got an override; allowed: with scenarios only");
+  }
+  if (!options.maps.empty()) return stability_maps_command(options);
+  if (options.stress) return stability_stress_command(options);
+  if (options.search) return stability_search_command(options);
+  return limits(options);
+}
+
+/// What is asked for is said by exactly one of these; each has options of its own.
+void add_experiments(CLI::App& command, StabilityOptions& options) {
+  CLI::Option* scenarios = command.add_option(
+      "scenarios", options.scenarios,
+      "springs scenarios, for their limits; with --search the scene: files, or names of bundled ones");
+  CLI::Option* map = command.add_option("--map", options.maps,
+                                        "maps of stable, vibrating and diverged runs: names separated by commas, or "
+                                        "all (see \"hapbench describe stability\")");
+  map->delimiter(',');
+  CLI::Option* stress = command.add_flag("--stress", options.stress, "random contact sets through every algorithm");
+  CLI::Option* search =
+      command.add_flag("--search", options.search, "the hand's motion that an algorithm renders worst in a scene");
+  map->excludes(stress)->excludes(search)->excludes(scenarios);
+  stress->excludes(search)->excludes(scenarios);
+
+  command.add_option("--size", options.size, "points of a map along each side (default: 17)")
+      ->check(CLI::Range(2, 101))
+      ->needs(map);
+  command.add_option("--count", options.count, "contact sets of --stress (default: 100000)")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
+      ->needs(stress);
+  command
+      .add_option("--objective", options.objective, "what --search makes large: created energy (default), vibration")
+      ->check(CLI::IsMember({"created", "vibration"}))
+      ->needs(search);
+  command.add_option("--evaluations", options.evaluations, "runs of --search before minimising (default: 400)")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
+      ->needs(search);
+  command.add_option("--seed", options.seed, "of --stress and --search (default: 1)")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53));
+  command.add_option("--jobs", options.jobs, "threads (default: as many as the machine has)")
+      ->check(CLI::Range(1, 1024));
+  command
+      .add_option("--algorithms", options.algorithms, "of --map and --search: names separated by commas (default: all)")
+      ->delimiter(',');
+}
+
 }  // namespace
+
+std::vector<std::string> StabilityOptions::chosen_algorithms() const {
+  if (!algorithms.empty()) return algorithms;
+  std::vector<std::string> all;
+  for (const AlgorithmEntry& entry : hapbench::algorithms()) all.emplace_back(entry.info->name);
+  return all;
+}
+
+fs::path StabilityOptions::directory(const std::string& name) const {
+  return out.empty() ? fs::path("results") / "out" / name : fs::path(out);
+}
+
+JobOptions StabilityOptions::job_options(const std::string& label) const {
+  const unsigned machine = std::max(1u, std::thread::hardware_concurrency());
+  return {jobs == 0 ? machine : jobs, output.quiet ? "" : label};
+}
 
 void add_stability(CLI::App& app, Action& chosen) {
   auto options = std::make_shared<StabilityOptions>();
   CLI::App* command = app.add_subcommand(
-      "stability", "Largest stable stiffness, damping and time step of a springs scenario (thesis A.3)");
-  command->add_option("scenarios", options->scenarios, "springs scenarios: files, or names of bundled ones")
-      ->required();
-  command->add_option("--out", options->out,
-                      "directory of limits.csv and root_locus.csv (default: results/out/stability_NAME)");
+      "stability",
+      "Stability limits of springs (thesis A.3), stability maps, stress test, search for the worst motion");
+  add_experiments(*command, *options);
+  command->add_option("--out", options->out, "directory of the results (default: results/out/stability_NAME)");
   command->add_option("--set", options->overrides, "override a field: path=value")->allow_extra_args(false)->take_all();
   add_output_options(*command, options->output);
   command->callback([options, &chosen] { chosen = [options] { return stability(*options); }; });

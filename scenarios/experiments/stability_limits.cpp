@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "scenarios/codec/input_error.hpp"
+#include "scenarios/experiments/bisection.hpp"
 #include "scenarios/run/assemble.hpp"
 
 namespace hapbench {
@@ -25,8 +26,6 @@ constexpr double kGrowth = 1e6;
 /// fewer.
 constexpr std::int64_t kProbeSteps = 20'000;
 constexpr double kLateGrowth = 1.01;
-/// Values beyond this are taken for "never unstable".
-constexpr double kLargestProbe = 1e15;
 constexpr int kLocusPoints = 400;
 
 /// The spring-damper of one case at one value of what is raised.
@@ -60,49 +59,6 @@ SpringDamper at_value(StabilityCase which, double value, const Scenario& scenari
 double positive_root(double a, double b) {
   if (a == 0.0) return b == 0.0 ? kNever : 2.0 / b;
   return 4.0 / (b + std::sqrt(b * b + 4.0 * a));
-}
-
-double analytic_limit(StabilityCase which, const Scenario& scenario, double lambda) {
-  const RenderingConfig& config = scenario.rendering.config;
-  const double M = *scenario.rendering.mass, dt = scenario.time.step;
-  const SpringDamper given = at_value(StabilityCase::time_step, dt, scenario, lambda);
-  const double b = config.damping ? 0.0 : 2.0 * config.damping_ratio * lambda * dt / std::sqrt(M);
-  switch (which) {
-    case StabilityCase::stiffness_undamped:
-      return lambda == 0.0 ? kNever : 4.0 * M / (lambda * dt * dt);
-    case StabilityCase::damping_alone:
-      return lambda == 0.0 ? kNever : 2.0 * M / (lambda * dt);
-    case StabilityCase::stiffness_damped:
-      if (lambda == 0.0) return kNever;
-      // With a fixed B the inequality is linear in K, with B = 2 zeta sqrt(K M) quadratic in sqrt K.
-      if (config.damping)
-        return std::max(0.0, (4.0 - 2.0 * lambda * *config.damping * dt / M) * M / (lambda * dt * dt));
-      return std::pow(positive_root(lambda * dt * dt / M, b), 2);
-    case StabilityCase::time_step:
-      return positive_root(lambda * given.K / M, lambda * given.B / M);
-  }
-  return kNever;
-}
-
-/// The largest value for which `stable` holds, by powers of ten from `start` and bisection of the logarithm.
-template <class Stable>
-double largest_stable(double start, double precision, Stable stable) {
-  double low = start;
-  while (!stable(low)) {
-    low /= 10.0;
-    if (low < 1.0 / kLargestProbe) return 0.0;
-  }
-  double high = low;
-  while (stable(high)) {
-    low = high;
-    high *= 10.0;
-    if (high > kLargestProbe) return kNever;
-  }
-  while (high / low > 1.0 + precision) {
-    const double middle = std::sqrt(low * high);
-    (stable(middle) ? low : high) = middle;
-  }
-  return low;
 }
 
 /// Picks up the stiffness tensor of the first step.
@@ -191,9 +147,35 @@ std::pair<std::complex<double>, std::complex<double>> SpringDamper::eigenvalues(
   return {values[0], values[1]};
 }
 
+double SpringDamper::margin() const {
+  return 4.0 - 2.0 * lambda * B * dt / M - lambda * K * dt * dt / M;
+}
+
 double SpringDamper::spectral_radius() const {
   const auto [first, second] = eigenvalues();
   return std::max(std::abs(first), std::abs(second));
+}
+
+double analytic_limit(StabilityCase which, const Scenario& scenario, double lambda) {
+  const RenderingConfig& config = scenario.rendering.config;
+  const double M = *scenario.rendering.mass, dt = scenario.time.step;
+  const SpringDamper given = at_value(StabilityCase::time_step, dt, scenario, lambda);
+  const double b = config.damping ? 0.0 : 2.0 * config.damping_ratio * lambda * dt / std::sqrt(M);
+  switch (which) {
+    case StabilityCase::stiffness_undamped:
+      return lambda == 0.0 ? kNever : 4.0 * M / (lambda * dt * dt);
+    case StabilityCase::damping_alone:
+      return lambda == 0.0 ? kNever : 2.0 * M / (lambda * dt);
+    case StabilityCase::stiffness_damped:
+      if (lambda == 0.0) return kNever;
+      // With a fixed B the inequality is linear in K, with B = 2 zeta sqrt(K M) quadratic in sqrt K.
+      if (config.damping)
+        return std::max(0.0, (4.0 - 2.0 * lambda * *config.damping * dt / M) * M / (lambda * dt * dt));
+      return std::pow(positive_root(lambda * dt * dt / M, b), 2);
+    case StabilityCase::time_step:
+      return positive_root(lambda * given.K / M, lambda * given.B / M);
+  }
+  return kNever;
 }
 
 std::vector<StabilityLimit> stability_limits(const Scenario& scenario) {

@@ -24,6 +24,8 @@ struct SpringDamper {
   std::pair<std::complex<double>, std::complex<double>> eigenvalues() const;
   /// Largest modulus of the two.
   double spectral_radius() const;
+  /// 4 - 2 lambda B dt / M - lambda K dt^2 / M: positive where stable.
+  double margin() const;
 };
 
 /// Which number is raised until the run blows up.
@@ -55,6 +57,10 @@ struct RootLocusPoint {
   double value;
   std::complex<double> first, second;
 };
+
+/// The largest stable value of one case where the springs of the scenario's algorithm have the given lambda; infinite
+/// when there is none. Precondition: defaults are filled in.
+double analytic_limit(StabilityCase which, const Scenario& scenario, double lambda);
 
 /// All four limits. A limit that does not exist (no spring, no damping) is infinite. Throws InputError unless the
 /// scenario is bilateral springs without friction and limits: elsewhere contacts come and go and no such limit exists.

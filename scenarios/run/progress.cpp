@@ -25,12 +25,16 @@ Progress::~Progress() {
 }
 
 void Progress::on_step(const StepRecord& record) noexcept {
-  if (!enabled_ || record.step % kLookEvery != 0) return;
+  if (record.step % kLookEvery == 0) show(record.step);
+}
+
+void Progress::show(std::uint64_t done) noexcept {
+  if (!enabled_) return;
   const auto now = Clock::now();
   if (now < next_) return;
   next_ = now + kRedraw;
   drawn_ = true;
-  const double part = static_cast<double>(record.step) / static_cast<double>(steps_);
+  const double part = static_cast<double>(done) / static_cast<double>(steps_);
   const int filled = static_cast<int>(part * kWidth);
   char bar[kWidth + 1] = {};
   for (int i = 0; i < kWidth; ++i) bar[i] = i < filled ? '#' : '.';

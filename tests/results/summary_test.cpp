@@ -135,6 +135,16 @@ TEST(Summary, OfNoRowsHasNeitherMeansNorAFinalPosition) {
   EXPECT_EQ(metrics["colliding_max"], 0);
 }
 
+TEST(Summary, GivesTheFinalPositionToExpectationsByCoordinate) {
+  RunSummary run = example();
+  const auto metrics = boundable_metrics(run);
+  EXPECT_EQ(metrics["final_position_m.x"], 0.5);
+  EXPECT_EQ(metrics["final_position_m.y"], -0.25);
+  EXPECT_EQ(metrics["final_position_m.z"], 0.0);
+  run.metrics = {};
+  EXPECT_TRUE(boundable_metrics(run)["final_position_m.x"].is_null());
+}
+
 // What differs between the scalar and the SIMD build must not be named, or their summaries could not be identical.
 TEST(Summary, WithTheRealProvenanceDoesNotNameTheInstructionSet) {
   RunSummary run = example();

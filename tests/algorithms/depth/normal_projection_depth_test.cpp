@@ -135,6 +135,24 @@ TEST(NormalProjectionDepth, OnlyPositiveExitsCount) {
   EXPECT_NEAR(depth_at(tool, kPose, {kUnit, 0, 0}, {-0.6, 0, 0.8}), 5 * kUnit, 4e-16 * kUnit * 16);
 }
 
+TEST(NormalProjectionDepth, IsNeverLongerThanTheTool) {
+  // Points in the tip plane with rays almost along the axis meet the infinite side wall r / sin(angle) away.
+  for (const Tip tip : {Tip::flat, Tip::round}) {
+    const Tool tool{4 * kUnit, 16 * kUnit, tip};
+    const double longest = tool.length + 3.0 * tool.radius;  // beyond the longest way through the body
+    for (double angle = 1.0; angle > 1e-18; angle *= 0.5) {
+      for (const double down : {1.0, -1.0}) {
+        const Vec3 normal(-std::sin(angle), 0, down * std::cos(angle));
+        for (const double height : {0.0, 16 * kUnit}) {
+          const double depth = depth_at(tool, kPose, {kUnit, 0, height}, normal);
+          EXPECT_GE(depth, 0.0);
+          EXPECT_LE(depth, longest) << "angle " << angle << ", height " << height;
+        }
+      }
+    }
+  }
+}
+
 TEST(NormalProjectionDepth, GrowsPastTheRadiusWhereSurfaceNormalSaturates) {
   // Thesis F.1: on a flat the depth is what the tool is pressed in by.
   for (const double pressed : {0.0001, 0.0004, 0.002, 0.005}) {

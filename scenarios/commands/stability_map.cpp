@@ -1,0 +1,163 @@
+#include "scenarios/experiments/stability_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "results/io/csv_writer.hpp"
+#include "scenarios/commands/stability.hpp"
+#include "scenarios/commands/table.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<const StabilityMap*> chosen_maps(const StabilityOptions& options) {
+  std::vector<const StabilityMap*> maps;
+  std::vector<std::string> valid;
+  for (const StabilityMap& map : stability_maps()) {
+    maps.push_back(&map);
+    valid.emplace_back(map.name);
+  }
+  if (options.maps == std::vector<std::string>{"all"}) return maps;
+  maps.clear();
+  std::set<std::string> seen;
+  for (const std::string& name : options.maps) {
+    const StabilityMap* map = find_stability_map(name);
+    if (map == nullptr) {
+      throw InputError(fmt::format("--map: got \"{}\"; allowed: \"all\", {}{}", name, quoted_list(valid),
+                                   nearest_name_hint(name, valid)));
+    }
+    if (!seen.insert(name).second) throw InputError(fmt::format("--map: got \"{}\" twice; allowed: once", name));
+    maps.push_back(map);
+  }
+  return maps;
+}
+
+void write_points(const fs::path& directory, const StabilityMap& map, const std::vector<MapResult>& results) {
+  CsvWriter csv(directory / fmt::format("stability_map_{}.csv", map.name),
+                fmt::format("algorithm,{},{},class,lambda_max,stability_margin", map.x.name, map.y.name));
+  for (const MapResult& result : results) {
+    for (const MapPoint& p : result.points) {
+      csv.row(std::string_view(result.algorithm), p.x, p.y, motion_class_name(p.motion), p.lambda, p.margin);
+    }
+  }
+  csv.finish();
+}
+
+void write_boundary(const fs::path& directory, const StabilityMap& map, const std::vector<MapResult>& results) {
+  CsvWriter csv(directory / fmt::format("stability_boundary_{}.csv", map.name),
+                fmt::format("algorithm,{},analytic_{},simulation_{},relative_difference,no_theory", map.x.name,
+                            map.y.name, map.y.name));
+  for (const MapResult& result : results) {
+    for (const BoundaryPoint& p : result.boundary) {
+      csv.row(std::string_view(result.algorithm), p.x, p.analytic, p.simulation, p.difference(),
+              std::string_view(p.no_theory));
+    }
+  }
+  csv.finish();
+}
+
+/// The largest |relative difference| of a boundary; none without theory.
+std::optional<double> largest_difference(const MapResult& result) {
+  std::optional<double> largest;
+  for (const BoundaryPoint& p : result.boundary) {
+    if (const auto d = p.difference()) largest = std::max(largest.value_or(0.0), std::abs(*d));
+  }
+  return largest;
+}
+
+std::size_t count_of(const MapResult& result, MotionClass motion) {
+  return static_cast<std::size_t>(std::count_if(result.points.begin(), result.points.end(),
+                                                [motion](const MapPoint& p) { return p.motion == motion; }));
+}
+
+/// The map as characters, y upwards. The analytic limit is drawn where the runs confirm it: '=' is the first run
+/// beyond.
+std::string drawing(const MapResult& result) {
+  const std::size_t n = result.size;
+  const MapAxis &x = result.map->x, &y = result.map->y;
+  std::string text = fmt::format("{}: {}\n\n", result.algorithm, result.map->summary);
+  for (std::size_t row = n; row-- > 0;) {
+    text += fmt::format("  {:>9}  ", row == 0 || row == n - 1 ? significant(y.at(row, n), 3) : "");
+    for (std::size_t column = 0; column < n; ++column) {
+      const MotionClass motion = result.points[column * n + row].motion;
+      const auto beyond = [&](std::size_t j) { return y.at(j, n) > result.boundary[column].analytic.value_or(1e300); };
+      const bool limit = motion == MotionClass::diverged && beyond(row) && (row == 0 || !beyond(row - 1));
+      text += limit ? " =" : motion == MotionClass::stable ? " ." : motion == MotionClass::vibrating ? " ~" : " #";
+    }
+    text += row == n - 1 ? fmt::format("  {}\n", y.name) : "\n";
+  }
+  return text + fmt::format(
+                    "             {} ... {}  {}\n  . stable  ~ vibrating  # diverged  = diverged, first beyond the "
+                    "analytic limit\n\n",
+                    significant(x.low, 3), significant(x.high, 3), x.name);
+}
+
+Json result_json(const MapResult& result) {
+  Json rows = Json::array();
+  const auto or_null = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
+  for (const BoundaryPoint& p : result.boundary) {
+    rows.push_back({{result.map->x.name, p.x},
+                    {"analytic", or_null(p.analytic)},
+                    {"simulation", p.simulation},
+                    {"relative_difference", or_null(p.difference())},
+                    {"no_theory", p.no_theory}});
+  }
+  Json json = {{"map", result.map->name}, {"algorithm", result.algorithm}, {"boundary", std::move(rows)}};
+  for (const MotionClass motion : {MotionClass::stable, MotionClass::vibrating, MotionClass::diverged}) {
+    json[std::string(motion_class_name(motion))] = count_of(result, motion);
+  }
+  return json;
+}
+
+std::vector<std::string> cells_of(const MapResult& result) {
+  const auto difference = largest_difference(result);
+  const auto without =
+      std::count_if(result.boundary.begin(), result.boundary.end(), [](const BoundaryPoint& p) { return !p.analytic; });
+  std::vector<std::string> cells = {result.map->name, result.algorithm};
+  for (const MotionClass motion : {MotionClass::stable, MotionClass::vibrating, MotionClass::diverged}) {
+    cells.push_back(std::to_string(count_of(result, motion)));
+  }
+  cells.push_back(difference ? significant(100.0 * *difference, 2) : "-");
+  cells.push_back(std::to_string(without));
+  return cells;
+}
+
+}  // namespace
+
+int stability_maps_command(const StabilityOptions& options) {
+  const std::vector<const StabilityMap*> maps = chosen_maps(options);
+  const std::vector<std::string> algorithms = options.chosen_algorithms();
+  const fs::path out = options.directory("stability_maps");
+  require_writable_directory(out);
+
+  Table table({{"map", false},
+               {"algorithm", false},
+               {"stable"},
+               {"vibrating"},
+               {"diverged"},
+               {"largest difference %"},
+               {"without theory"}});
+  std::string drawings;
+  Json json = Json::array();
+  for (const StabilityMap* map : maps) {
+    std::vector<MapResult> results;
+    for (const std::string& algorithm : algorithms) {
+      const JobOptions jobs = options.job_options(fmt::format("{} {}", map->name, algorithm));
+      results.push_back(stability_map(*map, algorithm, options.size, jobs));
+      table.add(cells_of(results.back()));
+      json.push_back(result_json(results.back()));
+      if (algorithms.size() == 1) drawings += drawing(results.back());
+    }
+    write_points(out, *map, results);
+    write_boundary(out, *map, results);
+  }
+  print(options.output, drawings + table.text() + fmt::format("\nmaps in {}\n", out.string()), json);
+  return kSuccess;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "sim/loop/observer.hpp"
+#include "sim/loop/simulation.hpp"
+
+/// Whether a run is stable, judged by its motion alone: no eigenvalue, no tensor, no knowledge of the law.
+///
+/// The run is cut into quarters. Their amplitude is the largest speed of the tool in them; a turn is a change of sign
+/// of a component of the velocity, two for each period of an oscillation.
+///
+///   diverged   the run left its bounds, or it oscillates and its amplitude has grown by more than 1 % from each
+///              quarter to the next
+///   vibrating  not diverged, and in the last quarter it oscillates (two turns or more of one component) with at least
+///              1 % of the first quarter's amplitude, that is 1e-4 of its energy
+///   stable     all else: at rest, dying out, creeping without a turn
+///
+/// A damped oscillation dies out to 1 % within three quarters of n steps when it loses more than 6.1 / n of its
+/// amplitude in a step, so "vibrating" is a thin strip below the limit of a damped linear system, all that is stable of
+/// an undamped one, and the limit cycles of a nonlinear one.
+namespace hapbench {
+
+enum class MotionClass { stable, vibrating, diverged };
+
+/// "stable", "vibrating", "diverged"
+std::string_view motion_class_name(MotionClass motion) noexcept;
+
+/// Watches a run and classifies it. Constant memory.
+class MotionClassifier final : public Observer {
+ public:
+  /// `steps`: rows the run will have. Precondition: steps >= 4.
+  explicit MotionClassifier(std::uint64_t steps) : steps_(steps) {}
+
+  void on_step(const StepRecord& record) noexcept override;
+
+  /// True once the tool has come to rest to 1e-12 of its largest speed for 200 rows: what is left is rounding, and the
+  /// run may be cut short.
+  bool at_rest() const noexcept { return rows_at_rest_ >= kRowsAtRest; }
+  /// Of the whole run, or of one that came to rest before.
+  MotionClass motion_class(Outcome outcome) const noexcept;
+
+ private:
+  static constexpr int kRowsAtRest = 200;
+
+  struct Quarter {
+    double amplitude = 0.0;                ///< largest speed [m/s]
+    std::array<std::uint64_t, 3> turns{};  ///< of each component
+  };
+  bool oscillates_in(const Quarter& quarter) const noexcept;
+
+  std::uint64_t steps_;
+  std::array<Quarter, 4> quarters_{};
+  Vec3 last_velocity_ = Vec3::Zero();
+  double largest_speed_ = 0.0;
+  int rows_at_rest_ = 0;
+};
+
+/// Steps the simulation, which `classifier` observes, until it ends or comes to rest.
+MotionClass classify(Simulation& simulation, const MotionClassifier& classifier) noexcept;
+
+}  // namespace hapbench

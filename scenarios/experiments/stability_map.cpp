@@ -1,0 +1,99 @@
+#include "scenarios/experiments/stability_map.hpp"
+
+#include <cmath>
+
+#include "scenarios/experiments/bisection.hpp"
+#include "scenarios/experiments/stability_limits.hpp"
+#include "scenarios/run/assemble.hpp"
+
+namespace hapbench {
+namespace {
+
+/// A twentieth of the 2 % within which theory and runs must agree.
+constexpr double kPrecision = 1e-3;
+
+/// The first row: where the springs start from.
+class FirstRow final : public Observer {
+ public:
+  void on_step(const StepRecord& record) noexcept override {
+    if (record.step != 0) return;
+    S = record.force.S;
+    spring = record.force.spring;
+    position = record.tool.pose.position;
+  }
+  Mat3 S = Mat3::Zero();
+  Vec3 spring = Vec3::Zero();
+  Vec3 position = Vec3::Zero();
+};
+
+struct Probe {
+  MotionClass motion;
+  double lambda;
+  bool linear;  ///< the force is -K S p
+};
+
+Probe probe(const Scenario& scenario) {
+  FirstRow first;
+  MotionClassifier classifier(static_cast<std::uint64_t>(*scenario.time.steps));
+  Simulation simulation(simulation_config(scenario), assemble(scenario), {&first, &classifier});
+  const MotionClass motion = classify(simulation, classifier);
+  const double K = scenario.rendering.config.stiffness;
+  // Sums of up to a hundred springs; exact_shaping's weights are good to 1e-12.
+  const double rounding = 1e-10 * K * (1.0 + first.S.norm()) * first.position.norm();
+  const bool linear = (first.spring + K * (first.S * first.position)).norm() <= rounding;
+  return {motion, lambda_max(first.S), linear};
+}
+
+MapPoint map_point(const StabilityMap& map, const std::string& algorithm, double x, double y) {
+  const Scenario scenario = map.scene(x, y, algorithm);
+  const Probe run = probe(scenario);
+  MapPoint point{x, y, run.motion, run.lambda, {}};
+  if (map.no_theory != nullptr || !run.linear) return point;
+  const double K = scenario.rendering.config.stiffness, M = *scenario.rendering.mass;
+  const double B = 2.0 * scenario.rendering.config.damping_ratio * std::sqrt(K * M);
+  point.margin = SpringDamper{K, B, M, scenario.time.step, run.lambda}.margin();
+  return point;
+}
+
+BoundaryPoint boundary_point(const StabilityMap& map, const std::string& algorithm, double x) {
+  BoundaryPoint point;
+  point.x = x;
+  point.simulation = largest_stable(map.y.low, kPrecision, [&](double y) {
+    const MotionClass motion = probe(map.scene(x, y, algorithm)).motion;
+    return map.no_theory == nullptr ? motion != MotionClass::diverged : motion == MotionClass::stable;
+  });
+  const Scenario start = map.scene(x, map.y.low, algorithm);
+  const Probe run = probe(start);
+  if (map.no_theory != nullptr) {
+    point.no_theory = map.no_theory;
+  } else if (!run.linear) {
+    point.no_theory = "the force is not -K S p";
+  } else {
+    point.analytic = analytic_limit(StabilityCase::stiffness_damped, start, run.lambda);
+  }
+  return point;
+}
+
+}  // namespace
+
+std::optional<double> BoundaryPoint::difference() const {
+  if (!analytic) return std::nullopt;
+  return *analytic == simulation ? 0.0 : simulation / *analytic - 1.0;
+}
+
+MapResult stability_map(const StabilityMap& map, const std::string& algorithm, std::size_t size,
+                        const JobOptions& options) {
+  MapResult result{&map, algorithm, size, {}, {}};
+  result.points.resize(size * size);
+  result.boundary.resize(size);
+  for_each_job(size * size + size, options, [&](std::size_t i) {
+    if (i < size * size) {
+      result.points[i] = map_point(map, algorithm, map.x.at(i / size, size), map.y.at(i % size, size));
+    } else {
+      result.boundary[i - size * size] = boundary_point(map, algorithm, map.x.at(i - size * size, size));
+    }
+  });
+  return result;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/experiments/classify.hpp"
+#include "scenarios/experiments/jobs.hpp"
+#include "scenarios/experiments/map_scenes.hpp"
+
+/// Maps of stable, vibrating and diverged runs (classify.hpp), with the analytic limit where there is one.
+namespace hapbench {
+
+/// One run of a map.
+struct MapPoint {
+  double x = 0.0, y = 0.0;
+  MotionClass motion = MotionClass::stable;
+  double lambda = 0.0;           ///< lambda_max(S) of the first row
+  std::optional<double> margin;  ///< 4 - 2 lambda B dt / M - lambda K dt^2 / M; none where the theory does not apply
+};
+
+/// The edge of the stable runs at one x. Of a spring map, the largest K that does not diverge; of a map without theory,
+/// the largest y whose run comes to rest.
+struct BoundaryPoint {
+  double x = 0.0;
+  std::optional<double> analytic;  ///< infinite when no y is unstable; none where the theory does not apply
+  double simulation = 0.0;         ///< by bisection on runs to 0.1 %; 0 or infinite when there is no edge
+  std::string no_theory;           ///< why there is no analytic limit; empty when there is one
+
+  /// simulation / analytic - 1; zero when both are infinite, none without an analytic limit.
+  std::optional<double> difference() const;
+};
+
+struct MapResult {
+  const StabilityMap* map = nullptr;
+  std::string algorithm;
+  std::size_t size = 0;
+  std::vector<MapPoint> points;         ///< size x size, y fastest
+  std::vector<BoundaryPoint> boundary;  ///< size
+};
+
+/// The map of one algorithm on a grid of size x size. The same whatever the number of threads.
+///
+/// The theory applies where the tool is alone with springs in contact and the force of the first row is -K S p: then
+/// the springs are the linear system that the inequality is about. Precondition: the algorithm is known, size >= 1.
+MapResult stability_map(const StabilityMap& map, const std::string& algorithm, std::size_t size,
+                        const JobOptions& options);
+
+}  // namespace hapbench

@@ -1,0 +1,165 @@
+#include <gtest/gtest.h>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/file_tree.hpp"
+#include "tests/scenarios/support/program.hpp"
+
+/// `hapbench stability --map`, `--stress` and `--search` through the program.
+namespace hapbench {
+namespace {
+
+using test::cells_of;
+using test::hapbench;
+using test::lines_of;
+using test::ProgramRun;
+using Names = std::vector<std::string>;
+
+class StabilityExperiments : public testing::Test {
+ protected:
+  test::TemporaryDirectory directory_;
+  std::string out_ = (directory_ / "out").string();
+};
+
+TEST_F(StabilityExperiments, MapsAreWrittenPointByPointAndEdgeByEdge) {
+  const ProgramRun run = hapbench(
+      {"stability", "--map", "wedge,device", "--algorithms", "summation,exact_shaping", "--size", "3", "--out", out_});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(test::names_below(out_), (Names{"stability_boundary_device.csv", "stability_boundary_wedge.csv",
+                                            "stability_map_device.csv", "stability_map_wedge.csv"}));
+  const auto points = lines_of(test::read_file(directory_ / "out/stability_map_wedge.csv"));
+  EXPECT_EQ(points[0], "algorithm,wedge_angle_rad,stiffness_N_per_m,class,lambda_max,stability_margin");
+  EXPECT_EQ(points.size(), 1u + 2 * 9);
+  const auto edges = lines_of(test::read_file(directory_ / "out/stability_boundary_wedge.csv"));
+  EXPECT_EQ(edges[0],
+            "algorithm,wedge_angle_rad,analytic_stiffness_N_per_m,simulation_stiffness_N_per_m,relative_difference,"
+            "no_theory");
+  ASSERT_EQ(edges.size(), 1u + 2 * 3);
+  for (std::size_t i = 1; i < edges.size(); ++i) {
+    const auto cells = cells_of(edges[i]);
+    EXPECT_LE(std::abs(test::number_in(cells[4])), 0.02) << edges[i];
+  }
+  // What has no theory says why, and leaves the analytic cells empty.
+  const auto device = lines_of(test::read_file(directory_ / "out/stability_boundary_device.csv"));
+  EXPECT_EQ(cells_of(device[1])[2], "");
+  EXPECT_NE(device[1].find("part of the loop"), std::string::npos) << device[1];
+}
+
+TEST_F(StabilityExperiments, OneAlgorithmsMapIsDrawn) {
+  const ProgramRun run =
+      hapbench({"stability", "--map", "time_step", "--algorithms", "mean", "--size", "7", "--out", out_});
+  EXPECT_NE(run.out.find(" . = # "), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find(" . . "), std::string::npos);
+  EXPECT_NE(run.out.find(" # # "), std::string::npos);
+  const Json json =
+      hapbench({"stability", "--map", "time_step", "--algorithms", "mean", "--size", "2", "--json", "--out", out_})
+          .json();
+  EXPECT_EQ(json[0]["map"], "time_step");
+  EXPECT_EQ(json[0]["boundary"].size(), 2u);
+  EXPECT_EQ(hapbench({"stability", "--map", "mass", "--size", "2", "--quiet", "--out", out_}).out, "");
+}
+
+TEST_F(StabilityExperiments, MapsAreTheSameBytesOnAnyNumberOfThreads) {
+  for (const char* jobs : {"1", "3"}) {
+    hapbench({"stability", "--map", "contacts", "--algorithms", "tandpasta", "--size", "4", "--jobs", jobs, "--out",
+              (directory_ / jobs).string()});
+  }
+  test::expect_same_files(directory_ / "1", directory_ / "3", {});
+}
+
+TEST_F(StabilityExperiments, StressCountsForcesOfEveryAlgorithm) {
+  const ProgramRun run = hapbench({"stability", "--stress", "--count", "2000", "--json", "--out", out_});
+  EXPECT_EQ(run.status, 0) << run.err;
+  const Json json = run.json();
+  EXPECT_EQ(json.size(), 8u);
+  for (const Json& counts : json) {
+    EXPECT_EQ(counts["sets"], 2000);
+    EXPECT_EQ(counts["non_finite"], 0);
+    EXPECT_EQ(counts["out_of_bound"], 0);
+    EXPECT_EQ(counts["first_bad_set"], nullptr);
+  }
+  EXPECT_EQ(lines_of(test::read_file(directory_ / "out/stability_stress.csv")).size(), 9u);
+  // The seed decides.
+  const auto text = [&](const char* seed) {
+    return hapbench({"stability", "--stress", "--count", "50", "--seed", seed, "--json", "--out", out_}).out;
+  };
+  EXPECT_EQ(text("5"), text("5"));
+  EXPECT_NE(text("5"), text("6"));
+}
+
+TEST_F(StabilityExperiments, SearchWritesAScenarioThatRunsAsItExpects) {
+  const ProgramRun run = hapbench({"stability", "peg_in_hole_2d_shaped_stiffness", "--search", "--algorithms",
+                                   "original_averaging,mean", "--evaluations", "40", "--out", out_});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(test::names_below(out_), (Names{"worst_created_mean.json", "worst_created_original_averaging.json"}));
+  for (const std::string& name : test::names_below(out_)) {
+    const ProgramRun again = hapbench({"run", out_ + "/" + name, "--out", (directory_ / "again").string()});
+    EXPECT_EQ(again.status, 0) << name << ": " << again.err;
+  }
+  EXPECT_EQ(hapbench({"stability", "peg_in_hole_2d_mean", "--search", "--objective", "vibration", "--evaluations", "20",
+                      "--json", "--out", out_})
+                .json()[0]["objective"],
+            "vibration");
+}
+
+TEST_F(StabilityExperiments, WrongUseIsRefusedAndNothingWritten) {
+  const std::vector<Names> wrong = {
+      {"--map"},
+      {"--map", "no_such_map"},
+      {"--map", "wedge,wedge"},
+      {"--map", "wedge,all"},
+      {"--map", "wedge", "--size", "1"},
+      {"--map", "wedge", "--size", "1000"},
+      {"--map", "wedge", "--size", "x"},
+      {"--map", "wedge", "--jobs", "0"},
+      {"--map", "wedge", "--algorithms", "no_such_law"},
+      {"--map", "wedge", "--algorithms", "mean,mean"},
+      {"--map", "wedge", "--set", "time.steps=5"},
+      {"--map", "wedge", "--stress"},
+      {"--map", "wedge", "--search"},
+      {"--map", "wedge", "--count", "5"},
+      {"single_spring", "--map", "wedge"},
+      {"single_spring", "--stress"},
+      {"single_spring", "--size", "5"},
+      {"single_spring", "--algorithms", "mean"},
+      {"--stress", "--count", "0"},
+      {"--stress", "--count", "-1"},
+      {"--stress", "--seed", "-1"},
+      {"--stress", "--algorithms", "mean"},
+      {"--stress", "--search"},
+      {"--search"},
+      {"single_spring", "--search"},
+      {"no_such_scenario", "--search"},
+      {"peg_in_hole_2d_mean", "single_spring", "--search"},
+      {"peg_in_hole_2d_mean", "--search", "--objective", "beauty"},
+      {"peg_in_hole_2d_mean", "--search", "--evaluations", "0"},
+      {"peg_in_hole_2d_mean", "--objective", "created"},
+  };
+  for (Names arguments : wrong) {
+    std::string words;
+    for (const std::string& word : arguments) words += word + " ";
+    arguments.insert(arguments.begin(), "stability");
+    arguments.insert(arguments.end(), {"--out", out_});
+    const ProgramRun run = hapbench(arguments);
+    EXPECT_EQ(run.status, 2) << words;
+    EXPECT_EQ(run.out, "") << words;
+    EXPECT_NE(run.err, "") << words;
+    EXPECT_FALSE(std::filesystem::exists(out_)) << words;
+  }
+}
+
+TEST_F(StabilityExperiments, MisspeltMapsGetTheNearestName) {
+  const ProgramRun run = hapbench({"stability", "--map", "wegde", "--out", out_});
+  EXPECT_EQ(lines_of(run.err).size(), 1u) << run.err;
+  EXPECT_NE(run.err.find("nearest valid name: \"wedge\""), std::string::npos) << run.err;
+}
+
+TEST_F(StabilityExperiments, AreExplained) {
+  const ProgramRun run = hapbench({"describe", "stability"});
+  EXPECT_EQ(run.status, 0);
+  for (const char* word : {"vibrating", "analytic limit", "damping_ratio", "delay_samples"}) {
+    EXPECT_NE(run.out.find(word), std::string::npos) << word;
+  }
+}
+
+}  // namespace
+}  // namespace hapbench
