@@ -66,6 +66,9 @@ bool write_all(int pipe, const std::string& bytes) {
 [[noreturn]] void be_child(const std::function<std::string()>& work, const ChildLimits& limits, int pipe) {
   int status = kFailed;
   try {
+    // A file that the parent has locked would stay locked for as long as the child lives.
+    ::close_range(STDERR_FILENO + 1, static_cast<unsigned>(pipe - 1), 0);
+    ::close_range(static_cast<unsigned>(pipe + 1), ~0u, 0);
     restrict_child(limits);
     if (write_all(pipe, work())) status = kAnswered;
   } catch (const std::bad_alloc&) {
