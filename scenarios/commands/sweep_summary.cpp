@@ -64,7 +64,7 @@ SweepSummary summarise(const SweepPlan& plan, const std::vector<std::string>& ro
     summary.failed += failed ? 1 : 0;
     if (failed || expected) continue;
     ++summary.unexpected;
-    if (!summary.first_unexpected) summary.first_unexpected = run_of_row(row);
+    if (!summary.first_unexpected) summary.first_unexpected = run_of_row(plan, row);
   }
   return summary;
 }

@@ -35,9 +35,10 @@ double range_end(const std::string& text, std::string_view word) {
   return *number;
 }
 
-/// Both ends exactly. Weighting the ends, rather than adding up steps, gives 0.3 and not 0.30000000000000004 for the
-/// third of ten steps from 0 to 1.
+/// Value i of 0 ... last between the ends, which are exact. Weighting them, rather than adding up steps, gives 0.3 and
+/// not 0.30000000000000004 for the third of ten steps from 0 to 1.
 double linear_value(double a, double b, double i, double last) {
+  if (i == 0.0 || i == last) return i == 0.0 ? a : b;
   return std::clamp((a * (last - i) + b * i) / last, std::min(a, b), std::max(a, b));
 }
 

@@ -26,6 +26,7 @@ class Journal {
 
   /// The rows found, in the order in which they were added.
   const std::vector<std::string>& rows() const { return rows_; }
+  const std::filesystem::path& file() const { return file_; }
   /// Precondition: a row is one line. Throws IoError.
   void add(std::string_view row);
   /// Removes the file: the sweep is complete.

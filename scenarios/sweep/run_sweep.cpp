@@ -33,6 +33,20 @@ std::string journal_title(const SweepPlan& plan, const SweepOptions& options) {
                      options.keep_runs ? "runs are kept" : "runs are not kept");
 }
 
+/// What the journal holds. Its first line is right, but somebody may have written to it.
+Rows journal_rows(const SweepPlan& plan, const SweepOptions& options, const Journal& journal) {
+  Rows rows;
+  for (const std::string& row : journal.rows()) {
+    const auto run = run_of_row(plan, row);
+    if (!run || !options.part().has(*run)) {
+      throw InputError(InputError::Kind::relation, journal.file().string(),
+                       fmt::format("got the row \"{}\"; allowed: rows of this sweep", row.substr(0, 60)));
+    }
+    rows[*run] = row;
+  }
+  return rows;
+}
+
 /// The runs that are to be done, those of one environment after each other, so that few shells are needed at a time.
 std::vector<std::size_t> runs_to_do(const SweepPlan& plan, const Shard& shard, const Rows& done) {
   std::vector<std::size_t> runs;
@@ -92,9 +106,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
   const std::string stem = stem_of(options.shard);
   Journal journal(options.directory / (stem + ".journal"), journal_title(plan, options), options.resume);
   remove_stale_temporaries(options.directory);
-  Rows rows;
-  for (const std::string& row : journal.rows()) rows[run_of_row(row)] = row;
-
+  Rows rows = journal_rows(plan, options, journal);
   SweepReport report;
   report.resumed = rows.size();
   compute_rows(plan, options, journal, rows, report);

@@ -56,7 +56,7 @@ class Collector {
     sections_.ideal_trajectory |= point.sections.ideal_trajectory;
     sections_.places = std::max(sections_.places, point.sections.places);
     environments_of_runs_[run] = &*environments_.emplace(point.environment, 0).first;
-    keep_first(files_, point.files, {run, 0});
+    if (!point.files.empty()) keep_first(files_, point.files, {run, 0});
     for (std::size_t i = 0; i < point.warnings.size(); ++i) keep_first(warnings_, point.warnings[i], {run, i});
   }
 
@@ -74,11 +74,12 @@ class Collector {
   Json check_files() {
     Json hashes = Json::array();
     for (const auto& [place, names] : in_order(files_)) {
-      const LoadedScenario loaded = scenario_of(plan_, place.first);
+      LoadedScenario loaded = scenario_of(plan_, place.first);
       for (std::string& warning : check_named_files(loaded)) {
         const auto end = plan_.warnings.end();
         if (std::find(plan_.warnings.begin(), end, warning) == end) plan_.warnings.push_back(std::move(warning));
       }
+      loaded.scenario.name.clear();  // which may be that of the scenario's file
       hashes.push_back(with_file(loaded, [&] { return scenario_hash(loaded.scenario); }));
     }
     return hashes;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "results/hash.hpp"
 #include "results/io/number_text.hpp"
 #include "results/outcome_names.hpp"
@@ -53,8 +55,13 @@ std::string error_row(const SweepPlan& plan, std::size_t run) {
   return fmt::format("{}", fmt::join(cells, ","));
 }
 
-std::size_t run_of_row(std::string_view row) {
-  return whole_number(row.substr(0, row.find(','))).value();
+std::optional<std::size_t> run_of_row(const SweepPlan& plan, std::string_view row) {
+  const Words cells = parts_of(row, ',');
+  const auto run = whole_number(cells[0]);
+  const std::size_t columns = parts_of(sweep_header(plan), ',').size();
+  if (!run || *run >= plan.grid.size() || cells.size() != columns) return std::nullopt;
+  const std::vector<std::string> leading = leading_cells(plan, *run);
+  return std::equal(leading.begin(), leading.end(), cells.begin()) ? run : std::nullopt;
 }
 
 }  // namespace hapbench

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -19,7 +20,7 @@ std::string sweep_row(const SweepPlan& plan, std::size_t run, const RunSummary& 
 inline constexpr std::string_view kErrorOutcome = "error";
 std::string error_row(const SweepPlan& plan, std::size_t run);
 
-/// The number of a row's run. Precondition: one of the functions above made the row.
-std::size_t run_of_row(std::string_view row);
+/// The number of a row's run; none when the row is not of this sweep.
+std::optional<std::size_t> run_of_row(const SweepPlan& plan, std::string_view row);
 
 }  // namespace hapbench
