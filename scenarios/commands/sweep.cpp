@@ -135,7 +135,9 @@ void add_sweep(CLI::App& app, Action& chosen) {
   command->footer(
       "sweep.csv has a row for each run: index, the varied fields, outcome (\"error\" when it could not be computed), "
       "expected, steps, every metric, state_hash. Shards write sweep_shard_I_of_N.csv, which \"hapbench merge\" puts "
-      "together. Ctrl-C stops after the runs in flight, with exit status 130.");
+      "together. Ctrl-C stops after the runs in flight.\n"
+      "Exit status: 0 success, 1 a run could not be computed, 2 bad input or usage, 3 a run did not end as expected, "
+      "130 stopped by Ctrl-C.");
   command->callback([options, &chosen] { chosen = [options] { return sweep(*options); }; });
 }
 
