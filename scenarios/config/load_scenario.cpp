@@ -27,7 +27,7 @@ void apply_override(Json& json, const std::string& text) {
     if (node->is_array()) {
       const bool digits = !key.empty() && key.size() < 9 && key.find_first_not_of("0123456789") == std::string::npos;
       if (!digits || std::stoul(key) >= node->size()) {
-        throw InputError("--set " + path + ": got list index \"" + key + "\"; allowed: " +
+        throw InputError(path + ": got list index \"" + key + "\"; allowed: " +
                          (node->empty() ? "none, the list is empty" : "0 ... " + std::to_string(node->size() - 1)));
       }
       node = &(*node)[std::stoul(key)];
@@ -79,9 +79,18 @@ LoadedScenario read_scenario(const Json& json, const std::filesystem::path& dire
   return loaded;
 }
 
-LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const std::string> overrides) {
+ScenarioText read_scenario_text(const std::filesystem::path& file) {
   try {
-    Json json = parse_json(read_text_file(file, kLargestJsonFile));
+    return {file, parse_json(read_text_file(file, kLargestJsonFile))};
+  } catch (const InputError& error) {
+    rethrow_with_file(error, file);
+  }
+}
+
+LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::string> overrides) {
+  const auto& file = text.file;
+  try {
+    Json json = text.json;
     for (const std::string& override : overrides) apply_override(json, override);
     LoadedScenario loaded = read_scenario(json, file.parent_path());
     loaded.file = file;
@@ -91,6 +100,10 @@ LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const 
   } catch (const InputError& error) {
     rethrow_with_file(error, file);
   }
+}
+
+LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  return load_scenario(read_scenario_text(file), overrides);
 }
 
 Json effective_scenario(const Scenario& scenario, const std::filesystem::path& directory) {

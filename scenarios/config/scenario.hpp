@@ -175,7 +175,14 @@ std::filesystem::path resolve_path(const Scenario& scenario, const std::string& 
 /// for contradictions that involve a default.
 std::vector<std::string> fill_defaults(Scenario& scenario);
 
-/// Names of the metrics `expect` may bound.
-std::vector<std::string> metric_names();
+/// The sections of a summary that not every run has.
+struct MetricSections {
+  bool energy = true;
+  bool ideal_trajectory = true;
+  std::size_t places = 2;  ///< target places; the thesis's tasks have two
+};
+
+/// Names of the metrics of runs with these sections, in the order of the summary; by default those `expect` may bound.
+std::vector<std::string> metric_names(const MetricSections& sections = {});
 
 }  // namespace hapbench

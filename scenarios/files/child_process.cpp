@@ -10,6 +10,8 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <fstream>
+#include <mutex>
 #include <new>
 #include <system_error>
 
@@ -33,6 +35,13 @@ void limit(decltype(RLIMIT_CPU) resource, rlim_t most) {
   ::setrlimit(resource, &limit);
 }
 
+/// Address space of this process [bytes]; it grows with the number of the parent's threads.
+std::size_t address_space() {
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
+
 void restrict_child(const ChildLimits& limits) {
   // Libraries complain on standard error, the C library too when the heap is broken.
   const int null = ::open("/dev/null", O_RDWR);
@@ -40,7 +49,7 @@ void restrict_child(const ChildLimits& limits) {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.cpu_seconds);
 #if !defined(__SANITIZE_ADDRESS__)  // whose shadow memory is larger than any limit
-  limit(RLIMIT_AS, limits.memory);
+  limit(RLIMIT_AS, address_space() + limits.memory);
 #endif
 }
 
@@ -57,6 +66,9 @@ bool write_all(int pipe, const std::string& bytes) {
 [[noreturn]] void be_child(const std::function<std::string()>& work, const ChildLimits& limits, int pipe) {
   int status = kFailed;
   try {
+    // A file that the parent has locked would stay locked for as long as the child lives.
+    ::close_range(STDERR_FILENO + 1, static_cast<unsigned>(pipe - 1), 0);
+    ::close_range(static_cast<unsigned>(pipe + 1), ~0u, 0);
     restrict_child(limits);
     if (write_all(pipe, work())) status = kAnswered;
   } catch (const std::bad_alloc&) {
@@ -101,6 +113,9 @@ End end_of(int status) {
 }  // namespace
 
 ChildAnswer answer_of_child(const std::function<std::string()>& work, const ChildLimits& limits) {
+  // Two at a time would hold each other's pipes open, whose ends are what the answers end with.
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) fail("cannot make a pipe");
   const pid_t child = ::fork();

@@ -10,7 +10,7 @@ namespace hapbench {
 struct ChildLimits {
   unsigned cpu_seconds = 1;
   unsigned wall_seconds = 60;     ///< in case it waits for something
-  std::size_t memory = 1u << 30;  ///< address space, what it has of its parent included [bytes]; not under sanitizers
+  std::size_t memory = 1u << 30;  ///< address space beyond what it has of its parent [bytes]; not under sanitizers
   std::size_t answer = 1u << 30;  ///< [bytes]
 };
 
@@ -28,8 +28,9 @@ struct ChildAnswer {
 };
 
 /// Does `work`, which may crash, hang or eat memory, in a child process, and returns the bytes it returns. The child
-/// prints nothing and leaves nothing behind. Linux and other POSIX systems; this process must have one thread only.
-/// Throws std::system_error when there can be no child.
+/// prints nothing and leaves nothing behind. Several threads may call it, one child works at a time; beside other
+/// threads the work may use memory, which the C library keeps usable in a child, but no lock that those threads hold.
+/// Linux. Throws std::system_error when there can be no child.
 ChildAnswer answer_of_child(const std::function<std::string()>& work, const ChildLimits& limits);
 
 }  // namespace hapbench

@@ -47,11 +47,19 @@ int append_build_id(dl_phdr_info* object, std::size_t, void* text) {
   return id.empty() ? 1 : 0;
 }
 
+std::string loaded_now() {
+  std::string ids;
+  return dl_iterate_phdr(append_build_id, &ids) == 0 ? ids : "";
+}
+
+// Before main: what libraries load later when they are first used (oneTBB its allocator) computes no result, and what
+// is stored under the text must not depend on when it is asked for.
+const std::string loaded_at_start = loaded_now();
+
 }  // namespace
 
 std::string loaded_code_id() {
-  std::string ids;
-  return dl_iterate_phdr(append_build_id, &ids) == 0 ? ids : "";
+  return loaded_at_start;
 }
 
 }  // namespace hapbench

@@ -21,6 +21,16 @@ Words words_of(std::string_view line) {
   return words;
 }
 
+Words parts_of(std::string_view text, char separator) {
+  Words parts;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, start), text.size());
+    parts.push_back(text.substr(start, end - start));
+    start = end + 1;
+  }
+  return parts;
+}
+
 std::optional<double> finite_number(std::string_view word) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);

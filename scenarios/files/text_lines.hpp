@@ -15,6 +15,9 @@ using Words = std::vector<std::string_view>;
 /// The words of a line, separated by white space.
 Words words_of(std::string_view line);
 
+/// The parts of a text between separators, empty ones included; one more than there are separators.
+Words parts_of(std::string_view text, char separator);
+
 /// The whole word as a finite number, or none.
 std::optional<double> finite_number(std::string_view word);
 

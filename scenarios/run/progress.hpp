@@ -1,34 +1,27 @@
 #pragma once
 
-#include <chrono>
 #include <string>
 
+#include "scenarios/run/progress_bar.hpp"
 #include "sim/loop/observer.hpp"
 
 namespace hapbench {
 
-/// A progress bar on standard error for work that takes longer than two seconds; silent otherwise, and when standard
-/// error is no terminal.
+/// The progress bar of one run.
 class Progress final : public Observer {
  public:
-  /// `label` stands before the bar; `steps` is the whole, in steps or in other parts. `enabled` false silences it
-  /// (--quiet).
-  Progress(std::string label, std::uint64_t steps, bool enabled);
-  /// Removes the bar.
-  ~Progress() override;
+  /// `label` stands before the bar; `steps` is the whole. `enabled` false silences it (--quiet).
+  Progress(std::string label, std::uint64_t steps, bool enabled) : bar_(std::move(label), steps, enabled) {}
 
-  void on_step(const StepRecord& record) noexcept override;
-  /// Shows that `done` of the whole are done, if it is time to. For other work than steps.
-  void show(std::uint64_t done) noexcept;
+  void on_step(const StepRecord& record) noexcept override {
+    // Looking at the clock takes longer than some steps.
+    if (bar_.is_on() && record.step % kLookEvery == 0) bar_.show(record.step);
+  }
 
  private:
-  using Clock = std::chrono::steady_clock;
+  static constexpr std::uint64_t kLookEvery = 1024;  // steps
 
-  std::string label_;
-  std::uint64_t steps_;
-  bool enabled_;
-  bool drawn_ = false;
-  Clock::time_point next_;
+  ProgressBar bar_;
 };
 
 }  // namespace hapbench

@@ -119,8 +119,6 @@ RunSummary summarise(const Scenario& scenario, const std::vector<TrialResult>& t
   }
   if (std::holds_alternative<TrackingHandFields>(scenario.hand)) summary.targets = place_metrics(targets);
   summary.work = merged_work(trials);
-  summary.provenance = provenance();
-  summary.scenario_hash = scenario_hash(scenario);
   return summary;
 }
 
@@ -142,10 +140,17 @@ void write_results(const fs::path& directory, const Scenario& scenario, const Ru
 
 RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,
                        const ShellCache& cache, Skips skips) {
+  RunTiming timing;
+  const auto shell = make_shell(loaded.scenario, timed_environment_points(loaded.scenario, cache, timing));
+  return run_with_shell(loaded, shell, output, progress, timing, skips);
+}
+
+RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
+                         const std::optional<fs::path>& output, bool progress, const RunTiming& timing, Skips skips) {
   const Scenario& scenario = loaded.scenario;
   RunReport report;
+  report.timing = timing;
   const std::vector<Trial> trials = trials_of(scenario);
-  const auto shell = make_shell(scenario, timed_environment_points(scenario, cache, report.timing));
   if (output) create_output(*output);
 
   std::optional<StepTimes> times;
@@ -170,6 +175,10 @@ RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::pat
   }
   if (times) report.timing.latency = step_latency(times->nanoseconds(), times->overhead());
   report.summary = summarise(scenario, results, report.targets);
+  if (output) {
+    report.summary.provenance = provenance();
+    report.summary.scenario_hash = scenario_hash(scenario);
+  }
   report.unmet = unmet_expectations(scenario.expect, report.summary);
   report.summary.expected = report.unmet.empty();
   if (output) write_results(*output, scenario, report, results);

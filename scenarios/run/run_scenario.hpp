@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,10 +24,17 @@ struct RunReport {
 
 /// Runs a scenario. With `output`, writes summary.json, scenario.effective.json and what the scenario records into that
 /// directory, which is created, records of several trials into a subdirectory each; each file appears complete or not
-/// at all, the summary last. `progress` allows a progress bar. The environment's shell may come from `cache`. With
-/// skips off, the results are the same but for the counted work. Throws InputError for files it cannot use (before
+/// at all, the summary last; without it, the summary has no provenance and no scenario hash. `progress` allows a
+/// progress bar. The environment's shell may come from `cache`. With skips off, the results are the same but for the
+/// counted work. Throws InputError for files it cannot use (before
 /// anything is written), IoError when writing fails.
 RunReport run_scenario(const LoadedScenario& loaded, const std::optional<std::filesystem::path>& output, bool progress,
                        const ShellCache& cache, Skips skips = Skips::taken);
+
+/// The same in a shell that is there already and that several runs, also at once, may share: make_shell of the
+/// scenario. `timing` says what is known of the shell's making.
+RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
+                         const std::optional<std::filesystem::path>& output, bool progress,
+                         const RunTiming& timing = {}, Skips skips = Skips::taken);
 
 }  // namespace hapbench

@@ -99,7 +99,7 @@ TEST_F(Override, IsCheckedLikeTheFile) {
 
 TEST_F(Override, OutsideAListNamesTheIndicesThatExist) {
   EXPECT_EQ(refusal("environment.groups.2.count=1"),
-            "--set environment.groups.2.count: got list index \"2\"; allowed: 0 ... 1");
+            "environment.groups.2.count: got list index \"2\"; allowed: 0 ... 1");
   for (const char* override : {"environment.groups.-1=1", "environment.groups.x=1", "environment.groups.=1",
                                "environment.groups.99999999999999999999=1", "environment.groups.0x1=1"}) {
     EXPECT_NE(refusal(override).find("allowed: 0 ... 1"), std::string::npos);

@@ -20,6 +20,12 @@ TEST(Usage, ErrorsExitWith2AndSayWhatIsWrongOnStandardError) {
                                                        {"compare"},
                                                        {"stability"},
                                                        {"shell"},
+                                                       {"sweep"},
+                                                       {"sweep", "single_spring"},
+                                                       {"sweep", "single_spring", "--vary"},
+                                                       {"sweep", "single_spring", "--vary", "seed=1", "--jobs", "x"},
+                                                       {"merge"},
+                                                       {"merge", "x.csv"},
                                                        {"describe"},
                                                        {"validate"},
                                                        {"--no-such-option"},
@@ -48,10 +54,12 @@ TEST(Usage, ErrorsExitWith2AndSayWhatIsWrongOnStandardError) {
 TEST(Usage, HelpExitsWith0AndNamesTheCommandsAndExitStatuses) {
   const ProgramRun run = hapbench({"--help"});
   EXPECT_EQ(run.status, 0);
-  for (const char* word : {"run", "compare", "stability", "shell", "list", "describe", "validate", "Exit status"}) {
+  for (const char* word :
+       {"run", "compare", "stability", "sweep", "merge", "shell", "list", "describe", "validate", "Exit status"}) {
     EXPECT_NE(run.out.find(word), std::string::npos) << word;
   }
-  for (const char* command : {"run", "compare", "stability", "shell", "list", "describe", "validate"}) {
+  for (const char* command :
+       {"run", "compare", "stability", "sweep", "merge", "shell", "list", "describe", "validate"}) {
     const ProgramRun help = hapbench({command, "--help"});
     EXPECT_EQ(help.status, 0) << command;
     EXPECT_NE(help.out.find("--quiet"), std::string::npos) << command;
@@ -81,6 +89,7 @@ class OutputDirectory : public testing::Test {
             {"run", "single_spring", "single_damper", "--out", out.string()},
             {"compare", "single_spring", "--algorithms", "mean", "--out", out.string()},
             {"stability", "single_spring", "--out", out.string()},
+            {"sweep", "single_spring", "--vary", "seed=1,2", "--out", out.string()},
             {"shell", "peg_in_hole_2d_mean", "--out", (out / "s.csv").string()}};
   }
   static void expect_all_refused(const fs::path& out, const test::ProgramOptions& options = {}) {

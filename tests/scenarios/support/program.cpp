@@ -68,6 +68,8 @@ pid_t start(const std::filesystem::path& program, const std::vector<std::string>
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
   if (!options.as_root_may && ::geteuid() == 0 && ::prctl(PR_SET_SECUREBITS, SECBIT_NOROOT) != 0) ::_exit(126);
+  // Shells start what runs in the background with it ignored.
+  ::signal(SIGINT, SIG_DFL);
   if (!directory.empty() && ::chdir(directory.c_str()) != 0) ::_exit(127);
   ::execv(argv[0], argv.data());
   ::_exit(127);
@@ -133,6 +135,15 @@ RunningProgram::~RunningProgram() {
 bool RunningProgram::is_running() {
   if (!reaped_ && ::waitpid(process_, nullptr, WNOHANG) == process_) reaped_ = true;
   return !reaped_;
+}
+
+int RunningProgram::end_by(int signal) {
+  if (reaped_) throw std::logic_error("the process has ended");
+  int status = 0;
+  ::kill(process_, signal);
+  ::waitpid(process_, &status, 0);
+  reaped_ = true;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 bool RunningProgram::kill() {

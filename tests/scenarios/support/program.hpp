@@ -51,6 +51,9 @@ class RunningProgram {
   bool is_running();
   /// SIGKILL, and waits for the end. Returns true when that ended it, false when it had ended before.
   bool kill();
+  /// Sends a signal that the process may handle, waits for the end and returns the exit status; -1 when the signal
+  /// ended it.
+  int end_by(int signal);
 
  private:
   int process_;

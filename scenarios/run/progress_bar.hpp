@@ -1,0 +1,40 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace hapbench {
+
+/// A progress bar on standard error for work that takes longer than two seconds; silent otherwise, and when standard
+/// error is no terminal.
+class ProgressBar {
+ public:
+  /// `label` stands before the bar; `enabled` false silences it (--quiet).
+  ProgressBar(std::string label, std::uint64_t total, bool enabled);
+  /// Removes the bar.
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  /// False when nothing will ever be shown.
+  bool is_on() const noexcept { return enabled_; }
+  /// Shows how much is done, now and then. With `counts` also the numbers and the time that is left, if the rest takes
+  /// as long for each as what was done since the bar was made.
+  void show(std::uint64_t done, bool counts = false) noexcept;
+  /// What was done before (by an earlier process), not to be counted as speed.
+  void start_at(std::uint64_t done) noexcept { first_ = done; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::string label_;
+  std::uint64_t total_;
+  std::uint64_t first_ = 0;
+  bool enabled_;
+  bool drawn_ = false;
+  Clock::time_point start_;
+  Clock::time_point next_;
+};
+
+}  // namespace hapbench

@@ -1,0 +1,157 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/file_tree.hpp"
+#include "tests/scenarios/support/program.hpp"
+
+/// Sweeps that are killed or stopped, and go on.
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+using test::hapbench;
+using test::ProgramRun;
+using test::RunningProgram;
+using Words = std::vector<std::string>;
+
+class InterruptedSweep : public testing::Test {
+ protected:
+  /// Some hundred runs of some milliseconds.
+  Words words(const std::string& out, const Words& more = {}, const char* jobs = "2") const {
+    Words words = {"sweep",  "single_spring",
+                   "--set",  "record.trajectory=false",
+                   "--vary", "time.steps=20000:20002:3",
+                   "--vary", "rendering.stiffness_N_per_m=1e3:1e4:60:log",
+                   "--jobs", jobs,
+                   "--out",  (directory_ / out).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  std::string journal_text(const std::string& out) const {
+    const fs::path file = directory_ / out / "sweep.journal";
+    return fs::exists(file) ? test::read_file(file) : "";
+  }
+  std::size_t journal_rows(const std::string& out) const {
+    const std::string text = journal_text(out);
+    const auto lines = std::count(text.begin(), text.end(), '\n');
+    return lines == 0 ? 0 : static_cast<std::size_t>(lines) - 1;
+  }
+  /// Waits until so many rows are in the journal. False when the program ended before.
+  bool wait_for_rows(RunningProgram& sweep, const std::string& out, std::size_t rows) const {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (journal_rows(out) < rows && std::chrono::steady_clock::now() < deadline) {
+      if (!sweep.is_running()) return false;
+      std::this_thread::sleep_for(std::chrono::microseconds(500));
+    }
+    return true;
+  }
+  /// The bytes of a sweep that nobody interrupts.
+  void expect_same_as_uninterrupted(const std::string& out) const {
+    ASSERT_EQ(hapbench(words("whole")).status, 0);
+    test::expect_same_files(directory_ / "whole", directory_ / out);
+  }
+  static constexpr std::size_t kRuns = 180;
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(InterruptedSweep, KilledAgainAndAgainEndsWithTheSameBytes) {
+  std::size_t before = 0;
+  for (const std::size_t rows : {0u, 1u, 40u, 90u, 150u}) {
+    RunningProgram sweep(test::hapbench_program(), words("out", {"--resume"}));
+    ASSERT_TRUE(wait_for_rows(sweep, "out", rows));
+    ASSERT_TRUE(sweep.kill()) << "it had ended before it was killed";
+    EXPECT_FALSE(fs::exists(directory_ / "out/sweep.csv"));
+    EXPECT_GE(journal_rows("out"), before);  // nothing is lost
+    before = journal_rows("out");
+  }
+  const ProgramRun end = hapbench(words("out", {"--resume"}));
+  EXPECT_EQ(end.status, 0) << end.err;
+  EXPECT_NE(end.out.find("\n" + std::to_string(before) + " of the runs were done before\n"), std::string::npos)
+      << end.out;
+  expect_same_as_uninterrupted("out");
+}
+
+TEST_F(InterruptedSweep, GoesOnAfterATornLineWhateverTheJobs) {
+  RunningProgram sweep(test::hapbench_program(), words("out"));
+  ASSERT_TRUE(wait_for_rows(sweep, "out", 20));
+  ASSERT_TRUE(sweep.kill());
+  const std::string text = journal_text("out");
+  const std::size_t rows = journal_rows("out");
+  test::write_plainly(directory_ / "out/sweep.journal", text.substr(0, text.size() - 7));
+  const ProgramRun end = hapbench(words("out", {"--resume"}, "5"));
+  EXPECT_NE(end.out.find("\n" + std::to_string(rows - 1) + " of the runs were done before\n"), std::string::npos)
+      << end.out;
+  expect_same_as_uninterrupted("out");
+}
+
+TEST_F(InterruptedSweep, BeginsAnewWithoutResume) {
+  RunningProgram sweep(test::hapbench_program(), words("out"));
+  ASSERT_TRUE(wait_for_rows(sweep, "out", 20));
+  ASSERT_TRUE(sweep.kill());
+  const ProgramRun end = hapbench(words("out"));
+  EXPECT_EQ(end.out.find("done before"), std::string::npos);
+  expect_same_as_uninterrupted("out");
+}
+
+TEST_F(InterruptedSweep, IsResumedByNoOther) {
+  RunningProgram sweep(test::hapbench_program(), words("out"));
+  ASSERT_TRUE(wait_for_rows(sweep, "out", 20));
+  ASSERT_TRUE(sweep.kill());
+  const auto left = test::files_below(directory_ / "out");
+  for (const Words& more : {Words{"--vary", "seed=1,2"}, Words{"--set", "seed=7"}, Words{"--keep-runs"}}) {
+    Words other = words("out", {"--resume"});
+    other.insert(other.end(), more.begin(), more.end());
+    const ProgramRun run = hapbench(other);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_NE(run.err.find("sweep.journal: is not the journal of this sweep; --resume needs"), std::string::npos)
+        << run.err;
+    EXPECT_EQ(test::lines_of(run.err).size(), 1u);
+  }
+  EXPECT_EQ(test::files_below(directory_ / "out"), left);
+}
+
+TEST_F(InterruptedSweep, StopsCleanlyAtASignalAndGoesOn) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    RunningProgram sweep(test::hapbench_program(), words("out", {"--resume"}));
+    ASSERT_TRUE(wait_for_rows(sweep, "out", signal == SIGINT ? 10 : 80));
+    EXPECT_EQ(sweep.end_by(signal), 128 + signal);
+    EXPECT_LT(journal_rows("out"), kRuns);
+    EXPECT_EQ(journal_text("out").back(), '\n');
+    EXPECT_FALSE(fs::exists(directory_ / "out/sweep.csv"));
+  }
+  EXPECT_EQ(hapbench(words("out", {"--resume"})).status, 0);
+  expect_same_as_uninterrupted("out");
+}
+
+TEST_F(InterruptedSweep, LeavesItsDirectoryToItselfWhileItRuns) {
+  RunningProgram sweep(test::hapbench_program(), words("out"));
+  ASSERT_TRUE(wait_for_rows(sweep, "out", 1));
+  const ProgramRun second = hapbench(words("out"));
+  EXPECT_EQ(second.status, 2);
+  EXPECT_NE(second.err.find("another sweep is writing to this directory"), std::string::npos) << second.err;
+  EXPECT_TRUE(sweep.is_running());
+}
+
+TEST_F(InterruptedSweep, ShardsGoOnInOneDirectory) {
+  for (const char* shard : {"0/2", "1/2"}) {
+    RunningProgram sweep(test::hapbench_program(), words("out", {"--shard", shard}));
+    std::this_thread::sleep_for(std::chrono::milliseconds(60));
+    sweep.kill();
+    EXPECT_EQ(hapbench(words("out", {"--shard", shard, "--resume"})).status, 0);
+  }
+  EXPECT_EQ(
+      hapbench({"merge", (directory_ / "out/sweep_shard_0_of_2.csv").string(),
+                (directory_ / "out/sweep_shard_1_of_2.csv").string(), "--out", (directory_ / "merged.csv").string()})
+          .status,
+      0);
+  ASSERT_EQ(hapbench(words("whole")).status, 0);
+  EXPECT_EQ(test::read_file(directory_ / "merged.csv"), test::read_file(directory_ / "whole/sweep.csv"));
+}
+
+}  // namespace
+}  // namespace hapbench

@@ -1,0 +1,251 @@
+#include <gtest/gtest.h>
+
+#include "results/outcome_names.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/file_tree.hpp"
+#include "tests/scenarios/support/program.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+using test::cells_of;
+using test::hapbench;
+using test::lines_of;
+using test::ProgramRun;
+using test::read_file;
+using Words = std::vector<std::string>;
+
+class SweepCommand : public testing::Test {
+ protected:
+  /// 24 runs in four environments, some of which end early.
+  ProgramRun sweep(const std::string& out, const Words& more = {}) const {
+    Words words = {"sweep",  "peg_in_hole_2d_shaped_stiffness",
+                   "--out",  (directory_ / out).string(),
+                   "--set",  "expect.outcome=[\"completes\",\"leaves_hole\",\"diverges\"]",
+                   "--set",  "expect.metrics={}",
+                   "--vary", "rendering.stiffness_N_per_m=5000:20000:2",
+                   "--vary", "environment.spacing_m=2e-5:5e-5:4:log",
+                   "--vary", "rendering.algorithm=mean,summation,exact_shaping"};
+    words.insert(words.end(), more.begin(), more.end());
+    return hapbench(words);
+  }
+  std::string table(const std::string& out) const { return read_file(directory_ / out / "sweep.csv"); }
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(SweepCommand, HasTheNumbersOfTheRunsAlone) {
+  const ProgramRun run = sweep("a");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  const auto lines = lines_of(table("a"));
+  ASSERT_EQ(lines.size(), 25u);
+  const Words names = cells_of(lines[0]);
+  EXPECT_EQ((Words{names.begin(), names.begin() + 7}),
+            (Words{"index", "rendering.stiffness_N_per_m", "environment.spacing_m", "rendering.algorithm", "outcome",
+                   "expected", "steps"}));
+  EXPECT_EQ(names.back(), "state_hash");
+  const Words cells = cells_of(lines[1 + 12 + 0 + 2]);
+  EXPECT_EQ((Words{cells.begin(), cells.begin() + 4}), (Words{"14", "20000", "2e-05", "exact_shaping"}));
+
+  hapbench({"run", "peg_in_hole_2d_shaped_stiffness", "--out", (directory_ / "run").string(), "--set",
+            "rendering.stiffness_N_per_m=20000", "--set", "environment.spacing_m=2e-05", "--set",
+            "rendering.algorithm=exact_shaping"});
+  const Json summary = Json::parse(read_file(directory_ / "run/summary.json"));
+  EXPECT_EQ(cells[4], summary["outcome"]);
+  EXPECT_EQ(cells[6], std::to_string(summary["steps"].get<int>()));
+  EXPECT_EQ(cells.back(), summary["state_hash"]);
+  for (std::size_t i = 7; i + 1 < names.size(); ++i) {
+    const Json& value = summary["metrics"][names[i]];
+    if (value.is_null()) {
+      EXPECT_EQ(cells[i], "") << names[i];
+    } else {
+      EXPECT_EQ(test::number_in(cells[i]), value.get<double>()) << names[i];
+    }
+  }
+}
+
+TEST_F(SweepCommand, GivesTheSameBytesWhateverTheJobsAndShards) {
+  sweep("whole");
+  const std::string whole = table("whole");
+  for (const char* jobs : {"1", "2", "7"}) {
+    EXPECT_EQ(sweep(std::string("jobs_") + jobs, {"--jobs", jobs}).status, 0);
+    test::expect_same_files(directory_ / "whole", directory_ / (std::string("jobs_") + jobs));
+  }
+  for (int count = 1; count <= 5; ++count) {
+    const std::string n = std::to_string(count), out = "shards_" + n;
+    Words merge = {"merge", "--out", (directory_ / out / "all/merged.csv").string()};
+    for (int i = count - 1; i >= 0; --i) {
+      EXPECT_EQ(sweep(out, {"--shard", std::to_string(i) + "/" + n, "--jobs", std::to_string(1 + i)}).status, 0);
+      merge.push_back((directory_ / out / ("sweep_shard_" + std::to_string(i) + "_of_" + n + ".csv")).string());
+    }
+    const ProgramRun merged = hapbench(merge);
+    EXPECT_EQ(merged.status, 0) << merged.err;
+    EXPECT_EQ(read_file(directory_ / out / "all/merged.csv"), whole) << count;
+  }
+}
+
+TEST_F(SweepCommand, MayHaveMoreShardsThanRuns) {
+  Words merge = {"merge", "--out", (directory_ / "merged.csv").string()};
+  const auto seeds = [&](const Words& more) {
+    Words words = {"sweep", "single_spring", "--vary", "seed=1,2", "--out", directory_.path().string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return hapbench(words);
+  };
+  for (const char* i : {"0", "1", "2"}) {
+    EXPECT_EQ(seeds({"--shard", std::string(i) + "/3"}).status, 0);
+    merge.push_back((directory_ / ("sweep_shard_" + std::string(i) + "_of_3.csv")).string());
+  }
+  EXPECT_EQ(hapbench(merge).status, 0);
+  seeds({});
+  EXPECT_EQ(read_file(directory_ / "merged.csv"), read_file(directory_ / "sweep.csv"));
+}
+
+TEST_F(SweepCommand, MergesNothingThatDoesNotBelongTogether) {
+  const auto seeds = [&](const std::string& out, const std::string& vary, const std::string& shard) {
+    hapbench({"sweep", "single_spring", "--vary", vary, "--out", (directory_ / out).string(), "--shard", shard});
+    return (directory_ / out / ("sweep_shard_" + shard.substr(0, 1) + "_of_2.csv")).string();
+  };
+  const std::string first = seeds("a", "seed=1,2", "0/2"), other = seeds("b", "seed=1,3", "1/2");
+  for (const Words& files : {Words{first}, Words{first, first}, Words{first, other},
+                             Words{first, (directory_ / "missing.csv").string()}, Words{directory_.path().string()}}) {
+    Words words = {"merge", "--out", (directory_ / "out/merged.csv").string()};
+    words.insert(words.end(), files.begin(), files.end());
+    const ProgramRun run = hapbench(words);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(run.out, "");
+    EXPECT_EQ(lines_of(run.err).size(), 1u) << run.err;
+    EXPECT_FALSE(fs::exists(directory_ / "out"));
+  }
+}
+
+TEST_F(SweepCommand, KeepsTheRunsAsRunWritesThem) {
+  // Byte for byte, the counted allocations of a run beside others included.
+  EXPECT_EQ(sweep("a", {"--keep-runs", "--jobs", "4"}).status, 0);
+  Words words = {"run", "peg_in_hole_2d_shaped_stiffness", "--out", (directory_ / "a/run").string()};
+  for (const char* set :
+       {"expect.outcome=[\"completes\",\"leaves_hole\",\"diverges\"]", "expect.metrics={}",
+        "rendering.stiffness_N_per_m=20000", "environment.spacing_m=2e-05", "rendering.algorithm=exact_shaping"}) {
+    words.insert(words.end(), {"--set", set});
+  }
+  hapbench(words);
+  test::expect_same_files(directory_ / "a/runs/000014", directory_ / "a/run");
+  EXPECT_EQ(Json::parse(read_file(directory_ / "a/runs/000014/summary.json"))["work"]["allocations"], 0);
+  EXPECT_TRUE(fs::exists(directory_ / "a/runs/000023/trajectory.csv"));
+  EXPECT_FALSE(fs::exists(directory_ / "a/runs/000024"));
+}
+
+TEST_F(SweepCommand, ReadsMeshesOnSeveralThreads) {
+  test::write_plainly(directory_ / "cube.obj", read_file(fs::path(HAPBENCH_TEST_DATA) / "cube.obj"));
+  test::write_plainly(directory_ / "cube.json",
+                      R"({"time": {"step_s": 0.0005, "steps": 20},
+                          "environment": {"type": "mesh", "file": "cube.obj", "scale": 0.001}})");
+  const auto sweep_cube = [&](const char* out, const char* jobs) {
+    return hapbench({"sweep", (directory_ / "cube.json").string(), "--vary", "environment.scale=0.001:0.002:12",
+                     "--jobs", jobs, "--out", (directory_ / out).string()});
+  };
+  const ProgramRun run = sweep_cube("seven", "7");
+  EXPECT_EQ(run.status, 0) << run.err;
+  sweep_cube("one", "1");
+  EXPECT_EQ(table("seven"), table("one"));
+}
+
+TEST_F(SweepCommand, ShowsTheRunsOfOneFieldAndTheOutcomes) {
+  const Words words = {"sweep", "single_spring_unstable",     "--vary", "rendering.stiffness_N_per_m=1e4,1e8",
+                       "--out", (directory_ / "out").string()};
+  const ProgramRun run = hapbench(words);
+  EXPECT_EQ(run.status, 3);  // one of them does not diverge, which the scenario expects
+  EXPECT_NE(run.err.find("1 of 2 runs did not end as expected, the first: run 0 (rendering.stiffness_N_per_m=10000)\n"),
+            std::string::npos)
+      << run.err;
+  const auto lines = lines_of(run.out);
+  ASSERT_EQ(lines.size(), 11u) << run.out;
+  EXPECT_EQ(lines[0].find("rendering.stiffness_N_per_m  outcome"), 0u);
+  EXPECT_NE(lines[2].find("10000  completes"), std::string::npos);
+  EXPECT_NE(lines[3].find("1e+08  diverges"), std::string::npos);
+  EXPECT_EQ(lines[7], "completes     1            0");
+  EXPECT_EQ(lines[8], "diverges      1            1");
+  Words json_words = words, quiet_words = words;
+  json_words.emplace_back("--json");
+  const Json json = hapbench(json_words).json();
+  EXPECT_EQ(json["runs"], 2);
+  EXPECT_EQ(json["outcomes"], (Json{{"completes", 1}, {"diverges", 1}}));
+  EXPECT_EQ(json["unexpected"], 1);
+  quiet_words.emplace_back("--quiet");
+  EXPECT_EQ(hapbench(quiet_words).out, "");
+}
+
+struct BadSweep {
+  const char* name;
+  Words words;
+  const char* says;
+};
+void PrintTo(const BadSweep& sweep, std::ostream* out) {  // NOLINT: GoogleTest's name
+  *out << sweep.name;
+}
+
+class BadSweeps : public testing::TestWithParam<BadSweep> {};
+
+TEST_P(BadSweeps, AreRefusedInOneLineAndNothingIsWritten) {
+  const test::TemporaryDirectory directory;
+  Words words = {"sweep", "single_spring", "--out", (directory / "out").string()};
+  words.insert(words.end(), GetParam().words.begin(), GetParam().words.end());
+  const ProgramRun run = hapbench(words);
+  EXPECT_EQ(run.status, 2);
+  EXPECT_EQ(run.out, "");
+  EXPECT_EQ(lines_of(run.err).size(), 1u) << run.err;
+  EXPECT_EQ(run.err.find("hapbench: error: "), 0u) << run.err;
+  EXPECT_NE(run.err.find(GetParam().says), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("allowed"), std::string::npos) << run.err;
+  EXPECT_LT(run.err.size(), 2000u);
+  EXPECT_FALSE(fs::exists(directory / "out"));
+}
+
+Words vary(const std::string& text) {
+  return {"--vary", text};
+}
+
+const BadSweep kBadSweeps[] = {
+    {"NoPath", vary("1:2:3"), "--vary \"1:2:3\": has no path"},
+    {"EmptyPath", vary("=1:2:3"), "has no path"},
+    {"NoValue", vary("time.steps="), "got an empty value"},
+    {"EmptyValue", vary("time.steps=1,,2"), "got an empty value"},
+    {"UnknownField", vary("time.stepss=1,2"), "/time/stepss: unknown field; allowed here: "},
+    {"UnknownSection", vary("tyme.steps=1,2"), "/tyme: unknown field"},
+    {"ListIndex", vary("environment.groups.7.count=1,2"), "environment.groups.7.count: got list index \"7\""},
+    {"TwoParts", vary("time.step_s=1:2"), "got 2 parts between colons"},
+    {"FiveParts", vary("time.step_s=1:2:3:log:log"), "got 5 parts between colons"},
+    {"TextForAnEnd", vary("time.step_s=a:2:3"), "got \"a\" for an end of the range"},
+    {"NoEnd", vary("time.step_s=:2:3"), "got \"\" for an end of the range"},
+    {"NaN", vary("time.step_s=nan:2:3"), "got \"nan\" for an end of the range"},
+    {"InfiniteEnd", vary("time.step_s=0:inf:3"), "got \"inf\" for an end of the range"},
+    {"EndBeyondDouble", vary("time.step_s=0:1e999:3"), "got \"1e999\" for an end of the range"},
+    {"OneValue", vary("time.step_s=1e-4:2e-4:1"), "got \"1\" values"},
+    {"NegativeCount", vary("time.step_s=1e-4:2e-4:-5"), "got \"-5\" values"},
+    {"FractionalCount", vary("time.step_s=1e-4:2e-4:2.5"), "got \"2.5\" values"},
+    {"HugeCount", vary("time.step_s=1e-4:2e-4:1000000000000"), "allowed: an integer 2 ... 1000000"},
+    {"NotLog", vary("time.step_s=1e-4:2e-4:5:lin"), "got \"lin\"; allowed: \"log\""},
+    {"LogFromZero", vary("time.step_s=0:2e-4:5:log"), "of a logarithmic range; allowed: numbers > 0"},
+    {"OutOfRange", vary("time.step_s=-0.1:0.1:3"), "/time/step_s: got -0.1"},
+    {"NoInteger", vary("time.steps=1:10:3"), "/time/steps: got 5.5"},
+    {"NoSuchAlgorithm", vary("rendering.algorithm=mean,meen"), "got \"meen\""},
+    {"ListedNumberBeyondDouble", vary("time.step_s=0.1,1e999"), "/time/step_s"},
+    {"Quotes", vary("name=\"a\",b"), "quotes or control characters"},
+    {"LineBreak", vary("name=a\nb,c"), "quotes or control characters"},
+    {"CommaInThePath", vary("a,b=1,2"), "has no path"},
+    {"OneFieldTwice", {"--vary", "seed=1,2", "--vary", "seed=3,4"}, "got \"seed\" twice"},
+    {"TooManyRuns",
+     {"--vary", "seed=1:1000:1000", "--vary", "time.steps=1:1001:1001"},
+     "got a grid of 1001000 runs; allowed: at most 1000000"},
+    {"ShardBeyondTheLast", {"--vary", "seed=1,2", "--shard", "2/2"}, "--shard: got \"2/2\""},
+    {"ShardWithoutCount", {"--vary", "seed=1,2", "--shard", "1"}, "--shard: got \"1\""},
+    {"NegativeJobs", {"--vary", "seed=1,2", "--jobs=-1"}, "--jobs: got -1"},
+    {"TooManyJobs", {"--vary", "seed=1,2", "--jobs", "100000"}, "--jobs: got 100000"},
+    {"BadSet", {"--vary", "seed=1,2", "--set", "time.steps=0"}, "/time/steps: got 0"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Texts, BadSweeps, testing::ValuesIn(kBadSweeps),
+                         [](const auto& sweep) { return std::string(sweep.param.name); });
+
+}  // namespace
+}  // namespace hapbench
