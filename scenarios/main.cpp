@@ -30,6 +30,8 @@ int run_program(int argc, char** argv) {
   add_stability(app, chosen);
   add_sweep(app, chosen);
   add_merge(app, chosen);
+  add_precision(app, chosen);
+  add_reproduce(app, chosen);
   add_shell(app, chosen);
   add_list(app, chosen);
   add_describe(app, chosen);

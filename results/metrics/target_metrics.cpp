@@ -57,7 +57,8 @@ SubjectMean over_subjects(const std::map<std::size_t, SubjectAtPlace>& subjects,
   result.subjects = means.size();
   if (means.empty()) return result;
   const auto n = static_cast<double>(means.size());
-  for (const double mean : means) result.mean += mean / n;
+  for (const double mean : means) result.mean += mean;
+  result.mean /= n;
   if (means.size() < 2) return result;
   double squares = 0.0;
   for (const double mean : means) squares += (mean - result.mean) * (mean - result.mean);

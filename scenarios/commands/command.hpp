@@ -34,6 +34,8 @@ void add_compare(CLI::App& app, Action& chosen);
 void add_stability(CLI::App& app, Action& chosen);
 void add_sweep(CLI::App& app, Action& chosen);
 void add_merge(CLI::App& app, Action& chosen);
+void add_precision(CLI::App& app, Action& chosen);
+void add_reproduce(CLI::App& app, Action& chosen);
 void add_shell(CLI::App& app, Action& chosen);
 void add_list(CLI::App& app, Action& chosen);
 void add_describe(CLI::App& app, Action& chosen);

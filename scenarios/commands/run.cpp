@@ -57,12 +57,14 @@ int run(const RunOptions& options) {
   Table table(columns);
   Json summaries = Json::array();
   const ShellCache cache = shell_cache(options.no_cache);
+  std::string targets;
   int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
     const RunReport report = run_scenario(scenarios[i], directories[i], !options.output.quiet, cache);
     std::vector<std::string> cells = run_cells(report);
     cells.insert(cells.begin(), {report.summary.name, report.summary.algorithm});
     table.add(std::move(cells));
+    targets += targets_text(report);
     summaries.push_back(summary_json(report.summary));
     for (const std::string& unmet : report.unmet) {
       fmt::print(stderr, "hapbench: {}: {}\n", scenarios[i].file.string(), unmet);
@@ -70,7 +72,7 @@ int run(const RunOptions& options) {
     }
   }
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
-  print(options.output, table.text() + fmt::format("\nresults in {}\n", where.string()), summaries);
+  print(options.output, table.text() + targets + fmt::format("\nresults in {}\n", where.string()), summaries);
   return status;
 }
 

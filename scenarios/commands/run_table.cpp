@@ -28,4 +28,21 @@ std::vector<std::string> run_cells(const RunReport& report) {
           significant(1e6 * report.timing.loop / rows, 3)};
 }
 
+std::string targets_text(const RunReport& report) {
+  if (!report.summary.targets) return "";
+  const auto cell = [](const SubjectMean& m, int digits) {
+    return m.subjects == 0 ? "-"
+                           : fmt::format("{} +- {}", significant(m.mean, digits), significant(m.standard_error, 2));
+  };
+  Table table({{"place"}, {"success rate"}, {"completion s"}, {"model force N"}, {"speed mm/s"}});
+  for (const PlaceMetrics& place : *report.summary.targets) {
+    SubjectMean speed = place.speed;
+    speed.mean *= 1e3;
+    speed.standard_error *= 1e3;
+    table.add({std::to_string(place.place), cell(place.success_rate, 3), cell(place.completion_time, 3),
+               cell(place.model_force, 3), cell(speed, 3)});
+  }
+  return fmt::format("\n{}: targets, mean +- standard error over subjects\n\n{}", report.summary.name, table.text());
+}
+
 }  // namespace hapbench

@@ -13,4 +13,8 @@ namespace hapbench {
 std::vector<Table::Column> run_columns();
 std::vector<std::string> run_cells(const RunReport& report);
 
+/// The tables of thesis D.4 for a report with targets: mean and standard error over subjects, a line for each place.
+/// Empty for other reports.
+std::string targets_text(const RunReport& report);
+
 }  // namespace hapbench

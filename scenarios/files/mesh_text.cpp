@@ -34,7 +34,7 @@ std::string quoted(std::string_view word) {
 /// Checks and reduces a text file, line by line. Comments and blank lines are passed over.
 class Reducer {
  public:
-  Reducer(const fs::path& file, std::string_view text) : file_(file), lines_(text) {}
+  Reducer(const fs::path& file, LineReader lines) : file_(file), lines_(lines) {}
 
   std::string obj() {
     int vertices = 0;
@@ -86,16 +86,69 @@ class Reducer {
     }
     for (std::size_t i = 0; i < faces; ++i) {
       if (!next_words()) fail(fmt::format("the file ends before its {} faces; allowed: a complete file", faces));
-      const std::size_t corners = count(0, "corners");
-      if (corners < 3 || words_.size() <= corners)
-        fail(fmt::format("face {}: got {} corners; allowed: at least 3, and as many vertices", i, corners));
-      for (std::size_t k = 1; k <= corners; ++k) count(k, "as a vertex");
-      add("", {words_.begin(), words_.begin() + static_cast<std::ptrdiff_t>(corners) + 1});
+      add_corners(i);
+    }
+    return std::move(reduced_);
+  }
+
+  /// After the header. Each vertex and each face has a line; what stands behind the position or the corners is left
+  /// out.
+  std::string ply(const PlyHeader& header) {
+    for (const PlyHeader::Element& element : header.elements) {
+      const std::size_t entries = *whole_number(element.words[2]);
+      const bool vertex = element.words[1] == "vertex", face = element.words[1] == "face";
+      reduced_ += vertex ? fmt::format(
+                               "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
+                               "property float z\nelement face {}\nproperty list int int vertex_indices\nend_header\n",
+                               entries, face_count(header))
+                         : "";
+      const auto coordinates = vertex ? coordinate_words(element) : std::array<std::size_t, 3>{};
+      for (std::size_t i = 0; i < entries; ++i) {
+        if (!next_words())
+          fail(fmt::format("the file ends before its {} {}; allowed: a complete file", entries,
+                           quoted(element.words[1])));
+        if (vertex) add_ply_vertex(coordinates, element.properties.size());
+        if (face) add_corners(i);
+      }
+      if (face) break;  // the library reads no further either
     }
     return std::move(reduced_);
   }
 
  private:
+  static std::size_t face_count(const PlyHeader& header) {
+    for (const PlyHeader::Element& element : header.elements) {
+      if (element.words[1] == "face") return *whole_number(element.words[2]);
+    }
+    return 0;
+  }
+
+  /// Which words of a vertex's line are x, y and z.
+  static std::array<std::size_t, 3> coordinate_words(const PlyHeader::Element& vertex) {
+    std::array<std::size_t, 3> words{};
+    for (std::size_t i = 0; i < vertex.properties.size(); ++i) {
+      const std::string_view name = vertex.properties[i].words[2];
+      if (name.size() == 1 && name[0] >= 'x' && name[0] <= 'z') words[static_cast<std::size_t>(name[0] - 'x')] = i;
+    }
+    return words;
+  }
+
+  void add_ply_vertex(const std::array<std::size_t, 3>& coordinates, std::size_t properties) {
+    if (words_.size() < properties)
+      fail(fmt::format("got {} values; allowed: the {} of a vertex", words_.size(), properties));
+    words_ = {words_[coordinates[0]], words_[coordinates[1]], words_[coordinates[2]]};
+    add("", position(0));
+  }
+
+  /// The line of face i: how many corners, then as many vertices.
+  void add_corners(std::size_t i) {
+    const std::size_t corners = count(0, "corners");
+    if (corners < 3 || words_.size() <= corners)
+      fail(fmt::format("face {}: got {} corners; allowed: at least 3, and as many vertices", i, corners));
+    for (std::size_t k = 1; k <= corners; ++k) count(k, "as a vertex");
+    add("", {words_.begin(), words_.begin() + static_cast<std::ptrdiff_t>(corners) + 1});
+  }
+
   [[noreturn]] void fail(const std::string& problem) const { fail_in_line(file_, lines_.line(), problem); }
 
   /// Goes to the next line that has words, without its comment.
@@ -179,7 +232,7 @@ MeshText stl_text(const fs::path& file, std::string text) {
   // Binary files may begin with "solid" too; their size tells.
   const std::size_t size = stl_size(text);
   const bool solid = lower_case(text.substr(0, text.find_first_of(" \t\r\n"))) == "solid";
-  if (text.size() != size && solid) return {MeshFormat::stl, Reducer(file, text).stl()};
+  if (text.size() != size && solid) return {MeshFormat::stl, Reducer(file, LineReader(text)).stl()};
   if (text.size() < size)
     fail(file, "is no STL file, or cut short; allowed: \"solid\" and text, or 84 bytes and 50 for each triangle");
   for (std::size_t start = kStlHeader; start < size; start += kStlTriangle) {
@@ -213,7 +266,7 @@ MeshText off_text(const fs::path& file, std::string text) {
                                                       "STOFF", "STCOFF", "STNOFF", "STCNOFF"};
   if (header.empty() || std::find(kKinds.begin(), kKinds.end(), header[0]) == kKinds.end())
     fail_in_line(file, 1, "is not an OFF file; allowed: \"OFF\" in the first line, perhaps with ST, C or N before it");
-  if (header.size() == 1 || header[1] != "BINARY") return {MeshFormat::off, Reducer(file, text).off()};
+  if (header.size() == 1 || header[1] != "BINARY") return {MeshFormat::off, Reducer(file, LineReader(text)).off()};
   if (header[0] != "OFF")
     fail_in_line(file, 1, "allowed for a binary file: no normals, colours or texture coordinates");
   check_binary_off(text, file);
@@ -271,8 +324,7 @@ MeshText ply_text(const fs::path& file, std::string text) {
   LineReader lines(text);
   const PlyHeader header = read_ply_header(lines, file);
   check_ply_header(header, file);
-  // Without an end the library takes the last line for a cut one.
-  if (header.format == PlyFormat::ascii) text += '\n';
+  if (header.format == PlyFormat::ascii) return {MeshFormat::ply, Reducer(file, lines).ply(header)};
   return {MeshFormat::ply, std::move(text)};
 }
 
@@ -284,7 +336,7 @@ MeshText read_mesh_text(const fs::path& file) {
   if (!known) fail(file, "has another extension; allowed: .obj, .ply, .stl or .off");
   std::string text = read_named_file(file);
   if (text.empty()) fail(file, "the file is empty; allowed: a mesh with faces");
-  if (extension == ".obj") return {MeshFormat::obj, Reducer(file, text).obj()};
+  if (extension == ".obj") return {MeshFormat::obj, Reducer(file, LineReader(text)).obj()};
   if (extension == ".ply") return ply_text(file, std::move(text));
   if (extension == ".stl") return stl_text(file, std::move(text));
   return off_text(file, std::move(text));

@@ -40,7 +40,8 @@ TEST(StabilityLimits, OfOneSpringDamperAreThoseOfA3) {
   const auto limits = limits_of(single_spring());
   EXPECT_NEAR(limits.at(StabilityCase::stiffness_undamped).analytic, 1.6e6, 1e-3);
   EXPECT_NEAR(limits.at(StabilityCase::damping_alone).analytic, 400.0, 1e-9);
-  EXPECT_NEAR(limits.at(StabilityCase::stiffness_damped).analytic, 433731.0, 1.0);  // M (2 (sqrt(1 + zeta^2) - zeta))^2 / dt^2
+  EXPECT_NEAR(limits.at(StabilityCase::stiffness_damped).analytic, 433731.0,
+              1.0);  // M (2 (sqrt(1 + zeta^2) - zeta))^2 / dt^2
   EXPECT_NEAR(limits.at(StabilityCase::stiffness_damped).damping_at_limit, 291.6, 0.05);
   expect_three_ways_to_agree(limits);
 }

@@ -22,6 +22,8 @@ void PrintTo(const BadInput& input, std::ostream* out);  // NOLINT: GoogleTest's
 
 /// The minimal scenario of an environment type with `value`, JSON or not, at the pointer.
 std::string with_value(const std::string& environment, const std::string& pointer, const std::string& value);
+/// The minimal scenario of an environment changed by a JSON merge patch (RFC 7386).
+std::string with_patch(const std::string& environment, const std::string& patch);
 
 std::vector<BadInput> malformed_texts();
 std::vector<BadInput> wrong_values();

@@ -82,12 +82,15 @@ std::vector<BadInput> bad_text_meshes() {
            "m.stl, line 5: allowed after \"outer loop\": three vertices"),
       mesh("StlOtherWord", "m.stl", "solid\nsquare 0 0\n", "line 2: got \"square\"; allowed: solid, facet, outer loop"),
       mesh("StlWithoutFacets", "m.stl", "solid x\nendsolid x\n", "has no faces"),
-      mesh("PlyMeshNanVertex", "m.ply", ply("1") + "0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n", kBroken),
-      mesh("PlyMeshWord", "m.ply", ply("1") + "0 0 0\n1 up 0\n0 1 0\n3 0 1 2\n", kBroken),
-      mesh("PlyMeshTooFewFaces", "m.ply", ply("2") + kTriangle + "3 0 1 2\n", kBroken),
+      mesh("PlyMeshNanVertex", "m.ply", ply("1") + "0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n",
+           "got \"nan\"; allowed: a finite number"),
+      mesh("PlyMeshWord", "m.ply", ply("1") + "0 0 0\n1 up 0\n0 1 0\n3 0 1 2\n",
+           "got \"up\"; allowed: a finite number"),
+      mesh("PlyMeshTooFewFaces", "m.ply", ply("2") + kTriangle + "3 0 1 2\n",
+           "the file ends before its 2 \"face\"; allowed: a complete file"),
       mesh("PlyMeshVertexMissing", "m.ply", ply("1") + kTriangle + "3 0 1 3\n", "triangle 0: got vertex 3; allowed:"),
       mesh("PlyMeshNegativeVertex", "m.ply", ply("1") + kTriangle + "3 0 1 -1\n",
-           "triangle 0: got vertex -1; allowed:"),
+           "got \"-1\" as a vertex; allowed: an integer from 0"),
   };
 }
 

@@ -16,6 +16,12 @@ std::string with_value(const std::string& environment, const std::string& pointe
   return text.replace(text.find("\"@@\""), 4, value);
 }
 
+std::string with_patch(const std::string& environment, const std::string& patch) {
+  Json json = minimal_scenario(environment);
+  json.merge_patch(Json::parse(patch));
+  return json.dump();
+}
+
 std::vector<BadInput> malformed_texts() {
   const std::string good = minimal_scenario("plane").dump();
   const std::string syntax = "is not JSON: syntax error at line ";

@@ -8,6 +8,7 @@
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
+#include "tests/scenarios/support/shortened.hpp"
 
 /// Every scenario that comes with the program, run by the program.
 namespace hapbench {
@@ -17,46 +18,46 @@ namespace fs = std::filesystem;
 using test::lines_of;
 using test::ProgramRun;
 
-ProgramRun run_all_into(const fs::path& directory, const fs::path& program = test::hapbench_program()) {
-  std::vector<std::string> arguments = {"run", "--out", directory.string()};
+TEST(BundledScenarios, EndAsTheirExpectBlocksSayAndAllocateNothingInTheirStepLoops) {
+  const test::TemporaryDirectory directory;
+  std::vector<std::string> arguments = {"run", "--out", directory.path().string()};
   for (const BundledScenario& bundled : bundled_scenarios()) arguments.push_back(bundled.file.string());
   test::ProgramOptions options;
   options.patience_s = 280.0;
-  return run_program(program, arguments, options);
-}
-
-TEST(BundledScenarios, EndAsTheirExpectBlocksSay) {
-  const test::TemporaryDirectory directory;
-  const ProgramRun run = run_all_into(directory.path());
+  const ProgramRun run = test::run_program(test::hapbench_program(), arguments, options);
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "");
   for (const BundledScenario& bundled : bundled_scenarios()) {
     const Json summary = Json::parse(test::read_file(directory.path() / bundled.name / "summary.json"));
     EXPECT_EQ(summary["expected"], true) << bundled.name;
     EXPECT_EQ(summary["name"], bundled.name) << "the name in the file is the file's";
-  }
-}
-
-TEST(BundledScenarios, AllocateNothingInTheirStepLoops) {
-  const test::TemporaryDirectory directory;
-  run_all_into(directory.path());
-  for (const BundledScenario& bundled : bundled_scenarios()) {
-    const Json summary = Json::parse(test::read_file(directory.path() / bundled.name / "summary.json"));
     EXPECT_EQ(summary["work"]["allocations"], 0) << bundled.name;
   }
 }
 
+void run_shortened(const BundledScenario& bundled, const fs::path& directory, const fs::path& program) {
+  std::vector<std::string> arguments = {"run", bundled.file.string(), "--out", (directory / bundled.name).string()};
+  const std::vector<std::string> more = test::shortened(bundled);
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const ProgramRun run = test::run_program(program, arguments);
+  EXPECT_EQ(run.status, 0) << bundled.name << ": " << run.err;
+}
+
 TEST(BundledScenarios, GiveTheSameBytesTwice) {
   const test::TemporaryDirectory directory;
-  run_all_into(directory / "a");
-  run_all_into(directory / "b");
+  for (const BundledScenario& bundled : bundled_scenarios()) {
+    run_shortened(bundled, directory / "a", test::hapbench_program());
+    run_shortened(bundled, directory / "b", test::hapbench_program());
+  }
   test::expect_same_files(directory / "a", directory / "b", {"timing.json"});
 }
 
 TEST(BundledScenarios, GiveTheSameBytesInTheScalarBuild) {
   const test::TemporaryDirectory directory;
-  EXPECT_EQ(run_all_into(directory / "simd").status, 0);
-  EXPECT_EQ(run_all_into(directory / "scalar", test::hapbench_scalar_program()).status, 0);
+  for (const BundledScenario& bundled : bundled_scenarios()) {
+    run_shortened(bundled, directory / "simd", test::hapbench_program());
+    run_shortened(bundled, directory / "scalar", test::hapbench_scalar_program());
+  }
   test::expect_same_files(directory / "simd", directory / "scalar", {"timing.json"});
 }
 

@@ -5,6 +5,7 @@
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
+#include "tests/scenarios/support/shortened.hpp"
 
 /// scenario.effective.json reproduces the run it lies beside.
 namespace hapbench {
@@ -15,8 +16,11 @@ using test::hapbench;
 
 /// Runs `scenario`, then the effective scenario of that run, and compares all files.
 void expect_reproduced(const std::string& scenario, const fs::path& directory, const std::string& first,
-                       const std::string& second, const std::vector<std::string>& ignored) {
-  const test::ProgramRun run = hapbench({"run", scenario, "--out", (directory / first).string()});
+                       const std::string& second, const std::vector<std::string>& ignored,
+                       const std::vector<std::string>& more = {}) {
+  std::vector<std::string> arguments = {"run", scenario, "--out", (directory / first).string()};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const test::ProgramRun run = hapbench(arguments);
   ASSERT_EQ(run.status, 0) << run.err;
   const test::ProgramRun again = hapbench(
       {"run", (directory / first / "scenario.effective.json").string(), "--out", (directory / second).string()});
@@ -29,7 +33,7 @@ TEST(EffectiveScenarioFile, ReproducesEveryBundledRun) {
   for (const BundledScenario& bundled : bundled_scenarios()) {
     SCOPED_TRACE(bundled.name);
     const test::TemporaryDirectory directory;
-    expect_reproduced(bundled.name, directory.path(), "a", "b", {"timing.json"});
+    expect_reproduced(bundled.name, directory.path(), "a", "b", {"timing.json"}, test::shortened(bundled));
   }
 }
 

@@ -45,12 +45,14 @@ TEST(EnvironmentPoints, FromTheCacheAreThoseBuiltBitForBit) {
 
 TEST(EnvironmentPoints, AreKeptOnlyWhereBuildingTakesLonger) {
   const test::TemporaryDirectory directory;
-  fs::copy_file(test::data_directory() / "shell.csv", directory / "shell.csv");
+  for (const char* file : {"shell.csv", "cube.obj"}) {
+    fs::copy_file(test::data_directory() / file, directory.path() / file);
+  }
   const ShellCache cache(directory / "cache");
   for (const auto& [name, json] : test::minimal_scenarios()) {
     const Scenario scenario = read_scenario(json, directory.path()).scenario;
     environment_points(scenario, cache);
-    EXPECT_EQ(environment_points(scenario, cache).from_cache, name == "block_with_hole") << name;
+    EXPECT_EQ(environment_points(scenario, cache).from_cache, name == "block_with_hole" || name == "mesh") << name;
   }
 }
 
