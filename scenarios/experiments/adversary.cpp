@@ -30,7 +30,7 @@ class Bench {
         shell_(make_shell(scenario, environment_points(scenario, ShellCache()).points)) {}
 
   RunSummary run(const Trajectory& trajectory) const {
-    TrialResult trial = run_trial(with_trajectory(scenario_, trajectory), shell_, {}, std::nullopt, "");
+    TrialResult trial = run_trial(with_trajectory(scenario_, trajectory), shell_, {}, {});
     RunSummary summary;
     summary.result = trial.result;
     summary.duration = static_cast<double>(trial.result.rows) * scenario_.time.step;
