@@ -3,8 +3,8 @@ import numpy as np
 
 from . import published, style
 
-METRICS = (("force_max_N", "greatest force [N]", 1), ("velocity_total_variation_m_per_s", "total variation of\nvelocity [m/s]", 1),
-           ("depth_max_m", "greatest depth [mm]", 1e3), ("steps", "steps until it leaves", 1))
+METRICS = (("force_max_N", "greatest\nforce [N]", 1), ("velocity_total_variation_m_per_s", "total variation of\nvelocity [m/s]", 1),
+           ("depth_max_m", "greatest\ndepth [mm]", 1e3), ("steps", "steps until\nit leaves", 1))
 
 
 def algorithms(results):
@@ -18,11 +18,11 @@ def algorithms(results):
             ax.plot([scale * metrics[key]], [i], marker=look.marker, color=look.colour, ms=5.5)
         ax = axes[0, 4]
         ends = np.maximum([metrics["ratio_min"], metrics["ratio_max"]], 1e-4)
-        ax.plot(ends, [i, i], color=look.colour, marker="|", ms=6, lw=2)
+        ax.plot(ends, [i, i], color=look.colour, marker="|", ms=9, lw=2.4)
     for ax, (_, title, _) in zip(axes[0], METRICS):
         ax.set(xscale="log", xlabel=title)
     axes[0, 2].set(xscale="linear", xlim=(0, 3.3))
-    axes[0, 4].set(xscale="log", xlabel="stiffness ratio")
+    axes[0, 4].set(xscale="log", xlabel="stiffness\nratio")
     axes[0, 4].axvline(1, color=style.BLACK, lw=0.7, ls="--")
     axes[0, 4].axvline(published.entries()["C4.ratio"]["at_most"], color=style.VERMILION, lw=1, ls=(0, (1, 1.5)))
     axes[0, 0].set_yticks(y, [style.ALGORITHMS[name].label for name in names])
@@ -49,7 +49,7 @@ def discussion(results):
 def draw_over_reduction(ax, results):
     for name, colour, line, label in (("unreduced", style.ORANGE, (0, (4, 1.2)), "all"), ("reduced", style.BLUE, "-", "reduced")):
         rows = results.table(f"thesis/over_reduction_{name}/trajectory.csv")
-        ax.plot(-1e3 * rows["px_m"], np.maximum(rows["rendered"], 0.5), color=colour, ls=line, label=label)
+        ax.plot(-1e3 * rows["px_m"], np.where(rows["rendered"] > 0, rows["rendered"], np.nan), color=colour, ls=line, label=label)
     ax.set(yscale="log", xlabel="way into the groove [mm]", ylabel="rendered contacts", title="over-reduction")
     ax.legend(loc="center right")
 
@@ -59,7 +59,8 @@ def draw_pure_rotation(ax, results):
     ax.plot(rows["time_s"], 1e3 * rows["stored_J"], color=style.BLACK, label="stored")
     ax.plot(rows["time_s"], 1e3 * np.abs(rows["damping_J"]), color=style.BLUE, ls=(0, (4, 1.2)), label="taken by damping")
     ax.set(xlabel="time [s]", ylabel="energy [mJ]", title="pure rotation")
-    ax.legend(loc="upper left", bbox_to_anchor=(0, 0.9))
+    ax.set_ylim(top=1.35 * 1e3 * rows["stored_J"].max())
+    ax.legend(loc="upper left")
 
 
 def draw_parallel_faces(ax, results):

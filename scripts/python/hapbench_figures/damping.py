@@ -29,7 +29,7 @@ def draw_forces(ax, at, direction, spring, damping):
     normal, tangential = original_forces(direction, spring, damping)
     scene.draw_arrow(ax, at, 90 * VELOCITY, style.ORANGE, "v")
     scene.draw_arrow(ax, at, MM_PER_N * normal, style.BLACK, "normal")
-    scene.draw_arrow(ax, at, MM_PER_N * tangential, style.BLUE, "tangential", at=(-6, 7))
+    scene.draw_arrow(ax, at, MM_PER_N * tangential, style.BLUE, "tangential", at=(-38, -14) if abs(direction[0]) < 0.1 else (-6, 7))
 
 
 def draw_flat(ax, scenario):
@@ -71,7 +71,7 @@ def wall_damping(ax, results):
     shaped = [hs.contacts(step).tensor()[0, 0] for step in pick]
     ax.plot(hs.tilt[pick], shaped, color=style.BLACK, marker="o", markevery=9)
     ax.text(0.6, 1.06, "stiffness shaping", ha="right")
-    ax.text(0.36, 0.5, "original", color=style.VERMILION, ha="left")
+    ax.text(0.05, 0.3, "original", color=style.VERMILION, ha="left")
     ax.set(xlabel="tilt [rad]", ylabel="damping across the walls / B", ylim=(-0.03, 1.25), title="damping across the walls")
 
 

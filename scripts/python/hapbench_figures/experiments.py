@@ -27,7 +27,7 @@ def significance(first, second):
     both = np.isfinite(first) & np.isfinite(second)
     difference = (first - second)[both]
     if len(difference) < 2 or np.ptp(difference) == 0:
-        return "no test"
+        return "all differences alike"
     t, p = ttest_rel(first[both], second[both])
     return f"t = {t:.1f}, p {'< 0.001' if p < 0.001 else f'= {p:.3f}'}"
 
@@ -46,7 +46,7 @@ def draw_measure(ax, tables, place, claim, measure):
         both.append(values)
         finite = scale * values[np.isfinite(values)]
         colour, marker = (style.BLUE, "s") if method == "original_averaging" else (style.BLACK, "o")
-        ax.plot(x - 0.24 + np.linspace(-0.05, 0.05, len(finite)), finite, ".", color=style.GREY, ms=3, mec="none")
+        ax.plot(x - 0.24 + np.linspace(-0.05, 0.05, len(finite)), finite, "o", color=style.GREY, ms=2.2, mec="none")
         error = finite.std(ddof=1) / np.sqrt(len(finite)) if len(finite) > 1 else 0
         if len(finite):
             ax.errorbar([x], [finite.mean()], yerr=[error], marker=marker, color=colour, ms=5, capsize=2.5, elinewidth=1.2)
@@ -70,7 +70,8 @@ def experiment(results, task, targets, what):
     for ax, measure in zip(axes[0], MEASURES):
         ax.set_title(measure[2])
     for column in axes.T:
-        column[0].set_ylim(0, 1.3 * max(ax.dataLim.y1 for ax in column))
+        top = 1.3 * max(ax.dataLim.y1 for ax in column)
+        column[0].set_ylim(-0.03 * top, top)
     style.letter(axes[0])
     return figure, (
         f"{what}: success rate (a), completion time (b), model force (c) and velocity (d), original algorithm (DP) against stiffness "

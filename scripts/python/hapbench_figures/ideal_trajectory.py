@@ -32,7 +32,7 @@ def draw_block(ax, environment):
     wall = np.array([[-2.2, 0], [-radius, 0], [-radius, -depth], [radius, -depth], [radius, 0], [2.2, 0], [2.2, -depth - 0.6],
                      [-2.2, -depth - 0.6]])
     ax.add_patch(Polygon(wall, closed=True, facecolor="#EFE8DC", edgecolor="#A08F70", lw=0.8))
-    ax.set(xlim=(-1.5, 1.5), ylim=(-5.4, 0.8), aspect="equal", xlabel="x [mm]", ylabel="height over the mouth [mm]")
+    ax.set(xlim=(-1.65, 1.35), xticks=[-1, 0, 1], ylim=(-5.4, 0.8), aspect="equal", xlabel="x [mm]", ylabel="height over the mouth [mm]")
 
 
 def trajectory(results):
@@ -59,7 +59,7 @@ def trajectory(results):
     distance.set(title="distance to the median line", xlabel="tilt α [rad]", ylabel="distance [mm]")
     section.set_title("section")
     height.legend(loc="lower right", markerscale=1.8)
-    style.note(distance, 0.03, 0.05, "shaded: published, error\nof up to about 0.25 mm", style.VERMILION, va="bottom")
+    style.note(distance, 0.97, 0.9, "shaded: published,\nerror up to about\n0.25 mm", style.VERMILION, ha="right")
     style.letter(axes[0])
     deepest = max(rows["interpenetration_m"].max() for rows in drawn)
     return figure, (

@@ -26,7 +26,7 @@ def shortest_distance_and_normal(results):
         ax.set_title(title)
     style.note(axes[0, 0], 0.02, 0.98, "flipped gradients", "#00694D")
     style.note(axes[0, 0], 0.98, 0.04, "dashed: median line", style.GREY, ha="right", va="bottom")
-    style.note(axes[0, 1], 0.98, 0.98, "too short: the segments end\ninside the tool", style.VERMILION, ha="right")
+    style.note(axes[0, 1], 0.98, 0.14, "too short: the segments end\ninside the tool", style.VERMILION, ha="right")
     style.letter(axes[0])
     return figure, (
         f"Depth and gradient of each contact of a peg tilted by {DEEP} rad, drawn from the point to where it is taken to leave the "
@@ -46,7 +46,7 @@ def gradient_flipping(results):
     axes[0, 1].set_ylabel("")
     ax = axes[0, 2]
     draw_flip_count(ax, sweep)
-    ax.set_title("outward force, flips")
+    ax.set_title("over the tilt")
     style.letter(axes[0])
     return figure, (
         "Gradient flipping of the original algorithm. (a) Shallow: every depth pushes the tool off the wall it touches. (b) Deep: "
@@ -69,7 +69,7 @@ def draw_flip_count(ax, sweep):
     ax.axhline(0, color=style.BLACK, lw=0.7)
     ax.set(xlabel="tilt [rad]", ylabel="share, mean pull", ylim=(-1.05, 0.75))
     ax.text(tilt[-1], share[-1] + 0.05, "flipped", color="#00694D", ha="right", va="bottom")
-    ax.text(tilt[-1], pull[-1] - 0.12, "mean pull", color=style.BLUE, ha="right", va="top")
+    ax.text(0.36, -0.75, "mean pull", color=style.BLUE)
 
 
 def underestimation(results):

@@ -56,9 +56,9 @@ def trajectories(results):
         ax = axes[1, j]
         ax.plot(1e3 * rows["time_s"], rows["vx_m_per_s"], color=look.colour, lw=1)
         ax.plot(1e3 * rows["time_s"], rows["vy_m_per_s"], color=style.SKY, lw=1, ls=(0, (3, 1)))
-        ax.set(xlabel="time [ms]", ylabel="velocity [m/s]", title="velocity of the tip", xlim=(0, 270), ylim=(-0.42, 0.42))
+        ax.set(xlabel="time [ms]", ylabel="velocity [m/s]", title="velocity of the tip", xlim=(0, 270), ylim=(-0.13, 0.27))
         style.note(ax, 0.98, 0.96, f"{reversals} force reversals in {summary['steps']} steps", ha="right")
-    style.note(axes[1, 1], 0.98, 0.05, "solid: x, dashed: y", ha="right", va="bottom")
+    style.note(axes[1, 1], 0.98, 0.72, "solid: x, dashed: y", ha="right", va="bottom")
     style.letter(axes.flat)
     return figure, (
         "A peg as wide as its hole is tilted at constant speed; outlines at six equally spaced times and the trajectory of the tip "
@@ -94,8 +94,8 @@ def redistribution(results):
         ax.set_title(title)
         style.note(ax, 0.02, 0.02, f"total force ({total[0]:.0f}, {total[1]:.0f}) N\nelastic energy "
                    f"{energies[-1] / energies[0]:.2f} of before", va="bottom")
-    style.note(axes[0, 0], 0.98, 0.97, "pushing out", style.VERMILION, ha="right")
-    style.note(axes[0, 0], 0.98, 0.91, "pushing sideways", style.GREY, ha="right")
+    style.note(axes[0, 0], 0.02, 0.97, "pushing out", style.VERMILION)
+    style.note(axes[0, 0], 0.02, 0.91, "pushing sideways", style.GREY)
     axes[0, 1].set_ylabel("")
     style.letter(axes[0])
     return figure, (
@@ -119,7 +119,7 @@ def turned_direction(results):
     sign = np.sign(-rows["fspring_x_N"][[0, -1]])
     axes[0, 1].plot(time[[0, -1]], sign * size, **{k: v for k, v in style.PUBLISHED.items() if k in ("marker", "mfc", "mec", "ms", "mew", "ls")})
     axes[0, 1].set(ylabel="signed depth / depth of a point", xlabel="time [ms]", title="rendered depth", ylim=(-30, 30))
-    style.note(axes[0, 1], 0.5, 0.95, "◇ published: 2n + 1 = 21, then 2n + 3 = 23, turned by 180°", style.VERMILION, ha="center")
+    style.note(axes[0, 0], 0.98, 0.08, "◇ in (b), published: 2n + 1 = 21, then\n2n + 3 = 23, turned by 180°", style.VERMILION, ha="right", va="bottom")
     style.letter(axes[0])
     return figure, (
         "The original algorithm with ten contacts one way and eleven the other, then two more on the first side (B.3.3): the rendered "

@@ -46,8 +46,19 @@ def draw_study(ax, results, study, column, label, scale, time_column, title):
         annotate(ax, study, [row for row, keep in zip(rows, fine) if keep], time[fine], error[fine])
     ax.set(xscale="log", yscale="log", title=title, ylabel=label,
            xlabel="time per simulated second [ms]" if varying_step else f"time of a {'step' if 'step' in time_column else 'call'} [µs]")
-    if ax.get_legend_handles_labels()[1] and study in ("reduction", "spacing"):
-        ax.legend(loc="best", handlelength=2.4)
+    ax.set(xlim=decades(ax.dataLim.x0, ax.dataLim.x1), ylim=decades(ax.dataLim.y0, ax.dataLim.y1))
+    if study in ("reduction", "spacing"):
+        ax.legend(loc="upper right", handlelength=2.4)
+
+
+def decades(low, high):
+    """Powers of ten around a range, with room for a label."""
+    return 10 ** np.floor(np.log10(low)), 10 ** np.ceil(np.log10(1.5 * high))
+
+
+# Beside its mark, where the labels of the algorithms would hide each other.
+PLACES = {"mean": (-4, 3, "right"), "stiffness shaping (HS)": (-4, 1, "right"), "normal projection": (-4, -3, "right"),
+          "exact shaping (ours)": (0, -10, "right"), "virtual coupling": (-4, -3, "right")}
 
 
 def annotate(ax, study, rows, x, y):
@@ -57,8 +68,15 @@ def annotate(ax, study, rows, x, y):
         if i >= len(rows):
             continue
         text = rows[i]["short"]
-        name = style.ALGORITHMS[text].label if study == "algorithms" and text in style.ALGORITHMS else text.replace("dt=", "Δt = ")
-        ax.annotate(name, (x[i], y[i]), xytext=(3, 3), textcoords="offset points", fontsize=6)
+        if study == "algorithms" and text in style.ALGORITHMS:
+            text = style.ALGORITHMS[text].label
+        elif study == "spacing":
+            text = f"{1e3 * float(text):g} mm"
+        elif text.startswith("dt="):
+            text = f"Δt = {1e3 * float(text.removeprefix('dt=')):.3g} ms"
+        dx, dy, side = PLACES.get(text, (3, 3, "left"))
+        label = ax.annotate(text, (x[i], y[i]), xytext=(dx, dy), textcoords="offset points", fontsize=6, ha=side)
+        label.set_in_layout(False)
 
 
 def work_precision(results):
@@ -106,8 +124,10 @@ def draw_latency(ax, name, latency_):
     for key, text in (("p50_s", "median"), ("p99_9_s", "99.9 %")):
         if latency_.get(key):
             ax.axvline(1e6 * latency_[key], color=style.BLACK, lw=0.9, ls=":")
-            ax.annotate(f"{text}\n{1e6 * latency_[key]:.3g} µs", (1e6 * latency_[key], 0.97), xycoords=("data", "axes fraction"),
-                        xytext=(3, 0), textcoords="offset points", fontsize=6.5, va="top")
+            time = 1e6 * latency_[key]
+            ax.annotate(f"{text}\n{time:.{0 if time > 100 else 1}f} µs", (1e6 * latency_[key], 0.97), xycoords=("data", "axes fraction"),
+                        xytext=(-3 if time > deadline else 3, 0), textcoords="offset points", fontsize=6.5, va="top",
+                        ha="right" if time > deadline else "left")
     ax.set(xscale="log", yscale="log", ylabel="steps", title=f"{name}: {latency_['steps']} steps", ylim=(0.5, 20 * count.max()))
     ax.annotate(f"deadline {deadline:.0f} µs", (deadline, 0.5), xycoords=("data", "axes fraction"), xytext=(-3, 0),
                 textcoords="offset points", color=style.VERMILION, fontsize=7, ha="right")

@@ -109,8 +109,8 @@ def stability_map(name):
         figure.supylabel(axis_label(y_name), fontsize=8)
         handles = [style.plt.Rectangle((0, 0), 1, 1, color=c) for c in CLASS_COLOURS]
         handles += [style.plt.Line2D([], [], color=style.BLUE, lw=1.3), style.plt.Line2D([], [], color="black", lw=1, ls=(0, (2, 2)))]
-        figure.legend(handles, [*CLASSES, "limit, theory", "limit, bisection"], loc="lower center", ncol=5,
-                      bbox_to_anchor=(0.5, 1.0))
+        figure.get_layout_engine().set(rect=(0, 0, 1, 0.93))
+        figure.legend(handles, [*CLASSES, "limit, theory", "limit, bisection"], loc="upper center", ncol=5)
         return figure, (
             f"Where a run is stable, vibrates or diverges: {axis_label(y_name)} over {axis_label(x_name)}, every algorithm. Lines: the "
             "limit from theory (blue), where there is one, and found by bisection over simulated runs (dashed). Ours.")

@@ -46,11 +46,11 @@ PUBLISHED = {"marker": "D", "mfc": "white", "mec": VERMILION, "ecolor": VERMILIO
              "mew": 1.2, "elinewidth": 1.2, "capsize": 2.5, "ls": "none", "zorder": 5}
 
 SETTINGS = {
-    "font.family": "DejaVu Sans", "font.size": 8, "axes.titlesize": 8.5, "axes.labelsize": 8, "xtick.labelsize": 7.5,
+    "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "font.size": 8, "axes.titlesize": 8.5, "axes.labelsize": 8, "xtick.labelsize": 7.5,
     "ytick.labelsize": 7.5, "legend.fontsize": 7.5, "legend.frameon": False, "axes.titlelocation": "left",
     "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.7, "axes.grid": True, "grid.color": "#E6E6E6",
     "grid.linewidth": 0.6, "axes.axisbelow": True, "lines.linewidth": 1.3, "lines.markersize": 3.5,
-    "figure.facecolor": "white", "svg.fonttype": "path", "pdf.fonttype": 42, "path.simplify": True,
+    "figure.facecolor": "white", "svg.fonttype": "none", "pdf.fonttype": 42, "path.simplify": True,
     "path.simplify_threshold": 0.5, "figure.constrained_layout.use": True, "agg.path.chunksize": 10000,
 }
 

@@ -131,7 +131,7 @@ def convergence_by_task(results):
         ax.axhline(bound[1], color=style.VERMILION, ls=(0, (1, 1.5)), lw=1)
         ax.errorbar([0.8], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]],
                     **{**style.PUBLISHED, "marker": "none"})
-        ax.set(xscale="log", title=task[2], xlabel="iterations", xlim=(0.7, 200), ylim=(0.55, 1.62))
+        ax.set(xscale="log", title=task[2], xlabel="iterations", xlim=(0.7, 200), ylim=(0.4, 1.62))
         ax.set_xticks([1, 3, 10, 40, 160], ["1", "3", "10", "40", "160"])
         ax.minorticks_off()
     axes[0, 0].set_ylabel("stiffness ratio")
@@ -149,22 +149,23 @@ def convergence(results):
     figure, axes = style.panels(1, 2, 2.7, sharey=True)
     once = published.entries()["R1.once"]
     for ax, (density, name) in zip(axes[0], DENSITIES):
-        greatest, least = quantiles(results, density)
+        greatest, least = quantiles(results, density, TASKS[1:])
         draw_quantiles(ax, greatest, style.BLUE, "o", 4)
         draw_quantiles(ax, least, style.ORANGE, "s", 0)
         ax.axhline(1, color=style.BLACK, ls="--", lw=0.8)
         ax.errorbar([0.85], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]],
                     **{**style.PUBLISHED, "marker": "none"})
-        ax.set(xscale="log", yscale="log", title=f"density: {name}", xlabel="iterations", xlim=(0.75, 200), ylim=(0.6, 1.6))
+        ax.set(xscale="log", yscale="log", title=f"density: {name}", xlabel="iterations", xlim=(0.75, 200), ylim=(0.42, 1.6))
         ax.set_xticks(ITERATIONS, [str(i) if i in (1, 2, 3, 5, 10, 20, 40, 80, 160) else "" for i in ITERATIONS])
-        ax.set_yticks([0.6, 0.7, 0.8, 0.9, 1, 1.2, 1.4, 1.6], ["0.6", "0.7", "0.8", "0.9", "1", "1.2", "1.4", "1.6"])
+        ticks = (0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.2, 1.4, 1.6)
+        ax.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
         ax.minorticks_off()
     axes[0, 0].set_ylabel("stiffness ratio")
     style.note(axes[0, 0], 0.97, 0.95, "greatest: stays above 1 where\na contact's weight vanishes", style.BLUE, ha="right")
     style.note(axes[0, 0], 0.97, 0.06, "least: tends to 1", "#9C6A00", ha="right", va="bottom")
     style.letter(axes[0])
     return figure, (
-        "Convergence of the stiffness ratios over all three tasks, both axes logarithmic: median (marks), 5th to 95th "
+        "Convergence of the stiffness ratios over tasks 2 and 3 (in task 1 they are 1), both axes logarithmic: median (marks), 5th to 95th "
         "percentile (shaded), extreme (dotted); ours. Published: 0.8 to 1.3 after one iteration (vermilion bar), and that the "
         "ratio converges to 1 (dashed). The least ratio does; the greatest does not where a contact's weight tends to zero.")
 
@@ -193,7 +194,7 @@ def positions(results):
             ax.fill_between(time, low, high, color=colour, alpha=0.3, lw=0)
 
     figure, axes = over_time(results, draw, ["position of the tip [mm]"])
-    axes[0, 2].legend(loc="center right", ncol=3, handlelength=2, columnspacing=1)
+    axes[0, 2].legend(loc="center", bbox_to_anchor=(0.5, 0.28), ncol=3, handlelength=2, columnspacing=1)
     return figure, ("Position of the tip over time in the three tasks, ours (signed-distance block). x and y span the top face "
                     f"of the block, whose height is z = 0; the bottom of the hole is at z = -5 mm. {HAND}")
 
@@ -206,10 +207,11 @@ def model_force(results):
         ax.fill_between(time, low, high, color=style.BLUE, alpha=0.45, lw=0)
         ax.plot(time, (low + high) / 2, color=style.BLUE, lw=0.9)
         ax.axhline(published.value("L1.threshold"), color=style.VERMILION, ls="--", lw=0.9)
-        ax.set_ylim(bottom=0)
 
     figure, axes = over_time(results, draw, ["model force [N]"])
-    style.note(axes[0, 0], 0.02, 0.99, "published limit of the input force", style.VERMILION)
+    axes[0, 0].set_ylim(bottom=0)
+    limit = published.value("L1.threshold")
+    axes[0, 0].text(0, 1.03 * limit, "published limit of the input force", color=style.VERMILION, fontsize=7)
     return figure, ("Size of the model force (spring, damping and friction) over time in the three tasks, ours: range in each of "
                     f"{BINS} spans of time. Dashed: the limit of the input force, 2 N (3.5). {HAND}")
 
@@ -229,10 +231,10 @@ def _ratio_over_time(results, column, colour, word):
     labels = [f"{n} iteration{'s' if n > 1 else ''}" for n in chosen]
     figure, axes = over_time(results, draw, labels, height=4.6, rows=len(chosen))
     for ax in axes.flat:
-        ax.set_ylim((0.95, 1.55) if column == "ratio_max" else (0.6, 1.05))
+        ax.set_ylim((0.95, 1.4) if column == "ratio_max" else (0.4, 1.05))
     above = column == "ratio_max"
-    style.note(axes[0, 0], 0.98, 0.95 if above else 0.05, f"published after one:\n{'1.3' if above else '0.8'}", style.VERMILION,
-               ha="right", va="top" if above else "bottom")
+    style.note(axes[0, 0], 0.98, 0.3 if above else 0.1, f"published after one:\n{'1.3' if above else '0.8'}", style.VERMILION,
+               ha="right", va="bottom")
     return figure, (f"The {word} stiffness ratio of a step's contacts over time, after 1, 3, 10 and 160 shaping iterations, ours "
                     f"(signed-distance block): range in each of {BINS} spans of time. Dotted: published {'upper' if above else 'lower'} "
                     f"end after one iteration (C.4.2). {HAND}")
