@@ -61,9 +61,9 @@ def trajectory(results):
     height.legend(loc="lower right", markerscale=1.8)
     style.note(distance, 0.97, 0.9, "shaded: published,\nerror up to about\n0.25 mm", style.VERMILION, ha="right")
     style.letter(axes[0])
-    deepest = max(rows["interpenetration_m"].max() for rows in drawn)
+    low, high = (rows["interpenetration_m"].max() for rows in drawn)
     return figure, (
         "The tip while the drill is rotated to and fro in the hole (task 2) and the ideal trajectory (black), which the exact "
         "geometry of drill and hole allows; ours, a hand that presses with less (green circles) or more (vermilion triangles) "
         "than 2 N, thinned. (a) section, (b) height, (c) distance to the median line. Shaded: the published error of about "
-        f"0.25 mm (Fig. 7, 3.6). The drill overlaps the exact hole by at most {deepest:.2f} mm in the drawn rows.")
+        f"0.25 mm (Fig. 7, 3.6). In the drawn rows the drill overlaps the exact hole by at most {low:.2f} mm below and {high:.2f} mm above 2 N.")
