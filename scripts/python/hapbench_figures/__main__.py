@@ -10,11 +10,16 @@ from .results import BadResult, MissingResult, Results
 
 
 def arguments(argv):
-    parser = argparse.ArgumentParser(prog="figures", description="Draws the figures of the thesis with our data, and ours, as "
-                                     "SVG, PDF and PNG. A figure whose data is missing is skipped, and said so.")
+    parser = argparse.ArgumentParser(
+        prog="figures",
+        description="Draws the figures of the thesis with our data, and ours, as "
+        "SVG, PDF and PNG. A figure whose data is missing is skipped, and said so.",
+    )
     parser.add_argument("results", nargs="?", metavar="RESULTS_DIR", help="results as scripts/reproduce leaves them")
     parser.add_argument("--out", metavar="DIR", help="directory of the figures and of figures.json")
-    parser.add_argument("--only", metavar="ID,…", help="draw these; an id stands for those that begin with it and a hyphen, too")
+    parser.add_argument(
+        "--only", metavar="ID,…", help="draw these; an id stands for those that begin with it and a hyphen, too"
+    )
     parser.add_argument("--list", action="store_true", help="list the figures")
     chosen = parser.parse_args(argv)
     if not chosen.list and not (chosen.results and chosen.out):
@@ -40,8 +45,14 @@ def draw(figure, results, directory):
     results.start()
     drawing, caption = figure.draw(results)
     files = style.save(drawing, figure.stem, directory)
-    return {"id": figure.id, "title": figure.title, "thesis_figure": figure.thesis, "caption": caption, "files": files,
-            "sources": sorted(results.sources)}
+    return {
+        "id": figure.id,
+        "title": figure.title,
+        "thesis_figure": figure.thesis,
+        "caption": caption,
+        "files": files,
+        "sources": sorted(results.sources),
+    }
 
 
 def write_index(directory, entries):
@@ -63,7 +74,10 @@ def main(argv=None):
     try:
         figures = selection(chosen.only)
     except KeyError as error:
-        print(f"figures: --only: no figure {error}; there are {', '.join(f.id for f in catalogue.FIGURES)}", file=sys.stderr)
+        print(
+            f"figures: --only: no figure {error}; there are {', '.join(f.id for f in catalogue.FIGURES)}",
+            file=sys.stderr,
+        )
         return 2
     if chosen.list:
         for figure in figures:

@@ -2,8 +2,21 @@
 from dataclasses import dataclass
 from typing import Callable, Optional
 
-from . import (comparison, corner, damping, experiments, force_limit, ideal_trajectory, median_line, peg_in_hole, performance,
-               springs, stability, stiffness_fields, tasks)
+from . import (
+    comparison,
+    corner,
+    damping,
+    experiments,
+    force_limit,
+    ideal_trajectory,
+    median_line,
+    peg_in_hole,
+    performance,
+    springs,
+    stability,
+    stiffness_fields,
+    tasks,
+)
 
 
 @dataclass(frozen=True)
@@ -53,6 +66,8 @@ FIGURES = (
     Figure("discussion", None, "Cases of the thesis's discussion", comparison.discussion),
     Figure("precision", None, "Work against precision", performance.work_precision),
     Figure("latency", None, "Latency of a step", performance.latency),
-    *(Figure(f"stability-{name}", None, f"Stability over {name.replace('_', ' ')}", stability.stability_map(name))
-      for name in STABILITY_MAPS),
+    *(
+        Figure(f"stability-{name}", None, f"Stability over {name.replace('_', ' ')}", stability.stability_map(name))
+        for name in STABILITY_MAPS
+    ),
 )

@@ -3,8 +3,12 @@ import numpy as np
 
 from . import published, style
 
-METRICS = (("force_max_N", "greatest\nforce [N]", 1), ("velocity_total_variation_m_per_s", "total variation of\nvelocity [m/s]", 1),
-           ("depth_max_m", "greatest\ndepth [mm]", 1e3), ("steps", "steps until\nit leaves", 1))
+METRICS = (
+    ("force_max_N", "greatest\nforce [N]", 1),
+    ("velocity_total_variation_m_per_s", "total variation of\nvelocity [m/s]", 1),
+    ("depth_max_m", "greatest\ndepth [mm]", 1e3),
+    ("steps", "steps until\nit leaves", 1),
+)
 
 
 def algorithms(results):
@@ -29,9 +33,11 @@ def algorithms(results):
     axes[0, 0].set_ylim(-0.6, len(names) - 0.4)
     style.letter(axes[0])
     return figure, (
-        "Every algorithm on the planar peg-in-hole of A.1: (a) greatest force, (b) total variation of velocity, which vibration makes "
-        "large, (c) greatest depth, (d) steps until the peg leaves the hole, few when it is thrown out, (e) range of the stiffness "
-        "ratio; dotted: the published bound of 4 that the actuators set (4.3). Ours.")
+        "Every algorithm on the planar peg-in-hole of A.1: (a) greatest force, (b) total variation of velocity, "
+        "which vibration makes large, (c) greatest depth, (d) steps until the peg leaves the hole, few when it is "
+        "thrown out, (e) range of the stiffness ratio; dotted: the published bound of 4 that the actuators set "
+        "(4.3). Ours."
+    )
 
 
 def discussion(results):
@@ -41,15 +47,26 @@ def discussion(results):
     draw_parallel_faces(axes[0, 2], results)
     style.letter(axes[0])
     return figure, (
-        "Cases that the thesis discusses without figures. (a) Over-reduction (4.1): of a groove's contacts at most one survives the reduction. "
-        "(b) Pure rotation (4.4): the energy stored in the springs returns, and the damping takes nothing. (c) A drill turned "
-        "between two parallel faces (4.6): the depth grows, the force on the drill stays at zero. Ours.")
+        "Cases that the thesis discusses without figures. (a) Over-reduction (4.1): of a groove's contacts at most "
+        "one survives the reduction. (b) Pure rotation (4.4): the energy stored in the springs returns, and the "
+        "damping takes nothing. (c) A drill turned between two parallel faces (4.6): the depth grows, the force on "
+        "the drill stays at zero. Ours."
+    )
 
 
 def draw_over_reduction(ax, results):
-    for name, colour, line, label in (("unreduced", style.ORANGE, (0, (4, 1.2)), "all"), ("reduced", style.BLUE, "-", "reduced")):
+    for name, colour, line, label in (
+        ("unreduced", style.ORANGE, (0, (4, 1.2)), "all"),
+        ("reduced", style.BLUE, "-", "reduced"),
+    ):
         rows = results.table(f"thesis/over_reduction_{name}/trajectory.csv")
-        ax.plot(-1e3 * rows["px_m"], np.where(rows["rendered"] > 0, rows["rendered"], np.nan), color=colour, ls=line, label=label)
+        ax.plot(
+            -1e3 * rows["px_m"],
+            np.where(rows["rendered"] > 0, rows["rendered"], np.nan),
+            color=colour,
+            ls=line,
+            label=label,
+        )
     ax.set(yscale="log", xlabel="way into the groove [mm]", ylabel="rendered contacts", title="over-reduction")
     ax.legend(loc="center right")
 
@@ -57,7 +74,9 @@ def draw_over_reduction(ax, results):
 def draw_pure_rotation(ax, results):
     rows = results.table("thesis/pure_rotation/energy.csv")
     ax.plot(rows["time_s"], 1e3 * rows["stored_J"], color=style.BLACK, label="stored")
-    ax.plot(rows["time_s"], 1e3 * np.abs(rows["damping_J"]), color=style.BLUE, ls=(0, (4, 1.2)), label="taken by damping")
+    ax.plot(
+        rows["time_s"], 1e3 * np.abs(rows["damping_J"]), color=style.BLUE, ls=(0, (4, 1.2)), label="taken by damping"
+    )
     ax.set(xlabel="time [s]", ylabel="energy [mJ]", title="pure rotation")
     ax.set_ylim(top=1.35 * 1e3 * rows["stored_J"].max())
     ax.legend(loc="upper left")

@@ -3,8 +3,10 @@ import numpy as np
 
 from . import style
 
-STROKES = (("corner_normal_projection", style.VERMILION, "-", "normal projection"),
-           ("corner_shaped_stiffness", style.BLACK, (0, (4, 1.2)), "shortest distance"))
+STROKES = (
+    ("corner_normal_projection", style.VERMILION, "-", "normal projection"),
+    ("corner_shaped_stiffness", style.BLACK, (0, (4, 1.2)), "shortest distance"),
+)
 
 
 def corner(results):
@@ -25,6 +27,8 @@ def corner(results):
     axes[0, 1].legend(loc="upper left", handlelength=1.5, fontsize=6.5, borderaxespad=0.1)
     style.letter(axes[0])
     return figure, (
-        "An upright drill is moved steadily against the wall of the hole, near its mouth. With normal projection (solid) the depth of a "
-        "point near the rim is at once as large as the way along its normal out of the drill, and the force jumps in a single step; "
-        "with the shortest distance (dashed) it grows from zero. (a) Force, (b) greatest depth, (c) change from step to step. Ours.")
+        "An upright drill is moved steadily against the wall of the hole, near its mouth. With normal projection "
+        "(solid) the depth of a point near the rim is at once as large as the way along its normal out of the "
+        "drill, and the force jumps in a single step; with the shortest distance (dashed) it grows from zero. (a) "
+        "Force, (b) greatest depth, (c) change from step to step. Ours."
+    )

@@ -29,7 +29,9 @@ def draw_forces(ax, at, direction, spring, damping):
     normal, tangential = original_forces(direction, spring, damping)
     scene.draw_arrow(ax, at, 90 * VELOCITY, style.ORANGE, "v")
     scene.draw_arrow(ax, at, MM_PER_N * normal, style.BLACK, "normal")
-    scene.draw_arrow(ax, at, MM_PER_N * tangential, style.BLUE, "tangential", at=(-38, -14) if abs(direction[0]) < 0.1 else (-6, 7))
+    scene.draw_arrow(
+        ax, at, MM_PER_N * tangential, style.BLUE, "tangential", at=(-38, -14) if abs(direction[0]) < 0.1 else (-6, 7)
+    )
 
 
 def draw_flat(ax, scenario):
@@ -72,7 +74,9 @@ def wall_damping(ax, results):
     ax.plot(hs.tilt[pick], shaped, color=style.BLACK, marker="o", markevery=9)
     ax.text(0.6, 1.06, "stiffness shaping", ha="right")
     ax.text(0.05, 0.3, "original", color=style.VERMILION, ha="left")
-    ax.set(xlabel="tilt [rad]", ylabel="damping across the walls / B", ylim=(-0.03, 1.25), title="damping across the walls")
+    ax.set(
+        xlabel="tilt [rad]", ylabel="damping across the walls / B", ylim=(-0.03, 1.25), title="damping across the walls"
+    )
 
 
 def implicit_plane(results):
@@ -83,8 +87,10 @@ def implicit_plane(results):
     wall_damping(axes[0, 2], results)
     style.letter(axes[0])
     return figure, (
-        "Damping of the original algorithm. Its spring force defines one implicit plane (dark red); normal damping (black) acts across "
-        "it, tangential damping (blue) along it, against the velocity (orange). (a) On a flat the plane is parallel to the surface. (b) In "
-        "a hole it is parallel to neither wall. (c) What damping remains across the walls while the peg is tilted, in units of "
-        "B: u_x^2 of the rendered direction for the original, S_xx for stiffness shaping, which keeps about the B that it should. "
-        "Ours: (a) from the formulas of B.2, (b, c) from hapbench's contacts; the velocity is made up, friction of Table A.1.")
+        "Damping of the original algorithm. Its spring force defines one implicit plane (dark red); normal damping "
+        "(black) acts across it, tangential damping (blue) along it, against the velocity (orange). (a) On a flat "
+        "the plane is parallel to the surface. (b) In a hole it is parallel to neither wall. (c) What damping "
+        "remains across the walls while the peg is tilted, in units of B: u_x^2 of the rendered direction for the "
+        "original, S_xx for stiffness shaping, which keeps about the B that it should. Ours: (a) from the formulas "
+        "of B.2, (b, c) from hapbench's contacts; the velocity is made up, friction of Table A.1."
+    )

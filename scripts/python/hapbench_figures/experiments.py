@@ -7,8 +7,12 @@ from scipy.stats import ttest_rel
 from . import published, style
 from .results import numbers
 
-MEASURES = (("success", "removed", "success rate", 1), ("time", "time_s", "completion time [s]", 1),
-            ("force", "model_force_N", "model force [N]", 1), ("speed", "speed_m_per_s", "velocity [mm/s]", 1e3))
+MEASURES = (
+    ("success", "removed", "success rate", 1),
+    ("time", "time_s", "completion time [s]", 1),
+    ("force", "model_force_N", "model force [N]", 1),
+    ("speed", "speed_m_per_s", "velocity [mm/s]", 1e3),
+)
 METHODS = (("original_averaging", "DP"), ("shaped_stiffness", "HS"))
 
 
@@ -49,15 +53,24 @@ def draw_measure(ax, tables, place, claim, measure):
         ax.plot(x - 0.24 + np.linspace(-0.05, 0.05, len(finite)), finite, "o", color=style.GREY, ms=2.2, mec="none")
         error = finite.std(ddof=1) / np.sqrt(len(finite)) if len(finite) > 1 else 0
         if len(finite):
-            ax.errorbar([x], [finite.mean()], yerr=[error], marker=marker, color=colour, ms=5, capsize=2.5, elinewidth=1.2)
+            ax.errorbar(
+                [x], [finite.mean()], yerr=[error], marker=marker, color=colour, ms=5, capsize=2.5, elinewidth=1.2
+            )
         id_ = f"{claim}.{name}.{method}"
         ax.errorbar([x + 0.24], [scale * published.value(id_)], yerr=[scale * published.spread(id_)], **style.PUBLISHED)
     ax.set_xlim(-0.5, 1.5)
     ax.set_xticks([0, 1], [short for _, short in METHODS])
     ax.grid(axis="x", visible=False)
     ax.text(0.03, 0.985, f"ours: {significance(*both)}", transform=ax.transAxes, fontsize=6, va="top")
-    ax.text(0.03, 0.915, f"publ.: {published_test(f'{claim}.{name}')}", transform=ax.transAxes, fontsize=6, va="top",
-            color=style.VERMILION)
+    ax.text(
+        0.03,
+        0.915,
+        f"publ.: {published_test(f'{claim}.{name}')}",
+        transform=ax.transAxes,
+        fontsize=6,
+        va="top",
+        color=style.VERMILION,
+    )
 
 
 def experiment(results, task, targets, what):
@@ -74,17 +87,24 @@ def experiment(results, task, targets, what):
         column[0].set_ylim(-0.03 * top, top)
     style.letter(axes[0])
     return figure, (
-        f"{what}: success rate (a), completion time (b), model force (c) and velocity (d), original algorithm (DP) against stiffness "
-        "shaping (HS). Filled marks: ours, mean and standard error over six simulated subjects (grey dots: their means), whose "
-        "parameters were fixed before any result was seen. Hollow diamonds: published mean and standard error of six people. Paired t-tests "
-        "over the subjects that have both values. A simulated subject shows the dynamics, not what people feel or learn.")
+        f"{what}: success rate (a), completion time (b), model force (c) and velocity (d), original algorithm (DP) "
+        "against stiffness shaping (HS). Filled marks: ours, mean and standard error over six simulated subjects "
+        "(grey dots: their means), whose parameters were fixed before any result was seen. Hollow diamonds: "
+        "published mean and standard error of six people. Paired t-tests over the subjects that have both values. A "
+        "simulated subject shows the dynamics, not what people feel or learn."
+    )
 
 
 def vertical(results):
-    return experiment(results, "vertical", ((1, "D1", "side target (0.52 mm)"), (0, "D2", "central target")),
-                      "Vertical peg-in-hole task")
+    return experiment(
+        results,
+        "vertical",
+        ((1, "D1", "side target (0.52 mm)"), (0, "D2", "central target")),
+        "Vertical peg-in-hole task",
+    )
 
 
 def rotational(results):
-    return experiment(results, "rotational", ((0, "D3", "target at 3 mm"), (1, "D4", "target at 4 mm")),
-                      "Rotational peg-in-hole task")
+    return experiment(
+        results, "rotational", ((0, "D3", "target at 3 mm"), (1, "D4", "target at 4 mm")), "Rotational peg-in-hole task"
+    )

@@ -23,8 +23,12 @@ def force_limit(results):
     ax.set(xlabel="measured force [N]", ylabel="displacement into the flat [mm]", xlim=(0.5, 5.8), ylim=(-0.01, 0.27))
     ax.text(4.0, 0.19, "without limit", color="#9C6A00", ha="right")
     ax.text(4.2, 0.113, "input force limited to 2 N", color=style.BLUE)
-    ax.text(threshold + 0.05, 0.245, "published: 2.7 N measured = 2.0 N + 0.7 N weight", color=style.VERMILION, fontsize=7)
+    ax.text(
+        threshold + 0.05, 0.245, "published: 2.7 N measured = 2.0 N + 0.7 N weight", color=style.VERMILION, fontsize=7
+    )
     return figure, (
-        "Displacement of the tip into a flat against the measured force, without (orange triangles) and with (blue circles) the "
-        "limit of the input force; ours, a scripted hand that presses up to 5 N. Black: the ideal, (force - 0.7 N)/K. Dotted: the "
-        "published threshold of 2.7 N measured force, 2.0 N plus 0.7 N of weight (3.5).")
+        "Displacement of the tip into a flat against the measured force, without (orange triangles) and with (blue "
+        "circles) the limit of the input force; ours, a scripted hand that presses up to 5 N. Black: the ideal, "
+        "(force - 0.7 N)/K. Dotted: the published threshold of 2.7 N measured force, 2.0 N plus 0.7 N of weight "
+        "(3.5)."
+    )

@@ -4,8 +4,10 @@ from matplotlib.patches import Polygon
 
 from . import published, style
 
-RUNS = (("ideal_trajectory_low_force", style.GREEN, "o", "hand force below 2 N"),
-        ("ideal_trajectory_high_force", style.VERMILION, "^", "above 2 N"))
+RUNS = (
+    ("ideal_trajectory_low_force", style.GREEN, "o", "hand force below 2 N"),
+    ("ideal_trajectory_high_force", style.VERMILION, "^", "above 2 N"),
+)
 EVERY = 120  # rows: a drawn mark of every row could not be told from its neighbours
 
 
@@ -29,10 +31,27 @@ def ideal(rows_list):
 
 def draw_block(ax, environment):
     radius, depth = 500 * environment["hole_diameter_m"], 1e3 * environment["hole_depth_m"]
-    wall = np.array([[-2.2, 0], [-radius, 0], [-radius, -depth], [radius, -depth], [radius, 0], [2.2, 0], [2.2, -depth - 0.6],
-                     [-2.2, -depth - 0.6]])
+    wall = np.array(
+        [
+            [-2.2, 0],
+            [-radius, 0],
+            [-radius, -depth],
+            [radius, -depth],
+            [radius, 0],
+            [2.2, 0],
+            [2.2, -depth - 0.6],
+            [-2.2, -depth - 0.6],
+        ]
+    )
     ax.add_patch(Polygon(wall, closed=True, facecolor="#EFE8DC", edgecolor="#A08F70", lw=0.8))
-    ax.set(xlim=(-1.65, 1.35), xticks=[-1, 0, 1], ylim=(-5.4, 0.8), aspect="equal", xlabel="x [mm]", ylabel="height over the mouth [mm]")
+    ax.set(
+        xlim=(-1.65, 1.35),
+        xticks=[-1, 0, 1],
+        ylim=(-5.4, 0.8),
+        aspect="equal",
+        xlabel="x [mm]",
+        ylabel="height over the mouth [mm]",
+    )
 
 
 def trajectory(results):
@@ -63,7 +82,9 @@ def trajectory(results):
     style.letter(axes[0])
     low, high = (rows["interpenetration_m"].max() for rows in drawn)
     return figure, (
-        "The tip while the drill is rotated to and fro in the hole (task 2) and the ideal trajectory (black), which the exact "
-        "geometry of drill and hole allows; ours, a hand that presses with less (green circles) or more (vermilion triangles) "
-        "than 2 N, thinned. (a) section, (b) height, (c) distance to the median line. Shaded: the published error of about "
-        f"0.25 mm (Fig. 7, 3.6). In the drawn rows the drill overlaps the exact hole by at most {low:.2f} mm below and {high:.2f} mm above 2 N.")
+        "The tip while the drill is rotated to and fro in the hole (task 2) and the ideal trajectory (black), which "
+        "the exact geometry of drill and hole allows; ours, a hand that presses with less (green circles) or more "
+        "(vermilion triangles) than 2 N, thinned. (a) section, (b) height, (c) distance to the median line. Shaded: "
+        "the published error of about 0.25 mm (Fig. 7, 3.6). In the drawn rows the drill overlaps the exact hole by "
+        f"at most {low:.2f} mm below and {high:.2f} mm above 2 N."
+    )

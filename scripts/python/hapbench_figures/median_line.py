@@ -29,9 +29,11 @@ def shortest_distance_and_normal(results):
     style.note(axes[0, 1], 0.98, 0.14, "too short: the segments end\ninside the tool", style.VERMILION, ha="right")
     style.letter(axes[0])
     return figure, (
-        f"Depth and gradient of each contact of a peg tilted by {DEEP} rad, drawn from the point to where it is taken to leave the "
-        "tool. (a) Shortest distance: beyond the median line (dashed) the gradients flip (green). (b) The same depths along the "
-        "inverse surface normal: no gradient flips, but the depth is underestimated. Ours; the pose is prescribed.")
+        f"Depth and gradient of each contact of a peg tilted by {DEEP} rad, drawn from the point to where it is "
+        "taken to leave the tool. (a) Shortest distance: beyond the median line (dashed) the gradients flip "
+        "(green). (b) The same depths along the inverse surface normal: no gradient flips, but the depth is "
+        "underestimated. Ours; the pose is prescribed."
+    )
 
 
 def gradient_flipping(results):
@@ -49,10 +51,11 @@ def gradient_flipping(results):
     ax.set_title("over the tilt")
     style.letter(axes[0])
     return figure, (
-        "Gradient flipping of the original algorithm. (a) Shallow: every depth pushes the tool off the wall it touches. (b) Deep: "
-        "points beyond the median line (dashed) have flipped gradients (green). Blue: direction and size of the spring force. (c) Over the "
-        "tilt: share of flipped gradients, and the mean of each contact's pull towards its wall, -1 when all push off, +1 when all pull "
-        "in. Ours; the pose is prescribed.")
+        "Gradient flipping of the original algorithm. (a) Shallow: every depth pushes the tool off the wall it "
+        "touches. (b) Deep: points beyond the median line (dashed) have flipped gradients (green). Blue: direction "
+        "and size of the spring force. (c) Over the tilt: share of flipped gradients, and the mean of each "
+        "contact's pull towards its wall, -1 when all push off, +1 when all pull in. Ours; the pose is prescribed."
+    )
 
 
 def draw_flip_count(ax, sweep):
@@ -75,16 +78,19 @@ def draw_flip_count(ax, sweep):
 def underestimation(results):
     figure, axes = style.panels(1, 3, 3.0, gridspec_kw={"width_ratios": [0.85, 0.85, 1.3]})
     for ax, name, title in ((axes[0, 0], SHORTEST, "shortest distance"), (axes[0, 1], NORMAL, "surface normal")):
-        draw_contacts(ax, scene.Sweep(results, name), 0.3, (style.BLACK if name == SHORTEST else style.ORANGE, style.GREEN))
+        draw_contacts(
+            ax, scene.Sweep(results, name), 0.3, (style.BLACK if name == SHORTEST else style.ORANGE, style.GREEN)
+        )
         ax.set_title(title)
     axes[0, 1].set_ylabel("")
     draw_error(axes[0, 2], scene.Sweep(results, NORMAL))
     style.letter(axes[0])
     return figure, (
-        "(a) Shortest distance, (b) inverse surface normal (orange) at a tilt of 0.3 rad. (c) How much the depth of (b) falls short of the "
-        "distance to the tool's surface along the same direction, for every contact of a peg tilted from 0 to 0.6 rad; the tilt is the "
-        "brightness. Dotted: the published depth of 0.25 mm, below which the error is called negligible (4.2). Points whose exit is the "
-        "far end of the tool are left out. Ours.")
+        "(a) Shortest distance, (b) inverse surface normal (orange) at a tilt of 0.3 rad. (c) How much the depth of "
+        "(b) falls short of the distance to the tool's surface along the same direction, for every contact of a peg "
+        "tilted from 0 to 0.6 rad; the tilt is the brightness. Dotted: the published depth of 0.25 mm, below which "
+        "the error is called negligible (4.2). Points whose exit is the far end of the tool are left out. Ours."
+    )
 
 
 def draw_error(ax, sweep):
@@ -100,5 +106,10 @@ def draw_error(ax, sweep):
     marks = ax.scatter(1e3 * true, 1e3 * (true - used), c=tilt, cmap="cividis", s=6, linewidths=0, rasterized=True)
     ax.figure.colorbar(marks, ax=ax, label="tilt [rad]", shrink=0.9)
     ax.axvline(1e3 * published.entries()["G1.negligible"]["at_most"], color=style.VERMILION, ls=(0, (1, 1.5)))
-    ax.set(xlabel="distance along the normal [mm]", ylabel="depth too small by [mm]", title="underestimation", xlim=(0, 1.3),
-           ylim=(-0.02, 0.85))
+    ax.set(
+        xlabel="distance along the normal [mm]",
+        ylabel="depth too small by [mm]",
+        title="underestimation",
+        xlim=(0, 1.3),
+        ylim=(-0.02, 0.85),
+    )

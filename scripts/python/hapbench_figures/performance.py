@@ -26,10 +26,13 @@ def series(rows):
 
 
 def with_times(results, study):
-    """Rows of a study with the time of its setting; the time is counted per simulated second where a step's length varies."""
+    """Rows of a study, each with the time of its setting."""
     times = {row["setting"]: row for row in results.records(f"precision/precision_{study}_timing.csv")}
-    return [{**row, **times[row["setting"]]} for row in results.records(f"precision/precision_{study}.csv")
-            if row["setting"] in times]
+    return [
+        {**row, **times[row["setting"]]}
+        for row in results.records(f"precision/precision_{study}.csv")
+        if row["setting"] in times
+    ]
 
 
 def draw_study(ax, results, study, column, label, scale, time_column, title):
@@ -40,12 +43,29 @@ def draw_study(ax, results, study, column, label, scale, time_column, title):
             time = 1e3 * time / numbers(rows, "step_s")
         else:
             time = 1e6 * time
-        fine = np.array([row["outcome"] == "completes" for row in rows]) & (error > 0) & (error < 10 if study == "algorithms" else True)
-        ax.plot(time[fine], error[fine], color=colour, marker=marker, ls="none" if study == "algorithms" else line,
-                label=name.replace("_", " ") or None)
+        fine = (
+            np.array([row["outcome"] == "completes" for row in rows])
+            & (error > 0)
+            & (error < 10 if study == "algorithms" else True)
+        )
+        ax.plot(
+            time[fine],
+            error[fine],
+            color=colour,
+            marker=marker,
+            ls="none" if study == "algorithms" else line,
+            label=name.replace("_", " ") or None,
+        )
         annotate(ax, study, [row for row, keep in zip(rows, fine) if keep], time[fine], error[fine])
-    ax.set(xscale="log", yscale="log", title=title, ylabel=label,
-           xlabel="time per simulated second [ms]" if varying_step else f"time of a {'step' if 'step' in time_column else 'call'} [µs]")
+    ax.set(
+        xscale="log",
+        yscale="log",
+        title=title,
+        ylabel=label,
+        xlabel="time per simulated second [ms]"
+        if varying_step
+        else f"time of a {'step' if 'step' in time_column else 'call'} [µs]",
+    )
     ax.set(xlim=decades(ax.dataLim.x0, ax.dataLim.x1), ylim=decades(ax.dataLim.y0, ax.dataLim.y1))
     if study in ("reduction", "spacing"):
         ax.legend(loc="upper right", handlelength=2.4)
@@ -57,8 +77,13 @@ def decades(low, high):
 
 
 # Beside its mark, where the labels of the algorithms would hide each other.
-PLACES = {"mean": (-4, 3, "right"), "stiffness shaping (HS)": (-4, 1, "right"), "normal projection": (-4, -3, "right"),
-          "exact shaping (ours)": (0, -10, "right"), "virtual coupling": (-4, -3, "right")}
+PLACES = {
+    "mean": (-4, 3, "right"),
+    "stiffness shaping (HS)": (-4, 1, "right"),
+    "normal projection": (-4, -3, "right"),
+    "exact shaping (ours)": (0, -10, "right"),
+    "virtual coupling": (-4, -3, "right"),
+}
 
 
 def annotate(ax, study, rows, x, y):
@@ -85,10 +110,12 @@ def work_precision(results):
         draw_study(ax, results, *study)
     style.letter(axes.flat)
     return figure, (
-        "Work against precision in six studies: error over run time on one core, a mark for each setting, first and last named. (a, b) "
-        "time step, error against the finest one; (c) shaping iterations against exact shaping; (d) threshold of the reduction against "
-        "all points and exact shaping; (e) spacing of the block's points and (f) force algorithms against the ideal trajectory of 3.6. "
-        "Left out: settings that diverged, were off by more than 10 mm or have no error. Ours; run times are this machine's.")
+        "Work against precision in six studies: error over run time on one core, a mark for each setting, first and "
+        "last named. (a, b) time step, error against the finest one; (c) shaping iterations against exact shaping; "
+        "(d) threshold of the reduction against all points and exact shaping; (e) spacing of the block's points and "
+        "(f) force algorithms against the ideal trajectory of 3.6. Left out: settings that diverged, were off by "
+        "more than 10 mm or have no error. Ours; run times are this machine's."
+    )
 
 
 def latency(results):
@@ -105,9 +132,10 @@ def latency(results):
         draw_latency(ax, name, timing["step_latency"])
     axes[-1, 0].set_xlabel("time of a step [µs]")
     return figure, (
-        "How long the steps of a run took: histogram of wall times, both axes logarithmic, with median and 99.9th percentile (dotted). "
-        "Vermilion: the deadline of a haptic loop at 2048 Hz, the published rate (3.1). Steps beyond it were late, on a machine "
-        "without a real-time system. Ours.")
+        "How long the steps of a run took: histogram of wall times, both axes logarithmic, with median and 99.9th "
+        "percentile (dotted). Vermilion: the deadline of a haptic loop at 2048 Hz, the published rate (3.1). Steps "
+        "beyond it were late, on a machine without a real-time system. Ours."
+    )
 
 
 def draw_latency(ax, name, latency_):
@@ -118,16 +146,45 @@ def draw_latency(ax, name, latency_):
     low = np.maximum(low, high / 2)  # the first bin may begin at zero, which has no place on this axis
     deadline = 1e6 / published.value("T4.rate")
     late = low >= deadline
-    ax.bar(low, np.maximum(count, 0), width=high - low, align="edge", color=np.where(late, style.ORANGE, style.SKY), edgecolor="white",
-           lw=0.5, bottom=0.5)
+    ax.bar(
+        low,
+        np.maximum(count, 0),
+        width=high - low,
+        align="edge",
+        color=np.where(late, style.ORANGE, style.SKY),
+        edgecolor="white",
+        lw=0.5,
+        bottom=0.5,
+    )
     ax.axvline(deadline, color=style.VERMILION, lw=1.4)
     for key, text in (("p50_s", "median"), ("p99_9_s", "99.9 %")):
         if latency_.get(key):
             ax.axvline(1e6 * latency_[key], color=style.BLACK, lw=0.9, ls=":")
             time = 1e6 * latency_[key]
-            ax.annotate(f"{text}\n{time:.{0 if time > 100 else 1}f} µs", (1e6 * latency_[key], 0.97), xycoords=("data", "axes fraction"),
-                        xytext=(-3 if time > deadline else 3, 0), textcoords="offset points", fontsize=6.5, va="top",
-                        ha="right" if time > deadline else "left")
-    ax.set(xscale="log", yscale="log", ylabel="steps", title=f"{name}: {latency_['steps']} steps", ylim=(0.5, 20 * count.max()))
-    ax.annotate(f"deadline {deadline:.0f} µs", (deadline, 0.5), xycoords=("data", "axes fraction"), xytext=(-3, 0),
-                textcoords="offset points", color=style.VERMILION, fontsize=7, ha="right")
+            ax.annotate(
+                f"{text}\n{time:.{0 if time > 100 else 1}f} µs",
+                (1e6 * latency_[key], 0.97),
+                xycoords=("data", "axes fraction"),
+                xytext=(-3 if time > deadline else 3, 0),
+                textcoords="offset points",
+                fontsize=6.5,
+                va="top",
+                ha="right" if time > deadline else "left",
+            )
+    ax.set(
+        xscale="log",
+        yscale="log",
+        ylabel="steps",
+        title=f"{name}: {latency_['steps']} steps",
+        ylim=(0.5, 20 * count.max()),
+    )
+    ax.annotate(
+        f"deadline {deadline:.0f} µs",
+        (deadline, 0.5),
+        xycoords=("data", "axes fraction"),
+        xytext=(-3, 0),
+        textcoords="offset points",
+        color=style.VERMILION,
+        fontsize=7,
+        ha="right",
+    )

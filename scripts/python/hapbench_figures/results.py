@@ -53,12 +53,14 @@ class Results:
 
     def records(self, path):
         """Rows as dictionaries of texts, for tables that hold names or gaps."""
+
         def read(file):
             with open(file, encoding="utf-8", newline="") as stream:
                 rows = list(csv.DictReader(stream))
             if not rows:
                 raise ValueError("no rows")
             return rows
+
         return self._read(path, read)
 
     def json(self, path):

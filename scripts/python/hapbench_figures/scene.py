@@ -53,7 +53,7 @@ class Peg:
         return (distance <= self.diameter / 2) & (s >= -self.length)
 
     def exit_distance(self, points, directions):
-        """How far each point is from the tool's surface along its direction; the tool is convex, so bisection finds it."""
+        """Way of each point out of the tool along its direction; the tool is convex, so bisection finds it."""
         low, high = np.zeros(len(points)), np.full(len(points), 2 * (self.length + self.diameter))
         for _ in range(40):
             middle = (low + high) / 2
@@ -77,14 +77,23 @@ class Sweep:
     def contacts(self, step):
         own = self.all["step"] == self.rows["step"][step]
         pick = {name: column[own] for name, column in self.all.items()}
-        return Contacts(np.stack([pick["x_m"], pick["y_m"]], 1), np.stack([pick["nx"], pick["ny"]], 1), pick["depth_m"],
-                        np.stack([pick["gradient_x"], pick["gradient_y"]], 1), pick["weight"])
+        return Contacts(
+            np.stack([pick["x_m"], pick["y_m"]], 1),
+            np.stack([pick["nx"], pick["ny"]], 1),
+            pick["depth_m"],
+            np.stack([pick["gradient_x"], pick["gradient_y"]], 1),
+            pick["weight"],
+        )
 
     def peg(self, step):
         row = {name: column[step] for name, column in self.rows.items()}
         tool = self.scenario["tool"]
-        return Peg(np.array([row["px_m"], row["py_m"]]), np.array([row["axis_x"], row["axis_y"]]), tool["diameter_m"],
-                   tool["length_m"])
+        return Peg(
+            np.array([row["px_m"], row["py_m"]]),
+            np.array([row["axis_x"], row["axis_y"]]),
+            tool["diameter_m"],
+            tool["length_m"],
+        )
 
     def force(self, step, name="fspring_"):
         return np.array([self.rows[f"{name}x_N"][step], self.rows[f"{name}y_N"][step]])
@@ -97,15 +106,31 @@ def shell(environment):
     top = np.arange(half, half + mouth + h / 2, h)
     wall = np.arange(-depth, h / 2, h)
     floor = np.arange(-half, half + h / 2, h)
-    return np.vstack([np.stack([top, 0 * top], 1), np.stack([-top, 0 * top], 1),
-                      np.stack([0 * wall + half, wall], 1), np.stack([0 * wall - half, wall], 1),
-                      np.stack([floor, 0 * floor - depth], 1)])
+    return np.vstack(
+        [
+            np.stack([top, 0 * top], 1),
+            np.stack([-top, 0 * top], 1),
+            np.stack([0 * wall + half, wall], 1),
+            np.stack([0 * wall - half, wall], 1),
+            np.stack([floor, 0 * floor - depth], 1),
+        ]
+    )
 
 
 def draw_hole(ax, environment, points=False):
     half, depth, mouth = environment["width_m"] / 2, environment["depth_m"], environment["mouth_m"]
-    corners = np.array([[-half - mouth, 0], [-half, 0], [-half, -depth], [half, -depth], [half, 0], [half + mouth, 0],
-                        [half + mouth, -depth - 0.5e-3], [-half - mouth, -depth - 0.5e-3]])
+    corners = np.array(
+        [
+            [-half - mouth, 0],
+            [-half, 0],
+            [-half, -depth],
+            [half, -depth],
+            [half, 0],
+            [half + mouth, 0],
+            [half + mouth, -depth - 0.5e-3],
+            [-half - mouth, -depth - 0.5e-3],
+        ]
+    )
     ax.add_patch(Polygon(corners * MM, closed=True, facecolor="#EFE8DC", edgecolor="none", zorder=0))
     ax.plot(*(corners[:6] * MM).T, color="#A08F70", lw=0.9, zorder=1)
     if points:
@@ -133,7 +158,15 @@ def draw_segments(ax, contacts, colours, scale=1.0):
 def draw_arrow(ax, start, vector, colour, label=None, at=(3, 3), **keywords):
     """An arrow, both ends in the units of the axes; the label at its head."""
     head = np.asarray(start) + vector
-    style_ = {"arrowstyle": "-|>", "color": colour, "lw": 1.8, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 9, **keywords}
+    style_ = {
+        "arrowstyle": "-|>",
+        "color": colour,
+        "lw": 1.8,
+        "shrinkA": 0,
+        "shrinkB": 0,
+        "mutation_scale": 9,
+        **keywords,
+    }
     ax.annotate("", xy=head, xytext=start, arrowprops=style_, zorder=6)
     if label:
         ax.annotate(label, xy=head, xytext=at, textcoords="offset points", color=colour, fontsize=7.5, zorder=7)

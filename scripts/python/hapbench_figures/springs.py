@@ -32,21 +32,35 @@ def paths(results, kind, published):
         ax.set(xlim=(-6.5, 6.5), ylim=(-6.5, 6.5), aspect="equal", xticks=[-5, 0, 5], yticks=[-5, 0, 5])
         ax.set_title(look.label)
         time = settling(rows)
-        text = "diverges" if outcome == "diverges" else f"settles in {time:.0f} ms" if time is not None else "has not settled"
+        text = (
+            "diverges"
+            if outcome == "diverges"
+            else f"settles in {time:.0f} ms"
+            if time is not None
+            else "has not settled"
+        )
         style.note(ax, 0.03, 0.97, text, style.VERMILION if outcome == "diverges" or time is None else style.BLACK)
     for ax in axes[-1]:
         ax.set_xlabel("x [mm]")
     for ax in axes[:, 0]:
         ax.set_ylabel("y [mm]")
     return figure, (
-        f"Trajectory of a mass on 100 pairs of opposite springs and 10 upward ones, released at (-5, -5) mm, damping and force {published} "
-        "Grey: stiffness shaping, for comparison. Settled means to stay within 0.05 mm of the origin (+). Ours, parameters of Table A.3.")
+        "Trajectory of a mass on 100 pairs of opposite springs and 10 upward ones, released at (-5, -5) mm, damping "
+        f"and force {published} Grey: stiffness shaping, for comparison. Settled means to stay within 0.05 mm of the "
+        "origin (+). Ours, parameters of Table A.3."
+    )
 
 
 def unlimited(results):
-    return paths(results, "unlimited", "not limited. Published: every algorithm reaches the origin; ours: what the panels say.")
+    return paths(
+        results, "unlimited", "not limited. Published: every algorithm reaches the origin; ours: what the panels say."
+    )
 
 
 def limited(results):
-    return paths(results, "limited", "limited to 100 N s/m and 30 N. Published: the proposed algorithm keeps its performance, others "
-                 "become under-damped.")
+    return paths(
+        results,
+        "limited",
+        "limited to 100 N s/m and 30 N. Published: the proposed algorithm keeps its performance, others "
+        "become under-damped.",
+    )

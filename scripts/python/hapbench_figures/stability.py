@@ -5,9 +5,11 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from . import published, style
 from .results import MissingResult, numbers
 
-CASES = (("stiffness_undamped", "A4.stiffness", "B = 0, K grows", "K", "N/m"),
-         ("damping_alone", "A4.damping", "K = 0, B grows", "B", "N s/m"),
-         ("stiffness_damped", "A4.stiffness.damped", "ζ = 0.7, K grows", "K", "N/m"))
+CASES = (
+    ("stiffness_undamped", "A4.stiffness", "B = 0, K grows", "K", "N/m"),
+    ("damping_alone", "A4.damping", "K = 0, B grows", "B", "N s/m"),
+    ("stiffness_damped", "A4.stiffness.damped", "ζ = 0.7, K grows", "K", "N/m"),
+)
 
 
 def root_locus(results):
@@ -23,18 +25,29 @@ def root_locus(results):
         value = published.value(id_)
         nearest = rows[int(np.argmin(np.abs(numbers(rows, "value") - value)))]
         for which in ("first", "second"):
-            ax.plot(float(nearest[f"{which}_real"]), float(nearest[f"{which}_imaginary"]), marker="D", mfc="white",
-                    mec=style.VERMILION, ms=5, zorder=5)
+            ax.plot(
+                float(nearest[f"{which}_real"]),
+                float(nearest[f"{which}_imaginary"]),
+                marker="D",
+                mfc="white",
+                mec=style.VERMILION,
+                ms=5,
+                zorder=5,
+            )
         ours = float(limits[case]["simulation"])
-        style.note(ax, 0.5, 0.98, f"published {symbol} = {value:,.0f} {unit}".replace(",", " "), style.VERMILION, ha="center")
+        style.note(
+            ax, 0.5, 0.98, f"published {symbol} = {value:,.0f} {unit}".replace(",", " "), style.VERMILION, ha="center"
+        )
         style.note(ax, 0.5, 0.02, f"ours {ours:,.0f} {unit}".replace(",", " "), style.BLUE, ha="center", va="bottom")
         ax.set(title=title, xlabel="real part", xlim=(-1.75, 1.4), ylim=(-1.6, 1.6), aspect="equal")
     axes[0, 0].set_ylabel("imaginary part")
     style.letter(axes[0])
     return figure, (
-        "Root locus of the integrator on one spring and damper: both eigenvalues (blue, orange dashed) as stiffness or damping grows, and "
-        "the unit circle, outside of which it is unstable. Diamonds: the eigenvalues at the published limit. Ours, below: the limit "
-        "at which bisection over simulated runs finds divergence. M = 0.1 kg, time step 0.5 ms (A.3).")
+        "Root locus of the integrator on one spring and damper: both eigenvalues (blue, orange dashed) as stiffness "
+        "or damping grows, and the unit circle, outside of which it is unstable. Diamonds: the eigenvalues at the "
+        "published limit. Ours, below: the limit at which bisection over simulated runs finds divergence. M = 0.1 "
+        "kg, time step 0.5 ms (A.3)."
+    )
 
 
 CLASSES = ("stable", "vibrating", "diverged")
@@ -43,7 +56,7 @@ CLASS_COLOURS = ("#CFE6F5", style.ORANGE, "#7A2E00")
 
 
 def axis_label(name):
-    """"time_step_s" -> "time step [s]"."""
+    """ "time_step_s" -> "time step [s]"."""
     for ending, unit in (("_N_per_m", "N/m"), ("_rad", "rad"), ("_kg", "kg"), ("_s", "s")):
         if name.endswith(ending):
             return f"{name.removesuffix(ending).replace('_', ' ')} [{unit}]"
@@ -67,8 +80,14 @@ def draw_map(ax, rows, x_name, y_name):
     columns, lines = np.unique(x), np.unique(y)
     grid = np.full((len(lines), len(columns)), np.nan)
     grid[np.searchsorted(lines, y), np.searchsorted(columns, x)] = [CLASSES.index(row["class"]) for row in rows]
-    ax.pcolormesh(edges(columns), edges(lines), grid, cmap=ListedColormap(CLASS_COLOURS),
-                  norm=BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3), rasterized=True)
+    ax.pcolormesh(
+        edges(columns),
+        edges(lines),
+        grid,
+        cmap=ListedColormap(CLASS_COLOURS),
+        norm=BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3),
+        rasterized=True,
+    )
     ax.grid(False)
     ax.set_xscale("log" if is_geometric(columns) else "linear")
     ax.set_yscale("log" if is_geometric(lines) else "linear")
@@ -76,8 +95,11 @@ def draw_map(ax, rows, x_name, y_name):
 
 
 def draw_boundary(ax, rows, x_name, y_name):
-    for kind, look in (("analytic", {"color": "white", "lw": 2.4}), ("analytic", {"color": style.BLUE, "lw": 1.3}),
-                       ("simulation", {"color": style.BLACK, "lw": 1.0, "ls": (0, (2, 2))})):
+    for kind, look in (
+        ("analytic", {"color": "white", "lw": 2.4}),
+        ("analytic", {"color": style.BLUE, "lw": 1.3}),
+        ("simulation", {"color": style.BLACK, "lw": 1.0, "ls": (0, (2, 2))}),
+    ):
         column = f"{kind}_{y_name}"
         if column in rows[0]:
             y = numbers(rows, column)
@@ -86,6 +108,7 @@ def draw_boundary(ax, rows, x_name, y_name):
 
 def stability_map(name):
     """The function that draws stability_map_NAME.csv."""
+
     def draw(results):
         found = results.glob(f"**/stability_map_{name}.csv")
         if not found:
@@ -108,10 +131,16 @@ def stability_map(name):
         figure.supxlabel(axis_label(x_name), fontsize=8)
         figure.supylabel(axis_label(y_name), fontsize=8)
         handles = [style.plt.Rectangle((0, 0), 1, 1, color=c) for c in CLASS_COLOURS]
-        handles += [style.plt.Line2D([], [], color=style.BLUE, lw=1.3), style.plt.Line2D([], [], color="black", lw=1, ls=(0, (2, 2)))]
+        handles += [
+            style.plt.Line2D([], [], color=style.BLUE, lw=1.3),
+            style.plt.Line2D([], [], color="black", lw=1, ls=(0, (2, 2))),
+        ]
         figure.get_layout_engine().set(rect=(0, 0, 1, 0.93))
         figure.legend(handles, [*CLASSES, "limit, theory", "limit, bisection"], loc="upper center", ncol=5)
         return figure, (
-            f"Where a run is stable, vibrates or diverges: {axis_label(y_name)} over {axis_label(x_name)}, every algorithm. Lines: the "
-            "limit from theory (blue), where there is one, and found by bisection over simulated runs (dashed). Ours.")
+            f"Where a run is stable, vibrates or diverges: {axis_label(y_name)} over {axis_label(x_name)}, every "
+            "algorithm. Lines: the limit from theory (blue), where there is one, and found by bisection over "
+            "simulated runs (dashed). Ours."
+        )
+
     return draw

@@ -9,15 +9,18 @@ DIRECTIONS = np.linspace(0, 2 * np.pi, 361)
 
 
 def merged(contacts):
-    """Name, stiffness tensor in units of K and spring force per K [m] of four laws: closed forms, and for the shaping the
-    weights that hapbench recorded."""
+    """Name, stiffness tensor in units of K and spring force per K [m] of four laws: closed forms, and for the shaping
+    the weights that hapbench recorded."""
     n = len(contacts.depth)
     total, force = contacts.tensor(1.0), -contacts.depth @ contacts.gradient
     # A coupling of stiffness K in series with the contacts.
     series = np.linalg.inv(np.eye(2) + total)
-    return (("summation", total, force), ("mean", total / n, force / n),
-            ("virtual_coupling", series @ total, series @ force),
-            ("shaped_stiffness", contacts.tensor(), -(contacts.weight * contacts.depth) @ contacts.gradient))
+    return (
+        ("summation", total, force),
+        ("mean", total / n, force / n),
+        ("virtual_coupling", series @ total, series @ force),
+        ("shaped_stiffness", contacts.tensor(), -(contacts.weight * contacts.depth) @ contacts.gradient),
+    )
 
 
 def field(tensor):
@@ -66,10 +69,12 @@ def excessive_stiffness(results):
     style.note(axes[0, 4], 0.5, 0.985, "K", ha="center")
     style.letter(axes[0])
     return figure, (
-        "Excessive stiffness: (a) a tilted peg in a hole, its contacts (vermilion) and depths; (b-e) the stiffness in every "
-        "direction, in units of K, that four ways of merging these contacts give. Green: the published largest renderable "
-        "stiffness, 4 K = 80 000 N/m (4.3), outside the frames of (c-e); dashed: K. Vermilion dots and numbers: the ratios along the "
-        "contacts. The scale of (b) is 28 times that of the others. Ours: contacts and weights of (e) are hapbench's, (b-d) the laws' closed forms.")
+        "Excessive stiffness: (a) a tilted peg in a hole, its contacts (vermilion) and depths; (b-e) the stiffness "
+        "in every direction, in units of K, that four ways of merging these contacts give. Green: the published "
+        "largest renderable stiffness, 4 K = 80 000 N/m (4.3), outside the frames of (c-e); dashed: K. Vermilion "
+        "dots and numbers: the ratios along the contacts. The scale of (b) is 28 times that of the others. Ours: "
+        "contacts and weights of (e) are hapbench's, (b-d) the laws' closed forms."
+    )
 
 
 def fields_over_tilt(results):
@@ -92,7 +97,9 @@ def fields_over_tilt(results):
         ax.set_xlabel("")
     style.letter(axes[0])
     return figure, (
-        "The stiffness field as the peg tilts (rows): contacts (a) and the stiffness in every direction, in units of K, of four ways "
-        "of merging them (b-e). Black arrow: direction of the spring force. Green: published largest renderable stiffness, 4 K; "
-        "dashed: K; the scale of (b) is 28 times that of the others. Summation and mean follow the number of points on the side walls, shaping does not. Ours: contacts and the "
-        "weights of (e) are hapbench's, (b-d) the laws' closed forms.")
+        "The stiffness field as the peg tilts (rows): contacts (a) and the stiffness in every direction, in units "
+        "of K, of four ways of merging them (b-e). Black arrow: direction of the spring force. Green: published "
+        "largest renderable stiffness, 4 K; dashed: K; the scale of (b) is 28 times that of the others. Summation "
+        "and mean follow the number of points on the side walls, shaping does not. Ours: contacts and the weights "
+        "of (e) are hapbench's, (b-d) the laws' closed forms."
+    )

@@ -13,8 +13,7 @@ WIDTH = 7.0  # of a page's text [inch]
 FORMATS = ("svg", "pdf", "png")
 PNG_DPI = 150
 
-# Okabe and Ito's palette. Their luminances differ; where colours alone would have to tell curves apart in grey, line styles
-# and markers do as well.
+# Okabe and Ito's palette. Where its luminances would not tell curves apart in grey, line styles and markers do.
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 YELLOW, BLUE, VERMILION, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
 GREY, LIGHT = "#6E6E6E", "#D9D9D9"
@@ -42,16 +41,47 @@ ALGORITHMS = {
 }
 
 # Numbers of the thesis are hollow diamonds everywhere.
-PUBLISHED = {"marker": "D", "mfc": "white", "mec": VERMILION, "ecolor": VERMILION, "color": VERMILION, "ms": 4.5,
-             "mew": 1.2, "elinewidth": 1.2, "capsize": 2.5, "ls": "none", "zorder": 5}
+PUBLISHED = {
+    "marker": "D",
+    "mfc": "white",
+    "mec": VERMILION,
+    "ecolor": VERMILION,
+    "color": VERMILION,
+    "ms": 4.5,
+    "mew": 1.2,
+    "elinewidth": 1.2,
+    "capsize": 2.5,
+    "ls": "none",
+    "zorder": 5,
+}
 
 SETTINGS = {
-    "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "font.size": 8, "axes.titlesize": 8.5, "axes.labelsize": 8, "xtick.labelsize": 7.5,
-    "ytick.labelsize": 7.5, "legend.fontsize": 7.5, "legend.frameon": False, "axes.titlelocation": "left",
-    "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.7, "axes.grid": True, "grid.color": "#E6E6E6",
-    "grid.linewidth": 0.6, "axes.axisbelow": True, "lines.linewidth": 1.3, "lines.markersize": 3.5,
-    "figure.facecolor": "white", "svg.fonttype": "none", "pdf.fonttype": 42, "path.simplify": True,
-    "path.simplify_threshold": 0.5, "figure.constrained_layout.use": True, "agg.path.chunksize": 10000,
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 8,
+    "axes.titlesize": 8.5,
+    "axes.labelsize": 8,
+    "xtick.labelsize": 7.5,
+    "ytick.labelsize": 7.5,
+    "legend.fontsize": 7.5,
+    "legend.frameon": False,
+    "axes.titlelocation": "left",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.linewidth": 0.7,
+    "axes.grid": True,
+    "grid.color": "#E6E6E6",
+    "grid.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "lines.linewidth": 1.3,
+    "lines.markersize": 3.5,
+    "figure.facecolor": "white",
+    "svg.fonttype": "none",
+    "pdf.fonttype": 42,
+    "path.simplify": True,
+    "path.simplify_threshold": 0.5,
+    "figure.constrained_layout.use": True,
+    "agg.path.chunksize": 10000,
 }
 
 

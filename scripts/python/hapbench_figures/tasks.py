@@ -4,8 +4,11 @@ import numpy as np
 from . import published, style
 from .results import envelope
 
-TASKS = (("T1", "task1_flat", "task 1: poke and drag"), ("T2", "task2_rotate", "task 2: rotate in the hole"),
-         ("T3", "task3_spin", "task 3: round the wall"))
+TASKS = (
+    ("T1", "task1_flat", "task 1: poke and drag"),
+    ("T2", "task2_rotate", "task 2: rotate in the hole"),
+    ("T3", "task3_spin", "task 3: round the wall"),
+)
 DENSITIES = (("signed_distance", "signed distance"), ("binary", "binary"))
 ITERATIONS = (1, 2, 3, 4, 5, 10, 20, 40, 80, 160)
 BINS = 240  # of a time axis: more cannot be told apart at column width
@@ -34,8 +37,9 @@ def published_count(ax, x, task, what, colour):
     id_ = f"{task}.{what}"
     entry = published.entries()[id_]
     error = [[entry["std"]], [entry["std"]]] if "std" in entry else None
-    ax.errorbar([x], [published.value(id_)], yerr=error, **{**style.PUBLISHED, "mec": colour, "ecolor": colour},
-                clip_on=False)
+    ax.errorbar(
+        [x], [published.value(id_)], yerr=error, **{**style.PUBLISHED, "mec": colour, "ecolor": colour}, clip_on=False
+    )
 
 
 def point_counts(results):
@@ -61,17 +65,20 @@ def point_counts(results):
     style.note(axes[0, 1], 0.03, 0.06, "after", style.BLUE, va="bottom")
     style.note(axes[0, 2], 0.97, 0.06, "published mean ± SD ◇", style.VERMILION, ha="right", va="bottom")
     return figure, (
-        "Colliding points before (orange dots) and after (blue squares) the gradient-based reduction in the three tasks of "
-        "3.2, for both densities of the block. Dots: ours, thinned; hollow diamonds at the right edge: published mean and "
-        f"standard deviation (3.3). {HAND} The time of a step is in the latency figure.")
+        "Colliding points before (orange dots) and after (blue squares) the gradient-based reduction in the three "
+        "tasks of 3.2, for both densities of the block. Dots: ours, thinned; hollow diamonds at the right edge: "
+        f"published mean and standard deviation (3.3). {HAND} The time of a step is in the latency figure."
+    )
 
 
 def count_distribution(results):
     figure, axes = style.panels(1, 2, 2.9, sharey=True)
     offsets = {"signed_distance": 0.2, "binary": 0.0}
     markers = {"signed_distance": "o", "binary": "s"}
-    for ax, column, what, title in ((axes[0, 0], "colliding", "raw", "before the reduction"),
-                                    (axes[0, 1], "rendered", "reduced", "after the reduction")):
+    for ax, column, what, title in (
+        (axes[0, 0], "colliding", "raw", "before the reduction"),
+        (axes[0, 1], "rendered", "reduced", "after the reduction"),
+    ):
         for place, (id_, task, _) in enumerate(TASKS):
             y = len(TASKS) - place
             for density, name in DENSITIES:
@@ -81,8 +88,12 @@ def count_distribution(results):
             for k, suffix in enumerate(("", ".C3")):
                 if f"{id_}.{what}{suffix}" in published.entries():
                     entry = published.entries()[f"{id_}.{what}{suffix}"]
-                    ax.errorbar([published.value(entry["id"])], [y - 0.2 - 0.13 * k], xerr=[[entry.get("std", 0)]] * 2,
-                                **style.PUBLISHED)
+                    ax.errorbar(
+                        [published.value(entry["id"])],
+                        [y - 0.2 - 0.13 * k],
+                        xerr=[[entry.get("std", 0)]] * 2,
+                        **style.PUBLISHED,
+                    )
         ax.set(title=title, xlabel="points in contact", xscale="log")
         ax.set_xlim((1, 1000) if what == "raw" else (0.8, 100))
         ax.set_ylim(0.5, 3.5)
@@ -91,9 +102,11 @@ def count_distribution(results):
     style.note(axes[0, 1], 0.98, 0.9, "◇ published, 3.3 and C.3\n(mean ± SD)", style.VERMILION, ha="right")
     style.letter(axes[0])
     return figure, (
-        "Distribution of the number of points in contact before (a) and after (b) the gradient-based reduction. Ours, for two "
-        "densities of the block: mean (mark), standard deviation (thick), 5th to 95th percentile (thin), over the steps in "
-        f"contact. Published means and standard deviations of 3.3 (upper) and C.3 (lower diamond). {HAND}")
+        "Distribution of the number of points in contact before (a) and after (b) the gradient-based reduction. "
+        "Ours, for two densities of the block: mean (mark), standard deviation (thick), 5th to 95th percentile "
+        "(thin), over the steps in contact. Published means and standard deviations of 3.3 (upper) and C.3 (lower "
+        f"diamond). {HAND}"
+    )
 
 
 def draw_distribution(ax, y, values, marker, label):
@@ -129,8 +142,9 @@ def convergence_by_task(results):
         draw_quantiles(ax, least, style.ORANGE, "s", 0)
         ax.axhline(bound[0], color=style.BLACK, ls="--", lw=0.8)
         ax.axhline(bound[1], color=style.VERMILION, ls=(0, (1, 1.5)), lw=1)
-        ax.errorbar([0.8], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]],
-                    **{**style.PUBLISHED, "marker": "none"})
+        ax.errorbar(
+            [0.8], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"}
+        )
         ax.set(xscale="log", title=task[2], xlabel="iterations", xlim=(0.7, 200), ylim=(0.4, 1.62))
         ax.set_xticks([1, 3, 10, 40, 160], ["1", "3", "10", "40", "160"])
         ax.minorticks_off()
@@ -139,10 +153,11 @@ def convergence_by_task(results):
     style.note(axes[0, 1], 0.97, 0.72, "greatest", style.BLUE, ha="right")
     style.note(axes[0, 1], 0.97, 0.3, "least", "#9C6A00", ha="right")
     return figure, (
-        "Greatest (blue circles) and least (orange squares) stiffness ratio of the contacts of a step after so many shaping "
-        "iterations: median, 5th to 95th percentile (shaded) and extreme (dotted) over all steps in contact, ours, signed-"
-        "distance block. Published (vermilion): 0.8 to 1.3 after one iteration (bar at the left edge, C.4.2), never above 1.5 "
-        f"(4.3). {HAND}")
+        "Greatest (blue circles) and least (orange squares) stiffness ratio of the contacts of a step after so many "
+        "shaping iterations: median, 5th to 95th percentile (shaded) and extreme (dotted) over all steps in "
+        "contact, ours, signed-distance block. Published (vermilion): 0.8 to 1.3 after one iteration (bar at the "
+        f"left edge, C.4.2), never above 1.5 (4.3). {HAND}"
+    )
 
 
 def convergence(results):
@@ -153,21 +168,33 @@ def convergence(results):
         draw_quantiles(ax, greatest, style.BLUE, "o", 4)
         draw_quantiles(ax, least, style.ORANGE, "s", 0)
         ax.axhline(1, color=style.BLACK, ls="--", lw=0.8)
-        ax.errorbar([0.85], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]],
-                    **{**style.PUBLISHED, "marker": "none"})
-        ax.set(xscale="log", yscale="log", title=f"density: {name}", xlabel="iterations", xlim=(0.75, 200), ylim=(0.42, 1.6))
+        ax.errorbar(
+            [0.85], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"}
+        )
+        ax.set(
+            xscale="log",
+            yscale="log",
+            title=f"density: {name}",
+            xlabel="iterations",
+            xlim=(0.75, 200),
+            ylim=(0.42, 1.6),
+        )
         ax.set_xticks(ITERATIONS, [str(i) if i in (1, 2, 3, 5, 10, 20, 40, 80, 160) else "" for i in ITERATIONS])
         ticks = (0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.2, 1.4, 1.6)
         ax.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
         ax.minorticks_off()
     axes[0, 0].set_ylabel("stiffness ratio")
-    style.note(axes[0, 0], 0.97, 0.95, "greatest: stays above 1 where\na contact's weight vanishes", style.BLUE, ha="right")
+    style.note(
+        axes[0, 0], 0.97, 0.95, "greatest: stays above 1 where\na contact's weight vanishes", style.BLUE, ha="right"
+    )
     style.note(axes[0, 0], 0.97, 0.06, "least: tends to 1", "#9C6A00", ha="right", va="bottom")
     style.letter(axes[0])
     return figure, (
-        "Convergence of the stiffness ratios over tasks 2 and 3 (in task 1 they are 1), both axes logarithmic: median (marks), 5th to 95th "
-        "percentile (shaded), extreme (dotted); ours. Published: 0.8 to 1.3 after one iteration (vermilion bar), and that the "
-        "ratio converges to 1 (dashed). The least ratio does; the greatest does not where a contact's weight tends to zero.")
+        "Convergence of the stiffness ratios over tasks 2 and 3 (in task 1 they are 1), both axes logarithmic: "
+        "median (marks), 5th to 95th percentile (shaded), extreme (dotted); ours. Published: 0.8 to 1.3 after one "
+        "iteration (vermilion bar), and that the ratio converges to 1 (dashed). The least ratio does; the greatest "
+        "does not where a contact's weight tends to zero."
+    )
 
 
 def over_time(results, draw, label, height=2.6, rows=1, **keywords):
@@ -184,7 +211,11 @@ def over_time(results, draw, label, height=2.6, rows=1, **keywords):
 
 
 def positions(results):
-    coordinates = (("px_m", "x", style.BLUE, "-"), ("py_m", "y", style.ORANGE, (0, (4, 1.5))), ("pz_m", "z", style.BLACK, "-"))
+    coordinates = (
+        ("px_m", "x", style.BLUE, "-"),
+        ("py_m", "y", style.ORANGE, (0, (4, 1.5))),
+        ("pz_m", "z", style.BLACK, "-"),
+    )
 
     def draw(ax, _, task):
         rows = trajectory(results, task)
@@ -195,8 +226,10 @@ def positions(results):
 
     figure, axes = over_time(results, draw, ["position of the tip [mm]"])
     axes[0, 2].legend(loc="center", bbox_to_anchor=(0.5, 0.28), ncol=3, handlelength=2, columnspacing=1)
-    return figure, ("Position of the tip over time in the three tasks, ours (signed-distance block). x and y span the top face "
-                    f"of the block, whose height is z = 0; the bottom of the hole is at z = -5 mm. {HAND}")
+    return figure, (
+        "Position of the tip over time in the three tasks, ours (signed-distance block). x and y span the top face "
+        f"of the block, whose height is z = 0; the bottom of the hole is at z = -5 mm. {HAND}"
+    )
 
 
 def model_force(results):
@@ -212,8 +245,10 @@ def model_force(results):
     axes[0, 0].set_ylim(bottom=0)
     limit = published.value("L1.threshold")
     axes[0, 0].text(0, 1.03 * limit, "published limit of the input force", color=style.VERMILION, fontsize=7)
-    return figure, ("Size of the model force (spring, damping and friction) over time in the three tasks, ours: range in each of "
-                    f"{BINS} spans of time. Dashed: the limit of the input force, 2 N (3.5). {HAND}")
+    return figure, (
+        "Size of the model force (spring, damping and friction) over time in the three tasks, ours: range in each "
+        f"of {BINS} spans of time. Dashed: the limit of the input force, 2 N (3.5). {HAND}"
+    )
 
 
 def _ratio_over_time(results, column, colour, word):
@@ -233,11 +268,20 @@ def _ratio_over_time(results, column, colour, word):
     for ax in axes.flat:
         ax.set_ylim((0.95, 1.4) if column == "ratio_max" else (0.4, 1.05))
     above = column == "ratio_max"
-    style.note(axes[0, 0], 0.98, 0.3 if above else 0.1, f"published after one:\n{'1.3' if above else '0.8'}", style.VERMILION,
-               ha="right", va="bottom")
-    return figure, (f"The {word} stiffness ratio of a step's contacts over time, after 1, 3, 10 and 160 shaping iterations, ours "
-                    f"(signed-distance block): range in each of {BINS} spans of time. Dotted: published {'upper' if above else 'lower'} "
-                    f"end after one iteration (C.4.2). {HAND}")
+    style.note(
+        axes[0, 0],
+        0.98,
+        0.3 if above else 0.1,
+        f"published after one:\n{'1.3' if above else '0.8'}",
+        style.VERMILION,
+        ha="right",
+        va="bottom",
+    )
+    return figure, (
+        f"The {word} stiffness ratio of a step's contacts over time, after 1, 3, 10 and 160 shaping iterations, ours "
+        f"(signed-distance block): range in each of {BINS} spans of time. Dotted: published "
+        f"{'upper' if above else 'lower'} end after one iteration (C.4.2). {HAND}"
+    )
 
 
 def greatest_ratio(results):
