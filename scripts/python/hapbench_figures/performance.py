@@ -13,6 +13,8 @@ STUDIES = (
     ("spacing", "ideal_height_error_rms_m", "rms height error [mm]", 1e3, "seconds_per_step", "point spacing"),
     ("algorithms", "ideal_height_error_rms_m", "rms height error [mm]", 1e3, "seconds_per_step", "force algorithms"),
 )
+VARYING_STEP = ("integrators", "time_step")
+LARGEST_ERROR_MM = 10  # the block is 15 mm wide: beyond, the drill has left it
 LOOKS = ((style.BLUE, "o", "-"), (style.ORANGE, "s", (0, (4, 1.2))), (style.BLACK, "^", ":"))
 
 
@@ -35,40 +37,42 @@ def with_times(results, study):
     ]
 
 
+def finished(rows, error, largest=np.inf):
+    """The settings that a logarithmic plot can show: those that completed with an error, not a nonsensical one."""
+    return np.array([row["outcome"] == "completes" for row in rows]) & (error > 0) & (error < largest)
+
+
 def draw_study(ax, results, study, column, label, scale, time_column, title):
-    varying_step = study in ("integrators", "time_step")
-    for (name, rows), (colour, marker, line) in zip(series(with_times(results, study)).items(), LOOKS):
-        error, time = scale * numbers(rows, column), numbers(rows, time_column)
-        if varying_step:
-            time = 1e3 * time / numbers(rows, "step_s")
-        else:
-            time = 1e6 * time
-        fine = (
-            np.array([row["outcome"] == "completes" for row in rows])
-            & (error > 0)
-            & (error < 10 if study == "algorithms" else True)
-        )
-        ax.plot(
-            time[fine],
-            error[fine],
-            color=colour,
-            marker=marker,
-            ls="none" if study == "algorithms" else line,
-            label=name.replace("_", " ") or None,
-        )
-        annotate(ax, study, [row for row, keep in zip(rows, fine) if keep], time[fine], error[fine])
-    ax.set(
-        xscale="log",
-        yscale="log",
-        title=title,
-        ylabel=label,
-        xlabel="time per simulated second [ms]"
-        if varying_step
-        else f"time of a {'step' if 'step' in time_column else 'call'} [µs]",
-    )
-    ax.set(xlim=decades(ax.dataLim.x0, ax.dataLim.x1), ylim=decades(ax.dataLim.y0, ax.dataLim.y1))
-    if study in ("reduction", "spacing"):
+    rows = with_times(results, study)
+    if study == "algorithms":
+        draw_algorithms(ax, rows, column, scale, time_column)
+    else:
+        draw_curves(ax, rows, study, column, scale, time_column)
+    what = "step" if "step" in time_column else "call"
+    time_label = "time per simulated second [ms]" if study in VARYING_STEP else f"time of a {what} [µs]"
+    ax.set(xscale="log", yscale="log", title=title, ylabel=label, xlabel=time_label)
+    if np.isfinite(ax.dataLim.get_points()).all():
+        ax.set(xlim=decades(ax.dataLim.x0, ax.dataLim.x1), ylim=decades(ax.dataLim.y0, ax.dataLim.y1))
+
+
+def draw_curves(ax, rows, study, column, scale, time_column):
+    split = series(rows)
+    for (name, own), (colour, marker, line) in zip(split.items(), LOOKS):
+        error, time = scale * numbers(own, column), numbers(own, time_column)
+        time = 1e3 * time / numbers(own, "step_s") if study in VARYING_STEP else 1e6 * time
+        fine = finished(own, error)
+        ax.plot(time[fine], error[fine], color=colour, marker=marker, ls=line, label=name.replace("_", " "))
+        name_ends(ax, study, [row for row, keep in zip(own, fine) if keep], time[fine], error[fine])
+    if len(split) > 1:
         ax.legend(loc="upper right", handlelength=2.4)
+
+
+def draw_algorithms(ax, rows, column, scale, time_column):
+    error, time = scale * numbers(rows, column), 1e6 * numbers(rows, time_column)
+    for i in np.flatnonzero(finished(rows, error, LARGEST_ERROR_MM)):
+        look = style.ALGORITHMS[rows[i]["setting"]]
+        ax.plot(time[i], error[i], look.marker, color=look.colour, ms=5, label=look.label)
+    ax.legend(loc="upper left", fontsize=6, handletextpad=0.2, borderaxespad=0.1, labelspacing=0.3)
 
 
 def decades(low, high):
@@ -76,31 +80,15 @@ def decades(low, high):
     return 10 ** np.floor(np.log10(low)), 10 ** np.ceil(np.log10(1.5 * high))
 
 
-# Beside its mark, where the labels of the algorithms would hide each other.
-PLACES = {
-    "mean": (-4, 3, "right"),
-    "stiffness shaping (HS)": (-4, 1, "right"),
-    "normal projection": (-4, -3, "right"),
-    "exact shaping (ours)": (0, -10, "right"),
-    "virtual coupling": (-4, -3, "right"),
-}
-
-
-def annotate(ax, study, rows, x, y):
-    """The first and the last setting of a curve; every algorithm."""
-    pick = range(len(rows)) if study == "algorithms" else sorted({0, len(rows) - 1})
-    for i in pick:
-        if i >= len(rows):
-            continue
+def name_ends(ax, study, rows, x, y):
+    """Names the first and the last setting of a curve."""
+    for i in sorted({0, len(rows) - 1}) if rows else ():
         text = rows[i]["short"]
-        if study == "algorithms" and text in style.ALGORITHMS:
-            text = style.ALGORITHMS[text].label
-        elif study == "spacing":
+        if study == "spacing":
             text = f"{1e3 * float(text):g} mm"
         elif text.startswith("dt="):
             text = f"Δt = {1e3 * float(text.removeprefix('dt=')):.3g} ms"
-        dx, dy, side = PLACES.get(text, (3, 3, "left"))
-        label = ax.annotate(text, (x[i], y[i]), xytext=(dx, dy), textcoords="offset points", fontsize=6, ha=side)
+        label = ax.annotate(text, (x[i], y[i]), xytext=(3, 3), textcoords="offset points", fontsize=6)
         label.set_in_layout(False)
 
 
@@ -111,10 +99,11 @@ def work_precision(results):
     style.letter(axes.flat)
     return figure, (
         "Work against precision in six studies: error over run time on one core, a mark for each setting, first and "
-        "last named. (a, b) time step, error against the finest one; (c) shaping iterations against exact shaping; "
-        "(d) threshold of the reduction against all points and exact shaping; (e) spacing of the block's points and "
-        "(f) force algorithms against the ideal trajectory of 3.6. Left out: settings that diverged, were off by "
-        "more than 10 mm or have no error. Ours; run times are this machine's."
+        "last named. (a) Time step, against the exact solution; (b) time step, against a 64 times finer one; "
+        "(c) shaping iterations against exact shaping; (d) threshold of the reduction, against exact shaping "
+        "of all points; (e) spacing of the block's points and (f) force algorithms, against the ideal trajectory of "
+        "3.6. Left out: settings that diverged, were off by more than 10 mm or have no error. Ours; run times are "
+        "those of the machine that measured them."
     )
 
 
@@ -148,7 +137,7 @@ def draw_latency(ax, name, latency_):
     late = low >= deadline
     ax.bar(
         low,
-        np.maximum(count, 0),
+        np.maximum(count - 0.5, 0),
         width=high - low,
         align="edge",
         color=np.where(late, style.ORANGE, style.SKY),
