@@ -1,0 +1,119 @@
+"""Command line of scripts/figures."""
+import argparse
+import json
+import sys
+import time
+from pathlib import Path
+
+from . import catalogue, style
+from .results import BadResult, MissingResult, Results
+
+
+def arguments(argv):
+    parser = argparse.ArgumentParser(
+        prog="figures",
+        description="Draws the figures of the thesis with our data, and ours, as "
+        "SVG, PDF and PNG. A figure whose data is missing is skipped, and said so.",
+    )
+    parser.add_argument("results", nargs="?", metavar="RESULTS_DIR", help="results as scripts/reproduce leaves them")
+    parser.add_argument("--out", metavar="DIR", help="directory of the figures and of figures.json")
+    parser.add_argument(
+        "--only", metavar="ID,…", help="draw these; an id stands for those that begin with it and a hyphen, too"
+    )
+    parser.add_argument("--list", action="store_true", help="list the figures")
+    chosen = parser.parse_args(argv)
+    if not chosen.list and not (chosen.results and chosen.out):
+        parser.error("needed are RESULTS_DIR and --out DIR, or --list")
+    return chosen
+
+
+def selection(only):
+    """The figures that are asked for. Raises KeyError with an id that no figure has."""
+    if only is None:
+        return catalogue.FIGURES
+    chosen = []
+    for id_ in only.split(","):
+        found = [f for f in catalogue.FIGURES if f.id == id_ or f.id.startswith(id_ + "-")]
+        if not found:
+            raise KeyError(id_)
+        chosen += [f for f in found if f not in chosen]
+    return chosen
+
+
+def draw(figure, results, directory):
+    """Draws and saves one figure; returns its entry in figures.json."""
+    results.start()
+    drawing, caption = figure.draw(results)
+    files = style.save(drawing, figure.stem, directory)
+    return {
+        "id": figure.id,
+        "title": figure.title,
+        "thesis_figure": figure.thesis,
+        "caption": caption,
+        "files": files,
+        "sources": sorted(results.sources),
+    }
+
+
+def write_index(directory, entries):
+    """figures.json: entries of earlier runs stay for figures that were not drawn anew and still are there."""
+    file = directory / "figures.json"
+    merged = {}
+    if file.is_file():
+        try:
+            merged = {e["id"]: e for e in json.loads(file.read_text(encoding="utf-8"))["figures"]}
+        except (ValueError, KeyError, TypeError):
+            pass  # not ours or damaged: written anew
+    merged.update({entry["id"]: entry for entry in entries})
+    known = [merged[f.id] for f in catalogue.FIGURES if f.id in merged and (directory / f"{f.stem}.svg").is_file()]
+    style.write(file, (json.dumps({"figures": known}, indent=2, ensure_ascii=False) + "\n").encode())
+
+
+def main(argv=None):
+    chosen = arguments(argv)
+    try:
+        figures = selection(chosen.only)
+    except KeyError as error:
+        print(
+            f"figures: --only: no figure {error}; there are {', '.join(f.id for f in catalogue.FIGURES)}",
+            file=sys.stderr,
+        )
+        return 2
+    if chosen.list:
+        for figure in figures:
+            print(f"{figure.id:24} {figure.title}")
+        return 0
+    if not Path(chosen.results).is_dir():
+        print(f"figures: {chosen.results}: no such directory", file=sys.stderr)
+        return 2
+    directory = Path(chosen.out)
+    started = time.monotonic()
+    entries, skipped, bad = [], [], []
+    style.plt.rcParams.update(style.SETTINGS)
+    results = Results(chosen.results)
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        for figure in figures:
+            try:
+                entries.append(draw(figure, results, directory))
+            except MissingResult as missing:
+                skipped.append(f"{figure.id} ({missing})")
+            except BadResult as error:
+                bad.append(str(error))
+            except (KeyError, IndexError, TypeError, ValueError) as error:
+                # A file that can be read but has not the columns, rows or members of hapbench's.
+                bad.append(f"figure {figure.id}: {', '.join(sorted(results.sources))}: {type(error).__name__}: {error}")
+        write_index(directory, entries)
+    except OSError as error:
+        print(f"figures: {error.filename}: {error.strerror}", file=sys.stderr)
+        return 2
+    for line in skipped:
+        print(f"figures: skipped {line}", file=sys.stderr)
+    for line in dict.fromkeys(bad):
+        print(f"figures: {line}", file=sys.stderr)
+    print(f"{len(entries)} figures in {directory}, {time.monotonic() - started:.0f} s")
+    return 2 if bad else 0 if entries else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

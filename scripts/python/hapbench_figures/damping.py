@@ -1,0 +1,96 @@
+"""Directions of the damping forces under one and under distributed contact (figures B.4 and B.5)."""
+import numpy as np
+
+from . import scene, style
+
+DP, HS = "tilt_sweep_original_averaging", "tilt_sweep_shaped_stiffness"
+VELOCITY = np.array([0.006, -0.012])  # ours [m/s]
+FRICTION = (5.0, 10.0)  # mu_s [N s/m], mu_f [s/m] of thesis Table A.1
+TILT = 0.2
+MM_PER_N = 0.9
+
+
+def damping_coefficient(scenario):
+    r = scenario["rendering"]
+    return 2 * r["damping_ratio"] * np.sqrt(r["stiffness_N_per_m"] * r["mass_kg"])
+
+
+def original_forces(direction, spring, damping):
+    """Normal and tangential damping of the original algorithm (B.2): one direction for all contacts."""
+    normal = (VELOCITY @ direction) * direction
+    return -damping * normal, -(FRICTION[0] + FRICTION[1] * spring) * (VELOCITY - normal)
+
+
+def draw_forces(ax, at, direction, spring, damping):
+    """Implicit plane, velocity and damping forces at the tip (scene in millimetres)."""
+    along = np.array([-direction[1], direction[0]])
+    ends = np.stack([at - 2 * along, at + 2 * along])
+    ax.plot(*ends.T, color="#8B0000", lw=1.6, zorder=4)
+    normal, tangential = original_forces(direction, spring, damping)
+    scene.draw_arrow(ax, at, 90 * VELOCITY, style.ORANGE, "v")
+    scene.draw_arrow(ax, at, MM_PER_N * normal, style.BLACK, "normal")
+    scene.draw_arrow(
+        ax, at, MM_PER_N * tangential, style.BLUE, "tangential", at=(-38, -14) if abs(direction[0]) < 0.1 else (-6, 7)
+    )
+
+
+def draw_flat(ax, scenario):
+    """The peg stands on a flat: all gradients point down."""
+    damping = damping_coefficient(scenario)
+    tool = scenario["tool"]
+    peg = scene.Peg(np.zeros(2), np.array([0, -1.0]), tool["diameter_m"], tool["length_m"])
+    depth = 1e-4
+    surface = -1e3 * (tool["diameter_m"] / 2 - depth)
+    ax.axhspan(-4, surface, color="#EFE8DC", zorder=0)
+    ax.axhline(surface, color="#A08F70", lw=0.9)
+    scene.draw_peg(ax, peg)
+    ax.set_aspect("equal")
+    ax.grid(False)
+    draw_forces(ax, np.zeros(2), np.array([0, -1.0]), scenario["rendering"]["stiffness_N_per_m"] * depth, damping)
+    scene.frame(ax, (-1.7, 1.7), (-1.9, 1.9))
+    ax.set_title("one surface")
+
+
+def draw_distributed(ax, sweep):
+    step = sweep.step_at(TILT)
+    peg, contacts, force = sweep.peg(step), sweep.contacts(step), sweep.force(step)
+    scene.draw_hole(ax, sweep.scenario["environment"])
+    scene.draw_peg(ax, peg)
+    ax.plot(*(scene.MM * contacts.point).T, ".", color=style.VERMILION, ms=3)
+    size = np.linalg.norm(force)
+    draw_forces(ax, scene.MM * peg.tip, -force / size, size, damping_coefficient(sweep.scenario))
+    scene.frame(ax, (-1.95, 1.45), (-4.6, -1.2 + 0.4))
+    ax.set_title("peg in hole")
+
+
+def wall_damping(ax, results):
+    """Damping against motion along the wall's normal, in units of B."""
+    dp, hs = scene.Sweep(results, DP), scene.Sweep(results, HS)
+    pick = np.arange(1, len(dp.tilt))
+    forces = np.stack([dp.rows["fspring_x_N"], dp.rows["fspring_y_N"]], 1)[pick]
+    along = forces[:, 0] ** 2 / np.maximum(np.einsum("ij,ij->i", forces, forces), 1e-300)
+    ax.plot(dp.tilt[pick], along, color=style.VERMILION, marker="s", markevery=7)
+    shaped = [hs.contacts(step).tensor()[0, 0] for step in pick]
+    ax.plot(hs.tilt[pick], shaped, color=style.BLACK, marker="o", markevery=9)
+    ax.text(0.6, 1.06, "stiffness shaping", ha="right")
+    ax.text(0.05, 0.3, "original", color=style.VERMILION, ha="left")
+    ax.set(
+        xlabel="tilt [rad]", ylabel="damping across the walls / B", ylim=(-0.03, 1.25), title="damping across the walls"
+    )
+
+
+def implicit_plane(results):
+    figure, axes = style.panels(1, 3, 2.9, gridspec_kw={"width_ratios": [0.8, 0.8, 1]})
+    sweep = scene.Sweep(results, DP)
+    draw_flat(axes[0, 0], sweep.scenario)
+    draw_distributed(axes[0, 1], sweep)
+    wall_damping(axes[0, 2], results)
+    style.letter(axes[0])
+    return figure, (
+        "Damping of the original algorithm. Its spring force defines one implicit plane (dark red); normal damping "
+        "(black) acts across it, tangential damping (blue) along it, against the velocity (orange). (a) On a flat "
+        "the plane is parallel to the surface. (b) In a hole it is parallel to neither wall. (c) What damping "
+        "remains across the walls while the peg is tilted, in units of B: u_x^2 of the rendered direction for the "
+        "original, S_xx for stiffness shaping, which keeps about the B that it should. Ours: (a) from the formulas "
+        "of B.2, (b, c) from hapbench's contacts; the velocity is made up, friction of Table A.1."
+    )

@@ -1,0 +1,110 @@
+"""The man-machine experiments with simulated subjects against the published means (figures D.7 and D.8)."""
+import warnings
+
+import numpy as np
+from scipy.stats import ttest_rel
+
+from . import published, style
+from .results import numbers
+
+MEASURES = (
+    ("success", "removed", "success rate", 1),
+    ("time", "time_s", "completion time [s]", 1),
+    ("force", "model_force_N", "model force [N]", 1),
+    ("speed", "speed_m_per_s", "velocity [mm/s]", 1e3),
+)
+METHODS = (("original_averaging", "DP"), ("shaped_stiffness", "HS"))
+
+
+def subject_means(records, place, column):
+    """Mean of each subject over its targets at a place, where anything was measured."""
+    own = [row for row in records if row["place"] == str(place)]
+    subjects = numbers(own, "subject")
+    values = numbers(own, column)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # a subject who never was on the target has no mean
+        return np.array([np.nanmean(values[subjects == s]) for s in np.unique(subjects)])
+
+
+def significance(first, second):
+    """Text of the paired t-test over the subjects that have both values."""
+    both = np.isfinite(first) & np.isfinite(second)
+    difference = (first - second)[both]
+    if len(difference) < 2 or np.ptp(difference) == 0:
+        return "all differences alike"
+    t, p = ttest_rel(first[both], second[both])
+    return f"t = {t:.1f}, p {'< 0.001' if p < 0.001 else f'= {p:.3f}'}"
+
+
+def published_test(claim):
+    entry = published.entries()[f"{claim}.p"]
+    sign, bound = ("<", entry["at_most"]) if "at_most" in entry else (">", entry["at_least"])
+    return f"t = {published.value(f'{claim}.t'):.3g}, p {sign} {bound:g}"
+
+
+def draw_measure(ax, tables, place, claim, measure):
+    name, column, _, scale = measure
+    both = []
+    for x, (method, _) in enumerate(METHODS):
+        values = subject_means(tables[method], place, column)
+        both.append(values)
+        finite = scale * values[np.isfinite(values)]
+        colour, marker = (style.BLUE, "s") if method == "original_averaging" else (style.BLACK, "o")
+        ax.plot(x - 0.24 + np.linspace(-0.05, 0.05, len(finite)), finite, "o", color=style.GREY, ms=2.2, mec="none")
+        error = finite.std(ddof=1) / np.sqrt(len(finite)) if len(finite) > 1 else 0
+        if len(finite):
+            ax.errorbar(
+                [x], [finite.mean()], yerr=[error], marker=marker, color=colour, ms=5, capsize=2.5, elinewidth=1.2
+            )
+        id_ = f"{claim}.{name}.{method}"
+        ax.errorbar([x + 0.24], [scale * published.value(id_)], yerr=[scale * published.spread(id_)], **style.PUBLISHED)
+    ax.set_xlim(-0.5, 1.5)
+    ax.set_xticks([0, 1], [short for _, short in METHODS])
+    ax.grid(axis="x", visible=False)
+    ax.text(0.03, 0.985, f"ours: {significance(*both)}", transform=ax.transAxes, fontsize=6, va="top")
+    ax.text(
+        0.03,
+        0.915,
+        f"publ.: {published_test(f'{claim}.{name}')}",
+        transform=ax.transAxes,
+        fontsize=6,
+        va="top",
+        color=style.VERMILION,
+    )
+
+
+def experiment(results, task, targets, what):
+    tables = {method: results.records(f"thesis/{task}_peg_in_hole_{method}/targets.csv") for method, _ in METHODS}
+    figure, axes = style.panels(2, 4, 4.5, sharex=True, sharey="col")
+    for row, (place, claim, title) in zip(axes, targets):
+        for ax, measure in zip(row, MEASURES):
+            draw_measure(ax, tables, place, claim, measure)
+        row[0].set_ylabel(title)
+    for ax, measure in zip(axes[0], MEASURES):
+        ax.set_title(measure[2])
+    for column in axes.T:
+        top = 1.3 * max(ax.dataLim.y1 for ax in column)
+        column[0].set_ylim(-0.03 * top, top)
+    style.letter(axes[0])
+    return figure, (
+        f"{what}: success rate (a), completion time (b), model force (c) and velocity (d), original algorithm (DP) "
+        "against stiffness shaping (HS). Filled marks: ours, mean and standard error over six simulated subjects "
+        "(grey dots: their means), whose parameters were fixed before any result was seen. Hollow diamonds: "
+        "published mean and standard error of six people. Paired t-tests over the subjects that have both values. A "
+        "simulated subject shows the dynamics, not what people feel or learn."
+    )
+
+
+def vertical(results):
+    return experiment(
+        results,
+        "vertical",
+        ((1, "D1", "side target (0.52 mm)"), (0, "D2", "central target")),
+        "Vertical peg-in-hole task",
+    )
+
+
+def rotational(results):
+    return experiment(
+        results, "rotational", ((0, "D3", "target at 3 mm"), (1, "D4", "target at 4 mm")), "Rotational peg-in-hole task"
+    )

@@ -1,0 +1,90 @@
+"""The tip in the rotated drill's task against the ideal trajectory (figure 7)."""
+import numpy as np
+from matplotlib.patches import Polygon
+
+from . import published, style
+
+RUNS = (
+    ("ideal_trajectory_low_force", style.GREEN, "o", "hand force below 2 N"),
+    ("ideal_trajectory_high_force", style.VERMILION, "^", "above 2 N"),
+)
+EVERY = 120  # rows: a drawn mark of every row could not be told from its neighbours
+
+
+def samples(results, name, high):
+    """Rows of the run on its side of the split of the hand's force, within the compared tilts."""
+    rows = results.table(f"thesis/{name}/ideal_trajectory.csv")
+    force, tilt = rows["hand_force_N"], rows["tilt_rad"]
+    range_ = published.entries()["J1.tilt"]
+    own = ((force > published.value("J1.split")) == high) & (tilt >= range_["at_least"]) & (tilt <= range_["at_most"])
+    picked = {key: column[own][::EVERY] for key, column in rows.items()}
+    return {key: (column if key in ("tilt_rad", "hand_force_N") else 1e3 * column) for key, column in picked.items()}
+
+
+def ideal(rows_list):
+    """The ideal place over the tilt, sorted [mm]."""
+    tilt = np.concatenate([rows["tilt_rad"] for rows in rows_list])
+    order = np.argsort(tilt)
+    column = lambda key: np.concatenate([rows[key] for rows in rows_list])[order]  # noqa: E731
+    return tilt[order], column("ideal_lateral_m"), column("ideal_height_m")
+
+
+def draw_block(ax, environment):
+    radius, depth = 500 * environment["hole_diameter_m"], 1e3 * environment["hole_depth_m"]
+    wall = np.array(
+        [
+            [-2.2, 0],
+            [-radius, 0],
+            [-radius, -depth],
+            [radius, -depth],
+            [radius, 0],
+            [2.2, 0],
+            [2.2, -depth - 0.6],
+            [-2.2, -depth - 0.6],
+        ]
+    )
+    ax.add_patch(Polygon(wall, closed=True, facecolor="#EFE8DC", edgecolor="#A08F70", lw=0.8))
+    ax.set(
+        xlim=(-1.65, 1.35),
+        xticks=[-1, 0, 1],
+        ylim=(-5.4, 0.8),
+        aspect="equal",
+        xlabel="x [mm]",
+        ylabel="height over the mouth [mm]",
+    )
+
+
+def trajectory(results):
+    figure, axes = style.panels(1, 3, 3.1, gridspec_kw={"width_ratios": [0.75, 1.2, 1.2]})
+    section, height, distance = axes[0]
+    environment = results.json(f"thesis/{RUNS[0][0]}/scenario.effective.json")["environment"]
+    draw_block(section, environment)
+    bottom = 1e3 * environment["hole_depth_m"]
+    drawn = []
+    for high, (name, colour, marker, label) in enumerate(RUNS):
+        rows = samples(results, name, bool(high))
+        drawn.append(rows)
+        look = {"color": colour, "marker": marker, "ls": "none", "ms": 2.3, "mec": "none", "alpha": 0.7}
+        section.plot(rows["lateral_m"], rows["height_m"], **look)
+        height.plot(rows["tilt_rad"], rows["height_m"] + bottom, label=label, **look)
+        distance.plot(rows["tilt_rad"], np.abs(rows["lateral_m"]), **look)
+    tilt, x, y = ideal(drawn)
+    section.plot(x, y, color=style.BLACK)
+    height.plot(tilt, y + bottom, color=style.BLACK, label="ideal (exact geometry)")
+    distance.plot(tilt, np.abs(x), color=style.BLACK)
+    inside = 1e3 * published.value("J1.lateral")
+    distance.fill_between(tilt, np.abs(x), np.abs(x) + inside, color=style.VERMILION, alpha=0.13, lw=0)
+    height.set(title="height over the bottom", xlabel="tilt α [rad]", ylabel="height [mm]")
+    distance.set(title="distance to the median line", xlabel="tilt α [rad]", ylabel="distance [mm]")
+    section.set_title("section")
+    height.legend(loc="lower right", markerscale=1.8)
+    style.note(distance, 0.97, 0.9, "shaded: published,\nerror up to about\n0.25 mm", style.VERMILION, ha="right")
+    style.letter(axes[0])
+    low, high = (rows["interpenetration_m"].max() for rows in drawn)
+    return figure, (
+        "The tip while the drill is rotated to and fro in the hole (task 2) and the ideal trajectory (black), which "
+        "the exact geometry of drill and hole allows; ours, a hand that presses with less (green circles) or more "
+        "(vermilion triangles) than 2 N, thinned. (a) section, (b) height, (c) distance to the median line. Shaded: "
+        "the published error of about 0.25 mm (Fig. 7, 3.6). In the drawn rows the drill overlaps the exact hole by "
+        f"at most {low:.2f} mm below and {high:.2f} mm above 2 N."
+    )

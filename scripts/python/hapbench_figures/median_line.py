@@ -1,0 +1,115 @@
+"""Gradients across the median line of the tool, and depths that are too small (figures 8, B.3 and C.1)."""
+import numpy as np
+
+from . import published, scene, style
+
+SHORTEST, NORMAL = "tilt_sweep_original_averaging", "tilt_sweep_shaped_stiffness"
+DEEP = 0.42  # tilt [rad] at which many points lie beyond the median line
+SHALLOW = 0.12
+
+
+def draw_contacts(ax, sweep, tilt, colours=(style.VERMILION, style.GREEN)):
+    """The peg and its depths; those with flipped gradients in the second colour."""
+    step = sweep.step_at(tilt)
+    contacts, peg = sweep.contacts(step), sweep.peg(step)
+    scene.draw_hole(ax, sweep.scenario["environment"])
+    scene.draw_peg(ax, peg, median=True)
+    scene.draw_segments(ax, contacts, np.where(contacts.flipped(), colours[1], colours[0]))
+    scene.frame(ax, (-1.9, 1.9), (-4.3, 1.0))
+    return step
+
+
+def shortest_distance_and_normal(results):
+    figure, axes = style.panels(1, 2, 4.3)
+    for ax, name, title in ((axes[0, 0], SHORTEST, "shortest distance"), (axes[0, 1], NORMAL, "surface normal")):
+        draw_contacts(ax, scene.Sweep(results, name), DEEP)
+        ax.set_title(title)
+    style.note(axes[0, 0], 0.02, 0.98, "flipped gradients", "#00694D")
+    style.note(axes[0, 0], 0.98, 0.04, "dashed: median line", style.GREY, ha="right", va="bottom")
+    style.note(axes[0, 1], 0.98, 0.14, "too short: the segments end\ninside the tool", style.VERMILION, ha="right")
+    style.letter(axes[0])
+    return figure, (
+        f"Depth and gradient of each contact of a peg tilted by {DEEP} rad, drawn from the point to where it is "
+        "taken to leave the tool. (a) Shortest distance: beyond the median line (dashed) the gradients flip "
+        "(green). (b) The same depths along the inverse surface normal: no gradient flips, but the depth is "
+        "underestimated. Ours; the pose is prescribed."
+    )
+
+
+def gradient_flipping(results):
+    figure, axes = style.panels(1, 3, 3.2, gridspec_kw={"width_ratios": [1, 1, 1.15]})
+    sweep = scene.Sweep(results, SHORTEST)
+    for ax, tilt, title in ((axes[0, 0], SHALLOW, "shallow"), (axes[0, 1], DEEP, "beyond the median line")):
+        step = draw_contacts(ax, sweep, tilt)
+        force = sweep.force(step)
+        scene.draw_arrow(ax, scene.MM * sweep.peg(step).tip, 1.2 * force / np.linalg.norm(force), style.BLUE)
+        style.note(ax, 0.03, 0.03, f"{np.linalg.norm(force):.1f} N", style.BLUE, va="bottom")
+        ax.set_title(title)
+    axes[0, 1].set_ylabel("")
+    ax = axes[0, 2]
+    draw_flip_count(ax, sweep)
+    ax.set_title("over the tilt")
+    style.letter(axes[0])
+    return figure, (
+        "Gradient flipping of the original algorithm. (a) Shallow: every depth pushes the tool off the wall it "
+        "touches. (b) Deep: points beyond the median line (dashed) have flipped gradients (green). Blue: direction "
+        "and size of the spring force. (c) Over the tilt: share of flipped gradients, and the mean of each "
+        "contact's pull towards its wall, -1 when all push off, +1 when all pull in. Ours; the pose is prescribed."
+    )
+
+
+def draw_flip_count(ax, sweep):
+    tilt, share, pull = [], [], []
+    for step in range(1, len(sweep.tilt)):
+        contacts = sweep.contacts(step)
+        tilt.append(sweep.tilt[step])
+        share.append(contacts.flipped().mean())
+        # A gradient along the outward normal pulls the tool in; deep contacts count more.
+        along = np.einsum("ij,ij->i", contacts.gradient, contacts.normal)
+        pull.append(np.average(along, weights=np.maximum(contacts.depth, 1e-12)))
+    ax.plot(tilt, share, color="#00694D", marker="s", markevery=8)
+    ax.plot(tilt, pull, color=style.BLUE, marker="o", markevery=8)
+    ax.axhline(0, color=style.BLACK, lw=0.7)
+    ax.set(xlabel="tilt [rad]", ylabel="share, mean pull", ylim=(-1.05, 0.75))
+    ax.text(tilt[-1], share[-1] + 0.05, "flipped", color="#00694D", ha="right", va="bottom")
+    ax.text(0.36, -0.75, "mean pull", color=style.BLUE)
+
+
+def underestimation(results):
+    figure, axes = style.panels(1, 3, 3.0, gridspec_kw={"width_ratios": [0.85, 0.85, 1.3]})
+    for ax, name, title in ((axes[0, 0], SHORTEST, "shortest distance"), (axes[0, 1], NORMAL, "surface normal")):
+        draw_contacts(
+            ax, scene.Sweep(results, name), 0.3, (style.BLACK if name == SHORTEST else style.ORANGE, style.GREEN)
+        )
+        ax.set_title(title)
+    axes[0, 1].set_ylabel("")
+    draw_error(axes[0, 2], scene.Sweep(results, NORMAL))
+    style.letter(axes[0])
+    return figure, (
+        "(a) Shortest distance, (b) inverse surface normal (orange) at a tilt of 0.3 rad. (c) How much the depth of "
+        "(b) falls short of the distance to the tool's surface along the same direction, for every contact of a peg "
+        "tilted from 0 to 0.6 rad; the tilt is the brightness. Dotted: the published depth of 0.25 mm, below which "
+        "the error is called negligible (4.2). Points whose exit is the far end of the tool are left out. Ours."
+    )
+
+
+def draw_error(ax, sweep):
+    used, true, tilt = [], [], []
+    for step in range(1, len(sweep.tilt), 3):
+        contacts, peg = sweep.contacts(step), sweep.peg(step)
+        exits = peg.exit_distance(contacts.point, contacts.gradient)
+        near = exits < 2 * peg.diameter
+        used.append(contacts.depth[near])
+        true.append(exits[near])
+        tilt.append(np.full(near.sum(), sweep.tilt[step]))
+    used, true, tilt = (np.concatenate(part) for part in (used, true, tilt))
+    marks = ax.scatter(1e3 * true, 1e3 * (true - used), c=tilt, cmap="cividis", s=6, linewidths=0, rasterized=True)
+    ax.figure.colorbar(marks, ax=ax, label="tilt [rad]", shrink=0.9)
+    ax.axvline(1e3 * published.entries()["G1.negligible"]["at_most"], color=style.VERMILION, ls=(0, (1, 1.5)))
+    ax.set(
+        xlabel="distance along the normal [mm]",
+        ylabel="depth too small by [mm]",
+        title="underestimation",
+        xlim=(0, 1.3),
+        ylim=(-0.02, 0.85),
+    )

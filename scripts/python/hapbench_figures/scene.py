@@ -1,0 +1,180 @@
+"""The planar peg-in-hole scene and its contacts, in millimetres."""
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.patches import Polygon
+
+from . import style
+
+MM = 1e3
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """Contacts of one step, all coordinates in the plane; SI units."""
+
+    point: np.ndarray
+    normal: np.ndarray
+    depth: np.ndarray
+    gradient: np.ndarray
+    weight: np.ndarray
+
+    def tensor(self, weight=None):
+        """S = sum c u u^T in units of K."""
+        c = self.weight if weight is None else weight
+        return np.einsum("i,ij,ik->jk", np.broadcast_to(c, self.depth.shape), self.gradient, self.gradient)
+
+    def flipped(self):
+        """Those whose gradient points against the inverse of the surface normal: they pull the tool in."""
+        return np.einsum("ij,ij->i", self.gradient, self.normal) > 0
+
+
+@dataclass(frozen=True)
+class Peg:
+    """Pose and size of a round-tipped tool; the axis points out of the tip. SI units."""
+
+    tip: np.ndarray
+    axis: np.ndarray
+    diameter: float
+    length: float
+
+    def outline(self):
+        side = np.array([-self.axis[1], self.axis[0]])
+        turn = np.linspace(-np.pi / 2, np.pi / 2, 25)[:, None]
+        round_tip = np.cos(turn) * self.axis + np.sin(turn) * side
+        r = self.diameter / 2
+        back = self.tip - self.length * self.axis
+        return np.vstack([self.tip + r * round_tip, back + r * side, back - r * side])
+
+    def inside(self, points):
+        s = (points - self.tip) @ self.axis
+        radial = np.abs((points - self.tip) @ np.array([-self.axis[1], self.axis[0]]))
+        distance = np.where(s > 0, np.hypot(s, radial), radial)
+        return (distance <= self.diameter / 2) & (s >= -self.length)
+
+    def exit_distance(self, points, directions):
+        """Way of each point out of the tool along its direction; the tool is convex, so bisection finds it."""
+        low, high = np.zeros(len(points)), np.full(len(points), 2 * (self.length + self.diameter))
+        for _ in range(40):
+            middle = (low + high) / 2
+            within = self.inside(points + middle[:, None] * directions)
+            low, high = np.where(within, middle, low), np.where(within, high, middle)
+        return low
+
+
+class Sweep:
+    """A run that recorded its contacts."""
+
+    def __init__(self, results, name):
+        self.scenario = results.json(f"thesis/{name}/scenario.effective.json")
+        self.rows = results.table(f"thesis/{name}/trajectory.csv")
+        self.all = results.table(f"thesis/{name}/contacts.csv")
+        self.tilt = np.arctan2(np.abs(self.rows["axis_x"]), -self.rows["axis_y"])
+
+    def step_at(self, tilt):
+        return int(np.argmin(np.abs(self.tilt - tilt)))
+
+    def contacts(self, step):
+        own = self.all["step"] == self.rows["step"][step]
+        pick = {name: column[own] for name, column in self.all.items()}
+        return Contacts(
+            np.stack([pick["x_m"], pick["y_m"]], 1),
+            np.stack([pick["nx"], pick["ny"]], 1),
+            pick["depth_m"],
+            np.stack([pick["gradient_x"], pick["gradient_y"]], 1),
+            pick["weight"],
+        )
+
+    def peg(self, step):
+        row = {name: column[step] for name, column in self.rows.items()}
+        tool = self.scenario["tool"]
+        return Peg(
+            np.array([row["px_m"], row["py_m"]]),
+            np.array([row["axis_x"], row["axis_y"]]),
+            tool["diameter_m"],
+            tool["length_m"],
+        )
+
+    def force(self, step, name="fspring_"):
+        return np.array([self.rows[f"{name}x_N"][step], self.rows[f"{name}y_N"][step]])
+
+
+def shell(environment):
+    """Points of the wall of `hole_2d`, as hapbench lays them."""
+    half, depth, mouth, h = (environment[k] for k in ("width_m", "depth_m", "mouth_m", "spacing_m"))
+    half /= 2
+    top = np.arange(half, half + mouth + h / 2, h)
+    wall = np.arange(-depth, h / 2, h)
+    floor = np.arange(-half, half + h / 2, h)
+    return np.vstack(
+        [
+            np.stack([top, 0 * top], 1),
+            np.stack([-top, 0 * top], 1),
+            np.stack([0 * wall + half, wall], 1),
+            np.stack([0 * wall - half, wall], 1),
+            np.stack([floor, 0 * floor - depth], 1),
+        ]
+    )
+
+
+def draw_hole(ax, environment, points=False):
+    half, depth, mouth = environment["width_m"] / 2, environment["depth_m"], environment["mouth_m"]
+    corners = np.array(
+        [
+            [-half - mouth, 0],
+            [-half, 0],
+            [-half, -depth],
+            [half, -depth],
+            [half, 0],
+            [half + mouth, 0],
+            [half + mouth, -depth - 0.5e-3],
+            [-half - mouth, -depth - 0.5e-3],
+        ]
+    )
+    ax.add_patch(Polygon(corners * MM, closed=True, facecolor="#EFE8DC", edgecolor="none", zorder=0))
+    ax.plot(*(corners[:6] * MM).T, color="#A08F70", lw=0.9, zorder=1)
+    if points:
+        ax.plot(*(shell(environment) * MM).T, ".", color=style.BLUE, ms=2.2, zorder=2)
+    ax.set_aspect("equal")
+    ax.grid(False)
+
+
+def draw_peg(ax, peg, median=False, **keywords):
+    keywords = {"facecolor": "none", "edgecolor": style.BLACK, "lw": 1.2, "zorder": 3, **keywords}
+    ax.add_patch(Polygon(peg.outline() * MM, closed=True, **keywords))
+    if median:
+        ends = np.stack([peg.tip, peg.tip - peg.length * peg.axis])
+        ax.plot(*(ends * MM).T, color=style.GREY, lw=0.8, ls=(0, (6, 3)), zorder=3)
+
+
+def draw_segments(ax, contacts, colours, scale=1.0):
+    """From each contact along its gradient, as long as its depth: where it is taken to leave the tool."""
+    ends = contacts.point + scale * contacts.depth[:, None] * contacts.gradient
+    for start, end, colour in zip(contacts.point * MM, ends * MM, colours):
+        ax.plot([start[0], end[0]], [start[1], end[1]], color=colour, lw=1.0, zorder=4)
+    ax.scatter(*(contacts.point * MM).T, s=7, c=colours, zorder=5, linewidths=0)
+
+
+def draw_arrow(ax, start, vector, colour, label=None, at=(3, 3), **keywords):
+    """An arrow, both ends in the units of the axes; the label at its head."""
+    head = np.asarray(start) + vector
+    style_ = {
+        "arrowstyle": "-|>",
+        "color": colour,
+        "lw": 1.8,
+        "shrinkA": 0,
+        "shrinkB": 0,
+        "mutation_scale": 9,
+        **keywords,
+    }
+    ax.annotate("", xy=head, xytext=start, arrowprops=style_, zorder=6)
+    if label:
+        ax.annotate(label, xy=head, xytext=at, textcoords="offset points", color=colour, fontsize=7.5, zorder=7)
+
+
+def frame(ax, x, y):
+    """The part of the scene that is shown, in millimetres."""
+    ax.set_xlim(*x)
+    ax.set_ylim(*y)
+    ax.set_xlabel("x [mm]")
+    ax.set_ylabel("y [mm]")

@@ -1,0 +1,146 @@
+"""Stability: the root locus of A.3, and our maps of stable, vibrating and diverged runs."""
+import numpy as np
+from matplotlib.colors import BoundaryNorm, ListedColormap
+
+from . import published, style
+from .results import MissingResult, numbers
+
+CASES = (
+    ("stiffness_undamped", "A4.stiffness", "B = 0, K grows", "K", "N/m"),
+    ("damping_alone", "A4.damping", "K = 0, B grows", "B", "N s/m"),
+    ("stiffness_damped", "A4.stiffness.damped", "ζ = 0.7, K grows", "K", "N/m"),
+)
+
+
+def root_locus(results):
+    locus = results.records("stability/root_locus.csv")
+    limits = {row["case"]: row for row in results.records("stability/limits.csv")}
+    figure, axes = style.panels(1, 3, 2.7, sharey=True)
+    turn = np.linspace(0, 2 * np.pi, 181)
+    for ax, (case, id_, title, symbol, unit) in zip(axes[0], CASES):
+        rows = [row for row in locus if row["case"] == case]
+        ax.plot(np.cos(turn), np.sin(turn), color=style.BLACK, lw=0.8)
+        for which, colour, line in (("first", style.BLUE, "-"), ("second", style.ORANGE, (0, (4, 1.2)))):
+            ax.plot(numbers(rows, f"{which}_real"), numbers(rows, f"{which}_imaginary"), color=colour, ls=line, lw=1.5)
+        value = published.value(id_)
+        nearest = rows[int(np.argmin(np.abs(numbers(rows, "value") - value)))]
+        for which in ("first", "second"):
+            ax.plot(
+                float(nearest[f"{which}_real"]),
+                float(nearest[f"{which}_imaginary"]),
+                marker="D",
+                mfc="white",
+                mec=style.VERMILION,
+                ms=5,
+                zorder=5,
+            )
+        ours = float(limits[case]["simulation"])
+        style.note(
+            ax, 0.5, 0.98, f"published {symbol} = {value:,.0f} {unit}".replace(",", " "), style.VERMILION, ha="center"
+        )
+        style.note(ax, 0.5, 0.02, f"ours {ours:,.0f} {unit}".replace(",", " "), style.BLUE, ha="center", va="bottom")
+        ax.set(title=title, xlabel="real part", xlim=(-1.75, 1.4), ylim=(-1.6, 1.6), aspect="equal")
+    axes[0, 0].set_ylabel("imaginary part")
+    style.letter(axes[0])
+    return figure, (
+        "Root locus of the integrator on one spring and damper: both eigenvalues (blue, orange dashed) as stiffness "
+        "or damping grows, and the unit circle, outside of which it is unstable. Diamonds: the eigenvalues at the "
+        "published limit. Ours, below: the limit at which bisection over simulated runs finds divergence. M = 0.1 "
+        "kg, time step 0.5 ms (A.3)."
+    )
+
+
+CLASSES = ("stable", "vibrating", "diverged")
+# Light to dark, so that the classes can be told apart in grey.
+CLASS_COLOURS = ("#CFE6F5", style.ORANGE, "#7A2E00")
+
+
+def axis_label(name):
+    """ "time_step_s" -> "time step [s]"."""
+    for ending, unit in (("_N_per_m", "N/m"), ("_rad", "rad"), ("_kg", "kg"), ("_s", "s")):
+        if name.endswith(ending):
+            return f"{name.removesuffix(ending).replace('_', ' ')} [{unit}]"
+    return name.replace("_", " ")
+
+
+def is_geometric(values):
+    return values[0] > 0 and values[-1] / values[0] > 20
+
+
+def edges(values):
+    """Borders of the cells around the values of a grid."""
+    if is_geometric(values):
+        return np.exp(edges(np.log(values)))
+    middle = (values[1:] + values[:-1]) / 2
+    return np.concatenate([[2 * values[0] - middle[0]], middle, [2 * values[-1] - middle[-1]]])
+
+
+def draw_map(ax, rows, x_name, y_name):
+    x, y = numbers(rows, x_name), numbers(rows, y_name)
+    columns, lines = np.unique(x), np.unique(y)
+    grid = np.full((len(lines), len(columns)), np.nan)
+    grid[np.searchsorted(lines, y), np.searchsorted(columns, x)] = [CLASSES.index(row["class"]) for row in rows]
+    ax.pcolormesh(
+        edges(columns),
+        edges(lines),
+        grid,
+        cmap=ListedColormap(CLASS_COLOURS),
+        norm=BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3),
+        rasterized=True,
+    )
+    ax.grid(False)
+    ax.set_xscale("log" if is_geometric(columns) else "linear")
+    ax.set_yscale("log" if is_geometric(lines) else "linear")
+    ax.set(xlim=edges(columns)[[0, -1]], ylim=edges(lines)[[0, -1]])
+
+
+def draw_boundary(ax, rows, x_name, y_name):
+    for kind, look in (
+        ("analytic", {"color": "white", "lw": 2.4}),
+        ("analytic", {"color": style.BLUE, "lw": 1.3}),
+        ("simulation", {"color": style.BLACK, "lw": 1.0, "ls": (0, (2, 2))}),
+    ):
+        column = f"{kind}_{y_name}"
+        if column in rows[0]:
+            y = numbers(rows, column)
+            ax.plot(numbers(rows, x_name), np.where(np.isfinite(y), y, np.nan), **look)
+
+
+def stability_map(name):
+    """The function that draws stability_map_NAME.csv."""
+
+    def draw(results):
+        found = results.glob(f"**/stability_map_{name}.csv")
+        if not found:
+            raise MissingResult(f"no stability_map_{name}.csv")
+        rows = results.records(found[0])
+        x_name, y_name = list(rows[0])[1:3]
+        boundary_file = found[0].replace("stability_map_", "stability_boundary_")
+        boundary = results.records(boundary_file) if results.has(boundary_file) else []
+        figure, axes = style.panels(2, 4, 3.7, sharex=True, sharey=True)
+        for ax in axes.flat:
+            ax.set_visible(False)
+        present = [a for a in style.ALGORITHMS if any(row["algorithm"] == a for row in rows)]
+        for ax, algorithm in zip(axes.flat, present):
+            ax.set_visible(True)
+            draw_map(ax, [row for row in rows if row["algorithm"] == algorithm], x_name, y_name)
+            own = [row for row in boundary if row["algorithm"] == algorithm]
+            if own:
+                draw_boundary(ax, own, x_name, y_name)
+            ax.set_title(style.ALGORITHMS[algorithm].label)
+        figure.supxlabel(axis_label(x_name), fontsize=8)
+        figure.supylabel(axis_label(y_name), fontsize=8)
+        handles = [style.plt.Rectangle((0, 0), 1, 1, color=c) for c in CLASS_COLOURS]
+        handles += [
+            style.plt.Line2D([], [], color=style.BLUE, lw=1.3),
+            style.plt.Line2D([], [], color="black", lw=1, ls=(0, (2, 2))),
+        ]
+        figure.get_layout_engine().set(rect=(0, 0, 1, 0.93))
+        figure.legend(handles, [*CLASSES, "limit, theory", "limit, bisection"], loc="upper center", ncol=5)
+        return figure, (
+            f"Where a run is stable, vibrates or diverges: {axis_label(y_name)} over {axis_label(x_name)}, every "
+            "algorithm. Lines: the limit from theory (blue), where there is one, and found by bisection over "
+            "simulated runs (dashed). Ours."
+        )
+
+    return draw

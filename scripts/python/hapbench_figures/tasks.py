@@ -1,0 +1,292 @@
+"""The three evaluation tasks of 3.2 (figures 4, 5, C.2, C.4 and E.1 to E.4)."""
+import numpy as np
+
+from . import published, style
+from .results import envelope
+
+TASKS = (
+    ("T1", "task1_flat", "task 1: poke and drag"),
+    ("T2", "task2_rotate", "task 2: rotate in the hole"),
+    ("T3", "task3_spin", "task 3: round the wall"),
+)
+DENSITIES = (("signed_distance", "signed distance"), ("binary", "binary"))
+ITERATIONS = (1, 2, 3, 4, 5, 10, 20, 40, 80, 160)
+BINS = 240  # of a time axis: more cannot be told apart at column width
+HAND = "Hands and paths are ours, the force of the hand chosen to give about the published number of raw points."
+
+
+def trajectory(results, task, density="signed_distance"):
+    return results.table(f"thesis/{task}_{density}/trajectory.csv")
+
+
+def ratios(results, task, iteration, density="signed_distance"):
+    """The rows of one iteration at which something was in contact."""
+    table = results.table(f"thesis/{task}_{density}/ratios.csv")
+    own = (table["iteration"] == iteration) & (table["rendered"] > 0)
+    return {name: column[own] for name, column in table.items()}
+
+
+def thin(*columns, count=220):
+    """So many rows, evenly spread."""
+    pick = np.unique(np.linspace(0, len(columns[0]) - 1, count).astype(int))
+    return [column[pick] for column in columns]
+
+
+def published_count(ax, x, task, what, colour):
+    """Mean and standard deviation at the right edge of a time axis."""
+    id_ = f"{task}.{what}"
+    entry = published.entries()[id_]
+    error = [[entry["std"]], [entry["std"]]] if "std" in entry else None
+    ax.errorbar(
+        [x], [published.value(id_)], yerr=error, **{**style.PUBLISHED, "mec": colour, "ecolor": colour}, clip_on=False
+    )
+
+
+def point_counts(results):
+    figure, axes = style.panels(2, 3, 3.7, sharey=True, sharex="col")
+    for row, (density, density_name) in zip(axes, DENSITIES):
+        for ax, (id_, task, title) in zip(row, TASKS):
+            rows = trajectory(results, task, density)
+            time, raw, kept = thin(rows["time_s"], rows["colliding"], rows["rendered"])
+            touching = raw > 0
+            ax.plot(time[touching], raw[touching], ".", color=style.ORANGE, ms=2.5)
+            ax.plot(time[touching], kept[touching], "s", color=style.BLUE, ms=1.5)
+            end = rows["time_s"][-1]
+            published_count(ax, 1.045 * end, id_, "raw", style.VERMILION)
+            published_count(ax, 1.045 * end, id_, "reduced", style.BLACK)
+            ax.set_xlim(0, 1.08 * end)
+            ax.set(yscale="log", ylim=(0.7, 900))
+            if density == DENSITIES[0][0]:
+                ax.set_title(title)
+        row[0].set_ylabel(f"{density_name}\npoints in contact")
+    for ax in axes[1]:
+        ax.set_xlabel("time [s]")
+    style.note(axes[0, 1], 0.03, 0.98, "before the reduction", "#9C6A00")
+    style.note(axes[0, 1], 0.03, 0.06, "after", style.BLUE, va="bottom")
+    style.note(axes[0, 2], 0.97, 0.06, "published mean ± SD ◇", style.VERMILION, ha="right", va="bottom")
+    return figure, (
+        "Colliding points before (orange dots) and after (blue squares) the gradient-based reduction in the three "
+        "tasks of 3.2, for both densities of the block. Dots: ours, thinned; hollow diamonds at the right edge: "
+        f"published mean and standard deviation (3.3). {HAND} The time of a step is in the latency figure."
+    )
+
+
+def count_distribution(results):
+    figure, axes = style.panels(1, 2, 2.9, sharey=True)
+    offsets = {"signed_distance": 0.2, "binary": 0.0}
+    markers = {"signed_distance": "o", "binary": "s"}
+    for ax, column, what, title in (
+        (axes[0, 0], "colliding", "raw", "before the reduction"),
+        (axes[0, 1], "rendered", "reduced", "after the reduction"),
+    ):
+        for place, (id_, task, _) in enumerate(TASKS):
+            y = len(TASKS) - place
+            for density, name in DENSITIES:
+                rows = trajectory(results, task, density)
+                values = rows[column][rows["colliding"] > 0]
+                draw_distribution(ax, y + offsets[density], values, markers[density], name if place == 0 else None)
+            for k, suffix in enumerate(("", ".C3")):
+                if f"{id_}.{what}{suffix}" in published.entries():
+                    entry = published.entries()[f"{id_}.{what}{suffix}"]
+                    ax.errorbar(
+                        [published.value(entry["id"])],
+                        [y - 0.2 - 0.13 * k],
+                        xerr=[[entry.get("std", 0)]] * 2,
+                        **style.PUBLISHED,
+                    )
+        ax.set(title=title, xlabel="points in contact", xscale="log")
+        ax.set_xlim((1, 1000) if what == "raw" else (0.8, 100))
+        ax.set_ylim(0.5, 3.5)
+    axes[0, 0].set_yticks([3, 2, 1], [title.replace(": ", ":\n") for _, _, title in TASKS])
+    axes[0, 0].legend(loc="lower left")
+    style.note(axes[0, 1], 0.98, 0.9, "◇ published, 3.3 and C.3\n(mean ± SD)", style.VERMILION, ha="right")
+    style.letter(axes[0])
+    return figure, (
+        "Distribution of the number of points in contact before (a) and after (b) the gradient-based reduction. "
+        "Ours, for two densities of the block: mean (mark), standard deviation (thick), 5th to 95th percentile "
+        "(thin), over the steps in contact. Published means and standard deviations of 3.3 (upper) and C.3 (lower "
+        f"diamond). {HAND}"
+    )
+
+
+def draw_distribution(ax, y, values, marker, label):
+    mean, spread = values.mean(), values.std()
+    ax.plot(np.percentile(values, [5, 95]), [y, y], color=style.BLUE, lw=0.8)
+    ax.plot([max(mean - spread, 0.1), mean + spread], [y, y], color=style.BLUE, lw=2.4, solid_capstyle="butt")
+    ax.plot([mean], [y], marker, color=style.BLUE, mec="white", ms=5, mew=0.6, label=label, ls="none")
+
+
+def quantiles(results, density="signed_distance", tasks=TASKS):
+    """Over all rows of the tasks, for each iteration: percentiles 0, 5, 50, 95, 100 of the greatest and least ratio."""
+    greatest, least = [], []
+    for iteration in ITERATIONS:
+        parts = [ratios(results, task, iteration, density) for _, task, _ in tasks]
+        greatest.append(np.percentile(np.concatenate([p["ratio_max"] for p in parts]), [0, 5, 50, 95, 100]))
+        least.append(np.percentile(np.concatenate([p["ratio_min"] for p in parts]), [0, 5, 50, 95, 100]))
+    return np.array(greatest), np.array(least)
+
+
+def draw_quantiles(ax, values, colour, marker, extreme):
+    ax.fill_between(ITERATIONS, values[:, 1], values[:, 3], color=colour, alpha=0.3, lw=0)
+    ax.plot(ITERATIONS, values[:, 2], color=colour, marker=marker)
+    ax.plot(ITERATIONS, values[:, extreme], color=colour, ls=":", lw=1.1)
+
+
+def convergence_by_task(results):
+    figure, axes = style.panels(1, 3, 2.5, sharey=True)
+    bound = published.value("R1.limit"), published.entries()["R1.bound"]["at_most"]
+    once = published.entries()["R1.once"]
+    for ax, task in zip(axes[0], TASKS):
+        greatest, least = quantiles(results, tasks=(task,))
+        draw_quantiles(ax, greatest, style.BLUE, "o", 4)
+        draw_quantiles(ax, least, style.ORANGE, "s", 0)
+        ax.axhline(bound[0], color=style.BLACK, ls="--", lw=0.8)
+        ax.axhline(bound[1], color=style.VERMILION, ls=(0, (1, 1.5)), lw=1)
+        ax.errorbar(
+            [0.8], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"}
+        )
+        ax.set(xscale="log", title=task[2], xlabel="iterations", xlim=(0.7, 200), ylim=(0.4, 1.62))
+        ax.set_xticks([1, 3, 10, 40, 160], ["1", "3", "10", "40", "160"])
+        ax.minorticks_off()
+    axes[0, 0].set_ylabel("stiffness ratio")
+    style.note(axes[0, 0], 0.97, 0.92, "published bound 1.5", style.VERMILION, ha="right")
+    style.note(axes[0, 1], 0.97, 0.72, "greatest", style.BLUE, ha="right")
+    style.note(axes[0, 1], 0.97, 0.3, "least", "#9C6A00", ha="right")
+    return figure, (
+        "Greatest (blue circles) and least (orange squares) stiffness ratio of the contacts of a step after so many "
+        "shaping iterations: median, 5th to 95th percentile (shaded) and extreme (dotted) over all steps in "
+        "contact, ours, signed-distance block. Published (vermilion): 0.8 to 1.3 after one iteration (bar at the "
+        f"left edge, C.4.2), never above 1.5 (4.3). {HAND}"
+    )
+
+
+def convergence(results):
+    figure, axes = style.panels(1, 2, 2.7, sharey=True)
+    once = published.entries()["R1.once"]
+    for ax, (density, name) in zip(axes[0], DENSITIES):
+        greatest, least = quantiles(results, density, TASKS[1:])
+        draw_quantiles(ax, greatest, style.BLUE, "o", 4)
+        draw_quantiles(ax, least, style.ORANGE, "s", 0)
+        ax.axhline(1, color=style.BLACK, ls="--", lw=0.8)
+        ax.errorbar(
+            [0.85], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"}
+        )
+        ax.set(
+            xscale="log",
+            yscale="log",
+            title=f"density: {name}",
+            xlabel="iterations",
+            xlim=(0.75, 200),
+            ylim=(0.42, 1.6),
+        )
+        ax.set_xticks(ITERATIONS, [str(i) if i in (1, 2, 3, 5, 10, 20, 40, 80, 160) else "" for i in ITERATIONS])
+        ticks = (0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.2, 1.4, 1.6)
+        ax.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
+        ax.minorticks_off()
+    axes[0, 0].set_ylabel("stiffness ratio")
+    style.note(
+        axes[0, 0], 0.97, 0.95, "greatest: stays above 1 where\na contact's weight vanishes", style.BLUE, ha="right"
+    )
+    style.note(axes[0, 0], 0.97, 0.06, "least: tends to 1", "#9C6A00", ha="right", va="bottom")
+    style.letter(axes[0])
+    return figure, (
+        "Convergence of the stiffness ratios over tasks 2 and 3 (in task 1 they are 1), both axes logarithmic: "
+        "median (marks), 5th to 95th percentile (shaded), extreme (dotted); ours. Published: 0.8 to 1.3 after one "
+        "iteration (vermilion bar), and that the ratio converges to 1 (dashed). The least ratio does; the greatest "
+        "does not where a contact's weight tends to zero."
+    )
+
+
+def over_time(results, draw, label, height=2.6, rows=1, **keywords):
+    """Panels over the time of the three tasks; `draw(ax, row, rows of the task)`."""
+    figure, axes = style.panels(rows, 3, height, sharey="row", sharex="col", **keywords)
+    for j, (_, task, title) in enumerate(TASKS):
+        for i in range(rows):
+            draw(axes[i, j], i, task)
+        axes[0, j].set_title(title)
+        axes[-1, j].set_xlabel("time [s]")
+    for i, text in enumerate(label):
+        axes[i, 0].set_ylabel(text)
+    return figure, axes
+
+
+def positions(results):
+    coordinates = (
+        ("px_m", "x", style.BLUE, "-"),
+        ("py_m", "y", style.ORANGE, (0, (4, 1.5))),
+        ("pz_m", "z", style.BLACK, "-"),
+    )
+
+    def draw(ax, _, task):
+        rows = trajectory(results, task)
+        for column, name, colour, line in coordinates:
+            time, low, high = envelope(rows["time_s"], 1e3 * rows[column], BINS)
+            ax.plot(time, (low + high) / 2, color=colour, ls=line, lw=1.1, label=name)
+            ax.fill_between(time, low, high, color=colour, alpha=0.3, lw=0)
+
+    figure, axes = over_time(results, draw, ["position of the tip [mm]"])
+    axes[0, 2].legend(loc="center", bbox_to_anchor=(0.5, 0.28), ncol=3, handlelength=2, columnspacing=1)
+    return figure, (
+        "Position of the tip over time in the three tasks, ours (signed-distance block). x and y span the top face "
+        f"of the block, whose height is z = 0; the bottom of the hole is at z = -5 mm. {HAND}"
+    )
+
+
+def model_force(results):
+    def draw(ax, _, task):
+        rows = trajectory(results, task)
+        size = np.sqrt(sum(rows[f"f{axis}_N"] ** 2 for axis in "xyz"))
+        time, low, high = envelope(rows["time_s"], size, BINS)
+        ax.fill_between(time, low, high, color=style.BLUE, alpha=0.45, lw=0)
+        ax.plot(time, (low + high) / 2, color=style.BLUE, lw=0.9)
+        ax.axhline(published.value("L1.threshold"), color=style.VERMILION, ls="--", lw=0.9)
+
+    figure, axes = over_time(results, draw, ["model force [N]"])
+    axes[0, 0].set_ylim(bottom=0)
+    limit = published.value("L1.threshold")
+    axes[0, 0].text(0, 1.03 * limit, "published limit of the input force", color=style.VERMILION, fontsize=7)
+    return figure, (
+        "Size of the model force (spring, damping and friction) over time in the three tasks, ours: range in each "
+        f"of {BINS} spans of time. Dashed: the limit of the input force, 2 N (3.5). {HAND}"
+    )
+
+
+def _ratio_over_time(results, column, colour, word):
+    chosen = (1, 3, 10, 160)
+
+    def draw(ax, i, task):
+        rows = ratios(results, task, chosen[i])
+        time, low, high = envelope(rows["time_s"], rows[column], BINS)
+        ax.fill_between(time, low, high, color=colour, alpha=0.75, lw=0.4, edgecolor=colour)
+        ax.axhline(1, color=style.BLACK, lw=0.7, ls="--")
+        once = published.entries()["R1.once"]["at_most" if column == "ratio_max" else "at_least"]
+        if chosen[i] == 1:
+            ax.axhline(once, color=style.VERMILION, lw=1, ls=(0, (1, 1.5)))
+
+    labels = [f"{n} iteration{'s' if n > 1 else ''}" for n in chosen]
+    figure, axes = over_time(results, draw, labels, height=4.6, rows=len(chosen))
+    for ax in axes.flat:
+        ax.set_ylim((0.95, 1.4) if column == "ratio_max" else (0.4, 1.05))
+    above = column == "ratio_max"
+    style.note(
+        axes[0, 0],
+        0.98,
+        0.3 if above else 0.1,
+        f"published after one:\n{'1.3' if above else '0.8'}",
+        style.VERMILION,
+        ha="right",
+        va="bottom",
+    )
+    return figure, (
+        f"The {word} stiffness ratio of a step's contacts over time, after 1, 3, 10 and 160 shaping iterations, ours "
+        f"(signed-distance block): range in each of {BINS} spans of time. Dotted: published "
+        f"{'upper' if above else 'lower'} end after one iteration (C.4.2). {HAND}"
+    )
+
+
+def greatest_ratio(results):
+    return _ratio_over_time(results, "ratio_max", style.BLUE, "greatest")
+
+
+def least_ratio(results):
+    return _ratio_over_time(results, "ratio_min", style.ORANGE, "least")

@@ -1,0 +1,314 @@
+"""Tests scripts/figures on freshly made results, and the published numbers it draws.
+
+figures_test.py PROGRAM SOURCE_DIRECTORY: the hapbench that makes results, and the tree with scripts and scenarios.
+"""
+import glob
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+PROGRAM, SOURCE = Path(sys.argv[1]), Path(sys.argv[2])
+SVG = "{http://www.w3.org/2000/svg}"
+# Short runs of the same scenarios: what is tested is the drawing. They need not end as their scenarios expect.
+RUNS = (
+    ("task*", ["time.duration_s=1", "record.every=8"]),
+    ("ideal_trajectory_*", ["time.duration_s=3", "record.every=8"]),
+    ("force_limit_*", []),
+    ("corner_*", []),
+    ("gradient_flip", []),
+    ("over_reduction_*", []),
+    ("parallel_faces", []),
+    ("pure_rotation", []),
+    ("peg_in_hole_2d_*", []),
+    ("springs_*", []),
+    ("tilt_sweep_*", []),
+    ("vertical_*", ["hand.trials=1", "hand.task.time_limit_s=2", "hand.task.targets_per_place=1"]),
+    ("rotational_*", ["hand.trials=1", "hand.task.time_limit_s=2", "hand.task.targets_per_place=1"]),
+)
+CLAIMS = ("T1 T2 T3 T4 R1 L1 J1 G1 A1 A2 A3 A4 B1 B2 B3 C1 C2 C3 C4 F1 F2 D1 D2 D3 D4").split()
+# Figures that between them use every way of drawing: thinned marks, shaded areas, arrows, rasterised marks, maps.
+DRAWN_TWICE = "A.5,B.4,C.1,D.7,E.3,precision,stability-wedge"
+
+
+def hapbench(*arguments):
+    done = subprocess.run(
+        [PROGRAM, *arguments], env={**os.environ, "HAPBENCH_CACHE_DIR": ""}, capture_output=True, text=True
+    )
+    if done.returncode not in (0, 3):
+        raise AssertionError(f"hapbench {' '.join(map(str, arguments))}: {done.stderr}")
+
+
+def figures(*arguments, **environment):
+    return subprocess.run(
+        [SOURCE / "scripts" / "figures", *arguments], capture_output=True, text=True, env={**os.environ, **environment}
+    )
+
+
+def ids():
+    return [line.split()[0] for line in figures("--list").stdout.splitlines()]
+
+
+def make_results(directory):
+    for pattern, overrides in RUNS:
+        scenarios = sorted(glob.glob(str(SOURCE / "scenarios" / "thesis" / f"{pattern}.json")))
+        assert scenarios, pattern
+        # Only several scenarios get a directory each.
+        out = directory / "thesis" / (Path(scenarios[0]).stem if len(scenarios) == 1 else "")
+        hapbench("run", *scenarios, *(f"--set={text}" for text in overrides), "--quiet", "--out", out)
+    hapbench("stability", "single_spring", "--quiet", "--out", directory / "stability")
+    make_studies(directory / "precision")
+    make_maps(directory / "stability")
+    timing = {
+        "step_latency": {
+            "steps": 10,
+            "p50_s": 2e-6,
+            "p99_9_s": 6e-4,
+            "histogram": [{"from_s": 0, "to_s": 2e-6, "steps": 9}, {"from_s": 5.12e-4, "to_s": 1.024e-3, "steps": 1}],
+        }
+    }
+    (directory / "thesis" / "gradient_flip" / "timing.json").write_text(json.dumps(timing))
+
+
+def make_studies(directory):
+    """Tables as of `hapbench precision`, whose runs would take longer than all else here."""
+    directory.mkdir()
+    settings = {
+        "integrators": ["leapfrog dt=0.001", "leapfrog dt=0.0001"],
+        "time_step": ["dt=0.001", "dt=0.0001"],
+        "shaping": ["m=0", "m=1", "exact"],
+        "reduction": ["shaped_stiffness 0.9", "exact_shaping off"],
+        "spacing": ["signed_distance 0.0004", "binary 0.0002"],
+        "algorithms": ["mean", "original_averaging"],
+    }
+    columns = ("step_s", "error_rms_m", "tensor_error_rms", "force_error_relative", "ideal_height_error_rms_m")
+    for study, names in settings.items():
+        rows = [
+            f"{name},{'diverges' if name.startswith('original') else 'completes'}"
+            + f",{0.001 / (i + 1)}" * len(columns)
+            for i, name in enumerate(names)
+        ]
+        (directory / f"precision_{study}.csv").write_text(
+            "\n".join(["setting,outcome," + ",".join(columns), *rows]) + "\n"
+        )
+        times = [f"{name},{1e-6 * (i + 1)},{1e-6 * (i + 1)}" for i, name in enumerate(names)]
+        (directory / f"precision_{study}_timing.csv").write_text(
+            "\n".join(["setting,seconds_per_step,seconds_per_call", *times]) + "\n"
+        )
+
+
+def make_maps(directory):
+    """A coarse map of each kind: both axes geometric, and one of them linear."""
+    for name, x_name, values in (
+        ("time_step", "time_step_s", (1e-4, 1e-3, 1e-2)),
+        ("mass", "mass_kg", (0.01, 0.1, 1)),
+        ("damping_ratio", "damping_ratio", (0, 1, 2)),
+        ("contacts", "contacts", (1, 10, 100)),
+        ("wedge", "wedge_angle_rad", (0, 1.5, 3)),
+        ("device", "delay_samples", (0, 8, 16)),
+    ):
+        points, boundary = [], []
+        for algorithm in ("shaped_stiffness", "summation"):
+            for x in values:
+                boundary.append(f"{algorithm},{x},{'inf' if x == values[0] else 3e4},2.9e4,,")
+                points += [
+                    f"{algorithm},{x},{k},{motion},1,"
+                    for k, motion in ((1e3, "stable"), (1e4, "vibrating"), (1e5, "diverged"))
+                ]
+        (directory / f"stability_map_{name}.csv").write_text(
+            "\n".join([f"algorithm,{x_name},stiffness_N_per_m,class,lambda_max,stability_margin", *points]) + "\n"
+        )
+        (directory / f"stability_boundary_{name}.csv").write_text(
+            "\n".join(
+                [
+                    f"algorithm,{x_name},analytic_stiffness_N_per_m,simulation_stiffness_N_per_m,relative_difference,no_theory",
+                    *boundary,
+                ]
+            )
+            + "\n"
+        )
+
+
+class Figures(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.directory = Path(cls.temporary.name)
+        cls.results, cls.drawn = cls.directory / "results", cls.directory / "figures"
+        make_results(cls.results)
+        cls.run_ = figures(cls.results, "--out", cls.drawn)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def index(self, directory=None):
+        return json.loads(((directory or self.drawn) / "figures.json").read_text(encoding="utf-8"))["figures"]
+
+    def test_every_figure_is_drawn(self):
+        self.assertEqual(self.run_.returncode, 0, self.run_.stderr)
+        self.assertEqual([entry["id"] for entry in self.index()], ids(), self.run_.stderr)
+
+    def test_the_figures_of_the_thesis_are_there(self):
+        redrawn = " ".join(entry["thesis_figure"] or "" for entry in self.index())
+        for name in (
+            "2 4 5 6 7a-c 8 A.1 A.2a-b A.5 B.3 B.4 B.5 C.1 C.2 C.3 C.4 D.7 D.8 E.1 E.2 E.3 E.4 F.4 F.5"
+        ).split():
+            self.assertRegex(redrawn, rf"(^|\s){re.escape(name)}(,|\s|$)")
+        self.assertIn("A.4 (springs)", redrawn)
+        self.assertIn("A.4 (root locus)", redrawn)
+
+    def test_the_index_describes_the_files(self):
+        for entry in self.index():
+            with self.subTest(entry["id"]):
+                self.assertGreater(len(entry["caption"]), 40)
+                self.assertRegex(entry["caption"], r"\b[Oo]urs\b")
+                self.assertTrue(entry["title"] and entry["sources"])
+                for source in entry["sources"]:
+                    self.assertTrue((self.results / source).is_file(), source)
+                self.assertEqual({Path(name).suffix for name in entry["files"]}, {".svg", ".pdf", ".png"})
+                for name in entry["files"]:
+                    self.assertGreater((self.drawn / name).stat().st_size, 1000, name)
+        self.assertFalse([path for path in self.drawn.iterdir() if path.name.endswith(".tmp")])
+
+    def test_svg_is_valid_and_shows_something(self):
+        for entry in self.index():
+            with self.subTest(entry["id"]):
+                root = xml.parse(self.drawn / f"{entry['files'][0]}").getroot()
+                self.assertEqual(root.tag, f"{SVG}svg")
+                # An empty pair of axes has about ten paths and no text besides the numbers.
+                self.assertGreater(sum(1 for _ in root.iter(f"{SVG}path")), 15)
+                words = [text for text in root.itertext() if re.search("[a-z]{3}", text)]
+                self.assertGreater(len(words), 1)
+
+    def test_axes_name_their_units(self):
+        for entry in self.index():
+            text = " ".join(xml.parse(self.drawn / entry["files"][0]).getroot().itertext())
+            with self.subTest(entry["id"]):
+                self.assertRegex(
+                    text, r"\[(mm|s|ms|µs|N|N/m|rad|kg|mm/s|m/s)\]|/ K|iterations|real part|points in contact|contacts"
+                )
+
+    def test_same_data_same_bytes(self):
+        again = self.directory / "again"
+        done = figures(self.results, "--out", again, "--only", DRAWN_TWICE, PYTHONHASHSEED="7")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(len(self.index(again)), len(DRAWN_TWICE.split(",")))
+        for entry in self.index(again):
+            for name in entry["files"]:
+                self.assertEqual((again / name).read_bytes(), (self.drawn / name).read_bytes(), name)
+
+    def test_missing_data_is_skipped_and_said(self):
+        empty, out = self.directory / "empty", self.directory / "nothing"
+        empty.mkdir()
+        done = figures(empty, "--out", out)
+        self.assertEqual(done.returncode, 1)
+        for id_ in ids():
+            self.assertRegex(done.stderr, rf"skipped {re.escape(id_)} \(no .+\)")
+        self.assertEqual(self.index(out), [])
+
+    def test_damaged_data_is_named(self):
+        damaged, out = self.directory / "damaged", self.directory / "out_of_damaged"
+        target = damaged / "thesis" / "gradient_flip" / "trajectory.csv"
+        target.parent.mkdir(parents=True)
+        whole = (self.results / "thesis" / "gradient_flip" / "trajectory.csv").read_text()
+        for text in (
+            "",
+            "step,time_s\n",
+            whole[: len(whole) // 2],
+            whole.replace("fspring_x_N", "other"),
+            "step\nmany\n",
+            "\x00\xff",
+        ):
+            target.write_text(text)
+            done = figures(damaged, "--out", out, "--only", "B.3.3")
+            with self.subTest(text[:30]):
+                self.assertIn(done.returncode, (1, 2))
+                self.assertIn("gradient_flip", done.stderr)
+                self.assertNotIn("Traceback", done.stderr)
+                self.assertEqual([path.name for path in out.iterdir()], ["figures.json"])
+
+    def test_usage(self):
+        self.assertEqual(figures(self.results, "--out", self.directory / "x", "--only", "99").returncode, 2)
+        self.assertEqual(figures(self.directory / "nowhere", "--out", self.directory / "x").returncode, 2)
+        self.assertEqual(figures().returncode, 2)
+        # A file where the directory should be.
+        self.assertEqual(figures(self.results, "--out", self.drawn / "figures.json", "--only", "6").returncode, 2)
+
+    def test_without_an_interpreter_that_serves(self):
+        # A PATH with a python3 that can do nothing; the launcher may still find Debian's by its full name.
+        poor = self.directory / "poor"
+        poor.mkdir()
+        (poor / "python3").symlink_to("/bin/false")
+        done = figures("--list", PATH=f"{poor}:{os.environ['PATH']}")
+        self.assertTrue(done.returncode == 0 or "imports numpy" in done.stderr, done.stderr)
+
+
+class PublishedNumbers(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.schema = json.loads((SOURCE / "results" / "published.schema.json").read_text(encoding="utf-8"))
+        cls.files = {
+            path.name: json.loads(path.read_text(encoding="utf-8"))
+            for path in sorted((SOURCE / "results" / "published").glob("*.json"))
+        }
+        cls.entries = [entry for file in cls.files.values() for entry in file["values"]]
+
+    def test_files_agree_with_the_schema(self):
+        item = self.schema["properties"]["values"]["items"]
+        types = {"string": str, "number": (int, float)}
+        for name, file in self.files.items():
+            self.assertEqual(set(file), set(self.schema["required"]), name)
+            self.assertTrue(file["source"])
+            for entry in file["values"]:
+                with self.subTest(f"{name}: {entry.get('id')}"):
+                    self.assertLessEqual(set(item["required"]), set(entry))
+                    self.assertLessEqual(set(entry), set(item["properties"]))
+                    self.assertRegex(entry["id"], item["properties"]["id"]["pattern"])
+                    for key, value in entry.items():
+                        rule = item["properties"][key]
+                        self.assertIsInstance(value, types[rule["type"]])
+                        self.assertGreaterEqual(
+                            len(value) if isinstance(value, str) else value,
+                            rule.get("minLength", rule.get("minimum", float("-inf"))),
+                        )
+
+    def test_each_entry_says_one_thing(self):
+        for entry in self.entries:
+            with self.subTest(entry["id"]):
+                kinds = [
+                    bool({"mean"} & set(entry)),
+                    bool({"value"} & set(entry)),
+                    bool({"at_least", "at_most"} & set(entry)),
+                    bool({"statement"} & set(entry)),
+                ]
+                self.assertEqual(sum(kinds), 1)
+                self.assertEqual("unit" in entry, not kinds[3])
+                self.assertEqual("mean" in entry, bool({"std", "standard_error"} & set(entry)))
+                self.assertLessEqual(entry.get("at_least", 0), entry.get("at_most", float("inf")))
+
+    def test_every_claim_is_there_once(self):
+        names = [entry["id"] for entry in self.entries]
+        self.assertEqual(len(names), len(set(names)))
+        self.assertEqual({name.split(".")[0] for name in names}, set(CLAIMS))
+
+    def test_published_statistics_agree_with_themselves(self):
+        """The sign of the published t is that of the difference of the published means. Not so in Table A.2, where
+        nothing differs and rounding decides (it prints equal velocities with t = 2.5)."""
+        value = {entry["id"]: entry for entry in self.entries}
+        for claim in ("D1", "D3", "D4"):
+            for measure in ("success", "time", "force", "speed"):
+                difference = (
+                    value[f"{claim}.{measure}.original_averaging"]["mean"]
+                    - value[f"{claim}.{measure}.shaped_stiffness"]["mean"]
+                )
+                self.assertGreater(difference * value[f"{claim}.{measure}.t"]["value"], 0, f"{claim}.{measure}")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
