@@ -2,6 +2,7 @@
 import base64
 import json
 import os
+import select
 import shutil
 import subprocess
 import tempfile
@@ -62,6 +63,8 @@ class Chromium:
 
     def next_message(self):
         while b"\0" not in self.buffer:
+            if not select.select([self.read_end], [], [], PATIENCE_S)[0]:
+                raise TimeoutError("Chromium does not answer")
             part = os.read(self.read_end, 1 << 20)
             if not part:
                 raise RuntimeError("Chromium has ended")
@@ -71,7 +74,7 @@ class Chromium:
 
     def open(self, url):
         self.call("Page.navigate", url=url)
-        self.wait_for(f"document.readyState === 'complete' && location.href !== 'about:blank'")
+        self.wait_for(f"document.readyState === 'complete' && location.href === {json.dumps(url)}")
 
     def evaluate(self, expression):
         result = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
