@@ -75,7 +75,7 @@ class Page(WithResults):
         done = report(bare)
         self.assertEqual(done.returncode, 0, done.stderr)
         page = strip((bare / "report.html").read_text(encoding="utf-8"))
-        for text in ("No ledger was given", "No figures were given", "No recorded runs were given", "No precision studies"):
+        for text in ("No ledger was given", "No figures were given", "No recorded runs were given", "No studies among"):
             self.assertIn(text, page)
 
     def test_targets_stand_beside_the_published_ones(self):

@@ -5,7 +5,7 @@ from .markup import command, text
 from .section_figures import figures_section
 from .section_ledger import ledger_section, summary_section
 from .section_replay import replay_section
-from .section_runs import (parameters_section, precision_section, provenance_of, provenance_section, runs_section,
+from .section_runs import (parameters_section, provenance_of, provenance_section, runs_section, studies_section,
                            timing_section)
 from .section_thesis import index_section, limits_table, load_tables, parameter_tables, target_tables
 from .template import fill
@@ -27,7 +27,7 @@ def report(runs, studies, claims, figures, scenes):
         ("subjects", "Subjects", "Simulated subjects", target_tables(runs, tables)),
         ("tables", "Tables", "Parameters and limits of the thesis", parameter_tables(runs, tables) + limits_table(studies, tables)),
         ("runs", "Runs", "Runs", runs_section(runs)),
-        ("precision", "Precision", "Precision", precision_section(studies)),
+        ("studies", "Studies", "Precision and other studies", studies_section(studies)),
         ("timing", "Timing", "Timing", timing_section(runs, studies)),
         ("rerun", "Rerun", "Run it again", rerun_section()),
         ("parameters", "Scenarios", "Scenario of every run", parameters_section(runs)),

@@ -4,6 +4,7 @@ import json
 from .json_input import at, number_or_none
 from .markup import cell, command, heading_cell, number_cell, table, text
 from .section_ledger import filters
+from .studies import LIMITS
 
 # Metric of summary.json -> heading and factor.
 METRICS = (
@@ -66,11 +67,13 @@ def compact(parts):
     return "\n".join(f"{key}: {json.dumps(value, ensure_ascii=False)}" for key, value in parts.items())
 
 
-def precision_section(studies):
-    shown = "".join(study_table(study) for study in studies
-                    if study.path.startswith("precision/") and not study.path.endswith("_timing.csv"))
-    return ("<p>Error against a reference solution, one study per choice; their times are under Timing.</p>" + shown
-            if shown else '<p class="note">No precision studies among these results.</p>')
+def studies_section(studies):
+    # Limits and times have places of their own.
+    others = [s for s in studies if s.path != LIMITS and not s.path.endswith("_timing.csv")]
+    others.sort(key=lambda study: not study.path.startswith("precision/"))
+    shown = "".join(study_table(study) for study in others)
+    return ("<p>Precision studies give the error against a reference solution, one study per choice; their times are under "
+            "Timing.</p>" + shown if shown else '<p class="note">No studies among these results.</p>')
 
 
 def provenance_of(runs):

@@ -6,6 +6,7 @@ from pathlib import Path
 from .json_input import at, number_or_none
 from .markup import ABSENT, cell, command, heading_cell, number, table, text
 from .runs import find_run
+from .studies import LIMITS
 
 HERE = Path(__file__).parent
 MEASURES = {"success_rate": ("Success rate", "1"), "completion_time_s": ("Completion time", "s"),
@@ -115,7 +116,7 @@ def scaled(value, scale):
 
 def limits_table(studies, tables):
     part = tables["limits"]
-    study = next((s for s in studies if s.path == "stability/limits.csv"), None)
+    study = next((s for s in studies if s.path == LIMITS), None)
     rows = []
     for row in study.rows if study else []:
         value = dict(zip(study.header, row))

@@ -35,7 +35,7 @@ function drawChartGrid(context, width, bottom, decades, y, duration, colours) {
     tracePath(context, [[CHART_LEFT, at], [width, at]]);
     context.stroke();
     context.textAlign = "end";
-    context.fillText(`${+(10 ** e).toPrecision(1)} N`, CHART_LEFT - 5, at + 4);
+    context.fillText(e < 3 ? `${+(10 ** e).toPrecision(1)} N` : `${10 ** (e - 3)} kN`, CHART_LEFT - 5, at + 4);
   }
   context.textAlign = "start";
   context.fillText("0 s", CHART_LEFT, bottom + 14);

@@ -163,7 +163,7 @@ function drawForce(context, project, tip, force, colours) {
   context.lineWidth = 3;
   drawArrow(context, from, to, 11);
   context.font = "600 13px system-ui, sans-serif";
-  context.fillText(`${size.toPrecision(3)} N`, to[0] + 7, to[1] + (to[1] > from[1] ? 14 : -6));
+  context.fillText(`${show(size)} N`, to[0] + 7, to[1] + (to[1] > from[1] ? 14 : -6));
 }
 
 /** A bar of a round length in the lower left corner. */
@@ -202,6 +202,6 @@ function drawWayOut(context, at, width, height, colours) {
   drawArrow(context, [centre[0] + 0.8 * reach * d[0], centre[1] + 0.8 * reach * d[1]], to, 10);
   context.font = "600 13px system-ui, sans-serif";
   context.textAlign = "center";
-  context.fillText("the tip is out of view", width / 2, height / 2);
+  context.fillText("the tip is out of view", width / 2, 18);
   context.textAlign = "start";
 }
