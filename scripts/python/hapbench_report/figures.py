@@ -7,7 +7,7 @@ from .json_input import InputError, load_json, member, objects, shown
 
 MEDIA_TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
 # A vector drawing is preferred up to this size; beyond it the picture, if that is smaller. Forty figures must fit.
-LARGEST_SVG_BYTES = 200_000
+LARGEST_SVG_BYTES = 250_000
 
 
 @dataclass

@@ -11,9 +11,9 @@ def figures_section(figures):
 
 
 def figure_markup(figure):
-    place = f"Fig. {figure.thesis_figure}: " if figure.thesis_figure[:1].isalnum() and \
-        not figure.thesis_figure.lower().startswith("fig") else f"{figure.thesis_figure}: " if figure.thesis_figure else ""
-    sources = f" Data: {', '.join(f'<code>{text(s)}</code>' for s in figure.sources)}." if figure.sources else ""
+    place = f"Fig. {figure.thesis_figure.removeprefix('Fig. ')}: " if figure.thesis_figure else ""
+    files = "<br>".join(f"<code>{text(source)}</code>" for source in figure.sources)
+    sources = f"<details><summary>Data</summary>{files}</details>" if files else ""
     return (f'<figure id="figure-{text(figure.id)}"><h3>{text(place)}{text(figure.title)}</h3>'
             f'<img src="{figure.data_uri()}" alt="{text(figure.title or figure.id)}">'
-            f"<figcaption>{text(figure.caption)}{sources}</figcaption></figure>")
+            f"<figcaption>{text(figure.caption)}</figcaption>{sources}</figure>")
