@@ -6,7 +6,8 @@ import sys
 from array import array
 from pathlib import Path
 
-from .json_input import InputError, at, load_object
+from .json_input import InputError, at, load_object, number_or_none
+from .markup import number
 from .replay_record import SCENES
 
 # The shell is shown this far around the contacts and the tool's way along them [m].
@@ -76,11 +77,25 @@ class Recording:
         self.algorithm = directory.name
         measured = [name for name in ROW_COLUMNS if name not in TENSOR_COLUMNS]
         columns = ("step", *measured, "colliding")
+        for key in ("diameter_m", "length_m"):
+            if number_or_none(at(self.scenario, f"/tool/{key}")) is None:
+                raise InputError(f"{directory / 'scenario.effective.json'}: /tool/{key}: missing; allowed: a number")
         self.rows = [dict(zip(columns, row)) for row in numbers(directory / "trajectory.csv", columns)]
+        if not self.rows:
+            raise InputError(f"{directory / 'trajectory.csv'}: holds no row")
         contacts = by_step(directory / "contacts.csv")
         self.contacts = [contacts.get(int(row["step"]), []) for row in self.rows]
         for row, of_row in zip(self.rows, self.contacts):
             row.update(zip(TENSOR_COLUMNS, tensor(self.algorithm, of_row)))
+
+    def story(self):
+        """What became of it, in a few words."""
+        force = at(self.summary, "/metrics/force_max_N")
+        last = max((row["time_s"] for row in self.rows if row["colliding"] > 0), default=None)
+        end = number(self.rows[-1]["time_s"], 3)
+        contact = "never in contact" if last is None else f"in contact until {number(last, 3)} s of {end} s"
+        outcome = str(self.summary.get("outcome", "")).replace("_", " ")
+        return f"{self.algorithm.replace('_', ' ')}: {contact}, {outcome}, largest force {number(force, 3)} N"
 
     def packed(self):
         flat = [contact for of_row in self.contacts for contact in of_row]
@@ -123,7 +138,8 @@ def packed_scene(scene, directory: Path):
     scenario = recordings[0].scenario
     orientation = at(scenario, "/motion/orientation") or {}
     return {
-        "id": scene.id, "title": scene.title, "speed": scene.speed, "note": scene.note, "scenario": scene.scenario,
+        "id": scene.id, "title": scene.title, "speed": scene.speed, "scenario": scene.scenario,
+        "note": f"{scene.note} {'; '.join(recording.story() for recording in recordings)}.",
         "planar": all(p[2] == 0 for p in shell),
         "up": orientation.get("up", [0, 0, 1]), "lean": orientation.get("lean", [1, 0, 0]),
         "tool": at(scenario, "/tool"), "stiffness": at(scenario, "/rendering/stiffness_N_per_m"),
@@ -135,4 +151,12 @@ def packed_scene(scene, directory: Path):
 
 
 def packed_replays(directory: Path):
-    return [packed_scene(scene, directory / scene.id) for scene in SCENES if (directory / scene.id).is_dir()]
+    return [checked_scene(scene, directory / scene.id) for scene in SCENES if (directory / scene.id).is_dir()]
+
+
+def checked_scene(scene, directory: Path):
+    try:
+        return packed_scene(scene, directory)
+    except (ValueError, OverflowError) as error:
+        # Numbers that no run writes: steps left empty, normals far from unit length.
+        raise InputError(f"{directory}: not what hapbench records: {error}") from error

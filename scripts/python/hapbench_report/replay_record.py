@@ -21,8 +21,7 @@ class Scene:
 SCENES = (
     Scene("task2_rotate", "Task 2: the drill is rotated in the hole (3-D)", "task2_rotate_signed_distance",
           ("original_averaging", "shaped_stiffness"), 8, ("time.duration_s=6",), 0.5,
-          "One period of the tilt under the same hand. The original algorithm buzzes at the rim of the hole and throws "
-          "the drill out of the block after 3.8 s; the shaped one follows the wall down and up again."),
+          "One period of the tilt, the same hand pressing the drill into the hole."),
     Scene("peg_in_hole_2d", "The peg in a hole of its own width (2-D)", "peg_in_hole_2d_shaped_stiffness",
           ("original_averaging", "shaped_stiffness", "summation", "mean", "exact_shaping"), 1, (), 0.05,
           "The scene of appendix A.1: the peg is tilted at constant speed and nobody holds it."),
