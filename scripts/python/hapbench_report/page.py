@@ -1,0 +1,61 @@
+"""The page: its sections in order, with style and scripts inlined."""
+from pathlib import Path
+
+from .markup import command, text
+from .section_figures import figures_section
+from .section_ledger import ledger_section, summary_section
+from .section_replay import replay_section
+from .section_runs import (parameters_section, provenance_of, provenance_section, runs_section, studies_section,
+                           timing_section)
+from .section_thesis import index_section, limits_table, load_tables, parameter_tables, target_tables
+from .template import fill
+
+ASSETS = Path(__file__).parent / "assets"
+SCRIPTS = ("theme.js", "tables.js", "replay_data.js", "replay_camera.js", "replay_scene.js", "replay_field.js",
+           "replay_chart.js", "replay_player.js")
+
+
+def report(runs, studies, claims, figures, scenes):
+    """The HTML of the report. Depends on nothing but its arguments."""
+    tables, provenance = load_tables(), provenance_of(runs)
+    sections = (
+        ("summary", "Summary", "Summary", summary_section(runs, claims, figures, provenance)),
+        ("ledger", "Ledger", "Ledger", ledger_section(claims)),
+        ("replay", "Replay", "Replay", replay_section(scenes)),
+        ("thesis", "Index", "Figures and tables of the thesis", index_section(figures, tables)),
+        ("figures", "Figures", "Figures", figures_section(figures)),
+        ("subjects", "Subjects", "Simulated subjects", target_tables(runs, tables)),
+        ("tables", "Tables", "Parameters and limits of the thesis", parameter_tables(runs, tables) + limits_table(studies, tables)),
+        ("runs", "Runs", "Runs", runs_section(runs)),
+        ("studies", "Studies", "Precision and other studies", studies_section(studies)),
+        ("timing", "Timing", "Timing", timing_section(runs, studies)),
+        ("rerun", "Rerun", "Run it again", rerun_section()),
+        ("parameters", "Scenarios", "Scenario of every run", parameters_section(runs)),
+        ("provenance", "Provenance", "Provenance", provenance_section(provenance)),
+    )
+    return fill(ASSETS / "page.html", {
+        "style": (ASSETS / "style.css").read_text(encoding="utf-8"),
+        "navigation": "".join(f'<a href="#{key}">{text(title)}</a>' for key, title, _, _ in sections),
+        "sections": "\n".join(section(*entry) for entry in sections),
+        "script": "\n".join((ASSETS / name).read_text(encoding="utf-8") for name in SCRIPTS),
+    })
+
+
+def section(key, _, title, body):
+    # The summary has the heading of the page.
+    heading = "" if key == "summary" else f"<h2>{text(title)}</h2>"
+    return f'<section id="{key}" aria-label="{text(title)}">{heading}{body}</section>'
+
+
+def rerun_section():
+    return ("<p>From the root of the repository. Everything, installing what is missing:</p>" + command("scripts/reproduce")
+            + "<p>One part:</p>" + command(
+                "hapbench=build/release/bin/hapbench\n"
+                "$hapbench run scenarios/thesis/*.json --out results/out/reproduce/thesis       # the thesis's scenes\n"
+                "$hapbench run scenarios/limits/*.json --out results/out/reproduce/limits       # closed forms of A.3\n"
+                "$hapbench run scenarios/examples/*.json --out results/out/reproduce/examples\n"
+                "$hapbench stability single_spring --out results/out/reproduce/stability\n"
+                "$hapbench describe scenario                                                    # what every field means")
+            + "<p>This report:</p>" + command(
+                "scripts/report results/out/reproduce --figures results/out/figures --claims results/claims.json \\\n"
+                "  --out results/out/reproduce/report.html"))

@@ -1,0 +1,124 @@
+"""A headless Chromium for tests, driven over a pipe by the DevTools protocol. Standard library only."""
+import base64
+import json
+import os
+import select
+import shutil
+import subprocess
+import tempfile
+import time
+
+PATIENCE_S = 60
+
+
+class Chromium:
+    """One browser with one page, without network. Use it in a with statement."""
+
+    def __init__(self, program, width=1280, height=900, dark=False):
+        self.messages, self.buffer, self.last_id = [], b"", 0
+        self.profile = tempfile.mkdtemp(prefix="hapbench-chromium-")
+        to_browser, self.write_end = os.pipe()
+        self.read_end, from_browser = os.pipe()
+        options = ["--headless=new", "--remote-debugging-pipe", f"--user-data-dir={self.profile}", "--disable-gpu",
+                   "--no-first-run", "--hide-scrollbars", "--disable-dev-shm-usage", f"--window-size={width},{height}"]
+        # The sandbox does not start for root, and the page is our own.
+        options += ["--no-sandbox"] if os.geteuid() == 0 else []
+        # The browser reads from file descriptor 3 and writes to 4.
+        self.process = subprocess.Popen(
+            ["sh", "-c", f'exec "$@" 3<&{to_browser} 4>&{from_browser}', "sh", program, *options, "about:blank"],
+            pass_fds=(to_browser, from_browser), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(to_browser)
+        os.close(from_browser)
+        self.session = None
+        target = next(t for t in self.call("Target.getTargets")["targetInfos"] if t["type"] == "page")
+        self.session = self.call("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            self.call(f"{domain}.enable")
+        self.call("Network.emulateNetworkConditions", offline=True, latency=0, downloadThroughput=0, uploadThroughput=0)
+        self.size(width, height)
+        self.dark(dark)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.wait()
+        os.close(self.write_end)
+        os.close(self.read_end)
+        shutil.rmtree(self.profile, ignore_errors=True)
+
+    def call(self, method, **parameters):
+        """The result of a DevTools method; what the browser reports meanwhile is kept in `messages`."""
+        self.last_id += 1
+        message = {"id": self.last_id, "method": method, "params": parameters}
+        if self.session:
+            message["sessionId"] = self.session
+        os.write(self.write_end, json.dumps(message).encode() + b"\0")
+        while (answer := self.next_message()).get("id") != self.last_id:
+            self.messages.append(answer)
+        if "error" in answer:
+            raise RuntimeError(f"{method}: {answer['error']}")
+        return answer["result"]
+
+    def next_message(self):
+        while b"\0" not in self.buffer:
+            if not select.select([self.read_end], [], [], PATIENCE_S)[0]:
+                raise TimeoutError("Chromium does not answer")
+            part = os.read(self.read_end, 1 << 20)
+            if not part:
+                raise RuntimeError("Chromium has ended")
+            self.buffer += part
+        message, self.buffer = self.buffer.split(b"\0", 1)
+        return json.loads(message)
+
+    def open(self, url):
+        self.call("Page.navigate", url=url)
+        self.wait_for(f"document.readyState === 'complete' && location.href === {json.dumps(url)}")
+
+    def evaluate(self, expression):
+        result = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in result:
+            raise RuntimeError(result["exceptionDetails"])
+        return result["result"].get("value")
+
+    def wait_for(self, expression):
+        deadline = time.monotonic() + PATIENCE_S
+        while not self.evaluate(expression):
+            if time.monotonic() > deadline:
+                raise TimeoutError(expression)
+            time.sleep(0.05)
+
+    def complaints(self):
+        """Errors and warnings of console and browser, uncaught exceptions, and requests for anything outside the file."""
+        found = []
+        self.evaluate("0")
+        for message in self.messages:
+            method, about = message.get("method"), message.get("params", {})
+            if method == "Runtime.exceptionThrown" or (method == "Runtime.consoleAPICalled" and about["type"] != "log"):
+                found.append(about)
+            elif method == "Log.entryAdded" and about["entry"]["level"] != "verbose":
+                found.append(about["entry"])
+            elif method == "Network.requestWillBeSent" and not about["request"]["url"].startswith(("file:", "data:")):
+                found.append(about["request"]["url"])
+        return found
+
+    def size(self, width, height, scale=1):
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=scale, mobile=False)
+
+    def dark(self, dark=True):
+        self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+
+    def key(self, key, code="", text=""):
+        for kind in ("keyDown", "keyUp"):
+            self.call("Input.dispatchKeyEvent", type=kind, key=key, code=code or key, **({"text": text} if text else {}))
+
+    def mouse(self, kind, x, y, **more):
+        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+
+    def screenshot(self):
+        """What is in view, as PNG."""
+        return base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
+
+    def pdf(self):
+        return base64.b64decode(self.call("Page.printToPDF", printBackground=True, preferCSSPageSize=True)["data"])

@@ -1,0 +1,217 @@
+"""The report in a real headless Chromium, opened from its file without network.
+
+HAPBENCH_PROGRAM names the built program, HAPBENCH_CHROMIUM the browser.
+"""
+import base64
+import os
+import tempfile
+import unittest
+from pathlib import Path
+
+from headless_chromium import Chromium
+from report_fixture import make_claims, make_figures, make_results, report
+
+CHROMIUM = os.environ["HAPBENCH_CHROMIUM"]
+# Decodes a screenshot in the page and counts its colours.
+COUNT_COLOURS = """(async () => {
+  const picture = new Image();
+  picture.src = "data:image/png;base64,%s";
+  await picture.decode();
+  const canvas = Object.assign(document.createElement("canvas"), {width: picture.width, height: picture.height});
+  const context = canvas.getContext("2d");
+  context.drawImage(picture, 0, 0);
+  return new Set(new Uint32Array(context.getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size;
+})()"""
+# Over all rows of a recording: how many points the page finds in the tool, at least and at most, against the number
+# recorded. Places are rounded to half a step of the packing, the pose to single precision: both move a point by less than
+# one step along each axis, so that only points within three steps of the surface may change sides.
+COUNT_COLLIDING = """(() => {
+  const scene = player.scene, wrong = [], step = 3 * player.packed[%d].shellScale;
+  for (const recording of scene.recordings) for (let row = 0; row < recording.length; row += 7) {
+    const tip = recording.tip(row), axis = recording.axis(row);
+    const depths = scene.points.map((point) => scene.depthIn(point.at, tip, axis));
+    const least = depths.filter((d) => d >= step).length, most = depths.filter((d) => d >= -step).length;
+    if (recording.colliding[row] < least || recording.colliding[row] > most)
+      wrong.push([recording.algorithm, row, recording.colliding[row], least, most]);
+  }
+  return wrong;
+})()"""
+
+
+def setUpModule():
+    scratch = tempfile.TemporaryDirectory(prefix="hapbench-report-")
+    unittest.addModuleCleanup(scratch.cleanup)
+    root = Path(scratch.name)
+    make_results(root / "results")
+    make_figures(root / "figures")
+    make_claims(root / "claims.json")
+    done = report(root / "results", "--figures", root / "figures", "--claims", root / "claims.json",
+                  "--out", root / "report.html")
+    assert done.returncode == 0, done.stderr
+    InBrowser.url = (root / "report.html").as_uri()
+    InBrowser.browser = Chromium(CHROMIUM)
+    unittest.addModuleCleanup(InBrowser.browser.__exit__)
+
+
+class InBrowser(unittest.TestCase):
+    def setUp(self):
+        self.browser.messages.clear()
+        self.browser.size(1280, 900)
+        self.browser.dark(False)
+        self.browser.open("about:blank")
+        self.browser.open(self.url)
+        self.js("document.documentElement.style.scrollBehavior = 'auto'")
+
+    def tearDown(self):
+        self.assertEqual(self.browser.complaints(), [])
+
+    def js(self, expression):
+        return self.browser.evaluate(expression)
+
+    def pictures(self):
+        """The pixels of all drawings."""
+        return self.js("[...document.querySelectorAll('#replay canvas')].map((c) => c.toDataURL())")
+
+    def tips(self):
+        return self.js("[...document.querySelectorAll('.side')].map((side) => side.dataset.tip)")
+
+    def time(self):
+        return float(self.js("document.getElementById('replay-player').dataset.time"))
+
+    def centre(self, selector):
+        return self.js(f"(() => {{ const e = document.querySelector('{selector}'); e.scrollIntoView({{block: 'center'}});"
+                       "const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; })()")
+
+    def click(self, selector):
+        x, y = self.centre(selector)
+        for kind in ("mousePressed", "mouseReleased"):
+            self.browser.mouse(kind, x, y, button="left", clickCount=1)
+
+    def choose_scene(self, index):
+        self.js(f"(() => {{ const menu = document.getElementById('replay-scene'); menu.value = '{index}';"
+                "menu.dispatchEvent(new Event('change')); })()")
+
+    def assert_all_differ(self, first, second):
+        for a, b in zip(first, second, strict=True):
+            self.assertNotEqual(a, b)
+
+    def test_screenshot_is_not_blank(self):
+        for part in ("summary", "replay", "figures", "runs"):
+            self.js(f"document.getElementById('{part}').scrollIntoView()")
+            picture = base64.b64encode(self.browser.screenshot()).decode()
+            # Text alone has tens of shades of grey.
+            self.assertGreater(self.js(COUNT_COLOURS % picture), 20, part)
+
+    def test_every_figure_is_loaded(self):
+        self.assertEqual(self.js("[...document.images].map((i) => i.complete && i.naturalWidth > 0)"), [True] * 5)
+
+    def test_a_click_on_the_slider_moves_the_tools(self):
+        for scene in range(2):
+            self.choose_scene(scene)
+            before, drawn = self.tips(), self.pictures()
+            self.click("#replay-time")
+            self.assertGreater(self.time(), 0)
+            self.assert_all_differ(before, self.tips())
+            self.assert_all_differ(drawn, self.pictures())
+
+    def test_arrow_keys_move_the_tools_by_a_row(self):
+        self.js("document.getElementById('replay-time').focus()")
+        before = self.tips()
+        self.browser.key("ArrowRight")
+        self.assert_all_differ(before, self.tips())
+        self.assertEqual(self.js("[...document.querySelectorAll('.side')].map((side) => side.dataset.row)"), ["1", "1"])
+        self.browser.key("Home")
+        self.assertEqual(self.tips(), before)
+
+    def test_space_plays_and_pauses(self):
+        self.js("document.getElementById('replay-time').focus()")
+        self.browser.key(" ", "Space", " ")
+        self.browser.wait_for("Number(document.getElementById('replay-player').dataset.time) > 0.2")
+        self.browser.key(" ", "Space", " ")
+        paused = self.time()
+        # Two frames later nothing has moved.
+        self.js("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        self.assertEqual(self.time(), paused)
+
+    def test_play_button_runs_to_the_end(self):
+        self.choose_scene(1)
+        self.js("document.getElementById('replay-speed').value = '2'")
+        self.click("#replay-play")
+        self.browser.wait_for("document.getElementById('replay-player').dataset.playing === 'false'")
+        self.assertEqual(self.time(), self.js("player.duration"))
+        self.assertIn("ended: leaves hole", self.js("document.querySelector('.side').textContent"))
+
+    def test_dragging_turns_the_view_of_both_sides(self):
+        drawn, (x, y) = self.pictures(), self.centre(".view")
+        self.browser.mouse("mousePressed", x, y, button="left", clickCount=1)
+        self.browser.mouse("mouseMoved", x + 60, y + 20, button="left", buttons=1)
+        self.browser.mouse("mouseReleased", x + 60, y + 20, button="left", clickCount=1)
+        views = [i for i, c in enumerate(self.js("[...document.querySelectorAll('#replay canvas')].map((c) => c.className)"))
+                 if c == "view"]
+        turned = self.pictures()
+        self.assertEqual([i for i, (a, b) in enumerate(zip(drawn, turned)) if a != b], views)
+        self.js("document.querySelector('.view').focus()")
+        self.browser.mouse("mouseWheel", x, y, deltaX=0, deltaY=-200)
+        self.browser.wait_for("player.camera.zoom > 1")
+
+    def test_another_algorithm_is_another_run(self):
+        self.choose_scene(1)
+        self.js("(() => { const menu = document.querySelector('.side select'); menu.selectedIndex = 3;"
+                "menu.dispatchEvent(new Event('change')); player.seek(0.1); })()")
+        self.assertEqual(self.js("document.querySelector('.side').dataset.algorithm"), "mean")
+        self.assertNotEqual(*self.tips())
+
+    def test_the_points_in_the_tool_are_the_recorded_ones(self):
+        for scene in range(2):
+            self.choose_scene(scene)
+            self.assertEqual(self.js(COUNT_COLLIDING % scene), [])
+
+    def test_field_of_the_original_algorithm_is_one_direction(self):
+        """u_r u_r^T has eigenvalues 1, 0, 0, in single precision."""
+        trace = self.js("(() => { const r = player.scene.recordings[0], s = r.tensor(0); return s[0] + s[3] + s[5]; })()")
+        self.assertAlmostEqual(trace, 1, delta=4 * 2.0 ** -24)
+
+    def test_runs_sort_and_filter(self):
+        column = "[...document.querySelectorAll('#runs-table tbody tr:not([hidden])')].map((r) => r.cells[5].dataset.sort)"
+        heading = "#runs-table thead th:nth-child(6) button"
+        for sign in (1, -1):
+            self.click(heading)
+            values = [float(value) for value in self.js(column)]
+            self.assertEqual(values, sorted(values, key=lambda value: sign * value))
+        self.js("document.querySelector('[data-filters=runs-table] input').focus()")
+        self.browser.call("Input.insertText", text="poke")
+        self.assertEqual(len(self.js(column)), 1)
+        self.assertIn(f"1 of {len(values)}", self.js("document.querySelector('[data-filters=runs-table]').textContent"))
+
+    def test_a_run_s_name_unfolds_its_scenario(self):
+        self.click("#runs-table tbody a")
+        self.browser.wait_for("document.querySelector('#parameters details[open]') !== null")
+
+    def test_light_and_dark(self):
+        background = "getComputedStyle(document.body).backgroundColor"
+        light, drawn = self.js(background), self.pictures()
+        self.browser.dark()
+        dark = self.js(background)
+        self.assertNotEqual(light, dark)
+        self.browser.wait_for(f"document.querySelector('.view').toDataURL() !== '{drawn[0]}'")
+        for theme, colour in (("light", light), ("dark", dark), ("system", dark)):
+            self.js(f"(() => {{ const menu = document.getElementById('theme'); menu.value = '{theme}';"
+                    "menu.dispatchEvent(new Event('change')); })()")
+            self.assertEqual(self.js(background), colour)
+
+    def test_fits_a_telephone(self):
+        self.browser.size(360, 740, 2)
+        self.assertLessEqual(self.js("document.documentElement.scrollWidth"), 360)
+
+    def test_prints(self):
+        self.assertTrue(self.browser.pdf().startswith(b"%PDF-"))
+
+    def test_every_control_has_a_name(self):
+        unnamed = """[...document.querySelectorAll('button, select, input, canvas')].filter((e) =>
+            !(e.getAttribute('aria-label') || e.textContent.trim() && e.tagName === 'BUTTON' ||
+              [...(e.labels || [])].some((label) => label.textContent.trim()))).map((e) => e.outerHTML.slice(0, 80))"""
+        self.assertEqual(self.js(unnamed), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

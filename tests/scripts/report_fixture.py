@@ -1,0 +1,56 @@
+"""Results to report on, made afresh by the built program, and the report's modules."""
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+sys.path.insert(0, str(SCRIPTS / "python"))
+
+PROGRAM = Path(os.environ["HAPBENCH_PROGRAM"])
+SCENARIOS = ("peg_in_hole_2d_mean", "springs_limited_shaped_stiffness", "single_spring", "poke_plane")
+SVG = ('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 60"><path d="M5 55 L45 5 L85 55" stroke="black"/></svg>')
+
+
+def make_results(directory):
+    """Short runs, one recorded time, limits, and the replay's recordings."""
+    from hapbench_report.replay_record import record_replays
+
+    for scenario in SCENARIOS:
+        hapbench("run", scenario, "--set", "record.timing=true", "--out", directory / "thesis" / scenario)
+    hapbench("stability", "single_spring", "--out", directory / "stability")
+    record_replays(PROGRAM, directory / "replay")
+
+
+def hapbench(*words):
+    subprocess.run([PROGRAM, *words, "--quiet"], check=True, stdin=subprocess.DEVNULL)
+
+
+def make_figures(directory):
+    directory.mkdir()
+    entries = []
+    for i, (title, thesis_figure) in enumerate((("Points", "4"), ("Springs", "A.4 (springs)"), ("Poles", "A.4 (root locus)"),
+                                                ("Height", "7a–c"), ("Ours", None))):
+        (directory / f"f{i}.svg").write_text(SVG, encoding="utf-8")
+        entries.append({"id": f"f{i}", "title": title, "thesis_figure": thesis_figure, "caption": f"Caption {i}.",
+                        "files": [f"f{i}.svg", f"f{i}.pdf"], "sources": ["thesis/single_spring"]})
+    (directory / "figures.json").write_text(json.dumps({"figures": entries}), encoding="utf-8")
+
+
+def claim(verdict, **more):
+    return {"id": "T1", "place": "3.3, Fig. 4", "claim": "Raw points", "published": "44.8 ± 19.9", "measured": "47.4",
+            "rule": "within one standard deviation", "verdict": verdict, "why": "It is an input.", **more}
+
+
+def make_claims(file):
+    verdicts = ("reproduced", "reproduced in kind", "not reproduced", "refuted", "not reproducible")
+    claims = [claim(verdict, id=f"C{i}") for i, verdict in enumerate(verdicts)]
+    file.write_text(json.dumps({"claims": claims}), encoding="utf-8")
+
+
+def report(*words):
+    """The finished process of scripts/report."""
+    return subprocess.run([sys.executable, SCRIPTS / "report", *map(str, words)], capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL)

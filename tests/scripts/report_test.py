@@ -1,0 +1,235 @@
+"""What scripts/report writes, without a browser. HAPBENCH_PROGRAM names the built program."""
+import base64
+import json
+import random
+import re
+import shutil
+import tempfile
+import unittest
+from array import array
+from pathlib import Path
+
+from report_fixture import PROGRAM, claim, make_claims, make_figures, make_results, report
+
+from hapbench_report.markup import strip
+from hapbench_report.replay_pack import CONTACT_COLUMNS, Recording, packed_replays
+from hapbench_report.section_thesis import figure_labels
+
+
+def setUpModule():
+    scratch = tempfile.TemporaryDirectory(prefix="hapbench-report-")
+    unittest.addModuleCleanup(scratch.cleanup)
+    WithResults.root = root = Path(scratch.name)
+    WithResults.results, WithResults.figures, WithResults.claims = root / "results", root / "figures", root / "claims.json"
+    make_results(WithResults.results)
+    make_figures(WithResults.figures)
+    make_claims(WithResults.claims)
+
+
+class WithResults(unittest.TestCase):
+    def page(self, *words):
+        out = self.root / "page.html"
+        done = report(self.results, "--out", out, *words)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        return out.read_text(encoding="utf-8")
+
+    def full_page(self):
+        return self.page("--figures", self.figures, "--claims", self.claims)
+
+
+class Page(WithResults):
+    def test_same_input_gives_the_same_bytes(self):
+        self.assertEqual(self.full_page(), self.full_page())
+
+    def test_refers_to_nothing_outside_itself(self):
+        page = self.full_page()
+        self.assertLess(len(page.encode()), 8_000_000)
+        for reference in re.findall(r'(?:src|href)="([^"]*)"', page):
+            self.assertRegex(reference, r"^(#|data:)")
+        self.assertNotRegex(page, r"@import|url\(|fetch\(|XMLHttpRequest")
+
+    def test_links_lead_to_something(self):
+        page = self.full_page()
+        names = re.findall(r'\bid="([^"]+)"', page)
+        self.assertEqual(len(names), len(set(names)))
+        self.assertLessEqual(set(re.findall(r'href="#([^"]+)"', page)), set(names))
+
+    def test_every_verdict_and_every_run_is_there(self):
+        page = self.full_page()
+        for text in ("✓ reproduced", "≈ reproduced in kind", "✗ not reproduced", "⊘ refuted", "– not reproducible",
+                     "hapbench run single_spring --out thesis/single_spring", "Caption 3."):
+            self.assertIn(text, page)
+        for file in self.results.glob("thesis/*/summary.json"):
+            self.assertIn(json.loads(file.read_text())["provenance"]["scenario_hash"], page)
+
+    def test_the_index_tells_figures_of_the_same_number_apart(self):
+        page = self.full_page()
+        for title, target in (("Springs without limits", "figure-f1"), ("Root locus of the leapfrog step", "figure-f2"),
+                              ("Task 2 against the ideal trajectory", "figure-f3")):
+            row = page[page.index(f"<td>{title}</td>"):].split("</tr>")[0]
+            self.assertEqual(re.findall('href="#([^"]+)"', row), [target])
+
+    def test_without_figures_claims_and_replay_says_so(self):
+        bare = self.root / "bare"
+        shutil.copytree(self.results / "thesis", bare / "thesis")
+        done = report(bare)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = strip((bare / "report.html").read_text(encoding="utf-8"))
+        for text in ("No ledger was given", "No figures were given", "No recorded runs were given", "No studies among"):
+            self.assertIn(text, page)
+
+    def test_targets_stand_beside_the_published_ones(self):
+        rate = round(random.Random(7).uniform(0.1, 0.9), 3)
+        measures = {"success_rate": {"mean": rate, "standard_error": 0.0625, "subjects": 6}}
+        self.add_run("vertical_peg_in_hole_original_averaging", {"targets": {"1": measures}})
+        page = self.page()
+        table = page[page.index('id="thesis-table-a-1-appendix-d"'):].split("</table>")[0]
+        rows = [strip(row) for row in table.split("<tr>")]
+        row = next(row for row in rows if row.startswith("Success rate"))
+        self.assertIn("0.32 ± 0.09", row)
+        self.assertIn(f"{rate} ± 0.062", row)
+        self.assertIn("0.97 ± 0.02", row)
+
+    def test_markup_in_the_input_is_text_in_the_page(self):
+        hostile = '</script><script>alert(1)</script><img src="https://example.org/x">'
+        self.add_run("hostile", {"name": hostile, "algorithm": hostile, "outcome": hostile,
+                                 "provenance": {"commit": hostile}, "state_hash": hostile},
+                     {"description": hostile, hostile: hostile})
+        figures = self.root / "hostile figures"
+        figures.mkdir()
+        (figures / "f.svg").write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
+        (figures / "figures.json").write_text(json.dumps([{"id": hostile, "title": hostile, "caption": hostile,
+                                                           "thesis_figure": hostile, "files": ["f.svg"], "sources": [hostile]}]))
+        claims = self.root / "hostile.json"
+        claims.write_text(json.dumps({"claims": [{k: hostile for k in claim("")} | {"verdict": "refuted"}]}))
+        page = self.page("--figures", figures, "--claims", claims)
+        self.assertNotIn("<script>alert", page)
+        self.assertNotIn("<img src=\"https", page)
+        self.assertIn("&lt;script&gt;alert(1)", page)
+
+    def add_run(self, name, summary, scenario=None):
+        directory = self.results / "thesis" / name
+        directory.mkdir()
+        self.addCleanup(shutil.rmtree, directory)
+        (directory / "summary.json").write_text(json.dumps({"name": name} | summary))
+        if scenario:
+            (directory / "scenario.effective.json").write_text(json.dumps(scenario))
+
+
+class Replay(WithResults):
+    def test_tensors_give_the_recorded_ratios(self):
+        for trajectory in self.results.glob("replay/*/*/trajectory.csv"):
+            recording = Recording(trajectory.parent)
+            for row, contacts in zip(recording.rows, recording.contacts):
+                if not contacts:
+                    continue
+                s = {name: row[name] for name in row if re.fullmatch("s[xyz]{2}", name)}
+                ratios = [s["sxx"] * x * x + s["syy"] * y * y + s["szz"] * z * z
+                          + 2 * (s["sxy"] * x * y + s["sxz"] * x * z + s["syz"] * y * z)
+                          for x, y, z in (contact[4:7] for contact in contacts)]
+                # Two sums of n products of factors up to one, in different orders: n roundings each, of sums below the
+                # largest ratio.
+                tolerance = 2 * (len(contacts) + 10) * 2.0 ** -53 * max(1.0, row["ratio_max"])
+                self.assertAlmostEqual(min(ratios), row["ratio_min"], delta=tolerance)
+                self.assertAlmostEqual(max(ratios), row["ratio_max"], delta=tolerance)
+
+    def test_packing_keeps_contacts_to_half_a_step(self):
+        for scene in packed_replays(self.results / "replay"):
+            for packed in scene["recordings"]:
+                recording = Recording(self.results / "replay" / scene["id"] / packed["algorithm"])
+                flat = [value for contacts in recording.contacts for contact in contacts for value in contact]
+                steps = array("h", base64.b64decode(packed["contacts"]))
+                scales = packed["contactScales"]
+                self.assertEqual(len(steps), len(flat))
+                self.assertEqual(len(scales), len(CONTACT_COLUMNS))
+                for i, (step, value) in enumerate(zip(steps, flat)):
+                    scale = scales[i % len(scales)]
+                    # Half a step, and the rounding of the division.
+                    self.assertLessEqual(abs(step * scale - value), 0.5001 * scale)
+
+
+class BadInput(WithResults):
+    def refused(self, *words):
+        """The one line of the error; nothing was written."""
+        out = self.root / "refused" / "page.html"
+        done = report(*words, "--out", out)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertFalse(out.parent.exists())
+        return done.stderr
+
+    def written(self, name, text):
+        file = self.root / "bad" / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        self.addCleanup(shutil.rmtree, self.root / "bad", ignore_errors=True)
+        file.write_bytes(text.encode() if isinstance(text, str) else text)
+        return file
+
+    def test_results(self):
+        for text, said in (("{", "not JSON"), ("[" * 100_000, "not JSON"), ("7", "/: got 7; allowed: an object"),
+                           (b"\xff\xfe", "cannot be read"), ('{"metrics": []}', "/metrics: got []; allowed: an object")):
+            file = self.written("results/run/summary.json", text)
+            error = self.refused(file.parents[1])
+            self.assertIn(f"{file}: ", error)
+            self.assertIn(said, error)
+        self.assertIn("no such directory", self.refused(self.root / "nowhere"))
+        self.assertIn("holds no summary.json", self.refused(self.figures))
+
+    def test_tables(self):
+        for text, said in (("", "empty"), ("a,b\n1\n", "line 2: got 1 fields; allowed: 2")):
+            self.written("results/run/summary.json", "{}")
+            file = self.written("results/precision/study.csv", text)
+            self.assertIn(f"{file}: {said}", self.refused(file.parents[1]))
+
+    def test_claims(self):
+        for value, said in (([], "got []"), ({"claims": 1}, "/claims: got 1; allowed: an array"),
+                            ({"claims": [1]}, "/claims/0: got 1; allowed: an object"),
+                            ({"claims": [claim("maybe")]}, '/claims/0/verdict: got "maybe"; allowed: "reproduced"')):
+            file = self.written("claims.json", json.dumps(value))
+            self.assertIn(said, self.refused(self.results, "--claims", file))
+
+    def test_figures(self):
+        for value, said in (({"figures": 1}, "/figures: got 1"), ([{"files": ["none.svg"]}], '/figures/0/files: got ["none.svg"]'),
+                            ([{"title": 1}], "/figures/0/title: got 1; allowed: a string")):
+            file = self.written("figures.json", json.dumps(value))
+            self.assertIn(said, self.refused(self.results, "--figures", file.parent))
+
+    def test_figures_do_not_leave_their_directory(self):
+        self.written("secret.svg", "<svg/>")
+        file = self.written("figures/figures.json", json.dumps([{"files": ["../secret.svg"]}]))
+        self.assertIn("allowed: an SVG or PNG file beside it", self.refused(self.results, "--figures", file.parent))
+
+    def test_recordings(self):
+        recorded = self.results / "replay" / "peg_in_hole_2d"
+        for name, old, new, said in (
+                ("mean/trajectory.csv", "px_m", "qx_m", "line 1: no column px_m"),
+                ("mean/contacts.csv", "\n0,", "\nnan,", "line 2: step: got nan; allowed: a finite number"),
+                ("mean/scenario.effective.json", "diameter_m", "width_m", "/tool/diameter_m: missing"),
+                ("shell.csv", "nx", "mx", "line 1: no column nx")):
+            bad = self.root / "bad" / "peg_in_hole_2d"
+            shutil.copytree(recorded, bad)
+            text = (bad / name).read_text()
+            self.written(f"peg_in_hole_2d/{name}", text.replace(old, new, 1))
+            error = self.refused(self.results, "--replay", bad.parent)
+            shutil.rmtree(bad)
+            self.assertIn(f"{bad / name}: {said}", error)
+
+    def test_program(self):
+        self.assertIn("No such file", self.refused(self.results, "--program", self.root / "no program"))
+        self.assertIn("exit status", self.refused(self.results, "--program", shutil.which("false")))
+
+    def test_out(self):
+        done = report(self.results, "--out", self.claims / "page.html")
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+
+
+class Names(unittest.TestCase):
+    def test_figure_labels(self):
+        for given, labels in (("4", {"4"}), ("Fig. 7a–c", {"7"}), ("A.4 (root locus)", {"A.4"}), ("B.4/B.5", {"B.4", "B.5"}),
+                              ("F4", {"F.4"}), ("ours", set()), ("", set()), ("C.2, C.3", {"C.2", "C.3"})):
+            self.assertEqual(figure_labels(given), labels, given)
+
+
+if __name__ == "__main__":
+    assert PROGRAM.is_file(), PROGRAM
+    unittest.main()
