@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
+#include <set>
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
@@ -11,7 +13,9 @@
 #include "scenarios/experiments/claims/claims.hpp"
 #include "scenarios/files/json_file.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/sweep/for_each_run.hpp"
 
 namespace hapbench {
 namespace {
@@ -24,6 +28,7 @@ struct ReproduceOptions {
   std::string ledger;
   bool no_cache = false;
   bool anew = false;
+  std::size_t jobs = available_threads();
   OutputOptions output;
 };
 
@@ -58,20 +63,62 @@ bool is_current(const fs::path& directory, const Scenario& scenario) {
   }
 }
 
-/// Runs the thesis's scenarios, those apart whose results are current. Returns how many did not end as expected.
-std::size_t run_thesis(const ReproduceOptions& options, const ShellCache& cache) {
-  std::size_t unmet = 0;
-  for (const BundledScenario& bundled : bundled_scenarios()) {
-    if (bundled.group != "thesis") continue;
-    const LoadedScenario loaded = load_scenario(bundled.file);
-    const fs::path directory = fs::path(options.out) / "thesis" / bundled.name;
-    if (!options.anew && is_current(directory, loaded.scenario)) continue;
-    const RunReport report = run_scenario(loaded, directory, !options.output.quiet, cache);
-    for (const std::string& problem : report.unmet) fmt::print(stderr, "hapbench: {}: {}\n", bundled.name, problem);
-    if (!report.unmet.empty()) ++unmet;
+/// Runs the thesis's scenarios into subdirectories, those apart whose results are current.
+class ThesisRuns {
+ public:
+  ThesisRuns(const ReproduceOptions& options, const ShellCache& cache)
+      : directory_(fs::path(options.out) / "thesis"), anew_(options.anew), cache_(cache) {
+    for (const BundledScenario& bundled : bundled_scenarios()) {
+      if (bundled.group == "thesis") scenarios_.push_back(bundled);
+    }
   }
-  return unmet;
-}
+
+  const fs::path& directory() const { return directory_; }
+
+  /// All of them, on several threads.
+  void run_all(std::size_t jobs, bool progress) {
+    std::vector<std::size_t> runs(scenarios_.size());
+    std::iota(runs.begin(), runs.end(), std::size_t{0});
+    ProgressBar bar("thesis", runs.size(), progress);
+    std::size_t done = 0;
+    const auto work = [&](std::size_t i) -> Delivery {
+      std::vector<std::string> problems = run(scenarios_[i]);
+      return [&, i, problems = std::move(problems)] {
+        tell(scenarios_[i], problems);
+        bar.show(++done, true);
+      };
+    };
+    for_each_run(runs, jobs, work, [] { return false; });
+  }
+
+  /// One of them, unless that has been done.
+  void provide(const std::string& name) {
+    for (const BundledScenario& bundled : scenarios_) {
+      if (bundled.name == name && !done_.contains(name)) tell(bundled, run(bundled));
+    }
+  }
+
+  bool all_as_expected() const { return as_expected_; }
+
+ private:
+  std::vector<std::string> run(const BundledScenario& bundled) const {
+    const LoadedScenario loaded = load_scenario(bundled.file);
+    if (!anew_ && is_current(directory_ / bundled.name, loaded.scenario)) return {};
+    return run_scenario(loaded, directory_ / bundled.name, false, cache_).unmet;
+  }
+  void tell(const BundledScenario& bundled, const std::vector<std::string>& problems) {
+    done_.insert(bundled.name);
+    as_expected_ = as_expected_ && problems.empty();
+    for (const std::string& problem : problems) fmt::print(stderr, "hapbench: {}: {}\n", bundled.name, problem);
+  }
+
+  fs::path directory_;
+  bool anew_;
+  const ShellCache& cache_;
+  std::vector<BundledScenario> scenarios_;
+  std::set<std::string> done_;
+  bool as_expected_ = true;
+};
 
 Json ledger_json(const std::vector<Judged>& judged) {
   Json claims = Json::array();
@@ -103,9 +150,12 @@ int reproduce(const ReproduceOptions& options) {
   const PublishedNumbers published(HAPBENCH_PUBLISHED_DIR);
   require_writable_directory(options.out);
   const ShellCache cache = shell_cache(options.no_cache);
-  const std::size_t unmet = run_thesis(options, cache);
+  ThesisRuns runs(options, cache);
+  // Single claims run what they ask for.
+  if (options.only.empty()) runs.run_all(options.jobs, !options.output.quiet);
 
-  const Evidence evidence{published, ResultFiles(fs::path(options.out) / "thesis"), cache};
+  const Evidence evidence{
+      published, ResultFiles(runs.directory(), [&runs](const std::string& name) { runs.provide(name); }), cache};
   std::vector<Judged> judged;
   Table table({{"id", false}, {"verdict", false}, {"measured", false}});
   for (const Claim& claim : claims) {
@@ -117,7 +167,7 @@ int reproduce(const ReproduceOptions& options) {
   write_file_atomically(ledger, json_text(json));
   write_file_atomically(fs::path(ledger).replace_extension(".md"), ledger_markdown(judged));
   print(options.output, table.text() + fmt::format("\nledger in {}\n", ledger.string()), json);
-  return unmet == 0 ? kSuccess : kUnexpectedOutcome;
+  return runs.all_as_expected() ? kSuccess : kUnexpectedOutcome;
 }
 
 }  // namespace
@@ -130,6 +180,8 @@ void add_reproduce(CLI::App& app, Action& chosen) {
   command->add_option("--ledger", options->ledger,
                       "the ledger, JSON; a Markdown table beside it (default: OUT/claims.json)");
   command->add_flag("--anew", options->anew, "run every scenario, current results or not");
+  command->add_option("--jobs", options->jobs, "runs at once (default: one for each processor)")
+      ->check(CLI::Range(1, 1024));
   add_cache_option(*command, options->no_cache);
   add_output_options(*command, options->output);
   command->callback([options, &chosen] { chosen = [options] { return reproduce(*options); }; });

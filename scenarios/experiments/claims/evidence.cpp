@@ -70,6 +70,7 @@ Published PublishedNumbers::mean_and_spread(const std::string& id) const {
 }
 
 Json ResultFiles::summary(const std::string& scenario) const {
+  provide_(scenario);
   return parse_json(read_text_file(directory_ / scenario / "summary.json", kLargestJsonFile));
 }
 
@@ -82,6 +83,7 @@ double ResultFiles::number(const std::string& scenario, const std::string& path)
 
 std::map<std::string, std::vector<double>> ResultFiles::table(const std::string& scenario,
                                                               const std::string& file) const {
+  provide_(scenario);
   const std::string text = read_named_file(directory_ / scenario / file);
   LineReader lines(text);
   const auto header = lines.next();

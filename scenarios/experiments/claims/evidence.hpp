@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <map>
 #include <string>
@@ -33,10 +34,12 @@ class PublishedNumbers {
   std::map<std::string, PublishedNumber> numbers_;
 };
 
-/// Result files of scenarios that have been run into subdirectories of one directory.
+/// Result files of scenarios that are run into subdirectories of one directory.
 class ResultFiles {
  public:
-  explicit ResultFiles(std::filesystem::path directory) : directory_(std::move(directory)) {}
+  /// `provide` is called with a scenario's name before its files are read: whoever runs on demand runs it then.
+  ResultFiles(std::filesystem::path directory, std::function<void(const std::string&)> provide)
+      : directory_(std::move(directory)), provide_(std::move(provide)) {}
 
   /// summary.json of a scenario. Throws InputError when it is missing.
   Json summary(const std::string& scenario) const;
@@ -47,6 +50,7 @@ class ResultFiles {
 
  private:
   std::filesystem::path directory_;
+  std::function<void(const std::string&)> provide_;
 };
 
 /// What claims are judged by.

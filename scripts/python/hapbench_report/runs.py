@@ -14,6 +14,7 @@ class Run:
     summary: dict
     scenario: dict = field(default_factory=dict)  # every field, defaults filled in; empty when not kept
     timing: dict = field(default_factory=dict)
+    compared: bool = False  # one of several algorithms; the scenario's expectations are about its own one
 
     @property
     def name(self):
@@ -34,7 +35,7 @@ class Run:
     @property
     def expected(self):
         """True unless the scenario said that the run must end otherwise."""
-        return self.summary.get("expected") is not False
+        return self.compared or self.summary.get("expected") is not False
 
     @property
     def anchor(self):
@@ -55,7 +56,8 @@ def load_runs(results: Path):
         for key in ("metrics", "provenance", "targets"):
             member(summary, key, dict, file, "")
         runs.append(Run(path, summary, optional_object(file.with_name("scenario.effective.json")),
-                        optional_object(file.with_name("timing.json"))))
+                        optional_object(file.with_name("timing.json")),
+                        file.parent.with_name("comparison.csv").exists()))
     return runs
 
 

@@ -1,0 +1,60 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/program.hpp"
+
+/// The claims ledger that is committed, and the command that makes it.
+namespace hapbench {
+namespace {
+
+using test::hapbench;
+
+/// By id, without the claims whose findings hold times.
+std::map<std::string, Json> repeatable_claims(const Json& ledger) {
+  std::map<std::string, Json> claims;
+  for (const Json& claim : ledger["claims"]) {
+    if (!claim["timing"].get<bool>()) claims[claim["id"]] = claim;
+  }
+  return claims;
+}
+
+TEST(Ledger, InTheTreeIsTheOneTheProgramMakes) {
+  const test::TemporaryDirectory directory;
+  test::ProgramOptions options;
+  options.patience_s = 280.0;
+  const test::ProgramRun run = hapbench({"reproduce", "--out", (directory / "out").string(), "--quiet"}, options);
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto made = repeatable_claims(Json::parse(test::read_file(directory / "out/claims.json")));
+  const auto kept = repeatable_claims(Json::parse(test::read_file(HAPBENCH_SCENARIOS "/../results/claims.json")));
+  ASSERT_EQ(made.size(), kept.size());
+  EXPECT_GE(made.size(), 25u);
+  for (const auto& [id, claim] : kept) {
+    ASSERT_TRUE(made.contains(id)) << id;
+    EXPECT_EQ(made.at(id), claim) << id << ": renew it with hapbench reproduce --ledger results/claims.json";
+  }
+}
+
+TEST(Ledger, JudgesSingleClaims) {
+  const test::TemporaryDirectory directory;
+  const test::ProgramRun run =
+      hapbench({"reproduce", "--only", "B3,C4", "--out", (directory / "out").string(), "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const Json claims = run.json()["claims"];
+  ASSERT_EQ(claims.size(), 2u);
+  EXPECT_EQ(claims[0]["verdict"], "reproduced");
+  EXPECT_EQ(claims[1]["verdict"], "not reproducible");
+}
+
+TEST(Ledger, RefusesClaimsThatAreNotThere) {
+  const test::TemporaryDirectory directory;
+  const test::ProgramRun run = hapbench({"reproduce", "--only", "T11", "--out", (directory / "out").string()});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.err.find("--only: got \"T11\"; allowed: \"T1\""), std::string::npos) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(directory / "out"));
+}
+
+}  // namespace
+}  // namespace hapbench
