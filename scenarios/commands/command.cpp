@@ -43,33 +43,6 @@ void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) fmt::print(stderr, "hapbench: warning: {}\n", warning);
 }
 
-std::vector<BundledScenario> bundled_scenarios() {
-  std::vector<BundledScenario> found;
-  for (const char* group : {"thesis", "limits", "examples"}) {
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(fs::path(HAPBENCH_SCENARIO_DIR) / group, error)) {
-      if (entry.path().extension() == ".json") found.push_back({entry.path().stem().string(), group, entry.path()});
-    }
-  }
-  std::stable_sort(found.begin(), found.end(), [](const BundledScenario& a, const BundledScenario& b) {
-    return a.group == b.group ? a.name < b.name : false;
-  });
-  return found;
-}
-
-fs::path find_scenario(const std::string& argument) {
-  std::error_code error;
-  if (fs::exists(argument, error)) return argument;
-  std::vector<std::string> names;
-  for (const BundledScenario& bundled : bundled_scenarios()) {
-    if (bundled.name == argument) return bundled.file;
-    names.push_back(bundled.name);
-  }
-  const std::string stem = fs::path(argument).stem().string();
-  throw InputError(fmt::format("{}: no such file and no bundled scenario{}; \"hapbench list\" shows them", argument,
-                               nearest_name_hint(stem, names)));
-}
-
 void require_algorithms(const std::vector<std::string>& names) {
   std::vector<std::string> valid;
   for (const AlgorithmEntry& entry : algorithms()) valid.emplace_back(entry.info->name);

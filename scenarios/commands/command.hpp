@@ -58,19 +58,6 @@ void print(const OutputOptions& options, const std::string& text, const Json& js
 /// Prints warnings, one line each, on standard error.
 void print_warnings(const std::vector<std::string>& warnings);
 
-/// A bundled scenario.
-struct BundledScenario {
-  std::string name;   ///< file name without extension
-  std::string group;  ///< thesis, limits, examples
-  std::filesystem::path file;
-};
-
-/// The scenarios that come with hapbench, by group and name.
-std::vector<BundledScenario> bundled_scenarios();
-
-/// The file a scenario argument means: a path, or the name of a bundled scenario. Throws InputError.
-std::filesystem::path find_scenario(const std::string& argument);
-
 /// Makes sure the names given to --algorithms are those of registered algorithms, each once; throws InputError
 /// otherwise.
 void require_algorithms(const std::vector<std::string>& names);

@@ -7,6 +7,7 @@
 #include "results/outcome_names.hpp"
 #include "scenarios/commands/command.hpp"
 #include "scenarios/commands/run_table.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/expectation.hpp"
 

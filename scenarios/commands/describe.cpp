@@ -7,6 +7,7 @@
 #include "scenarios/commands/command.hpp"
 #include "scenarios/commands/schema_text.hpp"
 #include "scenarios/commands/table.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/environment_codec.hpp"
 #include "scenarios/config/load_scenario.hpp"
 #include "scenarios/experiments/map_scenes.hpp"

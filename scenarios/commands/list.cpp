@@ -5,6 +5,7 @@
 #include "algorithms/registry.hpp"
 #include "scenarios/commands/command.hpp"
 #include "scenarios/commands/table.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/environment_codec.hpp"
 #include "scenarios/config/load_scenario.hpp"
 

@@ -10,6 +10,7 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/commands/command.hpp"
 #include "scenarios/commands/table.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/load_scenario.hpp"
 #include "scenarios/experiments/precision/study.hpp"
 #include "scenarios/run/assemble.hpp"

@@ -9,6 +9,7 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/commands/command.hpp"
 #include "scenarios/commands/table.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/load_scenario.hpp"
 #include "scenarios/experiments/claims/claims.hpp"
 #include "scenarios/files/json_file.hpp"

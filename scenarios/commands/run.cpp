@@ -7,6 +7,7 @@
 #include "scenarios/commands/command.hpp"
 #include "scenarios/commands/latency_table.hpp"
 #include "scenarios/commands/run_table.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 
 namespace hapbench {
@@ -83,7 +84,8 @@ int run(const RunOptions& options) {
   }
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
   const std::string latency_text = options.latency ? "\n" + latencies.text() : "";
-  print(options.output, table.text() + targets + latency_text + fmt::format("\nresults in {}\n", where.string()), summaries);
+  print(options.output, table.text() + targets + latency_text + fmt::format("\nresults in {}\n", where.string()),
+        summaries);
   return status;
 }
 

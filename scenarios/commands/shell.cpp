@@ -4,6 +4,7 @@
 
 #include "results/io/atomic_file.hpp"
 #include "scenarios/commands/command.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/load_scenario.hpp"
 #include "scenarios/files/shell_file.hpp"
 #include "scenarios/run/assemble.hpp"

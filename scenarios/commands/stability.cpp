@@ -11,6 +11,7 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/commands/stability.hpp"
 #include "scenarios/commands/table.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/load_scenario.hpp"
 #include "scenarios/experiments/stability_limits.hpp"
 

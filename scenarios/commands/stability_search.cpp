@@ -5,6 +5,7 @@
 #include "results/outcome_names.hpp"
 #include "scenarios/commands/stability.hpp"
 #include "scenarios/commands/table.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/load_scenario.hpp"
 #include "scenarios/experiments/adversary.hpp"
 

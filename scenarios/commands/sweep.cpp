@@ -7,6 +7,7 @@
 
 #include "scenarios/commands/command.hpp"
 #include "scenarios/commands/sweep_summary.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/sweep/for_each_run.hpp"
 #include "scenarios/sweep/run_sweep.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "scenarios/commands/command.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/run/environment_points.hpp"
 
 namespace hapbench::bench {

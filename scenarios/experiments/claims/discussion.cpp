@@ -3,7 +3,7 @@
 
 #include "algorithms/laws/tandpasta.hpp"
 #include "results/claims/rules.hpp"
-#include "scenarios/commands/command.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/load_scenario.hpp"
 #include "scenarios/experiments/claims/claims.hpp"
 #include "scenarios/experiments/precision/measure.hpp"

@@ -6,7 +6,7 @@
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "algorithms/points/gradient_reduction.hpp"
 #include "results/claims/rules.hpp"
-#include "scenarios/commands/command.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/load_scenario.hpp"
 #include "scenarios/experiments/claims/claims.hpp"
 #include "scenarios/experiments/precision/measure.hpp"

@@ -2,7 +2,7 @@
 #include <limits>
 
 #include "results/claims/rules.hpp"
-#include "scenarios/commands/command.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/load_scenario.hpp"
 #include "scenarios/experiments/claims/claims.hpp"
 #include "scenarios/experiments/stability_limits.hpp"

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "results/io/json_text.hpp"
-#include "scenarios/commands/command.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/load_scenario.hpp"
 #include "scenarios/files/json_file.hpp"
 #include "tests/results/files.hpp"

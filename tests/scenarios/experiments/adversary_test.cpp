@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "results/io/json_text.hpp"
-#include "scenarios/commands/command.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/experiments/trajectory_draws.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "tests/results/files.hpp"

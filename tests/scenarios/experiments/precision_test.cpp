@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/commands/command.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/load_scenario.hpp"
 #include "scenarios/experiments/precision/measure.hpp"
 #include "scenarios/experiments/precision/study.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "scenarios/commands/command.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/load_scenario.hpp"
 #include "tests/scenarios/support/errors.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "algorithms/registry.hpp"
 #include "results/io/json_text.hpp"
-#include "scenarios/commands/command.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/environment_codec.hpp"
 #include "scenarios/config/scenario_codec.hpp"
 #include "tests/results/files.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/commands/command.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/files/json_file.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "tests/results/files.hpp"

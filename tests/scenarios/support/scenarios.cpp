@@ -1,6 +1,6 @@
 #include "tests/scenarios/support/scenarios.hpp"
 
-#include "scenarios/commands/command.hpp"
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/scenario_codec.hpp"
 #include "scenarios/files/json_file.hpp"
 

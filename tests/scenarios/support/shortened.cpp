@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/load_scenario.hpp"
 
 namespace hapbench::test {

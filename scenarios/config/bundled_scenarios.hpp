@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+/// The scenarios in the tree, known by their names.
+namespace hapbench {
+
+/// A bundled scenario.
+struct BundledScenario {
+  std::string name;   ///< file name without extension
+  std::string group;  ///< thesis, limits, examples
+  std::filesystem::path file;
+};
+
+/// The scenarios that come with hapbench, by group and name.
+std::vector<BundledScenario> bundled_scenarios();
+
+/// The file a scenario argument means: a path, or the name of a bundled scenario. Throws InputError.
+std::filesystem::path find_scenario(const std::string& argument);
+
+}  // namespace hapbench
