@@ -27,7 +27,7 @@ TEST(LoadedCodeId, HasAnIdForTheProgramAndEachOfItsLibraries) {
     EXPECT_EQ(id.find_first_not_of("0123456789abcdef"), std::string::npos) << id;
   }
   EXPECT_GT(count, 2u);  // this program, the C and the C++ library
-  EXPECT_EQ(count, loaded_objects());
+  EXPECT_LE(count, loaded_objects()) << "libraries that others load later do not count";
 }
 
 TEST(LoadedCodeId, IsTheSameEachTime) {
