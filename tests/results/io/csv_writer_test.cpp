@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
-#include "tests/support/allocation_counter.hpp"
 #include "tests/results/files.hpp"
+#include "tests/support/allocation_counter.hpp"
 
 namespace hapbench {
 namespace {

@@ -52,8 +52,8 @@ TEST(NoSkip, BuildsTheShellAnew) {
                                   R"("hole_diameter_m":0.002,"hole_depth_m":0.002,"grid_m":0.0002})";
   const test::EnvironmentVariable cache("HAPBENCH_CACHE_DIR", (directory / "cache").string());
   for (const char* name : {"first", "second"}) {
-    hapbench({"run", "poke_plane", "--set", environment, "--set", "time.duration_s=0.001", "--set", "record.timing=true",
-              "--out", (directory / name).string(), "--no-skip"});
+    hapbench({"run", "poke_plane", "--set", environment, "--set", "time.duration_s=0.001", "--set",
+              "record.timing=true", "--out", (directory / name).string(), "--no-skip"});
     EXPECT_EQ(Json::parse(test::read_file(directory / (std::string(name) + "/timing.json")))["shell_from_cache"],
               false);
   }

@@ -14,11 +14,11 @@ struct ProgramRun {
   /// Standard output as JSON; fails the test when it is none.
   Json json() const;
 
-  int status = -1;           ///< exit status; -1 when a signal ended it
-  int signal = 0;            ///< the signal that ended it, or 0
-  std::string out;           ///< standard output
-  std::string err;           ///< standard error
-  double cpu_seconds = 0.0;  ///< user and system time: unlike the wall's, the same on a busy machine
+  int status = -1;              ///< exit status; -1 when a signal ended it
+  int signal = 0;               ///< the signal that ended it, or 0
+  std::string out;              ///< standard output
+  std::string err;              ///< standard error
+  double cpu_seconds = 0.0;     ///< user and system time: unlike the wall's, the same on a busy machine
   double wall_seconds = 0.0;    ///< from start to end, known to 0.3 ms
   std::size_t peak_memory = 0;  ///< largest resident set [bytes]; no less than the calling process's at the start
 };
