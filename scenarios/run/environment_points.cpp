@@ -5,20 +5,15 @@
 #include "scenarios/files/mesh_file.hpp"
 #include "scenarios/files/shell_file.hpp"
 #include "sim/contact/grid_index.hpp"
-#include "sim/environment/marching_cubes.hpp"
+#include "sim/environment/block_field.hpp"
 
 namespace hapbench {
 namespace {
 
 /// The vertices of the surface of the density field, in the order that the contact search likes best.
 std::vector<SurfacePoint> block_points(const BlockEnvironment& environment) {
-  const BlockWithHole& block = environment.block;
-  DensityField field;
-  field.signed_distance = [&block](const Vec3& point) { return signed_distance(block, point); };
-  field.min = {-block.size.x() / 2, -block.size.y() / 2, -block.size.z()};
-  field.max = {block.size.x() / 2, block.size.y() / 2, 0.0};
-  field.spacing = environment.grid;
-  field.density = environment.density == "binary" ? Density::binary : Density::signed_distance;
+  const Density density = environment.density == "binary" ? Density::binary : Density::signed_distance;
+  const DensityField field = density_field(environment.block, environment.grid, density);
   return in_grid_order(vertices_with_normals(marching_cubes(field)), environment.grid);
 }
 

@@ -1,5 +1,6 @@
 #include "tests/support/meshes.hpp"
 
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -103,6 +104,23 @@ TriangleSoup together(TriangleSoup a, const TriangleSoup& b) {
 TriangleSoup reversed(TriangleSoup soup) {
   for (TriangleSoup::Triangle& t : soup.triangles) std::swap(t[1], t[2]);
   return soup;
+}
+
+DensityField noise(std::uint64_t seed) {
+  const auto value = [seed](const Vec3& p) {
+    std::uint64_t h = seed;
+    for (const double c : {p.x(), p.y(), p.z()}) {
+      h = (h ^ std::bit_cast<std::uint64_t>(std::round(c * 2.0))) * 0x9e3779b97f4a7c15u;
+      h ^= h >> 29;
+    }
+    return 1e-9 * (static_cast<double>(h >> 11) * 0x1.0p-52 - 1.0);
+  };
+  DensityField field;
+  field.min = {-3, -3, -3};
+  field.max = {3, 3, 3};
+  field.spacing = 1.0;
+  field.signed_distance = [value](const Vec3& p) { return p.cwiseAbs().maxCoeff() > 3.2 ? 1e-9 : value(p); };
+  return field;
 }
 
 double enclosed_volume(const HalfEdgeMesh& mesh) {

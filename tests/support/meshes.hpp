@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 
+#include "sim/environment/marching_cubes.hpp"
 #include "sim/environment/mesh_from_triangles.hpp"
 
 /// Surfaces to test with, as loose triangles. Closed ones are wound counter-clockwise from outside.
@@ -23,6 +25,11 @@ TriangleSoup klein_bottle(int n, int m);
 TriangleSoup together(TriangleSoup a, const TriangleSoup& b);
 /// Every triangle the other way round.
 TriangleSoup reversed(TriangleSoup soup);
+
+/// A field with a value of its own at every node of a grid of 6 x 6 x 6 cells, at most 1e-9 in size and outside at the
+/// border: no structure, all 256 cases of marching cubes, no cell skipped; surfaces with many parts, handles and
+/// touching corners.
+DensityField noise(std::uint64_t seed);
 
 /// By the divergence theorem; positive for closed surfaces with outward winding.
 double enclosed_volume(const HalfEdgeMesh& mesh);

@@ -2,8 +2,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "sim/environment/block_with_hole.hpp"
-#include "sim/environment/marching_cubes.hpp"
+#include "sim/environment/block_field.hpp"
 
 /// Prints the mesh that marching cubes makes of a block with a hole: numbers of vertices and faces, then both.
 /// block_mesh SIZE_X SIZE_Y SIZE_Z HOLE_DIAMETER HOLE_DEPTH SPACING signed_distance|binary
@@ -12,13 +11,8 @@ int main(int count, char** arguments) {
   if (count != 8) return 2;
   const auto number = [arguments](int i) { return std::strtod(arguments[i], nullptr); };
   const BlockWithHole block{{number(1), number(2), number(3)}, number(4), number(5)};
-  DensityField field;
-  field.signed_distance = [&block](const Vec3& p) { return signed_distance(block, p); };
-  field.min = {-block.size.x() / 2, -block.size.y() / 2, -block.size.z()};
-  field.max = {block.size.x() / 2, block.size.y() / 2, 0.0};
-  field.spacing = number(6);
-  field.density = arguments[7] == std::string("binary") ? Density::binary : Density::signed_distance;
-  const HalfEdgeMesh mesh = marching_cubes(field);
+  const Density density = arguments[7] == std::string("binary") ? Density::binary : Density::signed_distance;
+  const HalfEdgeMesh mesh = marching_cubes(density_field(block, number(6), density));
   std::printf("%zu %zu\n", mesh.n_vertices(), mesh.n_faces());
   for (const auto v : mesh.vertices())
     std::printf("%.17g %.17g %.17g\n", mesh.point(v)[0], mesh.point(v)[1], mesh.point(v)[2]);

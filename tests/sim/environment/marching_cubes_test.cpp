@@ -2,48 +2,26 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cmath>
 #include <numbers>
 
 #include "sim/core/random.hpp"
-#include "sim/environment/block_with_hole.hpp"
+#include "sim/environment/block_field.hpp"
 #include "sim/environment/cube_cases.hpp"
+#include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 
 namespace hapbench {
 namespace {
 
 using test::cases;
-
-DensityField block_field(const BlockWithHole& block, double spacing, Density density) {
-  DensityField field;
-  field.signed_distance = [block](const Vec3& p) { return signed_distance(block, p); };
-  field.min = {-block.size.x() / 2, -block.size.y() / 2, -block.size.z()};
-  field.max = {block.size.x() / 2, block.size.y() / 2, 0.0};
-  field.spacing = spacing;
-  field.density = density;
-  return field;
-}
+using test::enclosed_volume;
+using test::euler_characteristic;
 
 std::size_t boundary_edges(const HalfEdgeMesh& mesh) {
   std::size_t count = 0;
   for (const auto edge : mesh.edges()) count += mesh.is_boundary(edge) ? 1u : 0u;
   return count;
-}
-
-long euler_characteristic(const HalfEdgeMesh& mesh) {
-  return static_cast<long>(mesh.n_vertices()) - static_cast<long>(mesh.n_edges()) + static_cast<long>(mesh.n_faces());
-}
-
-double volume(const HalfEdgeMesh& mesh) {
-  double sum = 0.0;
-  for (const auto face : mesh.faces()) {
-    auto corner = mesh.cfv_begin(face);
-    const auto a = mesh.point(*corner++), b = mesh.point(*corner++), c = mesh.point(*corner);
-    sum += (a | (b % c)) / 6.0;
-  }
-  return sum;
 }
 
 /// A small block, so that the sanitizers finish too; the spacing of the thesis's.
@@ -64,17 +42,17 @@ INSTANTIATE_TEST_SUITE_P(Both, MarchingCubesOfDensity, testing::Values(Density::
 
 TEST_P(MarchingCubesOfDensity, BlockIsClosedHasNoHandlesAndTheRightVolume) {
   const BlockWithHole block = small_block();
-  const HalfEdgeMesh mesh = marching_cubes(block_field(block, 0.0001, GetParam()));
+  const HalfEdgeMesh mesh = marching_cubes(density_field(block, 0.0001, GetParam()));
   EXPECT_EQ(boundary_edges(mesh), 0u);
   EXPECT_EQ(euler_characteristic(mesh), 2);  // a blind hole is a dent
   // Edges of the block and of the hole, 65 mm in all, are bevelled by g^2/8 = 1.25e-3 mm^2: 0.08 of 74 mm^3, 0.1 %. The
   // binary wall wobbles by less than a cell either way.
-  EXPECT_NEAR(volume(mesh) / exact_volume(block), 1.0, 0.005);
+  EXPECT_NEAR(enclosed_volume(mesh) / exact_volume(block), 1.0, 0.005);
 }
 
 TEST_P(MarchingCubesOfDensity, EveryVertexLiesWithinACellOfTheSurface) {
   const BlockWithHole block = small_block();
-  const HalfEdgeMesh mesh = marching_cubes(block_field(block, 0.0001, GetParam()));
+  const HalfEdgeMesh mesh = marching_cubes(density_field(block, 0.0001, GetParam()));
   for (const SurfacePoint& p : vertices_with_normals(mesh)) {
     // On an edge of the grid whose ends lie on both sides: at most its length away.
     ASSERT_LE(std::abs(signed_distance(block, p.position)), 0.0001);
@@ -86,7 +64,7 @@ TEST(MarchingCubes, FlatFacesOfASignedDistanceAreExact) {
   const BlockWithHole block = small_block();
   std::size_t on_top = 0;
   for (const SurfacePoint& p :
-       vertices_with_normals(marching_cubes(block_field(block, 0.0001, Density::signed_distance)))) {
+       vertices_with_normals(marching_cubes(density_field(block, 0.0001, Density::signed_distance)))) {
     const bool inner = std::abs(p.position.x()) < 0.0018 && std::abs(p.position.y()) < 0.0023 &&
                        std::hypot(p.position.x(), p.position.y()) > 0.0012;
     if (!inner || p.position.z() < -0.0001) continue;
@@ -102,7 +80,7 @@ TEST(MarchingCubes, WallNormalsOfASignedDistanceAreWithinTwoDegrees) {
   const BlockWithHole block = small_block();
   double worst = 0.0;
   for (const SurfacePoint& p :
-       vertices_with_normals(marching_cubes(block_field(block, 0.0001, Density::signed_distance)))) {
+       vertices_with_normals(marching_cubes(density_field(block, 0.0001, Density::signed_distance)))) {
     const double rho = std::hypot(p.position.x(), p.position.y());
     if (std::abs(rho - 0.001) > 0.0001 || p.position.z() > -0.0003 || p.position.z() < -0.0017) continue;
     const Vec3 inward(-p.position.x() / rho, -p.position.y() / rho, 0.0);
@@ -115,7 +93,7 @@ TEST(MarchingCubes, WallNormalsOfASignedDistanceAreWithinTwoDegrees) {
 TEST(MarchingCubes, NarrowBandFindsWhatAFullSweepFinds) {
   // The same field, once exact and once scaled down so that no block of cells is ever skipped.
   const BlockWithHole block = small_block();
-  DensityField field = block_field(block, 0.0002, Density::signed_distance);
+  DensityField field = density_field(block, 0.0002, Density::signed_distance);
   const HalfEdgeMesh band = marching_cubes(field);
   field.signed_distance = [block](const Vec3& p) { return 0x1p-20 * signed_distance(block, p); };
   const HalfEdgeMesh full = marching_cubes(field);
@@ -124,27 +102,12 @@ TEST(MarchingCubes, NarrowBandFindsWhatAFullSweepFinds) {
   for (const auto v : band.vertices()) ASSERT_EQ(band.point(v), full.point(v));  // a power of two changes no bit
 }
 
-/// A value of its own for every node, at most 1e-9 in size: no structure, all 256 cases, no cell skipped.
-double noise(const Vec3& p, std::uint64_t seed) {
-  std::uint64_t h = seed;
-  for (const double c : {p.x(), p.y(), p.z()}) {
-    h = (h ^ std::bit_cast<std::uint64_t>(std::round(c * 2.0))) * 0x9e3779b97f4a7c15u;
-    h ^= h >> 29;
-  }
-  return 1e-9 * (static_cast<double>(h >> 11) * 0x1.0p-52 - 1.0);
-}
-
 TEST(MarchingCubes, NoiseGivesClosedManifoldSurfacesWhateverTheCase) {
   for (std::uint64_t seed = 1; seed <= cases(60); ++seed) {
-    DensityField field;
-    field.min = {-3, -3, -3};
-    field.max = {3, 3, 3};
-    field.spacing = 1.0;
-    field.signed_distance = [seed](const Vec3& p) { return p.cwiseAbs().maxCoeff() > 3.2 ? 1e-9 : noise(p, seed); };
-    const HalfEdgeMesh mesh = marching_cubes(field);  // throws when a face does not fit
+    const HalfEdgeMesh mesh = marching_cubes(test::noise(seed));  // throws when a face does not fit
     EXPECT_EQ(boundary_edges(mesh), 0u) << seed;
     EXPECT_GT(mesh.n_faces(), 100u);
-    EXPECT_GT(volume(mesh), 0.0);  // faces are counter-clockwise from outside
+    EXPECT_GT(enclosed_volume(mesh), 0.0);  // faces are counter-clockwise from outside
   }
 }
 

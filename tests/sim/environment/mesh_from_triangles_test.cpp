@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -226,25 +225,10 @@ TEST(MeshFromTriangles, RefusesAVertexWithVeryManyFaces) {
   EXPECT_NE(refusal_of(fan(10'001)).find("more than 10000 faces meet in the vertex at (0, 0, 0) m"), std::string::npos);
 }
 
-/// A value of its own for every node: surfaces with many parts, handles and touching corners.
-double noise(const Vec3& p, std::uint64_t seed) {
-  std::uint64_t h = seed;
-  for (const double c : {p.x(), p.y(), p.z()}) {
-    h = (h ^ std::bit_cast<std::uint64_t>(std::round(c * 2.0))) * 0x9e3779b97f4a7c15u;
-    h ^= h >> 29;
-  }
-  return 1e-9 * (static_cast<double>(h >> 11) * 0x1.0p-52 - 1.0);
-}
-
 TEST(MeshFromTriangles, RebuildsAnySurfaceFromItsTrianglesInAnyOrder) {
   Random random(3);
   for (std::uint64_t seed = 1; seed <= cases(60); ++seed) {
-    DensityField field;
-    field.min = {-3, -3, -3};
-    field.max = {3, 3, 3};
-    field.spacing = 1.0;
-    field.signed_distance = [seed](const Vec3& p) { return p.cwiseAbs().maxCoeff() > 3.2 ? 1e-9 : noise(p, seed); };
-    const HalfEdgeMesh original = marching_cubes(field);
+    const HalfEdgeMesh original = marching_cubes(test::noise(seed));
     const auto [mesh, found] = mesh_from_triangles(shuffled(exploded(of_mesh(original)), random));
     expect_nothing_found(found);
     EXPECT_EQ(mesh.n_vertices(), original.n_vertices());
