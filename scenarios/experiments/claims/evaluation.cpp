@@ -134,19 +134,6 @@ Finding judge_convergence(const Evidence& e) {
   return judge_ratio_limit(r);
 }
 
-/// Slope of y over x by least squares.
-double slope(const std::vector<double>& x, const std::vector<double>& y) {
-  double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    n += 1.0;
-    sx += x[i];
-    sy += y[i];
-    sxx += x[i] * x[i];
-    sxy += x[i] * y[i];
-  }
-  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
-}
-
 Finding judge_limit(const Evidence& e) {
   const auto displacement = [&](const char* scenario, std::vector<double>& force) {
     const auto table = e.results.table(scenario, "trajectory.csv");

@@ -26,16 +26,6 @@ PublishedNumber number_of(const Json& value) {
   return number;
 }
 
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (std::size_t start = 0; start <= line.size();) {
-    const std::size_t end = std::min(line.find(',', start), line.size());
-    cells.push_back(line.substr(start, end - start));
-    start = end + 1;
-  }
-  return cells;
-}
-
 double value_of(std::string_view cell) {
   double value = std::numeric_limits<double>::quiet_NaN();
   std::from_chars(cell.data(), cell.data() + cell.size(), value);
@@ -90,9 +80,9 @@ std::map<std::string, std::vector<double>> ResultFiles::table(const std::string&
   if (!header) throw InputError(fmt::format("{}: is empty", (directory_ / scenario / file).string()));
   std::vector<std::vector<double>*> columns;
   std::map<std::string, std::vector<double>> table;
-  for (const std::string_view name : cells_of(*header)) columns.push_back(&table[std::string(name)]);
+  for (const std::string_view name : parts_of(*header, ',')) columns.push_back(&table[std::string(name)]);
   while (const auto line = lines.next()) {
-    const auto cells = cells_of(*line);
+    const auto cells = parts_of(*line, ',');
     if (cells.size() != columns.size()) continue;
     for (std::size_t i = 0; i < cells.size(); ++i) columns[i]->push_back(value_of(cells[i]));
   }

@@ -72,19 +72,27 @@ TrajectoryDistance distance(std::span<const Vec3> a, std::span<const Vec3> b) {
   return d;
 }
 
-double fitted_order(std::span<const double> x, std::span<const double> error) {
-  double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
+double slope(std::span<const double> x, std::span<const double> y) {
+  const auto n = static_cast<double>(x.size());
+  double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!(error[i] > 0.0) || !std::isfinite(error[i])) continue;
-    const double u = std::log(x[i]), v = std::log(error[i]);
-    n += 1.0;
-    sx += u;
-    sy += v;
-    sxx += u * u;
-    sxy += u * v;
+    sx += x[i];
+    sy += y[i];
+    sxx += x[i] * x[i];
+    sxy += x[i] * y[i];
   }
   const double spread = n * sxx - sx * sx;
   return n >= 2.0 && spread > 0.0 ? (n * sxy - sx * sy) / spread : std::numeric_limits<double>::quiet_NaN();
+}
+
+double fitted_order(std::span<const double> x, std::span<const double> error) {
+  std::vector<double> log_x, log_error;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!(error[i] > 0.0) || !std::isfinite(error[i])) continue;
+    log_x.push_back(std::log(x[i]));
+    log_error.push_back(std::log(error[i]));
+  }
+  return slope(log_x, log_error);
 }
 
 double seconds_per_step(const Scenario& scenario, std::shared_ptr<const PointShell> shell, int repetitions) {

@@ -32,6 +32,9 @@ struct TrajectoryDistance {
 };
 TrajectoryDistance distance(std::span<const Vec3> a, std::span<const Vec3> b);
 
+/// Slope of y over x by least squares; NaN for fewer than two different x.
+double slope(std::span<const double> x, std::span<const double> y);
+
 /// Order of convergence: the slope of log(error) over log(x) by least squares. Leaves out errors that are not positive
 /// and finite; NaN for fewer than two.
 double fitted_order(std::span<const double> x, std::span<const double> error);
