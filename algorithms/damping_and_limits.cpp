@@ -43,19 +43,26 @@ DampingAndLimits::DampingAndLimits(const RenderingConfig& config)
       max_force_(config.max_force),
       skips_(config.skips) {}
 
-Vec3 DampingAndLimits::rendered_force(const Vec3& spring, const Mat3& S, const Vec3& velocity) const noexcept {
-  double B = B_;
+double DampingAndLimits::limited_damping(const Mat3& S) const noexcept {
   if (max_damping_) {
     const double largest = B_ * lambda_max(S);
-    if (largest > *max_damping_) B = B_ * (*max_damping_ / largest);
+    if (largest > *max_damping_) return B_ * (*max_damping_ / largest);
   }
+  return B_;
+}
+
+Mat3 DampingAndLimits::damping_matrix(const Vec3& spring, const Mat3& S) const noexcept {
+  return limited_damping(S) * S + friction(spring) * (Mat3::Identity() - S);
+}
+
+Vec3 DampingAndLimits::rendered_force(const Vec3& spring, const Mat3& S, const Vec3& velocity) const noexcept {
   const Vec3 normal_velocity = S * velocity;
-  Vec3 force = spring - B * normal_velocity;
-  const auto friction = [&]() -> Vec3 { return (mu_s_ + mu_f_ * spring.norm()) * (velocity - normal_velocity); };
+  Vec3 force = spring - limited_damping(S) * normal_velocity;
+  const auto tangential = [&]() -> Vec3 { return friction(spring) * (velocity - normal_velocity); };
   if (mu_s_ != 0.0 || mu_f_ != 0.0) {
-    force -= friction();
+    force -= tangential();
   } else if (skips_ == Skips::off) {
-    force -= friction() + Vec3::Zero();  // 0 and never -0, which would turn a -0 of the force into 0
+    force -= tangential() + Vec3::Zero();  // 0 and never -0, which would turn a -0 of the force into 0
   }
   if (max_force_) {
     const double length = force.norm();

@@ -22,9 +22,16 @@ class DampingAndLimits {
   /// a limit, friction that is none only when skips are off.
   Vec3 rendered_force(const Vec3& spring, const Mat3& S, const Vec3& velocity) const noexcept;
 
+  /// What multiplies minus the velocity in it [N s/m]: B S + (mu_s + mu_f |f_spring|)(I - S); the force limit is left
+  /// out.
+  Mat3 damping_matrix(const Vec3& spring, const Mat3& S) const noexcept;
+
   double damping() const { return B_; }  ///< B [N s/m]
 
  private:
+  double limited_damping(const Mat3& S) const noexcept;
+  double friction(const Vec3& spring) const noexcept { return mu_s_ + mu_f_ * spring.norm(); }
+
   double B_;
   double mu_s_;
   double mu_f_;

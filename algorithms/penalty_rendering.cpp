@@ -21,7 +21,8 @@ PenaltyRendering::PenaltyRendering(std::unique_ptr<DepthModel> depth_model, std:
       reduction_(config.reduction ? make_gradient_reduction(*config.reduction) : nullptr),
       law_(std::move(law)),
       damping_and_limits_(config),
-      skips_(config.skips) {}
+      skips_(config.skips),
+      K_(config.stiffness) {}
 
 void PenaltyRendering::prepare(const Scene& scene) {
   tool_ = scene.tool;
@@ -39,6 +40,7 @@ void PenaltyRendering::reset() noexcept {
 
 void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   out = kNoForce;
+  in_contact_ = false;
   if (contacts.empty() && skips_ == Skips::taken) return;
 
   if (!depth_is_given_) depth_model_->evaluate(tool_, tool.pose, contacts);
@@ -50,12 +52,13 @@ void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, R
   if (reduction_) reduce(contacts);
   if (contacts.empty() && skips_ == Skips::taken) return;
 
-  const LawForce law = law_->evaluate(contacts);
+  const LawForce& law = law_force_ = law_->evaluate(contacts);
   // -K times an empty sum is -0; a step that evaluates nothing says 0.
-  out.spring = spring_ = contacts.empty() ? Vec3(law.spring + Vec3::Zero()) : law.spring;
+  out.spring = contacts.empty() ? Vec3(law.spring + Vec3::Zero()) : law.spring;
   out.S = law.S;
   // Not a skip but what friction is: S of no contact is zero, and all velocity would count as tangential.
   if (contacts.empty()) return;
+  in_contact_ = true;
   out.rendered = damping_and_limits_.rendered_force(law.spring, law.S, tool.velocity);
 }
 
@@ -65,7 +68,13 @@ void PenaltyRendering::reduce(ContactBuffer& contacts) noexcept {
 }
 
 SpringState PenaltyRendering::spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept {
-  return contacts.empty() ? SpringState{} : law_->spring_state(contacts, spring_, tool.pose.position);
+  return contacts.empty() ? SpringState{} : law_->spring_state(contacts, law_force_.spring, tool.pose.position);
+}
+
+ForceJacobian PenaltyRendering::jacobian() const noexcept {
+  if (!in_contact_) return {};
+  const auto& [spring, S] = law_force_;
+  return {K_ * S, damping_and_limits_.damping_matrix(spring, S)};
 }
 
 AlgorithmWork PenaltyRendering::work() const noexcept {

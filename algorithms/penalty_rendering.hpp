@@ -24,6 +24,7 @@ class PenaltyRendering final : public ForceAlgorithm {
   void reset() noexcept override;
   void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept override;
   SpringState spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept override;
+  ForceJacobian jacobian() const noexcept override;
   AlgorithmWork work() const noexcept override;
 
  private:
@@ -36,8 +37,10 @@ class PenaltyRendering final : public ForceAlgorithm {
   DampingAndLimits damping_and_limits_;
   Tool tool_;
   Skips skips_;
+  double K_;
   bool depth_is_given_ = false;
-  Vec3 spring_ = Vec3::Zero();  ///< of the last step with contacts
+  bool in_contact_ = false;  ///< after the last step
+  LawForce law_force_;       ///< of the last step with contacts
 };
 
 }  // namespace hapbench

@@ -1,18 +1,12 @@
 #include "results/metrics/energy_ledger.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
+#include "sim/tool/turn.hpp"
+
 namespace hapbench {
 namespace {
-
-/// The rotation vector that turns unit vector a to unit vector b the short way.
-Vec3 turn(const Vec3& a, const Vec3& b) noexcept {
-  const Vec3 cross = a.cross(b);
-  const double sine = cross.norm();
-  return sine > 0.0 ? Vec3(cross * (std::atan2(sine, a.dot(b)) / sine)) : Vec3::Zero();
-}
 
 /// How many of the sorted numbers `a` are not among the sorted numbers `b`.
 std::size_t missing(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) noexcept {

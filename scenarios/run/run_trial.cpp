@@ -117,6 +117,7 @@ TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell
   out.work.search = simulation.query().work();
   out.work.steps_skipped = out.work.search.skipped;
   out.work.algorithm = simulation.algorithm().work();
+  out.work.search += out.work.algorithm.search;
   observers.give(out);
   return out;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/contact/margin_query.hpp"
 #include "sim/contact/push_hits.hpp"
 #include "sim/contact/shell_query.hpp"
 #include "sim/contact/tool_box.hpp"
@@ -18,6 +19,10 @@ GridQuery::GridQuery(const PointShell& shell, const Tool& tool)
       reach_(std::hypot(tool.length, tool.radius)),
       grid_(shell),
       found_(shell.size()) {}
+
+std::unique_ptr<ContactQuery> GridQuery::with_margin(double margin) const {
+  return std::make_unique<MarginQuery>(std::make_unique<GridQuery>(*shell_, grown(tool_, margin)), tool_, margin);
+}
 
 void GridQuery::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
   ++work_.queries;

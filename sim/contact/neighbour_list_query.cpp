@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/contact/margin_query.hpp"
 #include "sim/contact/push_hits.hpp"
 #include "sim/contact/shell_query.hpp"
 #include "sim/contact/tool_box.hpp"
@@ -39,6 +40,11 @@ NeighbourListQuery::NeighbourListQuery(const PointShell& shell, const Tool& tool
 void NeighbourListQuery::reset() noexcept {
   work_ = {};
   has_list_ = false;
+}
+
+std::unique_ptr<ContactQuery> NeighbourListQuery::with_margin(double margin) const {
+  return std::make_unique<MarginQuery>(std::make_unique<NeighbourListQuery>(*shell_, grown(tool_, margin)), tool_,
+                                       margin);
 }
 
 void NeighbourListQuery::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {

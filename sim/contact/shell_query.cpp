@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/contact/margin_query.hpp"
 #include "sim/core/simd.hpp"
 #include "sim/tool/axial.hpp"
 
@@ -18,6 +19,10 @@ double largest_square_within(double r) {
 
 ShellQuery::ShellQuery(const PointShell& shell, const Tool& tool)
     : shell_(&shell), tool_(tool), radius2_(largest_square_within(tool.radius)) {}
+
+std::unique_ptr<ContactQuery> ShellQuery::with_margin(double margin) const {
+  return std::make_unique<MarginQuery>(std::make_unique<ShellQuery>(*shell_, grown(tool_, margin)), tool_, margin);
+}
 
 void ShellQuery::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
   const PointShell& shell = *shell_;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "sim/contact/contact_query.hpp"
 #include "sim/environment/springs.hpp"
 
@@ -11,12 +13,17 @@ class SpringQuery final : public ContactQuery {
   explicit SpringQuery(SpringSet springs);
 
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
-  std::size_t capacity() const noexcept override { return springs_.gradients.size(); }
+  std::size_t capacity() const noexcept override;
   bool gives_depth() const noexcept override { return true; }
+  std::unique_ptr<ContactQuery> with_margin(double margin) const override;
   void reset() noexcept override { work_ = {}; }
 
  private:
+  void push(std::size_t spring, const Vec3& position, double depth, const Vec3& gradient,
+            ContactBuffer& contacts) const noexcept;
+
   SpringSet springs_;
+  std::optional<double> margin_;  ///< of a query with one [m]
 };
 
 }  // namespace hapbench

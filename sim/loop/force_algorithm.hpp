@@ -30,10 +30,18 @@ struct SpringState {
   Vec3 moment = Vec3::Zero();  ///< of the spring forces on the tool about its tip centre [N m]; the device renders none
 };
 
+/// How the rendered force answers small motions of the tool, for integrators that look ahead:
+/// df = -stiffness dp - damping dv.
+struct ForceJacobian {
+  Mat3 stiffness = Mat3::Zero();  ///< K S [N/m]
+  Mat3 damping = Mat3::Zero();    ///< B S of normal damping and friction on the rest [N s/m]
+};
+
 /// What an algorithm has done since its last reset.
 struct AlgorithmWork {
   std::uint64_t iterations = 0;      ///< of the law's inner solver (shaping, Newton), over all steps
   std::uint64_t points_dropped = 0;  ///< contacts a full buffer refused (reduction's max_points)
+  SearchWork search = {};            ///< of queries of its own, at poses of its own
 };
 
 /// A force algorithm: contacts and the tool's state to a force on the tool. One object is the state of one run.
@@ -51,6 +59,10 @@ class ForceAlgorithm {
   /// Elastic energy and moment of the springs behind the last `compute`, whose contacts are handed in. Called only when
   /// somebody keeps accounts.
   virtual SpringState spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept = 0;
+  /// Of the last `compute`, with the contacts held as they were. Called only by integrators that ask for it.
+  virtual ForceJacobian jacobian() const noexcept = 0;
+  /// True when `compute` reads the tool's angular velocity; otherwise nobody computes it.
+  virtual bool wants_angular_velocity() const noexcept { return false; }
   virtual AlgorithmWork work() const noexcept { return {}; }
 };
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "sim/loop/leapfrog.hpp"
+#include "sim/tool/turn.hpp"
 
 namespace hapbench {
 
@@ -16,6 +17,7 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
     ratio_wanted_ |= observer->wants_ratio();
     energy_wanted_ |= observer->wants_energy();
   }
+  angular_velocity_wanted_ = parts_.algorithm->wants_angular_velocity();
   parts_.algorithm->prepare({parts_.tool, parts_.query.get(), parts_.shell.get()});
   reset();
 }
@@ -33,10 +35,15 @@ void Simulation::reset() noexcept {
   parts_.device->reset(tool_);
 }
 
-/// Orientation always follows the script; a prescribed position also gives the velocity, (p_k - p_{k-1}) / dt, v_0 = 0.
+/// Orientation always follows the script, omega_k = turn from axis_{k-1} to axis_k / dt, omega_0 = 0; a prescribed
+/// position also gives the velocity, (p_k - p_{k-1}) / dt, v_0 = 0.
 void Simulation::move_tool_by_script() noexcept {
   const double t = static_cast<double>(row_) * config_.dt;
-  tool_.pose.axis = parts_.motion->axis_at(t);
+  const Vec3 axis = parts_.motion->axis_at(t);
+  if (angular_velocity_wanted_) {
+    tool_.angular_velocity = row_ == 0 ? Vec3::Zero() : Vec3(turn(tool_.pose.axis, axis) / config_.dt);
+  }
+  tool_.pose.axis = axis;
   if (parts_.motion->position_is_free()) return;
   const Vec3 position = parts_.motion->position_at(t);
   tool_.velocity = row_ == 0 ? Vec3::Zero() : Vec3((position - tool_.pose.position) / config_.dt);

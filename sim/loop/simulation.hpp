@@ -101,6 +101,7 @@ class Simulation {
   std::vector<Observer*> observers_;
   bool ratio_wanted_ = false;
   bool energy_wanted_ = false;
+  bool angular_velocity_wanted_ = false;
   ContactBuffer contacts_;
 
   std::uint64_t row_ = 0;

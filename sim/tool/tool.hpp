@@ -27,10 +27,12 @@ struct ToolPose {
   Vec3 axis = {0.0, 0.0, -1.0};  ///< unit vector out of the tip
 };
 
-/// Pose and translational velocity; the orientation is scripted, so there is no angular velocity to integrate.
+/// Pose and velocity. The orientation is scripted, so the angular velocity is known and not integrated; it lacks the
+/// turn about the tool's own axis, which changes nothing in a solid of revolution.
 struct ToolState {
   ToolPose pose;
-  Vec3 velocity = Vec3::Zero();  ///< of the tip centre [m/s]
+  Vec3 velocity = Vec3::Zero();          ///< of the tip centre [m/s]
+  Vec3 angular_velocity = Vec3::Zero();  ///< over the step before [rad/s]; zero unless somebody wants it
 };
 
 }  // namespace hapbench

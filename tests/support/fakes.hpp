@@ -28,6 +28,7 @@ class FakeQuery final : public ContactQuery {
   }
   std::size_t capacity() const noexcept override { return contacts_; }
   bool gives_depth() const noexcept override { return true; }
+  std::unique_ptr<ContactQuery> with_margin(double) const override { return std::make_unique<FakeQuery>(contacts_); }
   void reset() noexcept override { work_ = {}; }
 
  private:
@@ -60,6 +61,7 @@ class FakeAlgorithm final : public ForceAlgorithm {
     out.S = 2.0 * Mat3::Identity();
   }
   SpringState spring_state(const ToolState&, const ContactBuffer&) const noexcept override { return {}; }
+  ForceJacobian jacobian() const noexcept override { return {}; }
 
  private:
   Law law_;
