@@ -19,6 +19,7 @@
 #include "algorithms/penalty_rendering.hpp"
 #include "algorithms/points/gradient_reduction.hpp"
 #include "algorithms/points/local_average.hpp"
+#include "algorithms/proxy/proxy_rendering.hpp"
 
 namespace hapbench {
 namespace {
@@ -40,6 +41,7 @@ constexpr AlgorithmEntry kAlgorithms[] = {
     {&kTandpastaInfo, penalty<make_tandpasta>},
     {&kNormalProjectionInfo, penalty<make_normal_projection>, "normal_projection"},
     {&kExactShapingInfo, penalty<make_exact_shaping>},
+    {&kProxyInfo, make_proxy, {}, false},
 };
 
 constexpr DepthModelEntry kDepthModels[] = {

@@ -1,0 +1,205 @@
+#include "algorithms/proxy/nearest_allowed.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <algorithm>
+#include <limits>
+
+#include "algorithms/laws/force_law.hpp"
+#include "sim/core/simd.hpp"
+
+namespace hapbench {
+namespace {
+
+using simd::load, simd::Pack;
+
+/// Squared sine of the angle between a gradient and the span of others below which it counts as lying in it: those of a
+/// flat tip, or of one line along the side, differ by rounding, 1e-15; other neighbours by far more than this 1e-9.
+constexpr double kInSpan = 1e-18;
+constexpr int kMostIterations = 100;
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+struct Violation {
+  std::size_t contact = 0;
+  double amount = 0.0;  ///< d + <u, x> [m]
+};
+
+Violation largest_violation(const ContactBuffer& c, const Vec3& x) noexcept {
+  const Pack x0(x.x()), x1(x.y()), x2(x.z());
+  Pack largest(-kNever);
+  const auto amount = [&](std::size_t i) {
+    return load(&c.depth[i]) + (load(&c.ux[i]) * x0 + load(&c.uy[i]) * x1 + load(&c.uz[i]) * x2);
+  };
+  for (std::size_t i = 0; i < c.padded_size(); i += simd::lanes) largest = simd::max(largest, amount(i));
+  const double most = simd::max_lane(largest);
+  for (std::size_t i = 0; i < c.padded_size(); i += simd::lanes) {
+    const simd::Mask here = amount(i) >= Pack(most);
+    if (simd::any(here)) return {i + simd::first(here), most};
+  }
+  return {};
+}
+
+double largest_length(const ContactBuffer& c, const Vec3& wanted) noexcept {
+  Pack largest(wanted.cwiseAbs().maxCoeff());
+  for (std::size_t i = 0; i < c.padded_size(); i += simd::lanes) {
+    largest = simd::max(largest, simd::abs(load(&c.depth[i])));
+  }
+  return simd::max_lane(largest);
+}
+
+/// The contacts that hold the tool back, at most three, with independent gradients.
+class ActiveSet {
+ public:
+  using Columns = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3>;
+  using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
+
+  int size() const { return size_; }
+  std::size_t contact(int k) const { return contact_[static_cast<std::size_t>(k)]; }
+  double& lambda(int k) { return lambda_[static_cast<std::size_t>(k)]; }
+
+  bool contains(std::size_t contact) const {
+    return std::find(contact_.begin(), contact_.begin() + size_, contact) != contact_.begin() + size_;
+  }
+  void add(std::size_t contact, const Vec3& gradient, double lambda) {
+    contact_[static_cast<std::size_t>(size_)] = contact;
+    lambda_[static_cast<std::size_t>(size_)] = lambda;
+    gradients_.col(size_++) = gradient;
+  }
+  void drop(int k) {
+    for (int j = k; j + 1 < size_; ++j) {
+      contact_[static_cast<std::size_t>(j)] = contact_[static_cast<std::size_t>(j + 1)];
+      lambda_[static_cast<std::size_t>(j)] = lambda_[static_cast<std::size_t>(j + 1)];
+      gradients_.col(j) = Vec3(gradients_.col(j + 1));
+    }
+    --size_;
+  }
+  /// u = sum of the active gradients times these, plus a remainder perpendicular to all of them.
+  Coefficients along(const Vec3& u) const {
+    if (size_ == 0) return Coefficients(0);
+    return Eigen::HouseholderQR<Columns>(gradients_.leftCols(size_)).solve(u);
+  }
+  Vec3 combine(const Coefficients& coefficients) const {
+    return size_ == 0 ? Vec3(Vec3::Zero()) : Vec3(gradients_.leftCols(size_) * coefficients);
+  }
+  /// The orthogonal projector onto the span of the gradients.
+  Mat3 projector() const {
+    if (size_ == 0) return Mat3::Zero();
+    const Mat3 Q = Eigen::HouseholderQR<Columns>(gradients_.leftCols(size_)).householderQ();
+    return Q.leftCols(size_) * Q.leftCols(size_).transpose();
+  }
+
+ private:
+  int size_ = 0;
+  std::array<std::size_t, 3> contact_{};
+  std::array<double, 3> lambda_{};
+  Mat3 gradients_ = Mat3::Zero();
+};
+
+/// Makes contact `p` satisfied, letting go of active ones that no longer hold. False when that is impossible.
+bool satisfy(std::size_t p, double violation, const Vec3& u, Vec3& x, ActiveSet& active) noexcept {
+  double lambda = 0.0;
+  for (;;) {
+    const ActiveSet::Coefficients r = active.along(u);
+    const Vec3 free = u - active.combine(r);
+    const double free2 = active.size() == 3 ? 0.0 : free.squaredNorm();
+    const double whole_step = free2 > kInSpan ? violation / free2 : kNever;
+    double step = whole_step;
+    int leaves = -1;
+    for (int k = 0; k < active.size(); ++k) {
+      if (r[k] > 0.0 && active.lambda(k) / r[k] < step) {
+        step = active.lambda(k) / r[k];
+        leaves = k;
+      }
+    }
+    if (step == kNever) return false;
+    for (int k = 0; k < active.size(); ++k) active.lambda(k) -= step * r[k];
+    lambda += step;
+    if (whole_step != kNever) {
+      x -= step * free;
+      violation -= step * free2;
+    }
+    if (leaves < 0) {
+      active.add(p, u, lambda);
+      return true;
+    }
+    active.drop(leaves);
+  }
+}
+
+/// The method of Goldfarb and Idnani; false when the contacts contradict each other.
+bool solve_exactly(const Vec3& wanted, double tolerance, ContactBuffer& contacts, AllowedMove& out) noexcept {
+  ActiveSet active;
+  out.move = wanted;
+  for (;;) {
+    const Violation worst = largest_violation(contacts, out.move);
+    // An active contact is satisfied but for rounding.
+    if (!(worst.amount > tolerance) || active.contains(worst.contact)) break;
+    if (++out.iterations > kMostIterations) return false;
+    if (!satisfy(worst.contact, worst.amount, contacts.gradient(worst.contact), out.move, active)) return false;
+  }
+  for (int k = 0; k < active.size(); ++k) contacts.weight[active.contact(k)] = active.lambda(k);
+  out.held = active.projector();
+  return true;
+}
+
+/// The least-squares problem at one x: its value, gradient and Hessian.
+struct Compromise {
+  double value;
+  Vec3 gradient;
+  Mat3 hessian;
+
+  Compromise(const ContactBuffer& c, const Vec3& wanted, const Vec3& x) noexcept {
+    const Vec3 off = x - wanted;
+    value = 0.5 * kCompromise * off.squaredNorm();
+    gradient = kCompromise * off;
+    hessian = kCompromise * Mat3::Identity();
+    for (std::size_t i = 0; i < c.size(); ++i) {
+      const Vec3 u = c.gradient(i);
+      const double violation = c.depth[i] + u.dot(x);
+      if (!(violation > 0.0)) continue;
+      value += 0.5 * violation * violation;
+      gradient += violation * u;
+      hessian += u * u.transpose();
+    }
+  }
+};
+
+/// Newton with a line search: the problem is convex and piecewise quadratic, so it ends at the minimum.
+void solve_least_squares(const Vec3& wanted, double tolerance, ContactBuffer& contacts, AllowedMove& out) noexcept {
+  out.move = wanted;
+  Compromise here(contacts, wanted, out.move);
+  for (int i = 0; i < kMostIterations && here.gradient.norm() > kCompromise * tolerance; ++i, ++out.iterations) {
+    const Vec3 direction = -Eigen::LLT<Mat3>(here.hessian).solve(here.gradient);
+    double step = 1.0;
+    Compromise next(contacts, wanted, out.move + direction);
+    while (!(next.value <= here.value + 1e-4 * step * here.gradient.dot(direction)) && step > 1e-6) {
+      step *= 0.5;
+      next = Compromise(contacts, wanted, out.move + step * direction);
+    }
+    if (!(next.value < here.value)) break;  // rounding is all that is left
+    out.move += step * direction;
+    here = next;
+  }
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    contacts.weight[i] = std::max(0.0, contacts.depth[i] + contacts.gradient(i).dot(out.move)) / kCompromise;
+  }
+  out.held = Mat3::Identity() - kCompromise * Mat3(Eigen::LLT<Mat3>(here.hessian).solve(Mat3::Identity()));
+  out.held = 0.5 * (out.held + out.held.transpose()).eval();
+}
+
+}  // namespace
+
+AllowedMove nearest_allowed(const Vec3& wanted, ContactBuffer& contacts) noexcept {
+  set_weights(contacts, 0.0);
+  AllowedMove out;
+  const double tolerance = kTolerance * largest_length(contacts, wanted);
+  if (!solve_exactly(wanted, tolerance, contacts, out)) {
+    out.feasible = false;
+    set_weights(contacts, 0.0);
+    solve_least_squares(wanted, tolerance, contacts, out);
+  }
+  return out;
+}
+
+}  // namespace hapbench

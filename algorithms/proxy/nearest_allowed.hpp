@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "sim/contact/contact_buffer.hpp"
+
+namespace hapbench {
+
+/// How much of the longest length of a problem a contact may be violated and still count as satisfied: far above the
+/// rounding of the solution, far below anything felt (1e-14 m in a search of 0.1 mm).
+inline constexpr double kTolerance = 1e-10;
+/// epsilon of the compromise between contacts that contradict each other.
+inline constexpr double kCompromise = 1e-6;
+
+/// The move nearest to a wanted one that a set of contacts allows.
+struct AllowedMove {
+  Vec3 move = Vec3::Zero();  ///< x [m]
+  Mat3 held = Mat3::Zero();  ///< I - dx/dt: the projector onto the span of the contacts that hold the tool back
+  bool feasible = true;      ///< false: no move satisfies all contacts, x is the least-squares compromise
+  int iterations = 0;
+};
+
+/// Solves, in three unknowns,
+///
+///     minimise |x - t|^2   subject to   d_i + <u_i, x> <= 0   for all contacts
+///
+/// with the dual active-set method of Goldfarb and Idnani (Mathematical Programming 27, 1983), which for the identity
+/// as Hessian needs no more than three active contacts and small orthogonal factors. Each iteration takes the contact
+/// that is violated most (the first of equals), so the answer is deterministic. Leaves the multipliers lambda_i >= 0
+/// [m] as weights in the buffer: x = t - sum lambda_i u_i, lambda_i = 0 for contacts that do not hold.
+///
+/// Contacts count as satisfied within kTolerance of the problem's largest length. When no x satisfies all of them
+/// (opposite walls of a slot narrower than the tool), x is instead the unique minimiser of
+///
+///     1/2 sum max(0, d_i + <u_i, x>)^2 + epsilon/2 |x - t|^2,   epsilon = 1e-6,
+///
+/// where opposite walls are shared in equal squares, and lambda_i = max(0, d_i + <u_i, x>) / epsilon, so that the
+/// same identity holds. O(n) an iteration, typically one to five of them. Precondition: contacts are padded, gradients
+/// are unit vectors; otherwise finite. Allocates nothing.
+AllowedMove nearest_allowed(const Vec3& wanted, ContactBuffer& contacts) noexcept;
+
+}  // namespace hapbench

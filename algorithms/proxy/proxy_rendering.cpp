@@ -1,0 +1,150 @@
+#include "algorithms/proxy/proxy_rendering.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+
+#include "algorithms/depth/shortest_distance.hpp"
+#include "algorithms/laws/force_law.hpp"
+#include "algorithms/proxy/edge_constraints.hpp"
+#include "algorithms/proxy/nearest_allowed.hpp"
+#include "algorithms/proxy/surface_constraints.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
+
+}  // namespace
+
+const ModelInfo kProxyInfo = {
+    .name = "proxy",
+    .summary = "a proxy of the tool that never enters the environment; a spring pulls the tool to it",
+    .formula =
+        "x <- argmin |x - p|^2 with <m_i, x - x_proxy> <= g_i for all points within the margin (g_i signed distance of "
+        "the point to the tool, m_i the tool's normal there); f_spring = K (x - p), S = projector onto span of the "
+        "active m_i",
+    .source = "ours; after Zilles and Salisbury 1995 (god-object) and Ruspini et al. 1997, which thesis 1.2 rejects",
+    .known_failure =
+        "a scene that starts in deep penetration, or a hole that the turned tool does not fit into, throws the proxy "
+        "out at once; no depth model or reduction applies",
+    .parameters = kParameters,
+};
+
+namespace {
+
+/// Of the tool's radius. Wider, and each pass looks at more points; narrower, and a fast tool takes more passes.
+constexpr double kMarginPerRadius = 0.2;
+/// The query looks a little further than the proxy moves, for the rounding of both.
+constexpr double kQueryMargin = 1.0 + 1e-6;
+/// Passes of a step: to bring the proxy near, and to make the constraints exact where it ends.
+constexpr int kMostPasses = 64;
+/// A pass that moves the proxy less than this part of the margin is the last one.
+constexpr double kSettled = 1e-3;
+
+}  // namespace
+
+ProxyRendering::ProxyRendering(const RenderingConfig& config) : K_(config.stiffness), damping_and_limits_(config) {}
+
+void ProxyRendering::prepare(const Scene& scene) {
+  tool_ = scene.tool;
+  depth_is_given_ = scene.query->gives_depth();
+  // Springs are planes, whose constraints hold at any distance.
+  margin_ = depth_is_given_ ? std::numeric_limits<double>::infinity() : kMarginPerRadius * tool_.radius;
+  near_ = scene.query->with_margin(margin_ * kQueryMargin);
+  near_contacts_ = std::make_unique<ContactBuffer>(2 * near_->capacity());
+  spacing_ = depth_is_given_ ? 0.0 : typical_spacing(*scene.shell);
+}
+
+void ProxyRendering::reset() noexcept {
+  near_->reset();
+  placed_ = false;
+  work_ = {};
+}
+
+void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
+  out = {};
+  if (!contacts.empty()) {
+    if (!depth_is_given_) shortest_distance_depths(tool_, tool.pose, contacts);
+    const auto depths = contacts.depth.begin();
+    out.depth_max = *std::max_element(depths, depths + static_cast<std::ptrdiff_t>(contacts.size()));
+  }
+  if (!placed_) proxy_ = tool.pose.position;
+  placed_ = true;
+  follow(tool.pose);
+  hand_over_holding(contacts);
+  out.spring = spring_ = K_ * (proxy_ - tool.pose.position);
+  out.S = held_;
+  // Of a tool that nothing holds all velocity would count as tangential.
+  out.rendered = contacts.empty() ? spring_ : damping_and_limits_.rendered_force(spring_, held_, tool.velocity);
+}
+
+void ProxyRendering::follow(const ToolPose& tool) noexcept {
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    near_->contacts_at({proxy_, tool.axis}, *near_contacts_);
+    if (!depth_is_given_) {
+      surface_constraints(tool_, {proxy_, tool.axis}, *near_contacts_);
+      add_edge_constraints(tool_, {proxy_, tool.axis}, spacing_, margin_, *near_contacts_);
+    }
+    const AllowedMove allowed = nearest_allowed(tool.position - proxy_, *near_contacts_);
+    work_.iterations += static_cast<std::uint64_t>(allowed.iterations);
+    held_ = allowed.held;
+    feasible_ = allowed.feasible;
+    const double length = allowed.move.norm();
+    if (length > margin_) {
+      proxy_ += margin_ / length * allowed.move;
+    } else if (allowed.iterations == 0) {
+      proxy_ = tool.position;
+      return;
+    } else {
+      proxy_ += allowed.move;
+      if (length <= kSettled * margin_) return;
+    }
+  }
+}
+
+/// Replaces the colliding points by those that hold the proxy back.
+void ProxyRendering::hand_over_holding(ContactBuffer& contacts) noexcept {
+  contacts.clear();
+  for (std::size_t i = 0; i < near_contacts_->size(); ++i) {
+    if (!(near_contacts_->weight[i] > 0.0)) continue;
+    if (contacts.size() == contacts.capacity()) {
+      ++work_.points_dropped;
+      continue;
+    }
+    contacts.push_copy_of(*near_contacts_, i);
+    contacts.depth[contacts.size() - 1] = near_contacts_->weight[i];
+    contacts.weight[contacts.size() - 1] = 1.0;
+  }
+  contacts.pad();
+}
+
+/// One spring from tool to proxy. Each holding point pushes with its share on the proxy, whose tip centre takes the
+/// tool's place.
+SpringState ProxyRendering::spring_state(const ToolState&, const ContactBuffer& contacts) const noexcept {
+  if (K_ == 0.0) return {};
+  SpringState state{spring_.squaredNorm() / (2.0 * K_), Vec3::Zero()};
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    // In the compromise, what is violated is a store of its own.
+    if (!feasible_) state.energy += 0.5 * K_ * kCompromise * contacts.depth[i] * contacts.depth[i];
+    state.moment -= (contacts.point(i) - proxy_).cross(K_ * contacts.depth[i] * contacts.gradient(i));
+  }
+  return state;
+}
+
+ForceJacobian ProxyRendering::jacobian() const noexcept {
+  if (held_.isZero(0.0)) return {};
+  return {K_ * held_, damping_and_limits_.damping_matrix(spring_, held_)};
+}
+
+AlgorithmWork ProxyRendering::work() const noexcept {
+  AlgorithmWork work = work_;
+  work.search = near_->work();
+  return work;
+}
+
+std::unique_ptr<ForceAlgorithm> make_proxy(const RenderingConfig& config) {
+  return std::make_unique<ProxyRendering>(config);
+}
+
+}  // namespace hapbench

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <memory>
+
+#include "algorithms/damping_and_limits.hpp"
+#include "algorithms/info.hpp"
+#include "sim/loop/force_algorithm.hpp"
+
+namespace hapbench {
+
+extern const ModelInfo kProxyInfo;
+
+/// Constraint-based rendering for a tool that cannot be turned back: a proxy of the tool that has its orientation and
+/// never enters the environment follows it, and a spring pulls the tool to the proxy (Zilles and Salisbury, 1995, for a
+/// point; the thesis's section 1.2 rejects it for whole bodies as too expensive). Orientation is scripted, so only the
+/// translation x of the proxy is free: three unknowns.
+///
+/// Each pass asks for the shell points within a margin of the proxy, turns each into a linear constraint
+/// (surface_constraints) and moves the proxy to the allowed place nearest to the tool (nearest_allowed), at most by the
+/// margin; points further away cannot be reached by that.
+///
+/// Guarantee: after a pass whose contacts do not contradict each other, and which was not cut short while points were
+/// inside the proxy, no shell point is inside the proxy, but for kTolerance of the margin. For the constraints are
+/// conservative (the tool is convex), and those of a proxy without penetration still hold for a part of the move.
+/// When they contradict (a slot narrower than the tool) the proxy takes the least-squares compromise.
+///
+/// f_spring = K (x - p), S = the projector onto the span of the gradients that hold the proxy back, so lambda_max(S) is
+/// 1 in contact. The rendered contacts are those, with depth lambda_i [m] and weight 1: f_spring = -K sum lambda_i u_i.
+class ProxyRendering final : public ForceAlgorithm {
+ public:
+  explicit ProxyRendering(const RenderingConfig& config);
+
+  void prepare(const Scene& scene) override;
+  void reset() noexcept override;
+  void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept override;
+  SpringState spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept override;
+  ForceJacobian jacobian() const noexcept override;
+  AlgorithmWork work() const noexcept override;
+
+  const Vec3& proxy() const { return proxy_; }  ///< tip centre of the proxy [m]
+
+ private:
+  void follow(const ToolPose& tool) noexcept;
+  void hand_over_holding(ContactBuffer& contacts) noexcept;
+
+  double K_;
+  DampingAndLimits damping_and_limits_;
+  Tool tool_;
+  bool depth_is_given_ = false;
+  double margin_ = 0.0;   ///< [m]
+  double spacing_ = 0.0;  ///< of the shell [m]
+  std::unique_ptr<ContactQuery> near_;
+  std::unique_ptr<ContactBuffer> near_contacts_;
+
+  bool placed_ = false;  ///< false before the first step
+  Vec3 proxy_ = Vec3::Zero();
+  Mat3 held_ = Mat3::Zero();
+  bool feasible_ = true;
+  Vec3 spring_ = Vec3::Zero();
+  AlgorithmWork work_;
+};
+
+std::unique_ptr<ForceAlgorithm> make_proxy(const RenderingConfig& config);
+
+}  // namespace hapbench

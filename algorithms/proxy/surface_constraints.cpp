@@ -1,0 +1,72 @@
+#include "algorithms/proxy/surface_constraints.hpp"
+
+#include <Eigen/Geometry>
+
+#include "sim/core/simd.hpp"
+#include "sim/tool/axial.hpp"
+
+namespace hapbench {
+namespace {
+
+using simd::Mask, simd::Pack, simd::select;
+
+/// Relative to the radius: nearer to the axis than this, the direction away from it is rounding.
+constexpr double kOnAxis = 1e-12;
+
+struct Directions {
+  Pack x, y, z;
+};
+
+/// Away from the axis, and in any one direction on it.
+Directions away_from_axis(const AxialPack& q, const Pack& distance, const Pack& on_axis, const Vec3& any) {
+  const Mask undefined = distance <= on_axis;
+  const Pack scale = Pack(1.0) / select(undefined, Pack(1.0), distance);
+  return {select(undefined, Pack(any.x()), q.rho_x * scale), select(undefined, Pack(any.y()), q.rho_y * scale),
+          select(undefined, Pack(any.z()), q.rho_z * scale)};
+}
+
+}  // namespace
+
+void surface_constraints(const Tool& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept {
+  const bool round = tool.tip == Tip::round;
+  const Pack radius(tool.radius), length(tool.length), zero(0.0), one(1.0);
+  const Pack ax(pose.axis.x()), ay(pose.axis.y()), az(pose.axis.z());
+  const Vec3 any = pose.axis.unitOrthogonal();
+  contacts.pad();
+  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
+    const Pack from_axis = simd::sqrt(q.rho2);
+    const Directions out = away_from_axis(q, from_axis, Pack(kOnAxis) * radius, any);
+    const Pack side = from_axis - radius;
+    const Pack bottom = -q.s - length;
+    const Mask tip_nearer = q.s >= bottom;
+    const Pack end = round ? bottom : simd::max(q.s, bottom);
+    const Pack forward = round ? -one : select(tip_nearer, one, -one);
+
+    // Beyond side and end the nearest place is the edge between them.
+    const Mask beyond_both = side > zero && end > zero;
+    const Pack to_edge = simd::sqrt(side * side + end * end);
+    const Mask side_wins = side >= end;
+    Pack distance = select(beyond_both, to_edge, select(side_wins, side, end));
+    const Pack edge_scale = one / select(beyond_both, to_edge, one);
+    const Pack outwards = select(beyond_both, side * edge_scale, select(side_wins, one, zero));
+    const Pack along = forward * select(beyond_both, end * edge_scale, select(side_wins, zero, one));
+    Pack mx = outwards * out.x + along * ax, my = outwards * out.y + along * ay, mz = outwards * out.z + along * az;
+    if (round) {
+      const Mask at_ball = q.s > zero;
+      const Pack from_centre = simd::sqrt(q.distance2());
+      const Pack scale = one / select(at_ball, from_centre, one);
+      distance = select(at_ball, from_centre - radius, distance);
+      mx = select(at_ball, q.x * scale, mx);
+      my = select(at_ball, q.y * scale, my);
+      mz = select(at_ball, q.z * scale, mz);
+    }
+    simd::store(-distance, &contacts.depth[i]);
+    simd::store(mx, &contacts.ux[i]);
+    simd::store(my, &contacts.uy[i]);
+    simd::store(mz, &contacts.uz[i]);
+  }
+  contacts.pad();
+}
+
+}  // namespace hapbench
