@@ -14,8 +14,8 @@ namespace {
 using simd::load, simd::Pack;
 
 /// Squared sine of the angle between a gradient and the span of others below which it counts as lying in it: those of a
-/// flat tip, or of one line along the side, differ by rounding, 1e-15; other neighbours by far more than this 1e-9.
-constexpr double kInSpan = 1e-18;
+/// flat tip, or of one line along the side, differ by rounding, 1e-15; other neighbours by far more than this 3e-8.
+constexpr double kInSpan = 1e-15;
 constexpr int kMostIterations = 100;
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -137,6 +137,10 @@ bool solve_exactly(const Vec3& wanted, double tolerance, ContactBuffer& contacts
     if (!(worst.amount > tolerance) || active.contains(worst.contact)) break;
     if (++out.iterations > kMostIterations) return false;
     if (!satisfy(worst.contact, worst.amount, contacts.gradient(worst.contact), out.move, active)) return false;
+  }
+  // A contact that is only just reached holds nothing; whether it counts would be left to rounding.
+  for (int k = active.size() - 1; k >= 0; --k) {
+    if (active.lambda(k) <= tolerance) active.drop(k);
   }
   for (int k = 0; k < active.size(); ++k) contacts.weight[active.contact(k)] = active.lambda(k);
   out.held = active.projector();

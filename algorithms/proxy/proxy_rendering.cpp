@@ -33,12 +33,8 @@ const ModelInfo kProxyInfo = {
 
 namespace {
 
-/// Of the tool's radius. Wider, and each pass looks at more points; narrower, and a fast tool takes more passes.
-constexpr double kMarginPerRadius = 0.2;
 /// The query looks a little further than the proxy moves, for the rounding of both.
 constexpr double kQueryMargin = 1.0 + 1e-6;
-/// Passes of a step: to bring the proxy near, and to make the constraints exact where it ends.
-constexpr int kMostPasses = 64;
 /// A pass that moves the proxy less than this part of the margin is the last one.
 constexpr double kSettled = 1e-3;
 
@@ -50,7 +46,7 @@ void ProxyRendering::prepare(const Scene& scene) {
   tool_ = scene.tool;
   depth_is_given_ = scene.query->gives_depth();
   // Springs are planes, whose constraints hold at any distance.
-  margin_ = depth_is_given_ ? std::numeric_limits<double>::infinity() : kMarginPerRadius * tool_.radius;
+  margin_ = depth_is_given_ ? std::numeric_limits<double>::infinity() : kProxyMargin * tool_.radius;
   near_ = scene.query->with_margin(margin_ * kQueryMargin);
   near_contacts_ = std::make_unique<ContactBuffer>(2 * near_->capacity());
   spacing_ = depth_is_given_ ? 0.0 : typical_spacing(*scene.shell);
@@ -69,9 +65,9 @@ void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, Ren
     const auto depths = contacts.depth.begin();
     out.depth_max = *std::max_element(depths, depths + static_cast<std::ptrdiff_t>(contacts.size()));
   }
-  if (!placed_) proxy_ = tool.pose.position;
-  placed_ = true;
-  follow(tool.pose);
+  if (!placed_) place(tool.pose.position);
+  // A tool that jumps further than the proxy can follow, and touches nothing there, has been put there.
+  if (!follow(tool.pose) && contacts.empty()) place(tool.pose.position);
   hand_over_holding(contacts);
   out.spring = spring_ = K_ * (proxy_ - tool.pose.position);
   out.S = held_;
@@ -79,8 +75,15 @@ void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, Ren
   out.rendered = contacts.empty() ? spring_ : damping_and_limits_.rendered_force(spring_, held_, tool.velocity);
 }
 
-void ProxyRendering::follow(const ToolPose& tool) noexcept {
-  for (int pass = 0; pass < kMostPasses; ++pass) {
+void ProxyRendering::place(const Vec3& position) noexcept {
+  placed_ = true;
+  proxy_ = position;
+  held_.setZero();
+  near_contacts_->clear();
+}
+
+bool ProxyRendering::follow(const ToolPose& tool) noexcept {
+  for (int pass = 0; pass < kProxyPasses; ++pass) {
     near_->contacts_at({proxy_, tool.axis}, *near_contacts_);
     if (!depth_is_given_) {
       surface_constraints(tool_, {proxy_, tool.axis}, *near_contacts_);
@@ -95,12 +98,14 @@ void ProxyRendering::follow(const ToolPose& tool) noexcept {
       proxy_ += margin_ / length * allowed.move;
     } else if (allowed.iterations == 0) {
       proxy_ = tool.position;
-      return;
+      return true;
     } else {
       proxy_ += allowed.move;
-      if (length <= kSettled * margin_) return;
+      // A compromise of walls that leave no room is not worth more than one pass a step.
+      if (length <= kSettled * margin_ || !allowed.feasible) return true;
     }
   }
+  return false;
 }
 
 /// Replaces the colliding points by those that hold the proxy back.

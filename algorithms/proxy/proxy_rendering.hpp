@@ -10,6 +10,12 @@ namespace hapbench {
 
 extern const ModelInfo kProxyInfo;
 
+/// The margin in tool radii. Wider, and each pass looks at more points; narrower, and a fast tool takes more passes.
+inline constexpr double kProxyMargin = 0.2;
+/// Most passes of a step: to bring the proxy near, and to make the constraints exact where it ends. Most steps take
+/// two.
+inline constexpr int kProxyPasses = 64;
+
 /// Constraint-based rendering for a tool that cannot be turned back: a proxy of the tool that has its orientation and
 /// never enters the environment follows it, and a spring pulls the tool to the proxy (Zilles and Salisbury, 1995, for a
 /// point; the thesis's section 1.2 rejects it for whole bodies as too expensive). Orientation is scripted, so only the
@@ -40,7 +46,9 @@ class ProxyRendering final : public ForceAlgorithm {
   const Vec3& proxy() const { return proxy_; }  ///< tip centre of the proxy [m]
 
  private:
-  void follow(const ToolPose& tool) noexcept;
+  void place(const Vec3& position) noexcept;
+  /// False when the passes did not suffice.
+  bool follow(const ToolPose& tool) noexcept;
   void hand_over_holding(ContactBuffer& contacts) noexcept;
 
   double K_;

@@ -53,8 +53,9 @@ void surface_constraints(const Tool& tool, const ToolPose& pose, ContactBuffer& 
     const Pack along = forward * select(beyond_both, end * edge_scale, select(side_wins, zero, one));
     Pack mx = outwards * out.x + along * ax, my = outwards * out.y + along * ay, mz = outwards * out.z + along * az;
     if (round) {
-      const Mask at_ball = q.s > zero;
       const Pack from_centre = simd::sqrt(q.distance2());
+      // In a tool shorter than its radius the bottom may be nearer than the ball.
+      const Mask at_ball = q.s > zero && from_centre - radius >= bottom;
       const Pack scale = one / select(at_ball, from_centre, one);
       distance = select(at_ball, from_centre - radius, distance);
       mx = select(at_ball, q.x * scale, mx);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "algorithms/proxy/proxy_rendering.hpp"
 #include "algorithms/registry.hpp"
 #include "sim/contact/shell_query.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
@@ -56,6 +57,27 @@ bool damping_in_bound(const ContactSet& set, const RenderedForce& force) {
   return force.rendered.norm() <= (1.0 + kRounding) * bound;
 }
 
+/// Of a force law, in units of K times the depth of the deepest contact.
+double law_bound(const RenderingConfig& config, std::size_t contacts) noexcept {
+  const double n = static_cast<double>(contacts);
+  const std::string& law = config.algorithm;
+  // |sum c d u| <= d sum c, and c = 1 / n.
+  if (law == "mean") return std::min(1.0, n);
+  // sum d_i / |sum u_i|, where |sum u_i| > 1e-9 n, or the force is zero.
+  if (law == "original_averaging") return 1e9 * std::min(1.0, n);
+  // (I + U U^T)^-1 U has the singular values s / (1 + s^2) <= 1/2, and |(d_1 … d_n)| <= sqrt(n) d. (K_vc = K.)
+  if (law == "virtual_coupling") return 0.5 * std::sqrt(n);
+  // sum c: at the optimum of exact_shaping tr S >= |S|^2_F >= (tr S)^2 / 3, so that tr S <= 3, and tr S = sum c. After
+  // an update c_i <- c_i / rho_i with rho_i = u_i^T S u_i >= 1 / (u_i^T S^+ u_i) for unit u_i (Cauchy and Schwarz), sum
+  // c_i / rho_i <= sum c_i u_i^T S^+ u_i = tr(S^+ S) <= 3.
+  if (law == "exact_shaping") return std::min(3.0, n);
+  if (law == "shaped_stiffness" || law == "normal_projection") return config.iterations > 0 ? std::min(3.0, n) : n;
+  // c = beta / sigma keeps the energy: sum c d_i^2 = sum d_i^2 <= n d^2, and sum c <= n / sigma, since beta <= 1.
+  // Cauchy and Schwarz: sum c d_i <= n d / sqrt(sigma), where sigma > 1e-12, or the force is zero.
+  if (law == "tandpasta") return 1e6 * n;
+  return n;
+}
+
 void count_answer(const ContactSet& set, const RenderingConfig& config, std::uint64_t number, const Answer& answer,
                   StressCounts& counts) {
   ++counts.sets;
@@ -64,7 +86,7 @@ void count_answer(const ContactSet& set, const RenderingConfig& config, std::uin
   const RenderedForce& force = answer.force;
   const bool bad = counts.non_finite + counts.out_of_bound > 0;
   const double unit = config.stiffness * force.depth_max;
-  const double bound = force_bound(config, answer.rendered) * unit;
+  const double bound = config.stiffness * force_bound(config, set.tool, answer.rendered, force.depth_max);
   if (!finite(force)) {
     ++counts.non_finite;
   } else if (force.spring.norm() > (1.0 + kRounding) * bound || !depth_in_bound(set.tool, force.depth_max) ||
@@ -98,24 +120,10 @@ void add(const StressCounts& other, StressCounts& all) {
 
 }  // namespace
 
-double force_bound(const RenderingConfig& config, std::size_t contacts) noexcept {
-  const double n = static_cast<double>(contacts);
-  const std::string& law = config.algorithm;
-  // |sum c d u| <= d sum c, and c = 1 / n.
-  if (law == "mean") return std::min(1.0, n);
-  // sum d_i / |sum u_i|, where |sum u_i| > 1e-9 n, or the force is zero.
-  if (law == "original_averaging") return 1e9 * std::min(1.0, n);
-  // (I + U U^T)^-1 U has the singular values s / (1 + s^2) <= 1/2, and |(d_1 … d_n)| <= sqrt(n) d. (K_vc = K.)
-  if (law == "virtual_coupling") return 0.5 * std::sqrt(n);
-  // sum c: at the optimum of exact_shaping tr S >= |S|^2_F >= (tr S)^2 / 3, so that tr S <= 3, and tr S = sum c. After
-  // an update c_i <- c_i / rho_i with rho_i = u_i^T S u_i >= 1 / (u_i^T S^+ u_i) for unit u_i (Cauchy and Schwarz), sum
-  // c_i / rho_i <= sum c_i u_i^T S^+ u_i = tr(S^+ S) <= 3.
-  if (law == "exact_shaping") return std::min(3.0, n);
-  if (law == "shaped_stiffness" || law == "normal_projection") return config.iterations > 0 ? std::min(3.0, n) : n;
-  // c = beta / sigma keeps the energy: sum c d_i^2 = sum d_i^2 <= n d^2, and sum c <= n / sigma, since beta <= 1.
-  // Cauchy and Schwarz: sum c d_i <= n d / sqrt(sigma), where sigma > 1e-12, or the force is zero.
-  if (law == "tandpasta") return 1e6 * n;
-  return n;
+double force_bound(const RenderingConfig& config, const Tool& tool, std::size_t n, double depth) noexcept {
+  // Placed on the tool, the proxy moves by at most a margin a pass.
+  if (config.algorithm == "proxy") return kProxyPasses * kProxyMargin * tool.radius;
+  return law_bound(config, n) * depth;
 }
 
 ContactSet stress_set(std::uint64_t seed, std::uint64_t i) {

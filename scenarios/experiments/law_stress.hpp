@@ -23,9 +23,10 @@ struct StressCounts {
   std::uint64_t first_bad = 0;       ///< number of the first set that was counted as bad; meaningful when there is one
 };
 
-/// The most |f_spring| that n contacts may cause under a law, in units of K times the depth of the deepest. See the
-/// source for the derivations. Of laws it does not know: n, what all springs pull in one direction.
-double force_bound(const RenderingConfig& config, std::size_t n) noexcept;
+/// The most |f_spring| / K [m] that n contacts, the deepest of them by `depth` [m], may cause under an algorithm in one
+/// step. See the source for the derivations. Of laws it does not know: n times the depth, what all springs pull in one
+/// direction.
+double force_bound(const RenderingConfig& config, const Tool& tool, std::size_t n, double depth) noexcept;
 
 /// Set number `i` of the seed: what the counts speak of.
 ContactSet stress_set(std::uint64_t seed, std::uint64_t i);

@@ -22,9 +22,26 @@ class Invariance : public test::AlgorithmOnSceneTest {
 };
 HAPBENCH_FOR_EVERY_ALGORITHM(Invariance, test::always);
 
-class RigidMotion : public Invariance {};
-HAPBENCH_FOR_EVERY_ALGORITHM(RigidMotion,
-                             [](const test::AlgorithmOnScene& instance) { return !instance.scene->touches; });
+class RigidMotion : public Invariance {
+ protected:
+  /// Of a slot that is too narrow for the tool the proxy makes a compromise, whose 3x3 system has the condition
+  /// n / epsilon = 640 / 1e-6, times 2e-16 for each of its entries.
+  static constexpr double kCompromiseRounding = 640 / 1e-6 * 2e-16;
+  bool is_proxy() const { return GetParam().algorithm == "proxy"; }
+  double rounding() const {
+    return Invariance::rounding() + (is_proxy() ? kCompromiseRounding * config.stiffness * setting.tool.radius : 0.0);
+  }
+  double rounding_of_S() const { return is_proxy() ? 4 * kCompromiseRounding : test::kAnyLawsRounding; }
+  double rounding_in_motion(const RenderedForce& force) const {
+    return 4 * rounding() + rounding_of_S() * (force.rendered - force.spring).norm();
+  }
+};
+/// Neither where the tool exactly touches, nor for a proxy whose peg is too wide for the hole: a planar scene is thin,
+/// and rounding decides by which side the peg slips out of its plane.
+HAPBENCH_FOR_EVERY_ALGORITHM(RigidMotion, [](const test::AlgorithmOnScene& instance) {
+  const bool slips = instance.algorithm == "proxy" && instance.scene->name.starts_with("tilted_peg");
+  return !instance.scene->touches && !slips;
+});
 
 class FarPoints : public Invariance {};
 HAPBENCH_FOR_EVERY_ALGORITHM(FarPoints,
@@ -41,7 +58,7 @@ TEST_P(RigidMotion, OfTheWholeSceneTurnsTheForce) {
     const RenderedForce force = test::Probe(there, config).force_at(there.pose, R * velocity);
     ASSERT_LE((force.spring - R * original.spring).norm(), rounding());
     ASSERT_LE((force.rendered - R * original.rendered).norm(), rounding_in_motion(original));
-    ASSERT_LE((force.S - R * original.S * R.transpose()).norm(), test::kAnyLawsRounding * (1.0 + original.S.norm()));
+    ASSERT_LE((force.S - R * original.S * R.transpose()).norm(), rounding_of_S() * (1.0 + original.S.norm()));
   }
 }
 

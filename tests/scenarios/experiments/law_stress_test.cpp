@@ -53,7 +53,7 @@ TEST(ForceBound, HoldsForSpringsOfEqualDepthInClosedForm) {
   RenderingConfig config;
   const auto bound = [&](const char* algorithm, std::size_t n) {
     config.algorithm = algorithm;
-    return force_bound(config, n);
+    return force_bound(config, Tool{}, n, 1.0);
   };
   for (const std::size_t n : {1u, 2u, 10u, 200u}) {
     const auto points = static_cast<double>(n);
@@ -63,6 +63,8 @@ TEST(ForceBound, HoldsForSpringsOfEqualDepthInClosedForm) {
     EXPECT_GE(bound("shaped_stiffness", n), 1.0);
     EXPECT_LE(bound("shaped_stiffness", n), 3.0);
   }
+  // A proxy is not bounded by a depth but by how far it moves: 64 passes of a fifth of the radius, 0.5 mm.
+  EXPECT_DOUBLE_EQ(bound("proxy", 1), 64 * 0.2 * 0.0005);
   config.iterations = 0;
   EXPECT_EQ(bound("shaped_stiffness", 50), 50.0);  // summation
 }

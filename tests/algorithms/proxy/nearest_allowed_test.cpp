@@ -1,0 +1,180 @@
+#include "algorithms/proxy/nearest_allowed.hpp"
+
+#include <gtest/gtest.h>
+
+#include "sim/contact/stiffness_tensor.hpp"
+#include "tests/support/contact_sets.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Sum lambda_i u_i, and what rounding may make of it.
+struct Held {
+  Vec3 sum = Vec3::Zero();
+  double lambdas = 0.0;
+};
+Held held(const ContactBuffer& contacts) {
+  Held h;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    h.sum += contacts.weight[i] * contacts.gradient(i);
+    h.lambdas += contacts.weight[i];
+  }
+  return h;
+}
+
+double violation(const ContactBuffer& contacts, std::size_t i, const Vec3& x) {
+  return contacts.depth[i] + contacts.gradient(i).dot(x);
+}
+
+/// Contacts that a place in the middle satisfies, some of them just so, with a wanted move.
+struct Problem {
+  ContactBuffer contacts;
+  Vec3 wanted;
+};
+template <class Check>
+void for_feasible_problems(Check check) {
+  Random random(1);
+  for (const test::GradientFamily& family : test::gradient_families()) {
+    for (int i = 0; i < 200; ++i) {
+      const std::vector<Vec3> gradients = family.draw(random, test::random_size(random, 300));
+      const Vec3 allowed = 1e-4 * random.uniform() * random.direction();
+      std::vector<double> depths;
+      for (const Vec3& u : gradients)
+        depths.push_back(-u.dot(allowed) - (random.uniform() < 0.3 ? 0.0 : 1e-4 * random.uniform()));
+      check(Problem{test::contacts_of(gradients, depths), 3e-4 * random.uniform() * random.direction()}, family.name);
+    }
+  }
+}
+
+// A convex problem with a strictly convex aim has one solution, and these conditions of Karush, Kuhn and Tucker name
+// it.
+TEST(NearestAllowed, SatisfiesTheConditionsOfOptimality) {
+  for_feasible_problems([](Problem problem, const char* family) {
+    const AllowedMove allowed = nearest_allowed(problem.wanted, problem.contacts);
+    ASSERT_TRUE(allowed.feasible) << family;
+    // Lengths are up to 0.4 mm; an active contact may be off by the rounding of multipliers that cancel.
+    const Held h = held(problem.contacts);
+    const double rounding = 4e-4 * kTolerance + 1e-13 * h.lambdas;
+    for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
+      const double off = violation(problem.contacts, i, allowed.move);
+      ASSERT_LE(off, rounding) << family;
+      ASSERT_GE(problem.contacts.weight[i], 0.0) << family;
+      ASSERT_TRUE(problem.contacts.weight[i] == 0.0 || off >= -rounding) << family;
+    }
+    // Up to three multipliers below the tolerance are left out.
+    ASSERT_LE((problem.wanted - h.sum - allowed.move).norm(), 4 * rounding) << family;
+  });
+}
+
+TEST(NearestAllowed, HoldsTheSpanOfTheActiveContacts) {
+  for_feasible_problems([](Problem problem, const char* family) {
+    const Mat3 held = nearest_allowed(problem.wanted, problem.contacts).held;
+    ASSERT_LE((held * held - held).norm(), 1e-14) << family;
+    ASSERT_EQ(held, held.transpose()) << family;
+    std::size_t active = 0;
+    for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
+      if (problem.contacts.weight[i] == 0.0) continue;
+      ++active;
+      const Vec3 u = problem.contacts.gradient(i);
+      ASSERT_LE((held * u - u).norm(), 1e-14) << family;
+    }
+    ASSERT_LE(active, 3u) << family;
+    ASSERT_LE(held.trace(), static_cast<double>(active) + 1e-14) << family;
+  });
+}
+
+TEST(NearestAllowed, GoesWhereNothingIsInTheWay) {
+  ContactBuffer none = test::contacts_of({});
+  const Vec3 wanted(1e-4, -2e-4, 3e-4);
+  EXPECT_EQ(nearest_allowed(wanted, none).move, wanted);
+  ContactBuffer far = test::contacts_of({Vec3::UnitX()}, {-1e-3});
+  const AllowedMove allowed = nearest_allowed(wanted, far);
+  EXPECT_EQ(allowed.move, wanted);
+  EXPECT_EQ(allowed.iterations, 0);
+  EXPECT_EQ(allowed.held, Mat3(Mat3::Zero()));
+}
+
+TEST(NearestAllowed, SlidesAlongAFaceAndStopsInACorner) {
+  ContactBuffer corner = test::contacts_of({Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, {-1e-4, -2e-4, -3e-4});
+  EXPECT_LE((nearest_allowed({2e-4, 1e-4, 1e-4}, corner).move - Vec3(1e-4, 1e-4, 1e-4)).norm(), 1e-18);
+  EXPECT_LE((nearest_allowed({1, 1, 1}, corner).move - Vec3(1e-4, 2e-4, 3e-4)).norm(), 1e-15);
+}
+
+TEST(NearestAllowed, DoesNotDependOnTheOrderOfTheContacts) {
+  Random random(3);
+  for_feasible_problems([&](Problem problem, const char* family) {
+    std::vector<std::size_t> order(problem.contacts.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    ContactBuffer other(std::max<std::size_t>(1, order.size()));
+    for (const std::size_t i : test::shuffled(order, random)) other.push_copy_of(problem.contacts, i);
+    other.pad();
+    const Vec3 a = nearest_allowed(problem.wanted, problem.contacts).move,
+               b = nearest_allowed(problem.wanted, other).move;
+    // The optimum is unique; where gradients are nearly dependent, which of them hold it is not, and each of the two is
+    // as far off it as contacts may be violated, over the sine of their angle: at worst the length of a move.
+    const double rounding = 4e-4 * kTolerance + 1e-12 * (held(problem.contacts).lambdas + held(other).lambdas);
+    EXPECT_LE((a - problem.wanted).norm() - (b - problem.wanted).norm(), rounding) << family;
+    EXPECT_LE((b - problem.wanted).norm() - (a - problem.wanted).norm(), rounding) << family;
+  });
+}
+
+/// n faces against x with depth a, m against -x with depth b, a + b > 0: no room.
+TEST(NearestAllowed, SharesWhatOppositeWallsLackInEqualSquares) {
+  for (const auto& [n, m] : {std::pair<std::size_t, std::size_t>{1, 1}, {3, 1}, {100, 250}}) {
+    const double a = 3e-5, b = 1e-5;
+    std::vector<Vec3> gradients(n, Vec3::UnitX());
+    gradients.insert(gradients.end(), m, -Vec3::UnitX());
+    std::vector<double> depths(n, a);
+    depths.insert(depths.end(), m, b);
+    ContactBuffer contacts = test::contacts_of(gradients, depths);
+    const Vec3 wanted(2e-4, -1e-4, 5e-5);
+    const AllowedMove allowed = nearest_allowed(wanted, contacts);
+    EXPECT_FALSE(allowed.feasible);
+    const double N = static_cast<double>(n), M = static_cast<double>(m);
+    const double x = (M * b - N * a + kCompromise * wanted.x()) / (N + M + kCompromise);
+    // The Newton step solves with a matrix of condition (N + M) / epsilon.
+    EXPECT_NEAR(allowed.move.x(), x, 1e-4 * 1e-16 * (N + M) / kCompromise);
+    EXPECT_NEAR(allowed.move.y(), wanted.y(), 1e-12);
+    EXPECT_NEAR(allowed.move.z(), wanted.z(), 1e-12);
+    EXPECT_LE((wanted - held(contacts).sum - allowed.move).norm(), 1e-9);
+    EXPECT_NEAR(allowed.held(0, 0), 1.0, 1e-6);
+    EXPECT_NEAR(allowed.held(1, 1), 0.0, 1e-9);
+  }
+}
+
+TEST(NearestAllowed, FindsTheLeastSquaresOfContradictingContacts) {
+  Random random(4);
+  int contradicting = 0;
+  for (int i = 0; i < 2'000; ++i) {
+    const std::size_t n = 4 + random.below(60);
+    std::vector<Vec3> gradients;
+    std::vector<double> depths;
+    for (std::size_t k = 0; k < n; ++k) {
+      gradients.push_back(random.direction());
+      depths.push_back(1e-4 * random.uniform(-0.5, 1.0));
+    }
+    ContactBuffer contacts = test::contacts_of(gradients, depths);
+    const Vec3 wanted = 2e-4 * random.direction();
+    const AllowedMove allowed = nearest_allowed(wanted, contacts);
+    if (allowed.feasible) continue;
+    ++contradicting;
+    // Its gradient vanishes: the solver stops at epsilon times the tolerance, and sums of n terms of 1e-4 are rounded.
+    Vec3 gradient = kCompromise * (allowed.move - wanted);
+    for (std::size_t k = 0; k < n; ++k) gradient += std::max(0.0, violation(contacts, k, allowed.move)) * gradients[k];
+    ASSERT_LE(gradient.norm(), 1e-19 + 1e-20 * static_cast<double>(n * n));
+    ASSERT_LE(lambda_max(allowed.held), 1.0);
+  }
+  EXPECT_GT(contradicting, 1'000);
+}
+
+TEST(NearestAllowed, EndsOnNumbersThatAreNone) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+  for (const double bad : {nan, infinite, -infinite}) {
+    ContactBuffer contacts = test::contacts_of({Vec3::UnitX(), -Vec3::UnitX(), Vec3(0, bad, 1)}, {1.0, bad, 1.0});
+    nearest_allowed({bad, 0.0, 1.0}, contacts);
+    nearest_allowed({0.0, 0.0, 1.0}, contacts);
+  }
+}
+
+}  // namespace
+}  // namespace hapbench

@@ -1,0 +1,176 @@
+#include "algorithms/proxy/proxy_rendering.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "algorithms/proxy/edge_constraints.hpp"
+#include "algorithms/proxy/nearest_allowed.hpp"
+#include "sim/contact/neighbour_list_query.hpp"
+#include "sim/contact/stiffness_tensor.hpp"
+#include "sim/environment/analytic_shells.hpp"
+#include "tests/support/setting.hpp"
+#include "tests/support/tool_geometry.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr double kK = 20'000.0;
+
+RenderingConfig proxy_config() {
+  RenderingConfig config;
+  config.algorithm = "proxy";
+  config.stiffness = kK;
+  return config;
+}
+
+/// A tilted flat tool whose lowest place, on the edge of its tip, is `depth` below the plane z = 0, anywhere between
+/// the points of the plane.
+test::Setting tilted_on_plane(double tilt, double depth, Random& random) {
+  test::Setting setting;
+  setting.points = surface_points(Plane{0.004, 0.0001});
+  setting.tool = {0.0005, 0.01, Tip::flat};
+  const Vec3 lean = random.direction_in_plane();
+  setting.pose.axis = -std::cos(tilt) * Vec3::UnitZ() - std::sin(tilt) * lean;
+  setting.pose.position = {1e-4 * random.uniform(), 1e-4 * random.uniform(), 0.0005 * std::sin(tilt) - depth};
+  return setting;
+}
+
+/// Clear of the plane, at most two passes away.
+ToolPose above(const test::Setting& setting) {
+  return {setting.pose.position + Vec3(0, 0, 1.5e-4), setting.pose.axis};
+}
+
+TEST(ProxyRendering, OfAnEdgeOnAPlaneIsTheDepthOfTheEdgeWhereverThePointsLie) {
+  Random random(1);
+  for (int i = 0; i < 300; ++i) {
+    // Flatter than 0.1 rad, more than the one patch is touched; 0.1 mm is how far the first pass looks.
+    const double tilt = random.uniform(0.1, 1.3), depth = 9e-5 * random.uniform();
+    const test::Setting setting = tilted_on_plane(tilt, depth, random);
+    test::Probe probe(setting, proxy_config());
+    // The proxy must come from outside: where it starts in the shell, points push it out sideways.
+    probe.force_at(above(setting));
+    const RenderedForce force = probe.force_at(setting.pose);
+    EXPECT_LE((force.spring - Vec3(0, 0, kK * depth)).norm(), kK * 1e-12) << "tilt " << tilt << ", depth " << depth;
+    EXPECT_LE((force.S - Mat3(Vec3(0, 0, 1).asDiagonal())).norm(), 1e-9);
+  }
+}
+
+TEST(ProxyRendering, OfPlanesOfSpringsIsTheProjectionOntoTheirSpan) {
+  Random random(2);
+  for (int i = 0; i < 200; ++i) {
+    test::Setting setting;
+    setting.springs = SpringSet{{random.direction(), random.direction()}, true};
+    const Vec3 p = 0.01 * random.direction();
+    const RenderedForce force = test::Probe(setting, proxy_config()).force_at({p, -Vec3::UnitZ()});
+    const Vec3 normal = setting.springs->gradients[0].cross(setting.springs->gradients[1]).normalized();
+    const Vec3 expected = -kK * (p - normal.dot(p) * normal);
+    EXPECT_LE((force.spring - expected).norm(), 1e-9 * kK * p.norm());
+  }
+}
+
+/// Brute force over all points, in long double.
+double deepest_point(const test::Setting& setting, const ToolPose& pose) {
+  long double deepest = -1.0L;
+  for (const SurfacePoint& point : setting.points) {
+    deepest = std::max(deepest, test::slack(setting.tool, pose, point.position.cast<long double>()));
+  }
+  return static_cast<double>(deepest);
+}
+
+TEST(ProxyRendering, NeverLetsThePointsInWhereTheToolHasRoom) {
+  Random random(3);
+  int held = 0;
+  for (int run = 0; run < 20; ++run) {
+    test::Setting setting;
+    setting.tool = {0.0005, 0.01, run % 2 == 0 ? Tip::flat : Tip::round};
+    setting.points = surface_points(Slot{0.0016, 0.002, 0.004, 0.0001});
+    const std::vector<SurfacePoint> floor = surface_points(Plane{0.004, 0.0001});
+    for (SurfacePoint point : floor) {
+      point.position.z() -= 0.002;
+      setting.points.push_back(point);
+    }
+    const PointShell shell(setting.points, 0.0);
+    NeighbourListQuery query(shell, setting.tool);
+    ProxyRendering proxy(proxy_config());
+    proxy.prepare({setting.tool, &query, &shell});
+    proxy.reset();
+    ContactBuffer contacts(query.capacity());
+    // A tool swept about and tilted in the slot, pulled through its walls and its floor.
+    Vec3 velocity = Vec3::Zero();
+    ToolState tool{{{0, 0, 0.001}, -Vec3::UnitZ()}, Vec3::Zero()};
+    for (int step = 0; step < 400; ++step) {
+      velocity = 0.95 * velocity + 3e-5 * random.direction() - 0.003 * (tool.pose.position + Vec3(0, 0, 0.002));
+      tool.pose.position += velocity;
+      tool.pose.axis =
+          (tool.pose.axis + 0.004 * random.direction() - 0.02 * (tool.pose.axis + Vec3::UnitZ())).normalized();
+      query.contacts_at(tool.pose, contacts);
+      RenderedForce force;
+      proxy.compute(tool, contacts, force);
+      held += !contacts.empty();
+      ASSERT_LE(lambda_max(force.S), 1.0 + 1e-12);
+      const double longest = (tool.pose.position - proxy.proxy()).norm() + 2e-4;
+      ASSERT_LE(deepest_point(setting, {proxy.proxy(), tool.pose.axis}), kTolerance * longest)
+          << "run " << run << ", step " << step;
+    }
+  }
+  EXPECT_GT(held, 4'000);
+}
+
+TEST(ProxyRendering, FollowsAToolThatIsPutElsewhere) {
+  Random random(4);
+  const test::Setting setting = tilted_on_plane(0.5, 5e-5, random);
+  test::Probe probe(setting, proxy_config());
+  EXPECT_GT(probe.force_at(setting.pose).spring.norm(), 0.0);
+  EXPECT_EQ(probe.force_at({{1.0, 2.0, 3.0}, setting.pose.axis}).spring, Vec3(0, 0, 0));
+}
+
+TEST(ProxyRendering, HoldsAToolThatIsPulledThroughAPlane) {
+  // Where penalty springs let go: the whole tool is below the points.
+  test::Setting setting;
+  setting.points = surface_points(Plane{0.004, 0.0001});
+  setting.tool = {0.0005, 0.002, Tip::flat};
+  test::Probe probe(setting, proxy_config());
+  RenderedForce force;
+  for (int step = 0; step < 500; ++step) force = probe.force_at({{0, 0, 1e-4 - 1e-5 * step}, -Vec3::UnitZ()});
+  EXPECT_LE((force.spring - Vec3(0, 0, kK * 0.00489)).norm(), kK * 1e-12);
+}
+
+TEST(ProxyRendering, StoresTheEnergyOfOneSpring) {
+  Random random(5);
+  const test::Setting setting = tilted_on_plane(0.5, 5e-5, random);
+  const PointShell shell(setting.points, 0.0);
+  NeighbourListQuery query(shell, setting.tool);
+  ProxyRendering proxy(proxy_config());
+  proxy.prepare({setting.tool, &query, &shell});
+  proxy.reset();
+  ContactBuffer contacts(query.capacity());
+  RenderedForce force;
+  for (const ToolPose& pose : {above(setting), setting.pose}) {
+    query.contacts_at(pose, contacts);
+    proxy.compute({pose, Vec3::Zero()}, contacts, force);
+  }
+  const SpringState state = proxy.spring_state({setting.pose, Vec3::Zero()}, contacts);
+  EXPECT_NEAR(state.energy, 0.5 * kK * 5e-5 * 5e-5, 1e-15);
+  const ForceJacobian jacobian = proxy.jacobian();
+  EXPECT_EQ(jacobian.stiffness, Mat3(kK * force.S));
+}
+
+TEST(ProxyRendering, EndsForAPoseThatIsNone) {
+  Random random(6);
+  const test::Setting setting = tilted_on_plane(0.5, 5e-5, random);
+  test::Probe probe(setting, proxy_config());
+  probe.force_at(setting.pose);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  probe.force_at({Vec3::Constant(nan), setting.pose.axis});
+  probe.force_at(setting.pose);
+}
+
+TEST(TypicalSpacing, IsThatOfALatticeAndOfALine) {
+  EXPECT_NEAR(typical_spacing(PointShell(surface_points(Plane{0.004, 0.0001}), 0.0)), 1e-4, 1e-12);
+  EXPECT_NEAR(typical_spacing(PointShell(surface_points(Hole2d{}), 0.0)), 1e-4, 1e-12);
+  EXPECT_EQ(typical_spacing(PointShell({}, 0.0)), 0.0);
+}
+
+}  // namespace
+}  // namespace hapbench
