@@ -10,6 +10,7 @@
 #include "algorithms/depth/surface_normal.hpp"
 #include "algorithms/laws/exact_shaping.hpp"
 #include "algorithms/laws/mean.hpp"
+#include "algorithms/laws/merged_shaping.hpp"
 #include "algorithms/laws/normal_projection.hpp"
 #include "algorithms/laws/original_averaging.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
@@ -41,6 +42,7 @@ constexpr AlgorithmEntry kAlgorithms[] = {
     {&kTandpastaInfo, penalty<make_tandpasta>},
     {&kNormalProjectionInfo, penalty<make_normal_projection>, "normal_projection"},
     {&kExactShapingInfo, penalty<make_exact_shaping>},
+    {&kMergedShapingInfo, penalty<make_merged_shaping>, {}, false},
     {&kProxyInfo, make_proxy, {}, false},
 };
 
