@@ -1,6 +1,8 @@
 #include "algorithms/laws/merged_shaping.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "algorithms/laws/cone_projection.hpp"
@@ -17,7 +19,8 @@ const ModelInfo kMergedShapingInfo = {
     .summary =
         "exact shaping of groups of contacts with similar gradients, each with its whole tensor and depth vector",
     .formula =
-        "groups: 150 fixed cells of directions; S = sum c_k T_k, T_k = sum u u^T, f = -K sum c_k sum d u; C_k = c_k tr "
+        "groups: 1350 fixed cells of directions; S = sum c_k T_k, T_k = sum u u^T, f = -K sum c_k sum d u; C_k = c_k "
+        "tr "
         "T_k "
         "= argmin ½|S - I|²_F + (epsilon/2)|C|² over C >= 0, epsilon = 1e-6",
     .source = "ours, instead of the reduction of thesis C.3 and 4.1; takes no reduction",
@@ -78,49 +81,56 @@ class MergedShaping final : public ForceLaw {
  public:
   explicit MergedShaping(double stiffness) : ForceLaw(stiffness) { groups_.weight = weight_.data(); }
 
-  void prepare(std::size_t capacity) override { cell_.resize(capacity); }
+  void prepare(std::size_t capacity) override {
+    cell_.resize(capacity);
+    touched_.reserve(kCells);
+  }
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     gather(contacts);
     make_groups();
     iterations_ += static_cast<std::uint64_t>(cone_projection::solve(groups_));
-    for (std::size_t k = 0; k < groups_.size; ++k) share_[cell_of_group_[k]] = weight_[k] / trace_[k];
+    for (std::size_t k = 0; k < groups_.size; ++k) share_[touched_[k]] = weight_[k] / trace_[k];
     set_weights(contacts, 0.0);
     for (std::size_t i = 0; i < contacts.size(); ++i) contacts.weight[i] = share_[cell_[i]];
     return weighted_force(contacts, K_);
   }
 
  private:
-  /// Sums u u^T over each cell.
+  /// Sums u u^T over each cell, and lists the cells that have any.
   void gather(const ContactBuffer& contacts) noexcept {
-    sum_.fill({});
-    share_.fill(0.0);
+    touched_.clear();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       const double x = contacts.ux[i], y = contacts.uy[i], z = contacts.uz[i];
-      cell_[i] = static_cast<std::uint8_t>(cell_of(x, y, z));
-      std::array<double, 6>& sum = sum_[cell_[i]];
-      sum[0] += x * x;
-      sum[1] += y * y;
-      sum[2] += z * z;
-      sum[3] += x * y;
-      sum[4] += x * z;
-      sum[5] += y * z;
+      cell_[i] = static_cast<std::uint16_t>(cell_of(x, y, z));
+      CellSum& cell = cells_[cell_[i]];
+      if (!cell.touched) touched_.push_back(cell_[i]);
+      cell.touched = true;
+      cell.tensor[0] += x * x;
+      cell.tensor[1] += y * y;
+      cell.tensor[2] += z * z;
+      cell.tensor[3] += x * y;
+      cell.tensor[4] += x * z;
+      cell.tensor[5] += y * z;
     }
+    // The order of the contacts must not be that of the groups.
+    std::sort(touched_.begin(), touched_.end());
   }
 
+  /// One group a cell; leaves the sums at zero.
   void make_groups() noexcept {
-    groups_.size = 0;
-    for (std::size_t cell = 0; cell < kCells; ++cell) {
-      const std::array<double, 6>& sum = sum_[cell];
-      const double trace = sum[0] + sum[1] + sum[2];
-      if (!(trace > 0.0)) continue;
-      const std::size_t k = groups_.size++;
-      cell_of_group_[k] = cell;
-      trace_[k] = trace;
+    groups_.size = touched_.size();
+    for (std::size_t k = 0; k < groups_.size; ++k) {
+      CellSum& cell = cells_[touched_[k]];
+      const double trace = cell.tensor[0] + cell.tensor[1] + cell.tensor[2];
+      // Zero gradients alone: a tensor of zero, whose weight does nothing.
+      const double scale = trace > 0.0 ? 1.0 / trace : 0.0;
+      trace_[k] = trace > 0.0 ? trace : 1.0;
       weight_[k] = 1.0;
       for (std::size_t j = 0; j < 6; ++j) {
-        groups_.component[j][k] = sum[j] / trace * (j < 3 ? 1.0 : std::numbers::sqrt2);
+        groups_.component[j][k] = cell.tensor[j] * scale * (j < 3 ? 1.0 : std::numbers::sqrt2);
       }
+      cell = {};
     }
     groups_.padded_size = simd::padded(groups_.size);
     for (std::size_t k = groups_.size; k < groups_.padded_size; ++k) {
@@ -129,10 +139,14 @@ class MergedShaping final : public ForceLaw {
     }
   }
 
-  std::vector<std::uint8_t> cell_;  ///< of each contact
-  std::array<std::array<double, 6>, kCells> sum_{};
-  PerCell share_{};  ///< c_k of the cell's group
-  std::array<std::size_t, kCells> cell_of_group_{};
+  struct CellSum {
+    std::array<double, 6> tensor{};
+    bool touched = false;
+  };
+  std::vector<std::uint16_t> cell_;  ///< of each contact
+  std::vector<CellSum> cells_ = std::vector<CellSum>(kCells);
+  std::vector<std::uint16_t> touched_;  ///< the groups' cells, ascending
+  PerCell share_{};                     ///< c_k of the cell's group
   PerCell trace_{};
   alignas(64) PerCell weight_{};  ///< C_k
   Groups groups_;

@@ -6,13 +6,13 @@ namespace hapbench {
 
 extern const ModelInfo kMergedShapingInfo;
 
-/// Edge of the grid on each face of the cube of directions: cells of about 18 degrees, 150 in all. Odd, so that the
-/// axes lie in the middle of cells.
-inline constexpr int kDirectionCells = 5;
+/// Edge of the grid on each face of the cube of directions: cells of about 6 degrees, as near as the reduction calls
+/// similar, 1350 in all. Odd, so that the axes lie in the middle of cells.
+inline constexpr int kDirectionCells = 15;
 
 /// Exact shaping of groups of contacts: a reduction that neither drops a contact nor depends on their order.
 ///
-/// Contacts whose gradients lie in the same of 150 fixed cells of the sphere of directions (gradients away from a
+/// Contacts whose gradients lie in the same of 1350 fixed cells of the sphere of directions (gradients away from a
 /// cube's faces, kDirectionCells x kDirectionCells on each) form a group k and share a weight c_k. A group acts as what
 /// it is made of, its tensor T_k = sum u u^T and its depth vector g_k = sum d u, both exactly:
 ///

@@ -14,6 +14,8 @@ constexpr PrecisionStudy kStudies[] = {
      study_spacing},
     {"reduction", "gradient-based reduction against exact shaping of all contacts", "task2_rotate_signed_distance",
      study_reduction},
+    {"merging", "reduced, merged and all contacts, from dozens to hundreds", "task2_rotate_signed_distance",
+     study_merging},
     {"algorithms", "every algorithm against the ideal trajectory", "task2_rotate_signed_distance", study_algorithms},
 };
 

@@ -57,6 +57,7 @@ PrecisionResult study_time_step(const Scenario& scenario, const PrecisionOptions
 PrecisionResult study_shaping(const Scenario& scenario, const PrecisionOptions& options);
 PrecisionResult study_spacing(const Scenario& scenario, const PrecisionOptions& options);
 PrecisionResult study_reduction(const Scenario& scenario, const PrecisionOptions& options);
+PrecisionResult study_merging(const Scenario& scenario, const PrecisionOptions& options);
 PrecisionResult study_algorithms(const Scenario& scenario, const PrecisionOptions& options);
 
 }  // namespace hapbench
