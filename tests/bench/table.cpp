@@ -119,11 +119,11 @@ RepeatedRun repeated(TimedRun& run) {
 }
 
 void add_steps(Targets& targets) {
-  for (const std::string name : {"T1", "T2", "T3", "unreduced_1000"}) {
+  for (const std::string name : {"T1", "T2", "T2_proxy", "T3", "unreduced_1000"}) {
     require(name, wrong_run(name));
     TimedRun run(name);
     const RepeatedRun latency = repeated(run);
-    const bool task = name != "unreduced_1000";
+    const bool task = name == "T1" || name == "T2" || name == "T3";
     const std::string contacts = fmt::format(" ({:.0f} contacts)", run.metrics().metrics().colliding_mean);
     targets.push_back(
         at_most(fmt::format("`step/{}`, median", name), latency.all.p50 / 1e3, task ? 3.0 : 10.0, "µs", contacts));

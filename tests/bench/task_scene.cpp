@@ -29,6 +29,7 @@ LoadedScenario load(const char* bundled, Overrides overrides) {
 LoadedScenario load_step_scenario(const std::string& name) {
   if (name == "T1") return load("task1_flat_signed_distance", {});
   if (name == "T2") return load("task2_rotate_signed_distance", {});
+  if (name == "T2_proxy") return load("task2_rotate_signed_distance", {"rendering.algorithm=proxy"});
   if (name == "T3") return load("task3_spin_signed_distance", {});
   if (name == "unreduced_1000") {
     return load("task3_spin_signed_distance",

@@ -24,9 +24,9 @@ struct TaskScene {
 /// The scene of one of kTasks, made once. The poses of T2 and T3 are one period of the script.
 const TaskScene& task_scene(const std::string& task);
 
-/// The scenario a step is timed in: one of kTasks, `unreduced_1000` (a drill that nearly fills the hole touches about
-/// 1000 points, none of them reduced away) or `free_air` (an upright drill at rest 5 cm above the block). Nothing is
-/// recorded.
+/// The scenario a step is timed in: one of kTasks, `T2_proxy` (T2 with a proxy), `unreduced_1000` (a drill that nearly
+/// fills the hole touches about 1000 points, none of them reduced away) or `free_air` (an upright drill at rest 5 cm
+/// above the block). Nothing is recorded.
 const LoadedScenario& step_scenario(const std::string& name);
 
 /// Its shell, made once for all scenes of the same block.
