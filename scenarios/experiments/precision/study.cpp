@@ -15,6 +15,8 @@ constexpr PrecisionStudy kStudies[] = {
     {"reduction", "gradient-based reduction against exact shaping of all contacts", "task2_rotate_signed_distance",
      study_reduction},
     {"algorithms", "every algorithm against the ideal trajectory", "task2_rotate_signed_distance", study_algorithms},
+    {"stiffness", "every algorithm in a wedge against closed forms: stiffness along the contacts and the way out",
+     "wedge_stiffness", study_stiffness},
 };
 
 }  // namespace
