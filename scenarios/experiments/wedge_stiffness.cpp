@@ -57,10 +57,16 @@ struct ClosedForm {
 };
 
 constexpr ClosedForm kClosedForms[] = {
-    {"original_averaging", averaged},  {"summation", sum}, {"mean", mean}, {"virtual_coupling", coupled},
-    {"shaped_stiffness", shaped},      {"tandpasta", sum},  // all springs fight alike, and sigma_E undoes that
-    {"normal_projection", shaped},                          // springs give the depths
-    {"exact_shaping", exactly_shaped}, {"proxy", held},
+    {"original_averaging", averaged},
+    {"summation", sum},
+    {"mean", mean},
+    {"virtual_coupling", coupled},
+    {"shaped_stiffness", shaped},
+    {"tandpasta", sum},             // all springs fight alike, and sigma_E undoes that
+    {"normal_projection", shaped},  // springs give the depths
+    {"exact_shaping", exactly_shaped},
+    {"merged_shaping", exactly_shaped},  // a group for each face
+    {"proxy", held},
 };
 
 }  // namespace
