@@ -17,7 +17,9 @@ const ModelInfo kExactShapingInfo = {
         "c = argmin ½|S - I|²_F + (epsilon/2)|c|² over c >= 0, epsilon = 1e-6: the projection of the identity onto "
         "the cone of contact tensors u u^T",
     .source = "ours; the iteration is the multiplicative update of Sha, Lin, Saul, Lee, Neural Computation 2007",
-    .known_failure = "as shaped_stiffness: ratios above 1 where the weight is zero, soft along the way out of a wedge",
+    .known_failure =
+        "as shaped_stiffness: ratios above 1 where the weight is zero; soft along the way out of a wedge, "
+        "2 sin^2 w / (1 + cos^2 2w) K for half angle w, about w^2 K",
     .parameters = kParameters,
 };
 

@@ -43,9 +43,14 @@ void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) fmt::print(stderr, "hapbench: warning: {}\n", warning);
 }
 
+std::vector<std::string> all_algorithms() {
+  std::vector<std::string> names;
+  for (const AlgorithmEntry& entry : algorithms()) names.emplace_back(entry.info->name);
+  return names;
+}
+
 void require_algorithms(const std::vector<std::string>& names) {
-  std::vector<std::string> valid;
-  for (const AlgorithmEntry& entry : algorithms()) valid.emplace_back(entry.info->name);
+  const std::vector<std::string> valid = all_algorithms();
   std::set<std::string> seen;
   for (const std::string& name : names) {
     if (find_algorithm(name) == nullptr) {

@@ -58,6 +58,9 @@ void print(const OutputOptions& options, const std::string& text, const Json& js
 /// Prints warnings, one line each, on standard error.
 void print_warnings(const std::vector<std::string>& warnings);
 
+/// The names of all registered algorithms.
+std::vector<std::string> all_algorithms();
+
 /// Makes sure the names given to --algorithms are those of registered algorithms, each once; throws InputError
 /// otherwise.
 void require_algorithms(const std::vector<std::string>& names);

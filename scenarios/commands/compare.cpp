@@ -44,9 +44,10 @@ void write_comparison(const fs::path& file, const std::vector<RunReport>& report
 
 int compare(const CompareOptions& options) {
   require_algorithms(options.algorithms);
+  const std::vector<std::string> algorithms = options.algorithms.empty() ? all_algorithms() : options.algorithms;
   const fs::path file = find_scenario(options.scenario);
   std::vector<LoadedScenario> scenarios;
-  for (const std::string& algorithm : options.algorithms) {
+  for (const std::string& algorithm : algorithms) {
     std::vector<std::string> overrides = options.overrides;
     overrides.push_back("rendering.algorithm=" + algorithm);
     scenarios.push_back(load_scenario(file, overrides));
@@ -56,7 +57,7 @@ int compare(const CompareOptions& options) {
   }
   const fs::path out =
       options.out.empty() ? fs::path("results") / "out" / ("compare_" + file.stem().string()) : fs::path(options.out);
-  for (const std::string& algorithm : options.algorithms) require_writable_directory(out / algorithm);
+  for (const std::string& algorithm : algorithms) require_writable_directory(out / algorithm);
 
   std::vector<Table::Column> columns = run_columns();
   columns.insert(columns.begin(), {"algorithm", false});
@@ -66,8 +67,7 @@ int compare(const CompareOptions& options) {
   const ShellCache cache = shell_cache(options.no_cache || options.skips == Skips::off);
   int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
-    RunReport report =
-        run_scenario(scenarios[i], out / options.algorithms[i], !options.output.quiet, cache, options.skips);
+    RunReport report = run_scenario(scenarios[i], out / algorithms[i], !options.output.quiet, cache, options.skips);
     std::vector<std::string> cells = run_cells(report);
     cells.insert(cells.begin(), report.summary.algorithm);
     table.add(std::move(cells));
@@ -75,7 +75,7 @@ int compare(const CompareOptions& options) {
     // The scenario's other expectations are about its own algorithm; a divergence concerns every one.
     const Outcome outcome = report.summary.result.outcome;
     if (outcome == Outcome::diverges && !outcome_is_expected(scenarios[i].scenario.expect, outcome)) {
-      fmt::print(stderr, "hapbench: {}: {} diverges at step {}\n", file.string(), options.algorithms[i],
+      fmt::print(stderr, "hapbench: {}: {} diverges at step {}\n", file.string(), algorithms[i],
                  report.summary.result.divergence.step);
       status = kUnexpectedOutcome;
     }
@@ -93,7 +93,7 @@ void add_compare(CLI::App& app, Action& chosen) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App* command = app.add_subcommand("compare", "Run one scenario through several algorithms, side by side");
   command->add_option("scenario", options->scenario, "scenario file, or name of a bundled scenario")->required();
-  command->add_option("--algorithms", options->algorithms, "names, separated by commas")->required()->delimiter(',');
+  command->add_option("--algorithms", options->algorithms, "names, separated by commas (default: all)")->delimiter(',');
   command->add_option("--out", options->out, "directory of the results (default: results/out/compare_NAME)");
   command->add_option("--set", options->overrides, "override a field: path=value")->allow_extra_args(false)->take_all();
   add_cache_option(*command, options->no_cache);

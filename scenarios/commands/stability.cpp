@@ -5,7 +5,6 @@
 #include <set>
 #include <thread>
 
-#include "algorithms/registry.hpp"
 #include "results/io/atomic_file.hpp"
 #include "results/io/csv_writer.hpp"
 #include "results/io/json_text.hpp"
@@ -197,10 +196,7 @@ void add_experiments(CLI::App& command, StabilityOptions& options) {
 }  // namespace
 
 std::vector<std::string> StabilityOptions::chosen_algorithms() const {
-  if (!algorithms.empty()) return algorithms;
-  std::vector<std::string> all;
-  for (const AlgorithmEntry& entry : hapbench::algorithms()) all.emplace_back(entry.info->name);
-  return all;
+  return algorithms.empty() ? all_algorithms() : algorithms;
 }
 
 fs::path StabilityOptions::directory(const std::string& name) const {

@@ -120,6 +120,11 @@ void check_tracking_hand(const Scenario& scenario) {
 
 }  // namespace
 
+bool records_rows(const RecordFields& record) {
+  return record.trajectory || !record.ratio_iterations.empty() || record.contacts || record.stiffness_tensor ||
+         record.energy || record.ideal_trajectory;
+}
+
 std::filesystem::path resolve_path(const Scenario& scenario, const std::string& file) {
   return scenario.directory / file;  // an absolute `file` replaces the directory
 }

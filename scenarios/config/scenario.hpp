@@ -131,10 +131,14 @@ struct RecordFields {
   std::int64_t every = 1;
   std::vector<std::int64_t> ratio_iterations;
   bool contacts = false;
+  bool stiffness_tensor = false;
   bool timing = false;
   bool energy = false;
   bool ideal_trajectory = false;
 };
+
+/// True when a run writes rows of its steps.
+bool records_rows(const RecordFields& record);
 
 struct MetricBound {
   std::optional<double> min;

@@ -93,6 +93,8 @@ std::shared_ptr<ObjectCodec<RecordFields>> record_codec() {
   record->optional(
       "contacts", [](auto& r) -> bool& { return r.contacts; }, boolean(), "write contacts.csv");
   record->optional(
+      "stiffness_tensor", [](auto& r) -> bool& { return r.stiffness_tensor; }, boolean(), "write stiffness_tensor.csv");
+  record->optional(
       "timing", [](auto& r) -> bool& { return r.timing; }, boolean(), "time every step and write timing.json");
   record->optional(
       "energy", [](auto& r) -> bool& { return r.energy; }, boolean(), "keep the energy ledger and write energy.csv");
@@ -144,10 +146,8 @@ void check_sizes(const Scenario& scenario, const std::string& at) {
     throw InputError(InputError::Kind::relation, member(member(at, "time"), "duration_s"),
                      fmt::format("got {:.3g} steps (duration_s / step_s); allowed: 1 ... {:.0g}", steps, kMostSteps));
   }
-  const bool recorded =
-      scenario.record.trajectory || scenario.record.contacts || !scenario.record.ratio_iterations.empty();
   const double rows = steps / static_cast<double>(scenario.record.every);
-  if (recorded && rows > kMostRows) {
+  if (records_rows(scenario.record) && rows > kMostRows) {
     throw InputError(
         InputError::Kind::relation, member(member(at, "record"), "every"),
         fmt::format("got {:.3g} recorded rows; allowed: at most {:.0g}, record less often or less", rows, kMostRows));

@@ -50,11 +50,6 @@ fs::path trial_directory(const fs::path& directory, Trial trial, std::size_t tri
   return directory / fmt::format("{}{}_trial_{}", kTrialDirectory, trial.subject, trial.number);
 }
 
-bool records(const RecordFields& record) {
-  return record.trajectory || record.contacts || !record.ratio_iterations.empty() || record.energy ||
-         record.ideal_trajectory;
-}
-
 void create_output(const fs::path& directory) {
   std::error_code error;
   fs::create_directories(directory, error);
@@ -65,8 +60,8 @@ void create_output(const fs::path& directory) {
 /// Optional files that an earlier run with other settings may have left: they would not belong to this run.
 void remove_files_of_earlier_runs(const fs::path& directory) {
   std::error_code ignored;
-  for (const char* name : {"summary.json", "trajectory.csv", "contacts.csv", "ratios.csv", "energy.csv",
-                           "ideal_trajectory.csv", "targets.csv", "timing.json"}) {
+  for (const char* name : {"summary.json", "trajectory.csv", "contacts.csv", "ratios.csv", "stiffness_tensor.csv",
+                           "energy.csv", "ideal_trajectory.csv", "targets.csv", "timing.json"}) {
     fs::remove(directory / name, ignored);
   }
   for (const auto& entry : fs::directory_iterator(directory, ignored)) {
@@ -159,7 +154,7 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
   for (const Trial trial : trials) {
     TrialOptions options;
     options.skips = skips;
-    if (output && records(scenario.record)) options.directory = trial_directory(*output, trial, trials.size());
+    if (output && records_rows(scenario.record)) options.directory = trial_directory(*output, trial, trials.size());
     if (options.directory) create_output(*options.directory);
     if (progress) options.label = scenario.name;
     if (progress && trials.size() > 1) options.label += fmt::format(" {}/{}", results.size() + 1, trials.size());

@@ -9,6 +9,7 @@
 #include "results/record/energy_recorder.hpp"
 #include "results/record/ideal_trajectory_recorder.hpp"
 #include "results/record/ratio_recorder.hpp"
+#include "results/record/stiffness_recorder.hpp"
 #include "results/record/trajectory_recorder.hpp"
 #include "scenarios/run/allocations.hpp"
 #include "scenarios/run/progress.hpp"
@@ -47,6 +48,9 @@ class TrialObservers {
     const auto every = static_cast<std::uint64_t>(fields.every);
     if (fields.trajectory) add(std::make_unique<TrajectoryRecorder>(directory / "trajectory.csv", every));
     if (fields.contacts) add(std::make_unique<ContactRecorder>(directory / "contacts.csv", every));
+    if (fields.stiffness_tensor) {
+      add(std::make_unique<StiffnessRecorder>(directory / "stiffness_tensor.csv", every));
+    }
     if (!fields.ratio_iterations.empty()) {
       const std::vector<int> iterations(fields.ratio_iterations.begin(), fields.ratio_iterations.end());
       const ShapingOperations shaping{start_shaping, update_shaped_weights};

@@ -50,6 +50,10 @@ def figures(*arguments, **environment):
     )
 
 
+def listed():
+    return subprocess.run([PROGRAM, "list", "--json"], capture_output=True, text=True, check=True).stdout
+
+
 def ids():
     return [line.split()[0] for line in figures("--list").stdout.splitlines()]
 
@@ -62,6 +66,9 @@ def make_results(directory):
         out = directory / "thesis" / (Path(scenarios[0]).stem if len(scenarios) == 1 else "")
         hapbench("run", *scenarios, *(f"--set={text}" for text in overrides), "--quiet", "--out", out)
     hapbench("stability", "single_spring", "--quiet", "--out", directory / "stability")
+    for scene, scenario in (("peg", "tilt_sweep_shaped_stiffness"), ("wedge", "wedge_stiffness")):
+        out = directory / "stiffness" / scene
+        hapbench("compare", scenario, "--set=record.stiffness_tensor=true", "--quiet", "--out", out)
     make_studies(directory / "precision")
     make_maps(directory / "stability")
     timing = {
@@ -84,7 +91,7 @@ def make_studies(directory):
         "shaping": ["m=0", "m=1", "exact"],
         "reduction": ["shaped_stiffness 0.9", "exact_shaping off"],
         "spacing": ["signed_distance 0.0004", "binary 0.0002"],
-        "algorithms": ["mean", "original_averaging"],
+        "algorithms": ["mean", "original_averaging", "one_without_a_look"],
     }
     columns = ("step_s", "error_rms_m", "tensor_error_rms", "force_error_relative", "ideal_height_error_rms_m")
     for study, names in settings.items():
@@ -185,6 +192,13 @@ class Figures(unittest.TestCase):
                 self.assertGreater(sum(1 for _ in root.iter(f"{SVG}path")), 15)
                 words = [text for text in root.itertext() if re.search("[a-z]{3}", text)]
                 self.assertGreater(len(words), 1)
+
+    def test_the_stiffness_of_every_algorithm_is_drawn_in_both_scenes(self):
+        names = [entry["name"] for entry in json.loads(listed()) if entry["kind"] == "algorithm"]
+        text = list(xml.parse(self.drawn / "figure_stiffness.svg").getroot().itertext())
+        self.assertGreater(len(names), 8)
+        for name in names:
+            self.assertEqual(text.count(name.replace("_", " ")), 2, name)
 
     def test_axes_name_their_units(self):
         for entry in self.index():

@@ -17,6 +17,8 @@ constexpr PrecisionStudy kStudies[] = {
     {"merging", "reduced, merged and all contacts, from dozens to hundreds", "task2_rotate_signed_distance",
      study_merging},
     {"algorithms", "every algorithm against the ideal trajectory", "task2_rotate_signed_distance", study_algorithms},
+    {"stiffness", "every algorithm in a wedge against closed forms: stiffness along the contacts and the way out",
+     "wedge_stiffness", study_stiffness},
 };
 
 }  // namespace

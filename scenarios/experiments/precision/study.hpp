@@ -59,5 +59,6 @@ PrecisionResult study_spacing(const Scenario& scenario, const PrecisionOptions& 
 PrecisionResult study_reduction(const Scenario& scenario, const PrecisionOptions& options);
 PrecisionResult study_merging(const Scenario& scenario, const PrecisionOptions& options);
 PrecisionResult study_algorithms(const Scenario& scenario, const PrecisionOptions& options);
+PrecisionResult study_stiffness(const Scenario& scenario, const PrecisionOptions& options);
 
 }  // namespace hapbench

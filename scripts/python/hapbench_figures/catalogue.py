@@ -64,6 +64,7 @@ FIGURES = (
     Figure("F.5", "F.5", "Tandpasta's redistribution", peg_in_hole.redistribution),
     Figure("algorithms", None, "Every algorithm on the planar peg-in-hole", comparison.algorithms),
     Figure("discussion", None, "Cases of the thesis's discussion", comparison.discussion),
+    Figure("stiffness", None, "Stiffness in every direction, all algorithms", stiffness_fields.of_all_algorithms),
     Figure("precision", None, "Work against precision", performance.work_precision),
     Figure("latency", None, "Latency of a step", performance.latency),
     *(

@@ -65,10 +65,10 @@ class Peg:
 class Sweep:
     """A run that recorded its contacts."""
 
-    def __init__(self, results, name):
-        self.scenario = results.json(f"thesis/{name}/scenario.effective.json")
-        self.rows = results.table(f"thesis/{name}/trajectory.csv")
-        self.all = results.table(f"thesis/{name}/contacts.csv")
+    def __init__(self, results, name, group="thesis"):
+        self.scenario = results.json(f"{group}/{name}/scenario.effective.json")
+        self.rows = results.table(f"{group}/{name}/trajectory.csv")
+        self.all = results.table(f"{group}/{name}/contacts.csv")
         self.tilt = np.arctan2(np.abs(self.rows["axis_x"]), -self.rows["axis_y"])
 
     def step_at(self, tilt):

@@ -40,6 +40,12 @@ ALGORITHMS = {
     "exact_shaping": Look("exact shaping (ours)", BLUE, (0, (4, 1, 1, 1, 1, 1)), "h"),
 }
 
+
+def look(algorithm):
+    """Of any algorithm; those that have none of their own share one."""
+    return ALGORITHMS.get(algorithm) or Look(algorithm.replace("_", " "), GREY, "-", "*")
+
+
 # Numbers of the thesis are hollow diamonds everywhere.
 PUBLISHED = {
     "marker": "D",

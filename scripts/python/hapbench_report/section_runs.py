@@ -59,7 +59,7 @@ def run_details(run):
 def rerun(run):
     """The command of this very run. A comparison is one scenario through several algorithms."""
     line = f"hapbench run {run.name} --out {run.path}"
-    return line + (f" --set rendering.algorithm={run.algorithm}" if run.group == "compare" else "")
+    return line + (f" --set rendering.algorithm={run.algorithm}" if run.compared else "")
 
 
 def compact(parts):

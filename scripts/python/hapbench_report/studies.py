@@ -8,7 +8,7 @@ from .json_input import InputError
 # The stability limits, which stand beside the published ones.
 LIMITS = "stability/limits.csv"
 # A longer one is the data of a figure, not a table to read.
-MOST_ROWS = 60
+MOST_ROWS = 100
 
 
 @dataclass

@@ -58,7 +58,7 @@ TEST(Defaults, ThatHoldEverywhere) {
                    {"/rendering/virtual_coupling_N_per_m", "null"},
                    {"/integrator", R"({"type": "leapfrog"})"},
                    {"/record", R"({"trajectory": true, "every": 1, "ratio_iterations": [], "contacts": false,
-                                   "timing": false, "energy": false, "ideal_trajectory": false})"},
+                                   "stiffness_tensor": false, "timing": false, "energy": false, "ideal_trajectory": false})"},
                    {"/expect/outcome", R"(["completes", "leaves_hole", "tool_horizontal"])"}});
   }
 }

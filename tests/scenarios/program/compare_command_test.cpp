@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "algorithms/registry.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
@@ -89,6 +90,12 @@ TEST_F(CompareCommand, TakesOverridesJsonAndQuiet) {
   EXPECT_EQ(json[1]["steps"], 3);
   const ProgramRun quiet = compare({"--algorithms", "mean", "--quiet"});
   EXPECT_EQ(quiet.out + quiet.err, "");
+}
+
+TEST_F(CompareCommand, RunsAllAlgorithmsUnlessSomeAreNamed) {
+  const Json json = compare({"--set", "time.steps=3", "--json"}).json();
+  ASSERT_EQ(json.size(), algorithms().size());
+  for (std::size_t i = 0; i < json.size(); ++i) EXPECT_EQ(json[i]["algorithm"], algorithms()[i].info->name);
 }
 
 TEST_F(CompareCommand, ExitsWith3WhenOneDivergesUnexpectedly) {

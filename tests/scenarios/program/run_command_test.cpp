@@ -57,10 +57,11 @@ TEST_F(RunCommand, WritesBelowResultsOutWithoutAGivenDirectory) {
 TEST_F(RunCommand, WritesWhatTheScenarioRecords) {
   Json json = test::minimal_scenario("plane");
   json["record"] =
-      Json::parse(R"({"trajectory": false, "contacts": true, "ratio_iterations": [0, 3], "timing": true})");
+      Json::parse(R"({"trajectory": false, "contacts": true, "ratio_iterations": [0, 3], "stiffness_tensor": true,
+                      "timing": true})");
   EXPECT_EQ(hapbench({"run", write_scenario("a.json", json), "--out", out()}).status, 0);
-  EXPECT_EQ(test::names_below(out()),
-            (Names{"contacts.csv", "ratios.csv", "scenario.effective.json", "summary.json", "timing.json"}));
+  EXPECT_EQ(test::names_below(out()), (Names{"contacts.csv", "ratios.csv", "scenario.effective.json",
+                                             "stiffness_tensor.csv", "summary.json", "timing.json"}));
   // Another run into the same directory leaves no file that is not its own.
   json["record"] = Json::object();
   EXPECT_EQ(hapbench({"run", write_scenario("a.json", json), "--out", out()}).status, 0);

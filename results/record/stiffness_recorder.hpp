@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "results/io/csv_writer.hpp"
+#include "results/record/recorder.hpp"
+
+namespace hapbench {
+
+/// stiffness_tensor.csv: for each recorded row the six entries of the stiffness tensor S that the algorithm rendered
+/// with and its largest eigenvalue, in units of K; e^T S e is the stiffness along a direction e. Zeros without contact.
+class StiffnessRecorder final : public Recorder {
+ public:
+  static constexpr const char* kHeader = "step,time_s,sxx,sxy,sxz,syy,syz,szz,lambda_max";
+
+  /// Keeps rows 0, every, 2 every, … Precondition: every > 0. Throws IoError.
+  explicit StiffnessRecorder(std::filesystem::path file, std::uint64_t every = 1);
+
+  void on_step(const StepRecord& record) noexcept override;
+  void finish() override { csv_.finish(); }
+
+ private:
+  CsvWriter csv_;
+  std::uint64_t every_;
+};
+
+}  // namespace hapbench
