@@ -27,12 +27,15 @@ PenaltyRendering::PenaltyRendering(std::unique_ptr<DepthModel> depth_model, std:
 void PenaltyRendering::prepare(const Scene& scene) {
   tool_ = scene.tool;
   depth_is_given_ = scene.query->gives_depth();
+  if (!depth_is_given_) depth_model_->prepare(scene);
   if (local_average_) local_average_->prepare(scene);
   if (reduction_) reduction_->prepare(scene);
   law_->prepare(scene.query->capacity());
 }
 
 void PenaltyRendering::reset() noexcept {
+  depth_model_->reset();
+  knows_of_no_contacts_ = false;
   if (local_average_) local_average_->reset();
   if (reduction_) reduction_->reset();
   law_->reset();
@@ -41,9 +44,12 @@ void PenaltyRendering::reset() noexcept {
 void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   out = kNoForce;
   in_contact_ = false;
-  if (contacts.empty() && skips_ == Skips::taken) return;
+  if (contacts.empty() && knows_of_no_contacts_ && skips_ == Skips::taken) return;
 
   if (!depth_is_given_) depth_model_->evaluate(tool_, tool.pose, contacts);
+  knows_of_no_contacts_ = contacts.empty();
+  if (contacts.empty() && skips_ == Skips::taken) return;
+
   const auto depths = contacts.depth.begin();
   if (!contacts.empty()) {
     out.depth_max = *std::max_element(depths, depths + static_cast<std::ptrdiff_t>(contacts.size()));

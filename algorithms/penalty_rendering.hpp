@@ -39,8 +39,9 @@ class PenaltyRendering final : public ForceAlgorithm {
   Skips skips_;
   double K_;
   bool depth_is_given_ = false;
-  bool in_contact_ = false;  ///< after the last step
-  LawForce law_force_;       ///< of the last step with contacts
+  bool knows_of_no_contacts_ = false;  ///< the depth model: it was told in the last step, or some steps before
+  bool in_contact_ = false;            ///< after the last step
+  LawForce law_force_;                 ///< of the last step with contacts
 };
 
 }  // namespace hapbench
