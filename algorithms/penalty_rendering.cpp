@@ -1,5 +1,6 @@
 #include "algorithms/penalty_rendering.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
 
@@ -22,7 +23,8 @@ PenaltyRendering::PenaltyRendering(std::unique_ptr<DepthModel> depth_model, std:
       law_(std::move(law)),
       damping_and_limits_(config),
       skips_(config.skips),
-      K_(config.stiffness) {}
+      K_(config.stiffness),
+      angular_damping_(config.angular_damping) {}
 
 void PenaltyRendering::prepare(const Scene& scene) {
   tool_ = scene.tool;
@@ -65,7 +67,17 @@ void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, R
   // Not a skip but what friction is: S of no contact is zero, and all velocity would count as tangential.
   if (contacts.empty()) return;
   in_contact_ = true;
-  out.rendered = damping_and_limits_.rendered_force(law.spring, law.S, tool.velocity);
+  out.rendered = damping_and_limits_.rendered_force(law.spring, law.S, velocity_at(contacts, tool));
+}
+
+ContactVelocity PenaltyRendering::velocity_at(const ContactBuffer& contacts, const ToolState& tool) const noexcept {
+  const Mat3& S = law_force_.S;
+  ContactVelocity velocity{tool.velocity, S * tool.velocity};
+  if (angular_damping_ && tool.angular_velocity != Vec3::Zero()) {
+    velocity.mean += tool.angular_velocity.cross(mean_arm(contacts, tool.pose.position));
+    velocity.normal += law_->turning_velocity(contacts, S, tool);
+  }
+  return velocity;
 }
 
 /// A single contact has none that it could be similar to.
