@@ -61,6 +61,8 @@ def make_results(directory):
         # Only several scenarios get a directory each.
         out = directory / "thesis" / (Path(scenarios[0]).stem if len(scenarios) == 1 else "")
         hapbench("run", *scenarios, *(f"--set={text}" for text in overrides), "--quiet", "--out", out)
+    name = "corner_continuous_normal_projection"
+    hapbench("run", name, "--quiet", "--out", directory / "beyond" / name)
     hapbench("stability", "single_spring", "--quiet", "--out", directory / "stability")
     make_studies(directory / "precision")
     make_maps(directory / "stability")
