@@ -86,7 +86,7 @@ def make_studies(directory):
         "shaping": ["m=0", "m=1", "exact"],
         "reduction": ["shaped_stiffness 0.9", "exact_shaping off"],
         "spacing": ["signed_distance 0.0004", "binary 0.0002"],
-        "algorithms": ["mean", "original_averaging"],
+        "algorithms": ["mean", "original_averaging", "continuous_normal_projection", "mean + angular_damping"],
     }
     columns = ("step_s", "error_rms_m", "tensor_error_rms", "force_error_relative", "ideal_height_error_rms_m")
     for study, names in settings.items():

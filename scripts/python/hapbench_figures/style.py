@@ -37,9 +37,14 @@ ALGORITHMS = {
     "shaped_stiffness": Look("stiffness shaping (HS)", BLACK, "-", "o"),
     "tandpasta": Look("tandpasta", GREEN, (0, (7, 2, 1, 2)), "P"),
     "normal_projection": Look("normal projection", GREY, (0, (2, 1)), "X"),
-    "continuous_normal_projection": Look("continuous normal projection (ours)", PURPLE, (0, (3, 1)), "*"),
     "exact_shaping": Look("exact shaping (ours)", BLUE, (0, (4, 1, 1, 1, 1, 1)), "h"),
 }
+
+# Those that the thesis's scenes are not run with, only the studies of every algorithm.
+BEYOND = {
+    "continuous_normal_projection": Look("continuous normal proj. (ours)", GREY, (0, (3, 1)), "*"),
+}
+EVERY_ALGORITHM = {**ALGORITHMS, **BEYOND}
 
 # Numbers of the thesis are hollow diamonds everywhere.
 PUBLISHED = {
