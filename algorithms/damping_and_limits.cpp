@@ -10,6 +10,8 @@ namespace {
 constexpr ParameterInfo kParameters[] = {
     {"rendering.damping_ratio", "1", "0.7", "number >= 0 <= 1e+06", "zeta of one spring-damper of stiffness K"},
     {"rendering.damping_N_s_per_m", "N s/m", "null", "null | number >= 0 <= 1e+12", "B itself; null: from zeta"},
+    {"rendering.angular_damping", "1", "false", "boolean",
+     "v of the tool's material at each contact, v + omega x r_i, instead of the tip centre's"},
     {"rendering.mass_kg", "kg", "by scene", "number > 0 <= 1e+06",
      "M of the virtual tool; default 0.2 in planar scenes, else 0.1"},
     {"rendering.friction.mu_s_N_s_per_m", "N s/m", "by scene", "number >= 0 <= 1e+09",
@@ -27,11 +29,15 @@ const ModelInfo kDampingAndLimitsInfo = {
     .summary = "normal damping, tangential friction and the optional limits that every law shares",
     .formula =
         "f_dn = -B S v, B = 2 zeta sqrt(K M); f_dt = -(mu_s + mu_f |f_spring|)(v - S v); B scaled to "
-        "lambda_max(B S) <= B_max; |f_render| <= F_max",
-    .source = "thesis 2.5, 2.6, A.2.1, B.2, C.4.3; mu_s and mu_f, called Coulomb friction there, are viscous",
+        "lambda_max(B S) <= B_max; |f_render| <= F_max. With angular_damping S v + sum c_i <omega x r_i, u_i> u_i in "
+        "place of S v, v + omega x r_mean in place of v",
+    .source =
+        "thesis 2.5, 2.6, A.2.1, B.2, C.4.3; mu_s and mu_f, called Coulomb friction there, are viscous; "
+        "angular_damping "
+        "is ours, after the future work of 4.3 and 4.4",
     .known_failure =
-        "a tool that only turns has no velocity to damp (thesis 4.4); limits leave stiff scenes "
-        "under-damped (A.2)",
+        "without angular_damping, a tool that only turns has no velocity to damp (thesis 4.4); with it, a turn pushes "
+        "the tip sideways, since no torque is rendered; limits leave stiff scenes under-damped (A.2)",
     .parameters = kParameters,
 };
 
@@ -55,10 +61,10 @@ Mat3 DampingAndLimits::damping_matrix(const Vec3& spring, const Mat3& S) const n
   return limited_damping(S) * S + friction(spring) * (Mat3::Identity() - S);
 }
 
-Vec3 DampingAndLimits::rendered_force(const Vec3& spring, const Mat3& S, const Vec3& velocity) const noexcept {
-  const Vec3 normal_velocity = S * velocity;
-  Vec3 force = spring - limited_damping(S) * normal_velocity;
-  const auto tangential = [&]() -> Vec3 { return friction(spring) * (velocity - normal_velocity); };
+Vec3 DampingAndLimits::rendered_force(const Vec3& spring, const Mat3& S,
+                                      const ContactVelocity& velocity) const noexcept {
+  Vec3 force = spring - limited_damping(S) * velocity.normal;
+  const auto tangential = [&]() -> Vec3 { return friction(spring) * (velocity.mean - velocity.normal); };
   if (mu_s_ != 0.0 || mu_f_ != 0.0) {
     force -= tangential();
   } else if (skips_ == Skips::off) {

@@ -8,9 +8,25 @@ namespace hapbench {
 
 extern const ModelInfo kDampingAndLimitsInfo;
 
+/// The tool's velocity as its contacts feel it [m/s]: v and S v of a tool that does not turn.
+struct ContactVelocity {
+  Vec3 mean = Vec3::Zero();    ///< of the tool's material at the contacts
+  Vec3 normal = Vec3::Zero();  ///< v_n, what normal damping acts on
+};
+
 /// Damping, friction and limits, the same for every law (thesis 2.5, 2.6, A.2.1, B.2, C.4.3):
 ///
-///   f_dn = -B S v, B = 2 zeta sqrt(K M);  v_t = v - S v, f_dt = -(mu_s + mu_f |f_spring|) v_t
+///   f_dn = -B v_n, v_n = S v, B = 2 zeta sqrt(K M);  v_t = v - v_n, f_dt = -(mu_s + mu_f |f_spring|) v_t
+///
+/// With angular damping (thesis 4.4: a tool that only turns is not damped) v is the velocity of the tool's material,
+/// v_i = v + omega x r_i at the contact r_i from the tip centre, omega that of the step before:
+///
+///   v_n = sum c_i <v_i, u_i> u_i = S v + sum c_i <omega x r_i, u_i> u_i;  v_t = v + omega x r_mean - v_n
+///
+/// with r_mean weighed by c_i; original_averaging and virtual_coupling as their springs (ForceLaw::turning_velocity).
+/// Guarantee: the dampers of weighted springs take B sum c_i <v_i, u_i>^2 >= 0 of power from the tool's motion. Where
+/// it loses: of that motion the device renders the translation only. A turn drives the tip sideways, with energy of the
+/// hand's turning, which the hand does not feel.
 ///
 /// Max damping: the normal damping is scaled by B_max / lambda_max(B S) when that is below 1. Max force: f_render is
 /// scaled to norm F_max when it is longer. The friction coefficients are viscous, whatever the thesis calls them.
@@ -18,12 +34,15 @@ class DampingAndLimits {
  public:
   explicit DampingAndLimits(const RenderingConfig& config);
 
-  /// f_render [N] from f_spring [N], S and the tool's velocity [m/s]. Eigenvalues are computed only when there is
-  /// a limit, friction that is none only when skips are off.
-  Vec3 rendered_force(const Vec3& spring, const Mat3& S, const Vec3& velocity) const noexcept;
+  /// f_render [N] from f_spring [N], S and the tool's velocity. Eigenvalues are computed only when there is a limit,
+  /// friction that is none only when skips are off.
+  Vec3 rendered_force(const Vec3& spring, const Mat3& S, const ContactVelocity& velocity) const noexcept;
+  /// Of a tool that does not turn, with velocity v [m/s].
+  Vec3 rendered_force(const Vec3& spring, const Mat3& S, const Vec3& v) const noexcept {
+    return rendered_force(spring, S, ContactVelocity{v, S * v});
+  }
 
-  /// What multiplies minus the velocity in it [N s/m]: B S + (mu_s + mu_f |f_spring|)(I - S); the force limit is left
-  /// out.
+  /// What multiplies minus v in it [N s/m]: B S + (mu_s + mu_f |f_spring|)(I - S); the force limit is left out.
   Mat3 damping_matrix(const Vec3& spring, const Mat3& S) const noexcept;
 
   double damping() const { return B_; }  ///< B [N s/m]

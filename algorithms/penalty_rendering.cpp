@@ -1,5 +1,6 @@
 #include "algorithms/penalty_rendering.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
 
@@ -22,17 +23,21 @@ PenaltyRendering::PenaltyRendering(std::unique_ptr<DepthModel> depth_model, std:
       law_(std::move(law)),
       damping_and_limits_(config),
       skips_(config.skips),
-      K_(config.stiffness) {}
+      K_(config.stiffness),
+      angular_damping_(config.angular_damping) {}
 
 void PenaltyRendering::prepare(const Scene& scene) {
   tool_ = scene.tool;
   depth_is_given_ = scene.query->gives_depth();
+  if (!depth_is_given_) depth_model_->prepare(scene);
   if (local_average_) local_average_->prepare(scene);
   if (reduction_) reduction_->prepare(scene);
   law_->prepare(scene.query->capacity());
 }
 
 void PenaltyRendering::reset() noexcept {
+  depth_model_->reset();
+  knows_of_no_contacts_ = false;
   if (local_average_) local_average_->reset();
   if (reduction_) reduction_->reset();
   law_->reset();
@@ -41,9 +46,12 @@ void PenaltyRendering::reset() noexcept {
 void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   out = kNoForce;
   in_contact_ = false;
-  if (contacts.empty() && skips_ == Skips::taken) return;
+  if (contacts.empty() && knows_of_no_contacts_ && skips_ == Skips::taken) return;
 
   if (!depth_is_given_) depth_model_->evaluate(tool_, tool.pose, contacts);
+  knows_of_no_contacts_ = contacts.empty();
+  if (contacts.empty() && skips_ == Skips::taken) return;
+
   const auto depths = contacts.depth.begin();
   if (!contacts.empty()) {
     out.depth_max = *std::max_element(depths, depths + static_cast<std::ptrdiff_t>(contacts.size()));
@@ -59,7 +67,17 @@ void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, R
   // Not a skip but what friction is: S of no contact is zero, and all velocity would count as tangential.
   if (contacts.empty()) return;
   in_contact_ = true;
-  out.rendered = damping_and_limits_.rendered_force(law.spring, law.S, tool.velocity);
+  out.rendered = damping_and_limits_.rendered_force(law.spring, law.S, velocity_at(contacts, tool));
+}
+
+ContactVelocity PenaltyRendering::velocity_at(const ContactBuffer& contacts, const ToolState& tool) const noexcept {
+  const Mat3& S = law_force_.S;
+  ContactVelocity velocity{tool.velocity, S * tool.velocity};
+  if (angular_damping_ && tool.angular_velocity != Vec3::Zero()) {
+    velocity.mean += tool.angular_velocity.cross(mean_arm(contacts, tool.pose.position));
+    velocity.normal += law_->turning_velocity(contacts, S, tool);
+  }
+  return velocity;
 }
 
 /// A single contact has none that it could be similar to.

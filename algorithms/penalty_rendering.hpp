@@ -25,10 +25,12 @@ class PenaltyRendering final : public ForceAlgorithm {
   void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept override;
   SpringState spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept override;
   ForceJacobian jacobian() const noexcept override;
+  bool wants_angular_velocity() const noexcept override { return angular_damping_; }
   AlgorithmWork work() const noexcept override;
 
  private:
   void reduce(ContactBuffer& contacts) noexcept;
+  ContactVelocity velocity_at(const ContactBuffer& contacts, const ToolState& tool) const noexcept;
 
   std::unique_ptr<DepthModel> depth_model_;
   std::unique_ptr<PointStage> local_average_;  ///< may be null
@@ -38,9 +40,11 @@ class PenaltyRendering final : public ForceAlgorithm {
   Tool tool_;
   Skips skips_;
   double K_;
+  bool angular_damping_;
   bool depth_is_given_ = false;
-  bool in_contact_ = false;  ///< after the last step
-  LawForce law_force_;       ///< of the last step with contacts
+  bool knows_of_no_contacts_ = false;  ///< the depth model: it was told in the last step, or some steps before
+  bool in_contact_ = false;            ///< after the last step
+  LawForce law_force_;                 ///< of the last step with contacts
 };
 
 }  // namespace hapbench

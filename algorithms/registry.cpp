@@ -5,9 +5,11 @@
 #include <string>
 
 #include "algorithms/damping_and_limits.hpp"
+#include "algorithms/depth/continuous_normal_projection_depth.hpp"
 #include "algorithms/depth/normal_projection_depth.hpp"
 #include "algorithms/depth/shortest_distance.hpp"
 #include "algorithms/depth/surface_normal.hpp"
+#include "algorithms/laws/continuous_normal_projection.hpp"
 #include "algorithms/laws/exact_shaping.hpp"
 #include "algorithms/laws/mean.hpp"
 #include "algorithms/laws/merged_shaping.hpp"
@@ -42,6 +44,7 @@ constexpr AlgorithmEntry kAlgorithms[] = {
     {&kTandpastaInfo, penalty<make_tandpasta>},
     {&kNormalProjectionInfo, penalty<make_normal_projection>, "normal_projection"},
     {&kExactShapingInfo, penalty<make_exact_shaping>},
+    {&kContinuousNormalProjectionInfo, penalty<make_continuous_normal_projection>, "continuous_normal_projection"},
     {&kMergedShapingInfo, penalty<make_merged_shaping>, {}, false},
     {&kProxyInfo, make_proxy, {}, false},
 };
@@ -50,6 +53,7 @@ constexpr DepthModelEntry kDepthModels[] = {
     {&kShortestDistanceInfo, make_shortest_distance},
     {&kSurfaceNormalInfo, make_surface_normal},
     {&kNormalProjectionDepthInfo, make_normal_projection_depth},
+    {&kContinuousNormalProjectionDepthInfo, make_continuous_normal_projection_depth},
 };
 
 constexpr const ModelInfo* kStages[] = {&kLocalAverageInfo, &kGradientReductionInfo, &kDampingAndLimitsInfo};

@@ -30,6 +30,7 @@ struct RenderingConfig {
   double damping_ratio = 0.7;              ///< zeta
   double mass = 0.2;                       ///< M of the virtual tool [kg]
   std::optional<double> damping;           ///< B [N s/m]; off: 2 zeta sqrt(K M)
+  bool angular_damping = false;            ///< damping and friction see the velocity of the tool at each contact
   double mu_s = 0.0;                       ///< viscous friction [N s/m]
   double mu_f = 0.0;                       ///< viscous friction per newton of spring force [s/m]
   std::optional<double> max_damping;       ///< B_max [N s/m]

@@ -49,7 +49,9 @@ double exit_half_ball(const Tool& tool, const Vec3& x, const Vec3& u, double s, 
   return s + d * slope >= 0.0 ? if_positive(d) : kNever;
 }
 
-double exit_distance(const Tool& tool, const ToolPose& pose, const Vec3& point, const Vec3& u) {
+}  // namespace
+
+double exit_distance(const Tool& tool, const ToolPose& pose, const Vec3& point, const Vec3& u) noexcept {
   const Vec3 x = point - pose.position;
   const double s = x.dot(pose.axis);
   const double slope = u.dot(pose.axis);
@@ -67,9 +69,11 @@ double exit_distance(const Tool& tool, const ToolPose& pose, const Vec3& point, 
   return d > tool.length + 3.0 * tool.radius ? 0.0 : d;
 }
 
+namespace {
+
 class NormalProjectionDepth final : public DepthModel {
  public:
-  void evaluate(const Tool& tool, const ToolPose& pose, ContactBuffer& contacts) const noexcept override {
+  void evaluate(const Tool& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept override {
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       const Vec3 u = -contacts.normal(i);
       contacts.set_gradient(i, u);

@@ -23,7 +23,7 @@ constexpr double kUndefinedBelow = 1e-12;
 
 class ShortestDistance final : public DepthModel {
  public:
-  void evaluate(const Tool& tool, const ToolPose& pose, ContactBuffer& contacts) const noexcept override {
+  void evaluate(const Tool& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept override {
     shortest_distance_depths(tool, pose, contacts);
     for (std::size_t i = 0; i < contacts.size(); ++i) contacts.set_gradient(i, gradient(tool, pose, contacts, i));
     contacts.pad();

@@ -17,7 +17,7 @@ namespace {
 
 class SurfaceNormal final : public DepthModel {
  public:
-  void evaluate(const Tool& tool, const ToolPose& pose, ContactBuffer& contacts) const noexcept override {
+  void evaluate(const Tool& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept override {
     shortest_distance_depths(tool, pose, contacts);
     for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
       simd::store(-simd::load(&contacts.nx[i]), &contacts.ux[i]);

@@ -24,6 +24,16 @@ Vec3 gradient_sum(const ContactBuffer& contacts) noexcept {
   return {simd::sum(x), simd::sum(y), simd::sum(z)};
 }
 
+Vec3 mean_arm(const ContactBuffer& contacts, const Vec3& tip) noexcept {
+  Vec3 arms = Vec3::Zero();
+  double weights = 0.0;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    arms += contacts.weight[i] * (contacts.point(i) - tip);
+    weights += contacts.weight[i];
+  }
+  return weights > 0.0 ? Vec3(arms / weights) : Vec3::Zero();
+}
+
 LawForce weighted_force(const ContactBuffer& contacts, double K) noexcept {
   return {-K * weighted_depth(contacts), stiffness_tensor(contacts)};
 }
@@ -36,6 +46,16 @@ SpringState ForceLaw::spring_state(const ContactBuffer& contacts, const Vec3&, c
     state.moment += (contacts.point(i) - tip).cross(force);
   }
   return state;
+}
+
+Vec3 ForceLaw::turning_velocity(const ContactBuffer& contacts, const Mat3&, const ToolState& tool) const noexcept {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Vec3 u = contacts.gradient(i);
+    const Vec3 velocity = tool.angular_velocity.cross(contacts.point(i) - tool.pose.position);
+    sum += contacts.weight[i] * velocity.dot(u) * u;
+  }
+  return sum;
 }
 
 }  // namespace hapbench

@@ -36,6 +36,9 @@ class ForceLaw {
   /// and their moment about the tip centre `tip`. Of weighted springs: 1/2 K sum c_i d_i^2, and each force at its
   /// colliding point.
   virtual SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept;
+  /// What the tool's turning adds to the normal velocity S v of the last `evaluate`, whose contacts and S are handed in
+  /// [m/s]. Of weighted springs: sum c_i <omega x r_i, u_i> u_i, r_i from the tip centre to the colliding point. O(n).
+  virtual Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept;
   /// Inner iterations since the last reset.
   std::uint64_t iterations() const noexcept { return iterations_; }
 
@@ -49,6 +52,10 @@ void set_weights(ContactBuffer& contacts, double c) noexcept;
 
 /// Sum of the gradients u_i. O(n).
 Vec3 gradient_sum(const ContactBuffer& contacts) noexcept;
+
+/// Mean of the vectors from the tip centre `tip` to the colliding points, by the weights in the buffer [m]; zero
+/// without weights. O(n).
+Vec3 mean_arm(const ContactBuffer& contacts, const Vec3& tip) noexcept;
 
 /// f_spring and S of the weights in the buffer. O(n).
 LawForce weighted_force(const ContactBuffer& contacts, double K) noexcept;

@@ -46,10 +46,12 @@ class OriginalAveraging final : public ForceLaw {
   /// One spring, compressed by d_r. It has no point of attack of its own; the middle of the contacts is as good as any.
   SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
     if (K_ == 0.0) return {};
-    Vec3 arms = Vec3::Zero();
-    for (std::size_t i = 0; i < contacts.size(); ++i) arms += contacts.point(i) - tip;
-    const Vec3 middle = arms / static_cast<double>(contacts.size());
-    return {spring.squaredNorm() / (2.0 * K_), middle.cross(spring)};
+    return {spring.squaredNorm() / (2.0 * K_), mean_arm(contacts, tip).cross(spring)};
+  }
+
+  /// The velocity at that point of attack, along u_r.
+  Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
+    return S * tool.angular_velocity.cross(mean_arm(contacts, tool.pose.position));
   }
 };
 

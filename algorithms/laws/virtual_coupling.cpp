@@ -34,10 +34,10 @@ class VirtualCoupling final : public ForceLaw {
     set_weights(contacts, 1.0);
     const Mat3 S_sum = stiffness_tensor(contacts);
     // The formula divided by K_vc, so that K = 0 needs no case of its own. Positive definite: S_sum is a sum of u u^T.
-    const Eigen::LLT<Mat3> series(Mat3::Identity() + K_over_K_vc_ * S_sum);
-    const Mat3 S = series.solve(S_sum);
+    series_.compute(Mat3::Identity() + K_over_K_vc_ * S_sum);
+    const Mat3 S = series_.solve(S_sum);
     // S_sum and the inverse commute, so S is symmetric; averaging removes the rounding of the solve.
-    return {-K_ * series.solve(weighted_depth(contacts)), 0.5 * (S + S.transpose())};
+    return {-K_ * series_.solve(weighted_depth(contacts)), 0.5 * (S + S.transpose())};
   }
 
   /// The coupling spring is stretched by f / K_vc, which relieves every penalty spring: depth d_i + <u_i, f> / K_vc.
@@ -53,8 +53,14 @@ class VirtualCoupling final : public ForceLaw {
     return state;
   }
 
+  /// The coupling passes velocities on as it does depths.
+  Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
+    return series_.solve(ForceLaw::turning_velocity(contacts, S, tool));
+  }
+
  private:
   double K_over_K_vc_;
+  Eigen::LLT<Mat3> series_;  ///< of I + K / K_vc S_sum, of the last contacts
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "algorithms/proxy/proxy_rendering.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
@@ -35,12 +36,15 @@ namespace {
 
 /// The query looks a little further than the proxy moves, for the rounding of both.
 constexpr double kQueryMargin = 1.0 + 1e-6;
+/// Squared length of what gradients leave of a direction below which they do not span it.
+constexpr double kNoSpan = 1e-6;
 /// A pass that moves the proxy less than this part of the margin is the last one.
 constexpr double kSettled = 1e-3;
 
 }  // namespace
 
-ProxyRendering::ProxyRendering(const RenderingConfig& config) : K_(config.stiffness), damping_and_limits_(config) {}
+ProxyRendering::ProxyRendering(const RenderingConfig& config)
+    : K_(config.stiffness), angular_damping_(config.angular_damping), damping_and_limits_(config) {}
 
 void ProxyRendering::prepare(const Scene& scene) {
   tool_ = scene.tool;
@@ -72,7 +76,29 @@ void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, Ren
   out.spring = spring_ = K_ * (proxy_ - tool.pose.position);
   out.S = held_;
   // Of a tool that nothing holds all velocity would count as tangential.
-  out.rendered = contacts.empty() ? spring_ : damping_and_limits_.rendered_force(spring_, held_, tool.velocity);
+  out.rendered =
+      contacts.empty() ? spring_ : damping_and_limits_.rendered_force(spring_, held_, velocity_at(contacts, tool));
+}
+
+ContactVelocity ProxyRendering::velocity_at(const ContactBuffer& contacts, const ToolState& tool) const noexcept {
+  ContactVelocity velocity{tool.velocity, held_ * tool.velocity};
+  if (!angular_damping_ || tool.angular_velocity == Vec3::Zero()) return velocity;
+  Mat3 span = Mat3::Zero();
+  Vec3 turning = Vec3::Zero();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Vec3 u = contacts.gradient(i);
+    span += u * u.transpose();
+    turning += tool.angular_velocity.cross(contacts.point(i) - proxy_).dot(u) * u;
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(span);
+  for (int k = 0; k < 3; ++k) {
+    const double length = axes.eigenvalues()[k];
+    if (length <= kNoSpan) continue;
+    const Vec3 axis = axes.eigenvectors().col(k);
+    velocity.normal += axis.dot(turning) / length * axis;
+  }
+  velocity.mean += tool.angular_velocity.cross(mean_arm(contacts, proxy_));
+  return velocity;
 }
 
 void ProxyRendering::place(const Vec3& position) noexcept {

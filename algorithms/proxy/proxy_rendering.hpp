@@ -31,7 +31,9 @@ inline constexpr int kProxyPasses = 64;
 /// When they contradict (a slot narrower than the tool) the proxy takes the least-squares compromise.
 ///
 /// f_spring = K (x - p), S = the projector onto the span of the gradients that hold the proxy back, so lambda_max(S) is
-/// 1 in contact. The rendered contacts are those, with depth lambda_i [m] and weight 1: f_spring = -K sum lambda_i u_i.
+/// 1 in contact. With angular damping v_n is S v and the shortest velocity in that span whose components along the u_i
+/// are those of the turning tool, <omega x r_i, u_i>. The rendered contacts are those, with depth lambda_i [m] and
+/// weight 1: f_spring = -K sum lambda_i u_i.
 class ProxyRendering final : public ForceAlgorithm {
  public:
   explicit ProxyRendering(const RenderingConfig& config);
@@ -41,6 +43,7 @@ class ProxyRendering final : public ForceAlgorithm {
   void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept override;
   SpringState spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept override;
   ForceJacobian jacobian() const noexcept override;
+  bool wants_angular_velocity() const noexcept override { return angular_damping_; }
   AlgorithmWork work() const noexcept override;
 
   const Vec3& proxy() const { return proxy_; }  ///< tip centre of the proxy [m]
@@ -50,8 +53,10 @@ class ProxyRendering final : public ForceAlgorithm {
   /// False when the passes did not suffice.
   bool follow(const ToolPose& tool) noexcept;
   void hand_over_holding(ContactBuffer& contacts) noexcept;
+  ContactVelocity velocity_at(const ContactBuffer& contacts, const ToolState& tool) const noexcept;
 
   double K_;
+  bool angular_damping_;
   DampingAndLimits damping_and_limits_;
   Tool tool_;
   bool depth_is_given_ = false;

@@ -18,11 +18,13 @@ namespace hapbench {
 /// Works of forces on the tool over one step are force times dt times the mean of the velocities before and after it,
 /// which is exactly what they add to its kinetic energy.
 struct EnergyBalance {
-  double kinetic = 0.0;   ///< of the virtual mass, now
-  double stored = 0.0;    ///< elastic energy of the penalty springs, now
-  double input = 0.0;     ///< work of f_in on the tool
-  double spring = 0.0;    ///< work of f_spring on the tool
-  double damping = 0.0;   ///< work of damping, friction and the force limit: f_render - f_spring
+  double kinetic = 0.0;  ///< of the virtual mass, now
+  double stored = 0.0;   ///< elastic energy of the penalty springs, now
+  double input = 0.0;    ///< work of f_in on the tool
+  double spring = 0.0;   ///< work of f_spring on the tool
+  /// Work of damping, friction and the force limit: f_render - f_spring. Of angular damping too, which takes energy
+  /// from the tool's turning, that nobody keeps account of, and may put some of it into the tip's motion.
+  double damping = 0.0;
   double rotation = 0.0;  ///< what the tool's turning put into the springs: a torque that the device cannot render
   /// Energy out of nothing: what the springs store beyond what translation and rotation put in (trapezoidal rule). Zero
   /// for linear springs that stay in contact; contacts that appear, vanish or are weighed anew make it or lose it.

@@ -78,6 +78,9 @@ CodecPtr<RenderingFields> rendering_codec() {
   rendering->optional(
       "damping_N_s_per_m", [](auto& r) -> auto& { return r.config.damping; }, nullable(number({0.0, 1e12, "N s/m"})),
       "B instead of the one from zeta; null: from zeta");
+  rendering->optional(
+      "angular_damping", [](auto& r) -> bool& { return r.config.angular_damping; }, boolean(),
+      "damping and friction see the velocity of the tool's material at each contact, not only the tip centre's");
   rendering->deferred(
       "mass_kg", [](auto& r) -> auto& { return r.mass; }, number({0.0, 1e6, "kg", true}),
       "M of the virtual tool; default 0.2 in planar scenes, else 0.1");

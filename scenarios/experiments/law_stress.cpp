@@ -71,7 +71,9 @@ double law_bound(const RenderingConfig& config, std::size_t contacts) noexcept {
   // an update c_i <- c_i / rho_i with rho_i = u_i^T S u_i >= 1 / (u_i^T S^+ u_i) for unit u_i (Cauchy and Schwarz), sum
   // c_i / rho_i <= sum c_i u_i^T S^+ u_i = tr(S^+ S) <= 3.
   if (law == "exact_shaping" || law == "merged_shaping") return std::min(3.0, n);
-  if (law == "shaped_stiffness" || law == "normal_projection") return config.iterations > 0 ? std::min(3.0, n) : n;
+  if (law == "shaped_stiffness" || law == "normal_projection" || law == "continuous_normal_projection") {
+    return config.iterations > 0 ? std::min(3.0, n) : n;
+  }
   // c = beta / sigma keeps the energy: sum c d_i^2 = sum d_i^2 <= n d^2, and sum c <= n / sigma, since beta <= 1.
   // Cauchy and Schwarz: sum c d_i <= n d / sqrt(sigma), where sigma > 1e-12, or the force is zero.
   if (law == "tandpasta") return 1e6 * n;

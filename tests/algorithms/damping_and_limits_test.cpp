@@ -62,6 +62,18 @@ TEST(Damping, EqualsTheSumOverContactsOfTheirNormalVelocities) {
   EXPECT_LE((force + 96 * sum).norm(), 96 * 40 * 8 * kEps * kVelocity.norm());
 }
 
+TEST(Damping, ActsOnTheNormalVelocityOfTheContactsWhereItIsGiven) {
+  RenderingConfig config = dyadic();
+  config.mu_s = 3.0;
+  // v_t = (1, 2, 3) - (0.5, 0, 1).
+  const ContactVelocity velocity{{1.0, 2.0, 3.0}, {0.5, 0.0, 1.0}};
+  const Vec3 force = DampingAndLimits(config).rendered_force(kSpring, kS, velocity);
+  EXPECT_EQ(force, Vec3(kSpring - 96 * velocity.normal - 3.0 * Vec3(0.5, 2.0, 2.0)));
+  config.max_damping = 24.0;
+  EXPECT_EQ(DampingAndLimits(config).rendered_force(kSpring, kS, velocity),
+            Vec3(kSpring - 24 * velocity.normal - 3.0 * Vec3(0.5, 2.0, 2.0)));
+}
+
 TEST(Friction, IsViscousOnTheTangentialVelocityPlusAShareOfTheSpringForce) {
   RenderingConfig config = dyadic();
   config.damping = 0.0;

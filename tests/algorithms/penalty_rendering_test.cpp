@@ -103,6 +103,32 @@ TEST(PenaltyRendering, RendersDampingOfTheLawsTensor) {
   EXPECT_LE((force.rendered - (force.spring - Vec3(20.0, 10.0, 0.0))).norm(), 1e-13);
 }
 
+TEST(PenaltyRendering, WantsTheAngularVelocityForAngularDampingOnly) {
+  RenderingConfig config;
+  EXPECT_FALSE(make_algorithm(config)->wants_angular_velocity());
+  config.angular_damping = true;
+  EXPECT_TRUE(make_algorithm(config)->wants_angular_velocity());
+}
+
+TEST(PenaltyRendering, AngularDampingIsThatOfEveryContactAndFrictionThatOfTheirMean) {
+  // Turned about y at 2 rad/s: omega x (x, y, z) = (2 z, 0, -2 x), u = -z, c = 1 / n, and the points lie z = 0.3 mm
+  // above the tip. So v_n = -2 x_mean along z, and v_t = 2 z along x.
+  RenderingConfig config;
+  config.algorithm = "mean";
+  config.damping = 10.0;
+  config.angular_damping = true;
+  config.mu_s = 5.0;
+  test::Probe probe(pressed_plane(), config);
+  const ToolPose pose = pressed_plane().pose;
+  const RenderedForce force = probe.force_at(pose, Vec3::Zero(), {0.0, 2.0, 0.0});
+  double mean_x = 0.0;
+  for (std::size_t i = 0; i < probe.contacts().size(); ++i) mean_x += probe.contacts().x[i] - pose.position.x();
+  mean_x /= static_cast<double>(probe.contacts().size());
+  const Vec3 expected(-5.0 * 2.0 * 0.0003, 0.0, 10.0 * 2.0 * mean_x);
+  EXPECT_LE((force.rendered - force.spring - expected).norm(), 1e-14);
+  EXPECT_NE(mean_x, 0.0);
+}
+
 TEST(PenaltyRendering, CountsIterationsAndDroppedPointsUntilReset) {
   RenderingConfig config;
   config.iterations = 4;

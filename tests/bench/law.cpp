@@ -41,7 +41,7 @@ std::function<Vec3(const Dense&)> reference(std::string_view algorithm) {
   if (algorithm == "summation") return [=](const Dense& c) { return weighted(c, ones); };
   if (algorithm == "mean") return [=](const Dense& c) -> Vec3 { return weighted(c, ones) / double(c.n()); };
   if (algorithm == "tandpasta") return [](const Dense& c) { return weighted(c, test::tandpasta_weights); };
-  if (algorithm == "shaped_stiffness" || algorithm == "normal_projection") {
+  if (algorithm == "shaped_stiffness" || algorithm.ends_with("normal_projection")) {
     return [=](const Dense& c) { return weighted(c, shaped); };
   }
   return {};

@@ -65,6 +65,8 @@ def make_results(directory):
         # Only several scenarios get a directory each.
         out = directory / "thesis" / (Path(scenarios[0]).stem if len(scenarios) == 1 else "")
         hapbench("run", *scenarios, *(f"--set={text}" for text in overrides), "--quiet", "--out", out)
+    name = "corner_continuous_normal_projection"
+    hapbench("run", name, "--quiet", "--out", directory / "beyond" / name)
     hapbench("stability", "single_spring", "--quiet", "--out", directory / "stability")
     for scene, scenario in (("peg", "tilt_sweep_shaped_stiffness"), ("wedge", "wedge_stiffness")):
         out = directory / "stiffness" / scene
@@ -91,7 +93,7 @@ def make_studies(directory):
         "shaping": ["m=0", "m=1", "exact"],
         "reduction": ["shaped_stiffness 0.9", "exact_shaping off"],
         "spacing": ["signed_distance 0.0004", "binary 0.0002"],
-        "algorithms": ["mean", "original_averaging", "one_without_a_look"],
+        "algorithms": ["mean", "original_averaging", "one_without_a_look", "mean + angular_damping"],
     }
     columns = ("step_s", "error_rms_m", "tensor_error_rms", "force_error_relative", "ideal_height_error_rms_m")
     for study, names in settings.items():

@@ -38,6 +38,7 @@ Answer single_spring_answer() {
            {"shaped_stiffness", d},
            {"tandpasta", d},
            {"normal_projection", d},
+           {"continuous_normal_projection", d},
            {"exact_shaping", d / (1 + kEps)}}};
 }
 
@@ -56,6 +57,7 @@ Answer parallel_springs_answer() {
            {"shaped_stiffness", d},
            {"tandpasta", 5 * d},
            {"normal_projection", d},
+           {"continuous_normal_projection", d},
            {"exact_shaping", d * 5 / (5 + kEps)}}};
 }
 
@@ -75,6 +77,7 @@ Answer corner_springs_answer() {
            {"shaped_stiffness", d},
            {"tandpasta", d},
            {"normal_projection", d},
+           {"continuous_normal_projection", d},
            {"exact_shaping", d / (1 + kEps)}}};
 }
 
@@ -94,6 +97,7 @@ Answer opposite_springs_answer() {
            {"shaped_stiffness", d},
            {"tandpasta", 0.0},
            {"normal_projection", d},
+           {"continuous_normal_projection", d},
            {"exact_shaping", d * 2 / (2 + kEps)}}};
 }
 
@@ -115,6 +119,7 @@ Answer wedge_springs_answer() {
            {"shaped_stiffness", d * 0.4},
            {"tandpasta", d / 2},
            {"normal_projection", d * 0.4},
+           {"continuous_normal_projection", d * 0.4},
            {"exact_shaping", d * 0.5 / (1.25 + kEps)}}};
 }
 

@@ -55,10 +55,10 @@ Probe::Probe(const Setting& setting, const RenderingConfig& config)
   algorithm_->reset();
 }
 
-RenderedForce Probe::force_at(const ToolPose& pose, const Vec3& velocity) {
+RenderedForce Probe::force_at(const ToolPose& pose, const Vec3& velocity, const Vec3& angular_velocity) {
   query_->contacts_at(pose, contacts_);
   RenderedForce force;
-  algorithm_->compute({pose, velocity}, contacts_, force);
+  algorithm_->compute({pose, velocity, angular_velocity}, contacts_, force);
   return force;
 }
 

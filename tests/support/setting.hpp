@@ -35,7 +35,8 @@ class Probe {
  public:
   Probe(const Setting& setting, const RenderingConfig& config);
 
-  RenderedForce force_at(const ToolPose& pose, const Vec3& velocity = Vec3::Zero());
+  RenderedForce force_at(const ToolPose& pose, const Vec3& velocity = Vec3::Zero(),
+                         const Vec3& angular_velocity = Vec3::Zero());
   /// The contacts of the last force, as the algorithm left them.
   const ContactBuffer& contacts() const { return contacts_; }
   ForceAlgorithm& algorithm() { return *algorithm_; }

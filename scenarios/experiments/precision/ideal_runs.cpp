@@ -4,6 +4,7 @@
 
 #include "algorithms/registry.hpp"
 #include "results/metrics/ideal_trajectory.hpp"
+#include "results/metrics/metrics.hpp"
 #include "results/outcome_names.hpp"
 #include "scenarios/experiments/precision/measure.hpp"
 #include "scenarios/experiments/precision/study.hpp"
@@ -14,22 +15,30 @@ namespace {
 
 constexpr double kSpacings[] = {0.0004, 0.0002, 0.0001, 0.00005, 0.000025};
 
-const std::vector<std::string> kIdealColumns = {"ideal_height_error_rms_m", "ideal_height_error_max_m",
-                                                "ideal_lateral_error_rms_m", "interpenetration_max_m"};
+/// The algorithms whose angular damping is compared with that of the tip's velocity alone: the two that the thesis
+/// compares.
+constexpr const char* kAngularlyDamped[] = {"original_averaging", "shaped_stiffness"};
 
-/// Errors of a run against the ideal trajectory, over the rows in which the hand is gentle, if it ever is.
+const std::vector<std::string> kIdealColumns = {"ideal_height_error_rms_m", "ideal_height_error_max_m",
+                                                "ideal_lateral_error_rms_m", "interpenetration_max_m",
+                                                "force_step_max_N"};
+
+/// Errors of a run against the ideal trajectory, over the rows in which the hand is gentle, if it ever is; and the
+/// largest change of the force in a step of all rows.
 PrecisionRow ideal_row(std::string setting, const Scenario& scenario, std::shared_ptr<const PointShell> shell,
                        int repetitions) {
   const BlockWithHole& block = std::get<BlockEnvironment>(scenario.environment).block;
   IdealTrajectoryObserver ideal(block, {*scenario.tool.diameter / 2.0, *scenario.tool.length, Tip::flat});
-  const SampledRun run = sampled_run(scenario, shell, 1024, {&ideal});
+  MetricsObserver motion(scenario.time.step);
+  const SampledRun run = sampled_run(scenario, shell, 1024, {&ideal, &motion});
   const IdealTrajectoryMetrics metrics = ideal.metrics();
   const TrajectoryErrors& errors = metrics.gentle.rows > 0 ? metrics.gentle : metrics.firm;
   const double highest = std::max(-errors.height_min, errors.height_max);
-  return {std::move(setting),
-          std::string(outcome_name(run.result.outcome)),
-          {errors.height_rms, highest, errors.lateral_rms, errors.interpenetration_max},
-          seconds_per_step(scenario, std::move(shell), repetitions)};
+  return {
+      std::move(setting),
+      std::string(outcome_name(run.result.outcome)),
+      {errors.height_rms, highest, errors.lateral_rms, errors.interpenetration_max, motion.metrics().force_step_max},
+      seconds_per_step(scenario, std::move(shell), repetitions)};
 }
 
 }  // namespace
@@ -63,13 +72,18 @@ PrecisionResult study_algorithms(const Scenario& given, const PrecisionOptions& 
   PrecisionResult result;
   result.columns = kIdealColumns;
   result.timed = "step";
-  for (const AlgorithmEntry& algorithm : algorithms()) {
+  const std::size_t all = algorithms().size() + std::size(kAngularlyDamped);
+  const auto add_row = [&](const std::string& algorithm, bool angular_damping) {
     Scenario run = scenario;
-    run.rendering.config.algorithm = algorithm.info->name;
+    run.rendering.config.algorithm = algorithm;
+    run.rendering.config.angular_damping = angular_damping;
     fill_defaults(run);  // puts the stages the algorithm fixes in place
-    result.rows.push_back(ideal_row(run.rendering.config.algorithm, run, shell, options.repetitions));
-    options.progress(result.rows.size(), algorithms().size());
-  }
+    result.rows.push_back(
+        ideal_row(algorithm + (angular_damping ? " + angular_damping" : ""), run, shell, options.repetitions));
+    options.progress(result.rows.size(), all);
+  };
+  for (const AlgorithmEntry& algorithm : algorithms()) add_row(algorithm.info->name, false);
+  for (const char* algorithm : kAngularlyDamped) add_row(algorithm, true);
   return result;
 }
 

@@ -4,15 +4,18 @@ import numpy as np
 from . import style
 
 STROKES = (
-    ("corner_normal_projection", style.VERMILION, "-", "normal projection"),
-    ("corner_shaped_stiffness", style.BLACK, (0, (4, 1.2)), "shortest distance"),
+    ("thesis/corner_normal_projection", style.VERMILION, "-", "normal projection"),
+    ("thesis/corner_shaped_stiffness", style.BLACK, (0, (4, 1.2)), "shortest distance"),
 )
+# Not of the thesis, so the figure is drawn without it too.
+CONTINUOUS = ("beyond/corner_continuous_normal_projection", style.BLUE, (0, (1, 1)), "continuous (ours)")
 
 
 def corner(results):
     figure, axes = style.panels(1, 3, 2.5)
-    for name, colour, line, label in STROKES:
-        rows = results.table(f"thesis/{name}/trajectory.csv")
+    ours = results.has(f"{CONTINUOUS[0]}/trajectory.csv")
+    for directory, colour, line, label in (*STROKES, CONTINUOUS) if ours else STROKES:
+        rows = results.table(f"{directory}/trajectory.csv")
         x = 1e3 * rows["px_m"]
         force = np.stack([rows[f"f{axis}_N"] for axis in "xyz"], 1)
         change = np.linalg.norm(np.diff(force, axis=0), axis=1)
@@ -29,6 +32,7 @@ def corner(results):
     return figure, (
         "An upright drill is moved steadily against the wall of the hole, near its mouth. With normal projection "
         "(solid) the depth of a point near the rim is at once as large as the way along its normal out of the "
-        "drill, and the force jumps in a single step; with the shortest distance (dashed) it grows from zero. (a) "
-        "Force, (b) greatest depth, (c) change from step to step. Ours."
+        "drill, and the force jumps in a single step; with the shortest distance (dashed) it grows from zero"
+        + (", and so it does with continuous normal projection (dotted)" if ours else "")
+        + ". (a) Force, (b) greatest depth, (c) change from step to step. Ours."
     )

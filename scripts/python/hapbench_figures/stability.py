@@ -117,17 +117,18 @@ def stability_map(name):
         x_name, y_name = list(rows[0])[1:3]
         boundary_file = found[0].replace("stability_map_", "stability_boundary_")
         boundary = results.records(boundary_file) if results.has(boundary_file) else []
-        figure, axes = style.panels(2, 4, 3.7, sharex=True, sharey=True)
+        present = [a for a in style.EVERY_ALGORITHM if any(row["algorithm"] == a for row in rows)]
+        lines = max(2, -(-len(present) // 4))
+        figure, axes = style.panels(lines, 4, 1.85 * lines, sharex=True, sharey=True)
         for ax in axes.flat:
             ax.set_visible(False)
-        present = [a for a in style.ALGORITHMS if any(row["algorithm"] == a for row in rows)]
         for ax, algorithm in zip(axes.flat, present):
             ax.set_visible(True)
             draw_map(ax, [row for row in rows if row["algorithm"] == algorithm], x_name, y_name)
             own = [row for row in boundary if row["algorithm"] == algorithm]
             if own:
                 draw_boundary(ax, own, x_name, y_name)
-            ax.set_title(style.ALGORITHMS[algorithm].label)
+            ax.set_title(style.EVERY_ALGORITHM[algorithm].label)
         figure.supxlabel(axis_label(x_name), fontsize=8)
         figure.supylabel(axis_label(y_name), fontsize=8)
         handles = [style.plt.Rectangle((0, 0), 1, 1, color=c) for c in CLASS_COLOURS]

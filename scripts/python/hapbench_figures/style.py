@@ -40,10 +40,18 @@ ALGORITHMS = {
     "exact_shaping": Look("exact shaping (ours)", BLUE, (0, (4, 1, 1, 1, 1, 1)), "h"),
 }
 
+# Those that the thesis's scenes are not run with, only the studies of every algorithm.
+BEYOND = {
+    "continuous_normal_projection": Look("continuous normal proj. (ours)", GREY, (0, (3, 1)), "*"),
+    "merged_shaping": Look("merged shaping (ours)", PURPLE, (0, (4, 1, 1, 1)), "p"),
+    "proxy": Look("proxy (ours)", VERMILION, "-", ">"),
+}
+EVERY_ALGORITHM = {**ALGORITHMS, **BEYOND}
+
 
 def look(algorithm):
     """Of any algorithm; those that have none of their own share one."""
-    return ALGORITHMS.get(algorithm) or Look(algorithm.replace("_", " "), GREY, "-", "*")
+    return EVERY_ALGORITHM.get(algorithm) or Look(algorithm.replace("_", " "), GREY, "-", "*")
 
 
 # Numbers of the thesis are hollow diamonds everywhere.

@@ -174,6 +174,7 @@ TEST_P(NoAllocation, InAStepOrAReset) {
   config.reduction = GetParam().stages->reduction;
   config.mu_s = 5.0;
   config.mu_f = 10.0;
+  config.angular_damping = true;
   config.max_damping = 100.0;
   config.max_force = 30.0;
   ContactCounter observer;

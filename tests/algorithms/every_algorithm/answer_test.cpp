@@ -1,6 +1,9 @@
 // What every algorithm must answer where the answer is known.
 #include "tests/algorithms/every_algorithm/algorithm_on_scene.hpp"
 
+#include <Eigen/Geometry>
+#include <algorithm>
+
 #include "sim/contact/stiffness_tensor.hpp"
 
 namespace hapbench {
@@ -83,6 +86,43 @@ TEST_P(Answer, DampingAndFrictionNeverDriveTheTool) {
     const Vec3 velocity = random.direction();
     const Vec3 drag = braked.force_at(setting.pose, velocity).rendered - at_rest.rendered;
     EXPECT_LE(drag.dot(velocity), 1e-12 * (1.0 + drag.norm() + at_rest.rendered.norm()));
+  }
+}
+
+TEST_P(Answer, ATurnIsFeltWithAngularDampingOnly) {
+  const Vec3 velocity(0.02, -0.03, 0.01), turn(0.5, -1.0, 2.0);
+  config.mu_s = 5.0;
+  config.mu_f = 10.0;
+  const Vec3 without = test::Probe(setting, config).force_at(setting.pose, velocity).rendered;
+  EXPECT_EQ(test::Probe(setting, config).force_at(setting.pose, velocity, turn).rendered, without);
+  config.angular_damping = true;
+  EXPECT_EQ(test::Probe(setting, config).force_at(setting.pose, velocity).rendered, without);
+  test::Probe probe(setting, config);
+  const Vec3 with = probe.force_at(setting.pose, velocity, turn).rendered;
+  // Springs are attached to the tip, which does not move when the tool turns; and tandpasta may leave no weight at all.
+  const auto& c = probe.contacts().weight;
+  const bool feels_nothing =
+      setting.springs || std::all_of(c.begin(), c.end(), [](double weight) { return weight == 0; });
+  EXPECT_EQ(with == without, feels_nothing);
+}
+
+/// One contact, off the tip.
+TEST(AngularDamping, InOneContactATurnIsTheVelocityOfTheToolThere) {
+  const Vec3 arm(0.0003, 0.0002, 0.004), turn(0.5, -1.0, 2.0), velocity(0.02, -0.03, 0.01);
+  test::Setting setting;
+  setting.points = {{arm, Vec3(1.0, 2.0, -2.0) / 3.0}};
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    SCOPED_TRACE(algorithm.info->name);
+    RenderingConfig config;
+    config.algorithm = algorithm.info->name;
+    config.angular_damping = true;
+    config.mu_s = 5.0;
+    config.mu_f = 10.0;
+    test::Probe turned(setting, config), moved(setting, config);
+    const Vec3 force = turned.force_at({}, velocity, turn).rendered;
+    const Vec3 expected = moved.force_at({}, velocity + turn.cross(arm)).rendered;
+    EXPECT_LE((force - expected).norm(), test::kAnyLawsRounding * expected.norm());
+    EXPECT_GT((force - moved.force_at({}, velocity).rendered).norm(), 0.001 * expected.norm());
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "algorithms/laws/continuous_normal_projection.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/contact_sets.hpp"
@@ -9,7 +10,13 @@
 namespace hapbench {
 namespace {
 
-TEST(NormalProjectionLaw, IsStiffnessShapingWithTheSameIterations) {
+/// The laws of both kinds of normal projection, which differ in their depth models only.
+class NormalProjectionLaw : public testing::TestWithParam<decltype(&make_normal_projection)> {};
+INSTANTIATE_TEST_SUITE_P(Both, NormalProjectionLaw,
+                         testing::Values(make_normal_projection, make_continuous_normal_projection),
+                         [](const auto& law) { return law.index == 0 ? "plain" : "continuous"; });
+
+TEST_P(NormalProjectionLaw, IsStiffnessShapingWithTheSameIterations) {
   Random random(1);
   for (const int m : {0, 3, 10}) {
     RenderingConfig config;
@@ -17,7 +24,7 @@ TEST(NormalProjectionLaw, IsStiffnessShapingWithTheSameIterations) {
     std::vector<Vec3> gradients(30);
     for (Vec3& u : gradients) u = random.direction();
     ContactBuffer a = test::contacts_of(gradients, test::random_depths(random, 30)), b = a;
-    const LawForce projected = make_normal_projection(config)->evaluate(a);
+    const LawForce projected = GetParam()(config)->evaluate(a);
     const LawForce shaped = make_shaped_stiffness(config)->evaluate(b);
     EXPECT_EQ(projected.spring, shaped.spring);
     EXPECT_EQ(projected.S, shaped.S);

@@ -156,6 +156,32 @@ TEST(ProxyRendering, StoresTheEnergyOfOneSpring) {
   EXPECT_EQ(jacobian.stiffness, Mat3(kK * force.S));
 }
 
+TEST(ProxyRendering, DampsTheTurnOfTheEdgeThatTouches) {
+  Random random(7);
+  const test::Setting setting = tilted_on_plane(0.6, 5e-5, random);
+  RenderingConfig config = proxy_config();
+  config.angular_damping = true;
+  const PointShell shell(setting.points, 0.0);
+  NeighbourListQuery query(shell, setting.tool);
+  ProxyRendering proxy(config);
+  proxy.prepare({setting.tool, &query, &shell});
+  proxy.reset();
+  EXPECT_TRUE(proxy.wants_angular_velocity());
+  ContactBuffer contacts(query.capacity());
+  RenderedForce force;
+  ToolState tool{above(setting), Vec3::Zero()};
+  proxy.compute(tool, contacts, force);
+  tool.pose = setting.pose;
+  tool.angular_velocity = {0.3, -0.4, 0.1};
+  query.contacts_at(tool.pose, contacts);
+  proxy.compute(tool, contacts, force);
+  ASSERT_EQ(contacts.size(), 1u);
+  // One patch holds the edge: its point moves with omega x r, of which the part along the normal is damped.
+  const double along = tool.angular_velocity.cross(contacts.point(0) - proxy.proxy()).z();
+  const double B = 2.0 * config.damping_ratio * std::sqrt(kK * config.mass);
+  EXPECT_LE((force.rendered - force.spring - Vec3(0, 0, -B * along)).norm(), 1e-12);
+}
+
 TEST(ProxyRendering, EndsForAPoseThatIsNone) {
   Random random(6);
   const test::Setting setting = tilted_on_plane(0.5, 5e-5, random);

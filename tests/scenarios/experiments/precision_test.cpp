@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "algorithms/registry.hpp"
@@ -122,10 +123,16 @@ TEST(PrecisionSpacing, RefusesAnotherEnvironment) {
   EXPECT_THROW(study_algorithms(bundled("poke_plane"), quick()), InputError);
 }
 
-TEST(PrecisionAlgorithms, HaveARowEach) {
+TEST(PrecisionAlgorithms, HaveARowEachAndTheThesissTwoOneWithAngularDamping) {
   const PrecisionResult result =
       study_algorithms(bundled("task2_rotate_signed_distance", {"time.duration_s=0.5"}), quick());
-  EXPECT_EQ(result.rows.size(), algorithms().size());
+  ASSERT_EQ(result.rows.size(), algorithms().size() + 2);
+  EXPECT_EQ(result.rows.back().setting, "shaped_stiffness + angular_damping");
+  // The drill leans towards the wall and back; what is damped at the wall instead of the tip differs.
+  const auto undamped = std::find_if(result.rows.begin(), result.rows.end(),
+                                     [](const PrecisionRow& row) { return row.setting == "shaped_stiffness"; });
+  ASSERT_NE(undamped, result.rows.end());
+  EXPECT_NE(undamped->values, result.rows.back().values);
   for (const PrecisionRow& row : result.rows) EXPECT_GT(row.seconds, 0.0) << row.setting;
 }
 
