@@ -32,7 +32,7 @@ TEST(Usage, ErrorsExitWith2AndSayWhatIsWrongOnStandardError) {
                                                        {"run", "single_spring", "--outt", "x"},
                                                        {"run", "single_spring", "--out"},
                                                        {"run", "single_spring", "--set"},
-                                                       {"compare", "single_spring"},
+                                                       {"compare", "single_spring", "--algorithms"},
                                                        {"compare", "single_spring", "mean"},
                                                        {"list", "more"},
                                                        {"describe", "a", "b"},
