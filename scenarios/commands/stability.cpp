@@ -78,11 +78,16 @@ std::string disagreement_text(const std::vector<StabilityLimit>& limits) {
   return "";
 }
 
+/// "none" where nothing is unstable.
+std::string limit_text(double limit) {
+  return std::isinf(limit) ? "none" : significant(limit, 6);
+}
+
 std::string limits_text(const LoadedScenario& loaded, const std::vector<StabilityLimit>& limits) {
   Table table({{"limit", false}, {"analytic"}, {"eigenvalues"}, {"simulation"}, {"unit", false}, {"B there N s/m"}});
   for (const StabilityLimit& limit : limits) {
-    table.add({limit.name, significant(limit.analytic.value_or(std::nan("")), 6), significant(limit.eigenvalue, 6),
-               significant(limit.simulation, 6), limit.unit, significant(limit.damping_at_limit, 5)});
+    table.add({limit.name, limit_text(limit.analytic.value_or(std::nan(""))), limit_text(limit.eigenvalue),
+               limit_text(limit.simulation), limit.unit, significant(limit.damping_at_limit, 5)});
   }
   const RenderingFields& rendering = loaded.scenario.rendering;
   return fmt::format("{}: {}, {}, M = {} kg, dt = {} s, zeta = {}, lambda_max(S) = {}\n\n{}", loaded.scenario.name,

@@ -1,6 +1,7 @@
 #include "scenarios/experiments/spring_damper.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>

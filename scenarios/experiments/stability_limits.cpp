@@ -27,6 +27,9 @@ constexpr double kGrowth = 1e6;
 constexpr std::int64_t kProbeSteps = 20'000;
 constexpr double kLateGrowth = 1.01;
 constexpr int kLocusPoints = 400;
+/// Time steps beyond this [s] are taken for "never unstable": of the velocities that a step as long multiplies,
+/// rounding alone would be motion.
+constexpr double kLongestStep = 1e6;
 
 /// The spring-damper of one case at one value of what is raised.
 SpringDamper at_value(StabilityCase which, double value, const Scenario& scenario, double lambda) {
@@ -210,14 +213,15 @@ std::vector<StabilityLimit> stability_limits(const Scenario& scenario) {
   };
   for (StabilityLimit& limit : limits) {
     const auto system = [&](double value) { return at_value(limit.which, value, scenario, lambda); };
-    const double start = limit.which == StabilityCase::time_step ? 1e-9 : 1.0;
+    const bool of_time = limit.which == StabilityCase::time_step;
+    const double start = of_time ? 1e-9 : 1.0, largest = of_time ? kLongestStep : kLargestProbe;
     limit.lambda = lambda;
     limit.analytic = analytic_limit(limit.which, scenario, lambda);
-    limit.eigenvalue =
-        largest_stable(start, kEigenvaluePrecision, [&](double value) { return system(value).is_stable(); });
+    limit.eigenvalue = largest_stable(
+        start, kEigenvaluePrecision, [&](double value) { return system(value).is_stable(); }, largest);
     limit.damping_at_limit = system(limit.limit()).B;
-    limit.simulation = largest_stable(
-        start, kPrecision, [&](double value) { return simulation_stays_bounded(scenario, system(value), stiffest); });
+    const auto run = [&](double value) { return simulation_stays_bounded(scenario, system(value), stiffest); };
+    limit.simulation = largest_stable(start, kPrecision, run, largest);
   }
   return limits;
 }

@@ -25,7 +25,7 @@ enum class StabilityCase {
 inline constexpr StabilityCase kStabilityCases[] = {StabilityCase::stiffness_undamped, StabilityCase::damping_alone,
                                                     StabilityCase::stiffness_damped, StabilityCase::time_step};
 
-/// The largest stable value of one case, found three ways.
+/// The largest stable value of one case, found three ways; infinite when nothing up to 1e15, or 1e6 s, is unstable.
 struct StabilityLimit {
   StabilityCase which;
   std::string name;

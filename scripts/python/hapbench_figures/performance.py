@@ -15,7 +15,13 @@ STUDIES = (
 )
 VARYING_STEP = ("integrators", "time_step")
 LARGEST_ERROR_MM = 10  # the block is 15 mm wide: beyond, the drill has left it
-LOOKS = ((style.BLUE, "o", "-"), (style.ORANGE, "s", (0, (4, 1.2))), (style.BLACK, "^", ":"))
+LOOKS = (
+    (style.BLUE, "o", "-"),
+    (style.ORANGE, "s", (0, (4, 1.2))),
+    (style.BLACK, "^", ":"),
+    (style.GREEN, "v", (0, (5, 1.5))),
+    (style.PURPLE, "D", (0, (3, 1, 1, 1))),
+)
 
 
 def series(rows):
@@ -64,7 +70,7 @@ def draw_curves(ax, rows, study, column, scale, time_column):
         ax.plot(time[fine], error[fine], color=colour, marker=marker, ls=line, label=name.replace("_", " "))
         name_ends(ax, study, [row for row, keep in zip(own, fine) if keep], time[fine], error[fine])
     if len(split) > 1:
-        ax.legend(loc="upper right", handlelength=2.4)
+        ax.legend(loc="upper right", handlelength=2.4, fontsize=6 if len(split) > 3 else None, labelspacing=0.3)
 
 
 def draw_algorithms(ax, rows, column, scale, time_column):

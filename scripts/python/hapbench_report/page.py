@@ -53,6 +53,7 @@ def rerun_section():
                 "hapbench=build/release/bin/hapbench\n"
                 "$hapbench run scenarios/thesis/*.json --out results/out/reproduce/thesis       # the thesis's scenes\n"
                 "$hapbench run scenarios/limits/*.json --out results/out/reproduce/limits       # closed forms of A.3\n"
+                "$hapbench run scenarios/beyond/*.json --out results/out/reproduce/beyond       # what the thesis does not have\n"
                 "$hapbench run scenarios/examples/*.json --out results/out/reproduce/examples\n"
                 "$hapbench stability single_spring --out results/out/reproduce/stability\n"
                 "$hapbench describe scenario                                                    # what every field means")

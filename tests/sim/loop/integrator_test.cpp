@@ -49,15 +49,16 @@ double energy(const ToolState& tool, double K) {
   return 0.5 * (kMass * tool.velocity.squaredNorm() + K * tool.pose.position.squaredNorm());
 }
 
-/// The exact state after the time t, from the matrix exponential of x and of v.
+/// The exact state after the time t, from the matrix exponential of (w x, v), w^2 = K / M, which is well scaled.
 ToolState exact(const SpringField& field, double t) {
   Eigen::Matrix2d A;
-  A << 0.0, 1.0, -field.K / kMass, -field.B / kMass;
+  const double w = std::sqrt(field.K / kMass);
+  A << 0.0, w, -w, -field.B / kMass;
   const Eigen::Matrix2d advance = (A * t).exp();
   ToolState tool = displaced();
   const Vec3 p = tool.pose.position, v = tool.velocity;
-  tool.pose.position = advance(0, 0) * p + advance(0, 1) * v;
-  tool.velocity = advance(1, 0) * p + advance(1, 1) * v;
+  tool.pose.position = advance(0, 0) * p + advance(0, 1) / w * v;
+  tool.velocity = advance(1, 0) * w * p + advance(1, 1) * v;
   return tool;
 }
 
