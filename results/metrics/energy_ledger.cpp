@@ -21,8 +21,11 @@ std::size_t missing(const std::vector<std::uint32_t>& a, const std::vector<std::
 
 }  // namespace
 
-EnergyLedger::EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity)
-    : mass_(mass), dt_(dt), free_(position_is_free) {
+EnergyLedger::EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity, Integrator integrator)
+    : mass_(mass),
+      dt_(dt),
+      free_(position_is_free),
+      row_force_moves_(!position_is_free || integrator == Integrator::leapfrog) {
   last_.rendered.reserve(capacity);
   rendered_.reserve(capacity);
 }
@@ -41,13 +44,36 @@ void EnergyLedger::on_step(const StepRecord& record) noexcept {
   keep(record);
 }
 
+EnergyLedger::Works EnergyLedger::works(const Vec3& spring, const Vec3& rendered, const Vec3& way) const noexcept {
+  Works w;
+  w.input = last_.input.dot(way);
+  w.hand = last_.hand.dot(way);
+  w.actuator = (last_.input - last_.hand).dot(way);
+  w.spring = spring.dot(way);
+  w.damping = (rendered - spring).dot(way);
+  return w;
+}
+
+EnergyLedger::Works EnergyLedger::works_until(const StepRecord& now) const noexcept {
+  const Vec3 velocities = last_.tool.velocity + now.tool.velocity;
+  if (row_force_moves_) return works(last_.force.spring, last_.force.rendered, 0.5 * velocities * dt_);
+  const Vec3 moved = now.tool.pose.position - last_.tool.pose.position;
+  Works w =
+      works(0.5 * (last_.force.spring + now.force.spring), 0.5 * (last_.force.rendered + now.force.rendered), moved);
+  const double kinetic = 0.5 * mass_ * (now.tool.velocity - last_.tool.velocity).dot(velocities);
+  w.left = kinetic - w.input - w.spring - w.damping;
+  return w;
+}
+
 void EnergyLedger::add_step(const StepRecord& now) noexcept {
   EnergyBalance& b = balance_;
-  const Vec3 path = 0.5 * (last_.tool.velocity + now.tool.velocity) * dt_;
-  b.input += last_.input.dot(path);
-  b.spring += last_.force.spring.dot(path);
-  b.damping += (last_.force.rendered - last_.force.spring).dot(path);
-  const double left = b.kinetic - kinetic_at_start_ - b.input - b.spring - b.damping;
+  const Works w = works_until(now);
+  b.input += w.input;
+  b.spring += w.spring;
+  b.damping += w.damping;
+  b.integration += w.left;
+  left_ += w.left;
+  const double left = b.kinetic - kinetic_at_start_ - b.input - b.spring - b.damping - left_;
   (free_ ? b.residual : b.script) = left;
   if (free_) residual_max_ = std::max(residual_max_, std::abs(left));
   if (now.device) {
@@ -55,11 +81,11 @@ void EnergyLedger::add_step(const StepRecord& now) noexcept {
     b.hand = now.device->hand;
     b.actuator = now.device->actuator;
   } else {
-    b.hand += last_.hand.dot(path);
-    b.actuator += (last_.input - last_.hand).dot(path);
+    b.hand += w.hand;
+    b.actuator += w.actuator;
   }
 
-  const double created = created_in_step(now);
+  const double created = created_in_step(now, w.spring);
   b.created += created;
   if (created > 0.0) created_sum_ += created;
   created_max_ = std::max(created_max_, created);
@@ -67,14 +93,13 @@ void EnergyLedger::add_step(const StepRecord& now) noexcept {
 }
 
 /// Also adds up what translation and rotation did to the springs.
-double EnergyLedger::created_in_step(const StepRecord& now) noexcept {
+double EnergyLedger::created_in_step(const StepRecord& now, double spring_work) noexcept {
   const Vec3 moved = now.tool.pose.position - last_.tool.pose.position;
   const Vec3 turned = turn(last_.tool.pose.axis, now.tool.pose.axis);
   const double translation = -0.5 * (last_.force.spring + now.force.spring).dot(moved);
   const double rotation = -0.5 * (last_.springs.moment + now.springs.moment).dot(turned);
-  const Vec3 path = 0.5 * (last_.tool.velocity + now.tool.velocity) * dt_;
   balance_.rotation += rotation;
-  balance_.integration += last_.force.spring.dot(path) + translation;
+  balance_.integration += spring_work + translation;
   return now.springs.energy - last_.springs.energy - translation - rotation;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "sim/loop/integrator.hpp"
 #include "sim/loop/observer.hpp"
 
 namespace hapbench {
@@ -15,8 +16,10 @@ namespace hapbench {
 ///   input = hand + actuator                                        (when the handle is the tool)
 ///   device.stored = device.hand + device.actuator + device.dissipated   (when it has mechanics of its own)
 ///
-/// Works of forces on the tool over one step are force times dt times the mean of the velocities before and after it,
-/// which is exactly what they add to its kinetic energy.
+/// Works of forces on the tool over one step under leapfrog are the row's force times dt times the mean of the
+/// velocities before and after it, which is exactly what they add to its kinetic energy. Other integrators use forces
+/// of states in between that no row shows: there works are the mean of the forces of both rows (f_in is held) times the
+/// way between them, and what that differs from the kinetic energy is made by the integrator too.
 struct EnergyBalance {
   double kinetic = 0.0;  ///< of the virtual mass, now
   double stored = 0.0;   ///< elastic energy of the penalty springs, now
@@ -29,7 +32,7 @@ struct EnergyBalance {
   /// Energy out of nothing: what the springs store beyond what translation and rotation put in (trapezoidal rule). Zero
   /// for linear springs that stay in contact; contacts that appear, vanish or are weighed anew make it or lose it.
   double created = 0.0;
-  double integration = 0.0;  ///< made by the integrator: `spring` plus what translation put into the springs
+  double integration = 0.0;  ///< made by the integrator: `spring` plus what translation put into the springs (leapfrog)
   double script = 0.0;       ///< of a prescribed position: whatever its motion takes
   double residual = 0.0;     ///< of a free position: what the terms above leave of the kinetic energy; rounding
   double hand = 0.0;         ///< work of the hand on the handle
@@ -62,8 +65,9 @@ class EnergyLedger final : public Observer {
  public:
   static constexpr std::size_t kEvents = 10;
 
-  /// mass of the virtual tool [kg], time step [s], the most contacts a row can have.
-  EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity);
+  /// mass of the virtual tool [kg], time step [s], the most contacts a row can have, what moves a free position.
+  EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity,
+               Integrator integrator = Integrator::leapfrog);
 
   bool wants_energy() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override;
@@ -83,19 +87,30 @@ class EnergyLedger final : public Observer {
     std::vector<std::uint32_t> rendered;  ///< sorted shell indices
   };
 
+  /// Works over the step before a row.
+  struct Works {
+    double input = 0.0, hand = 0.0, actuator = 0.0;
+    double spring = 0.0, damping = 0.0;
+    double left = 0.0;  ///< what they leave of the kinetic energy, where that is the integrator's doing
+  };
+  /// Of the forces f_spring and f_render along `way`, f_in and the hand's being held.
+  Works works(const Vec3& spring, const Vec3& rendered, const Vec3& way) const noexcept;
+  Works works_until(const StepRecord& now) const noexcept;
   void add_step(const StepRecord& now) noexcept;
-  double created_in_step(const StepRecord& now) noexcept;
+  double created_in_step(const StepRecord& now, double spring_work) noexcept;
   void note_event(const StepRecord& now, double created) noexcept;
   void keep(const StepRecord& record) noexcept;
 
   double mass_;
   double dt_;
   bool free_;
+  bool row_force_moves_;  ///< alone, for all of the step
   bool has_row_ = false;
   Row last_;
   std::vector<std::uint32_t> rendered_;  ///< sorted shell indices of this row
   EnergyBalance balance_;
   double kinetic_at_start_ = 0.0;
+  double left_ = 0.0;  ///< sum of Works::left
   double created_sum_ = 0.0;
   double created_max_ = 0.0;
   double residual_max_ = 0.0;

@@ -9,6 +9,7 @@
 #include "scenarios/commands/table.hpp"
 #include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/environment_codec.hpp"
+#include "scenarios/config/integrator_codec.hpp"
 #include "scenarios/config/load_scenario.hpp"
 #include "scenarios/experiments/map_scenes.hpp"
 
@@ -105,6 +106,7 @@ std::vector<std::string> all_names() {
   for (const AlgorithmEntry& entry : algorithms()) names.emplace_back(entry.info->name);
   for (const DepthModelEntry& entry : depth_models()) names.emplace_back(entry.info->name);
   for (const ModelInfo* stage : stages()) names.emplace_back(stage->name);
+  for (const ModelInfo& info : integrator_infos()) names.emplace_back(info.name);
   for (const std::string& name : environment_names()) names.push_back(name);
   for (const BundledScenario& bundled : bundled_scenarios()) names.push_back(bundled.name);
   return names;
@@ -123,6 +125,9 @@ Description describe_name(const std::string& name) {
   if (const AlgorithmEntry* entry = find_algorithm(name)) add(describe_model("algorithm", *entry->info));
   if (const DepthModelEntry* entry = find_depth_model(name)) add(describe_model("depth model", *entry->info));
   if (const ModelInfo* stage = find_stage(name)) add(describe_model("stage", *stage));
+  for (const ModelInfo& info : integrator_infos()) {
+    if (name == info.name) add(describe_model("integrator", info));
+  }
   if (!d.text.empty()) return d;
   if (const Json* fields = find_in_schema(scenario_schema_once(), name)) return {fields_text(name, *fields), *fields};
   for (const BundledScenario& bundled : bundled_scenarios()) {
@@ -144,9 +149,9 @@ void add_describe(CLI::App& app, Action& chosen) {
     OutputOptions output;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
-      "describe",
-      "Explain an algorithm, a depth model, an environment, a field, a scenario, the cache or the stability maps");
+  CLI::App* command = app.add_subcommand("describe",
+                                         "Explain an algorithm, a depth model, an integrator, an environment, a field, "
+                                         "a scenario, the cache or the stability maps");
   command
       ->add_option(
           "name", options->name,

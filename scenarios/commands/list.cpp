@@ -7,6 +7,7 @@
 #include "scenarios/commands/table.hpp"
 #include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/environment_codec.hpp"
+#include "scenarios/config/integrator_codec.hpp"
 #include "scenarios/config/load_scenario.hpp"
 
 namespace hapbench {
@@ -23,6 +24,7 @@ int list(const OutputOptions& options) {
   for (const AlgorithmEntry& entry : algorithms()) add_models(table, json, "algorithm", *entry.info);
   for (const DepthModelEntry& entry : depth_models()) add_models(table, json, "depth model", *entry.info);
   for (const ModelInfo* stage : stages()) add_models(table, json, "stage", *stage);
+  for (const ModelInfo& info : integrator_infos()) add_models(table, json, "integrator", info);
   for (const std::string& name : environment_names()) {
     table.add({"environment", name, ""});
     json.push_back({{"kind", "environment"}, {"name", name}});
@@ -45,7 +47,8 @@ int list(const OutputOptions& options) {
 
 void add_list(CLI::App& app, Action& chosen) {
   auto options = std::make_shared<OutputOptions>();
-  CLI::App* command = app.add_subcommand("list", "List algorithms, depth models, environments and bundled scenarios");
+  CLI::App* command =
+      app.add_subcommand("list", "List algorithms, depth models, integrators, environments and bundled scenarios");
   add_output_options(*command, *options);
   command->callback([options, &chosen] { chosen = [options] { return list(*options); }; });
 }

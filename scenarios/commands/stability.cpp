@@ -56,7 +56,7 @@ Json limits_json(const LoadedScenario& loaded, const std::vector<StabilityLimit>
   for (const StabilityLimit& limit : limits) {
     rows.push_back({{"case", case_name(limit.which)},
                     {"unit", limit.unit},
-                    {"analytic", limit.analytic},
+                    {"analytic", limit.analytic ? Json(*limit.analytic) : Json(nullptr)},
                     {"eigenvalue", limit.eigenvalue},
                     {"simulation", limit.simulation},
                     {"damping_at_limit_N_s_per_m", limit.damping_at_limit},
@@ -64,28 +64,35 @@ Json limits_json(const LoadedScenario& loaded, const std::vector<StabilityLimit>
   }
   return {{"name", loaded.scenario.name},
           {"algorithm", loaded.scenario.rendering.config.algorithm},
+          {"integrator", integrator_name(loaded.scenario.integrator.type)},
           {"limits", std::move(rows)}};
 }
 
 /// Said when theory and runs disagree by more than a percent: the theory is that of a constant stiffness.
 std::string disagreement_text(const std::vector<StabilityLimit>& limits) {
   for (const StabilityLimit& limit : limits) {
-    if (std::abs(limit.simulation / limit.analytic - 1.0) <= 0.01 || limit.simulation == limit.analytic) continue;
-    return "\nThe runs differ from the analytic limit by more than 1 %: this algorithm's stiffness is not constant.\n";
+    if (std::abs(limit.simulation / limit.limit() - 1.0) <= 0.01 || limit.simulation == limit.limit()) continue;
+    return "\nThe runs differ from the limit in theory by more than 1 %: this algorithm's stiffness is not constant.\n";
   }
   return "";
+}
+
+/// "none" where nothing is unstable.
+std::string limit_text(double limit) {
+  return std::isinf(limit) ? "none" : significant(limit, 6);
 }
 
 std::string limits_text(const LoadedScenario& loaded, const std::vector<StabilityLimit>& limits) {
   Table table({{"limit", false}, {"analytic"}, {"eigenvalues"}, {"simulation"}, {"unit", false}, {"B there N s/m"}});
   for (const StabilityLimit& limit : limits) {
-    table.add({limit.name, significant(limit.analytic, 6), significant(limit.eigenvalue, 6),
-               significant(limit.simulation, 6), limit.unit, significant(limit.damping_at_limit, 5)});
+    table.add({limit.name, limit_text(limit.analytic.value_or(std::nan(""))), limit_text(limit.eigenvalue),
+               limit_text(limit.simulation), limit.unit, significant(limit.damping_at_limit, 5)});
   }
   const RenderingFields& rendering = loaded.scenario.rendering;
-  return fmt::format("{}: {}, M = {} kg, dt = {} s, zeta = {}, lambda_max(S) = {}\n\n{}", loaded.scenario.name,
-                     rendering.config.algorithm, *rendering.mass, loaded.scenario.time.step,
-                     rendering.config.damping_ratio, significant(limits.front().lambda, 6), table.text()) +
+  return fmt::format("{}: {}, {}, M = {} kg, dt = {} s, zeta = {}, lambda_max(S) = {}\n\n{}", loaded.scenario.name,
+                     rendering.config.algorithm, integrator_name(loaded.scenario.integrator.type), *rendering.mass,
+                     loaded.scenario.time.step, rendering.config.damping_ratio, significant(limits.front().lambda, 6),
+                     table.text()) +
          disagreement_text(limits);
 }
 

@@ -113,8 +113,9 @@ struct IdealDeviceFields {
 };
 using DeviceFields = std::variant<IdealDeviceFields, AdmittanceDeviceConfig>;
 
-struct LeapfrogFields {};
-using IntegratorFields = std::variant<LeapfrogFields>;
+struct IntegratorFields {
+  Integrator type = Integrator::leapfrog;
+};
 
 /// The part of RenderingConfig that has one default for every scene, and beside it what depends on the scene.
 struct RenderingFields {

@@ -10,6 +10,7 @@
 #include "scenarios/config/device_codec.hpp"
 #include "scenarios/config/environment_codec.hpp"
 #include "scenarios/config/hand_codec.hpp"
+#include "scenarios/config/integrator_codec.hpp"
 #include "scenarios/config/motion_codec.hpp"
 #include "scenarios/config/outcome_codec.hpp"
 #include "scenarios/config/rendering_codec.hpp"
@@ -58,12 +59,6 @@ std::shared_ptr<ObjectCodec<ToolFields>> tool_codec() {
       "tip", [](auto& t) -> auto& { return t.tip; }, name_of({"flat", "round"}, "tip"),
       "round adds a half ball; default round in hole_2d, else flat");
   return tool;
-}
-
-CodecPtr<IntegratorFields> integrator_codec() {
-  auto integrator = tagged<IntegratorFields>("integrator");
-  integrator->alternative("leapfrog", object<LeapfrogFields>());
-  return integrator;
 }
 
 std::shared_ptr<ObjectCodec<DivergenceBounds>> bounds_codec() {

@@ -9,10 +9,10 @@ namespace hapbench {
 inline constexpr double kLargestProbe = 1e15;
 
 /// The largest value for which `stable` holds, by powers of ten from `start` and bisection of the logarithm down to the
-/// relative width `precision`. Zero when nothing is stable, infinite when everything is. About 3 + log2(1 / precision)
-/// calls besides one for each power of ten.
+/// relative width `precision`. Zero when nothing is stable, infinite when everything up to `largest` is. About 3 +
+/// log2(1 / precision) calls besides one for each power of ten.
 template <class Stable>
-double largest_stable(double start, double precision, Stable stable) {
+double largest_stable(double start, double precision, Stable stable, double largest = kLargestProbe) {
   double low = start;
   while (!stable(low)) {
     low /= 10.0;
@@ -22,7 +22,7 @@ double largest_stable(double start, double precision, Stable stable) {
   while (stable(high)) {
     low = high;
     high *= 10.0;
-    if (high > kLargestProbe) return std::numeric_limits<double>::infinity();
+    if (high > largest) return std::numeric_limits<double>::infinity();
   }
   while (high / low > 1.0 + precision) {
     const double middle = std::sqrt(low * high);

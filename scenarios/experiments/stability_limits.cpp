@@ -27,11 +27,15 @@ constexpr double kGrowth = 1e6;
 constexpr std::int64_t kProbeSteps = 20'000;
 constexpr double kLateGrowth = 1.01;
 constexpr int kLocusPoints = 400;
+/// Time steps beyond this [s] are taken for "never unstable": of the velocities that a step as long multiplies,
+/// rounding alone would be motion.
+constexpr double kLongestStep = 1e6;
 
 /// The spring-damper of one case at one value of what is raised.
 SpringDamper at_value(StabilityCase which, double value, const Scenario& scenario, double lambda) {
   const RenderingConfig& config = scenario.rendering.config;
-  SpringDamper system{config.stiffness, 0.0, *scenario.rendering.mass, scenario.time.step, lambda};
+  SpringDamper system{config.stiffness,   0.0,    *scenario.rendering.mass,
+                      scenario.time.step, lambda, scenario.integrator.type};
   const auto damping = [&] {
     return config.damping.value_or(2.0 * config.damping_ratio * std::sqrt(system.K * system.M));
   };
@@ -137,26 +141,7 @@ void check_scene(const Scenario& scenario) {
     fail("/motion/position/type", "allowed for stability: \"free\"");
 }
 
-}  // namespace
-
-std::pair<std::complex<double>, std::complex<double>> SpringDamper::eigenvalues() const {
-  const double k = lambda * K * dt / M, b = lambda * B * dt / M;
-  Eigen::Matrix2d A;
-  A << 1.0 - k * dt, dt - b * dt, -k, 1.0 - b;
-  const Eigen::Vector2cd values = Eigen::EigenSolver<Eigen::Matrix2d>(A, false).eigenvalues();
-  return {values[0], values[1]};
-}
-
-double SpringDamper::margin() const {
-  return 4.0 - 2.0 * lambda * B * dt / M - lambda * K * dt * dt / M;
-}
-
-double SpringDamper::spectral_radius() const {
-  const auto [first, second] = eigenvalues();
-  return std::max(std::abs(first), std::abs(second));
-}
-
-double analytic_limit(StabilityCase which, const Scenario& scenario, double lambda) {
+double leapfrog_limit(StabilityCase which, const Scenario& scenario, double lambda) {
   const RenderingConfig& config = scenario.rendering.config;
   const double M = *scenario.rendering.mass, dt = scenario.time.step;
   const SpringDamper given = at_value(StabilityCase::time_step, dt, scenario, lambda);
@@ -178,13 +163,47 @@ double analytic_limit(StabilityCase which, const Scenario& scenario, double lamb
   return kNever;
 }
 
+/// Where an integrator stops being stable: of lambda K dt^2 / M without damping, of lambda B dt / M without a spring.
+struct LimitsAlone {
+  double spring, damper;
+};
+constexpr LimitsAlone kVerlet = {4.0, 4.0};
+/// Of |1 + z + z^2/2 + z^3/6 + z^4/24| <= 1 on the imaginary axis, z^2 = -8, and on the real one.
+constexpr LimitsAlone kRungeKutta = {8.0, 2.785293563405282};
+
+/// The limit of a case that has a spring or a damper; none with both.
+std::optional<double> limit_alone(StabilityCase which, const Scenario& scenario, double lambda,
+                                  const LimitsAlone& limits) {
+  const SpringDamper one = at_value(which, 1.0, scenario, lambda);
+  if (lambda == 0.0 || (one.K == 0.0 && one.B == 0.0)) return kNever;
+  if (one.K != 0.0 && one.B != 0.0) return std::nullopt;
+  const double spring = limits.spring * one.M / lambda, damper = limits.damper * one.M / lambda;
+  if (which == StabilityCase::time_step) return one.B == 0.0 ? std::sqrt(spring / one.K) : damper / one.B;
+  return one.B == 0.0 ? spring / (one.dt * one.dt) : damper / one.dt;
+}
+
+}  // namespace
+
+std::optional<double> analytic_limit(StabilityCase which, const Scenario& scenario, double lambda) {
+  switch (scenario.integrator.type) {
+    case Integrator::leapfrog:
+      return leapfrog_limit(which, scenario, lambda);
+    case Integrator::velocity_verlet:
+      return limit_alone(which, scenario, lambda, kVerlet);
+    case Integrator::rk4:
+      return limit_alone(which, scenario, lambda, kRungeKutta);
+    case Integrator::implicit_euler:
+    case Integrator::implicit_midpoint:
+      return kNever;
+  }
+  return std::nullopt;
+}
+
 std::vector<StabilityLimit> stability_limits(const Scenario& scenario) {
   check_scene(scenario);
   const Eigen::SelfAdjointEigenSolver<Mat3> S(stiffness_tensor_of(scenario));
   const double lambda = S.eigenvalues()[2];
   const Vec3 stiffest = S.eigenvectors().col(2);
-  // Undamped runs lie on the unit circle to rounding.
-  constexpr double kOnCircle = 1.0 + 1e-12;
 
   std::vector<StabilityLimit> limits = {
       {StabilityCase::stiffness_undamped, "largest K, B = 0", "N/m"},
@@ -194,14 +213,15 @@ std::vector<StabilityLimit> stability_limits(const Scenario& scenario) {
   };
   for (StabilityLimit& limit : limits) {
     const auto system = [&](double value) { return at_value(limit.which, value, scenario, lambda); };
-    const double start = limit.which == StabilityCase::time_step ? 1e-9 : 1.0;
+    const bool of_time = limit.which == StabilityCase::time_step;
+    const double start = of_time ? 1e-9 : 1.0, largest = of_time ? kLongestStep : kLargestProbe;
     limit.lambda = lambda;
     limit.analytic = analytic_limit(limit.which, scenario, lambda);
-    limit.damping_at_limit = system(limit.analytic).B;
-    limit.eigenvalue = largest_stable(start, kEigenvaluePrecision,
-                                      [&](double value) { return system(value).spectral_radius() <= kOnCircle; });
-    limit.simulation = largest_stable(
-        start, kPrecision, [&](double value) { return simulation_stays_bounded(scenario, system(value), stiffest); });
+    limit.eigenvalue = largest_stable(
+        start, kEigenvaluePrecision, [&](double value) { return system(value).is_stable(); }, largest);
+    limit.damping_at_limit = system(limit.limit()).B;
+    const auto run = [&](double value) { return simulation_stays_bounded(scenario, system(value), stiffest); };
+    limit.simulation = largest_stable(start, kPrecision, run, largest);
   }
   return limits;
 }
@@ -209,9 +229,9 @@ std::vector<StabilityLimit> stability_limits(const Scenario& scenario) {
 std::vector<RootLocusPoint> root_locus(const Scenario& scenario, const std::vector<StabilityLimit>& limits) {
   std::vector<RootLocusPoint> locus;
   for (const StabilityLimit& limit : limits) {
-    if (!std::isfinite(limit.analytic)) continue;
+    if (!std::isfinite(limit.limit())) continue;
     for (int i = 0; i <= kLocusPoints; ++i) {
-      const double value = 1.25 * limit.analytic * i / kLocusPoints;
+      const double value = 1.25 * limit.limit() * i / kLocusPoints;
       if (value == 0.0 && limit.which == StabilityCase::time_step) continue;
       const auto [first, second] = at_value(limit.which, value, scenario, limit.lambda).eigenvalues();
       locus.push_back({limit.which, value, first, second});

@@ -1,32 +1,18 @@
 #pragma once
 
 #include <complex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "scenarios/config/scenario.hpp"
+#include "scenarios/experiments/spring_damper.hpp"
 
 /// The integrator's stability on a set of bilateral springs (thesis A.3): how stiff, how damped and how coarse in time
 /// a run may be before it blows up. Along the stiffest direction the springs act as one spring lambda K with one damper
-/// lambda B, lambda = lambda_max(S), and the step (x, v) -> A (x, v) of Eq. A.2 is stable while no eigenvalue of A
-/// leaves the unit circle, that is while 4 - 2 lambda B dt / M - lambda K dt^2 / M > 0.
+/// lambda B, lambda = lambda_max(S), and the step (x, v) -> A (x, v) is stable while no eigenvalue of A leaves the unit
+/// circle, under leapfrog (Eq. A.2) while 4 - 2 lambda B dt / M - lambda K dt^2 / M > 0.
 namespace hapbench {
-
-/// One spring-damper under the leapfrog integrator.
-struct SpringDamper {
-  double K = 0.0;       ///< [N/m]
-  double B = 0.0;       ///< [N s/m]
-  double M = 0.1;       ///< [kg]
-  double dt = 0.0005;   ///< [s]
-  double lambda = 1.0;  ///< factor on K and B
-
-  /// The two eigenvalues of the matrix A of Eq. A.2.
-  std::pair<std::complex<double>, std::complex<double>> eigenvalues() const;
-  /// Largest modulus of the two.
-  double spectral_radius() const;
-  /// 4 - 2 lambda B dt / M - lambda K dt^2 / M: positive where stable.
-  double margin() const;
-};
 
 /// Which number is raised until the run blows up.
 enum class StabilityCase {
@@ -39,16 +25,19 @@ enum class StabilityCase {
 inline constexpr StabilityCase kStabilityCases[] = {StabilityCase::stiffness_undamped, StabilityCase::damping_alone,
                                                     StabilityCase::stiffness_damped, StabilityCase::time_step};
 
-/// The largest stable value of one case, found three ways.
+/// The largest stable value of one case, found three ways; infinite when nothing up to 1e15, or 1e6 s, is unstable.
 struct StabilityLimit {
   StabilityCase which;
   std::string name;
   std::string unit;
-  double analytic = 0.0;          ///< from the inequality above
-  double eigenvalue = 0.0;        ///< bisection on the spectral radius of A
-  double simulation = 0.0;        ///< bisection on runs of the real simulation
-  double damping_at_limit = 0.0;  ///< B at the analytic limit [N s/m]
-  double lambda = 1.0;            ///< lambda_max(S) of the springs under the scenario's algorithm
+  std::optional<double> analytic = {};  ///< in closed form; none where the integrator has none
+  double eigenvalue = 0.0;              ///< bisection on the eigenvalues of A
+  double simulation = 0.0;              ///< bisection on runs of the real simulation
+  double damping_at_limit = 0.0;        ///< B at the limit [N s/m]
+  double lambda = 1.0;                  ///< lambda_max(S) of the springs under the scenario's algorithm
+
+  /// The analytic one, or else that of the eigenvalues.
+  double limit() const { return analytic.value_or(eigenvalue); }
 };
 
 /// A point of the root locus: the eigenvalues as the case's number grows.
@@ -58,9 +47,10 @@ struct RootLocusPoint {
   std::complex<double> first, second;
 };
 
-/// The largest stable value of one case where the springs of the scenario's algorithm have the given lambda; infinite
-/// when there is none. Precondition: defaults are filled in.
-double analytic_limit(StabilityCase which, const Scenario& scenario, double lambda);
+/// The largest stable value of one case under the scenario's integrator, where the springs of its algorithm have the
+/// given lambda: infinite when nothing is unstable, none when there is no closed form (spring and damper together under
+/// velocity_verlet and rk4). Precondition: defaults are filled in.
+std::optional<double> analytic_limit(StabilityCase which, const Scenario& scenario, double lambda);
 
 /// All four limits. A limit that does not exist (no spring, no damping) is infinite. Throws InputError unless the
 /// scenario is bilateral springs without friction and limits: elsewhere contacts come and go and no such limit exists.

@@ -42,7 +42,8 @@ struct MapResult {
 /// The map of one algorithm on a grid of size x size. The same whatever the number of threads.
 ///
 /// The theory applies where the tool is alone with springs in contact and the force of the first row is -K S p: then
-/// the springs are the linear system that the inequality is about. Precondition: the algorithm is known, size >= 1.
+/// the springs are the linear system that the inequality is about; the scenes are moved by leapfrog, whose inequality
+/// it is. Precondition: the algorithm is known, size >= 1.
 MapResult stability_map(const StabilityMap& map, const std::string& algorithm, std::size_t size,
                         const JobOptions& options);
 

@@ -169,6 +169,7 @@ SimulationConfig simulation_config(const Scenario& scenario, Skips skips) {
   config.dt = scenario.time.step;
   config.steps = static_cast<std::uint64_t>(*scenario.time.steps);
   config.mass = *scenario.rendering.mass;
+  config.integrator = scenario.integrator.type;
   config.position = scenario.initial.position;
   config.velocity = scenario.initial.velocity;
   if (scenario.motion.orientation) config.up = scenario.motion.orientation->up->normalized();

@@ -30,7 +30,7 @@ class TrialObservers {
     observers_.push_back(&metrics_);
     if (scenario.record.energy) {
       ledger_.emplace(*scenario.rendering.mass, scenario.time.step, parts.motion->position_is_free(),
-                      parts.query->capacity());
+                      parts.query->capacity(), scenario.integrator.type);
       observers_.push_back(&*ledger_);
     }
     if (scenario.record.ideal_trajectory) {

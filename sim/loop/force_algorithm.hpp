@@ -53,8 +53,9 @@ class ForceAlgorithm {
   virtual void prepare(const Scene& scene) = 0;
   /// Back to t = 0, bit for bit.
   virtual void reset() noexcept = 0;
-  /// One step. `contacts` holds the colliding points at the tool's pose; on return it holds the rendered ones, with
-  /// depth, gradient and weight.
+  /// One step, or one state within it: some integrators (sim/loop/integrator.hpp) ask several times a step, the first
+  /// time at the row. `contacts` holds the colliding points at the tool's pose; on return it holds the rendered ones,
+  /// with depth, gradient and weight.
   virtual void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept = 0;
   /// Elastic energy and moment of the springs behind the last `compute`, whose contacts are handed in. Called only when
   /// somebody keeps accounts.

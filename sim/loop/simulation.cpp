@@ -7,6 +7,28 @@
 
 namespace hapbench {
 
+/// What an integrator may ask about the step from row k to row k + 1. Reuses the contact buffer, which nobody reads
+/// any more after the observers.
+class Simulation::Surroundings final : public ForceField {
+ public:
+  explicit Surroundings(Simulation& simulation) : s_(simulation) {}
+
+  Vec3 force_at(double part, const Vec3& position, const Vec3& velocity) noexcept override {
+    const Vec3 axis = s_.parts_.motion->axis_at((static_cast<double>(s_.row_) + part) * s_.config_.dt);
+    ToolState tool{{position, axis}, velocity};
+    if (s_.angular_velocity_wanted_) {
+      tool.angular_velocity = turn(s_.tool_.pose.axis, axis) / (part * s_.config_.dt);
+    }
+    s_.parts_.query->contacts_at(tool.pose, s_.contacts_);
+    s_.parts_.algorithm->compute(tool, s_.contacts_, s_.within_step_);
+    return s_.record_.hand.input + s_.within_step_.rendered;
+  }
+  ForceJacobian jacobian() const noexcept override { return s_.parts_.algorithm->jacobian(); }
+
+ private:
+  Simulation& s_;
+};
+
 Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vector<Observer*> observers)
     : config_(std::move(config)),
       parts_(std::move(parts)),
@@ -50,6 +72,17 @@ void Simulation::move_tool_by_script() noexcept {
   tool_.pose.position = position;
 }
 
+/// Leapfrog, the thesis's, needs nothing but the row and is not made to pay for the others.
+void Simulation::move_tool_by_force() noexcept {
+  const Vec3 force = record_.hand.input + record_.force.rendered;
+  if (config_.integrator == Integrator::leapfrog) {
+    leapfrog(tool_, force, config_.mass, config_.dt);
+  } else {
+    Surroundings surroundings(*this);
+    integrate(config_.integrator, tool_, force, config_.mass, config_.dt, surroundings);
+  }
+}
+
 bool Simulation::step() noexcept {
   if (ended_) return false;
 
@@ -77,7 +110,7 @@ bool Simulation::step() noexcept {
   ++result_.rows;
   if (check_stop_conditions()) return true;
 
-  if (parts_.motion->position_is_free()) leapfrog(tool_, r.hand.input + r.force.rendered, config_.mass, config_.dt);
+  if (parts_.motion->position_is_free()) move_tool_by_force();
   ++row_;
   if (row_ == config_.steps) {
     end(Outcome::completes);

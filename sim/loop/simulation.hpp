@@ -9,6 +9,7 @@
 #include "sim/loop/device.hpp"
 #include "sim/loop/force_algorithm.hpp"
 #include "sim/loop/hand.hpp"
+#include "sim/loop/integrator.hpp"
 #include "sim/loop/observer.hpp"
 #include "sim/tool/motion.hpp"
 
@@ -31,9 +32,10 @@ struct DivergenceBounds {
 
 /// Numbers of one run.
 struct SimulationConfig {
-  double dt = 0.0005;            ///< [s]
-  std::uint64_t steps = 0;       ///< rows 0 … steps - 1
-  double mass = 0.2;             ///< of the virtual tool [kg]
+  double dt = 0.0005;                            ///< [s]
+  std::uint64_t steps = 0;                       ///< rows 0 … steps - 1
+  double mass = 0.2;                             ///< of the virtual tool [kg]
+  Integrator integrator = Integrator::leapfrog;  ///< of a free position
   Vec3 position = Vec3::Zero();  ///< of the tip centre at t = 0 [m]; ignored when the motion prescribes it
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
   Vec3 up = {0.0, 0.0, 1.0};     ///< unit; what the stop conditions call height
@@ -91,6 +93,9 @@ class Simulation {
   const ForceAlgorithm& algorithm() const { return *parts_.algorithm; }
 
  private:
+  class Surroundings;
+
+  void move_tool_by_force() noexcept;
   void move_tool_by_script() noexcept;
   bool check_bounds() noexcept;
   bool check_stop_conditions() noexcept;
@@ -108,6 +113,7 @@ class Simulation {
   bool ended_ = false;
   ToolState tool_;
   StepRecord record_;
+  RenderedForce within_step_;  ///< of the last state an integrator asked about
   SimulationResult result_;
 };
 

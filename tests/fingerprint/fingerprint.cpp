@@ -101,6 +101,19 @@ void print_runs(const AlgorithmEntry& algorithm, const std::string& depth_model)
   }
 }
 
+/// The 2-D peg under every integrator.
+void print_integrators(const AlgorithmEntry& algorithm) {
+  for (const Integrator integrator : kIntegrators) {
+    HashingObserver hash;
+    SimulationConfig simulation;
+    simulation.steps = 500;
+    simulation.position = {0.0, -0.004, 0.0};
+    simulation.integrator = integrator;
+    Simulation(simulation, peg(config_of(algorithm.info->name)), {&hash}).run();
+    print(std::string(algorithm.info->name) + ' ' + std::string(integrator_name(integrator)), hash.value());
+  }
+}
+
 /// The depth models on points everywhere in and on the tool.
 void print_depths(const DepthModelEntry& model) {
   for (const Tip tip : {Tip::flat, Tip::round}) {
@@ -156,6 +169,7 @@ int main() {
   for (const DepthModelEntry& model : depth_models()) print_depths(model);
   for (const AlgorithmEntry& algorithm : algorithms()) {
     print_springs(algorithm);
+    print_integrators(algorithm);
     for (const DepthModelEntry& model : depth_models()) {
       if (algorithm.fixed_depth_model.empty() || algorithm.fixed_depth_model == model.info->name) {
         print_runs(algorithm, model.info->name);

@@ -88,7 +88,11 @@ def make_studies(directory):
     """Tables as of `hapbench precision`, whose runs would take longer than all else here."""
     directory.mkdir()
     settings = {
-        "integrators": ["leapfrog dt=0.001", "leapfrog dt=0.0001"],
+        "integrators": [
+            f"{name} dt={step}"
+            for name in ("leapfrog", "velocity_verlet", "rk4", "implicit_euler", "implicit_midpoint")
+            for step in ("0.001", "0.0001")
+        ],
         "time_step": ["dt=0.001", "dt=0.0001"],
         "shaping": ["m=0", "m=1", "exact"],
         "reduction": ["shaped_stiffness 0.9", "exact_shaping off"],

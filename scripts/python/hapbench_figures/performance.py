@@ -15,7 +15,13 @@ STUDIES = (
 )
 VARYING_STEP = ("integrators", "time_step")
 LARGEST_ERROR_MM = 10  # the block is 15 mm wide: beyond, the drill has left it
-LOOKS = ((style.BLUE, "o", "-"), (style.ORANGE, "s", (0, (4, 1.2))), (style.BLACK, "^", ":"))
+LOOKS = (
+    (style.BLUE, "o", "-"),
+    (style.ORANGE, "s", (0, (4, 1.2))),
+    (style.BLACK, "^", ":"),
+    (style.GREEN, "v", (0, (5, 1.5))),
+    (style.PURPLE, "D", (0, (3, 1, 1, 1))),
+)
 
 
 def series(rows):
@@ -57,14 +63,16 @@ def draw_study(ax, results, study, column, label, scale, time_column, title):
 
 def draw_curves(ax, rows, study, column, scale, time_column):
     split = series(rows)
-    for (name, own), (colour, marker, line) in zip(split.items(), LOOKS):
+    many = len(split) > 3
+    for i, ((name, own), (colour, marker, line)) in enumerate(zip(split.items(), LOOKS)):
         error, time = scale * numbers(own, column), numbers(own, time_column)
         time = 1e3 * time / numbers(own, "step_s") if study in VARYING_STEP else 1e6 * time
         fine = finished(own, error)
         ax.plot(time[fine], error[fine], color=colour, marker=marker, ls=line, label=name.replace("_", " "))
-        name_ends(ax, study, [row for row, keep in zip(own, fine) if keep], time[fine], error[fine])
+        if i == 0 or not many:  # many have the same settings, whose names would cover one another
+            name_ends(ax, study, [row for row, keep in zip(own, fine) if keep], time[fine], error[fine])
     if len(split) > 1:
-        ax.legend(loc="upper right", handlelength=2.4)
+        ax.legend(loc="lower left" if many else "upper right", handlelength=2.4, fontsize=6 if many else None)
 
 
 def draw_algorithms(ax, rows, column, scale, time_column):
@@ -102,7 +110,7 @@ def work_precision(results):
     style.letter(axes.flat)
     return figure, (
         "Work against precision in six studies: error over run time on one core, a mark for each setting, first and "
-        "last named. (a) Time step, against the exact solution; (b) time step, against a 64 times finer one; "
+        "last named. (a) Integrators and time step, against the exact solution; (b) time step, against a 64 times finer one; "
         "(c) shaping iterations against exact shaping; (d) threshold of the reduction, against exact shaping "
         "of all points; (e) spacing of the block's points and (f) force algorithms, against the ideal trajectory of "
         "3.6. Left out: settings that diverged, were off by more than 10 mm or have no error. Ours; run times are "

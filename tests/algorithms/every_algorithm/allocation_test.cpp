@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <memory>
 #include <ostream>
+#include <tuple>
 
 #include "sim/core/aligned.hpp"
 #include "sim/environment/analytic_shells.hpp"
@@ -188,6 +189,41 @@ TEST_P(NoAllocation, InAStepOrAReset) {
   simulation.run();
   EXPECT_EQ(count.value(), 0u);
   EXPECT_EQ(observer.rows_with_contact, 600);
+}
+
+// ---- And with every integrator, some of which search and render again within a step.
+
+class NoAllocationOf : public testing::TestWithParam<std::tuple<AlgorithmEntry, Integrator>> {};
+INSTANTIATE_TEST_SUITE_P(Every, NoAllocationOf,
+                         testing::Combine(testing::ValuesIn(algorithms().begin(), algorithms().end()),
+                                          testing::ValuesIn(kIntegrators)),
+                         [](const auto& instance) {
+                           return std::string(std::get<AlgorithmEntry>(instance.param).info->name) + "_" +
+                                  std::string(integrator_name(std::get<Integrator>(instance.param)));
+                         });
+
+TEST_P(NoAllocationOf, AnIntegrator) {
+  const auto& [algorithm, integrator] = GetParam();
+  for (const bool springs : {false, true}) {
+    const Instance instance{algorithm.info->name, "surface_normal", &kStages[1], springs};
+    RenderingConfig config;
+    config.algorithm = instance.algorithm;
+    config.reduction = instance.stages->reduction;
+    config.mu_s = 5.0;
+    config.mu_f = 10.0;
+    const test::Setting setting = setting_of(instance);
+    SimulationConfig run = test::free_run_config(setting, config, 300);
+    run.integrator = integrator;
+    if (!springs) run.position = {0.0002, -0.004, 0.0};
+    ContactCounter observer;
+    Simulation simulation(run, test::free_run(setting, config), {&observer});
+    const test::AllocationCount count;
+    simulation.run();
+    simulation.reset();
+    simulation.run();
+    EXPECT_EQ(count.value(), 0u);
+    EXPECT_GT(observer.rows_with_contact, 0);
+  }
 }
 
 }  // namespace

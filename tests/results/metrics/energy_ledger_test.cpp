@@ -45,7 +45,8 @@ struct Accounts {
 
 /// Runs a setting with the energy ledger.
 Accounts keep_accounts(SimulationConfig config, SimulationParts parts) {
-  EnergyLedger ledger(config.mass, config.dt, parts.motion->position_is_free(), parts.query->capacity());
+  EnergyLedger ledger(config.mass, config.dt, parts.motion->position_is_free(), parts.query->capacity(),
+                      config.integrator);
   Turnover turnover(ledger);
   Simulation simulation(config, std::move(parts), {&ledger, &turnover});
   simulation.step();
@@ -107,6 +108,50 @@ TEST(EnergyLedger, ClosesToRoundingForEveryAlgorithmWithTheIdealDevice) {
                   a.kinetic_at_start + a.stored_at_start + b.input + b.damping + b.rotation + b.created +
                       b.integration + b.residual,
                   rounding);
+    }
+  }
+}
+
+TEST(EnergyLedger, ClosesToRoundingForEveryIntegrator) {
+  for (const Integrator integrator : kIntegrators) {
+    for (const test::AnalyticScene& scene : test::analytic_scenes()) {
+      const RenderingConfig config = test::config_for("shaped_stiffness", scene);
+      const Setting setting = scene.setting();
+      SimulationParts parts = test::free_run(setting, config);
+      parts.hand = std::make_unique<ForceHand>(std::array<Profile, 3>{1.0, -2.0, 3.0});
+      SimulationConfig run = test::free_run_config(setting, config, 400);
+      run.integrator = integrator;
+      const Accounts a = keep_accounts(run, std::move(parts));
+      const EnergyBalance& b = a.metrics.balance;
+      const double rounding = 400 * 20 * kEpsilon * (a.turnover + std::abs(b.integration));
+      SCOPED_TRACE(std::string(scene.name) + " " + std::string(integrator_name(integrator)));
+      EXPECT_LE(a.metrics.residual_max, rounding);
+      EXPECT_NEAR(b.hand + b.actuator, b.input, rounding);
+      EXPECT_NEAR(b.kinetic + b.stored,
+                  a.kinetic_at_start + a.stored_at_start + b.input + b.damping + b.rotation + b.created +
+                      b.integration + b.residual,
+                  rounding);
+    }
+  }
+}
+
+TEST(EnergyLedger, ChargesTheIntegratorWithWhatItMakesOfAnUndampedSpring) {
+  const Setting setting = springs_in_x(5);
+  RenderingConfig config = rendering("summation");
+  config.damping_ratio = 0.0;
+  const double stored = 0.5 * 5 * config.stiffness * 9e-6;
+  for (const Integrator integrator : kIntegrators) {
+    SimulationConfig run = test::free_run_config(setting, config, 200);
+    run.integrator = integrator;
+    const EnergyBalance b = keep_accounts(run, test::free_run(setting, config)).metrics.balance;
+    SCOPED_TRACE(integrator_name(integrator));
+    // Whatever is missing of the energy at the start is the integrator's doing, and nobody else's.
+    EXPECT_NEAR(b.integration, b.kinetic + b.stored - stored, 200 * 20 * kEpsilon * stored);
+    if (integrator == Integrator::implicit_midpoint) {
+      EXPECT_NEAR(b.integration, 0.0, 200 * 20 * kEpsilon * stored);
+    } else if (integrator == Integrator::implicit_euler) {
+      // It keeps 1 / (1 + k) a step, k = 5 K dt^2 / M = 0.125: nothing is left after 200.
+      EXPECT_NEAR(b.integration, -stored, 1e-9 * stored);
     }
   }
 }

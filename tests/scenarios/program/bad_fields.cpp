@@ -108,6 +108,11 @@ std::vector<BadInput> wrong_values() {
        "allowed: null or a number > 0"},
       {"IntegratorMisspelt", plane("/integrator", R"({"type": "leap-frog"})"), "/integrator/type",
        "nearest valid name: \"leapfrog\""},
+      {"IntegratorWithoutType", plane("/integrator", "{}"), "/integrator", "missing field \"type\""},
+      {"IntegratorOfAnotherType", plane("/integrator", R"({"type": 4})"), "/integrator/type",
+       "allowed: integrator: one of \"leapfrog\", \"velocity_verlet\", \"rk4\", \"implicit_euler\", "
+       "\"implicit_midpoint\""},
+      {"IntegratorsAtOnce", plane("/integrator", R"({"type": "rk4", "order": 4})"), "/integrator/order", "unknown"},
       {"BoundZero", plane("/bounds", R"({"position_m": 0})"), "/bounds/position_m", "got 0; allowed: a number > 0"},
       {"EveryZero", plane("/record", R"({"every": 0})"), "/record/every", "got 0; allowed: an integer 1 ..."},
       {"OutcomeMisspelt", plane("/expect", R"({"outcome": "complete"})"), "/expect/outcome",

@@ -7,6 +7,7 @@
 #include "scenarios/config/bundled_scenarios.hpp"
 #include "scenarios/config/environment_codec.hpp"
 #include "scenarios/config/scenario_codec.hpp"
+#include "sim/loop/integrator.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
@@ -29,6 +30,9 @@ TEST(ListCommand, NamesAllThereIs) {
   }
   for (const AlgorithmEntry& entry : algorithms()) EXPECT_TRUE(names.contains(entry.info->name)) << entry.info->name;
   for (const DepthModelEntry& entry : depth_models()) EXPECT_TRUE(names.contains(entry.info->name)) << entry.info->name;
+  for (const Integrator integrator : kIntegrators) {
+    EXPECT_TRUE(names.contains(std::string(integrator_name(integrator)))) << integrator_name(integrator);
+  }
   for (const std::string& name : environment_names()) EXPECT_TRUE(names.contains(name)) << name;
   for (const BundledScenario& bundled : bundled_scenarios()) EXPECT_TRUE(names.contains(bundled.name)) << bundled.name;
   EXPECT_EQ(hapbench({"list", "--quiet"}).out, "");

@@ -76,6 +76,29 @@ TEST_F(StabilityCommand, DividesByLambdaForSeveralSprings) {
               0.01 * limits[2]["analytic"].get<double>());
 }
 
+TEST_F(StabilityCommand, TellsTheLimitsOfTheScenariosIntegrator) {
+  const auto limits_of = [this](const std::string& integrator) {
+    const ProgramRun run =
+        hapbench({"stability", "single_spring", "--set", "integrator.type=" + integrator, "--json", "--out", out_});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.json()[0]["integrator"], integrator);
+    return run.json()[0]["limits"];
+  };
+  // No closed form, so leapfrog's is not shown either.
+  const Json verlet = limits_of("velocity_verlet");
+  EXPECT_EQ(verlet[2]["analytic"], nullptr);
+  EXPECT_EQ(cells_of(lines_of(test::read_file(directory_ / "out/limits.csv"))[3])[2], "");
+  EXPECT_NEAR(verlet[2]["simulation"].get<double>(), verlet[2]["eigenvalue"].get<double>(), 1e3);
+  const Json implicit = limits_of("implicit_midpoint");
+  EXPECT_EQ(lines_of(test::read_file(directory_ / "out/root_locus.csv")).size(), 1u);
+  EXPECT_EQ(cells_of(lines_of(test::read_file(directory_ / "out/limits.csv"))[3])[4], "inf");
+  const std::string text =
+      hapbench({"stability", "single_spring", "--set", "integrator.type=implicit_euler", "--out", out_}).out;
+  EXPECT_NE(text.find("implicit_euler"), std::string::npos) << text;
+  EXPECT_NE(text.find("none"), std::string::npos) << text;
+  EXPECT_EQ(text.find("differ"), std::string::npos) << text;
+}
+
 TEST_F(StabilityCommand, PrintsATable) {
   const ProgramRun run = hapbench({"stability", "single_spring", "--out", out_});
   EXPECT_NE(run.out.find("M = 0.1 kg, dt = 0.0005 s, zeta = 0.7"), std::string::npos) << run.out;
