@@ -1,6 +1,5 @@
 #include "algorithms/laws/force_law.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "sim/core/simd.hpp"
@@ -29,13 +28,19 @@ LawForce weighted_force(const ContactBuffer& contacts, double K) noexcept {
 }
 
 SpringState ForceLaw::spring_state(const ContactBuffer& contacts, const Vec3&, const Vec3& tip) const noexcept {
-  SpringState state;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const Vec3 force = -K_ * contacts.weight[i] * contacts.depth[i] * contacts.gradient(i);
-    state.energy += 0.5 * K_ * contacts.weight[i] * contacts.depth[i] * contacts.depth[i];
-    state.moment += (contacts.point(i) - tip).cross(force);
+  using simd::load, simd::Pack;
+  const Pack tip_x(tip.x()), tip_y(tip.y()), tip_z(tip.z());
+  Pack energy(0.0), mx(0.0), my(0.0), mz(0.0);
+  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    const Pack d = load(&contacts.depth[i]), cd = load(&contacts.weight[i]) * d;
+    const Pack fx = cd * load(&contacts.ux[i]), fy = cd * load(&contacts.uy[i]), fz = cd * load(&contacts.uz[i]);
+    const Pack x = load(&contacts.x[i]) - tip_x, y = load(&contacts.y[i]) - tip_y, z = load(&contacts.z[i]) - tip_z;
+    energy += cd * d;
+    mx += y * fz - z * fy;
+    my += z * fx - x * fz;
+    mz += x * fy - y * fx;
   }
-  return state;
+  return {0.5 * K_ * simd::sum(energy), -K_ * Vec3(simd::sum(mx), simd::sum(my), simd::sum(mz))};
 }
 
 }  // namespace hapbench

@@ -46,9 +46,14 @@ class OriginalAveraging final : public ForceLaw {
   /// One spring, compressed by d_r. It has no point of attack of its own; the middle of the contacts is as good as any.
   SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
     if (K_ == 0.0) return {};
-    Vec3 arms = Vec3::Zero();
-    for (std::size_t i = 0; i < contacts.size(); ++i) arms += contacts.point(i) - tip;
-    const Vec3 middle = arms / static_cast<double>(contacts.size());
+    simd::Pack x(0.0), y(0.0), z(0.0);
+    for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+      const simd::Pack counts = simd::load(&contacts.weight[i]);  // not the padding
+      x += counts * (simd::load(&contacts.x[i]) - simd::Pack(tip.x()));
+      y += counts * (simd::load(&contacts.y[i]) - simd::Pack(tip.y()));
+      z += counts * (simd::load(&contacts.z[i]) - simd::Pack(tip.z()));
+    }
+    const Vec3 middle = Vec3(simd::sum(x), simd::sum(y), simd::sum(z)) / static_cast<double>(contacts.size());
     return {spring.squaredNorm() / (2.0 * K_), middle.cross(spring)};
   }
 };
