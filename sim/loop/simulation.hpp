@@ -92,6 +92,7 @@ class Simulation {
 
  private:
   void move_tool_by_script() noexcept;
+  void note_springs() noexcept;
   bool check_bounds() noexcept;
   bool check_stop_conditions() noexcept;
   void end(Outcome outcome) noexcept;
@@ -100,7 +101,9 @@ class Simulation {
   SimulationParts parts_;
   std::vector<Observer*> observers_;
   bool ratio_wanted_ = false;
+  bool springs_wanted_ = false;
   bool energy_wanted_ = false;
+  bool input_wanted_ = false;
   bool angular_velocity_wanted_ = false;
   ContactBuffer contacts_;
 
@@ -108,6 +111,7 @@ class Simulation {
   bool ended_ = false;
   ToolState tool_;
   StepRecord record_;
+  bool springs_noted_ = false;  ///< record_.springs are not zero
   SimulationResult result_;
 };
 

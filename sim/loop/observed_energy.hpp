@@ -1,0 +1,73 @@
+#pragma once
+
+#include "sim/loop/force_algorithm.hpp"
+#include "sim/tool/turn.hpp"
+
+namespace hapbench {
+
+/// The time-domain passivity observer (Hannaford and Ryu, 2002): the energy that a rendering has taken in and can still
+/// give back, with the tool's translation as one port and its scripted rotation as the other,
+///
+///   E_0 = E_spring(0),  E_(k+1) = E_k - f_render_k . (v_k + v_(k+1))/2 dt - (m_k + m_(k+1))/2 . turn_k
+///
+/// m: moment of the springs, turn_k: rotation vector from axis_k to axis_(k+1). The works are those of the energy
+/// ledger. A rendering that stores in springs and dissipates never has E_k < 0; max(0, -min E_k) is energy from
+/// nothing. Dissipation counts as taken in, so it can hide what is created later.
+///
+/// A row is `move`, then `answer`. Observer and controller share this code, so that they agree to the last bit.
+/// Without force and moment a row costs two comparisons and two copies.
+class ObservedEnergy {
+ public:
+  explicit ObservedEnergy(double dt) : dt_(dt) {}
+
+  /// Back to t = 0.
+  void reset() noexcept { *this = ObservedEnergy(dt_); }
+
+  /// Moves on to the row in which the tool is in this state.
+  void move(const ToolState& tool) noexcept {
+    first_ = !begun_;
+    axis_before_ = begun_ ? axis_ : tool.pose.axis;
+    axis_ = tool.pose.axis;
+    turn_is_known_ = false;
+    if (force_acts_) energy_ -= force_.dot(0.5 * (velocity_ + tool.velocity) * dt_);
+    if (moment_acts_) energy_ -= 0.5 * moment_.dot(turned());
+    velocity_ = tool.velocity;
+    begun_ = true;
+  }
+  /// What is rendered in this row.
+  void answer(const Vec3& rendered, const SpringState& springs) noexcept {
+    if (first_) energy_ = springs.energy;
+    force_acts_ = !rendered.isZero(0.0);
+    moment_acts_ = !springs.moment.isZero(0.0);
+    if (force_acts_) force_ = rendered;
+    if (!moment_acts_) return;
+    moment_ = springs.moment;
+    energy_ -= 0.5 * moment_.dot(turned());
+  }
+
+  double energy() const { return energy_; }  ///< E [J]; between `move` and `answer` without what the row's moment does
+  bool first() const { return first_; }      ///< whether this is the first row, in which the springs' energy counts
+  /// The turn from the row before to this one [rad].
+  const Vec3& turned() noexcept {
+    if (!turn_is_known_) turn_ = turn(axis_before_, axis_);
+    turn_is_known_ = true;
+    return turn_;
+  }
+
+ private:
+  double dt_;
+  double energy_ = 0.0;
+  bool begun_ = false;
+  bool first_ = false;
+  bool force_acts_ = false;
+  bool moment_acts_ = false;
+  bool turn_is_known_ = false;
+  Vec3 velocity_ = Vec3::Zero();
+  Vec3 axis_ = Vec3::Zero();
+  Vec3 axis_before_ = Vec3::Zero();
+  Vec3 turn_ = Vec3::Zero();
+  Vec3 force_ = Vec3::Zero();
+  Vec3 moment_ = Vec3::Zero();
+};
+
+}  // namespace hapbench
