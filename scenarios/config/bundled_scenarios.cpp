@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 std::vector<BundledScenario> bundled_scenarios() {
   std::vector<BundledScenario> found;
-  for (const char* group : {"thesis", "limits", "examples"}) {
+  for (const char* group : {"thesis", "limits", "beyond", "examples"}) {
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(fs::path(HAPBENCH_SCENARIO_DIR) / group, error)) {
       if (entry.path().extension() == ".json") found.push_back({entry.path().stem().string(), group, entry.path()});

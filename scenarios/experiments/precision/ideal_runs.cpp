@@ -14,6 +14,9 @@ namespace {
 
 constexpr double kSpacings[] = {0.0004, 0.0002, 0.0001, 0.00005, 0.000025};
 
+/// The algorithms that create energy when a peg sticks in a hole; the passivity controller leaves the others alone.
+constexpr const char* kCreateEnergy[] = {"original_averaging", "summation", "tandpasta", "normal_projection"};
+
 const std::vector<std::string> kIdealColumns = {"ideal_height_error_rms_m", "ideal_height_error_max_m",
                                                 "ideal_lateral_error_rms_m", "interpenetration_max_m"};
 
@@ -63,13 +66,18 @@ PrecisionResult study_algorithms(const Scenario& given, const PrecisionOptions& 
   PrecisionResult result;
   result.columns = kIdealColumns;
   result.timed = "step";
-  for (const AlgorithmEntry& algorithm : algorithms()) {
+  const std::size_t rows = algorithms().size() + std::size(kCreateEnergy);
+  const auto add = [&](const char* algorithm, bool controller) {
     Scenario run = scenario;
-    run.rendering.config.algorithm = algorithm.info->name;
+    run.rendering.config.algorithm = algorithm;
+    run.rendering.config.passivity_controller = controller;
     fill_defaults(run);  // puts the stages the algorithm fixes in place
-    result.rows.push_back(ideal_row(run.rendering.config.algorithm, run, shell, options.repetitions));
-    options.progress(result.rows.size(), algorithms().size());
-  }
+    const std::string setting = std::string(algorithm) + (controller ? " + passivity_controller" : "");
+    result.rows.push_back(ideal_row(setting, run, shell, options.repetitions));
+    options.progress(result.rows.size(), rows);
+  };
+  for (const AlgorithmEntry& algorithm : algorithms()) add(algorithm.info->name, false);
+  for (const char* algorithm : kCreateEnergy) add(algorithm, true);
   return result;
 }
 

@@ -70,6 +70,8 @@ std::vector<BadInput> wrong_values() {
        "nearest valid name: \"surface_normal\""},
       {"IterationsNegative", plane("/rendering", R"({"iterations": -1})"), "/rendering/iterations",
        "allowed: an integer 0 ... 100000"},
+      {"PassivityControllerAsText", plane("/rendering", R"({"passivity_controller": "on"})"),
+       "/rendering/passivity_controller", "got \"on\"; allowed: true or false"},
       {"LocalAverageAsNumber", plane("/rendering", R"({"local_average": 1})"), "/rendering/local_average",
        "got 1; allowed: true or false"},
       {"ReductionThresholdTooLarge", plane("/rendering", R"({"reduction": {"threshold": 1.5}})"),
