@@ -79,7 +79,7 @@ void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts
   } else {
     springs_ = {};
   }
-  observed_.answer(out.rendered, springs_);
+  observed_.answer(tool, out.rendered, springs_);
 }
 
 /// Chooses share and damping.

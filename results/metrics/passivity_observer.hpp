@@ -20,7 +20,7 @@ struct PassivityMetrics {
 /// Of several runs: the one that created most, the first of equals. None without runs that have rows.
 std::optional<PassivityMetrics> merged(const std::vector<std::optional<PassivityMetrics>>& runs) noexcept;
 
-/// Observes every row, in constant memory; about 10 ns a row in contact, 2 ns without force.
+/// Observes every row, in constant memory; about 100 ns a row with a turning moment, 4 ns without force.
 class PassivityObserver final : public Observer {
  public:
   /// `dt`: time from row to row [s].
@@ -29,7 +29,7 @@ class PassivityObserver final : public Observer {
   bool wants_springs() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override {
     observed_.move(record.tool);
-    observed_.answer(record.force.rendered, record.springs);
+    observed_.answer(record.tool, record.force.rendered, record.springs);
     const double energy = observed_.energy();
     if (rows_ && !(energy < metrics_.energy_min)) return;
     metrics_.energy_min = energy;

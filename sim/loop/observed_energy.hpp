@@ -15,7 +15,7 @@ namespace hapbench {
 /// nothing. Dissipation counts as taken in, so it can hide what is created later.
 ///
 /// A row is `move`, then `answer`. Observer and controller share this code, so that they agree to the last bit.
-/// Without force and moment a row costs two comparisons and two copies.
+/// Without force and moment a row costs a few comparisons and the copy of an axis.
 class ObservedEnergy {
  public:
   explicit ObservedEnergy(double dt) : dt_(dt) {}
@@ -26,30 +26,33 @@ class ObservedEnergy {
   /// Moves on to the row in which the tool is in this state.
   void move(const ToolState& tool) noexcept {
     first_ = !begun_;
-    axis_before_ = begun_ ? axis_ : tool.pose.axis;
-    axis_ = tool.pose.axis;
+    begun_ = true;
+    now_ = !now_;
+    axis_[now_] = tool.pose.axis;
     turn_is_known_ = false;
     if (force_acts_) energy_ -= force_.dot(0.5 * (velocity_ + tool.velocity) * dt_);
     if (moment_acts_) energy_ -= 0.5 * moment_.dot(turned());
-    velocity_ = tool.velocity;
-    begun_ = true;
   }
-  /// What is rendered in this row.
-  void answer(const Vec3& rendered, const SpringState& springs) noexcept {
+  /// What is rendered in this row, to the tool of `move`.
+  void answer(const ToolState& tool, const Vec3& rendered, const SpringState& springs) noexcept {
     if (first_) energy_ = springs.energy;
-    force_acts_ = !rendered.isZero(0.0);
-    moment_acts_ = !springs.moment.isZero(0.0);
-    if (force_acts_) force_ = rendered;
-    if (!moment_acts_) return;
-    moment_ = springs.moment;
-    energy_ -= 0.5 * moment_.dot(turned());
+    force_acts_ = rendered != Vec3::Zero();
+    moment_acts_ = springs.moment != Vec3::Zero();
+    if (force_acts_) {
+      force_ = rendered;
+      velocity_ = tool.velocity;
+    }
+    if (moment_acts_) {
+      moment_ = springs.moment;
+      energy_ -= 0.5 * moment_.dot(turned());
+    }
   }
 
   double energy() const { return energy_; }  ///< E [J]; between `move` and `answer` without what the row's moment does
   bool first() const { return first_; }      ///< whether this is the first row, in which the springs' energy counts
   /// The turn from the row before to this one [rad].
   const Vec3& turned() noexcept {
-    if (!turn_is_known_) turn_ = turn(axis_before_, axis_);
+    if (!turn_is_known_) turn_ = first_ ? Vec3(Vec3::Zero()) : turn(axis_[!now_], axis_[now_]);
     turn_is_known_ = true;
     return turn_;
   }
@@ -62,9 +65,9 @@ class ObservedEnergy {
   bool force_acts_ = false;
   bool moment_acts_ = false;
   bool turn_is_known_ = false;
-  Vec3 velocity_ = Vec3::Zero();
-  Vec3 axis_ = Vec3::Zero();
-  Vec3 axis_before_ = Vec3::Zero();
+  bool now_ = false;                             ///< which of the two axes is that of this row
+  Vec3 axis_[2] = {Vec3::Zero(), Vec3::Zero()};  ///< this row's and the one before
+  Vec3 velocity_ = Vec3::Zero();                 ///< of the last row with force
   Vec3 turn_ = Vec3::Zero();
   Vec3 force_ = Vec3::Zero();
   Vec3 moment_ = Vec3::Zero();

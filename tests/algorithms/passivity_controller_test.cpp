@@ -21,7 +21,7 @@ class Watch final : public Observer {
   bool wants_springs() const noexcept override { return true; }
   void on_step(const StepRecord& r) noexcept override {
     observed_.move(r.tool);
-    observed_.answer(r.force.rendered, r.springs);
+    observed_.answer(r.tool, r.force.rendered, r.springs);
     const Vec3 w = r.tool.velocity + r.hand.input * (0.5 * dt_ / mass_);
     least = std::min(least, observed_.energy());
     turnover = std::max(turnover, std::abs(observed_.energy()) + 0.5 * mass_ * w.squaredNorm());
@@ -108,8 +108,10 @@ TEST(PassivityController, KeepsAnyForceUnderAnyHandPassive) {
     if (seed % 2 == 0) config.max_force = size * numbers->uniform();
     SimulationConfig run_config = pushed_off(200);
     run_config.mass = config.mass;
-    SimulationParts parts = test::fake_parts(
-        [numbers, size](const ToolState&) { return Vec3(size * numbers->uniform() * numbers->direction()); });
+    const double limit = config.max_force.value_or(std::numeric_limits<double>::infinity());
+    SimulationParts parts = test::fake_parts([numbers, size, limit](const ToolState&) -> Vec3 {
+      return std::min(limit, size * numbers->uniform()) * numbers->direction();
+    });
     const auto wave = [&] {
       return Profile(
           Profile::Shape(Profile::Sine{0.0, 5.0 * numbers->uniform(), 0.003 + 0.1 * numbers->uniform(), 0.0}));
@@ -160,8 +162,12 @@ TEST(PassivityController, ChangesARunOnlyIfItWouldCreateEnergy) {
         };
         const Ran plain = ran(false), held = ran(true);
         EXPECT_GE(held.watch.least, -held.watch.rounding());
-        if (plain.watch.least > plain.watch.rounding()) EXPECT_EQ(held.controlled, 0u);
-        if (plain.watch.least < -plain.watch.rounding()) EXPECT_GT(held.controlled, 0u);
+        if (plain.watch.least > plain.watch.rounding()) {
+          EXPECT_EQ(held.controlled, 0u);
+        }
+        if (plain.watch.least < -plain.watch.rounding()) {
+          EXPECT_GT(held.controlled, 0u);
+        }
         (plain.watch.least < -plain.watch.rounding() ? active : passive) += 1;
         if (held.controlled == 0) {
           EXPECT_EQ(held.tool.pose.position, plain.tool.pose.position);

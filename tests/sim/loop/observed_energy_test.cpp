@@ -20,7 +20,7 @@ ToolState run_spring(ObservedEnergy& observed, double damping, double position, 
     const double x = tool.pose.position.x();
     observed.move(tool);
     const Vec3 force{-kK * x - damping * tool.velocity.x(), 0, 0};
-    observed.answer(force, {0.5 * kK * x * x, Vec3::Zero()});
+    observed.answer(tool, force, {0.5 * kK * x * x, Vec3::Zero()});
     if (k + 1 < rows) leapfrog(tool, force, kMass, kDt);
   }
   return tool;
@@ -62,7 +62,7 @@ TEST(ObservedEnergy, TheRotationPutsInWhatItDoesAgainstTheMoment) {
     if (k == 0) {
       EXPECT_TRUE(observed.first());
     }
-    observed.answer(Vec3::Zero(), {2.0, moment});
+    observed.answer(tool, Vec3::Zero(), {2.0, moment});
   }
   EXPECT_NEAR(observed.energy(), 2.0 - 3.0 * 0.5, 1e-14);  // ten turns, each rounded to 1e-16
 }
@@ -75,7 +75,7 @@ TEST(ObservedEnergy, AMomentThatAppearsOrGoesCountsForHalfATurn) {
     ToolState tool;
     tool.pose.axis = {std::sin(angle), 0, -std::cos(angle)};
     observed.move(tool);
-    observed.answer(Vec3::Zero(), {0.0, {0, moment, 0}});
+    observed.answer(tool, Vec3::Zero(), {0.0, {0, moment, 0}});
     angle += 0.1;
   };
   row(0.0);
