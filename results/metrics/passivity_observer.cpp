@@ -2,6 +2,17 @@
 
 namespace hapbench {
 
+void PassivityObserver::on_step(const StepRecord& record) noexcept {
+  if (observed_.rests(record.force.rendered, record.springs)) return observed_.rest(record.tool);
+  observed_.move(record.tool);
+  observed_.answer(record.tool, record.force.rendered, record.springs);
+  const double energy = observed_.energy();
+  if (rows_ && !(energy < metrics_.energy_min)) return;
+  metrics_.energy_min = energy;
+  metrics_.time_of_min = record.time;
+  rows_ = true;
+}
+
 std::optional<PassivityMetrics> PassivityObserver::metrics() const noexcept {
   if (!rows_) return std::nullopt;
   PassivityMetrics metrics = metrics_;

@@ -27,15 +27,7 @@ class PassivityObserver final : public Observer {
   explicit PassivityObserver(double dt) : observed_(dt) {}
 
   bool wants_springs() const noexcept override { return true; }
-  void on_step(const StepRecord& record) noexcept override {
-    observed_.move(record.tool);
-    observed_.answer(record.tool, record.force.rendered, record.springs);
-    const double energy = observed_.energy();
-    if (rows_ && !(energy < metrics_.energy_min)) return;
-    metrics_.energy_min = energy;
-    metrics_.time_of_min = record.time;
-    rows_ = true;
-  }
+  void on_step(const StepRecord& record) noexcept override;
 
   /// Of the rows so far; none without any.
   std::optional<PassivityMetrics> metrics() const noexcept;

@@ -36,8 +36,8 @@ class ObservedEnergy {
   /// What is rendered in this row, to the tool of `move`.
   void answer(const ToolState& tool, const Vec3& rendered, const SpringState& springs) noexcept {
     if (first_) energy_ = springs.energy;
-    force_acts_ = rendered != Vec3::Zero();
-    moment_acts_ = springs.moment != Vec3::Zero();
+    force_acts_ = !is_zero(rendered);
+    moment_acts_ = !is_zero(springs.moment);
     if (force_acts_) {
       force_ = rendered;
       velocity_ = tool.velocity;
@@ -46,6 +46,18 @@ class ObservedEnergy {
       moment_ = springs.moment;
       energy_ -= 0.5 * moment_.dot(turned());
     }
+  }
+
+  /// Whether the last row and this one render neither force nor moment.
+  bool rests(const Vec3& rendered, const SpringState& springs) const noexcept {
+    return begun_ && !force_acts_ && !moment_acts_ && is_zero(rendered) && is_zero(springs.moment);
+  }
+  /// Instead of `move` and `answer` in rows that rest: the same, cheaper.
+  void rest(const ToolState& tool) noexcept {
+    first_ = false;
+    now_ = !now_;
+    axis_[now_] = tool.pose.axis;
+    turn_is_known_ = false;
   }
 
   double energy() const { return energy_; }  ///< E [J]; between `move` and `answer` without what the row's moment does
@@ -58,6 +70,9 @@ class ObservedEnergy {
   }
 
  private:
+  /// Without branches, unlike Eigen's.
+  static bool is_zero(const Vec3& v) noexcept { return (v.x() == 0.0) & (v.y() == 0.0) & (v.z() == 0.0); }
+
   double dt_;
   double energy_ = 0.0;
   bool begun_ = false;

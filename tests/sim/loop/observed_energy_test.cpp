@@ -89,6 +89,27 @@ TEST(ObservedEnergy, AMomentThatAppearsOrGoesCountsForHalfATurn) {
   EXPECT_NEAR(observed.energy(), 0.4, 1e-15);
 }
 
+/// A moment after a rest is turned against from the row before, as without the short cut.
+TEST(ObservedEnergy, ARowOfRestIsARowWithoutForceAndMoment) {
+  ObservedEnergy resting(kDt), asked(kDt);
+  for (int k = 0; k < 30; ++k) {
+    ToolState tool{{Vec3::Zero(), {std::sin(0.1 * k), 0, -std::cos(0.1 * k)}}, {1.0, 0.1 * k, 0}};
+    const bool acts = k % 7 == 3 || k % 7 == 4;
+    const Vec3 force = acts ? Vec3(2, 1, 0) : Vec3(0, 0, 0);
+    const SpringState springs{0.0, acts ? Vec3(0, 1.0 + k, 0) : Vec3(0, 0, 0)};
+    EXPECT_EQ(resting.rests(force, springs), k != 0 && !acts && k % 7 != 5);
+    if (resting.rests(force, springs)) {
+      resting.rest(tool);
+    } else {
+      resting.move(tool);
+      resting.answer(tool, force, springs);
+    }
+    asked.move(tool);
+    asked.answer(tool, force, springs);
+    EXPECT_EQ(resting.energy(), asked.energy());
+  }
+}
+
 TEST(ObservedEnergy, ResetForgetsEverything) {
   ObservedEnergy observed(kDt), fresh(kDt);
   run_spring(observed, 3.0, 0.01, -0.2, 50);
