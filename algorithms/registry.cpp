@@ -19,6 +19,7 @@
 #include "algorithms/laws/summation.hpp"
 #include "algorithms/laws/tandpasta.hpp"
 #include "algorithms/laws/virtual_coupling.hpp"
+#include "algorithms/passivity_controller.hpp"
 #include "algorithms/penalty_rendering.hpp"
 #include "algorithms/points/gradient_reduction.hpp"
 #include "algorithms/points/local_average.hpp"
@@ -56,7 +57,8 @@ constexpr DepthModelEntry kDepthModels[] = {
     {&kContinuousNormalProjectionDepthInfo, make_continuous_normal_projection_depth},
 };
 
-constexpr const ModelInfo* kStages[] = {&kLocalAverageInfo, &kGradientReductionInfo, &kDampingAndLimitsInfo};
+constexpr const ModelInfo* kStages[] = {&kLocalAverageInfo, &kGradientReductionInfo, &kDampingAndLimitsInfo,
+                                        &kPassivityControllerInfo};
 
 template <class Entry>
 const Entry* find(std::span<const Entry> table, std::string_view name) {
@@ -96,7 +98,9 @@ RenderingConfig with_fixed_stages(RenderingConfig config) {
 std::unique_ptr<ForceAlgorithm> make_algorithm(const RenderingConfig& config) {
   const AlgorithmEntry* entry = find_algorithm(config.algorithm);
   if (entry == nullptr) throw std::invalid_argument("unknown algorithm " + config.algorithm);
-  return entry->make(with_fixed_stages(config));
+  auto algorithm = entry->make(with_fixed_stages(config));
+  if (!config.passivity_controller) return algorithm;
+  return std::make_unique<PassivityController>(std::move(algorithm), config);
 }
 
 }  // namespace hapbench

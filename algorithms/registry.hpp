@@ -39,7 +39,8 @@ const DepthModelEntry* find_depth_model(std::string_view name);
 /// `config` with what its algorithm fixes put in place: depth model and reduction. Precondition: the name is known.
 RenderingConfig with_fixed_stages(RenderingConfig config);
 
-/// The algorithm `config` names, on the stages it fixes. Throws std::invalid_argument for unknown names.
+/// The algorithm `config` names, on the stages it fixes, in a passivity controller if asked for. Throws
+/// std::invalid_argument for unknown names.
 std::unique_ptr<ForceAlgorithm> make_algorithm(const RenderingConfig& config);
 
 }  // namespace hapbench

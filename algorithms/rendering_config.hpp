@@ -37,6 +37,8 @@ struct RenderingConfig {
   std::optional<double> max_force;         ///< F_max [N]
   std::optional<double> virtual_coupling;  ///< K_vc [N/m]; off: K
 
+  bool passivity_controller = false;  ///< around the algorithm
+
   Skips skips = Skips::taken;  ///< stages without contacts, the reduction of one, friction with coefficients of zero
 };
 

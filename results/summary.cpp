@@ -49,6 +49,14 @@ ordered_json metrics_json(const Metrics& m) {
           {"final_position_m", any ? ordered_json({p.x(), p.y(), p.z()}) : ordered_json(nullptr)}};
 }
 
+ordered_json passivity_json(const std::optional<PassivityMetrics>& m) {
+  const auto if_any = [&m](auto value) { return number_or_null(m ? std::optional(value(*m)) : std::nullopt); };
+  return {{"energy_min_J", if_any([](const auto& p) { return p.energy_min; })},
+          {"time_of_min_s", if_any([](const auto& p) { return p.time_of_min; })},
+          {"energy_end_J", if_any([](const auto& p) { return p.energy_end; })},
+          {"net_created_J", if_any([](const auto& p) { return p.net_created(); })}};
+}
+
 ordered_json event_json(const EnergyEvent& e) {
   return {{"step", e.step},
           {"time_s", number_or_null(e.time)},
@@ -122,6 +130,7 @@ ordered_json work_json(const RunWork& work) {
           {"steps_skipped", work.steps_skipped},
           {"iterations", work.algorithm.iterations},
           {"points_dropped", work.algorithm.points_dropped},
+          {"steps_controlled", work.algorithm.steps_controlled},
           {"allocations", work.allocations}};
 }
 
@@ -141,7 +150,8 @@ ordered_json summary_json(const RunSummary& run) {
                        {"steps", run.result.rows},
                        {"duration_s", number_or_null(run.duration)},
                        {"divergence", divergence_json(run.result)},
-                       {"metrics", metrics_json(run.metrics)}};
+                       {"metrics", metrics_json(run.metrics)},
+                       {"passivity", passivity_json(run.passivity)}};
   if (run.energy) json["energy"] = energy_json(*run.energy);
   if (run.ideal_trajectory) json["ideal_trajectory"] = ideal_trajectory_json(*run.ideal_trajectory);
   if (run.targets) json["targets"] = targets_json(*run.targets);
@@ -174,7 +184,7 @@ ordered_json boundable_metrics(const RunSummary& run) {
     const double coordinate = run.metrics.final_position[i];
     out[std::string("final_position_m.") + axes[i]] = any ? number_or_null(coordinate) : ordered_json(nullptr);
   }
-  for (const char* section : {"energy", "ideal_trajectory", "targets"}) {
+  for (const char* section : {"passivity", "energy", "ideal_trajectory", "targets"}) {
     if (summary.contains(section)) flatten(summary[section], section, out);
   }
   return out;

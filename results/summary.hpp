@@ -9,6 +9,7 @@
 #include "results/metrics/energy_ledger.hpp"
 #include "results/metrics/ideal_trajectory.hpp"
 #include "results/metrics/metrics.hpp"
+#include "results/metrics/passivity_observer.hpp"
 #include "results/metrics/target_metrics.hpp"
 #include "results/provenance.hpp"
 #include "sim/loop/simulation.hpp"
@@ -31,6 +32,7 @@ struct RunSummary {
   bool expected = false;  ///< the outcome is the one the scenario expects
   double duration = 0.0;  ///< simulated time: rows x dt [s]
   Metrics metrics;
+  std::optional<PassivityMetrics> passivity;               ///< none without rows
   std::optional<EnergyMetrics> energy;                     ///< when the scenario asks for it
   std::optional<IdealTrajectoryMetrics> ideal_trajectory;  ///< when the scenario asks for it
   std::optional<std::vector<PlaceMetrics>> targets;        ///< of a tracking hand
@@ -44,9 +46,9 @@ struct RunSummary {
 nlohmann::ordered_json summary_json(const RunSummary& run);
 
 /// The numbers of a summary that a scenario's `expect` may bound, by name: those of "metrics" under their own names,
-/// those of the sections "energy", "ideal_trajectory" and "targets", which not every run has, with dots between the
-/// keys, as in "energy.created_sum_J" or "targets.0.success_rate.mean", and the final position's coordinates, as
-/// "final_position_m.x". Null for none.
+/// those of "passivity" and of the sections "energy", "ideal_trajectory" and "targets", which not every run has, with
+/// dots between the keys, as in "energy.created_sum_J" or "targets.0.success_rate.mean", and the final position's
+/// coordinates, as "final_position_m.x". Null for none.
 nlohmann::ordered_json boundable_metrics(const RunSummary& run);
 std::string summary_text(const RunSummary& run);
 

@@ -1,6 +1,5 @@
 #include "algorithms/laws/force_law.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "sim/core/simd.hpp"
@@ -25,13 +24,17 @@ Vec3 gradient_sum(const ContactBuffer& contacts) noexcept {
 }
 
 Vec3 mean_arm(const ContactBuffer& contacts, const Vec3& tip) noexcept {
-  Vec3 arms = Vec3::Zero();
-  double weights = 0.0;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    arms += contacts.weight[i] * (contacts.point(i) - tip);
-    weights += contacts.weight[i];
+  using simd::load, simd::Pack;
+  Pack x(0.0), y(0.0), z(0.0), weights(0.0);
+  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    const Pack weight = load(&contacts.weight[i]);  // zero in the padding
+    x += weight * (load(&contacts.x[i]) - Pack(tip.x()));
+    y += weight * (load(&contacts.y[i]) - Pack(tip.y()));
+    z += weight * (load(&contacts.z[i]) - Pack(tip.z()));
+    weights += weight;
   }
-  return weights > 0.0 ? Vec3(arms / weights) : Vec3::Zero();
+  const double sum = simd::sum(weights);
+  return sum > 0.0 ? Vec3(Vec3(simd::sum(x), simd::sum(y), simd::sum(z)) / sum) : Vec3::Zero();
 }
 
 LawForce weighted_force(const ContactBuffer& contacts, double K) noexcept {
@@ -39,13 +42,19 @@ LawForce weighted_force(const ContactBuffer& contacts, double K) noexcept {
 }
 
 SpringState ForceLaw::spring_state(const ContactBuffer& contacts, const Vec3&, const Vec3& tip) const noexcept {
-  SpringState state;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const Vec3 force = -K_ * contacts.weight[i] * contacts.depth[i] * contacts.gradient(i);
-    state.energy += 0.5 * K_ * contacts.weight[i] * contacts.depth[i] * contacts.depth[i];
-    state.moment += (contacts.point(i) - tip).cross(force);
+  using simd::load, simd::Pack;
+  const Pack tip_x(tip.x()), tip_y(tip.y()), tip_z(tip.z());
+  Pack energy(0.0), mx(0.0), my(0.0), mz(0.0);
+  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    const Pack d = load(&contacts.depth[i]), cd = load(&contacts.weight[i]) * d;
+    const Pack fx = cd * load(&contacts.ux[i]), fy = cd * load(&contacts.uy[i]), fz = cd * load(&contacts.uz[i]);
+    const Pack x = load(&contacts.x[i]) - tip_x, y = load(&contacts.y[i]) - tip_y, z = load(&contacts.z[i]) - tip_z;
+    energy += cd * d;
+    mx += y * fz - z * fy;
+    my += z * fx - x * fz;
+    mz += x * fy - y * fx;
   }
-  return state;
+  return {0.5 * K_ * simd::sum(energy), -K_ * Vec3(simd::sum(mx), simd::sum(my), simd::sum(mz))};
 }
 
 Vec3 ForceLaw::turning_velocity(const ContactBuffer& contacts, const Mat3&, const ToolState& tool) const noexcept {

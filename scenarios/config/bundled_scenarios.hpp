@@ -10,7 +10,7 @@ namespace hapbench {
 /// A bundled scenario.
 struct BundledScenario {
   std::string name;   ///< file name without extension
-  std::string group;  ///< thesis, limits, examples
+  std::string group;  ///< thesis, limits, beyond, examples
   std::filesystem::path file;
 };
 

@@ -93,6 +93,9 @@ CodecPtr<RenderingFields> rendering_codec() {
   rendering->optional(
       "virtual_coupling_N_per_m", [](auto& r) -> auto& { return r.config.virtual_coupling; },
       nullable(number({0.0, 1e12, "N/m", true})), "K_vc of algorithm virtual_coupling; null: K");
+  rendering->optional(
+      "passivity_controller", [](auto& r) -> bool& { return r.config.passivity_controller; }, boolean(),
+      "adaptive damping that lets the algorithm create no energy");
   return rendering;
 }
 

@@ -35,6 +35,7 @@ class Bench {
     summary.result = trial.result;
     summary.duration = static_cast<double>(trial.result.rows) * scenario_.time.step;
     summary.metrics = trial.metrics;
+    summary.passivity = trial.passivity;
     summary.energy = trial.energy;
     return summary;
   }

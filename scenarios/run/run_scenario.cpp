@@ -93,6 +93,7 @@ RunWork merged_work(const std::vector<TrialResult>& trials) {
     all.steps_skipped += trial.work.steps_skipped;
     all.algorithm.iterations += trial.work.algorithm.iterations;
     all.algorithm.points_dropped += trial.work.algorithm.points_dropped;
+    all.algorithm.steps_controlled += trial.work.algorithm.steps_controlled;
     all.allocations += trial.work.allocations;
   }
   return all;
@@ -101,13 +102,18 @@ RunWork merged_work(const std::vector<TrialResult>& trials) {
 RunSummary summarise(const Scenario& scenario, const std::vector<TrialResult>& trials,
                      const std::vector<TargetRow>& targets) {
   std::vector<Metrics> metrics;
-  for (const TrialResult& trial : trials) metrics.push_back(trial.metrics);
+  std::vector<std::optional<PassivityMetrics>> passivity;
+  for (const TrialResult& trial : trials) {
+    metrics.push_back(trial.metrics);
+    passivity.push_back(trial.passivity);
+  }
   RunSummary summary;
   summary.name = scenario.name;
   summary.algorithm = scenario.rendering.config.algorithm;
   summary.result = merged_result(trials);
   summary.duration = static_cast<double>(summary.result.rows) * scenario.time.step;
   summary.metrics = merged(metrics);
+  summary.passivity = merged(passivity);
   if (trials.size() == 1) {
     summary.energy = trials.front().energy;
     summary.ideal_trajectory = trials.front().ideal_trajectory;

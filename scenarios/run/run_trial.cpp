@@ -26,8 +26,10 @@ Mat3 start_shaping(ContactBuffer& contacts) noexcept {
 /// Those who watch a trial: what the scenario asks for and nothing else.
 class TrialObservers {
  public:
-  TrialObservers(const Scenario& scenario, const SimulationParts& parts, Trial trial) : metrics_(scenario.time.step) {
+  TrialObservers(const Scenario& scenario, const SimulationParts& parts, Trial trial)
+      : metrics_(scenario.time.step), passivity_(scenario.time.step) {
     observers_.push_back(&metrics_);
+    observers_.push_back(&passivity_);
     if (scenario.record.energy) {
       ledger_.emplace(*scenario.rendering.mass, scenario.time.step, parts.motion->position_is_free(),
                       parts.query->capacity(), scenario.integrator.type);
@@ -66,6 +68,7 @@ class TrialObservers {
   /// Hands over what was observed.
   void give(TrialResult& out) {
     out.metrics = metrics_.metrics();
+    out.passivity = passivity_.metrics();
     if (ledger_) out.energy = ledger_->metrics();
     if (ideal_) out.ideal_trajectory = ideal_->metrics();
     if (targets_) out.targets = targets_->rows();
@@ -79,6 +82,7 @@ class TrialObservers {
   }
 
   MetricsObserver metrics_;
+  PassivityObserver passivity_;
   std::optional<EnergyLedger> ledger_;
   std::optional<IdealTrajectoryObserver> ideal_;
   std::optional<TargetMetricsObserver> targets_;

@@ -17,6 +17,7 @@ namespace hapbench {
 struct TrialResult {
   SimulationResult result;
   Metrics metrics;
+  std::optional<PassivityMetrics> passivity;
   std::optional<EnergyMetrics> energy;
   std::optional<IdealTrajectoryMetrics> ideal_trajectory;
   std::vector<TargetRow> targets;  ///< of a tracking hand

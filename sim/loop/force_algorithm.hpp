@@ -14,6 +14,7 @@ struct Scene {
   Tool tool;
   ContactQuery* query = nullptr;      ///< for algorithms that ask for contacts at a pose of their own; never null
   const PointShell* shell = nullptr;  ///< null for springs
+  double dt = 0.0005;                 ///< time step [s]
 };
 
 /// What an algorithm answers for one step.
@@ -30,6 +31,11 @@ struct SpringState {
   Vec3 moment = Vec3::Zero();  ///< of the spring forces on the tool about its tip centre [N m]; the device renders none
 };
 
+/// False when an algorithm's answer leaves nothing that could store energy: `spring_state` is zero then.
+inline bool has_springs(const ContactBuffer& rendered, const RenderedForce& force) noexcept {
+  return !rendered.empty() || !force.spring.isZero(0.0);
+}
+
 /// How the rendered force answers small motions of the tool, for integrators that look ahead:
 /// df = -stiffness dp - damping dv.
 struct ForceJacobian {
@@ -39,9 +45,10 @@ struct ForceJacobian {
 
 /// What an algorithm has done since its last reset.
 struct AlgorithmWork {
-  std::uint64_t iterations = 0;      ///< of the law's inner solver (shaping, Newton), over all steps
-  std::uint64_t points_dropped = 0;  ///< contacts a full buffer refused (reduction's max_points)
-  SearchWork search = {};            ///< of queries of its own, at poses of its own
+  std::uint64_t iterations = 0;        ///< of the law's inner solver (shaping, Newton), over all steps
+  std::uint64_t points_dropped = 0;    ///< contacts a full buffer refused (reduction's max_points)
+  SearchWork search = {};              ///< of queries of its own, at poses of its own
+  std::uint64_t steps_controlled = 0;  ///< in which a passivity controller changed the force
 };
 
 /// A force algorithm: contacts and the tool's state to a force on the tool. One object is the state of one run.
@@ -53,6 +60,9 @@ class ForceAlgorithm {
   virtual void prepare(const Scene& scene) = 0;
   /// Back to t = 0, bit for bit.
   virtual void reset() noexcept = 0;
+  /// Once before the `compute` of each row, for algorithms that want it: f_in, which drives the tool besides f_render
+  /// over the coming step [N].
+  virtual void take_input(const Vec3& input) noexcept { static_cast<void>(input); }
   /// One step, or one state within it: some integrators (sim/loop/integrator.hpp) ask several times a step, the first
   /// time at the row. `contacts` holds the colliding points at the tool's pose; on return it holds the rendered ones,
   /// with depth, gradient and weight.
@@ -64,6 +74,8 @@ class ForceAlgorithm {
   virtual ForceJacobian jacobian() const noexcept = 0;
   /// True when `compute` reads the tool's angular velocity; otherwise nobody computes it.
   virtual bool wants_angular_velocity() const noexcept { return false; }
+  /// True when `take_input` is to be called.
+  virtual bool wants_input() const noexcept { return false; }
   virtual AlgorithmWork work() const noexcept { return {}; }
 };
 

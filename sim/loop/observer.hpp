@@ -21,7 +21,7 @@ struct StepRecord {
   std::size_t colliding = 0;                ///< colliding points before any point stage
   const ContactBuffer* rendered = nullptr;  ///< contacts the law saw; valid during on_step only
   RatioRange ratio;                         ///< over the rendered contacts; filled only if an observer wants it
-  SpringState springs;                      ///< filled only if an observer wants energy
+  SpringState springs;                      ///< filled only if an observer wants springs or energy
   std::optional<DeviceEnergy> device;       ///< filled only if an observer wants energy
 };
 
@@ -33,6 +33,8 @@ class Observer {
   virtual bool wants_ratio() const noexcept { return false; }
   /// True when on_step reads `springs` and `device`; otherwise nobody computes them.
   virtual bool wants_energy() const noexcept { return false; }
+  /// True when on_step reads `springs`.
+  virtual bool wants_springs() const noexcept { return wants_energy(); }
   virtual void on_step(const StepRecord& record) noexcept = 0;
 };
 

@@ -34,13 +34,15 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
       parts_(std::move(parts)),
       observers_(std::move(observers)),
       contacts_(parts_.query->capacity()) {
-  ratio_wanted_ = energy_wanted_ = config_.skips == Skips::off;
+  ratio_wanted_ = springs_wanted_ = energy_wanted_ = config_.skips == Skips::off;
   for (const Observer* observer : observers_) {
     ratio_wanted_ |= observer->wants_ratio();
+    springs_wanted_ |= observer->wants_springs();
     energy_wanted_ |= observer->wants_energy();
   }
+  input_wanted_ = parts_.algorithm->wants_input();
   angular_velocity_wanted_ = parts_.algorithm->wants_angular_velocity();
-  parts_.algorithm->prepare({parts_.tool, parts_.query.get(), parts_.shell.get()});
+  parts_.algorithm->prepare({parts_.tool, parts_.query.get(), parts_.shell.get(), config_.dt});
   reset();
 }
 
@@ -97,15 +99,14 @@ bool Simulation::step() noexcept {
 
   parts_.query->contacts_at(tool_.pose, contacts_);
   r.colliding = contacts_.size();
+  if (input_wanted_) parts_.algorithm->take_input(r.hand.input);
   parts_.algorithm->compute(tool_, contacts_, r.force);
   if (!check_bounds()) return true;
 
   r.rendered = &contacts_;
   if (ratio_wanted_) r.ratio = ratio_range(contacts_, r.force.S);
-  if (energy_wanted_) {
-    r.springs = parts_.algorithm->spring_state(tool_, contacts_);
-    r.device = parts_.device->energy();
-  }
+  if (springs_wanted_) note_springs();
+  if (energy_wanted_) r.device = parts_.device->energy();
   for (Observer* observer : observers_) observer->on_step(r);
   ++result_.rows;
   if (check_stop_conditions()) return true;
@@ -125,6 +126,16 @@ SimulationResult Simulation::run() noexcept {
   while (step()) {
   }
   return result_;
+}
+
+void Simulation::note_springs() noexcept {
+  if (has_springs(contacts_, record_.force) || config_.skips == Skips::off) {
+    record_.springs = parts_.algorithm->spring_state(tool_, contacts_);
+    springs_noted_ = true;
+  } else if (springs_noted_) {
+    record_.springs = {};
+    springs_noted_ = false;
+  }
 }
 
 bool Simulation::check_bounds() noexcept {

@@ -97,6 +97,7 @@ class Simulation {
 
   void move_tool_by_force() noexcept;
   void move_tool_by_script() noexcept;
+  void note_springs() noexcept;
   bool check_bounds() noexcept;
   bool check_stop_conditions() noexcept;
   void end(Outcome outcome) noexcept;
@@ -105,7 +106,9 @@ class Simulation {
   SimulationParts parts_;
   std::vector<Observer*> observers_;
   bool ratio_wanted_ = false;
+  bool springs_wanted_ = false;
   bool energy_wanted_ = false;
+  bool input_wanted_ = false;
   bool angular_velocity_wanted_ = false;
   ContactBuffer contacts_;
 
@@ -114,6 +117,7 @@ class Simulation {
   ToolState tool_;
   StepRecord record_;
   RenderedForce within_step_;  ///< of the last state an integrator asked about
+  bool springs_noted_ = false;  ///< record_.springs are not zero
   SimulationResult result_;
 };
 

@@ -27,7 +27,7 @@ TEST(Registry, ListsTheDepthModelsAndStages) {
   }
   std::set<std::string> names;
   for (const ModelInfo* stage : stages()) names.insert(stage->name);
-  EXPECT_EQ(names, (std::set<std::string>{"damping_and_limits", "local_average", "reduction"}));
+  EXPECT_EQ(names, (std::set<std::string>{"damping_and_limits", "local_average", "passivity_controller", "reduction"}));
 }
 
 TEST(Registry, EveryListedNameIsFoundAndBuilds) {

@@ -37,9 +37,10 @@ TimedRun::TimedRun(const std::string& name, Skips skips) {
   const SimulationConfig config = simulation_config(scenario, skips);
   steps_ = config.steps;
   metrics_ = std::make_unique<MetricsObserver>(config.dt);
+  passivity_ = std::make_unique<PassivityObserver>(config.dt);
   recorder_ = std::make_unique<MemoryRecorder>(steps_);
   simulation_ = std::make_unique<Simulation>(config, assemble(scenario, block_shell(), {}, skips),
-                                             std::vector<Observer*>{metrics_.get(), recorder_.get()});
+                                             std::vector<Observer*>{metrics_.get(), passivity_.get(), recorder_.get()});
 }
 
 TimedRun::~TimedRun() = default;

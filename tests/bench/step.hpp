@@ -4,6 +4,7 @@
 #include <string>
 
 #include "results/metrics/metrics.hpp"
+#include "results/metrics/passivity_observer.hpp"
 #include "sim/loop/simulation.hpp"
 
 namespace hapbench::bench {
@@ -33,6 +34,7 @@ class TimedRun {
 
   std::uint64_t steps_ = 0;
   std::unique_ptr<MetricsObserver> metrics_;
+  std::unique_ptr<PassivityObserver> passivity_;
   std::unique_ptr<MemoryRecorder> recorder_;
   std::unique_ptr<Simulation> simulation_;
 };

@@ -83,6 +83,7 @@ void print_runs(const AlgorithmEntry& algorithm, const std::string& depth_model)
       config.depth_model = depth_model;
       config.local_average = average;
       if (reduce) config.reduction = ReductionConfig{0.99, 20, 3};
+      config.passivity_controller = average && reduce;  // once is enough
       const std::string name = std::string(algorithm.info->name) + ' ' + depth_model + (average ? " averaged" : "") +
                                (reduce ? " reduced" : "");
       HashingObserver hash;

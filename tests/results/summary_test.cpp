@@ -31,9 +31,10 @@ RunSummary example() {
                  .speed_max = 0.5,
                  .final_position = {0.5, -0.25, 0.0},
                  .state_hash = 0x0123456789abcdefu};
+  run.passivity = PassivityMetrics{.energy_min = -0.25, .time_of_min = 0.125, .energy_end = 0.5};
   run.work = {.search = {.queries = 401, .points_tested = 5000, .lists_rebuilt = 7},
               .steps_skipped = 8,
-              .algorithm = {.iterations = 900, .points_dropped = 9},
+              .algorithm = {.iterations = 900, .points_dropped = 9, .steps_controlled = 3},
               .allocations = 0};
   run.provenance = {.version = "1.2.3",
                     .commit = "abc-dirty",
@@ -71,6 +72,12 @@ TEST(Summary, TextHoldsEveryField) {
     "speed_max_m_per_s": 0.5,
     "final_position_m": [0.5, -0.25, 0]
   },
+  "passivity": {
+    "energy_min_J": -0.25,
+    "time_of_min_s": 0.125,
+    "energy_end_J": 0.5,
+    "net_created_J": 0.25
+  },
   "state_hash": "0123456789abcdef",
   "work": {
     "queries": 401,
@@ -79,6 +86,7 @@ TEST(Summary, TextHoldsEveryField) {
     "steps_skipped": 8,
     "iterations": 900,
     "points_dropped": 9,
+    "steps_controlled": 3,
     "allocations": 0
   },
   "provenance": {
@@ -133,6 +141,14 @@ TEST(Summary, OfNoRowsHasNeitherMeansNorAFinalPosition) {
   EXPECT_TRUE(metrics["rendered_mean"].is_null());
   EXPECT_TRUE(metrics["final_position_m"].is_null());
   EXPECT_EQ(metrics["colliding_max"], 0);
+}
+
+TEST(Summary, OfNoRowsHasNoObservedEnergy) {
+  RunSummary run = example();
+  run.passivity.reset();
+  EXPECT_TRUE(summary_json(run)["passivity"]["net_created_J"].is_null());
+  EXPECT_TRUE(boundable_metrics(run)["passivity.net_created_J"].is_null());
+  EXPECT_EQ(boundable_metrics(example())["passivity.net_created_J"], 0.25);
 }
 
 TEST(Summary, GivesTheFinalPositionToExpectationsByCoordinate) {

@@ -18,6 +18,8 @@ constexpr double kSpacings[] = {0.0004, 0.0002, 0.0001, 0.00005, 0.000025};
 /// The algorithms whose angular damping is compared with that of the tip's velocity alone: the two that the thesis
 /// compares.
 constexpr const char* kAngularlyDamped[] = {"original_averaging", "shaped_stiffness"};
+/// Those that create energy when a peg sticks in a hole; the passivity controller leaves the others alone.
+constexpr const char* kCreateEnergy[] = {"original_averaging", "summation", "tandpasta", "normal_projection"};
 
 const std::vector<std::string> kIdealColumns = {"ideal_height_error_rms_m", "ideal_height_error_max_m",
                                                 "ideal_lateral_error_rms_m", "interpenetration_max_m",
@@ -72,18 +74,30 @@ PrecisionResult study_algorithms(const Scenario& given, const PrecisionOptions& 
   PrecisionResult result;
   result.columns = kIdealColumns;
   result.timed = "step";
-  const std::size_t all = algorithms().size() + std::size(kAngularlyDamped);
-  const auto add_row = [&](const std::string& algorithm, bool angular_damping) {
+  const std::size_t all = algorithms().size() + std::size(kAngularlyDamped) + std::size(kCreateEnergy);
+  const auto add_row = [&](std::string setting, const RenderingConfig& config) {
     Scenario run = scenario;
-    run.rendering.config.algorithm = algorithm;
-    run.rendering.config.angular_damping = angular_damping;
+    run.rendering.config = config;
     fill_defaults(run);  // puts the stages the algorithm fixes in place
-    result.rows.push_back(
-        ideal_row(algorithm + (angular_damping ? " + angular_damping" : ""), run, shell, options.repetitions));
+    result.rows.push_back(ideal_row(std::move(setting), run, shell, options.repetitions));
     options.progress(result.rows.size(), all);
   };
-  for (const AlgorithmEntry& algorithm : algorithms()) add_row(algorithm.info->name, false);
-  for (const char* algorithm : kAngularlyDamped) add_row(algorithm, true);
+  RenderingConfig config = scenario.rendering.config;
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    config.algorithm = algorithm.info->name;
+    add_row(config.algorithm, config);
+  }
+  for (const char* algorithm : kAngularlyDamped) {
+    config.algorithm = algorithm;
+    config.angular_damping = true;
+    add_row(config.algorithm + " + angular_damping", config);
+  }
+  config.angular_damping = false;
+  for (const char* algorithm : kCreateEnergy) {
+    config.algorithm = algorithm;
+    config.passivity_controller = true;
+    add_row(config.algorithm + " + passivity_controller", config);
+  }
   return result;
 }
 

@@ -87,6 +87,7 @@ struct Stages {
   const char* name;
   bool local_average;
   std::optional<ReductionConfig> reduction;
+  bool controlled = false;
 };
 const Stages kStages[] = {
     {"plain", false, {}},
@@ -94,6 +95,7 @@ const Stages kStages[] = {
     {"shuffled_and_reduced", false, ReductionConfig{0.995, 5, 42}},
     {"averaged", true, {}},
     {"averaged_and_reduced", true, ReductionConfig{}},
+    {"controlled", false, ReductionConfig{}, true},
 };
 
 struct Instance {
@@ -173,6 +175,7 @@ TEST_P(NoAllocation, InAStepOrAReset) {
   config.depth_model = GetParam().depth_model;
   config.local_average = GetParam().stages->local_average;
   config.reduction = GetParam().stages->reduction;
+  config.passivity_controller = GetParam().stages->controlled;
   config.mu_s = 5.0;
   config.mu_f = 10.0;
   config.angular_damping = true;

@@ -51,6 +51,7 @@ TEST(Defaults, ThatHoldEverywhere) {
                    {"/rendering/iterations", "3"},
                    {"/rendering/depth_model", "\"surface_normal\""},
                    {"/rendering/local_average", "false"},
+                   {"/rendering/passivity_controller", "false"},
                    {"/rendering/stiffness_N_per_m", "20000.0"},
                    {"/rendering/damping_ratio", "0.7"},
                    {"/rendering/damping_N_s_per_m", "null"},

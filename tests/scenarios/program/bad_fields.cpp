@@ -72,6 +72,8 @@ std::vector<BadInput> wrong_values() {
        "allowed: an integer 0 ... 100000"},
       {"AngularDampingAsNumber", plane("/rendering", R"({"angular_damping": 5})"), "/rendering/angular_damping",
        "got 5; allowed: true or false"},
+      {"PassivityControllerAsText", plane("/rendering", R"({"passivity_controller": "on"})"),
+       "/rendering/passivity_controller", "got \"on\"; allowed: true or false"},
       {"LocalAverageAsNumber", plane("/rendering", R"({"local_average": 1})"), "/rendering/local_average",
        "got 1; allowed: true or false"},
       {"ReductionThresholdTooLarge", plane("/rendering", R"({"reduction": {"threshold": 1.5}})"),

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <memory>
+
+#include "algorithms/info.hpp"
+#include "algorithms/rendering_config.hpp"
+#include "sim/loop/observed_energy.hpp"
+
+namespace hapbench {
+
+extern const ModelInfo kPassivityControllerInfo;
+
+/// A passivity controller around any force algorithm, after Hannaford and Ryu (2002) but looking one step ahead: the
+/// tool's mass and f_in are known, so the work of a force over the coming step is known before it is rendered.
+///
+/// With w = v + f_in dt / (2 M) and u = w + f dt / M, a force f gives away M/2 (|u|^2 - |w|^2) of the observed energy E
+/// by translation. If that leaves less than nothing, the controller renders
+///
+///   s f - alpha w,  alpha = (1 - s) M / dt,
+///
+/// which makes s u of u, with the largest s in [0, 1] that leaves nothing: of all forces that do, the one nearest to f.
+/// It is adaptive damping, alpha of M / dt (s = 0) at most, which stops the tool and never turns it round. Before that,
+/// the springs are weakened where the scripted rotation would draw more from their moment than E.
+///
+/// Guarantee, where the integrator is leapfrog and the position is free: translation never makes E negative, but for
+/// rounding. A law whose observed energy stays >= 0 without the controller is not touched, bit for bit, when the axis
+/// stays. What a changing rate of rotation or another integrator takes beyond the forecast, at most
+/// |m| |turn_k - turn_(k-1)| / 2 a step, stays owed and is taken back from the next steps in contact.
+///
+/// In free air it renders nothing, whatever is owed.
+class PassivityController final : public ForceAlgorithm {
+ public:
+  PassivityController(std::unique_ptr<ForceAlgorithm> algorithm, const RenderingConfig& config);
+
+  void prepare(const Scene& scene) override;
+  void reset() noexcept override;
+  void take_input(const Vec3& input) noexcept override;
+  /// f_spring and S are weakened like the springs they are of.
+  void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept override;
+  SpringState spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept override;
+  ForceJacobian jacobian() const noexcept override;
+  bool wants_input() const noexcept override { return true; }
+  bool wants_angular_velocity() const noexcept override { return algorithm_->wants_angular_velocity(); }
+  AlgorithmWork work() const noexcept override;
+
+ private:
+  void control(const ToolState& tool, const Vec3& force) noexcept;
+  void render(const ToolState& tool, RenderedForce& out) const noexcept;
+
+  std::unique_ptr<ForceAlgorithm> algorithm_;
+  double mass_;
+  std::optional<double> max_force_;
+  double dt_ = 0.0;
+  ObservedEnergy observed_{0.0};
+  bool at_row_ = false;  ///< the next `compute` is that of a row and not within a step
+  Vec3 input_ = Vec3::Zero();
+  SpringState springs_;  ///< as they are rendered
+  double share_ = 1.0;   ///< of the algorithm's force and springs
+  double alpha_ = 0.0;   ///< damping [N s/m]
+  std::uint64_t steps_controlled_ = 0;
+};
+
+}  // namespace hapbench

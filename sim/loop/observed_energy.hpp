@@ -1,0 +1,91 @@
+#pragma once
+
+#include "sim/loop/force_algorithm.hpp"
+#include "sim/tool/turn.hpp"
+
+namespace hapbench {
+
+/// The time-domain passivity observer (Hannaford and Ryu, 2002): the energy that a rendering has taken in and can still
+/// give back, with the tool's translation as one port and its scripted rotation as the other,
+///
+///   E_0 = E_spring(0),  E_(k+1) = E_k - f_render_k . (v_k + v_(k+1))/2 dt - (m_k + m_(k+1))/2 . turn_k
+///
+/// m: moment of the springs, turn_k: rotation vector from axis_k to axis_(k+1). The works are those of the energy
+/// ledger. A rendering that stores in springs and dissipates never has E_k < 0; max(0, -min E_k) is energy from
+/// nothing. Dissipation counts as taken in, so it can hide what is created later.
+///
+/// A row is `move`, then `answer`. Observer and controller share this code, so that they agree to the last bit.
+/// Without force and moment a row costs a few comparisons and the copy of an axis.
+class ObservedEnergy {
+ public:
+  explicit ObservedEnergy(double dt) : dt_(dt) {}
+
+  /// Back to t = 0.
+  void reset() noexcept { *this = ObservedEnergy(dt_); }
+
+  /// Moves on to the row in which the tool is in this state.
+  void move(const ToolState& tool) noexcept {
+    first_ = !begun_;
+    begun_ = true;
+    now_ = !now_;
+    axis_[now_] = tool.pose.axis;
+    turn_is_known_ = false;
+    if (force_acts_) energy_ -= force_.dot(0.5 * (velocity_ + tool.velocity) * dt_);
+    if (moment_acts_) energy_ -= 0.5 * moment_.dot(turned());
+  }
+  /// What is rendered in this row, to the tool of `move`.
+  void answer(const ToolState& tool, const Vec3& rendered, const SpringState& springs) noexcept {
+    if (first_) energy_ = springs.energy;
+    force_acts_ = !is_zero(rendered);
+    moment_acts_ = !is_zero(springs.moment);
+    if (force_acts_) {
+      force_ = rendered;
+      velocity_ = tool.velocity;
+    }
+    if (moment_acts_) {
+      moment_ = springs.moment;
+      energy_ -= 0.5 * moment_.dot(turned());
+    }
+  }
+
+  /// Whether the last row and this one render neither force nor moment.
+  bool rests(const Vec3& rendered, const SpringState& springs) const noexcept {
+    return begun_ && !force_acts_ && !moment_acts_ && is_zero(rendered) && is_zero(springs.moment);
+  }
+  /// Instead of `move` and `answer` in rows that rest: the same, cheaper.
+  void rest(const ToolState& tool) noexcept {
+    first_ = false;
+    now_ = !now_;
+    axis_[now_] = tool.pose.axis;
+    turn_is_known_ = false;
+  }
+
+  double energy() const { return energy_; }  ///< E [J]; between `move` and `answer` without what the row's moment does
+  bool first() const { return first_; }      ///< whether this is the first row, in which the springs' energy counts
+  /// The turn from the row before to this one [rad].
+  const Vec3& turned() noexcept {
+    if (!turn_is_known_) turn_ = first_ ? Vec3(Vec3::Zero()) : turn(axis_[!now_], axis_[now_]);
+    turn_is_known_ = true;
+    return turn_;
+  }
+
+ private:
+  /// Without branches, unlike Eigen's.
+  static bool is_zero(const Vec3& v) noexcept { return (v.x() == 0.0) & (v.y() == 0.0) & (v.z() == 0.0); }
+
+  double dt_;
+  double energy_ = 0.0;
+  bool begun_ = false;
+  bool first_ = false;
+  bool force_acts_ = false;
+  bool moment_acts_ = false;
+  bool turn_is_known_ = false;
+  bool now_ = false;                             ///< which of the two axes is that of this row
+  Vec3 axis_[2] = {Vec3::Zero(), Vec3::Zero()};  ///< this row's and the one before
+  Vec3 velocity_ = Vec3::Zero();                 ///< of the last row with force
+  Vec3 turn_ = Vec3::Zero();
+  Vec3 force_ = Vec3::Zero();
+  Vec3 moment_ = Vec3::Zero();
+};
+
+}  // namespace hapbench
