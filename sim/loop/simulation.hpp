@@ -116,7 +116,7 @@ class Simulation {
   bool ended_ = false;
   ToolState tool_;
   StepRecord record_;
-  RenderedForce within_step_;  ///< of the last state an integrator asked about
+  RenderedForce within_step_;   ///< of the last state an integrator asked about
   bool springs_noted_ = false;  ///< record_.springs are not zero
   SimulationResult result_;
 };

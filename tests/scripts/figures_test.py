@@ -68,6 +68,10 @@ def make_results(directory):
     name = "corner_continuous_normal_projection"
     hapbench("run", name, "--quiet", "--out", directory / "beyond" / name)
     hapbench("stability", "single_spring", "--quiet", "--out", directory / "stability")
+    hapbench(
+        *("compare", "rotate_in_hole_proxy", "--algorithms", "proxy,shaped_stiffness,exact_shaping", "--quiet"),
+        *("--set=time.duration_s=2", "--set=record.every=8", "--out", directory / "proxy"),
+    )
     for scene, scenario in (("peg", "tilt_sweep_shaped_stiffness"), ("wedge", "wedge_stiffness")):
         out = directory / "stiffness" / scene
         hapbench("compare", scenario, "--set=record.stiffness_tensor=true", "--quiet", "--out", out)

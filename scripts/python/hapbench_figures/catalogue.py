@@ -12,6 +12,7 @@ from . import (
     median_line,
     peg_in_hole,
     performance,
+    proxy,
     springs,
     stability,
     stiffness_fields,
@@ -65,6 +66,7 @@ FIGURES = (
     Figure("algorithms", None, "Every algorithm on the planar peg-in-hole", comparison.algorithms),
     Figure("discussion", None, "Cases of the thesis's discussion", comparison.discussion),
     Figure("stiffness", None, "Stiffness in every direction, all algorithms", stiffness_fields.of_all_algorithms),
+    Figure("proxy", None, "The drill turned in the hole, with a proxy and with shaping", proxy.rotated),
     Figure("precision", None, "Work against precision", performance.work_precision),
     Figure("latency", None, "Latency of a step", performance.latency),
     *(

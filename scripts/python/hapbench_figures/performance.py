@@ -78,10 +78,10 @@ def draw_curves(ax, rows, study, column, scale, time_column):
 def draw_algorithms(ax, rows, column, scale, time_column):
     error, time = scale * numbers(rows, column), 1e6 * numbers(rows, time_column)
     for i in np.flatnonzero(finished(rows, error, LARGEST_ERROR_MM)):
-        # "ALGORITHM + angular_damping" is a hollow mark.
+        # "ALGORITHM + angular_damping", or + passivity_controller, is a hollow mark.
         name, _, option = rows[i]["setting"].partition(" + ")
         look = style.look(name)
-        label = f"{look.label}, angular damping" if option else look.label
+        label = f"{look.label}, {option.replace('_', ' ')}" if option else look.label
         ax.plot(time[i], error[i], look.marker, color=look.colour, mfc="none" if option else None, ms=5, label=label)
     ax.legend(loc="upper left", fontsize=6, handletextpad=0.2, borderaxespad=0.1, labelspacing=0.3)
 
