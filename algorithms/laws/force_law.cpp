@@ -1,5 +1,6 @@
 #include "algorithms/laws/force_law.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "sim/core/simd.hpp"

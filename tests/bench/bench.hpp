@@ -12,7 +12,8 @@ void register_search();     ///< search/{brute_force,grid,neighbour_list}/{T1,T2
 void register_shaping();    ///< shaping/{matrix,tensor,exact}/{10,50,250,1000}
 void register_reduction();  ///< reduction/{50,250,1000}
 void register_laws();       ///< law/<algorithm>/{50,250,1000}
-void register_steps();      ///< step/{T1,T2,T3,unreduced_1000,free_air}
+void register_proxy();      ///< proxy/solve/T2
+void register_steps();      ///< step/{T1,T2,T2_proxy,T3,unreduced_1000,free_air}
 void register_shells();     ///< shell/{build,cache}
 void register_skips();      ///< skip/<what>/{taken,off}
 

@@ -14,7 +14,7 @@ int run_benchmarks(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   for (const auto register_group : {register_search, register_shaping, register_reduction, register_laws,
-                                    register_steps, register_shells, register_skips}) {
+                                    register_proxy, register_steps, register_shells, register_skips}) {
     register_group();
   }
   // No benchmark of a given filter is a mistake in the filter.
