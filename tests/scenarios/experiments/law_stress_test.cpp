@@ -33,6 +33,7 @@ TEST(LawStress, ReachesTheBoundsThatCanBeReached) {
   // = 1.
   for (const StressCounts& c : stress_laws(test::cases(20'000), 2, {2, ""})) {
     if (c.algorithm == "tandpasta" || c.algorithm == "original_averaging") continue;  // worst cases of rounding
+    if (c.algorithm == "proxy") continue;  // its bound is how far it can move in a step, which nothing makes it do
     EXPECT_GT(c.largest_share, 0.9) << c.algorithm;
     EXPECT_LE(c.largest_share, 1.0 + 1e-9) << c.algorithm;
   }
