@@ -14,14 +14,15 @@ class TimedRun::MemoryRecorder final : public Observer {
 
   bool wants_ratio() const noexcept override { return true; }
   void on_step(const StepRecord& r) noexcept override {
-    rows_[r.step] = {r.time,   r.tool,      r.force.rendered,   r.force.spring,    r.hand,
+    rows_[r.step] = {r.time,   r.tool.pose, r.tool.velocity,    r.force.rendered,  r.force.spring, r.hand,
                      r.handle, r.colliding, r.rendered->size(), r.force.depth_max, r.ratio};
   }
 
  private:
   struct Row {
     double time = 0.0;
-    ToolState tool;
+    ToolPose pose;
+    Vec3 velocity;
     Vec3 rendered, spring;
     MeasuredForce hand;
     HandleState handle;
