@@ -64,6 +64,7 @@ constexpr ClosedForm kClosedForms[] = {
     {"shaped_stiffness", shaped},
     {"tandpasta", sum},             // all springs fight alike, and sigma_E undoes that
     {"normal_projection", shaped},  // springs give the depths
+    {"continuous_normal_projection", shaped},
     {"exact_shaping", exactly_shaped},
     {"merged_shaping", exactly_shaped},  // a group for each face
     {"proxy", held},
