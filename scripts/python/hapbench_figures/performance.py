@@ -59,6 +59,8 @@ def draw_study(ax, results, study, column, label, scale, time_column, title):
     ax.set(xscale="log", yscale="log", title=title, ylabel=label, xlabel=time_label)
     if np.isfinite(ax.dataLim.get_points()).all():
         ax.set(xlim=decades(ax.dataLim.x0, ax.dataLim.x1), ylim=decades(ax.dataLim.y0, ax.dataLim.y1))
+    if study == "algorithms":  # room for the names
+        ax.set_xlim(left=ax.get_xlim()[0] / 50)
 
 
 def draw_curves(ax, rows, study, column, scale, time_column):
@@ -78,11 +80,10 @@ def draw_curves(ax, rows, study, column, scale, time_column):
 def draw_algorithms(ax, rows, column, scale, time_column):
     error, time = scale * numbers(rows, column), 1e6 * numbers(rows, time_column)
     for i in np.flatnonzero(finished(rows, error, LARGEST_ERROR_MM)):
-        # "ALGORITHM + angular_damping", or + passivity_controller, is a hollow mark.
-        name, _, option = rows[i]["setting"].partition(" + ")
-        look = style.look(name)
-        label = f"{look.label}, {option.replace('_', ' ')}" if option else look.label
-        ax.plot(time[i], error[i], look.marker, color=look.colour, mfc="none" if option else None, ms=5, label=label)
+        if " + " in rows[i]["setting"]:  # an algorithm with an option: nearly the same place
+            continue
+        look = style.look(rows[i]["setting"])
+        ax.plot(time[i], error[i], look.marker, color=look.colour, ms=5, label=look.label)
     ax.legend(loc="upper left", fontsize=6, handletextpad=0.2, borderaxespad=0.1, labelspacing=0.3)
 
 

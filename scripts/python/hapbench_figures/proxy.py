@@ -5,7 +5,7 @@ from . import style
 from .ideal_trajectory import draw_block
 
 ALGORITHMS = ("shaped_stiffness", "exact_shaping", "proxy")
-EVERY = 40  # rows
+EVERY = 160  # rows: a drawn mark of every row could not be told from its neighbours
 SETTLED = 0.5  # seconds: the drill starts above its place
 
 
@@ -33,13 +33,13 @@ def rotated(results):
     rows = rows_of(results, "proxy")
     order = np.argsort(rows["tilt_rad"])
     section.plot(1e3 * rows["ideal_lateral_m"][order], 1e3 * rows["ideal_height_m"][order], color=style.BLACK, lw=0.9)
-    height.axhline(-spring, color=style.BLACK, lw=0.7, ls="--")
-    style.note(height, 0.97, 0.97, f"dashed: {spring:.2g} mm, the spring itself", style.BLACK, ha="right")
+    height.axhline(-spring, color=style.BLACK, lw=0.7, ls="--", label=f"{spring:.2g} mm: the spring itself")
+    height.set_ylim(top=0)
     height.set(title="height error of the tip", xlabel="tilt α [rad]", ylabel="error [mm]")
     depth.set(title="interpenetration", xlabel="tilt α [rad]", ylabel="depth in the exact hole [mm]")
     depth.set_ylim(bottom=0)
     section.set_title("section")
-    height.legend(loc="lower right", markerscale=1.8)
+    height.legend(loc="lower right", markerscale=1.8, fontsize=6.5, handlelength=1.2)
     style.letter(axes[0])
     rms = ", ".join(f"{style.look(name).label} {error:.2f} mm" for name, error in errors.items())
     return figure, (

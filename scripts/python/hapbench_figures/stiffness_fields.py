@@ -1,4 +1,6 @@
 """The stiffness that ways of merging contacts give in every direction (figures 2 and C.3, and all algorithms)."""
+from textwrap import wrap
+
 import numpy as np
 from matplotlib.patches import Circle, Polygon
 
@@ -178,7 +180,7 @@ def of_all_algorithms(results):
         draw(block, results, names)
         block[0].set_title("contacts")
         for ax, name in zip(block[1:], names):
-            ax.set_title(name.replace("_", " "), fontsize=7)
+            ax.set_title("\n".join(wrap(name.replace("_", " "), 20)), fontsize=7)
         for ax in block[len(names) + 1 :]:
             ax.axis("off")
     for ax in axes[-1]:
