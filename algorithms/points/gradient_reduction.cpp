@@ -43,11 +43,10 @@ class GradientReduction final : public PointStage {
 
   void prepare(const Scene& scene) override {
     if (!config_.shuffle_seed) return;
-    // Fisher-Yates: rank_[i] is the place of shell point i in the visiting order.
+    // rank_[i] is the place of shell point i in the visiting order.
     rank_.resize(scene.query->capacity());
     std::iota(rank_.begin(), rank_.end(), 0u);
-    Random random(*config_.shuffle_seed);
-    for (std::size_t i = rank_.size(); i > 1; --i) std::swap(rank_[i - 1], rank_[random.below(i)]);
+    Random(*config_.shuffle_seed).shuffle(rank_);
     order_.resize(rank_.size());
     shuffled_ = std::make_unique<ContactBuffer>(rank_.size());
   }

@@ -155,9 +155,9 @@ struct Compromise {
 
   Compromise(const ContactBuffer& c, const Vec3& wanted, const Vec3& x) noexcept {
     const Vec3 off = x - wanted;
-    value = 0.5 * kCompromise * off.squaredNorm();
-    gradient = kCompromise * off;
-    hessian = kCompromise * Mat3::Identity();
+    value = 0.5 * kCompromiseEpsilon * off.squaredNorm();
+    gradient = kCompromiseEpsilon * off;
+    hessian = kCompromiseEpsilon * Mat3::Identity();
     for (std::size_t i = 0; i < c.size(); ++i) {
       const Vec3 u = c.gradient(i);
       const double violation = c.depth[i] + u.dot(x);
@@ -173,7 +173,7 @@ struct Compromise {
 void solve_least_squares(const Vec3& wanted, double tolerance, ContactBuffer& contacts, AllowedMove& out) noexcept {
   out.move = wanted;
   Compromise here(contacts, wanted, out.move);
-  for (int i = 0; i < kMostIterations && here.gradient.norm() > kCompromise * tolerance; ++i, ++out.iterations) {
+  for (int i = 0; i < kMostIterations && here.gradient.norm() > kCompromiseEpsilon * tolerance; ++i, ++out.iterations) {
     const Vec3 direction = -Eigen::LLT<Mat3>(here.hessian).solve(here.gradient);
     double step = 1.0;
     Compromise next(contacts, wanted, out.move + direction);
@@ -186,9 +186,9 @@ void solve_least_squares(const Vec3& wanted, double tolerance, ContactBuffer& co
     here = next;
   }
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    contacts.weight[i] = std::max(0.0, contacts.depth[i] + contacts.gradient(i).dot(out.move)) / kCompromise;
+    contacts.weight[i] = std::max(0.0, contacts.depth[i] + contacts.gradient(i).dot(out.move)) / kCompromiseEpsilon;
   }
-  out.held = Mat3::Identity() - kCompromise * Mat3(Eigen::LLT<Mat3>(here.hessian).solve(Mat3::Identity()));
+  out.held = Mat3::Identity() - kCompromiseEpsilon * Mat3(Eigen::LLT<Mat3>(here.hessian).solve(Mat3::Identity()));
   out.held = 0.5 * (out.held + out.held.transpose()).eval();
 }
 
@@ -197,7 +197,7 @@ void solve_least_squares(const Vec3& wanted, double tolerance, ContactBuffer& co
 AllowedMove nearest_allowed(const Vec3& wanted, ContactBuffer& contacts) noexcept {
   set_weights(contacts, 0.0);
   AllowedMove out;
-  const double tolerance = kTolerance * largest_length(contacts, wanted);
+  const double tolerance = kViolationTolerance * largest_length(contacts, wanted);
   if (!solve_exactly(wanted, tolerance, contacts, out)) {
     out.feasible = false;
     set_weights(contacts, 0.0);

@@ -9,9 +9,9 @@ namespace hapbench {
 
 /// How much of the longest length of a problem a contact may be violated and still count as satisfied: above the
 /// rounding of the solution and of gradients, far below anything felt (1e-11 m in a search of 0.1 mm).
-inline constexpr double kTolerance = 1e-7;
+inline constexpr double kViolationTolerance = 1e-7;
 /// epsilon of the compromise between contacts that contradict each other.
-inline constexpr double kCompromise = 1e-6;
+inline constexpr double kCompromiseEpsilon = 1e-6;
 
 /// The move nearest to a wanted one that a set of contacts allows.
 struct AllowedMove {
@@ -30,8 +30,8 @@ struct AllowedMove {
 /// that is violated most (the first of equals), so the answer is deterministic. Leaves the multipliers lambda_i >= 0
 /// [m] as weights in the buffer: x = t - sum lambda_i u_i, lambda_i = 0 for contacts that do not hold.
 ///
-/// Contacts count as satisfied within kTolerance of the problem's largest length. When no x satisfies all of them
-/// (opposite walls of a slot narrower than the tool), x is instead the unique minimiser of
+/// Contacts count as satisfied within kViolationTolerance of the problem's largest length. When no x satisfies all of
+/// them (opposite walls of a slot narrower than the tool), x is instead the unique minimiser of
 ///
 ///     1/2 sum max(0, d_i + <u_i, x>)^2 + epsilon/2 |x - t|^2,   epsilon = 1e-6,
 ///

@@ -157,7 +157,7 @@ SpringState ProxyRendering::spring_state(const ToolState&, const ContactBuffer&)
     const double lambda = near_contacts_->weight[i];
     if (!(lambda > 0.0)) continue;
     // In the compromise, what is violated is a store of its own.
-    if (!feasible_) state.energy += 0.5 * K_ * kCompromise * lambda * lambda;
+    if (!feasible_) state.energy += 0.5 * K_ * kCompromiseEpsilon * lambda * lambda;
     if (depth_is_given_) continue;  // springs are attached to the tip
     state.moment -= (near_contacts_->point(i) - proxy_).cross(K_ * lambda * near_contacts_->gradient(i));
   }

@@ -26,8 +26,8 @@ inline constexpr int kProxyPasses = 64;
 /// margin; points further away cannot be reached by that.
 ///
 /// Guarantee: after a pass whose contacts do not contradict each other, and which was not cut short while points were
-/// inside the proxy, no shell point is inside the proxy, but for kTolerance of the margin. For the constraints are
-/// conservative (the tool is convex), and those of a proxy without penetration still hold for a part of the move.
+/// inside the proxy, no shell point is inside the proxy, but for kViolationTolerance of the margin. For the constraints
+/// are conservative (the tool is convex), and those of a proxy without penetration still hold for a part of the move.
 /// When they contradict (a slot narrower than the tool) the proxy takes the least-squares compromise.
 ///
 /// f_spring = K (x - p), S = the projector onto the span of the gradients that hold the proxy back, so lambda_max(S) is

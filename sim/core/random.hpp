@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <numbers>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "sim/core/types.hpp"
 
@@ -26,6 +28,12 @@ class Random {
   double normal() {
     const double r = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     return r * std::cos(2.0 * std::numbers::pi * uniform());
+  }
+
+  /// Puts items into a random order (Fisher and Yates).
+  template <class T>
+  void shuffle(std::vector<T>& items) {
+    for (std::size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[below(i)]);
   }
 
   /// Uniform on the unit circle in the plane z = 0.

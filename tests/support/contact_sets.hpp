@@ -22,10 +22,10 @@ std::size_t random_size(Random& random, std::size_t largest);
 /// A uniformly distributed rotation.
 Mat3 random_rotation(Random& random);
 
-/// `items` in a random order (Fisher-Yates).
+/// `items` in a random order.
 template <class T>
 std::vector<T> shuffled(std::vector<T> items, Random& random) {
-  for (std::size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[random.below(i)]);
+  random.shuffle(items);
   return items;
 }
 

@@ -74,7 +74,7 @@ double spread_over_orders(Forces& forces, const ContactBuffer& set, const Vec3& 
   double largest = 0.0;
   for (std::uint64_t k = 0; k < kOrders; ++k) {
     std::iota(order.begin(), order.end(), std::size_t{0});
-    for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
+    random.shuffle(order);
     forces.load(set, order);
     largest = std::max(largest, (forces.force() - force).norm());
   }

@@ -54,7 +54,7 @@ TEST(NearestAllowed, SatisfiesTheConditionsOfOptimality) {
     ASSERT_TRUE(allowed.feasible) << family;
     // Lengths are up to 0.4 mm; an active contact may be off by the rounding of multipliers that cancel.
     const Held h = held(problem.contacts);
-    const double rounding = 4e-4 * kTolerance + 1e-13 * h.lambdas;
+    const double rounding = 4e-4 * kViolationTolerance + 1e-13 * h.lambdas;
     for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
       const double off = violation(problem.contacts, i, allowed.move);
       ASSERT_LE(off, rounding) << family;
@@ -112,7 +112,7 @@ TEST(NearestAllowed, DoesNotDependOnTheOrderOfTheContacts) {
                b = nearest_allowed(problem.wanted, other).move;
     // The optimum is unique; where gradients are nearly dependent, which of them hold it is not, and each of the two is
     // as far off it as contacts may be violated, over the sine of their angle: at worst the length of a move.
-    const double rounding = 4e-4 * kTolerance + 1e-12 * (held(problem.contacts).lambdas + held(other).lambdas);
+    const double rounding = 4e-4 * kViolationTolerance + 1e-12 * (held(problem.contacts).lambdas + held(other).lambdas);
     EXPECT_LE((a - problem.wanted).norm() - (b - problem.wanted).norm(), rounding) << family;
     EXPECT_LE((b - problem.wanted).norm() - (a - problem.wanted).norm(), rounding) << family;
   });
@@ -131,9 +131,9 @@ TEST(NearestAllowed, SharesWhatOppositeWallsLackInEqualSquares) {
     const AllowedMove allowed = nearest_allowed(wanted, contacts);
     EXPECT_FALSE(allowed.feasible);
     const double N = static_cast<double>(n), M = static_cast<double>(m);
-    const double x = (M * b - N * a + kCompromise * wanted.x()) / (N + M + kCompromise);
+    const double x = (M * b - N * a + kCompromiseEpsilon * wanted.x()) / (N + M + kCompromiseEpsilon);
     // The Newton step solves with a matrix of condition (N + M) / epsilon.
-    EXPECT_NEAR(allowed.move.x(), x, 1e-4 * 1e-16 * (N + M) / kCompromise);
+    EXPECT_NEAR(allowed.move.x(), x, 1e-4 * 1e-16 * (N + M) / kCompromiseEpsilon);
     EXPECT_NEAR(allowed.move.y(), wanted.y(), 1e-12);
     EXPECT_NEAR(allowed.move.z(), wanted.z(), 1e-12);
     EXPECT_LE((wanted - held(contacts).sum - allowed.move).norm(), 1e-9);
@@ -159,7 +159,7 @@ TEST(NearestAllowed, FindsTheLeastSquaresOfContradictingContacts) {
     if (allowed.feasible) continue;
     ++contradicting;
     // Its gradient vanishes: the solver stops at epsilon times the tolerance, and sums of n terms of 1e-4 are rounded.
-    Vec3 gradient = kCompromise * (allowed.move - wanted);
+    Vec3 gradient = kCompromiseEpsilon * (allowed.move - wanted);
     for (std::size_t k = 0; k < n; ++k) gradient += std::max(0.0, violation(contacts, k, allowed.move)) * gradients[k];
     ASSERT_LE(gradient.norm(), 1e-19 + 1e-20 * static_cast<double>(n * n));
     ASSERT_LE(lambda_max(allowed.held), 1.0);

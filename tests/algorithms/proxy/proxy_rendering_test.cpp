@@ -24,6 +24,25 @@ RenderingConfig proxy_config() {
   return config;
 }
 
+/// A proxy in a setting, stepped by hand.
+struct Rig {
+  PointShell shell;
+  NeighbourListQuery query;
+  ProxyRendering proxy;
+  ContactBuffer contacts;
+  RenderedForce force;
+
+  Rig(const test::Setting& setting, const RenderingConfig& config)
+      : shell(setting.points, 0.0), query(shell, setting.tool), proxy(config), contacts(query.capacity()) {
+    proxy.prepare({setting.tool, &query, &shell});
+    proxy.reset();
+  }
+  void step(const ToolState& tool) {
+    query.contacts_at(tool.pose, contacts);
+    proxy.compute(tool, contacts, force);
+  }
+};
+
 /// A tilted flat tool whose lowest place, on the edge of its tip, is `depth` below the plane z = 0, anywhere between
 /// the points of the plane.
 test::Setting tilted_on_plane(double tilt, double depth, Random& random) {
@@ -90,12 +109,7 @@ TEST(ProxyRendering, NeverLetsThePointsInWhereTheToolHasRoom) {
       point.position.z() -= 0.002;
       setting.points.push_back(point);
     }
-    const PointShell shell(setting.points, 0.0);
-    NeighbourListQuery query(shell, setting.tool);
-    ProxyRendering proxy(proxy_config());
-    proxy.prepare({setting.tool, &query, &shell});
-    proxy.reset();
-    ContactBuffer contacts(query.capacity());
+    Rig rig(setting, proxy_config());
     // A tool swept about and tilted in the slot, pulled through its walls and its floor.
     Vec3 velocity = Vec3::Zero();
     ToolState tool{{{0, 0, 0.001}, -Vec3::UnitZ()}, Vec3::Zero()};
@@ -104,13 +118,11 @@ TEST(ProxyRendering, NeverLetsThePointsInWhereTheToolHasRoom) {
       tool.pose.position += velocity;
       tool.pose.axis =
           (tool.pose.axis + 0.004 * random.direction() - 0.02 * (tool.pose.axis + Vec3::UnitZ())).normalized();
-      query.contacts_at(tool.pose, contacts);
-      RenderedForce force;
-      proxy.compute(tool, contacts, force);
-      held += !contacts.empty();
-      ASSERT_LE(lambda_max(force.S), 1.0 + 1e-12);
-      const double longest = (tool.pose.position - proxy.proxy()).norm() + 2e-4;
-      ASSERT_LE(deepest_point(setting, {proxy.proxy(), tool.pose.axis}), kTolerance * longest)
+      rig.step(tool);
+      held += !rig.contacts.empty();
+      ASSERT_LE(lambda_max(rig.force.S), 1.0 + 1e-12);
+      const double longest = (tool.pose.position - rig.proxy.proxy()).norm() + 2e-4;
+      ASSERT_LE(deepest_point(setting, {rig.proxy.proxy(), tool.pose.axis}), kViolationTolerance * longest)
           << "run " << run << ", step " << step;
     }
   }
@@ -139,21 +151,12 @@ TEST(ProxyRendering, HoldsAToolThatIsPulledThroughAPlane) {
 TEST(ProxyRendering, StoresTheEnergyOfOneSpring) {
   Random random(5);
   const test::Setting setting = tilted_on_plane(0.5, 5e-5, random);
-  const PointShell shell(setting.points, 0.0);
-  NeighbourListQuery query(shell, setting.tool);
-  ProxyRendering proxy(proxy_config());
-  proxy.prepare({setting.tool, &query, &shell});
-  proxy.reset();
-  ContactBuffer contacts(query.capacity());
-  RenderedForce force;
-  for (const ToolPose& pose : {above(setting), setting.pose}) {
-    query.contacts_at(pose, contacts);
-    proxy.compute({pose, Vec3::Zero()}, contacts, force);
-  }
-  const SpringState state = proxy.spring_state({setting.pose, Vec3::Zero()}, contacts);
+  Rig rig(setting, proxy_config());
+  rig.step({above(setting), Vec3::Zero()});
+  rig.step({setting.pose, Vec3::Zero()});
+  const SpringState state = rig.proxy.spring_state({setting.pose, Vec3::Zero()}, rig.contacts);
   EXPECT_NEAR(state.energy, 0.5 * kK * 5e-5 * 5e-5, 1e-15);
-  const ForceJacobian jacobian = proxy.jacobian();
-  EXPECT_EQ(jacobian.stiffness, Mat3(kK * force.S));
+  EXPECT_EQ(rig.proxy.jacobian().stiffness, Mat3(kK * rig.force.S));
 }
 
 TEST(ProxyRendering, DampsTheTurnOfTheEdgeThatTouches) {
@@ -161,25 +164,16 @@ TEST(ProxyRendering, DampsTheTurnOfTheEdgeThatTouches) {
   const test::Setting setting = tilted_on_plane(0.6, 5e-5, random);
   RenderingConfig config = proxy_config();
   config.angular_damping = true;
-  const PointShell shell(setting.points, 0.0);
-  NeighbourListQuery query(shell, setting.tool);
-  ProxyRendering proxy(config);
-  proxy.prepare({setting.tool, &query, &shell});
-  proxy.reset();
-  EXPECT_TRUE(proxy.wants_angular_velocity());
-  ContactBuffer contacts(query.capacity());
-  RenderedForce force;
-  ToolState tool{above(setting), Vec3::Zero()};
-  proxy.compute(tool, contacts, force);
-  tool.pose = setting.pose;
-  tool.angular_velocity = {0.3, -0.4, 0.1};
-  query.contacts_at(tool.pose, contacts);
-  proxy.compute(tool, contacts, force);
-  ASSERT_EQ(contacts.size(), 1u);
+  Rig rig(setting, config);
+  EXPECT_TRUE(rig.proxy.wants_angular_velocity());
+  rig.step({above(setting), Vec3::Zero()});
+  const Vec3 turn(0.3, -0.4, 0.1);
+  rig.step({setting.pose, Vec3::Zero(), turn});
+  ASSERT_EQ(rig.contacts.size(), 1u);
   // One patch holds the edge: its point moves with omega x r, of which the part along the normal is damped.
-  const double along = tool.angular_velocity.cross(contacts.point(0) - proxy.proxy()).z();
+  const double along = turn.cross(rig.contacts.point(0) - rig.proxy.proxy()).z();
   const double B = 2.0 * config.damping_ratio * std::sqrt(kK * config.mass);
-  EXPECT_LE((force.rendered - force.spring - Vec3(0, 0, -B * along)).norm(), 1e-12);
+  EXPECT_LE((rig.force.rendered - rig.force.spring - Vec3(0, 0, -B * along)).norm(), 1e-12);
 }
 
 TEST(ProxyRendering, EndsForAPoseThatIsNone) {

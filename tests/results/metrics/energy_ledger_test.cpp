@@ -87,6 +87,17 @@ TEST(EnergyLedger, LinearSpringsCreateNothing) {
   }
 }
 
+/// Every joule is accounted for.
+void expect_closed(const Accounts& a, double rounding) {
+  const EnergyBalance& b = a.metrics.balance;
+  EXPECT_LE(a.metrics.residual_max, rounding);
+  EXPECT_NEAR(b.hand + b.actuator, b.input, rounding);
+  EXPECT_NEAR(b.kinetic + b.stored,
+              a.kinetic_at_start + a.stored_at_start + b.input + b.damping + b.rotation + b.created + b.integration +
+                  b.residual,
+              rounding);
+}
+
 TEST(EnergyLedger, ClosesToRoundingForEveryAlgorithmWithTheIdealDevice) {
   for (const auto& algorithm : algorithms()) {
     for (const test::AnalyticScene& scene : test::analytic_scenes()) {
@@ -99,15 +110,9 @@ TEST(EnergyLedger, ClosesToRoundingForEveryAlgorithmWithTheIdealDevice) {
       parts.device = std::make_unique<IdealDevice>(2.0);
       const SimulationConfig run = test::free_run_config(setting, config, 400);
       const Accounts a = keep_accounts(run, std::move(parts));
-      const EnergyBalance& b = a.metrics.balance;
       const double rounding = 400 * 20 * kEpsilon * a.turnover;
       SCOPED_TRACE(std::string(scene.name) + " " + config.algorithm);
-      EXPECT_LE(a.metrics.residual_max, rounding);
-      EXPECT_NEAR(b.hand + b.actuator, b.input, rounding);
-      EXPECT_NEAR(b.kinetic + b.stored,
-                  a.kinetic_at_start + a.stored_at_start + b.input + b.damping + b.rotation + b.created +
-                      b.integration + b.residual,
-                  rounding);
+      expect_closed(a, rounding);
     }
   }
 }
@@ -122,15 +127,9 @@ TEST(EnergyLedger, ClosesToRoundingForEveryIntegrator) {
       SimulationConfig run = test::free_run_config(setting, config, 400);
       run.integrator = integrator;
       const Accounts a = keep_accounts(run, std::move(parts));
-      const EnergyBalance& b = a.metrics.balance;
-      const double rounding = 400 * 20 * kEpsilon * (a.turnover + std::abs(b.integration));
+      const double rounding = 400 * 20 * kEpsilon * (a.turnover + std::abs(a.metrics.balance.integration));
       SCOPED_TRACE(std::string(scene.name) + " " + std::string(integrator_name(integrator)));
-      EXPECT_LE(a.metrics.residual_max, rounding);
-      EXPECT_NEAR(b.hand + b.actuator, b.input, rounding);
-      EXPECT_NEAR(b.kinetic + b.stored,
-                  a.kinetic_at_start + a.stored_at_start + b.input + b.damping + b.rotation + b.created +
-                      b.integration + b.residual,
-                  rounding);
+      expect_closed(a, rounding);
     }
   }
 }
