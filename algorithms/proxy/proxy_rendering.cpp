@@ -36,6 +36,8 @@ namespace {
 
 /// The query looks a little further than the proxy moves, for the rounding of both.
 constexpr double kQueryMargin = 1.0 + 1e-6;
+/// Of the spacing: how far a point may be inside one plane of an edge and still pass it by.
+constexpr double kEdgeSlack = 1e-3;
 /// Squared length of what gradients leave of a direction below which they do not span it.
 constexpr double kNoSpan = 1e-6;
 /// A pass that moves the proxy less than this part of the margin is the last one.
@@ -113,7 +115,7 @@ bool ProxyRendering::follow(const ToolPose& tool) noexcept {
   for (int pass = 0; pass < kProxyPasses; ++pass) {
     near_->contacts_at({proxy_, tool.axis}, *near_contacts_);
     if (!depth_is_given_) {
-      surface_constraints(tool_, {proxy_, tool.axis}, *near_contacts_);
+      surface_constraints(tool_, {proxy_, tool.axis}, tool.position - proxy_, kEdgeSlack * spacing_, *near_contacts_);
       add_edge_constraints(tool_, {proxy_, tool.axis}, spacing_, margin_, *near_contacts_);
     }
     const AllowedMove allowed = nearest_allowed(tool.position - proxy_, *near_contacts_);

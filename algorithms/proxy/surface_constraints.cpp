@@ -13,6 +13,10 @@ using simd::Mask, simd::Pack, simd::select;
 /// Relative to the radius: nearer to the axis than this, the direction away from it is rounding.
 constexpr double kOnAxis = 1e-12;
 
+/// Cosine of the angle up to which a plane of the tool counts as flush with a surface, 6 degrees: normals of shells are
+/// off by a few, and a plane that leans by more holds an edge up too early.
+constexpr double kFlush = 0.9945;
+
 struct Directions {
   Pack x, y, z;
 };
@@ -27,10 +31,12 @@ Directions away_from_axis(const AxialPack& q, const Pack& distance, const Pack& 
 
 }  // namespace
 
-void surface_constraints(const Tool& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept {
+void surface_constraints(const Tool& tool, const ToolPose& pose, const Vec3& wanted, double slack,
+                         ContactBuffer& contacts) noexcept {
   const bool round = tool.tip == Tip::round;
   const Pack radius(tool.radius), length(tool.length), zero(0.0), one(1.0);
   const Pack ax(pose.axis.x()), ay(pose.axis.y()), az(pose.axis.z());
+  const Pack wx(wanted.x()), wy(wanted.y()), wz(wanted.z()), in_reach(-slack), flush(kFlush);
   const Vec3 any = pose.axis.unitOrthogonal();
   contacts.pad();
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
@@ -49,8 +55,19 @@ void surface_constraints(const Tool& tool, const ToolPose& pose, ContactBuffer& 
     const Mask side_wins = side >= end;
     Pack distance = select(beyond_both, to_edge, select(side_wins, side, end));
     const Pack edge_scale = one / select(beyond_both, to_edge, one);
-    const Pack outwards = select(beyond_both, side * edge_scale, select(side_wins, one, zero));
-    const Pack along = forward * select(beyond_both, end * edge_scale, select(side_wins, zero, one));
+    Pack outwards = select(beyond_both, side * edge_scale, select(side_wins, one, zero));
+    Pack along = forward * select(beyond_both, end * edge_scale, select(side_wins, zero, one));
+
+    const Pack towards_side = out.x * wx + out.y * wy + out.z * wz;
+    const Pack towards_end = ax * wx + ay * wy + az * wz;
+    const Pack nx = simd::load(&contacts.nx[i]), ny = simd::load(&contacts.ny[i]), nz = simd::load(&contacts.nz[i]);
+    const Pack faces_side = -(out.x * nx + out.y * ny + out.z * nz),
+               faces_end = -forward * (ax * nx + ay * ny + az * nz);
+    const Mask bumps = outwards * towards_side + along * towards_end > distance && side > in_reach && end > in_reach;
+    const Mask along_end = bumps && faces_end > flush, along_side = bumps && faces_side > flush;
+    distance = select(along_end, end, select(along_side, side, distance));
+    outwards = select(along_end, zero, select(along_side, one, outwards));
+    along = select(along_end, forward, select(along_side, zero, along));
     Pack mx = outwards * out.x + along * ax, my = outwards * out.y + along * ay, mz = outwards * out.z + along * az;
     if (round) {
       const Pack from_centre = simd::sqrt(q.distance2());

@@ -36,7 +36,7 @@ class Problems final : public Observer {
     const Vec3 to_proxy = record.force.spring / K_;
     const ToolPose proxy{record.tool.pose.position + to_proxy, record.tool.pose.axis};
     near_->contacts_at(proxy, found_);
-    surface_constraints(tool_, proxy, found_);
+    surface_constraints(tool_, proxy, -to_proxy, 1e-3 * spacing_, found_);
     add_edge_constraints(tool_, proxy, spacing_, margin_, found_);
     ContactBuffer contacts(std::max<std::size_t>(1, found_.size()));
     for (std::size_t i = 0; i < found_.size(); ++i) contacts.push_copy_of(found_, i);

@@ -63,8 +63,8 @@ ToolPose above(const test::Setting& setting) {
 TEST(ProxyRendering, OfAnEdgeOnAPlaneIsTheDepthOfTheEdgeWhereverThePointsLie) {
   Random random(1);
   for (int i = 0; i < 300; ++i) {
-    // Flatter than 0.1 rad, more than the one patch is touched; 0.1 mm is how far the first pass looks.
-    const double tilt = random.uniform(0.1, 1.3), depth = 9e-5 * random.uniform();
+    // Flatter than 0.11 rad the tip is flush with the plane; 0.1 mm is how far the first pass looks.
+    const double tilt = random.uniform(0.11, 1.3), depth = 9e-5 * random.uniform();
     const test::Setting setting = tilted_on_plane(tilt, depth, random);
     test::Probe probe(setting, proxy_config());
     // The proxy must come from outside: where it starts in the shell, points push it out sideways.
@@ -72,6 +72,42 @@ TEST(ProxyRendering, OfAnEdgeOnAPlaneIsTheDepthOfTheEdgeWhereverThePointsLie) {
     const RenderedForce force = probe.force_at(setting.pose);
     EXPECT_LE((force.spring - Vec3(0, 0, kK * depth)).norm(), kK * 1e-12) << "tilt " << tilt << ", depth " << depth;
     EXPECT_LE((force.S - Mat3(Vec3(0, 0, 1).asDiagonal())).norm(), 1e-9);
+  }
+}
+
+TEST(ProxyRendering, SlidesOverAFlatWithoutBumpingIntoThePointsAhead) {
+  Random random(8);
+  for (int run = 0; run < 10; ++run) {
+    // Normals off by a few degrees, as those of marching cubes are.
+    test::Setting setting;
+    setting.points = surface_points(Plane{0.004, 0.0001});
+    for (SurfacePoint& point : setting.points) point.normal = (point.normal + 0.1 * random.direction()).normalized();
+    setting.tool = {0.0005, 0.01, Tip::flat};
+    const Vec3 way = random.direction_in_plane();
+    test::Probe probe(setting, proxy_config());
+    for (int step = 0; step <= 200; ++step) {
+      const Vec3 p = 5e-6 * step * way + Vec3(0, 0, step == 0 ? 1e-4 : -5e-5);
+      const Vec3 force = probe.force_at({p, -Vec3::UnitZ()}).spring;
+      // The patches' planes lean with their normals: up to 0.1 rad, and 0.75 spacings from their points.
+      if (step > 0) {
+        EXPECT_LE((force - Vec3(0, 0, kK * 5e-5)).norm(), 0.2 * kK * 5e-5) << "step " << step;
+      }
+    }
+  }
+}
+
+TEST(ProxyRendering, SlidesAlongAWallItsSidePressesOn) {
+  test::Setting setting;
+  setting.points = surface_points(Plane{0.02, 0.0001});
+  setting.tool = {0.0005, 0.004, Tip::flat};
+  test::Probe probe(setting, proxy_config());
+  for (int step = 0; step <= 200; ++step) {
+    // Lying on the plane, moved along its axis.
+    const Vec3 p(5e-6 * step, 0.0, 0.0005 + (step == 0 ? 1e-4 : -5e-5));
+    const Vec3 force = probe.force_at({p, Vec3::UnitX()}).spring;
+    if (step > 0) {
+      EXPECT_LE((force - Vec3(0, 0, kK * 5e-5)).norm(), kK * 1e-9) << "step " << step;
+    }
   }
 }
 

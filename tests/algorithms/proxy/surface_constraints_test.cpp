@@ -15,10 +15,12 @@ struct Constraint {
   Vec3 normal;
 };
 
-Constraint constraint_of(const Tool& tool, const ToolPose& pose, const Vec3& point) {
+Constraint constraint_of(const Tool& tool, const ToolPose& pose, const Vec3& point,
+                         const Vec3& surface_normal = Vec3::UnitZ(), const Vec3& wanted = Vec3::Zero(),
+                         double slack = 0.0) {
   ContactBuffer contacts(1);
-  contacts.push(0, point, Vec3::UnitZ());
-  surface_constraints(tool, pose, contacts);
+  contacts.push(0, point, surface_normal);
+  surface_constraints(tool, pose, wanted, slack, contacts);
   return {-contacts.depth[0], contacts.gradient(0)};
 }
 
@@ -72,8 +74,12 @@ TEST(SurfaceConstraints, ThatHoldKeepEveryPointOut) {
   Random random(2);
   int moves = 0;
   for_random_points([&](const Tool& tool, const ToolPose& pose, const Vec3& point, Random&) {
-    const Constraint c = constraint_of(tool, pose, point);
     const Vec3 move = 2e-3 * random.uniform() * random.direction();
+    // Flush with the tip, with the bottom or with nothing; wanting to move there, so that planes take the place of
+    // edges.
+    const Vec3 normal =
+        random.below(3) == 0 ? random.direction() : Vec3((random.below(2) == 0 ? 1.0 : -1.0) * pose.axis);
+    const Constraint c = constraint_of(tool, pose, point, normal, move, 1e-5);
     if (c.normal.dot(move) > c.distance) return;
     ++moves;
     const ToolPose moved{pose.position + move, pose.axis};
