@@ -91,8 +91,8 @@ class MergedShaping final : public ForceLaw {
     make_groups();
     iterations_ += static_cast<std::uint64_t>(cone_projection::solve(groups_));
     for (std::size_t k = 0; k < groups_.size; ++k) share_[touched_[k]] = weight_[k] / trace_[k];
-    set_weights(contacts, 0.0);
     for (std::size_t i = 0; i < contacts.size(); ++i) contacts.weight[i] = share_[cell_[i]];
+    contacts.pad();
     return weighted_force(contacts, K_);
   }
 

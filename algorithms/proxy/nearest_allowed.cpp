@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "algorithms/laws/force_law.hpp"
@@ -127,7 +128,7 @@ bool satisfy(std::size_t p, double violation, const Vec3& u, Vec3& x, ActiveSet&
   }
 }
 
-/// The method of Goldfarb and Idnani; false when the contacts contradict each other.
+/// The method of Goldfarb and Idnani; false, with the weights untouched, when the contacts contradict each other.
 bool solve_exactly(const Vec3& wanted, double tolerance, ContactBuffer& contacts, AllowedMove& out) noexcept {
   ActiveSet active;
   out.move = wanted;
@@ -200,7 +201,6 @@ AllowedMove nearest_allowed(const Vec3& wanted, ContactBuffer& contacts) noexcep
   const double tolerance = kViolationTolerance * largest_length(contacts, wanted);
   if (!solve_exactly(wanted, tolerance, contacts, out)) {
     out.feasible = false;
-    set_weights(contacts, 0.0);
     solve_least_squares(wanted, tolerance, contacts, out);
   }
   return out;

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
-
 #include "sim/contact/contact_buffer.hpp"
 
 namespace hapbench {

@@ -116,12 +116,14 @@ void ProxyRendering::place(const Vec3& position) noexcept {
 
 bool ProxyRendering::follow(const ToolPose& tool) noexcept {
   for (int pass = 0; pass < kProxyPasses; ++pass) {
-    near_->contacts_at({proxy_, tool.axis}, *near_contacts_);
+    const ToolPose proxy{proxy_, tool.axis};
+    const Vec3 wanted = tool.position - proxy_;
+    near_->contacts_at(proxy, *near_contacts_);
     if (!depth_is_given_) {
-      surface_constraints(tool_, {proxy_, tool.axis}, tool.position - proxy_, kEdgeSlack * spacing_, *near_contacts_);
-      add_edge_constraints(tool_, {proxy_, tool.axis}, spacing_, margin_, *near_contacts_);
+      surface_constraints(tool_, proxy, wanted, kEdgeSlack * spacing_, *near_contacts_);
+      add_edge_constraints(tool_, proxy, spacing_, margin_, *near_contacts_);
     }
-    const AllowedMove allowed = nearest_allowed(tool.position - proxy_, *near_contacts_);
+    const AllowedMove allowed = nearest_allowed(wanted, *near_contacts_);
     work_.iterations += static_cast<std::uint64_t>(allowed.iterations);
     held_ = allowed.held;
     feasible_ = allowed.feasible;

@@ -38,7 +38,6 @@ void surface_constraints(const Tool& tool, const ToolPose& pose, const Vec3& wan
   const Pack ax(pose.axis.x()), ay(pose.axis.y()), az(pose.axis.z());
   const Pack wx(wanted.x()), wy(wanted.y()), wz(wanted.z()), in_reach(-slack), flush(kFlush);
   const Vec3 any = pose.axis.unitOrthogonal();
-  contacts.pad();
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
     const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
     const Pack from_axis = simd::sqrt(q.rho2);

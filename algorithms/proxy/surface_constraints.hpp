@@ -19,8 +19,8 @@ namespace hapbench {
 ///
 /// A flat tip that slides along a face would bump into the points ahead: they lie in its plane, and the nearest place
 /// of the tool is its edge. A point beyond (or within `slack` of) both planes of an edge is kept out by either, so when
-/// the wanted move violates the nearest one, the plane that is flush with the surface takes its place, if one is. O(n), eight
-/// points at a time.
+/// the wanted move violates the nearest one, the plane that is flush with the surface takes its place, if one is. O(n),
+/// eight points at a time.
 void surface_constraints(const Tool& tool, const ToolPose& pose, const Vec3& wanted, double slack,
                          ContactBuffer& contacts) noexcept;
 
