@@ -49,16 +49,20 @@ std::vector<std::string> all_algorithms() {
   return names;
 }
 
-void require_algorithms(const std::vector<std::string>& names) {
-  const std::vector<std::string> valid = all_algorithms();
+void require_names(const std::string& option, const std::vector<std::string>& names,
+                   const std::vector<std::string>& valid) {
   std::set<std::string> seen;
   for (const std::string& name : names) {
-    if (find_algorithm(name) == nullptr) {
-      throw InputError(fmt::format("--algorithms: got \"{}\"; allowed: {}{}", name, quoted_list(valid),
+    if (std::find(valid.begin(), valid.end(), name) == valid.end()) {
+      throw InputError(fmt::format("{}: got \"{}\"; allowed: {}{}", option, name, quoted_list(valid),
                                    nearest_name_hint(name, valid)));
     }
-    if (!seen.insert(name).second) throw InputError(fmt::format("--algorithms: got \"{}\" twice; allowed: once", name));
+    if (!seen.insert(name).second) throw InputError(fmt::format("{}: got \"{}\" twice; allowed: once", option, name));
   }
+}
+
+void require_algorithms(const std::vector<std::string>& names) {
+  require_names("--algorithms", names, all_algorithms());
 }
 
 void require_writable_directory(const fs::path& directory) {

@@ -61,8 +61,10 @@ void print_warnings(const std::vector<std::string>& warnings);
 /// The names of all registered algorithms.
 std::vector<std::string> all_algorithms();
 
-/// Makes sure the names given to --algorithms are those of registered algorithms, each once; throws InputError
-/// otherwise.
+/// Makes sure the names given to an option are among the valid ones, each once; throws InputError otherwise.
+void require_names(const std::string& option, const std::vector<std::string>& names,
+                   const std::vector<std::string>& valid);
+/// The same for the names given to --algorithms.
 void require_algorithms(const std::vector<std::string>& names);
 
 /// Makes sure results can be written to `directory`; throws InputError otherwise. Creates it.

@@ -92,11 +92,13 @@ Description describe_stability() {
       "  diverged   left its bounds, or oscillates with an amplitude that grows by 1 % from each quarter to the next\n"
       "  vibrating  oscillates in the last quarter with at least 1 % of the first quarter's amplitude\n"
       "  stable     all else: at rest, dying out, creeping\n\n"
-      "  The analytic limit, 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = lambda_max(S), is given "
-      "where\n"
-      "  the tool is alone with springs that stay in contact and the force is -K S p. The edge by bisection is that "
-      "of\n"
-      "  \"diverged\", in the map of the device that of \"stable\".\n\n{}",
+      "  The analytic limit, under leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = "
+      "lambda_max(S),\n"
+      "  is given where the tool is alone with springs that stay in contact and the force is -K S p. Under "
+      "velocity_verlet\n"
+      "  and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. The edge by bisection "
+      "is\n"
+      "  that of \"diverged\", in the map of the device that of \"stable\".\n\n{}",
       kMapSteps, table.text());
   return d;
 }

@@ -155,7 +155,8 @@ int stability(const StabilityOptions& options) {
   }
   const bool has_scenarios = options.maps.empty() && !options.stress;
   if (!options.overrides.empty() && !has_scenarios) {
-    throw InputError("--set: got an override; allowed: with scenarios only");
+    throw InputError(fmt::format("--set: got an override; allowed: with scenarios only{}",
+                                 options.maps.empty() ? "" : " (maps take --algorithms and --integrators)"));
   }
   if (!options.maps.empty()) return stability_maps_command(options);
   if (options.stress) return stability_stress_command(options);
@@ -180,6 +181,11 @@ void add_experiments(CLI::App& command, StabilityOptions& options) {
 
   command.add_option("--size", options.size, "points of a map along each side (default: 17)")
       ->check(CLI::Range(2, 101))
+      ->needs(map);
+  command
+      .add_option("--integrators", options.integrators,
+                  "of --map: names separated by commas, or all (default: leapfrog)")
+      ->delimiter(',')
       ->needs(map);
   command.add_option("--count", options.count, "contact sets of --stress (default: 100000)")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))

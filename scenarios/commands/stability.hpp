@@ -16,7 +16,8 @@ struct StabilityOptions {
   std::vector<std::string> maps;
   bool stress = false;
   bool search = false;
-  std::vector<std::string> algorithms;  ///< none: all
+  std::vector<std::string> algorithms;   ///< none: all
+  std::vector<std::string> integrators;  ///< none: leapfrog
   std::size_t size = 17;
   std::uint64_t count = 100'000;
   std::string objective = "created";

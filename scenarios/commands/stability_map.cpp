@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "results/io/csv_writer.hpp"
 #include "scenarios/commands/stability.hpp"
@@ -15,34 +14,61 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The names given to an option that also takes "all", alone.
+std::vector<std::string> chosen_names(const std::string& option, const std::vector<std::string>& given,
+                                      const std::vector<std::string>& all) {
+  if (given == std::vector<std::string>{"all"}) return all;
+  if (std::find(given.begin(), given.end(), "all") != given.end()) {
+    throw InputError(option + ": got \"all\" beside other names; allowed: \"all\" alone");
+  }
+  std::vector<std::string> valid = all;
+  valid.insert(valid.begin(), "all");
+  require_names(option, given, valid);
+  return given;
+}
+
 std::vector<const StabilityMap*> chosen_maps(const StabilityOptions& options) {
+  std::vector<std::string> names;
+  for (const StabilityMap& map : stability_maps()) names.emplace_back(map.name);
   std::vector<const StabilityMap*> maps;
-  std::vector<std::string> valid;
-  for (const StabilityMap& map : stability_maps()) {
-    maps.push_back(&map);
-    valid.emplace_back(map.name);
-  }
-  if (options.maps == std::vector<std::string>{"all"}) return maps;
-  maps.clear();
-  std::set<std::string> seen;
-  for (const std::string& name : options.maps) {
-    const StabilityMap* map = find_stability_map(name);
-    if (map == nullptr) {
-      throw InputError(fmt::format("--map: got \"{}\"; allowed: \"all\", {}{}", name, quoted_list(valid),
-                                   nearest_name_hint(name, valid)));
-    }
-    if (!seen.insert(name).second) throw InputError(fmt::format("--map: got \"{}\" twice; allowed: once", name));
-    maps.push_back(map);
-  }
+  for (const std::string& name : chosen_names("--map", options.maps, names)) maps.push_back(find_stability_map(name));
   return maps;
+}
+
+std::vector<Integrator> chosen_integrators(const StabilityOptions& options) {
+  if (options.integrators.empty()) return {Integrator::leapfrog};
+  std::vector<std::string> names;
+  for (const Integrator integrator : kIntegrators) names.emplace_back(integrator_name(integrator));
+  std::vector<Integrator> integrators;
+  for (const std::string& name : chosen_names("--integrators", options.integrators, names)) {
+    const auto place = std::find(names.begin(), names.end(), name) - names.begin();
+    integrators.push_back(kIntegrators[static_cast<std::size_t>(place)]);
+  }
+  return integrators;
+}
+
+/// Every algorithm with every integrator, those of one algorithm side by side.
+std::vector<MapSubject> chosen_subjects(const StabilityOptions& options) {
+  std::vector<MapSubject> subjects;
+  for (const std::string& algorithm : options.chosen_algorithms()) {
+    for (const Integrator integrator : chosen_integrators(options)) subjects.push_back({algorithm, integrator});
+  }
+  return subjects;
+}
+
+std::string label(const MapSubject& subject) {
+  return subject.integrator == Integrator::leapfrog
+             ? subject.algorithm
+             : fmt::format("{} {}", subject.algorithm, integrator_name(subject.integrator));
 }
 
 void write_points(const fs::path& directory, const StabilityMap& map, const std::vector<MapResult>& results) {
   CsvWriter csv(directory / fmt::format("stability_map_{}.csv", map.name),
-                fmt::format("algorithm,{},{},class,lambda_max,stability_margin", map.x.name, map.y.name));
+                fmt::format("algorithm,{},{},class,lambda_max,stability_margin,integrator", map.x.name, map.y.name));
   for (const MapResult& result : results) {
     for (const MapPoint& p : result.points) {
-      csv.row(std::string_view(result.algorithm), p.x, p.y, motion_class_name(p.motion), p.lambda, p.margin);
+      csv.row(std::string_view(result.subject.algorithm), p.x, p.y, motion_class_name(p.motion), p.lambda, p.margin,
+              integrator_name(result.subject.integrator));
     }
   }
   csv.finish();
@@ -50,12 +76,12 @@ void write_points(const fs::path& directory, const StabilityMap& map, const std:
 
 void write_boundary(const fs::path& directory, const StabilityMap& map, const std::vector<MapResult>& results) {
   CsvWriter csv(directory / fmt::format("stability_boundary_{}.csv", map.name),
-                fmt::format("algorithm,{},analytic_{},simulation_{},relative_difference,no_theory", map.x.name,
-                            map.y.name, map.y.name));
+                fmt::format("algorithm,{},analytic_{},simulation_{},relative_difference,no_theory,integrator",
+                            map.x.name, map.y.name, map.y.name));
   for (const MapResult& result : results) {
     for (const BoundaryPoint& p : result.boundary) {
-      csv.row(std::string_view(result.algorithm), p.x, p.analytic, p.simulation, p.difference(),
-              std::string_view(p.no_theory));
+      csv.row(std::string_view(result.subject.algorithm), p.x, p.analytic, p.simulation, p.difference(),
+              std::string_view(p.no_theory), integrator_name(result.subject.integrator));
     }
   }
   csv.finish();
@@ -80,7 +106,7 @@ std::size_t count_of(const MapResult& result, MotionClass motion) {
 std::string drawing(const MapResult& result) {
   const std::size_t n = result.size;
   const MapAxis &x = result.map->x, &y = result.map->y;
-  std::string text = fmt::format("{}: {}\n\n", result.algorithm, result.map->summary);
+  std::string text = fmt::format("{}: {}\n\n", label(result.subject), result.map->summary);
   for (std::size_t row = n; row-- > 0;) {
     text += fmt::format("  {:>9}  ", row == 0 || row == n - 1 ? significant(y.at(row, n), 3) : "");
     for (std::size_t column = 0; column < n; ++column) {
@@ -107,7 +133,10 @@ Json result_json(const MapResult& result) {
                     {"relative_difference", or_null(p.difference())},
                     {"no_theory", p.no_theory}});
   }
-  Json json = {{"map", result.map->name}, {"algorithm", result.algorithm}, {"boundary", std::move(rows)}};
+  Json json = {{"map", result.map->name},
+               {"algorithm", result.subject.algorithm},
+               {"integrator", integrator_name(result.subject.integrator)},
+               {"boundary", std::move(rows)}};
   for (const MotionClass motion : {MotionClass::stable, MotionClass::vibrating, MotionClass::diverged}) {
     json[std::string(motion_class_name(motion))] = count_of(result, motion);
   }
@@ -118,7 +147,8 @@ std::vector<std::string> cells_of(const MapResult& result) {
   const auto difference = largest_difference(result);
   const auto without =
       std::count_if(result.boundary.begin(), result.boundary.end(), [](const BoundaryPoint& p) { return !p.analytic; });
-  std::vector<std::string> cells = {result.map->name, result.algorithm};
+  std::vector<std::string> cells = {result.map->name, result.subject.algorithm,
+                                    std::string(integrator_name(result.subject.integrator))};
   for (const MotionClass motion : {MotionClass::stable, MotionClass::vibrating, MotionClass::diverged}) {
     cells.push_back(std::to_string(count_of(result, motion)));
   }
@@ -131,12 +161,13 @@ std::vector<std::string> cells_of(const MapResult& result) {
 
 int stability_maps_command(const StabilityOptions& options) {
   const std::vector<const StabilityMap*> maps = chosen_maps(options);
-  const std::vector<std::string> algorithms = options.chosen_algorithms();
+  const std::vector<MapSubject> subjects = chosen_subjects(options);
   const fs::path out = options.directory("stability_maps");
   require_writable_directory(out);
 
   Table table({{"map", false},
                {"algorithm", false},
+               {"integrator", false},
                {"stable"},
                {"vibrating"},
                {"diverged"},
@@ -146,12 +177,12 @@ int stability_maps_command(const StabilityOptions& options) {
   Json json = Json::array();
   for (const StabilityMap* map : maps) {
     std::vector<MapResult> results;
-    for (const std::string& algorithm : algorithms) {
-      const JobOptions jobs = options.job_options(fmt::format("{} {}", map->name, algorithm));
-      results.push_back(stability_map(*map, algorithm, options.size, jobs));
+    for (const MapSubject& subject : subjects) {
+      const JobOptions jobs = options.job_options(fmt::format("{} {}", map->name, label(subject)));
+      results.push_back(stability_map(*map, subject, options.size, jobs));
       table.add(cells_of(results.back()));
       json.push_back(result_json(results.back()));
-      if (algorithms.size() == 1) drawings += drawing(results.back());
+      if (options.chosen_algorithms().size() == 1) drawings += drawing(results.back());
     }
     write_points(out, *map, results);
     write_boundary(out, *map, results);

@@ -31,6 +31,14 @@ constexpr int kLocusPoints = 400;
 /// rounding alone would be motion.
 constexpr double kLongestStep = 1e6;
 
+/// Where bisection starts, and beyond what it gives up.
+struct Probes {
+  double start, largest;
+};
+Probes probes_of(StabilityCase which) {
+  return which == StabilityCase::time_step ? Probes{1e-9, kLongestStep} : Probes{1.0, kLargestProbe};
+}
+
 /// The spring-damper of one case at one value of what is raised.
 SpringDamper at_value(StabilityCase which, double value, const Scenario& scenario, double lambda) {
   const RenderingConfig& config = scenario.rendering.config;
@@ -199,6 +207,12 @@ std::optional<double> analytic_limit(StabilityCase which, const Scenario& scenar
   return std::nullopt;
 }
 
+double eigenvalue_limit(StabilityCase which, const Scenario& scenario, double lambda) {
+  const auto stable = [&](double value) { return at_value(which, value, scenario, lambda).is_stable(); };
+  const Probes probes = probes_of(which);
+  return largest_stable(probes.start, kEigenvaluePrecision, stable, probes.largest);
+}
+
 std::vector<StabilityLimit> stability_limits(const Scenario& scenario) {
   check_scene(scenario);
   const Eigen::SelfAdjointEigenSolver<Mat3> S(stiffness_tensor_of(scenario));
@@ -213,15 +227,13 @@ std::vector<StabilityLimit> stability_limits(const Scenario& scenario) {
   };
   for (StabilityLimit& limit : limits) {
     const auto system = [&](double value) { return at_value(limit.which, value, scenario, lambda); };
-    const bool of_time = limit.which == StabilityCase::time_step;
-    const double start = of_time ? 1e-9 : 1.0, largest = of_time ? kLongestStep : kLargestProbe;
     limit.lambda = lambda;
     limit.analytic = analytic_limit(limit.which, scenario, lambda);
-    limit.eigenvalue = largest_stable(
-        start, kEigenvaluePrecision, [&](double value) { return system(value).is_stable(); }, largest);
+    limit.eigenvalue = eigenvalue_limit(limit.which, scenario, lambda);
     limit.damping_at_limit = system(limit.limit()).B;
     const auto run = [&](double value) { return simulation_stays_bounded(scenario, system(value), stiffest); };
-    limit.simulation = largest_stable(start, kPrecision, run, largest);
+    const Probes probes = probes_of(limit.which);
+    limit.simulation = largest_stable(probes.start, kPrecision, run, probes.largest);
   }
   return limits;
 }

@@ -12,6 +12,10 @@ namespace {
 /// A twentieth of the 2 % within which theory and runs must agree.
 constexpr double kPrecision = 1e-3;
 
+/// How far beyond a map's range an edge is looked for. Further out, from K dt^2 / M = 6e8 on, the rounding of a step of
+/// implicit_midpoint, which damps nothing there, grows.
+constexpr double kBeyondTheMap = 1e4;
+
 /// The first row: where the springs start from.
 class FirstRow final : public Observer {
  public:
@@ -44,32 +48,41 @@ Probe probe(const Scenario& scenario) {
   return {motion, lambda_max(first.S), linear};
 }
 
-MapPoint map_point(const StabilityMap& map, const std::string& algorithm, double x, double y) {
-  const Scenario scenario = map.scene(x, y, algorithm);
+Scenario scene(const StabilityMap& map, const MapSubject& subject, double x, double y) {
+  Scenario scenario = map.scene(x, y, subject.algorithm);
+  scenario.integrator.type = subject.integrator;
+  return scenario;
+}
+
+MapPoint map_point(const StabilityMap& map, const MapSubject& subject, double x, double y) {
+  const Scenario scenario = scene(map, subject, x, y);
   const Probe run = probe(scenario);
   MapPoint point{x, y, run.motion, run.lambda, {}};
-  if (map.no_theory != nullptr || !run.linear) return point;
+  if (map.no_theory != nullptr || !run.linear || subject.integrator != Integrator::leapfrog) return point;
   const double K = scenario.rendering.config.stiffness, M = *scenario.rendering.mass;
   const double B = 2.0 * scenario.rendering.config.damping_ratio * std::sqrt(K * M);
   point.margin = SpringDamper{K, B, M, scenario.time.step, run.lambda}.margin();
   return point;
 }
 
-BoundaryPoint boundary_point(const StabilityMap& map, const std::string& algorithm, double x) {
+BoundaryPoint boundary_point(const StabilityMap& map, const MapSubject& subject, double x) {
   BoundaryPoint point;
   point.x = x;
-  point.simulation = largest_stable(map.y.low, kPrecision, [&](double y) {
-    const MotionClass motion = probe(map.scene(x, y, algorithm)).motion;
+  const auto holds = [&](double y) {
+    const MotionClass motion = probe(scene(map, subject, x, y)).motion;
     return map.no_theory == nullptr ? motion != MotionClass::diverged : motion == MotionClass::stable;
-  });
-  const Scenario start = map.scene(x, map.y.low, algorithm);
+  };
+  point.simulation = largest_stable(map.y.low, kPrecision, holds, kBeyondTheMap * map.y.high);
+  const Scenario start = scene(map, subject, x, map.y.low);
   const Probe run = probe(start);
   if (map.no_theory != nullptr) {
     point.no_theory = map.no_theory;
   } else if (!run.linear) {
     point.no_theory = "the force is not -K S p";
   } else {
-    point.analytic = analytic_limit(StabilityCase::stiffness_damped, start, run.lambda);
+    constexpr auto kCase = StabilityCase::stiffness_damped;
+    point.analytic = analytic_limit(kCase, start, run.lambda);
+    if (!point.analytic) point.analytic = eigenvalue_limit(kCase, start, run.lambda);
   }
   return point;
 }
@@ -81,16 +94,16 @@ std::optional<double> BoundaryPoint::difference() const {
   return *analytic == simulation ? 0.0 : simulation / *analytic - 1.0;
 }
 
-MapResult stability_map(const StabilityMap& map, const std::string& algorithm, std::size_t size,
+MapResult stability_map(const StabilityMap& map, const MapSubject& subject, std::size_t size,
                         const JobOptions& options) {
-  MapResult result{&map, algorithm, size, {}, {}};
+  MapResult result{&map, subject, size, {}, {}};
   result.points.resize(size * size);
   result.boundary.resize(size);
   for_each_job(size * size + size, options, [&](std::size_t i) {
     if (i < size * size) {
-      result.points[i] = map_point(map, algorithm, map.x.at(i / size, size), map.y.at(i % size, size));
+      result.points[i] = map_point(map, subject, map.x.at(i / size, size), map.y.at(i % size, size));
     } else {
-      result.boundary[i - size * size] = boundary_point(map, algorithm, map.x.at(i - size * size, size));
+      result.boundary[i - size * size] = boundary_point(map, subject, map.x.at(i - size * size, size));
     }
   });
   return result;

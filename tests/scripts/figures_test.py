@@ -76,7 +76,14 @@ def make_results(directory):
         out = directory / "stiffness" / scene
         hapbench("compare", scenario, "--set=record.stiffness_tensor=true", "--quiet", "--out", out)
     make_studies(directory / "precision")
-    make_maps(directory / "stability")
+    hapbench(
+        *("stability", "--map", "all", "--algorithms", "shaped_stiffness,summation", "--size", "3", "--quiet"),
+        *("--out", directory / "stability_maps"),
+    )
+    hapbench(
+        *("stability", "--map", "time_step,damping_ratio,device", "--algorithms", "shaped_stiffness", "--size", "3"),
+        *("--integrators", "all", "--quiet", "--out", directory / "stability_integrators"),
+    )
     timing = {
         "step_latency": {
             "steps": 10,
@@ -116,38 +123,6 @@ def make_studies(directory):
         times = [f"{name},{1e-6 * (i + 1)},{1e-6 * (i + 1)}" for i, name in enumerate(names)]
         (directory / f"precision_{study}_timing.csv").write_text(
             "\n".join(["setting,seconds_per_step,seconds_per_call", *times]) + "\n"
-        )
-
-
-def make_maps(directory):
-    """A coarse map of each kind: both axes geometric, and one of them linear."""
-    for name, x_name, values in (
-        ("time_step", "time_step_s", (1e-4, 1e-3, 1e-2)),
-        ("mass", "mass_kg", (0.01, 0.1, 1)),
-        ("damping_ratio", "damping_ratio", (0, 1, 2)),
-        ("contacts", "contacts", (1, 10, 100)),
-        ("wedge", "wedge_angle_rad", (0, 1.5, 3)),
-        ("device", "delay_samples", (0, 8, 16)),
-    ):
-        points, boundary = [], []
-        for algorithm in ("shaped_stiffness", "summation"):
-            for x in values:
-                boundary.append(f"{algorithm},{x},{'inf' if x == values[0] else 3e4},2.9e4,,")
-                points += [
-                    f"{algorithm},{x},{k},{motion},1,"
-                    for k, motion in ((1e3, "stable"), (1e4, "vibrating"), (1e5, "diverged"))
-                ]
-        (directory / f"stability_map_{name}.csv").write_text(
-            "\n".join([f"algorithm,{x_name},stiffness_N_per_m,class,lambda_max,stability_margin", *points]) + "\n"
-        )
-        (directory / f"stability_boundary_{name}.csv").write_text(
-            "\n".join(
-                [
-                    f"algorithm,{x_name},analytic_stiffness_N_per_m,simulation_stiffness_N_per_m,relative_difference,no_theory",
-                    *boundary,
-                ]
-            )
-            + "\n"
         )
 
 

@@ -73,4 +73,5 @@ FIGURES = (
         Figure(f"stability-{name}", None, f"Stability over {name.replace('_', ' ')}", stability.stability_map(name))
         for name in STABILITY_MAPS
     ),
+    Figure("stability-integrators", None, "Stability under each integrator", stability.integrators),
 )

@@ -106,42 +106,95 @@ def draw_boundary(ax, rows, x_name, y_name):
             ax.plot(numbers(rows, x_name), np.where(np.isfinite(y), y, np.nan), **look)
 
 
+class MapFile:
+    """stability_map_NAME.csv and the boundary beside it."""
+
+    def __init__(self, results, path):
+        self.rows = results.records(path)
+        self.x_name, self.y_name = list(self.rows[0])[1:3]
+        boundary = path.replace("stability_map_", "stability_boundary_")
+        self.boundary = results.records(boundary) if results.has(boundary) else []
+
+    @property
+    def integrators(self):
+        return list(dict.fromkeys(row["integrator"] for row in self.rows))
+
+    def draw(self, ax, **subject):
+        """The map of those rows whose columns have these values."""
+
+        def of_subject(rows):
+            return [row for row in rows if all(row[column] == value for column, value in subject.items())]
+
+        draw_map(ax, of_subject(self.rows), self.x_name, self.y_name)
+        boundary = of_subject(self.boundary)
+        if boundary:
+            draw_boundary(ax, boundary, self.x_name, self.y_name)
+
+
+def map_file(results, name, of_integrators):
+    """The first map of this name that compares integrators, or that does not."""
+    for path in results.glob(f"**/stability_map_{name}.csv"):
+        found = MapFile(results, path)
+        if (len(found.integrators) > 1) == of_integrators:
+            return found
+    raise MissingResult(f"no stability_map_{name}.csv{' of several integrators' if of_integrators else ''}")
+
+
+def legend_above(figure):
+    handles = [style.plt.Rectangle((0, 0), 1, 1, color=c) for c in CLASS_COLOURS]
+    handles += [
+        style.plt.Line2D([], [], color=style.BLUE, lw=1.3),
+        style.plt.Line2D([], [], color="black", lw=1, ls=(0, (2, 2))),
+    ]
+    figure.get_layout_engine().set(rect=(0, 0, 1, 0.93))
+    figure.legend(handles, [*CLASSES, "limit, theory", "limit, bisection"], loc="upper center", ncol=5)
+
+
 def stability_map(name):
     """The function that draws stability_map_NAME.csv."""
 
     def draw(results):
-        found = results.glob(f"**/stability_map_{name}.csv")
-        if not found:
-            raise MissingResult(f"no stability_map_{name}.csv")
-        rows = results.records(found[0])
-        x_name, y_name = list(rows[0])[1:3]
-        boundary_file = found[0].replace("stability_map_", "stability_boundary_")
-        boundary = results.records(boundary_file) if results.has(boundary_file) else []
-        present = [a for a in style.EVERY_ALGORITHM if any(row["algorithm"] == a for row in rows)]
+        found = map_file(results, name, of_integrators=False)
+        present = [a for a in style.EVERY_ALGORITHM if any(row["algorithm"] == a for row in found.rows)]
         lines = max(2, -(-len(present) // 4))
         figure, axes = style.panels(lines, 4, 1.85 * lines, sharex=True, sharey=True)
         for ax in axes.flat:
             ax.set_visible(False)
         for ax, algorithm in zip(axes.flat, present):
             ax.set_visible(True)
-            draw_map(ax, [row for row in rows if row["algorithm"] == algorithm], x_name, y_name)
-            own = [row for row in boundary if row["algorithm"] == algorithm]
-            if own:
-                draw_boundary(ax, own, x_name, y_name)
+            found.draw(ax, algorithm=algorithm)
             ax.set_title(style.EVERY_ALGORITHM[algorithm].label)
-        figure.supxlabel(axis_label(x_name), fontsize=8)
-        figure.supylabel(axis_label(y_name), fontsize=8)
-        handles = [style.plt.Rectangle((0, 0), 1, 1, color=c) for c in CLASS_COLOURS]
-        handles += [
-            style.plt.Line2D([], [], color=style.BLUE, lw=1.3),
-            style.plt.Line2D([], [], color="black", lw=1, ls=(0, (2, 2))),
-        ]
-        figure.get_layout_engine().set(rect=(0, 0, 1, 0.93))
-        figure.legend(handles, [*CLASSES, "limit, theory", "limit, bisection"], loc="upper center", ncol=5)
+        x_label, y_label = axis_label(found.x_name), axis_label(found.y_name)
+        figure.supxlabel(x_label, fontsize=8)
+        figure.supylabel(y_label, fontsize=8)
+        legend_above(figure)
         return figure, (
-            f"Where a run is stable, vibrates or diverges: {axis_label(y_name)} over {axis_label(x_name)}, every "
+            f"Where a run is stable, vibrates or diverges: {y_label} over {x_label}, every "
             "algorithm. Lines: the limit from theory (blue), where there is one, and found by bisection over "
             "simulated runs (dashed). Ours."
         )
 
     return draw
+
+
+def integrators(results):
+    """The maps of one algorithm under every integrator."""
+    maps = [map_file(results, name, of_integrators=True) for name in ("time_step", "damping_ratio", "device")]
+    names = maps[0].integrators
+    algorithm = maps[0].rows[0]["algorithm"]
+    figure, axes = style.panels(len(maps), len(names), 2.0 * len(maps), sharex="row", sharey="row")
+    for line, found in zip(axes, maps):
+        for ax, name in zip(line, names):
+            found.draw(ax, algorithm=algorithm, integrator=name)
+            ax.tick_params(axis="x", labelrotation=30)
+        line[0].set_ylabel(axis_label(found.y_name))
+        line[len(names) // 2].set_xlabel(axis_label(found.x_name))
+    for ax, name in zip(axes[0], names):
+        ax.set_title(name.replace("_", " "))
+    legend_above(figure)
+    return figure, (
+        f"Where a run is stable, vibrates or diverges under each integrator, {style.look(algorithm).label}: stiffness "
+        "of one spring over the time step and over zeta, stiffness of the hand over the delay of the device's servo. "
+        "Lines: the limit from theory (blue), where there is one, and found by bisection over simulated runs "
+        "(dashed). Ours."
+    )

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "algorithms/registry.hpp"
 #include "scenarios/experiments/stability_limits.hpp"
@@ -36,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(Every, SpringMap, testing::ValuesIn(spring_maps()), [](
 });
 
 TEST_P(SpringMap, HasItsEdgeWithinTwoPercentOfTheAnalyticLimit) {
-  const MapResult result = stability_map(*GetParam().map, GetParam().algorithm, 5, kTwoThreads);
+  const MapResult result = stability_map(*GetParam().map, {GetParam().algorithm}, 5, kTwoThreads);
   ASSERT_EQ(result.boundary.size(), 5u);
   for (const BoundaryPoint& point : result.boundary) {
     // Bilateral springs in constant contact: every law is linear there, so the theory applies everywhere.
@@ -47,7 +48,7 @@ TEST_P(SpringMap, HasItsEdgeWithinTwoPercentOfTheAnalyticLimit) {
 }
 
 TEST_P(SpringMap, DivergesWhereTheMarginIsNegativeAndNowhereElse) {
-  const MapResult result = stability_map(*GetParam().map, GetParam().algorithm, 5, kTwoThreads);
+  const MapResult result = stability_map(*GetParam().map, {GetParam().algorithm}, 5, kTwoThreads);
   ASSERT_EQ(result.points.size(), 25u);
   for (const MapPoint& point : result.points) {
     ASSERT_TRUE(point.margin);
@@ -60,7 +61,7 @@ TEST_P(SpringMap, DivergesWhereTheMarginIsNegativeAndNowhereElse) {
 /// lambda_max(S) in closed form, where the law's weights are.
 TEST(StabilityMap, ReportsTheTensorOfTheRun) {
   const auto lambdas = [](const char* map, const char* algorithm, auto expected) {
-    const MapResult result = stability_map(*find_stability_map(map), algorithm, 4, kTwoThreads);
+    const MapResult result = stability_map(*find_stability_map(map), {algorithm}, 4, kTwoThreads);
     for (const MapPoint& point : result.points) {
       EXPECT_NEAR(point.lambda, expected(point.x), 1e-12 * (1.0 + expected(point.x))) << algorithm << " " << point.x;
     }
@@ -75,7 +76,7 @@ TEST(StabilityMap, ReportsTheTensorOfTheRun) {
 }
 
 TEST(StabilityMap, WithoutDampingVibratesUpToTheLimit) {
-  const MapResult result = stability_map(*find_stability_map("damping_ratio"), "summation", 6, kTwoThreads);
+  const MapResult result = stability_map(*find_stability_map("damping_ratio"), {"summation"}, 6, kTwoThreads);
   for (const MapPoint& point : result.points) {
     if (point.x == 0.0) {
       EXPECT_EQ(point.motion, point.y < 1.6e6 ? MotionClass::vibrating : MotionClass::diverged) << point.y;
@@ -85,7 +86,7 @@ TEST(StabilityMap, WithoutDampingVibratesUpToTheLimit) {
 }
 
 TEST(StabilityMap, OfTheDeviceHasAnEdgeButNoTheory) {
-  const MapResult result = stability_map(*find_stability_map("device"), "summation", 3, kTwoThreads);
+  const MapResult result = stability_map(*find_stability_map("device"), {"summation"}, 3, kTwoThreads);
   for (const BoundaryPoint& point : result.boundary) {
     EXPECT_FALSE(point.analytic);
     EXPECT_FALSE(point.difference());
@@ -98,10 +99,42 @@ TEST(StabilityMap, OfTheDeviceHasAnEdgeButNoTheory) {
   EXPECT_EQ(result.boundary[1].simulation, 0.0);
 }
 
+class IntegratorMap : public testing::TestWithParam<Integrator> {};
+INSTANTIATE_TEST_SUITE_P(Every, IntegratorMap, testing::ValuesIn(kIntegrators),
+                         [](const auto& instance) { return std::string(integrator_name(instance.param)); });
+
+/// Bilateral springs are linear under every integrator, so its runs must end where an eigenvalue of its step leaves the
+/// unit circle, and never where none does.
+TEST_P(IntegratorMap, HasItsEdgeWithinTwoPercentOfTheory) {
+  for (const char* map : {"time_step", "damping_ratio", "wedge"}) {
+    const MapResult result =
+        stability_map(*find_stability_map(map), {"shaped_stiffness", GetParam()}, 5, kTwoThreads);
+    for (const BoundaryPoint& point : result.boundary) {
+      ASSERT_TRUE(point.analytic) << map;
+      EXPECT_LE(std::abs(*point.difference()), 0.02)
+          << map << ", x = " << point.x << ": " << point.simulation << " instead of " << *point.analytic;
+    }
+    for (const MapPoint& point : result.points) {
+      EXPECT_EQ(point.margin.has_value(), GetParam() == Integrator::leapfrog);
+    }
+  }
+}
+
+TEST(StabilityMap, KnowsTheLimitsOfOtherIntegratorsInClosedForm) {
+  const StabilityMap& map = *find_stability_map("damping_ratio");
+  const auto undamped = [&](Integrator integrator) {
+    return *stability_map(map, {"mean", integrator}, 2, kTwoThreads).boundary[0].analytic;
+  };
+  EXPECT_NEAR(undamped(Integrator::velocity_verlet), 1.6e6, 1e-3);  // 4 M / dt^2
+  EXPECT_NEAR(undamped(Integrator::rk4), 3.2e6, 1e-3);              // 8 M / dt^2
+  EXPECT_EQ(undamped(Integrator::implicit_euler), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(undamped(Integrator::implicit_midpoint), std::numeric_limits<double>::infinity());
+}
+
 TEST(StabilityMap, DoesNotDependOnTheNumberOfThreads) {
   const StabilityMap& map = *find_stability_map("wedge");
-  const MapResult one = stability_map(map, "exact_shaping", 4, {1, ""}),
-                  four = stability_map(map, "exact_shaping", 4, {4, ""});
+  const MapResult one = stability_map(map, {"exact_shaping"}, 4, {1, ""}),
+                  four = stability_map(map, {"exact_shaping"}, 4, {4, ""});
   for (std::size_t i = 0; i < one.points.size(); ++i) {
     EXPECT_EQ(one.points[i].motion, four.points[i].motion);
     EXPECT_EQ(one.points[i].lambda, four.points[i].lambda);

@@ -28,12 +28,12 @@ TEST_F(StabilityExperiments, MapsAreWrittenPointByPointAndEdgeByEdge) {
   EXPECT_EQ(test::names_below(out_), (Names{"stability_boundary_device.csv", "stability_boundary_wedge.csv",
                                             "stability_map_device.csv", "stability_map_wedge.csv"}));
   const auto points = lines_of(test::read_file(directory_ / "out/stability_map_wedge.csv"));
-  EXPECT_EQ(points[0], "algorithm,wedge_angle_rad,stiffness_N_per_m,class,lambda_max,stability_margin");
+  EXPECT_EQ(points[0], "algorithm,wedge_angle_rad,stiffness_N_per_m,class,lambda_max,stability_margin,integrator");
   EXPECT_EQ(points.size(), 1u + 2 * 9);
   const auto edges = lines_of(test::read_file(directory_ / "out/stability_boundary_wedge.csv"));
   EXPECT_EQ(edges[0],
             "algorithm,wedge_angle_rad,analytic_stiffness_N_per_m,simulation_stiffness_N_per_m,relative_difference,"
-            "no_theory");
+            "no_theory,integrator");
   ASSERT_EQ(edges.size(), 1u + 2 * 3);
   for (std::size_t i = 1; i < edges.size(); ++i) {
     const auto cells = cells_of(edges[i]);
@@ -57,6 +57,21 @@ TEST_F(StabilityExperiments, OneAlgorithmsMapIsDrawn) {
   EXPECT_EQ(json[0]["map"], "time_step");
   EXPECT_EQ(json[0]["boundary"].size(), 2u);
   EXPECT_EQ(hapbench({"stability", "--map", "mass", "--size", "2", "--quiet", "--out", out_}).out, "");
+}
+
+TEST_F(StabilityExperiments, MapsCompareIntegrators) {
+  const ProgramRun run = hapbench({"stability", "--map", "time_step", "--algorithms", "mean", "--integrators", "all",
+                                   "--size", "2", "--json", "--out", out_});
+  EXPECT_EQ(run.status, 0) << run.err;
+  const Json json = run.json();
+  ASSERT_EQ(json.size(), 5u);
+  EXPECT_EQ(json[0]["integrator"], "leapfrog");
+  EXPECT_EQ(json[4]["integrator"], "implicit_midpoint");
+  const auto points = lines_of(test::read_file(directory_ / "out/stability_map_time_step.csv"));
+  ASSERT_EQ(points.size(), 1u + 5 * 4);
+  EXPECT_EQ(cells_of(points[4]).back(), "leapfrog");
+  EXPECT_EQ(cells_of(points[5]).back(), "velocity_verlet");
+  EXPECT_EQ(cells_of(points[5])[5], "");  // the inequality is leapfrog's
 }
 
 TEST_F(StabilityExperiments, MapsAreTheSameBytesOnAnyNumberOfThreads) {
@@ -115,6 +130,10 @@ TEST_F(StabilityExperiments, WrongUseIsRefusedAndNothingWritten) {
       {"--map", "wedge", "--algorithms", "no_such_law"},
       {"--map", "wedge", "--algorithms", "mean,mean"},
       {"--map", "wedge", "--set", "time.steps=5"},
+      {"--map", "wedge", "--integrators", "no_such_integrator"},
+      {"--map", "wedge", "--integrators", "rk4,rk4"},
+      {"--map", "wedge", "--integrators", "rk4,all"},
+      {"single_spring", "--integrators", "rk4"},
       {"--map", "wedge", "--stress"},
       {"--map", "wedge", "--search"},
       {"--map", "wedge", "--count", "5"},
