@@ -12,6 +12,8 @@ constexpr ParameterInfo kParameters[] = {
     {"rendering.damping_N_s_per_m", "N s/m", "null", "null | number >= 0 <= 1e+12", "B itself; null: from zeta"},
     {"rendering.angular_damping", "1", "false", "boolean",
      "v of the tool's material at each contact, v + omega x r_i, instead of the tip centre's"},
+    {"rendering.angular_velocity_cutoff_Hz", "Hz", "20", "null | number > 0 <= 1e+06",
+     "first-order low-pass of the angular velocity that angular_damping sees; null: none"},
     {"rendering.mass_kg", "kg", "by scene", "number > 0 <= 1e+06",
      "M of the virtual tool; default 0.2 in planar scenes, else 0.1"},
     {"rendering.friction.mu_s_N_s_per_m", "N s/m", "by scene", "number >= 0 <= 1e+09",

@@ -19,7 +19,8 @@ struct ContactVelocity {
 ///   f_dn = -B v_n, v_n = S v, B = 2 zeta sqrt(K M);  v_t = v - v_n, f_dt = -(mu_s + mu_f |f_spring|) v_t
 ///
 /// With angular damping (thesis 4.4: a tool that only turns is not damped) v is the velocity of the tool's material,
-/// v_i = v + omega x r_i at the contact r_i from the tip centre, omega that of the step before:
+/// v_i = v + omega x r_i at the contact r_i from the tip centre, omega that of the step before, through a low-pass,
+/// because a hand that trembles turns the tool much faster than it moves it:
 ///
 ///   v_n = sum c_i <v_i, u_i> u_i = S v + sum c_i <omega x r_i, u_i> u_i;  v_t = v + omega x r_mean - v_n
 ///

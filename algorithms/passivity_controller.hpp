@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "algorithms/info.hpp"
 #include "algorithms/rendering_config.hpp"
@@ -40,10 +41,13 @@ class PassivityController final : public ForceAlgorithm {
   SpringState spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept override;
   ForceJacobian jacobian() const noexcept override;
   bool wants_input() const noexcept override { return true; }
-  bool wants_angular_velocity() const noexcept override { return algorithm_->wants_angular_velocity(); }
+  std::optional<double> angular_velocity_cutoff() const noexcept override {
+    return algorithm_->angular_velocity_cutoff();
+  }
   AlgorithmWork work() const noexcept override;
 
  private:
+  void note_turn() noexcept;
   void control(const ToolState& tool, const Vec3& force) noexcept;
   void render(const ToolState& tool, RenderedForce& out) const noexcept;
 

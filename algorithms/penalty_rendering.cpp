@@ -24,7 +24,7 @@ PenaltyRendering::PenaltyRendering(std::unique_ptr<DepthModel> depth_model, std:
       damping_and_limits_(config),
       skips_(config.skips),
       K_(config.stiffness),
-      angular_damping_(config.angular_damping) {}
+      angular_velocity_cutoff_(config.angular_velocity_read()) {}
 
 void PenaltyRendering::prepare(const Scene& scene) {
   tool_ = scene.tool;
@@ -73,7 +73,7 @@ void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, R
 ContactVelocity PenaltyRendering::velocity_at(const ContactBuffer& contacts, const ToolState& tool) const noexcept {
   const Mat3& S = law_force_.S;
   ContactVelocity velocity{tool.velocity, S * tool.velocity};
-  if (angular_damping_ && tool.angular_velocity != Vec3::Zero()) {
+  if (angular_velocity_cutoff_ && tool.angular_velocity != Vec3::Zero()) {
     velocity.mean += tool.angular_velocity.cross(mean_arm(contacts, tool.pose.position));
     velocity.normal += law_->turning_velocity(contacts, S, tool);
   }

@@ -25,7 +25,7 @@ class PenaltyRendering final : public ForceAlgorithm {
   void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept override;
   SpringState spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept override;
   ForceJacobian jacobian() const noexcept override;
-  bool wants_angular_velocity() const noexcept override { return angular_damping_; }
+  std::optional<double> angular_velocity_cutoff() const noexcept override { return angular_velocity_cutoff_; }
   AlgorithmWork work() const noexcept override;
 
  private:
@@ -40,7 +40,7 @@ class PenaltyRendering final : public ForceAlgorithm {
   Tool tool_;
   Skips skips_;
   double K_;
-  bool angular_damping_;
+  std::optional<double> angular_velocity_cutoff_;  ///< none without angular damping
   bool depth_is_given_ = false;
   bool knows_of_no_contacts_ = false;  ///< the depth model: it was told in the last step, or some steps before
   bool in_contact_ = false;            ///< after the last step

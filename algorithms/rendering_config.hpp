@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -30,14 +31,22 @@ struct RenderingConfig {
   double damping_ratio = 0.7;              ///< zeta
   double mass = 0.2;                       ///< M of the virtual tool [kg]
   std::optional<double> damping;           ///< B [N s/m]; off: 2 zeta sqrt(K M)
-  bool angular_damping = false;            ///< damping and friction see the velocity of the tool at each contact
   double mu_s = 0.0;                       ///< viscous friction [N s/m]
   double mu_f = 0.0;                       ///< viscous friction per newton of spring force [s/m]
   std::optional<double> max_damping;       ///< B_max [N s/m]
   std::optional<double> max_force;         ///< F_max [N]
   std::optional<double> virtual_coupling;  ///< K_vc [N/m]; off: K
 
+  bool angular_damping = false;  ///< damping and friction see the velocity of the tool at each contact
+  std::optional<double> angular_velocity_cutoff = 20.0;  ///< of the low-pass of the angular velocity they see [Hz]
+
   bool passivity_controller = false;  ///< around the algorithm
+
+  /// ForceAlgorithm::angular_velocity_cutoff of what damps like this.
+  std::optional<double> angular_velocity_read() const {
+    if (!angular_damping) return std::nullopt;
+    return angular_velocity_cutoff.value_or(std::numeric_limits<double>::infinity());
+  }
 
   Skips skips = Skips::taken;  ///< stages without contacts, the reduction of one, friction with coefficients of zero
 };

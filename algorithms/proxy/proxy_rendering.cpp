@@ -49,7 +49,7 @@ constexpr double kSettled = 1e-3;
 }  // namespace
 
 ProxyRendering::ProxyRendering(const RenderingConfig& config)
-    : K_(config.stiffness), angular_damping_(config.angular_damping), damping_and_limits_(config) {}
+    : K_(config.stiffness), angular_velocity_cutoff_(config.angular_velocity_read()), damping_and_limits_(config) {}
 
 void ProxyRendering::prepare(const Scene& scene) {
   tool_ = scene.tool;
@@ -87,7 +87,7 @@ void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, Ren
 ContactVelocity ProxyRendering::velocity_at(const ToolState& tool) const noexcept {
   ContactVelocity velocity{tool.velocity, held_ * tool.velocity};
   // Springs are attached to the tip, which does not move when the tool turns.
-  if (!angular_damping_ || depth_is_given_ || tool.angular_velocity == Vec3::Zero()) return velocity;
+  if (!angular_velocity_cutoff_ || depth_is_given_ || tool.angular_velocity == Vec3::Zero()) return velocity;
   Mat3 span = Mat3::Zero();
   Vec3 turning = Vec3::Zero();
   for (std::size_t i = 0; i < near_contacts_->size(); ++i) {

@@ -43,7 +43,7 @@ class ProxyRendering final : public ForceAlgorithm {
   void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept override;
   SpringState spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept override;
   ForceJacobian jacobian() const noexcept override;
-  bool wants_angular_velocity() const noexcept override { return angular_damping_; }
+  std::optional<double> angular_velocity_cutoff() const noexcept override { return angular_velocity_cutoff_; }
   AlgorithmWork work() const noexcept override;
 
   const Vec3& proxy() const { return proxy_; }  ///< tip centre of the proxy [m]
@@ -56,7 +56,7 @@ class ProxyRendering final : public ForceAlgorithm {
   ContactVelocity velocity_at(const ToolState& tool) const noexcept;
 
   double K_;
-  bool angular_damping_;
+  std::optional<double> angular_velocity_cutoff_;  ///< none without angular damping
   DampingAndLimits damping_and_limits_;
   Tool tool_;
   bool depth_is_given_ = false;

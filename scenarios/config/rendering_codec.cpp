@@ -81,6 +81,10 @@ CodecPtr<RenderingFields> rendering_codec() {
   rendering->optional(
       "angular_damping", [](auto& r) -> bool& { return r.config.angular_damping; }, boolean(),
       "damping and friction see the velocity of the tool's material at each contact, not only the tip centre's");
+  rendering->optional(
+      "angular_velocity_cutoff_Hz", [](auto& r) -> auto& { return r.config.angular_velocity_cutoff; },
+      nullable(number({0.0, 1e6, "Hz", true})),
+      "first-order low-pass of the angular velocity that angular_damping sees; null: none");
   rendering->deferred(
       "mass_kg", [](auto& r) -> auto& { return r.mass; }, number({0.0, 1e6, "kg", true}),
       "M of the virtual tool; default 0.2 in planar scenes, else 0.1");

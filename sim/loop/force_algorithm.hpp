@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/contact/contact_query.hpp"
@@ -72,8 +73,9 @@ class ForceAlgorithm {
   virtual SpringState spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept = 0;
   /// Of the last `compute`, with the contacts held as they were. Called only by integrators that ask for it.
   virtual ForceJacobian jacobian() const noexcept = 0;
-  /// True when `compute` reads the tool's angular velocity; otherwise nobody computes it.
-  virtual bool wants_angular_velocity() const noexcept { return false; }
+  /// Cut-off frequency [Hz] of the low-pass through which `compute` reads the tool's angular velocity, infinite for the
+  /// velocity as it is; none when it does not read it: then nobody computes it.
+  virtual std::optional<double> angular_velocity_cutoff() const noexcept { return std::nullopt; }
   /// True when `take_input` is to be called.
   virtual bool wants_input() const noexcept { return false; }
   virtual AlgorithmWork work() const noexcept { return {}; }

@@ -1,5 +1,7 @@
 #include "sim/loop/simulation.hpp"
 
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "sim/loop/leapfrog.hpp"
@@ -16,9 +18,7 @@ class Simulation::Surroundings final : public ForceField {
   Vec3 force_at(double part, const Vec3& position, const Vec3& velocity) noexcept override {
     const Vec3 axis = s_.parts_.motion->axis_at((static_cast<double>(s_.row_) + part) * s_.config_.dt);
     ToolState tool{{position, axis}, velocity};
-    if (s_.angular_velocity_wanted_) {
-      tool.angular_velocity = turn(s_.tool_.pose.axis, axis) / (part * s_.config_.dt);
-    }
+    if (s_.angular_velocity_cutoff_) tool.angular_velocity = s_.angular_velocity_after(part, axis);
     s_.parts_.query->contacts_at(tool.pose, s_.contacts_);
     s_.parts_.algorithm->compute(tool, s_.contacts_, s_.within_step_);
     return s_.record_.hand.input + s_.within_step_.rendered;
@@ -41,7 +41,7 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
     energy_wanted_ |= observer->wants_energy();
   }
   input_wanted_ = parts_.algorithm->wants_input();
-  angular_velocity_wanted_ = parts_.algorithm->wants_angular_velocity();
+  angular_velocity_cutoff_ = parts_.algorithm->angular_velocity_cutoff();
   parts_.algorithm->prepare({parts_.tool, parts_.query.get(), parts_.shell.get(), config_.dt});
   reset();
 }
@@ -59,14 +59,20 @@ void Simulation::reset() noexcept {
   parts_.device->reset(tool_);
 }
 
-/// Orientation always follows the script, omega_k = turn from axis_{k-1} to axis_k / dt, omega_0 = 0; a prescribed
-/// position also gives the velocity, (p_k - p_{k-1}) / dt, v_0 = 0.
+/// The turn from the row's axis to `axis`, a part of a step later, as an angular velocity through a first-order
+/// low-pass: 1 - e^(-2 pi f t) of what is new.
+Vec3 Simulation::angular_velocity_after(double part, const Vec3& axis) const noexcept {
+  const double time = part * config_.dt;
+  const double kept = std::exp(-2.0 * std::numbers::pi * *angular_velocity_cutoff_ * time);
+  return kept * tool_.angular_velocity + (1.0 - kept) * turn(tool_.pose.axis, axis) / time;
+}
+
+/// Orientation always follows the script, omega_k from the turn of the last step, omega_0 = 0; a prescribed position
+/// also gives the velocity, (p_k - p_{k-1}) / dt, v_0 = 0.
 void Simulation::move_tool_by_script() noexcept {
   const double t = static_cast<double>(row_) * config_.dt;
   const Vec3 axis = parts_.motion->axis_at(t);
-  if (angular_velocity_wanted_) {
-    tool_.angular_velocity = row_ == 0 ? Vec3::Zero() : Vec3(turn(tool_.pose.axis, axis) / config_.dt);
-  }
+  if (angular_velocity_cutoff_ && row_ > 0) tool_.angular_velocity = angular_velocity_after(1.0, axis);
   tool_.pose.axis = axis;
   if (parts_.motion->position_is_free()) return;
   const Vec3 position = parts_.motion->position_at(t);

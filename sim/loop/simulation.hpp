@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -97,6 +98,7 @@ class Simulation {
 
   void move_tool_by_force() noexcept;
   void move_tool_by_script() noexcept;
+  Vec3 angular_velocity_after(double part, const Vec3& axis) const noexcept;
   void note_springs() noexcept;
   bool check_bounds() noexcept;
   bool check_stop_conditions() noexcept;
@@ -109,7 +111,7 @@ class Simulation {
   bool springs_wanted_ = false;
   bool energy_wanted_ = false;
   bool input_wanted_ = false;
-  bool angular_velocity_wanted_ = false;
+  std::optional<double> angular_velocity_cutoff_;  ///< none: nobody wants it
   ContactBuffer contacts_;
 
   std::uint64_t row_ = 0;

@@ -32,7 +32,7 @@ struct ToolPose {
 struct ToolState {
   ToolPose pose;
   Vec3 velocity = Vec3::Zero();          ///< of the tip centre [m/s]
-  Vec3 angular_velocity = Vec3::Zero();  ///< over the step before [rad/s]; zero unless somebody wants it
+  Vec3 angular_velocity = Vec3::Zero();  ///< over the step before, perhaps low-passed [rad/s]; zero unless wanted
 };
 
 }  // namespace hapbench

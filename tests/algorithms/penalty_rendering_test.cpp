@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <stdexcept>
 
 #include "algorithms/registry.hpp"
@@ -105,9 +106,15 @@ TEST(PenaltyRendering, RendersDampingOfTheLawsTensor) {
 
 TEST(PenaltyRendering, WantsTheAngularVelocityForAngularDampingOnly) {
   RenderingConfig config;
-  EXPECT_FALSE(make_algorithm(config)->wants_angular_velocity());
+  config.angular_velocity_cutoff = 20.0;
+  EXPECT_EQ(make_algorithm(config)->angular_velocity_cutoff(), std::nullopt);
   config.angular_damping = true;
-  EXPECT_TRUE(make_algorithm(config)->wants_angular_velocity());
+  EXPECT_EQ(make_algorithm(config)->angular_velocity_cutoff(), 20.0);
+  config.angular_velocity_cutoff.reset();
+  EXPECT_EQ(make_algorithm(config)->angular_velocity_cutoff(), std::numeric_limits<double>::infinity());
+  config.angular_velocity_cutoff = 5.0;
+  config.passivity_controller = true;
+  EXPECT_EQ(make_algorithm(config)->angular_velocity_cutoff(), 5.0);
 }
 
 TEST(PenaltyRendering, AngularDampingIsThatOfEveryContactAndFrictionThatOfTheirMean) {

@@ -201,7 +201,7 @@ TEST(ProxyRendering, DampsTheTurnOfTheEdgeThatTouches) {
   RenderingConfig config = proxy_config();
   config.angular_damping = true;
   Rig rig(setting, config);
-  EXPECT_TRUE(rig.proxy.wants_angular_velocity());
+  EXPECT_TRUE(rig.proxy.angular_velocity_cutoff());
   rig.step({above(setting), Vec3::Zero()});
   const Vec3 turn(0.3, -0.4, 0.1);
   rig.step({setting.pose, Vec3::Zero(), turn});

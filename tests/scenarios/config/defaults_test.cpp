@@ -56,6 +56,7 @@ TEST(Defaults, ThatHoldEverywhere) {
                    {"/rendering/damping_ratio", "0.7"},
                    {"/rendering/damping_N_s_per_m", "null"},
                    {"/rendering/angular_damping", "false"},
+                   {"/rendering/angular_velocity_cutoff_Hz", "20.0"},
                    {"/rendering/limits", R"({"max_damping_N_s_per_m": null, "max_force_N": null})"},
                    {"/rendering/virtual_coupling_N_per_m", "null"},
                    {"/integrator", R"({"type": "leapfrog"})"},

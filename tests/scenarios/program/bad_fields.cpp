@@ -72,6 +72,8 @@ std::vector<BadInput> wrong_values() {
        "allowed: an integer 0 ... 100000"},
       {"AngularDampingAsNumber", plane("/rendering", R"({"angular_damping": 5})"), "/rendering/angular_damping",
        "got 5; allowed: true or false"},
+      {"AngularVelocityCutoffOfZero", plane("/rendering", R"({"angular_velocity_cutoff_Hz": 0})"),
+       "/rendering/angular_velocity_cutoff_Hz", "got 0; allowed: "},
       {"PassivityControllerAsText", plane("/rendering", R"({"passivity_controller": "on"})"),
        "/rendering/passivity_controller", "got \"on\"; allowed: true or false"},
       {"LocalAverageAsNumber", plane("/rendering", R"({"local_average": 1})"), "/rendering/local_average",

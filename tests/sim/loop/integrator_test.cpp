@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "sim/core/random.hpp"
@@ -242,7 +243,7 @@ TEST(IntegratorInTheLoop, MovesTheToolAsItDoesAlone) {
 /// Notes what it is asked for.
 class Witness final : public ForceAlgorithm {
  public:
-  explicit Witness(std::vector<ToolState>& seen) : seen_(&seen) {}
+  Witness(std::vector<ToolState>& seen, double cutoff) : seen_(&seen), cutoff_(cutoff) {}
   void prepare(const Scene&) override {}
   void reset() noexcept override {}
   void compute(const ToolState& tool, ContactBuffer&, RenderedForce& out) noexcept override {
@@ -251,27 +252,54 @@ class Witness final : public ForceAlgorithm {
   }
   SpringState spring_state(const ToolState&, const ContactBuffer&) const noexcept override { return {}; }
   ForceJacobian jacobian() const noexcept override { return {}; }
-  bool wants_angular_velocity() const noexcept override { return true; }
+  std::optional<double> angular_velocity_cutoff() const noexcept override { return cutoff_; }
 
  private:
   std::vector<ToolState>* seen_;
+  double cutoff_;
 };
 
-TEST(IntegratorInTheLoop, SeesTheAxisAndTheTurnOfItsTime) {
+const Orientation kTurn{{0, 0, 1}, {1, 0, 0}, Profile::Shape(Profile::Ramp{0.1, 3.0}), {}};
+
+/// What an algorithm sees of a tool that tilts from -z towards -x, about y, at 3 rad/s.
+std::vector<ToolState> seen_of_a_turn(Integrator integrator, std::uint64_t steps, double cutoff) {
   std::vector<ToolState> seen;
   SimulationParts parts = test::fake_parts(test::weightless);
-  parts.algorithm = std::make_unique<Witness>(seen);
-  const Orientation orientation{{0, 0, 1}, {1, 0, 0}, Profile::Shape(Profile::Ramp{0.1, 3.0}), {}};
-  parts.motion = std::make_unique<ScriptedMotion>(orientation, std::nullopt);
-  Simulation(config_of(Integrator::rk4, 3), std::move(parts), {}).run();
+  parts.algorithm = std::make_unique<Witness>(seen, cutoff);
+  parts.motion = std::make_unique<ScriptedMotion>(kTurn, std::nullopt);
+  Simulation(config_of(integrator, steps), std::move(parts), {}).run();
+  return seen;
+}
+
+TEST(IntegratorInTheLoop, SeesTheAxisAndTheTurnOfItsTime) {
+  const auto seen = seen_of_a_turn(Integrator::rk4, 3, std::numeric_limits<double>::infinity());
   ASSERT_EQ(seen.size(), 12u);
   const double kParts[] = {0.0, 0.5, 0.5, 1.0};
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const double t = (static_cast<double>(i / 4) + kParts[i % 4]) * SimulationConfig{}.dt;
-    EXPECT_LE((seen[i].pose.axis - tool_axis(orientation, 0.1 + 3.0 * t, 0.0)).norm(), 4 * kEps);
-    // Tilting from -z towards -x turns about y, at a constant rate; turns of 1e-3 rad are known to eps / 1e-3.
+    EXPECT_LE((seen[i].pose.axis - tool_axis(kTurn, 0.1 + 3.0 * t, 0.0)).norm(), 4 * kEps);
+    // Turns of 1e-3 rad are known to eps / 1e-3.
     const double rate = i == 0 ? 0.0 : 3.0;
     EXPECT_NEAR(seen[i].angular_velocity.norm(), rate, 1e-11) << i;
+  }
+}
+
+/// The step response of a first-order low-pass, at every time an integrator asks.
+TEST(IntegratorInTheLoop, SeesTheTurnThroughTheLowPassOfTheAlgorithm) {
+  constexpr double kCutoff = 40.0;
+  const double dt = SimulationConfig{}.dt;
+  const auto response = [&](double t) { return 3.0 * (1.0 - std::exp(-2.0 * std::numbers::pi * kCutoff * t)); };
+  const auto rows = seen_of_a_turn(Integrator::leapfrog, 40, kCutoff);
+  ASSERT_EQ(rows.size(), 40u);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    EXPECT_LE((rows[k].angular_velocity - Vec3(0.0, response(static_cast<double>(k) * dt), 0.0)).norm(), 1e-11) << k;
+  }
+  const auto within = seen_of_a_turn(Integrator::rk4, 3, kCutoff);
+  ASSERT_EQ(within.size(), 12u);
+  for (std::size_t i = 0; i < within.size(); ++i) {
+    constexpr double kParts[] = {0.0, 0.5, 0.5, 1.0};
+    const double t = (static_cast<double>(i / 4) + kParts[i % 4]) * dt;
+    EXPECT_NEAR(within[i].angular_velocity.norm(), response(t), 1e-11) << i;
   }
 }
 
