@@ -53,6 +53,8 @@ void PassivityController::reset() noexcept {
   algorithm_->reset();
   observed_.reset();
   steps_controlled_ = 0;
+  largest_change_ = 0.0;
+  last_turn_.reset();
   at_row_ = false;
 }
 
@@ -68,6 +70,7 @@ void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts
   if (!std::exchange(at_row_, false)) return render(tool, out);
 
   observed_.move(tool);
+  note_turn();
   share_ = 1.0;
   alpha_ = 0.0;
   if (has_springs(contacts, out)) {
@@ -82,6 +85,14 @@ void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts
   observed_.answer(tool, out.rendered, springs_);
 }
 
+/// Rates of rotation change by what a hand makes of them: what it did once it may do again.
+void PassivityController::note_turn() noexcept {
+  if (observed_.first()) return;
+  const Vec3 turn = observed_.turned();
+  if (last_turn_) largest_change_ = std::max(largest_change_, (turn - *last_turn_).norm());
+  last_turn_ = turn;
+}
+
 /// Chooses share and damping.
 void PassivityController::control(const ToolState& tool, const Vec3& force) noexcept {
   // What the scripted rotation draws from the moment over the last step and, if it goes on like this, over the next.
@@ -91,7 +102,9 @@ void PassivityController::control(const ToolState& tool, const Vec3& force) noex
 
   const Vec3 w = tool.velocity + input_ * (0.5 * dt_ / mass_);
   const Vec3 u = w + force * (weakened * dt_ / mass_);
-  const double taken = 0.5 * drawn + std::max(0.0, 0.5 * drawn) - (observed_.first() ? springs_.energy : 0.0);
+  const double unforeseen = springs_.moment.norm() * largest_change_;
+  const double taken =
+      0.5 * drawn + std::max(0.0, 0.5 * drawn + unforeseen) - (observed_.first() ? springs_.energy : 0.0);
   const double s =
       largest_share(0.5 * mass_ * u.squaredNorm(), weakened * taken, energy + 0.5 * mass_ * w.squaredNorm());
   share_ = weakened * s;

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <limits>
+#include <vector>
 
 #include "tests/support/fakes.hpp"
 #include "tests/support/scenes.hpp"
@@ -123,6 +125,65 @@ TEST(PassivityController, KeepsAnyForceUnderAnyHandPassive) {
       EXPECT_LE(ran.watch.force_max, *config.max_force * (1.0 + 4.0 * kEpsilon));
     }
   }
+}
+
+/// From the third row on, forces and moments that know nothing of the tool.
+class Lever final : public ForceAlgorithm {
+ public:
+  explicit Lever(std::uint64_t seed) : numbers_(seed) {}
+  void prepare(const Scene&) override {}
+  void reset() noexcept override {}
+  void compute(const ToolState&, ContactBuffer&, RenderedForce& out) noexcept override {
+    out = {};
+    if (++rows_ < 3) return;
+    out.spring = out.rendered = 5.0 * numbers_.uniform() * numbers_.direction();
+    moment_ = 0.01 * numbers_.uniform() * numbers_.direction();
+  }
+  SpringState spring_state(const ToolState&, const ContactBuffer&) const noexcept override { return {0.0, moment_}; }
+  ForceJacobian jacobian() const noexcept override { return {}; }
+
+ private:
+  Random numbers_;
+  int rows_ = 0;
+  Vec3 moment_ = Vec3::Zero();
+};
+
+/// A tilt that is anywhere in 0 … 0.01 rad in each row. The first ones, 0, 0.005 and 0, change the turn by 0.01 rad, so
+/// that no later change, 0.02 rad at most, is more than twice the largest before.
+class Trembling final : public Motion {
+ public:
+  explicit Trembling(std::uint64_t seed) {
+    Random numbers(seed);
+    tilts_ = {0.0, 0.005, 0.0};
+    while (tilts_.size() < 400) tilts_.push_back(0.01 * numbers.uniform());
+  }
+  Vec3 axis_at(double t) const noexcept override {
+    const double tilt = tilts_[static_cast<std::size_t>(std::lround(t / SimulationConfig{}.dt))];
+    return {std::sin(tilt), 0.0, -std::cos(tilt)};
+  }
+  bool position_is_free() const noexcept override { return true; }
+  Vec3 position_at(double) const noexcept override { return Vec3::Zero(); }
+
+ private:
+  std::vector<double> tilts_;
+};
+
+TEST(PassivityController, KeepsAnyMomentOfATremblingHandPassive) {
+  double least_without = 0.0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(seed);
+    const auto ran = [&](bool controller) {
+      SimulationParts parts = test::fake_parts(test::weightless);
+      parts.algorithm = std::make_unique<Lever>(seed);
+      parts.motion = std::make_unique<Trembling>(seed);
+      return run(pushed_off(400), controller ? controlled(std::move(parts)) : std::move(parts));
+    };
+    const Ran held = ran(true);
+    EXPECT_GE(held.watch.least, -held.watch.rounding());
+    EXPECT_GT(held.controlled, 0u);
+    least_without = std::min(least_without, ran(false).watch.least);
+  }
+  EXPECT_LT(least_without, -1e-3);
 }
 
 /// A damped spring takes in more than it gives, so there is nothing to control: K dt/2 = 5 N s/m of damping make up for
