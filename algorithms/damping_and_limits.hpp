@@ -38,10 +38,6 @@ class DampingAndLimits {
   /// f_render [N] from f_spring [N], S and the tool's velocity. Eigenvalues are computed only when there is a limit,
   /// friction that is none only when skips are off.
   Vec3 rendered_force(const Vec3& spring, const Mat3& S, const ContactVelocity& velocity) const noexcept;
-  /// Of a tool that does not turn, with velocity v [m/s].
-  Vec3 rendered_force(const Vec3& spring, const Mat3& S, const Vec3& v) const noexcept {
-    return rendered_force(spring, S, ContactVelocity{v, S * v});
-  }
 
   /// What multiplies minus v in it [N s/m]: B S + (mu_s + mu_f |f_spring|)(I - S); the force limit is left out.
   Mat3 damping_matrix(const Vec3& spring, const Mat3& S) const noexcept;

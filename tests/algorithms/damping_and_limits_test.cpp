@@ -23,8 +23,10 @@ const Mat3 kS = Vec3(1.0, 0.5, 0.0).asDiagonal();
 const Vec3 kSpring(-4.0, 8.0, 0.0);
 const Vec3 kVelocity(0.5, 0.25, -2.0);
 
-Vec3 rendered(const RenderingConfig& config) {
-  return DampingAndLimits(config).rendered_force(kSpring, kS, kVelocity);
+/// For a tool that does not turn.
+Vec3 rendered(const RenderingConfig& config, const Vec3& spring = kSpring, const Mat3& S = kS,
+              const Vec3& v = kVelocity) {
+  return DampingAndLimits(config).rendered_force(spring, S, {v, S * v});
 }
 
 TEST(Damping, IsTwoZetaRootKM) {
@@ -58,7 +60,7 @@ TEST(Damping, EqualsTheSumOverContactsOfTheirNormalVelocities) {
     contacts.weight[i] = random.uniform();
     sum += contacts.weight[i] * kVelocity.dot(gradients[i]) * gradients[i];
   }
-  const Vec3 force = DampingAndLimits(dyadic()).rendered_force(Vec3::Zero(), stiffness_tensor(contacts), kVelocity);
+  const Vec3 force = rendered(dyadic(), Vec3::Zero(), stiffness_tensor(contacts));
   EXPECT_LE((force + 96 * sum).norm(), 96 * 40 * 8 * kEps * kVelocity.norm());
 }
 
@@ -103,7 +105,7 @@ TEST(MaxDamping, CountsTheStiffestDirectionOfS) {
   RenderingConfig config = dyadic();
   config.max_damping = 24.0;
   const Mat3 S = Vec3(1.0, 4.0, 2.0).asDiagonal();
-  const Vec3 force = DampingAndLimits(config).rendered_force(Vec3::Zero(), S, Vec3(1, 1, 1));
+  const Vec3 force = rendered(config, Vec3::Zero(), S, {1, 1, 1});
   EXPECT_EQ(force, Vec3(-6.0, -24.0, -12.0));
 }
 
@@ -139,7 +141,7 @@ TEST(DampingAndLimits, AToolAtRestFeelsTheSpringsAlone) {
   RenderingConfig config = dyadic();
   config.mu_s = 5.0;
   config.mu_f = 10.0;
-  EXPECT_EQ(DampingAndLimits(config).rendered_force(kSpring, kS, Vec3::Zero()), kSpring);
+  EXPECT_EQ(rendered(config, kSpring, kS, Vec3::Zero()), kSpring);
 }
 
 }  // namespace

@@ -74,16 +74,19 @@ double ResultFiles::number(const std::string& scenario, const std::string& path)
 std::map<std::string, std::vector<double>> ResultFiles::table(const std::string& scenario,
                                                               const std::string& file) const {
   provide_(scenario);
-  const std::string text = read_named_file(directory_ / scenario / file);
+  const std::filesystem::path path = directory_ / scenario / file;
+  const std::string text = read_named_file(path);
   LineReader lines(text);
   const auto header = lines.next();
-  if (!header) throw InputError(fmt::format("{}: is empty", (directory_ / scenario / file).string()));
+  if (!header) throw InputError(fmt::format("{}: is empty", path.string()));
   std::vector<std::vector<double>*> columns;
   std::map<std::string, std::vector<double>> table;
   for (const std::string_view name : parts_of(*header, ',')) columns.push_back(&table[std::string(name)]);
   while (const auto line = lines.next()) {
     const auto cells = parts_of(*line, ',');
-    if (cells.size() != columns.size()) continue;
+    if (cells.size() != columns.size()) {
+      fail_in_line(path, lines.line(), fmt::format("got {} cells; allowed: {}", cells.size(), columns.size()));
+    }
     for (std::size_t i = 0; i < cells.size(); ++i) columns[i]->push_back(value_of(cells[i]));
   }
   return table;

@@ -45,7 +45,8 @@ class ResultFiles {
   Json summary(const std::string& scenario) const;
   /// A number of it, as in "metrics.force_max_N"; NaN for null.
   double number(const std::string& scenario, const std::string& path) const;
-  /// Columns of a CSV file of a scenario, by name; an empty cell is NaN. Throws InputError.
+  /// Columns of a CSV file of a scenario, by name; an empty cell is NaN. Throws InputError
+  /// when it is missing, empty, or has a row with more or fewer cells than columns.
   std::map<std::string, std::vector<double>> table(const std::string& scenario, const std::string& file) const;
 
  private:
