@@ -36,7 +36,7 @@ Vec3 foremost(const Tool& tool, const ToolPose& pose, const Vec3& normal, const 
   const double forward = -normal.dot(pose.axis);
   const Vec3 outwards = -normal - forward * pose.axis;
   const double length = outwards.norm();
-  if (tool.tip == Tip::round && forward > 0.0) return pose.position - tool.radius * normal;
+  if (tool.tip == Tip::round && forward > kAlongSide) return pose.position - tool.radius * normal;
   const Vec3 on_side = length > 0.0 ? Vec3(tool.radius / length * outwards) : Vec3(Vec3::Zero());
   double s = forward > 0.0 ? 0.0 : -tool.length;
   if (std::abs(forward) < kAlongSide) s = std::clamp((point - pose.position).dot(pose.axis), -tool.length, 0.0);

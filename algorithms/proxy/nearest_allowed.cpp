@@ -187,9 +187,11 @@ void solve_least_squares(const Vec3& wanted, double tolerance, ContactBuffer& co
     here = next;
   }
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    contacts.weight[i] = std::max(0.0, contacts.depth[i] + contacts.gradient(i).dot(out.move)) / kCompromiseEpsilon;
+    contacts.weight[i] = std::max(0.0, contacts.depth[i] + contacts.gradient(i).dot(out.move));
   }
-  out.held = Mat3::Identity() - kCompromiseEpsilon * Mat3(Eigen::LLT<Mat3>(here.hessian).solve(Mat3::Identity()));
+  const Eigen::LLT<Mat3> H(here.hessian);
+  out.share = H.solve(wanted - out.move);
+  out.held = Mat3::Identity() - kCompromiseEpsilon * Mat3(H.solve(Mat3::Identity()));
   out.held = 0.5 * (out.held + out.held.transpose()).eval();
 }
 

@@ -12,9 +12,10 @@ inline constexpr double kCompromiseEpsilon = 1e-6;
 
 /// The move nearest to a wanted one that a set of contacts allows.
 struct AllowedMove {
-  Vec3 move = Vec3::Zero();  ///< x [m]
-  Mat3 held = Mat3::Zero();  ///< I - dx/dt: the projector onto the span of the contacts that hold the tool back
-  bool feasible = true;      ///< false: no move satisfies all contacts, x is the least-squares compromise
+  Vec3 move = Vec3::Zero();   ///< x [m]
+  Mat3 held = Mat3::Zero();   ///< I - dx/dt: the projector onto the span of the contacts that hold the tool back
+  bool feasible = true;       ///< false: no move satisfies all contacts, x is the least-squares compromise
+  Vec3 share = Vec3::Zero();  ///< of a compromise: <u_i, share> of t - x falls on contact i [m]
   int iterations = 0;
 };
 
@@ -32,9 +33,12 @@ struct AllowedMove {
 ///
 ///     1/2 sum max(0, d_i + <u_i, x>)^2 + epsilon/2 |x - t|^2,   epsilon = 1e-6,
 ///
-/// where opposite walls are shared in equal squares, and lambda_i = max(0, d_i + <u_i, x>) / epsilon, so that the
-/// same identity holds. O(n) an iteration, typically one to five of them. Precondition: contacts are padded, gradients
-/// are unit vectors; otherwise finite. Allocates nothing.
+/// where opposite walls are shared in equal squares. The weights are then the violations w_i = max(0, d_i + <u_i, x>),
+/// and lambda_i = w_i + <u_i, share>, which may be negative, has the same identity but for epsilon: opposite violations
+/// cancel, share = H^-1 (t - x) divides the rest, H = sum u u^T + epsilon I over the violated. These lambda_i are the
+/// derivatives by d_i of 1/2 |x - t|^2 + 1/2 sum w^2, so forces and moments made of them store energy and create none.
+/// O(n) an iteration, typically one to five of them. Precondition: contacts are padded, gradients are unit vectors;
+/// otherwise finite. Allocates nothing.
 AllowedMove nearest_allowed(const Vec3& wanted, ContactBuffer& contacts) noexcept;
 
 }  // namespace hapbench

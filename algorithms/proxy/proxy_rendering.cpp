@@ -111,6 +111,8 @@ void ProxyRendering::place(const Vec3& position) noexcept {
   placed_ = true;
   proxy_ = position;
   held_.setZero();
+  feasible_ = true;
+  share_.setZero();
   near_contacts_->clear();
 }
 
@@ -127,6 +129,7 @@ bool ProxyRendering::follow(const ToolPose& tool) noexcept {
     work_.iterations += static_cast<std::uint64_t>(allowed.iterations);
     held_ = allowed.held;
     feasible_ = allowed.feasible;
+    share_ = allowed.share;
     const double length = allowed.move.norm();
     if (length > margin_) {
       proxy_ += margin_ / length * allowed.move;
@@ -142,6 +145,11 @@ bool ProxyRendering::follow(const ToolPose& tool) noexcept {
   return false;
 }
 
+/// lambda_i of a contact that holds the proxy back.
+double ProxyRendering::multiplier(std::size_t i) const noexcept {
+  return near_contacts_->weight[i] + share_.dot(near_contacts_->gradient(i));
+}
+
 /// Replaces the colliding points by those that hold the proxy back, as far as there is room: in a compromise, points
 /// and their patches may be more than the points of the shell. Force and energy are of all.
 void ProxyRendering::hand_over_holding(ContactBuffer& contacts) const noexcept {
@@ -149,7 +157,7 @@ void ProxyRendering::hand_over_holding(ContactBuffer& contacts) const noexcept {
   for (std::size_t i = 0; i < near_contacts_->size() && contacts.size() < contacts.capacity(); ++i) {
     if (!(near_contacts_->weight[i] > 0.0)) continue;
     contacts.push_copy_of(*near_contacts_, i);
-    contacts.depth[contacts.size() - 1] = near_contacts_->weight[i];
+    contacts.depth[contacts.size() - 1] = multiplier(i);
     contacts.weight[contacts.size() - 1] = 1.0;
   }
   contacts.pad();
@@ -161,12 +169,12 @@ SpringState ProxyRendering::spring_state(const ToolState&, const ContactBuffer&)
   if (K_ == 0.0) return {};
   SpringState state{spring_.squaredNorm() / (2.0 * K_), Vec3::Zero()};
   for (std::size_t i = 0; i < near_contacts_->size(); ++i) {
-    const double lambda = near_contacts_->weight[i];
-    if (!(lambda > 0.0)) continue;
+    const double weight = near_contacts_->weight[i];
+    if (!(weight > 0.0)) continue;
     // In the compromise, what is violated is a store of its own.
-    if (!feasible_) state.energy += 0.5 * K_ * kCompromiseEpsilon * lambda * lambda;
+    if (!feasible_) state.energy += 0.5 * K_ * weight * weight;
     if (depth_is_given_) continue;  // springs are attached to the tip
-    state.moment -= (near_contacts_->point(i) - proxy_).cross(K_ * lambda * near_contacts_->gradient(i));
+    state.moment -= (near_contacts_->point(i) - proxy_).cross(K_ * multiplier(i) * near_contacts_->gradient(i));
   }
   return state;
 }

@@ -28,7 +28,8 @@ inline constexpr int kProxyPasses = 64;
 /// Guarantee: after a pass whose contacts do not contradict each other, and which was not cut short while points were
 /// inside the proxy, no shell point is inside the proxy, but for kViolationTolerance of the margin. For the constraints
 /// are conservative (the tool is convex), and those of a proxy without penetration still hold for a part of the move.
-/// When they contradict (a slot narrower than the tool) the proxy takes the least-squares compromise.
+/// When they contradict (a slot narrower than the tool) the proxy takes the least-squares compromise, and each wall
+/// that it enters counts as one more spring of stiffness K.
 ///
 /// f_spring = K (x - p), S = the projector onto the span of the gradients that hold the proxy back, so lambda_max(S) is
 /// 1 in contact. With angular damping v_n is S v and the shortest velocity in that span whose components along the u_i
@@ -52,6 +53,7 @@ class ProxyRendering final : public ForceAlgorithm {
   void place(const Vec3& position) noexcept;
   /// False when the passes did not suffice.
   bool follow(const ToolPose& tool) noexcept;
+  double multiplier(std::size_t i) const noexcept;
   void hand_over_holding(ContactBuffer& contacts) const noexcept;
   ContactVelocity velocity_at(const ToolState& tool) const noexcept;
 
@@ -63,12 +65,13 @@ class ProxyRendering final : public ForceAlgorithm {
   double margin_ = 0.0;   ///< [m]
   double spacing_ = 0.0;  ///< of the shell [m]
   std::unique_ptr<ContactQuery> near_;
-  std::unique_ptr<ContactBuffer> near_contacts_;  ///< of the last pass, with its multipliers lambda as weights [m]
+  std::unique_ptr<ContactBuffer> near_contacts_;  ///< of the last pass, with its weights [m]
 
   bool placed_ = false;  ///< false before the first step
   Vec3 proxy_ = Vec3::Zero();
   Mat3 held_ = Mat3::Zero();
   bool feasible_ = true;
+  Vec3 share_ = Vec3::Zero();  ///< AllowedMove::share of the last pass [m]
   Vec3 spring_ = Vec3::Zero();
   AlgorithmWork work_;
 };

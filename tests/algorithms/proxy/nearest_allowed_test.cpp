@@ -136,7 +136,15 @@ TEST(NearestAllowed, SharesWhatOppositeWallsLackInEqualSquares) {
     EXPECT_NEAR(allowed.move.x(), x, 1e-4 * 1e-16 * (N + M) / kCompromiseEpsilon);
     EXPECT_NEAR(allowed.move.y(), wanted.y(), 1e-12);
     EXPECT_NEAR(allowed.move.z(), wanted.z(), 1e-12);
-    EXPECT_LE((wanted - held(contacts).sum - allowed.move).norm(), 1e-9);
+    // Every wall has its violation, and the rest is divided among all N + M of them: the identity holds but for
+    // epsilon.
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      EXPECT_NEAR(contacts.weight[i], i < n ? a + x : b - x, 1e-10);
+      sum += (contacts.weight[i] + allowed.share.dot(contacts.gradient(i))) * contacts.gradient(i);
+    }
+    EXPECT_LE((wanted - sum - allowed.move).norm(), 1e-9);
+    EXPECT_NEAR(allowed.share.x(), (wanted.x() - x) / (N + M), 1e-9);
     EXPECT_NEAR(allowed.held(0, 0), 1.0, 1e-6);
     EXPECT_NEAR(allowed.held(1, 1), 0.0, 1e-9);
   }
@@ -165,6 +173,40 @@ TEST(NearestAllowed, FindsTheLeastSquaresOfContradictingContacts) {
     ASSERT_LE(lambda_max(allowed.held), 1.0);
   }
   EXPECT_GT(contradicting, 1'000);
+}
+
+/// The multipliers of a compromise are the derivatives of what it stores, 1/2 |x - t|^2 + 1/2 sum w^2, by the depths,
+/// and t - x its derivative by t.
+TEST(NearestAllowed, StoresInACompromiseWhatItsMultipliersTakeIn) {
+  const std::vector<Vec3> gradients = {Vec3::UnitX(),  Vec3(0.6, 0.8, 0.0),  Vec3(0.6, -0.8, 0.0),
+                                       -Vec3::UnitX(), Vec3(-0.8, 0.0, 0.6), Vec3(0.0, 0.6, -0.8)};
+  const std::vector<double> depths = {3e-5, 2e-5, 1e-5, 4e-5, 2e-5, 5e-5};
+  const Vec3 wanted(2e-4, -1e-4, 5e-5);
+  const auto stored = [&](const Vec3& t, const std::vector<double>& d) {
+    ContactBuffer contacts = test::contacts_of(gradients, d);
+    const AllowedMove allowed = nearest_allowed(t, contacts);
+    EXPECT_FALSE(allowed.feasible);
+    double energy = 0.5 * (allowed.move - t).squaredNorm();
+    for (std::size_t i = 0; i < contacts.size(); ++i) energy += 0.5 * contacts.weight[i] * contacts.weight[i];
+    return energy;
+  };
+  ContactBuffer contacts = test::contacts_of(gradients, depths);
+  const AllowedMove here = nearest_allowed(wanted, contacts);
+  // Central differences of a function that is quadratic where the same walls are violated; epsilon is 1e-6.
+  constexpr double h = 1e-8, kLengths = 3e-4;
+  for (std::size_t i = 0; i < gradients.size(); ++i) {
+    std::vector<double> more = depths, less = depths;
+    more[i] += h;
+    less[i] -= h;
+    const double lambda = contacts.weight[i] > 0.0 ? contacts.weight[i] + here.share.dot(gradients[i]) : 0.0;
+    EXPECT_NEAR((stored(wanted, more) - stored(wanted, less)) / (2.0 * h), lambda, 1e-4 * kLengths) << i;
+  }
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 step = h * Vec3::Unit(k);
+    EXPECT_NEAR((stored(wanted + step, depths) - stored(wanted - step, depths)) / (2.0 * h),
+                (here.held * (wanted - here.move))[k], 1e-4 * kLengths);
+    EXPECT_NEAR((here.held * (wanted - here.move))[k], (wanted - here.move)[k], 1e-4 * kLengths);
+  }
 }
 
 TEST(NearestAllowed, EndsOnNumbersThatAreNone) {
