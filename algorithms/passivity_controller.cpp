@@ -66,18 +66,21 @@ void PassivityController::take_input(const Vec3& input) noexcept {
 
 void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   algorithm_->compute(tool, contacts, out);
-  // Within a step the row's answer holds: nobody observes.
-  if (!std::exchange(at_row_, false)) return render(tool, out);
+  if (!std::exchange(at_row_, false)) {
+    // Within a step the row's answer holds: nobody observes.
+    if (has_springs(contacts, out)) render(tool, out);
+    return;
+  }
 
   observed_.move(tool);
   note_turn();
-  share_ = 1.0;
+  share_ = spring_share_ = 1.0;
   alpha_ = 0.0;
   if (has_springs(contacts, out)) {
     springs_ = algorithm_->spring_state(tool, contacts);
     control(tool, out.rendered);
-    springs_.energy *= share_;
-    springs_.moment *= share_;
+    springs_.energy *= spring_share_;
+    springs_.moment *= spring_share_;
     render(tool, out);
   } else {
     springs_ = {};
@@ -107,21 +110,30 @@ void PassivityController::control(const ToolState& tool, const Vec3& force) noex
       0.5 * drawn + std::max(0.0, 0.5 * drawn + unforeseen) - (observed_.first() ? springs_.energy : 0.0);
   const double s =
       largest_share(0.5 * mass_ * u.squaredNorm(), weakened * taken, energy + 0.5 * mass_ * w.squaredNorm());
-  share_ = weakened * s;
+  share_ = spring_share_ = weakened * s;
   alpha_ = (1.0 - s) * mass_ / dt_;
-  if (share_ < 1.0) ++steps_controlled_;
+  if (share_ == 1.0) return;
+  ++steps_controlled_;
+  // A force cut short takes less in, which the moment then cannot have.
+  const Vec3 whole = share_ * force - alpha_ * w;
+  if (const Vec3 rendered = limited(whole); rendered != whole && taken > 0.0) {
+    const Vec3 after = w + rendered * (dt_ / mass_);
+    const double left = energy + 0.5 * mass_ * (w.squaredNorm() - after.squaredNorm());
+    spring_share_ = std::clamp(left / taken, 0.0, share_);
+  }
+}
+
+/// Cut to the length of the force limit.
+Vec3 PassivityController::limited(const Vec3& force) const noexcept {
+  const double length = max_force_ ? force.norm() : 0.0;
+  return max_force_ && length > *max_force_ ? Vec3(force * (*max_force_ / length)) : force;
 }
 
 void PassivityController::render(const ToolState& tool, RenderedForce& out) const noexcept {
   if (share_ == 1.0) return;
   out.spring *= share_;
   out.S *= share_;
-  out.rendered = share_ * out.rendered - alpha_ * (tool.velocity + input_ * (0.5 * dt_ / mass_));
-  // Less force gives less energy away, so the limit may follow.
-  if (max_force_) {
-    const double length = out.rendered.norm();
-    if (length > *max_force_) out.rendered *= *max_force_ / length;
-  }
+  out.rendered = limited(share_ * out.rendered - alpha_ * (tool.velocity + input_ * (0.5 * dt_ / mass_)));
 }
 
 SpringState PassivityController::spring_state(const ToolState&, const ContactBuffer&) const noexcept {

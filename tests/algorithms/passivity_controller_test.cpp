@@ -127,16 +127,16 @@ TEST(PassivityController, KeepsAnyForceUnderAnyHandPassive) {
   }
 }
 
-/// From the third row on, forces and moments that know nothing of the tool.
+/// From the third row on, forces of at most `limit` and moments, neither of which knows anything of the tool.
 class Lever final : public ForceAlgorithm {
  public:
-  explicit Lever(std::uint64_t seed) : numbers_(seed) {}
+  Lever(std::uint64_t seed, double limit) : numbers_(seed), limit_(limit) {}
   void prepare(const Scene&) override {}
   void reset() noexcept override {}
   void compute(const ToolState&, ContactBuffer&, RenderedForce& out) noexcept override {
     out = {};
     if (++rows_ < 3) return;
-    out.spring = out.rendered = 5.0 * numbers_.uniform() * numbers_.direction();
+    out.spring = out.rendered = limit_ * numbers_.uniform() * numbers_.direction();
     moment_ = 0.01 * numbers_.uniform() * numbers_.direction();
   }
   SpringState spring_state(const ToolState&, const ContactBuffer&) const noexcept override { return {0.0, moment_}; }
@@ -144,6 +144,7 @@ class Lever final : public ForceAlgorithm {
 
  private:
   Random numbers_;
+  double limit_;
   int rows_ = 0;
   Vec3 moment_ = Vec3::Zero();
 };
@@ -174,12 +175,15 @@ TEST(PassivityController, KeepsAnyMomentOfATremblingHandPassive) {
     SCOPED_TRACE(seed);
     const auto ran = [&](bool controller) {
       SimulationParts parts = test::fake_parts(test::weightless);
-      parts.algorithm = std::make_unique<Lever>(seed);
+      RenderingConfig config;
+      config.max_force = seed % 2 == 0 ? 0.5 : 5.0;
+      parts.algorithm = std::make_unique<Lever>(seed, *config.max_force);
       parts.motion = std::make_unique<Trembling>(seed);
-      return run(pushed_off(400), controller ? controlled(std::move(parts)) : std::move(parts));
+      return run(pushed_off(400), controller ? controlled(std::move(parts), config) : std::move(parts));
     };
     const Ran held = ran(true);
     EXPECT_GE(held.watch.least, -held.watch.rounding());
+    EXPECT_LE(held.watch.force_max, (seed % 2 == 0 ? 0.5 : 5.0) * (1.0 + 4.0 * kEpsilon));
     EXPECT_GT(held.controlled, 0u);
     least_without = std::min(least_without, ran(false).watch.least);
   }
