@@ -1,5 +1,7 @@
 #include "results/metrics/passivity_observer.hpp"
 
+#include <cmath>
+
 namespace hapbench {
 
 void PassivityObserver::on_step(const StepRecord& record) noexcept {
@@ -7,7 +9,9 @@ void PassivityObserver::on_step(const StepRecord& record) noexcept {
   observed_.move(record.tool);
   observed_.answer(record.tool, record.force.rendered, record.springs);
   const double energy = observed_.energy();
-  if (rows_ && !(energy < metrics_.energy_min)) return;
+  // Written so that an energy that is no number is kept as the least.
+  if (rows_ && !(energy < metrics_.energy_min) && !std::isnan(energy)) return;
+  if (std::isnan(metrics_.energy_min)) return;
   metrics_.energy_min = energy;
   metrics_.time_of_min = record.time;
   rows_ = true;
@@ -23,7 +27,8 @@ std::optional<PassivityMetrics> PassivityObserver::metrics() const noexcept {
 std::optional<PassivityMetrics> merged(const std::vector<std::optional<PassivityMetrics>>& runs) noexcept {
   std::optional<PassivityMetrics> least;
   for (const auto& run : runs) {
-    if (run && (!least || run->energy_min < least->energy_min)) least = run;
+    if (run && (!least || run->energy_min < least->energy_min || std::isnan(run->energy_min))) least = run;
+    if (run && std::isnan(run->energy_min)) break;
   }
   return least;
 }

@@ -13,8 +13,8 @@ struct PassivityMetrics {
   double energy_min = 0.0;   ///< least E of a row [J]; negative when the rendering gave more than it had
   double time_of_min = 0.0;  ///< of the first row that has it [s]
   double energy_end = 0.0;   ///< E of the last row [J]
-  /// Energy the rendering made from nothing [J].
-  double net_created() const noexcept { return energy_min < 0.0 ? -energy_min : 0.0; }
+  /// Energy the rendering made from nothing [J]; NaN when it made numbers that are none.
+  double net_created() const noexcept { return energy_min >= 0.0 ? 0.0 : -energy_min; }
 };
 
 /// Of several runs: the one that created most, the first of equals. None without runs that have rows.

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "tests/support/allocation_counter.hpp"
 #include "tests/support/fakes.hpp"
 
@@ -38,6 +41,16 @@ TEST(PassivityObserver, APassiveRunHasCreatedNothing) {
   EXPECT_EQ(observer.metrics()->energy_min, 0.0);
   EXPECT_EQ(observer.metrics()->energy_end, 2.0);
   EXPECT_EQ(observer.metrics()->net_created(), 0.0);
+}
+
+TEST(PassivityObserver, AnEnergyThatIsNoNumberIsNotNothing) {
+  PassivityObserver observer(kDt);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double force : {1.0, nan, -5.0}) observer.on_step(row(0, force));
+  observer.on_step(row(1, 1.0));
+  EXPECT_TRUE(std::isnan(observer.metrics()->net_created()));
+  const auto all = merged({observer.metrics(), PassivityMetrics{-2.0, 0.2, 6.0}});
+  EXPECT_TRUE(std::isnan(all->net_created()));
 }
 
 TEST(PassivityObserver, WithoutRowsThereIsNothingToSay) {
