@@ -41,6 +41,7 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
     energy_wanted_ |= observer->wants_energy();
   }
   input_wanted_ = parts_.algorithm->wants_input();
+  handle_is_apart_ = parts_.device->energy().has_value();
   angular_velocity_cutoff_ = parts_.algorithm->angular_velocity_cutoff();
   parts_.algorithm->prepare({parts_.tool, parts_.query.get(), parts_.shell.get(), config_.dt});
   reset();
@@ -63,8 +64,8 @@ void Simulation::reset() noexcept {
 /// low-pass: 1 - e^(-2 pi f t) of what is new.
 Vec3 Simulation::angular_velocity_after(double part, const Vec3& axis) const noexcept {
   const double time = part * config_.dt;
-  const double kept = std::exp(-2.0 * std::numbers::pi * *angular_velocity_cutoff_ * time);
-  return kept * tool_.angular_velocity + (1.0 - kept) * turn(tool_.pose.axis, axis) / time;
+  const double taken = -std::expm1(-2.0 * std::numbers::pi * *angular_velocity_cutoff_ * time);
+  return (1.0 - taken) * tool_.angular_velocity + taken * turn(tool_.pose.axis, axis) / time;
 }
 
 /// Orientation always follows the script, omega_k from the turn of the last step, omega_0 = 0; a prescribed position
@@ -148,7 +149,10 @@ bool Simulation::check_bounds() noexcept {
   // Well inside, as nearly every step is, nothing needs a square root; what is not finite is not inside.
   const auto well_inside = [](const Vec3& v, double bound) { return v.squaredNorm() <= 0.5 * bound * bound; };
   if (well_inside(tool_.pose.position, config_.bounds.position) && well_inside(tool_.velocity, config_.bounds.speed) &&
-      well_inside(record_.force.rendered, config_.bounds.force)) {
+      well_inside(record_.force.rendered, config_.bounds.force) &&
+      (!handle_is_apart_ || (well_inside(record_.handle.position, config_.bounds.position) &&
+                             well_inside(record_.handle.velocity, config_.bounds.speed) &&
+                             well_inside(record_.hand.measured, config_.bounds.force)))) {
     return true;
   }
   const auto within = [this](const char* quantity, double magnitude, double bound) {
@@ -158,7 +162,10 @@ bool Simulation::check_bounds() noexcept {
   };
   if (within("position", tool_.pose.position.norm(), config_.bounds.position) &&
       within("velocity", tool_.velocity.norm(), config_.bounds.speed) &&
-      within("rendered force", record_.force.rendered.norm(), config_.bounds.force)) {
+      within("rendered force", record_.force.rendered.norm(), config_.bounds.force) &&
+      within("handle position", record_.handle.position.norm(), config_.bounds.position) &&
+      within("handle velocity", record_.handle.velocity.norm(), config_.bounds.speed) &&
+      within("measured force", record_.hand.measured.norm(), config_.bounds.force)) {
     return true;
   }
   end(Outcome::diverges);

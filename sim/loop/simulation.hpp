@@ -26,9 +26,9 @@ enum class Outcome {
 
 /// A run beyond these is stopped as diverged: absurd for a dental drill, still far from overflow.
 struct DivergenceBounds {
-  double position = 1e3;  ///< [m]
-  double speed = 1e6;     ///< [m/s]
-  double force = 1e12;    ///< f_render [N]
+  double position = 1e3;  ///< of tool and handle [m]
+  double speed = 1e6;     ///< of tool and handle [m/s]
+  double force = 1e12;    ///< f_render and f_meas [N]
 };
 
 /// Numbers of one run.
@@ -61,7 +61,7 @@ struct SimulationParts {
 struct Divergence {
   std::uint64_t step = 0;
   double time = 0.0;          ///< [s]
-  const char* quantity = "";  ///< "position", "velocity" or "rendered force"
+  const char* quantity = "";  ///< as in "position", "handle velocity" or "rendered force"
   double magnitude = 0.0;     ///< its norm, possibly not finite
   double bound = 0.0;
 };
@@ -111,6 +111,7 @@ class Simulation {
   bool springs_wanted_ = false;
   bool energy_wanted_ = false;
   bool input_wanted_ = false;
+  bool handle_is_apart_ = false;                   ///< the handle is a body of its own
   std::optional<double> angular_velocity_cutoff_;  ///< none: nobody wants it
   ContactBuffer contacts_;
 
