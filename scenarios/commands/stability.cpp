@@ -198,11 +198,13 @@ void add_experiments(CLI::App& command, StabilityOptions& options) {
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
       ->needs(search);
   command.add_option("--seed", options.seed, "of --stress and --search (default: 1)")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53));
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53))
+      ->excludes(map);
   command.add_option("--jobs", options.jobs, "threads (default: as many as the machine has)")
       ->check(CLI::Range(1, 1024));
   command
-      .add_option("--algorithms", options.algorithms, "of --map and --search: names separated by commas (default: all)")
+      .add_option("--algorithms", options.algorithms,
+                  "of --map and --search: names separated by commas (default: all, of --search the scene's own)")
       ->delimiter(',');
 }
 

@@ -147,6 +147,9 @@ void check_scene(const Scenario& scenario) {
   if (scenario.rendering.config.max_force) fail("/rendering/limits/max_force_N", "allowed for stability: null");
   if (!std::holds_alternative<FreePosition>(scenario.motion.position))
     fail("/motion/position/type", "allowed for stability: \"free\"");
+  if (!std::holds_alternative<NoHandFields>(scenario.hand)) fail("/hand/type", "allowed for stability: \"none\"");
+  if (scenario.rendering.config.passivity_controller)
+    fail("/rendering/passivity_controller", "got true; allowed for stability: false");
 }
 
 double leapfrog_limit(StabilityCase which, const Scenario& scenario, double lambda) {
@@ -207,10 +210,9 @@ std::optional<double> analytic_limit(StabilityCase which, const Scenario& scenar
   return std::nullopt;
 }
 
-double eigenvalue_limit(StabilityCase which, const Scenario& scenario, double lambda) {
+double eigenvalue_limit(StabilityCase which, const Scenario& scenario, double lambda, double start) {
   const auto stable = [&](double value) { return at_value(which, value, scenario, lambda).is_stable(); };
-  const Probes probes = probes_of(which);
-  return largest_stable(probes.start, kEigenvaluePrecision, stable, probes.largest);
+  return largest_stable(start, kEigenvaluePrecision, stable, probes_of(which).largest);
 }
 
 std::vector<StabilityLimit> stability_limits(const Scenario& scenario) {
@@ -229,10 +231,10 @@ std::vector<StabilityLimit> stability_limits(const Scenario& scenario) {
     const auto system = [&](double value) { return at_value(limit.which, value, scenario, lambda); };
     limit.lambda = lambda;
     limit.analytic = analytic_limit(limit.which, scenario, lambda);
-    limit.eigenvalue = eigenvalue_limit(limit.which, scenario, lambda);
+    const Probes probes = probes_of(limit.which);
+    limit.eigenvalue = eigenvalue_limit(limit.which, scenario, lambda, probes.start);
     limit.damping_at_limit = system(limit.limit()).B;
     const auto run = [&](double value) { return simulation_stays_bounded(scenario, system(value), stiffest); };
-    const Probes probes = probes_of(limit.which);
     limit.simulation = largest_stable(probes.start, kPrecision, run, probes.largest);
   }
   return limits;

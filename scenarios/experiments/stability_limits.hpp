@@ -52,8 +52,9 @@ struct RootLocusPoint {
 /// velocity_verlet and rk4). Precondition: defaults are filled in.
 std::optional<double> analytic_limit(StabilityCase which, const Scenario& scenario, double lambda);
 
-/// The same by bisection on the eigenvalues of A, to 1e-10: infinite when nothing up to 1e15, or 1e6 s, is unstable.
-double eigenvalue_limit(StabilityCase which, const Scenario& scenario, double lambda);
+/// The same by bisection on the eigenvalues of A, to 1e-10, from `start` on (see largest_stable): infinite when nothing
+/// up to 1e15, or 1e6 s, is unstable.
+double eigenvalue_limit(StabilityCase which, const Scenario& scenario, double lambda, double start);
 
 /// All four limits. A limit that does not exist (no spring, no damping) is infinite. Throws InputError unless the
 /// scenario is bilateral springs without friction and limits: elsewhere contacts come and go and no such limit exists.

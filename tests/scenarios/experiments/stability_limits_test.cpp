@@ -173,6 +173,8 @@ TEST(StabilityLimits, AreRefusedWhereNoneExist) {
       {"rendering.friction.mu_f_s_per_m=1", "/rendering/friction"},
       {"rendering.limits.max_damping_N_s_per_m=1", "/rendering/limits/max_damping_N_s_per_m"},
       {"rendering.limits.max_force_N=1", "/rendering/limits/max_force_N"},
+      {R"(hand={"type":"force","x_N":5})", "/hand/type"},
+      {"rendering.passivity_controller=true", "/rendering/passivity_controller"},
       {R"(motion={"position":{"type":"prescribed","x_m":0,"y_m":0,"z_m":0}})", "/motion/position/type"},
   };
   for (const auto& c : kCases) {

@@ -106,9 +106,13 @@ INSTANTIATE_TEST_SUITE_P(Every, IntegratorMap, testing::ValuesIn(kIntegrators),
 /// Bilateral springs are linear under every integrator, so its runs must end where an eigenvalue of its step leaves the
 /// unit circle, and never where none does.
 TEST_P(IntegratorMap, HasItsEdgeWithinTwoPercentOfTheory) {
-  for (const char* map : {"time_step", "damping_ratio", "wedge"}) {
-    const MapResult result =
-        stability_map(*find_stability_map(map), {"shaped_stiffness", GetParam()}, 5, kTwoThreads);
+  for (const auto& [map, algorithm] : {std::pair{"time_step", "shaped_stiffness"},
+                                       {"damping_ratio", "shaped_stiffness"},
+                                       {"wedge", "mean"},
+                                       {"wedge", "virtual_coupling"},
+                                       {"contacts", "summation"}}) {
+    SCOPED_TRACE(std::string(map) + " " + algorithm);
+    const MapResult result = stability_map(*find_stability_map(map), {algorithm, GetParam()}, 9, kTwoThreads);
     for (const BoundaryPoint& point : result.boundary) {
       ASSERT_TRUE(point.analytic) << map;
       EXPECT_LE(std::abs(*point.difference()), 0.02)
