@@ -83,6 +83,8 @@ PrecisionResult study_algorithms(const Scenario& given, const PrecisionOptions& 
     options.progress(result.rows.size(), all);
   };
   RenderingConfig config = scenario.rendering.config;
+  // The rows say which of them have these.
+  config.angular_damping = config.passivity_controller = false;
   for (const AlgorithmEntry& algorithm : algorithms()) {
     config.algorithm = algorithm.info->name;
     add_row(config.algorithm, config);

@@ -47,9 +47,13 @@ void check_scenario(const Scenario& scenario) {
   const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment);
   const RenderingFields& r = scenario.rendering;
   const bool linear = springs != nullptr && springs->bilateral && *r.mu_f == 0.0 && !r.config.max_damping &&
-                      !r.config.max_force && !*r.reduction && std::holds_alternative<NoHandFields>(scenario.hand);
+                      !r.config.max_force && !*r.reduction && !r.config.passivity_controller &&
+                      std::holds_alternative<NoHandFields>(scenario.hand) &&
+                      std::holds_alternative<FreePosition>(scenario.motion.position);
   if (linear) return;
-  throw InputError("the study needs a linear scenario: bilateral springs without hand, reduction, limits and mu_f");
+  throw InputError(
+      "the study needs a linear scenario: bilateral springs and a free position, without hand, reduction, limits, mu_f "
+      "and passivity controller");
 }
 
 /// Coarsest step over the others: three decades.

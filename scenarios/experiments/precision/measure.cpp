@@ -110,6 +110,11 @@ Scenario drill_in_hole(Scenario scenario) {
     throw InputError(InputError::Kind::relation, "/environment/type",
                      "got another environment; allowed for this study: block_with_hole");
   }
+  if (*scenario.tool.tip != "flat") {
+    throw InputError(
+        InputError::Kind::relation, "/tool/tip",
+        "got \"" + *scenario.tool.tip + "\"; allowed for this study: \"flat\", whose ideal trajectory is known");
+  }
   if (const auto* device = std::get_if<AdmittanceDeviceConfig>(&scenario.device)) {
     scenario.device = IdealDeviceFields{device->force_limit};
   }

@@ -46,6 +46,11 @@ PrecisionResult study_time_step(const Scenario& given, const PrecisionOptions& o
                            std::string(outcome_name(sampled.result.outcome)),
                            {run.time.step, d.final, d.rms, d.max, ideal.metrics().gentle.height_rms},
                            seconds_per_step(run, shell, options.repetitions)});
+    // A drill that was thrown out is anywhere, which has no order.
+    if (sampled.positions.size() != reference.positions.size() || !(d.max <= tool.radius)) {
+      options.progress(result.rows.size(), std::size(kFactors));
+      continue;
+    }
     steps.push_back(run.time.step);
     errors.push_back(d.rms);
     options.progress(result.rows.size(), std::size(kFactors));

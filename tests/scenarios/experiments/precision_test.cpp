@@ -101,6 +101,10 @@ TEST(PrecisionIntegrators, KeepsARunThatFailsAsARow) {
 TEST(PrecisionIntegrators, RefusesWhatHasNoExactSolution) {
   EXPECT_THROW(study_integrators(bundled("poke_plane"), quick()), InputError);
   EXPECT_THROW(study_integrators(bundled("springs_limited_mean"), quick()), InputError);
+  for (const char* nonlinear :
+       {"rendering.passivity_controller=true", R"(motion.position={"type":"prescribed","x_m":0,"y_m":0,"z_m":0})"}) {
+    EXPECT_THROW(study_integrators(bundled("single_spring", {nonlinear}), quick()), InputError) << nonlinear;
+  }
 }
 
 TEST(PrecisionShaping, IterationsApproachTheExactTensor) {
@@ -151,6 +155,8 @@ TEST(PrecisionMerging, DependsOnTheOrderOfTheContactsOnlyWhereTheyAreReduced) {
 TEST(PrecisionSpacing, RefusesAnotherEnvironment) {
   EXPECT_THROW(study_spacing(bundled("poke_plane"), quick()), InputError);
   EXPECT_THROW(study_algorithms(bundled("poke_plane"), quick()), InputError);
+  EXPECT_THROW(study_algorithms(bundled("drill_in_hole", {"tool.tip=round", "record.ideal_trajectory=false"}), quick()),
+               InputError);
 }
 
 TEST(PrecisionAlgorithms, HaveARowEachAndTheThesissTwoOneWithAngularDamping) {
