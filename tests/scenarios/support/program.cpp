@@ -15,6 +15,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "tests/support/scale.hpp"
+
 namespace hapbench::test {
 namespace {
 
@@ -88,7 +90,7 @@ ProgramRun run_program(const std::filesystem::path& program, const std::vector<s
   const File out = nameless_file(), err = nameless_file();
   const pid_t child = start(program, arguments, options, ::fileno(out.get()), ::fileno(err.get()));
   const auto started = Clock::now();
-  const auto deadline = started + std::chrono::duration<double>(options.patience_s);
+  const auto deadline = started + std::chrono::duration<double>(patience(options.patience_s));
   int status = 0;
   rusage usage{};
   while (::wait4(child, &status, WNOHANG, &usage) == 0) {

@@ -158,7 +158,8 @@ TEST(Simulation, EndsWithTheRowInWhichTheHandHasFinishedItsTask) {
   SimulationParts parts = fake_parts(test::weightless);
   parts.hand = std::make_unique<Worker>();
   Recorder recorder;
-  const SimulationResult result = Simulation(config_of(10), std::move(parts), {&recorder}).run();
+  Simulation simulation(config_of(10), std::move(parts), {&recorder});  // owns the task that the rows name
+  const SimulationResult result = simulation.run();
   EXPECT_EQ(result.outcome, Outcome::completes);
   EXPECT_EQ(result.rows, 4u) << "two targets, two samples each";
   EXPECT_EQ(recorder.rows.back().task->results().size(), 2u);
