@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "algorithms/points/gradient_reduction.hpp"
-#include "algorithms/points/local_average.hpp"
+#include "algorithms/stages/gradient_reduction.hpp"
+#include "algorithms/stages/local_average.hpp"
 
 namespace hapbench {
 namespace {

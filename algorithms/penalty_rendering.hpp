@@ -2,10 +2,10 @@
 
 #include <memory>
 
-#include "algorithms/damping_and_limits.hpp"
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/laws/force_law.hpp"
-#include "algorithms/points/point_stage.hpp"
+#include "algorithms/stages/damping_and_limits.hpp"
+#include "algorithms/stages/point_stage.hpp"
 
 namespace hapbench {
 

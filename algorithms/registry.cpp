@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "algorithms/damping_and_limits.hpp"
 #include "algorithms/depth/continuous_normal_projection_depth.hpp"
 #include "algorithms/depth/normal_projection_depth.hpp"
 #include "algorithms/depth/shortest_distance.hpp"
@@ -19,11 +18,12 @@
 #include "algorithms/laws/summation.hpp"
 #include "algorithms/laws/tandpasta.hpp"
 #include "algorithms/laws/virtual_coupling.hpp"
-#include "algorithms/passivity_controller.hpp"
 #include "algorithms/penalty_rendering.hpp"
-#include "algorithms/points/gradient_reduction.hpp"
-#include "algorithms/points/local_average.hpp"
 #include "algorithms/proxy/proxy_rendering.hpp"
+#include "algorithms/stages/damping_and_limits.hpp"
+#include "algorithms/stages/gradient_reduction.hpp"
+#include "algorithms/stages/local_average.hpp"
+#include "algorithms/stages/passivity_controller.hpp"
 
 namespace hapbench {
 namespace {

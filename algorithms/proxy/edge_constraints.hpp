@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sim/contact/contact_buffer.hpp"
-#include "sim/environment/point_shell.hpp"
+#include "sim/geometry/point_shell.hpp"
 #include "sim/tool/tool.hpp"
 
 namespace hapbench {

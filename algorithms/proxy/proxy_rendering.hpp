@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "algorithms/damping_and_limits.hpp"
 #include "algorithms/info.hpp"
+#include "algorithms/stages/damping_and_limits.hpp"
 #include "sim/loop/force_algorithm.hpp"
 
 namespace hapbench {

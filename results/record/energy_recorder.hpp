@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "results/io/csv_writer.hpp"
-#include "results/metrics/energy_ledger.hpp"
+#include "results/observe/energy_ledger.hpp"
 #include "results/record/recorder.hpp"
 
 namespace hapbench {

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "results/io/csv_writer.hpp"
-#include "results/metrics/ideal_trajectory.hpp"
+#include "results/observe/ideal_trajectory.hpp"
 #include "results/record/recorder.hpp"
 
 namespace hapbench {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "results/io/io_error.hpp"
-#include "results/metrics/target_metrics.hpp"
+#include "results/observe/target_metrics.hpp"
 
 namespace hapbench {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "scenarios/config/load_scenario.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "sim/loop/simulation.hpp"
 
 namespace hapbench {

@@ -1,11 +1,11 @@
 #include "scenarios/run/environment_points.hpp"
 
 #include "results/io/json_text.hpp"
-#include "scenarios/files/loaded_code.hpp"
-#include "scenarios/files/mesh_file.hpp"
-#include "scenarios/files/shell_file.hpp"
+#include "scenarios/input/loaded_code.hpp"
+#include "scenarios/input/mesh_file.hpp"
+#include "scenarios/input/shell_file.hpp"
 #include "sim/contact/grid_index.hpp"
-#include "sim/environment/block_field.hpp"
+#include "sim/mesh/block_field.hpp"
 
 namespace hapbench {
 namespace {

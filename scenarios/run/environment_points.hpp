@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "scenarios/config/load_scenario.hpp"
-#include "scenarios/files/shell_cache.hpp"
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/input/shell_cache.hpp"
 
 namespace hapbench {
 

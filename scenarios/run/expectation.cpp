@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "results/outcome_names.hpp"
-#include "scenarios/codec/input_error.hpp"
+#include "results/summary/outcome_names.hpp"
+#include "scenarios/input/input_error.hpp"
 
 namespace hapbench {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "results/summary.hpp"
-#include "scenarios/config/scenario.hpp"
+#include "results/summary/summary.hpp"
+#include "scenarios/description/scenario.hpp"
 
 namespace hapbench {
 

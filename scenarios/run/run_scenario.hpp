@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "results/summary.hpp"
-#include "results/timing.hpp"
-#include "scenarios/config/load_scenario.hpp"
-#include "scenarios/files/shell_cache.hpp"
+#include "results/summary/summary.hpp"
+#include "results/summary/timing.hpp"
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/input/shell_cache.hpp"
 #include "sim/core/skips.hpp"
 
 namespace hapbench {

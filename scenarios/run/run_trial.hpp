@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "results/observe/step_times.hpp"
 #include "results/record/recorder.hpp"
-#include "results/step_times.hpp"
-#include "results/summary.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/run/assemble.hpp"
 
 namespace hapbench {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "sim/contact/tool_box.hpp"
-#include "sim/environment/point_shell.hpp"
+#include "sim/geometry/point_shell.hpp"
 
 namespace hapbench {
 

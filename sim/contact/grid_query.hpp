@@ -2,7 +2,7 @@
 
 #include "sim/contact/contact_query.hpp"
 #include "sim/contact/grid_index.hpp"
-#include "sim/environment/point_shell.hpp"
+#include "sim/geometry/point_shell.hpp"
 
 namespace hapbench {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sim/contact/contact_query.hpp"
-#include "sim/environment/point_shell.hpp"
+#include "sim/geometry/point_shell.hpp"
 
 namespace hapbench {
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "sim/contact/contact_query.hpp"
-#include "sim/environment/springs.hpp"
+#include "sim/geometry/springs.hpp"
 
 namespace hapbench {
 

@@ -5,7 +5,7 @@
 
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/contact/contact_query.hpp"
-#include "sim/environment/point_shell.hpp"
+#include "sim/geometry/point_shell.hpp"
 #include "sim/tool/tool.hpp"
 
 namespace hapbench {

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <utility>
 
-#include "sim/loop/leapfrog.hpp"
+#include "sim/loop/integrators/leapfrog.hpp"
 #include "sim/tool/turn.hpp"
 
 namespace hapbench {

@@ -10,7 +10,7 @@
 #include "sim/loop/device.hpp"
 #include "sim/loop/force_algorithm.hpp"
 #include "sim/loop/hand.hpp"
-#include "sim/loop/integrator.hpp"
+#include "sim/loop/integrators/integrator.hpp"
 #include "sim/loop/observer.hpp"
 #include "sim/tool/motion.hpp"
 

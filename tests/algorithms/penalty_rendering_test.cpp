@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "algorithms/registry.hpp"
-#include "sim/environment/analytic_shells.hpp"
+#include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/setting.hpp"
 
 namespace hapbench {

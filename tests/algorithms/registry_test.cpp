@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "sim/environment/analytic_shells.hpp"
+#include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/setting.hpp"
 

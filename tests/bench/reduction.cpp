@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "algorithms/points/gradient_reduction.hpp"
+#include "algorithms/stages/gradient_reduction.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/contact_samples.hpp"
 

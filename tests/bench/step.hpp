@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 
-#include "results/metrics/metrics.hpp"
-#include "results/metrics/passivity_observer.hpp"
+#include "results/observe/metrics.hpp"
+#include "results/observe/passivity_observer.hpp"
 #include "sim/loop/simulation.hpp"
 
 namespace hapbench::bench {

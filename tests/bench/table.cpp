@@ -8,9 +8,9 @@
 #include <functional>
 #include <thread>
 
-#include "results/provenance.hpp"
-#include "results/step_latency.hpp"
-#include "results/step_times.hpp"
+#include "results/observe/step_latency.hpp"
+#include "results/observe/step_times.hpp"
+#include "results/summary/provenance.hpp"
 #include "scenarios/run/environment_points.hpp"
 #include "tests/bench/search.hpp"
 #include "tests/bench/step.hpp"

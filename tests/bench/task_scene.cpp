@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "scenarios/config/bundled_scenarios.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/run/environment_points.hpp"
 
 namespace hapbench::bench {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "scenarios/config/load_scenario.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"
 
 /// The scenes that searches and steps are timed in, assembled as the program assembles them.

@@ -8,9 +8,9 @@
 
 #include "algorithms/laws/exact_shaping.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
-#include "device_model/scripted_hands.hpp"
+#include "device_model/hands/scripted_hands.hpp"
 #include "sim/contact/shell_query.hpp"
-#include "sim/environment/analytic_shells.hpp"
+#include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/setting.hpp"

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <functional>
 
-#include "sim/environment/marching_cubes.hpp"
-#include "sim/environment/mesh_from_triangles.hpp"
+#include "sim/mesh/marching_cubes.hpp"
+#include "sim/mesh/mesh_from_triangles.hpp"
 
 /// Surfaces to test with, as loose triangles. Closed ones are wound counter-clockwise from outside.
 namespace hapbench::test {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "algorithms/laws/exact_shaping.hpp"
-#include "sim/environment/analytic_shells.hpp"
+#include "sim/geometry/analytic_shells.hpp"
 
 namespace hapbench::test {
 namespace {

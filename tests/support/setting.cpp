@@ -2,8 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include "device_model/hands/scripted_hands.hpp"
 #include "device_model/ideal_device.hpp"
-#include "device_model/scripted_hands.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "sim/contact/spring_query.hpp"
 #include "tests/support/contact_sets.hpp"

@@ -6,7 +6,7 @@
 
 #include "algorithms/registry.hpp"
 #include "sim/core/random.hpp"
-#include "sim/environment/springs.hpp"
+#include "sim/geometry/springs.hpp"
 #include "sim/loop/simulation.hpp"
 
 /// From an environment and a tool to forces and runs, the way the scenario runner assembles them.

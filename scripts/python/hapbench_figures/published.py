@@ -1,9 +1,9 @@
-"""The numbers that the thesis publishes, from results/published (see results/published.schema.json)."""
+"""The numbers that the thesis publishes, from results/reference/published (see results/reference/published.schema.json)."""
 import json
 from functools import lru_cache
 from pathlib import Path
 
-DIRECTORY = Path(__file__).resolve().parents[3] / "results" / "published"
+DIRECTORY = Path(__file__).resolve().parents[3] / "results" / "reference" / "published"
 
 
 @lru_cache(maxsize=None)

@@ -58,5 +58,5 @@ def rerun_section():
                 "$hapbench stability single_spring --out results/out/reproduce/stability\n"
                 "$hapbench describe scenario                                                    # what every field means")
             + "<p>This report:</p>" + command(
-                "scripts/report results/out/reproduce --figures results/out/figures --claims results/claims.json \\\n"
+                "scripts/report results/out/reproduce --figures results/out/figures --claims results/reference/claims.json \\\n"
                 "  --out results/out/reproduce/report.html"))

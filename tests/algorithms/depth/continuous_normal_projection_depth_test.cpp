@@ -8,7 +8,7 @@
 #include "algorithms/depth/normal_projection_depth.hpp"
 #include "algorithms/depth/shortest_distance.hpp"
 #include "sim/contact/shell_query.hpp"
-#include "sim/environment/analytic_shells.hpp"
+#include "sim/geometry/analytic_shells.hpp"
 #include "sim/tool/turn.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_geometry.hpp"

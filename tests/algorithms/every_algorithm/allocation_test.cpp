@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "sim/core/aligned.hpp"
-#include "sim/environment/analytic_shells.hpp"
+#include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/setting.hpp"
 
 namespace hapbench {

@@ -8,7 +8,7 @@
 #include "algorithms/proxy/nearest_allowed.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
-#include "sim/environment/analytic_shells.hpp"
+#include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/setting.hpp"
 #include "tests/support/tool_geometry.hpp"
 

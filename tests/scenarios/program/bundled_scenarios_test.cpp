@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "scenarios/config/bundled_scenarios.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"

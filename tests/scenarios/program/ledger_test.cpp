@@ -28,12 +28,12 @@ TEST(Ledger, InTheTreeIsTheOneTheProgramMakes) {
   const test::ProgramRun run = hapbench({"reproduce", "--out", (directory / "out").string(), "--quiet"}, options);
   ASSERT_EQ(run.status, 0) << run.err;
   const auto made = repeatable_claims(Json::parse(test::read_file(directory / "out/claims.json")));
-  const auto kept = repeatable_claims(Json::parse(test::read_file(HAPBENCH_SCENARIOS "/../results/claims.json")));
+  const auto kept = repeatable_claims(Json::parse(test::read_file(HAPBENCH_SCENARIOS "/../results/reference/claims.json")));
   ASSERT_EQ(made.size(), kept.size());
   EXPECT_GE(made.size(), 25u);
   for (const auto& [id, claim] : kept) {
     ASSERT_TRUE(made.contains(id)) << id;
-    EXPECT_EQ(made.at(id), claim) << id << ": renew it with hapbench reproduce --ledger results/claims.json";
+    EXPECT_EQ(made.at(id), claim) << id << ": renew it with hapbench reproduce --ledger results/reference/claims.json";
   }
 }
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "scenarios/files/shell_file.hpp"
-#include "sim/environment/analytic_shells.hpp"
+#include "scenarios/input/shell_file.hpp"
+#include "sim/geometry/analytic_shells.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "results/outcome_names.hpp"
+#include "results/summary/outcome_names.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"

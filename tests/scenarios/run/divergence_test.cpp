@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "scenarios/config/load_scenario.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/environment_points.hpp"
 #include "scenarios/run/run_scenario.hpp"

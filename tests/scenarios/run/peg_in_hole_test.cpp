@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "scenarios/config/bundled_scenarios.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
 /// The planar peg in its hole (thesis A.1, Fig. A.2): the original algorithm vibrates, the shaped one is smooth.

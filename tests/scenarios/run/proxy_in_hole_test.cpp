@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/depth/shortest_distance.hpp"
-#include "scenarios/config/bundled_scenarios.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/environment_points.hpp"
 #include "scenarios/run/run_scenario.hpp"

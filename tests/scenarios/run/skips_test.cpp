@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/config/bundled_scenarios.hpp"
-#include "scenarios/files/json_file.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/input/json_file.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "scenarios/config/bundled_scenarios.hpp"
-#include "scenarios/config/load_scenario.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"
 
 /// Bundled scenarios of bilateral springs against the linear recurrence they are: one spring-damper under the

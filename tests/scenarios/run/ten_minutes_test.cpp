@@ -4,7 +4,7 @@
 #include <complex>
 #include <numbers>
 
-#include "scenarios/config/bundled_scenarios.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
 /// Ten minutes in contact, against the closed form of where they end.

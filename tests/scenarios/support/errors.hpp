@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "scenarios/codec/input_error.hpp"
+#include "scenarios/input/input_error.hpp"
 
 namespace hapbench::test {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/environment/mesh_from_triangles.hpp"
+#include "sim/mesh/mesh_from_triangles.hpp"
 
 /// Mesh files, written without the library that reads them.
 namespace hapbench::test {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/codec/codec.hpp"
+#include "scenarios/description/codec.hpp"
 #include "sim/core/random.hpp"
 
 namespace hapbench::test {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/codec/codec.hpp"
+#include "scenarios/description/codec.hpp"
 
 /// Runs the built programs as a user's shell would, but without a shell: arguments arrive as they are given.
 namespace hapbench::test {

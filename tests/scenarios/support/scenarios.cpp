@@ -1,8 +1,8 @@
 #include "tests/scenarios/support/scenarios.hpp"
 
-#include "scenarios/config/bundled_scenarios.hpp"
-#include "scenarios/config/scenario_codec.hpp"
-#include "scenarios/files/json_file.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/scenario_codec.hpp"
+#include "scenarios/input/json_file.hpp"
 
 namespace hapbench::test {
 

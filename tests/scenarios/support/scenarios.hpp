@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/codec/codec.hpp"
+#include "scenarios/description/codec.hpp"
 
 /// Scenarios to test with.
 namespace hapbench::test {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "scenarios/codec/codec.hpp"
+#include "scenarios/description/codec.hpp"
 
 namespace hapbench::test {
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "scenarios/config/bundled_scenarios.hpp"
-#include "scenarios/config/load_scenario.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/load_scenario.hpp"
 
 namespace hapbench::test {
 

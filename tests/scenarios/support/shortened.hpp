@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/config/bundled_scenarios.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
 
 namespace hapbench::test {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/environment/analytic_shells.hpp"
+#include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/searches.hpp"
 

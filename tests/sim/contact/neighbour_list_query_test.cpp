@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "sim/environment/analytic_shells.hpp"
+#include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/searches.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/loop/leapfrog.hpp"
+#include "sim/loop/integrators/leapfrog.hpp"
 
 namespace hapbench {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/environment/analytic_shells.hpp"
-#include "sim/loop/leapfrog.hpp"
+#include "sim/geometry/analytic_shells.hpp"
+#include "sim/loop/integrators/leapfrog.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/fakes.hpp"
 

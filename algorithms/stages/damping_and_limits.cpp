@@ -1,0 +1,81 @@
+#include "algorithms/stages/damping_and_limits.hpp"
+
+#include <cmath>
+
+#include "sim/contact/stiffness_tensor.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr ParameterInfo kParameters[] = {
+    {"rendering.damping_ratio", "1", "0.7", "number >= 0 <= 1e+06", "zeta of one spring-damper of stiffness K"},
+    {"rendering.damping_N_s_per_m", "N s/m", "null", "null | number >= 0 <= 1e+12", "B itself; null: from zeta"},
+    {"rendering.angular_damping", "1", "false", "boolean",
+     "v of the tool's material at each contact, v + omega x r_i, instead of the tip centre's"},
+    {"rendering.angular_velocity_cutoff_Hz", "Hz", "20", "null | number > 0 <= 1e+06",
+     "first-order low-pass of the angular velocity that angular_damping sees; null: none"},
+    {"rendering.mass_kg", "kg", "by scene", "number > 0 <= 1e+06",
+     "M of the virtual tool; default 0.2 in planar scenes, else 0.1"},
+    {"rendering.friction.mu_s_N_s_per_m", "N s/m", "by scene", "number >= 0 <= 1e+09",
+     "mu_s; default 0 for springs, else 5"},
+    {"rendering.friction.mu_f_s_per_m", "s/m", "by scene", "number >= 0 <= 1e+09",
+     "mu_f; default 0 for springs, else 10"},
+    {"rendering.limits.max_damping_N_s_per_m", "N s/m", "null", "null | number >= 0 <= 1e+12", "B_max; null: off"},
+    {"rendering.limits.max_force_N", "N", "null", "null | number >= 0 <= 1e+12", "F_max; null: off"},
+};
+
+}  // namespace
+
+const ModelInfo kDampingAndLimitsInfo = {
+    .name = "damping_and_limits",
+    .summary = "normal damping, tangential friction and the optional limits that every law shares",
+    .formula =
+        "f_dn = -B S v, B = 2 zeta sqrt(K M); f_dt = -(mu_s + mu_f |f_spring|)(v - S v); B scaled to "
+        "lambda_max(B S) <= B_max; |f_render| <= F_max. With angular_damping S v + sum c_i <omega x r_i, u_i> u_i in "
+        "place of S v, v + omega x r_mean in place of v",
+    .source =
+        "thesis 2.5, 2.6, A.2.1, B.2, C.4.3; mu_s and mu_f, called Coulomb friction there, are viscous; "
+        "angular_damping is ours, after the future work of 4.3 and 4.4",
+    .known_failure =
+        "without angular_damping, a tool that only turns has no velocity to damp (thesis 4.4); with it, a turn pushes "
+        "the tip sideways, since no torque is rendered; limits leave stiff scenes under-damped (A.2)",
+    .parameters = kParameters,
+};
+
+DampingAndLimits::DampingAndLimits(const RenderingConfig& config)
+    : B_(config.damping.value_or(2.0 * config.damping_ratio * std::sqrt(config.stiffness * config.mass))),
+      mu_s_(config.mu_s),
+      mu_f_(config.mu_f),
+      max_damping_(config.max_damping),
+      max_force_(config.max_force),
+      skips_(config.skips) {}
+
+double DampingAndLimits::limited_damping(const Mat3& S) const noexcept {
+  if (max_damping_) {
+    const double largest = B_ * lambda_max(S);
+    if (largest > *max_damping_) return B_ * (*max_damping_ / largest);
+  }
+  return B_;
+}
+
+Mat3 DampingAndLimits::damping_matrix(const Vec3& spring, const Mat3& S) const noexcept {
+  return limited_damping(S) * S + friction(spring) * (Mat3::Identity() - S);
+}
+
+Vec3 DampingAndLimits::rendered_force(const Vec3& spring, const Mat3& S,
+                                      const ContactVelocity& velocity) const noexcept {
+  Vec3 force = spring - limited_damping(S) * velocity.normal;
+  const auto tangential = [&]() -> Vec3 { return friction(spring) * (velocity.mean - velocity.normal); };
+  if (mu_s_ != 0.0 || mu_f_ != 0.0) {
+    force -= tangential();
+  } else if (skips_ == Skips::off) {
+    force -= tangential() + Vec3::Zero();  // 0 and never -0, which would turn a -0 of the force into 0
+  }
+  if (max_force_) {
+    const double length = force.norm();
+    if (length > *max_force_) force *= *max_force_ / length;
+  }
+  return force;
+}
+
+}  // namespace hapbench

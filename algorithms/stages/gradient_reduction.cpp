@@ -1,0 +1,107 @@
+#include "algorithms/stages/gradient_reduction.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "sim/core/random.hpp"
+#include "sim/core/simd.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr ParameterInfo kParameters[] = {
+    {"rendering.reduction.threshold", "1", "0.995", "number > -1 <= 1",
+     "alpha_TH: gradients with a larger inner product are similar"},
+    {"rendering.reduction.max_points", "1", "100", "integer >= 1 <= 100000",
+     "n_ext: most points kept; further ones are dropped and counted"},
+    {"rendering.reduction.shuffle_seed", "1", "null", "null | integer >= 0 <= 9007199254740992",
+     "visit the shell points in a fixed random order instead of ascending index"},
+};
+
+}  // namespace
+
+const ModelInfo kGradientReductionInfo = {
+    .name = "reduction",
+    .summary = "of colliding points with similar gradients only the deepest is kept",
+    .formula =
+        "visit contacts in order; the first kept k with <u_i, u_k> > alpha_TH absorbs i (replaced if d_i > d_k); "
+        "none similar: append, or drop when n_ext are kept",
+    .source =
+        "thesis C.3, 2.8; algorithm C.1 as printed appends replaced points and compares on after a similar one, which "
+        "cannot be meant",
+    .known_failure = "depends on the order of the points; collapses gradually curved surfaces (thesis 4.1)",
+    .parameters = kParameters,
+};
+
+namespace {
+
+/// O(n * kept) inner products.
+class GradientReduction final : public PointStage {
+ public:
+  explicit GradientReduction(const ReductionConfig& config) : config_(config) {}
+
+  void prepare(const Scene& scene) override {
+    if (!config_.shuffle_seed) return;
+    // rank_[i] is the place of shell point i in the visiting order.
+    rank_.resize(scene.query->capacity());
+    std::iota(rank_.begin(), rank_.end(), 0u);
+    Random(*config_.shuffle_seed).shuffle(rank_);
+    order_.resize(rank_.size());
+    shuffled_ = std::make_unique<ContactBuffer>(rank_.size());
+  }
+
+  void process(ContactBuffer& contacts) noexcept override {
+    if (shuffled_) shuffle(contacts);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const std::size_t k = first_similar(contacts, i, kept);
+      if (k < kept) {
+        if (contacts.depth[i] > contacts.depth[k]) contacts.copy(i, k);
+      } else if (kept < config_.max_points) {
+        contacts.copy(i, kept++);
+      } else {
+        ++dropped_;
+      }
+    }
+    contacts.shrink(kept);
+    contacts.pad();
+  }
+
+ private:
+  std::size_t first_similar(const ContactBuffer& c, std::size_t i, std::size_t kept) const noexcept {
+    using simd::load, simd::Pack;
+    const Pack x(c.ux[i]), y(c.uy[i]), z(c.uz[i]), threshold(config_.threshold);
+    for (std::size_t k = 0; k < kept; k += simd::lanes) {
+      const Pack inner = x * load(&c.ux[k]) + y * load(&c.uy[k]) + z * load(&c.uz[k]);
+      // Beyond `kept` lie contacts that are still to be visited.
+      const simd::Mask similar = inner > threshold && simd::lanes_between(0, kept - k);
+      if (simd::any(similar)) return k + simd::first(similar);
+    }
+    return kept;
+  }
+
+  void shuffle(ContactBuffer& contacts) noexcept {
+    const auto end = order_.begin() + static_cast<std::ptrdiff_t>(contacts.size());
+    std::iota(order_.begin(), end, 0u);
+    std::sort(order_.begin(), end,
+              [&](std::uint32_t a, std::uint32_t b) { return rank_[contacts.index[a]] < rank_[contacts.index[b]]; });
+    shuffled_->clear();
+    for (auto slot = order_.begin(); slot != end; ++slot) shuffled_->push_copy_of(contacts, *slot);
+    contacts.clear();
+    for (std::size_t i = 0; i < shuffled_->size(); ++i) contacts.push_copy_of(*shuffled_, i);
+  }
+
+  ReductionConfig config_;
+  std::vector<std::uint32_t> rank_;
+  std::vector<std::uint32_t> order_;
+  std::unique_ptr<ContactBuffer> shuffled_;  ///< only with a shuffle
+};
+
+}  // namespace
+
+std::unique_ptr<PointStage> make_gradient_reduction(const ReductionConfig& config) {
+  return std::make_unique<GradientReduction>(config);
+}
+
+}  // namespace hapbench

@@ -1,0 +1,154 @@
+#include "algorithms/stages/passivity_controller.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hapbench {
+namespace {
+
+constexpr ParameterInfo kParameters[] = {
+    {"rendering.passivity_controller", "1", "false", "boolean", "switches the controller on, for any algorithm"},
+};
+
+}  // namespace
+
+const ModelInfo kPassivityControllerInfo = {
+    .name = "passivity_controller",
+    .summary = "adaptive damping that lets no algorithm give away more energy than it has taken in",
+    .formula =
+        "E = E_spring(0) - sum f_render . (v_k + v_k+1)/2 dt - sum (m_k + m_k+1)/2 . turn_k >= 0; "
+        "f_render = s f - alpha (v + f_in dt/2M), alpha = (1 - s) M/dt, largest s in [0, 1]",
+    .source = "Hannaford and Ryu, 2002 (observer and controller); the look-ahead and the rotation are ours",
+    .known_failure =
+        "what damping took in is credit, behind which a vibration may hide for a while; a law that creates "
+        "energy feels weak and sticky where it has none left",
+    .parameters = kParameters,
+};
+
+namespace {
+
+/// The largest s in [0, 1] with a s^2 + b s <= c, a >= 0; where there is none, the s that comes closest.
+double largest_share(double a, double b, double c) noexcept {
+  if (a + b <= c) return 1.0;
+  const double discriminant = std::max(0.0, b * b + 4.0 * a * c);
+  // Two forms of the same root, for b of either sign without cancellation.
+  const double root = std::sqrt(discriminant);
+  const double s = b > 0.0 ? 2.0 * c / (b + root) : a > 0.0 ? (root - b) / (2.0 * a) : 1.0;
+  return std::clamp(s, 0.0, 1.0);
+}
+
+}  // namespace
+
+PassivityController::PassivityController(std::unique_ptr<ForceAlgorithm> algorithm, const RenderingConfig& config)
+    : algorithm_(std::move(algorithm)), mass_(config.mass), max_force_(config.max_force) {}
+
+void PassivityController::prepare(const Scene& scene) {
+  algorithm_->prepare(scene);
+  dt_ = scene.dt;
+  observed_ = ObservedEnergy(dt_);
+}
+
+void PassivityController::reset() noexcept {
+  algorithm_->reset();
+  observed_.reset();
+  steps_controlled_ = 0;
+  largest_change_ = 0.0;
+  last_turn_.reset();
+  at_row_ = false;
+}
+
+void PassivityController::take_input(const Vec3& input) noexcept {
+  if (algorithm_->wants_input()) algorithm_->take_input(input);
+  input_ = input;
+  at_row_ = true;
+}
+
+void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
+  algorithm_->compute(tool, contacts, out);
+  if (!std::exchange(at_row_, false)) {
+    // Within a step the row's answer holds: nobody observes.
+    if (has_springs(contacts, out)) render(tool, out);
+    return;
+  }
+
+  observed_.move(tool);
+  note_turn();
+  share_ = spring_share_ = 1.0;
+  alpha_ = 0.0;
+  if (has_springs(contacts, out)) {
+    springs_ = algorithm_->spring_state(tool, contacts);
+    control(tool, out.rendered);
+    springs_.energy *= spring_share_;
+    springs_.moment *= spring_share_;
+    render(tool, out);
+  } else {
+    springs_ = {};
+  }
+  observed_.answer(tool, out.rendered, springs_);
+}
+
+/// Rates of rotation change by what a hand makes of them: what it did once it may do again.
+void PassivityController::note_turn() noexcept {
+  if (observed_.first()) return;
+  const Vec3 turn = observed_.turned();
+  if (last_turn_) largest_change_ = std::max(largest_change_, (turn - *last_turn_).norm());
+  last_turn_ = turn;
+}
+
+/// Chooses share and damping.
+void PassivityController::control(const ToolState& tool, const Vec3& force) noexcept {
+  // What the scripted rotation draws from the moment over the last step and, if it goes on like this, over the next.
+  const double drawn = springs_.moment.dot(observed_.turned());
+  const double energy = observed_.energy();
+  const double weakened = 0.5 * drawn > energy && drawn > 0.0 ? std::max(0.0, 2.0 * energy / drawn) : 1.0;
+
+  const Vec3 w = tool.velocity + input_ * (0.5 * dt_ / mass_);
+  const Vec3 u = w + force * (weakened * dt_ / mass_);
+  const double unforeseen = springs_.moment.norm() * largest_change_;
+  const double taken =
+      0.5 * drawn + std::max(0.0, 0.5 * drawn + unforeseen) - (observed_.first() ? springs_.energy : 0.0);
+  const double s =
+      largest_share(0.5 * mass_ * u.squaredNorm(), weakened * taken, energy + 0.5 * mass_ * w.squaredNorm());
+  share_ = spring_share_ = weakened * s;
+  alpha_ = (1.0 - s) * mass_ / dt_;
+  if (share_ == 1.0) return;
+  ++steps_controlled_;
+  // A force cut short takes less in, which the moment then cannot have.
+  const Vec3 whole = share_ * force - alpha_ * w;
+  if (const Vec3 rendered = limited(whole); rendered != whole && taken > 0.0) {
+    const Vec3 after = w + rendered * (dt_ / mass_);
+    const double left = energy + 0.5 * mass_ * (w.squaredNorm() - after.squaredNorm());
+    spring_share_ = std::clamp(left / taken, 0.0, share_);
+  }
+}
+
+/// Cut to the length of the force limit.
+Vec3 PassivityController::limited(const Vec3& force) const noexcept {
+  const double length = max_force_ ? force.norm() : 0.0;
+  return max_force_ && length > *max_force_ ? Vec3(force * (*max_force_ / length)) : force;
+}
+
+void PassivityController::render(const ToolState& tool, RenderedForce& out) const noexcept {
+  if (share_ == 1.0) return;
+  out.spring *= share_;
+  out.S *= share_;
+  out.rendered = limited(share_ * out.rendered - alpha_ * (tool.velocity + input_ * (0.5 * dt_ / mass_)));
+}
+
+SpringState PassivityController::spring_state(const ToolState&, const ContactBuffer&) const noexcept {
+  return springs_;
+}
+
+ForceJacobian PassivityController::jacobian() const noexcept {
+  const ForceJacobian inner = algorithm_->jacobian();
+  return {share_ * inner.stiffness, share_ * inner.damping + alpha_ * Mat3::Identity()};
+}
+
+AlgorithmWork PassivityController::work() const noexcept {
+  AlgorithmWork work = algorithm_->work();
+  work.steps_controlled = steps_controlled_;
+  return work;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,146 @@
+#include "results/observe/energy_ledger.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/tool/turn.hpp"
+
+namespace hapbench {
+namespace {
+
+/// How many of the sorted numbers `a` are not among the sorted numbers `b`.
+std::size_t missing(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) noexcept {
+  std::size_t count = 0;
+  auto other = b.begin();
+  for (const std::uint32_t i : a) {
+    while (other != b.end() && *other < i) ++other;
+    if (other == b.end() || *other != i) ++count;
+  }
+  return count;
+}
+
+}  // namespace
+
+EnergyLedger::EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity, Integrator integrator)
+    : mass_(mass),
+      dt_(dt),
+      free_(position_is_free),
+      row_force_moves_(!position_is_free || integrator == Integrator::leapfrog) {
+  last_.rendered.reserve(capacity);
+  rendered_.reserve(capacity);
+}
+
+void EnergyLedger::on_step(const StepRecord& record) noexcept {
+  const auto& index = record.rendered->index;
+  rendered_.assign(index.begin(), index.begin() + static_cast<std::ptrdiff_t>(record.rendered->size()));
+  std::sort(rendered_.begin(), rendered_.end());
+  balance_.kinetic = 0.5 * mass_ * record.tool.velocity.squaredNorm();
+  balance_.stored = record.springs.energy;
+  if (has_row_) {
+    add_step(record);
+  } else {
+    kinetic_at_start_ = balance_.kinetic;
+  }
+  keep(record);
+}
+
+EnergyLedger::Works EnergyLedger::works(const Vec3& spring, const Vec3& rendered, const Vec3& way) const noexcept {
+  Works w;
+  w.input = last_.input.dot(way);
+  w.hand = last_.hand.dot(way);
+  w.actuator = (last_.input - last_.hand).dot(way);
+  w.spring = spring.dot(way);
+  w.damping = (rendered - spring).dot(way);
+  return w;
+}
+
+EnergyLedger::Works EnergyLedger::works_until(const StepRecord& now) const noexcept {
+  const Vec3 velocities = last_.tool.velocity + now.tool.velocity;
+  if (row_force_moves_) return works(last_.force.spring, last_.force.rendered, 0.5 * velocities * dt_);
+  const Vec3 moved = now.tool.pose.position - last_.tool.pose.position;
+  Works w =
+      works(0.5 * (last_.force.spring + now.force.spring), 0.5 * (last_.force.rendered + now.force.rendered), moved);
+  const double kinetic = 0.5 * mass_ * (now.tool.velocity - last_.tool.velocity).dot(velocities);
+  w.left = kinetic - w.input - w.spring - w.damping;
+  return w;
+}
+
+void EnergyLedger::add_step(const StepRecord& now) noexcept {
+  EnergyBalance& b = balance_;
+  const Works w = works_until(now);
+  b.input += w.input;
+  b.spring += w.spring;
+  b.damping += w.damping;
+  b.integration += w.left;
+  left_ += w.left;
+  const double left = b.kinetic - kinetic_at_start_ - b.input - b.spring - b.damping - left_;
+  (free_ ? b.residual : b.script) = left;
+  if (free_) residual_max_ = std::max(residual_max_, std::abs(left));
+  if (now.device) {
+    b.device = now.device;
+    b.hand = now.device->hand;
+    b.actuator = now.device->actuator;
+  } else {
+    b.hand += w.hand;
+    b.actuator += w.actuator;
+  }
+
+  const double created = created_in_step(now, w.spring);
+  b.created += created;
+  if (created > 0.0) created_sum_ += created;
+  created_max_ = std::max(created_max_, created);
+  if (created > events_.back().created) note_event(now, created);
+}
+
+/// Also adds up what translation and rotation did to the springs.
+double EnergyLedger::created_in_step(const StepRecord& now, double spring_work) noexcept {
+  const Vec3 moved = now.tool.pose.position - last_.tool.pose.position;
+  const Vec3 turned = turn(last_.tool.pose.axis, now.tool.pose.axis);
+  const double translation = -0.5 * (last_.force.spring + now.force.spring).dot(moved);
+  const double rotation = -0.5 * (last_.springs.moment + now.springs.moment).dot(turned);
+  balance_.rotation += rotation;
+  balance_.integration += spring_work + translation;
+  return now.springs.energy - last_.springs.energy - translation - rotation;
+}
+
+void EnergyLedger::note_event(const StepRecord& now, double created) noexcept {
+  EnergyEvent event;
+  event.step = now.step;
+  event.time = now.time;
+  event.created = created;
+  event.colliding_before = last_.colliding;
+  event.colliding_after = now.colliding;
+  event.rendered_before = last_.rendered.size();
+  event.rendered_after = rendered_.size();
+  event.appeared = missing(rendered_, last_.rendered);
+  event.vanished = missing(last_.rendered, rendered_);
+  events_.back() = event;
+  for (std::size_t i = events_.size() - 1; i > 0 && events_[i].created > events_[i - 1].created; --i) {
+    std::swap(events_[i], events_[i - 1]);
+  }
+}
+
+void EnergyLedger::keep(const StepRecord& record) noexcept {
+  has_row_ = true;
+  last_.tool = record.tool;
+  last_.force = record.force;
+  last_.input = record.hand.input;
+  last_.hand = record.hand_force;
+  last_.springs = record.springs;
+  last_.colliding = record.colliding;
+  std::swap(last_.rendered, rendered_);
+}
+
+EnergyMetrics EnergyLedger::metrics() const {
+  EnergyMetrics metrics;
+  metrics.balance = balance_;
+  metrics.created_sum = created_sum_;
+  metrics.created_max = created_max_;
+  metrics.residual_max = residual_max_;
+  for (const EnergyEvent& event : events_) {
+    if (event.created > 0.0) metrics.events.push_back(event);
+  }
+  return metrics;
+}
+
+}  // namespace hapbench

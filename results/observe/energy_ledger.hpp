@@ -1,0 +1,120 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "sim/loop/integrators/integrator.hpp"
+#include "sim/loop/observer.hpp"
+
+namespace hapbench {
+
+/// Where the energy of a run has gone since its first row [J].
+///
+///   kinetic + stored = initial ones + input + damping + rotation + created + integration + script + residual
+///   input = hand + actuator                                        (when the handle is the tool)
+///   device.stored = device.hand + device.actuator + device.dissipated   (when it has mechanics of its own)
+///
+/// Works of forces on the tool over one step under leapfrog are the row's force times dt times the mean of the
+/// velocities before and after it, which is exactly what they add to its kinetic energy. Other integrators use forces
+/// of states in between that no row shows: there works are the mean of the forces of both rows (f_in is held) times the
+/// way between them, and what that differs from the kinetic energy is made by the integrator too.
+struct EnergyBalance {
+  double kinetic = 0.0;  ///< of the virtual mass, now
+  double stored = 0.0;   ///< elastic energy of the penalty springs, now
+  double input = 0.0;    ///< work of f_in on the tool
+  double spring = 0.0;   ///< work of f_spring on the tool
+  /// Work of damping, friction and the force limit: f_render - f_spring. Of angular damping too, which takes energy
+  /// from the tool's turning, that nobody keeps account of, and may put some of it into the tip's motion.
+  double damping = 0.0;
+  double rotation = 0.0;  ///< what the tool's turning put into the springs: a torque that the device cannot render
+  /// Energy out of nothing: what the springs store beyond what translation and rotation put in (trapezoidal rule). Zero
+  /// for linear springs that stay in contact; contacts that appear, vanish or are weighed anew make it or lose it.
+  double created = 0.0;
+  double integration = 0.0;  ///< made by the integrator: `spring` plus what translation put into the springs (leapfrog)
+  double script = 0.0;       ///< of a prescribed position: whatever its motion takes
+  double residual = 0.0;     ///< of a free position: what the terms above leave of the kinetic energy; rounding
+  double hand = 0.0;         ///< work of the hand on the handle
+  double actuator = 0.0;     ///< of the actuators: what they hold back of the hand (ideal device), or on the carriage
+  std::optional<DeviceEnergy> device;  ///< of a device with mechanics of its own
+};
+
+/// A step in which the rendering created energy.
+struct EnergyEvent {
+  std::uint64_t step = 0;  ///< the row at whose contacts it appeared
+  double time = 0.0;       ///< [s]
+  double created = 0.0;    ///< [J], > 0
+  std::size_t colliding_before = 0, colliding_after = 0;
+  std::size_t rendered_before = 0, rendered_after = 0;
+  std::size_t appeared = 0;  ///< rendered contacts that were not rendered in the row before
+  std::size_t vanished = 0;  ///< and the other way round
+};
+
+/// The energies of a run that summary.json tells.
+struct EnergyMetrics {
+  EnergyBalance balance;            ///< after the last row
+  double created_sum = 0.0;         ///< of the steps that created some [J]
+  double created_max = 0.0;         ///< in one step [J]
+  double residual_max = 0.0;        ///< largest |residual| of a row [J]
+  std::vector<EnergyEvent> events;  ///< the steps that created most, largest first
+};
+
+/// Keeps the balance row by row. Allocates in the constructor only; about 100 ns a row.
+class EnergyLedger final : public Observer {
+ public:
+  static constexpr std::size_t kEvents = 10;
+
+  /// mass of the virtual tool [kg], time step [s], the most contacts a row can have, what moves a free position.
+  EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity,
+               Integrator integrator = Integrator::leapfrog);
+
+  bool wants_energy() const noexcept override { return true; }
+  void on_step(const StepRecord& record) noexcept override;
+
+  const EnergyBalance& balance() const noexcept { return balance_; }
+  EnergyMetrics metrics() const;
+
+ private:
+  /// What the next step needs of this row.
+  struct Row {
+    ToolState tool;
+    RenderedForce force;
+    Vec3 input = Vec3::Zero();
+    Vec3 hand = Vec3::Zero();
+    SpringState springs;
+    std::size_t colliding = 0;
+    std::vector<std::uint32_t> rendered;  ///< sorted shell indices
+  };
+
+  /// Works over the step before a row.
+  struct Works {
+    double input = 0.0, hand = 0.0, actuator = 0.0;
+    double spring = 0.0, damping = 0.0;
+    double left = 0.0;  ///< what they leave of the kinetic energy, where that is the integrator's doing
+  };
+  /// Of the forces f_spring and f_render along `way`, f_in and the hand's being held.
+  Works works(const Vec3& spring, const Vec3& rendered, const Vec3& way) const noexcept;
+  Works works_until(const StepRecord& now) const noexcept;
+  void add_step(const StepRecord& now) noexcept;
+  double created_in_step(const StepRecord& now, double spring_work) noexcept;
+  void note_event(const StepRecord& now, double created) noexcept;
+  void keep(const StepRecord& record) noexcept;
+
+  double mass_;
+  double dt_;
+  bool free_;
+  bool row_force_moves_;  ///< alone, for all of the step
+  bool has_row_ = false;
+  Row last_;
+  std::vector<std::uint32_t> rendered_;  ///< sorted shell indices of this row
+  EnergyBalance balance_;
+  double kinetic_at_start_ = 0.0;
+  double left_ = 0.0;  ///< sum of Works::left
+  double created_sum_ = 0.0;
+  double created_max_ = 0.0;
+  double residual_max_ = 0.0;
+  std::array<EnergyEvent, kEvents> events_{};  ///< largest first; created = 0 for none
+};
+
+}  // namespace hapbench

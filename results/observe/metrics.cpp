@@ -1,0 +1,126 @@
+#include "results/observe/metrics.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace hapbench {
+namespace {
+
+void add(Hash64& hash, const Vec3& v) noexcept {
+  hash.real(v.x());
+  hash.real(v.y());
+  hash.real(v.z());
+}
+
+}  // namespace
+
+MetricsObserver::MetricsObserver(double dt) {
+  assert(dt > 0.0);
+  const double sampling_rate = 1.0 / dt;
+  if (sampling_rate > 2.0 * kVibrationCutoff) high_pass_.emplace(kVibrationCutoff, sampling_rate);
+}
+
+void MetricsObserver::on_step(const StepRecord& record) noexcept {
+  add_motion(record.tool);
+  add_force(record.force);
+  add_contacts(record);
+  ++metrics_.rows;
+
+  add(hash_, record.tool.pose.position);
+  add(hash_, record.tool.velocity);
+  add(hash_, record.force.rendered);
+}
+
+void MetricsObserver::add_motion(const ToolState& tool) noexcept {
+  const Vec3& v = tool.velocity;
+  const bool first = metrics_.rows == 0;
+  if (!first) metrics_.velocity_total_variation += (v - last_velocity_).norm();
+  if (high_pass_) {
+    if (first) high_pass_->settle_at(v);
+    vibration_sum_ += high_pass_->filter(v).squaredNorm();
+  }
+  speed_max_squared_ = std::max(speed_max_squared_, v.squaredNorm());
+  metrics_.final_position = tool.pose.position;
+  last_velocity_ = v;
+}
+
+void MetricsObserver::add_force(const RenderedForce& force) noexcept {
+  // Before the first row the last force is zero, which reverses nothing.
+  if (force.rendered.dot(last_force_) < 0.0) ++metrics_.force_reversals;
+  force_max_squared_ = std::max(force_max_squared_, force.rendered.squaredNorm());
+  if (metrics_.rows > 0) {
+    force_step_max_squared_ = std::max(force_step_max_squared_, (force.rendered - last_force_).squaredNorm());
+  }
+  metrics_.depth_max = std::max(metrics_.depth_max, force.depth_max);
+  last_force_ = force.rendered;
+}
+
+void MetricsObserver::add_contacts(const StepRecord& record) noexcept {
+  const std::uint64_t rendered = record.rendered->size();
+  colliding_sum_ += record.colliding;
+  rendered_sum_ += rendered;
+  metrics_.colliding_max = std::max<std::uint64_t>(metrics_.colliding_max, record.colliding);
+  metrics_.rendered_max = std::max(metrics_.rendered_max, rendered);
+  if (record.colliding > 0) ++metrics_.steps_in_contact;
+  if (rendered == 0) return;
+  if (!metrics_.ratio) metrics_.ratio = record.ratio;
+  metrics_.ratio->min = std::min(metrics_.ratio->min, record.ratio.min);
+  metrics_.ratio->max = std::max(metrics_.ratio->max, record.ratio.max);
+}
+
+Metrics MetricsObserver::metrics() const noexcept {
+  Metrics m = metrics_;
+  m.force_max = std::sqrt(force_max_squared_);
+  m.force_step_max = std::sqrt(force_step_max_squared_);
+  m.speed_max = std::sqrt(speed_max_squared_);
+  m.state_hash = hash_.value();
+  if (m.rows == 0) return m;
+
+  const auto rows = static_cast<double>(m.rows);
+  if (high_pass_) m.vibration_power = vibration_sum_ / rows;
+  m.colliding_mean = static_cast<double>(colliding_sum_) / rows;
+  m.rendered_mean = static_cast<double>(rendered_sum_) / rows;
+  return m;
+}
+
+Metrics merged(const std::vector<Metrics>& runs) noexcept {
+  if (runs.size() == 1) return runs.front();
+  Metrics all;
+  Hash64 hash;
+  double vibration = 0.0, colliding = 0.0, rendered = 0.0;
+  bool has_vibration = true;
+  for (const Metrics& run : runs) {
+    const auto rows = static_cast<double>(run.rows);
+    all.rows += run.rows;
+    all.force_max = std::max(all.force_max, run.force_max);
+    all.force_step_max = std::max(all.force_step_max, run.force_step_max);
+    all.velocity_total_variation += run.velocity_total_variation;
+    all.force_reversals += run.force_reversals;
+    has_vibration = has_vibration && run.vibration_power;
+    vibration += rows * run.vibration_power.value_or(0.0);
+    all.depth_max = std::max(all.depth_max, run.depth_max);
+    if (run.ratio && !all.ratio) all.ratio = run.ratio;
+    if (run.ratio) {
+      all.ratio = RatioRange{std::min(all.ratio->min, run.ratio->min), std::max(all.ratio->max, run.ratio->max)};
+    }
+    colliding += rows * run.colliding_mean;
+    rendered += rows * run.rendered_mean;
+    all.colliding_max = std::max(all.colliding_max, run.colliding_max);
+    all.rendered_max = std::max(all.rendered_max, run.rendered_max);
+    all.steps_in_contact += run.steps_in_contact;
+    all.speed_max = std::max(all.speed_max, run.speed_max);
+    all.final_position = run.final_position;
+    hash.word(run.state_hash);
+  }
+  const auto rows = static_cast<double>(all.rows);
+  if (has_vibration && all.rows > 0) all.vibration_power = vibration / rows;
+  if (all.rows > 0) {
+    all.colliding_mean = colliding / rows;
+    all.rendered_mean = rendered / rows;
+  }
+  all.state_hash = hash.value();
+  return all;
+}
+
+}  // namespace hapbench

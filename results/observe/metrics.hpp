@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "results/observe/high_pass.hpp"
+#include "sim/core/hash.hpp"
+#include "sim/loop/observer.hpp"
+
+namespace hapbench {
+
+/// Motion above this frequency counts as vibration [Hz]: voluntary movement of the hand stays below about 10 Hz, and
+/// the sense of touch is most alert to vibration well above.
+inline constexpr double kVibrationCutoff = 30.0;
+
+/// What a run comes to. Sums and means run over all rows, in their order.
+struct Metrics {
+  std::uint64_t rows = 0;
+  double force_max = 0.0;                 ///< largest ||f_render|| [N]
+  double force_step_max = 0.0;            ///< largest ||f_render_k - f_render_(k-1)|| [N]
+  double velocity_total_variation = 0.0;  ///< sum ||v_k - v_(k-1)|| [m/s]: what a smooth motion has little of
+  std::uint64_t force_reversals = 0;      ///< rows whose f_render has a negative inner product with the previous row's
+  /// Mean of ||v||^2 after the 30 Hz high-pass, started as if v_0 had been held for ever [m^2/s^2]; none when the
+  /// sampling rate is 60 Hz or less, or without rows.
+  std::optional<double> vibration_power;
+  double depth_max = 0.0;  ///< largest penetration depth of a colliding point [m]; never negative
+  std::optional<RatioRange>
+      ratio;                    ///< smallest and largest stiffness ratio of a rendered contact; none without contact
+  double colliding_mean = 0.0;  ///< colliding points per row, rows without contact included
+  std::uint64_t colliding_max = 0;
+  double rendered_mean = 0.0;  ///< the same for the points the force law saw
+  std::uint64_t rendered_max = 0;
+  std::uint64_t steps_in_contact = 0;  ///< rows with a colliding point
+  double speed_max = 0.0;              ///< [m/s]
+  Vec3 final_position = Vec3::Zero();  ///< of the last row [m]
+  std::uint64_t state_hash = 0;        ///< over the bit patterns of p, v and f_render of every row
+};
+
+/// Of several runs, one after the other: sums and means over the rows of all, the final position of the last one; steps
+/// from one run to the next count for nothing. Precondition: at least one.
+Metrics merged(const std::vector<Metrics>& runs) noexcept;
+
+/// Computes the metrics while a run goes on, in constant memory; about 20 ns a row.
+class MetricsObserver final : public Observer {
+ public:
+  /// `dt`: time from row to row [s]. Precondition: dt > 0.
+  explicit MetricsObserver(double dt);
+
+  bool wants_ratio() const noexcept override { return true; }
+  void on_step(const StepRecord& record) noexcept override;
+
+  /// Of the rows so far.
+  Metrics metrics() const noexcept;
+
+ private:
+  void add_motion(const ToolState& tool) noexcept;
+  void add_force(const RenderedForce& force) noexcept;
+  void add_contacts(const StepRecord& record) noexcept;
+
+  Metrics metrics_;                    ///< all that needs no last touch
+  std::optional<HighPass> high_pass_;  ///< none when the sampling rate is too low
+  Hash64 hash_;
+  Vec3 last_velocity_ = Vec3::Zero();
+  Vec3 last_force_ = Vec3::Zero();
+  double force_max_squared_ = 0.0;
+  double force_step_max_squared_ = 0.0;
+  double speed_max_squared_ = 0.0;
+  double vibration_sum_ = 0.0;
+  std::uint64_t colliding_sum_ = 0;
+  std::uint64_t rendered_sum_ = 0;
+};
+
+}  // namespace hapbench

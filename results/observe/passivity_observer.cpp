@@ -1,0 +1,36 @@
+#include "results/observe/passivity_observer.hpp"
+
+#include <cmath>
+
+namespace hapbench {
+
+void PassivityObserver::on_step(const StepRecord& record) noexcept {
+  if (observed_.rests(record.force.rendered, record.springs)) return observed_.rest(record.tool);
+  observed_.move(record.tool);
+  observed_.answer(record.tool, record.force.rendered, record.springs);
+  const double energy = observed_.energy();
+  // Written so that an energy that is no number is kept as the least.
+  if (rows_ && !(energy < metrics_.energy_min) && !std::isnan(energy)) return;
+  if (std::isnan(metrics_.energy_min)) return;
+  metrics_.energy_min = energy;
+  metrics_.time_of_min = record.time;
+  rows_ = true;
+}
+
+std::optional<PassivityMetrics> PassivityObserver::metrics() const noexcept {
+  if (!rows_) return std::nullopt;
+  PassivityMetrics metrics = metrics_;
+  metrics.energy_end = observed_.energy();
+  return metrics;
+}
+
+std::optional<PassivityMetrics> merged(const std::vector<std::optional<PassivityMetrics>>& runs) noexcept {
+  std::optional<PassivityMetrics> least;
+  for (const auto& run : runs) {
+    if (run && (!least || run->energy_min < least->energy_min || std::isnan(run->energy_min))) least = run;
+    if (run && std::isnan(run->energy_min)) break;
+  }
+  return least;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,90 @@
+#include "results/observe/target_metrics.hpp"
+
+#include <cmath>
+#include <map>
+
+namespace hapbench {
+
+TargetMetricsObserver::TargetMetricsObserver(std::size_t subject, std::size_t trial, std::size_t targets) {
+  current_.subject = subject;
+  current_.trial = trial;
+  rows_.reserve(targets);
+}
+
+void TargetMetricsObserver::on_step(const StepRecord& record) noexcept {
+  const TargetTask& task = *record.task;
+  if (task.results().size() > rows_.size()) {
+    TargetRow row = current_;
+    row.target = rows_.size();
+    row.result = task.results().back();
+    if (row.rows_on_target > 0) {
+      row.model_force /= static_cast<double>(row.rows_on_target);
+      row.speed /= static_cast<double>(row.rows_on_target);
+    }
+    rows_.push_back(row);
+    current_.rows_on_target = 0;
+    current_.model_force = current_.speed = 0.0;
+  }
+  if (task.finished() || !task.on_target(record.tool.pose.position)) return;
+  ++current_.rows_on_target;
+  current_.model_force += record.force.rendered.norm();
+  current_.speed += record.handle.velocity.norm();
+}
+
+namespace {
+
+struct Mean {
+  std::size_t count = 0;
+  double sum = 0.0;
+  void add(double value) {
+    ++count;
+    sum += value;
+  }
+};
+
+/// Of one subject at one place.
+struct SubjectAtPlace {
+  Mean success, time, force, speed;
+};
+
+SubjectMean over_subjects(const std::map<std::size_t, SubjectAtPlace>& subjects, Mean SubjectAtPlace::*quantity) {
+  std::vector<double> means;
+  for (const auto& [subject, values] : subjects) {
+    const Mean& mean = values.*quantity;
+    if (mean.count > 0) means.push_back(mean.sum / static_cast<double>(mean.count));
+  }
+  SubjectMean result;
+  result.subjects = means.size();
+  if (means.empty()) return result;
+  const auto n = static_cast<double>(means.size());
+  for (const double mean : means) result.mean += mean;
+  result.mean /= n;
+  if (means.size() < 2) return result;
+  double squares = 0.0;
+  for (const double mean : means) squares += (mean - result.mean) * (mean - result.mean);
+  result.standard_error = std::sqrt(squares / (n - 1.0) / n);
+  return result;
+}
+
+}  // namespace
+
+std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows) {
+  std::map<std::size_t, std::map<std::size_t, SubjectAtPlace>> places;
+  for (const TargetRow& row : rows) {
+    SubjectAtPlace& values = places[row.result.place][row.subject];
+    values.success.add(row.result.removed ? 1.0 : 0.0);
+    values.time.add(row.result.time);
+    if (row.rows_on_target == 0) continue;
+    values.force.add(row.model_force);
+    values.speed.add(row.speed);
+  }
+  std::vector<PlaceMetrics> metrics;
+  for (const auto& [place, subjects] : places) {
+    metrics.push_back({place, over_subjects(subjects, &SubjectAtPlace::success),
+                       over_subjects(subjects, &SubjectAtPlace::time), over_subjects(subjects, &SubjectAtPlace::force),
+                       over_subjects(subjects, &SubjectAtPlace::speed)});
+  }
+  return metrics;
+}
+
+}  // namespace hapbench

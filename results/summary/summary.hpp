@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "results/observe/energy_ledger.hpp"
+#include "results/observe/ideal_trajectory.hpp"
+#include "results/observe/metrics.hpp"
+#include "results/observe/passivity_observer.hpp"
+#include "results/observe/target_metrics.hpp"
+#include "results/summary/provenance.hpp"
+#include "sim/loop/simulation.hpp"
+
+namespace hapbench {
+
+/// What the run cost in counted work. Counts are exact and repeatable; times are in timing.json.
+struct RunWork {
+  SearchWork search;
+  std::uint64_t steps_skipped = 0;  ///< steps without any contact search
+  AlgorithmWork algorithm;
+  std::uint64_t allocations = 0;  ///< on the heap, inside the step loop
+};
+
+/// Everything summary.json says about one run.
+struct RunSummary {
+  std::string name;       ///< of the scenario
+  std::string algorithm;  ///< as registered
+  SimulationResult result;
+  bool expected = false;  ///< the outcome is the one the scenario expects
+  double duration = 0.0;  ///< simulated time: rows x dt [s]
+  Metrics metrics;
+  std::optional<PassivityMetrics> passivity;               ///< none without rows
+  std::optional<EnergyMetrics> energy;                     ///< when the scenario asks for it
+  std::optional<IdealTrajectoryMetrics> ideal_trajectory;  ///< when the scenario asks for it
+  std::optional<std::vector<PlaceMetrics>> targets;        ///< of a tracking hand
+  RunWork work;
+  Provenance provenance;
+  std::string scenario_hash;  ///< of the effective scenario
+};
+
+/// summary.json. The same run gives the same bytes: no time stamps, no timings, no instruction set. What does not exist
+/// (a ratio without contact, the final position of no row) or is not finite is null.
+nlohmann::ordered_json summary_json(const RunSummary& run);
+
+/// The numbers of a summary that a scenario's `expect` may bound, by name: those of "metrics" under their own names,
+/// those of "passivity" and of the sections "energy", "ideal_trajectory" and "targets", which not every run has, with
+/// dots between the keys, as in "energy.created_sum_J" or "targets.0.success_rate.mean", and the final position's
+/// coordinates, as "final_position_m.x". Null for none.
+nlohmann::ordered_json boundable_metrics(const RunSummary& run);
+std::string summary_text(const RunSummary& run);
+
+}  // namespace hapbench

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "results/observe/step_latency.hpp"
+#include "results/summary/provenance.hpp"
+
+namespace hapbench {
+
+/// Wall times of a run.
+struct RunTiming {
+  double shell = 0.0;                  ///< to come by the environment's points [s]
+  bool shell_from_cache = false;       ///< they were read from the cache
+  double loop = 0.0;                   ///< of the step loop, observers included [s]
+  std::uint64_t steps = 0;             ///< rows computed in that time
+  std::optional<StepLatency> latency;  ///< of single steps, when they were timed
+  std::uint64_t preemptions = 0;       ///< how often other processes took the processor away from the step loop
+};
+
+/// timing.json: apart from summary.json because no two runs take the same time. Names the build's instruction set and
+/// the CPU, since times are comparable for the same ones only. The mean is null without steps, the latency
+/// when steps were not timed.
+nlohmann::ordered_json timing_json(const RunTiming& timing, const InstructionSet& instructions,
+                                   const Provenance& provenance);
+std::string timing_text(const RunTiming& timing, const InstructionSet& instructions, const Provenance& provenance);
+
+}  // namespace hapbench

@@ -1,0 +1,35 @@
+#include "scenarios/batch/parallel_for.hpp"
+
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_pipeline.h>
+#include <oneapi/tbb/task_arena.h>
+
+namespace hapbench {
+
+void parallel_for(std::span<const std::size_t> runs, std::size_t jobs, const std::function<Delivery(std::size_t)>& work,
+                  const std::function<bool()>& stop) {
+  auto next = runs.begin();
+  const auto start = [&](tbb::flow_control& control) -> std::size_t {
+    if (next != runs.end() && !stop()) return *next++;
+    control.stop();
+    return 0;
+  };
+  const auto deliver = [](const Delivery& delivery) {
+    if (delivery) delivery();
+  };
+  using tbb::filter_mode;
+  const auto pipeline = tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, start) &
+                        tbb::make_filter<std::size_t, Delivery>(filter_mode::parallel, work) &
+                        tbb::make_filter<Delivery, void>(filter_mode::serial_out_of_order, deliver);
+  // An arena alone would not have more threads than the machine.
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, jobs);
+  tbb::task_arena arena(static_cast<int>(jobs));
+  arena.execute([&] { tbb::parallel_pipeline(jobs, pipeline); });
+}
+
+std::size_t available_threads() {
+  return static_cast<std::size_t>(tbb::info::default_concurrency());
+}
+
+}  // namespace hapbench

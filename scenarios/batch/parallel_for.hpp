@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+
+namespace hapbench {
+
+/// What is left to do of a run once it is computed; may be empty.
+using Delivery = std::function<void()>;
+
+/// Calls `work` for each of `runs` on up to `jobs` threads, and the deliveries it returns one at a time as they come,
+/// in whatever order. Runs start in the order given, and no more than `jobs` are started and not delivered. When
+/// `stop`, which is asked before each start, says so, the runs in flight are ended and no other begins. Results depend
+/// on `jobs` only if `work` or the deliveries depend on their order. An exception from any of them ends it all and is
+/// thrown here. Threads are those of oneTBB. Costs some microseconds a run.
+void parallel_for(std::span<const std::size_t> runs, std::size_t jobs,
+                  const std::function<Delivery(std::size_t run)>& work, const std::function<bool()>& stop);
+
+/// Threads that this process may use at once.
+std::size_t available_threads();
+
+}  // namespace hapbench

@@ -1,0 +1,38 @@
+#include "scenarios/batch/stop_signal.hpp"
+
+#include <atomic>
+
+namespace hapbench {
+namespace {
+
+constexpr int kSignals[] = {SIGINT, SIGTERM};
+
+std::atomic<int> received_signal{0};
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may not lock");
+
+void note(int signal) {
+  received_signal = signal;
+}
+
+}  // namespace
+
+StopSignal::StopSignal() {
+  received_signal = 0;
+  struct sigaction action {};
+  action.sa_handler = note;
+  action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
+  for (int i = 0; i < 2; ++i) {
+    ::sigaction(kSignals[i], nullptr, &before_[i]);
+    if (before_[i].sa_handler != SIG_IGN) ::sigaction(kSignals[i], &action, nullptr);
+  }
+}
+
+StopSignal::~StopSignal() {
+  for (int i = 0; i < 2; ++i) ::sigaction(kSignals[i], &before_[i], nullptr);
+}
+
+int StopSignal::received() const noexcept {
+  return received_signal;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,40 @@
+#include "scenarios/description/bundled_scenarios.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scenarios/input/input_error.hpp"
+
+namespace hapbench {
+
+namespace fs = std::filesystem;
+
+std::vector<BundledScenario> bundled_scenarios() {
+  std::vector<BundledScenario> found;
+  for (const char* group : {"thesis", "limits", "beyond", "examples"}) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(fs::path(HAPBENCH_SCENARIO_DIR) / group, error)) {
+      if (entry.path().extension() == ".json") found.push_back({entry.path().stem().string(), group, entry.path()});
+    }
+  }
+  std::stable_sort(found.begin(), found.end(), [](const BundledScenario& a, const BundledScenario& b) {
+    return a.group == b.group ? a.name < b.name : false;
+  });
+  return found;
+}
+
+fs::path find_scenario(const std::string& argument) {
+  std::error_code error;
+  if (fs::exists(argument, error)) return argument;
+  std::vector<std::string> names;
+  for (const BundledScenario& bundled : bundled_scenarios()) {
+    if (bundled.name == argument) return bundled.file;
+    names.push_back(bundled.name);
+  }
+  const std::string stem = fs::path(argument).stem().string();
+  throw InputError(fmt::format("{}: no such file and no bundled scenario{}; \"hapbench list\" shows them", argument,
+                               nearest_name_hint(stem, names)));
+}
+
+}  // namespace hapbench

@@ -1,0 +1,131 @@
+#include "scenarios/description/load_scenario.hpp"
+
+#include <fmt/format.h>
+
+#include "results/io/json_text.hpp"
+#include "scenarios/description/environment_codec.hpp"
+#include "scenarios/description/values.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/number_table.hpp"
+#include "sim/core/hash.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Sets the field at a dotted path; a number in the path indexes a list.
+void apply_override(Json& json, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == 0 || equals == std::string::npos) {
+    throw InputError("--set: got \"" + text + "\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000");
+  }
+  Json* node = &json;
+  std::string path = text.substr(0, equals);
+  for (std::size_t start = 0; start != std::string::npos;) {
+    const std::size_t dot = path.find('.', start);
+    const std::string key = path.substr(start, dot == std::string::npos ? dot : dot - start);
+    start = dot == std::string::npos ? dot : dot + 1;
+    if (node->is_array()) {
+      const bool digits = !key.empty() && key.size() < 9 && key.find_first_not_of("0123456789") == std::string::npos;
+      if (!digits || std::stoul(key) >= node->size()) {
+        throw InputError(path + ": got list index \"" + key + "\"; allowed: " +
+                         (node->empty() ? "none, the list is empty" : "0 ... " + std::to_string(node->size() - 1)));
+      }
+      node = &(*node)[std::stoul(key)];
+    } else {
+      if (!node->is_object()) *node = Json::object();  // null or a number gives way to an object
+      node = &(*node)[key];
+    }
+  }
+  const std::string value = text.substr(equals + 1);
+  *node = Json::accept(value) ? parse_json(value) : Json(value);
+}
+
+/// The absolute path with links followed, because ".." behind a link leads elsewhere than its spelling says.
+std::filesystem::path without_links(const std::filesystem::path& path) {
+  const auto absolute = std::filesystem::current_path() / path;  // fs::absolute refuses the empty path
+  std::error_code error;
+  const auto canonical = std::filesystem::weakly_canonical(absolute, error);
+  return error ? absolute.lexically_normal() : canonical;
+}
+
+std::string* named_file(Scenario& scenario) {
+  if (auto* shell = std::get_if<PointShellEnvironment>(&scenario.environment)) return &shell->file;
+  if (auto* mesh = std::get_if<MeshEnvironment>(&scenario.environment)) return &mesh->file;
+  return nullptr;
+}
+
+std::string* named_motion(Scenario& scenario) {
+  if (auto* recorded = std::get_if<RecordedPosition>(&scenario.motion.position)) return &recorded->file;
+  return nullptr;
+}
+
+/// Puts the hash of a named file's contents in place of its path.
+void name_by_content(std::string* file, const Scenario& scenario) {
+  if (file != nullptr) *file = hash_text(hash_of(read_text_file(resolve_path(scenario, *file), kLargestTable)));
+}
+
+}  // namespace
+
+void rethrow_with_file(const InputError& error, const std::filesystem::path& file) {
+  const std::string place = error.place().empty() ? file.string() : file.string() + ": " + error.place();
+  throw InputError(error.kind(), place, error.problem());
+}
+
+LoadedScenario read_scenario(const Json& json, const std::filesystem::path& directory) {
+  LoadedScenario loaded;
+  loaded.scenario.directory = directory;
+  scenario_codec().read(json, "", loaded.scenario);
+  loaded.warnings = fill_defaults(loaded.scenario);
+  return loaded;
+}
+
+ScenarioText read_scenario_text(const std::filesystem::path& file) {
+  try {
+    return {file, parse_json(read_text_file(file, kLargestJsonFile))};
+  } catch (const InputError& error) {
+    rethrow_with_file(error, file);
+  }
+}
+
+LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::string> overrides) {
+  const auto& file = text.file;
+  try {
+    Json json = text.json;
+    for (const std::string& override : overrides) apply_override(json, override);
+    LoadedScenario loaded = read_scenario(json, file.parent_path());
+    loaded.file = file;
+    if (loaded.scenario.name.empty()) loaded.scenario.name = file.stem().string();
+    for (std::string& warning : loaded.warnings) warning = file.string() + ": " + warning;
+    return loaded;
+  } catch (const InputError& error) {
+    rethrow_with_file(error, file);
+  }
+}
+
+LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  return load_scenario(read_scenario_text(file), overrides);
+}
+
+Json effective_scenario(const Scenario& scenario, const std::filesystem::path& directory) {
+  Scenario effective = scenario;
+  for (std::string* file : {named_file(effective), named_motion(effective)}) {
+    if (file == nullptr) continue;
+    const auto target = without_links(resolve_path(scenario, *file));
+    *file = target.lexically_proximate(without_links(directory)).generic_string();
+  }
+  return scenario_codec().write(effective);
+}
+
+Json environment_content(const Scenario& scenario) {
+  Scenario content = scenario;
+  name_by_content(named_file(content), scenario);
+  return environment_codec()->write(content.environment);
+}
+
+std::string scenario_hash(const Scenario& scenario) {
+  Scenario content = scenario;
+  for (std::string* file : {named_file(content), named_motion(content)}) name_by_content(file, scenario);
+  return hash_text(hash_of(json_text(scenario_codec().write(content))));
+}
+
+}  // namespace hapbench

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenarios/description/scenario_codec.hpp"
+
+namespace hapbench {
+
+/// A checked scenario with every default filled in.
+struct LoadedScenario {
+  Scenario scenario;
+  std::filesystem::path file;
+  std::vector<std::string> warnings;  ///< given values that the algorithm's definition overrides, with file and pointer
+};
+
+/// A scenario file as it stands, for loading it several times with different overrides.
+struct ScenarioText {
+  std::filesystem::path file;
+  Json json;
+};
+
+/// Throws the error again with the file in front.
+[[noreturn]] void rethrow_with_file(const InputError& error, const std::filesystem::path& file);
+
+/// Reads a scenario file, applies overrides `path=value` (dotted path, value as JSON or else as text; later ones win)
+/// and checks it. Throws InputError whose message starts with the file's name.
+LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+
+/// The same in two steps. Both throw InputError; the second may be called from several threads.
+ScenarioText read_scenario_text(const std::filesystem::path& file);
+LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::string> overrides);
+
+/// The same from JSON in memory; `directory` is what relative paths start from.
+LoadedScenario read_scenario(const Json& json, const std::filesystem::path& directory);
+
+/// Calls `work` and puts the scenario's file in front of the message of an InputError.
+template <class Work>
+auto with_file(const LoadedScenario& loaded, Work work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    rethrow_with_file(error, loaded.file);
+  }
+}
+
+/// The scenario with every default filled in, as JSON: reading it again gives the same run. File paths are rewritten to
+/// start from `directory`.
+Json effective_scenario(const Scenario& scenario, const std::filesystem::path& directory);
+
+/// The environment with every default filled in, with hashes of the contents of named files in place of their paths:
+/// equal for equal point shells. Throws InputError.
+Json environment_content(const Scenario& scenario);
+
+/// Identifies what is simulated: FNV-1a over the effective scenario, with the contents of named files in place of their
+/// paths, as 16 hexadecimal digits.
+std::string scenario_hash(const Scenario& scenario);
+
+}  // namespace hapbench

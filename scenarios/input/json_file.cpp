@@ -1,0 +1,167 @@
+#include "scenarios/input/json_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <set>
+#include <vector>
+
+#include "scenarios/input/input_error.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr int kDeepestNesting = 64;
+constexpr std::size_t kMostKeys = 10'000;
+
+/// Line and column, both from 1, of a byte offset.
+std::string line_and_column(const std::string& text, std::size_t byte) {
+  const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(byte, text.size()));
+  const auto line = 1 + std::count(text.begin(), end, '\n');
+  const std::size_t start = text.rfind('\n', byte == 0 ? 0 : std::min(byte, text.size()) - 1);
+  const std::size_t column = start == std::string::npos || start >= byte ? byte : byte - start - 1;
+  return fmt::format("line {}, column {}", line, std::max<std::size_t>(column, 1));
+}
+
+[[noreturn]] void refuse_syntax(const std::string& text, std::size_t byte) {
+  throw InputError(InputError::Kind::shape, "",
+                   fmt::format("is not JSON: syntax error at {}", line_and_column(text, byte)));
+}
+
+/// The number in the parser's message "… number overflow parsing '1e999'".
+std::string number_in(const std::string& message) {
+  constexpr std::size_t kLongest = 80;
+  const std::size_t start = message.find('\'');
+  const std::string number =
+      start == std::string::npos ? "a number too large" : message.substr(start + 1, message.rfind('\'') - start - 1);
+  return number.size() > kLongest ? number.substr(0, kLongest) + "..." : number;
+}
+
+/// Watches the parser's events for what the parser itself would accept, and knows where in the document it is.
+class Guard {
+ public:
+  bool operator()(int depth, Json::parse_event_t event, Json& parsed) {
+    using Event = Json::parse_event_t;
+    switch (event) {
+      case Event::object_start:
+      case Event::array_start:
+        if (depth >= kDeepestNesting)
+          refuse_here(fmt::format("nested too deeply; allowed: {} levels", kDeepestNesting));
+        levels_.push_back({event == Event::array_start, "", 0, {}});
+        break;
+      case Event::object_end:
+      case Event::array_end:
+        levels_.pop_back();
+        next_element();
+        break;
+      case Event::key:
+        enter_key(parsed.get_ref<const std::string&>());
+        break;
+      case Event::value:
+        next_element();
+        break;
+    }
+    return true;
+  }
+
+  /// JSON pointer of the value the parser is at; shortened where it is deep.
+  std::string pointer() const {
+    std::string at;
+    for (std::size_t i = 0; i < levels_.size() && i < 8; ++i) {
+      at = levels_[i].is_array ? element(at, levels_[i].index) : member(at, levels_[i].key);
+    }
+    return at;
+  }
+
+  [[noreturn]] void refuse_here(const std::string& problem) const {
+    throw InputError(InputError::Kind::shape, pointer(), problem);
+  }
+
+ private:
+  struct Level {
+    bool is_array;
+    std::string key;
+    std::size_t index;
+    std::set<std::string> seen;
+  };
+
+  void next_element() {
+    if (!levels_.empty() && levels_.back().is_array) ++levels_.back().index;
+  }
+
+  void enter_key(const std::string& key) {
+    Level& object = levels_.back();
+    object.key = key;
+    if (!object.seen.insert(key).second) refuse_here("the key stands twice in one object; allowed: once");
+    if (object.seen.size() > kMostKeys) refuse_here(fmt::format("more than {} keys in one object", kMostKeys));
+  }
+
+  std::vector<Level> levels_;  ///< objects and arrays that are open
+};
+
+}  // namespace
+
+std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest) {
+  // The system would read the name up to the zero byte, which is another file.
+  if (file.native().find('\0') != std::string::npos) throw InputError("cannot be read: the name has a zero byte");
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) throw InputError("is a directory, not a file");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(fmt::format("cannot be read: {}", std::strerror(errno)));
+  // Read in pieces up to the limit rather than trust a size, which pipes and devices do not have.
+  std::string text;
+  std::vector<char> piece(1 << 16);
+  while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())) || stream.gcount() > 0) {
+    text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > largest) throw InputError(fmt::format("is larger than {} MiB", largest >> 20));
+  }
+  return text;
+}
+
+Json parse_json(const std::string& text) {
+  // The parser takes a zero byte for the end and would not see what follows.
+  if (const std::size_t zero = text.find('\0'); zero != std::string::npos) refuse_syntax(text, zero + 1);
+  Guard guard;
+  try {
+    return Json::parse(
+        text, [&guard](int depth, Json::parse_event_t event, Json& parsed) { return guard(depth, event, parsed); });
+  } catch (const Json::parse_error& error) {
+    refuse_syntax(text, error.byte);
+  } catch (const Json::out_of_range& error) {
+    guard.refuse_here(fmt::format("got {}; allowed: finite numbers", number_in(error.what())));
+  }
+}
+
+std::string shown(const Json& json) {
+  constexpr std::size_t kLongest = 80;
+  // Only the beginning of a large value is worth printing, and printing all of it could take long.
+  if ((json.is_array() || json.is_object()) && json.size() > 20) {
+    return fmt::format("{} of {} entries", json.is_array() ? "a list" : "an object", json.size());
+  }
+  std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  return text;
+}
+
+std::string member(const std::string& at, const std::string& name) {
+  std::string pointer = at + "/";
+  for (const char c : name.substr(0, 200)) {
+    if (c == '~') {
+      pointer += "~0";
+    } else if (c == '/') {
+      pointer += "~1";
+    } else {
+      pointer += static_cast<unsigned char>(c) < 0x20 ? '?' : c;  // keep the message on one line
+    }
+  }
+  return pointer;
+}
+
+std::string element(const std::string& at, std::size_t index) {
+  return at + "/" + std::to_string(index);
+}
+
+}  // namespace hapbench

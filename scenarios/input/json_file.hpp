@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace hapbench {
+
+/// Keeps the order of keys, so that written scenarios read like the documentation.
+using Json = nlohmann::ordered_json;
+
+/// Largest JSON file read [bytes].
+inline constexpr std::uintmax_t kLargestJsonFile = 64 << 20;
+
+/// Reads a whole file. Throws InputError (place: none) when it cannot be read or is larger than `largest`.
+std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest);
+
+/// Parses JSON from outside, which may be hostile: refuses what is no JSON (with line and column), nesting deeper than
+/// 64, objects with more than 10 000 keys, duplicate keys and numbers beyond double. Throws InputError.
+Json parse_json(const std::string& text);
+
+/// The value as an error message shows it: JSON on one line, cut when long.
+std::string shown(const Json& json);
+
+/// Pointer of a member or an element; `~` and `/` escaped as RFC 6901 says.
+std::string member(const std::string& at, const std::string& name);
+std::string element(const std::string& at, std::size_t index);
+
+}  // namespace hapbench

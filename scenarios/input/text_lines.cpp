@@ -1,0 +1,61 @@
+#include "scenarios/input/text_lines.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "scenarios/input/input_error.hpp"
+
+namespace hapbench {
+
+Words words_of(std::string_view line) {
+  constexpr std::string_view kBlank = " \t\r\v\f";
+  Words words;
+  for (std::size_t start = line.find_first_not_of(kBlank); start != std::string_view::npos;) {
+    const std::size_t end = std::min(line.find_first_of(kBlank, start), line.size());
+    words.push_back(line.substr(start, end - start));
+    start = line.find_first_not_of(kBlank, end);
+  }
+  return words;
+}
+
+Words parts_of(std::string_view text, char separator) {
+  Words parts;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, start), text.size());
+    parts.push_back(text.substr(start, end - start));
+    start = end + 1;
+  }
+  return parts;
+}
+
+std::optional<double> finite_number(std::string_view word) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::optional<std::size_t> whole_number(std::string_view word) {
+  std::size_t value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
+std::optional<std::string_view> LineReader::next() {
+  if (rest_.empty()) return std::nullopt;
+  ++line_;
+  const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+  const std::string_view line = rest_.substr(0, end);
+  rest_.remove_prefix(std::min(end + 1, rest_.size()));
+  return line;
+}
+
+void fail_in_line(const std::filesystem::path& file, std::size_t line, const std::string& problem) {
+  throw InputError(InputError::Kind::relation, fmt::format("{}, line {}", file.string(), line), problem);
+}
+
+}  // namespace hapbench

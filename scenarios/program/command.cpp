@@ -1,0 +1,78 @@
+#include "scenarios/program/command.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+
+#include "algorithms/registry.hpp"
+#include "results/io/json_text.hpp"
+
+namespace hapbench {
+
+namespace fs = std::filesystem;
+
+void add_output_options(Command& command, OutputOptions& options) {
+  command.flag("--quiet", options.quiet, "nothing on standard output, no progress bar");
+  command.flag("--json", options.json, "JSON on standard output instead of a table");
+}
+
+void add_cache_option(Command& command, bool& no_cache) {
+  command.flag("--no-cache", no_cache, "build the shell anew and keep none (see \"hapbench describe cache\")");
+}
+
+void add_skip_option(Command& command, Skips& skips) {
+  command.flag(
+      "--no-skip", [&skips] { skips = Skips::off; },
+      "compute everything, also what cannot change the results, by brute force; no cache");
+}
+
+ShellCache shell_cache(bool no_cache) {
+  return no_cache ? ShellCache() : ShellCache(shell_cache_directory());
+}
+
+void print(const OutputOptions& options, const std::string& text, const Json& json) {
+  if (options.quiet) return;
+  const std::string output = options.json ? json_text(json) : text;
+  std::fwrite(output.data(), 1, output.size(), stdout);
+}
+
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) fmt::print(stderr, "hapbench: warning: {}\n", warning);
+}
+
+std::vector<std::string> all_algorithms() {
+  std::vector<std::string> names;
+  for (const AlgorithmEntry& entry : algorithms()) names.emplace_back(entry.info->name);
+  return names;
+}
+
+void require_names(const std::string& option, const std::vector<std::string>& names,
+                   const std::vector<std::string>& valid) {
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    if (std::find(valid.begin(), valid.end(), name) == valid.end()) {
+      throw InputError(fmt::format("{}: got \"{}\"; allowed: {}{}", option, name, quoted_list(valid),
+                                   nearest_name_hint(name, valid)));
+    }
+    if (!seen.insert(name).second) throw InputError(fmt::format("{}: got \"{}\" twice; allowed: once", option, name));
+  }
+}
+
+void require_algorithms(const std::vector<std::string>& names) {
+  require_names("--algorithms", names, all_algorithms());
+}
+
+void require_writable_directory(const fs::path& directory) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) throw InputError(fmt::format("--out {}: cannot be created: {}", directory.string(), error.message()));
+  if (!fs::is_directory(directory)) throw InputError(fmt::format("--out {}: is not a directory", directory.string()));
+  if (access(directory.c_str(), W_OK | X_OK) != 0) {
+    throw InputError(fmt::format("--out {}: cannot be written to", directory.string()));
+  }
+}
+
+}  // namespace hapbench

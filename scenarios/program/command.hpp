@@ -1,0 +1,69 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenarios/description/codec.hpp"
+#include "scenarios/input/shell_cache.hpp"
+#include "scenarios/program/command_line.hpp"
+#include "sim/core/skips.hpp"
+
+/// The command line: each command adds its options to the parser and says what to do when it is chosen.
+namespace hapbench {
+
+/// Exit status of the program.
+enum ExitStatus : int {
+  kSuccess = 0,
+  kInternalFault = 1,
+  kBadInput = 2,
+  kUnexpectedOutcome = 3,  ///< a simulation diverged, or missed another expectation of its scenario
+};
+
+/// Options every command understands.
+struct OutputOptions {
+  bool quiet = false;  ///< nothing on standard output, no progress bar
+  bool json = false;   ///< JSON instead of tables on standard output
+};
+
+void add_run(CommandLine& line);
+void add_compare(CommandLine& line);
+void add_stability(CommandLine& line);
+void add_precision(CommandLine& line);
+void add_reproduce(CommandLine& line);
+void add_sweep(CommandLine& line);
+void add_merge(CommandLine& line);
+void add_shell(CommandLine& line);
+void add_list(CommandLine& line);
+void add_describe(CommandLine& line);
+void add_validate(CommandLine& line);
+
+/// Adds --quiet and --json.
+void add_output_options(Command& command, OutputOptions& options);
+
+/// Adds --no-cache.
+void add_cache_option(Command& command, bool& no_cache);
+/// Adds --no-skip.
+void add_skip_option(Command& command, Skips& skips);
+/// The user's cache of point shells; none with --no-cache.
+ShellCache shell_cache(bool no_cache);
+
+/// Prints `text`, or `json` under --json, or nothing under --quiet.
+void print(const OutputOptions& options, const std::string& text, const Json& json);
+
+/// Prints warnings, one line each, on standard error.
+void print_warnings(const std::vector<std::string>& warnings);
+
+/// The names of all registered algorithms.
+std::vector<std::string> all_algorithms();
+
+/// Makes sure the names given to an option are among the valid ones, each once; throws InputError otherwise.
+void require_names(const std::string& option, const std::vector<std::string>& names,
+                   const std::vector<std::string>& valid);
+/// The same for the names given to --algorithms.
+void require_algorithms(const std::vector<std::string>& names);
+
+/// Makes sure results can be written to `directory`; throws InputError otherwise. Creates it.
+void require_writable_directory(const std::filesystem::path& directory);
+
+}  // namespace hapbench

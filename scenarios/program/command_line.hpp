@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+/// The command line. A thin front of CLI11, so that command_line.cpp alone compiles that header.
+namespace hapbench {
+
+/// What the chosen command does; returns the exit status.
+using Action = std::function<int()>;
+
+/// An option or an argument of a command. All functions return the option itself, for chaining.
+class CommandOption {
+ public:
+  explicit CommandOption(CLI::Option* option) : option_(option) {}
+
+  CommandOption& required();
+  /// May be given several times, each time with one value.
+  CommandOption& repeatable();
+  /// Takes several values in one word, separated by commas.
+  CommandOption& comma_separated();
+  /// Refuses numbers outside [least, greatest].
+  CommandOption& range(int least, int greatest);
+  CommandOption& range(std::uint64_t least, std::uint64_t greatest);
+  /// Refuses other words.
+  CommandOption& one_of(const std::vector<std::string>& words);
+  CommandOption& needs(const CommandOption& other);
+  CommandOption& excludes(const CommandOption& other);
+
+ private:
+  CLI::Option* option_;
+};
+
+/// A subcommand that takes its options. The variables bound here are written while the command line is parsed and must
+/// live until then.
+class Command {
+ public:
+  Command(CLI::App* app, Action& chosen) : app_(app), chosen_(chosen) {}
+
+  /// A name that begins with "--" is an option, another one an argument known by its place.
+  CommandOption add(const std::string& name, std::string& value, const std::string& help);
+  CommandOption add(const std::string& name, std::vector<std::string>& value, const std::string& help);
+  CommandOption add(const std::string& name, int& value, const std::string& help);
+  CommandOption add(const std::string& name, std::int64_t& value, const std::string& help);
+  CommandOption add(const std::string& name, unsigned& value, const std::string& help);
+  CommandOption add(const std::string& name, std::uint64_t& value, const std::string& help);
+  CommandOption flag(const std::string& name, bool& value, const std::string& help);
+  /// Calls `when_given` if the flag is.
+  CommandOption flag(const std::string& name, std::function<void()> when_given, const std::string& help);
+  /// Text below the list of options.
+  void footer(const std::string& text);
+  /// What the command does when it is chosen.
+  void runs(Action action);
+
+ private:
+  CLI::App* app_;
+  Action& chosen_;
+};
+
+/// The program's command line: every command adds itself, then `run` parses and runs the one that was chosen.
+class CommandLine {
+ public:
+  explicit CommandLine(const std::string& version);
+  ~CommandLine();
+
+  Command command(const std::string& name, const std::string& summary);
+  /// Returns the command's exit status, or kBadInput after a wrong usage, with a message on standard error.
+  int run(int argc, char** argv);
+
+ private:
+  std::unique_ptr<CLI::App> app_;
+  Action chosen_;
+};
+
+}  // namespace hapbench

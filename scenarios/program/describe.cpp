@@ -1,0 +1,170 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "algorithms/registry.hpp"
+#include "results/io/json_text.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/environment_codec.hpp"
+#include "scenarios/description/integrator_codec.hpp"
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/program/command.hpp"
+#include "scenarios/program/schema_text.hpp"
+#include "scenarios/program/table.hpp"
+#include "scenarios/studies/stability/map_scenes.hpp"
+
+namespace hapbench {
+namespace {
+
+struct Description {
+  std::string text;
+  Json json;
+};
+
+Description describe_model(const char* kind, const ModelInfo& info) {
+  Description d;
+  d.text = fmt::format("{} {}\n  {}\n\n  formula        {}\n  source         {}\n  known failure  {}\n", kind,
+                       info.name, info.summary, info.formula, info.source, info.known_failure);
+  d.json = {{"kind", kind},
+            {"name", info.name},
+            {"summary", info.summary},
+            {"formula", info.formula},
+            {"source", info.source},
+            {"known_failure", info.known_failure},
+            {"parameters", Json::array()}};
+  if (info.parameters.empty()) return d;
+  Table table({{"parameter", false}, {"unit", false}, {"default", false}, {"range", false}, {"meaning", false}});
+  for (const ParameterInfo& p : info.parameters) {
+    table.add({p.name, p.unit, p.default_value, p.range, p.meaning});
+    d.json["parameters"].push_back(
+        {{"name", p.name}, {"unit", p.unit}, {"default", p.default_value}, {"range", p.range}, {"meaning", p.meaning}});
+  }
+  d.text += "\n" + table.text();
+  return d;
+}
+
+const ModelInfo* find_stage(const std::string& name) {
+  for (const ModelInfo* stage : stages()) {
+    if (stage->name == name) return stage;
+  }
+  return nullptr;
+}
+
+Description describe_scenario(const std::filesystem::path& file) {
+  const LoadedScenario loaded = load_scenario(file);
+  const Json effective = effective_scenario(loaded.scenario, loaded.scenario.directory);
+  return {fmt::format("scenario {}\n  {}\n  source: {}\n\n{}", loaded.scenario.name, loaded.scenario.description,
+                      loaded.scenario.source, json_text(effective)),
+          effective};
+}
+
+/// Where the user's point shells are kept and how to be rid of them.
+Description describe_cache() {
+  const ShellCache cache(shell_cache_directory());
+  const auto [shells, bytes] = cache.contents();
+  const std::string directory = cache.is_on() ? cache.directory().string() : "none: nothing is kept";
+  Description d;
+  d.text = fmt::format(
+      "shell cache\n"
+      "  Point shells that take long to build are kept on disk and read back bit for bit. Files that are damaged or\n"
+      "  of another build of hapbench are not used. The directory may be deleted at any time.\n\n"
+      "  directory  {}\n"
+      "             ($HAPBENCH_CACHE_DIR, else $XDG_CACHE_HOME/hapbench, else $HOME/.cache/hapbench)\n"
+      "  holds      {} shells, {:.1f} MB; beyond {} GiB those used longest ago go\n"
+      "  off        --no-cache, or HAPBENCH_CACHE_DIR set to nothing\n",
+      directory, shells, 1e-6 * static_cast<double>(bytes), ShellCache::kLargest >> 30);
+  d.json = {{"kind", "cache"}, {"directory", cache.directory().string()}, {"shells", shells}, {"bytes", bytes}};
+  return d;
+}
+
+/// The maps of "hapbench stability --map" and how their runs are judged.
+Description describe_stability() {
+  Table table({{"map", false}, {"x", false}, {"y", false}, {"what it shows", false}});
+  Description d;
+  d.json = {{"kind", "stability"}, {"maps", Json::array()}};
+  for (const StabilityMap& map : stability_maps()) {
+    table.add({map.name, map.x.name, map.y.name, map.summary});
+    d.json["maps"].push_back({{"name", map.name}, {"x", map.x.name}, {"y", map.y.name}, {"summary", map.summary}});
+  }
+  d.text = fmt::format(
+      "stability maps\n"
+      "  A run of {} steps is judged by its motion alone, quarter by quarter; the amplitude is the largest speed.\n\n"
+      "  diverged   left its bounds, or oscillates with an amplitude that grows by 1 % from each quarter to the next\n"
+      "  vibrating  oscillates in the last quarter with at least 1 % of the first quarter's amplitude\n"
+      "  stable     all else: at rest, dying out, creeping\n\n"
+      "  The analytic limit, under leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = "
+      "lambda_max(S),\n"
+      "  is given where the tool is alone with springs that stay in contact and the force is -K S p. Under "
+      "velocity_verlet\n"
+      "  and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. The edge by bisection "
+      "is\n"
+      "  that of \"diverged\", in the map of the device that of \"stable\".\n\n{}",
+      kMapSteps, table.text());
+  return d;
+}
+
+std::vector<std::string> all_names() {
+  std::vector<std::string> names = {"cache", "scenario", "schema", "stability"};
+  for (const AlgorithmEntry& entry : algorithms()) names.emplace_back(entry.info->name);
+  for (const DepthModelEntry& entry : depth_models()) names.emplace_back(entry.info->name);
+  for (const ModelInfo* stage : stages()) names.emplace_back(stage->name);
+  for (const ModelInfo& info : integrator_infos()) names.emplace_back(info.name);
+  for (const std::string& name : environment_names()) names.push_back(name);
+  for (const BundledScenario& bundled : bundled_scenarios()) names.push_back(bundled.name);
+  return names;
+}
+
+Description describe_name(const std::string& name) {
+  if (name == "cache") return describe_cache();
+  if (name == "stability") return describe_stability();
+  if (name == "schema") return {json_text(scenario_schema()), scenario_schema()};
+  Description d;
+  const auto add = [&d](Description more) {
+    d.text += (d.text.empty() ? "" : "\n") + more.text;
+    d.json = d.json.is_null() ? more.json : Json::array({d.json, more.json});
+  };
+  // A name may mean two things: normal_projection is an algorithm and a depth model.
+  if (const AlgorithmEntry* entry = find_algorithm(name)) add(describe_model("algorithm", *entry->info));
+  if (const DepthModelEntry* entry = find_depth_model(name)) add(describe_model("depth model", *entry->info));
+  if (const ModelInfo* stage = find_stage(name)) add(describe_model("stage", *stage));
+  for (const ModelInfo& info : integrator_infos()) {
+    if (name == info.name) add(describe_model("integrator", info));
+  }
+  if (!d.text.empty()) return d;
+  if (const Json* fields = find_in_schema(scenario_schema_once(), name)) return {fields_text(name, *fields), *fields};
+  for (const BundledScenario& bundled : bundled_scenarios()) {
+    if (bundled.name == name) return describe_scenario(bundled.file);
+  }
+  std::error_code ignored;
+  if (std::filesystem::exists(name, ignored)) return describe_scenario(name);
+  throw InputError(
+      fmt::format("nothing is called \"{}\"{}; \"hapbench list\" shows the names, \"hapbench describe scenario\" "
+                  "the fields of a scenario file",
+                  name, nearest_name_hint(name, all_names())));
+}
+
+}  // namespace
+
+void add_describe(CommandLine& line) {
+  struct Options {
+    std::string name;
+    OutputOptions output;
+  };
+  auto options = std::make_shared<Options>();
+  Command command = line.command("describe",
+                                 "Explain an algorithm, a depth model, an integrator, an environment, a field, a "
+                                 "scenario, the cache or the stability maps");
+  command
+      .add("name", options->name,
+           "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
+           "\"stability\", or \"cache\"")
+      .required();
+  add_output_options(command, options->output);
+  command.runs([options] {
+    const Description d = describe_name(options->name);
+    print(options->output, d.text, d.json);
+    return kSuccess;
+  });
+}
+
+}  // namespace hapbench

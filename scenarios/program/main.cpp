@@ -1,0 +1,55 @@
+#include <fmt/format.h>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "results/io/io_error.hpp"
+#include "results/summary/provenance.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/program/command.hpp"
+
+namespace hapbench {
+namespace {
+
+int fail(const char* kind, const char* what, int status) {
+  fmt::print(stderr, "hapbench: {}: {}\n", kind, what);
+  return status;
+}
+
+int run_program(int argc, char** argv) {
+  const Provenance program = provenance();
+  CommandLine line(fmt::format("hapbench {} ({})", program.version, program.commit));
+  add_run(line);
+  add_compare(line);
+  add_stability(line);
+  add_precision(line);
+  add_reproduce(line);
+  add_sweep(line);
+  add_merge(line);
+  add_shell(line);
+  add_list(line);
+  add_describe(line);
+  add_validate(line);
+  return line.run(argc, argv);
+}
+
+}  // namespace
+}  // namespace hapbench
+
+int main(int argc, char** argv) {
+  using namespace hapbench;
+  // A file that becomes larger than the user's limit is an error of writing like others, not the end of the process.
+  std::signal(SIGXFSZ, SIG_IGN);
+  try {
+    return run_program(argc, argv);
+  } catch (const InputError& error) {
+    return fail("error", error.what(), kBadInput);
+  } catch (const IoError& error) {
+    return fail("error", error.what(), kInternalFault);
+  } catch (const std::bad_alloc&) {
+    return fail("error", "out of memory", kInternalFault);
+  } catch (const std::exception& error) {
+    return fail("internal fault", error.what(), kInternalFault);
+  }
+}

@@ -1,0 +1,151 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "results/io/atomic_file.hpp"
+#include "results/io/csv_writer.hpp"
+#include "results/io/json_text.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/program/command.hpp"
+#include "scenarios/program/table.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/studies/precision/study.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct PrecisionCommandOptions {
+  std::vector<std::string> studies;
+  std::string scenario;
+  std::string out = (fs::path("results") / "out" / "precision").string();
+  std::vector<std::string> overrides;
+  int repetitions = PrecisionOptions{}.repetitions;
+  bool no_cache = false;
+  OutputOptions output;
+};
+
+std::vector<const PrecisionStudy*> chosen_studies(const std::vector<std::string>& names) {
+  std::vector<std::string> valid = {"all"};
+  for (const PrecisionStudy& study : precision_studies()) valid.emplace_back(study.name);
+  std::vector<const PrecisionStudy*> studies;
+  for (const std::string& name : names) {
+    const std::size_t before = studies.size();
+    for (const PrecisionStudy& study : precision_studies()) {
+      if (name == study.name || name == "all") studies.push_back(&study);
+    }
+    if (studies.size() == before) {
+      throw InputError(
+          fmt::format("got study \"{}\"; allowed: {}{}", name, quoted_list(valid), nearest_name_hint(name, valid)));
+    }
+  }
+  return studies;
+}
+
+/// Errors and times apart: the errors are the same bytes in every run.
+void write_study(const fs::path& directory, const PrecisionStudy& study, const PrecisionResult& result) {
+  std::string errors = "setting,outcome", times = fmt::format("setting,seconds_per_{}\n", result.timed);
+  for (const std::string& column : result.columns) errors += "," + column;
+  errors += "\n";
+  for (const PrecisionRow& row : result.rows) {
+    errors += row.setting + "," + row.outcome;
+    for (const auto& value : row.values) errors += value ? fmt::format(",{}", *value) : ",";
+    errors += "\n";
+    times += fmt::format("{},{}\n", row.setting, row.seconds);
+  }
+  write_file_atomically(directory / fmt::format("precision_{}.csv", study.name), errors);
+  write_file_atomically(directory / fmt::format("precision_{}_timing.csv", study.name), times);
+}
+
+std::string study_text(const PrecisionStudy& study, const PrecisionResult& result) {
+  std::vector<Table::Column> columns = {{"setting", false}, {"outcome", false}};
+  for (const std::string& column : result.columns) columns.push_back({column});
+  columns.push_back({"us/" + result.timed});
+  Table table(columns);
+  for (const PrecisionRow& row : result.rows) {
+    std::vector<std::string> cells = {row.setting, row.outcome};
+    for (const auto& value : row.values) cells.push_back(significant(value.value_or(std::nan(""))));
+    cells.push_back(significant(1e6 * row.seconds, 3));
+    table.add(std::move(cells));
+  }
+  std::string text = fmt::format("{}: {}\n\n{}", study.name, study.summary, table.text());
+  for (const FittedOrder& order : result.orders) {
+    text += fmt::format("order of {}, {}: {}\n", order.error, order.series, significant(order.order, 3));
+  }
+  return text + "\n";
+}
+
+Json study_json(const PrecisionStudy& study, const PrecisionResult& result) {
+  Json rows = Json::array();
+  for (const PrecisionRow& row : result.rows) {
+    Json json = {{"setting", row.setting}, {"outcome", row.outcome}};
+    for (std::size_t i = 0; i < result.columns.size(); ++i) {
+      json[result.columns[i]] = row.values[i] ? Json(*row.values[i]) : Json(nullptr);
+    }
+    json["seconds_per_" + result.timed] = row.seconds;
+    rows.push_back(std::move(json));
+  }
+  Json orders = Json::array();
+  for (const FittedOrder& order : result.orders) {
+    orders.push_back({{"series", order.series}, {"error", order.error}, {"order", order.order}});
+  }
+  return {{"study", study.name}, {"rows", std::move(rows)}, {"orders", std::move(orders)}};
+}
+
+int precision(const PrecisionCommandOptions& options) {
+  const std::vector<const PrecisionStudy*> studies = chosen_studies(options.studies);
+  std::vector<LoadedScenario> scenarios;
+  for (const PrecisionStudy* study : studies) {
+    const std::string& given = options.scenario;
+    scenarios.push_back(load_scenario(find_scenario(given.empty() ? study->scenario : given), options.overrides));
+    print_warnings(check_named_files(scenarios.back()));
+  }
+  require_writable_directory(options.out);
+
+  const bool bar = !options.output.quiet && isatty(STDERR_FILENO) == 1;
+  std::string text;
+  Json json = Json::array();
+  for (std::size_t i = 0; i < studies.size(); ++i) {
+    PrecisionOptions settings;
+    settings.repetitions = options.repetitions;
+    settings.cache = shell_cache(options.no_cache);
+    if (bar) {
+      settings.progress = [&](std::size_t done, std::size_t all) {
+        std::fprintf(stderr, "\r\033[K%s %zu/%zu", studies[i]->name, done, all);
+        if (done == all) std::fprintf(stderr, "\r\033[K");
+      };
+    }
+    const PrecisionResult result =
+        with_file(scenarios[i], [&] { return studies[i]->run(scenarios[i].scenario, settings); });
+    write_study(options.out, *studies[i], result);
+    text += study_text(*studies[i], result);
+    json.push_back(study_json(*studies[i], result));
+  }
+  print(options.output, text + fmt::format("results in {}\n", options.out), json);
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_precision(CommandLine& line) {
+  auto options = std::make_shared<PrecisionCommandOptions>();
+  Command command = line.command("precision", "Run time against error: one row per setting");
+  std::string names = "all";
+  for (const PrecisionStudy& study : precision_studies()) names += fmt::format(", {} ({})", study.name, study.summary);
+  command.add("studies", options->studies, names).required();
+  command.add("--scenario", options->scenario, "scenario to start from, instead of the study's own");
+  command.add("--out", options->out, "directory of the results (default: results/out/precision)");
+  command.add("--set", options->overrides, "override a field: path=value").repeatable();
+  command.add("--repetitions", options->repetitions, "of every timing, of which the least counts (default: 5)")
+      .range(1, 1000);
+  add_cache_option(command, options->no_cache);
+  add_output_options(command, options->output);
+  command.runs([options] { return precision(*options); });
+}
+
+}  // namespace hapbench

@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <set>
+
+#include "results/io/io_error.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/program/command.hpp"
+#include "scenarios/program/latency_table.hpp"
+#include "scenarios/program/run_table.hpp"
+#include "scenarios/run/assemble.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RunOptions {
+  std::vector<std::string> scenarios;
+  std::string out;
+  std::vector<std::string> overrides;
+  bool no_cache = false;
+  Skips skips = Skips::taken;
+  bool latency = false;
+  OutputOptions output;
+};
+
+/// One directory a scenario: --out itself for a single one, a subdirectory named after the file for several.
+std::vector<fs::path> output_directories(const RunOptions& options, const std::vector<LoadedScenario>& scenarios) {
+  const fs::path root = options.out.empty() ? fs::path("results") / "out" : fs::path(options.out);
+  if (scenarios.size() == 1 && !options.out.empty()) return {root};
+  std::vector<fs::path> directories;
+  std::set<std::string> stems;
+  for (const LoadedScenario& scenario : scenarios) {
+    const std::string stem = scenario.file.stem().string();
+    if (!stems.insert(stem).second) {
+      throw InputError(fmt::format("{}: a second scenario named \"{}\"; allowed: one of each name in a run",
+                                   scenario.file.string(), stem));
+    }
+    directories.push_back(root / stem);
+  }
+  return directories;
+}
+
+int run(const RunOptions& options) {
+  // All input is checked before anything runs or is written.
+  std::vector<std::string> overrides = options.overrides;
+  if (options.latency) overrides.emplace_back("record.timing=true");
+  std::vector<LoadedScenario> scenarios;
+  for (const std::string& argument : options.scenarios) {
+    scenarios.push_back(load_scenario(find_scenario(argument), overrides));
+  }
+  const std::vector<fs::path> directories = output_directories(options, scenarios);
+  for (const LoadedScenario& scenario : scenarios) {
+    const std::vector<std::string> warnings = check_named_files(scenario);
+    print_warnings(scenario.warnings);
+    print_warnings(warnings);
+  }
+  for (const fs::path& directory : directories) require_writable_directory(directory);
+
+  std::vector<Table::Column> columns = run_columns();
+  columns.insert(columns.begin(), {{"scenario", false}, {"algorithm", false}});
+  Table table(columns);
+  LatencyTable latencies;
+  Json summaries = Json::array();
+  const ShellCache cache = shell_cache(options.no_cache || options.skips == Skips::off);
+  std::string targets;
+  int status = kSuccess;
+  for (std::size_t i = 0; i < scenarios.size(); ++i) {
+    const RunReport report = run_scenario(scenarios[i], directories[i], !options.output.quiet, cache, options.skips);
+    std::vector<std::string> cells = run_cells(report);
+    cells.insert(cells.begin(), {report.summary.name, report.summary.algorithm});
+    table.add(std::move(cells));
+    targets += targets_text(report);
+    summaries.push_back(summary_json(report.summary));
+    if (options.latency) {
+      latencies.add(report.summary.name, *report.timing.latency);
+      summaries.back()["step_latency"] = step_latency_json(*report.timing.latency);
+    }
+    for (const std::string& unmet : report.unmet) {
+      fmt::print(stderr, "hapbench: {}: {}\n", scenarios[i].file.string(), unmet);
+      status = kUnexpectedOutcome;
+    }
+  }
+  const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
+  const std::string latency_text = options.latency ? "\n" + latencies.text() : "";
+  print(options.output, table.text() + targets + latency_text + fmt::format("\nresults in {}\n", where.string()),
+        summaries);
+  return status;
+}
+
+}  // namespace
+
+void add_run(CommandLine& line) {
+  auto options = std::make_shared<RunOptions>();
+  Command command = line.command("run", "Run scenarios and write their results");
+  command.add("scenarios", options->scenarios, "scenario files, or names of bundled scenarios").required();
+  command.add("--out", options->out,
+              "directory of the results; several scenarios get a subdirectory each (default: results/out/NAME)");
+  command.add("--set", options->overrides, "override a field: path=value, as in time.steps=100").repeatable();
+  command.flag("--latency", options->latency,
+               "time every step (as record.timing does) and print percentiles and deadline misses");
+  add_cache_option(command, options->no_cache);
+  add_skip_option(command, options->skips);
+  add_output_options(command, options->output);
+  command.runs([options] { return run(*options); });
+}
+
+}  // namespace hapbench

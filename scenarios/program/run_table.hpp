@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenarios/program/table.hpp"
+#include "scenarios/run/run_scenario.hpp"
+
+namespace hapbench {
+
+/// The figures `run` and `compare` show of a run: outcome, largest force, total variation of velocity, force direction
+/// reversals, vibration power above 30 Hz, largest depth, ratio range, time per step.
+std::vector<Table::Column> run_columns();
+std::vector<std::string> run_cells(const RunReport& report);
+
+/// The tables of thesis D.4 for a report with targets: mean and standard error over subjects, a line for each place.
+/// Empty for other reports.
+std::string targets_text(const RunReport& report);
+
+}  // namespace hapbench

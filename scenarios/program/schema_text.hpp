@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "scenarios/description/codec.hpp"
+
+/// The JSON Schema as words for the terminal.
+namespace hapbench {
+
+/// The scenario schema, built once.
+const Json& scenario_schema_once();
+
+/// The part of the schema that `name` means: "scenario" for all of it, a dotted field path ("rendering.limits"), or the
+/// "type" of a tagged object ("hole_2d"). Null when there is none.
+const Json* find_in_schema(const Json& schema, const std::string& name);
+
+/// The values a schema allows, in a few words: "number > 0 <= 1000", "null | integer >= 0 <= 5".
+std::string allowed_text(const Json& schema);
+
+/// The fields of an object schema as a table of name, default, allowed values and meaning; one line for a plain value.
+std::string fields_text(const std::string& title, const Json& schema);
+
+}  // namespace hapbench

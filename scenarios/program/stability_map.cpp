@@ -1,0 +1,194 @@
+#include "scenarios/studies/stability/stability_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "results/io/csv_writer.hpp"
+#include "scenarios/program/stability.hpp"
+#include "scenarios/program/table.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The names given to an option that also takes "all", alone.
+std::vector<std::string> chosen_names(const std::string& option, const std::vector<std::string>& given,
+                                      const std::vector<std::string>& all) {
+  if (given == std::vector<std::string>{"all"}) return all;
+  if (std::find(given.begin(), given.end(), "all") != given.end()) {
+    throw InputError(option + ": got \"all\" beside other names; allowed: \"all\" alone");
+  }
+  std::vector<std::string> valid = all;
+  valid.insert(valid.begin(), "all");
+  require_names(option, given, valid);
+  return given;
+}
+
+std::vector<const StabilityMap*> chosen_maps(const StabilityOptions& options) {
+  std::vector<std::string> names;
+  for (const StabilityMap& map : stability_maps()) names.emplace_back(map.name);
+  std::vector<const StabilityMap*> maps;
+  for (const std::string& name : chosen_names("--map", options.maps, names)) maps.push_back(find_stability_map(name));
+  return maps;
+}
+
+std::vector<Integrator> chosen_integrators(const StabilityOptions& options) {
+  if (options.integrators.empty()) return {Integrator::leapfrog};
+  std::vector<std::string> names;
+  for (const Integrator integrator : kIntegrators) names.emplace_back(integrator_name(integrator));
+  std::vector<Integrator> integrators;
+  for (const std::string& name : chosen_names("--integrators", options.integrators, names)) {
+    const auto place = std::find(names.begin(), names.end(), name) - names.begin();
+    integrators.push_back(kIntegrators[static_cast<std::size_t>(place)]);
+  }
+  return integrators;
+}
+
+/// Every algorithm with every integrator, those of one algorithm side by side.
+std::vector<MapSubject> chosen_subjects(const StabilityOptions& options) {
+  std::vector<MapSubject> subjects;
+  for (const std::string& algorithm : options.chosen_algorithms()) {
+    for (const Integrator integrator : chosen_integrators(options)) subjects.push_back({algorithm, integrator});
+  }
+  return subjects;
+}
+
+std::string label(const MapSubject& subject) {
+  return subject.integrator == Integrator::leapfrog
+             ? subject.algorithm
+             : fmt::format("{} {}", subject.algorithm, integrator_name(subject.integrator));
+}
+
+void write_points(const fs::path& directory, const StabilityMap& map, const std::vector<MapResult>& results) {
+  CsvWriter csv(directory / fmt::format("stability_map_{}.csv", map.name),
+                fmt::format("algorithm,{},{},class,lambda_max,stability_margin,integrator", map.x.name, map.y.name));
+  for (const MapResult& result : results) {
+    for (const MapPoint& p : result.points) {
+      csv.row(std::string_view(result.subject.algorithm), p.x, p.y, motion_class_name(p.motion), p.lambda, p.margin,
+              integrator_name(result.subject.integrator));
+    }
+  }
+  csv.finish();
+}
+
+void write_boundary(const fs::path& directory, const StabilityMap& map, const std::vector<MapResult>& results) {
+  CsvWriter csv(directory / fmt::format("stability_boundary_{}.csv", map.name),
+                fmt::format("algorithm,{},analytic_{},simulation_{},relative_difference,no_theory,integrator",
+                            map.x.name, map.y.name, map.y.name));
+  for (const MapResult& result : results) {
+    for (const BoundaryPoint& p : result.boundary) {
+      csv.row(std::string_view(result.subject.algorithm), p.x, p.analytic, p.simulation, p.difference(),
+              std::string_view(p.no_theory), integrator_name(result.subject.integrator));
+    }
+  }
+  csv.finish();
+}
+
+/// The largest |relative difference| of a boundary; none without theory.
+std::optional<double> largest_difference(const MapResult& result) {
+  std::optional<double> largest;
+  for (const BoundaryPoint& p : result.boundary) {
+    if (const auto d = p.difference()) largest = std::max(largest.value_or(0.0), std::abs(*d));
+  }
+  return largest;
+}
+
+std::size_t count_of(const MapResult& result, MotionClass motion) {
+  return static_cast<std::size_t>(std::count_if(result.points.begin(), result.points.end(),
+                                                [motion](const MapPoint& p) { return p.motion == motion; }));
+}
+
+/// The map as characters, y upwards. The analytic limit is drawn where the runs confirm it: '=' is the first run
+/// beyond.
+std::string drawing(const MapResult& result) {
+  const std::size_t n = result.size;
+  const MapAxis &x = result.map->x, &y = result.map->y;
+  std::string text = fmt::format("{}: {}\n\n", label(result.subject), result.map->summary);
+  for (std::size_t row = n; row-- > 0;) {
+    text += fmt::format("  {:>9}  ", row == 0 || row == n - 1 ? significant(y.at(row, n), 3) : "");
+    for (std::size_t column = 0; column < n; ++column) {
+      const MotionClass motion = result.points[column * n + row].motion;
+      const auto beyond = [&](std::size_t j) { return y.at(j, n) > result.boundary[column].analytic.value_or(1e300); };
+      const bool limit = motion == MotionClass::diverged && beyond(row) && (row == 0 || !beyond(row - 1));
+      text += limit ? " =" : motion == MotionClass::stable ? " ." : motion == MotionClass::vibrating ? " ~" : " #";
+    }
+    text += row == n - 1 ? fmt::format("  {}\n", y.name) : "\n";
+  }
+  return text + fmt::format(
+                    "             {} ... {}  {}\n  . stable  ~ vibrating  # diverged  = diverged, first beyond the "
+                    "analytic limit\n\n",
+                    significant(x.low, 3), significant(x.high, 3), x.name);
+}
+
+Json result_json(const MapResult& result) {
+  Json rows = Json::array();
+  const auto or_null = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
+  for (const BoundaryPoint& p : result.boundary) {
+    rows.push_back({{result.map->x.name, p.x},
+                    {"analytic", or_null(p.analytic)},
+                    {"simulation", p.simulation},
+                    {"relative_difference", or_null(p.difference())},
+                    {"no_theory", p.no_theory}});
+  }
+  Json json = {{"map", result.map->name},
+               {"algorithm", result.subject.algorithm},
+               {"integrator", integrator_name(result.subject.integrator)},
+               {"boundary", std::move(rows)}};
+  for (const MotionClass motion : {MotionClass::stable, MotionClass::vibrating, MotionClass::diverged}) {
+    json[std::string(motion_class_name(motion))] = count_of(result, motion);
+  }
+  return json;
+}
+
+std::vector<std::string> cells_of(const MapResult& result) {
+  const auto difference = largest_difference(result);
+  const auto without =
+      std::count_if(result.boundary.begin(), result.boundary.end(), [](const BoundaryPoint& p) { return !p.analytic; });
+  std::vector<std::string> cells = {result.map->name, result.subject.algorithm,
+                                    std::string(integrator_name(result.subject.integrator))};
+  for (const MotionClass motion : {MotionClass::stable, MotionClass::vibrating, MotionClass::diverged}) {
+    cells.push_back(std::to_string(count_of(result, motion)));
+  }
+  cells.push_back(difference ? significant(100.0 * *difference, 2) : "-");
+  cells.push_back(std::to_string(without));
+  return cells;
+}
+
+}  // namespace
+
+int stability_maps_command(const StabilityOptions& options) {
+  const std::vector<const StabilityMap*> maps = chosen_maps(options);
+  const std::vector<MapSubject> subjects = chosen_subjects(options);
+  const fs::path out = options.directory("stability_maps");
+  require_writable_directory(out);
+
+  Table table({{"map", false},
+               {"algorithm", false},
+               {"integrator", false},
+               {"stable"},
+               {"vibrating"},
+               {"diverged"},
+               {"largest difference %"},
+               {"without theory"}});
+  std::string drawings;
+  Json json = Json::array();
+  for (const StabilityMap* map : maps) {
+    std::vector<MapResult> results;
+    for (const MapSubject& subject : subjects) {
+      const JobOptions jobs = options.job_options(fmt::format("{} {}", map->name, label(subject)));
+      results.push_back(stability_map(*map, subject, options.size, jobs));
+      table.add(cells_of(results.back()));
+      json.push_back(result_json(results.back()));
+      if (options.chosen_algorithms().size() == 1) drawings += drawing(results.back());
+    }
+    write_points(out, *map, results);
+    write_boundary(out, *map, results);
+  }
+  print(options.output, drawings + table.text() + fmt::format("\nmaps in {}\n", out.string()), json);
+  return kSuccess;
+}
+
+}  // namespace hapbench

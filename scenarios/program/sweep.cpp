@@ -1,0 +1,142 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+
+#include "scenarios/batch/parallel_for.hpp"
+#include "scenarios/batch/run_sweep.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/program/command.hpp"
+#include "scenarios/program/sweep_summary.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kMostJobs = 1024;
+
+struct SweepCommand {
+  std::string scenario;
+  std::vector<std::string> vary;
+  std::string out;
+  std::vector<std::string> overrides;
+  std::int64_t jobs = 0;  ///< 0: one for each thread there is
+  std::string shard;
+  bool resume = false;
+  bool keep_runs = false;
+  bool no_cache = false;
+  OutputOptions output;
+};
+
+Grid grid_of(const SweepCommand& command) {
+  std::vector<Axis> axes;
+  for (const std::string& text : command.vary) axes.push_back(parse_axis(text));
+  return Grid(std::move(axes));
+}
+
+SweepOptions sweep_options(const SweepCommand& command, const fs::path& scenario) {
+  if (command.jobs < 0 || command.jobs > kMostJobs) {
+    throw InputError(
+        fmt::format("--jobs: got {}; allowed: 1 ... {}, or 0 for one per thread", command.jobs, kMostJobs));
+  }
+  SweepOptions options;
+  options.directory =
+      command.out.empty() ? fs::path("results") / "out" / ("sweep_" + scenario.stem().string()) : fs::path(command.out);
+  options.jobs = command.jobs == 0 ? available_threads() : static_cast<std::size_t>(command.jobs);
+  if (!command.shard.empty()) options.shard = parse_shard(command.shard);
+  options.resume = command.resume;
+  options.keep_runs = command.keep_runs;
+  options.progress = !command.output.quiet;
+  options.cache = shell_cache(command.no_cache);
+  return options;
+}
+
+/// A grid may give as many warnings as it has runs.
+void print_some_warnings(std::vector<std::string> warnings) {
+  constexpr std::size_t kMost = 20;
+  const std::size_t count = warnings.size();
+  if (count > kMost) {
+    warnings.resize(kMost);
+    warnings.push_back(fmt::format("{} more like these", count - kMost));
+  }
+  print_warnings(warnings);
+}
+
+std::string run_text(const SweepPlan& plan, std::size_t run) {
+  return fmt::format("run {} ({})", run, fmt::join(plan.grid.overrides(run), ", "));
+}
+
+/// Says what is wrong with the runs and returns the exit status.
+int verdict(const SweepPlan& plan, const SweepReport& report, const SweepSummary& summary) {
+  if (report.failed) {
+    fmt::print(stderr, "hapbench: error: {}: {} of {} runs failed, the first: {}: {}\n", plan.scenario.file.string(),
+               summary.failed, report.rows.size(), run_text(plan, report.failed->run),
+               one_line(report.failed->problem));
+    return kInternalFault;
+  }
+  if (summary.unexpected > 0) {
+    fmt::print(stderr, "hapbench: {}: {} of {} runs did not end as expected, the first: {}\n",
+               plan.scenario.file.string(), summary.unexpected, report.rows.size(),
+               run_text(plan, *summary.first_unexpected));
+    return kUnexpectedOutcome;
+  }
+  return kSuccess;
+}
+
+int sweep(const SweepCommand& command) {
+  // All input is checked before anything runs or is written.
+  const fs::path file = find_scenario(command.scenario);
+  const SweepOptions options = sweep_options(command, file);
+  const SweepPlan plan =
+      plan_sweep(read_scenario_text(file), command.overrides, grid_of(command), options.jobs, options.progress);
+  print_some_warnings(plan.warnings);
+  require_writable_directory(options.directory);
+
+  const SweepReport report = run_sweep(plan, options);
+  if (report.signal != 0) {
+    fmt::print(stderr, "hapbench: stopped after {} of {} runs; the same command with --resume goes on from there\n",
+               report.rows.size(), options.part().size(plan.grid.size()));
+    return 128 + report.signal;  // as shells say it
+  }
+  const SweepSummary summary = summarise(plan, report.rows);
+  print(command.output, summary_text(plan, report, summary), summary_json(plan, report, summary));
+  return verdict(plan, report, summary);
+}
+
+void add_run_options(Command& command, SweepCommand& options) {
+  command.add("--jobs", options.jobs, "runs at once; results do not depend on it (default: one per thread)");
+  command.add("--shard", options.shard, "i/n with 0 <= i < n: only the runs whose index leaves remainder i");
+  command.flag("--resume", options.resume, "go on where an interrupted sweep of the same definition was");
+  command.flag("--keep-runs", options.keep_runs, "write the files of each run into runs/INDEX, too");
+}
+
+}  // namespace
+
+void add_sweep(CommandLine& line) {
+  auto options = std::make_shared<SweepCommand>();
+  Command command = line.command("sweep", "Run one scenario over a grid of values of any fields, in parallel");
+  command.add("scenario", options->scenario, "scenario file, or name of a bundled scenario").required();
+  command
+      .add("--vary", options->vary,
+           "a field and its values: path=a:b:n (n numbers from a to b), path=a:b:n:log (in equal ratios) or "
+           "path=v,w,... (numbers or texts); several give all combinations, the last one varies fastest")
+      .required()
+      .repeatable();
+  command.add("--out", options->out, "directory of sweep.csv (default: results/out/sweep_NAME)");
+  command.add("--set", options->overrides, "override a field of all runs: path=value").repeatable();
+  add_run_options(command, *options);
+  add_cache_option(command, options->no_cache);
+  add_output_options(command, options->output);
+  command.footer(
+      "sweep.csv has a row for each run: index, the varied fields, outcome (\"error\" when it could not be computed), "
+      "expected, steps, every metric, state_hash. Shards write sweep_shard_I_of_N.csv, which \"hapbench merge\" puts "
+      "together. Ctrl-C stops after the runs in flight.\n"
+      "Exit status: 0 success, 1 a run could not be computed, 2 bad input or usage, 3 a run did not end as expected, "
+      "130 stopped by Ctrl-C.");
+  command.runs([options] { return sweep(*options); });
+}
+
+}  // namespace hapbench

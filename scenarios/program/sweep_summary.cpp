@@ -1,0 +1,91 @@
+#include "scenarios/program/sweep_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scenarios/batch/sweep_row.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/table.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Longer tables are better looked at with other programs.
+constexpr std::size_t kMostShown = 100;
+
+/// A number of a cell for people, in another unit.
+std::string shown(std::string_view cell, double factor) {
+  const auto number = finite_number(cell);
+  return number ? significant(factor * *number) : "-";
+}
+
+/// The runs of a single axis.
+std::string runs_text(const SweepPlan& plan, const std::vector<std::string>& rows) {
+  struct Metric {
+    const char* column;
+    const char* title;
+    double factor;
+  };
+  static constexpr Metric kMetrics[] = {{"steps", "steps", 1.0},
+                                        {"force_max_N", "max force N", 1.0},
+                                        {"velocity_total_variation_m_per_s", "velocity TV m/s", 1.0},
+                                        {"force_reversals", "reversals", 1.0},
+                                        {"depth_max_m", "max depth mm", 1e3}};
+  std::vector<Table::Column> columns = {{plan.grid.axes()[0].path}, {"outcome", false}};
+  for (const Metric& metric : kMetrics) columns.push_back({metric.title});
+  Table table(columns);
+  const std::string header = sweep_header(plan);
+  const Words names = parts_of(header, ',');
+  for (const std::string& row : rows) {
+    const Words words = parts_of(row, ',');
+    std::vector<std::string> cells = {std::string(words[1]), std::string(words[2])};
+    for (const Metric& metric : kMetrics) {
+      const auto column = std::find(names.begin(), names.end(), metric.column) - names.begin();
+      cells.push_back(shown(words[static_cast<std::size_t>(column)], metric.factor));
+    }
+    table.add(std::move(cells));
+  }
+  return table.text();
+}
+
+}  // namespace
+
+SweepSummary summarise(const SweepPlan& plan, const std::vector<std::string>& rows) {
+  SweepSummary summary;
+  const std::size_t outcome_column = 1 + plan.grid.axes().size();
+  for (const std::string& row : rows) {
+    const Words cells = parts_of(row, ',');
+    const std::string_view outcome = cells[outcome_column];
+    const bool failed = outcome == kErrorOutcome, expected = cells[outcome_column + 1] == "true";
+    SweepSummary::Count& count = summary.outcomes[std::string(outcome)];
+    ++count.runs;
+    count.expected += expected ? 1 : 0;
+    summary.failed += failed ? 1 : 0;
+    if (failed || expected) continue;
+    ++summary.unexpected;
+    if (!summary.first_unexpected) summary.first_unexpected = run_of_row(plan, row);
+  }
+  return summary;
+}
+
+std::string summary_text(const SweepPlan& plan, const SweepReport& report, const SweepSummary& summary) {
+  std::string text;
+  if (plan.grid.axes().size() == 1 && report.rows.size() <= kMostShown) text = runs_text(plan, report.rows) + "\n";
+  Table table({{"outcome", false}, {"runs"}, {"as expected"}});
+  for (const auto& [outcome, count] : summary.outcomes) {
+    table.add({outcome, std::to_string(count.runs), std::to_string(count.expected)});
+  }
+  text += table.text();
+  if (report.resumed > 0) text += fmt::format("\n{} of the runs were done before\n", report.resumed);
+  return text + fmt::format("\nresults in {}\n", report.table.string());
+}
+
+Json summary_json(const SweepPlan& plan, const SweepReport& report, const SweepSummary& summary) {
+  Json outcomes = Json::object();
+  for (const auto& [outcome, count] : summary.outcomes) outcomes[outcome] = count.runs;
+  return {{"definition", plan.definition},    {"runs", report.rows.size()}, {"outcomes", std::move(outcomes)},
+          {"unexpected", summary.unexpected}, {"failed", summary.failed},   {"file", report.table.string()}};
+}
+
+}  // namespace hapbench

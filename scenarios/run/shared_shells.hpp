@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "scenarios/description/scenario.hpp"
+#include "scenarios/input/shell_cache.hpp"
+
+namespace hapbench {
+
+/// The point shells of a sweep's environments, each made once, by the first run in it, and dropped after the last one.
+/// For several threads.
+class SharedShells {
+ public:
+  /// `uses` says for each environment how many runs are in it.
+  SharedShells(const std::vector<std::size_t>& uses, ShellCache cache);
+
+  /// The shell of an environment, which is the scenario's; null for springs. Waits while another thread makes it. To be
+  /// called once for each run in it. Throws InputError when a named file cannot be used.
+  std::shared_ptr<const PointShell> take(std::size_t environment, const Scenario& scenario);
+
+ private:
+  struct Entry {
+    std::mutex mutex;
+    std::size_t uses = 0;  ///< still to come
+    std::shared_ptr<const PointShell> shell;
+  };
+  std::vector<Entry> entries_;
+  ShellCache cache_;
+};
+
+}  // namespace hapbench

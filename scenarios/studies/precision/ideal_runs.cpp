@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "algorithms/registry.hpp"
+#include "results/observe/ideal_trajectory.hpp"
+#include "results/observe/metrics.hpp"
+#include "results/summary/outcome_names.hpp"
+#include "scenarios/studies/precision/measure.hpp"
+#include "scenarios/studies/precision/study.hpp"
+
+/// The studies whose reference is the ideal trajectory.
+namespace hapbench {
+namespace {
+
+constexpr double kSpacings[] = {0.0004, 0.0002, 0.0001, 0.00005, 0.000025};
+
+/// The algorithms whose angular damping is compared with that of the tip's velocity alone: the two that the thesis
+/// compares.
+constexpr const char* kAngularlyDamped[] = {"original_averaging", "shaped_stiffness"};
+/// Those that create energy when a peg sticks in a hole; the passivity controller leaves the others alone.
+constexpr const char* kCreateEnergy[] = {"original_averaging", "summation", "tandpasta", "normal_projection"};
+
+const std::vector<std::string> kIdealColumns = {"ideal_height_error_rms_m", "ideal_height_error_max_m",
+                                                "ideal_lateral_error_rms_m", "interpenetration_max_m",
+                                                "force_step_max_N"};
+
+/// Errors of a run against the ideal trajectory, over the rows in which the hand is gentle, if it ever is; and the
+/// largest change of the force in a step of all rows.
+PrecisionRow ideal_row(std::string setting, const Scenario& scenario, std::shared_ptr<const PointShell> shell,
+                       int repetitions) {
+  const BlockWithHole& block = std::get<BlockEnvironment>(scenario.environment).block;
+  IdealTrajectoryObserver ideal(block, {*scenario.tool.diameter / 2.0, *scenario.tool.length, Tip::flat});
+  MetricsObserver motion(scenario.time.step);
+  const SampledRun run = sampled_run(scenario, shell, 1024, {&ideal, &motion});
+  const IdealTrajectoryMetrics metrics = ideal.metrics();
+  const TrajectoryErrors& errors = metrics.gentle.rows > 0 ? metrics.gentle : metrics.firm;
+  const double highest = std::max(-errors.height_min, errors.height_max);
+  return {
+      std::move(setting),
+      std::string(outcome_name(run.result.outcome)),
+      {errors.height_rms, highest, errors.lateral_rms, errors.interpenetration_max, motion.metrics().force_step_max},
+      seconds_per_step(scenario, std::move(shell), repetitions)};
+}
+
+}  // namespace
+
+PrecisionResult study_spacing(const Scenario& given, const PrecisionOptions& options) {
+  PrecisionResult result;
+  result.columns = {"spacing_m", "points", "shell_bytes"};
+  result.columns.insert(result.columns.end(), kIdealColumns.begin(), kIdealColumns.end());
+  result.timed = "step";
+  for (const char* density : {"signed_distance", "binary"}) {
+    for (const double spacing : kSpacings) {
+      Scenario scenario = drill_in_hole(given);
+      auto& environment = std::get<BlockEnvironment>(scenario.environment);
+      environment.density = density;
+      environment.grid = spacing;
+      const auto shell = shell_of(scenario, options);
+      PrecisionRow row = ideal_row(fmt::format("{} {}", density, spacing), scenario, shell, options.repetitions);
+      const double points = static_cast<double>(shell->size());
+      const double bytes = static_cast<double>(shell->padded_size() * 6 * sizeof(double));
+      row.values.insert(row.values.begin(), {spacing, points, bytes});
+      result.rows.push_back(std::move(row));
+      options.progress(result.rows.size(), 2 * std::size(kSpacings));
+    }
+  }
+  return result;
+}
+
+PrecisionResult study_algorithms(const Scenario& given, const PrecisionOptions& options) {
+  const Scenario scenario = drill_in_hole(given);
+  const auto shell = shell_of(scenario, options);
+  PrecisionResult result;
+  result.columns = kIdealColumns;
+  result.timed = "step";
+  const std::size_t all = algorithms().size() + std::size(kAngularlyDamped) + std::size(kCreateEnergy);
+  const auto add_row = [&](std::string setting, const RenderingConfig& config) {
+    Scenario run = scenario;
+    run.rendering.config = config;
+    fill_defaults(run);  // puts the stages the algorithm fixes in place
+    result.rows.push_back(ideal_row(std::move(setting), run, shell, options.repetitions));
+    options.progress(result.rows.size(), all);
+  };
+  RenderingConfig config = scenario.rendering.config;
+  // The rows say which of them have these.
+  config.angular_damping = config.passivity_controller = false;
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    config.algorithm = algorithm.info->name;
+    add_row(config.algorithm, config);
+  }
+  for (const char* algorithm : kAngularlyDamped) {
+    config.algorithm = algorithm;
+    config.angular_damping = true;
+    add_row(config.algorithm + " + angular_damping", config);
+  }
+  config.angular_damping = false;
+  for (const char* algorithm : kCreateEnergy) {
+    config.algorithm = algorithm;
+    config.passivity_controller = true;
+    add_row(config.algorithm + " + passivity_controller", config);
+  }
+  return result;
+}
+
+}  // namespace hapbench

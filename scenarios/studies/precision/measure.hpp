@@ -1,0 +1,73 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "scenarios/description/scenario.hpp"
+#include "scenarios/studies/precision/study.hpp"
+#include "sim/loop/simulation.hpp"
+
+/// What the studies have in common: sampled runs, distances, fits and times.
+namespace hapbench {
+
+/// Positions of every `stride`-th row of a run, and how it ended.
+struct SampledRun {
+  SimulationResult result;
+  std::vector<Vec3> positions;
+};
+
+/// The shell of a scenario as make_shell makes it; may come from the cache.
+std::shared_ptr<const PointShell> shell_of(const Scenario& scenario, const PrecisionOptions& options);
+
+SampledRun sampled_run(const Scenario& scenario, std::shared_ptr<const PointShell> shell, std::uint64_t stride,
+                       std::vector<Observer*> observers = {});
+
+/// Distance between two trajectories at their common samples.
+struct TrajectoryDistance {
+  double final = 0.0;  ///< at the last common sample [m]
+  double rms = 0.0;    ///< root of the mean square, the discrete l2 norm [m]
+  double max = 0.0;    ///< [m]
+};
+TrajectoryDistance distance(std::span<const Vec3> a, std::span<const Vec3> b);
+
+/// Slope of y over x by least squares; NaN for fewer than two different x.
+double slope(std::span<const double> x, std::span<const double> y);
+
+/// Order of convergence: the slope of log(error) over log(x) by least squares. Leaves out errors that are not positive
+/// and finite; NaN for fewer than two.
+double fitted_order(std::span<const double> x, std::span<const double> error);
+
+/// Seconds per step of a run without observers, the least of `repetitions`, or of as many as a second allows.
+double seconds_per_step(const Scenario& scenario, std::shared_ptr<const PointShell> shell, int repetitions);
+
+/// Seconds per call of `work`, which makes `calls` calls; the least of `repetitions`, or of as many as a second allows.
+template <class Work>
+double seconds_per_call(std::size_t calls, int repetitions, Work work) {
+  using Clock = std::chrono::steady_clock;
+  double least = 0.0, all = 0.0;
+  for (int i = 0; i < repetitions && all < 1.0; ++i) {
+    const auto start = Clock::now();
+    work();
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    if (i == 0 || seconds < least) least = seconds;
+    all += seconds;
+  }
+  return least / static_cast<double>(calls);
+}
+
+/// A drill that a hand presses into the block's hole, as the studies want it: an ideal device, so that the dynamics
+/// under study are the only ones, the limit of its device, one period of its tilt, nothing recorded. Throws InputError
+/// when the scenario has no block_with_hole.
+Scenario drill_in_hole(Scenario scenario);
+
+/// The colliding points of every `stride`-th row of a scenario, with depth and gradient, before any point stage. Rows
+/// without contact are left out.
+std::vector<ContactBuffer> contact_sets(Scenario scenario, const PrecisionOptions& options, std::uint64_t stride);
+
+/// The same after the point stages of the scenario.
+std::vector<ContactBuffer> rendered_contact_sets(const Scenario& scenario, const PrecisionOptions& options,
+                                                 std::uint64_t stride);
+
+}  // namespace hapbench

@@ -1,0 +1,146 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "algorithms/laws/exact_shaping.hpp"
+#include "algorithms/laws/merged_shaping.hpp"
+#include "algorithms/laws/shaped_stiffness.hpp"
+#include "algorithms/stages/gradient_reduction.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/studies/precision/measure.hpp"
+#include "scenarios/studies/precision/study.hpp"
+#include "sim/core/random.hpp"
+
+/// Whether it pays to merge or drop contacts before a force law, from dozens of contacts to hundreds.
+namespace hapbench {
+namespace {
+
+constexpr double kSpacings[] = {0.0001, 0.00005, 0.000025};
+constexpr std::uint64_t kStride = 64;
+constexpr std::uint64_t kOrders = 4;
+
+struct Way {
+  const char* name;
+  std::unique_ptr<ForceLaw> (*make_law)(const RenderingConfig&);
+  bool reduces;
+};
+constexpr Way kWays[] = {
+    {"exact_shaping of all", make_exact_shaping, false},
+    {"exact_shaping reduced", make_exact_shaping, true},
+    {"shaped_stiffness of all", make_shaped_stiffness, false},
+    {"shaped_stiffness reduced", make_shaped_stiffness, true},
+    {"merged_shaping", make_merged_shaping, false},
+};
+
+using Order = std::vector<std::size_t>;
+
+/// One way to the force of a contact set.
+class Forces {
+ public:
+  Forces(const Way& way, const RenderingConfig& config, std::size_t capacity)
+      : reduction_(way.reduces ? make_gradient_reduction({}) : nullptr), law_(way.make_law(config)), work_(capacity) {
+    if (reduction_) reduction_->prepare({});
+    law_->prepare(capacity);
+  }
+
+  void load(const ContactBuffer& set) {
+    work_.clear();
+    for (std::size_t i = 0; i < set.size(); ++i) work_.push_copy_of(set, i);
+    work_.pad();
+  }
+  void load(const ContactBuffer& set, const Order& order) {
+    work_.clear();
+    for (const std::size_t i : order) work_.push_copy_of(set, i);
+    work_.pad();
+  }
+  /// Of what is loaded [N].
+  Vec3 force() {
+    if (reduction_) reduction_->process(work_);
+    return law_->evaluate(work_).spring;
+  }
+  std::size_t kept() const { return work_.size(); }
+
+ private:
+  std::unique_ptr<PointStage> reduction_;  ///< may be null
+  std::unique_ptr<ForceLaw> law_;
+  ContactBuffer work_;
+};
+
+/// Largest change of the force of a set when its contacts come in other orders [N].
+double spread_over_orders(Forces& forces, const ContactBuffer& set, const Vec3& force, Random& random) {
+  Order order(set.size());
+  double largest = 0.0;
+  for (std::uint64_t k = 0; k < kOrders; ++k) {
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    random.shuffle(order);
+    forces.load(set, order);
+    largest = std::max(largest, (forces.force() - force).norm());
+  }
+  return largest;
+}
+
+PrecisionRow row_of(const Way& way, double spacing, const std::vector<ContactBuffer>& sets,
+                    const std::vector<Vec3>& reference, const RenderingConfig& config, int repetitions) {
+  std::size_t capacity = 0;
+  for (const ContactBuffer& set : sets) capacity = std::max(capacity, set.size());
+  Forces forces(way, config, capacity);
+  Random random(1);
+  double squares = 0.0, scale = 0.0, spread = 0.0, contacts = 0.0, kept = 0.0;
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    forces.load(sets[i]);
+    const Vec3 force = forces.force();
+    squares += (force - reference[i]).squaredNorm();
+    scale += reference[i].squaredNorm();
+    contacts += static_cast<double>(sets[i].size());
+    kept += static_cast<double>(forces.kept());
+    spread = std::max(spread, spread_over_orders(forces, sets[i], force, random));
+  }
+  const double n = static_cast<double>(sets.size()), rms = std::sqrt(scale / n);
+  const double copying = seconds_per_call(sets.size(), repetitions, [&] {
+    for (const ContactBuffer& set : sets) forces.load(set);
+  });
+  const double seconds = seconds_per_call(sets.size(), repetitions, [&] {
+    for (const ContactBuffer& set : sets) {
+      forces.load(set);
+      forces.force();
+    }
+  });
+  return {fmt::format("{} {}", way.name, spacing),
+          "completes",
+          {spacing, contacts / n, kept / n, std::sqrt(squares / n) / rms, spread / rms},
+          std::max(0.0, seconds - copying)};
+}
+
+std::vector<Vec3> exact_forces(const std::vector<ContactBuffer>& sets, const RenderingConfig& config) {
+  std::vector<Vec3> forces;
+  for (const ContactBuffer& set : sets) {
+    Forces exact(kWays[0], config, set.size());
+    exact.load(set);
+    forces.push_back(exact.force());
+  }
+  return forces;
+}
+
+}  // namespace
+
+PrecisionResult study_merging(const Scenario& given, const PrecisionOptions& options) {
+  PrecisionResult result;
+  result.columns = {"spacing_m", "contacts_mean", "kept_mean", "force_error_relative", "order_spread_relative"};
+  result.timed = "call";
+  for (const double spacing : kSpacings) {
+    Scenario scenario = drill_in_hole(given);
+    std::get<BlockEnvironment>(scenario.environment).grid = spacing;
+    const std::vector<ContactBuffer> sets = contact_sets(scenario, options, kStride);
+    if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
+    const std::vector<Vec3> reference = exact_forces(sets, scenario.rendering.config);
+    for (const Way& way : kWays) {
+      result.rows.push_back(row_of(way, spacing, sets, reference, scenario.rendering.config, options.repetitions));
+      options.progress(result.rows.size(), std::size(kWays) * std::size(kSpacings));
+    }
+  }
+  return result;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,115 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/laws/exact_shaping.hpp"
+#include "algorithms/laws/shaped_stiffness.hpp"
+#include "algorithms/stages/gradient_reduction.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/studies/precision/measure.hpp"
+#include "scenarios/studies/precision/study.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr double kThresholds[] = {0.9, 0.95, 0.99, 0.995, 0.999, 0.9999};
+constexpr double kOff = 2.0;  // no inner product of unit vectors is larger
+constexpr std::uint64_t kStride = 64;
+
+/// One way to a force: reduction (or none) and a law.
+struct Way {
+  double threshold;
+  bool exact;
+};
+
+Vec3 depth_vector(ContactBuffer& contacts, bool exact, int iterations) {
+  if (exact) {
+    solve_exact_shaping(contacts);
+  } else {
+    shape_weights(contacts, iterations);
+  }
+  return weighted_depth(contacts);
+}
+
+std::size_t largest_size(const std::vector<ContactBuffer>& sets) {
+  std::size_t largest = 0;
+  for (const ContactBuffer& set : sets) largest = std::max(largest, set.size());
+  return largest;
+}
+
+class Measurement {
+ public:
+  Measurement(const std::vector<ContactBuffer>& sets, int iterations)
+      : sets_(sets), iterations_(iterations), work_(largest_size(sets)) {
+    for (const ContactBuffer& set : sets) {
+      load(set);
+      exact_.push_back(depth_vector(work_, true, iterations_));
+    }
+  }
+
+  PrecisionRow row(const Way& way, int repetitions) {
+    const auto reduction =
+        make_gradient_reduction({.threshold = std::min(way.threshold, 1.0), .max_points = 100'000, .shuffle_seed = {}});
+    reduction->prepare({});
+    const auto force = [&](const ContactBuffer& set) {
+      load(set);
+      if (way.threshold != kOff) reduction->process(work_);
+      return depth_vector(work_, way.exact, iterations_);
+    };
+    double squares = 0.0, scale = 0.0, largest = 0.0, kept = 0.0;
+    for (std::size_t i = 0; i < sets_.size(); ++i) {
+      const double error = (force(sets_[i]) - exact_[i]).norm();
+      squares += error * error;
+      scale += exact_[i].squaredNorm();
+      largest = std::max(largest, error);
+      kept += static_cast<double>(work_.size()) / static_cast<double>(sets_.size());
+    }
+    const double copying = seconds_per_call(sets_.size(), repetitions, [&] {
+      for (const ContactBuffer& set : sets_) load(set);
+    });
+    const double seconds = seconds_per_call(sets_.size(), repetitions, [&] {
+      for (const ContactBuffer& set : sets_) force(set);
+    });
+    const std::string law = way.exact ? "exact_shaping" : "shaped_stiffness";
+    return {way.threshold == kOff ? law + " off" : fmt::format("{} {}", law, way.threshold),
+            "completes",
+            {kept, std::sqrt(squares / scale), largest},
+            std::max(0.0, seconds - copying)};
+  }
+
+ private:
+  void load(const ContactBuffer& set) {
+    work_.clear();
+    for (std::size_t i = 0; i < set.size(); ++i) work_.push_copy_of(set, i);
+    work_.pad();
+  }
+
+  const std::vector<ContactBuffer>& sets_;
+  int iterations_;
+  ContactBuffer work_;
+  std::vector<Vec3> exact_;  ///< sum c d u of the exact optimum over all contacts [m]
+};
+
+}  // namespace
+
+PrecisionResult study_reduction(const Scenario& scenario, const PrecisionOptions& options) {
+  const std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(scenario), options, kStride);
+  if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
+  Measurement measurement(sets, scenario.rendering.config.iterations);
+  std::vector<Way> ways;
+  for (const bool exact : {false, true}) {
+    for (const double threshold : kThresholds) ways.push_back({threshold, exact});
+    ways.push_back({kOff, exact});
+  }
+  PrecisionResult result;
+  result.columns = {"kept_mean", "force_error_relative", "depth_error_max_m"};
+  result.timed = "call";
+  for (const Way& way : ways) {
+    result.rows.push_back(measurement.row(way, options.repetitions));
+    options.progress(result.rows.size(), ways.size());
+  }
+  return result;
+}
+
+}  // namespace hapbench

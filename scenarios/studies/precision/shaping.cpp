@@ -1,0 +1,64 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/laws/exact_shaping.hpp"
+#include "algorithms/laws/shaped_stiffness.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/studies/precision/measure.hpp"
+#include "scenarios/studies/precision/study.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr int kIterations[] = {0, 1, 2, 3, 4, 5, 10, 20, 40, 80, 160};
+constexpr int kExact = -1;
+constexpr std::uint64_t kStride = 64;  // rows from one contact set to the next
+
+Mat3 shape(ContactBuffer& contacts, int iterations) {
+  if (iterations != kExact) return shape_weights(contacts, iterations);
+  solve_exact_shaping(contacts);
+  return stiffness_tensor(contacts);
+}
+
+PrecisionRow measure(int iterations, std::vector<ContactBuffer>& sets, const std::vector<Mat3>& optimum,
+                     int repetitions) {
+  double squares = 0.0, largest = 0.0, ratio = 0.0;
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    const Mat3 S = shape(sets[i], iterations);
+    const double error = (S - optimum[i]).norm();
+    squares += error * error / static_cast<double>(sets.size());
+    largest = std::max(largest, error);
+    const RatioRange range = ratio_range(sets[i], S);
+    ratio = std::max({ratio, std::abs(range.min - 1.0), std::abs(range.max - 1.0)});
+  }
+  const double seconds = seconds_per_call(sets.size(), repetitions, [&] {
+    for (ContactBuffer& set : sets) shape(set, iterations);
+  });
+  return {iterations == kExact ? "exact" : fmt::format("m={}", iterations),
+          "completes",
+          {std::sqrt(squares), largest, ratio},
+          seconds};
+}
+
+}  // namespace
+
+PrecisionResult study_shaping(const Scenario& scenario, const PrecisionOptions& options) {
+  std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(scenario), options, kStride);
+  if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
+  std::vector<Mat3> optimum;
+  for (ContactBuffer& set : sets) optimum.push_back(shape(set, kExact));
+
+  PrecisionResult result;
+  result.columns = {"tensor_error_rms", "tensor_error_max", "ratio_error_max"};
+  result.timed = "call";
+  for (const int iterations : kIterations) {
+    result.rows.push_back(measure(iterations, sets, optimum, options.repetitions));
+    options.progress(result.rows.size(), std::size(kIterations) + 1);
+  }
+  result.rows.push_back(measure(kExact, sets, optimum, options.repetitions));
+  return result;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,68 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "algorithms/registry.hpp"
+#include "results/summary/outcome_names.hpp"
+#include "scenarios/studies/precision/measure.hpp"
+#include "scenarios/studies/precision/study.hpp"
+#include "scenarios/studies/precision/wedge_stiffness.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr double kHalfAnglesDegrees[] = {5.0, 10.0, 20.0, 30.0, 45.0, 60.0, 80.0};
+/// A tensor of springs is the same in every row in which both faces are touched.
+constexpr std::int64_t kSteps = 200;
+
+/// Keeps tensor and ratios of the last row.
+class LastTensor final : public Observer {
+ public:
+  bool wants_ratio() const noexcept override { return true; }
+  void on_step(const StepRecord& record) noexcept override {
+    S = record.force.S;
+    ratio = record.ratio;
+  }
+  Mat3 S = Mat3::Zero();
+  RatioRange ratio;
+};
+
+PrecisionRow wedge_row(const Scenario& scenario, double degrees, int repetitions) {
+  const RenderingConfig& config = scenario.rendering.config;
+  const double w = degrees * std::numbers::pi / 180.0;
+  const auto& faces = std::get<SpringsEnvironment>(scenario.environment).groups;
+  const auto formula = wedge_stiffness(config, w, static_cast<double>(faces.front().count));
+  LastTensor last;
+  const SampledRun run = sampled_run(scenario, nullptr, 1, {&last});
+  const auto if_any = [&formula](double WedgeStiffness::*part) {
+    return formula ? std::optional((*formula).*part) : std::nullopt;
+  };
+  return {fmt::format("{} {} deg", config.algorithm, degrees),
+          std::string(outcome_name(run.result.outcome)),
+          {w, last.ratio.min, last.ratio.max, last.S(1, 1), if_any(&WedgeStiffness::along), last.S(0, 0),
+           if_any(&WedgeStiffness::across), lambda_max(last.S)},
+          seconds_per_step(scenario, nullptr, repetitions)};
+}
+
+}  // namespace
+
+PrecisionResult study_stiffness(const Scenario& scenario, const PrecisionOptions& options) {
+  PrecisionResult result;
+  result.columns = {"half_angle_rad", "ratio_min", "ratio_max",      "along_way_out",
+                    "along_formula",  "across",    "across_formula", "lambda_max"};
+  result.timed = "step";
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    for (const double degrees : kHalfAnglesDegrees) {
+      Scenario run = with_wedge(scenario, degrees * std::numbers::pi / 180.0);
+      run.time.steps = std::min(*run.time.steps, kSteps);
+      run.rendering.config.algorithm = algorithm.info->name;
+      fill_defaults(run);  // puts the stages the algorithm fixes in place
+      result.rows.push_back(wedge_row(run, degrees, options.repetitions));
+      options.progress(result.rows.size(), algorithms().size() * std::size(kHalfAnglesDegrees));
+    }
+  }
+  return result;
+}
+
+}  // namespace hapbench

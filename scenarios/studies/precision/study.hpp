@@ -1,0 +1,64 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenarios/description/scenario.hpp"
+#include "scenarios/input/shell_cache.hpp"
+
+/// Run time against error: one row per setting of one thing (a time step, a number of iterations, an algorithm), with
+/// its error against a reference and the time it takes.
+namespace hapbench {
+
+/// One setting. Failures are rows like the others, with what failed as outcome.
+struct PrecisionRow {
+  std::string setting;
+  std::string outcome;
+  std::vector<std::optional<double>> values;  ///< one for each column of the study; none where there is none
+  double seconds = 0.0;  ///< of one step or call: the least of the repetitions, timed apart from the errors
+};
+
+/// A line log(error) = order log(x) + c fitted to the rows of one series.
+struct FittedOrder {
+  std::string series;
+  std::string error;  ///< name of the column
+  double order = 0.0;
+};
+
+struct PrecisionResult {
+  std::vector<std::string> columns;  ///< names with units
+  std::string timed;                 ///< what `seconds` are of: "step" or "call"
+  std::vector<PrecisionRow> rows;
+  std::vector<FittedOrder> orders;
+};
+
+struct PrecisionOptions {
+  int repetitions = 5;
+  ShellCache cache;
+  std::function<void(std::size_t done, std::size_t all)> progress = [](std::size_t, std::size_t) {};
+};
+
+struct PrecisionStudy {
+  const char* name;
+  const char* summary;
+  const char* scenario;  ///< name of the bundled scenario it starts from
+  /// Throws InputError when the scenario is not of the kind the study needs.
+  PrecisionResult (*run)(const Scenario& scenario, const PrecisionOptions& options);
+};
+
+/// The one table of studies.
+std::span<const PrecisionStudy> precision_studies();
+
+PrecisionResult study_integrators(const Scenario& scenario, const PrecisionOptions& options);
+PrecisionResult study_time_step(const Scenario& scenario, const PrecisionOptions& options);
+PrecisionResult study_shaping(const Scenario& scenario, const PrecisionOptions& options);
+PrecisionResult study_spacing(const Scenario& scenario, const PrecisionOptions& options);
+PrecisionResult study_reduction(const Scenario& scenario, const PrecisionOptions& options);
+PrecisionResult study_merging(const Scenario& scenario, const PrecisionOptions& options);
+PrecisionResult study_algorithms(const Scenario& scenario, const PrecisionOptions& options);
+PrecisionResult study_stiffness(const Scenario& scenario, const PrecisionOptions& options);
+
+}  // namespace hapbench

@@ -1,0 +1,257 @@
+#include "scenarios/studies/stability/stability_limits.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <limits>
+
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/studies/stability/bisection.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+/// Relative width at which bisection stops: of runs a hundredth of the 1 % within which the three ways must agree, of
+/// eigenvalues, which cost nothing, near rounding.
+constexpr double kPrecision = 1e-4;
+constexpr double kEigenvaluePrecision = 1e-10;
+/// A probe is cut short as unstable when it has grown by this factor; a stable one swings to 1 / sqrt of its relative
+/// distance to the limit, at most 1e2 at kPrecision.
+constexpr double kGrowth = 1e6;
+/// Steps of one probe, and how much the largest energy of the last quarter may exceed that of the quarter before. A run
+/// that is unstable by a factor 1 + e per step multiplies its energy by 1 + 10 000 e, so the limit is found where e
+/// passes 1e-6; a stable run repeats its largest energy much closer, because it beats in 1 / sqrt(kPrecision) steps or
+/// fewer.
+constexpr std::int64_t kProbeSteps = 20'000;
+constexpr double kLateGrowth = 1.01;
+constexpr int kLocusPoints = 400;
+/// Time steps beyond this [s] are taken for "never unstable": of the velocities that a step as long multiplies,
+/// rounding alone would be motion.
+constexpr double kLongestStep = 1e6;
+
+/// Where bisection starts, and beyond what it gives up.
+struct Probes {
+  double start, largest;
+};
+Probes probes_of(StabilityCase which) {
+  return which == StabilityCase::time_step ? Probes{1e-9, kLongestStep} : Probes{1.0, kLargestProbe};
+}
+
+/// The spring-damper of one case at one value of what is raised.
+SpringDamper at_value(StabilityCase which, double value, const Scenario& scenario, double lambda) {
+  const RenderingConfig& config = scenario.rendering.config;
+  SpringDamper system{config.stiffness,   0.0,    *scenario.rendering.mass,
+                      scenario.time.step, lambda, scenario.integrator.type};
+  const auto damping = [&] {
+    return config.damping.value_or(2.0 * config.damping_ratio * std::sqrt(system.K * system.M));
+  };
+  switch (which) {
+    case StabilityCase::stiffness_undamped:
+      system.K = value;
+      break;
+    case StabilityCase::damping_alone:
+      system.K = 0.0;
+      system.B = value;
+      break;
+    case StabilityCase::stiffness_damped:
+      system.K = value;
+      system.B = damping();
+      break;
+    case StabilityCase::time_step:
+      system.dt = value;
+      system.B = damping();
+      break;
+  }
+  return system;
+}
+
+/// Positive root of a x^2 + 2 b x = 4; infinite when there is none.
+double positive_root(double a, double b) {
+  if (a == 0.0) return b == 0.0 ? kNever : 2.0 / b;
+  return 4.0 / (b + std::sqrt(b * b + 4.0 * a));
+}
+
+/// Picks up the stiffness tensor of the first step.
+class FirstTensor final : public Observer {
+ public:
+  void on_step(const StepRecord& record) noexcept override {
+    if (record.step == 0) S = record.force.S;
+  }
+  Mat3 S = Mat3::Zero();
+};
+
+/// Largest mechanical energy in the last two quarters of a probe: it follows growth whatever the frequency, where the
+/// position alone may still be on its first swing.
+class LateEnergy final : public Observer {
+ public:
+  explicit LateEnergy(const SpringDamper& system) : stiffness_(system.lambda * system.K), mass_(system.M) {}
+
+  void on_step(const StepRecord& record) noexcept override {
+    const auto quarter = record.step * 4 / static_cast<std::uint64_t>(kProbeSteps);
+    if (quarter < 2) return;
+    const ToolState& tool = record.tool;
+    const double energy = stiffness_ * tool.pose.position.squaredNorm() + mass_ * tool.velocity.squaredNorm();
+    double& largest = quarter == 2 ? third_ : fourth_;
+    largest = std::max(largest, energy);
+  }
+  bool grows() const { return fourth_ > kLateGrowth * third_; }
+
+ private:
+  double stiffness_, mass_;
+  double third_ = 0.0, fourth_ = 0.0;
+};
+
+Mat3 stiffness_tensor_of(Scenario scenario) {
+  scenario.time.steps = 1;
+  scenario.bounds = {};
+  scenario.initial.position = Vec3(1e-3, 1e-3, 1e-3);
+  FirstTensor tensor;
+  Simulation(simulation_config(scenario), assemble(scenario), {&tensor}).run();
+  return tensor.S;
+}
+
+/// Runs the scenario's own simulation with the case's numbers, from a small displacement and velocity along
+/// `direction`, and sees whether it blows up.
+bool simulation_stays_bounded(Scenario scenario, const SpringDamper& system, const Vec3& direction) {
+  constexpr double kAmplitude = 1e-3;
+  scenario.rendering.config.stiffness = system.K;
+  scenario.rendering.config.damping = system.B;
+  scenario.time.step = system.dt;
+  scenario.time.steps = kProbeSteps;
+  scenario.time.stop_when.clear();
+  scenario.initial.position = kAmplitude * direction;
+  scenario.initial.velocity = kAmplitude * direction;
+  // Speed tells growth from drift: a mass that no spring holds goes far without going faster.
+  scenario.bounds.position = kNever;
+  scenario.bounds.speed = kGrowth * kAmplitude * std::max(1.0, 1.0 / system.dt);
+  scenario.bounds.force = kNever;
+  LateEnergy energy(system);
+  Simulation simulation(simulation_config(scenario), assemble(scenario), {&energy});
+  return simulation.run().outcome != Outcome::diverges && !energy.grows();
+}
+
+void check_scene(const Scenario& scenario) {
+  const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment);
+  const auto fail = [](const char* place, const char* problem) {
+    throw InputError(InputError::Kind::relation, place, problem);
+  };
+  if (springs == nullptr)
+    fail("/environment/type", "stability limits exist for \"springs\" only: elsewhere contacts come and go");
+  if (!springs->bilateral) fail("/environment/bilateral", "got false; allowed for stability: true");
+  if (*scenario.rendering.mu_s != 0.0 || *scenario.rendering.mu_f != 0.0)
+    fail("/rendering/friction", "allowed for stability: none");
+  if (scenario.rendering.config.max_damping)
+    fail("/rendering/limits/max_damping_N_s_per_m", "allowed for stability: null");
+  if (scenario.rendering.config.max_force) fail("/rendering/limits/max_force_N", "allowed for stability: null");
+  if (!std::holds_alternative<FreePosition>(scenario.motion.position))
+    fail("/motion/position/type", "allowed for stability: \"free\"");
+  if (!std::holds_alternative<NoHandFields>(scenario.hand)) fail("/hand/type", "allowed for stability: \"none\"");
+  if (scenario.rendering.config.passivity_controller)
+    fail("/rendering/passivity_controller", "got true; allowed for stability: false");
+}
+
+double leapfrog_limit(StabilityCase which, const Scenario& scenario, double lambda) {
+  const RenderingConfig& config = scenario.rendering.config;
+  const double M = *scenario.rendering.mass, dt = scenario.time.step;
+  const SpringDamper given = at_value(StabilityCase::time_step, dt, scenario, lambda);
+  const double b = config.damping ? 0.0 : 2.0 * config.damping_ratio * lambda * dt / std::sqrt(M);
+  switch (which) {
+    case StabilityCase::stiffness_undamped:
+      return lambda == 0.0 ? kNever : 4.0 * M / (lambda * dt * dt);
+    case StabilityCase::damping_alone:
+      return lambda == 0.0 ? kNever : 2.0 * M / (lambda * dt);
+    case StabilityCase::stiffness_damped:
+      if (lambda == 0.0) return kNever;
+      // With a fixed B the inequality is linear in K, with B = 2 zeta sqrt(K M) quadratic in sqrt K.
+      if (config.damping)
+        return std::max(0.0, (4.0 - 2.0 * lambda * *config.damping * dt / M) * M / (lambda * dt * dt));
+      return std::pow(positive_root(lambda * dt * dt / M, b), 2);
+    case StabilityCase::time_step:
+      return positive_root(lambda * given.K / M, lambda * given.B / M);
+  }
+  return kNever;
+}
+
+/// Where an integrator stops being stable: of lambda K dt^2 / M without damping, of lambda B dt / M without a spring.
+struct LimitsAlone {
+  double spring, damper;
+};
+constexpr LimitsAlone kVerlet = {4.0, 4.0};
+/// Of |1 + z + z^2/2 + z^3/6 + z^4/24| <= 1 on the imaginary axis, z^2 = -8, and on the real one.
+constexpr LimitsAlone kRungeKutta = {8.0, 2.785293563405282};
+
+/// The limit of a case that has a spring or a damper; none with both.
+std::optional<double> limit_alone(StabilityCase which, const Scenario& scenario, double lambda,
+                                  const LimitsAlone& limits) {
+  const SpringDamper one = at_value(which, 1.0, scenario, lambda);
+  if (lambda == 0.0 || (one.K == 0.0 && one.B == 0.0)) return kNever;
+  if (one.K != 0.0 && one.B != 0.0) return std::nullopt;
+  const double spring = limits.spring * one.M / lambda, damper = limits.damper * one.M / lambda;
+  if (which == StabilityCase::time_step) return one.B == 0.0 ? std::sqrt(spring / one.K) : damper / one.B;
+  return one.B == 0.0 ? spring / (one.dt * one.dt) : damper / one.dt;
+}
+
+}  // namespace
+
+std::optional<double> analytic_limit(StabilityCase which, const Scenario& scenario, double lambda) {
+  switch (scenario.integrator.type) {
+    case Integrator::leapfrog:
+      return leapfrog_limit(which, scenario, lambda);
+    case Integrator::velocity_verlet:
+      return limit_alone(which, scenario, lambda, kVerlet);
+    case Integrator::rk4:
+      return limit_alone(which, scenario, lambda, kRungeKutta);
+    case Integrator::implicit_euler:
+    case Integrator::implicit_midpoint:
+      return kNever;
+  }
+  return std::nullopt;
+}
+
+double eigenvalue_limit(StabilityCase which, const Scenario& scenario, double lambda, double start) {
+  const auto stable = [&](double value) { return at_value(which, value, scenario, lambda).is_stable(); };
+  return largest_stable(start, kEigenvaluePrecision, stable, probes_of(which).largest);
+}
+
+std::vector<StabilityLimit> stability_limits(const Scenario& scenario) {
+  check_scene(scenario);
+  const Eigen::SelfAdjointEigenSolver<Mat3> S(stiffness_tensor_of(scenario));
+  const double lambda = S.eigenvalues()[2];
+  const Vec3 stiffest = S.eigenvectors().col(2);
+
+  std::vector<StabilityLimit> limits = {
+      {StabilityCase::stiffness_undamped, "largest K, B = 0", "N/m"},
+      {StabilityCase::damping_alone, "largest B, K = 0", "N s/m"},
+      {StabilityCase::stiffness_damped, "largest K, B from zeta", "N/m"},
+      {StabilityCase::time_step, "largest time step", "s"},
+  };
+  for (StabilityLimit& limit : limits) {
+    const auto system = [&](double value) { return at_value(limit.which, value, scenario, lambda); };
+    limit.lambda = lambda;
+    limit.analytic = analytic_limit(limit.which, scenario, lambda);
+    const Probes probes = probes_of(limit.which);
+    limit.eigenvalue = eigenvalue_limit(limit.which, scenario, lambda, probes.start);
+    limit.damping_at_limit = system(limit.limit()).B;
+    const auto run = [&](double value) { return simulation_stays_bounded(scenario, system(value), stiffest); };
+    limit.simulation = largest_stable(probes.start, kPrecision, run, probes.largest);
+  }
+  return limits;
+}
+
+std::vector<RootLocusPoint> root_locus(const Scenario& scenario, const std::vector<StabilityLimit>& limits) {
+  std::vector<RootLocusPoint> locus;
+  for (const StabilityLimit& limit : limits) {
+    if (!std::isfinite(limit.limit())) continue;
+    for (int i = 0; i <= kLocusPoints; ++i) {
+      const double value = 1.25 * limit.limit() * i / kLocusPoints;
+      if (value == 0.0 && limit.which == StabilityCase::time_step) continue;
+      const auto [first, second] = at_value(limit.which, value, scenario, limit.lambda).eigenvalues();
+      locus.push_back({limit.which, value, first, second});
+    }
+  }
+  return locus;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/batch/jobs.hpp"
+#include "scenarios/studies/stability/classify.hpp"
+#include "scenarios/studies/stability/map_scenes.hpp"
+
+/// Maps of stable, vibrating and diverged runs (classify.hpp), with the analytic limit where there is one.
+namespace hapbench {
+
+/// One run of a map.
+struct MapPoint {
+  double x = 0.0, y = 0.0;
+  MotionClass motion = MotionClass::stable;
+  double lambda = 0.0;  ///< lambda_max(S) of the first row
+  /// 4 - 2 lambda B dt / M - lambda K dt^2 / M; none where the theory does not apply, nor of other integrators than
+  /// leapfrog, whose inequality it is.
+  std::optional<double> margin;
+};
+
+/// The edge of the stable runs at one x. Of a spring map, the largest K that does not diverge; of a map without theory,
+/// the largest y whose run comes to rest.
+struct BoundaryPoint {
+  double x = 0.0;
+  /// In closed form, or of the eigenvalues of a step where the integrator has none; infinite when no y is unstable,
+  /// none where the theory does not apply.
+  std::optional<double> analytic;
+  double simulation =
+      0.0;  ///< by bisection on runs to 0.1 %; 0, or infinite when there is none up to 1e4 times the map's range
+  std::string no_theory;  ///< why there is no analytic limit; empty when there is one
+
+  /// simulation / analytic - 1; zero when both are infinite, none without an analytic limit.
+  std::optional<double> difference() const;
+};
+
+/// What a map is of.
+struct MapSubject {
+  std::string algorithm;
+  Integrator integrator = Integrator::leapfrog;
+};
+
+struct MapResult {
+  const StabilityMap* map = nullptr;
+  MapSubject subject;
+  std::size_t size = 0;
+  std::vector<MapPoint> points;         ///< size x size, y fastest
+  std::vector<BoundaryPoint> boundary;  ///< size
+};
+
+/// The map of one algorithm and integrator on a grid of size x size. The same whatever the number of threads.
+///
+/// The theory applies where the tool is alone with springs in contact and the force of the first row is -K S p: then
+/// the springs are the linear system whose step the limit is about. Precondition: the algorithm is known, size >= 1.
+MapResult stability_map(const StabilityMap& map, const MapSubject& subject, std::size_t size,
+                        const JobOptions& options);
+
+}  // namespace hapbench

@@ -1,0 +1,158 @@
+#include "scenarios/studies/stress/law_stress.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "algorithms/proxy/proxy_rendering.hpp"
+#include "algorithms/registry.hpp"
+#include "sim/contact/shell_query.hpp"
+#include "sim/contact/stiffness_tensor.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Of sums over at most kMostContacts contacts, and of exact_shaping's weights, which an epsilon of 1e-6 makes
+/// sensitive.
+constexpr double kRounding = 1e-6;
+constexpr std::uint64_t kSetsOfAJob = 1000;
+
+/// One set under one algorithm.
+struct Answer {
+  RenderedForce force;
+  std::size_t colliding = 0, rendered = 0;
+  std::uint64_t dropped = 0;
+};
+
+Answer answer(const ContactSet& set, const RenderingConfig& config, const PointShell& shell) {
+  ShellQuery query(shell, set.tool);
+  ContactBuffer contacts(query.capacity());
+  const auto algorithm = make_algorithm(config);
+  algorithm->prepare({set.tool, &query, &shell});
+  algorithm->reset();
+  query.contacts_at(set.pose, contacts);
+  Answer out;
+  out.colliding = contacts.size();
+  algorithm->compute({set.pose, set.velocity}, contacts, out.force);
+  out.rendered = contacts.size();
+  out.dropped = algorithm->work().points_dropped;
+  return out;
+}
+
+bool finite(const RenderedForce& force) {
+  return force.spring.allFinite() && force.rendered.allFinite() && force.S.allFinite() &&
+         std::isfinite(force.depth_max);
+}
+
+/// No depth is longer than the tool is long and wide, with room for normal_projection, which meets surfaces of the tool
+/// that go on beyond the body.
+bool depth_in_bound(const Tool& tool, double depth) {
+  return depth >= 0.0 && depth <= (1.0 + kRounding) * (tool.length + 3.0 * tool.radius);
+}
+
+/// Damping is B S v, and friction is off: |f_render| <= |f_spring| + B lambda_max(S) |v|.
+bool damping_in_bound(const ContactSet& set, const RenderedForce& force) {
+  const double B = 2.0 * set.rendering.damping_ratio * std::sqrt(set.rendering.stiffness * set.rendering.mass);
+  const double bound = force.spring.norm() + B * lambda_max(force.S) * set.velocity.norm();
+  return force.rendered.norm() <= (1.0 + kRounding) * bound;
+}
+
+/// Of a force law, in units of K times the depth of the deepest contact.
+double law_bound(const RenderingConfig& config, std::size_t contacts) noexcept {
+  const double n = static_cast<double>(contacts);
+  const std::string& law = config.algorithm;
+  // |sum c d u| <= d sum c, and c = 1 / n.
+  if (law == "mean") return std::min(1.0, n);
+  // sum d_i / |sum u_i|, where |sum u_i| > 1e-9 n, or the force is zero.
+  if (law == "original_averaging") return 1e9 * std::min(1.0, n);
+  // (I + U U^T)^-1 U has the singular values s / (1 + s^2) <= 1/2, and |(d_1 … d_n)| <= sqrt(n) d. (K_vc = K.)
+  if (law == "virtual_coupling") return 0.5 * std::sqrt(n);
+  // sum c: at the optimum of exact_shaping tr S >= |S|^2_F >= (tr S)^2 / 3, so that tr S <= 3, and tr S = sum c. After
+  // an update c_i <- c_i / rho_i with rho_i = u_i^T S u_i >= 1 / (u_i^T S^+ u_i) for unit u_i (Cauchy and Schwarz), sum
+  // c_i / rho_i <= sum c_i u_i^T S^+ u_i = tr(S^+ S) <= 3.
+  if (law == "exact_shaping" || law == "merged_shaping") return std::min(3.0, n);
+  if (law == "shaped_stiffness" || law == "normal_projection" || law == "continuous_normal_projection") {
+    return config.iterations > 0 ? std::min(3.0, n) : n;
+  }
+  // c = beta / sigma keeps the energy: sum c d_i^2 = sum d_i^2 <= n d^2, and sum c <= n / sigma, since beta <= 1.
+  // Cauchy and Schwarz: sum c d_i <= n d / sqrt(sigma), where sigma > 1e-12, or the force is zero.
+  if (law == "tandpasta") return 1e6 * n;
+  return n;
+}
+
+void count_answer(const ContactSet& set, const RenderingConfig& config, std::uint64_t number, const Answer& answer,
+                  StressCounts& counts) {
+  ++counts.sets;
+  counts.in_contact += answer.colliding > 0;
+  counts.points_dropped += answer.dropped;
+  const RenderedForce& force = answer.force;
+  const bool bad = counts.non_finite + counts.out_of_bound > 0;
+  const double unit = config.stiffness * force.depth_max;
+  const double bound = config.stiffness * force_bound(config, set.tool, answer.rendered, force.depth_max);
+  if (!finite(force)) {
+    ++counts.non_finite;
+  } else if (force.spring.norm() > (1.0 + kRounding) * bound || !depth_in_bound(set.tool, force.depth_max) ||
+             !damping_in_bound(set, force)) {
+    ++counts.out_of_bound;
+  }
+  if (!bad && counts.non_finite + counts.out_of_bound > 0) counts.first_bad = number;
+  if (!(unit > 0.0)) return;
+  counts.largest_force = std::max(counts.largest_force, force.spring.norm() / unit);
+  if (bound > 0.0) counts.largest_share = std::max(counts.largest_share, force.spring.norm() / bound);
+}
+
+std::vector<StressCounts> no_counts() {
+  std::vector<StressCounts> counts;
+  for (const AlgorithmEntry& entry : algorithms()) counts.emplace_back().algorithm = entry.info->name;
+  return counts;
+}
+
+/// Adds the counts of other sets, in whatever order they come.
+void add(const StressCounts& other, StressCounts& all) {
+  const bool bad = all.non_finite + all.out_of_bound > 0, other_bad = other.non_finite + other.out_of_bound > 0;
+  if (other_bad) all.first_bad = bad ? std::min(all.first_bad, other.first_bad) : other.first_bad;
+  all.sets += other.sets;
+  all.in_contact += other.in_contact;
+  all.non_finite += other.non_finite;
+  all.out_of_bound += other.out_of_bound;
+  all.points_dropped += other.points_dropped;
+  all.largest_force = std::max(all.largest_force, other.largest_force);
+  all.largest_share = std::max(all.largest_share, other.largest_share);
+}
+
+}  // namespace
+
+double force_bound(const RenderingConfig& config, const Tool& tool, std::size_t n, double depth) noexcept {
+  // Placed on the tool, the proxy moves by at most a margin a pass.
+  if (config.algorithm == "proxy") return kProxyPasses * kProxyMargin * tool.radius;
+  return law_bound(config, n) * depth;
+}
+
+ContactSet stress_set(std::uint64_t seed, std::uint64_t i) {
+  constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15;  // 2^64 / golden ratio
+  Random random((seed + 1) * kGolden + i);
+  return draw_contact_set(random);
+}
+
+std::vector<StressCounts> stress_laws(std::uint64_t count, std::uint64_t seed, const JobOptions& options) {
+  std::vector<StressCounts> all = no_counts();
+  std::mutex mutex;
+  for_each_job((count + kSetsOfAJob - 1) / kSetsOfAJob, options, [&](std::size_t job) {
+    std::vector<StressCounts> part = no_counts();
+    const std::uint64_t end = std::min(count, (job + 1) * kSetsOfAJob);
+    for (std::uint64_t i = job * kSetsOfAJob; i < end; ++i) {
+      const ContactSet set = stress_set(seed, i);
+      const PointShell shell(set.points, 0.0);
+      for (StressCounts& counts : part) {
+        RenderingConfig config = set.rendering;
+        config.algorithm = counts.algorithm;
+        count_answer(set, config, i, answer(set, config, shell), counts);
+      }
+    }
+    const std::lock_guard lock(mutex);
+    for (std::size_t i = 0; i < all.size(); ++i) add(part[i], all[i]);
+  });
+  return all;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,95 @@
+#include "scenarios/thesis_claims/evidence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/number_table.hpp"
+#include "scenarios/input/text_lines.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+PublishedNumber number_of(const Json& value) {
+  PublishedNumber number;
+  for (const char* key : {"mean", "value"}) number.mean = value.value(key, number.mean);
+  for (const char* key : {"std", "standard_deviation", "standard_error"})
+    number.spread = value.value(key, number.spread);
+  number.at_least = value.value("at_least", number.at_least);
+  number.at_most = value.value("at_most", number.at_most);
+  return number;
+}
+
+double value_of(std::string_view cell) {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return value;
+}
+
+}  // namespace
+
+PublishedNumbers::PublishedNumbers(const fs::path& directory) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(directory, error)) {
+    if (entry.path().extension() != ".json") continue;
+    try {
+      const Json file = parse_json(read_text_file(entry.path(), kLargestJsonFile));
+      for (const Json& value : file.at("values")) numbers_[value.at("id")] = number_of(value);
+    } catch (const Json::exception& problem) {
+      throw InputError(fmt::format("{}: is no file of published numbers: {}", entry.path().string(), problem.what()));
+    }
+  }
+  if (error) throw InputError(fmt::format("{}: cannot be read: {}", directory.string(), error.message()));
+}
+
+const PublishedNumber& PublishedNumbers::operator[](const std::string& id) const {
+  const auto found = numbers_.find(id);
+  if (found == numbers_.end()) throw InputError(fmt::format("the published numbers hold no \"{}\"", id));
+  return found->second;
+}
+
+Published PublishedNumbers::mean_and_spread(const std::string& id) const {
+  const PublishedNumber& number = (*this)[id];
+  return {number.mean, number.spread};
+}
+
+Json ResultFiles::summary(const std::string& scenario) const {
+  provide_(scenario);
+  return parse_json(read_text_file(directory_ / scenario / "summary.json", kLargestJsonFile));
+}
+
+double ResultFiles::number(const std::string& scenario, const std::string& path) const {
+  std::string pointer = "/" + path;
+  std::replace(pointer.begin(), pointer.end(), '.', '/');
+  const Json value = summary(scenario).value(Json::json_pointer(pointer), Json(nullptr));
+  return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::map<std::string, std::vector<double>> ResultFiles::table(const std::string& scenario,
+                                                              const std::string& file) const {
+  provide_(scenario);
+  const std::filesystem::path path = directory_ / scenario / file;
+  const std::string text = read_named_file(path);
+  LineReader lines(text);
+  const auto header = lines.next();
+  if (!header) throw InputError(fmt::format("{}: is empty", path.string()));
+  std::vector<std::vector<double>*> columns;
+  std::map<std::string, std::vector<double>> table;
+  for (const std::string_view name : parts_of(*header, ',')) columns.push_back(&table[std::string(name)]);
+  while (const auto line = lines.next()) {
+    const auto cells = parts_of(*line, ',');
+    if (cells.size() != columns.size()) {
+      fail_in_line(path, lines.line(), fmt::format("got {} cells; allowed: {}", cells.size(), columns.size()));
+    }
+    for (std::size_t i = 0; i < cells.size(); ++i) columns[i]->push_back(value_of(cells[i]));
+  }
+  return table;
+}
+
+}  // namespace hapbench

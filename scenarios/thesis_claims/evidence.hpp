@@ -1,0 +1,64 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scenarios/description/codec.hpp"
+#include "scenarios/input/shell_cache.hpp"
+#include "scenarios/thesis_claims/finding.hpp"
+
+namespace hapbench {
+
+/// One number of results/reference/published, with its place in the thesis.
+struct PublishedNumber {
+  double mean = std::numeric_limits<double>::quiet_NaN();
+  double spread = 0.0;  ///< standard deviation or standard error, whichever is published
+  double at_least = -std::numeric_limits<double>::infinity();
+  double at_most = std::numeric_limits<double>::infinity();
+};
+
+/// The published numbers by id.
+class PublishedNumbers {
+ public:
+  /// Reads every .json file of the directory. Throws InputError for files that are not such.
+  explicit PublishedNumbers(const std::filesystem::path& directory);
+  /// Throws InputError for an id that is not there.
+  const PublishedNumber& operator[](const std::string& id) const;
+  Published mean_and_spread(const std::string& id) const;
+
+ private:
+  std::map<std::string, PublishedNumber> numbers_;
+};
+
+/// Result files of scenarios that are run into subdirectories of one directory.
+class ResultFiles {
+ public:
+  /// `provide` is called with a scenario's name before its files are read: whoever runs on demand runs it then.
+  ResultFiles(std::filesystem::path directory, std::function<void(const std::string&)> provide)
+      : directory_(std::move(directory)), provide_(std::move(provide)) {}
+
+  /// summary.json of a scenario. Throws InputError when it is missing.
+  Json summary(const std::string& scenario) const;
+  /// A number of it, as in "metrics.force_max_N"; NaN for null.
+  double number(const std::string& scenario, const std::string& path) const;
+  /// Columns of a CSV file of a scenario, by name; an empty cell is NaN. Throws InputError
+  /// when it is missing, empty, or has a row with more or fewer cells than columns.
+  std::map<std::string, std::vector<double>> table(const std::string& scenario, const std::string& file) const;
+
+ private:
+  std::filesystem::path directory_;
+  std::function<void(const std::string&)> provide_;
+};
+
+/// What claims are judged by.
+struct Evidence {
+  PublishedNumbers published;
+  ResultFiles results;
+  ShellCache cache;
+};
+
+}  // namespace hapbench

@@ -1,0 +1,89 @@
+#include "sim/geometry/analytic_shells.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hapbench {
+namespace {
+
+/// Number of equal intervals, none longer than the spacing; 1e-9 forgives lengths that are a multiple but for rounding.
+double intervals(double length, double spacing) {
+  return std::max(1.0, std::ceil(length / spacing - 1e-9));
+}
+
+/// The k-th of n + 1 points from a to b; exact at both ends.
+double between(double a, double b, double k, double n) {
+  return k == n ? b : a + (b - a) * (k / n);
+}
+
+/// Points strictly between a and b.
+void add_face(std::vector<SurfacePoint>& points, const Vec3& a, const Vec3& b, const Vec3& normal, double spacing) {
+  const double n = intervals((b - a).norm(), spacing);
+  for (double k = 1; k < n; ++k) {
+    points.push_back({{between(a.x(), b.x(), k, n), between(a.y(), b.y(), k, n), 0.0}, normal});
+  }
+}
+
+}  // namespace
+
+double point_count(const Hole2d& h) {
+  return 2 * intervals(h.mouth, h.spacing) + 2 * intervals(h.depth, h.spacing) + intervals(h.width, h.spacing) + 1;
+}
+
+std::vector<SurfacePoint> surface_points(const Hole2d& h) {
+  const double half = h.width / 2;
+  const Vec3 up(0, 1, 0), right(1, 0, 0), left(-1, 0, 0);
+  // Corners of the profile from left to right, and the normal of the face that starts at each.
+  const std::vector<Vec3> corners = {{-half - h.mouth, 0, 0}, {-half, 0, 0}, {-half, -h.depth, 0},
+                                     {half, -h.depth, 0},     {half, 0, 0},  {half + h.mouth, 0, 0}};
+  const std::vector<Vec3> faces = {up, right, up, left, up};
+
+  std::vector<SurfacePoint> points;
+  points.push_back({corners.front(), up});
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    add_face(points, corners[i], corners[i + 1], faces[i], h.spacing);
+    const bool last = i + 1 == faces.size();
+    points.push_back({corners[i + 1], last ? up : Vec3((faces[i] + faces[i + 1]).normalized())});
+  }
+  return points;
+}
+
+double point_count(const Plane& plane) {
+  const double n = intervals(plane.size, plane.spacing) + 1;
+  return n * n;
+}
+
+std::vector<SurfacePoint> surface_points(const Plane& plane) {
+  const double n = intervals(plane.size, plane.spacing);
+  const double half = plane.size / 2;
+  std::vector<SurfacePoint> points;
+  points.reserve(static_cast<std::size_t>(point_count(plane)));
+  for (double i = 0; i <= n; ++i) {
+    for (double j = 0; j <= n; ++j) {
+      points.push_back({{between(-half, half, i, n), between(-half, half, j, n), 0.0}, {0, 0, 1}});
+    }
+  }
+  return points;
+}
+
+double point_count(const Slot& slot) {
+  return 2 * (intervals(slot.length, slot.spacing) + 1) * (intervals(slot.depth, slot.spacing) + 1);
+}
+
+std::vector<SurfacePoint> surface_points(const Slot& slot) {
+  const double ny = intervals(slot.length, slot.spacing);
+  const double nz = intervals(slot.depth, slot.spacing);
+  std::vector<SurfacePoint> points;
+  points.reserve(static_cast<std::size_t>(point_count(slot)));
+  for (const double side : {-1.0, 1.0}) {
+    for (double j = 0; j <= ny; ++j) {
+      for (double k = 0; k <= nz; ++k) {
+        const double y = between(-slot.length / 2, slot.length / 2, j, ny);
+        points.push_back({{side * slot.gap / 2, y, between(-slot.depth, 0.0, k, nz)}, {-side, 0, 0}});
+      }
+    }
+  }
+  return points;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/geometry/point_shell.hpp"
+
+/// Point shells of surfaces known in closed form. Every edge is divided into equal intervals no longer than the
+/// spacing, so that both of its ends carry a point; a point on an edge carries the normalised mean of the two faces'
+/// normals. `point_count` tells the size beforehand, as a double because absurd sizes are to be refused, not computed.
+namespace hapbench {
+
+/// The planar peg-in-hole scene of thesis A.1.1, in the plane z = 0 with y up and the mouth at y = 0, centred at x = 0.
+/// Point order: along the profile from the left end of the flat top, down the left wall, along the bottom, up the right
+/// wall, to the right end. Depth, mouth and the edges' 45 degree normals are our choices; the thesis gives the width
+/// (1 mm) and the spacing (0.1 mm).
+struct Hole2d {
+  double width = 0.001;     ///< [m]
+  double depth = 0.005;     ///< [m]
+  double spacing = 0.0001;  ///< [m]
+  double mouth = 0.003;     ///< flat top either side of the hole [m]
+};
+
+/// The square |x|, |y| <= size / 2 in the plane z = 0, normal +z. Point order: y fastest.
+struct Plane {
+  double size = 0.01;
+  double spacing = 0.0001;
+};
+
+/// Two parallel faces x = -gap/2 (normal +x) and x = +gap/2 (normal -x), |y| <= length / 2, -depth <= z <= 0: the drill
+/// between two walls of thesis 4.6. Point order: left face first, then y, z fastest.
+struct Slot {
+  double gap = 0.001;
+  double depth = 0.005;
+  double length = 0.01;
+  double spacing = 0.0001;
+};
+
+double point_count(const Hole2d& hole);
+double point_count(const Plane& plane);
+double point_count(const Slot& slot);
+
+std::vector<SurfacePoint> surface_points(const Hole2d& hole);
+std::vector<SurfacePoint> surface_points(const Plane& plane);
+std::vector<SurfacePoint> surface_points(const Slot& slot);
+
+}  // namespace hapbench

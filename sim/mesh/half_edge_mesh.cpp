@@ -1,0 +1,41 @@
+#include "sim/mesh/half_edge_mesh.hpp"
+
+#include <Eigen/Geometry>
+
+namespace hapbench {
+namespace {
+
+Vec3 position(const HalfEdgeMesh& mesh, OpenMesh::VertexHandle vertex) {
+  const auto& p = mesh.point(vertex);
+  return {p[0], p[1], p[2]};
+}
+
+/// Unit normal, zero for a face without area.
+Vec3 unit_normal(const HalfEdgeMesh& mesh, OpenMesh::FaceHandle face) {
+  auto corner = mesh.cfv_begin(face);
+  const Vec3 a = position(mesh, *corner++), b = position(mesh, *corner++), c = position(mesh, *corner);
+  const Vec3 normal = (b - a).cross(c - a);
+  const double length = normal.norm();
+  return length > 0.0 ? Vec3(normal / length) : Vec3::Zero();
+}
+
+}  // namespace
+
+std::vector<SurfacePoint> vertices_with_normals(const HalfEdgeMesh& mesh) {
+  std::vector<Vec3> face_normals;
+  face_normals.reserve(mesh.n_faces());
+  for (const auto face : mesh.faces()) face_normals.push_back(unit_normal(mesh, face));
+
+  std::vector<SurfacePoint> points;
+  points.reserve(mesh.n_vertices());
+  for (const auto vertex : mesh.vertices()) {
+    Vec3 sum = Vec3::Zero();
+    for (auto face = mesh.cvf_iter(vertex); face.is_valid(); ++face)
+      sum += face_normals[static_cast<std::size_t>(face->idx())];
+    const double length = sum.norm();
+    if (length > 0.0) points.push_back({position(mesh, vertex), sum / length});
+  }
+  return points;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+
+#include "sim/mesh/half_edge_mesh.hpp"
+
+namespace hapbench {
+
+/// What a density grid stores at its nodes.
+enum class Density {
+  signed_distance,  ///< minus the signed distance, iso value 0
+  binary            ///< 1 inside and 0 outside, iso value 0.5: the "raw density field" of thesis 2.1 taken literally
+};
+
+/// A solid sampled on a grid whose nodes lie at half-integer multiples of the spacing.
+struct DensityField {
+  std::function<double(const Vec3&)> signed_distance;  ///< exact, negative inside [m]
+  Vec3 min = Vec3::Zero();                             ///< a box that holds the solid [m]
+  Vec3 max = Vec3::Zero();
+  double spacing = 0.0001;  ///< [m], > 0
+  Density density = Density::signed_distance;
+};
+
+/// Number of grid cells the box has, as a double because absurd ones are to be refused.
+double cell_count(const DensityField& field);
+
+/// The surface of the solid by marching cubes with linear interpolation along the edges and shared vertices: closed and
+/// manifold. Evaluates the field near the surface only: a block of cells further from it than its half diagonal is
+/// skipped whole, so the cost grows with the surface and not with the volume. Where a cell's face is ambiguous the
+/// inside corners are separated, on both sides of the face alike. Throws std::runtime_error if a face cannot be added,
+/// which would mean that the surface is not manifold.
+HalfEdgeMesh marching_cubes(const DensityField& field);
+
+}  // namespace hapbench

@@ -1,0 +1,301 @@
+#include "algorithms/stages/passivity_controller.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <vector>
+
+#include "tests/support/fakes.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+/// Keeps the observed energy of every row, and the most that could be given away in one.
+class Watch final : public Observer {
+ public:
+  Watch(double dt, double mass) : observed_(dt), dt_(dt), mass_(mass) {}
+  bool wants_springs() const noexcept override { return true; }
+  void on_step(const StepRecord& r) noexcept override {
+    observed_.move(r.tool);
+    observed_.answer(r.tool, r.force.rendered, r.springs);
+    const Vec3 w = r.tool.velocity + r.hand.input * (0.5 * dt_ / mass_);
+    least = std::min(least, observed_.energy());
+    turnover = std::max(turnover, std::abs(observed_.energy()) + 0.5 * mass_ * w.squaredNorm());
+    force_max = std::max(force_max, r.force.rendered.norm());
+  }
+  double least = std::numeric_limits<double>::infinity();
+  double turnover = 0.0;
+  double force_max = 0.0;
+  /// Of one step: the share s, the force made of it and its work have a handful of roundings of what there was to give.
+  double rounding() const { return 50 * kEpsilon * turnover; }
+
+ private:
+  ObservedEnergy observed_;
+  double dt_, mass_;
+};
+
+struct Ran {
+  Watch watch;
+  ToolState tool;
+  std::uint64_t controlled = 0;
+};
+
+Ran run(const SimulationConfig& config, SimulationParts parts) {
+  Ran ran{Watch(config.dt, config.mass), {}, 0};
+  Simulation simulation(config, std::move(parts), {&ran.watch});
+  simulation.run();
+  ran.tool = simulation.tool();
+  ran.controlled = simulation.algorithm().work().steps_controlled;
+  return ran;
+}
+
+SimulationParts controlled(SimulationParts parts, const RenderingConfig& config = {}) {
+  parts.algorithm = std::make_unique<PassivityController>(std::move(parts.algorithm), config);
+  return parts;
+}
+
+SimulationConfig pushed_off(std::uint64_t steps) {
+  SimulationConfig config;
+  config.steps = steps;
+  config.position = {0.001, 0.0005, 0};
+  config.velocity = {0.02, -0.01, 0.03};
+  return config;
+}
+
+Vec3 negative_spring(const ToolState& tool) {
+  return 500.0 * tool.pose.position;
+}
+
+/// A spring that answers where the tool was some rows ago.
+test::FakeAlgorithm::Law late_spring(std::size_t rows) {
+  return [rows, last = std::deque<Vec3>()](const ToolState& tool) mutable -> Vec3 {
+    last.push_back(-3000.0 * tool.pose.position);
+    if (last.size() > rows) last.pop_front();
+    return last.front();
+  };
+}
+
+TEST(PassivityController, ActiveLawsAreActiveWithoutItAndPassiveWithIt) {
+  const std::pair<const char*, test::FakeAlgorithm::Law> laws[] = {{"negative spring", negative_spring},
+                                                                   {"late spring", late_spring(10)}};
+  for (const auto& [name, law] : laws) {
+    SCOPED_TRACE(name);
+    const SimulationConfig config = pushed_off(2000);
+    const Ran free = run(config, test::fake_parts(law));
+    const Ran held = run(config, controlled(test::fake_parts(law)));
+    EXPECT_LT(free.watch.least, -1e-3);
+    EXPECT_GE(held.watch.least, -held.watch.rounding());
+    EXPECT_GT(held.controlled, 0u);
+    // Alone with a passive rendering, the tool never has more than it began with.
+    const double given = 0.5 * config.mass * config.velocity.squaredNorm();
+    EXPECT_LE(0.5 * config.mass * held.tool.velocity.squaredNorm(), given + held.watch.rounding());
+  }
+}
+
+/// Forces that know nothing of the tool, of all sizes, under a hand that does what it likes: whatever the law, the
+/// observed energy stays above zero, and the force within its limit.
+TEST(PassivityController, KeepsAnyForceUnderAnyHandPassive) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(seed);
+    const auto numbers = std::make_shared<Random>(seed);
+    const double size = std::pow(10.0, 8.0 * numbers->uniform() - 3.0);
+    RenderingConfig config;
+    config.mass = std::pow(10.0, 2.0 * numbers->uniform() - 1.5);
+    if (seed % 2 == 0) config.max_force = size * numbers->uniform();
+    SimulationConfig run_config = pushed_off(200);
+    run_config.mass = config.mass;
+    const double limit = config.max_force.value_or(std::numeric_limits<double>::infinity());
+    SimulationParts parts = test::fake_parts([numbers, size, limit](const ToolState&) -> Vec3 {
+      return std::min(limit, size * numbers->uniform()) * numbers->direction();
+    });
+    const auto wave = [&] {
+      return Profile(
+          Profile::Shape(Profile::Sine{0.0, 5.0 * numbers->uniform(), 0.003 + 0.1 * numbers->uniform(), 0.0}));
+    };
+    parts.hand = std::make_unique<ForceHand>(std::array<Profile, 3>{wave(), wave(), wave()});
+    const Ran ran = run(run_config, controlled(std::move(parts), config));
+    EXPECT_GE(ran.watch.least, -ran.watch.rounding());
+    if (config.max_force) {
+      EXPECT_LE(ran.watch.force_max, *config.max_force * (1.0 + 4.0 * kEpsilon));
+    }
+  }
+}
+
+/// From the third row on, forces of at most `limit` and moments, neither of which knows anything of the tool.
+class Lever final : public ForceAlgorithm {
+ public:
+  Lever(std::uint64_t seed, double limit) : numbers_(seed), limit_(limit) {}
+  void prepare(const Scene&) override {}
+  void reset() noexcept override {}
+  void compute(const ToolState&, ContactBuffer&, RenderedForce& out) noexcept override {
+    out = {};
+    if (++rows_ < 3) return;
+    out.spring = out.rendered = limit_ * numbers_.uniform() * numbers_.direction();
+    moment_ = 0.01 * numbers_.uniform() * numbers_.direction();
+  }
+  SpringState spring_state(const ToolState&, const ContactBuffer&) const noexcept override { return {0.0, moment_}; }
+  ForceJacobian jacobian() const noexcept override { return {}; }
+
+ private:
+  Random numbers_;
+  double limit_;
+  int rows_ = 0;
+  Vec3 moment_ = Vec3::Zero();
+};
+
+/// A tilt that is anywhere in 0 … 0.01 rad in each row. The first ones, 0, 0.005 and 0, change the turn by 0.01 rad, so
+/// that no later change, 0.02 rad at most, is more than twice the largest before.
+class Trembling final : public Motion {
+ public:
+  explicit Trembling(std::uint64_t seed) {
+    Random numbers(seed);
+    tilts_ = {0.0, 0.005, 0.0};
+    while (tilts_.size() < 400) tilts_.push_back(0.01 * numbers.uniform());
+  }
+  Vec3 axis_at(double t) const noexcept override {
+    const double tilt = tilts_[static_cast<std::size_t>(std::lround(t / SimulationConfig{}.dt))];
+    return {std::sin(tilt), 0.0, -std::cos(tilt)};
+  }
+  bool position_is_free() const noexcept override { return true; }
+  Vec3 position_at(double) const noexcept override { return Vec3::Zero(); }
+
+ private:
+  std::vector<double> tilts_;
+};
+
+TEST(PassivityController, KeepsAnyMomentOfATremblingHandPassive) {
+  double least_without = 0.0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(seed);
+    const auto ran = [&](bool controller) {
+      SimulationParts parts = test::fake_parts(test::weightless);
+      RenderingConfig config;
+      config.max_force = seed % 2 == 0 ? 0.5 : 5.0;
+      parts.algorithm = std::make_unique<Lever>(seed, *config.max_force);
+      parts.motion = std::make_unique<Trembling>(seed);
+      return run(pushed_off(400), controller ? controlled(std::move(parts), config) : std::move(parts));
+    };
+    const Ran held = ran(true);
+    EXPECT_GE(held.watch.least, -held.watch.rounding());
+    EXPECT_LE(held.watch.force_max, (seed % 2 == 0 ? 0.5 : 5.0) * (1.0 + 4.0 * kEpsilon));
+    EXPECT_GT(held.controlled, 0u);
+    least_without = std::min(least_without, ran(false).watch.least);
+  }
+  EXPECT_LT(least_without, -1e-3);
+}
+
+/// A damped spring takes in more than it gives, so there is nothing to control: K dt/2 = 5 N s/m of damping make up for
+/// the lag of sampling, and it has 88.
+TEST(PassivityController, LeavesAPassiveSpringAndDamperAlone) {
+  test::Setting setting;
+  setting.springs = SpringSet{{Vec3::UnitX(), Vec3::UnitY()}, true};
+  setting.pose.position = {0.003, -0.001, 0};
+  RenderingConfig config;
+  config.algorithm = "summation";
+  SimulationConfig run_config = test::free_run_config(setting, config, 2000);
+  run_config.velocity = {-0.1, 0.2, 0};
+  const Ran plain = run(run_config, test::free_run(setting, config));
+  config.passivity_controller = true;
+  const Ran held = run(run_config, test::free_run(setting, config));
+  EXPECT_EQ(held.controlled, 0u);
+  EXPECT_EQ(held.tool.pose.position, plain.tool.pose.position);
+  EXPECT_EQ(held.tool.velocity, plain.tool.velocity);
+}
+
+/// The controller foresees the observed energy of the next row exactly, so with a held axis it changes a run if and
+/// only if the run would create energy.
+TEST(PassivityController, ChangesARunOnlyIfItWouldCreateEnergy) {
+  std::size_t passive = 0, active = 0;
+  for (const auto& algorithm : algorithms()) {
+    for (const test::AnalyticScene& scene : test::analytic_scenes()) {
+      for (const double damping_ratio : {0.0, 0.7}) {
+        SCOPED_TRACE(std::string(scene.name) + " " + algorithm.info->name);
+        RenderingConfig config = test::config_for(algorithm.info->name, scene);
+        config.damping_ratio = damping_ratio;
+        const test::Setting setting = scene.setting();
+        const auto ran = [&](bool controller) {
+          config.passivity_controller = controller;
+          SimulationParts parts = test::free_run(setting, config);
+          parts.hand = std::make_unique<ForceHand>(std::array<Profile, 3>{0.5, -1.0, 1.5});
+          return run(test::free_run_config(setting, config, 400), std::move(parts));
+        };
+        const Ran plain = ran(false), held = ran(true);
+        EXPECT_GE(held.watch.least, -held.watch.rounding());
+        if (plain.watch.least > plain.watch.rounding()) {
+          EXPECT_EQ(held.controlled, 0u);
+        }
+        if (plain.watch.least < -plain.watch.rounding()) {
+          EXPECT_GT(held.controlled, 0u);
+        }
+        (plain.watch.least < -plain.watch.rounding() ? active : passive) += 1;
+        if (held.controlled == 0) {
+          EXPECT_EQ(held.tool.pose.position, plain.tool.pose.position);
+          EXPECT_EQ(held.tool.velocity, plain.tool.velocity);
+        }
+      }
+    }
+  }
+  // Both kinds were seen, or this would say nothing.
+  EXPECT_GT(passive, 10u);
+  EXPECT_GT(active, 0u);
+}
+
+/// alpha <= M / dt: the damping alone stops the tool and does not turn it round.
+TEST(PassivityController, WithNothingToGiveItStopsTheToolAtMost) {
+  SimulationConfig config = pushed_off(2);
+  SimulationParts parts = controlled(test::fake_parts([](const ToolState& tool) { return Vec3(1e9 * tool.velocity); }));
+  Simulation simulation(config, std::move(parts), {});
+  const Vec3 before = simulation.tool().velocity;
+  simulation.step();
+  const Vec3 after = simulation.tool().velocity;
+  // The force along the velocity may give nothing: the speed stays. s^2 |u|^2 = |w|^2 to a few roundings.
+  EXPECT_NEAR(after.norm(), before.norm(), 10 * kEpsilon * before.norm());
+  EXPECT_GT(after.dot(before), 0.0);
+}
+
+TEST(PassivityController, ResetRepeatsTheRunBitForBit) {
+  const SimulationConfig config = pushed_off(300);
+  Simulation simulation(config, controlled(test::fake_parts(negative_spring)), {});
+  simulation.run();
+  const ToolState first = simulation.tool();
+  const std::uint64_t steps = simulation.algorithm().work().steps_controlled;
+  simulation.reset();
+  EXPECT_EQ(simulation.algorithm().work().steps_controlled, 0u);
+  simulation.run();
+  EXPECT_EQ(simulation.tool().pose.position, first.pose.position);
+  EXPECT_EQ(simulation.tool().velocity, first.velocity);
+  EXPECT_EQ(simulation.algorithm().work().steps_controlled, steps);
+}
+
+/// f_render = s f - alpha w, so its Jacobian is s times that of f, and alpha more of damping; here s = 0.
+TEST(PassivityController, ItsJacobianIsThatOfTheForceItRenders) {
+  RenderingConfig config;
+  config.mass = 0.2;
+  PassivityController controller(std::make_unique<test::FakeAlgorithm>([](const ToolState&) { return Vec3(9, 0, 0); }),
+                                 config);
+  test::FakeQuery query;
+  controller.prepare({Tool{}, &query, nullptr, 0.0005});
+  controller.reset();
+  ContactBuffer none(0);
+  RenderedForce out;
+  controller.take_input(Vec3::Zero());
+  controller.compute({}, none, out);  // at rest with nothing stored: no force
+  EXPECT_EQ(out.rendered, Vec3(0, 0, 0));
+  EXPECT_EQ(controller.jacobian().stiffness, Mat3(Mat3::Zero()));
+  EXPECT_EQ(controller.jacobian().damping, Mat3(0.2 / 0.0005 * Mat3::Identity()));
+  // Within the step the same share and damping answer other states.
+  ToolState moving;
+  moving.velocity = {0, 1, 0};
+  controller.compute(moving, none, out);
+  EXPECT_EQ(out.rendered, Vec3(0, -0.2 / 0.0005, 0));
+  EXPECT_EQ(controller.work().steps_controlled, 1u);
+}
+
+}  // namespace
+}  // namespace hapbench

@@ -1,0 +1,73 @@
+#include "results/observe/step_times.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "tests/support/allocation_counter.hpp"
+
+namespace hapbench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+void busy_for(std::chrono::nanoseconds time) {
+  const auto end = Clock::now() + time;
+  while (Clock::now() < end) {
+  }
+}
+
+TEST(StepTimes, TimesEachStep) {
+  StepTimes times(3);
+  times.start();
+  for (const int microseconds : {50, 300, 100}) {
+    busy_for(std::chrono::microseconds(microseconds));
+    times.lap();
+  }
+  const auto ns = times.nanoseconds();
+  ASSERT_EQ(ns.size(), 3u);
+  // A step takes no less than it is busy; the overhead, which was measured, is subtracted once. Longer it may take.
+  EXPECT_GE(ns[0] + times.overhead(), 50'000u);
+  EXPECT_GE(ns[1] + times.overhead(), 300'000u);
+  EXPECT_GE(ns[2] + times.overhead(), 100'000u);
+}
+
+TEST(StepTimes, AddUpToTheTimeThatPassed) {
+  constexpr std::uint64_t kSteps = 1000;
+  StepTimes times(kSteps);
+  const auto before = Clock::now();
+  times.start();
+  for (std::uint64_t i = 0; i < kSteps; ++i) {
+    busy_for(std::chrono::microseconds(1));
+    times.lap();
+  }
+  const auto passed = std::chrono::nanoseconds(Clock::now() - before).count();
+  const auto ns = times.nanoseconds();
+  EXPECT_LE(std::accumulate(ns.begin(), ns.end(), std::int64_t{0}), passed);
+}
+
+// The share of the clock is that of an empty step: with it subtracted, half of all empty steps take nothing, up to the
+// drift of the processor's speed between the two measurements.
+TEST(StepTimes, AnEmptyStepTakesAboutNothing) {
+  StepTimes times(10'001);
+  times.start();
+  for (int i = 0; i < 10'001; ++i) times.lap();
+  std::vector<std::uint32_t> ns(times.nanoseconds().begin(), times.nanoseconds().end());
+  std::nth_element(ns.begin(), ns.begin() + 5000, ns.end());
+  EXPECT_LE(ns[5000], times.overhead());
+  EXPECT_GT(times.overhead(), 0u);
+}
+
+TEST(StepTimes, AStepDoesNotAllocate) {
+  StepTimes times(100);
+  const test::AllocationCount count;
+  times.start();
+  for (int i = 0; i < 100; ++i) times.lap();
+  EXPECT_EQ(count.value(), 0u);
+  EXPECT_EQ(times.nanoseconds().size(), 100u);
+}
+
+}  // namespace
+}  // namespace hapbench

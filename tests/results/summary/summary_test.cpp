@@ -1,0 +1,175 @@
+#include "results/summary/summary.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace hapbench {
+namespace {
+
+RunSummary example() {
+  RunSummary run;
+  run.name = "springs";
+  run.algorithm = "shaped_stiffness";
+  run.result.outcome = Outcome::leaves_hole;
+  run.result.rows = 400;
+  run.expected = true;
+  run.duration = 0.2;
+  run.metrics = {.rows = 400,
+                 .force_max = 1.5,
+                 .force_step_max = 0.75,
+                 .velocity_total_variation = 0.1,
+                 .force_reversals = 2,
+                 .vibration_power = 1e-7,
+                 .depth_max = 0.001,
+                 .ratio = RatioRange{0.75, 1.25},
+                 .colliding_mean = 20.5,
+                 .colliding_max = 40,
+                 .rendered_mean = 3.25,
+                 .rendered_max = 6,
+                 .steps_in_contact = 300,
+                 .speed_max = 0.5,
+                 .final_position = {0.5, -0.25, 0.0},
+                 .state_hash = 0x0123456789abcdefu};
+  run.passivity = PassivityMetrics{.energy_min = -0.25, .time_of_min = 0.125, .energy_end = 0.5};
+  run.work = {.search = {.queries = 401, .points_tested = 5000, .lists_rebuilt = 7},
+              .steps_skipped = 8,
+              .algorithm = {.iterations = 900, .points_dropped = 9, .steps_controlled = 3},
+              .allocations = 0};
+  run.provenance = {.version = "1.2.3",
+                    .commit = "abc-dirty",
+                    .compiler = "GNU 12.2.0",
+                    .build_type = "Release",
+                    .flags = "-O3 -ffp-contract=off",
+                    .cpu = "Some CPU"};
+  run.scenario_hash = "fedcba9876543210";
+  return run;
+}
+
+TEST(Summary, TextHoldsEveryField) {
+  EXPECT_EQ(summary_text(example()), R"({
+  "name": "springs",
+  "algorithm": "shaped_stiffness",
+  "outcome": "leaves_hole",
+  "expected": true,
+  "steps": 400,
+  "duration_s": 0.2,
+  "divergence": null,
+  "metrics": {
+    "force_max_N": 1.5,
+    "force_step_max_N": 0.75,
+    "velocity_total_variation_m_per_s": 0.1,
+    "force_reversals": 2,
+    "vibration_power_above_30Hz_m2_per_s2": 1e-07,
+    "depth_max_m": 0.001,
+    "ratio_min": 0.75,
+    "ratio_max": 1.25,
+    "colliding_mean": 20.5,
+    "colliding_max": 40,
+    "rendered_mean": 3.25,
+    "rendered_max": 6,
+    "steps_in_contact": 300,
+    "speed_max_m_per_s": 0.5,
+    "final_position_m": [0.5, -0.25, 0]
+  },
+  "passivity": {
+    "energy_min_J": -0.25,
+    "time_of_min_s": 0.125,
+    "energy_end_J": 0.5,
+    "net_created_J": 0.25
+  },
+  "state_hash": "0123456789abcdef",
+  "work": {
+    "queries": 401,
+    "points_tested": 5000,
+    "lists_rebuilt": 7,
+    "steps_skipped": 8,
+    "iterations": 900,
+    "points_dropped": 9,
+    "steps_controlled": 3,
+    "allocations": 0
+  },
+  "provenance": {
+    "hapbench_version": "1.2.3",
+    "commit": "abc-dirty",
+    "compiler": "GNU 12.2.0",
+    "build_type": "Release",
+    "flags": "-O3 -ffp-contract=off",
+    "cpu": "Some CPU",
+    "scenario_hash": "fedcba9876543210"
+  }
+}
+)");
+}
+
+TEST(Summary, OfADivergedRunSaysWhereItLeftItsBound) {
+  RunSummary run = example();
+  run.result.outcome = Outcome::diverges;
+  run.result.divergence = {.step = 12, .time = 0.006, .quantity = "velocity", .magnitude = 2e6, .bound = 1e6};
+  const auto json = summary_json(run);
+  EXPECT_EQ(json["outcome"], "diverges");
+  EXPECT_EQ(json["divergence"].dump(),
+            R"({"step":12,"time_s":0.006,"quantity":"velocity","magnitude":2000000.0,"bound":1000000.0})");
+}
+
+TEST(Summary, WritesADivergenceThatIsNotFiniteAsNullAndText) {
+  RunSummary run = example();
+  run.result.outcome = Outcome::diverges;
+  run.result.divergence.magnitude = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(summary_json(run)["divergence"]["magnitude"].is_null());
+  EXPECT_EQ(summary_json(run)["divergence"]["magnitude_text"], "inf");
+  run.result.divergence.magnitude = -std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(summary_json(run)["divergence"]["magnitude"].is_null());
+  EXPECT_EQ(summary_json(run)["divergence"]["magnitude_text"], "nan");
+}
+
+TEST(Summary, HasNullForWhatDoesNotExist) {
+  RunSummary run = example();
+  run.metrics.ratio.reset();
+  run.metrics.vibration_power.reset();
+  const auto metrics = summary_json(run)["metrics"];
+  EXPECT_TRUE(metrics["ratio_min"].is_null());
+  EXPECT_TRUE(metrics["ratio_max"].is_null());
+  EXPECT_TRUE(metrics["vibration_power_above_30Hz_m2_per_s2"].is_null());
+}
+
+TEST(Summary, OfNoRowsHasNeitherMeansNorAFinalPosition) {
+  RunSummary run = example();
+  run.metrics = {};
+  const auto metrics = summary_json(run)["metrics"];
+  EXPECT_TRUE(metrics["colliding_mean"].is_null());
+  EXPECT_TRUE(metrics["rendered_mean"].is_null());
+  EXPECT_TRUE(metrics["final_position_m"].is_null());
+  EXPECT_EQ(metrics["colliding_max"], 0);
+}
+
+TEST(Summary, OfNoRowsHasNoObservedEnergy) {
+  RunSummary run = example();
+  run.passivity.reset();
+  EXPECT_TRUE(summary_json(run)["passivity"]["net_created_J"].is_null());
+  EXPECT_TRUE(boundable_metrics(run)["passivity.net_created_J"].is_null());
+  EXPECT_EQ(boundable_metrics(example())["passivity.net_created_J"], 0.25);
+}
+
+TEST(Summary, GivesTheFinalPositionToExpectationsByCoordinate) {
+  RunSummary run = example();
+  const auto metrics = boundable_metrics(run);
+  EXPECT_EQ(metrics["final_position_m.x"], 0.5);
+  EXPECT_EQ(metrics["final_position_m.y"], -0.25);
+  EXPECT_EQ(metrics["final_position_m.z"], 0.0);
+  run.metrics = {};
+  EXPECT_TRUE(boundable_metrics(run)["final_position_m.x"].is_null());
+}
+
+// What differs between the scalar and the SIMD build must not be named, or their summaries could not be identical.
+TEST(Summary, WithTheRealProvenanceDoesNotNameTheInstructionSet) {
+  RunSummary run = example();
+  run.provenance = provenance();
+  const std::string text = summary_text(run);
+  for (const std::string word : {"march", "native", "avx", "sse", "simd", "SIMD"}) {
+    EXPECT_EQ(text.find(word), std::string::npos) << word << " in\n" << text;
+  }
+}
+
+}  // namespace
+}  // namespace hapbench

@@ -1,0 +1,97 @@
+#include "scenarios/batch/parallel_for.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <numeric>
+#include <set>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace hapbench {
+namespace {
+
+std::vector<std::size_t> numbers_to(std::size_t n) {
+  std::vector<std::size_t> numbers(n);
+  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+  return numbers;
+}
+
+bool never() {
+  return false;
+}
+
+class ForEachRun : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(ForEachRun, DoesAndDeliversEachOnceOneDeliveryAtATime) {
+  const std::vector<std::size_t> runs = {7, 3, 500, 3000, 0, 12};
+  std::multiset<std::size_t> delivered;  // no lock: that is the promise
+  parallel_for(
+      runs, GetParam(), [&](std::size_t run) { return [&, run] { delivered.insert(run); }; }, never);
+  EXPECT_EQ(delivered, std::multiset<std::size_t>(runs.begin(), runs.end()));
+}
+
+TEST_P(ForEachRun, HasNoMoreInFlightThanJobsAndStartsInOrder) {
+  std::atomic<std::size_t> delivered = 0;
+  parallel_for(
+      numbers_to(400), GetParam(),
+      [&](std::size_t run) {
+        // All before this one have started, and all of them but jobs - 1 are delivered.
+        EXPECT_LT(run, delivered + GetParam());
+        std::this_thread::yield();
+        return [&] { ++delivered; };
+      },
+      never);
+  EXPECT_EQ(delivered, 400u);
+}
+
+TEST_P(ForEachRun, StopsAfterThoseInFlight) {
+  std::size_t delivered = 0;
+  std::atomic<bool> stop = false;
+  parallel_for(
+      numbers_to(10'000), GetParam(),
+      [&](std::size_t run) {
+        if (run == 20) stop = true;
+        return [&] { ++delivered; };
+      },
+      [&] { return stop.load(); });
+  EXPECT_GE(delivered, 21u);
+  EXPECT_LE(delivered, 21u + GetParam());
+}
+
+TEST_P(ForEachRun, PassesExceptionsOn) {
+  const auto fail_in_work = [](std::size_t run) -> Delivery {
+    if (run == 5) throw std::runtime_error("work");
+    return {};
+  };
+  const auto fail_in_delivery = [](std::size_t) -> Delivery { return [] { throw std::runtime_error("delivery"); }; };
+  EXPECT_THROW(parallel_for(numbers_to(100), GetParam(), fail_in_work, never), std::runtime_error);
+  EXPECT_THROW(parallel_for(numbers_to(100), GetParam(), fail_in_delivery, never), std::runtime_error);
+}
+
+TEST_P(ForEachRun, TakesNoRuns) {
+  parallel_for(
+      {}, GetParam(), [](std::size_t) -> Delivery { throw std::logic_error("none"); }, never);
+}
+
+INSTANTIATE_TEST_SUITE_P(Jobs, ForEachRun, testing::Values(1, 2, 7));
+
+TEST(ForEachRunInParallel, HasAsManyThreadsAsJobsEvenOnASmallerMachine) {
+  // Each of four runs waits until all four have begun: with fewer threads none would come to its end.
+  std::atomic<int> begun = 0;
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  parallel_for(
+      numbers_to(4), 4,
+      [&](std::size_t) -> Delivery {
+        ++begun;
+        while (begun < 4 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+        return {};
+      },
+      never);
+  EXPECT_LT(std::chrono::steady_clock::now(), deadline);
+}
+
+}  // namespace
+}  // namespace hapbench

@@ -1,0 +1,132 @@
+#include "scenarios/batch/run_sweep.hpp"
+
+#include <gtest/gtest.h>
+
+#include "scenarios/batch/journal.hpp"
+#include "scenarios/batch/sweep_row.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/shared_shells.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/batch/sweeps.hpp"
+#include "tests/scenarios/support/errors.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+using test::minimal_scenario;
+using test::plan_of;
+using test::read_file;
+
+TEST(SharedShells, MakesEachOnceAndDropsItAfterItsLastRun) {
+  const SweepPlan plan = plan_of(minimal_scenario("plane"), {"environment.spacing_m=0.0005,0.0004"});
+  SharedShells shells({2, 1}, ShellCache());
+  auto first = shells.take(0, scenario_of(plan, 0).scenario);
+  const auto other = shells.take(1, scenario_of(plan, 1).scenario);
+  EXPECT_NE(first, other);
+  EXPECT_EQ(other.use_count(), 1);
+  EXPECT_EQ(first.use_count(), 2);
+  const auto again = shells.take(0, scenario_of(plan, 0).scenario);
+  EXPECT_EQ(again, first);
+  EXPECT_EQ(first.use_count(), 2);  // the two here; the collection has let go of it
+}
+
+class RunSweep : public testing::Test {
+ protected:
+  SweepReport run(const SweepPlan& plan, const fs::path& directory, bool resume = false) const {
+    fs::create_directories(directory);
+    SweepOptions options;
+    options.directory = directory;
+    options.jobs = 3;
+    options.resume = resume;
+    return run_sweep(plan, options);
+  }
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(RunSweep, HasForEachRunWhatTheRunAloneHas) {
+  Json scenario = minimal_scenario("hole_2d");
+  scenario["initial"] = {{"position_m", {0.0004, -0.001, 0.0}}};
+  const SweepPlan plan =
+      plan_of(scenario, {"environment.spacing_m=0.0001,0.00012", "rendering.algorithm=mean,tandpasta"});
+  const SweepReport report = run(plan, directory_.path());
+  ASSERT_EQ(report.rows.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const RunReport alone = run_scenario(scenario_of(plan, i), std::nullopt, false, ShellCache());
+    EXPECT_EQ(report.rows[i], sweep_row(plan, i, alone.summary));
+    EXPECT_GT(alone.summary.metrics.force_max, 0.0);
+  }
+}
+
+TEST_F(RunSweep, LeavesTheTableAndItsDescriptionOnly) {
+  const SweepPlan plan = plan_of(minimal_scenario("plane"), {"time.steps=1,2"});
+  const SweepReport report = run(plan, directory_.path());
+  EXPECT_EQ(directory_.entries(), (std::vector<std::string>{"sweep.csv", "sweep.json"}));
+  EXPECT_EQ(read_file(report.table), sweep_header(plan) + "\n" + report.rows[0] + "\n" + report.rows[1] + "\n");
+  const Json description = Json::parse(read_file(directory_ / "sweep.json"));
+  EXPECT_EQ(description["definition"], plan.definition);
+  EXPECT_EQ(description["vary"][0]["values"], (Json{"1", "2"}));
+}
+
+/// A sweep of a scenario whose file is there when it is planned.
+class FailingSweep : public RunSweep {
+ protected:
+  FailingSweep() {
+    restore();
+    plan_ = plan_of(minimal_scenario("point_shell"), {"environment.file=a.csv,b.csv", "time.steps=1,2"},
+                    directory_ / "sweep.json");
+  }
+  void restore() const {
+    for (const char* name : {"a.csv", "b.csv"}) {
+      test::write_plainly(directory_ / name, read_file(test::data_directory() / "shell.csv"));
+    }
+  }
+  std::optional<SweepPlan> plan_;
+};
+
+TEST_F(FailingSweep, HasErrorRowsForWhatFailsAndGoesOn) {
+  fs::remove(directory_ / "a.csv");
+  const SweepReport report = run(*plan_, directory_ / "out");
+  ASSERT_EQ(report.rows.size(), 4u);
+  ASSERT_TRUE(report.failed);
+  EXPECT_EQ(report.failed->run, 0u);
+  EXPECT_NE(report.failed->problem.find("a.csv"), std::string::npos);
+  EXPECT_EQ(report.rows[1], error_row(*plan_, 1));
+  EXPECT_EQ(report.rows[2].find("2,b.csv,1,completes,true,1,"), 0u) << report.rows[2];
+  for (const std::string& row : report.rows) {
+    EXPECT_EQ(test::cells_of(row).size(), test::cells_of(sweep_header(*plan_)).size());
+  }
+}
+
+TEST_F(FailingSweep, TriesWhatFailedAgainWhenItIsResumed) {
+  run(*plan_, directory_ / "whole");
+  fs::remove(directory_ / "a.csv");
+  run(*plan_, directory_ / "out");
+  restore();
+  // A sweep that was stopped when everything had been tried: the journal has the rows that did not fail.
+  const std::string title = "definition " + plan_->definition + ", shard 0/1, runs are not kept";
+  {
+    Journal journal(directory_ / "out/sweep.journal", title, false);
+    const auto rows = test::lines_of(read_file(directory_ / "out/sweep.csv"));
+    journal.add(rows[3]);
+    journal.add(rows[4]);
+  }
+  const SweepReport report = run(*plan_, directory_ / "out", true);
+  EXPECT_EQ(report.resumed, 2u);
+  EXPECT_FALSE(report.failed);
+  EXPECT_EQ(read_file(directory_ / "out/sweep.csv"), read_file(directory_ / "whole/sweep.csv"));
+}
+
+TEST_F(RunSweep, TakesNoRowsFromItsJournalThatAreNotItsOwn) {
+  const SweepPlan plan = plan_of(minimal_scenario("plane"), {"time.steps=1,2"});
+  const std::string title = "definition " + plan.definition + ", shard 0/1, runs are not kept";
+  const std::string good = run(plan, directory_.path()).rows[0];
+  for (const std::string& row : {std::string("2") + good.substr(1), "0,7" + good.substr(3), std::string("x"),
+                                 std::string(","), good + ",", std::string("99999999999999999999,1")}) {
+    Journal(directory_ / "sweep.journal", title, false).add(row);
+    EXPECT_TRUE(test::input_error_of([&] { run(plan, directory_.path(), true); })) << row;
+  }
+}
+
+}  // namespace
+}  // namespace hapbench

@@ -1,0 +1,109 @@
+#include "scenarios/batch/sweep_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "scenarios/batch/sweep_row.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/batch/sweeps.hpp"
+#include "tests/scenarios/support/errors.hpp"
+
+namespace hapbench {
+namespace {
+
+using test::minimal_scenario;
+using test::plan_of;
+using Numbers = std::vector<std::size_t>;
+
+TEST(SweepPlan, NumbersEqualEnvironmentsAlikeInTheOrderOfRuns) {
+  const SweepPlan plan =
+      plan_of(minimal_scenario("plane"), {"time.steps=1,2", "environment.spacing_m=0.0005,0.0004,5e-4"});
+  EXPECT_EQ(plan.environments, (Numbers{0, 1, 0, 0, 1, 0}));
+  EXPECT_EQ(plan.environment_count, 2u);
+}
+
+TEST(SweepPlan, LoadsTheScenarioOfEachRun) {
+  const SweepPlan plan = plan_of(minimal_scenario("plane"), {"time.steps=1,2", "rendering.algorithm=mean,summation"});
+  const LoadedScenario loaded = scenario_of(plan, 2);
+  EXPECT_EQ(loaded.scenario.time.steps, 2);
+  EXPECT_EQ(loaded.scenario.rendering.config.algorithm, "mean");
+}
+
+TEST(SweepPlan, RefusesTheLowestBadRunWhateverTheThreads) {
+  std::string list = "time.steps=";
+  for (int i = 1; i <= 200; ++i) list += std::to_string(i < 120 ? i : -i) + ",";
+  list += "0";
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    const auto error = test::input_error_of([&] { plan_of(minimal_scenario("plane"), {list}); });
+    ASSERT_TRUE(error);
+    EXPECT_NE(std::string(error->what()).find("sweep.json: /time/steps: got -120; allowed: "), std::string::npos)
+        << error->what();
+  }
+}
+
+TEST(SweepPlan, GivesEachWarningOnceInTheOrderOfRuns) {
+  // An algorithm that fixes its depth model overrides the one given.
+  Json scenario = minimal_scenario("plane");
+  scenario["rendering"] = {{"algorithm", "normal_projection"}, {"depth_model", "shortest_distance"}};
+  const std::vector<std::string> alone = load_scenario(ScenarioText{"sweep.json", scenario}, {}).warnings;
+  ASSERT_FALSE(alone.empty());
+  const SweepPlan plan = plan_of(scenario, {"time.steps=1:50:50"}, "sweep.json");
+  EXPECT_EQ(plan.warnings, alone);
+}
+
+TEST(SweepPlan, HasTheColumnsOfWhateverSomeRunRecords) {
+  const auto header = [](const std::vector<std::string>& vary) {
+    return sweep_header(plan_of(minimal_scenario("plane"), vary));
+  };
+  EXPECT_EQ(header({"record.energy=false"}).find("energy."), std::string::npos);
+  EXPECT_NE(header({"record.energy=false,true"}).find(",energy.created_sum_J,"), std::string::npos);
+  EXPECT_EQ(header({"record.energy=false,true"}), header({"record.energy=true,false"}));
+  EXPECT_EQ(header({"record.energy=false,true"}).find("ideal_trajectory"), std::string::npos);
+}
+
+TEST(SweepPlan, HasAnotherDefinitionForEveryOtherContent) {
+  const Json plane = minimal_scenario("plane");
+  Json other = plane;
+  other["seed"] = 5;
+  std::set<std::string> definitions;
+  for (const auto& vary : {std::vector<std::string>{"time.steps=1,2"},
+                           {"time.steps=2,1"},
+                           {"time.steps=1,2,3"},
+                           {"time.steps=1,2", "seed=1"},
+                           {"seed=1", "time.steps=1,2"}}) {
+    definitions.insert(plan_of(plane, vary).definition);
+  }
+  definitions.insert(plan_of(other, {"time.steps=1,2"}).definition);
+  const Grid grid({parse_axis("time.steps=1,2")});
+  definitions.insert(plan_sweep({"sweep.json", plane}, {"seed=5"}, grid, 1, false).definition);
+  EXPECT_EQ(definitions.size(), 7u);
+  // Threads, the file's place and spelling do not count.
+  EXPECT_EQ(plan_sweep({"elsewhere.json", plane}, {}, grid, 7, false).definition,
+            plan_of(plane, {"time.steps=1.0,2e0"}).definition);
+}
+
+TEST(SweepPlan, DefinesNamedFilesByTheirContents) {
+  const test::TemporaryDirectory directory;
+  const std::string points = test::read_file(test::data_directory() / "shell.csv");
+  const auto definition = [&](const std::string& contents) {
+    test::write_plainly(directory / "shell.csv", contents);
+    return plan_of(minimal_scenario("point_shell"), {"time.steps=1,2"}, directory / "sweep.json").definition;
+  };
+  const std::string first = definition(points);
+  EXPECT_EQ(definition(points), first);
+  EXPECT_NE(definition(points.substr(0, points.rfind('\n', points.size() - 2) + 1)), first);
+}
+
+TEST(SweepPlan, RefusesBadNamedFilesOfAnyRun) {
+  const test::TemporaryDirectory directory;
+  test::write_plainly(directory / "shell.csv", test::read_file(test::data_directory() / "shell.csv"));
+  const auto error = test::input_error_of([&] {
+    plan_of(minimal_scenario("point_shell"), {"environment.file=shell.csv,missing.csv"}, directory / "sweep.json");
+  });
+  ASSERT_TRUE(error);
+  EXPECT_NE(std::string(error->what()).find("missing.csv"), std::string::npos) << error->what();
+}
+
+}  // namespace
+}  // namespace hapbench

@@ -1,0 +1,217 @@
+#include <gtest/gtest.h>
+
+#include "scenarios/description/load_scenario.hpp"
+#include "tests/scenarios/support/errors.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+/// What is filled in where a scenario says nothing: the thesis's numbers for that kind of scene (Tables A.1, A.2, B.1).
+namespace hapbench {
+namespace {
+
+struct Expected {
+  const char* pointer;
+  const char* json;
+};
+
+LoadedScenario loaded(const Json& json) {
+  return read_scenario(json, "");
+}
+Json effective(const Json& json) {
+  return effective_scenario(loaded(json).scenario, "");
+}
+
+void expect_fields(const Json& json, std::initializer_list<Expected> fields) {
+  for (const Expected& field : fields) {
+    EXPECT_EQ(json.at(Json::json_pointer(field.pointer)), Json::parse(field.json)) << field.pointer;
+  }
+}
+
+/// The minimal scenario of an environment, changed by a JSON merge patch (RFC 7386).
+Json patched(const std::string& environment, const char* patch) {
+  Json json = test::minimal_scenario(environment);
+  json.merge_patch(Json::parse(patch));
+  return json;
+}
+
+TEST(Defaults, ThatHoldEverywhere) {
+  for (const test::NamedScenario& scenario : test::minimal_scenarios()) {
+    SCOPED_TRACE(scenario.name);
+    expect_fields(effective(scenario.json),
+                  {{"/seed", "1"},
+                   {"/time", R"({"step_s": 0.0005, "steps": 20, "stop_when": []})"},
+                   {"/initial", R"({"position_m": [0.0, 0.0, 0.0], "velocity_m_per_s": [0.0, 0.0, 0.0]})"},
+                   {"/tool/diameter_m", "0.001"},
+                   {"/motion/orientation/lean", "[1.0, 0.0, 0.0]"},
+                   {"/motion/orientation/tilt_rad", "0.0"},
+                   {"/motion/orientation/azimuth_rad", "0.0"},
+                   {"/motion/position", R"({"type": "free"})"},
+                   {"/hand", R"({"type": "none"})"},
+                   {"/device", R"({"type": "ideal", "force_limit_N": null})"},
+                   {"/rendering/algorithm", "\"shaped_stiffness\""},
+                   {"/rendering/iterations", "3"},
+                   {"/rendering/depth_model", "\"surface_normal\""},
+                   {"/rendering/local_average", "false"},
+                   {"/rendering/passivity_controller", "false"},
+                   {"/rendering/stiffness_N_per_m", "20000.0"},
+                   {"/rendering/damping_ratio", "0.7"},
+                   {"/rendering/damping_N_s_per_m", "null"},
+                   {"/rendering/angular_damping", "false"},
+                   {"/rendering/angular_velocity_cutoff_Hz", "20.0"},
+                   {"/rendering/limits", R"({"max_damping_N_s_per_m": null, "max_force_N": null})"},
+                   {"/rendering/virtual_coupling_N_per_m", "null"},
+                   {"/integrator", R"({"type": "leapfrog"})"},
+                   {"/record", R"({"trajectory": true, "every": 1, "ratio_iterations": [], "contacts": false,
+                                   "stiffness_tensor": false, "timing": false, "energy": false, "ideal_trajectory": false})"},
+                   {"/expect/outcome", R"(["completes", "leaves_hole", "tool_horizontal"])"}});
+  }
+}
+
+TEST(Defaults, OfSpringsAreThoseOfA2) {
+  expect_fields(effective(test::minimal_scenario("springs")),
+                {{"/rendering/mass_kg", "0.2"},
+                 {"/rendering/friction", R"({"mu_s_N_s_per_m": 0.0, "mu_f_s_per_m": 0.0})"},
+                 {"/rendering/reduction", "null"},
+                 {"/motion/orientation/up", "[0.0, 1.0, 0.0]"},
+                 {"/environment/bilateral", "true"},
+                 {"/environment/groups", "[]"},
+                 {"/environment/random", R"({"count": 0, "planar": true})"}});
+}
+
+TEST(Defaults, OfTheHoleAreThoseOfTableA1) {
+  expect_fields(effective(test::minimal_scenario("hole_2d")),
+                {{"/environment", R"({"type": "hole_2d", "width_m": 0.001, "depth_m": 0.005, "spacing_m": 0.0001,
+                                      "mouth_m": 0.003})"},
+                 {"/tool", R"({"diameter_m": 0.001, "length_m": 0.005, "tip": "round"})"},
+                 {"/rendering/mass_kg", "0.2"},
+                 {"/rendering/friction", R"({"mu_s_N_s_per_m": 5.0, "mu_f_s_per_m": 10.0})"},
+                 {"/rendering/reduction", "null"},
+                 {"/motion/orientation/up", "[0.0, 1.0, 0.0]"}});
+}
+
+TEST(Defaults, OfSpatialScenesAreThoseOfThePlatform) {
+  for (const char* environment : {"plane", "slot", "block_with_hole", "point_shell", "mesh"}) {
+    SCOPED_TRACE(environment);
+    expect_fields(effective(test::minimal_scenario(environment)),
+                  {{"/tool", R"({"diameter_m": 0.001, "length_m": 0.01, "tip": "flat"})"},
+                   {"/rendering/mass_kg", "0.1"},
+                   {"/rendering/friction", R"({"mu_s_N_s_per_m": 5.0, "mu_f_s_per_m": 10.0})"},
+                   {"/rendering/reduction", R"({"threshold": 0.995, "max_points": 100, "shuffle_seed": null})"},
+                   {"/motion/orientation/up", "[0.0, 0.0, 1.0]"}});
+  }
+}
+
+TEST(Defaults, OfTheBlockAreTheExperimentsPart) {
+  expect_fields(
+      effective(test::minimal_scenario("block_with_hole")),
+      {{"/environment", R"({"type": "block_with_hole", "size_m": [0.015, 0.015, 0.01], "hole_diameter_m": 0.002,
+                                      "hole_depth_m": 0.005, "grid_m": 0.0001, "density": "signed_distance"})"}});
+}
+
+TEST(Defaults, OfAPartlyGivenObjectFillTheRest) {
+  expect_fields(effective(patched("plane", R"({"rendering": {"reduction": {"max_points": 5}, "friction":
+                                               {"mu_s_N_s_per_m": 1}}, "tool": {"tip": "round"}})")),
+                {{"/rendering/reduction", R"({"threshold": 0.995, "max_points": 5, "shuffle_seed": null})"},
+                 {"/rendering/friction", R"({"mu_s_N_s_per_m": 1.0, "mu_f_s_per_m": 10.0})"},
+                 {"/tool", R"({"diameter_m": 0.001, "length_m": 0.01, "tip": "round"})"}});
+}
+
+TEST(Defaults, GiveWayToWhatIsGiven) {
+  expect_fields(effective(patched("hole_2d", R"({"rendering": {"mass_kg": 1, "reduction": {}, "depth_model":
+                             "normal_projection"}, "tool": {"length_m": 1, "tip": "flat"}})")),
+                {{"/rendering/mass_kg", "1.0"},
+                 {"/rendering/reduction/threshold", "0.995"},
+                 {"/rendering/depth_model", "\"normal_projection\""},
+                 {"/tool/length_m", "1.0"},
+                 {"/tool/tip", "\"flat\""}});
+  // merge_patch deletes on null, so null is set by hand.
+  Json json = test::minimal_scenario("plane");
+  json["rendering"]["reduction"] = nullptr;
+  expect_fields(effective(json), {{"/rendering/reduction", "null"}});
+}
+
+TEST(Duration, BecomesARoundedNumberOfSteps) {
+  Json json = test::minimal_scenario("springs");
+  json["time"] = {{"step_s", 1.0 / 2048.0}, {"duration_s", 1.0}};
+  EXPECT_EQ(effective(json)["time"], Json::parse(R"({"step_s": 0.00048828125, "steps": 2048, "stop_when": []})"));
+  json["time"] = {{"step_s", 0.0005}, {"duration_s", 0.1}};  // 0.1 / 0.0005 is not 200 to the last bit
+  EXPECT_EQ(effective(json)["time"]["steps"], 200);
+}
+
+TEST(FixedDepthModel, OverridesAGivenOneWithAWarning) {
+  const struct {
+    const char *algorithm, *fixed, *given;
+  } kCases[] = {{"original_averaging", "shortest_distance", "surface_normal"},
+                {"normal_projection", "normal_projection", "shortest_distance"}};
+  for (const auto& c : kCases) {
+    Json json = test::minimal_scenario("plane");
+    json["rendering"] = {{"algorithm", c.algorithm}, {"depth_model", c.given}};
+    const LoadedScenario scenario = loaded(json);
+    EXPECT_EQ(scenario.scenario.rendering.depth_model, c.fixed);
+    ASSERT_EQ(scenario.warnings.size(), 1u);
+    EXPECT_EQ(scenario.warnings[0], std::string("/rendering/depth_model: \"") + c.given +
+                                        "\" is not used: algorithm \"" + c.algorithm + "\" is defined with \"" +
+                                        c.fixed + "\"");
+  }
+}
+
+TEST(FixedDepthModel, IsTakenWithoutAWarningWhenNothingElseIsGiven) {
+  for (const char* algorithm : {"original_averaging", "normal_projection"}) {
+    Json json = test::minimal_scenario("plane");
+    json["rendering"] = {{"algorithm", algorithm}};
+    EXPECT_TRUE(loaded(json).warnings.empty());
+    const std::string fixed = *loaded(json).scenario.rendering.depth_model;
+    EXPECT_NE(fixed, "surface_normal");
+    json["rendering"]["depth_model"] = fixed;
+    EXPECT_TRUE(loaded(json).warnings.empty());
+  }
+}
+
+TEST(OriginalAveraging, RunsWithoutReductionAndWarnsAboutAGivenOne) {
+  Json json = test::minimal_scenario("plane");
+  json["rendering"] = {{"algorithm", "original_averaging"}};
+  EXPECT_EQ(effective(json)["rendering"]["reduction"], nullptr);
+  json["rendering"]["reduction"] = Json::object();
+  const LoadedScenario scenario = loaded(json);
+  EXPECT_EQ(effective(json)["rendering"]["reduction"], nullptr);
+  ASSERT_EQ(scenario.warnings.size(), 1u);
+  EXPECT_EQ(scenario.warnings[0].find("/rendering/reduction: not used"), 0u);
+  json["rendering"]["reduction"] = nullptr;
+  EXPECT_TRUE(loaded(json).warnings.empty());
+}
+
+TEST(Orientation, WantsPerpendicularDirections) {
+  for (const char* orientation :
+       {R"({"up": [0, 0, 1], "lean": [0, 0, 1]})", R"({"up": [0, 0, 0]})", R"({"lean": [0, 0, 0]})",
+        R"({"up": [1, 0, 0]})", R"({"up": [1e-200, 0, 0], "lean": [0, 1, 0]})", R"({"lean": [1, 0, 1e-8]})"}) {
+    Json json = test::minimal_scenario("plane");
+    json["motion"]["orientation"] = Json::parse(orientation);
+    const auto error = test::input_error_of([&] { loaded(json); });
+    ASSERT_TRUE(error) << orientation;
+    EXPECT_EQ(error->kind(), InputError::Kind::relation);
+    EXPECT_EQ(error->place(), "/motion/orientation");
+  }
+}
+
+TEST(Orientation, ForgivesTheRoundingOfNormalisedDirections) {
+  Json json = test::minimal_scenario("plane");
+  json["motion"]["orientation"] = Json::parse(R"({"up": [0.6, 0, 0.8], "lean": [0.8, 0, -0.6000000000000001]})");
+  EXPECT_NO_THROW(loaded(json));
+}
+
+TEST(LocalAverage, NeedsAGrid) {
+  Json springs = test::minimal_scenario("springs"), shell = test::minimal_scenario("point_shell");
+  Json mesh = test::minimal_scenario("mesh");
+  for (Json* json : {&springs, &shell, &mesh}) (*json)["rendering"]["local_average"] = true;
+  for (const Json& json : {springs, shell, mesh}) {
+    const auto error = test::input_error_of([&] { loaded(json); });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->place(), "/rendering/local_average");
+  }
+  for (Json* json : {&shell, &mesh}) {
+    (*json)["environment"]["grid_m"] = 0.001;
+    EXPECT_NO_THROW(loaded(*json));
+  }
+}
+
+}  // namespace
+}  // namespace hapbench

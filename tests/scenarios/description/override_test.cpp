@@ -1,0 +1,138 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "scenarios/description/load_scenario.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/errors.hpp"
+
+/// `--set path=value`
+namespace hapbench {
+namespace {
+
+constexpr const char* kScenario = R"({
+  "name": "base",
+  "time": {"step_s": 0.0005, "steps": 20},
+  "environment": {"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 2}, {"direction": [0, 1, 0], "count": 3}]},
+  "rendering": {"reduction": {"threshold": 0.9}}
+})";
+
+class Override : public testing::Test {
+ protected:
+  Override() { test::write_plainly(file_, kScenario); }
+
+  Json with(const std::vector<std::string>& overrides) const {
+    return effective_scenario(load_scenario(file_, overrides).scenario, directory_.path());
+  }
+  /// The refusal, without the file that stands before it.
+  std::string refusal(const std::string& override) const {
+    SCOPED_TRACE(override);
+    const auto error = test::input_error_of([&] { with({override}); });
+    if (!error) return "";
+    const std::string message = error->what(), before = file_.string() + ": ";
+    EXPECT_EQ(message.find(before), 0u) << message;
+    return message.substr(before.size());
+  }
+
+  test::TemporaryDirectory directory_;
+  std::filesystem::path file_ = directory_ / "base scenario.json";
+};
+
+TEST_F(Override, ReplacesANestedField) {
+  EXPECT_EQ(with({"time.steps=7"})["time"]["steps"], 7);
+  EXPECT_EQ(with({"rendering.reduction.threshold=0.5"})["rendering"]["reduction"]["threshold"], 0.5);
+}
+
+TEST_F(Override, ReachesListEntriesByIndex) {
+  const Json groups =
+      with({"environment.groups.1.count=9", "environment.groups.0.direction.2=4"})["environment"]["groups"];
+  EXPECT_EQ(groups[1]["count"], 9);
+  EXPECT_EQ(groups[0]["count"], 2);
+  EXPECT_EQ(groups[0]["direction"], Json::parse("[1.0, 0.0, 4.0]"));
+}
+
+TEST_F(Override, CreatesObjectsThatAreNotThere) {
+  EXPECT_EQ(with({"rendering.limits.max_force_N=30"})["rendering"]["limits"]["max_force_N"], 30.0);
+  EXPECT_EQ(with({"record.every=5"})["record"]["every"], 5);
+}
+
+TEST_F(Override, TakesJsonOfEveryKind) {
+  EXPECT_EQ(with({"rendering.reduction=null"})["rendering"]["reduction"], nullptr);
+  EXPECT_EQ(with({"rendering.local_average=false"})["rendering"]["local_average"], false);
+  EXPECT_EQ(with({"initial.position_m=[0.001, 0, -2e-3]"})["initial"]["position_m"],
+            Json::parse("[0.001, 0.0, -0.002]"));
+  EXPECT_EQ(with({R"(environment={"type":"plane"})"})["environment"]["type"], "plane");
+  EXPECT_EQ(with({"time.steps=1e3"})["time"]["steps"], 1000);
+}
+
+TEST_F(Override, TakesWhatIsNoJsonAsText) {
+  EXPECT_EQ(with({"rendering.algorithm=mean"})["rendering"]["algorithm"], "mean");
+  EXPECT_EQ(with({R"(rendering.algorithm="mean")"})["rendering"]["algorithm"], "mean");
+  EXPECT_EQ(with({"description=a = b, c"})["description"], "a = b, c");
+  EXPECT_EQ(with({"description="})["description"], "");
+}
+
+TEST_F(Override, GivesWayToALaterOne) {
+  EXPECT_EQ(with({"time.steps=7", "time.steps=8"})["time"]["steps"], 8);
+  EXPECT_EQ(with({R"(rendering={"iterations":9})", "rendering.damping_ratio=0"})["rendering"]["iterations"], 9);
+}
+
+TEST_F(Override, OfAnUnknownPathNamesItAndTheNearest) {
+  EXPECT_EQ(refusal("rendering.stifness_N_per_m=1").find("/rendering/stifness_N_per_m: unknown field; allowed here: "),
+            0u);
+  EXPECT_NE(refusal("rendering.stifness_N_per_m=1").find("nearest valid name: \"stiffness_N_per_m\""),
+            std::string::npos);
+  EXPECT_EQ(refusal("redering.iterations=1").find("/redering: unknown field"), 0u);
+  EXPECT_EQ(refusal("rendering..iterations=1").find("/rendering/: unknown field"), 0u);
+  EXPECT_EQ(refusal(".=1").find("/: unknown field"), 0u);
+}
+
+TEST_F(Override, IsCheckedLikeTheFile) {
+  EXPECT_EQ(refusal("rendering.mass_kg=0").find("/rendering/mass_kg: got 0; allowed: a number > 0"), 0u);
+  EXPECT_EQ(refusal("rendering.mass_kg=heavy").find("/rendering/mass_kg: got \"heavy\"; allowed: a number > 0"), 0u);
+  EXPECT_EQ(refusal("rendering.mass_kg=NaN").find("/rendering/mass_kg: got \"NaN\""), 0u);
+  EXPECT_EQ(refusal("rendering.mass_kg=1e999").find("/rendering/mass_kg: got \"1e999\""), 0u);
+  EXPECT_EQ(refusal("time.duration_s=1").find("/time: got both"), 0u);
+  EXPECT_EQ(refusal("seed.x=1").find("/seed: got {\"x\":1}; allowed: an integer"), 0u);
+  EXPECT_NE(refusal(R"(rendering={"iterations":1,"iterations":2})").find("stands twice"), std::string::npos);
+}
+
+TEST_F(Override, OutsideAListNamesTheIndicesThatExist) {
+  EXPECT_EQ(refusal("environment.groups.2.count=1"),
+            "environment.groups.2.count: got list index \"2\"; allowed: 0 ... 1");
+  for (const char* override : {"environment.groups.-1=1", "environment.groups.x=1", "environment.groups.=1",
+                               "environment.groups.99999999999999999999=1", "environment.groups.0x1=1"}) {
+    EXPECT_NE(refusal(override).find("allowed: 0 ... 1"), std::string::npos);
+  }
+}
+
+TEST_F(Override, IntoAnEmptyListSaysSo) {
+  EXPECT_EQ(refusal("time.stop_when.0=leaves_hole").find("/time/stop_when: got {"), 0u);  // absent: an object is made
+  const auto error = test::input_error_of([&] { with({"environment.groups=[]", "environment.groups.0.count=1"}); });
+  ASSERT_TRUE(error);
+  EXPECT_NE(std::string(error->what()).find("allowed: none, the list is empty"), std::string::npos) << error->what();
+}
+
+TEST_F(Override, ThatIsMalformedSaysWhatIsAllowed) {
+  for (const char* override : {"", "=", "=5", "time.steps", "time"}) {
+    EXPECT_EQ(refusal(override), std::string("--set: got \"") + override +
+                                     "\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000");
+  }
+}
+
+TEST_F(Override, WithControlCharactersStillGivesOneLine) {
+  for (const char* override : {"a\nb=1", "x\ny", "environment.groups.\n=1", "rendering.algorithm=a\nb"}) {
+    EXPECT_EQ(refusal(override).find('\n'), std::string::npos);
+  }
+}
+
+TEST_F(Override, NestedDeeplyIsRefusedLikeAnyUnknownField) {
+  std::string path = "rendering";
+  for (int i = 0; i < 20'000; ++i) path += ".a";
+  EXPECT_EQ(refusal(path + "=1").find("/rendering/a: unknown field"), 0u);
+  EXPECT_NE(refusal("rendering=" + std::string(20'000, '[') + std::string(20'000, ']')).find("nested too deeply"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace hapbench

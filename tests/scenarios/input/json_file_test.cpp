@@ -1,0 +1,151 @@
+#include "scenarios/input/json_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/errors.hpp"
+
+namespace hapbench {
+namespace {
+
+std::string refusal_of(const std::string& text) {
+  SCOPED_TRACE(text.substr(0, 100));
+  const auto error = test::input_error_of([&] { parse_json(text); });
+  if (!error) return "";
+  EXPECT_EQ(error->kind(), InputError::Kind::shape);
+  return error->what();
+}
+
+std::string nested(int levels) {
+  return std::string(static_cast<std::size_t>(levels), '[') + std::string(static_cast<std::size_t>(levels), ']');
+}
+
+TEST(ParseJson, ReadsJsonAndKeepsTheOrderOfKeys) {
+  EXPECT_EQ(parse_json(" {\"b\": [1, -2.5e3, true, null, \"\\u00e4\"], \"a\": {}}\n").dump(),
+            "{\"b\":[1,-2500.0,true,null,\"\xc3\xa4\"],\"a\":{}}");
+}
+
+TEST(ParseJson, IgnoresAByteOrderMark) {
+  // RFC 8259, section 8.1: parsers may ignore it; editors on some systems write it.
+  EXPECT_EQ(parse_json("\xef\xbb\xbf{\"a\": 1}"), parse_json("{\"a\": 1}"));
+}
+
+TEST(ParseJson, NamesLineAndColumnOfASyntaxError) {
+  EXPECT_EQ(refusal_of("{\"a\": 1,}"), "is not JSON: syntax error at line 1, column 9");
+  EXPECT_EQ(refusal_of("{\n  \"a\": 1\n  \"b\": 2\n}"), "is not JSON: syntax error at line 3, column 5");
+  EXPECT_EQ(refusal_of(""), "is not JSON: syntax error at line 1, column 1");
+}
+
+TEST(ParseJson, RefusesEverythingThatIsNoJson) {
+  for (const char* text : {" ",
+                           "{",
+                           "}",
+                           "[1,]",
+                           "[,1]",
+                           "[1 2]",
+                           "{\"a\"}",
+                           "{\"a\":}",
+                           "{\"a\" 1}",
+                           "{a: 1}",
+                           "{'a': 1}",
+                           "{\"a\": 1}}",
+                           "{} {}",
+                           "// comment\n{}",
+                           "{/* */}",
+                           "NaN",
+                           "[NaN]",
+                           "[Infinity]",
+                           "[-Infinity]",
+                           "[nan]",
+                           "[+1]",
+                           "[.5]",
+                           "[1.]",
+                           "[01]",
+                           "[0x10]",
+                           "[1e]",
+                           "[--1]",
+                           "True",
+                           "nul",
+                           "\"a",
+                           "\"\\x\"",
+                           "\"\\u12\"",
+                           "\"\\ud800\"",
+                           "\"\\udc00\"",
+                           "\"a\nb\"",
+                           "\"\x01\"",
+                           "\"\xff\"",
+                           "\"\xc0\xaf\"",
+                           "\"\xed\xa0\x80\"",
+                           "\"\xf5\x80\x80\x80\"",
+                           "\xff\xfe{\0}",
+                           "\xef\xbb{}"}) {
+    EXPECT_EQ(refusal_of(text).find("is not JSON: syntax error at line "), 0u) << text;
+  }
+  EXPECT_NE(refusal_of(std::string("{\"a\0b\": 1}", 10)), "");
+  EXPECT_NE(refusal_of(std::string("{}\0", 3)), "");
+}
+
+TEST(ParseJson, RefusesNumbersBeyondDouble) {
+  EXPECT_EQ(refusal_of("{\"time\": {\"step_s\": 1e999}}"), "/time/step_s: got 1e999; allowed: finite numbers");
+  EXPECT_EQ(refusal_of("[1, -1e400]"), "/1: got -1e400; allowed: finite numbers");
+  EXPECT_LT(refusal_of("[1" + std::string(100'000, '0') + "]").size(), 200u);
+  EXPECT_EQ(parse_json("[1e308, 1e-999]"), Json::parse("[1e308, 0.0]"));
+}
+
+TEST(ParseJson, RefusesDuplicateKeysButNotEqualKeysOfDifferentObjects) {
+  EXPECT_EQ(refusal_of("{\"a\": 1, \"b\": 2, \"a\": 1}"), "/a: the key stands twice in one object; allowed: once");
+  EXPECT_EQ(refusal_of("{\"x\": [{}, {\"a\": 1, \"\\u0061\": 2}]}"),
+            "/x/1/a: the key stands twice in one object; allowed: once");
+  EXPECT_NO_THROW(parse_json("{\"a\": {\"a\": [{\"a\": 1}, {\"a\": 1}]}, \"b\": {\"a\": 1}}"));
+}
+
+TEST(ParseJson, RefusesDeepNestingWithoutDescending) {
+  EXPECT_NO_THROW(parse_json(nested(64)));
+  EXPECT_NE(refusal_of(nested(65)).find("nested too deeply; allowed: 64 levels"), std::string::npos);
+  EXPECT_NE(refusal_of(nested(200'000)).find("nested too deeply"), std::string::npos);
+  EXPECT_NE(refusal_of(std::string(10'000'000, '[')).find("nested too deeply"), std::string::npos);
+  std::string objects;
+  for (int i = 0; i < 200'000; ++i) objects += "{\"a\":";
+  EXPECT_NE(refusal_of(objects).find("nested too deeply"), std::string::npos);
+}
+
+TEST(ParseJson, RefusesObjectsWithMoreThanTenThousandKeys) {
+  const auto object_with = [](int keys) {
+    std::string text = "{";
+    for (int i = 0; i < keys; ++i) text += (i > 0 ? ",\"k" : "\"k") + std::to_string(i) + "\":0";
+    return text + "}";
+  };
+  EXPECT_EQ(parse_json(object_with(10'000)).size(), 10'000u);
+  EXPECT_NE(refusal_of(object_with(10'001)).find("more than 10000 keys"), std::string::npos);
+}
+
+TEST(ReadTextFile, RefusesWhatIsNoFile) {
+  const test::TemporaryDirectory directory;
+  const auto refusal = [](const std::filesystem::path& file) {
+    const auto error = test::input_error_of([&] { read_text_file(file, 100); });
+    return error ? std::string(error->what()) : "";
+  };
+  EXPECT_EQ(refusal(directory.path()), "is a directory, not a file");
+  EXPECT_EQ(refusal(directory / "missing"), "cannot be read: No such file or directory");
+  test::write_plainly(directory / "file", "x");
+  EXPECT_EQ(refusal(directory / "file/below"), "cannot be read: Not a directory");
+  EXPECT_EQ(refusal(directory / std::string("file\0more", 9)), "cannot be read: the name has a zero byte");
+  EXPECT_EQ(refusal(std::string(5000, 'a')), "cannot be read: File name too long");
+}
+
+TEST(ReadTextFile, ReadsUpToItsLimitAndNoFurther) {
+  const test::TemporaryDirectory directory;
+  const std::string contents(1 << 20, 'x');
+  test::write_plainly(directory / "file", contents);
+  EXPECT_EQ(read_text_file(directory / "file", contents.size()), contents);
+  const auto refusal = test::input_error_of([&] { read_text_file(directory / "file", contents.size() - 1); });
+  ASSERT_TRUE(refusal);
+  EXPECT_NE(refusal->problem().find("is larger than"), std::string::npos);
+  // A device without end stops at the limit too.
+  EXPECT_TRUE(test::input_error_of([] { read_text_file("/dev/zero", 1 << 20); }));
+}
+
+}  // namespace
+}  // namespace hapbench

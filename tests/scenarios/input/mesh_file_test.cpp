@@ -1,0 +1,217 @@
+#include "scenarios/input/mesh_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/errors.hpp"
+#include "tests/scenarios/support/mesh_texts.hpp"
+#include "tests/support/meshes.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct MeshPoints {
+  std::vector<SurfacePoint> points;
+  std::vector<std::string> warnings;
+};
+
+class MeshFile : public testing::Test {
+ protected:
+  MeshPoints read(const std::string& name, const std::string& text, const MeshSampling& sampling = {}) const {
+    test::write_plainly(directory_ / name, text);
+    return {read_mesh_points(directory_ / name, sampling), mesh_warnings(directory_ / name, sampling)};
+  }
+
+  /// The message behind the file's name.
+  std::string refusal_of(const std::string& name, const std::string& text, const MeshSampling& sampling = {}) const {
+    const auto error = test::input_error_of([&] { read(name, text, sampling); });
+    if (!error) return "";
+    EXPECT_EQ(warnings_refusal_of(name, sampling), error->what()) << "found without resampling, too";
+    const std::string file = (directory_ / name).string(), message = error->what();
+    EXPECT_EQ(message.substr(0, file.size()), file);
+    return message.substr(file.size());
+  }
+
+  std::string warnings_refusal_of(const std::string& name, const MeshSampling& sampling) const {
+    const auto error = test::input_error_of([&] { mesh_warnings(directory_ / name, sampling); });
+    return error ? error->what() : "";
+  }
+
+  /// The one warning behind the file's name.
+  std::string warning_of(const std::string& name, const std::string& text) const {
+    const auto warnings = read(name, text).warnings;
+    EXPECT_EQ(warnings.size(), 1u);
+    return warnings.empty() ? "" : warnings[0].substr((directory_ / name).string().size());
+  }
+
+  test::TemporaryDirectory directory_;
+};
+
+/// So that formats that keep no order compare too.
+std::vector<Vec3> sorted_positions(const std::vector<SurfacePoint>& points) {
+  std::vector<Vec3> positions;
+  for (const SurfacePoint& p : points) positions.push_back(p.position);
+  std::sort(positions.begin(), positions.end(), [](const Vec3& a, const Vec3& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  });
+  return positions;
+}
+
+TEST_F(MeshFile, IsReadFromEveryFormatAndEncoding) {
+  // Coordinates that single precision holds, so that every file holds the same.
+  TriangleSoup soup = test::sphere(1.0, 2);
+  for (Vec3& v : soup.vertices) v = (1024.0 * v).array().round() / 1024.0;
+  const auto expected = vertices_with_normals(mesh_from_triangles(soup).mesh);
+  for (const auto& [name, text] : test::mesh_texts(soup)) {
+    SCOPED_TRACE(name);
+    const MeshPoints mesh = read(name, text);
+    EXPECT_TRUE(mesh.warnings.empty());
+    ASSERT_EQ(mesh.points.size(), 66u);
+    EXPECT_EQ(sorted_positions(mesh.points), sorted_positions(expected));
+    for (const SurfacePoint& p : mesh.points) {
+      EXPECT_GT(p.normal.dot(p.position), 0.9);
+      EXPECT_NEAR(p.normal.norm(), 1.0, 1e-15);
+    }
+    if (name.ends_with(".stl")) continue;  // a soup in the order of its triangles
+    for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(mesh.points[i].normal, expected[i].normal);
+  }
+}
+
+TEST_F(MeshFile, IsReadInSinglePrecisionAndScaledInDouble) {
+  TriangleSoup soup = test::cube();
+  for (Vec3& v : soup.vertices) v *= 1.0 / 3.0;
+  for (const auto& [name, text] : test::mesh_texts(soup)) {
+    for (const SurfacePoint& p : read(name, text, {0.001, {}}).points) {
+      for (const double c : p.position) EXPECT_EQ(std::abs(c), 0.001 * static_cast<double>(1.0f / 3.0f)) << name;
+    }
+  }
+}
+
+TEST_F(MeshFile, IsReadWhateverElseItsTextHolds) {
+  const std::string tetrahedron = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+  const std::vector<test::NamedText> texts = {
+      {"a.obj",
+       "mtllib none.mtl\r\nv 0 0 0 1\r\nv 1 0 0\r\n\tv +0 1e0 -0.0 # comment\r\nv 0 0 1\r\nvt 0 0\r\nvn 0 0 "
+       "1\r\nusemtl x\r\n"
+       "f 1//1 3//1 2//1\r\nf 1/1 2/1 4/1\r\nf -4/1/1 -1/1/1 -2/1/1\r\nf 2 3 4"},
+      {"counts_in_header.off", "OFF 4 4 6\n" + tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3"},
+      {"comments.off",
+       "OFF # header\n# nothing\n\n4 4\n" + tetrahedron + "3 0 2 1 255 0 0\n\n3 0 1 3 # face\n3 0 3 2 1\n3 1 2 3\n"},
+      {"normals.off",
+       "NOFF\n4 4 0\n0 0 0 1 0 0\n1 0 0 1 0 0\n0 1 0 1 0 0\n0 0 1 1 0 0\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"},
+      {"Capitals.STL",
+       "SOLID outer part\nFACET NORMAL 0 0 0\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 0 1E0 0\nVERTEX 1 0 "
+       "0\nENDLOOP\nENDFACET\n"
+       " facet normal 0 0 0\n  Outer loop\n   vertex 0 0 0\n\n   vertex 1 0 0\n   vertex 0 0 1\n  endloop\n endfacet\n"
+       "outer loop\nvertex 0 0 0\nvertex 0 0 1\nvertex 0 1 0\nendloop\n"
+       "outer loop\nvertex 1 0 0\nvertex 0 1 0\nvertex 0 0 1\nendloop\n"},
+      {"more.ply",
+       "ply\nformat ascii 1.0\ncomment x\nelement sensor 1\nproperty int id\nelement vertex 4\nproperty uchar red\n"
+       "property float32 z\nproperty float64 x\nproperty float y\nelement face 4\nproperty list uint8 uint "
+       "vertex_index\n"
+       "property uchar flag\nelement edge 1\nproperty list uchar int whatever\nend_header\n"
+       "7\n9 0 0 0\n9 0 1 0\n9 0 0 1\n9 1 0 0\n3 0 2 1 5\n3 0 1 3 5\n3 0 3 2 5\n3 1 2 3 5\n1 1"}};
+  for (const auto& [name, text] : texts) {
+    SCOPED_TRACE(name);
+    const MeshPoints mesh = read(name, text);
+    EXPECT_TRUE(mesh.warnings.empty());
+    EXPECT_EQ(sorted_positions(mesh.points), (std::vector<Vec3>{{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, {1, 0, 0}}));
+  }
+}
+
+TEST_F(MeshFile, CutsPolygonsIntoTriangles) {
+  const std::string cube =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
+      "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+  const MeshPoints mesh = read("cube.obj", cube);
+  EXPECT_TRUE(mesh.warnings.empty());
+  EXPECT_EQ(mesh.points.size(), 8u);
+}
+
+TEST_F(MeshFile, WarnsOnceAboutWhatIsOdd) {
+  const TriangleSoup cube = test::cube();
+  TriangleSoup odd = cube;
+  odd.triangles.pop_back();
+  EXPECT_EQ(warning_of("open.obj", test::obj_text(odd)), ": the mesh is open: 3 boundary edges");
+  odd = cube;
+  std::swap(odd.triangles[4][0], odd.triangles[4][1]);
+  EXPECT_EQ(warning_of("wound.off", test::off_text(odd)),
+            ": faces turned, which were wound against their neighbours: 1");
+  EXPECT_EQ(warning_of("inside_out.ply", test::ply_text(test::reversed(cube))),
+            ": closed parts turned, which were inside out: 1");
+  odd = cube;
+  odd.triangles.push_back({0, 1, 1});
+  EXPECT_EQ(warning_of("degenerate.off", test::off_text(odd)),
+            ": faces left out, two of their corners being the same: 1");
+}
+
+TEST_F(MeshFile, IsResampledToTheSpacing) {
+  const std::string text = test::stl_text(test::cube(5.0));
+  const double spacing = 0.0005;
+  const MeshPoints mesh = read("cube.stl", text, {0.001, spacing});
+  // Six sides of 20 x 20 cubes, with half ones at the edges: 21 x 21 at most, and a point in nearly each.
+  EXPECT_LE(mesh.points.size(), 6u * 21 * 21);
+  EXPECT_GE(mesh.points.size(), 6u * 20 * 20 * 9 / 10);
+  for (const SurfacePoint& p : mesh.points) {
+    EXPECT_NEAR(p.position.cwiseAbs().maxCoeff(), 0.005, 1e-18) << "on the surface";
+    // No gaps: the next point is in the same or a neighbouring cube, or was thinned out from there.
+    const auto near = std::count_if(mesh.points.begin(), mesh.points.end(), [&](const SurfacePoint& q) {
+      return (q.position - p.position).cwiseAbs().maxCoeff() <= 2 * spacing;
+    });
+    EXPECT_GE(near, 4);
+  }
+}
+
+TEST_F(MeshFile, GivesTheSamePointsEveryTime) {
+  const std::string text = test::obj_text(test::torus(20, 11));
+  const MeshPoints first = read("torus.obj", text, {0.001, 0.0002}), again = read("torus.obj", text, {0.001, 0.0002});
+  ASSERT_EQ(first.points.size(), again.points.size());
+  for (std::size_t i = 0; i < first.points.size(); ++i) {
+    EXPECT_EQ(first.points[i].position, again.points[i].position);
+    EXPECT_EQ(first.points[i].normal, again.points[i].normal);
+  }
+}
+
+TEST_F(MeshFile, IsRefusedWhenTooManyPointsAreAskedFor) {
+  const std::string text = test::obj_text(test::cube());
+  EXPECT_EQ(refusal_of("cube.obj", text, {1.0, 1e-5}),
+            ": spacing_m 1e-05 would need more than 2e+07 points; allowed: a wider spacing");
+  EXPECT_NE(refusal_of("cube.obj", text, {1.0, 5e-324}).find("would need more than"), std::string::npos);
+  EXPECT_NE(refusal_of("cube.obj", text, {1e6, {}}).find("is \"scale\" right?"), std::string::npos);
+}
+
+TEST_F(MeshFile, IsRefusedWhenItIsCutAnywhere) {
+  const TriangleSoup soup = test::sphere(1.0, 1);
+  for (const auto& [name, text] : test::mesh_texts(soup)) {
+    // Text may lose its last digit or line and still be text; half a file never makes a closed surface.
+    const bool binary = name.find("text") == std::string::npos;
+    const std::size_t most = binary ? text.size() - 1 : text.size() / 2;
+    for (std::size_t size = most; size > 0; size -= std::min(size, text.size() / 7 + 1)) {
+      SCOPED_TRACE(name + " cut to " + std::to_string(size));
+      try {
+        EXPECT_FALSE(read(name, text.substr(0, size)).warnings.empty());
+        EXPECT_FALSE(binary);
+      } catch (const InputError& error) {
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+      }
+    }
+  }
+}
+
+TEST_F(MeshFile, LeavesNothingBehindAndPrintsNothing) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  // OpenMesh complains about the faces of this one.
+  EXPECT_NE(refusal_of("bad.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n"), "");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(directory_.entries(), std::vector<std::string>{"bad.off"});
+}
+
+}  // namespace
+}  // namespace hapbench

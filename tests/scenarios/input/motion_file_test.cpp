@@ -1,0 +1,62 @@
+#include "scenarios/input/motion_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/errors.hpp"
+
+namespace hapbench {
+namespace {
+
+const std::string kHeader = "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n";
+
+class MotionFile : public testing::Test {
+ protected:
+  RecordedMotion read(const std::string& rows) const {
+    test::write_plainly(file_, kHeader + rows);
+    return read_motion(file_);
+  }
+  std::string refusal_of(const std::string& rows) const {
+    SCOPED_TRACE(rows);
+    const auto error = test::input_error_of([&] { read(rows); });
+    return error ? std::string(error->what()).substr(file_.string().size()) : "";
+  }
+
+  test::TemporaryDirectory directory_;
+  std::filesystem::path file_ = directory_ / "stroke.csv";
+};
+
+TEST_F(MotionFile, IsPlayedBackLinearly) {
+  const RecordedMotion motion = read("0,0,0,0,0,0,-1\n2,1,2,4,0,0,-1\n");
+  EXPECT_FALSE(motion.position_is_free());
+  EXPECT_EQ(motion.position_at(0.5), Vec3(0.25, 0.5, 1.0));
+  EXPECT_EQ(motion.position_at(-1.0), Vec3(0, 0, 0));
+  EXPECT_EQ(motion.position_at(3.0), Vec3(1, 2, 4));
+}
+
+TEST_F(MotionFile, HasItsAxesNormalised) {
+  for (const char* axis : {"0,0,-1", "0,0,-1e-9", "0,0,-7", "0,0,-1e11"}) {
+    EXPECT_EQ(read(std::string("0,0,0,0,") + axis + "\n").axis_at(0.0), Vec3(0, 0, -1)) << axis;
+  }
+}
+
+TEST_F(MotionFile, NeedsASample) {
+  EXPECT_EQ(refusal_of(""), ", sample 1: no samples; allowed: at least one");
+}
+
+TEST_F(MotionFile, NeedsIncreasingTimes) {
+  EXPECT_EQ(refusal_of("0,0,0,0,0,0,-1\n0,0,0,0,0,0,-1\n"),
+            ", sample 2: got time 0 after 0; allowed: strictly increasing times");
+  EXPECT_EQ(refusal_of("0,0,0,0,0,0,-1\n1,0,0,0,0,0,-1\n0.5,0,0,0,0,0,-1\n"),
+            ", sample 3: got time 0.5 after 1; allowed: strictly increasing times");
+}
+
+TEST_F(MotionFile, NeedsAxesThatAreDirections) {
+  for (const char* axis : {"0,0,0", "1e-13,0,0", "0,1e300,0", "1e200,1e200,1e200"}) {
+    EXPECT_EQ(
+        refusal_of(std::string("0,0,0,0,0,0,1\n1,0,0,0,") + axis + "\n").find(", sample 2: got an axis of length"), 0u);
+  }
+}
+
+}  // namespace
+}  // namespace hapbench

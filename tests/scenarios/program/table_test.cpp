@@ -1,0 +1,38 @@
+#include "scenarios/program/table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace hapbench {
+namespace {
+
+TEST(Table, AlignsWordsLeftAndNumbersRightUnderTheirTitles) {
+  Table table({{"name", false}, {"n"}, {"unit", false}});
+  table.add({"a", "1", "m"});
+  table.add({"longer", "1000", ""});
+  EXPECT_EQ(table.text(),
+            "name       n  unit\n"
+            "------  ----  ----\n"
+            "a          1  m\n"
+            "longer  1000\n");
+}
+
+TEST(Table, WithoutRowsIsItsHead) {
+  EXPECT_EQ(Table({{"a"}, {"bc", false}}).text(), "a  bc\n-  --\n");
+}
+
+TEST(SignificantDigits, AreRounded) {
+  EXPECT_EQ(significant(1.0 / 3.0, 3), "0.333");
+  EXPECT_EQ(significant(433731.6, 6), "433732");
+  EXPECT_EQ(significant(1.6e6, 6), "1.6e+06");
+  EXPECT_EQ(significant(0.0, 4), "0");
+}
+
+TEST(SignificantDigits, OfWhatHasNoValueAreADash) {
+  EXPECT_EQ(significant(std::numeric_limits<double>::quiet_NaN(), 3), "-");
+  EXPECT_EQ(significant(std::numeric_limits<double>::infinity(), 3), "-");
+}
+
+}  // namespace
+}  // namespace hapbench

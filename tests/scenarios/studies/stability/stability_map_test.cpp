@@ -1,0 +1,164 @@
+#include "scenarios/studies/stability/stability_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "algorithms/registry.hpp"
+#include "scenarios/studies/stability/stability_limits.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr JobOptions kTwoThreads{2, ""};
+
+struct MapOfAlgorithm {
+  const StabilityMap* map;
+  std::string algorithm;
+};
+
+void PrintTo(const MapOfAlgorithm& instance, std::ostream* out) {
+  *out << instance.map->name << " " << instance.algorithm;
+}
+
+std::vector<MapOfAlgorithm> spring_maps() {
+  std::vector<MapOfAlgorithm> all;
+  for (const StabilityMap& map : stability_maps()) {
+    if (map.no_theory != nullptr) continue;
+    for (const AlgorithmEntry& entry : algorithms()) all.push_back({&map, entry.info->name});
+  }
+  return all;
+}
+
+class SpringMap : public testing::TestWithParam<MapOfAlgorithm> {};
+INSTANTIATE_TEST_SUITE_P(Every, SpringMap, testing::ValuesIn(spring_maps()), [](const auto& instance) {
+  return std::string(instance.param.map->name) + "_" + instance.param.algorithm;
+});
+
+TEST_P(SpringMap, HasItsEdgeWithinTwoPercentOfTheAnalyticLimit) {
+  const MapResult result = stability_map(*GetParam().map, {GetParam().algorithm}, 5, kTwoThreads);
+  ASSERT_EQ(result.boundary.size(), 5u);
+  for (const BoundaryPoint& point : result.boundary) {
+    // Bilateral springs in constant contact: every law is linear there, so the theory applies everywhere.
+    ASSERT_TRUE(point.analytic) << point.no_theory;
+    EXPECT_LE(std::abs(*point.difference()), 0.02)
+        << "x = " << point.x << ": " << point.simulation << " instead of " << *point.analytic;
+  }
+}
+
+TEST_P(SpringMap, DivergesWhereTheMarginIsNegativeAndNowhereElse) {
+  const MapResult result = stability_map(*GetParam().map, {GetParam().algorithm}, 5, kTwoThreads);
+  ASSERT_EQ(result.points.size(), 25u);
+  for (const MapPoint& point : result.points) {
+    ASSERT_TRUE(point.margin);
+    // At 1 % from the limit and more, the growth of kMapSteps steps cannot be overlooked.
+    if (std::abs(*point.margin) < 0.04) continue;
+    EXPECT_EQ(point.motion == MotionClass::diverged, *point.margin < 0.0) << point.x << " " << point.y;
+  }
+}
+
+/// lambda_max(S) in closed form, where the law's weights are.
+TEST(StabilityMap, ReportsTheTensorOfTheRun) {
+  const auto lambdas = [](const char* map, const char* algorithm, auto expected) {
+    const MapResult result = stability_map(*find_stability_map(map), {algorithm}, 4, kTwoThreads);
+    for (const MapPoint& point : result.points) {
+      EXPECT_NEAR(point.lambda, expected(point.x), 1e-12 * (1.0 + expected(point.x))) << algorithm << " " << point.x;
+    }
+  };
+  lambdas("contacts", "summation", [](double n) { return n; });
+  lambdas("contacts", "mean", [](double) { return 1.0; });
+  lambdas("contacts", "shaped_stiffness", [](double) { return 1.0; });
+  lambdas("contacts", "virtual_coupling", [](double n) { return n / (1.0 + n); });  // in series, K_vc = K
+  // Two unit vectors at pi - angle: the eigenvalues of u u^T + v v^T are 1 ± cos(angle).
+  lambdas("wedge", "summation", [](double angle) { return 1.0 + std::abs(std::cos(angle)); });
+  lambdas("wedge", "mean", [](double angle) { return 0.5 + 0.5 * std::abs(std::cos(angle)); });
+}
+
+TEST(StabilityMap, WithoutDampingVibratesUpToTheLimit) {
+  const MapResult result = stability_map(*find_stability_map("damping_ratio"), {"summation"}, 6, kTwoThreads);
+  for (const MapPoint& point : result.points) {
+    if (point.x == 0.0) {
+      EXPECT_EQ(point.motion, point.y < 1.6e6 ? MotionClass::vibrating : MotionClass::diverged) << point.y;
+    }
+  }
+  EXPECT_NEAR(*result.boundary[0].analytic, 1.6e6, 1e-3);  // 4 M / dt^2
+}
+
+TEST(StabilityMap, OfTheDeviceHasAnEdgeButNoTheory) {
+  const MapResult result = stability_map(*find_stability_map("device"), {"summation"}, 3, kTwoThreads);
+  for (const BoundaryPoint& point : result.boundary) {
+    EXPECT_FALSE(point.analytic);
+    EXPECT_FALSE(point.difference());
+    EXPECT_NE(point.no_theory, "");
+  }
+  for (const MapPoint& point : result.points) EXPECT_FALSE(point.margin);
+  // A soft hand on an undelayed servo comes to rest; a servo eight samples late does so for no hand.
+  EXPECT_EQ(result.points.front().motion, MotionClass::stable);
+  EXPECT_GT(result.boundary[0].simulation, 100.0);
+  EXPECT_EQ(result.boundary[1].simulation, 0.0);
+}
+
+class IntegratorMap : public testing::TestWithParam<Integrator> {};
+INSTANTIATE_TEST_SUITE_P(Every, IntegratorMap, testing::ValuesIn(kIntegrators),
+                         [](const auto& instance) { return std::string(integrator_name(instance.param)); });
+
+/// Bilateral springs are linear under every integrator, so its runs must end where an eigenvalue of its step leaves the
+/// unit circle, and never where none does.
+TEST_P(IntegratorMap, HasItsEdgeWithinTwoPercentOfTheory) {
+  for (const auto& [map, algorithm] : {std::pair{"time_step", "shaped_stiffness"},
+                                       {"damping_ratio", "shaped_stiffness"},
+                                       {"wedge", "mean"},
+                                       {"wedge", "virtual_coupling"},
+                                       {"contacts", "summation"}}) {
+    SCOPED_TRACE(std::string(map) + " " + algorithm);
+    const MapResult result = stability_map(*find_stability_map(map), {algorithm, GetParam()}, 9, kTwoThreads);
+    for (const BoundaryPoint& point : result.boundary) {
+      ASSERT_TRUE(point.analytic) << map;
+      EXPECT_LE(std::abs(*point.difference()), 0.02)
+          << map << ", x = " << point.x << ": " << point.simulation << " instead of " << *point.analytic;
+    }
+    for (const MapPoint& point : result.points) {
+      EXPECT_EQ(point.margin.has_value(), GetParam() == Integrator::leapfrog);
+    }
+  }
+}
+
+TEST(StabilityMap, KnowsTheLimitsOfOtherIntegratorsInClosedForm) {
+  const StabilityMap& map = *find_stability_map("damping_ratio");
+  const auto undamped = [&](Integrator integrator) {
+    return *stability_map(map, {"mean", integrator}, 2, kTwoThreads).boundary[0].analytic;
+  };
+  EXPECT_NEAR(undamped(Integrator::velocity_verlet), 1.6e6, 1e-3);  // 4 M / dt^2
+  EXPECT_NEAR(undamped(Integrator::rk4), 3.2e6, 1e-3);              // 8 M / dt^2
+  EXPECT_EQ(undamped(Integrator::implicit_euler), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(undamped(Integrator::implicit_midpoint), std::numeric_limits<double>::infinity());
+}
+
+TEST(StabilityMap, DoesNotDependOnTheNumberOfThreads) {
+  const StabilityMap& map = *find_stability_map("wedge");
+  const MapResult one = stability_map(map, {"exact_shaping"}, 4, {1, ""}),
+                  four = stability_map(map, {"exact_shaping"}, 4, {4, ""});
+  for (std::size_t i = 0; i < one.points.size(); ++i) {
+    EXPECT_EQ(one.points[i].motion, four.points[i].motion);
+    EXPECT_EQ(one.points[i].lambda, four.points[i].lambda);
+    EXPECT_EQ(one.points[i].margin, four.points[i].margin);
+  }
+  for (std::size_t i = 0; i < one.boundary.size(); ++i) {
+    EXPECT_EQ(one.boundary[i].simulation, four.boundary[i].simulation);
+  }
+}
+
+TEST(MapAxis, CoversItsRange) {
+  for (const StabilityMap& map : stability_maps()) {
+    for (const MapAxis& axis : {map.x, map.y}) {
+      EXPECT_NEAR(axis.at(0, 7), axis.low, 1e-12 * axis.low) << axis.name;
+      EXPECT_NEAR(axis.at(6, 7), axis.high, 1e-12 * axis.high) << axis.name;
+      for (std::size_t i = 1; i < 7; ++i) EXPECT_GT(axis.at(i, 7), axis.at(i - 1, 7)) << axis.name;
+      for (std::size_t i = 0; axis.whole && i < 7; ++i) EXPECT_EQ(axis.at(i, 7), std::round(axis.at(i, 7)));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hapbench

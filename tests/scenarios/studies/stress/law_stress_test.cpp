@@ -1,0 +1,137 @@
+#include "scenarios/studies/stress/law_stress.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "algorithms/registry.hpp"
+#include "sim/contact/shell_query.hpp"
+#include "tests/support/scale.hpp"
+
+namespace hapbench {
+namespace {
+
+TEST(LawStress, NoForceIsInfiniteOrOutOfBound) {
+  // A fifth of the million; scripts/test --all sends the million.
+  const std::uint64_t count = test::cases(200'000);
+  const auto all = stress_laws(count, 1, {2, ""});
+  ASSERT_EQ(all.size(), algorithms().size());
+  for (const StressCounts& c : all) {
+    EXPECT_EQ(c.sets, count) << c.algorithm;
+    EXPECT_GT(c.in_contact, count * 9 / 10) << c.algorithm;
+    EXPECT_EQ(c.non_finite, 0u) << c.algorithm << ", first in set " << c.first_bad;
+    EXPECT_EQ(c.out_of_bound, 0u) << c.algorithm << ", first in set " << c.first_bad;
+    // n_ext overflows wherever there is a reduction.
+    EXPECT_EQ(c.points_dropped > 0, find_algorithm(c.algorithm)->may_reduce) << c.algorithm;
+  }
+}
+
+TEST(LawStress, ReachesTheBoundsThatCanBeReached) {
+  // Parallel springs of one depth: all of the sum, of the mean, of a shaped direction; coupled ones, s / (1 + s^2) at s
+  // = 1.
+  for (const StressCounts& c : stress_laws(test::cases(20'000), 2, {2, ""})) {
+    if (c.algorithm == "tandpasta" || c.algorithm == "original_averaging") continue;  // worst cases of rounding
+    if (c.algorithm == "proxy") continue;  // its bound is how far it can move in a step, which nothing makes it do
+    EXPECT_GT(c.largest_share, 0.9) << c.algorithm;
+    EXPECT_LE(c.largest_share, 1.0 + 1e-9) << c.algorithm;
+  }
+}
+
+TEST(LawStress, DoesNotDependOnTheNumberOfThreads) {
+  const auto one = stress_laws(3500, 7, {1, ""}), four = stress_laws(3500, 7, {4, ""});
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].sets, 3500u);
+    EXPECT_EQ(one[i].in_contact, four[i].in_contact);
+    EXPECT_EQ(one[i].points_dropped, four[i].points_dropped);
+    EXPECT_EQ(one[i].largest_force, four[i].largest_force);
+    EXPECT_EQ(one[i].largest_share, four[i].largest_share);
+  }
+}
+
+TEST(ForceBound, HoldsForSpringsOfEqualDepthInClosedForm) {
+  RenderingConfig config;
+  const auto bound = [&](const char* algorithm, std::size_t n) {
+    config.algorithm = algorithm;
+    return force_bound(config, Tool{}, n, 1.0);
+  };
+  for (const std::size_t n : {1u, 2u, 10u, 200u}) {
+    const auto points = static_cast<double>(n);
+    EXPECT_EQ(bound("summation", n), points);  // n parallel springs
+    EXPECT_EQ(bound("mean", n), 1.0);
+    EXPECT_GE(bound("virtual_coupling", n), points / (1.0 + points));  // n parallel springs in series with one
+    EXPECT_GE(bound("shaped_stiffness", n), 1.0);
+    EXPECT_LE(bound("shaped_stiffness", n), 3.0);
+  }
+  // A proxy is not bounded by a depth but by how far it moves: 64 passes of a fifth of the radius, 0.5 mm.
+  EXPECT_DOUBLE_EQ(bound("proxy", 1), 64 * 0.2 * 0.0005);
+  config.iterations = 0;
+  EXPECT_EQ(bound("shaped_stiffness", 50), 50.0);  // summation
+}
+
+/// What the families promise, over sets that the tool touches.
+class ContactSets : public testing::Test {
+ protected:
+  static ContactBuffer contacts_of(const ContactSet& set, const PointShell& shell) {
+    ShellQuery query(shell, set.tool);
+    ContactBuffer contacts(query.capacity());
+    query.contacts_at(set.pose, contacts);
+    return contacts;
+  }
+};
+
+TEST_F(ContactSets, HoldTheDegenerateCasesOfTheirNames) {
+  std::map<std::string, int> seen;
+  for (std::uint64_t i = 0; i < 20'000; ++i) {
+    const ContactSet set = stress_set(3, i);
+    ASSERT_FALSE(set.points.empty());
+    ASSERT_LE(set.points.size(), kMostContacts);
+    const PointShell shell(set.points, 0.0);
+    const ContactBuffer contacts = contacts_of(set, shell);
+    if (contacts.empty()) continue;
+    ++seen[set.family];
+    if (contacts.size() == 1) ++seen["one point"];
+    if (set.tool.length < 1e-11) ++seen["tiny"];
+    if (set.tool.length > 1e2) ++seen["huge"];
+    if (set.rendering.reduction && set.points.size() > set.rendering.reduction->max_points) ++seen["overflow"];
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+      const double length = contacts.normal(k).norm();
+      ASSERT_TRUE(length == 0.0 || std::abs(length - 1.0) < 1e-12);
+      if (length == 0.0) ++seen["zero normal"];
+      const Vec3 x = contacts.point(k) - set.pose.position;
+      if (x == Vec3::Zero()) ++seen["tip centre"];
+      if ((x - x.dot(set.pose.axis) * set.pose.axis).norm() <= 1e-12 * set.tool.radius) ++seen["on the axis"];
+    }
+    for (std::size_t k = 1; k < contacts.size(); ++k) {
+      if (contacts.point(k) == contacts.point(k - 1)) ++seen["coincident"];
+      if (contacts.normal(k) == -contacts.normal(k - 1) && contacts.normal(k) != Vec3::Zero()) ++seen["opposite"];
+    }
+  }
+  for (const char* family : contact_set_families()) EXPECT_GT(seen[family], 1000) << family;
+  for (const char* what : {"one point", "tiny", "huge", "overflow", "zero normal", "tip centre", "on the axis",
+                           "coincident", "opposite"}) {
+    EXPECT_GT(seen[what], 100) << what;
+  }
+}
+
+TEST_F(ContactSets, OfDepthZeroAreAmongThem) {
+  RenderingConfig config;
+  config.algorithm = "summation";
+  config.depth_model = "shortest_distance";
+  int without_depth = 0;
+  for (std::uint64_t i = 0; i < 5'000; ++i) {
+    const ContactSet set = stress_set(4, i);
+    const PointShell shell(set.points, 0.0);
+    ShellQuery query(shell, set.tool);
+    ContactBuffer contacts(query.capacity());
+    query.contacts_at(set.pose, contacts);
+    if (contacts.empty()) continue;
+    find_depth_model("shortest_distance")->make()->evaluate(set.tool, set.pose, contacts);
+    for (std::size_t k = 0; k < contacts.size(); ++k) without_depth += contacts.depth[k] == 0.0;
+  }
+  EXPECT_GT(without_depth, 100);
+}
+
+}  // namespace
+}  // namespace hapbench

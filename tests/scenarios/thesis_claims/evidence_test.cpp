@@ -1,0 +1,52 @@
+#include "scenarios/thesis_claims/evidence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/errors.hpp"
+
+/// The files that claims are judged by.
+namespace hapbench {
+namespace {
+
+class ResultFile : public testing::Test {
+ protected:
+  std::map<std::string, std::vector<double>> table_of(const std::string& text) {
+    std::filesystem::create_directories(directory_ / "scene");
+    test::write_plainly(directory_ / "scene/trajectory.csv", text);
+    const ResultFiles files(directory_.path(), [this](const std::string& name) { asked_for_ = name; });
+    return files.table("scene", "trajectory.csv");
+  }
+
+  test::TemporaryDirectory directory_;
+  std::string asked_for_;
+};
+
+TEST_F(ResultFile, IsReadByColumn) {
+  const auto table = table_of("time_s,outcome,force_N\n0,completes,1.5\n0.5,,\n");
+  EXPECT_EQ(asked_for_, "scene");
+  ASSERT_EQ(table.size(), 3u);
+  EXPECT_EQ(table.at("time_s"), (std::vector<double>{0.0, 0.5}));
+  EXPECT_EQ(table.at("force_N")[0], 1.5);
+  EXPECT_TRUE(std::isnan(table.at("force_N")[1]));
+  EXPECT_TRUE(std::isnan(table.at("outcome")[0]));
+}
+
+TEST_F(ResultFile, WithARowThatIsCutOffIsRefusedAndNotPassedOver) {
+  for (const char* text : {"a,b\n1,2\n3\n", "a,b\n1,2\n3,4,5\n"}) {
+    const auto error = test::input_error_of([&] { table_of(text); });
+    ASSERT_TRUE(error);
+    EXPECT_NE(std::string(error->what()).find("trajectory.csv"), std::string::npos) << error->what();
+    EXPECT_NE(std::string(error->what()).find("line 3"), std::string::npos) << error->what();
+    EXPECT_NE(std::string(error->what()).find("allowed: 2"), std::string::npos) << error->what();
+  }
+}
+
+TEST_F(ResultFile, ThatIsEmptyIsRefused) {
+  EXPECT_TRUE(test::input_error_of([&] { table_of(""); }));
+}
+
+}  // namespace
+}  // namespace hapbench

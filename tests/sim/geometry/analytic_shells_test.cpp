@@ -1,0 +1,202 @@
+#include "sim/geometry/analytic_shells.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "sim/core/random.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+// Random sizes, most of which are no multiple of the spacing.
+Hole2d random_hole(Random& random) {
+  return {random.uniform(1e-4, 2e-3), random.uniform(1e-4, 1e-2), random.uniform(2e-5, 5e-4),
+          random.uniform(1e-4, 4e-3)};
+}
+Plane random_plane(Random& random) {
+  return {random.uniform(1e-4, 5e-3), random.uniform(5e-5, 5e-4)};
+}
+Slot random_slot(Random& random) {
+  return {random.uniform(1e-4, 2e-3), random.uniform(1e-4, 4e-3), random.uniform(1e-4, 4e-3),
+          random.uniform(5e-5, 5e-4)};
+}
+
+// Longest allowed distance of neighbours: the spacing, 1e-9 of it forgiven by design, and the rounding of two
+// coordinates of at most 1 cm.
+double longest(double spacing) {
+  return spacing * (1.0 + 1e-9) + 4 * kEps * 0.01;
+}
+
+template <class Surface>
+void expect_counted_and_unit(const Surface& surface) {
+  const auto points = surface_points(surface);
+  EXPECT_EQ(static_cast<double>(points.size()), point_count(surface));
+  for (const SurfacePoint& point : points) EXPECT_NEAR(point.normal.norm(), 1.0, 2 * kEps);
+}
+
+TEST(AnalyticShells, PointCountIsTheNumberOfPointsAndNormalsAreUnit) {
+  Random random(1);
+  for (int i = 0; i < 50; ++i) {
+    expect_counted_and_unit(random_hole(random));
+    expect_counted_and_unit(random_plane(random));
+    expect_counted_and_unit(random_slot(random));
+  }
+}
+
+TEST(AnalyticShells, DefaultSizesAreMultiplesOfTheSpacing) {
+  // 30 + 50 + 10 + 50 + 30 intervals; 101 x 101 points; two faces of 101 x 51 points.
+  EXPECT_EQ(point_count(Hole2d{}), 171);
+  EXPECT_EQ(point_count(Plane{}), 10201);
+  EXPECT_EQ(point_count(Slot{}), 10302);
+}
+
+TEST(AnalyticShells, AMultipleOfTheSpacingButForRoundingIsDividedIntoThatMany) {
+  ASSERT_GT(0.0015 / 0.0003, 5.0) << "in doubles";
+  EXPECT_EQ(point_count(Plane{0.0015, 0.0003}), 6 * 6);
+}
+
+TEST(AnalyticShells, AbsurdSizesAreCountedWithoutBeingBuilt) {
+  EXPECT_NEAR(point_count(Plane{1.0, 1e-12}), 1e24, 1e13);
+}
+
+// Air just outside along the normal, material just inside.
+void expect_outward(const std::vector<SurfacePoint>& points, double probe,
+                    const std::function<bool(const Vec3&)>& air) {
+  for (const SurfacePoint& point : points) {
+    EXPECT_TRUE(air(point.position + probe * point.normal)) << point.position.transpose();
+    EXPECT_FALSE(air(point.position - probe * point.normal)) << point.position.transpose();
+  }
+}
+
+TEST(Hole2dShell, NormalsPointIntoTheAir) {
+  Random random(2);
+  for (int i = 0; i < 50; ++i) {
+    const Hole2d hole = random_hole(random);
+    expect_outward(surface_points(hole), 1e-6, [&hole](const Vec3& p) {
+      return p.y() > 0.0 || (std::abs(p.x()) < hole.width / 2 && p.y() > -hole.depth);
+    });
+  }
+}
+
+TEST(Hole2dShell, FollowsTheProfileFromLeftToRightInStepsOfAtMostTheSpacing) {
+  Random random(3);
+  for (int i = 0; i < 50; ++i) {
+    const Hole2d hole = random_hole(random);
+    const auto points = surface_points(hole);
+    double length = 0.0;
+    for (std::size_t k = 1; k < points.size(); ++k) {
+      const double step = (points[k].position - points[k - 1].position).norm();
+      EXPECT_GT(step, 0.0);
+      EXPECT_LE(step, longest(hole.spacing));
+      length += step;
+    }
+    // Steps that never turn back add up to the length of the profile.
+    const double profile = 2 * hole.mouth + 2 * hole.depth + hole.width;
+    EXPECT_NEAR(length, profile, 4 * kEps * static_cast<double>(points.size()) * profile);
+    EXPECT_EQ(points.front().position, Vec3(-hole.width / 2 - hole.mouth, 0, 0));
+    EXPECT_EQ(points.back().position, Vec3(hole.width / 2 + hole.mouth, 0, 0));
+  }
+}
+
+TEST(Hole2dShell, EveryCornerCarriesAPointWithThe45DegreeNormalOfItsFaces) {
+  const Hole2d hole{0.0011, 0.0047, 0.00013, 0.0029};
+  const double half = hole.width / 2, d = std::sqrt(0.5);
+  const std::vector<SurfacePoint> corners = {{{-half, 0, 0}, {d, d, 0}},
+                                             {{-half, -hole.depth, 0}, {d, d, 0}},
+                                             {{half, -hole.depth, 0}, {-d, d, 0}},
+                                             {{half, 0, 0}, {-d, d, 0}}};
+  std::size_t found = 0;
+  for (const SurfacePoint& point : surface_points(hole)) {
+    const double diagonal = std::abs(point.normal.x() * point.normal.y());
+    if (diagonal < 0.25) continue;
+    ASSERT_LT(found, corners.size());
+    EXPECT_EQ(point.position, corners[found].position);
+    EXPECT_LE((point.normal - corners[found].normal).norm(), 2 * kEps);
+    ++found;
+  }
+  EXPECT_EQ(found, corners.size());
+}
+
+TEST(Hole2dShell, LiesInThePlane) {
+  for (const SurfacePoint& point : surface_points(Hole2d{})) {
+    EXPECT_EQ(point.position.z(), 0.0);
+    EXPECT_EQ(point.normal.z(), 0.0);
+  }
+}
+
+TEST(Hole2dShell, IsItsOwnMirrorImage) {
+  const auto points = surface_points(Hole2d{});
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const SurfacePoint& mirror = points[points.size() - 1 - k];
+    // Left and right corners are exact negatives, points between are interpolated from opposite ends.
+    EXPECT_NEAR(points[k].position.x(), -mirror.position.x(), 4 * kEps * 0.004);
+    EXPECT_NEAR(points[k].position.y(), mirror.position.y(), 4 * kEps * 0.005);
+    EXPECT_EQ(points[k].normal, Vec3(-mirror.normal.x(), mirror.normal.y(), 0));
+  }
+}
+
+TEST(PlaneShell, IsASquareGridWithYFastestAndUpwardNormals) {
+  Random random(4);
+  for (int i = 0; i < 20; ++i) {
+    const Plane plane = random_plane(random);
+    const auto points = surface_points(plane);
+    const auto side = static_cast<std::size_t>(std::lround(std::sqrt(point_count(plane))));
+    ASSERT_EQ(side * side, points.size());
+    EXPECT_EQ(points.front().position, Vec3(-plane.size / 2, -plane.size / 2, 0));
+    EXPECT_EQ(points.back().position, Vec3(plane.size / 2, plane.size / 2, 0));
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      EXPECT_EQ(points[k].normal, Vec3(0, 0, 1));
+      EXPECT_EQ(points[k].position.x(), points[k / side * side].position.x());
+      EXPECT_EQ(points[k].position.y(), points[k % side].position.y());
+      if (k % side == 0) continue;
+      const double step = points[k].position.y() - points[k - 1].position.y();
+      EXPECT_GT(step, 0.0);
+      EXPECT_LE(step, longest(plane.spacing));
+    }
+  }
+}
+
+TEST(SlotShell, IsTwoFacesThatLookAtEachOther) {
+  Random random(5);
+  for (int i = 0; i < 20; ++i) {
+    const Slot slot = random_slot(random);
+    const auto points = surface_points(slot);
+    const std::size_t face = points.size() / 2;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const double side = k < face ? -1.0 : 1.0;
+      EXPECT_EQ(points[k].position.x(), side * slot.gap / 2);
+      EXPECT_EQ(points[k].normal, Vec3(-side, 0, 0));
+      // The right face repeats the left one.
+      EXPECT_EQ(points[k].position.y(), points[k % face].position.y());
+      EXPECT_EQ(points[k].position.z(), points[k % face].position.z());
+    }
+    EXPECT_EQ(points.front().position, Vec3(-slot.gap / 2, -slot.length / 2, -slot.depth));
+    EXPECT_EQ(points.back().position, Vec3(slot.gap / 2, slot.length / 2, 0));
+  }
+}
+
+TEST(SlotShell, PointsAreNoFartherApartThanTheSpacingWithZFastest) {
+  Random random(6);
+  for (int i = 0; i < 20; ++i) {
+    const Slot slot = random_slot(random);
+    const auto points = surface_points(slot);
+    std::size_t column = 1;
+    while (points[column].position.z() > points[column - 1].position.z()) ++column;
+    for (std::size_t k = 0; k < points.size() / 2; ++k) {
+      if (k % column > 0) {
+        EXPECT_LE(points[k].position.z() - points[k - 1].position.z(), longest(slot.spacing));
+      } else if (k > 0) {
+        EXPECT_EQ(points[k].position.z(), -slot.depth);
+        EXPECT_EQ(points[k - 1].position.z(), 0.0);
+        EXPECT_LE(points[k].position.y() - points[k - 1].position.y(), longest(slot.spacing));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hapbench

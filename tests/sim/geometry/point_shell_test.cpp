@@ -1,0 +1,99 @@
+#include "sim/geometry/point_shell.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "sim/core/random.hpp"
+
+namespace hapbench {
+namespace {
+
+std::vector<SurfacePoint> random_points(Random& random, std::size_t n) {
+  std::vector<SurfacePoint> points(n);
+  for (SurfacePoint& point : points) point = {0.01 * random.uniform() * random.direction(), random.direction()};
+  return points;
+}
+
+TEST(PointShell, ReturnsThePointsItWasGivenInOrder) {
+  Random random(1);
+  for (const std::size_t n : {0u, 1u, 7u, 8u, 9u, 100u}) {
+    const auto points = random_points(random, n);
+    const PointShell shell(points, 0.001);
+    ASSERT_EQ(shell.size(), n);
+    EXPECT_EQ(shell.cell_size(), 0.001);
+    for (std::size_t i = 0; i < n; ++i) {
+      EXPECT_EQ(shell.point(i).position, points[i].position);
+      EXPECT_EQ(shell.point(i).normal, points[i].normal);
+      EXPECT_EQ(Vec3(shell.x()[i], shell.y()[i], shell.z()[i]), points[i].position);
+      EXPECT_EQ(Vec3(shell.nx()[i], shell.ny()[i], shell.nz()[i]), points[i].normal);
+    }
+  }
+}
+
+TEST(PointShell, IsPaddedToWholePacksWithPointsFarAway) {
+  Random random(2);
+  for (std::size_t n = 0; n <= 17; ++n) {
+    const PointShell shell(random_points(random, n), 0.0);
+    ASSERT_EQ(shell.padded_size() % 8, 0u);
+    ASSERT_GE(shell.padded_size(), n);
+    ASSERT_LT(shell.padded_size(), n + 8);
+    for (std::size_t i = n; i < shell.padded_size(); ++i) {
+      EXPECT_EQ(shell.x()[i], PointShell::kFarAway);
+      EXPECT_EQ(shell.y()[i], PointShell::kFarAway);
+      EXPECT_EQ(shell.z()[i], PointShell::kFarAway);
+      EXPECT_EQ(Vec3(shell.nx()[i], shell.ny()[i], shell.nz()[i]), Vec3(0, 0, 0));
+    }
+  }
+}
+
+TEST(PointShell, ColumnsStartOnCacheLines) {
+  Random random(3);
+  const PointShell shell(random_points(random, 13), 0.0);
+  for (const double* column : {shell.x(), shell.y(), shell.z(), shell.nx(), shell.ny(), shell.nz()}) {
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(column) % 64, 0u);
+  }
+}
+
+TEST(PointShell, CellsAreCubesBetweenHalfIntegerMultiplesOfTheirSize) {
+  // Cells of size 1: [-0.5, 0.5) holds 0, and a point on a boundary belongs to the upper cell.
+  const std::vector<double> along = {0.0, 0.49, -0.5, 0.5, 1.49, -0.51, 1.5};
+  const std::vector<std::uint32_t> expected = {0, 0, 0, 1, 1, 2, 3};
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    std::vector<SurfacePoint> points(along.size());
+    for (std::size_t i = 0; i < along.size(); ++i) points[i].position[axis] = along[i];
+    EXPECT_EQ(PointShell(points, 1.0).cell_of_points(), expected) << "along axis " << axis;
+  }
+}
+
+TEST(PointShell, CellsAreNumberedInOrderOfFirstAppearance) {
+  Random random(4);
+  const auto points = random_points(random, 500);
+  const auto cells = PointShell(points, 0.004).cell_of_points();
+  std::uint32_t next = 0;
+  for (const std::uint32_t cell : cells) {
+    ASSERT_LE(cell, next);
+    if (cell == next) ++next;
+  }
+  EXPECT_GT(next, 8u);
+  EXPECT_LT(next, points.size());
+}
+
+TEST(PointShell, TwoPointsShareACellExactlyWhenAllTheirCoordinatesDo) {
+  Random random(5);
+  const double size = 0.003;
+  const auto points = random_points(random, 200);
+  const auto cells = PointShell(points, size).cell_of_points();
+  const auto cube = [size](const Vec3& p) {
+    return std::array{std::floor(p.x() / size + 0.5), std::floor(p.y() / size + 0.5), std::floor(p.z() / size + 0.5)};
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      ASSERT_EQ(cells[i] == cells[j], cube(points[i].position) == cube(points[j].position)) << i << ", " << j;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hapbench

@@ -1,0 +1,338 @@
+#include "sim/loop/integrators/integrator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include "sim/core/random.hpp"
+#include "sim/loop/integrators/linearly_implicit.hpp"
+#include "tests/support/fakes.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+/// A mass on a linear spring-damper, the same in every direction.
+class SpringField final : public ForceField {
+ public:
+  SpringField(double stiffness, double damping) : K(stiffness), B(damping) {}
+  Vec3 force_at(double, const Vec3& position, const Vec3& velocity) noexcept override {
+    ++calls;
+    return -K * position - B * velocity;
+  }
+  ForceJacobian jacobian() const noexcept override { return {K * Mat3::Identity(), B * Mat3::Identity()}; }
+
+  double K, B;
+  int calls = 0;
+};
+
+constexpr double kMass = 0.2;
+
+ToolState displaced() {
+  return {{Vec3(0.001, 0.0, -0.002), -Vec3::UnitZ()}, Vec3(0.3, -0.1, 0.0)};
+}
+
+ToolState run(Integrator integrator, SpringField field, double dt, int steps) {
+  ToolState tool = displaced();
+  for (int i = 0; i < steps; ++i) {
+    const Vec3 force = -field.K * tool.pose.position - field.B * tool.velocity;
+    integrate(integrator, tool, force, kMass, dt, field);
+  }
+  return tool;
+}
+
+double energy(const ToolState& tool, double K) {
+  return 0.5 * (kMass * tool.velocity.squaredNorm() + K * tool.pose.position.squaredNorm());
+}
+
+/// The exact state after the time t, from the matrix exponential of (w x, v), w^2 = K / M, which is well scaled.
+ToolState exact(const SpringField& field, double t) {
+  Eigen::Matrix2d A;
+  const double w = std::sqrt(field.K / kMass);
+  A << 0.0, w, -w, -field.B / kMass;
+  const Eigen::Matrix2d advance = (A * t).exp();
+  ToolState tool = displaced();
+  const Vec3 p = tool.pose.position, v = tool.velocity;
+  tool.pose.position = advance(0, 0) * p + advance(0, 1) / w * v;
+  tool.velocity = advance(1, 0) * w * p + advance(1, 1) * v;
+  return tool;
+}
+
+/// Distance of two states as the root of an energy, which does not pass through zero as an error in position does.
+double error(const ToolState& a, const ToolState& b, double K) {
+  ToolState difference = a;
+  difference.pose.position -= b.pose.position;
+  difference.velocity -= b.velocity;
+  return std::sqrt(energy(difference, K));
+}
+
+TEST(Integrators, ConvergeWithTheirOrders) {
+  const struct {
+    Integrator integrator;
+    double undamped, damped;
+  } kOrders[] = {{Integrator::leapfrog, 1.0, 1.0},
+                 {Integrator::velocity_verlet, 2.0, 1.0},
+                 {Integrator::rk4, 4.0, 4.0},
+                 {Integrator::implicit_euler, 1.0, 1.0},
+                 {Integrator::implicit_midpoint, 2.0, 2.0}};
+  constexpr double kEnd = 0.0173;
+  for (const auto& [integrator, undamped, damped] : kOrders) {
+    for (const double B : {0.0, 20.0}) {
+      const SpringField field(20000.0, B);
+      const auto error_of = [&](int steps) {
+        return error(run(integrator, field, kEnd / steps, steps), exact(field, kEnd), field.K);
+      };
+      const double order = std::log2(error_of(400) / error_of(800));
+      // error = C h^p (1 + D h + ...): w h = 0.014 at the coarser step, and D is of the order of w times the 5 radians
+      // of the run, so that the ratio is 2^p to within some 3.5 %, log2 of which is 0.05.
+      EXPECT_NEAR(order, B == 0.0 ? undamped : damped, 0.05) << integrator_name(integrator) << " B = " << B;
+    }
+  }
+}
+
+TEST(Integrators, AskForTheForceAsOftenAsTheySay) {
+  const int kCalls[] = {0, 1, 3, 0, 0};  // beside the row's
+  for (std::size_t i = 0; i < kIntegrators.size(); ++i) {
+    SpringField field(20000.0, 5.0);
+    ToolState tool = displaced();
+    integrate(kIntegrators[i], tool, Vec3::UnitX(), kMass, 0.0005, field);
+    EXPECT_EQ(field.calls, kCalls[i]) << integrator_name(kIntegrators[i]);
+    EXPECT_EQ(tool.pose.axis, Vec3(-Vec3::UnitZ()));
+  }
+}
+
+TEST(Integrators, MoveAFreeMassAlike) {
+  // A constant force: only leapfrog and implicit Euler, of order 1, differ from the parabola, by half a step's fall.
+  struct Constant final : ForceField {
+    Vec3 force_at(double, const Vec3&, const Vec3&) noexcept override { return {0, 0, -2}; }
+    ForceJacobian jacobian() const noexcept override { return {}; }
+  } field;
+  for (const Integrator integrator : kIntegrators) {
+    ToolState tool;
+    integrate(integrator, tool, {0, 0, -2}, 0.5, 0.25, field);
+    EXPECT_EQ(tool.velocity, Vec3(0, 0, -1)) << integrator_name(integrator);
+    const bool first_order = integrator == Integrator::leapfrog || integrator == Integrator::implicit_euler;
+    EXPECT_NEAR(tool.pose.position.z(), first_order ? -0.25 : -0.125, 4 * kEps) << integrator_name(integrator);
+  }
+}
+
+TEST(ImplicitMidpoint, IsTheTrapezoidalRuleOnASpringDamper) {
+  // (I - h/2 A) y' = (I + h/2 A) y, solved by hand.
+  for (const double K : {0.0, 20000.0, 1e9}) {
+    for (const double B : {0.0, 50.0, 2e4}) {
+      const SpringField field(K, B);
+      const double dt = 0.0005, k = K * dt * dt / kMass, b = B * dt / kMass;
+      const ToolState start = displaced(), moved = run(Integrator::implicit_midpoint, field, dt, 1);
+      const double D = 1.0 + 0.5 * b + 0.25 * k;
+      const Vec3 p = ((1.0 + 0.5 * b - 0.25 * k) * start.pose.position + dt * start.velocity) / D;
+      const Vec3 v = ((1.0 - 0.5 * b - 0.25 * k) * start.velocity - k / dt * start.pose.position) / D;
+      // A dozen roundings of the terms, of which the largest is k p / dt over D, at most 4 p / dt.
+      const double size = start.velocity.norm() + 4.0 * start.pose.position.norm() / dt;
+      EXPECT_LE((moved.velocity - v).norm(), 12 * kEps * size) << K << " " << B;
+      EXPECT_LE((moved.pose.position - p).norm(), 12 * kEps * dt * size) << K << " " << B;
+    }
+  }
+}
+
+TEST(ImplicitMidpoint, KeepsTheEnergyOfUndampedSpringsHoweverStiff) {
+  for (const double K : {20000.0, 1e6, 1e9}) {
+    const double start = energy(displaced(), K);
+    constexpr int kSteps = 10'000;
+    // Each step rounds position and velocity, some ten times.
+    EXPECT_NEAR(energy(run(Integrator::implicit_midpoint, {K, 0.0}, 0.0005, kSteps), K), start,
+                10 * kSteps * kEps * start)
+        << K;
+  }
+}
+
+TEST(ImplicitEuler, TakesItsShareOfTheEnergyInEveryStep) {
+  for (const double K : {20000.0, 1e6, 1e9}) {
+    const double k = K * 0.0005 * 0.0005 / kMass;
+    double before = energy(displaced(), K);
+    for (int steps = 1; steps <= 5; ++steps) {
+      const double now = energy(run(Integrator::implicit_euler, {K, 0.0}, 0.0005, steps), K);
+      // The map is normal in the norm of the energy, with eigenvalues of modulus 1 / sqrt(1 + k). Stiff springs lose
+      // digits of what is left to what was there: the force is known to eps, and k of it cancels.
+      EXPECT_NEAR(now / before, 1.0 / (1.0 + k), 100 * kEps * (1.0 + k)) << K << " step " << steps;
+      before = now;
+    }
+  }
+}
+
+TEST(VelocityVerlet, SwingsAboutItsEnergyWithoutDrift) {
+  // M v^2 / 2 + (1 - k/4) K x^2 / 2 is kept, so the energy stays between it and it / (1 - k/4).
+  const double K = 20000.0, k = K * 0.0005 * 0.0005 / kMass;
+  const SpringField field(K, 0.0);
+  const auto kept = [&](const ToolState& tool) {
+    return energy(tool, K) - 0.125 * k * K * tool.pose.position.squaredNorm();
+  };
+  const ToolState tool = run(Integrator::velocity_verlet, field, 0.0005, 100'000);
+  EXPECT_NEAR(kept(tool), kept(displaced()), 1e6 * kEps * kept(displaced()));
+}
+
+TEST(RungeKutta, DissipatesAsItsAmplificationSays) {
+  const double K = 20000.0, k = K * 0.0005 * 0.0005 / kMass;
+  const double factor = 1.0 - k * k * k / 72.0 + k * k * k * k / 576.0;  // |1 + z + ... + z^4 / 24|^2, z = i sqrt(k)
+  const double end = energy(run(Integrator::rk4, {K, 0.0}, 0.0005, 1000), K);
+  EXPECT_NEAR(end / energy(displaced(), K), std::pow(factor, 1000), 1000 * 20 * kEps);
+}
+
+TEST(LinearlyImplicit, CopesWithDampingThatDrives) {
+  Random random(1);
+  for (int i = 0; i < 1000; ++i) {
+    // Friction on a law whose S exceeds 1: D = B S + f (I - S) of both signs, as large as one likes.
+    Mat3 S = Mat3::Zero();
+    for (int j = 0; j < 3; ++j) {
+      const Vec3 u = random.direction();
+      S += 20.0 * random.uniform(0.0, 1.0) * u * u.transpose();
+    }
+    const double K = std::pow(10.0, random.uniform(0.0, 12.0)), f = std::pow(10.0, random.uniform(0.0, 9.0));
+    const ForceJacobian jacobian{K * S, 50.0 * S + f * (Mat3::Identity() - S)};
+    ToolState tool;
+    tool.velocity = random.direction();
+    const Vec3 force = 1e3 * random.direction(), v = tool.velocity;
+    implicit_euler(tool, force, jacobian, kMass, 0.0005);
+    // Never more than twice what the explicit step would make of the same impulse.
+    const Vec3 impulse = 0.0005 * (force - 0.0005 * (jacobian.stiffness * v));
+    ASSERT_TRUE(tool.velocity.allFinite());
+    ASSERT_LE((tool.velocity - v).norm(), 2.0 * impulse.norm() / kMass * (1.0 + 1e-12));
+  }
+}
+
+TEST(LinearlyImplicit, AnswersAnInfiniteJacobianWithTheExplicitStep) {
+  for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    ToolState tool;
+    implicit_midpoint(tool, {1, 0, 0}, {Mat3::Zero(), Mat3::Constant(bad)}, 0.5, 0.25);
+    EXPECT_EQ(tool.velocity, Vec3(0.5, 0, 0));
+  }
+}
+
+// ---- In the step loop.
+
+SimulationConfig config_of(Integrator integrator, std::uint64_t steps) {
+  SimulationConfig config;
+  config.integrator = integrator;
+  config.steps = steps;
+  config.position = {0.001, 0.002, 0.003};
+  config.velocity = {0.1, 0.0, -0.1};
+  return config;
+}
+
+TEST(IntegratorInTheLoop, MovesTheToolAsItDoesAlone) {
+  for (const Integrator integrator : {Integrator::velocity_verlet, Integrator::rk4}) {
+    test::Recorder recorder;
+    const SimulationConfig config = config_of(integrator, 50);
+    SpringField field(20000.0, 50.0);
+    const auto law = [](const ToolState& t) { return Vec3(-20000.0 * t.pose.position - 50.0 * t.velocity); };
+    Simulation(config, test::fake_parts(law), {&recorder}).run();
+    ToolState tool = recorder.rows[0].tool;
+    for (const StepRecord& row : recorder.rows) {
+      EXPECT_EQ(row.tool.pose.position, tool.pose.position);
+      EXPECT_EQ(row.tool.velocity, tool.velocity);
+      EXPECT_EQ(row.force.rendered, law(tool)) << "rows are evaluated at their own states";
+      integrate(integrator, tool, row.force.rendered, config.mass, config.dt, field);
+    }
+  }
+}
+
+/// Notes what it is asked for.
+class Witness final : public ForceAlgorithm {
+ public:
+  Witness(std::vector<ToolState>& seen, double cutoff) : seen_(&seen), cutoff_(cutoff) {}
+  void prepare(const Scene&) override {}
+  void reset() noexcept override {}
+  void compute(const ToolState& tool, ContactBuffer&, RenderedForce& out) noexcept override {
+    seen_->push_back(tool);
+    out = {};
+  }
+  SpringState spring_state(const ToolState&, const ContactBuffer&) const noexcept override { return {}; }
+  ForceJacobian jacobian() const noexcept override { return {}; }
+  std::optional<double> angular_velocity_cutoff() const noexcept override { return cutoff_; }
+
+ private:
+  std::vector<ToolState>* seen_;
+  double cutoff_;
+};
+
+const Orientation kTurn{{0, 0, 1}, {1, 0, 0}, Profile::Shape(Profile::Ramp{0.1, 3.0}), {}};
+
+/// What an algorithm sees of a tool that tilts from -z towards -x, about y, at 3 rad/s.
+std::vector<ToolState> seen_of_a_turn(Integrator integrator, std::uint64_t steps, double cutoff) {
+  std::vector<ToolState> seen;
+  SimulationParts parts = test::fake_parts(test::weightless);
+  parts.algorithm = std::make_unique<Witness>(seen, cutoff);
+  parts.motion = std::make_unique<ScriptedMotion>(kTurn, std::nullopt);
+  Simulation(config_of(integrator, steps), std::move(parts), {}).run();
+  return seen;
+}
+
+TEST(IntegratorInTheLoop, SeesTheAxisAndTheTurnOfItsTime) {
+  const auto seen = seen_of_a_turn(Integrator::rk4, 3, std::numeric_limits<double>::infinity());
+  ASSERT_EQ(seen.size(), 12u);
+  const double kParts[] = {0.0, 0.5, 0.5, 1.0};
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const double t = (static_cast<double>(i / 4) + kParts[i % 4]) * SimulationConfig{}.dt;
+    EXPECT_LE((seen[i].pose.axis - tool_axis(kTurn, 0.1 + 3.0 * t, 0.0)).norm(), 4 * kEps);
+    // Turns of 1e-3 rad are known to eps / 1e-3.
+    const double rate = i == 0 ? 0.0 : 3.0;
+    EXPECT_NEAR(seen[i].angular_velocity.norm(), rate, 1e-11) << i;
+  }
+}
+
+/// The step response of a first-order low-pass, at every time an integrator asks.
+TEST(IntegratorInTheLoop, SeesTheTurnThroughTheLowPassOfTheAlgorithm) {
+  constexpr double kCutoff = 40.0;
+  const double dt = SimulationConfig{}.dt;
+  const auto response = [&](double t) { return 3.0 * (1.0 - std::exp(-2.0 * std::numbers::pi * kCutoff * t)); };
+  const auto rows = seen_of_a_turn(Integrator::leapfrog, 40, kCutoff);
+  ASSERT_EQ(rows.size(), 40u);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    EXPECT_LE((rows[k].angular_velocity - Vec3(0.0, response(static_cast<double>(k) * dt), 0.0)).norm(), 1e-11) << k;
+  }
+  const auto within = seen_of_a_turn(Integrator::rk4, 3, kCutoff);
+  ASSERT_EQ(within.size(), 12u);
+  for (std::size_t i = 0; i < within.size(); ++i) {
+    constexpr double kParts[] = {0.0, 0.5, 0.5, 1.0};
+    const double t = (static_cast<double>(i / 4) + kParts[i % 4]) * dt;
+    EXPECT_NEAR(within[i].angular_velocity.norm(), response(t), 1e-11) << i;
+  }
+}
+
+TEST(IntegratorInTheLoop, HoldsTheInputForceOverTheStep) {
+  for (const Integrator integrator : kIntegrators) {
+    SimulationParts parts = test::fake_parts(test::weightless);
+    parts.hand = std::make_unique<ForceHand>(std::array<Profile, 3>{Profile::Shape(Profile::Ramp{1.0, 1000.0}), 0, 0});
+    SimulationConfig config = config_of(integrator, 2);
+    config.velocity = Vec3::Zero();
+    test::Recorder recorder;
+    Simulation(config, std::move(parts), {&recorder}).run();
+    EXPECT_NEAR(recorder.rows[1].tool.velocity.x(), 1.0 / config.mass * config.dt, 4 * kEps)
+        << integrator_name(integrator);
+  }
+}
+
+TEST(IntegratorInTheLoop, LeavesAPrescribedPositionAlone) {
+  std::vector<StepRecord> leapfrog_rows;
+  for (const Integrator integrator : kIntegrators) {
+    test::Calls calls;
+    SimulationParts parts = test::fake_parts([](const ToolState&) { return Vec3(1e6, 0, 0); }, &calls);
+    parts.motion = std::make_unique<ScriptedMotion>(
+        Orientation{}, std::array<Profile, 3>{Profile::Shape(Profile::Sine{0.0, 0.002, 0.1, 0.3}), 0.1, 0.2});
+    test::Recorder recorder;
+    Simulation(config_of(integrator, 100), std::move(parts), {&recorder}).run();
+    EXPECT_EQ(calls.compute, 100) << "nobody asks within a step";
+    if (leapfrog_rows.empty()) leapfrog_rows = recorder.rows;
+    for (std::size_t k = 0; k < 100; ++k) {
+      EXPECT_EQ(recorder.rows[k].tool.pose.position, leapfrog_rows[k].tool.pose.position);
+      EXPECT_EQ(recorder.rows[k].tool.velocity, leapfrog_rows[k].tool.velocity);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hapbench

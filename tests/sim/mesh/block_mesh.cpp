@@ -1,0 +1,24 @@
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "sim/mesh/block_field.hpp"
+
+/// Prints the mesh that marching cubes makes of a block with a hole: numbers of vertices and faces, then both.
+/// block_mesh SIZE_X SIZE_Y SIZE_Z HOLE_DIAMETER HOLE_DEPTH SPACING signed_distance|binary
+int main(int count, char** arguments) {
+  using namespace hapbench;
+  if (count != 8) return 2;
+  const auto number = [arguments](int i) { return std::strtod(arguments[i], nullptr); };
+  const BlockWithHole block{{number(1), number(2), number(3)}, number(4), number(5)};
+  const Density density = arguments[7] == std::string("binary") ? Density::binary : Density::signed_distance;
+  const HalfEdgeMesh mesh = marching_cubes(density_field(block, number(6), density));
+  std::printf("%zu %zu\n", mesh.n_vertices(), mesh.n_faces());
+  for (const auto v : mesh.vertices())
+    std::printf("%.17g %.17g %.17g\n", mesh.point(v)[0], mesh.point(v)[1], mesh.point(v)[2]);
+  for (const auto f : mesh.faces()) {
+    for (auto v = mesh.cfv_iter(f); v.is_valid(); ++v) std::printf("%d ", v->idx());
+    std::printf("\n");
+  }
+  return 0;
+}

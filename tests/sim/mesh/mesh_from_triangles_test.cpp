@@ -1,0 +1,243 @@
+#include "sim/mesh/mesh_from_triangles.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "sim/core/random.hpp"
+#include "sim/mesh/marching_cubes.hpp"
+#include "tests/support/meshes.hpp"
+#include "tests/support/scale.hpp"
+
+namespace hapbench {
+namespace {
+
+using test::cases;
+using test::cube;
+using test::enclosed_volume;
+using test::euler_characteristic;
+using test::reversed;
+using test::together;
+using Triangle = TriangleSoup::Triangle;
+
+std::string refusal_of(const TriangleSoup& soup) {
+  try {
+    mesh_from_triangles(soup);
+  } catch (const MeshError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "nothing was refused";
+  return "";
+}
+
+/// Every triangle with vertices of its own, as STL has them.
+TriangleSoup exploded(const TriangleSoup& soup) {
+  TriangleSoup loose;
+  for (const Triangle& t : soup.triangles) {
+    const auto base = static_cast<std::uint32_t>(loose.vertices.size());
+    for (const std::uint32_t v : t) loose.vertices.push_back(soup.vertices[v]);
+    loose.triangles.push_back({base, base + 1, base + 2});
+  }
+  return loose;
+}
+
+TriangleSoup of_mesh(const HalfEdgeMesh& mesh) {
+  TriangleSoup soup;
+  for (const auto v : mesh.vertices()) soup.vertices.push_back({mesh.point(v)[0], mesh.point(v)[1], mesh.point(v)[2]});
+  for (const auto f : mesh.faces()) {
+    Triangle t{};
+    std::size_t i = 0;
+    for (auto v = mesh.cfv_iter(f); v.is_valid(); ++v) t[i++] = static_cast<std::uint32_t>(v->idx());
+    soup.triangles.push_back(t);
+  }
+  return soup;
+}
+
+TriangleSoup shuffled(TriangleSoup soup, Random& random) {
+  for (std::size_t i = soup.triangles.size(); i > 1; --i)
+    std::swap(soup.triangles[i - 1], soup.triangles[random.below(i)]);
+  for (Triangle& t : soup.triangles) std::rotate(t.begin(), t.begin() + static_cast<long>(random.below(3)), t.end());
+  return soup;
+}
+
+void expect_nothing_found(const MeshFindings& found) {
+  EXPECT_EQ(found.degenerate_triangles, 0u);
+  EXPECT_EQ(found.rewound_triangles, 0u);
+  EXPECT_EQ(found.inside_out_parts, 0u);
+  EXPECT_EQ(found.boundary_edges, 0u);
+}
+
+TEST(MeshFromTriangles, OfACleanSurfaceIsThatSurface) {
+  const TriangleSoup soup = cube();
+  const auto [mesh, found] = mesh_from_triangles(soup);
+  expect_nothing_found(found);
+  ASSERT_EQ(mesh.n_vertices(), 8u);
+  EXPECT_EQ(mesh.n_faces(), 12u);
+  EXPECT_EQ(mesh.n_edges(), 18u);
+  for (unsigned i = 0; i < 8; ++i) {
+    const auto p = mesh.point(OpenMesh::VertexHandle(static_cast<int>(i)));
+    EXPECT_EQ(Vec3(p[0], p[1], p[2]), soup.vertices[i]) << "order and bits are kept";
+  }
+  EXPECT_EQ(enclosed_volume(mesh), 8.0);
+}
+
+TEST(MeshFromTriangles, WeldsEqualPositions) {
+  TriangleSoup loose = exploded(cube());
+  ASSERT_EQ(loose.vertices.size(), 36u);
+  EXPECT_EQ(mesh_from_triangles(loose).mesh.n_vertices(), 8u);
+  // Zeros of both signs are the same place; the next number after 1 is another.
+  for (Vec3& v : loose.vertices) v.z() += 1.0;
+  for (std::size_t i = 0; i < loose.vertices.size(); i += 2) {
+    if (loose.vertices[i].z() == 0.0) loose.vertices[i].z() = -0.0;
+  }
+  EXPECT_EQ(mesh_from_triangles(loose).mesh.n_vertices(), 8u);
+  loose.vertices[0].x() = std::nextafter(loose.vertices[0].x(), 2.0);
+  const CheckedMesh torn = mesh_from_triangles(loose);
+  EXPECT_EQ(torn.mesh.n_vertices(), 9u);
+  EXPECT_GT(torn.findings.boundary_edges, 0u);
+}
+
+TEST(MeshFromTriangles, LeavesOutUnusedVerticesAndTrianglesWithEqualCorners) {
+  TriangleSoup soup = together({{{9, 9, 9}}, {}}, cube());
+  soup.triangles.push_back({1, 1, 2});
+  soup.vertices.push_back(soup.vertices[1]);
+  soup.triangles.push_back({1, 3, 9});  // 9 is where 1 is
+  const auto [mesh, found] = mesh_from_triangles(soup);
+  EXPECT_EQ(mesh.n_vertices(), 8u);
+  EXPECT_EQ(found.degenerate_triangles, 2u);
+  EXPECT_EQ(found.boundary_edges, 0u);
+}
+
+TEST(MeshFromTriangles, RefusesNothingness) {
+  EXPECT_NE(refusal_of({}).find("has no faces"), std::string::npos);
+  EXPECT_NE(refusal_of({{{0, 0, 0}, {1, 0, 0}}, {}}).find("has no faces"), std::string::npos);
+  EXPECT_NE(refusal_of({{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 1}}}).find("has no faces"), std::string::npos);
+}
+
+TEST(MeshFromTriangles, RefusesCoordinatesThatAreNotFinite) {
+  for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    TriangleSoup soup = cube();
+    soup.vertices[5].y() = bad;
+    EXPECT_EQ(refusal_of(soup), "vertex 5 is not finite");
+  }
+}
+
+TEST(MeshFromTriangles, RefusesAnEdgeWithThreeFacesAndSaysWhere) {
+  TriangleSoup soup = cube();
+  soup.vertices.push_back({0, 0, 5});
+  soup.triangles.push_back({4, 5, 8});
+  EXPECT_EQ(refusal_of(soup), "the edge from (-1, -1, 1) m to (1, -1, 1) m has 3 faces; allowed: one or two");
+  // The same triangle twice, and two cubes that share an edge, are no surfaces either.
+  soup = cube();
+  soup.triangles.push_back(soup.triangles[0]);
+  EXPECT_NE(refusal_of(soup).find("has 3 faces"), std::string::npos);
+  EXPECT_NE(refusal_of(together(cube(), cube(1.0, {2, 2, 0}))).find("has 4 faces"), std::string::npos);
+}
+
+TEST(MeshFromTriangles, RefusesSurfacesWithOneSide) {
+  EXPECT_NE(refusal_of(test::moebius_band(12)).find("is not orientable"), std::string::npos);
+  EXPECT_NE(refusal_of(test::klein_bottle(12, 7)).find("is not orientable"), std::string::npos);
+  Random random(1);
+  EXPECT_NE(refusal_of(shuffled(test::moebius_band(12), random)).find("is not orientable"), std::string::npos);
+}
+
+TEST(MeshFromTriangles, AcceptsHandles) {
+  const auto [mesh, found] = mesh_from_triangles(test::torus(12, 7));
+  EXPECT_EQ(found.boundary_edges, 0u);
+  EXPECT_EQ(euler_characteristic(mesh), 0);
+  EXPECT_GT(enclosed_volume(mesh), 0.0);
+}
+
+TEST(MeshFromTriangles, GivesEachFanAtAPointItsOwnVertex) {
+  // Two cubes that touch in a corner.
+  const auto [mesh, found] = mesh_from_triangles(together(cube(), cube(1.0, {2, 2, 2})));
+  expect_nothing_found(found);
+  EXPECT_EQ(mesh.n_vertices(), 16u);
+  std::size_t normals_out = 0;
+  for (const SurfacePoint& p : vertices_with_normals(mesh)) {
+    if (p.position != Vec3(1, 1, 1)) continue;
+    ++normals_out;
+    EXPECT_NEAR(std::abs(p.normal.dot(Vec3(1, 1, 1).normalized())), 1.0, 0.1) << "of one cube's faces only";
+  }
+  EXPECT_EQ(normals_out, 2u);
+}
+
+TEST(MeshFromTriangles, MakesTheWindingThatOfTheMajority) {
+  Random random(2);
+  for (std::size_t round = 0; round < cases(100); ++round) {
+    TriangleSoup soup = exploded(test::sphere(1.0, 2));  // 128 triangles
+    const std::size_t wrong = random.below(64);
+    for (std::size_t i = 0; i < wrong; ++i) std::swap(soup.triangles[i][1], soup.triangles[i][2]);
+    const auto [mesh, found] = mesh_from_triangles(shuffled(soup, random));
+    EXPECT_EQ(found.rewound_triangles, wrong);
+    EXPECT_EQ(found.inside_out_parts, 0u);
+    EXPECT_GT(enclosed_volume(mesh), 0.0);
+    EXPECT_EQ(euler_characteristic(mesh), 2);
+  }
+}
+
+TEST(MeshFromTriangles, TurnsClosedPartsOutwards) {
+  const CheckedMesh one = mesh_from_triangles(reversed(cube()));
+  EXPECT_EQ(one.findings.inside_out_parts, 1u);
+  EXPECT_EQ(one.findings.rewound_triangles, 0u);
+  EXPECT_EQ(enclosed_volume(one.mesh), 8.0);
+  const CheckedMesh two = mesh_from_triangles(together(cube(), reversed(cube(1.0, {900, 0, 0}))));
+  EXPECT_EQ(two.findings.inside_out_parts, 1u);
+  EXPECT_NEAR(enclosed_volume(two.mesh), 16.0, 1e-9);  // terms up to 1e3^3 / 6 cancel to rounding
+}
+
+TEST(MeshFromTriangles, KeepsCavitiesAndTurnsThemWithWhatIsAroundThem) {
+  const TriangleSoup hollow = together(cube(3.0), reversed(cube(1.0, {0.5, 0, 0})));
+  for (const TriangleSoup& soup : {hollow, together(reversed(cube(1.0, {0.5, 0, 0})), cube(3.0))}) {
+    const auto [mesh, found] = mesh_from_triangles(soup);
+    expect_nothing_found(found);
+    EXPECT_NEAR(enclosed_volume(mesh), 216.0 - 8.0, 1e-12);
+  }
+  const CheckedMesh turned = mesh_from_triangles(reversed(hollow));
+  EXPECT_EQ(turned.findings.inside_out_parts, 2u);
+  EXPECT_NEAR(enclosed_volume(turned.mesh), 216.0 - 8.0, 1e-12);
+}
+
+TEST(MeshFromTriangles, KeepsTheWindingOfOpenSurfaces) {
+  TriangleSoup open = cube();
+  open.triangles.erase(open.triangles.begin() + 2, open.triangles.begin() + 4);  // the top
+  for (const bool turned : {false, true}) {
+    const auto [mesh, found] = mesh_from_triangles(turned ? reversed(open) : open);
+    EXPECT_EQ(found.boundary_edges, 4u);
+    EXPECT_EQ(found.rewound_triangles, 0u);
+    EXPECT_EQ(found.inside_out_parts, 0u);
+    const auto points = vertices_with_normals(mesh);
+    ASSERT_EQ(points.size(), 8u);
+    EXPECT_EQ(points[0].normal.dot(Vec3(-1, -1, -1)) > 0.0, !turned);
+  }
+}
+
+TEST(MeshFromTriangles, RefusesAVertexWithVeryManyFaces) {
+  const auto fan = [](int n) {
+    return test::sheet(n, 1, [n](int i, int j) {
+      const double a = 2.0 * std::numbers::pi * i / n;
+      return j == 0 ? Vec3::Zero().eval() : Vec3(std::cos(a), std::sin(a), 1.0);
+    });
+  };
+  EXPECT_EQ(mesh_from_triangles(fan(5000)).mesh.n_faces(), 5000u);
+  EXPECT_NE(refusal_of(fan(10'001)).find("more than 10000 faces meet in the vertex at (0, 0, 0) m"), std::string::npos);
+}
+
+TEST(MeshFromTriangles, RebuildsAnySurfaceFromItsTrianglesInAnyOrder) {
+  Random random(3);
+  for (std::uint64_t seed = 1; seed <= cases(60); ++seed) {
+    const HalfEdgeMesh original = marching_cubes(test::noise(seed));
+    const auto [mesh, found] = mesh_from_triangles(shuffled(exploded(of_mesh(original)), random));
+    expect_nothing_found(found);
+    EXPECT_EQ(mesh.n_vertices(), original.n_vertices());
+    EXPECT_EQ(mesh.n_edges(), original.n_edges());
+    EXPECT_EQ(mesh.n_faces(), original.n_faces());
+    // Sums of a thousand terms of a few units, in another order.
+    EXPECT_NEAR(enclosed_volume(mesh), enclosed_volume(original), 1e-11);
+  }
+}
+
+}  // namespace
+}  // namespace hapbench
