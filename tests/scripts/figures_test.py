@@ -252,10 +252,10 @@ class Figures(unittest.TestCase):
 class PublishedNumbers(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.schema = json.loads((SOURCE / "results" / "published.schema.json").read_text(encoding="utf-8"))
+        cls.schema = json.loads((SOURCE / "results" / "reference" / "published.schema.json").read_text(encoding="utf-8"))
         cls.files = {
             path.name: json.loads(path.read_text(encoding="utf-8"))
-            for path in sorted((SOURCE / "results" / "published").glob("*.json"))
+            for path in sorted((SOURCE / "results" / "reference" / "published").glob("*.json"))
         }
         cls.entries = [entry for file in cls.files.values() for entry in file["values"]]
 
