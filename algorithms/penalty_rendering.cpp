@@ -48,7 +48,7 @@ void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, R
   in_contact_ = false;
   if (contacts.empty() && knows_of_no_contacts_ && skips_ == Skips::taken) return;
 
-  if (!depth_is_given_) depth_model_->evaluate(tool_, tool.pose, contacts);
+  if (!depth_is_given_) depth_model_->evaluate(*tool_, tool.pose, contacts);
   knows_of_no_contacts_ = contacts.empty();
   if (contacts.empty() && skips_ == Skips::taken) return;
 

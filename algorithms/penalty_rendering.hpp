@@ -37,7 +37,7 @@ class PenaltyRendering final : public ForceAlgorithm {
   std::unique_ptr<PointStage> reduction_;      ///< may be null
   std::unique_ptr<ForceLaw> law_;
   DampingAndLimits damping_and_limits_;
-  Tool tool_;
+  const ToolShape* tool_ = nullptr;
   Skips skips_;
   double K_;
   std::optional<double> angular_velocity_cutoff_;  ///< none without angular damping

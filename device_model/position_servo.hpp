@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "sim/core/types.hpp"
-#include "sim/tool/tool.hpp"
+#include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "algorithms/depth/normal_projection_depth.hpp"
-#include "algorithms/depth/shortest_distance.hpp"
 #include "sim/tool/turn.hpp"
 
 namespace hapbench {
@@ -25,25 +23,29 @@ namespace {
 
 class ContinuousNormalProjectionDepth final : public DepthModel {
  public:
-  void prepare(const Scene& scene) override { memory_.resize(scene.shell->size()); }
+  void prepare(const Scene& scene) override {
+    memory_.resize(scene.shell->size());
+    exit_.resize(scene.shell->size());
+  }
 
   void reset() noexcept override {
     std::fill(memory_.begin(), memory_.end(), Memory{});
     step_ = kNever + 1;
   }
 
-  void evaluate(const Tool& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept override {
+  void evaluate(const ToolShape& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept override {
     ++step_;
-    shortest_distance_depths(tool, pose, contacts);
+    tool.shortest_depths(pose, contacts);
     const Vec3 moved = pose.position - last_.position, turned = turn(last_.axis, pose.axis);
+    for (std::size_t i = 0; i < contacts.size(); ++i) contacts.set_gradient(i, -contacts.normal(i));
+    tool.exit_distances(pose, contacts, exit_.data());
     for (std::size_t i = 0; i < contacts.size(); ++i) {
-      const Vec3 x = contacts.point(i), u = -contacts.normal(i);
-      contacts.set_gradient(i, u);
+      const Vec3 x = contacts.point(i), u = contacts.gradient(i);
       Memory& point = memory_[contacts.index[i]];
       const bool stays = point.step + 1 == step_;
       const double pressed = stays ? point.depth + (moved + turned.cross(x - pose.position)).dot(u) : 0.0;
       const double least = std::max(contacts.depth[i], 0.0);  // rounding may put a point on the surface outside
-      point = {std::min(std::max(least, pressed), exit_distance(tool, pose, x, u)), step_};
+      point = {std::min(std::max(least, pressed), exit_[i]), step_};
       contacts.depth[i] = point.depth;
     }
     contacts.pad();
@@ -59,6 +61,7 @@ class ContinuousNormalProjectionDepth final : public DepthModel {
   };
 
   std::vector<Memory> memory_;  ///< of every point of the shell
+  std::vector<double> exit_;    ///< d_np of every contact [m]
   std::uint64_t step_ = kNever + 1;
   ToolPose last_;  ///< in the step before; of no meaning when no point stays
 };

@@ -4,7 +4,7 @@
 
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/loop/force_algorithm.hpp"
-#include "sim/tool/tool.hpp"
+#include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {
 
@@ -20,7 +20,7 @@ class DepthModel {
   virtual void reset() noexcept {}
   /// Fills depth and gradient of all contacts and pads. Precondition: every point lies in the tool (closed set). Called
   /// once in every step; of several steps on end without contacts, all but the first may be left out.
-  virtual void evaluate(const Tool& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept = 0;
+  virtual void evaluate(const ToolShape& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept = 0;
 };
 
 }  // namespace hapbench

@@ -1,6 +1,5 @@
 #include "algorithms/depth/surface_normal.hpp"
 
-#include "algorithms/depth/shortest_distance.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
@@ -17,8 +16,8 @@ namespace {
 
 class SurfaceNormal final : public DepthModel {
  public:
-  void evaluate(const Tool& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept override {
-    shortest_distance_depths(tool, pose, contacts);
+  void evaluate(const ToolShape& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept override {
+    tool.shortest_depths(pose, contacts);
     for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
       simd::store(-simd::load(&contacts.nx[i]), &contacts.ux[i]);
       simd::store(-simd::load(&contacts.ny[i]), &contacts.uy[i]);

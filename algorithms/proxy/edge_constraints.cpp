@@ -14,8 +14,6 @@ constexpr std::size_t kSampled = 100;
 constexpr double kPatch = 0.75;
 /// Of the spacing.
 constexpr double kDeepest = 0.1;
-/// Cosine to the axis below which a surface runs along the side, so that no edge comes first.
-constexpr double kAlongSide = 1e-9;
 
 double distance_to_second(const PointShell& shell, std::size_t from) {
   double first = std::numeric_limits<double>::infinity(), second = first;
@@ -31,18 +29,6 @@ double distance_to_second(const PointShell& shell, std::size_t from) {
   return std::sqrt(second);
 }
 
-/// The place of the tool that is foremost against `normal`; along the side, the one abreast of `point`.
-Vec3 foremost(const Tool& tool, const ToolPose& pose, const Vec3& normal, const Vec3& point) noexcept {
-  const double forward = -normal.dot(pose.axis);
-  const Vec3 outwards = -normal - forward * pose.axis;
-  const double length = outwards.norm();
-  if (tool.tip == Tip::round && forward > kAlongSide) return pose.position - tool.radius * normal;
-  const Vec3 on_side = length > 0.0 ? Vec3(tool.radius / length * outwards) : Vec3(Vec3::Zero());
-  double s = forward > 0.0 ? 0.0 : -tool.length;
-  if (std::abs(forward) < kAlongSide) s = std::clamp((point - pose.position).dot(pose.axis), -tool.length, 0.0);
-  return pose.position + s * pose.axis + on_side;
-}
-
 }  // namespace
 
 double typical_spacing(const PointShell& shell) {
@@ -55,13 +41,14 @@ double typical_spacing(const PointShell& shell) {
   return *middle;
 }
 
-void add_edge_constraints(const Tool& tool, const ToolPose& pose, double spacing, double margin,
-                          ContactBuffer& contacts) noexcept {
+void add_edge_constraints(const ToolShape& tool, const ToolPose& pose, double spacing, double margin,
+                          std::vector<Vec3>& places, ContactBuffer& contacts) noexcept {
   const std::size_t points = contacts.size();
   const double patch2 = kPatch * spacing * kPatch * spacing;
+  tool.foremost_places(pose, contacts, places.data());
   for (std::size_t i = 0; i < points; ++i) {
     const Vec3 normal = contacts.normal(i);
-    const Vec3 from_point = foremost(tool, pose, normal, contacts.point(i)) - contacts.point(i);
+    const Vec3 from_point = places[i] - contacts.point(i);
     const double height = normal.dot(from_point);
     if (height > margin || height < -kDeepest * spacing) continue;
     if (from_point.squaredNorm() - height * height > patch2) continue;

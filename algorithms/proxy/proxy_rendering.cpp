@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "algorithms/depth/shortest_distance.hpp"
 #include "algorithms/laws/force_law.hpp"
 #include "algorithms/proxy/edge_constraints.hpp"
 #include "algorithms/proxy/nearest_allowed.hpp"
-#include "algorithms/proxy/surface_constraints.hpp"
 
 namespace hapbench {
 namespace {
@@ -55,9 +53,10 @@ void ProxyRendering::prepare(const Scene& scene) {
   tool_ = scene.tool;
   depth_is_given_ = scene.query->gives_depth();
   // Springs are planes, whose constraints hold at any distance.
-  margin_ = depth_is_given_ ? std::numeric_limits<double>::infinity() : kProxyMargin * tool_.radius;
+  margin_ = depth_is_given_ ? std::numeric_limits<double>::infinity() : kProxyMargin * tool_->half_width();
   near_ = scene.query->with_margin(margin_ * kQueryMargin);
   near_contacts_ = std::make_unique<ContactBuffer>(2 * near_->capacity());
+  places_.resize(near_->capacity());
   spacing_ = depth_is_given_ ? 0.0 : typical_spacing(*scene.shell);
 }
 
@@ -70,7 +69,7 @@ void ProxyRendering::reset() noexcept {
 void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   out = {};
   if (!contacts.empty()) {
-    if (!depth_is_given_) shortest_distance_depths(tool_, tool.pose, contacts);
+    if (!depth_is_given_) tool_->shortest_depths(tool.pose, contacts);
     const auto depths = contacts.depth.begin();
     out.depth_max = *std::max_element(depths, depths + static_cast<std::ptrdiff_t>(contacts.size()));
   }
@@ -118,12 +117,12 @@ void ProxyRendering::place(const Vec3& position) noexcept {
 
 bool ProxyRendering::follow(const ToolPose& tool) noexcept {
   for (int pass = 0; pass < kProxyPasses; ++pass) {
-    const ToolPose proxy{proxy_, tool.axis};
+    const ToolPose proxy{proxy_, tool.axis, tool.roll};
     const Vec3 wanted = tool.position - proxy_;
     near_->contacts_at(proxy, *near_contacts_);
     if (!depth_is_given_) {
-      surface_constraints(tool_, proxy, wanted, kEdgeSlack * spacing_, *near_contacts_);
-      add_edge_constraints(tool_, proxy, spacing_, margin_, *near_contacts_);
+      tool_->surface_constraints(proxy, wanted, kEdgeSlack * spacing_, *near_contacts_);
+      add_edge_constraints(*tool_, proxy, spacing_, margin_, places_, *near_contacts_);
     }
     const AllowedMove allowed = nearest_allowed(wanted, *near_contacts_);
     work_.iterations += static_cast<std::uint64_t>(allowed.iterations);

@@ -18,7 +18,7 @@ std::optional<TipPlace> ideal_place(const BlockWithHole& block, double tool_radi
   return place;
 }
 
-IdealTrajectoryObserver::IdealTrajectoryObserver(const BlockWithHole& block, const Tool& tool)
+IdealTrajectoryObserver::IdealTrajectoryObserver(const BlockWithHole& block, const Cylinder& tool)
     : block_(block), tool_(tool) {}
 
 void IdealTrajectoryObserver::on_step(const StepRecord& record) noexcept {
@@ -26,7 +26,7 @@ void IdealTrajectoryObserver::on_step(const StepRecord& record) noexcept {
   const ToolPose& pose = record.tool.pose;
   const Vec3 lean{-pose.axis.x(), -pose.axis.y(), 0.0};
   const double sine = lean.norm(), tilt = std::atan2(sine, -pose.axis.z());
-  const auto ideal = ideal_place(block_, tool_.radius, tilt);
+  const auto ideal = ideal_place(block_, tool_.radius(), tilt);
   if (!ideal) {
     ++sums_.rows_without_ideal;
     return;

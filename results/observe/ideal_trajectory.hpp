@@ -5,6 +5,7 @@
 
 #include "sim/geometry/block_with_hole.hpp"
 #include "sim/loop/observer.hpp"
+#include "sim/tool/cylinder.hpp"
 
 namespace hapbench {
 
@@ -52,7 +53,7 @@ struct IdealTrajectoryMetrics {
 /// Compares every row with the ideal trajectory and with the exact hole. Allocates nothing; about 6 us a row.
 class IdealTrajectoryObserver final : public Observer {
  public:
-  IdealTrajectoryObserver(const BlockWithHole& block, const Tool& tool);
+  IdealTrajectoryObserver(const BlockWithHole& block, const Cylinder& tool);
 
   void on_step(const StepRecord& record) noexcept override;
 
@@ -65,7 +66,7 @@ class IdealTrajectoryObserver final : public Observer {
   static void add(TrajectoryErrors& sums, const TrajectoryError& error) noexcept;
 
   BlockWithHole block_;
-  Tool tool_;
+  Cylinder tool_;
   std::optional<TrajectoryError> error_;
   IdealTrajectoryMetrics sums_;
 };

@@ -57,7 +57,7 @@ double largest_on_circle(const Function& f, double slope) {
 
 /// The largest t >= 0 with start + t * along in the tool. When there is none, minus the distance by which the line
 /// misses the cylinder, so that the search finds narrow hits between its samples.
-double last_in_tool(const Tool& tool, const ToolPose& pose, const Vec3& start, const Vec3& along) {
+double last_in_tool(const Cylinder& tool, const ToolPose& pose, const Vec3& start, const Vec3& along) {
   const Vec3 x = start - pose.position;
   const double s = x.dot(pose.axis), ds = along.dot(pose.axis);
   const Vec3 rho = x - s * pose.axis, drho = along - ds * pose.axis;
@@ -66,8 +66,8 @@ double last_in_tool(const Tool& tool, const ToolPose& pose, const Vec3& start, c
   // In the cylinder: |rho + t drho|^2 <= r^2.
   const double a = drho.squaredNorm(), b = rho.dot(drho);
   const double middle = a > 0.0 ? -b / a : 0.0;
-  const double miss2 = (rho + middle * drho).squaredNorm(), r2 = tool.radius * tool.radius;
-  if (miss2 > r2) return tool.radius - std::sqrt(miss2);
+  const double miss2 = (rho + middle * drho).squaredNorm(), r2 = tool.radius() * tool.radius();
+  if (miss2 > r2) return tool.radius() - std::sqrt(miss2);
   if (a > 0.0) {
     const double half = std::sqrt((r2 - miss2) / a);
     low = std::max(low, middle - half);
@@ -75,27 +75,27 @@ double last_in_tool(const Tool& tool, const ToolPose& pose, const Vec3& start, c
   }
   // Between the planes: -length <= s + t ds <= 0.
   if (ds != 0.0) {
-    const double t_tip = -s / ds, t_bottom = (-tool.length - s) / ds;
+    const double t_tip = -s / ds, t_bottom = (-tool.length() - s) / ds;
     low = std::max(low, std::min(t_tip, t_bottom));
     high = std::min(high, std::max(t_tip, t_bottom));
-  } else if (s > 0.0 || s < -tool.length) {
-    return -tool.length;
+  } else if (s > 0.0 || s < -tool.length()) {
+    return -tool.length();
   }
-  return low <= high ? high : -tool.length;
+  return low <= high ? high : -tool.length();
 }
 
 }  // namespace
 
-double interpenetration(const BlockWithHole& block, const Tool& tool, const ToolPose& pose) {
+double interpenetration(const BlockWithHole& block, const Cylinder& tool, const ToolPose& pose) {
   const double sine = std::hypot(pose.axis.x(), pose.axis.y());
-  if (pose.position.z() - tool.radius * sine >= 0.0) return 0.0;  // all above the top face
+  if (pose.position.z() - tool.radius() * sine >= 0.0) return 0.0;  // all above the top face
   const Vec3 e1 = pose.axis.unitOrthogonal(), e2 = pose.axis.cross(e1);
   const double on_edge = largest_on_circle(
       [&](double angle) {
-        const Vec3 edge = pose.position + tool.radius * (std::cos(angle) * e1 + std::sin(angle) * e2);
+        const Vec3 edge = pose.position + tool.radius() * (std::cos(angle) * e1 + std::sin(angle) * e2);
         return -signed_distance(block, edge);
       },
-      tool.radius);
+      tool.radius());
   const double R = block.hole_diameter / 2;
   const double on_cone = largest_on_circle(
       [&](double angle) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sim/geometry/block_with_hole.hpp"
-#include "sim/tool/tool.hpp"
+#include "sim/tool/cylinder.hpp"
 
 namespace hapbench {
 
@@ -13,6 +13,6 @@ namespace hapbench {
 /// function is largest on the tip's edge; the minimum of the two may also be largest where they are equal, on the cone
 /// of 45 degrees that opens downwards from the rim. Both curves are searched for every local maximum, to 1e-8 rad,
 /// which gives the depth to about 1e-11 m. About 10 us.
-double interpenetration(const BlockWithHole& block, const Tool& tool, const ToolPose& pose);
+double interpenetration(const BlockWithHole& block, const Cylinder& tool, const ToolPose& pose);
 
 }  // namespace hapbench

@@ -17,7 +17,7 @@
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/geometry/block_with_hole.hpp"
 #include "sim/loop/simulation.hpp"
-#include "sim/tool/tool.hpp"
+#include "sim/tool/tool_state.hpp"
 
 /// A scenario file as plain structs. Fields whose default depends on the kind of scene are std::optional here and
 /// filled in by `fill_defaults`. Names, units and ranges: scenario_codec.cpp.

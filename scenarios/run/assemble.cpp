@@ -51,10 +51,6 @@ double cell_size(const Environment& environment) {
                     environment);
 }
 
-Tool make_tool(const ToolFields& fields) {
-  return {*fields.diameter / 2.0, *fields.length, *fields.tip == "round" ? Tip::round : Tip::flat};
-}
-
 Orientation make_orientation(const OrientationFields& fields) {
   return {fields.up->normalized(), fields.lean.normalized(), fields.tilt, fields.azimuth};
 }
@@ -163,6 +159,10 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
   return warnings;
 }
 
+Cylinder make_cylinder(const ToolFields& fields) {
+  return {*fields.diameter / 2.0, *fields.length, *fields.tip == "round" ? Tip::round : Tip::flat};
+}
+
 SimulationConfig simulation_config(const Scenario& scenario, Skips skips) {
   SimulationConfig config;
   config.skips = skips;
@@ -186,14 +186,14 @@ std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const std
 
 SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial, Skips skips) {
   SimulationParts parts;
-  parts.tool = make_tool(scenario.tool);
+  parts.tool = std::make_shared<Cylinder>(make_cylinder(scenario.tool));
   parts.shell = std::move(shell);
   if (const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment)) {
     parts.query = std::make_unique<SpringQuery>(make_springs(*springs, static_cast<std::uint64_t>(scenario.seed)));
   } else if (skips == Skips::off) {
-    parts.query = std::make_unique<ShellQuery>(*parts.shell, parts.tool);
+    parts.query = std::make_unique<ShellQuery>(*parts.shell, *parts.tool);
   } else {
-    parts.query = std::make_unique<NeighbourListQuery>(*parts.shell, parts.tool);
+    parts.query = std::make_unique<NeighbourListQuery>(*parts.shell, *parts.tool);
   }
   parts.algorithm = make_algorithm(rendering_config(scenario.rendering, skips));
   add_hand_and_motion(scenario, trial, parts);

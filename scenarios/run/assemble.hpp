@@ -4,12 +4,16 @@
 
 #include "scenarios/description/load_scenario.hpp"
 #include "sim/loop/simulation.hpp"
+#include "sim/tool/cylinder.hpp"
 
 namespace hapbench {
 
 /// Reads the files the scenario names, to find what is wrong with them before anything is written. Returns warnings
 /// about what is odd, each with file and pointer. Throws InputError.
 std::vector<std::string> check_named_files(const LoadedScenario& loaded);
+
+/// The tool, for those who need to know that it is a cylinder. Precondition: defaults are filled in.
+Cylinder make_cylinder(const ToolFields& fields);
 
 /// Numbers of the run. Precondition: defaults are filled in.
 SimulationConfig simulation_config(const Scenario& scenario, Skips skips = Skips::taken);

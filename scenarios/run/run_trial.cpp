@@ -36,7 +36,7 @@ class TrialObservers {
       observers_.push_back(&*ledger_);
     }
     if (scenario.record.ideal_trajectory) {
-      ideal_.emplace(std::get<BlockEnvironment>(scenario.environment).block, parts.tool);
+      ideal_.emplace(std::get<BlockEnvironment>(scenario.environment).block, make_cylinder(scenario.tool));
       observers_.push_back(&*ideal_);
     }
     if (const TargetTask* task = parts.hand->task()) {

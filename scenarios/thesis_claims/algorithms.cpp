@@ -7,18 +7,20 @@
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/rules.hpp"
 #include "sim/contact/shell_query.hpp"
+#include "sim/tool/cylinder.hpp"
 
 /// Claims of appendix B and of 4.2: what is wrong with the original algorithm, on contacts made for it.
 namespace hapbench {
 namespace {
 
+const Cylinder kDrill;
 const ToolPose kUpright{Vec3::Zero(), {0.0, 0.0, -1.0}};
 
 /// A wall point with normal +x, `beyond` the median line of an upright tool (so beyond > 0: the tool's axis is inside).
 ContactBuffer wall_point(double beyond, const char* depth_model) {
   ContactBuffer contacts(1);
   contacts.push(0, {beyond, 0.0, 0.001}, Vec3::UnitX());
-  find_depth_model(depth_model)->make()->evaluate({}, kUpright, contacts);
+  find_depth_model(depth_model)->make()->evaluate(kDrill, kUpright, contacts);
   contacts.pad();
   return contacts;
 }
@@ -41,8 +43,8 @@ Finding judge_median(const Evidence& e) {
   // A point as deep as the thesis allows, whose normal is 20 degrees off the shortest way out.
   const double depth = e.published["G1.negligible"].at_most, angle = 20.0 * std::numbers::pi / 180.0;
   ContactBuffer contacts(1);
-  contacts.push(0, {Tool{}.radius - depth, 0.0, 0.005}, {-std::cos(angle), -std::sin(angle), 0.0});
-  find_depth_model("normal_projection")->make()->evaluate({}, kUpright, contacts);
+  contacts.push(0, {kDrill.radius() - depth, 0.0, 0.005}, {-std::cos(angle), -std::sin(angle), 0.0});
+  find_depth_model("normal_projection")->make()->evaluate(kDrill, kUpright, contacts);
   return judge_median_line(product("shortest_distance"), product("surface_normal"), 1.0 - depth / contacts.depth[0]);
 }
 

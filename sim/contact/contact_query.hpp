@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "sim/contact/contact_buffer.hpp"
-#include "sim/tool/tool.hpp"
+#include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
 

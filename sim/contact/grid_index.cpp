@@ -25,7 +25,8 @@ GridIndex::GridIndex(const PointShell& shell)
     : x_(shell.padded_size(), PointShell::kFarAway),
       y_(shell.padded_size(), PointShell::kFarAway),
       z_(shell.padded_size(), PointShell::kFarAway),
-      shell_index_(shell.padded_size()) {
+      shell_index_(shell.padded_size()),
+      shell_size_(shell.size()) {
   choose_cells(shell);
   start_.assign(count_[0] * count_[1] * count_[2] + 1, 0);
   std::vector<std::uint32_t> cell(shell.size());

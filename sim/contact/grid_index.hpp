@@ -3,7 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/contact/tool_box.hpp"
+#include "sim/core/aligned.hpp"
+#include "sim/core/box.hpp"
 #include "sim/geometry/point_shell.hpp"
 
 namespace hapbench {
@@ -41,6 +42,9 @@ class GridIndex {
   /// True when sorting changed nothing, so that runs come in ascending shell index.
   bool keeps_order() const { return keeps_order_; }
   double cell_size() const { return cell_; }
+  std::size_t size() const { return shell_size_; }
+  /// The most runs that for_each_run visits.
+  std::size_t columns() const { return count_[0] * count_[1]; }
   /// The box of all points.
   const Box& bounds() const { return bounds_; }
 
@@ -60,6 +64,7 @@ class GridIndex {
   std::vector<std::uint32_t> start_;  ///< first point of each cell, one more at the end
   AlignedDoubles x_, y_, z_;
   std::vector<std::uint32_t> shell_index_;
+  std::size_t shell_size_;
   bool keeps_order_ = true;
 };
 

@@ -1,44 +1,40 @@
 #include "sim/contact/grid_query.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <bit>
 
 #include "sim/contact/margin_query.hpp"
 #include "sim/contact/push_hits.hpp"
-#include "sim/contact/shell_query.hpp"
-#include "sim/contact/tool_box.hpp"
-#include "sim/core/simd.hpp"
-#include "sim/tool/axial.hpp"
 
 namespace hapbench {
 
-GridQuery::GridQuery(const PointShell& shell, const Tool& tool)
-    : shell_(&shell),
-      tool_(tool),
-      radius2_(largest_square_within(tool.radius)),
-      reach_(std::hypot(tool.length, tool.radius)),
-      grid_(shell),
-      found_(shell.size()) {}
+GridQuery::GridQuery(const PointShell& shell, const ToolShape& tool)
+    : shell_(&shell), tool_(&tool), grid_(shell), scan_(grid_), found_(shell.size()) {}
 
 std::unique_ptr<ContactQuery> GridQuery::with_margin(double margin) const {
-  return std::make_unique<MarginQuery>(std::make_unique<GridQuery>(*shell_, grown(tool_, margin)), tool_, margin);
+  return make_margin_query<GridQuery>(*shell_, *tool_, margin);
 }
 
 void GridQuery::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
   ++work_.queries;
   contacts.clear();
-  if (!grid_.keeps_order()) return push_sorted(pose, contacts);
+  // Far above the rounding of the box and of the test, far below a cell.
+  const double reach = tool_->reach();
+  const double margin = 1e-9 * reach + 1e-12 * (pose.position.cwiseAbs().maxCoeff() + reach);
+  work_.points_tested += scan_.select(tool_->box_near(pose, margin, grid_.bounds()));
+  tool_->mark_inside(pose, scan_.points(), scan_.packs(), scan_.marks());
+  if (!grid_.keeps_order()) return push_sorted(contacts);
   // The grid's order is the shell's.
   const PointColumns points{grid_.shell_indices(), shell_->x(),  shell_->y(), shell_->z(),
                             shell_->nx(),          shell_->ny(), shell_->nz()};
-  for_each_hit(pose, [&](const simd::Mask& hit, std::size_t i) { push_hits(hit, points, i, contacts); });
+  scan_.for_each_hit([&](std::uint8_t hits, std::size_t i) { push_hits(hits, points, i, contacts); });
 }
 
-void GridQuery::push_sorted(const ToolPose& pose, ContactBuffer& contacts) noexcept {
+void GridQuery::push_sorted(ContactBuffer& contacts) noexcept {
   std::size_t found = 0;
-  for_each_hit(pose, [&](const simd::Mask& hit, std::size_t i) {
-    for (std::size_t lane = 0; lane < simd::lanes; ++lane) {
-      if (simd::lane(hit, lane)) found_[found++] = grid_.shell_index(i + lane);
+  scan_.for_each_hit([&](std::uint8_t hits, std::size_t i) {
+    for (; hits != 0; hits &= static_cast<std::uint8_t>(hits - 1)) {
+      found_[found++] = grid_.shell_index(i + static_cast<std::size_t>(std::countr_zero(hits)));
     }
   });
   std::sort(found_.begin(), found_.begin() + static_cast<std::ptrdiff_t>(found));
@@ -46,24 +42,6 @@ void GridQuery::push_sorted(const ToolPose& pose, ContactBuffer& contacts) noexc
     const SurfacePoint point = shell_->point(found_[k]);
     contacts.push(found_[k], point.position, point.normal);
   }
-}
-
-/// Calls `take(hit, i)` where some of the eight points from i on, in the order of the grid, touch the tool.
-template <class Take>
-void GridQuery::for_each_hit(const ToolPose& pose, Take take) noexcept {
-  // Far above the rounding of the box and of the test, far below a cell.
-  const double margin = 1e-9 * reach_ + 1e-12 * (pose.position.cwiseAbs().maxCoeff() + reach_);
-  const ToolTest touches(tool_, radius2_);
-  grid_.for_each_run(box_around(tool_, pose, margin, grid_.bounds()), [&](std::uint32_t first, std::uint32_t last) {
-    for (std::size_t i = first / simd::lanes * simd::lanes; i < last; i += simd::lanes) {
-      simd::Mask hit = touches(AxialPack(pose, grid_.x() + i, grid_.y() + i, grid_.z() + i));
-      if (!simd::any(hit)) continue;
-      // Whole packs, so the first and last one may reach into neighbouring columns: those lanes are passed over.
-      hit = hit && simd::lanes_between(first > i ? first - i : 0, last - i);
-      take(hit, i);
-    }
-    work_.points_tested += last - first;
-  });
 }
 
 }  // namespace hapbench

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sim/contact/contact_query.hpp"
-#include "sim/contact/grid_index.hpp"
+#include "sim/contact/grid_scan.hpp"
 #include "sim/geometry/point_shell.hpp"
 
 namespace hapbench {
@@ -11,8 +11,8 @@ namespace hapbench {
 /// are those of ShellQuery, point by point and bit by bit. Cost O(points in the box around the tool).
 class GridQuery final : public ContactQuery {
  public:
-  /// The shell must outlive the query. Builds the grid: O(n).
-  GridQuery(const PointShell& shell, const Tool& tool);
+  /// Shell and tool must outlive the query. Builds the grid: O(n).
+  GridQuery(const PointShell& shell, const ToolShape& tool);
 
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return shell_->size(); }
@@ -21,15 +21,12 @@ class GridQuery final : public ContactQuery {
   void reset() noexcept override { work_ = {}; }
 
  private:
-  template <class Take>
-  void for_each_hit(const ToolPose& pose, Take take) noexcept;
-  void push_sorted(const ToolPose& pose, ContactBuffer& contacts) noexcept;
+  void push_sorted(ContactBuffer& contacts) noexcept;
 
   const PointShell* shell_;
-  Tool tool_;
-  double radius2_;  ///< largest square whose root is at most the radius
-  double reach_;    ///< the tool's furthest point from its tip centre
+  const ToolShape* tool_;
   GridIndex grid_;
+  GridScan scan_;
   std::vector<std::uint32_t> found_;  ///< shell indices of the colliding points, when they have to be sorted
 };
 

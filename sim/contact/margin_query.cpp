@@ -1,28 +1,18 @@
 #include "sim/contact/margin_query.hpp"
 
-#include <utility>
-
 namespace hapbench {
 
-Tool grown(const Tool& tool, double margin) noexcept {
-  const double ends = tool.tip == Tip::round ? margin : 2.0 * margin;  // a round tip grows with the radius
-  return {tool.radius + margin, tool.length + ends, tool.tip};
-}
-
-MarginQuery::MarginQuery(std::unique_ptr<ContactQuery> query, const Tool& tool, double margin)
-    : MarginQuery(std::move(query), tool.tip == Tip::round ? 0.0 : margin) {}
-
-MarginQuery::MarginQuery(std::unique_ptr<ContactQuery> query, double forward)
-    : query_(std::move(query)), forward_(forward) {}
+MarginQuery::MarginQuery(ToolShape::Grown tool, std::unique_ptr<ContactQuery> query)
+    : tool_(std::move(tool)), query_(std::move(query)) {}
 
 void MarginQuery::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
-  query_->contacts_at({pose.position + forward_ * pose.axis, pose.axis}, contacts);
+  query_->contacts_at({pose.position + tool_.forward * pose.axis, pose.axis, pose.roll}, contacts);
   work_ = query_->work();
 }
 
 /// The inner query moves its own grown tool ahead.
 std::unique_ptr<ContactQuery> MarginQuery::with_margin(double margin) const {
-  return std::unique_ptr<ContactQuery>(new MarginQuery(query_->with_margin(margin), forward_));
+  return std::make_unique<MarginQuery>(ToolShape::Grown{nullptr, tool_.forward}, query_->with_margin(margin));
 }
 
 void MarginQuery::reset() noexcept {

@@ -1,20 +1,19 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
 #include "sim/contact/contact_query.hpp"
+#include "sim/geometry/point_shell.hpp"
+#include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {
-
-/// The tool grown by `margin` [m] on all sides. A flat one reaches further beyond its tip plane, so its tip centre lies
-/// `margin` ahead along the axis (see MarginQuery). Not rounded: at a flat tool's edges it reaches sqrt(2) margin.
-Tool grown(const Tool& tool, double margin) noexcept;
 
 /// What lies in or near the tool: a query with the grown tool in its place.
 class MarginQuery final : public ContactQuery {
  public:
-  /// `query` has the tool grown by `margin`.
-  MarginQuery(std::unique_ptr<ContactQuery> query, const Tool& tool, double margin);
+  /// `query` searches with the shape of `tool`, which it may need to be kept alive.
+  MarginQuery(ToolShape::Grown tool, std::unique_ptr<ContactQuery> query);
 
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return query_->capacity(); }
@@ -23,10 +22,16 @@ class MarginQuery final : public ContactQuery {
   void reset() noexcept override;
 
  private:
-  MarginQuery(std::unique_ptr<ContactQuery> query, double forward);
-
+  ToolShape::Grown tool_;
   std::unique_ptr<ContactQuery> query_;
-  double forward_;  ///< of the grown tool's tip centre along the axis [m]
 };
+
+/// A Query over the shell that answers with what lies in or near the tool.
+template <class Query>
+std::unique_ptr<ContactQuery> make_margin_query(const PointShell& shell, const ToolShape& tool, double margin) {
+  ToolShape::Grown grown = tool.grown(margin);
+  auto query = std::make_unique<Query>(shell, *grown.shape);
+  return std::make_unique<MarginQuery>(std::move(grown), std::move(query));
+}
 
 }  // namespace hapbench

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sim/contact/contact_query.hpp"
-#include "sim/contact/grid_index.hpp"
+#include "sim/contact/grid_scan.hpp"
 #include "sim/geometry/point_shell.hpp"
 
 namespace hapbench {
@@ -10,22 +10,16 @@ namespace hapbench {
 /// until the tool has moved or turned further than the skin. Its answers are those of ShellQuery, point by point and
 /// bit by bit.
 ///
-/// Why nothing is lost. Let p, a be the tip centre and axis the list was made for, p', a' those of now. The smallest
-/// rotation that takes a to a' moves a point of the tool by at most |a' - a| times its distance from the tip centre,
-/// which is at most reach = sqrt(L^2 + r^2). So every point of the tool now lies within
-///
-///     moved = |p' - p| + |a' - a| reach
-///
-/// of the tool then, and a shell point the tool touches now is in the list as long as moved <= skin. The list is made
-/// anew when that fails, so the slow loop of thesis 2.2 only skips work here and never misses a point. (The
-/// tool is a solid of revolution: a turn about its own axis changes nothing.)
+/// Why nothing is lost. Every point of the tool lies within ToolShape::moved_at_most of where the tool was when the
+/// list was made, so a shell point the tool touches is in the list as long as that is no more than the skin. The list
+/// is made anew when that fails, so the slow loop of thesis 2.2 only skips work here and never misses a point.
 ///
 /// Clearance. When a search finds no point near, it looks in ever larger skins, and the largest empty one tells how far
 /// the tool may go before anything has to be searched again: in free air a step costs one comparison.
 class NeighbourListQuery final : public ContactQuery {
  public:
-  /// The shell must outlive the query. Builds the grid: O(n).
-  NeighbourListQuery(const PointShell& shell, const Tool& tool);
+  /// Shell and tool must outlive the query. Builds the grid: O(n).
+  NeighbourListQuery(const PointShell& shell, const ToolShape& tool);
 
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return shell_->size(); }
@@ -34,16 +28,15 @@ class NeighbourListQuery final : public ContactQuery {
   void reset() noexcept override;
 
  private:
-  double moved_since_list(const ToolPose& pose) const noexcept;
   void rebuild(const ToolPose& pose) noexcept;
   void collect(const ToolPose& pose, double skin) noexcept;
   void test_list(const ToolPose& pose, ContactBuffer& contacts) noexcept;
 
   const PointShell* shell_;
-  Tool tool_;
-  double radius2_;  ///< largest square whose root is at most the radius
-  double reach_;
+  const ToolShape* tool_;
+  double skin_wanted_;  ///< [m]
   GridIndex grid_;
+  GridScan scan_;
 
   // The list: its pose, how far it reaches, and its points in ascending shell index, padded to whole packs.
   bool has_list_ = false;
@@ -51,6 +44,7 @@ class NeighbourListQuery final : public ContactQuery {
   double skin_ = 0.0;
   std::size_t list_size_ = 0;
   std::vector<std::uint32_t> index_;
+  std::vector<std::uint8_t> marks_;
   AlignedDoubles x_, y_, z_, nx_, ny_, nz_;
 };
 

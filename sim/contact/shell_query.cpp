@@ -1,41 +1,29 @@
 #include "sim/contact/shell_query.hpp"
 
-#include <cmath>
-#include <limits>
+#include <bit>
 
 #include "sim/contact/margin_query.hpp"
-#include "sim/core/simd.hpp"
-#include "sim/tool/axial.hpp"
 
 namespace hapbench {
 
-double largest_square_within(double r) {
-  constexpr double up = std::numeric_limits<double>::infinity();
-  double square = r * r;
-  while (std::sqrt(square) > r) square = std::nextafter(square, 0.0);
-  while (std::sqrt(std::nextafter(square, up)) <= r) square = std::nextafter(square, up);
-  return square;
-}
-
-ShellQuery::ShellQuery(const PointShell& shell, const Tool& tool)
-    : shell_(&shell), tool_(tool), radius2_(largest_square_within(tool.radius)) {}
+ShellQuery::ShellQuery(const PointShell& shell, const ToolShape& tool)
+    : shell_(&shell), tool_(&tool), marks_(shell.padded_size() / simd::lanes) {}
 
 std::unique_ptr<ContactQuery> ShellQuery::with_margin(double margin) const {
-  return std::make_unique<MarginQuery>(std::make_unique<ShellQuery>(*shell_, grown(tool_, margin)), tool_, margin);
+  return make_margin_query<ShellQuery>(*shell_, *tool_, margin);
 }
 
 void ShellQuery::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
   const PointShell& shell = *shell_;
-  const ToolTest touches(tool_, radius2_);
+  const PackRange all{0, marks_.size()};
+  tool_->mark_inside(pose, {shell.x(), shell.y(), shell.z()}, {&all, 1}, marks_.data());
 
   contacts.clear();
-  for (std::size_t i = 0; i < shell.padded_size(); i += simd::lanes) {
-    const simd::Mask hit = touches(AxialPack(pose, shell.x() + i, shell.y() + i, shell.z() + i));
-    if (!simd::any(hit)) continue;
-    for (std::size_t lane = 0; lane < simd::lanes; ++lane) {
-      if (!simd::lane(hit, lane)) continue;
-      const SurfacePoint point = shell.point(i + lane);
-      contacts.push(static_cast<std::uint32_t>(i + lane), point.position, point.normal);
+  for (std::size_t pack = 0; pack < marks_.size(); ++pack) {
+    for (std::uint8_t hits = marks_[pack]; hits != 0; hits &= static_cast<std::uint8_t>(hits - 1)) {
+      const std::size_t i = pack * simd::lanes + static_cast<std::size_t>(std::countr_zero(hits));
+      const SurfacePoint point = shell.point(i);
+      contacts.push(static_cast<std::uint32_t>(i), point.position, point.normal);
     }
   }
   ++work_.queries;

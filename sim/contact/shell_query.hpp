@@ -1,7 +1,10 @@
 #pragma once
 
+#include <vector>
+
 #include "sim/contact/contact_query.hpp"
 #include "sim/geometry/point_shell.hpp"
+#include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {
 
@@ -9,8 +12,8 @@ namespace hapbench {
 /// enough for planar scenes. Cost O(shell size), about 0.3 ns a point with 512-bit registers.
 class ShellQuery final : public ContactQuery {
  public:
-  /// The shell must outlive the query.
-  ShellQuery(const PointShell& shell, const Tool& tool);
+  /// Shell and tool must outlive the query.
+  ShellQuery(const PointShell& shell, const ToolShape& tool);
 
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return shell_->size(); }
@@ -20,12 +23,8 @@ class ShellQuery final : public ContactQuery {
 
  private:
   const PointShell* shell_;
-  Tool tool_;
-  double radius2_;  ///< largest square whose root is at most the radius
+  const ToolShape* tool_;
+  std::vector<std::uint8_t> marks_;
 };
-
-/// The largest double whose square root does not exceed r: lets the search compare squares and still agree with the
-/// depth models, which take the root, about every point on the tool's surface.
-double largest_square_within(double r);
 
 }  // namespace hapbench

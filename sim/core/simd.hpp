@@ -46,9 +46,6 @@ inline bool any(const Mask& m) {
 inline bool lane(const Mask& m, std::size_t i) {
   return m[i];
 }
-inline std::size_t count(const Mask& m) {
-  return static_cast<std::size_t>(std::experimental::popcount(m));
-}
 
 #else
 
@@ -140,34 +137,38 @@ inline bool any(const Mask& m) {
 inline bool lane(const Mask& m, std::size_t i) {
   return m.v[i];
 }
-inline std::size_t count(const Mask& m) {
-  std::size_t n = 0;
-  for (const bool b : m.v) n += b;
-  return n;
-}
 
 #endif
 
-/// Moves the selected ones of eight aligned elements to `to`, in their order and without gaps. May write eight
-/// elements, whatever is selected.
+/// Bit i of the result is lane i of the mask.
+inline std::uint8_t bits(const Mask& m) {
 #if HAPBENCH_SIMD && defined(__AVX512VL__)
-inline __mmask8 bits(const Mask& m) {
   const Pack ones = select(m, Pack(1.0), Pack(0.0));
   return _mm512_cmp_pd_mask(static_cast<__m512d>(ones), _mm512_setzero_pd(), _CMP_NEQ_OQ);
+#else
+  if (!any(m)) return 0;
+  unsigned b = 0;
+  for (std::size_t i = 0; i < lanes; ++i) b |= static_cast<unsigned>(lane(m, i)) << i;
+  return static_cast<std::uint8_t>(b);
+#endif
 }
-inline void store_selected(const Mask& m, const double* from, double* to) {
-  _mm512_storeu_pd(to, _mm512_maskz_compress_pd(bits(m), _mm512_load_pd(from)));
+
+/// Moves those of eight aligned elements whose bit is set to `to`, in their order and without gaps. May write eight
+/// elements, whatever is selected.
+#if HAPBENCH_SIMD && defined(__AVX512VL__)
+inline void store_selected(std::uint8_t selected, const double* from, double* to) {
+  _mm512_storeu_pd(to, _mm512_maskz_compress_pd(selected, _mm512_load_pd(from)));
 }
-inline void store_selected(const Mask& m, const std::uint32_t* from, std::uint32_t* to) {
+inline void store_selected(std::uint8_t selected, const std::uint32_t* from, std::uint32_t* to) {
   const __m256i all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
-  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_maskz_compress_epi32(bits(m), all));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_maskz_compress_epi32(selected, all));
 }
 #else
 template <class T>
-void store_selected(const Mask& m, const T* from, T* to) {
+void store_selected(std::uint8_t selected, const T* from, T* to) {
   for (std::size_t i = 0; i < lanes; ++i) {
     *to = from[i];
-    to += lane(m, i);
+    to += selected >> i & 1;
   }
 }
 #endif

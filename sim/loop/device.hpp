@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "sim/loop/hand.hpp"
-#include "sim/tool/tool.hpp"
+#include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
 

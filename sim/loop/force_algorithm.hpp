@@ -6,13 +6,13 @@
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/contact/contact_query.hpp"
 #include "sim/geometry/point_shell.hpp"
-#include "sim/tool/tool.hpp"
+#include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {
 
 /// What a force algorithm may know of the scene before the first step. Everything pointed to outlives the algorithm.
 struct Scene {
-  Tool tool;
+  const ToolShape* tool = nullptr;
   ContactQuery* query = nullptr;      ///< for algorithms that ask for contacts at a pose of their own; never null
   const PointShell* shell = nullptr;  ///< null for springs
   double dt = 0.0005;                 ///< time step [s]

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sim/task/target_task.hpp"
-#include "sim/tool/tool.hpp"
+#include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
 

@@ -43,7 +43,7 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
   input_wanted_ = parts_.algorithm->wants_input();
   handle_is_apart_ = parts_.device->energy().has_value();
   angular_velocity_cutoff_ = parts_.algorithm->angular_velocity_cutoff();
-  parts_.algorithm->prepare({parts_.tool, parts_.query.get(), parts_.shell.get(), config_.dt});
+  parts_.algorithm->prepare({parts_.tool.get(), parts_.query.get(), parts_.shell.get(), config_.dt});
   reset();
 }
 

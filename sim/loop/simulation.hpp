@@ -13,6 +13,7 @@
 #include "sim/loop/integrators/integrator.hpp"
 #include "sim/loop/observer.hpp"
 #include "sim/tool/motion.hpp"
+#include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {
 
@@ -48,7 +49,7 @@ struct SimulationConfig {
 
 /// The parts a run is made of; the simulation owns them.
 struct SimulationParts {
-  Tool tool;
+  std::shared_ptr<const ToolShape> tool;
   std::shared_ptr<const PointShell> shell;  ///< null for springs
   std::unique_ptr<ContactQuery> query;
   std::unique_ptr<ForceAlgorithm> algorithm;

@@ -1,13 +1,13 @@
 #pragma once
 
 #include "sim/core/simd.hpp"
-#include "sim/tool/tool.hpp"
+#include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
 
 /// Eight points in the tool's axial coordinates: x is relative to the tip centre, s its component along the axis,
-/// rho = x - s * axis the radial vector. Search and depth models share this arithmetic, so that a point that counts as
-/// colliding never gets a negative depth. For source files only (see simd.hpp).
+/// rho = x - s * axis the radial vector. All that a solid of revolution computes of points starts from these, so that a
+/// point that counts as colliding never gets a negative depth. For source files only (see simd.hpp).
 struct AxialPack {
   simd::Pack x, y, z;
   simd::Pack s;
@@ -27,23 +27,6 @@ struct AxialPack {
   }
 
   simd::Pack distance2() const { return x * x + y * y + z * z; }
-};
-
-/// Which of eight points lie in the tool or on its surface. `radius2` is the largest square whose root is at most the
-/// tool's radius (largest_square_within).
-class ToolTest {
- public:
-  ToolTest(const Tool& tool, double radius2)
-      : bottom_(-tool.length), radius2_(radius2), zero_(0.0), round_(tool.tip == Tip::round) {}
-
-  simd::Mask operator()(const AxialPack& q) const {
-    const simd::Mask in_cylinder = q.s <= zero_ && q.s >= bottom_ && q.rho2 <= radius2_;
-    return round_ ? in_cylinder || (q.s > zero_ && q.distance2() <= radius2_) : in_cylinder;
-  }
-
- private:
-  simd::Pack bottom_, radius2_, zero_;
-  bool round_;
 };
 
 }  // namespace hapbench

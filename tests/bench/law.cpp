@@ -69,7 +69,7 @@ void law(benchmark::State& state, const std::string& algorithm, std::size_t n) {
   // The contacts bring their depths, so that the law is what remains.
   ContactBuffer contacts = task_contacts(n);
   test::FakeQuery query(n);
-  rendering->prepare({Tool{}, &query, nullptr});
+  rendering->prepare({nullptr, &query, nullptr});
   rendering->reset();
   const ToolState tool;
   RenderedForce force;

@@ -4,7 +4,6 @@
 #include "algorithms/proxy/edge_constraints.hpp"
 #include "algorithms/proxy/nearest_allowed.hpp"
 #include "algorithms/proxy/proxy_rendering.hpp"
-#include "algorithms/proxy/surface_constraints.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
@@ -23,11 +22,12 @@ struct Problem {
 /// Of T2 with a proxy, whose place is p + f_spring / K.
 class Problems final : public Observer {
  public:
-  Problems(const PointShell& shell, const Tool& tool, double K)
-      : margin_(kProxyMargin * tool.radius),
+  Problems(const PointShell& shell, const ToolShape& tool, double K)
+      : margin_(kProxyMargin * tool.half_width()),
         near_(NeighbourListQuery(shell, tool).with_margin(margin_)),
         found_(2 * near_->capacity()),
-        tool_(tool),
+        places_(near_->capacity()),
+        tool_(&tool),
         K_(K),
         spacing_(typical_spacing(shell)) {}
 
@@ -36,8 +36,8 @@ class Problems final : public Observer {
     const Vec3 to_proxy = record.force.spring / K_;
     const ToolPose proxy{record.tool.pose.position + to_proxy, record.tool.pose.axis};
     near_->contacts_at(proxy, found_);
-    surface_constraints(tool_, proxy, -to_proxy, 1e-3 * spacing_, found_);
-    add_edge_constraints(tool_, proxy, spacing_, margin_, found_);
+    tool_->surface_constraints(proxy, -to_proxy, 1e-3 * spacing_, found_);
+    add_edge_constraints(*tool_, proxy, spacing_, margin_, places_, found_);
     ContactBuffer contacts(std::max<std::size_t>(1, found_.size()));
     for (std::size_t i = 0; i < found_.size(); ++i) contacts.push_copy_of(found_, i);
     contacts.pad();
@@ -50,7 +50,8 @@ class Problems final : public Observer {
   double margin_;
   std::unique_ptr<ContactQuery> near_;
   ContactBuffer found_;
-  Tool tool_;
+  std::vector<Vec3> places_;
+  const ToolShape* tool_;
   double K_;
   double spacing_;
 };
@@ -58,7 +59,7 @@ class Problems final : public Observer {
 std::vector<Problem> problems_of_task() {
   const Scenario& scenario = step_scenario("T2_proxy").scenario;
   SimulationParts parts = assemble(scenario, block_shell(), {});
-  Problems problems(*block_shell(), parts.tool, scenario.rendering.config.stiffness);
+  Problems problems(*block_shell(), *parts.tool, scenario.rendering.config.stiffness);
   Simulation(simulation_config(scenario), std::move(parts), {&problems}).run();
   return std::move(problems.problems);
 }

@@ -17,8 +17,9 @@ namespace {
 constexpr std::size_t kDefinitionEvery = 4096;
 
 std::string wrong_by_definition(const TaskScene& scene) {
-  ShellQuery query(*scene.shell, scene.tool);
+  ShellQuery query(*scene.shell, *scene.tool);
   ContactBuffer contacts(query.capacity());
+  const Cylinder tool = make_cylinder(scene.loaded.scenario.tool);
   for (std::size_t k = 0; k < scene.poses.size(); k += kDefinitionEvery) {
     query.contacts_at(scene.poses[k], contacts);
     std::size_t next = 0;
@@ -26,7 +27,7 @@ std::string wrong_by_definition(const TaskScene& scene) {
       const bool found = next < contacts.size() && contacts.index[next] == i;
       if (found) ++next;
       const Vec3 point = scene.shell->point(i).position;
-      const long double slack = test::slack(scene.tool, scene.poses[k], point.cast<long double>());
+      const long double slack = test::slack(tool, scene.poses[k], point.cast<long double>());
       // Coordinates of 1 cm are subtracted and rotated in double: a few of their roundings decide nothing.
       if (std::abs(slack) > 1e-16L && found != (slack > 0.0L)) return fmt::format("pose {}, point {}", k, i);
     }
@@ -62,15 +63,15 @@ void search_benchmark(benchmark::State& state, const std::string& search, const 
 }  // namespace
 
 std::unique_ptr<ContactQuery> make_search(const std::string& search, const TaskScene& scene) {
-  if (search == "brute_force") return std::make_unique<ShellQuery>(*scene.shell, scene.tool);
-  if (search == "grid") return std::make_unique<GridQuery>(*scene.shell, scene.tool);
-  return std::make_unique<NeighbourListQuery>(*scene.shell, scene.tool);
+  if (search == "brute_force") return std::make_unique<ShellQuery>(*scene.shell, *scene.tool);
+  if (search == "grid") return std::make_unique<GridQuery>(*scene.shell, *scene.tool);
+  return std::make_unique<NeighbourListQuery>(*scene.shell, *scene.tool);
 }
 
 std::string wrong_answers(const std::string& search, const TaskScene& scene) {
   if (search == "brute_force") return wrong_by_definition(scene);
   const auto query = make_search(search, scene);
-  ShellQuery brute(*scene.shell, scene.tool);
+  ShellQuery brute(*scene.shell, *scene.tool);
   ContactBuffer found(query->capacity()), all(brute.capacity());
   for (std::size_t k = 0; k < scene.poses.size(); ++k) {
     query->contacts_at(scene.poses[k], found);

@@ -28,7 +28,7 @@ class Rendering {
       : query_(contacts), all_(task_contacts(std::max<std::size_t>(contacts, 1))), contacts_(all_) {
     config.skips = skips;
     algorithm_ = make_algorithm(config);
-    algorithm_->prepare({Tool{}, &query_, nullptr});
+    algorithm_->prepare({nullptr, &query_, nullptr});
     algorithm_->reset();
     if (contacts == 0) contacts_.clear();
   }
@@ -58,8 +58,8 @@ void rendering_benchmark(benchmark::State& state, const RenderingConfig& config,
 void clearance_benchmark(benchmark::State& state, Skips skips) {
   const TaskScene& scene = task_scene("T1");
   const ToolPose pose{{0.0, 0.0, 0.002}, {0.0, 0.0, -1.0}};
-  NeighbourListQuery list(*scene.shell, scene.tool);
-  GridQuery grid(*scene.shell, scene.tool);
+  NeighbourListQuery list(*scene.shell, *scene.tool);
+  GridQuery grid(*scene.shell, *scene.tool);
   ContactQuery& query = skips == Skips::taken ? static_cast<ContactQuery&>(list) : grid;
   ContactBuffer contacts(query.capacity());
   for (ContactQuery* each : {static_cast<ContactQuery*>(&list), static_cast<ContactQuery*>(&grid)}) {

@@ -17,7 +17,7 @@ inline constexpr const char* kTasks[] = {"T1", "T2", "T3"};
 struct TaskScene {
   LoadedScenario loaded;
   std::shared_ptr<const PointShell> shell;
-  Tool tool;
+  std::shared_ptr<const ToolShape> tool;
   std::vector<ToolPose> poses;  ///< consecutive, 2048 a second, in contact most of the time
 };
 

@@ -2,6 +2,7 @@
 
 #include "sim/contact/shell_query.hpp"
 #include "sim/core/random.hpp"
+#include "sim/tool/cylinder.hpp"
 
 /// What the tests of contact searches share: shells, walks of the tool, and brute force to compare with.
 namespace hapbench::test {
@@ -19,10 +20,11 @@ ToolPose next_pose(const ToolPose& pose, Random& random, double size, double ste
 template <class Query>
 class SearchPair {
  public:
-  SearchPair(const std::vector<SurfacePoint>& points, double cell_size, const Tool& tool)
-      : shell_(points, cell_size),
-        search_(shell_, tool),
-        brute_(shell_, tool),
+  SearchPair(const std::vector<SurfacePoint>& points, double cell_size, const Cylinder& tool)
+      : tool_(tool),
+        shell_(points, cell_size),
+        search_(shell_, tool_),
+        brute_(shell_, tool_),
         found_(points.size()),
         all_(points.size()) {}
 
@@ -37,6 +39,7 @@ class SearchPair {
   const SearchWork& work() const { return search_.work(); }
 
  private:
+  Cylinder tool_;
   PointShell shell_;
   Query search_;
   ShellQuery brute_;

@@ -15,9 +15,9 @@ std::shared_ptr<const PointShell> shell_of(const Setting& setting) {
   return setting.springs ? nullptr : std::make_shared<const PointShell>(setting.points, setting.cell_size);
 }
 
-std::unique_ptr<ContactQuery> query_of(const Setting& setting, const PointShell* shell) {
+std::unique_ptr<ContactQuery> query_of(const Setting& setting, const PointShell* shell, const ToolShape& tool) {
   if (setting.springs) return std::make_unique<SpringQuery>(*setting.springs);
-  return std::make_unique<NeighbourListQuery>(*shell, setting.tool);
+  return std::make_unique<NeighbourListQuery>(*shell, tool);
 }
 
 }  // namespace
@@ -32,8 +32,7 @@ Setting moved(Setting setting, const Mat3& R, const Vec3& t) {
 }
 
 Setting scaled(Setting setting, double s) {
-  setting.tool.radius *= s;
-  setting.tool.length *= s;
+  setting.tool = {s * setting.tool.radius(), s * setting.tool.length(), setting.tool.tip()};
   setting.pose.position *= s;
   setting.cell_size *= s;
   for (SurfacePoint& point : setting.points) point.position *= s;
@@ -47,11 +46,12 @@ Setting permuted(Setting setting, Random& random) {
 }
 
 Probe::Probe(const Setting& setting, const RenderingConfig& config)
-    : shell_(shell_of(setting)),
-      query_(query_of(setting, shell_.get())),
+    : tool_(setting.tool),
+      shell_(shell_of(setting)),
+      query_(query_of(setting, shell_.get(), tool_)),
       algorithm_(make_algorithm(config)),
       contacts_(query_->capacity()) {
-  algorithm_->prepare({setting.tool, query_.get(), shell_.get()});
+  algorithm_->prepare({&tool_, query_.get(), shell_.get()});
   algorithm_->reset();
 }
 
@@ -64,9 +64,9 @@ RenderedForce Probe::force_at(const ToolPose& pose, const Vec3& velocity, const 
 
 SimulationParts free_run(const Setting& setting, const RenderingConfig& config) {
   SimulationParts parts;
-  parts.tool = setting.tool;
+  parts.tool = std::make_shared<Cylinder>(setting.tool);
   parts.shell = shell_of(setting);
-  parts.query = query_of(setting, parts.shell.get());
+  parts.query = query_of(setting, parts.shell.get(), *parts.tool);
   parts.algorithm = make_algorithm(config);
   parts.motion = constant_axis(setting.pose.axis);
   parts.hand = std::make_unique<NoHand>();

@@ -8,13 +8,14 @@
 #include "sim/core/random.hpp"
 #include "sim/geometry/springs.hpp"
 #include "sim/loop/simulation.hpp"
+#include "sim/tool/cylinder.hpp"
 
 /// From an environment and a tool to forces and runs, the way the scenario runner assembles them.
 namespace hapbench::test {
 
 /// A tool in an environment: springs, or else a shell of points.
 struct Setting {
-  Tool tool;
+  Cylinder tool;
   ToolPose pose;
   std::optional<SpringSet> springs;
   std::vector<SurfacePoint> points;
@@ -33,6 +34,7 @@ Setting permuted(Setting setting, Random& random);
 /// One algorithm in one setting, asked for single forces.
 class Probe {
  public:
+  Probe(const Probe&) = delete;
   Probe(const Setting& setting, const RenderingConfig& config);
 
   RenderedForce force_at(const ToolPose& pose, const Vec3& velocity = Vec3::Zero(),
@@ -42,6 +44,7 @@ class Probe {
   ForceAlgorithm& algorithm() { return *algorithm_; }
 
  private:
+  Cylinder tool_;
   std::shared_ptr<const PointShell> shell_;
   std::unique_ptr<ContactQuery> query_;
   std::unique_ptr<ForceAlgorithm> algorithm_;

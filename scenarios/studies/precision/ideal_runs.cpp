@@ -6,6 +6,7 @@
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/summary/outcome_names.hpp"
+#include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/studies/precision/study.hpp"
 
@@ -30,7 +31,7 @@ const std::vector<std::string> kIdealColumns = {"ideal_height_error_rms_m", "ide
 PrecisionRow ideal_row(std::string setting, const Scenario& scenario, std::shared_ptr<const PointShell> shell,
                        int repetitions) {
   const BlockWithHole& block = std::get<BlockEnvironment>(scenario.environment).block;
-  IdealTrajectoryObserver ideal(block, {*scenario.tool.diameter / 2.0, *scenario.tool.length, Tip::flat});
+  IdealTrajectoryObserver ideal(block, make_cylinder(scenario.tool));
   MetricsObserver motion(scenario.time.step);
   const SampledRun run = sampled_run(scenario, shell, 1024, {&ideal, &motion});
   const IdealTrajectoryMetrics metrics = ideal.metrics();

@@ -4,6 +4,7 @@
 
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/summary/outcome_names.hpp"
+#include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/studies/precision/study.hpp"
 
@@ -26,7 +27,7 @@ Scenario with_step(const Scenario& scenario, double factor) {
 PrecisionResult study_time_step(const Scenario& given, const PrecisionOptions& options) {
   const Scenario scenario = drill_in_hole(given);
   const BlockWithHole& block = std::get<BlockEnvironment>(scenario.environment).block;
-  const Tool tool{*scenario.tool.diameter / 2.0, *scenario.tool.length, Tip::flat};
+  const Cylinder tool = make_cylinder(scenario.tool);
   const auto shell = shell_of(scenario, options);
   // All are compared at the samples of the coarsest one.
   const double sampling = kFactors[0];
@@ -47,7 +48,7 @@ PrecisionResult study_time_step(const Scenario& given, const PrecisionOptions& o
                            {run.time.step, d.final, d.rms, d.max, ideal.metrics().gentle.height_rms},
                            seconds_per_step(run, shell, options.repetitions)});
     // A drill that was thrown out is anywhere, which has no order.
-    if (sampled.positions.size() != reference.positions.size() || !(d.max <= tool.radius)) {
+    if (sampled.positions.size() != reference.positions.size() || !(d.max <= tool.radius())) {
       options.progress(result.rows.size(), std::size(kFactors));
       continue;
     }

@@ -42,8 +42,8 @@ Vec3 at(Random& random, const ContactSet& set, double radius, double height) {
 }
 
 Vec3 in_tool(Random& random, const ContactSet& set) {
-  const double radius = set.tool.radius * std::sqrt(random.uniform());
-  return at(random, set, radius, -set.tool.length * random.uniform());
+  const double radius = set.tool.radius() * std::sqrt(random.uniform());
+  return at(random, set, radius, -set.tool.length() * random.uniform());
 }
 
 using Points = std::vector<SurfacePoint>;
@@ -76,7 +76,7 @@ Points coincident(Random& random, const ContactSet& set, std::size_t n) {
 
 /// Where no radial direction exists, the tip centre among them; normals along the axis or not.
 Points on_the_axis(Random& random, const ContactSet& set, std::size_t n) {
-  const double height = chance(random, 0.3) ? 0.0 : set.tool.length;
+  const double height = chance(random, 0.3) ? 0.0 : set.tool.length();
   return fill(
       n, [&]() -> Vec3 { return set.pose.position - height * random.uniform() * set.pose.axis; },
       [&] { return chance(random, 0.5) ? random.direction() : sign_of(random, set.pose.axis); });
@@ -104,8 +104,8 @@ Points nearly_parallel(Random& random, const ContactSet& set, std::size_t n) {
 /// On the side wall, in the tip plane, on its rim: depth 0 up to rounding, of which the search drops what lies outside.
 Points on_the_surface(Random& random, const ContactSet& set, std::size_t n) {
   const auto position = [&] {
-    const double radius = chance(random, 0.6) ? set.tool.radius : set.tool.radius * std::sqrt(random.uniform());
-    return at(random, set, radius, chance(random, 0.6) ? 0.0 : -set.tool.length * random.uniform());
+    const double radius = chance(random, 0.6) ? set.tool.radius() : set.tool.radius() * std::sqrt(random.uniform());
+    return at(random, set, radius, chance(random, 0.6) ? 0.0 : -set.tool.length() * random.uniform());
   };
   return fill(n, position, [&] { return random.direction(); });
 }
@@ -113,9 +113,9 @@ Points on_the_surface(Random& random, const ContactSet& set, std::size_t n) {
 /// Walls on both sides of the axis: gradients of shortest_distance that cancel.
 Points across_the_axis(Random& random, const ContactSet& set, std::size_t n) {
   const auto [e, f] = across(set.pose.axis);
-  const Vec3 wall = set.tool.radius * log_uniform(random, 1e-16, 1.0) * e;
+  const Vec3 wall = set.tool.radius() * log_uniform(random, 1e-16, 1.0) * e;
   return fill(
-      n, [&]() -> Vec3 { return set.pose.position - 0.5 * set.tool.length * set.pose.axis + sign_of(random, wall); },
+      n, [&]() -> Vec3 { return set.pose.position - 0.5 * set.tool.length() * set.pose.axis + sign_of(random, wall); },
       [&] { return sign_of(random, e); });
 }
 

@@ -8,7 +8,7 @@
 #include "algorithms/rendering_config.hpp"
 #include "sim/core/random.hpp"
 #include "sim/geometry/point_shell.hpp"
-#include "sim/tool/tool.hpp"
+#include "sim/tool/cylinder.hpp"
 
 /// Random contact situations, most of them degenerate: where a force may stop being finite.
 namespace hapbench {
@@ -16,7 +16,7 @@ namespace hapbench {
 /// A tool among points that it touches, and how they are rendered.
 struct ContactSet {
   const char* family = "";
-  Tool tool;
+  Cylinder tool;
   ToolPose pose;
   Vec3 velocity = Vec3::Zero();      ///< [m/s]
   std::vector<SurfacePoint> points;  ///< in the tool but for rounding; normals are unit vectors or zero

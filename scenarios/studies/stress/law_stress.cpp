@@ -28,7 +28,7 @@ Answer answer(const ContactSet& set, const RenderingConfig& config, const PointS
   ShellQuery query(shell, set.tool);
   ContactBuffer contacts(query.capacity());
   const auto algorithm = make_algorithm(config);
-  algorithm->prepare({set.tool, &query, &shell});
+  algorithm->prepare({&set.tool, &query, &shell});
   algorithm->reset();
   query.contacts_at(set.pose, contacts);
   Answer out;
@@ -44,10 +44,8 @@ bool finite(const RenderedForce& force) {
          std::isfinite(force.depth_max);
 }
 
-/// No depth is longer than the tool is long and wide, with room for normal_projection, which meets surfaces of the tool
-/// that go on beyond the body.
-bool depth_in_bound(const Tool& tool, double depth) {
-  return depth >= 0.0 && depth <= (1.0 + kRounding) * (tool.length + 3.0 * tool.radius);
+bool depth_in_bound(const Cylinder& tool, double depth) {
+  return depth >= 0.0 && depth <= (1.0 + kRounding) * tool.longest_exit();
 }
 
 /// Damping is B S v, and friction is off: |f_render| <= |f_spring| + B lambda_max(S) |v|.
@@ -122,9 +120,9 @@ void add(const StressCounts& other, StressCounts& all) {
 
 }  // namespace
 
-double force_bound(const RenderingConfig& config, const Tool& tool, std::size_t n, double depth) noexcept {
+double force_bound(const RenderingConfig& config, const ToolShape& tool, std::size_t n, double depth) noexcept {
   // Placed on the tool, the proxy moves by at most a margin a pass.
-  if (config.algorithm == "proxy") return kProxyPasses * kProxyMargin * tool.radius;
+  if (config.algorithm == "proxy") return kProxyPasses * kProxyMargin * tool.half_width();
   return law_bound(config, n) * depth;
 }
 

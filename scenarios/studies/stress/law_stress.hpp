@@ -26,7 +26,7 @@ struct StressCounts {
 /// The most |f_spring| / K [m] that n contacts, the deepest of them by `depth` [m], may cause under an algorithm in one
 /// step. See the source for the derivations. Of laws it does not know: n times the depth, what all springs pull in one
 /// direction.
-double force_bound(const RenderingConfig& config, const Tool& tool, std::size_t n, double depth) noexcept;
+double force_bound(const RenderingConfig& config, const ToolShape& tool, std::size_t n, double depth) noexcept;
 
 /// Set number `i` of the seed: what the counts speak of.
 ContactSet stress_set(std::uint64_t seed, std::uint64_t i);

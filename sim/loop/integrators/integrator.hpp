@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "sim/loop/force_algorithm.hpp"
-#include "sim/tool/tool.hpp"
+#include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "sim/tool/tool.hpp"
+#include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
 

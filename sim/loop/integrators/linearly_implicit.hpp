@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sim/loop/force_algorithm.hpp"
-#include "sim/tool/tool.hpp"
+#include "sim/tool/tool_state.hpp"
 
 /// Integrators that solve for the velocity at the end of the step with the force taken linear in between:
 /// f(p + dp, v + dv) = f - K dp - D dv, K and D from the algorithm's Jacobian (K S; B S and friction). One 3x3 solve

@@ -29,9 +29,9 @@ struct Depths {
 /// A tool led through points, step by step.
 class Stroke {
  public:
-  Stroke(const Tool& tool, const std::vector<SurfacePoint>& points)
-      : tool_(tool), shell_(points, 0.0), query_(shell_, tool), contacts_(query_.capacity()) {
-    model_->prepare({tool, &query_, &shell_});
+  Stroke(const Cylinder& tool, const std::vector<SurfacePoint>& points)
+      : tool_(tool), shell_(points, 0.0), query_(shell_, tool_), contacts_(query_.capacity()) {
+    model_->prepare({&tool_, &query_, &shell_});
     model_->reset();
   }
 
@@ -39,10 +39,12 @@ class Stroke {
   std::map<std::uint32_t, Depths> to(const ToolPose& pose) {
     query_.contacts_at(pose, contacts_);
     std::map<std::uint32_t, Depths> depths;
-    shortest_distance_depths(tool_, pose, contacts_);
+    std::vector<double> exits(contacts_.size());
+    for (std::size_t i = 0; i < contacts_.size(); ++i) contacts_.set_gradient(i, -contacts_.normal(i));
+    tool_.shortest_depths(pose, contacts_);
+    tool_.exit_distances(pose, contacts_, exits.data());
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      const double projected = exit_distance(tool_, pose, contacts_.point(i), -contacts_.normal(i));
-      depths[contacts_.index[i]] = {0.0, contacts_.depth[i], projected};
+      depths[contacts_.index[i]] = {0.0, contacts_.depth[i], exits[i]};
     }
     model_->evaluate(tool_, pose, contacts_);
     for (std::size_t i = 0; i < contacts_.size(); ++i) depths[contacts_.index[i]].continuous = contacts_.depth[i];
@@ -50,7 +52,7 @@ class Stroke {
   }
 
  private:
-  Tool tool_;
+  Cylinder tool_;
   PointShell shell_;
   ShellQuery query_;
   ContactBuffer contacts_;
@@ -86,7 +88,7 @@ class RandomStroke {
   ToolPose pose_ = test::random_pose(random_);
 
  public:
-  const Tool tool = test::random_tool(random_, random_.uniform() < 0.5 ? Tip::flat : Tip::round);
+  const Cylinder tool = test::random_tool(random_, random_.uniform() < 0.5 ? Tip::flat : Tip::round);
 };
 
 TEST(ContinuousNormalProjectionDepth, StartsAtTheShortestDistance) {
@@ -149,7 +151,7 @@ TEST(ContinuousNormalProjectionDepth, GrowsByNoMoreThanTheToolHasMovedAtThePoint
 
 TEST(ContinuousNormalProjectionDepth, AFlatTipPressedInIsAsDeepAsItsTip) {
   // To twice the radius, where the shortest distance has long saturated. Every step adds a rounding of lengths < 2 mm.
-  Stroke stroke(Tool{}, surface_points(Plane{0.002, 0.0001}));
+  Stroke stroke(Cylinder{}, surface_points(Plane{0.002, 0.0001}));
   for (int step = 0; step <= 1000; ++step) {
     const double depth = 1e-6 * step;
     for (const auto& [i, d] : stroke.to(upright(0.00001, -depth))) {
@@ -163,22 +165,22 @@ TEST(ContinuousNormalProjectionDepth, ATippedOverToolPressedAcrossFollowsToWithi
   // A tool that lies on the plane and goes down through it by 0.95 of its diameter. A point is found at most a step
   // after the surface has passed it; from then on its depth grows with the way.
   constexpr double kStep = 1e-6;
-  const Tool tool;
+  const Cylinder tool;
   Stroke stroke(tool, surface_points(Plane{0.002, 0.00013}));
   double saturated = 0.0;
   for (int step = 0; step <= 950; ++step) {
-    for (const auto& [i, d] : stroke.to({{0.005, 0.0, tool.radius - kStep * step}, Vec3::UnitX()})) {
+    for (const auto& [i, d] : stroke.to({{0.005, 0.0, tool.radius() - kStep * step}, Vec3::UnitX()})) {
       ASSERT_LE(d.projected - d.continuous, kStep + 1e-15);
       saturated = std::max(saturated, d.continuous - d.shortest);
     }
   }
   // Beyond the median line: 0.95 of the diameter deep, a twentieth away from the other side.
-  EXPECT_NEAR(saturated, 0.9 * 2.0 * tool.radius, 2 * kStep);
+  EXPECT_NEAR(saturated, 0.9 * 2.0 * tool.radius(), 2 * kStep);
 }
 
 TEST(ContinuousNormalProjectionDepth, UnderAFaceEnteredSidewaysItIsTheLargestShortestDistanceSoFar) {
   // Fig. F.4: an upright tool 1 mm below a face is led in under it.
-  Stroke stroke(Tool{}, {{{0.0, 0.00003, 0.0}, Vec3::UnitZ()}});
+  Stroke stroke(Cylinder{}, {{{0.0, 0.00003, 0.0}, Vec3::UnitZ()}});
   double largest = 0.0;
   int steps = 0;
   for (double x = -0.0006; x < 0.0004; x += 1e-6) {
@@ -194,7 +196,7 @@ TEST(ContinuousNormalProjectionDepth, UnderAFaceEnteredSidewaysItIsTheLargestSho
 }
 
 TEST(ContinuousNormalProjectionDepth, APointThatHasLeftIsForgotten) {
-  Stroke stroke(Tool{}, {{{0.0, 0.0, 0.0}, Vec3::UnitZ()}});
+  Stroke stroke(Cylinder{}, {{{0.0, 0.0, 0.0}, Vec3::UnitZ()}});
   for (int step = 0; step <= 700; ++step) stroke.to(upright(0.0, -1e-6 * step));
   EXPECT_NEAR(stroke.to(upright(0.0, -0.0007))[0].continuous, 0.0007, 1e-15);
   EXPECT_TRUE(stroke.to(upright(0.001, -0.0007)).empty());
@@ -203,7 +205,7 @@ TEST(ContinuousNormalProjectionDepth, APointThatHasLeftIsForgotten) {
 
 TEST(ContinuousNormalProjectionDepth, PressingFromThereCountsOnTop) {
   // Entered from the side to 0.1 mm, then 0.3 mm down and up again: 0.1 mm more than the way, and back.
-  Stroke stroke(Tool{}, {{{0.0, 0.0, 0.0}, Vec3::UnitZ()}});
+  Stroke stroke(Cylinder{}, {{{0.0, 0.0, 0.0}, Vec3::UnitZ()}});
   stroke.to(upright(0.001, -0.0007));
   stroke.to(upright(0.0004, -0.0007));
   EXPECT_NEAR(stroke.to(upright(0.0004, -0.0010))[0].continuous, 0.0004, 1e-15);

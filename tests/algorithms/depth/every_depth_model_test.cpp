@@ -18,15 +18,15 @@ INSTANTIATE_TEST_SUITE_P(Registered, EveryDepthModel, testing::ValuesIn(depth_mo
 constexpr std::size_t kPoints = 100;
 
 /// A model of its own, as at the start of a run.
-std::unique_ptr<DepthModel> prepared(const DepthModelEntry& entry, const Tool& tool) {
+std::unique_ptr<DepthModel> prepared(const DepthModelEntry& entry, const Cylinder& tool) {
   const PointShell shell(std::vector<SurfacePoint>(kPoints), 0.0);
   std::unique_ptr<DepthModel> model = entry.make();
-  model->prepare({tool, nullptr, &shell});
+  model->prepare({&tool, nullptr, &shell});
   return model;
 }
 
 /// The colliding ones among points in, near and on the tool, found by the search and given depths by the model.
-ContactBuffer contacts_of_random_scene(const DepthModelEntry& model, const Tool& tool, const ToolPose& pose,
+ContactBuffer contacts_of_random_scene(const DepthModelEntry& model, const Cylinder& tool, const ToolPose& pose,
                                        Random& random) {
   std::vector<SurfacePoint> points;
   while (points.size() < kPoints) {
@@ -45,7 +45,7 @@ TEST_P(EveryDepthModel, NeverGivesACollidingPointANegativeDepth) {
   Random random(1);
   std::size_t on_surface = 0;
   for (std::size_t i = 0; i < test::cases(4000); ++i) {
-    const Tool tool = test::random_tool(random, i % 2 == 0 ? Tip::flat : Tip::round);
+    const Cylinder tool = test::random_tool(random, i % 2 == 0 ? Tip::flat : Tip::round);
     const ToolPose pose = test::random_pose(random);
     const ContactBuffer contacts = contacts_of_random_scene(GetParam(), tool, pose, random);
     for (std::size_t k = 0; k < contacts.size(); ++k) {
@@ -61,7 +61,7 @@ TEST_P(EveryDepthModel, NeverGivesACollidingPointANegativeDepth) {
 TEST_P(EveryDepthModel, GradientsAreUnitVectors) {
   Random random(2);
   for (std::size_t i = 0; i < test::cases(1000); ++i) {
-    const Tool tool = test::random_tool(random, i % 2 == 0 ? Tip::flat : Tip::round);
+    const Cylinder tool = test::random_tool(random, i % 2 == 0 ? Tip::flat : Tip::round);
     const ContactBuffer contacts = contacts_of_random_scene(GetParam(), tool, test::random_pose(random), random);
     for (std::size_t k = 0; k < contacts.size(); ++k) {
       ASSERT_NEAR(contacts.gradient(k).norm(), 1.0, 4 * std::numeric_limits<double>::epsilon());
@@ -71,7 +71,7 @@ TEST_P(EveryDepthModel, GradientsAreUnitVectors) {
 
 TEST_P(EveryDepthModel, PadsItsContacts) {
   Random random(3);
-  const Tool tool;
+  const Cylinder tool;
   ContactBuffer contacts(8);
   for (int i = 0; i < 8; ++i) contacts.push(0, {0, 0, 0.001}, random.direction());
   contacts.shrink(5);
@@ -84,7 +84,7 @@ TEST_P(EveryDepthModel, PadsItsContacts) {
 
 TEST_P(EveryDepthModel, KeepsPointsNormalsAndIndices) {
   Random random(4);
-  const Tool tool;
+  const Cylinder tool;
   const ToolPose pose = test::random_pose(random);
   const ContactBuffer contacts = contacts_of_random_scene(GetParam(), tool, pose, random);
   ContactBuffer again = contacts;
@@ -100,7 +100,7 @@ TEST_P(EveryDepthModel, KeepsPointsNormalsAndIndices) {
 
 /// Depths of all contacts after the tool has gone through the poses; with `rests` steps without contacts before the
 /// last.
-AlignedDoubles depths_after(DepthModel& model, const Tool& tool, std::initializer_list<ToolPose> poses, int rests) {
+AlignedDoubles depths_after(DepthModel& model, const Cylinder& tool, std::initializer_list<ToolPose> poses, int rests) {
   Random random(5);
   std::vector<SurfacePoint> points;
   while (points.size() < kPoints) points.push_back({test::random_point_near(tool, {}, random), random.direction()});
@@ -124,7 +124,7 @@ AlignedDoubles depths_after(DepthModel& model, const Tool& tool, std::initialize
 const ToolPose kHere, kThere{{0.0001, 0.0001, -0.0002}, Vec3(0.02, 0.03, -1.0).normalized()};
 
 TEST_P(EveryDepthModel, IsAfterResetWhatItWasAtTheStart) {
-  const Tool tool;
+  const Cylinder tool;
   const auto model = prepared(GetParam(), tool);
   const AlignedDoubles first = depths_after(*model, tool, {kHere, kThere}, 0);
   model->reset();
@@ -132,7 +132,7 @@ TEST_P(EveryDepthModel, IsAfterResetWhatItWasAtTheStart) {
 }
 
 TEST_P(EveryDepthModel, LearnsNothingFromASecondStepWithoutContacts) {
-  const Tool tool;
+  const Cylinder tool;
   const AlignedDoubles once = depths_after(*prepared(GetParam(), tool), tool, {kHere, kThere}, 1);
   EXPECT_EQ(depths_after(*prepared(GetParam(), tool), tool, {kHere, kThere}, 2), once);
   EXPECT_EQ(depths_after(*prepared(GetParam(), tool), tool, {kHere, kThere}, 100), once);

@@ -15,7 +15,7 @@ struct Contact {
   Vec3 gradient;
 };
 
-Contact evaluate(const Tool& tool, const ToolPose& pose, const Vec3& point, const Vec3& normal = Vec3::UnitY()) {
+Contact evaluate(const Cylinder& tool, const ToolPose& pose, const Vec3& point, const Vec3& normal = Vec3::UnitY()) {
   ContactBuffer contacts(1);
   contacts.push(0, point, normal);
   make_shortest_distance()->evaluate(tool, pose, contacts);
@@ -32,7 +32,7 @@ constexpr long double kTolerance = 1e-15L;
 TEST_P(ShortestDistanceForTip, DepthIsTheDistanceToTheNearestSurface) {
   Random random(1);
   for (std::size_t i = 0; i < test::cases(100000); ++i) {
-    const Tool tool = test::random_tool(random, GetParam());
+    const Cylinder tool = test::random_tool(random, GetParam());
     const ToolPose pose = test::random_pose(random);
     const Vec3 point = test::random_point_near(tool, pose, random);
     const long double inside = test::slack(tool, pose, point.cast<long double>());
@@ -45,7 +45,7 @@ TEST_P(ShortestDistanceForTip, DepthIsTheDistanceToTheNearestSurface) {
 TEST_P(ShortestDistanceForTip, GradientLeadsOutOfTheToolInExactlyTheDepth) {
   Random random(2);
   for (std::size_t i = 0; i < test::cases(100000); ++i) {
-    const Tool tool = test::random_tool(random, GetParam());
+    const Cylinder tool = test::random_tool(random, GetParam());
     const ToolPose pose = test::random_pose(random);
     const Vec3 point = test::random_point_near(tool, pose, random);
     if (test::slack(tool, pose, point.cast<long double>()) < kTolerance) continue;
@@ -69,7 +69,7 @@ Vec3 at(double s, double a) {
 }
 
 TEST(ShortestDistance, EachSurfaceOfTheFlatToolIsNearestToPointsBesideIt) {
-  const Tool tool{4 * kUnit, 16 * kUnit, Tip::flat};
+  const Cylinder tool{4 * kUnit, 16 * kUnit, Tip::flat};
   const auto side = evaluate(tool, kPose, at(-8, 3));
   EXPECT_EQ(side.depth, kUnit);
   EXPECT_EQ(side.gradient, Vec3(1, 0, 0));
@@ -82,7 +82,7 @@ TEST(ShortestDistance, EachSurfaceOfTheFlatToolIsNearestToPointsBesideIt) {
 }
 
 TEST(ShortestDistance, TheRoundTipIsAHalfBallBeyondTheTipPlane) {
-  const Tool tool{5 * kUnit, 16 * kUnit, Tip::round};
+  const Cylinder tool{5 * kUnit, 16 * kUnit, Tip::round};
   // On the axis, one unit from the pole.
   const auto pole = evaluate(tool, kPose, at(4, 0));
   EXPECT_EQ(pole.depth, kUnit);
@@ -97,18 +97,18 @@ TEST(ShortestDistance, TheRoundTipIsAHalfBallBeyondTheTipPlane) {
 }
 
 TEST(ShortestDistance, TiesPreferTheSideThenTheTipThenTheBottom) {
-  const Tool tool{4 * kUnit, 16 * kUnit, Tip::flat};
+  const Cylinder tool{4 * kUnit, 16 * kUnit, Tip::flat};
   EXPECT_EQ(evaluate(tool, kPose, at(-1, 3)).gradient, Vec3(1, 0, 0)) << "side and tip";
   EXPECT_EQ(evaluate(tool, kPose, at(-15, 3)).gradient, Vec3(1, 0, 0)) << "side and bottom";
-  const Tool disc{4 * kUnit, 2 * kUnit, Tip::flat};
+  const Cylinder disc{4 * kUnit, 2 * kUnit, Tip::flat};
   EXPECT_EQ(evaluate(disc, kPose, at(-1, 1)).gradient, kAxis) << "tip and bottom";
   EXPECT_EQ(evaluate(disc, kPose, at(-1, 3)).gradient, Vec3(1, 0, 0)) << "all three";
-  const Tool round{4 * kUnit, 16 * kUnit, Tip::round};
+  const Cylinder round{4 * kUnit, 16 * kUnit, Tip::round};
   EXPECT_EQ(evaluate(round, kPose, at(-15, 3)).gradient, Vec3(1, 0, 0)) << "side and bottom, round tip";
 }
 
 TEST(ShortestDistance, OnTheSurfaceTheDepthIsZeroAndTheGradientStillPointsOut) {
-  const Tool tool{4 * kUnit, 16 * kUnit, Tip::flat};
+  const Cylinder tool{4 * kUnit, 16 * kUnit, Tip::flat};
   for (const auto& [s, a, gradient] :
        {std::tuple{-8.0, 4.0, Vec3(1, 0, 0)}, {0.0, 1.0, kAxis}, {-16.0, 1.0, Vec3(-kAxis)}}) {
     const auto contact = evaluate(tool, kPose, at(s, a));
@@ -120,12 +120,12 @@ TEST(ShortestDistance, OnTheSurfaceTheDepthIsZeroAndTheGradientStillPointsOut) {
 TEST(ShortestDistance, AnUndefinedDirectionFallsBackToTheInwardNormal) {
   const Vec3 normal = Vec3(3, 4, 0) / 5;
   // On the median line the side is nearest, but in no direction.
-  const Tool flat{kUnit, 16 * kUnit, Tip::flat};
+  const Cylinder flat{kUnit, 16 * kUnit, Tip::flat};
   const auto on_axis = evaluate(flat, kPose, at(-8, 0), normal);
   EXPECT_EQ(on_axis.depth, kUnit);
   EXPECT_EQ(on_axis.gradient, Vec3(-normal));
   // The same at the centre of the round tip, in the cylinder (s = 0) and just inside the ball.
-  const Tool round{kUnit, 16 * kUnit, Tip::round};
+  const Cylinder round{kUnit, 16 * kUnit, Tip::round};
   EXPECT_EQ(evaluate(round, kPose, at(0, 0), normal).gradient, Vec3(-normal));
   const ToolPose origin{Vec3::Zero(), kAxis};
   EXPECT_EQ(evaluate(round, origin, 1e-13 * kUnit * kAxis, normal).gradient, Vec3(-normal));
@@ -135,7 +135,7 @@ TEST(ShortestDistance, DirectionsLongerThan1e12thOfTheRadiusAreDefined) {
   const ToolPose origin{Vec3::Zero(), kAxis};
   const Vec3 normal = Vec3(3, 4, 0) / 5;
   for (const Tip tip : {Tip::flat, Tip::round}) {
-    const Tool tool{kUnit, 16 * kUnit, tip};
+    const Cylinder tool{kUnit, 16 * kUnit, tip};
     const Vec3 middle = 8 * kUnit * -kAxis;
     EXPECT_EQ(evaluate(tool, origin, middle + Vec3(1.01e-12 * kUnit, 0, 0), normal).gradient, Vec3(1, 0, 0));
     EXPECT_EQ(evaluate(tool, origin, middle + Vec3(0.99e-12 * kUnit, 0, 0), normal).gradient, Vec3(-normal));
@@ -146,7 +146,7 @@ TEST(ShortestDistance, DepthsAloneLeaveGradientsUntouched) {
   ContactBuffer contacts(1);
   contacts.push(0, at(-8, 3), Vec3::UnitY());
   contacts.set_gradient(0, {7, 8, 9});
-  shortest_distance_depths({4 * kUnit, 16 * kUnit, Tip::flat}, kPose, contacts);
+  Cylinder(4 * kUnit, 16 * kUnit, Tip::flat).shortest_depths(kPose, contacts);
   EXPECT_EQ(contacts.depth[0], kUnit);
   EXPECT_EQ(contacts.gradient(0), Vec3(7, 8, 9));
 }

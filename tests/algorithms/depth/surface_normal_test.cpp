@@ -11,7 +11,7 @@ namespace {
 TEST(SurfaceNormal, HasTheDepthOfShortestDistanceAndTheInwardNormalAsGradient) {
   Random random(1);
   for (const Tip tip : {Tip::flat, Tip::round}) {
-    const Tool tool = test::random_tool(random, tip);
+    const Cylinder tool = test::random_tool(random, tip);
     const ToolPose pose = test::random_pose(random);
     ContactBuffer contacts(1000);
     while (contacts.size() < contacts.capacity()) {
@@ -31,12 +31,12 @@ TEST(SurfaceNormal, HasTheDepthOfShortestDistanceAndTheInwardNormalAsGradient) {
 
 TEST(SurfaceNormal, DepthOnAFlatSaturatesAtTheToolsRadius) {
   // Thesis C.1: however far the tool is pressed through a plane, a point on its axis is r deep at most.
-  const Tool tool;
+  const Cylinder tool;
   for (const double pressed : {0.0001, 0.0004, 0.002, 0.005}) {
     ContactBuffer contacts(1);
     contacts.push(0, Vec3::Zero(), Vec3::UnitZ());
     make_surface_normal()->evaluate(tool, {{0, 0, -pressed}, {0, 0, -1}}, contacts);
-    EXPECT_EQ(contacts.depth[0], std::min(pressed, tool.radius));
+    EXPECT_EQ(contacts.depth[0], std::min(pressed, tool.radius()));
   }
 }
 

@@ -29,7 +29,7 @@ class RigidMotion : public Invariance {
   static constexpr double kCompromiseRounding = 640 / 1e-6 * 2e-16;
   bool is_proxy() const { return GetParam().algorithm == "proxy"; }
   double rounding() const {
-    return Invariance::rounding() + (is_proxy() ? kCompromiseRounding * config.stiffness * setting.tool.radius : 0.0);
+    return Invariance::rounding() + (is_proxy() ? kCompromiseRounding * config.stiffness * setting.tool.radius() : 0.0);
   }
   double rounding_of_S() const { return is_proxy() ? 4 * kCompromiseRounding : test::kAnyLawsRounding; }
   double rounding_in_motion(const RenderedForce& force) const {

@@ -34,7 +34,7 @@ struct Rig {
 
   Rig(const test::Setting& setting, const RenderingConfig& config)
       : shell(setting.points, 0.0), query(shell, setting.tool), proxy(config), contacts(query.capacity()) {
-    proxy.prepare({setting.tool, &query, &shell});
+    proxy.prepare({&setting.tool, &query, &shell});
     proxy.reset();
   }
   void step(const ToolState& tool) {

@@ -17,7 +17,7 @@ namespace {
 std::unique_ptr<PointStage> reduction(const ReductionConfig& config, std::size_t points) {
   auto stage = make_gradient_reduction(config);
   test::FakeQuery query(points);
-  stage->prepare({Tool{}, &query, nullptr});
+  stage->prepare({nullptr, &query, nullptr});
   stage->reset();
   return stage;
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kRounding = 1e-11;  // what the header promises
 const BlockWithHole kBlock;
-const Tool kTool;
+const Cylinder kTool;
 
 ToolPose upright(double x, double y, double z) {
   return {{x, y, z}, {0, 0, -1}};

@@ -19,13 +19,13 @@ LoadedScenario rotate_in_hole(const char* algorithm) {
 /// Where the proxy is follows from the spring: p + f_spring / K. Looks for points in it by brute force.
 class PointsInProxy final : public Observer {
  public:
-  PointsInProxy(const PointShell& shell, const Tool& tool, double K)
-      : query_(shell, tool), contacts_(query_.capacity()), tool_(tool), K_(K) {}
+  PointsInProxy(const PointShell& shell, const ToolShape& tool, double K)
+      : query_(shell, tool), contacts_(query_.capacity()), tool_(&tool), K_(K) {}
 
   void on_step(const StepRecord& record) noexcept override {
     const ToolPose proxy{record.tool.pose.position + record.force.spring / K_, record.tool.pose.axis};
     query_.contacts_at(proxy, contacts_);
-    shortest_distance_depths(tool_, proxy, contacts_);
+    tool_->shortest_depths(proxy, contacts_);
     for (std::size_t i = 0; i < contacts_.size(); ++i) deepest = std::max(deepest, contacts_.depth[i]);
     stiffest = std::max(stiffest, lambda_max(record.force.S));
     force_step = std::max(force_step, (record.force.rendered - last_).norm());
@@ -37,7 +37,7 @@ class PointsInProxy final : public Observer {
  private:
   ShellQuery query_;
   ContactBuffer contacts_;
-  Tool tool_;
+  const ToolShape* tool_;
   double K_;
   Vec3 last_ = Vec3::Zero();
 };
@@ -47,7 +47,7 @@ TEST(ProxyInHole, NeitherEntersTheShellNorGetsStifferThanOneSpring) {
   scenario.time.steps = 10'240;  // one period of the tilt
   const auto shell = make_shell(scenario, environment_points(scenario, ShellCache()).points);
   SimulationParts parts = assemble(scenario, shell, {});
-  PointsInProxy points(*shell, parts.tool, scenario.rendering.config.stiffness);
+  PointsInProxy points(*shell, *parts.tool, scenario.rendering.config.stiffness);
   Simulation simulation(simulation_config(scenario, Skips::taken), std::move(parts), {&points});
   EXPECT_EQ(simulation.run().outcome, Outcome::completes);
   EXPECT_LE(points.deepest, 1e-6);

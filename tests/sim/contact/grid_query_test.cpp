@@ -23,12 +23,12 @@ TEST(GridQuery, FindsWhatBruteForceFindsAtAMillionPoses) {
   std::uint64_t contacts = 0;
   for (std::size_t s = 0; s < cases(2000); ++s) {
     const double size = std::pow(10.0, random.uniform(-4.0, 0.0));
-    const Tool tool{size * random.uniform(0.02, 0.5), size * random.uniform(0.05, 3.0),
-                    random.below(2) == 0 ? Tip::flat : Tip::round};
+    const Cylinder tool{size * random.uniform(0.02, 0.5), size * random.uniform(0.05, 3.0),
+                        random.below(2) == 0 ? Tip::flat : Tip::round};
     Pair pair(random_shell(random, size), random.below(2) == 0 ? 0.0 : size * random.uniform(0.01, 1.0), tool);
     ToolPose pose{Vec3::Zero(), random.direction()};
     for (int k = 0; k < 500; ++k) {
-      pose = next_pose(pose, random, size, 0.2 * tool.radius);
+      pose = next_pose(pose, random, size, 0.2 * tool.radius());
       ASSERT_TRUE(pair.agree_at(pose)) << "shell " << s << ", pose " << k;
     }
     contacts += pair.contacts();
@@ -40,7 +40,7 @@ TEST(GridQuery, FindsWhatBruteForceFindsAtAMillionPoses) {
 // Points that lie exactly on the tool's surface are in the box, whatever the rounding of either.
 TEST(GridQuery, AgreesOnTheAnalyticShells) {
   Random random(8);
-  const Tool round{0.0005, 0.005, Tip::round}, flat{0.0005, 0.01, Tip::flat};
+  const Cylinder round{0.0005, 0.005, Tip::round}, flat{0.0005, 0.01, Tip::flat};
   Pair hole(surface_points(Hole2d{}), 0.0001, round);
   Pair plane(surface_points(Plane{0.004, 0.0001}), 0.0001, flat);
   ToolPose pose{{0, -0.004, 0}, {0, -1, 0}}, pose_3d{{0, 0, 0}, {0, 0, -1}};
@@ -54,7 +54,7 @@ TEST(GridQuery, AgreesOnTheAnalyticShells) {
 }
 
 TEST(GridQuery, TestsTheCellsAroundTheToolOnly) {
-  const Tool tool{0.0005, 0.01, Tip::flat};
+  const Cylinder tool{0.0005, 0.01, Tip::flat};
   const std::vector<SurfacePoint> points = surface_points(Plane{0.02, 0.0001});
   Pair pair(points, 0.0001, tool);
   ASSERT_TRUE(pair.agree_at({Vec3::Zero(), {0, 0, -1}}));
@@ -67,7 +67,7 @@ TEST(GridQuery, TestsTheCellsAroundTheToolOnly) {
 }
 
 TEST(GridQuery, SurvivesAnEmptyShellAndPosesThatAreNotFinite) {
-  const Tool tool{0.0005, 0.01, Tip::flat};
+  const Cylinder tool{0.0005, 0.01, Tip::flat};
   Pair empty({}, 0.0001, tool);
   EXPECT_TRUE(empty.agree_at({Vec3::Zero(), {0, 0, -1}}));
   Pair pair(surface_points(Plane{0.004, 0.0001}), 0.0001, tool);

@@ -27,12 +27,12 @@ TEST(NeighbourListQuery, FindsWhatBruteForceFindsAtAMillionPoses) {
   const std::size_t shells = cases(2000);
   for (std::size_t s = 0; s < shells; ++s) {
     const double size = std::pow(10.0, random.uniform(-4.0, 0.0));
-    const Tool tool{size * random.uniform(0.02, 0.5), size * random.uniform(0.05, 3.0),
-                    random.below(2) == 0 ? Tip::flat : Tip::round};
+    const Cylinder tool{size * random.uniform(0.02, 0.5), size * random.uniform(0.05, 3.0),
+                        random.below(2) == 0 ? Tip::flat : Tip::round};
     Pair pair(random_shell(random, size), random.below(2) == 0 ? 0.0 : size * random.uniform(0.01, 1.0), tool);
     ToolPose pose{Vec3::Zero(), random.direction()};
     for (int k = 0; k < 500; ++k, ++poses) {
-      pose = next_pose(pose, random, size, 0.2 * tool.radius);
+      pose = next_pose(pose, random, size, 0.2 * tool.radius());
       ASSERT_TRUE(pair.agree_at(pose)) << "shell " << s << ", pose " << k;
     }
     contacts += pair.contacts();
@@ -46,7 +46,7 @@ TEST(NeighbourListQuery, FindsWhatBruteForceFindsAtAMillionPoses) {
 
 TEST(NeighbourListQuery, HoldsToItsInequalityWhenTheToolTurnsAboutItsTip) {
   // The bottom end, 10 mm from the tip, sweeps furthest: a list that ignored rotation would miss these points.
-  const Tool tool{0.0005, 0.01, Tip::flat};
+  const Cylinder tool{0.0005, 0.01, Tip::flat};
   std::vector<SurfacePoint> arc;
   for (int k = 0; k < 360; ++k) {
     const double a = k * std::numbers::pi / 180.0;
@@ -61,7 +61,7 @@ TEST(NeighbourListQuery, HoldsToItsInequalityWhenTheToolTurnsAboutItsTip) {
 
 TEST(NeighbourListQuery, AgreesOnTheAnalyticShells) {
   Random random(5);
-  const Tool round{0.0005, 0.005, Tip::round}, flat{0.0005, 0.01, Tip::flat};
+  const Cylinder round{0.0005, 0.005, Tip::round}, flat{0.0005, 0.01, Tip::flat};
   Pair hole(surface_points(Hole2d{}), 0.0001, round);
   Pair plane(surface_points(Plane{0.004, 0.0001}), 0.0001, flat);
   Pair slot(surface_points(Slot{0.001, 0.003, 0.004, 0.0001}), 0.0001, flat);
@@ -77,7 +77,7 @@ TEST(NeighbourListQuery, AgreesOnTheAnalyticShells) {
 }
 
 TEST(NeighbourListQuery, TestsNothingInFreeAir) {
-  const Tool tool{0.0005, 0.01, Tip::flat};
+  const Cylinder tool{0.0005, 0.01, Tip::flat};
   Pair pair(surface_points(Plane{0.004, 0.0001}), 0.0001, tool);
   ASSERT_TRUE(pair.agree_at({{0, 0, 0.05}, {0, 0, -1}}));
   const std::uint64_t tested = pair.work().points_tested;
@@ -87,7 +87,7 @@ TEST(NeighbourListQuery, TestsNothingInFreeAir) {
 }
 
 TEST(NeighbourListQuery, AfterResetDoesTheSameWorkAgain) {
-  const Tool tool{0.0005, 0.01, Tip::flat};
+  const Cylinder tool{0.0005, 0.01, Tip::flat};
   Pair pair(surface_points(Plane{0.004, 0.0001}), 0.0001, tool);
   const auto walk = [&pair] {
     for (int k = 0; k < 100; ++k) EXPECT_TRUE(pair.agree_at({{1e-5 * k, 0, 0.0003 - 1e-5 * k}, {0, 0, -1}}));
@@ -102,7 +102,7 @@ TEST(NeighbourListQuery, AfterResetDoesTheSameWorkAgain) {
 }
 
 TEST(NeighbourListQuery, SurvivesAnEmptyShellAndPosesThatAreNotFinite) {
-  const Tool tool{0.0005, 0.01, Tip::flat};
+  const Cylinder tool{0.0005, 0.01, Tip::flat};
   Pair empty({}, 0.0001, tool);
   EXPECT_TRUE(empty.agree_at({Vec3::Zero(), {0, 0, -1}}));
   Pair pair(surface_points(Plane{0.004, 0.0001}), 0.0001, tool);

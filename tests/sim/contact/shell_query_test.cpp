@@ -19,8 +19,10 @@ std::vector<SurfacePoint> at(const std::vector<Vec3>& positions) {
   return points;
 }
 
+const Cylinder kTool;
+
 // Whether a shell of the one point reports it.
-bool collides(const Tool& tool, const ToolPose& pose, const Vec3& position) {
+bool collides(const Cylinder& tool, const ToolPose& pose, const Vec3& position) {
   const PointShell shell(at({position}), 0.0);
   ShellQuery query(shell, tool);
   ContactBuffer contacts(query.capacity());
@@ -36,7 +38,7 @@ TEST_P(ShellQueryForTip, FindsThePointsThatLieInTheToolByDefinition) {
   Random random(1);
   std::size_t inside = 0, outside = 0;
   for (std::size_t i = 0; i < cases(2000); ++i) {
-    const Tool tool = test::random_tool(random, GetParam());
+    const Cylinder tool = test::random_tool(random, GetParam());
     const ToolPose pose = test::random_pose(random);
     std::vector<Vec3> positions(100);
     for (Vec3& p : positions) p = test::random_point_near(tool, pose, random);
@@ -79,7 +81,7 @@ std::vector<AxisFrame> axis_frames() {
 }
 
 TEST_P(ShellQueryForTip, PointsExactlyOnTheSurfaceCollide) {
-  const Tool tool{kRadius, kLength, GetParam()};
+  const Cylinder tool{kRadius, kLength, GetParam()};
   for (const AxisFrame& f : axis_frames()) {
     const ToolPose pose{kPosition, f.axis};
     const auto expect_hit = [&](double s, double a, double b) {
@@ -100,7 +102,7 @@ TEST_P(ShellQueryForTip, PointsExactlyOnTheSurfaceCollide) {
 }
 
 TEST_P(ShellQueryForTip, PointsJustOutsideTheSurfaceDoNotCollide) {
-  const Tool tool{kRadius, kLength, GetParam()};
+  const Cylinder tool{kRadius, kLength, GetParam()};
   // One unit in the last place of the coordinates, which are below 1/2; the radius is far above it.
   const double out = 0x1p-53;
   for (const AxisFrame& f : axis_frames()) {
@@ -122,7 +124,7 @@ TEST_P(ShellQueryForTip, PointsJustOutsideTheSurfaceDoNotCollide) {
 
 TEST_P(ShellQueryForTip, ReportsPointsInAscendingOrderAsTheShellHasThem) {
   Random random(2);
-  const Tool tool = test::random_tool(random, GetParam());
+  const Cylinder tool = test::random_tool(random, GetParam());
   const ToolPose pose = test::random_pose(random);
   std::vector<SurfacePoint> points(1000);
   for (SurfacePoint& p : points) p = {test::random_point_near(tool, pose, random), random.direction()};
@@ -140,7 +142,7 @@ TEST_P(ShellQueryForTip, ReportsPointsInAscendingOrderAsTheShellHasThem) {
 
 TEST(ShellQuery, ReplacesWhatTheBufferHeld) {
   const PointShell shell(at({Vec3::Zero()}), 0.0);
-  ShellQuery query(shell, Tool{});
+  ShellQuery query(shell, kTool);
   ContactBuffer contacts(query.capacity());
   query.contacts_at({}, contacts);
   EXPECT_EQ(contacts.size(), 1u);
@@ -152,7 +154,7 @@ TEST(ShellQuery, ReplacesWhatTheBufferHeld) {
 
 TEST(ShellQuery, ANonFinitePoseTouchesNothing) {
   const PointShell shell(at({Vec3::Zero()}), 0.0);
-  ShellQuery query(shell, Tool{});
+  ShellQuery query(shell, kTool);
   ContactBuffer contacts(query.capacity());
   for (const double x : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     query.contacts_at({{x, 0, 0}, {0, 0, -1}}, contacts);
@@ -162,7 +164,7 @@ TEST(ShellQuery, ANonFinitePoseTouchesNothing) {
 
 TEST(ShellQuery, CountsQueriesAndPointsTestedWithoutPadding) {
   const PointShell shell(at(std::vector<Vec3>(13, Vec3::Zero())), 0.0);
-  ShellQuery query(shell, Tool{});
+  ShellQuery query(shell, kTool);
   ContactBuffer contacts(query.capacity());
   for (int i = 0; i < 3; ++i) query.contacts_at({}, contacts);
   EXPECT_EQ(query.work().queries, 3u);
@@ -174,19 +176,8 @@ TEST(ShellQuery, CountsQueriesAndPointsTestedWithoutPadding) {
 
 TEST(ShellQuery, LeavesDepthsToADepthModel) {
   const PointShell shell(at({Vec3::Zero()}), 0.0);
-  EXPECT_FALSE(ShellQuery(shell, Tool{}).gives_depth());
-  EXPECT_EQ(ShellQuery(shell, Tool{}).capacity(), 1u);
-}
-
-TEST(LargestSquareWithin, IsTheLastSquareWhoseRootDoesNotExceedTheRadius) {
-  Random random(3);
-  constexpr double up = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < cases(100000); ++i) {
-    const double r = std::pow(10.0, random.uniform(-9.0, 3.0));
-    const double square = largest_square_within(r);
-    ASSERT_LE(std::sqrt(square), r);
-    ASSERT_GT(std::sqrt(std::nextafter(square, up)), r);
-  }
+  EXPECT_FALSE(ShellQuery(shell, kTool).gives_depth());
+  EXPECT_EQ(ShellQuery(shell, kTool).capacity(), 1u);
 }
 
 }  // namespace

@@ -100,25 +100,26 @@ Mask mask_of(unsigned bits) {
 
 TEST(Simd, StoreSelectedClosesTheGapsOfEveryMask) {
   alignas(64) const std::uint32_t numbers[lanes] = {10, 11, 12, 13, 14, 15, 16, 17};
-  for (unsigned bits = 0; bits < 256; ++bits) {
+  for (unsigned mask = 0; mask < 256; ++mask) {
     std::vector<double> expected;
     std::vector<std::uint32_t> expected_numbers;
     for (std::size_t i = 0; i < lanes; ++i) {
-      if ((bits >> i) % 2 == 0) continue;
+      if ((mask >> i) % 2 == 0) continue;
       expected.push_back(kA[i]);
       expected_numbers.push_back(numbers[i]);
     }
-    const std::size_t n = count(mask_of(bits));
-    ASSERT_EQ(n, expected.size());
+    const std::uint8_t selected = bits(mask_of(mask));
+    ASSERT_EQ(selected, mask);
+    const std::size_t n = expected.size();
     double to[lanes];
     std::uint32_t to_numbers[lanes];
-    store_selected(mask_of(bits), kA.data(), to);
-    store_selected(mask_of(bits), numbers, to_numbers);
-    EXPECT_TRUE(std::equal(to, to + n, expected.begin())) << bits;
-    EXPECT_TRUE(std::equal(to_numbers, to_numbers + n, expected_numbers.begin())) << bits;
-    if (bits == 0) continue;
-    const std::size_t lowest = first(mask_of(bits));
-    EXPECT_TRUE((bits >> lowest) % 2 == 1 && bits % (1u << lowest) == 0) << bits;
+    store_selected(selected, kA.data(), to);
+    store_selected(selected, numbers, to_numbers);
+    EXPECT_TRUE(std::equal(to, to + n, expected.begin())) << mask;
+    EXPECT_TRUE(std::equal(to_numbers, to_numbers + n, expected_numbers.begin())) << mask;
+    if (mask == 0) continue;
+    const std::size_t lowest = first(mask_of(mask));
+    EXPECT_TRUE((mask >> lowest) % 2 == 1 && mask % (1u << lowest) == 0) << mask;
   }
 }
 

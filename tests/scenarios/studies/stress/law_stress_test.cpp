@@ -54,7 +54,7 @@ TEST(ForceBound, HoldsForSpringsOfEqualDepthInClosedForm) {
   RenderingConfig config;
   const auto bound = [&](const char* algorithm, std::size_t n) {
     config.algorithm = algorithm;
-    return force_bound(config, Tool{}, n, 1.0);
+    return force_bound(config, Cylinder{}, n, 1.0);
   };
   for (const std::size_t n : {1u, 2u, 10u, 200u}) {
     const auto points = static_cast<double>(n);
@@ -92,8 +92,8 @@ TEST_F(ContactSets, HoldTheDegenerateCasesOfTheirNames) {
     if (contacts.empty()) continue;
     ++seen[set.family];
     if (contacts.size() == 1) ++seen["one point"];
-    if (set.tool.length < 1e-11) ++seen["tiny"];
-    if (set.tool.length > 1e2) ++seen["huge"];
+    if (set.tool.length() < 1e-11) ++seen["tiny"];
+    if (set.tool.length() > 1e2) ++seen["huge"];
     if (set.rendering.reduction && set.points.size() > set.rendering.reduction->max_points) ++seen["overflow"];
     for (std::size_t k = 0; k < contacts.size(); ++k) {
       const double length = contacts.normal(k).norm();
@@ -101,7 +101,7 @@ TEST_F(ContactSets, HoldTheDegenerateCasesOfTheirNames) {
       if (length == 0.0) ++seen["zero normal"];
       const Vec3 x = contacts.point(k) - set.pose.position;
       if (x == Vec3::Zero()) ++seen["tip centre"];
-      if ((x - x.dot(set.pose.axis) * set.pose.axis).norm() <= 1e-12 * set.tool.radius) ++seen["on the axis"];
+      if ((x - x.dot(set.pose.axis) * set.pose.axis).norm() <= 1e-12 * set.tool.radius()) ++seen["on the axis"];
     }
     for (std::size_t k = 1; k < contacts.size(); ++k) {
       if (contacts.point(k) == contacts.point(k - 1)) ++seen["coincident"];

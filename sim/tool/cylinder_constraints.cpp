@@ -1,10 +1,11 @@
-#include "algorithms/proxy/surface_constraints.hpp"
-
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 
-#include "sim/core/simd.hpp"
 #include "sim/tool/axial.hpp"
+#include "sim/tool/cylinder.hpp"
 
+/// What a proxy asks of a cylinder, which is convex.
 namespace hapbench {
 namespace {
 
@@ -16,6 +17,9 @@ constexpr double kOnAxis = 1e-12;
 /// Cosine of the angle up to which a plane of the tool counts as flush with a surface, 6 degrees: normals of shells are
 /// off by a few, and a plane that leans by more holds an edge up too early.
 constexpr double kFlush = 0.9945;
+
+/// Cosine to the axis below which a surface runs along the side, so that no edge comes first.
+constexpr double kAlongSide = 1e-9;
 
 struct Directions {
   Pack x, y, z;
@@ -29,12 +33,24 @@ Directions away_from_axis(const AxialPack& q, const Pack& distance, const Pack& 
           select(undefined, Pack(any.z()), q.rho_z * scale)};
 }
 
+/// The place of the tool that is foremost against `normal`; along the side, the one abreast of `point`.
+Vec3 foremost_place(const Cylinder& tool, const ToolPose& pose, const Vec3& normal, const Vec3& point) {
+  const double forward = -normal.dot(pose.axis);
+  const Vec3 outwards = -normal - forward * pose.axis;
+  const double length = outwards.norm();
+  if (tool.tip() == Tip::round && forward > kAlongSide) return pose.position - tool.radius() * normal;
+  const Vec3 on_side = length > 0.0 ? Vec3(tool.radius() / length * outwards) : Vec3(Vec3::Zero());
+  double s = forward > 0.0 ? 0.0 : -tool.length();
+  if (std::abs(forward) < kAlongSide) s = std::clamp((point - pose.position).dot(pose.axis), -tool.length(), 0.0);
+  return pose.position + s * pose.axis + on_side;
+}
+
 }  // namespace
 
-void surface_constraints(const Tool& tool, const ToolPose& pose, const Vec3& wanted, double slack,
-                         ContactBuffer& contacts) noexcept {
-  const bool round = tool.tip == Tip::round;
-  const Pack radius(tool.radius), length(tool.length), zero(0.0), one(1.0);
+void Cylinder::surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
+                                   ContactBuffer& contacts) const noexcept {
+  const bool round = tip_ == Tip::round;
+  const Pack radius(radius_), length(length_), zero(0.0), one(1.0);
   const Pack ax(pose.axis.x()), ay(pose.axis.y()), az(pose.axis.z());
   const Pack wx(wanted.x()), wy(wanted.y()), wz(wanted.z()), in_reach(-slack), flush(kFlush);
   const Vec3 any = pose.axis.unitOrthogonal();
@@ -84,6 +100,12 @@ void surface_constraints(const Tool& tool, const ToolPose& pose, const Vec3& wan
     simd::store(mz, &contacts.uz[i]);
   }
   contacts.pad();
+}
+
+void Cylinder::foremost_places(const ToolPose& pose, const ContactBuffer& contacts, Vec3* places) const noexcept {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    places[i] = foremost_place(*this, pose, contacts.normal(i), contacts.point(i));
+  }
 }
 
 }  // namespace hapbench

@@ -1,5 +1,3 @@
-#include "algorithms/proxy/surface_constraints.hpp"
-
 #include <gtest/gtest.h>
 
 #include "tests/support/tool_geometry.hpp"
@@ -15,12 +13,12 @@ struct Constraint {
   Vec3 normal;
 };
 
-Constraint constraint_of(const Tool& tool, const ToolPose& pose, const Vec3& point,
+Constraint constraint_of(const Cylinder& tool, const ToolPose& pose, const Vec3& point,
                          const Vec3& surface_normal = Vec3::UnitZ(), const Vec3& wanted = Vec3::Zero(),
                          double slack = 0.0) {
   ContactBuffer contacts(1);
   contacts.push(0, point, surface_normal);
-  surface_constraints(tool, pose, wanted, slack, contacts);
+  tool.surface_constraints(pose, wanted, slack, contacts);
   return {-contacts.depth[0], contacts.gradient(0)};
 }
 
@@ -29,7 +27,7 @@ template <class Check>
 void for_random_points(Check check) {
   Random random(1);
   for (int i = 0; i < 20'000; ++i) {
-    const Tool tool = test::random_tool(random, kTips[i % 2]);
+    const Cylinder tool = test::random_tool(random, kTips[i % 2]);
     const ToolPose pose = test::random_pose(random);
     const Vec3 point =
         i % 5 == 0 ? test::random_point_on(tool, pose, random) : test::random_point_near(tool, pose, random);
@@ -41,7 +39,7 @@ void for_random_points(Check check) {
 constexpr double kRounding = 4e-15;
 
 TEST(SurfaceConstraints, HaveTheSignOfTheBodysDefinition) {
-  for_random_points([](const Tool& tool, const ToolPose& pose, const Vec3& point, Random&) {
+  for_random_points([](const Cylinder& tool, const ToolPose& pose, const Vec3& point, Random&) {
     const auto slack = static_cast<double>(test::slack(tool, pose, point.cast<long double>()));
     if (std::abs(slack) < kRounding) return;
     EXPECT_EQ(constraint_of(tool, pose, point).distance<0.0, slack> 0.0);
@@ -49,7 +47,7 @@ TEST(SurfaceConstraints, HaveTheSignOfTheBodysDefinition) {
 }
 
 TEST(SurfaceConstraints, LeadToTheSurfaceAlongTheNormal) {
-  for_random_points([](const Tool& tool, const ToolPose& pose, const Vec3& point, Random&) {
+  for_random_points([](const Cylinder& tool, const ToolPose& pose, const Vec3& point, Random&) {
     const Constraint c = constraint_of(tool, pose, point);
     ASSERT_NEAR(c.normal.norm(), 1.0, 4e-15);
     const Vec3 nearest = point - c.distance * c.normal;
@@ -60,7 +58,7 @@ TEST(SurfaceConstraints, LeadToTheSurfaceAlongTheNormal) {
 
 TEST(SurfaceConstraints, AreSubgradientsOfAConvexFunction) {
   // Which, with the two above, makes it the signed distance: no place of the surface is nearer.
-  for_random_points([](const Tool& tool, const ToolPose& pose, const Vec3& point, Random& random) {
+  for_random_points([](const Cylinder& tool, const ToolPose& pose, const Vec3& point, Random& random) {
     const Constraint c = constraint_of(tool, pose, point);
     for (int i = 0; i < 5; ++i) {
       const Vec3 other = i == 0 ? Vec3(point + 1e-6 * random.direction()) : test::random_point_near(tool, pose, random);
@@ -73,7 +71,7 @@ TEST(SurfaceConstraints, AreSubgradientsOfAConvexFunction) {
 TEST(SurfaceConstraints, ThatHoldKeepEveryPointOut) {
   Random random(2);
   int moves = 0;
-  for_random_points([&](const Tool& tool, const ToolPose& pose, const Vec3& point, Random&) {
+  for_random_points([&](const Cylinder& tool, const ToolPose& pose, const Vec3& point, Random&) {
     const Vec3 move = 2e-3 * random.uniform() * random.direction();
     // Flush with the tip, with the bottom or with nothing; wanting to move there, so that planes take the place of
     // edges.
@@ -89,7 +87,7 @@ TEST(SurfaceConstraints, ThatHoldKeepEveryPointOut) {
 }
 
 TEST(SurfaceConstraints, OnTheAxisTakeSomeNearestPlace) {
-  const Tool tool{0.0005, 0.01, Tip::flat};
+  const Cylinder tool{0.0005, 0.01, Tip::flat};
   const ToolPose pose{Vec3::Zero(), -Vec3::UnitZ()};
   const Constraint middle = constraint_of(tool, pose, {0, 0, 0.005});
   EXPECT_EQ(middle.distance, -0.0005);
@@ -101,7 +99,7 @@ TEST(SurfaceConstraints, OnTheAxisTakeSomeNearestPlace) {
 }
 
 TEST(SurfaceConstraints, BeyondAnEdgeMeasureToTheEdge) {
-  const Tool tool{0.5, 10.0, Tip::flat};
+  const Cylinder tool{0.5, 10.0, Tip::flat};
   const Constraint c = constraint_of(tool, {Vec3::Zero(), -Vec3::UnitZ()}, {0.5 + 0.3, 0.0, -0.4});
   EXPECT_NEAR(c.distance, 0.5, 1e-15);
   EXPECT_LE((c.normal - Vec3(0.6, 0.0, -0.8)).norm(), 1e-15);

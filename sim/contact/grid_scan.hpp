@@ -1,0 +1,58 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/contact/grid_index.hpp"
+#include "sim/tool/tool_shape.hpp"
+
+namespace hapbench {
+
+/// The points of a grid in a box, as whole packs that a tool marks with one call, in memory that lasts from search to
+/// search.
+class GridScan {
+ public:
+  /// Allocates for the largest box. The grid must outlive the scan.
+  explicit GridScan(const GridIndex& grid);
+  GridScan(const GridScan&) = delete;
+  GridScan& operator=(const GridScan&) = delete;
+
+  /// Lists the points in the cells that meet the box; returns how many there are.
+  std::size_t select(const Box& box) noexcept;
+
+  /// What a ToolShape is asked about, and where its marks go.
+  PointArrays points() const noexcept { return {grid_->x(), grid_->y(), grid_->z()}; }
+  std::span<const PackRange> packs() const noexcept { return {packs_.data(), runs_}; }
+  std::uint8_t* marks() noexcept { return marks_.data(); }
+
+  /// Calls `take(hits, i)` where some of the eight points from i on are marked, in ascending order of the grid.
+  template <class Take>
+  void for_each_hit(Take take) const {
+    const std::uint8_t* marks = marks_.data();
+    for (std::size_t run = 0; run < runs_; ++run) {
+      const auto [first, last] = packs_[run];
+      // Whole packs, so the first and last one may reach into neighbouring columns: those points are passed over.
+      for (std::size_t pack = first; pack < last; ++pack) {
+        unsigned hits = *marks++;
+        if (hits == 0) continue;
+        if (pack == first) hits &= ends_[run].first;
+        if (pack + 1 == last) hits &= ends_[run].last;
+        if (hits != 0) take(static_cast<std::uint8_t>(hits), pack * simd::lanes);
+      }
+    }
+  }
+
+ private:
+  /// The bits of a run's own points in its first and its last pack.
+  struct Ends {
+    std::uint8_t first, last;
+  };
+
+  const GridIndex* grid_;
+  std::size_t runs_ = 0;
+  std::vector<PackRange> packs_;
+  std::vector<Ends> ends_;
+  std::vector<std::uint8_t> marks_;
+};
+
+}  // namespace hapbench

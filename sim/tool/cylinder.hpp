@@ -1,0 +1,59 @@
+#pragma once
+
+#include "sim/tool/tool_shape.hpp"
+
+namespace hapbench {
+
+/// How a cylinder ends: in a plane, or in half a ball of the same radius about the tip centre, beyond that plane.
+enum class Tip { flat, round };
+
+/// A drill's stylus: a cylinder with a flat or a round tip (thesis A.1.1, B.1).
+///
+///      <----------- length L ----------->
+///     +----------------------------------+           s = <x - position, axis> along the axis:
+///     |  bottom, s = -L                  p --> axis  the body has -L <= s <= 0 and radial distance <= radius
+///     +----------------------------------+
+///
+/// The arithmetic of search and depths works on the axial coordinates of sim/tool/axial.hpp. A turn about the axis
+/// changes nothing.
+class Cylinder final : public ToolShape {
+ public:
+  /// Radius and length [m], both > 0; the length is that from the tip plane to the bottom.
+  Cylinder(double radius = 0.0005, double length = 0.01, Tip tip = Tip::flat);
+
+  double radius() const noexcept { return radius_; }
+  double length() const noexcept { return length_; }
+  Tip tip() const noexcept { return tip_; }
+  /// No exit distance is larger: an upper bound of the longest way through the body.
+  double longest_exit() const noexcept { return length_ + 3.0 * radius_; }
+
+  void mark_inside(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges,
+                   std::uint8_t* marks) const noexcept override;
+  /// Not rounded: at the edges of a flat tip and of the bottom it reaches sqrt(2) margin, as `grown` does.
+  void mark_near(const ToolPose& pose, double margin, const PointArrays& points, std::span<const PackRange> ranges,
+                 std::uint8_t* marks) const noexcept override;
+  Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept override;
+  double moved_at_most(const ToolPose& from, const ToolPose& to) const noexcept override;
+  void shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept override;
+  /// Ties prefer the side, then the tip, then the bottom.
+  void shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept override;
+  void exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept override;
+  /// Ties prefer the side, then the tip, then the bottom.
+  void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
+                           ContactBuffer& contacts) const noexcept override;
+  void foremost_places(const ToolPose& pose, const ContactBuffer& contacts, Vec3* places) const noexcept override;
+  /// The grown cylinder reaches further beyond a flat tip, so its tip centre lies `margin` ahead.
+  Grown grown(double margin) const override;
+
+ private:
+  double radius_;
+  double length_;
+  Tip tip_;
+  double radius2_;  ///< largest_square_within(radius)
+};
+
+/// The largest double whose square root does not exceed r: lets the search compare squares and still agree with the
+/// depths, which take the root, about every point on the surface.
+double largest_square_within(double r);
+
+}  // namespace hapbench

@@ -1,0 +1,25 @@
+#include "sim/tool/tool_state.hpp"
+
+#include <Eigen/Geometry>
+
+namespace hapbench {
+namespace {
+
+/// The matrix of the shortest turn of -z to a unit vector, by Rodrigues' formula I + [v] + [v]^2 (1 - c) / |v|^2, whose
+/// v = -z x axis and c = <-z, axis> are the turn's sine times its axis and its cosine.
+Mat3 shortest_turn(const Vec3& axis) noexcept {
+  const Vec3 v(axis.y(), -axis.x(), 0.0);
+  const double sine2 = v.squaredNorm(), cosine = -axis.z();
+  if (sine2 == 0.0) return cosine > 0.0 ? Mat3(Mat3::Identity()) : Mat3(Vec3(1.0, -1.0, -1.0).asDiagonal());
+  Mat3 cross;
+  cross << 0.0, 0.0, v.y(), 0.0, 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return Mat3::Identity() + cross + (1.0 - cosine) / sine2 * cross * cross;
+}
+
+}  // namespace
+
+Mat3 ToolPose::rotation() const noexcept {
+  return Eigen::AngleAxisd(roll, axis).toRotationMatrix() * shortest_turn(axis);
+}
+
+}  // namespace hapbench

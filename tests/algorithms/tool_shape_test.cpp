@@ -1,0 +1,152 @@
+#include "sim/tool/tool_shape.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "algorithms/registry.hpp"
+#include "sim/contact/grid_query.hpp"
+#include "sim/contact/neighbour_list_query.hpp"
+#include "sim/geometry/analytic_shells.hpp"
+#include "tests/support/brick.hpp"
+#include "tests/support/scale.hpp"
+#include "tests/support/searches.hpp"
+
+/// A shape that nothing but this test knows goes through searches, depth models and algorithms: the interface is all
+/// that they ask of a tool.
+namespace hapbench {
+namespace {
+
+using test::Brick;
+using test::cases;
+
+constexpr double kSpacing = 0.0001;
+
+/// Another pose after a small step, a small turn and a small roll.
+ToolPose next_pose(ToolPose pose, Random& random) {
+  pose.position += 0.00004 * random.uniform() * random.direction();
+  pose.axis = (pose.axis + 0.02 * random.uniform() * random.direction()).normalized();
+  pose.roll += 0.03 * random.uniform(-1.0, 1.0);
+  return pose;
+}
+
+ToolPose random_pose(Random& random) {
+  return {0.001 * random.direction(), random.direction(), random.uniform(-3.0, 3.0)};
+}
+
+template <class Query>
+class EverySearch : public testing::Test {};
+using Searches = testing::Types<ShellQuery, GridQuery, NeighbourListQuery>;
+TYPED_TEST_SUITE(EverySearch, Searches);
+
+TYPED_TEST(EverySearch, FindsThePointsInANewShape) {
+  Random random(1);
+  const Brick brick(0.0003, 0.0008, 0.002);
+  const PointShell shell(surface_points(Plane{0.004, kSpacing}), kSpacing);
+  TypeParam query(shell, brick);
+  ContactBuffer contacts(query.capacity());
+  std::uint64_t found = 0;
+  for (std::size_t walk = 0; walk < cases(40); ++walk) {
+    ToolPose pose = random_pose(random);
+    for (int k = 0; k < 50; ++k, pose = next_pose(pose, random)) {
+      query.contacts_at(pose, contacts);
+      found += contacts.size();
+      std::size_t next = 0;
+      for (std::size_t i = 0; i < shell.size(); ++i) {
+        const bool inside = brick.slack(pose, shell.point(i).position) >= 0.0;
+        ASSERT_EQ(next < contacts.size() && contacts.index[next] == i, inside) << i;
+        next += inside;
+      }
+    }
+  }
+  EXPECT_GT(found, cases(40) * 500);
+}
+
+class NewShapeInEveryDepthModel : public testing::TestWithParam<DepthModelEntry> {};
+INSTANTIATE_TEST_SUITE_P(Registered, NewShapeInEveryDepthModel,
+                         testing::ValuesIn(depth_models().begin(), depth_models().end()),
+                         [](const auto& entry) { return std::string(entry.param.info->name); });
+
+TEST_P(NewShapeInEveryDepthModel, HasItsDepthsBetweenTheShortestWayOutAndTheOneAlongTheGradient) {
+  Random random(2);
+  const Brick brick(0.0003, 0.0008, 0.002);
+  const PointShell shell(surface_points(Plane{0.004, kSpacing}), kSpacing);
+  ShellQuery query(shell, brick);
+  ContactBuffer contacts(query.capacity());
+  std::vector<double> exits(query.capacity());
+  std::uint64_t checked = 0;
+  for (std::size_t i = 0; i < cases(200); ++i) {
+    const ToolPose pose = random_pose(random);
+    const auto model = GetParam().make();
+    model->prepare({&brick, &query, &shell});
+    query.contacts_at(pose, contacts);
+    model->evaluate(brick, pose, contacts);
+    brick.exit_distances(pose, contacts, exits.data());
+    for (std::size_t k = 0; k < contacts.size(); ++k, ++checked) {
+      ASSERT_NEAR(contacts.gradient(k).norm(), 1.0, 1e-14);
+      ASSERT_GE(contacts.depth[k], brick.slack(pose, contacts.point(k)) - 1e-15);
+      ASSERT_LE(contacts.depth[k], exits[k] + 1e-15);
+    }
+  }
+  EXPECT_GT(checked, cases(200) * 10);
+}
+
+class NewShapeInEveryAlgorithm : public testing::TestWithParam<AlgorithmEntry> {};
+INSTANTIATE_TEST_SUITE_P(Registered, NewShapeInEveryAlgorithm,
+                         testing::ValuesIn(algorithms().begin(), algorithms().end()),
+                         [](const auto& entry) { return std::string(entry.param.info->name); });
+
+TEST_P(NewShapeInEveryAlgorithm, IsPushedOutOfAPlane) {
+  // Rolled, or the brick would stand parallel to the rows of points.
+  const ToolPose pose{{0.00002, -0.00001, -0.00005}, {0.0, 0.0, -1.0}, 0.4};
+  const Brick brick(0.0003, 0.0008, 0.002);
+  const PointShell shell(surface_points(Plane{0.004, kSpacing}), kSpacing);
+  NeighbourListQuery query(shell, brick);
+  ContactBuffer contacts(query.capacity());
+  RenderingConfig config;
+  config.algorithm = GetParam().info->name;
+  const auto algorithm = make_algorithm(config);
+  algorithm->prepare({&brick, &query, &shell});
+  algorithm->reset();
+  RenderedForce force;
+  for (const double height : {0.0001, pose.position.z()}) {  // a proxy has to start outside
+    const ToolPose now{{pose.position.x(), pose.position.y(), height}, pose.axis, pose.roll};
+    query.contacts_at(now, contacts);
+    algorithm->compute({now, Vec3::Zero()}, contacts, force);
+    if (height > 0.0) {
+      EXPECT_EQ(force.spring, Vec3(0, 0, 0));
+    }
+  }
+  EXPECT_NEAR(force.depth_max, 0.00005, 1e-15);
+  EXPECT_GT(force.spring.z(), 0.5 * config.stiffness * force.depth_max / static_cast<double>(contacts.size()));
+  EXPECT_LE(std::hypot(force.spring.x(), force.spring.y()), 1e-9 * force.spring.z());
+}
+
+TEST(Proxy, KeepsEveryPointOutOfANewShape) {
+  Random random(3);
+  const Brick brick(0.0003, 0.0008, 0.002);
+  const PointShell shell(surface_points(Plane{0.004, kSpacing}), kSpacing);
+  NeighbourListQuery query(shell, brick);
+  ContactBuffer contacts(query.capacity());
+  RenderingConfig config;
+  config.algorithm = "proxy";
+  for (std::size_t run = 0; run < cases(20); ++run) {
+    const auto proxy = make_algorithm(config);
+    proxy->prepare({&brick, &query, &shell});
+    proxy->reset();
+    RenderedForce force;
+    const Vec3 axis = (Vec3(0, 0, -1) + 0.5 * random.direction()).normalized();
+    const double roll = random.uniform(-3.0, 3.0);
+    for (int k = 0; k < 40; ++k) {
+      const ToolPose pose{{0.0, 0.0, 0.001 - 0.00005 * k}, axis, roll};
+      query.contacts_at(pose, contacts);
+      proxy->compute({pose, Vec3::Zero()}, contacts, force);
+      const ToolPose there{pose.position + force.spring / config.stiffness, axis, roll};
+      for (std::size_t i = 0; i < shell.size(); ++i) ASSERT_LE(brick.slack(there, shell.point(i).position), 1e-9);
+    }
+    EXPECT_GT(force.spring.z(), 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace hapbench
