@@ -15,10 +15,8 @@ const RenderedForce kNoForce;
 
 }  // namespace
 
-PenaltyRendering::PenaltyRendering(std::unique_ptr<DepthModel> depth_model, std::unique_ptr<ForceLaw> law,
-                                   const RenderingConfig& config)
-    : depth_model_(std::move(depth_model)),
-      local_average_(config.local_average ? make_local_average() : nullptr),
+PenaltyRendering::PenaltyRendering(std::unique_ptr<ForceLaw> law, const RenderingConfig& config)
+    : local_average_(config.local_average ? make_local_average() : nullptr),
       reduction_(config.reduction ? make_gradient_reduction(*config.reduction) : nullptr),
       law_(std::move(law)),
       damping_and_limits_(config),
@@ -27,17 +25,12 @@ PenaltyRendering::PenaltyRendering(std::unique_ptr<DepthModel> depth_model, std:
       angular_velocity_cutoff_(config.angular_velocity_read()) {}
 
 void PenaltyRendering::prepare(const Scene& scene) {
-  tool_ = scene.tool;
-  depth_is_given_ = scene.query->gives_depth();
-  if (!depth_is_given_) depth_model_->prepare(scene);
   if (local_average_) local_average_->prepare(scene);
   if (reduction_) reduction_->prepare(scene);
-  law_->prepare(scene.query->capacity());
+  law_->prepare(scene.capacity);
 }
 
 void PenaltyRendering::reset() noexcept {
-  depth_model_->reset();
-  knows_of_no_contacts_ = false;
   if (local_average_) local_average_->reset();
   if (reduction_) reduction_->reset();
   law_->reset();
@@ -46,10 +39,6 @@ void PenaltyRendering::reset() noexcept {
 void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   out = kNoForce;
   in_contact_ = false;
-  if (contacts.empty() && knows_of_no_contacts_ && skips_ == Skips::taken) return;
-
-  if (!depth_is_given_) depth_model_->evaluate(*tool_, tool.pose, contacts);
-  knows_of_no_contacts_ = contacts.empty();
   if (contacts.empty() && skips_ == Skips::taken) return;
 
   const auto depths = contacts.depth.begin();

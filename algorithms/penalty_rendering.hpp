@@ -2,7 +2,6 @@
 
 #include <memory>
 
-#include "algorithms/depth/depth_model.hpp"
 #include "algorithms/laws/force_law.hpp"
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "algorithms/stages/point_stage.hpp"
@@ -11,14 +10,13 @@ namespace hapbench {
 
 /// Penalty-based rendering, the thesis's pipeline, as one force algorithm:
 ///
-///   contacts -> depth model -> (local average) -> (reduction) -> force law -> damping, friction, limits
+///   contacts with depths -> (local average) -> (reduction) -> force law -> damping, friction, limits
 ///
 /// One virtual call per stage and step; stages that the configuration does not ask for do not exist,
 /// and steps without contact, or with too few to reduce, pass over what would do nothing (Skips).
 class PenaltyRendering final : public ForceAlgorithm {
  public:
-  PenaltyRendering(std::unique_ptr<DepthModel> depth_model, std::unique_ptr<ForceLaw> law,
-                   const RenderingConfig& config);
+  PenaltyRendering(std::unique_ptr<ForceLaw> law, const RenderingConfig& config);
 
   void prepare(const Scene& scene) override;
   void reset() noexcept override;
@@ -32,19 +30,15 @@ class PenaltyRendering final : public ForceAlgorithm {
   void reduce(ContactBuffer& contacts) noexcept;
   ContactVelocity velocity_at(const ContactBuffer& contacts, const ToolState& tool) const noexcept;
 
-  std::unique_ptr<DepthModel> depth_model_;
   std::unique_ptr<PointStage> local_average_;  ///< may be null
   std::unique_ptr<PointStage> reduction_;      ///< may be null
   std::unique_ptr<ForceLaw> law_;
   DampingAndLimits damping_and_limits_;
-  const ToolShape* tool_ = nullptr;
   Skips skips_;
   double K_;
   std::optional<double> angular_velocity_cutoff_;  ///< none without angular damping
-  bool depth_is_given_ = false;
-  bool knows_of_no_contacts_ = false;  ///< the depth model: it was told in the last step, or some steps before
-  bool in_contact_ = false;            ///< after the last step
-  LawForce law_force_;                 ///< of the last step with contacts
+  bool in_contact_ = false;                        ///< after the last step
+  LawForce law_force_;                             ///< of the last step with contacts
 };
 
 }  // namespace hapbench

@@ -31,9 +31,7 @@ namespace {
 /// A force law on the penalty pipeline.
 template <auto make_law>
 std::unique_ptr<ForceAlgorithm> penalty(const RenderingConfig& config) {
-  const DepthModelEntry* depth = find_depth_model(config.depth_model);
-  if (depth == nullptr) throw std::invalid_argument("unknown depth model " + config.depth_model);
-  return std::make_unique<PenaltyRendering>(depth->make(), make_law(config), config);
+  return std::make_unique<PenaltyRendering>(make_law(config), config);
 }
 
 constexpr AlgorithmEntry kAlgorithms[] = {
@@ -47,7 +45,7 @@ constexpr AlgorithmEntry kAlgorithms[] = {
     {&kExactShapingInfo, penalty<make_exact_shaping>},
     {&kContinuousNormalProjectionInfo, penalty<make_continuous_normal_projection>, "continuous_normal_projection"},
     {&kMergedShapingInfo, penalty<make_merged_shaping>, {}, false},
-    {&kProxyInfo, make_proxy, {}, false},
+    {&kProxyInfo, make_proxy, {}, false, "surface_normal"},
 };
 
 constexpr DepthModelEntry kDepthModels[] = {
@@ -64,6 +62,12 @@ template <class Entry>
 const Entry* find(std::span<const Entry> table, std::string_view name) {
   const auto found = std::find_if(table.begin(), table.end(), [name](const Entry& e) { return e.info->name == name; });
   return found == table.end() ? nullptr : &*found;
+}
+
+const AlgorithmEntry& algorithm_entry(const RenderingConfig& config) {
+  const AlgorithmEntry* entry = find_algorithm(config.algorithm);
+  if (entry == nullptr) throw std::invalid_argument("unknown algorithm " + config.algorithm);
+  return *entry;
 }
 
 }  // namespace
@@ -95,10 +99,16 @@ RenderingConfig with_fixed_stages(RenderingConfig config) {
   return config;
 }
 
+std::unique_ptr<DepthModel> make_depth_model(const RenderingConfig& config) {
+  const std::string_view reported = algorithm_entry(config).reported_depth_model;
+  const std::string name = reported.empty() ? with_fixed_stages(config).depth_model : std::string(reported);
+  const DepthModelEntry* entry = find_depth_model(name);
+  if (entry == nullptr) throw std::invalid_argument("unknown depth model " + name);
+  return entry->make();
+}
+
 std::unique_ptr<ForceAlgorithm> make_algorithm(const RenderingConfig& config) {
-  const AlgorithmEntry* entry = find_algorithm(config.algorithm);
-  if (entry == nullptr) throw std::invalid_argument("unknown algorithm " + config.algorithm);
-  auto algorithm = entry->make(with_fixed_stages(config));
+  auto algorithm = algorithm_entry(config).make(with_fixed_stages(config));
   if (!config.passivity_controller) return algorithm;
   return std::make_unique<PassivityController>(std::move(algorithm), config);
 }

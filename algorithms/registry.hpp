@@ -14,12 +14,14 @@ namespace hapbench {
 
 struct AlgorithmEntry {
   const ModelInfo* info;
-  /// A new force algorithm for one run; throws std::invalid_argument for a depth model that is not in the table.
+  /// A new force algorithm for one run.
   std::unique_ptr<ForceAlgorithm> (*make)(const RenderingConfig&);
   /// The depth model that is part of the algorithm's definition; empty when the scenario chooses.
   std::string_view fixed_depth_model = {};
   /// False when the algorithm's definition excludes the reduction.
   bool may_reduce = true;
+  /// The depth model of contacts that an algorithm only reports the depths of; empty when it renders them.
+  std::string_view reported_depth_model = {};
 };
 
 struct DepthModelEntry {
@@ -38,6 +40,10 @@ const DepthModelEntry* find_depth_model(std::string_view name);
 
 /// `config` with what its algorithm fixes put in place: depth model and reduction. Precondition: the name is known.
 RenderingConfig with_fixed_stages(RenderingConfig config);
+
+/// The depth model of the contacts that the algorithm `config` names is given. Throws std::invalid_argument for unknown
+/// names.
+std::unique_ptr<DepthModel> make_depth_model(const RenderingConfig& config);
 
 /// The algorithm `config` names, on the stages it fixes, in a passivity controller if asked for. Throws
 /// std::invalid_argument for unknown names.

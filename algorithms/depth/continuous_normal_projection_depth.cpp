@@ -23,9 +23,9 @@ namespace {
 
 class ContinuousNormalProjectionDepth final : public DepthModel {
  public:
-  void prepare(const Scene& scene) override {
-    memory_.resize(scene.shell->size());
-    exit_.resize(scene.shell->size());
+  void prepare(const PointShell& shell) override {
+    memory_.resize(shell.size());
+    exit_.resize(shell.size());
   }
 
   void reset() noexcept override {

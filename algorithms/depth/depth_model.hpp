@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "sim/contact/contact_buffer.hpp"
-#include "sim/loop/force_algorithm.hpp"
+#include "sim/geometry/point_shell.hpp"
 #include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {
@@ -14,8 +14,8 @@ namespace hapbench {
 class DepthModel {
  public:
   virtual ~DepthModel() = default;
-  /// Before the first step of a scene with a shell; the only call that may allocate.
-  virtual void prepare(const Scene& scene) { static_cast<void>(scene); }
+  /// Before the first step with the contacts of a shell; the only call that may allocate.
+  virtual void prepare(const PointShell& shell) { static_cast<void>(shell); }
   /// Back to t = 0.
   virtual void reset() noexcept {}
   /// Fills depth and gradient of all contacts and pads. Precondition: every point lies in the tool (closed set). Called

@@ -3,10 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <limits>
 
 #include "algorithms/laws/force_law.hpp"
-#include "algorithms/proxy/edge_constraints.hpp"
 #include "algorithms/proxy/nearest_allowed.hpp"
 
 namespace hapbench {
@@ -35,10 +33,6 @@ const ModelInfo kProxyInfo = {
 
 namespace {
 
-/// The query looks a little further than the proxy moves, for the rounding of both.
-constexpr double kQueryMargin = 1.0 + 1e-6;
-/// Of the spacing: how far a point may be inside one plane of an edge and still pass it by.
-constexpr double kEdgeSlack = 1e-3;
 /// Squared length of what gradients leave of a direction below which they do not span it.
 constexpr double kNoSpan = 1e-6;
 /// A pass that moves the proxy less than this part of the margin is the last one.
@@ -47,21 +41,22 @@ constexpr double kSettled = 1e-3;
 }  // namespace
 
 ProxyRendering::ProxyRendering(const RenderingConfig& config)
-    : K_(config.stiffness), angular_velocity_cutoff_(config.angular_velocity_read()), damping_and_limits_(config) {}
+    : K_(config.stiffness),
+      angular_velocity_cutoff_(config.angular_velocity_read()),
+      damping_and_limits_(config),
+      skips_(config.skips) {}
 
 void ProxyRendering::prepare(const Scene& scene) {
-  tool_ = scene.tool;
-  depth_is_given_ = scene.query->gives_depth();
-  // Springs are planes, whose constraints hold at any distance.
-  margin_ = depth_is_given_ ? std::numeric_limits<double>::infinity() : kProxyMargin * tool_->half_width();
-  near_ = scene.query->with_margin(margin_ * kQueryMargin);
-  near_contacts_ = std::make_unique<ContactBuffer>(2 * near_->capacity());
-  places_.resize(near_->capacity());
-  spacing_ = depth_is_given_ ? 0.0 : typical_spacing(*scene.shell);
+  if (scene.springs != nullptr) {
+    constraints_ = std::make_unique<SpringConstraints>(*scene.springs);
+  } else {
+    constraints_ = std::make_unique<ShellConstraints>(*scene.shell, *scene.tool, skips_);
+  }
+  near_contacts_ = std::make_unique<ContactBuffer>(constraints_->capacity());
 }
 
 void ProxyRendering::reset() noexcept {
-  near_->reset();
+  constraints_->reset();
   placed_ = false;
   work_ = {};
 }
@@ -69,7 +64,6 @@ void ProxyRendering::reset() noexcept {
 void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   out = {};
   if (!contacts.empty()) {
-    if (!depth_is_given_) tool_->shortest_depths(tool.pose, contacts);
     const auto depths = contacts.depth.begin();
     out.depth_max = *std::max_element(depths, depths + static_cast<std::ptrdiff_t>(contacts.size()));
   }
@@ -85,8 +79,9 @@ void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, Ren
 
 ContactVelocity ProxyRendering::velocity_at(const ToolState& tool) const noexcept {
   ContactVelocity velocity{tool.velocity, held_ * tool.velocity};
-  // Springs are attached to the tip, which does not move when the tool turns.
-  if (!angular_velocity_cutoff_ || depth_is_given_ || tool.angular_velocity == Vec3::Zero()) return velocity;
+  if (!angular_velocity_cutoff_ || !constraints_->act_at_points() || tool.angular_velocity == Vec3::Zero()) {
+    return velocity;
+  }
   Mat3 span = Mat3::Zero();
   Vec3 turning = Vec3::Zero();
   for (std::size_t i = 0; i < near_contacts_->size(); ++i) {
@@ -116,29 +111,26 @@ void ProxyRendering::place(const Vec3& position) noexcept {
 }
 
 bool ProxyRendering::follow(const ToolPose& tool) noexcept {
+  const double margin = constraints_->margin();
   for (int pass = 0; pass < kProxyPasses; ++pass) {
     const ToolPose proxy{proxy_, tool.axis, tool.roll};
     const Vec3 wanted = tool.position - proxy_;
-    near_->contacts_at(proxy, *near_contacts_);
-    if (!depth_is_given_) {
-      tool_->surface_constraints(proxy, wanted, kEdgeSlack * spacing_, *near_contacts_);
-      add_edge_constraints(*tool_, proxy, spacing_, margin_, places_, *near_contacts_);
-    }
+    constraints_->constraints_at(proxy, wanted, *near_contacts_);
     const AllowedMove allowed = nearest_allowed(wanted, *near_contacts_);
     work_.iterations += static_cast<std::uint64_t>(allowed.iterations);
     held_ = allowed.held;
     feasible_ = allowed.feasible;
     share_ = allowed.share;
     const double length = allowed.move.norm();
-    if (length > margin_) {
-      proxy_ += margin_ / length * allowed.move;
+    if (length > margin) {
+      proxy_ += margin / length * allowed.move;
     } else if (allowed.iterations == 0) {
       proxy_ = tool.position;
       return true;
     } else {
       proxy_ += allowed.move;
       // A compromise of walls that leave no room is not worth more than one pass a step.
-      if (length <= kSettled * margin_ || !allowed.feasible) return true;
+      if (length <= kSettled * margin || !allowed.feasible) return true;
     }
   }
   return false;
@@ -172,7 +164,7 @@ SpringState ProxyRendering::spring_state(const ToolState&, const ContactBuffer&)
     if (!(weight > 0.0)) continue;
     // In the compromise, what is violated is a store of its own.
     if (!feasible_) state.energy += 0.5 * K_ * weight * weight;
-    if (depth_is_given_) continue;  // springs are attached to the tip
+    if (!constraints_->act_at_points()) continue;
     state.moment -= (near_contacts_->point(i) - proxy_).cross(K_ * multiplier(i) * near_contacts_->gradient(i));
   }
   return state;
@@ -185,7 +177,7 @@ ForceJacobian ProxyRendering::jacobian() const noexcept {
 
 AlgorithmWork ProxyRendering::work() const noexcept {
   AlgorithmWork work = work_;
-  work.search = near_->work();
+  work.search = constraints_->work();
   return work;
 }
 

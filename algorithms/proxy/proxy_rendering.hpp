@@ -1,9 +1,9 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "algorithms/info.hpp"
+#include "algorithms/proxy/proxy_constraints.hpp"
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "sim/loop/force_algorithm.hpp"
 
@@ -11,9 +11,6 @@ namespace hapbench {
 
 extern const ModelInfo kProxyInfo;
 
-/// The margin in half widths of the tool. Wider, and each pass looks at more points; narrower, and a fast tool takes
-/// more passes.
-inline constexpr double kProxyMargin = 0.2;
 /// Most passes of a step: to bring the proxy near, and to make the constraints exact where it ends. Most steps take
 /// two.
 inline constexpr int kProxyPasses = 64;
@@ -23,9 +20,9 @@ inline constexpr int kProxyPasses = 64;
 /// point; the thesis's section 1.2 rejects it for whole bodies as too expensive). Orientation is scripted, so only the
 /// translation x of the proxy is free: three unknowns.
 ///
-/// Each pass asks for the shell points within a margin of the proxy, turns each into a linear constraint
-/// (ToolShape::surface_constraints) and moves the proxy to the allowed place nearest to the tool (nearest_allowed), at
-/// most by the margin; points further away cannot be reached by that.
+/// Each pass asks for the constraints on the proxy (ProxyConstraints: one for each shell point within a margin of it)
+/// and moves the proxy to the allowed place nearest to the tool (nearest_allowed), at most by the margin; points
+/// further away cannot be reached by that.
 ///
 /// Guarantee: after a pass whose contacts do not contradict each other, and which was not cut short while points were
 /// inside the proxy, no shell point is inside the proxy, but for kViolationTolerance of the margin. For the constraints
@@ -62,13 +59,9 @@ class ProxyRendering final : public ForceAlgorithm {
   double K_;
   std::optional<double> angular_velocity_cutoff_;  ///< none without angular damping
   DampingAndLimits damping_and_limits_;
-  const ToolShape* tool_ = nullptr;
-  bool depth_is_given_ = false;
-  double margin_ = 0.0;   ///< [m]
-  double spacing_ = 0.0;  ///< of the shell [m]
-  std::unique_ptr<ContactQuery> near_;
+  Skips skips_;
+  std::unique_ptr<ProxyConstraints> constraints_;
   std::unique_ptr<ContactBuffer> near_contacts_;  ///< of the last pass, with its weights [m]
-  std::vector<Vec3> places_;                      ///< scratch memory of add_edge_constraints
 
   bool placed_ = false;  ///< false before the first step
   Vec3 proxy_ = Vec3::Zero();

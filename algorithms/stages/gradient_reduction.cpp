@@ -44,7 +44,7 @@ class GradientReduction final : public PointStage {
   void prepare(const Scene& scene) override {
     if (!config_.shuffle_seed) return;
     // rank_[i] is the place of shell point i in the visiting order.
-    rank_.resize(scene.query->capacity());
+    rank_.resize(scene.capacity);
     std::iota(rank_.begin(), rank_.end(), 0u);
     Random(*config_.shuffle_seed).shuffle(rank_);
     order_.resize(rank_.size());

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "algorithms/registry.hpp"
+#include "algorithms/shell_source.hpp"
 #include "device_model/admittance_device.hpp"
 #include "device_model/hands/impedance_hand.hpp"
 #include "device_model/hands/scripted_hands.hpp"
@@ -12,9 +13,7 @@
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/motion_file.hpp"
 #include "scenarios/run/environment_points.hpp"
-#include "sim/contact/neighbour_list_query.hpp"
-#include "sim/contact/shell_query.hpp"
-#include "sim/contact/spring_query.hpp"
+#include "sim/contact/spring_source.hpp"
 #include "sim/core/random.hpp"
 
 namespace hapbench {
@@ -188,14 +187,17 @@ SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointSh
   SimulationParts parts;
   parts.tool = std::make_shared<Cylinder>(make_cylinder(scenario.tool));
   parts.shell = std::move(shell);
+  const RenderingConfig rendering = rendering_config(scenario.rendering, skips);
   if (const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment)) {
-    parts.query = std::make_unique<SpringQuery>(make_springs(*springs, static_cast<std::uint64_t>(scenario.seed)));
-  } else if (skips == Skips::off) {
-    parts.query = std::make_unique<ShellQuery>(*parts.shell, *parts.tool);
+    const auto seed = static_cast<std::uint64_t>(scenario.seed);
+    parts.springs = std::make_shared<const SpringSet>(make_springs(*springs, seed));
+    parts.source = std::make_unique<SpringSource>(parts.springs);
   } else {
-    parts.query = std::make_unique<NeighbourListQuery>(*parts.shell, *parts.tool);
+    auto search = make_contact_query(*parts.shell, *parts.tool, skips);
+    parts.source =
+        std::make_unique<ShellSource>(*parts.shell, *parts.tool, std::move(search), make_depth_model(rendering), skips);
   }
-  parts.algorithm = make_algorithm(rendering_config(scenario.rendering, skips));
+  parts.algorithm = make_algorithm(rendering);
   add_hand_and_motion(scenario, trial, parts);
   parts.device = make_device(scenario, trial);
   return parts;

@@ -32,7 +32,7 @@ class TrialObservers {
     observers_.push_back(&passivity_);
     if (scenario.record.energy) {
       ledger_.emplace(*scenario.rendering.mass, scenario.time.step, parts.motion->position_is_free(),
-                      parts.query->capacity(), scenario.integrator.type);
+                      parts.source->capacity(), scenario.integrator.type);
       observers_.push_back(&*ledger_);
     }
     if (scenario.record.ideal_trajectory) {
@@ -109,7 +109,7 @@ TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell
                       const TrialOptions& options) {
   SimulationParts parts = assemble(scenario, std::move(shell), trial, options.skips);
   TrialObservers observers(scenario, parts, trial);
-  if (options.directory) observers.record(scenario.record, *options.directory, parts.query->capacity());
+  if (options.directory) observers.record(scenario.record, *options.directory, parts.source->capacity());
   Progress bar(options.label, static_cast<std::uint64_t>(*scenario.time.steps), !options.label.empty());
   observers.add(bar);
   Simulation simulation(simulation_config(scenario, options.skips), std::move(parts), observers.all());
@@ -122,7 +122,7 @@ TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell
   out.loop_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   out.preemptions = involuntary_context_switches() - preemptions_before;
   out.work.allocations = heap_allocations() - allocations_before;
-  out.work.search = simulation.query().work();
+  out.work.search = simulation.source().work();
   out.work.steps_skipped = out.work.search.skipped;
   out.work.algorithm = simulation.algorithm().work();
   out.work.search += out.work.algorithm.search;

@@ -4,11 +4,13 @@
 #include <memory>
 
 #include "sim/contact/contact_buffer.hpp"
-#include "sim/tool/tool_state.hpp"
+#include "sim/core/skips.hpp"
+#include "sim/geometry/point_shell.hpp"
+#include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {
 
-/// What a contact query has done since its last reset.
+/// What a contact search has done since its last reset.
 struct SearchWork {
   std::uint64_t queries = 0;
   std::uint64_t points_tested = 0;  ///< shell points compared with the tool, padding not counted
@@ -24,8 +26,7 @@ struct SearchWork {
   }
 };
 
-/// Answers which points of the environment a tool in a given pose touches. The step loop asks at the tool's pose; a
-/// force algorithm that keeps a proxy may ask again at a pose of its choosing.
+/// Answers which points of a shell a tool in a given pose touches. Depths and gradients are left to a depth model.
 class ContactQuery {
  public:
   virtual ~ContactQuery() = default;
@@ -35,13 +36,6 @@ class ContactQuery {
   virtual void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept = 0;
   /// The most contacts a query can return.
   virtual std::size_t capacity() const noexcept = 0;
-  /// True when the query itself fills depth and gradient (springs), so that no depth model applies.
-  virtual bool gives_depth() const noexcept = 0;
-  /// A query of its own over the same environment that answers with what lies within `margin` >= 0 [m] of the tool's
-  /// surface as well (and with some points a little further away, at a flat tool's edges). Springs answer those that
-  /// the tool could compress by moving that far; a bilateral spring holds the tool from both sides, so it is answered
-  /// twice, as the pair (d, u) and (-d, -u). Allocates; the environment must outlive it.
-  virtual std::unique_ptr<ContactQuery> with_margin(double margin) const = 0;
   /// Back to t = 0, counters included.
   virtual void reset() noexcept = 0;
 
@@ -50,5 +44,8 @@ class ContactQuery {
  protected:
   SearchWork work_;
 };
+
+/// The search that runs use: neighbour lists, or brute force with skips off. Shell and tool must outlive it.
+std::unique_ptr<ContactQuery> make_contact_query(const PointShell& shell, const ToolShape& tool, Skips skips);
 
 }  // namespace hapbench

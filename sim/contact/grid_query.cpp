@@ -3,17 +3,12 @@
 #include <algorithm>
 #include <bit>
 
-#include "sim/contact/margin_query.hpp"
 #include "sim/contact/push_hits.hpp"
 
 namespace hapbench {
 
 GridQuery::GridQuery(const PointShell& shell, const ToolShape& tool)
     : shell_(&shell), tool_(&tool), grid_(shell), scan_(grid_), found_(shell.size()) {}
-
-std::unique_ptr<ContactQuery> GridQuery::with_margin(double margin) const {
-  return make_margin_query<GridQuery>(*shell_, *tool_, margin);
-}
 
 void GridQuery::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
   ++work_.queries;

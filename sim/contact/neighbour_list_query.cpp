@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "sim/contact/margin_query.hpp"
 #include "sim/contact/push_hits.hpp"
 
 namespace hapbench {
@@ -36,10 +35,6 @@ NeighbourListQuery::NeighbourListQuery(const PointShell& shell, const ToolShape&
 void NeighbourListQuery::reset() noexcept {
   work_ = {};
   has_list_ = false;
-}
-
-std::unique_ptr<ContactQuery> NeighbourListQuery::with_margin(double margin) const {
-  return make_margin_query<NeighbourListQuery>(*shell_, *tool_, margin);
 }
 
 void NeighbourListQuery::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {

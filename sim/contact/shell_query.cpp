@@ -2,16 +2,10 @@
 
 #include <bit>
 
-#include "sim/contact/margin_query.hpp"
-
 namespace hapbench {
 
 ShellQuery::ShellQuery(const PointShell& shell, const ToolShape& tool)
     : shell_(&shell), tool_(&tool), marks_(shell.padded_size() / simd::lanes) {}
-
-std::unique_ptr<ContactQuery> ShellQuery::with_margin(double margin) const {
-  return make_margin_query<ShellQuery>(*shell_, *tool_, margin);
-}
 
 void ShellQuery::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
   const PointShell& shell = *shell_;

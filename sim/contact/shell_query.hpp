@@ -17,8 +17,6 @@ class ShellQuery final : public ContactQuery {
 
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return shell_->size(); }
-  bool gives_depth() const noexcept override { return false; }
-  std::unique_ptr<ContactQuery> with_margin(double margin) const override;
   void reset() noexcept override { work_ = {}; }
 
  private:

@@ -6,16 +6,18 @@
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/contact/contact_query.hpp"
 #include "sim/geometry/point_shell.hpp"
+#include "sim/geometry/springs.hpp"
 #include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {
 
 /// What a force algorithm may know of the scene before the first step. Everything pointed to outlives the algorithm.
 struct Scene {
-  const ToolShape* tool = nullptr;
-  ContactQuery* query = nullptr;      ///< for algorithms that ask for contacts at a pose of their own; never null
-  const PointShell* shell = nullptr;  ///< null for springs
-  double dt = 0.0005;                 ///< time step [s]
+  std::size_t capacity = 0;            ///< the most contacts of a step
+  const ToolShape* tool = nullptr;     ///< for algorithms that keep a proxy of it
+  const PointShell* shell = nullptr;   ///< the environment, unless it is springs
+  const SpringSet* springs = nullptr;  ///< the environment, unless it is a shell
+  double dt = 0.0005;                  ///< time step [s]
 };
 
 /// What an algorithm answers for one step.
@@ -65,8 +67,8 @@ class ForceAlgorithm {
   /// over the coming step [N].
   virtual void take_input(const Vec3& input) noexcept { static_cast<void>(input); }
   /// One step, or one state within it: some integrators (sim/loop/integrator.hpp) ask several times a step, the first
-  /// time at the row. `contacts` holds the colliding points at the tool's pose; on return it holds the rendered ones,
-  /// with depth, gradient and weight.
+  /// time at the row. `contacts` holds the contacts at the tool's pose, with depth and gradient (ContactSource); on
+  /// return it holds the rendered ones, with their weights.
   virtual void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept = 0;
   /// Elastic energy and moment of the springs behind the last `compute`, whose contacts are handed in. Called only when
   /// somebody keeps accounts.

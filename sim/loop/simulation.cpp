@@ -19,7 +19,7 @@ class Simulation::Surroundings final : public ForceField {
     const Vec3 axis = s_.parts_.motion->axis_at((static_cast<double>(s_.row_) + part) * s_.config_.dt);
     ToolState tool{{position, axis}, velocity};
     if (s_.angular_velocity_cutoff_) tool.angular_velocity = s_.angular_velocity_after(part, axis);
-    s_.parts_.query->contacts_at(tool.pose, s_.contacts_);
+    s_.parts_.source->contacts_at(tool.pose, s_.contacts_);
     s_.parts_.algorithm->compute(tool, s_.contacts_, s_.within_step_);
     return s_.record_.hand.input + s_.within_step_.rendered;
   }
@@ -33,7 +33,7 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
     : config_(std::move(config)),
       parts_(std::move(parts)),
       observers_(std::move(observers)),
-      contacts_(parts_.query->capacity()) {
+      contacts_(parts_.source->capacity()) {
   ratio_wanted_ = springs_wanted_ = energy_wanted_ = config_.skips == Skips::off;
   for (const Observer* observer : observers_) {
     ratio_wanted_ |= observer->wants_ratio();
@@ -43,7 +43,8 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
   input_wanted_ = parts_.algorithm->wants_input();
   handle_is_apart_ = parts_.device->energy().has_value();
   angular_velocity_cutoff_ = parts_.algorithm->angular_velocity_cutoff();
-  parts_.algorithm->prepare({parts_.tool.get(), parts_.query.get(), parts_.shell.get(), config_.dt});
+  parts_.algorithm->prepare(
+      {parts_.source->capacity(), parts_.tool.get(), parts_.shell.get(), parts_.springs.get(), config_.dt});
   reset();
 }
 
@@ -55,7 +56,7 @@ void Simulation::reset() noexcept {
   tool_ = {{config_.position, Vec3::Zero()}, config_.velocity};
   parts_.hand->reset();  // first, because a hand may steer the orientation
   move_tool_by_script();
-  parts_.query->reset();
+  parts_.source->reset();
   parts_.algorithm->reset();
   parts_.device->reset(tool_);
 }
@@ -104,7 +105,7 @@ bool Simulation::step() noexcept {
   r.task = parts_.hand->task();
   r.hand = parts_.device->measure(r.hand_force);
 
-  parts_.query->contacts_at(tool_.pose, contacts_);
+  parts_.source->contacts_at(tool_.pose, contacts_);
   r.colliding = contacts_.size();
   if (input_wanted_) parts_.algorithm->take_input(r.hand.input);
   parts_.algorithm->compute(tool_, contacts_, r.force);

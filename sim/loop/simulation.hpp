@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/core/skips.hpp"
 #include "sim/loop/device.hpp"
 #include "sim/loop/force_algorithm.hpp"
@@ -50,8 +50,9 @@ struct SimulationConfig {
 /// The parts a run is made of; the simulation owns them.
 struct SimulationParts {
   std::shared_ptr<const ToolShape> tool;
-  std::shared_ptr<const PointShell> shell;  ///< null for springs
-  std::unique_ptr<ContactQuery> query;
+  std::shared_ptr<const PointShell> shell;   ///< null for springs
+  std::shared_ptr<const SpringSet> springs;  ///< null for a shell
+  std::unique_ptr<ContactSource> source;     ///< of contacts with either
   std::unique_ptr<ForceAlgorithm> algorithm;
   std::unique_ptr<Motion> motion;
   std::unique_ptr<Hand> hand;
@@ -91,7 +92,7 @@ class Simulation {
   const SimulationResult& result() const { return result_; }
   std::uint64_t next_row() const { return row_; }
   const ToolState& tool() const { return tool_; }
-  const ContactQuery& query() const { return *parts_.query; }
+  const ContactSource& source() const { return *parts_.source; }
   const ForceAlgorithm& algorithm() const { return *parts_.algorithm; }
 
  private:

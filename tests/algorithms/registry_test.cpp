@@ -80,9 +80,10 @@ TEST(Registry, UnknownNamesAreNotFoundAndThrow) {
   RenderingConfig config;
   config.algorithm = "no_such";
   EXPECT_THROW(static_cast<void>(make_algorithm(config)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(make_depth_model(config)), std::invalid_argument);
   config = {};
   config.depth_model = "no_such";
-  EXPECT_THROW(static_cast<void>(make_algorithm(config)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(make_depth_model(config)), std::invalid_argument);
 }
 
 TEST(Registry, AnAlgorithmsFixedStagesReplaceTheConfiguredOnes) {

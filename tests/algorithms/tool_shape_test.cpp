@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "algorithms/registry.hpp"
+#include "algorithms/shell_source.hpp"
 #include "sim/contact/grid_query.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "sim/geometry/analytic_shells.hpp"
@@ -78,7 +79,7 @@ TEST_P(NewShapeInEveryDepthModel, HasItsDepthsBetweenTheShortestWayOutAndTheOneA
   for (std::size_t i = 0; i < cases(200); ++i) {
     const ToolPose pose = random_pose(random);
     const auto model = GetParam().make();
-    model->prepare({&brick, &query, &shell});
+    model->prepare(shell);
     query.contacts_at(pose, contacts);
     model->evaluate(brick, pose, contacts);
     brick.exit_distances(pose, contacts, exits.data());
@@ -101,17 +102,17 @@ TEST_P(NewShapeInEveryAlgorithm, IsPushedOutOfAPlane) {
   const ToolPose pose{{0.00002, -0.00001, -0.00005}, {0.0, 0.0, -1.0}, 0.4};
   const Brick brick(0.0003, 0.0008, 0.002);
   const PointShell shell(surface_points(Plane{0.004, kSpacing}), kSpacing);
-  NeighbourListQuery query(shell, brick);
-  ContactBuffer contacts(query.capacity());
   RenderingConfig config;
   config.algorithm = GetParam().info->name;
+  ShellSource source(shell, brick, make_contact_query(shell, brick, Skips::taken), make_depth_model(config));
+  ContactBuffer contacts(source.capacity());
   const auto algorithm = make_algorithm(config);
-  algorithm->prepare({&brick, &query, &shell});
+  algorithm->prepare({source.capacity(), &brick, &shell});
   algorithm->reset();
   RenderedForce force;
   for (const double height : {0.0001, pose.position.z()}) {  // a proxy has to start outside
     const ToolPose now{{pose.position.x(), pose.position.y(), height}, pose.axis, pose.roll};
-    query.contacts_at(now, contacts);
+    source.contacts_at(now, contacts);
     algorithm->compute({now, Vec3::Zero()}, contacts, force);
     if (height > 0.0) {
       EXPECT_EQ(force.spring, Vec3(0, 0, 0));
@@ -126,20 +127,20 @@ TEST(Proxy, KeepsEveryPointOutOfANewShape) {
   Random random(3);
   const Brick brick(0.0003, 0.0008, 0.002);
   const PointShell shell(surface_points(Plane{0.004, kSpacing}), kSpacing);
-  NeighbourListQuery query(shell, brick);
-  ContactBuffer contacts(query.capacity());
   RenderingConfig config;
   config.algorithm = "proxy";
+  ShellSource source(shell, brick, make_contact_query(shell, brick, Skips::taken), make_depth_model(config));
+  ContactBuffer contacts(source.capacity());
   for (std::size_t run = 0; run < cases(20); ++run) {
     const auto proxy = make_algorithm(config);
-    proxy->prepare({&brick, &query, &shell});
+    proxy->prepare({source.capacity(), &brick, &shell});
     proxy->reset();
     RenderedForce force;
     const Vec3 axis = (Vec3(0, 0, -1) + 0.5 * random.direction()).normalized();
     const double roll = random.uniform(-3.0, 3.0);
     for (int k = 0; k < 40; ++k) {
       const ToolPose pose{{0.0, 0.0, 0.001 - 0.00005 * k}, axis, roll};
-      query.contacts_at(pose, contacts);
+      source.contacts_at(pose, contacts);
       proxy->compute({pose, Vec3::Zero()}, contacts, force);
       const ToolPose there{pose.position + force.spring / config.stiffness, axis, roll};
       for (std::size_t i = 0; i < shell.size(); ++i) ASSERT_LE(brick.slack(there, shell.point(i).position), 1e-9);

@@ -7,7 +7,6 @@
 #include "tests/bench/bench.hpp"
 #include "tests/bench/contact_samples.hpp"
 #include "tests/support/dense_laws.hpp"
-#include "tests/support/fakes.hpp"
 #include "tests/support/shaping_optimality.hpp"
 
 namespace hapbench::bench {
@@ -68,8 +67,7 @@ void law(benchmark::State& state, const std::string& algorithm, std::size_t n) {
   const auto rendering = make_algorithm(config);
   // The contacts bring their depths, so that the law is what remains.
   ContactBuffer contacts = task_contacts(n);
-  test::FakeQuery query(n);
-  rendering->prepare({nullptr, &query, nullptr});
+  rendering->prepare({.capacity = n});
   rendering->reset();
   const ToolState tool;
   RenderedForce force;

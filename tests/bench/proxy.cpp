@@ -1,10 +1,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "algorithms/proxy/edge_constraints.hpp"
 #include "algorithms/proxy/nearest_allowed.hpp"
-#include "algorithms/proxy/proxy_rendering.hpp"
-#include "sim/contact/neighbour_list_query.hpp"
+#include "algorithms/proxy/proxy_constraints.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
 
@@ -23,21 +21,13 @@ struct Problem {
 class Problems final : public Observer {
  public:
   Problems(const PointShell& shell, const ToolShape& tool, double K)
-      : margin_(kProxyMargin * tool.half_width()),
-        near_(NeighbourListQuery(shell, tool).with_margin(margin_)),
-        found_(2 * near_->capacity()),
-        places_(near_->capacity()),
-        tool_(&tool),
-        K_(K),
-        spacing_(typical_spacing(shell)) {}
+      : constraints_(shell, tool, Skips::taken), found_(constraints_.capacity()), K_(K) {}
 
   void on_step(const StepRecord& record) noexcept override {
     if (record.step % kEvery != 0 || record.rendered->empty()) return;
     const Vec3 to_proxy = record.force.spring / K_;
     const ToolPose proxy{record.tool.pose.position + to_proxy, record.tool.pose.axis};
-    near_->contacts_at(proxy, found_);
-    tool_->surface_constraints(proxy, -to_proxy, 1e-3 * spacing_, found_);
-    add_edge_constraints(*tool_, proxy, spacing_, margin_, places_, found_);
+    constraints_.constraints_at(proxy, -to_proxy, found_);
     ContactBuffer contacts(std::max<std::size_t>(1, found_.size()));
     for (std::size_t i = 0; i < found_.size(); ++i) contacts.push_copy_of(found_, i);
     contacts.pad();
@@ -47,13 +37,9 @@ class Problems final : public Observer {
   std::vector<Problem> problems;
 
  private:
-  double margin_;
-  std::unique_ptr<ContactQuery> near_;
+  ShellConstraints constraints_;
   ContactBuffer found_;
-  std::vector<Vec3> places_;
-  const ToolShape* tool_;
   double K_;
-  double spacing_;
 };
 
 std::vector<Problem> problems_of_task() {

@@ -7,7 +7,6 @@
 #include "tests/bench/contact_samples.hpp"
 #include "tests/bench/task_scene.hpp"
 #include "tests/support/bits.hpp"
-#include "tests/support/fakes.hpp"
 
 /// What each skip saves: the same answer with the skip taken and with it off. The neighbour list and the grid, which
 /// are skips too, are search/*.
@@ -25,10 +24,10 @@ std::uint64_t bits_of(const RenderedForce& force) {
 class Rendering {
  public:
   Rendering(RenderingConfig config, Skips skips, std::size_t contacts)
-      : query_(contacts), all_(task_contacts(std::max<std::size_t>(contacts, 1))), contacts_(all_) {
+      : all_(task_contacts(std::max<std::size_t>(contacts, 1))), contacts_(all_) {
     config.skips = skips;
     algorithm_ = make_algorithm(config);
-    algorithm_->prepare({nullptr, &query_, nullptr});
+    algorithm_->prepare({.capacity = all_.capacity()});
     algorithm_->reset();
     if (contacts == 0) contacts_.clear();
   }
@@ -38,7 +37,6 @@ class Rendering {
   }
 
  private:
-  test::FakeQuery query_;
   ContactBuffer all_, contacts_;
   std::unique_ptr<ForceAlgorithm> algorithm_;
   RenderedForce force_;

@@ -74,7 +74,7 @@ void step_benchmark(benchmark::State& state, const std::string& name) {
     }
   }
   const Metrics metrics = run.metrics().metrics();
-  const SearchWork& work = run.simulation().query().work();
+  const SearchWork& work = run.simulation().source().work();
   state.counters["contacts"] = metrics.colliding_mean;
   state.counters["points_tested"] = static_cast<double>(work.points_tested) / static_cast<double>(work.queries);
 }

@@ -13,9 +13,9 @@
 namespace hapbench::test {
 
 /// An environment that is never touched, or always by the given number of contacts at the tool's position.
-class FakeQuery final : public ContactQuery {
+class FakeSource final : public ContactSource {
  public:
-  explicit FakeQuery(std::size_t contacts = 0) : contacts_(contacts) {}
+  explicit FakeSource(std::size_t contacts = 0) : contacts_(contacts) {}
 
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override {
     contacts.clear();
@@ -27,12 +27,12 @@ class FakeQuery final : public ContactQuery {
     ++work_.queries;
   }
   std::size_t capacity() const noexcept override { return contacts_; }
-  bool gives_depth() const noexcept override { return true; }
-  std::unique_ptr<ContactQuery> with_margin(double) const override { return std::make_unique<FakeQuery>(contacts_); }
   void reset() noexcept override { work_ = {}; }
+  const SearchWork& work() const noexcept override { return work_; }
 
  private:
   std::size_t contacts_;
+  SearchWork work_;
 };
 
 /// What the loop did to a FakeAlgorithm.
@@ -90,7 +90,7 @@ class Recorder final : public Observer {
 /// A free tool with the axis -z that feels `law` and nothing else.
 inline SimulationParts fake_parts(FakeAlgorithm::Law law, Calls* calls = nullptr) {
   SimulationParts parts;
-  parts.query = std::make_unique<FakeQuery>();
+  parts.source = std::make_unique<FakeSource>();
   parts.algorithm = std::make_unique<FakeAlgorithm>(std::move(law), calls);
   parts.motion = constant_axis(-Vec3::UnitZ());
   parts.hand = std::make_unique<NoHand>();

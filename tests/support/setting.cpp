@@ -2,10 +2,10 @@
 
 #include <Eigen/Geometry>
 
+#include "algorithms/shell_source.hpp"
 #include "device_model/hands/scripted_hands.hpp"
 #include "device_model/ideal_device.hpp"
-#include "sim/contact/neighbour_list_query.hpp"
-#include "sim/contact/spring_query.hpp"
+#include "sim/contact/spring_source.hpp"
 #include "tests/support/contact_sets.hpp"
 
 namespace hapbench::test {
@@ -15,9 +15,15 @@ std::shared_ptr<const PointShell> shell_of(const Setting& setting) {
   return setting.springs ? nullptr : std::make_shared<const PointShell>(setting.points, setting.cell_size);
 }
 
-std::unique_ptr<ContactQuery> query_of(const Setting& setting, const PointShell* shell, const ToolShape& tool) {
-  if (setting.springs) return std::make_unique<SpringQuery>(*setting.springs);
-  return std::make_unique<NeighbourListQuery>(*shell, tool);
+std::shared_ptr<const SpringSet> springs_of(const Setting& setting) {
+  return setting.springs ? std::make_shared<const SpringSet>(*setting.springs) : nullptr;
+}
+
+std::unique_ptr<ContactSource> source_of(const PointShell* shell, std::shared_ptr<const SpringSet> springs,
+                                         const ToolShape& tool, const RenderingConfig& config) {
+  if (springs) return std::make_unique<SpringSource>(std::move(springs));
+  return std::make_unique<ShellSource>(*shell, tool, make_contact_query(*shell, tool, Skips::taken),
+                                       make_depth_model(config), config.skips);
 }
 
 }  // namespace
@@ -48,15 +54,16 @@ Setting permuted(Setting setting, Random& random) {
 Probe::Probe(const Setting& setting, const RenderingConfig& config)
     : tool_(setting.tool),
       shell_(shell_of(setting)),
-      query_(query_of(setting, shell_.get(), tool_)),
+      springs_(springs_of(setting)),
+      source_(source_of(shell_.get(), springs_, tool_, config)),
       algorithm_(make_algorithm(config)),
-      contacts_(query_->capacity()) {
-  algorithm_->prepare({&tool_, query_.get(), shell_.get()});
+      contacts_(source_->capacity()) {
+  algorithm_->prepare({source_->capacity(), &tool_, shell_.get(), springs_.get()});
   algorithm_->reset();
 }
 
 RenderedForce Probe::force_at(const ToolPose& pose, const Vec3& velocity, const Vec3& angular_velocity) {
-  query_->contacts_at(pose, contacts_);
+  source_->contacts_at(pose, contacts_);
   RenderedForce force;
   algorithm_->compute({pose, velocity, angular_velocity}, contacts_, force);
   return force;
@@ -66,7 +73,8 @@ SimulationParts free_run(const Setting& setting, const RenderingConfig& config) 
   SimulationParts parts;
   parts.tool = std::make_shared<Cylinder>(setting.tool);
   parts.shell = shell_of(setting);
-  parts.query = query_of(setting, parts.shell.get(), *parts.tool);
+  parts.springs = springs_of(setting);
+  parts.source = source_of(parts.shell.get(), parts.springs, *parts.tool, config);
   parts.algorithm = make_algorithm(config);
   parts.motion = constant_axis(setting.pose.axis);
   parts.hand = std::make_unique<NoHand>();

@@ -46,7 +46,8 @@ class Probe {
  private:
   Cylinder tool_;
   std::shared_ptr<const PointShell> shell_;
-  std::unique_ptr<ContactQuery> query_;
+  std::shared_ptr<const SpringSet> springs_;
+  std::unique_ptr<ContactSource> source_;
   std::unique_ptr<ForceAlgorithm> algorithm_;
   ContactBuffer contacts_;
 };

@@ -6,6 +6,7 @@
 
 #include "algorithms/proxy/proxy_rendering.hpp"
 #include "algorithms/registry.hpp"
+#include "algorithms/shell_source.hpp"
 #include "sim/contact/shell_query.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 
@@ -25,12 +26,12 @@ struct Answer {
 };
 
 Answer answer(const ContactSet& set, const RenderingConfig& config, const PointShell& shell) {
-  ShellQuery query(shell, set.tool);
-  ContactBuffer contacts(query.capacity());
+  ShellSource source(shell, set.tool, std::make_unique<ShellQuery>(shell, set.tool), make_depth_model(config));
+  ContactBuffer contacts(source.capacity());
   const auto algorithm = make_algorithm(config);
-  algorithm->prepare({&set.tool, &query, &shell});
+  algorithm->prepare({source.capacity(), &set.tool, &shell});
   algorithm->reset();
-  query.contacts_at(set.pose, contacts);
+  source.contacts_at(set.pose, contacts);
   Answer out;
   out.colliding = contacts.size();
   algorithm->compute({set.pose, set.velocity}, contacts, out.force);

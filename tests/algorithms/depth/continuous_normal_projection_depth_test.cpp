@@ -31,7 +31,7 @@ class Stroke {
  public:
   Stroke(const Cylinder& tool, const std::vector<SurfacePoint>& points)
       : tool_(tool), shell_(points, 0.0), query_(shell_, tool_), contacts_(query_.capacity()) {
-    model_->prepare({&tool_, &query_, &shell_});
+    model_->prepare(shell_);
     model_->reset();
   }
 

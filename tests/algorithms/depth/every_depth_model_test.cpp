@@ -18,10 +18,10 @@ INSTANTIATE_TEST_SUITE_P(Registered, EveryDepthModel, testing::ValuesIn(depth_mo
 constexpr std::size_t kPoints = 100;
 
 /// A model of its own, as at the start of a run.
-std::unique_ptr<DepthModel> prepared(const DepthModelEntry& entry, const Cylinder& tool) {
+std::unique_ptr<DepthModel> prepared(const DepthModelEntry& entry) {
   const PointShell shell(std::vector<SurfacePoint>(kPoints), 0.0);
   std::unique_ptr<DepthModel> model = entry.make();
-  model->prepare({&tool, nullptr, &shell});
+  model->prepare(shell);
   return model;
 }
 
@@ -37,7 +37,7 @@ ContactBuffer contacts_of_random_scene(const DepthModelEntry& model, const Cylin
   ShellQuery query(shell, tool);
   ContactBuffer contacts(query.capacity());
   query.contacts_at(pose, contacts);
-  prepared(model, tool)->evaluate(tool, pose, contacts);
+  prepared(model)->evaluate(tool, pose, contacts);
   return contacts;
 }
 
@@ -75,7 +75,7 @@ TEST_P(EveryDepthModel, PadsItsContacts) {
   ContactBuffer contacts(8);
   for (int i = 0; i < 8; ++i) contacts.push(0, {0, 0, 0.001}, random.direction());
   contacts.shrink(5);
-  prepared(GetParam(), tool)->evaluate(tool, {}, contacts);
+  prepared(GetParam())->evaluate(tool, {}, contacts);
   for (std::size_t i = 5; i < 8; ++i) {
     EXPECT_EQ(contacts.depth[i], 0.0);
     EXPECT_EQ(contacts.gradient(i), Vec3(0, 0, 0));
@@ -88,7 +88,7 @@ TEST_P(EveryDepthModel, KeepsPointsNormalsAndIndices) {
   const ToolPose pose = test::random_pose(random);
   const ContactBuffer contacts = contacts_of_random_scene(GetParam(), tool, pose, random);
   ContactBuffer again = contacts;
-  prepared(GetParam(), tool)->evaluate(tool, pose, again);
+  prepared(GetParam())->evaluate(tool, pose, again);
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     EXPECT_EQ(again.index[k], contacts.index[k]);
     EXPECT_EQ(again.point(k), contacts.point(k));
@@ -125,7 +125,7 @@ const ToolPose kHere, kThere{{0.0001, 0.0001, -0.0002}, Vec3(0.02, 0.03, -1.0).n
 
 TEST_P(EveryDepthModel, IsAfterResetWhatItWasAtTheStart) {
   const Cylinder tool;
-  const auto model = prepared(GetParam(), tool);
+  const auto model = prepared(GetParam());
   const AlignedDoubles first = depths_after(*model, tool, {kHere, kThere}, 0);
   model->reset();
   EXPECT_EQ(depths_after(*model, tool, {kHere, kThere}, 0), first);
@@ -133,9 +133,9 @@ TEST_P(EveryDepthModel, IsAfterResetWhatItWasAtTheStart) {
 
 TEST_P(EveryDepthModel, LearnsNothingFromASecondStepWithoutContacts) {
   const Cylinder tool;
-  const AlignedDoubles once = depths_after(*prepared(GetParam(), tool), tool, {kHere, kThere}, 1);
-  EXPECT_EQ(depths_after(*prepared(GetParam(), tool), tool, {kHere, kThere}, 2), once);
-  EXPECT_EQ(depths_after(*prepared(GetParam(), tool), tool, {kHere, kThere}, 100), once);
+  const AlignedDoubles once = depths_after(*prepared(GetParam()), tool, {kHere, kThere}, 1);
+  EXPECT_EQ(depths_after(*prepared(GetParam()), tool, {kHere, kThere}, 2), once);
+  EXPECT_EQ(depths_after(*prepared(GetParam()), tool, {kHere, kThere}, 100), once);
 }
 
 }  // namespace

@@ -4,9 +4,11 @@
 
 #include <Eigen/Geometry>
 
+#include "algorithms/depth/surface_normal.hpp"
 #include "algorithms/proxy/edge_constraints.hpp"
 #include "algorithms/proxy/nearest_allowed.hpp"
-#include "sim/contact/neighbour_list_query.hpp"
+#include "algorithms/shell_source.hpp"
+#include "sim/contact/shell_query.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/setting.hpp"
@@ -27,18 +29,21 @@ RenderingConfig proxy_config() {
 /// A proxy in a setting, stepped by hand.
 struct Rig {
   PointShell shell;
-  NeighbourListQuery query;
+  ShellSource source;
   ProxyRendering proxy;
   ContactBuffer contacts;
   RenderedForce force;
 
   Rig(const test::Setting& setting, const RenderingConfig& config)
-      : shell(setting.points, 0.0), query(shell, setting.tool), proxy(config), contacts(query.capacity()) {
-    proxy.prepare({&setting.tool, &query, &shell});
+      : shell(setting.points, 0.0),
+        source(shell, setting.tool, std::make_unique<ShellQuery>(shell, setting.tool), make_surface_normal()),
+        proxy(config),
+        contacts(source.capacity()) {
+    proxy.prepare({source.capacity(), &setting.tool, &shell});
     proxy.reset();
   }
   void step(const ToolState& tool) {
-    query.contacts_at(tool.pose, contacts);
+    source.contacts_at(tool.pose, contacts);
     proxy.compute(tool, contacts, force);
   }
 };

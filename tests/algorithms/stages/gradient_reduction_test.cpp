@@ -8,7 +8,6 @@
 
 #include "tests/support/bits.hpp"
 #include "tests/support/contact_sets.hpp"
-#include "tests/support/fakes.hpp"
 
 namespace hapbench {
 namespace {
@@ -16,8 +15,7 @@ namespace {
 /// A stage prepared for a scene of up to `points` contacts.
 std::unique_ptr<PointStage> reduction(const ReductionConfig& config, std::size_t points) {
   auto stage = make_gradient_reduction(config);
-  test::FakeQuery query(points);
-  stage->prepare({nullptr, &query, nullptr});
+  stage->prepare({.capacity = points});
   stage->reset();
   return stage;
 }

@@ -33,9 +33,8 @@ class LocalAverage : public testing::Test {
     std::vector<SurfacePoint> points;
     for (const Contact& c : all) points.push_back({{c.x * kCell, 0, 0}, -c.gradient});
     shell_ = std::make_unique<PointShell>(points, kCell);
-    query_ = std::make_unique<ShellQuery>(*shell_, tool_);
     stage_ = make_local_average();
-    stage_->prepare({nullptr, query_.get(), shell_.get()});
+    stage_->prepare({.shell = shell_.get()});
   }
 
   ContactBuffer process(const std::vector<Contact>& all, const std::vector<std::uint32_t>& colliding) {
@@ -51,9 +50,7 @@ class LocalAverage : public testing::Test {
     return contacts;
   }
 
-  Cylinder tool_;
   std::unique_ptr<PointShell> shell_;
-  std::unique_ptr<ContactQuery> query_;
   std::unique_ptr<PointStage> stage_;
 };
 
@@ -156,10 +153,9 @@ TEST_F(LocalAverage, EqualsAStraightforwardMeanOnRandomContactsStepAfterStep) {
 
 TEST_F(LocalAverage, RefusesScenesWithoutAGrid) {
   const auto stage = make_local_average();
-  test::FakeQuery query;
-  EXPECT_THROW(stage->prepare({nullptr, &query, nullptr}), std::invalid_argument);
+  EXPECT_THROW(stage->prepare({}), std::invalid_argument);
   const PointShell without_grid({}, 0.0);
-  EXPECT_THROW(stage->prepare({nullptr, &query, &without_grid}), std::invalid_argument);
+  EXPECT_THROW(stage->prepare({.shell = &without_grid}), std::invalid_argument);
 }
 
 }  // namespace

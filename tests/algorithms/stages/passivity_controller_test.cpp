@@ -279,8 +279,7 @@ TEST(PassivityController, ItsJacobianIsThatOfTheForceItRenders) {
   config.mass = 0.2;
   PassivityController controller(std::make_unique<test::FakeAlgorithm>([](const ToolState&) { return Vec3(9, 0, 0); }),
                                  config);
-  test::FakeQuery query;
-  controller.prepare({nullptr, &query, nullptr, 0.0005});
+  controller.prepare({.dt = 0.0005});
   controller.reset();
   ContactBuffer none(0);
   RenderedForce out;

@@ -174,9 +174,8 @@ TEST(ShellQuery, CountsQueriesAndPointsTestedWithoutPadding) {
   EXPECT_EQ(query.work().points_tested, 0u);
 }
 
-TEST(ShellQuery, LeavesDepthsToADepthModel) {
+TEST(ShellQuery, ReturnsAtMostEveryPoint) {
   const PointShell shell(at({Vec3::Zero()}), 0.0);
-  EXPECT_FALSE(ShellQuery(shell, kTool).gives_depth());
   EXPECT_EQ(ShellQuery(shell, kTool).capacity(), 1u);
 }
 

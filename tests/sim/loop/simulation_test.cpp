@@ -187,7 +187,7 @@ TEST(Simulation, TheRatioIsComputedExactlyWhenAnObserverWantsIt) {
   // FakeAlgorithm answers S = 2 I, so every ratio is 2.
   for (const bool wanted : {false, true}) {
     SimulationParts parts = fake_parts(test::weightless);
-    parts.query = std::make_unique<test::FakeQuery>(3);
+    parts.source = std::make_unique<test::FakeSource>(3);
     Recorder one(false), other(wanted);
     Simulation(config_of(2), std::move(parts), {&one, &other}).run();
     for (const Recorder* recorder : {&one, &other}) {
@@ -199,7 +199,7 @@ TEST(Simulation, TheRatioIsComputedExactlyWhenAnObserverWantsIt) {
 
 TEST(Simulation, RowsTellCollidingAndRenderedContacts) {
   SimulationParts parts = fake_parts(test::weightless);
-  parts.query = std::make_unique<test::FakeQuery>(3);
+  parts.source = std::make_unique<test::FakeSource>(3);
   Recorder recorder;
   Simulation(config_of(1), std::move(parts), {&recorder}).run();
   EXPECT_EQ(recorder.rows[0].colliding, 3u);
@@ -239,7 +239,7 @@ TEST(Simulation, ResetReproducesTheRunBitForBit) {
   test::HashingObserver hash;
   Simulation simulation(config, peg(rendering), {&hash});
   simulation.run();
-  const std::uint64_t first = hash.value(), queries = simulation.query().work().queries,
+  const std::uint64_t first = hash.value(), queries = simulation.source().work().queries,
                       iterations = simulation.algorithm().work().iterations;
 
   // Also from the middle of a run.
@@ -252,7 +252,7 @@ TEST(Simulation, ResetReproducesTheRunBitForBit) {
     EXPECT_EQ(simulation.result().rows, 0u);
     EXPECT_EQ(simulation.run().rows, config.steps);
     EXPECT_EQ(hash.value(), first);
-    EXPECT_EQ(simulation.query().work().queries, queries);
+    EXPECT_EQ(simulation.source().work().queries, queries);
     EXPECT_EQ(simulation.algorithm().work().iterations, iterations);
   }
 }

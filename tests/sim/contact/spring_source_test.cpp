@@ -1,4 +1,4 @@
-#include "sim/contact/spring_query.hpp"
+#include "sim/contact/spring_source.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,14 +8,18 @@ namespace {
 // Gradients whose inner products with dyadic positions are exact.
 const std::vector<Vec3> kGradients = {{1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
 
+std::shared_ptr<const SpringSet> springs(bool bilateral) {
+  return std::make_shared<const SpringSet>(SpringSet{kGradients, bilateral});
+}
+
 ContactBuffer contacts_at(const Vec3& position, bool bilateral) {
-  SpringQuery query({kGradients, bilateral});
-  ContactBuffer contacts(query.capacity());
-  query.contacts_at({position, -Vec3::UnitZ()}, contacts);
+  SpringSource source(springs(bilateral));
+  ContactBuffer contacts(source.capacity());
+  source.contacts_at({position, -Vec3::UnitZ()}, contacts);
   return contacts;
 }
 
-TEST(SpringQuery, BilateralSpringsAlwaysActWithDepthsOfEitherSign) {
+TEST(SpringSource, BilateralSpringsAlwaysActWithDepthsOfEitherSign) {
   const Vec3 p(0.25, -0.5, 0.125);
   const ContactBuffer contacts = contacts_at(p, true);
   ASSERT_EQ(contacts.size(), 4u);
@@ -29,7 +33,7 @@ TEST(SpringQuery, BilateralSpringsAlwaysActWithDepthsOfEitherSign) {
   }
 }
 
-TEST(SpringQuery, UnilateralSpringsActOnlyWhenCompressed) {
+TEST(SpringSource, UnilateralSpringsActOnlyWhenCompressed) {
   const ContactBuffer contacts = contacts_at({0.25, 0.5, 0.125}, false);
   ASSERT_EQ(contacts.size(), 2u);
   EXPECT_EQ(contacts.index[0], 0u);
@@ -38,33 +42,32 @@ TEST(SpringQuery, UnilateralSpringsActOnlyWhenCompressed) {
   EXPECT_EQ(contacts.depth[1], 0.125);
 }
 
-TEST(SpringQuery, AUnilateralSpringAtItsNaturalLengthDoesNotAct) {
+TEST(SpringSource, AUnilateralSpringAtItsNaturalLengthDoesNotAct) {
   EXPECT_TRUE(contacts_at(Vec3::Zero(), false).empty());
   EXPECT_EQ(contacts_at(Vec3::Zero(), true).size(), 4u);
 }
 
-TEST(SpringQuery, ANonFinitePositionCompressesNoUnilateralSpring) {
+TEST(SpringSource, ANonFinitePositionCompressesNoUnilateralSpring) {
   EXPECT_TRUE(contacts_at(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), false).empty());
 }
 
-TEST(SpringQuery, GivesDepthsItselfAndPadsThem) {
-  SpringQuery query({kGradients, true});
-  EXPECT_TRUE(query.gives_depth());
-  EXPECT_EQ(query.capacity(), 4u);
+TEST(SpringSource, GivesDepthsItselfAndPadsThem) {
+  SpringSource source(springs(true));
+  EXPECT_EQ(source.capacity(), 4u);
   ContactBuffer contacts(8);
   contacts.depth.assign(8, 1.0);
-  query.contacts_at({}, contacts);
+  source.contacts_at({}, contacts);
   for (std::size_t i = 4; i < 8; ++i) EXPECT_EQ(contacts.depth[i], 0.0);
 }
 
-TEST(SpringQuery, CountsQueriesAndSpringsTested) {
-  SpringQuery query({kGradients, true});
-  ContactBuffer contacts(query.capacity());
-  for (int i = 0; i < 3; ++i) query.contacts_at({}, contacts);
-  EXPECT_EQ(query.work().queries, 3u);
-  EXPECT_EQ(query.work().points_tested, 12u);
-  query.reset();
-  EXPECT_EQ(query.work().queries, 0u);
+TEST(SpringSource, CountsQueriesAndSpringsTested) {
+  SpringSource source(springs(true));
+  ContactBuffer contacts(source.capacity());
+  for (int i = 0; i < 3; ++i) source.contacts_at({}, contacts);
+  EXPECT_EQ(source.work().queries, 3u);
+  EXPECT_EQ(source.work().points_tested, 12u);
+  source.reset();
+  EXPECT_EQ(source.work().queries, 0u);
 }
 
 }  // namespace
