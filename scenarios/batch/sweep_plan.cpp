@@ -19,7 +19,7 @@
 namespace hapbench {
 namespace {
 
-/// What the sweep must know of one run's scenario.
+/// The facts about one run's scenario that the sweep needs.
 struct Point {
   std::vector<std::string> warnings;
   MetricSections sections;
@@ -115,7 +115,7 @@ void examine_all(const SweepPlan& plan, std::size_t jobs, bool progress, Collect
   ProgressBar bar("checking", runs.size(), progress);
   std::size_t done = 0;
   std::map<std::size_t, std::exception_ptr> errors;
-  // Runs start in order: the lowest bad one is in flight, at least, when another one has failed.
+  // Runs start in order, so when any run fails, the lowest one that will fail has at least been started.
   std::atomic<bool> failed = false;
   const auto work = [&](std::size_t run) -> Delivery {
     try {

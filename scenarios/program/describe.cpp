@@ -58,7 +58,7 @@ Description describe_scenario(const std::filesystem::path& file) {
           effective};
 }
 
-/// Where the user's point shells are kept and how to be rid of them.
+/// Location and size of the shell cache, and how to delete it.
 Description describe_cache() {
   const ShellCache cache(shell_cache_directory());
   const auto [shells, bytes] = cache.contents();

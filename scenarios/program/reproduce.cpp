@@ -52,7 +52,7 @@ std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
   return claims;
 }
 
-/// True when the directory holds the results of this very scenario from this very program.
+/// Returns true if the directory holds results of exactly this scenario, computed by exactly this program.
 bool is_current(const fs::path& directory, const Scenario& scenario) {
   try {
     const Json summary = parse_json(read_text_file(directory / "summary.json", kLargestJsonFile));
