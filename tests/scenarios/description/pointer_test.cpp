@@ -3,7 +3,7 @@
 #include <limits>
 #include <string>
 
-#include "scenarios/description/codec.hpp"
+#include "scenarios/input/json_file.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
 /// How messages name a place (JSON pointer, RFC 6901) and show a value.

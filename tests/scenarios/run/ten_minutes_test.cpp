@@ -27,8 +27,8 @@ TEST(TenMinutesInContact, EndWhereTheClosedFormSaysAndMakeNoEnergy) {
   EXPECT_EQ(report.unmet, std::vector<std::string>{});
   EXPECT_EQ(report.summary.result.rows, 1'200'000u);
 
-  const double K = scenario.rendering.config.stiffness, M = *scenario.rendering.mass;
-  const double B = 2.0 * scenario.rendering.config.damping_ratio * std::sqrt(K * M);
+  const double K = scenario.rendering.stiffness, M = scenario.rendering.mass;
+  const double B = 2.0 * scenario.rendering.damping_ratio * std::sqrt(K * M);
   const auto& force = std::get<Profile::Sine>(std::get<ForceHandFields>(scenario.hand).force[2].shape());
   const double expected = steady_response(K, B, M, scenario.time.step, force, 1'199'999.0);
   // The transient is gone, e^(-100 000). Rounding of position and force, 1e-16 of 0.3 mm each, is forgotten within a
