@@ -82,7 +82,7 @@ class Fields {
   /// the index of the alternative to write. `fields` describes those of an alternative.
   virtual void alternatives(const char* what, std::span<const char* const> names, std::size_t held,
                             FunctionRef<Fields&, std::size_t> fields) = 0;
-  /// An object. `body` is called with this visitor and describes the object's fields.
+  /// An object. `body` is called with this visitor, perhaps more than once, and describes the object's fields.
   virtual void fields(Body body) = 0;
 
   // Inside `fields`: the object's fields.
@@ -113,7 +113,7 @@ class Fields {
   }
 
   template <class Integer>
-  requires(!std::is_same_v<Integer, std::int64_t>) void integer(Integer& value, IntegerRange range) {
+  void integer(Integer& value, IntegerRange range) {
     auto wide = static_cast<std::int64_t>(value);
     integer(wide, range);
     value = static_cast<Integer>(wide);

@@ -35,7 +35,7 @@ TEST(TenMinutesInContact, EndWhereTheClosedFormSaysAndMakeNoEnergy) {
   // hundred steps; the phase of the sine, 5386 rad, is known to 1e-12, which is 1e-12 of its 0.05 mm.
   EXPECT_NEAR(report.summary.metrics.final_position.z(), expected, 1e-15);
   const auto& bound = scenario.expect.metrics.at("final_position_m.z");
-  EXPECT_NEAR(0.5 * (*bound->min + *bound->max), expected, 1e-14) << "the file's bounds are about the closed form";
+  EXPECT_NEAR(0.5 * (*bound.min + *bound.max), expected, 1e-14) << "the file's bounds are about the closed form";
 
   // Energy made in a step is the rounding of the ledger's sums of terms up to 3 mJ: 1e-18 J, 1.2 million times.
   EXPECT_LE(report.summary.energy->created_sum, 1.2e-12);
