@@ -2,14 +2,13 @@
 
 #include <span>
 
+#include "algorithms/parameters.hpp"
+
 namespace hapbench {
 
-/// A parameter of a model as the documentation shows it; `name` is the scenario field's path.
+/// What a parameter means to a model.
 struct ParameterInfo {
-  const char* name;
-  const char* unit;
-  const char* default_value;
-  const char* range;
+  Parameter parameter;
   const char* meaning;
 };
 

@@ -7,7 +7,7 @@ namespace {
 
 constexpr ParameterInfo kParameters[] = {
     kStiffnessParameter,
-    {"rendering.iterations", "1", "3", "integer >= 0 <= 100000", "m: updates of the weights; 0 is summation"},
+    {parameter::kIterations, "m: updates of the weights; 0 is summation"},
 };
 
 }  // namespace

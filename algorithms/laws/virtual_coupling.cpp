@@ -9,8 +9,7 @@ namespace {
 
 constexpr ParameterInfo kParameters[] = {
     kStiffnessParameter,
-    {"rendering.virtual_coupling_N_per_m", "N/m", "null", "null | number > 0 <= 1e+12",
-     "K_vc: stiffness of the coupling spring; null: K"},
+    {parameter::kVirtualCoupling, "K_vc: stiffness of the coupling spring; null: K"},
 };
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include "algorithms/registry.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/environment_codec.hpp"
-#include "scenarios/description/integrator_codec.hpp"
+#include "scenarios/description/descriptions.hpp"
+#include "scenarios/description/integrator_infos.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/schema_text.hpp"
@@ -34,10 +34,12 @@ Description describe_model(const char* kind, const ModelInfo& info) {
             {"parameters", Json::array()}};
   if (info.parameters.empty()) return d;
   Table table({{"parameter", false}, {"unit", false}, {"default", false}, {"range", false}, {"meaning", false}});
-  for (const ParameterInfo& p : info.parameters) {
-    table.add({p.name, p.unit, p.default_value, p.range, p.meaning});
+  for (const auto& [parameter, meaning] : info.parameters) {
+    const Json& field = *find_in_schema(scenario_schema_once(), parameter.field);
+    const std::string unit = parameter.range.unit, initial = default_text(field), range = allowed_text(field);
+    table.add({parameter.field, unit, initial, range, meaning});
     d.json["parameters"].push_back(
-        {{"name", p.name}, {"unit", p.unit}, {"default", p.default_value}, {"range", p.range}, {"meaning", p.meaning}});
+        {{"name", parameter.field}, {"unit", unit}, {"default", initial}, {"range", range}, {"meaning", meaning}});
   }
   d.text += "\n" + table.text();
   return d;

@@ -4,8 +4,8 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/environment_codec.hpp"
-#include "scenarios/description/integrator_codec.hpp"
+#include "scenarios/description/descriptions.hpp"
+#include "scenarios/description/integrator_infos.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/table.hpp"

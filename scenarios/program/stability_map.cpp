@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "results/io/csv_writer.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
 

@@ -52,11 +52,11 @@ double cell_size(const Environment& environment) {
 }
 
 Tool make_tool(const ToolFields& fields) {
-  return {*fields.diameter / 2.0, *fields.length, *fields.tip == "round" ? Tip::round : Tip::flat};
+  return {fields.diameter / 2.0, fields.length, fields.tip};
 }
 
 Orientation make_orientation(const OrientationFields& fields) {
-  return {fields.up->normalized(), fields.lean.normalized(), fields.tilt, fields.azimuth};
+  return {fields.up.normalized(), fields.lean.normalized(), fields.tilt, fields.azimuth};
 }
 
 std::unique_ptr<Motion> make_motion(const Scenario& scenario) {
@@ -117,24 +117,13 @@ std::unique_ptr<Device> make_device(const Scenario& scenario, Trial trial) {
     return std::make_unique<IdealDevice>(ideal->force_limit);
   }
   AdmittanceDeviceConfig config = std::get<AdmittanceDeviceConfig>(scenario.device);
-  if (scenario.motion.orientation) config.sensor.down = -scenario.motion.orientation->up->normalized();
+  if (scenario.motion.orientation) config.sensor.down = -scenario.motion.orientation->up.normalized();
   config.sensor.seed = derived_seed(scenario, trial, kSensorNoise);
   return std::make_unique<AdmittanceDevice>(config);
 }
 
-RenderingConfig rendering_config(const RenderingFields& fields, Skips skips) {
-  RenderingConfig config = fields.config;
-  config.skips = skips;
-  config.depth_model = *fields.depth_model;
-  config.reduction = *fields.reduction;
-  config.mass = *fields.mass;
-  config.mu_s = *fields.mu_s;
-  config.mu_f = *fields.mu_f;
-  return config;
-}
-
-bool contains(const std::vector<std::string>& list, const char* name) {
-  return std::find(list.begin(), list.end(), name) != list.end();
+bool contains(const std::vector<StopCondition>& list, StopCondition condition) {
+  return std::find(list.begin(), list.end(), condition) != list.end();
 }
 
 }  // namespace
@@ -167,14 +156,14 @@ SimulationConfig simulation_config(const Scenario& scenario, Skips skips) {
   SimulationConfig config;
   config.skips = skips;
   config.dt = scenario.time.step;
-  config.steps = static_cast<std::uint64_t>(*scenario.time.steps);
-  config.mass = *scenario.rendering.mass;
+  config.steps = static_cast<std::uint64_t>(scenario.time.steps);
+  config.mass = scenario.rendering.mass;
   config.integrator = scenario.integrator.type;
   config.position = scenario.initial.position;
   config.velocity = scenario.initial.velocity;
-  if (scenario.motion.orientation) config.up = scenario.motion.orientation->up->normalized();
-  config.stop_when_leaves_hole = contains(scenario.time.stop_when, "leaves_hole");
-  config.stop_when_horizontal = contains(scenario.time.stop_when, "tool_horizontal");
+  if (scenario.motion.orientation) config.up = scenario.motion.orientation->up.normalized();
+  config.stop_when_leaves_hole = contains(scenario.time.stop_when, StopCondition::leaves_hole);
+  config.stop_when_horizontal = contains(scenario.time.stop_when, StopCondition::tool_horizontal);
   config.bounds = scenario.bounds;
   return config;
 }
@@ -195,7 +184,9 @@ SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointSh
   } else {
     parts.query = std::make_unique<NeighbourListQuery>(*parts.shell, parts.tool);
   }
-  parts.algorithm = make_algorithm(rendering_config(scenario.rendering, skips));
+  RenderingConfig rendering = scenario.rendering;
+  rendering.skips = skips;
+  parts.algorithm = make_algorithm(rendering);
   add_hand_and_motion(scenario, trial, parts);
   parts.device = make_device(scenario, trial);
   return parts;

@@ -31,7 +31,7 @@ class TrialObservers {
     observers_.push_back(&metrics_);
     observers_.push_back(&passivity_);
     if (scenario.record.energy) {
-      ledger_.emplace(*scenario.rendering.mass, scenario.time.step, parts.motion->position_is_free(),
+      ledger_.emplace(scenario.rendering.mass, scenario.time.step, parts.motion->position_is_free(),
                       parts.query->capacity(), scenario.integrator.type);
       observers_.push_back(&*ledger_);
     }
@@ -110,7 +110,7 @@ TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell
   SimulationParts parts = assemble(scenario, std::move(shell), trial, options.skips);
   TrialObservers observers(scenario, parts, trial);
   if (options.directory) observers.record(scenario.record, *options.directory, parts.query->capacity());
-  Progress bar(options.label, static_cast<std::uint64_t>(*scenario.time.steps), !options.label.empty());
+  Progress bar(options.label, static_cast<std::uint64_t>(scenario.time.steps), !options.label.empty());
   observers.add(bar);
   Simulation simulation(simulation_config(scenario, options.skips), std::move(parts), observers.all());
 

@@ -35,9 +35,9 @@ Finding judge_rotation(const Evidence& e) {
 Finding judge_faces(const Evidence& e) {
   const Scenario scenario = load_scenario(find_scenario("parallel_faces")).scenario;
   const double depth = e.results.number("parallel_faces", "metrics.depth_max_m");
-  return judge_parallel_faces(depth, *scenario.tool.diameter / 2.0,
+  return judge_parallel_faces(depth, scenario.tool.diameter / 2.0,
                               e.results.number("parallel_faces", "metrics.force_max_N"),
-                              scenario.rendering.config.stiffness * depth);
+                              scenario.rendering.stiffness * depth);
 }
 
 Finding judge_actuators(const Evidence&) {

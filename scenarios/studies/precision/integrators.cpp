@@ -25,13 +25,13 @@ class FirstTensor final : public Observer {
 /// Positions at t = 0, T, 2 T, … of M x'' = -K S x - B S x' - F (I - S) x', which is what bilateral springs whose
 /// weights are constant obey; from the matrix exponential, exact to rounding.
 std::vector<Vec3> exact_positions(const Scenario& scenario, const Mat3& S, double T, std::size_t samples) {
-  const RenderingFields& r = scenario.rendering;
-  const double K = r.config.stiffness, M = *r.mass;
-  const double B = r.config.damping.value_or(2.0 * r.config.damping_ratio * std::sqrt(K * M));
+  const RenderingConfig& r = scenario.rendering;
+  const double K = r.stiffness, M = r.mass;
+  const double B = r.damping.value_or(2.0 * r.damping_ratio * std::sqrt(K * M));
   Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();
   A.topRightCorner<3, 3>() = Mat3::Identity();
   A.bottomLeftCorner<3, 3>() = -K / M * S;
-  A.bottomRightCorner<3, 3>() = -(B * S + *r.mu_s * (Mat3::Identity() - S)) / M;
+  A.bottomRightCorner<3, 3>() = -(B * S + r.mu_s * (Mat3::Identity() - S)) / M;
   const Eigen::Matrix<double, 6, 6> advance = (A * T).exp();
   Eigen::Matrix<double, 6, 1> state;
   state << scenario.initial.position, scenario.initial.velocity;
@@ -45,10 +45,9 @@ std::vector<Vec3> exact_positions(const Scenario& scenario, const Mat3& S, doubl
 
 void check_scenario(const Scenario& scenario) {
   const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment);
-  const RenderingFields& r = scenario.rendering;
-  const bool linear = springs != nullptr && springs->bilateral && *r.mu_f == 0.0 && !r.config.max_damping &&
-                      !r.config.max_force && !*r.reduction && !r.config.passivity_controller &&
-                      std::holds_alternative<NoHandFields>(scenario.hand) &&
+  const RenderingConfig& r = scenario.rendering;
+  const bool linear = springs != nullptr && springs->bilateral && r.mu_f == 0.0 && !r.max_damping && !r.max_force &&
+                      !r.reduction && !r.passivity_controller && std::holds_alternative<NoHandFields>(scenario.hand) &&
                       std::holds_alternative<FreePosition>(scenario.motion.position);
   if (linear) return;
   throw InputError(
@@ -65,7 +64,7 @@ constexpr double kRounding = 1e-10;
 class SpringEnergy final : public Observer {
  public:
   SpringEnergy(const Scenario& scenario, const Mat3& S)
-      : K_(scenario.rendering.config.stiffness), M_(*scenario.rendering.mass), S_(S) {}
+      : K_(scenario.rendering.stiffness), M_(scenario.rendering.mass), S_(S) {}
 
   void on_step(const StepRecord& record) noexcept override {
     const Vec3& p = record.tool.pose.position;
@@ -89,7 +88,7 @@ class SpringEnergy final : public Observer {
 };
 
 Scenario undamped(Scenario scenario) {
-  scenario.rendering.config.damping = 0.0;
+  scenario.rendering.damping = 0.0;
   scenario.rendering.mu_s = 0.0;
   return scenario;
 }
@@ -129,7 +128,7 @@ PrecisionResult study_integrators(const Scenario& scenario, const PrecisionOptio
   FirstTensor tensor;
   sampled_run(scenario, nullptr, 1, {&tensor});
   const double T = scenario.time.step;
-  const auto samples = static_cast<std::size_t>(*scenario.time.steps);
+  const auto samples = static_cast<std::size_t>(scenario.time.steps);
   const std::vector<Vec3> exact = exact_positions(scenario, tensor.S, T, samples);
 
   double reach = 0.0;

@@ -17,7 +17,7 @@ constexpr int kReference = 64;  // times finer than the scenario's own step
 Scenario with_step(const Scenario& scenario, double factor) {
   Scenario run = scenario;
   run.time.step = scenario.time.step * factor;
-  run.time.steps = std::llround(static_cast<double>(*scenario.time.steps) / factor);
+  run.time.steps = std::llround(static_cast<double>(scenario.time.steps) / factor);
   return run;
 }
 
@@ -26,7 +26,7 @@ Scenario with_step(const Scenario& scenario, double factor) {
 PrecisionResult study_time_step(const Scenario& given, const PrecisionOptions& options) {
   const Scenario scenario = drill_in_hole(given);
   const BlockWithHole& block = std::get<BlockEnvironment>(scenario.environment).block;
-  const Tool tool{*scenario.tool.diameter / 2.0, *scenario.tool.length, Tip::flat};
+  const Tool tool{scenario.tool.diameter / 2.0, scenario.tool.length, Tip::flat};
   const auto shell = shell_of(scenario, options);
   // All are compared at the samples of the coarsest one.
   const double sampling = kFactors[0];

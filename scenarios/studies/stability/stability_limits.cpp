@@ -41,8 +41,8 @@ Probes probes_of(StabilityCase which) {
 
 /// The spring-damper of one case at one value of what is raised.
 SpringDamper at_value(StabilityCase which, double value, const Scenario& scenario, double lambda) {
-  const RenderingConfig& config = scenario.rendering.config;
-  SpringDamper system{config.stiffness,   0.0,    *scenario.rendering.mass,
+  const RenderingConfig& config = scenario.rendering;
+  SpringDamper system{config.stiffness,   0.0,    scenario.rendering.mass,
                       scenario.time.step, lambda, scenario.integrator.type};
   const auto damping = [&] {
     return config.damping.value_or(2.0 * config.damping_ratio * std::sqrt(system.K * system.M));
@@ -116,8 +116,8 @@ Mat3 stiffness_tensor_of(Scenario scenario) {
 /// `direction`, and sees whether it blows up.
 bool simulation_stays_bounded(Scenario scenario, const SpringDamper& system, const Vec3& direction) {
   constexpr double kAmplitude = 1e-3;
-  scenario.rendering.config.stiffness = system.K;
-  scenario.rendering.config.damping = system.B;
+  scenario.rendering.stiffness = system.K;
+  scenario.rendering.damping = system.B;
   scenario.time.step = system.dt;
   scenario.time.steps = kProbeSteps;
   scenario.time.stop_when.clear();
@@ -140,21 +140,20 @@ void check_scene(const Scenario& scenario) {
   if (springs == nullptr)
     fail("/environment/type", "stability limits exist for \"springs\" only: elsewhere contacts come and go");
   if (!springs->bilateral) fail("/environment/bilateral", "got false; allowed for stability: true");
-  if (*scenario.rendering.mu_s != 0.0 || *scenario.rendering.mu_f != 0.0)
+  if (scenario.rendering.mu_s != 0.0 || scenario.rendering.mu_f != 0.0)
     fail("/rendering/friction", "allowed for stability: none");
-  if (scenario.rendering.config.max_damping)
-    fail("/rendering/limits/max_damping_N_s_per_m", "allowed for stability: null");
-  if (scenario.rendering.config.max_force) fail("/rendering/limits/max_force_N", "allowed for stability: null");
+  if (scenario.rendering.max_damping) fail("/rendering/limits/max_damping_N_s_per_m", "allowed for stability: null");
+  if (scenario.rendering.max_force) fail("/rendering/limits/max_force_N", "allowed for stability: null");
   if (!std::holds_alternative<FreePosition>(scenario.motion.position))
     fail("/motion/position/type", "allowed for stability: \"free\"");
   if (!std::holds_alternative<NoHandFields>(scenario.hand)) fail("/hand/type", "allowed for stability: \"none\"");
-  if (scenario.rendering.config.passivity_controller)
+  if (scenario.rendering.passivity_controller)
     fail("/rendering/passivity_controller", "got true; allowed for stability: false");
 }
 
 double leapfrog_limit(StabilityCase which, const Scenario& scenario, double lambda) {
-  const RenderingConfig& config = scenario.rendering.config;
-  const double M = *scenario.rendering.mass, dt = scenario.time.step;
+  const RenderingConfig& config = scenario.rendering;
+  const double M = scenario.rendering.mass, dt = scenario.time.step;
   const SpringDamper given = at_value(StabilityCase::time_step, dt, scenario, lambda);
   const double b = config.damping ? 0.0 : 2.0 * config.damping_ratio * lambda * dt / std::sqrt(M);
   switch (which) {

@@ -49,7 +49,7 @@ struct RootLocusPoint {
 
 /// The largest stable value of one case under the scenario's integrator, where the springs of its algorithm have the
 /// given lambda: infinite when nothing is unstable, none when there is no closed form (spring and damper together under
-/// velocity_verlet and rk4). Precondition: defaults are filled in.
+/// velocity_verlet and rk4).
 std::optional<double> analytic_limit(StabilityCase which, const Scenario& scenario, double lambda);
 
 /// The same by bisection on the eigenvalues of A, to 1e-10, from `start` on (see largest_stable): infinite when nothing

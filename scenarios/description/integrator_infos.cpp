@@ -1,7 +1,6 @@
-#include "scenarios/description/integrator_codec.hpp"
+#include "scenarios/description/integrator_infos.hpp"
 
-#include "scenarios/description/object.hpp"
-#include "scenarios/description/values.hpp"
+#include "sim/loop/integrators/integrator.hpp"
 
 namespace hapbench {
 namespace {
@@ -31,16 +30,6 @@ constexpr ModelInfo kInfos[] = {
 static_assert(std::size(kInfos) == kIntegrators.size());
 
 }  // namespace
-
-CodecPtr<IntegratorFields> integrator_codec() {
-  std::vector<std::pair<std::string, Integrator>> names;
-  for (const Integrator integrator : kIntegrators) names.emplace_back(integrator_name(integrator), integrator);
-  auto codec = object<IntegratorFields>();
-  codec->required(
-      "type", [](auto& i) -> Integrator& { return i.type; }, choice(std::move(names), "integrator"),
-      "leapfrog is the thesis's; \"hapbench describe NAME\" explains each");
-  return codec;
-}
 
 std::span<const ModelInfo> integrator_infos() {
   return kInfos;
