@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "algorithms/depth/depth_model.hpp"
-#include "algorithms/info.hpp"
+#include "sim/core/model_info.hpp"
 #include "algorithms/rendering_config.hpp"
 #include "sim/loop/force_algorithm.hpp"
 

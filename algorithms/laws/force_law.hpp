@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "algorithms/info.hpp"
+#include "sim/core/model_info.hpp"
 #include "algorithms/rendering_config.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/loop/force_algorithm.hpp"

@@ -114,7 +114,7 @@ struct IdealDeviceFields {
 using DeviceFields = std::variant<IdealDeviceFields, AdmittanceDeviceConfig>;
 
 struct IntegratorFields {
-  Integrator type = Integrator::leapfrog;
+  const IntegratorEntry* type = &kLeapfrog;  ///< never null
 };
 
 /// The part of RenderingConfig that has one default for every scene, and beside it what depends on the scene.
