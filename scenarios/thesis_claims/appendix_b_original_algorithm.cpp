@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "algorithms/laws/original_averaging.hpp"
+#include "algorithms/laws/laws.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/contacts_by_hand.hpp"
 #include "scenarios/thesis_claims/wording.hpp"

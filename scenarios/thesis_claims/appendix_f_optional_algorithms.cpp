@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "algorithms/laws/tandpasta.hpp"
+#include "algorithms/laws/laws.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/studies/precision/measure.hpp"
