@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <memory>
 
-#include "algorithms/info.hpp"
 #include "algorithms/rendering_config.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
+#include "sim/core/model_info.hpp"
 #include "sim/loop/force_algorithm.hpp"
 
 namespace hapbench {

@@ -1,5 +1,8 @@
 #include "algorithms/laws/shaped_stiffness.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
@@ -24,6 +27,27 @@ const ModelInfo kShapedStiffnessInfo = {
     .parameters = kParameters,
 };
 
+const ModelInfo kNormalProjectionInfo = {
+    .name = "normal_projection",
+    .summary = "stiffness shaping on the depth model normal_projection",
+    .formula = "weights of shaped_stiffness; d_i = exit distance along -n_i (see depth model normal_projection)",
+    .source = "thesis F.1; always with depth model normal_projection",
+    .known_failure = "the force jumps when a point appears at a corner (Fig. F.4)",
+    .parameters = kParameters,
+};
+
+const ModelInfo kContinuousNormalProjectionInfo = {
+    .name = "continuous_normal_projection",
+    .summary = "stiffness shaping on the depth model continuous_normal_projection: no jump at corners",
+    .formula =
+        "weights of shaped_stiffness; d_i starts as the shortest distance and follows the tool along -n_i up to "
+        "its exit (see depth model continuous_normal_projection)",
+    .source = "ours, after thesis F.1; always with depth model continuous_normal_projection",
+    .known_failure =
+        "depends on the way: under a face that it slid in below sideways, the tool feels the shortest distance only",
+    .parameters = kParameters,
+};
+
 Mat3 update_shaped_weights(ContactBuffer& contacts, const Mat3& S) noexcept {
   using simd::load, simd::Pack;
   const Pack xx(S(0, 0)), yy(S(1, 1)), zz(S(2, 2)), two_xy(2.0 * S(0, 1)), two_xz(2.0 * S(0, 2)), two_yz(2.0 * S(1, 2));
@@ -45,6 +69,10 @@ Mat3 shape_weights(ContactBuffer& contacts, int iterations) noexcept {
   return S;
 }
 
+double shaped_wedge_weight(double w) noexcept {
+  return 1.0 / (1.0 + std::pow(std::cos(2.0 * w), 2));
+}
+
 namespace {
 
 class ShapedStiffness final : public ForceLaw {
@@ -61,7 +89,21 @@ class ShapedStiffness final : public ForceLaw {
   int m_;
 };
 
+/// After an update c_i <- c_i / rho_i with rho_i = u_i^T S u_i >= 1 / (u_i^T S^+ u_i) for unit u_i (Cauchy and
+/// Schwarz), sum c_i / rho_i <= sum c_i u_i^T S^+ u_i = tr(S^+ S) <= 3. Without an update: summation.
+double bound(const RenderingConfig& config, const Tool&, std::size_t n, double depth) {
+  const double most = static_cast<double>(n);
+  return (config.iterations > 0 ? std::min(3.0, most) : most) * depth;
+}
+
+/// From the first update on.
+WedgeStiffness wedge(const RenderingConfig& config, double w, double n) {
+  return wedge_of_weight(config.iterations == 0 ? n : shaped_wedge_weight(w), w);
+}
+
 }  // namespace
+
+const AlgorithmTheory kShapedStiffnessTheory = {.force_bound = bound, .wedge_stiffness = wedge};
 
 std::unique_ptr<ForceLaw> make_shaped_stiffness(const RenderingConfig& config) {
   return std::make_unique<ShapedStiffness>(config.stiffness, config.iterations);

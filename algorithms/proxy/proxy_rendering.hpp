@@ -2,13 +2,15 @@
 
 #include <memory>
 
-#include "algorithms/info.hpp"
+#include "sim/core/model_info.hpp"
 #include "algorithms/stages/damping_and_limits.hpp"
+#include "algorithms/theory.hpp"
 #include "sim/loop/force_algorithm.hpp"
 
 namespace hapbench {
 
 extern const ModelInfo kProxyInfo;
+extern const AlgorithmTheory kProxyTheory;
 
 /// The margin in tool radii. Wider, and each pass looks at more points; narrower, and a fast tool takes more passes.
 inline constexpr double kProxyMargin = 0.2;

@@ -81,8 +81,8 @@ static void describe(Fields& f, ToolFields& tool) {
 }
 
 static void describe(Fields& f, IntegratorFields& integrator) {
-  std::vector<Choice<Integrator>> choices;
-  for (const Integrator value : kIntegrators) choices.push_back({integrator_name(value), value});
+  std::vector<Choice<const IntegratorEntry*>> choices;
+  for (const IntegratorEntry* entry : kIntegrators) choices.push_back({entry->info.name, entry});
   f.choice("type", integrator.type, choices, "integrator",
            "leapfrog is the thesis's; \"hapbench describe NAME\" explains each", Presence::required);
 }

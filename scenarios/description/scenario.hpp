@@ -118,7 +118,7 @@ struct IdealDeviceFields {
 using DeviceFields = std::variant<IdealDeviceFields, AdmittanceDeviceConfig>;
 
 struct IntegratorFields {
-  Integrator type = Integrator::leapfrog;
+  const IntegratorEntry* type = &kLeapfrog;  ///< never null
 };
 
 struct RecordFields {

@@ -6,12 +6,12 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/descriptions.hpp"
-#include "scenarios/description/integrator_infos.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/schema_text.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/studies/stability/map_scenes.hpp"
+#include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
 namespace {
@@ -110,7 +110,7 @@ std::vector<std::string> all_names() {
   for (const AlgorithmEntry& entry : algorithms()) names.emplace_back(entry.info->name);
   for (const DepthModelEntry& entry : depth_models()) names.emplace_back(entry.info->name);
   for (const ModelInfo* stage : stages()) names.emplace_back(stage->name);
-  for (const ModelInfo& info : integrator_infos()) names.emplace_back(info.name);
+  for (const IntegratorEntry* entry : kIntegrators) names.emplace_back(entry->info.name);
   for (const std::string& name : environment_names()) names.push_back(name);
   for (const BundledScenario& bundled : bundled_scenarios()) names.push_back(bundled.name);
   return names;
@@ -129,9 +129,7 @@ Description describe_name(const std::string& name) {
   if (const AlgorithmEntry* entry = find_algorithm(name)) add(describe_model("algorithm", *entry->info));
   if (const DepthModelEntry* entry = find_depth_model(name)) add(describe_model("depth model", *entry->info));
   if (const ModelInfo* stage = find_stage(name)) add(describe_model("stage", *stage));
-  for (const ModelInfo& info : integrator_infos()) {
-    if (name == info.name) add(describe_model("integrator", info));
-  }
+  if (const IntegratorEntry* entry = find_integrator(name)) add(describe_model("integrator", entry->info));
   if (!d.text.empty()) return d;
   if (const Json* fields = find_in_schema(scenario_schema_once(), name)) return {fields_text(name, *fields), *fields};
   for (const BundledScenario& bundled : bundled_scenarios()) {

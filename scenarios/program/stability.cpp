@@ -64,7 +64,7 @@ Json limits_json(const LoadedScenario& loaded, const std::vector<StabilityLimit>
   }
   return {{"name", loaded.scenario.name},
           {"algorithm", loaded.scenario.rendering.algorithm},
-          {"integrator", integrator_name(loaded.scenario.integrator.type)},
+          {"integrator", loaded.scenario.integrator.type->info.name},
           {"limits", std::move(rows)}};
 }
 
@@ -90,7 +90,7 @@ std::string limits_text(const LoadedScenario& loaded, const std::vector<Stabilit
   }
   const RenderingConfig& rendering = loaded.scenario.rendering;
   return fmt::format("{}: {}, {}, M = {} kg, dt = {} s, zeta = {}, lambda_max(S) = {}\n\n{}", loaded.scenario.name,
-                     rendering.algorithm, integrator_name(loaded.scenario.integrator.type), rendering.mass,
+                     rendering.algorithm, loaded.scenario.integrator.type->info.name, rendering.mass,
                      loaded.scenario.time.step, rendering.damping_ratio, significant(limits.front().lambda, 6),
                      table.text()) +
          disagreement_text(limits);

@@ -32,7 +32,7 @@ class TrialObservers {
     observers_.push_back(&passivity_);
     if (scenario.record.energy) {
       ledger_.emplace(scenario.rendering.mass, scenario.time.step, parts.motion->position_is_free(),
-                      parts.query->capacity(), scenario.integrator.type);
+                      parts.query->capacity(), scenario.integrator.type->holds_force);
       observers_.push_back(&*ledger_);
     }
     if (scenario.record.ideal_trajectory) {

@@ -21,8 +21,6 @@ constexpr std::pair<const char*, Density> kDensities[] = {{"signed_distance", De
 /// The algorithms whose angular damping is compared with that of the tip's velocity alone: the two that the thesis
 /// compares.
 constexpr const char* kAngularlyDamped[] = {"original_averaging", "shaped_stiffness"};
-/// Those that create energy when a peg sticks in a hole; the passivity controller leaves the others alone.
-constexpr const char* kCreateEnergy[] = {"original_averaging", "summation", "tandpasta", "normal_projection"};
 
 const std::vector<std::string> kIdealColumns = {"ideal_height_error_rms_m", "ideal_height_error_max_m",
                                                 "ideal_lateral_error_rms_m", "interpenetration_max_m",
@@ -77,7 +75,9 @@ PrecisionResult study_algorithms(const Scenario& given, const PrecisionOptions& 
   PrecisionResult result;
   result.columns = kIdealColumns;
   result.timed = "step";
-  const std::size_t all = algorithms().size() + std::size(kAngularlyDamped) + std::size(kCreateEnergy);
+  const auto create_energy = std::count_if(algorithms().begin(), algorithms().end(),
+                                           [](const AlgorithmEntry& algorithm) { return algorithm.creates_energy; });
+  const std::size_t all = algorithms().size() + std::size(kAngularlyDamped) + static_cast<std::size_t>(create_energy);
   const auto add_row = [&](std::string setting, const RenderingConfig& config) {
     Scenario run = scenario;
     run.rendering = with_fixed_stages(config);
@@ -97,8 +97,9 @@ PrecisionResult study_algorithms(const Scenario& given, const PrecisionOptions& 
     add_row(config.algorithm + " + angular_damping", config);
   }
   config.angular_damping = false;
-  for (const char* algorithm : kCreateEnergy) {
-    config.algorithm = algorithm;
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    if (!algorithm.creates_energy) continue;
+    config.algorithm = algorithm.info->name;
     config.passivity_controller = true;
     add_row(config.algorithm + " + passivity_controller", config);
   }

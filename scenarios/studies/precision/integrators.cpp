@@ -102,7 +102,7 @@ PrecisionRow measure(const Scenario& run, int division, const Mat3& S, const std
   };
   SpringEnergy energy(run, S);
   const bool kept = sampled_run(undamped(run), nullptr, 1, {&energy}).result.outcome == Outcome::completes;
-  return {fmt::format("{} dt={}", integrator_name(run.integrator.type), run.time.step),
+  return {fmt::format("{} dt={}", run.integrator.type->info.name, run.time.step),
           std::string(outcome_name(sampled.result.outcome)),
           {run.time.step, if_whole(d.final), if_whole(d.rms), if_whole(d.max), kept ? energy.gain() : std::nullopt,
            kept ? energy.swing() : std::nullopt},
@@ -110,7 +110,8 @@ PrecisionRow measure(const Scenario& run, int division, const Mat3& S, const std
 }
 
 /// The order of the rows from `begin` on, as far as their errors are not rounding.
-FittedOrder order_of(Integrator integrator, const PrecisionResult& result, std::size_t begin, double rounding) {
+FittedOrder order_of(const IntegratorEntry& integrator, const PrecisionResult& result, std::size_t begin,
+                     double rounding) {
   constexpr std::size_t kStep = 0, kRms = 2;
   std::vector<double> steps, errors;
   for (std::size_t i = begin; i < result.rows.size(); ++i) {
@@ -118,7 +119,7 @@ FittedOrder order_of(Integrator integrator, const PrecisionResult& result, std::
     steps.push_back(*result.rows[i].values[kStep]);
     errors.push_back(error > rounding ? error : 0.0);
   }
-  return {std::string(integrator_name(integrator)), result.columns[kRms], fitted_order(steps, errors)};
+  return {integrator.info.name, result.columns[kRms], fitted_order(steps, errors)};
 }
 
 }  // namespace
@@ -142,7 +143,7 @@ PrecisionResult study_integrators(const Scenario& scenario, const PrecisionOptio
                     "undamped_energy_gain_relative",
                     "undamped_energy_swing_relative"};
   result.timed = "step";
-  for (const Integrator integrator : kIntegrators) {
+  for (const IntegratorEntry* integrator : kIntegrators) {
     const std::size_t begin = result.rows.size();
     for (const int division : kDivisions) {
       Scenario run = scenario;
@@ -152,7 +153,7 @@ PrecisionResult study_integrators(const Scenario& scenario, const PrecisionOptio
       result.rows.push_back(measure(run, division, tensor.S, exact, options.repetitions));
       options.progress(result.rows.size(), kIntegrators.size() * std::size(kDivisions));
     }
-    result.orders.push_back(order_of(integrator, result, begin, kRounding * reach));
+    result.orders.push_back(order_of(*integrator, result, begin, kRounding * reach));
   }
   return result;
 }

@@ -55,8 +55,8 @@ PrecisionResult study_time_step(const Scenario& given, const PrecisionOptions& o
     errors.push_back(d.rms);
     options.progress(result.rows.size(), std::size(kFactors));
   }
-  result.orders.push_back({fmt::format("{} with contact switching", integrator_name(scenario.integrator.type)),
-                           "error_rms_m", fitted_order(steps, errors)});
+  result.orders.push_back({fmt::format("{} with contact switching", scenario.integrator.type->info.name), "error_rms_m",
+                           fitted_order(steps, errors)});
   return result;
 }
 

@@ -61,10 +61,10 @@ MapPoint map_point(const StabilityMap& map, const MapSubject& subject, double x,
   const Scenario scenario = scene(map, subject, x, y);
   const Probe run = probe(scenario);
   MapPoint point{x, y, run.motion, run.lambdas[2], {}};
-  if (map.no_theory != nullptr || !run.linear || subject.integrator != Integrator::leapfrog) return point;
+  if (map.no_theory != nullptr || !run.linear) return point;
   const double K = scenario.rendering.stiffness, M = scenario.rendering.mass;
   const double B = 2.0 * scenario.rendering.damping_ratio * std::sqrt(K * M);
-  point.margin = SpringDamper{K, B, M, scenario.time.step, run.lambdas[2]}.margin();
+  point.margin = SpringDamper{K, B, M, scenario.time.step, run.lambdas[2], subject.integrator}.margin();
   return point;
 }
 

@@ -104,14 +104,14 @@ void print_runs(const AlgorithmEntry& algorithm, const std::string& depth_model)
 
 /// The 2-D peg under every integrator.
 void print_integrators(const AlgorithmEntry& algorithm) {
-  for (const Integrator integrator : kIntegrators) {
+  for (const IntegratorEntry* integrator : kIntegrators) {
     HashingObserver hash;
     SimulationConfig simulation;
     simulation.steps = 500;
     simulation.position = {0.0, -0.004, 0.0};
     simulation.integrator = integrator;
     Simulation(simulation, peg(config_of(algorithm.info->name)), {&hash}).run();
-    print(std::string(algorithm.info->name) + ' ' + std::string(integrator_name(integrator)), hash.value());
+    print(std::string(algorithm.info->name) + ' ' + integrator->info.name, hash.value());
   }
 }
 

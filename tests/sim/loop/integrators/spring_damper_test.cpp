@@ -3,8 +3,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "scenarios/studies/stability/spring_damper.hpp"
 #include "sim/core/random.hpp"
+#include "sim/loop/integrators/spring_damper.hpp"
 #include "tests/support/scale.hpp"
 
 namespace hapbench {
@@ -66,7 +66,7 @@ TEST(SpringDamper, UnderVelocityVerletIsStableExactlyWhereItsHeaderSays) {
   for (std::size_t i = 0; i < test::cases(10'000); ++i) {
     const double kappa = random.uniform(0.0, 6.0), beta = random.uniform(0.0, 5.0), c = 1.0 - 0.5 * beta;
     SpringDamper system = with(kappa, beta);
-    system.integrator = Integrator::velocity_verlet;
+    system.integrator = &kVelocityVerlet;
     const double margin = std::min(4.0 - beta, 4.0 * (1.0 + c * c) - kappa * (1.0 + c));
     if (std::abs(margin) < 1e-9 || beta < 1e-9 || kappa < 1e-9) continue;  // on the limit itself, to rounding
     EXPECT_EQ(system.is_stable(), margin > 0.0) << kappa << " " << beta;
@@ -75,7 +75,7 @@ TEST(SpringDamper, UnderVelocityVerletIsStableExactlyWhereItsHeaderSays) {
 
 TEST(SpringDamper, UnderImplicitIntegratorsIsStableHoweverStiff) {
   Random random(4);
-  for (const Integrator integrator : {Integrator::implicit_euler, Integrator::implicit_midpoint}) {
+  for (const IntegratorEntry* integrator : {&kImplicitEuler, &kImplicitMidpoint}) {
     for (std::size_t i = 0; i < test::cases(10'000); ++i) {
       SpringDamper system =
           with(std::pow(10.0, random.uniform(-6.0, 12.0)), std::pow(10.0, random.uniform(-6.0, 12.0)));
@@ -87,15 +87,21 @@ TEST(SpringDamper, UnderImplicitIntegratorsIsStableHoweverStiff) {
 }
 
 TEST(SpringDamper, HasTheDeterminantsOfItsIntegrators) {
-  // Of closed forms: leapfrog 1 - beta, velocity Verlet (1 - beta/2)^2, implicit Euler 1 / (1 + beta + kappa), implicit
-  // midpoint (1 - beta/2 + kappa/4) / (1 + beta/2 + kappa/4); rk4 |1 - kappa/2 + kappa^2/24|^2 + kappa (1 - kappa/6)^2
-  // without damping.
-  const double kappa = 0.6, beta = 0.3, rk4 = std::pow(1 - 0.3 + 0.36 / 24, 2) + 0.6 * std::pow(1 - 0.1, 2);
-  const double kDeterminants[] = {0.7, 0.85 * 0.85, rk4, 1.0 / 1.9, 1.0 / 1.3};
-  for (std::size_t i = 0; i < kIntegrators.size(); ++i) {
-    SpringDamper system = with(kappa, kIntegrators[i] == Integrator::rk4 ? 0.0 : beta);
-    system.integrator = kIntegrators[i];
-    EXPECT_NEAR(system.step_matrix().determinant(), kDeterminants[i], 1e-14) << integrator_name(kIntegrators[i]);
+  const double kappa = 0.6, beta = 0.3;
+  const struct {
+    const IntegratorEntry* integrator;
+    double beta, determinant;
+  } kClosedForms[] = {
+      {&kLeapfrog, beta, 1.0 - beta},
+      {&kVelocityVerlet, beta, std::pow(1.0 - beta / 2, 2)},
+      {&kRk4, 0.0, std::pow(1 - kappa / 2 + kappa * kappa / 24, 2) + kappa * std::pow(1 - kappa / 6, 2)},
+      {&kImplicitEuler, beta, 1.0 / (1.0 + beta + kappa)},
+      {&kImplicitMidpoint, beta, (1.0 - beta / 2 + kappa / 4) / (1.0 + beta / 2 + kappa / 4)},
+  };
+  for (const auto& form : kClosedForms) {
+    SpringDamper system = with(kappa, form.beta);
+    system.integrator = form.integrator;
+    EXPECT_NEAR(system.step_matrix().determinant(), form.determinant, 1e-14) << form.integrator->info.name;
   }
 }
 

@@ -1,10 +1,11 @@
-#include "scenarios/studies/stability/spring_damper.hpp"
+#include "sim/loop/integrators/spring_damper.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hapbench {
 namespace {
@@ -27,18 +28,16 @@ class LinearForce final : public ForceField {
 }  // namespace
 
 Eigen::Matrix2d SpringDamper::step_matrix() const {
-  Eigen::Matrix2d A;
-  if (integrator == Integrator::leapfrog) {
-    const double k = lambda * K * dt / M, b = lambda * B * dt / M;
-    A << 1.0 - k * dt, dt - b * dt, -k, 1.0 - b;
-    return A;
-  }
+  if (integrator->step_matrix != nullptr) return integrator->step_matrix(*this);
   LinearForce field(*this);
+  const auto stepper = integrator->make();
+  Eigen::Matrix2d A;
   for (const int column : {0, 1}) {
     ToolState tool;
     (column == 0 ? tool.pose.position : tool.velocity) = Vec3::UnitX();
     const Vec3 force = field.force_at(0.0, tool.pose.position, tool.velocity);
-    integrate(integrator, tool, force, M, dt, field);
+    stepper->reset();
+    stepper->step(tool, force, M, dt, field);
     A.col(column) << tool.pose.position.x(), tool.velocity.x();
   }
   return A;
@@ -61,8 +60,42 @@ bool SpringDamper::is_stable() const {
   return std::abs(determinant) <= 1.0 + kRounding && std::abs(trace) <= 1.0 + determinant + kRounding;
 }
 
-double SpringDamper::margin() const {
-  return 4.0 - 2.0 * lambda * B * dt / M - lambda * K * dt * dt / M;
+std::optional<double> SpringDamper::margin() const {
+  if (integrator->stability_margin == nullptr) return std::nullopt;
+  return integrator->stability_margin(*this);
+}
+
+SpringDamper RaisedSpringDamper::at(double value) const {
+  SpringDamper system = given;
+  system.B = 0.0;
+  const auto damping_of = [&] { return damping.value_or(2.0 * damping_ratio * std::sqrt(system.K * system.M)); };
+  switch (raised) {
+    case StabilityCase::stiffness_undamped:
+      system.K = value;
+      break;
+    case StabilityCase::damping_alone:
+      system.K = 0.0;
+      system.B = value;
+      break;
+    case StabilityCase::stiffness_damped:
+      system.K = value;
+      system.B = damping_of();
+      break;
+    case StabilityCase::time_step:
+      system.dt = value;
+      system.B = damping_of();
+      break;
+  }
+  return system;
+}
+
+std::optional<double> limit_of_one_alone(const RaisedSpringDamper& problem, const LimitsAlone& limits) {
+  const SpringDamper one = problem.at(1.0);
+  if (one.lambda == 0.0 || (one.K == 0.0 && one.B == 0.0)) return std::numeric_limits<double>::infinity();
+  if (one.K != 0.0 && one.B != 0.0) return std::nullopt;
+  const double spring = limits.spring * one.M / one.lambda, damper = limits.damper * one.M / one.lambda;
+  if (problem.raised == StabilityCase::time_step) return one.B == 0.0 ? std::sqrt(spring / one.K) : damper / one.B;
+  return one.B == 0.0 ? spring / (one.dt * one.dt) : damper / one.dt;
 }
 
 }  // namespace hapbench
