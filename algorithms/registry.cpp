@@ -8,16 +8,7 @@
 #include "algorithms/depth/normal_projection_depth.hpp"
 #include "algorithms/depth/shortest_distance.hpp"
 #include "algorithms/depth/surface_normal.hpp"
-#include "algorithms/laws/continuous_normal_projection.hpp"
-#include "algorithms/laws/exact_shaping.hpp"
-#include "algorithms/laws/mean.hpp"
-#include "algorithms/laws/merged_shaping.hpp"
-#include "algorithms/laws/normal_projection.hpp"
-#include "algorithms/laws/original_averaging.hpp"
-#include "algorithms/laws/shaped_stiffness.hpp"
-#include "algorithms/laws/summation.hpp"
-#include "algorithms/laws/tandpasta.hpp"
-#include "algorithms/laws/virtual_coupling.hpp"
+#include "algorithms/laws/laws.hpp"
 #include "algorithms/penalty_rendering.hpp"
 #include "algorithms/proxy/proxy_rendering.hpp"
 #include "algorithms/stages/damping_and_limits.hpp"
@@ -35,17 +26,36 @@ std::unique_ptr<ForceAlgorithm> penalty(const RenderingConfig& config) {
 }
 
 constexpr AlgorithmEntry kAlgorithms[] = {
-    {&kOriginalAveragingInfo, penalty<make_original_averaging>, "shortest_distance", false},
-    {&kSummationInfo, penalty<make_summation>},
-    {&kMeanInfo, penalty<make_mean>},
-    {&kVirtualCouplingInfo, penalty<make_virtual_coupling>},
-    {&kShapedStiffnessInfo, penalty<make_shaped_stiffness>},
-    {&kTandpastaInfo, penalty<make_tandpasta>},
-    {&kNormalProjectionInfo, penalty<make_normal_projection>, "normal_projection"},
-    {&kExactShapingInfo, penalty<make_exact_shaping>},
-    {&kContinuousNormalProjectionInfo, penalty<make_continuous_normal_projection>, "continuous_normal_projection"},
-    {&kMergedShapingInfo, penalty<make_merged_shaping>, {}, false},
-    {&kProxyInfo, make_proxy, {}, false, "surface_normal"},
+    {.info = &kOriginalAveragingInfo,
+     .make = penalty<make_original_averaging>,
+     .theory = &kOriginalAveragingTheory,
+     .fixed_depth_model = "shortest_distance",
+     .may_reduce = false,
+     .creates_energy = true},
+    {.info = &kSummationInfo, .make = penalty<make_summation>, .theory = &kSummationTheory, .creates_energy = true},
+    {.info = &kMeanInfo, .make = penalty<make_mean>, .theory = &kMeanTheory},
+    {.info = &kVirtualCouplingInfo, .make = penalty<make_virtual_coupling>, .theory = &kVirtualCouplingTheory},
+    {.info = &kShapedStiffnessInfo, .make = penalty<make_shaped_stiffness>, .theory = &kShapedStiffnessTheory},
+    {.info = &kTandpastaInfo, .make = penalty<make_tandpasta>, .theory = &kTandpastaTheory, .creates_energy = true},
+    {.info = &kNormalProjectionInfo,
+     .make = penalty<make_shaped_stiffness>,
+     .theory = &kShapedStiffnessTheory,
+     .fixed_depth_model = "normal_projection",
+     .creates_energy = true},
+    {.info = &kExactShapingInfo, .make = penalty<make_exact_shaping>, .theory = &kExactShapingTheory},
+    {.info = &kContinuousNormalProjectionInfo,
+     .make = penalty<make_shaped_stiffness>,
+     .theory = &kShapedStiffnessTheory,
+     .fixed_depth_model = "continuous_normal_projection"},
+    {.info = &kMergedShapingInfo,
+     .make = penalty<make_merged_shaping>,
+     .theory = &kExactShapingTheory,
+     .may_reduce = false},
+    {.info = &kProxyInfo,
+     .make = make_proxy,
+     .theory = &kProxyTheory,
+     .may_reduce = false,
+     .reported_depth_model = "surface_normal"},
 };
 
 constexpr DepthModelEntry kDepthModels[] = {

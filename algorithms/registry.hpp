@@ -5,8 +5,9 @@
 #include <string_view>
 
 #include "algorithms/depth/depth_model.hpp"
-#include "algorithms/info.hpp"
 #include "algorithms/rendering_config.hpp"
+#include "algorithms/theory.hpp"
+#include "sim/core/model_info.hpp"
 #include "sim/loop/force_algorithm.hpp"
 
 /// The one table of names. Adding an algorithm is one line in registry.cpp.
@@ -16,12 +17,16 @@ struct AlgorithmEntry {
   const ModelInfo* info;
   /// A new force algorithm for one run.
   std::unique_ptr<ForceAlgorithm> (*make)(const RenderingConfig&);
+  const AlgorithmTheory* theory = &kNoTheory;  ///< never null
   /// The depth model that is part of the algorithm's definition; empty when the scenario chooses.
   std::string_view fixed_depth_model = {};
   /// False when the algorithm's definition excludes the reduction.
   bool may_reduce = true;
   /// The depth model of contacts that an algorithm only reports the depths of; empty when it renders them.
   std::string_view reported_depth_model = {};
+  /// True when the algorithm creates energy as a peg sticks in a hole; the passivity controller leaves the others
+  /// alone.
+  bool creates_energy = false;
 };
 
 struct DepthModelEntry {

@@ -7,7 +7,7 @@
 
 namespace hapbench {
 
-/// What the force sensor adds to the hand's force (thesis 3.5; the noise is ours).
+/// Errors that the force sensor adds to the hand's force (thesis 3.5; the noise is our addition).
 struct ForceSensorConfig {
   double weight = 0.7;           ///< of the dummy drill, read along `down` [N]
   Vec3 down = {0.0, 0.0, -1.0};  ///< unit
@@ -18,9 +18,10 @@ struct ForceSensorConfig {
 
 /// The force sensor under the handle: f_meas = f_hand + weight + noise.
 ///
-/// The log holds f_meas with the weight, and the thesis's limit of 2 N takes hold at 2.7 N of it (3.5, Fig. 6), so what
-/// drives the virtual mass has the weight taken off again. `compensated = false` leaves it on, as 2.7 reads literally:
-/// then the weight pulls the virtual tool down, and the limit takes hold at 2 N of f_meas.
+/// The thesis logs f_meas including the weight, and its limit of 2 N acts at 2.7 N of the logged force (3.5, Fig. 6),
+/// so the weight must be subtracted before the force drives the virtual mass. `compensated = false` skips the
+/// subtraction, as 2.7 reads literally: then the weight pulls the virtual tool down, and the limit acts at 2 N of
+/// f_meas.
 class ForceSensor {
  public:
   explicit ForceSensor(const ForceSensorConfig& config) : config_(config), random_(config.seed) {}
@@ -36,7 +37,7 @@ class ForceSensor {
     return force;
   }
 
-  /// What of a reading drives the virtual mass, before the limiter [N].
+  /// The part of a reading that drives the virtual mass, before the limiter [N].
   Vec3 compensated(const Vec3& measured) const noexcept {
     return config_.compensated ? Vec3(measured - config_.weight * config_.down) : measured;
   }

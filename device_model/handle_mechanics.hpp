@@ -4,8 +4,8 @@
 
 namespace hapbench {
 
-/// The moving parts of the device: a carriage that the actuators push, and on an elastic structure the handle that the
-/// hand holds. All values are ours; the handle weighs what the thesis compensates (0.7 N).
+/// The moving parts of the device: a carriage driven by the actuators and, connected to it by an elastic structure, the
+/// handle. The thesis gives none of these values; the handle's weight is what it compensates (0.7 N).
 struct HandleMechanicsConfig {
   double carriage_mass = 0.25;  ///< [kg]
   double handle_mass = 0.07;    ///< [kg]
@@ -15,13 +15,14 @@ struct HandleMechanicsConfig {
   double structure_damping = 40.0;  ///< [N s/m]
 };
 
-/// Two masses on a line in each axis, advanced by the implicit midpoint rule: stable for every step, and exact in its
-/// energy balance for this linear system. Gravity is balanced.
+/// Two masses connected by a spring and a damper, independently in each axis, integrated by the implicit midpoint rule,
+/// which is stable for every step size and, for this linear system, conserves the energy balance exactly. Gravity is
+/// assumed to be compensated.
 class HandleMechanics {
  public:
   explicit HandleMechanics(const HandleMechanicsConfig& config) : config_(config) {}
 
-  /// Carriage and handle at the tool, with its velocity and nothing stretched.
+  /// Places carriage and handle at the tool, with the tool's velocity and the structure unstretched.
   void reset(const ToolState& tool) noexcept;
   /// One step of dt seconds under constant forces of the hand (on the handle) and the actuators (on the carriage) [N].
   void advance(const Vec3& hand, const Vec3& actuator, double dt) noexcept;

@@ -4,8 +4,8 @@
 
 namespace hapbench {
 
-/// Input force limiting (thesis 2.7, C.4.4): the measured force [N] scaled down to the limit when it is longer. With it
-/// the virtual tool stops sinking in once the hand pushes harder than the limit, which feels infinitely stiff.
+/// Input force limiting (thesis 2.7, C.4.4): scales the measured force [N] down to the limit if its norm exceeds it.
+/// Once the hand pushes harder than the limit, the virtual tool penetrates no further, which feels infinitely stiff.
 inline Vec3 limit_input_force(const Vec3& measured, double limit) noexcept {
   const double length = measured.norm();
   return length <= limit ? measured : Vec3(measured * (limit / length));

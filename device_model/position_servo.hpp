@@ -8,8 +8,8 @@
 
 namespace hapbench {
 
-/// The loop that makes the carriage follow the virtual tool. The saturation is the thesis's (C.4.4); the rest is ours,
-/// because the thesis does not give it.
+/// Parameters of the control loop that makes the carriage follow the virtual tool. The thesis gives the saturation
+/// (C.4.4); the other values are our choice.
 struct PositionServoConfig {
   double stiffness = 40000.0;  ///< force per position error [N/m]
   double damping = 160.0;      ///< force per velocity error [N s/m]
@@ -23,7 +23,7 @@ class PositionServo {
   explicit PositionServo(const PositionServoConfig& config)
       : config_(config), commands_(config.delay + 1, Vec3::Zero()) {}
 
-  /// As if it had been at rest for ever.
+  /// Clears the delay line: the servo starts from rest.
   void reset() noexcept {
     for (Vec3& command : commands_) command.setZero();
     next_ = 0;
@@ -37,7 +37,7 @@ class PositionServo {
     if (length > config_.max_force) command *= config_.max_force / length;
     commands_[next_] = command;
     next_ = (next_ + 1) % commands_.size();
-    return commands_[next_];  // the oldest one: this one itself when there is no delay
+    return commands_[next_];  // the oldest command; without delay, the one just stored
   }
 
  private:

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "algorithms/depth/depth_model.hpp"
-#include "algorithms/info.hpp"
+#include "sim/core/model_info.hpp"
 
 namespace hapbench {
 

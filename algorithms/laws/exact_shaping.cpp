@@ -1,9 +1,11 @@
 #include "algorithms/laws/exact_shaping.hpp"
 
+#include <algorithm>
+
 #include "algorithms/laws/cone_projection.hpp"
+#include "algorithms/laws/shaped_stiffness.hpp"
 
 namespace hapbench {
-
 namespace {
 
 constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
@@ -64,7 +66,19 @@ class ExactShaping final : public ForceLaw {
   }
 };
 
+/// sum c: at the optimum tr S >= |S|^2_F >= (tr S)^2 / 3, so that tr S <= 3, and tr S = sum c.
+double bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
+  return std::min(3.0, static_cast<double>(n)) * depth;
+}
+
+/// The limit of the iteration; epsilon = 1e-6 of it apart. Under merged_shaping each face is a group.
+WedgeStiffness wedge(const RenderingConfig&, double w, double) {
+  return wedge_of_weight(shaped_wedge_weight(w), w);
+}
+
 }  // namespace
+
+const AlgorithmTheory kExactShapingTheory = {.force_bound = bound, .wedge_stiffness = wedge};
 
 std::unique_ptr<ForceLaw> make_exact_shaping(const RenderingConfig& config) {
   return std::make_unique<ExactShaping>(config.stiffness);

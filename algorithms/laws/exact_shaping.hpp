@@ -1,16 +1,12 @@
 #pragma once
 
-#include "algorithms/laws/force_law.hpp"
+#include "algorithms/laws/laws.hpp"
 
 namespace hapbench {
-
-extern const ModelInfo kExactShapingInfo;
 
 /// epsilon of the definition: small enough that rho_i = 1 - epsilon c_i is 1 to six digits, large enough that the
 /// weights are unique and the six equations are solved to rounding.
 inline constexpr double kExactShapingEpsilon = 1e-6;
-
-std::unique_ptr<ForceLaw> make_exact_shaping(const RenderingConfig& config);
 
 /// Weights minimising ½|S - I|²_F + (epsilon/2)|c|², c >= 0, left in the buffer; returns the number of Newton steps.
 /// At the optimum rho_i = 1 - epsilon c_i where c_i > 0 and rho_i >= 1 where c_i = 0; tr S >= |S|²_F, hence

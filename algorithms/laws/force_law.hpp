@@ -3,16 +3,15 @@
 #include <cstdint>
 #include <memory>
 
-#include "algorithms/info.hpp"
 #include "algorithms/rendering_config.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
+#include "sim/core/model_info.hpp"
 #include "sim/loop/force_algorithm.hpp"
 
 namespace hapbench {
 
 /// The parameter all laws share, for their parameter blocks.
-inline constexpr ParameterInfo kStiffnessParameter = {"rendering.stiffness_N_per_m", "N/m", "20000",
-                                                      "number >= 0 <= 1e+12", "K of one penalty spring"};
+inline constexpr ParameterInfo kStiffnessParameter = {parameter::kStiffness, "K of one penalty spring"};
 
 /// What a force law makes of the contacts.
 struct LawForce {

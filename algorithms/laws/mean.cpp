@@ -1,7 +1,8 @@
-#include "algorithms/laws/mean.hpp"
+#include <algorithm>
+
+#include "algorithms/laws/laws.hpp"
 
 namespace hapbench {
-
 namespace {
 
 constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
@@ -30,7 +31,18 @@ class Mean final : public ForceLaw {
   }
 };
 
+/// |sum c d u| <= d sum c, and c = 1 / n.
+double bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
+  return std::min(1.0, static_cast<double>(n)) * depth;
+}
+
+WedgeStiffness wedge(const RenderingConfig&, double w, double) {
+  return wedge_of_weight(0.5, w);
+}
+
 }  // namespace
+
+const AlgorithmTheory kMeanTheory = {.force_bound = bound, .wedge_stiffness = wedge};
 
 std::unique_ptr<ForceLaw> make_mean(const RenderingConfig& config) {
   return std::make_unique<Mean>(config.stiffness);

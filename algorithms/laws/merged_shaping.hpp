@@ -1,10 +1,8 @@
 #pragma once
 
-#include "algorithms/laws/force_law.hpp"
+#include "algorithms/laws/laws.hpp"
 
 namespace hapbench {
-
-extern const ModelInfo kMergedShapingInfo;
 
 /// Edge of the grid on each face of the cube of directions: cells of about 6 degrees, as near as the reduction calls
 /// similar, 1350 in all. Odd, so that the axes lie in the middle of cells.

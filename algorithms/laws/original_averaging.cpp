@@ -1,11 +1,10 @@
-#include "algorithms/laws/original_averaging.hpp"
-
 #include <Eigen/Geometry>
+#include <algorithm>
 
+#include "algorithms/laws/laws.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
-
 namespace {
 
 constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
@@ -55,7 +54,19 @@ class OriginalAveraging final : public ForceLaw {
   }
 };
 
+/// sum d_i / |sum u_i|, where |sum u_i| > kCancelledBelow n, or the force is zero.
+double bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
+  return 1e9 * std::min(1.0, static_cast<double>(n)) * depth;
+}
+
+/// S = u_r u_r^T, and the mean gradient u_r points straight in.
+WedgeStiffness wedge(const RenderingConfig&, double, double) {
+  return {1.0, 0.0};
+}
+
 }  // namespace
+
+const AlgorithmTheory kOriginalAveragingTheory = {.force_bound = bound, .wedge_stiffness = wedge};
 
 std::unique_ptr<ForceLaw> make_original_averaging(const RenderingConfig& config) {
   return std::make_unique<OriginalAveraging>(config.stiffness);

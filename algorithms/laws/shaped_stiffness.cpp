@@ -1,5 +1,8 @@
 #include "algorithms/laws/shaped_stiffness.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
@@ -7,7 +10,7 @@ namespace {
 
 constexpr ParameterInfo kParameters[] = {
     kStiffnessParameter,
-    {"rendering.iterations", "1", "3", "integer >= 0 <= 100000", "m: updates of the weights; 0 is summation"},
+    {parameter::kIterations, "m: updates of the weights; 0 is summation"},
 };
 
 }  // namespace
@@ -21,6 +24,27 @@ const ModelInfo kShapedStiffnessInfo = {
         "rho_i stays above 1 where the weight dies out (it is a projection onto a cone); soft along the way out of a "
         "wedge, because only ratios along contacts are regulated: 2 sin^2 w / (1 + cos^2 2w) K, about w^2 K, for half "
         "angle w (10 degrees: 0.032 K), and in a cone 2 sin^2 w / (cos^4 w + 2 sin^4 w) K, about 2 w^2 K",
+    .parameters = kParameters,
+};
+
+const ModelInfo kNormalProjectionInfo = {
+    .name = "normal_projection",
+    .summary = "stiffness shaping on the depth model normal_projection",
+    .formula = "weights of shaped_stiffness; d_i = exit distance along -n_i (see depth model normal_projection)",
+    .source = "thesis F.1; always with depth model normal_projection",
+    .known_failure = "the force jumps when a point appears at a corner (Fig. F.4)",
+    .parameters = kParameters,
+};
+
+const ModelInfo kContinuousNormalProjectionInfo = {
+    .name = "continuous_normal_projection",
+    .summary = "stiffness shaping on the depth model continuous_normal_projection: no jump at corners",
+    .formula =
+        "weights of shaped_stiffness; d_i starts as the shortest distance and follows the tool along -n_i up to "
+        "its exit (see depth model continuous_normal_projection)",
+    .source = "ours, after thesis F.1; always with depth model continuous_normal_projection",
+    .known_failure =
+        "depends on the way: under a face that it slid in below sideways, the tool feels the shortest distance only",
     .parameters = kParameters,
 };
 
@@ -45,6 +69,10 @@ Mat3 shape_weights(ContactBuffer& contacts, int iterations) noexcept {
   return S;
 }
 
+double shaped_wedge_weight(double w) noexcept {
+  return 1.0 / (1.0 + std::pow(std::cos(2.0 * w), 2));
+}
+
 namespace {
 
 class ShapedStiffness final : public ForceLaw {
@@ -61,7 +89,21 @@ class ShapedStiffness final : public ForceLaw {
   int m_;
 };
 
+/// After an update c_i <- c_i / rho_i with rho_i = u_i^T S u_i >= 1 / (u_i^T S^+ u_i) for unit u_i (Cauchy and
+/// Schwarz), sum c_i / rho_i <= sum c_i u_i^T S^+ u_i = tr(S^+ S) <= 3. Without an update: summation.
+double bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
+  const double most = static_cast<double>(n);
+  return (config.iterations > 0 ? std::min(3.0, most) : most) * depth;
+}
+
+/// From the first update on.
+WedgeStiffness wedge(const RenderingConfig& config, double w, double n) {
+  return wedge_of_weight(config.iterations == 0 ? n : shaped_wedge_weight(w), w);
+}
+
 }  // namespace
+
+const AlgorithmTheory kShapedStiffnessTheory = {.force_bound = bound, .wedge_stiffness = wedge};
 
 std::unique_ptr<ForceLaw> make_shaped_stiffness(const RenderingConfig& config) {
   return std::make_unique<ShapedStiffness>(config.stiffness, config.iterations);

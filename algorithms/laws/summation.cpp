@@ -1,7 +1,6 @@
-#include "algorithms/laws/summation.hpp"
+#include "algorithms/laws/laws.hpp"
 
 namespace hapbench {
-
 namespace {
 
 constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
@@ -31,7 +30,18 @@ class Summation final : public ForceLaw {
   }
 };
 
+/// All springs pull in one direction.
+double bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
+  return static_cast<double>(n) * depth;
+}
+
+WedgeStiffness wedge(const RenderingConfig&, double w, double n) {
+  return wedge_of_weight(n, w);
+}
+
 }  // namespace
+
+const AlgorithmTheory kSummationTheory = {.force_bound = bound, .wedge_stiffness = wedge};
 
 std::unique_ptr<ForceLaw> make_summation(const RenderingConfig& config) {
   return std::make_unique<Summation>(config.stiffness);

@@ -1,9 +1,9 @@
-#include "algorithms/laws/tandpasta.hpp"
+#include <cmath>
 
+#include "algorithms/laws/laws.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
-
 namespace {
 
 constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
@@ -65,7 +65,20 @@ class Tandpasta final : public ForceLaw {
   }
 };
 
+/// c = beta / sigma keeps the energy: sum c d_i^2 = sum d_i^2 <= n d^2, and sum c <= n / sigma, since beta <= 1.
+/// Cauchy and Schwarz: sum c d_i <= n d / sqrt(sigma), where sigma > kNoEnergyBelow, or the force is zero.
+double bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
+  return 1e6 * static_cast<double>(n) * depth;
+}
+
+/// All springs fight alike, and sigma_E undoes that.
+WedgeStiffness wedge(const RenderingConfig&, double w, double n) {
+  return wedge_of_weight(n, w);
+}
+
 }  // namespace
+
+const AlgorithmTheory kTandpastaTheory = {.force_bound = bound, .wedge_stiffness = wedge};
 
 std::unique_ptr<ForceLaw> make_tandpasta(const RenderingConfig& config) {
   return std::make_unique<Tandpasta>(config.stiffness);

@@ -1,7 +1,7 @@
-#include "algorithms/laws/virtual_coupling.hpp"
-
 #include <Eigen/Cholesky>
+#include <cmath>
 
+#include "algorithms/laws/laws.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
@@ -9,8 +9,7 @@ namespace {
 
 constexpr ParameterInfo kParameters[] = {
     kStiffnessParameter,
-    {"rendering.virtual_coupling_N_per_m", "N/m", "null", "null | number > 0 <= 1e+12",
-     "K_vc: stiffness of the coupling spring; null: K"},
+    {parameter::kVirtualCoupling, "K_vc: stiffness of the coupling spring; null: K"},
 };
 
 }  // namespace
@@ -73,7 +72,22 @@ class VirtualCoupling final : public ForceLaw {
   Eigen::LLT<Mat3> series_;  ///< of I + K / K_vc S_sum, of the last contacts
 };
 
+/// (I + U U^T)^-1 U has the singular values s / (1 + s^2) <= 1/2, and |(d_1 … d_n)| <= sqrt(n) d. For K_vc = K.
+double bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
+  return 0.5 * std::sqrt(static_cast<double>(n)) * depth;
+}
+
+/// The sum in series with K_vc, along each axis by itself.
+WedgeStiffness wedge(const RenderingConfig& config, double w, double n) {
+  const double k = config.virtual_coupling.value_or(config.stiffness) / config.stiffness;
+  const auto in_series = [k](double x) { return k * x / (k + x); };
+  const auto [along, across] = wedge_of_weight(n, w);
+  return {in_series(along), in_series(across)};
+}
+
 }  // namespace
+
+const AlgorithmTheory kVirtualCouplingTheory = {.force_bound = bound, .wedge_stiffness = wedge};
 
 std::unique_ptr<ForceLaw> make_virtual_coupling(const RenderingConfig& config) {
   return std::make_unique<VirtualCoupling>(config.stiffness, config.virtual_coupling);

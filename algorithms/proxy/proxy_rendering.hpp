@@ -2,14 +2,16 @@
 
 #include <memory>
 
-#include "algorithms/info.hpp"
 #include "algorithms/proxy/proxy_constraints.hpp"
 #include "algorithms/stages/damping_and_limits.hpp"
+#include "algorithms/theory.hpp"
+#include "sim/core/model_info.hpp"
 #include "sim/loop/force_algorithm.hpp"
 
 namespace hapbench {
 
 extern const ModelInfo kProxyInfo;
+extern const AlgorithmTheory kProxyTheory;
 
 /// Most passes of a step: to bring the proxy near, and to make the constraints exact where it ends. Most steps take
 /// two.

@@ -8,20 +8,17 @@ namespace hapbench {
 namespace {
 
 constexpr ParameterInfo kParameters[] = {
-    {"rendering.damping_ratio", "1", "0.7", "number >= 0 <= 1e+06", "zeta of one spring-damper of stiffness K"},
-    {"rendering.damping_N_s_per_m", "N s/m", "null", "null | number >= 0 <= 1e+12", "B itself; null: from zeta"},
-    {"rendering.angular_damping", "1", "false", "boolean",
+    {parameter::kDampingRatio, "zeta of one spring-damper of stiffness K"},
+    {parameter::kDamping, "B itself; null: from zeta"},
+    {parameter::kAngularDamping,
      "v of the tool's material at each contact, v + omega x r_i, instead of the tip centre's"},
-    {"rendering.angular_velocity_cutoff_Hz", "Hz", "20", "null | number > 0 <= 1e+06",
+    {parameter::kAngularVelocityCutoff,
      "first-order low-pass of the angular velocity that angular_damping sees; null: none"},
-    {"rendering.mass_kg", "kg", "by scene", "number > 0 <= 1e+06",
-     "M of the virtual tool; default 0.2 in planar scenes, else 0.1"},
-    {"rendering.friction.mu_s_N_s_per_m", "N s/m", "by scene", "number >= 0 <= 1e+09",
-     "mu_s; default 0 for springs, else 5"},
-    {"rendering.friction.mu_f_s_per_m", "s/m", "by scene", "number >= 0 <= 1e+09",
-     "mu_f; default 0 for springs, else 10"},
-    {"rendering.limits.max_damping_N_s_per_m", "N s/m", "null", "null | number >= 0 <= 1e+12", "B_max; null: off"},
-    {"rendering.limits.max_force_N", "N", "null", "null | number >= 0 <= 1e+12", "F_max; null: off"},
+    {parameter::kMass, "M of the virtual tool; default 0.2 in planar scenes, else 0.1"},
+    {parameter::kMuS, "mu_s; default 0 for springs, else 5"},
+    {parameter::kMuF, "mu_f; default 0 for springs, else 10"},
+    {parameter::kMaxDamping, "B_max; null: off"},
+    {parameter::kMaxForce, "F_max; null: off"},
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "algorithms/info.hpp"
+#include "sim/core/model_info.hpp"
 #include "algorithms/rendering_config.hpp"
 #include "sim/loop/force_algorithm.hpp"
 

@@ -11,12 +11,9 @@ namespace hapbench {
 namespace {
 
 constexpr ParameterInfo kParameters[] = {
-    {"rendering.reduction.threshold", "1", "0.995", "number > -1 <= 1",
-     "alpha_TH: gradients with a larger inner product are similar"},
-    {"rendering.reduction.max_points", "1", "100", "integer >= 1 <= 100000",
-     "n_ext: most points kept; further ones are dropped and counted"},
-    {"rendering.reduction.shuffle_seed", "1", "null", "null | integer >= 0 <= 9007199254740992",
-     "visit the shell points in a fixed random order instead of ascending index"},
+    {parameter::kThreshold, "alpha_TH: gradients with a larger inner product are similar"},
+    {parameter::kMaxPoints, "n_ext: most points kept; further ones are dropped and counted"},
+    {parameter::kShuffleSeed, "visit the shell points in a fixed random order instead of ascending index"},
 };
 
 }  // namespace

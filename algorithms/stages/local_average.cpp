@@ -8,7 +8,7 @@ namespace hapbench {
 namespace {
 
 constexpr ParameterInfo kParameters[] = {
-    {"rendering.local_average", "1", "false", "boolean", "switches the stage on"},
+    {parameter::kLocalAverage, "switches the stage on"},
 };
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "algorithms/info.hpp"
+#include "sim/core/model_info.hpp"
 #include "algorithms/stages/point_stage.hpp"
 
 namespace hapbench {

@@ -8,7 +8,7 @@ namespace hapbench {
 namespace {
 
 constexpr ParameterInfo kParameters[] = {
-    {"rendering.passivity_controller", "1", "false", "boolean", "switches the controller on, for any algorithm"},
+    {parameter::kPassivityController, "switches the controller on, for any algorithm"},
 };
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "algorithms/info.hpp"
+#include "sim/core/model_info.hpp"
 #include "algorithms/rendering_config.hpp"
 #include "sim/loop/observed_energy.hpp"
 

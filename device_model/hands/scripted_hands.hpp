@@ -8,14 +8,14 @@
 
 namespace hapbench {
 
-/// Nobody holds the handle.
+/// Zero force: nobody holds the handle.
 class NoHand final : public Hand {
  public:
   void reset() noexcept override {}
   Vec3 force(double, const HandView&) noexcept override { return Vec3::Zero(); }
 };
 
-/// A hand that pushes with a scripted force, whatever the handle does.
+/// A hand that pushes with a scripted force, independent of the handle's motion.
 class ForceHand final : public Hand {
  public:
   /// Components x, y, z in the world frame [N] over time.

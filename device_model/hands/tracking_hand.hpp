@@ -10,8 +10,8 @@
 
 namespace hapbench {
 
-/// A simulated subject of the man-machine experiments. Every value is ours: the thesis's subjects were not measured.
-/// The defaults lie inside what the motor-control literature reports for a hand that holds a pen.
+/// Parameters of a simulated subject of the man-machine experiments. The thesis did not measure its subjects, so every
+/// value is our choice; the defaults lie within what the motor-control literature reports for a hand holding a pen.
 struct Subject {
   double reaction_delay = 0.2;     ///< from the display to the hand [s]
   double bandwidth = 0.6;          ///< of following the target on the display [Hz]
@@ -49,7 +49,7 @@ class TrackingHand final : public Hand {
   Vec3 force(double t, const HandView& view) noexcept override;
   const TargetTask* task() const noexcept override { return &task_; }
 
-  /// Of the tool, as the wrist holds it now [rad].
+  /// Tilt at which the wrist holds the tool, noise included [rad].
   double tilt() const noexcept { return tilt_; }
 
  private:

@@ -21,11 +21,8 @@ std::size_t missing(const std::vector<std::uint32_t>& a, const std::vector<std::
 
 }  // namespace
 
-EnergyLedger::EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity, Integrator integrator)
-    : mass_(mass),
-      dt_(dt),
-      free_(position_is_free),
-      row_force_moves_(!position_is_free || integrator == Integrator::leapfrog) {
+EnergyLedger::EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity, bool force_is_held)
+    : mass_(mass), dt_(dt), free_(position_is_free), row_force_moves_(!position_is_free || force_is_held) {
   last_.rendered.reserve(capacity);
   rendered_.reserve(capacity);
 }

@@ -5,39 +5,40 @@
 #include <optional>
 #include <vector>
 
-#include "sim/loop/integrators/integrator.hpp"
 #include "sim/loop/observer.hpp"
 
 namespace hapbench {
 
-/// Where the energy of a run has gone since its first row [J].
+/// Energy balance of a run since its first row [J].
 ///
 ///   kinetic + stored = initial ones + input + damping + rotation + created + integration + script + residual
 ///   input = hand + actuator                                        (when the handle is the tool)
 ///   device.stored = device.hand + device.actuator + device.dissipated   (when it has mechanics of its own)
 ///
-/// Works of forces on the tool over one step under leapfrog are the row's force times dt times the mean of the
-/// velocities before and after it, which is exactly what they add to its kinetic energy. Other integrators use forces
-/// of states in between that no row shows: there works are the mean of the forces of both rows (f_in is held) times the
-/// way between them, and what that differs from the kinetic energy is made by the integrator too.
+/// If the integrator holds the row's force over the step (leapfrog), the work of a force is the row's force times dt times
+/// the mean of the velocities before and after the step, which equals its contribution to the kinetic energy exactly.
+/// Other integrators evaluate forces at intermediate states that are not recorded. For them, work is the mean of the
+/// forces of both rows (f_in is held) times the displacement between the rows, and the difference to the change of
+/// kinetic energy counts as the integrator's.
 struct EnergyBalance {
   double kinetic = 0.0;  ///< of the virtual mass, now
   double stored = 0.0;   ///< elastic energy of the penalty springs, now
   double input = 0.0;    ///< work of f_in on the tool
   double spring = 0.0;   ///< work of f_spring on the tool
-  /// Work of damping, friction and the force limit: f_render - f_spring. Of angular damping too, which takes energy
-  /// from the tool's turning, that nobody keeps account of, and may put some of it into the tip's motion.
+  /// Work of damping, friction and the force limit: of f_render - f_spring. It includes angular damping, which may
+  /// transfer energy from the tool's rotation, which has no balance of its own, to the tip's translation.
   double damping = 0.0;
   double rotation = 0.0;  ///< what the tool's turning put into the springs: a torque that the device cannot render
-  /// Energy out of nothing: what the springs store beyond what translation and rotation put in (trapezoidal rule). Zero
-  /// for linear springs that stay in contact; contacts that appear, vanish or are weighed anew make it or lose it.
+  /// Created energy: what the springs store beyond the work that translation and rotation did on them (trapezoidal
+  /// rule). It is zero for linear springs that stay in contact; contacts that appear, vanish or change their weight
+  /// create or destroy energy.
   double created = 0.0;
   double integration = 0.0;  ///< made by the integrator: `spring` plus what translation put into the springs (leapfrog)
-  double script = 0.0;       ///< of a prescribed position: whatever its motion takes
-  double residual = 0.0;     ///< of a free position: what the terms above leave of the kinetic energy; rounding
+  double script = 0.0;       ///< work of the prescribed motion, if the position is prescribed
+  double residual = 0.0;     ///< kinetic energy not explained by the terms above (free position): rounding errors
   double hand = 0.0;         ///< work of the hand on the handle
-  double actuator = 0.0;     ///< of the actuators: what they hold back of the hand (ideal device), or on the carriage
-  std::optional<DeviceEnergy> device;  ///< of a device with mechanics of its own
+  double actuator = 0.0;     ///< work of the actuators: against the hand (ideal device) or on the carriage
+  std::optional<DeviceEnergy> device;  ///< for devices with mechanics of their own
 };
 
 /// A step in which the rendering created energy.
@@ -51,13 +52,13 @@ struct EnergyEvent {
   std::size_t vanished = 0;  ///< and the other way round
 };
 
-/// The energies of a run that summary.json tells.
+/// The energies of a run that summary.json reports.
 struct EnergyMetrics {
   EnergyBalance balance;            ///< after the last row
-  double created_sum = 0.0;         ///< of the steps that created some [J]
-  double created_max = 0.0;         ///< in one step [J]
+  double created_sum = 0.0;         ///< sum over the steps that created energy [J]
+  double created_max = 0.0;         ///< largest of a single step [J]
   double residual_max = 0.0;        ///< largest |residual| of a row [J]
-  std::vector<EnergyEvent> events;  ///< the steps that created most, largest first
+  std::vector<EnergyEvent> events;  ///< the steps that created the most energy, largest first
 };
 
 /// Keeps the balance row by row. Allocates in the constructor only; about 100 ns a row.
@@ -65,9 +66,9 @@ class EnergyLedger final : public Observer {
  public:
   static constexpr std::size_t kEvents = 10;
 
-  /// mass of the virtual tool [kg], time step [s], the most contacts a row can have, what moves a free position.
-  EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity,
-               Integrator integrator = Integrator::leapfrog);
+  /// mass of the virtual tool [kg], time step [s], the most contacts a row can have; of a free position, whether its
+  /// integrator holds the row's force over the step (IntegratorEntry::holds_force).
+  EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity, bool force_is_held = true);
 
   bool wants_energy() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override;
@@ -91,9 +92,9 @@ class EnergyLedger final : public Observer {
   struct Works {
     double input = 0.0, hand = 0.0, actuator = 0.0;
     double spring = 0.0, damping = 0.0;
-    double left = 0.0;  ///< what they leave of the kinetic energy, where that is the integrator's doing
+    double left = 0.0;  ///< change of kinetic energy that these works do not explain: the integrator's error
   };
-  /// Of the forces f_spring and f_render along `way`, f_in and the hand's being held.
+  /// Works of f_spring and f_render along the displacement `way`; f_in and the hand's force are held constant.
   Works works(const Vec3& spring, const Vec3& rendered, const Vec3& way) const noexcept;
   Works works_until(const StepRecord& now) const noexcept;
   void add_step(const StepRecord& now) noexcept;

@@ -17,9 +17,9 @@ class HighPass {
   /// Cutoff and sampling rate [Hz]. Precondition: 0 < cutoff < sampling_rate / 2.
   HighPass(double cutoff, double sampling_rate);
 
-  /// As if the input had been `value` for ever: the output stays exactly zero until the input changes.
+  /// Sets the state to that of a constant past input `value`: the output is exactly zero until the input changes.
   void settle_at(const Vec3& value) noexcept;
-  /// The next sample in, the next sample out.
+  /// Filters one sample.
   Vec3 filter(const Vec3& sample) noexcept;
 
  private:

@@ -57,7 +57,7 @@ class IdealTrajectoryObserver final : public Observer {
 
   void on_step(const StepRecord& record) noexcept override;
 
-  /// Of the last row; none where the ideal trajectory does not exist.
+  /// Error of the last row; nothing where the ideal trajectory does not exist.
   const std::optional<TrajectoryError>& error() const noexcept { return error_; }
   IdealTrajectoryMetrics metrics() const noexcept;
 

@@ -14,7 +14,7 @@ namespace hapbench {
 /// the sense of touch is most alert to vibration well above.
 inline constexpr double kVibrationCutoff = 30.0;
 
-/// What a run comes to. Sums and means run over all rows, in their order.
+/// Figures that sum up a run. Sums and means run over all rows, in order.
 struct Metrics {
   std::uint64_t rows = 0;
   double force_max = 0.0;                 ///< largest ||f_render|| [N]
@@ -37,8 +37,9 @@ struct Metrics {
   std::uint64_t state_hash = 0;        ///< over the bit patterns of p, v and f_render of every row
 };
 
-/// Of several runs, one after the other: sums and means over the rows of all, the final position of the last one; steps
-/// from one run to the next count for nothing. Precondition: at least one.
+/// Combines several runs as if they were one: sums and means over the rows of all of them, and the last one's final
+/// position. Differences between the last row of one run and the first of the next do not count. Precondition: at least
+/// one run.
 Metrics merged(const std::vector<Metrics>& runs) noexcept;
 
 /// Computes the metrics while a run goes on, in constant memory; about 20 ns a row.
@@ -50,7 +51,7 @@ class MetricsObserver final : public Observer {
   bool wants_ratio() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override;
 
-  /// Of the rows so far.
+  /// Metrics of the rows seen so far.
   Metrics metrics() const noexcept;
 
  private:
@@ -58,7 +59,7 @@ class MetricsObserver final : public Observer {
   void add_force(const RenderedForce& force) noexcept;
   void add_contacts(const StepRecord& record) noexcept;
 
-  Metrics metrics_;                    ///< all that needs no last touch
+  Metrics metrics_;                    ///< everything that needs no final division
   std::optional<HighPass> high_pass_;  ///< none when the sampling rate is too low
   Hash64 hash_;
   Vec3 last_velocity_ = Vec3::Zero();

@@ -9,7 +9,7 @@ void PassivityObserver::on_step(const StepRecord& record) noexcept {
   observed_.move(record.tool);
   observed_.answer(record.tool, record.force.rendered, record.springs);
   const double energy = observed_.energy();
-  // Written so that an energy that is no number is kept as the least.
+  // The negated comparison keeps a NaN as the minimum.
   if (rows_ && !(energy < metrics_.energy_min) && !std::isnan(energy)) return;
   if (std::isnan(metrics_.energy_min)) return;
   metrics_.energy_min = energy;

@@ -8,16 +8,16 @@
 
 namespace hapbench {
 
-/// Whether a run's rendering was passive: its observed energy (sim/loop/observed_energy.hpp) over the rows.
+/// Tells whether a run's rendering was passive: extremes of its observed energy E (sim/loop/observed_energy.hpp).
 struct PassivityMetrics {
   double energy_min = 0.0;   ///< least E of a row [J]; negative when the rendering gave more than it had
   double time_of_min = 0.0;  ///< of the first row that has it [s]
   double energy_end = 0.0;   ///< E of the last row [J]
-  /// Energy the rendering made from nothing [J]; NaN when it made numbers that are none.
+  /// Energy that the rendering created, max(0, -energy_min) [J]; NaN if any rendered force was NaN.
   double net_created() const noexcept { return energy_min >= 0.0 ? 0.0 : -energy_min; }
 };
 
-/// Of several runs: the one that created most, the first of equals. None without runs that have rows.
+/// Returns the metrics of the run that created the most energy, the first of equals; nothing if no run has rows.
 std::optional<PassivityMetrics> merged(const std::vector<std::optional<PassivityMetrics>>& runs) noexcept;
 
 /// Observes every row, in constant memory; about 100 ns a row with a turning moment, 4 ns without force.
@@ -29,7 +29,7 @@ class PassivityObserver final : public Observer {
   bool wants_springs() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override;
 
-  /// Of the rows so far; none without any.
+  /// Metrics of the rows seen so far; nothing before the first.
   std::optional<PassivityMetrics> metrics() const noexcept;
 
  private:

@@ -11,7 +11,7 @@ namespace hapbench {
 /// Deadlines of a haptic loop [s]: the thesis's simulations step at 2 kHz, its device at 2048 Hz.
 inline constexpr std::array<double, 2> kStepDeadlines = {0.5e-3, 1.0 / 2048.0};
 
-/// How long the steps of a run took, which a mean does not tell: a haptic loop that is late once is felt.
+/// Distribution of the step times of a run. The mean is not enough: a user feels a single late step of a haptic loop.
 struct StepLatency {
   /// Steps from `from` to below `to` [ns].
   struct Bin {
@@ -30,7 +30,8 @@ struct StepLatency {
   std::uint32_t overhead = 0;  ///< of the clock, subtracted from each step [ns]
 };
 
-/// Of step times [ns]; `overhead` is passed on. All zero without steps. O(n log n).
+/// Computes the distribution of step times [ns] and stores `overhead` with it. All values are zero without steps.
+/// O(n log n).
 StepLatency step_latency(std::span<const std::uint32_t> nanoseconds, std::uint32_t overhead);
 
 /// For timing.json, in seconds; percentiles and maximum are null without steps.

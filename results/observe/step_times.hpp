@@ -15,7 +15,7 @@ class StepTimes {
   /// Room for `capacity` steps. Measures what reading the clock costs, which takes about 0.1 ms.
   explicit StepTimes(std::size_t capacity);
 
-  /// Before the first step and after a pause.
+  /// Starts the clock; call it before the first step and after a pause.
   void start() noexcept { last_ = Clock::now(); }
   /// Ends a step. Precondition: fewer than `capacity` steps so far.
   void lap() noexcept;

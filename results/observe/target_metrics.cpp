@@ -42,7 +42,7 @@ struct Mean {
   }
 };
 
-/// Of one subject at one place.
+/// Means of one subject at one place.
 struct SubjectAtPlace {
   Mean success, time, force, speed;
 };

@@ -8,8 +8,8 @@
 
 namespace hapbench {
 
-/// What the thesis measures of one target (D.4): model force and speed are means over the rows in which the tip was on
-/// it, whether pressed or not.
+/// Measurements of one target (thesis D.4). Model force and speed are means over the rows in which the tip was on the
+/// target, whether or not the subject pressed.
 struct TargetRow {
   std::size_t subject = 0;  ///< from 0, as are trial and target
   std::size_t trial = 0;
@@ -29,7 +29,7 @@ class TargetMetricsObserver final : public Observer {
   /// Precondition: record.task is not null.
   void on_step(const StepRecord& record) noexcept override;
 
-  /// One for each target that has ended.
+  /// One row for each target that has ended.
   const std::vector<TargetRow>& rows() const noexcept { return rows_; }
 
  private:

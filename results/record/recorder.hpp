@@ -7,15 +7,16 @@
 
 namespace hapbench {
 
-/// An observer that writes one file. Rows are written as the run goes on, through a buffer of fixed size; a run that is
-/// never finished leaves no file.
+/// An observer that writes one file. Rows are written during the run through a buffer of fixed size. A run that is
+/// interrupted before `finish` leaves no file.
 class Recorder : public Observer {
  public:
   /// After the run: puts the file under its final name. Throws IoError, also for the errors of earlier rows.
   virtual void finish() = 0;
 };
 
-/// True for the rows a recorder keeps: the first one and every `every`-th after it. Precondition: every > 0.
+/// Returns true for the rows that a recorder keeps: the first one and every `every`-th after it. Precondition: every >
+/// 0.
 inline bool is_recorded(const StepRecord& record, std::uint64_t every) noexcept {
   return record.step % every == 0;
 }

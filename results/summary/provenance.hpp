@@ -20,7 +20,7 @@ struct Provenance {
   std::string cpu;         ///< model name
 };
 
-/// Of the running program. Reads /proc/cpuinfo.
+/// Returns the provenance of the running program. Reads /proc/cpuinfo.
 Provenance provenance();
 
 /// Goes into timing.json only.

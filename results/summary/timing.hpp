@@ -17,7 +17,7 @@ struct RunTiming {
   double loop = 0.0;                   ///< of the step loop, observers included [s]
   std::uint64_t steps = 0;             ///< rows computed in that time
   std::optional<StepLatency> latency;  ///< of single steps, when they were timed
-  std::uint64_t preemptions = 0;       ///< how often other processes took the processor away from the step loop
+  std::uint64_t preemptions = 0;       ///< involuntary context switches during the step loop
 };
 
 /// timing.json: apart from summary.json because no two runs take the same time. Names the build's instruction set and

@@ -6,7 +6,7 @@
 
 namespace hapbench {
 
-/// What is left to do of a run once it is computed; may be empty.
+/// Callback that stores the result of a finished run; called by one thread at a time. May be empty.
 using Delivery = std::function<void()>;
 
 /// Calls `work` for each of `runs` on up to `jobs` threads, and the deliveries it returns one at a time as they come,
@@ -17,7 +17,7 @@ using Delivery = std::function<void()>;
 void parallel_for(std::span<const std::size_t> runs, std::size_t jobs,
                   const std::function<Delivery(std::size_t run)>& work, const std::function<bool()>& stop);
 
-/// Threads that this process may use at once.
+/// Number of threads that this process may use at once.
 std::size_t available_threads();
 
 }  // namespace hapbench

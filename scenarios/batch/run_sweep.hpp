@@ -29,7 +29,7 @@ struct FailedRun {
   std::string problem;
 };
 
-/// What a sweep came to.
+/// Result of a sweep.
 struct SweepReport {
   std::vector<std::string> rows;    ///< of the shard, by run number; incomplete when a signal came
   std::optional<FailedRun> failed;  ///< the first of those that failed

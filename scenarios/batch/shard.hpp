@@ -11,7 +11,7 @@ struct Shard {
   std::size_t count = 1;
 
   bool has(std::size_t run) const { return run % count == index; }
-  /// How many of so many runs belong to it.
+  /// Number of the sweep's runs that belong to this shard.
   std::size_t size(std::size_t runs) const { return (runs + count - 1 - index) / count; }
 };
 

@@ -4,8 +4,9 @@
 
 namespace hapbench {
 
-/// While it lives, the first SIGINT or SIGTERM is noted only, so that work can come to a clean end; the second ends the
-/// process as usual. Signals that were ignored stay so. One at a time.
+/// While an object of this class exists, the first SIGINT or SIGTERM is only recorded, so that work can end cleanly;
+/// the second one terminates the process as usual. Signals that were ignored stay ignored. At most one object may exist
+/// at a time.
 class StopSignal {
  public:
   StopSignal();
@@ -13,7 +14,7 @@ class StopSignal {
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
 
-  /// The signal that came, or 0. For any thread.
+  /// Returns the signal received, or 0. May be called from any thread.
   int received() const noexcept;
 
  private:

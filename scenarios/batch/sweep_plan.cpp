@@ -10,8 +10,8 @@
 #include "results/io/json_text.hpp"
 #include "results/summary/provenance.hpp"
 #include "scenarios/batch/parallel_for.hpp"
-#include "scenarios/description/environment_codec.hpp"
-#include "scenarios/description/motion_codec.hpp"
+#include "scenarios/description/descriptions.hpp"
+#include "scenarios/description/writer.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "sim/core/hash.hpp"
@@ -19,7 +19,7 @@
 namespace hapbench {
 namespace {
 
-/// What the sweep must know of one run's scenario.
+/// The facts about one run's scenario that the sweep needs.
 struct Point {
   std::vector<std::string> warnings;
   MetricSections sections;
@@ -35,13 +35,13 @@ MetricSections sections_of(const Scenario& scenario) {
 Point examine(const SweepPlan& plan, std::size_t run) {
   const LoadedScenario loaded = scenario_of(plan, run);
   const Scenario& scenario = loaded.scenario;
-  Point point{loaded.warnings, sections_of(scenario), environment_codec()->write(scenario.environment).dump(), ""};
+  Point point{loaded.warnings, sections_of(scenario), written(scenario.environment).dump(), ""};
   if (std::holds_alternative<PointShellEnvironment>(scenario.environment) ||
       std::holds_alternative<MeshEnvironment>(scenario.environment)) {
     point.files = point.environment;
   }
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
-    point.files += motion_codec()->write(scenario.motion).dump();
+    point.files += written_object(scenario.motion).dump();
   }
   return point;
 }
@@ -115,7 +115,7 @@ void examine_all(const SweepPlan& plan, std::size_t jobs, bool progress, Collect
   ProgressBar bar("checking", runs.size(), progress);
   std::size_t done = 0;
   std::map<std::size_t, std::exception_ptr> errors;
-  // Runs start in order: the lowest bad one is in flight, at least, when another one has failed.
+  // Runs start in order, so when any run fails, the lowest one that will fail has at least been started.
   std::atomic<bool> failed = false;
   const auto work = [&](std::size_t run) -> Delivery {
     try {

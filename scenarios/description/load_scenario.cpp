@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include "results/io/json_text.hpp"
-#include "scenarios/description/environment_codec.hpp"
-#include "scenarios/description/values.hpp"
+#include "scenarios/description/descriptions.hpp"
+#include "scenarios/description/reader.hpp"
+#include "scenarios/description/schema_writer.hpp"
+#include "scenarios/description/writer.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/number_table.hpp"
 #include "sim/core/hash.hpp"
@@ -74,8 +76,8 @@ void rethrow_with_file(const InputError& error, const std::filesystem::path& fil
 LoadedScenario read_scenario(const Json& json, const std::filesystem::path& directory) {
   LoadedScenario loaded;
   loaded.scenario.directory = directory;
-  scenario_codec().read(json, "", loaded.scenario);
-  loaded.warnings = fill_defaults(loaded.scenario);
+  Reader reader(json, "", &loaded.warnings);
+  reader.object(loaded.scenario);
   return loaded;
 }
 
@@ -113,19 +115,30 @@ Json effective_scenario(const Scenario& scenario, const std::filesystem::path& d
     const auto target = without_links(resolve_path(scenario, *file));
     *file = target.lexically_proximate(without_links(directory)).generic_string();
   }
-  return scenario_codec().write(effective);
+  return written_object(effective);
+}
+
+Json scenario_schema() {
+  Scenario defaults;
+  SchemaWriter writer;
+  writer.object(defaults);
+  Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"},
+                 {"title", "hapbench scenario"},
+                 {"description", "SI units; every key carries its own. A profile is a scalar function of time."}};
+  schema.update(writer.schema());
+  return schema;
 }
 
 Json environment_content(const Scenario& scenario) {
   Scenario content = scenario;
   name_by_content(named_file(content), scenario);
-  return environment_codec()->write(content.environment);
+  return written(content.environment);
 }
 
 std::string scenario_hash(const Scenario& scenario) {
   Scenario content = scenario;
   for (std::string* file : {named_file(content), named_motion(content)}) name_by_content(file, scenario);
-  return hash_text(hash_of(json_text(scenario_codec().write(content))));
+  return hash_text(hash_of(json_text(written_object(content))));
 }
 
 }  // namespace hapbench

@@ -5,11 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/description/scenario_codec.hpp"
+#include "scenarios/description/scenario.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
 
 namespace hapbench {
 
-/// A checked scenario with every default filled in.
+/// A checked scenario.
 struct LoadedScenario {
   Scenario scenario;
   std::filesystem::path file;
@@ -53,6 +55,9 @@ Json effective_scenario(const Scenario& scenario, const std::filesystem::path& d
 /// The environment with every default filled in, with hashes of the contents of named files in place of their paths:
 /// equal for equal point shells. Throws InputError.
 Json environment_content(const Scenario& scenario);
+
+/// The whole JSON Schema (draft 7) that scenarios/scenario.schema.json holds.
+Json scenario_schema();
 
 /// Identifies what is simulated: FNV-1a over the effective scenario, with the contents of named files in place of their
 /// paths, as 16 hexadecimal digits.

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -17,17 +18,20 @@
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/geometry/block_with_hole.hpp"
 #include "sim/loop/simulation.hpp"
-#include "sim/tool/tool_state.hpp"
+#include "sim/mesh/density.hpp"
+#include "sim/tool/cylinder.hpp"
 
-/// A scenario file as plain structs. Fields whose default depends on the kind of scene are std::optional here and
-/// filled in by `fill_defaults`. Names, units and ranges: scenario_codec.cpp.
+/// A scenario file as plain structs, with every default in place: a default-constructed scenario is that of springs.
+/// Names, units and ranges of the file's fields: the functions `describe` of this folder.
 namespace hapbench {
 
+/// What ends a run early, with the outcome of the same name.
+enum class StopCondition { leaves_hole, tool_horizontal };
+
 struct TimeFields {
-  double step = 0.0005;                ///< [s]
-  std::optional<std::int64_t> steps;   ///< rows; exactly one of the two is given
-  std::optional<double> duration;      ///< [s]
-  std::vector<std::string> stop_when;  ///< "leaves_hole", "tool_horizontal"
+  double step = 0.0005;    ///< [s]
+  std::int64_t steps = 1;  ///< rows
+  std::vector<StopCondition> stop_when;
 };
 
 struct SpringGroup {
@@ -45,8 +49,8 @@ struct SpringsEnvironment {
 };
 struct BlockEnvironment {
   BlockWithHole block;
-  double grid = 0.0001;                     ///< of the density field [m]
-  std::string density = "signed_distance";  ///< or "binary"
+  double grid = 0.0001;  ///< of the density field [m]
+  Density density = Density::signed_distance;
 };
 struct PointShellEnvironment {
   std::string file;            ///< CSV or PLY, relative to the scenario file
@@ -67,13 +71,13 @@ struct InitialFields {
 };
 
 struct ToolFields {
-  std::optional<double> diameter;  ///< [m]
-  std::optional<double> length;    ///< [m]
-  std::optional<std::string> tip;  ///< "flat", "round"
+  double diameter = 0.001;  ///< [m]
+  double length = 0.01;     ///< [m]
+  Tip tip = Tip::flat;
 };
 
 struct OrientationFields {
-  std::optional<Vec3> up;
+  Vec3 up = {0.0, 1.0, 0.0};
   Vec3 lean = {1.0, 0.0, 0.0};
   Profile tilt;
   Profile azimuth;
@@ -87,7 +91,7 @@ struct RecordedPosition {
 };
 using PositionFields = std::variant<FreePosition, PrescribedPosition, RecordedPosition>;
 struct MotionFields {
-  std::optional<OrientationFields> orientation;  ///< a recorded motion has none
+  std::optional<OrientationFields> orientation = OrientationFields{};  ///< none with a recorded position alone
   PositionFields position;
 };
 
@@ -114,17 +118,7 @@ struct IdealDeviceFields {
 using DeviceFields = std::variant<IdealDeviceFields, AdmittanceDeviceConfig>;
 
 struct IntegratorFields {
-  Integrator type = Integrator::leapfrog;
-};
-
-/// The part of RenderingConfig that has one default for every scene, and beside it what depends on the scene.
-struct RenderingFields {
-  RenderingConfig config;
-  std::optional<std::string> depth_model;
-  std::optional<std::optional<ReductionConfig>> reduction;
-  std::optional<double> mass;
-  std::optional<double> mu_s;
-  std::optional<double> mu_f;
+  const IntegratorEntry* type = &kLeapfrog;  ///< never null
 };
 
 struct RecordFields {
@@ -147,8 +141,8 @@ struct MetricBound {
 };
 /// What the run must show to count as expected: one of the outcomes, and bounds on metrics.
 struct ExpectFields {
-  std::vector<std::string> outcomes = {"completes", "leaves_hole", "tool_horizontal"};
-  std::map<std::string, std::optional<MetricBound>> metrics;
+  std::vector<Outcome> outcomes = {Outcome::completes, Outcome::leaves_hole, Outcome::tool_horizontal};
+  std::map<std::string, MetricBound> metrics;
 };
 
 struct Scenario {
@@ -163,7 +157,7 @@ struct Scenario {
   MotionFields motion;
   HandFields hand;
   DeviceFields device;
-  RenderingFields rendering;
+  RenderingConfig rendering;
   IntegratorFields integrator;
   DivergenceBounds bounds;
   RecordFields record;
@@ -175,10 +169,9 @@ struct Scenario {
 /// Where a file named in the scenario lies.
 std::filesystem::path resolve_path(const Scenario& scenario, const std::string& file);
 
-/// Fills in every default that depends on the kind of scene (the thesis's parameters of that scene) and whatever the
-/// algorithm fixes. Returns a warning for each given value that the algorithm's definition overrides. Throws InputError
-/// for contradictions that involve a default.
-std::vector<std::string> fill_defaults(Scenario& scenario);
+/// The scenario with another algorithm and with what that fixes: depth model and reduction. Precondition: the name is
+/// known.
+Scenario with_algorithm(Scenario scenario, std::string_view algorithm);
 
 /// The sections of a summary that not every run has.
 struct MetricSections {

@@ -9,6 +9,7 @@
 
 #include "algorithms/registry.hpp"
 #include "results/io/json_text.hpp"
+#include "scenarios/input/input_error.hpp"
 
 namespace hapbench {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/description/codec.hpp"
+#include "scenarios/input/json_file.hpp"
 #include "scenarios/input/shell_cache.hpp"
 #include "scenarios/program/command_line.hpp"
 #include "sim/core/skips.hpp"

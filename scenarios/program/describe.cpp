@@ -5,13 +5,13 @@
 #include "algorithms/registry.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/environment_codec.hpp"
-#include "scenarios/description/integrator_codec.hpp"
+#include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/schema_text.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/studies/stability/map_scenes.hpp"
+#include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
 namespace {
@@ -34,10 +34,12 @@ Description describe_model(const char* kind, const ModelInfo& info) {
             {"parameters", Json::array()}};
   if (info.parameters.empty()) return d;
   Table table({{"parameter", false}, {"unit", false}, {"default", false}, {"range", false}, {"meaning", false}});
-  for (const ParameterInfo& p : info.parameters) {
-    table.add({p.name, p.unit, p.default_value, p.range, p.meaning});
+  for (const auto& [parameter, meaning] : info.parameters) {
+    const Json& field = *find_in_schema(scenario_schema_once(), parameter.field);
+    const std::string unit = parameter.range.unit, initial = default_text(field), range = allowed_text(field);
+    table.add({parameter.field, unit, initial, range, meaning});
     d.json["parameters"].push_back(
-        {{"name", p.name}, {"unit", p.unit}, {"default", p.default_value}, {"range", p.range}, {"meaning", p.meaning}});
+        {{"name", parameter.field}, {"unit", unit}, {"default", initial}, {"range", range}, {"meaning", meaning}});
   }
   d.text += "\n" + table.text();
   return d;
@@ -58,7 +60,7 @@ Description describe_scenario(const std::filesystem::path& file) {
           effective};
 }
 
-/// Where the user's point shells are kept and how to be rid of them.
+/// Location and size of the shell cache, and how to delete it.
 Description describe_cache() {
   const ShellCache cache(shell_cache_directory());
   const auto [shells, bytes] = cache.contents();
@@ -108,7 +110,7 @@ std::vector<std::string> all_names() {
   for (const AlgorithmEntry& entry : algorithms()) names.emplace_back(entry.info->name);
   for (const DepthModelEntry& entry : depth_models()) names.emplace_back(entry.info->name);
   for (const ModelInfo* stage : stages()) names.emplace_back(stage->name);
-  for (const ModelInfo& info : integrator_infos()) names.emplace_back(info.name);
+  for (const IntegratorEntry* entry : kIntegrators) names.emplace_back(entry->info.name);
   for (const std::string& name : environment_names()) names.push_back(name);
   for (const BundledScenario& bundled : bundled_scenarios()) names.push_back(bundled.name);
   return names;
@@ -127,9 +129,7 @@ Description describe_name(const std::string& name) {
   if (const AlgorithmEntry* entry = find_algorithm(name)) add(describe_model("algorithm", *entry->info));
   if (const DepthModelEntry* entry = find_depth_model(name)) add(describe_model("depth model", *entry->info));
   if (const ModelInfo* stage = find_stage(name)) add(describe_model("stage", *stage));
-  for (const ModelInfo& info : integrator_infos()) {
-    if (name == info.name) add(describe_model("integrator", info));
-  }
+  if (const IntegratorEntry* entry = find_integrator(name)) add(describe_model("integrator", entry->info));
   if (!d.text.empty()) return d;
   if (const Json* fields = find_in_schema(scenario_schema_once(), name)) return {fields_text(name, *fields), *fields};
   for (const BundledScenario& bundled : bundled_scenarios()) {

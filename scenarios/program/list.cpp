@@ -4,11 +4,11 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/environment_codec.hpp"
-#include "scenarios/description/integrator_codec.hpp"
+#include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/table.hpp"
+#include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
 namespace {
@@ -24,7 +24,7 @@ int list(const OutputOptions& options) {
   for (const AlgorithmEntry& entry : algorithms()) add_models(table, json, "algorithm", *entry.info);
   for (const DepthModelEntry& entry : depth_models()) add_models(table, json, "depth model", *entry.info);
   for (const ModelInfo* stage : stages()) add_models(table, json, "stage", *stage);
-  for (const ModelInfo& info : integrator_infos()) add_models(table, json, "integrator", info);
+  for (const IntegratorEntry* entry : kIntegrators) add_models(table, json, "integrator", entry->info);
   for (const std::string& name : environment_names()) {
     table.add({"environment", name, ""});
     json.push_back({{"kind", "environment"}, {"name", name}});

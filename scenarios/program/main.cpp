@@ -39,7 +39,7 @@ int run_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace hapbench;
-  // A file that becomes larger than the user's limit is an error of writing like others, not the end of the process.
+  // Exceeding the file size limit should be an ordinary write error and not terminate the process.
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     return run_program(argc, argv);

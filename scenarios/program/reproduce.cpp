@@ -52,7 +52,7 @@ std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
   return claims;
 }
 
-/// True when the directory holds the results of this very scenario from this very program.
+/// Returns true if the directory holds results of exactly this scenario, computed by exactly this program.
 bool is_current(const fs::path& directory, const Scenario& scenario) {
   try {
     const Json summary = parse_json(read_text_file(directory / "summary.json", kLargestJsonFile));
@@ -121,7 +121,7 @@ class ThesisRuns {
   bool as_expected_ = true;
 };
 
-Json ledger_json(const std::vector<Judged>& judged) {
+Json ledger_json(const std::vector<Judged>& judged, const PublishedNumbers& published) {
   Json claims = Json::array();
   for (const Judged& j : judged) {
     claims.push_back({{"id", j.claim.id},
@@ -129,7 +129,7 @@ Json ledger_json(const std::vector<Judged>& judged) {
                       {"claim", j.claim.claim},
                       {"published", j.claim.published},
                       {"measured", j.finding.measured},
-                      {"rule", j.claim.rule},
+                      {"rule", j.claim.rule(published)},
                       {"verdict", verdict_name(j.finding.verdict)},
                       {"why", j.finding.why},
                       {"timing", j.claim.timing}});
@@ -160,10 +160,10 @@ int reproduce(const ReproduceOptions& options) {
   std::vector<Judged> judged;
   Table table({{"id", false}, {"verdict", false}, {"measured", false}});
   for (const Claim& claim : claims) {
-    judged.push_back({claim, claim.judge(evidence)});
+    judged.push_back({claim, claim.judge(claim.measure(evidence), published)});
     table.add({claim.id, std::string(verdict_name(judged.back().finding.verdict)), judged.back().finding.measured});
   }
-  const Json json = ledger_json(judged);
+  const Json json = ledger_json(judged, published);
   const fs::path ledger = options.ledger.empty() ? fs::path(options.out) / "claims.json" : fs::path(options.ledger);
   write_file_atomically(ledger, json_text(json));
   write_file_atomically(fs::path(ledger).replace_extension(".md"), ledger_markdown(judged));

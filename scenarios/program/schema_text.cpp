@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "scenarios/description/scenario_codec.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/table.hpp"
 
 namespace hapbench {
@@ -45,12 +45,16 @@ const Json* plain_object(const Json& schema) {
   return second.contains("properties") && tag_of(second).empty() ? &second : nullptr;
 }
 
-/// A bound without the ".0" that JSON gives to whole numbers.
+/// A number without the ".0" that JSON gives to whole ones; any other value as JSON.
 std::string bound_text(const Json& bound) {
   return bound.is_number_float() ? fmt::format("{:g}", bound.get<double>()) : bound.dump();
 }
 
 }  // namespace
+
+std::string default_text(const Json& schema) {
+  return schema.contains("default") ? bound_text(schema["default"]) : "by scene";
+}
 
 std::string allowed_text(const Json& schema) {
   if (schema.contains("enum")) return shown(schema["enum"]);

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "scenarios/description/codec.hpp"
+#include "scenarios/input/json_file.hpp"
 
 /// The JSON Schema as words for the terminal.
 namespace hapbench {
@@ -16,6 +16,9 @@ const Json* find_in_schema(const Json& schema, const std::string& name);
 
 /// The values a schema allows, in a few words: "number > 0 <= 1000", "null | integer >= 0 <= 5".
 std::string allowed_text(const Json& schema);
+
+/// The default of a field; "by scene" for one whose default depends on other fields.
+std::string default_text(const Json& schema);
 
 /// The fields of an object schema as a table of name, default, allowed values and meaning; one line for a plain value.
 std::string fields_text(const std::string& title, const Json& schema);

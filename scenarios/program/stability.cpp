@@ -63,8 +63,8 @@ Json limits_json(const LoadedScenario& loaded, const std::vector<StabilityLimit>
                     {"lambda_max", limit.lambda}});
   }
   return {{"name", loaded.scenario.name},
-          {"algorithm", loaded.scenario.rendering.config.algorithm},
-          {"integrator", integrator_name(loaded.scenario.integrator.type)},
+          {"algorithm", loaded.scenario.rendering.algorithm},
+          {"integrator", loaded.scenario.integrator.type->info.name},
           {"limits", std::move(rows)}};
 }
 
@@ -88,10 +88,10 @@ std::string limits_text(const LoadedScenario& loaded, const std::vector<Stabilit
     table.add({limit.name, limit_text(limit.analytic.value_or(std::nan(""))), limit_text(limit.eigenvalue),
                limit_text(limit.simulation), limit.unit, significant(limit.damping_at_limit, 5)});
   }
-  const RenderingFields& rendering = loaded.scenario.rendering;
+  const RenderingConfig& rendering = loaded.scenario.rendering;
   return fmt::format("{}: {}, {}, M = {} kg, dt = {} s, zeta = {}, lambda_max(S) = {}\n\n{}", loaded.scenario.name,
-                     rendering.config.algorithm, integrator_name(loaded.scenario.integrator.type), *rendering.mass,
-                     loaded.scenario.time.step, rendering.config.damping_ratio, significant(limits.front().lambda, 6),
+                     rendering.algorithm, loaded.scenario.integrator.type->info.name, rendering.mass,
+                     loaded.scenario.time.step, rendering.damping_ratio, significant(limits.front().lambda, 6),
                      table.text()) +
          disagreement_text(limits);
 }

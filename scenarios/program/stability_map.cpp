@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "results/io/csv_writer.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
 
@@ -35,14 +36,13 @@ std::vector<const StabilityMap*> chosen_maps(const StabilityOptions& options) {
   return maps;
 }
 
-std::vector<Integrator> chosen_integrators(const StabilityOptions& options) {
-  if (options.integrators.empty()) return {Integrator::leapfrog};
+std::vector<const IntegratorEntry*> chosen_integrators(const StabilityOptions& options) {
+  if (options.integrators.empty()) return {MapSubject{}.integrator};
   std::vector<std::string> names;
-  for (const Integrator integrator : kIntegrators) names.emplace_back(integrator_name(integrator));
-  std::vector<Integrator> integrators;
+  for (const IntegratorEntry* entry : kIntegrators) names.emplace_back(entry->info.name);
+  std::vector<const IntegratorEntry*> integrators;
   for (const std::string& name : chosen_names("--integrators", options.integrators, names)) {
-    const auto place = std::find(names.begin(), names.end(), name) - names.begin();
-    integrators.push_back(kIntegrators[static_cast<std::size_t>(place)]);
+    integrators.push_back(find_integrator(name));
   }
   return integrators;
 }
@@ -51,15 +51,15 @@ std::vector<Integrator> chosen_integrators(const StabilityOptions& options) {
 std::vector<MapSubject> chosen_subjects(const StabilityOptions& options) {
   std::vector<MapSubject> subjects;
   for (const std::string& algorithm : options.chosen_algorithms()) {
-    for (const Integrator integrator : chosen_integrators(options)) subjects.push_back({algorithm, integrator});
+    for (const IntegratorEntry* integrator : chosen_integrators(options)) subjects.push_back({algorithm, integrator});
   }
   return subjects;
 }
 
 std::string label(const MapSubject& subject) {
-  return subject.integrator == Integrator::leapfrog
+  return subject.integrator == MapSubject{}.integrator
              ? subject.algorithm
-             : fmt::format("{} {}", subject.algorithm, integrator_name(subject.integrator));
+             : fmt::format("{} {}", subject.algorithm, subject.integrator->info.name);
 }
 
 void write_points(const fs::path& directory, const StabilityMap& map, const std::vector<MapResult>& results) {
@@ -68,7 +68,7 @@ void write_points(const fs::path& directory, const StabilityMap& map, const std:
   for (const MapResult& result : results) {
     for (const MapPoint& p : result.points) {
       csv.row(std::string_view(result.subject.algorithm), p.x, p.y, motion_class_name(p.motion), p.lambda, p.margin,
-              integrator_name(result.subject.integrator));
+              std::string_view(result.subject.integrator->info.name));
     }
   }
   csv.finish();
@@ -81,7 +81,7 @@ void write_boundary(const fs::path& directory, const StabilityMap& map, const st
   for (const MapResult& result : results) {
     for (const BoundaryPoint& p : result.boundary) {
       csv.row(std::string_view(result.subject.algorithm), p.x, p.analytic, p.simulation, p.difference(),
-              std::string_view(p.no_theory), integrator_name(result.subject.integrator));
+              std::string_view(p.no_theory), std::string_view(result.subject.integrator->info.name));
     }
   }
   csv.finish();
@@ -135,7 +135,7 @@ Json result_json(const MapResult& result) {
   }
   Json json = {{"map", result.map->name},
                {"algorithm", result.subject.algorithm},
-               {"integrator", integrator_name(result.subject.integrator)},
+               {"integrator", result.subject.integrator->info.name},
                {"boundary", std::move(rows)}};
   for (const MotionClass motion : {MotionClass::stable, MotionClass::vibrating, MotionClass::diverged}) {
     json[std::string(motion_class_name(motion))] = count_of(result, motion);
@@ -147,8 +147,7 @@ std::vector<std::string> cells_of(const MapResult& result) {
   const auto difference = largest_difference(result);
   const auto without =
       std::count_if(result.boundary.begin(), result.boundary.end(), [](const BoundaryPoint& p) { return !p.analytic; });
-  std::vector<std::string> cells = {result.map->name, result.subject.algorithm,
-                                    std::string(integrator_name(result.subject.integrator))};
+  std::vector<std::string> cells = {result.map->name, result.subject.algorithm, result.subject.integrator->info.name};
   for (const MotionClass motion : {MotionClass::stable, MotionClass::vibrating, MotionClass::diverged}) {
     cells.push_back(std::to_string(count_of(result, motion)));
   }

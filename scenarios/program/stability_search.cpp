@@ -48,8 +48,8 @@ void describe(const StabilityOptions& options, const std::string& name, const Se
   scenario.description = fmt::format(
       "The worst motion of the hand found for {} in {}: objective {} {}, against {} of the tool at rest (seed {}, {} "
       "evaluations, then minimised).",
-      scenario.rendering.config.algorithm, scene, options.objective, significant(found.badness),
-      significant(found.at_rest), options.seed, options.evaluations);
+      scenario.rendering.algorithm, scene, options.objective, significant(found.badness), significant(found.at_rest),
+      options.seed, options.evaluations);
 }
 
 Json found_json(const std::string& algorithm, const StabilityOptions& options, const SearchResult& found,
@@ -84,7 +84,7 @@ int stability_search_command(const StabilityOptions& options) {
                {"scenario", false}});
   Json json = Json::array();
   for (const LoadedScenario& scene : scenes) {
-    const std::string& algorithm = scene.scenario.rendering.config.algorithm;
+    const std::string& algorithm = scene.scenario.rendering.algorithm;
     SearchResult found =
         with_file(scene, [&] { return search_adversary(scene.scenario, search_options(options, algorithm)); });
     const std::string name = fmt::format("worst_{}_{}", options.objective, algorithm);

@@ -33,7 +33,7 @@ Json counts_json(const StressCounts& c) {
                {"out_of_bound", c.out_of_bound},
                {"points_dropped", c.points_dropped},
                {"largest_force_per_K_d", c.largest_force},
-               {"largest_share_of_bound", c.largest_share}};
+               {"largest_share_of_bound", c.largest_share ? Json(*c.largest_share) : Json(nullptr)}};
   json["first_bad_set"] = is_bad(c) ? Json(c.first_bad) : Json(nullptr);
   return json;
 }
@@ -59,7 +59,7 @@ int stability_stress_command(const StabilityOptions& options) {
   for (const StressCounts& c : all) {
     table.add({c.algorithm, std::to_string(c.sets), std::to_string(c.in_contact), std::to_string(c.non_finite),
                std::to_string(c.out_of_bound), std::to_string(c.points_dropped), significant(c.largest_force),
-               significant(c.largest_share, 3)});
+               c.largest_share ? significant(*c.largest_share, 3) : "none"});
     json.push_back(counts_json(c));
     if (!is_bad(c)) continue;
     fmt::print(stderr,

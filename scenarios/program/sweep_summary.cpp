@@ -11,7 +11,7 @@
 namespace hapbench {
 namespace {
 
-/// Longer tables are better looked at with other programs.
+/// Longer tables are not printed; other programs show them better.
 constexpr std::size_t kMostShown = 100;
 
 /// A number of a cell for people, in another unit.

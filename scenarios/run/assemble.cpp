@@ -51,7 +51,7 @@ double cell_size(const Environment& environment) {
 }
 
 Orientation make_orientation(const OrientationFields& fields) {
-  return {fields.up->normalized(), fields.lean.normalized(), fields.tilt, fields.azimuth};
+  return {fields.up.normalized(), fields.lean.normalized(), fields.tilt, fields.azimuth};
 }
 
 std::unique_ptr<Motion> make_motion(const Scenario& scenario) {
@@ -112,24 +112,13 @@ std::unique_ptr<Device> make_device(const Scenario& scenario, Trial trial) {
     return std::make_unique<IdealDevice>(ideal->force_limit);
   }
   AdmittanceDeviceConfig config = std::get<AdmittanceDeviceConfig>(scenario.device);
-  if (scenario.motion.orientation) config.sensor.down = -scenario.motion.orientation->up->normalized();
+  if (scenario.motion.orientation) config.sensor.down = -scenario.motion.orientation->up.normalized();
   config.sensor.seed = derived_seed(scenario, trial, kSensorNoise);
   return std::make_unique<AdmittanceDevice>(config);
 }
 
-RenderingConfig rendering_config(const RenderingFields& fields, Skips skips) {
-  RenderingConfig config = fields.config;
-  config.skips = skips;
-  config.depth_model = *fields.depth_model;
-  config.reduction = *fields.reduction;
-  config.mass = *fields.mass;
-  config.mu_s = *fields.mu_s;
-  config.mu_f = *fields.mu_f;
-  return config;
-}
-
-bool contains(const std::vector<std::string>& list, const char* name) {
-  return std::find(list.begin(), list.end(), name) != list.end();
+bool contains(const std::vector<StopCondition>& list, StopCondition condition) {
+  return std::find(list.begin(), list.end(), condition) != list.end();
 }
 
 }  // namespace
@@ -159,21 +148,21 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
 }
 
 Cylinder make_cylinder(const ToolFields& fields) {
-  return {*fields.diameter / 2.0, *fields.length, *fields.tip == "round" ? Tip::round : Tip::flat};
+  return {fields.diameter / 2.0, fields.length, fields.tip};
 }
 
 SimulationConfig simulation_config(const Scenario& scenario, Skips skips) {
   SimulationConfig config;
   config.skips = skips;
   config.dt = scenario.time.step;
-  config.steps = static_cast<std::uint64_t>(*scenario.time.steps);
-  config.mass = *scenario.rendering.mass;
+  config.steps = static_cast<std::uint64_t>(scenario.time.steps);
+  config.mass = scenario.rendering.mass;
   config.integrator = scenario.integrator.type;
   config.position = scenario.initial.position;
   config.velocity = scenario.initial.velocity;
-  if (scenario.motion.orientation) config.up = scenario.motion.orientation->up->normalized();
-  config.stop_when_leaves_hole = contains(scenario.time.stop_when, "leaves_hole");
-  config.stop_when_horizontal = contains(scenario.time.stop_when, "tool_horizontal");
+  if (scenario.motion.orientation) config.up = scenario.motion.orientation->up.normalized();
+  config.stop_when_leaves_hole = contains(scenario.time.stop_when, StopCondition::leaves_hole);
+  config.stop_when_horizontal = contains(scenario.time.stop_when, StopCondition::tool_horizontal);
   config.bounds = scenario.bounds;
   return config;
 }
@@ -187,7 +176,8 @@ SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointSh
   SimulationParts parts;
   parts.tool = std::make_shared<Cylinder>(make_cylinder(scenario.tool));
   parts.shell = std::move(shell);
-  const RenderingConfig rendering = rendering_config(scenario.rendering, skips);
+  RenderingConfig rendering = scenario.rendering;
+  rendering.skips = skips;
   if (const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment)) {
     const auto seed = static_cast<std::uint64_t>(scenario.seed);
     parts.springs = std::make_shared<const SpringSet>(make_springs(*springs, seed));

@@ -12,10 +12,10 @@ namespace hapbench {
 /// about what is odd, each with file and pointer. Throws InputError.
 std::vector<std::string> check_named_files(const LoadedScenario& loaded);
 
-/// The tool, for those who need to know that it is a cylinder. Precondition: defaults are filled in.
+/// The tool, for those who need to know that it is a cylinder.
 Cylinder make_cylinder(const ToolFields& fields);
 
-/// Numbers of the run. Precondition: defaults are filled in.
+/// Numbers of the run.
 SimulationConfig simulation_config(const Scenario& scenario, Skips skips = Skips::taken);
 
 /// One run of a scenario that has several: a simulated subject's trial. Both count from 0.
@@ -28,8 +28,8 @@ struct Trial {
 /// springs.
 std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const std::vector<SurfacePoint>& points);
 
-/// Everything the run is made of. Preconditions: defaults are filled in, `shell` is make_shell of this scenario. Throws
-/// InputError when a named file cannot be used. With skips off, every step compares every point with the tool.
+/// Everything the run is made of. Precondition: `shell` is make_shell of this scenario. Throws InputError when a named
+/// file cannot be used. With skips off, every step compares every point with the tool.
 SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial,
                          Skips skips = Skips::taken);
 /// The only or first run, with a shell of its own.

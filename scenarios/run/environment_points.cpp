@@ -12,8 +12,7 @@ namespace {
 
 /// The vertices of the surface of the density field, in the order that the contact search likes best.
 std::vector<SurfacePoint> block_points(const BlockEnvironment& environment) {
-  const Density density = environment.density == "binary" ? Density::binary : Density::signed_distance;
-  const DensityField field = density_field(environment.block, environment.grid, density);
+  const DensityField field = density_field(environment.block, environment.grid, environment.density);
   return in_grid_order(vertices_with_normals(marching_cubes(field)), environment.grid);
 }
 

@@ -16,31 +16,36 @@ std::string divergence_text(const SimulationResult& result) {
   return fmt::format(" ({} reached {:.4g} at step {}, beyond {:.4g})", d.quantity, d.magnitude, d.step, d.bound);
 }
 
+std::vector<std::string> names_of(const std::vector<Outcome>& outcomes) {
+  std::vector<std::string> names;
+  for (const Outcome outcome : outcomes) names.emplace_back(outcome_name(outcome));
+  return names;
+}
+
 }  // namespace
 
 bool outcome_is_expected(const ExpectFields& expect, Outcome outcome) {
-  return std::find(expect.outcomes.begin(), expect.outcomes.end(), outcome_name(outcome)) != expect.outcomes.end();
+  return std::find(expect.outcomes.begin(), expect.outcomes.end(), outcome) != expect.outcomes.end();
 }
 
 std::vector<std::string> unmet_expectations(const ExpectFields& expect, const RunSummary& run) {
   std::vector<std::string> unmet;
   if (!outcome_is_expected(expect, run.result.outcome)) {
     unmet.push_back(fmt::format("outcome is \"{}\"{}; expected {}", outcome_name(run.result.outcome),
-                                divergence_text(run.result), quoted_list(expect.outcomes)));
+                                divergence_text(run.result), quoted_list(names_of(expect.outcomes))));
   }
   const auto metrics = boundable_metrics(run);
   for (const auto& [name, bound] : expect.metrics) {
-    if (!bound) continue;
     const auto value = metrics.value(name, nlohmann::ordered_json(nullptr));
     if (!value.is_number()) {
       unmet.push_back(fmt::format("{} has no value; expected one", name));
       continue;
     }
     const double number = value.get<double>();
-    if (bound->min && number < *bound->min)
-      unmet.push_back(fmt::format("{} is {}; expected at least {}", name, number, *bound->min));
-    if (bound->max && number > *bound->max)
-      unmet.push_back(fmt::format("{} is {}; expected at most {}", name, number, *bound->max));
+    if (bound.min && number < *bound.min)
+      unmet.push_back(fmt::format("{} is {}; expected at least {}", name, number, *bound.min));
+    if (bound.max && number > *bound.max)
+      unmet.push_back(fmt::format("{} is {}; expected at most {}", name, number, *bound.max));
   }
   return unmet;
 }

@@ -109,7 +109,7 @@ RunSummary summarise(const Scenario& scenario, const std::vector<TrialResult>& t
   }
   RunSummary summary;
   summary.name = scenario.name;
-  summary.algorithm = scenario.rendering.config.algorithm;
+  summary.algorithm = scenario.rendering.algorithm;
   summary.result = merged_result(trials);
   summary.duration = static_cast<double>(summary.result.rows) * scenario.time.step;
   summary.metrics = merged(metrics);
@@ -155,7 +155,7 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
   if (output) create_output(*output);
 
   std::optional<StepTimes> times;
-  if (scenario.record.timing) times.emplace(static_cast<std::size_t>(*scenario.time.steps) * trials.size());
+  if (scenario.record.timing) times.emplace(static_cast<std::size_t>(scenario.time.steps) * trials.size());
   std::vector<TrialResult> results;
   for (const Trial trial : trials) {
     TrialOptions options;

@@ -31,8 +31,8 @@ class TrialObservers {
     observers_.push_back(&metrics_);
     observers_.push_back(&passivity_);
     if (scenario.record.energy) {
-      ledger_.emplace(*scenario.rendering.mass, scenario.time.step, parts.motion->position_is_free(),
-                      parts.source->capacity(), scenario.integrator.type);
+      ledger_.emplace(scenario.rendering.mass, scenario.time.step, parts.motion->position_is_free(),
+                      parts.source->capacity(), scenario.integrator.type->holds_force);
       observers_.push_back(&*ledger_);
     }
     if (scenario.record.ideal_trajectory) {
@@ -110,7 +110,7 @@ TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell
   SimulationParts parts = assemble(scenario, std::move(shell), trial, options.skips);
   TrialObservers observers(scenario, parts, trial);
   if (options.directory) observers.record(scenario.record, *options.directory, parts.source->capacity());
-  Progress bar(options.label, static_cast<std::uint64_t>(*scenario.time.steps), !options.label.empty());
+  Progress bar(options.label, static_cast<std::uint64_t>(scenario.time.steps), !options.label.empty());
   observers.add(bar);
   Simulation simulation(simulation_config(scenario, options.skips), std::move(parts), observers.all());
 

@@ -6,8 +6,11 @@
 
 #include "scenarios/thesis_claims/evidence.hpp"
 #include "scenarios/thesis_claims/finding.hpp"
+#include "scenarios/thesis_claims/measured.hpp"
 
-/// What the thesis claims, and how each claim is judged from the results of its scenarios.
+/// What the thesis claims, and how each claim is judged. All of a claim stands together in the file of its chapter: its
+/// text, what is measured, the thresholds and the rule. A new claim is an entry there, and its published numbers are
+/// one in results/reference/published.
 namespace hapbench {
 
 struct Claim {
@@ -15,19 +18,27 @@ struct Claim {
   const char* place;      ///< in the thesis
   const char* claim;      ///< in our words
   const char* published;  ///< its numbers, for people
-  const char* rule;       ///< what decides, for people; the code is in results/claims/rules.cpp
-  Finding (*judge)(const Evidence& evidence);
+  /// What decides, for people: written from the thresholds and published numbers that `judge` compares with.
+  std::string (*rule)(const PublishedNumbers& published);
+  /// Takes what decides from the results of scenarios, or computes it.
+  Measured (*measure)(const Evidence& evidence);
+  /// Depends on its arguments alone.
+  Finding (*judge)(const Measured& measured, const PublishedNumbers& published);
   bool timing = false;  ///< the finding holds times, so no two runs agree
 };
 
-/// All of them, in the order of the thesis.
+/// All of them, in the order of the ledger.
 std::vector<Claim> all_claims();
 
 /// By chapter.
-std::span<const Claim> evaluation_claims();  ///< T, R, L, J
-std::span<const Claim> simulation_claims();  ///< A
-std::span<const Claim> algorithm_claims();   ///< B, G
-std::span<const Claim> discussion_claims();  ///< C, F
-std::span<const Claim> experiment_claims();  ///< D
+std::span<const Claim> chapter_3_reduction();             ///< T
+std::span<const Claim> chapter_3_stiffness_ratios();      ///< R
+std::span<const Claim> chapter_3_force_limit();           ///< L, J
+std::span<const Claim> appendix_a_simulations();          ///< A
+std::span<const Claim> chapter_4_depths();                ///< G
+std::span<const Claim> appendix_b_original_algorithm();   ///< B
+std::span<const Claim> chapter_4_discussion();            ///< C
+std::span<const Claim> appendix_f_optional_algorithms();  ///< F
+std::span<const Claim> appendix_d_experiments();          ///< D
 
 }  // namespace hapbench

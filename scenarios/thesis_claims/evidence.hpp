@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/description/codec.hpp"
+#include "scenarios/input/json_file.hpp"
 #include "scenarios/input/shell_cache.hpp"
 #include "scenarios/thesis_claims/finding.hpp"
 

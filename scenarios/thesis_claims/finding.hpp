@@ -16,6 +16,9 @@ enum class Verdict {
 
 std::string_view verdict_name(Verdict verdict);
 
+/// The verdict of a rule for what is reproduced and a weaker one for what is so in kind.
+Verdict decide(bool reproduced, bool in_kind);
+
 /// A rule's answer: computed from measured numbers, never written by hand.
 struct Finding {
   Verdict verdict = Verdict::not_reproducible;

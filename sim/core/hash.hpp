@@ -8,21 +8,21 @@
 
 namespace hapbench {
 
-/// FNV-1a, 64 bits (Fowler, Noll, Vo; draft-eastlake-fnv): names contents, resists no attacker. The same on every
-/// machine, whatever its byte order.
+/// FNV-1a, 64 bits (Fowler, Noll, Vo; draft-eastlake-fnv). Identifies contents; it is not a cryptographic hash. The
+/// value does not depend on the machine's byte order.
 class Hash64 {
  public:
   /// Plain FNV-1a, byte by byte.
   constexpr void bytes(std::string_view text) noexcept {
     for (const char c : text) mix(static_cast<unsigned char>(c));
   }
-  /// One round for a whole word, eight times cheaper than its bytes. A multiplication carries upwards only, so the
-  /// upper half is folded back: otherwise two flipped sign bits, as in a mirrored run, would cancel.
+  /// Mixes in a whole word in one round, eight times cheaper than byte by byte. Multiplication carries upwards only, so
+  /// the upper half is folded into the lower one; otherwise two flipped sign bits, as in a mirrored run, would cancel.
   constexpr void word(std::uint64_t value) noexcept {
     mix(value);
     state_ ^= state_ >> 32;
   }
-  /// The bit pattern, so that 0 and -0 differ and equal hashes mean bit-identical numbers.
+  /// Mixes in the bit pattern, so 0 and -0 differ, and equal hashes mean bit-identical numbers.
   constexpr void real(double value) noexcept { word(std::bit_cast<std::uint64_t>(value)); }
 
   constexpr std::uint64_t value() const noexcept { return state_; }

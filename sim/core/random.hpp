@@ -11,8 +11,8 @@
 
 namespace hapbench {
 
-/// Seeded random numbers that are the same with every standard library: the engine is pinned (std::mt19937_64, whose
-/// output the standard fixes) and the distributions are ours, because the standard leaves its own unspecified.
+/// Seeded random numbers that are identical with every standard library. The engine is std::mt19937_64, whose output
+/// the standard specifies; the distributions are our own, because the standard does not specify the results of its own.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
@@ -23,14 +23,14 @@ class Random {
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// Uniform integer in [0, n); n > 0. The modulo bias is below n / 2^64.
   std::uint64_t below(std::uint64_t n) { return engine_() % n; }
-  /// Normal with mean 0 and standard deviation 1 (Box and Muller; the second number is not kept, so that the stream
-  /// does not depend on who asked before).
+  /// Normal with mean 0 and standard deviation 1 (Box-Muller). The second number of each pair is discarded, so that the
+  /// stream does not depend on earlier calls.
   double normal() {
     const double r = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     return r * std::cos(2.0 * std::numbers::pi * uniform());
   }
 
-  /// Puts items into a random order (Fisher and Yates).
+  /// Shuffles the items (Fisher-Yates).
   template <class T>
   void shuffle(std::vector<T>& items) {
     for (std::size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[below(i)]);

@@ -2,11 +2,11 @@
 
 namespace hapbench {
 
-/// Whether a run leaves out work that cannot change its results. A switch of the run, not of the scenario: results are
-/// the same bytes either way, which is what turning skips off is for.
+/// Whether a run may skip work that cannot change its results. This is an option of the run and not of the scenario:
+/// the output must be identical either way, and `off` exists to test that.
 enum class Skips {
-  taken,  ///< only what is needed is computed
-  off     ///< everything is computed, by brute force and whether or not anybody looks at it
+  taken,  ///< compute only what the results depend on
+  off     ///< compute everything, by brute force, even if nothing reads it
 };
 
 }  // namespace hapbench

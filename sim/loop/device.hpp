@@ -7,14 +7,14 @@
 
 namespace hapbench {
 
-/// What the device makes of the hand's force in one step [N].
+/// The hand's force in one step, as the device measures and limits it [N].
 struct MeasuredForce {
   Vec3 measured = Vec3::Zero();  ///< f_meas: what the sensor reads
   Vec3 input = Vec3::Zero();     ///< f_meas*: what drives the virtual mass, after the input-force limiter
 };
 
-/// Energy that went into the moving parts of a device since its last reset [J]. Without rounding,
-/// stored = hand + actuator + dissipated.
+/// Energy balance of a device's moving parts since its last reset [J]. Up to rounding, stored = hand + actuator +
+/// dissipated.
 struct DeviceEnergy {
   double hand = 0.0;        ///< work of the hand on the handle
   double actuator = 0.0;    ///< work of the actuator
@@ -32,7 +32,7 @@ class Device {
   /// Follows the tool's motion over one step of dt seconds, while the hand pushes on the handle.
   virtual void advance(const ToolState& tool, const Vec3& hand_force, double dt) noexcept = 0;
   virtual HandleState handle() const noexcept = 0;
-  /// None when the handle is the tool itself, without mass and friction of its own.
+  /// Returns nothing if the handle is the tool itself and has no mass or friction of its own.
   virtual std::optional<DeviceEnergy> energy() const noexcept { return std::nullopt; }
 };
 

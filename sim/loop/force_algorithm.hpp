@@ -66,7 +66,7 @@ class ForceAlgorithm {
   /// Once before the `compute` of each row, for algorithms that want it: f_in, which drives the tool besides f_render
   /// over the coming step [N].
   virtual void take_input(const Vec3& input) noexcept { static_cast<void>(input); }
-  /// One step, or one state within it: some integrators (sim/loop/integrator.hpp) ask several times a step, the first
+  /// One step, or one state within it: some integrators (sim/loop/integrators) ask several times a step, the first
   /// time at the row. `contacts` holds the contacts at the tool's pose, with depth and gradient (ContactSource); on
   /// return it holds the rendered ones, with their weights.
   virtual void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept = 0;

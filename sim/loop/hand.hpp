@@ -11,14 +11,14 @@ struct HandleState {
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
 };
 
-/// What a person at the device perceives in one step: the handle between the fingers and what the display shows.
+/// What the user of the device perceives in one step: the handle in the hand and the contents of the display.
 struct HandView {
   HandleState handle;
   ToolPose tool;                    ///< on the display
   Vec3 model_force = Vec3::Zero();  ///< f_render of the step before, on the force gauge [N]
 };
 
-/// The human hand: what it pushes with, given time and what it perceives.
+/// Model of the human hand: its force on the handle as a function of time and of what it perceives.
 class Hand {
  public:
   virtual ~Hand() = default;
@@ -27,7 +27,7 @@ class Hand {
   virtual Vec3 force(double t, const HandView& view) noexcept = 0;
   /// The targets the hand works on; null when it has no such task. Lives as long as the hand.
   virtual const TargetTask* task() const noexcept { return nullptr; }
-  /// True once the hand has nothing left to do; the run ends with that row.
+  /// Returns true once the hand's task is finished; the run ends with that row.
   bool finished() const noexcept { return task() != nullptr && task()->finished(); }
 };
 

@@ -23,7 +23,7 @@ class ObservedEnergy {
   /// Back to t = 0.
   void reset() noexcept { *this = ObservedEnergy(dt_); }
 
-  /// Moves on to the row in which the tool is in this state.
+  /// Starts the next row; `tool` is the tool's state in it.
   void move(const ToolState& tool) noexcept {
     first_ = !begun_;
     begun_ = true;
@@ -33,7 +33,7 @@ class ObservedEnergy {
     if (force_acts_) energy_ -= force_.dot(0.5 * (velocity_ + tool.velocity) * dt_);
     if (moment_acts_) energy_ -= 0.5 * moment_.dot(turned());
   }
-  /// What is rendered in this row, to the tool of `move`.
+  /// Ends the row: `rendered` and `springs` act on the tool passed to `move`.
   void answer(const ToolState& tool, const Vec3& rendered, const SpringState& springs) noexcept {
     if (first_) energy_ = springs.energy;
     force_acts_ = !is_zero(rendered);
@@ -48,11 +48,11 @@ class ObservedEnergy {
     }
   }
 
-  /// Whether the last row and this one render neither force nor moment.
+  /// Returns true if neither the last row nor this one renders a force or a moment.
   bool rests(const Vec3& rendered, const SpringState& springs) const noexcept {
     return begun_ && !force_acts_ && !moment_acts_ && is_zero(rendered) && is_zero(springs.moment);
   }
-  /// Instead of `move` and `answer` in rows that rest: the same, cheaper.
+  /// Cheaper equivalent of `move` and `answer` for a row for which `rests` is true.
   void rest(const ToolState& tool) noexcept {
     first_ = false;
     now_ = !now_;
@@ -60,8 +60,10 @@ class ObservedEnergy {
     turn_is_known_ = false;
   }
 
-  double energy() const { return energy_; }  ///< E [J]; between `move` and `answer` without what the row's moment does
-  bool first() const { return first_; }      ///< whether this is the first row, in which the springs' energy counts
+  /// E [J]. After `move` but before `answer` it does not yet include the work of this row's moment.
+  double energy() const { return energy_; }
+  /// True in the first row, which starts from the springs' energy.
+  bool first() const { return first_; }
   /// The turn from the row before to this one [rad].
   const Vec3& turned() noexcept {
     if (!turn_is_known_) turn_ = first_ ? Vec3(Vec3::Zero()) : turn(axis_[!now_], axis_[now_]);
@@ -70,7 +72,7 @@ class ObservedEnergy {
   }
 
  private:
-  /// Without branches, unlike Eigen's.
+  /// Branch-free, unlike Eigen's isZero.
   static bool is_zero(const Vec3& v) noexcept { return (v.x() == 0.0) & (v.y() == 0.0) & (v.z() == 0.0); }
 
   double dt_;

@@ -4,7 +4,6 @@
 #include <numbers>
 #include <utility>
 
-#include "sim/loop/integrators/leapfrog.hpp"
 #include "sim/tool/turn.hpp"
 
 namespace hapbench {
@@ -32,6 +31,7 @@ class Simulation::Surroundings final : public ForceField {
 Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vector<Observer*> observers)
     : config_(std::move(config)),
       parts_(std::move(parts)),
+      integrator_(config_.integrator->make()),
       observers_(std::move(observers)),
       contacts_(parts_.source->capacity()) {
   ratio_wanted_ = springs_wanted_ = energy_wanted_ = config_.skips == Skips::off;
@@ -59,6 +59,7 @@ void Simulation::reset() noexcept {
   parts_.source->reset();
   parts_.algorithm->reset();
   parts_.device->reset(tool_);
+  integrator_->reset();
 }
 
 /// The turn from the row's axis to `axis`, a part of a step later, as an angular velocity through a first-order
@@ -82,15 +83,9 @@ void Simulation::move_tool_by_script() noexcept {
   tool_.pose.position = position;
 }
 
-/// Leapfrog, the thesis's, needs nothing but the row and is not made to pay for the others.
 void Simulation::move_tool_by_force() noexcept {
-  const Vec3 force = record_.hand.input + record_.force.rendered;
-  if (config_.integrator == Integrator::leapfrog) {
-    leapfrog(tool_, force, config_.mass, config_.dt);
-  } else {
-    Surroundings surroundings(*this);
-    integrate(config_.integrator, tool_, force, config_.mass, config_.dt, surroundings);
-  }
+  Surroundings surroundings(*this);
+  integrator_->step(tool_, record_.hand.input + record_.force.rendered, config_.mass, config_.dt, surroundings);
 }
 
 bool Simulation::step() noexcept {

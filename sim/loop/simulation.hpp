@@ -10,7 +10,7 @@
 #include "sim/loop/device.hpp"
 #include "sim/loop/force_algorithm.hpp"
 #include "sim/loop/hand.hpp"
-#include "sim/loop/integrators/integrator.hpp"
+#include "sim/loop/integrators/table.hpp"
 #include "sim/loop/observer.hpp"
 #include "sim/tool/motion.hpp"
 #include "sim/tool/tool_shape.hpp"
@@ -34,10 +34,10 @@ struct DivergenceBounds {
 
 /// Numbers of one run.
 struct SimulationConfig {
-  double dt = 0.0005;                            ///< [s]
-  std::uint64_t steps = 0;                       ///< rows 0 … steps - 1
-  double mass = 0.2;                             ///< of the virtual tool [kg]
-  Integrator integrator = Integrator::leapfrog;  ///< of a free position
+  double dt = 0.0005;                              ///< [s]
+  std::uint64_t steps = 0;                         ///< rows 0 … steps - 1
+  double mass = 0.2;                               ///< of the virtual tool [kg]
+  const IntegratorEntry* integrator = &kLeapfrog;  ///< of a free position; never null
   Vec3 position = Vec3::Zero();  ///< of the tip centre at t = 0 [m]; ignored when the motion prescribes it
   Vec3 velocity = Vec3::Zero();  ///< [m/s]
   Vec3 up = {0.0, 0.0, 1.0};     ///< unit; what the stop conditions call height
@@ -108,6 +108,7 @@ class Simulation {
 
   SimulationConfig config_;
   SimulationParts parts_;
+  std::unique_ptr<Integrator> integrator_;
   std::vector<Observer*> observers_;
   bool ratio_wanted_ = false;
   bool springs_wanted_ = false;

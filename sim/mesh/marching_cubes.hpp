@@ -2,15 +2,10 @@
 
 #include <functional>
 
+#include "sim/mesh/density.hpp"
 #include "sim/mesh/half_edge_mesh.hpp"
 
 namespace hapbench {
-
-/// What a density grid stores at its nodes.
-enum class Density {
-  signed_distance,  ///< minus the signed distance, iso value 0
-  binary            ///< 1 inside and 0 outside, iso value 0.5: the "raw density field" of thesis 2.1 taken literally
-};
 
 /// A solid sampled on a grid whose nodes lie at half-integer multiples of the spacing.
 struct DensityField {

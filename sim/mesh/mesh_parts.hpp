@@ -33,7 +33,7 @@ class MeshParts {
   std::size_t turn_outwards(const std::vector<Vec3>& vertices,
                             const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
-  /// Whether each triangle is to be turned.
+  /// True for each triangle whose winding must be reversed.
   const std::vector<bool>& turned() const { return turned_; }
 
  private:

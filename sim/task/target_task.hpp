@@ -8,8 +8,7 @@
 
 namespace hapbench {
 
-/// What the display shows of the tip and of a target (thesis Fig. D.5): a panel of the hole's bottom, or a height
-/// meter.
+/// The display's view of the tip and a target (thesis Fig. D.5): a panel of the hole's bottom, or a height meter.
 enum class TargetDisplay {
   panel,  ///< x and y
   height  ///< z

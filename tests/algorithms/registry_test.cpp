@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -12,23 +14,6 @@
 
 namespace hapbench {
 namespace {
-
-TEST(Registry, ListsTheAlgorithmsOfTheThesisAndOurOwn) {
-  for (const char* name : {"original_averaging", "summation", "mean", "virtual_coupling", "shaped_stiffness",
-                           "tandpasta", "normal_projection", "exact_shaping", "continuous_normal_projection"}) {
-    EXPECT_NE(find_algorithm(name), nullptr) << name;
-  }
-}
-
-TEST(Registry, ListsTheDepthModelsAndStages) {
-  for (const char* name :
-       {"shortest_distance", "surface_normal", "normal_projection", "continuous_normal_projection"}) {
-    EXPECT_NE(find_depth_model(name), nullptr) << name;
-  }
-  std::set<std::string> names;
-  for (const ModelInfo* stage : stages()) names.insert(stage->name);
-  EXPECT_EQ(names, (std::set<std::string>{"damping_and_limits", "local_average", "passivity_controller", "reduction"}));
-}
 
 TEST(Registry, EveryListedNameIsFoundAndBuilds) {
   for (const AlgorithmEntry& entry : algorithms()) {
@@ -70,6 +55,50 @@ TEST(Registry, EveryModelDocumentsItself) {
       EXPECT_EQ(std::string(parameter.name).rfind("rendering.", 0), 0u) << parameter.name;
     }
   }
+}
+
+TEST(Registry, EveryTheoryIsThatOfItsAlgorithm) {
+  for (const AlgorithmEntry& entry : algorithms()) {
+    ASSERT_NE(entry.theory, nullptr) << entry.info->name;
+    RenderingConfig config;
+    config.algorithm = entry.info->name;
+    if (const auto bound = entry.theory->force_bound) {
+      // One spring pulls with its own stiffness, and no algorithm may answer with less bound than that.
+      test::Setting setting;
+      setting.springs = SpringSet{{Vec3::UnitX()}, true};
+      setting.pose.position = {1e-4, 0.0, 0.0};
+      const RenderedForce force = test::Probe(setting, config).force_at(setting.pose);
+      const double most = config.stiffness * bound(config, setting.tool, 1, force.depth_max);
+      EXPECT_GT(force.spring.norm(), 0.0) << entry.info->name;
+      EXPECT_LE(force.spring.norm(), most * (1.0 + 1e-12)) << entry.info->name;
+    }
+    if (const auto wedge = entry.theory->wedge_stiffness) {
+      // A right angle of single points: one spring each, as far as the algorithm knows the faces apart.
+      const WedgeStiffness stiffness = wedge(config, 0.25 * std::numbers::pi, 1.0);
+      EXPECT_TRUE(std::isfinite(stiffness.along) && std::isfinite(stiffness.across)) << entry.info->name;
+      EXPECT_GT(stiffness.along, 0.0) << entry.info->name;
+      EXPECT_LE(std::max(stiffness.along, stiffness.across), 1.0 + 1e-12) << entry.info->name;
+    }
+  }
+}
+
+TEST(ForceBound, HoldsForSpringsOfEqualDepthInClosedForm) {
+  RenderingConfig config;
+  const auto bound = [&](const char* algorithm, std::size_t n) {
+    return find_algorithm(algorithm)->theory->force_bound(config, Cylinder{}, n, 1.0);
+  };
+  for (const std::size_t n : {1u, 2u, 10u, 200u}) {
+    const auto points = static_cast<double>(n);
+    EXPECT_EQ(bound("summation", n), points);  // n parallel springs
+    EXPECT_EQ(bound("mean", n), 1.0);
+    EXPECT_GE(bound("virtual_coupling", n), points / (1.0 + points));  // n parallel springs in series with one
+    EXPECT_GE(bound("shaped_stiffness", n), 1.0);
+    EXPECT_LE(bound("shaped_stiffness", n), 3.0);
+  }
+  // A proxy is not bounded by a depth but by how far it moves: 64 passes of a fifth of the radius, 0.5 mm.
+  EXPECT_DOUBLE_EQ(bound("proxy", 1), 64 * 0.2 * 0.0005);
+  config.iterations = 0;
+  EXPECT_EQ(bound("shaped_stiffness", 50), 50.0);  // summation
 }
 
 TEST(Registry, UnknownNamesAreNotFoundAndThrow) {

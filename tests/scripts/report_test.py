@@ -204,6 +204,8 @@ class BadInput(WithResults):
         for name, old, new, said in (
                 ("mean/trajectory.csv", "px_m", "qx_m", "line 1: no column px_m"),
                 ("mean/contacts.csv", "\n0,", "\nnan,", "line 2: step: got nan; allowed: a finite number"),
+                ("mean/stiffness_tensor.csv", "sxx", "qxx", "line 1: no column sxx"),
+                ("mean/stiffness_tensor.csv", "\n0,", "\n1000000,", "no row of step 0"),
                 ("mean/scenario.effective.json", "diameter_m", "width_m", "/tool/diameter_m: missing"),
                 ("shell.csv", "nx", "mx", "line 1: no column nx")):
             bad = self.root / "bad" / "peg_in_hole_2d"

@@ -16,11 +16,12 @@ namespace {
 
 constexpr double kSpacings[] = {0.0004, 0.0002, 0.0001, 0.00005, 0.000025};
 
+constexpr std::pair<const char*, Density> kDensities[] = {{"signed_distance", Density::signed_distance},
+                                                          {"binary", Density::binary}};
+
 /// The algorithms whose angular damping is compared with that of the tip's velocity alone: the two that the thesis
 /// compares.
 constexpr const char* kAngularlyDamped[] = {"original_averaging", "shaped_stiffness"};
-/// Those that create energy when a peg sticks in a hole; the passivity controller leaves the others alone.
-constexpr const char* kCreateEnergy[] = {"original_averaging", "summation", "tandpasta", "normal_projection"};
 
 const std::vector<std::string> kIdealColumns = {"ideal_height_error_rms_m", "ideal_height_error_max_m",
                                                 "ideal_lateral_error_rms_m", "interpenetration_max_m",
@@ -51,14 +52,14 @@ PrecisionResult study_spacing(const Scenario& given, const PrecisionOptions& opt
   result.columns = {"spacing_m", "points", "shell_bytes"};
   result.columns.insert(result.columns.end(), kIdealColumns.begin(), kIdealColumns.end());
   result.timed = "step";
-  for (const char* density : {"signed_distance", "binary"}) {
+  for (const auto& [name, density] : kDensities) {
     for (const double spacing : kSpacings) {
       Scenario scenario = drill_in_hole(given);
       auto& environment = std::get<BlockEnvironment>(scenario.environment);
       environment.density = density;
       environment.grid = spacing;
       const auto shell = shell_of(scenario, options);
-      PrecisionRow row = ideal_row(fmt::format("{} {}", density, spacing), scenario, shell, options.repetitions);
+      PrecisionRow row = ideal_row(fmt::format("{} {}", name, spacing), scenario, shell, options.repetitions);
       const double points = static_cast<double>(shell->size());
       const double bytes = static_cast<double>(shell->padded_size() * 6 * sizeof(double));
       row.values.insert(row.values.begin(), {spacing, points, bytes});
@@ -75,15 +76,16 @@ PrecisionResult study_algorithms(const Scenario& given, const PrecisionOptions& 
   PrecisionResult result;
   result.columns = kIdealColumns;
   result.timed = "step";
-  const std::size_t all = algorithms().size() + std::size(kAngularlyDamped) + std::size(kCreateEnergy);
+  const auto create_energy = std::count_if(algorithms().begin(), algorithms().end(),
+                                           [](const AlgorithmEntry& algorithm) { return algorithm.creates_energy; });
+  const std::size_t all = algorithms().size() + std::size(kAngularlyDamped) + static_cast<std::size_t>(create_energy);
   const auto add_row = [&](std::string setting, const RenderingConfig& config) {
     Scenario run = scenario;
-    run.rendering.config = config;
-    fill_defaults(run);  // puts the stages the algorithm fixes in place
+    run.rendering = with_fixed_stages(config);
     result.rows.push_back(ideal_row(std::move(setting), run, shell, options.repetitions));
     options.progress(result.rows.size(), all);
   };
-  RenderingConfig config = scenario.rendering.config;
+  RenderingConfig config = scenario.rendering;
   // The rows say which of them have these.
   config.angular_damping = config.passivity_controller = false;
   for (const AlgorithmEntry& algorithm : algorithms()) {
@@ -96,8 +98,9 @@ PrecisionResult study_algorithms(const Scenario& given, const PrecisionOptions& 
     add_row(config.algorithm + " + angular_damping", config);
   }
   config.angular_damping = false;
-  for (const char* algorithm : kCreateEnergy) {
-    config.algorithm = algorithm;
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    if (!algorithm.creates_energy) continue;
+    config.algorithm = algorithm.info->name;
     config.passivity_controller = true;
     add_row(config.algorithm + " + passivity_controller", config);
   }

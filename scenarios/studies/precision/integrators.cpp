@@ -25,13 +25,13 @@ class FirstTensor final : public Observer {
 /// Positions at t = 0, T, 2 T, … of M x'' = -K S x - B S x' - F (I - S) x', which is what bilateral springs whose
 /// weights are constant obey; from the matrix exponential, exact to rounding.
 std::vector<Vec3> exact_positions(const Scenario& scenario, const Mat3& S, double T, std::size_t samples) {
-  const RenderingFields& r = scenario.rendering;
-  const double K = r.config.stiffness, M = *r.mass;
-  const double B = r.config.damping.value_or(2.0 * r.config.damping_ratio * std::sqrt(K * M));
+  const RenderingConfig& r = scenario.rendering;
+  const double K = r.stiffness, M = r.mass;
+  const double B = r.damping.value_or(2.0 * r.damping_ratio * std::sqrt(K * M));
   Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();
   A.topRightCorner<3, 3>() = Mat3::Identity();
   A.bottomLeftCorner<3, 3>() = -K / M * S;
-  A.bottomRightCorner<3, 3>() = -(B * S + *r.mu_s * (Mat3::Identity() - S)) / M;
+  A.bottomRightCorner<3, 3>() = -(B * S + r.mu_s * (Mat3::Identity() - S)) / M;
   const Eigen::Matrix<double, 6, 6> advance = (A * T).exp();
   Eigen::Matrix<double, 6, 1> state;
   state << scenario.initial.position, scenario.initial.velocity;
@@ -45,10 +45,9 @@ std::vector<Vec3> exact_positions(const Scenario& scenario, const Mat3& S, doubl
 
 void check_scenario(const Scenario& scenario) {
   const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment);
-  const RenderingFields& r = scenario.rendering;
-  const bool linear = springs != nullptr && springs->bilateral && *r.mu_f == 0.0 && !r.config.max_damping &&
-                      !r.config.max_force && !*r.reduction && !r.config.passivity_controller &&
-                      std::holds_alternative<NoHandFields>(scenario.hand) &&
+  const RenderingConfig& r = scenario.rendering;
+  const bool linear = springs != nullptr && springs->bilateral && r.mu_f == 0.0 && !r.max_damping && !r.max_force &&
+                      !r.reduction && !r.passivity_controller && std::holds_alternative<NoHandFields>(scenario.hand) &&
                       std::holds_alternative<FreePosition>(scenario.motion.position);
   if (linear) return;
   throw InputError(
@@ -65,7 +64,7 @@ constexpr double kRounding = 1e-10;
 class SpringEnergy final : public Observer {
  public:
   SpringEnergy(const Scenario& scenario, const Mat3& S)
-      : K_(scenario.rendering.config.stiffness), M_(*scenario.rendering.mass), S_(S) {}
+      : K_(scenario.rendering.stiffness), M_(scenario.rendering.mass), S_(S) {}
 
   void on_step(const StepRecord& record) noexcept override {
     const Vec3& p = record.tool.pose.position;
@@ -89,7 +88,7 @@ class SpringEnergy final : public Observer {
 };
 
 Scenario undamped(Scenario scenario) {
-  scenario.rendering.config.damping = 0.0;
+  scenario.rendering.damping = 0.0;
   scenario.rendering.mu_s = 0.0;
   return scenario;
 }
@@ -103,7 +102,7 @@ PrecisionRow measure(const Scenario& run, int division, const Mat3& S, const std
   };
   SpringEnergy energy(run, S);
   const bool kept = sampled_run(undamped(run), nullptr, 1, {&energy}).result.outcome == Outcome::completes;
-  return {fmt::format("{} dt={}", integrator_name(run.integrator.type), run.time.step),
+  return {fmt::format("{} dt={}", run.integrator.type->info.name, run.time.step),
           std::string(outcome_name(sampled.result.outcome)),
           {run.time.step, if_whole(d.final), if_whole(d.rms), if_whole(d.max), kept ? energy.gain() : std::nullopt,
            kept ? energy.swing() : std::nullopt},
@@ -111,7 +110,8 @@ PrecisionRow measure(const Scenario& run, int division, const Mat3& S, const std
 }
 
 /// The order of the rows from `begin` on, as far as their errors are not rounding.
-FittedOrder order_of(Integrator integrator, const PrecisionResult& result, std::size_t begin, double rounding) {
+FittedOrder order_of(const IntegratorEntry& integrator, const PrecisionResult& result, std::size_t begin,
+                     double rounding) {
   constexpr std::size_t kStep = 0, kRms = 2;
   std::vector<double> steps, errors;
   for (std::size_t i = begin; i < result.rows.size(); ++i) {
@@ -119,7 +119,7 @@ FittedOrder order_of(Integrator integrator, const PrecisionResult& result, std::
     steps.push_back(*result.rows[i].values[kStep]);
     errors.push_back(error > rounding ? error : 0.0);
   }
-  return {std::string(integrator_name(integrator)), result.columns[kRms], fitted_order(steps, errors)};
+  return {integrator.info.name, result.columns[kRms], fitted_order(steps, errors)};
 }
 
 }  // namespace
@@ -129,7 +129,7 @@ PrecisionResult study_integrators(const Scenario& scenario, const PrecisionOptio
   FirstTensor tensor;
   sampled_run(scenario, nullptr, 1, {&tensor});
   const double T = scenario.time.step;
-  const auto samples = static_cast<std::size_t>(*scenario.time.steps);
+  const auto samples = static_cast<std::size_t>(scenario.time.steps);
   const std::vector<Vec3> exact = exact_positions(scenario, tensor.S, T, samples);
 
   double reach = 0.0;
@@ -143,7 +143,7 @@ PrecisionResult study_integrators(const Scenario& scenario, const PrecisionOptio
                     "undamped_energy_gain_relative",
                     "undamped_energy_swing_relative"};
   result.timed = "step";
-  for (const Integrator integrator : kIntegrators) {
+  for (const IntegratorEntry* integrator : kIntegrators) {
     const std::size_t begin = result.rows.size();
     for (const int division : kDivisions) {
       Scenario run = scenario;
@@ -153,7 +153,7 @@ PrecisionResult study_integrators(const Scenario& scenario, const PrecisionOptio
       result.rows.push_back(measure(run, division, tensor.S, exact, options.repetitions));
       options.progress(result.rows.size(), kIntegrators.size() * std::size(kDivisions));
     }
-    result.orders.push_back(order_of(integrator, result, begin, kRounding * reach));
+    result.orders.push_back(order_of(*integrator, result, begin, kRounding * reach));
   }
   return result;
 }

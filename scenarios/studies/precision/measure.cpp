@@ -110,23 +110,22 @@ Scenario drill_in_hole(Scenario scenario) {
     throw InputError(InputError::Kind::relation, "/environment/type",
                      "got another environment; allowed for this study: block_with_hole");
   }
-  if (*scenario.tool.tip != "flat") {
-    throw InputError(
-        InputError::Kind::relation, "/tool/tip",
-        "got \"" + *scenario.tool.tip + "\"; allowed for this study: \"flat\", whose ideal trajectory is known");
+  if (scenario.tool.tip != Tip::flat) {
+    throw InputError(InputError::Kind::relation, "/tool/tip",
+                     "got \"round\"; allowed for this study: \"flat\", whose ideal trajectory is known");
   }
   if (const auto* device = std::get_if<AdmittanceDeviceConfig>(&scenario.device)) {
     scenario.device = IdealDeviceFields{device->force_limit};
   }
   const auto rows = static_cast<std::int64_t>(std::llround(kPeriod / scenario.time.step));
-  scenario.time.steps = std::min(*scenario.time.steps, rows);
+  scenario.time.steps = std::min(scenario.time.steps, rows);
   scenario.record = {};
   return scenario;
 }
 
 std::vector<ContactBuffer> contact_sets(Scenario scenario, const PrecisionOptions& options, std::uint64_t stride) {
-  scenario.rendering.reduction = std::optional<ReductionConfig>{};
-  scenario.rendering.config.local_average = false;
+  scenario.rendering.reduction.reset();
+  scenario.rendering.local_average = false;
   return rendered_contact_sets(scenario, options, stride);
 }
 

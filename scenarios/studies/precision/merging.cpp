@@ -134,9 +134,9 @@ PrecisionResult study_merging(const Scenario& given, const PrecisionOptions& opt
     std::get<BlockEnvironment>(scenario.environment).grid = spacing;
     const std::vector<ContactBuffer> sets = contact_sets(scenario, options, kStride);
     if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
-    const std::vector<Vec3> reference = exact_forces(sets, scenario.rendering.config);
+    const std::vector<Vec3> reference = exact_forces(sets, scenario.rendering);
     for (const Way& way : kWays) {
-      result.rows.push_back(row_of(way, spacing, sets, reference, scenario.rendering.config, options.repetitions));
+      result.rows.push_back(row_of(way, spacing, sets, reference, scenario.rendering, options.repetitions));
       options.progress(result.rows.size(), std::size(kWays) * std::size(kSpacings));
     }
   }

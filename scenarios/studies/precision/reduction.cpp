@@ -96,7 +96,7 @@ class Measurement {
 PrecisionResult study_reduction(const Scenario& scenario, const PrecisionOptions& options) {
   const std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(scenario), options, kStride);
   if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
-  Measurement measurement(sets, scenario.rendering.config.iterations);
+  Measurement measurement(sets, scenario.rendering.iterations);
   std::vector<Way> ways;
   for (const bool exact : {false, true}) {
     for (const double threshold : kThresholds) ways.push_back({threshold, exact});

@@ -29,7 +29,7 @@ class LastTensor final : public Observer {
 };
 
 PrecisionRow wedge_row(const Scenario& scenario, double degrees, int repetitions) {
-  const RenderingConfig& config = scenario.rendering.config;
+  const RenderingConfig& config = scenario.rendering;
   const double w = degrees * std::numbers::pi / 180.0;
   const auto& faces = std::get<SpringsEnvironment>(scenario.environment).groups;
   const auto formula = wedge_stiffness(config, w, static_cast<double>(faces.front().count));
@@ -55,10 +55,8 @@ PrecisionResult study_stiffness(const Scenario& scenario, const PrecisionOptions
   for (const AlgorithmEntry& algorithm : algorithms()) {
     for (const double degrees : kHalfAnglesDegrees) {
       Scenario run = with_wedge(scenario, degrees * std::numbers::pi / 180.0);
-      run.time.steps = std::min(*run.time.steps, kSteps);
-      run.rendering.config.algorithm = algorithm.info->name;
-      fill_defaults(run);  // puts the stages the algorithm fixes in place
-      result.rows.push_back(wedge_row(run, degrees, options.repetitions));
+      run.time.steps = std::min(run.time.steps, kSteps);
+      result.rows.push_back(wedge_row(with_algorithm(run, algorithm.info->name), degrees, options.repetitions));
       options.progress(result.rows.size(), algorithms().size() * std::size(kHalfAnglesDegrees));
     }
   }

@@ -18,7 +18,7 @@ constexpr int kReference = 64;  // times finer than the scenario's own step
 Scenario with_step(const Scenario& scenario, double factor) {
   Scenario run = scenario;
   run.time.step = scenario.time.step * factor;
-  run.time.steps = std::llround(static_cast<double>(*scenario.time.steps) / factor);
+  run.time.steps = std::llround(static_cast<double>(scenario.time.steps) / factor);
   return run;
 }
 
@@ -56,8 +56,8 @@ PrecisionResult study_time_step(const Scenario& given, const PrecisionOptions& o
     errors.push_back(d.rms);
     options.progress(result.rows.size(), std::size(kFactors));
   }
-  result.orders.push_back({fmt::format("{} with contact switching", integrator_name(scenario.integrator.type)),
-                           "error_rms_m", fitted_order(steps, errors)});
+  result.orders.push_back({fmt::format("{} with contact switching", scenario.integrator.type->info.name), "error_rms_m",
+                           fitted_order(steps, errors)});
   return result;
 }
 

@@ -15,11 +15,9 @@ Scenario springs(std::vector<SpringGroup> groups, double K, std::string_view alg
   scenario.time.steps = kMapSteps;
   scenario.environment = SpringsEnvironment{true, std::move(groups), {}};
   scenario.initial.position = {0.6e-3, 0.64e-3, 0.48e-3};
-  scenario.rendering.config.algorithm = algorithm;
-  scenario.rendering.config.stiffness = K;
+  scenario.rendering.stiffness = K;
   scenario.rendering.mass = 0.1;
-  fill_defaults(scenario);
-  return scenario;
+  return with_algorithm(std::move(scenario), algorithm);
 }
 
 Scenario one_spring(double K, std::string_view algorithm) {
@@ -40,7 +38,7 @@ Scenario mass_scene(double mass, double K, std::string_view algorithm) {
 
 Scenario damping_ratio_scene(double zeta, double K, std::string_view algorithm) {
   Scenario scenario = one_spring(K, algorithm);
-  scenario.rendering.config.damping_ratio = zeta;
+  scenario.rendering.damping_ratio = zeta;
   return scenario;
 }
 

@@ -25,7 +25,7 @@ struct StabilityMap {
   const char* name;
   const char* summary;
   MapAxis x, y;
-  /// The scenario at (x, y) for an algorithm, defaults filled in. The y of the spring maps is K.
+  /// The scenario at (x, y) for an algorithm. The y of the spring maps is K.
   Scenario (*scene)(double x, double y, std::string_view algorithm);
   /// Null where the tool is alone with springs that stay in contact; else why no limit is known.
   const char* no_theory;

@@ -39,38 +39,11 @@ Probes probes_of(StabilityCase which) {
   return which == StabilityCase::time_step ? Probes{1e-9, kLongestStep} : Probes{1.0, kLargestProbe};
 }
 
-/// The spring-damper of one case at one value of what is raised.
-SpringDamper at_value(StabilityCase which, double value, const Scenario& scenario, double lambda) {
-  const RenderingConfig& config = scenario.rendering.config;
-  SpringDamper system{config.stiffness,   0.0,    *scenario.rendering.mass,
-                      scenario.time.step, lambda, scenario.integrator.type};
-  const auto damping = [&] {
-    return config.damping.value_or(2.0 * config.damping_ratio * std::sqrt(system.K * system.M));
-  };
-  switch (which) {
-    case StabilityCase::stiffness_undamped:
-      system.K = value;
-      break;
-    case StabilityCase::damping_alone:
-      system.K = 0.0;
-      system.B = value;
-      break;
-    case StabilityCase::stiffness_damped:
-      system.K = value;
-      system.B = damping();
-      break;
-    case StabilityCase::time_step:
-      system.dt = value;
-      system.B = damping();
-      break;
-  }
-  return system;
-}
-
-/// Positive root of a x^2 + 2 b x = 4; infinite when there is none.
-double positive_root(double a, double b) {
-  if (a == 0.0) return b == 0.0 ? kNever : 2.0 / b;
-  return 4.0 / (b + std::sqrt(b * b + 4.0 * a));
+/// The springs of the scenario along a direction in which their stiffness is lambda K.
+RaisedSpringDamper problem_of(StabilityCase which, const Scenario& scenario, double lambda) {
+  const RenderingConfig& config = scenario.rendering;
+  const SpringDamper given{config.stiffness, 0.0, config.mass, scenario.time.step, lambda, scenario.integrator.type};
+  return {which, given, config.damping, config.damping_ratio};
 }
 
 /// Picks up the stiffness tensor of the first step.
@@ -116,8 +89,8 @@ Mat3 stiffness_tensor_of(Scenario scenario) {
 /// `direction`, and sees whether it blows up.
 bool simulation_stays_bounded(Scenario scenario, const SpringDamper& system, const Vec3& direction) {
   constexpr double kAmplitude = 1e-3;
-  scenario.rendering.config.stiffness = system.K;
-  scenario.rendering.config.damping = system.B;
+  scenario.rendering.stiffness = system.K;
+  scenario.rendering.damping = system.B;
   scenario.time.step = system.dt;
   scenario.time.steps = kProbeSteps;
   scenario.time.stop_when.clear();
@@ -140,78 +113,27 @@ void check_scene(const Scenario& scenario) {
   if (springs == nullptr)
     fail("/environment/type", "stability limits exist for \"springs\" only: elsewhere contacts come and go");
   if (!springs->bilateral) fail("/environment/bilateral", "got false; allowed for stability: true");
-  if (*scenario.rendering.mu_s != 0.0 || *scenario.rendering.mu_f != 0.0)
+  if (scenario.rendering.mu_s != 0.0 || scenario.rendering.mu_f != 0.0)
     fail("/rendering/friction", "allowed for stability: none");
-  if (scenario.rendering.config.max_damping)
-    fail("/rendering/limits/max_damping_N_s_per_m", "allowed for stability: null");
-  if (scenario.rendering.config.max_force) fail("/rendering/limits/max_force_N", "allowed for stability: null");
+  if (scenario.rendering.max_damping) fail("/rendering/limits/max_damping_N_s_per_m", "allowed for stability: null");
+  if (scenario.rendering.max_force) fail("/rendering/limits/max_force_N", "allowed for stability: null");
   if (!std::holds_alternative<FreePosition>(scenario.motion.position))
     fail("/motion/position/type", "allowed for stability: \"free\"");
   if (!std::holds_alternative<NoHandFields>(scenario.hand)) fail("/hand/type", "allowed for stability: \"none\"");
-  if (scenario.rendering.config.passivity_controller)
+  if (scenario.rendering.passivity_controller)
     fail("/rendering/passivity_controller", "got true; allowed for stability: false");
-}
-
-double leapfrog_limit(StabilityCase which, const Scenario& scenario, double lambda) {
-  const RenderingConfig& config = scenario.rendering.config;
-  const double M = *scenario.rendering.mass, dt = scenario.time.step;
-  const SpringDamper given = at_value(StabilityCase::time_step, dt, scenario, lambda);
-  const double b = config.damping ? 0.0 : 2.0 * config.damping_ratio * lambda * dt / std::sqrt(M);
-  switch (which) {
-    case StabilityCase::stiffness_undamped:
-      return lambda == 0.0 ? kNever : 4.0 * M / (lambda * dt * dt);
-    case StabilityCase::damping_alone:
-      return lambda == 0.0 ? kNever : 2.0 * M / (lambda * dt);
-    case StabilityCase::stiffness_damped:
-      if (lambda == 0.0) return kNever;
-      // With a fixed B the inequality is linear in K, with B = 2 zeta sqrt(K M) quadratic in sqrt K.
-      if (config.damping)
-        return std::max(0.0, (4.0 - 2.0 * lambda * *config.damping * dt / M) * M / (lambda * dt * dt));
-      return std::pow(positive_root(lambda * dt * dt / M, b), 2);
-    case StabilityCase::time_step:
-      return positive_root(lambda * given.K / M, lambda * given.B / M);
-  }
-  return kNever;
-}
-
-/// Where an integrator stops being stable: of lambda K dt^2 / M without damping, of lambda B dt / M without a spring.
-struct LimitsAlone {
-  double spring, damper;
-};
-constexpr LimitsAlone kVerlet = {4.0, 4.0};
-/// Of |1 + z + z^2/2 + z^3/6 + z^4/24| <= 1 on the imaginary axis, z^2 = -8, and on the real one.
-constexpr LimitsAlone kRungeKutta = {8.0, 2.785293563405282};
-
-/// The limit of a case that has a spring or a damper; none with both.
-std::optional<double> limit_alone(StabilityCase which, const Scenario& scenario, double lambda,
-                                  const LimitsAlone& limits) {
-  const SpringDamper one = at_value(which, 1.0, scenario, lambda);
-  if (lambda == 0.0 || (one.K == 0.0 && one.B == 0.0)) return kNever;
-  if (one.K != 0.0 && one.B != 0.0) return std::nullopt;
-  const double spring = limits.spring * one.M / lambda, damper = limits.damper * one.M / lambda;
-  if (which == StabilityCase::time_step) return one.B == 0.0 ? std::sqrt(spring / one.K) : damper / one.B;
-  return one.B == 0.0 ? spring / (one.dt * one.dt) : damper / one.dt;
 }
 
 }  // namespace
 
 std::optional<double> analytic_limit(StabilityCase which, const Scenario& scenario, double lambda) {
-  switch (scenario.integrator.type) {
-    case Integrator::leapfrog:
-      return leapfrog_limit(which, scenario, lambda);
-    case Integrator::velocity_verlet:
-      return limit_alone(which, scenario, lambda, kVerlet);
-    case Integrator::rk4:
-      return limit_alone(which, scenario, lambda, kRungeKutta);
-    case Integrator::implicit_euler:
-    case Integrator::implicit_midpoint:
-      return kNever;
-  }
-  return std::nullopt;
+  const auto limit = scenario.integrator.type->stability_limit;
+  return limit == nullptr ? std::nullopt : limit(problem_of(which, scenario, lambda));
 }
 
 double eigenvalue_limit(StabilityCase which, const Scenario& scenario, double lambda, double start) {
-  const auto stable = [&](double value) { return at_value(which, value, scenario, lambda).is_stable(); };
+  const RaisedSpringDamper problem = problem_of(which, scenario, lambda);
+  const auto stable = [&](double value) { return problem.at(value).is_stable(); };
   return largest_stable(start, kEigenvaluePrecision, stable, probes_of(which).largest);
 }
 
@@ -228,13 +150,13 @@ std::vector<StabilityLimit> stability_limits(const Scenario& scenario) {
       {StabilityCase::time_step, "largest time step", "s"},
   };
   for (StabilityLimit& limit : limits) {
-    const auto system = [&](double value) { return at_value(limit.which, value, scenario, lambda); };
+    const RaisedSpringDamper problem = problem_of(limit.which, scenario, lambda);
     limit.lambda = lambda;
     limit.analytic = analytic_limit(limit.which, scenario, lambda);
     const Probes probes = probes_of(limit.which);
     limit.eigenvalue = eigenvalue_limit(limit.which, scenario, lambda, probes.start);
-    limit.damping_at_limit = system(limit.limit()).B;
-    const auto run = [&](double value) { return simulation_stays_bounded(scenario, system(value), stiffest); };
+    limit.damping_at_limit = problem.at(limit.limit()).B;
+    const auto run = [&](double value) { return simulation_stays_bounded(scenario, problem.at(value), stiffest); };
     limit.simulation = largest_stable(probes.start, kPrecision, run, probes.largest);
   }
   return limits;
@@ -244,10 +166,11 @@ std::vector<RootLocusPoint> root_locus(const Scenario& scenario, const std::vect
   std::vector<RootLocusPoint> locus;
   for (const StabilityLimit& limit : limits) {
     if (!std::isfinite(limit.limit())) continue;
+    const RaisedSpringDamper problem = problem_of(limit.which, scenario, limit.lambda);
     for (int i = 0; i <= kLocusPoints; ++i) {
       const double value = 1.25 * limit.limit() * i / kLocusPoints;
       if (value == 0.0 && limit.which == StabilityCase::time_step) continue;
-      const auto [first, second] = at_value(limit.which, value, scenario, limit.lambda).eigenvalues();
+      const auto [first, second] = problem.at(value).eigenvalues();
       locus.push_back({limit.which, value, first, second});
     }
   }

@@ -6,24 +6,13 @@
 #include <vector>
 
 #include "scenarios/description/scenario.hpp"
-#include "scenarios/studies/stability/spring_damper.hpp"
+#include "sim/loop/integrators/spring_damper.hpp"
 
 /// The integrator's stability on a set of bilateral springs (thesis A.3): how stiff, how damped and how coarse in time
 /// a run may be before it blows up. Along the stiffest direction the springs act as one spring lambda K with one damper
 /// lambda B, lambda = lambda_max(S), and the step (x, v) -> A (x, v) is stable while no eigenvalue of A leaves the unit
 /// circle, under leapfrog (Eq. A.2) while 4 - 2 lambda B dt / M - lambda K dt^2 / M > 0.
 namespace hapbench {
-
-/// Which number is raised until the run blows up.
-enum class StabilityCase {
-  stiffness_undamped,  ///< K, with B = 0
-  damping_alone,       ///< B, with K = 0
-  stiffness_damped,    ///< K, with B = 2 zeta sqrt(K M) of the scenario's zeta
-  time_step            ///< dt, with the scenario's K and zeta
-};
-
-inline constexpr StabilityCase kStabilityCases[] = {StabilityCase::stiffness_undamped, StabilityCase::damping_alone,
-                                                    StabilityCase::stiffness_damped, StabilityCase::time_step};
 
 /// The largest stable value of one case, found three ways; infinite when nothing up to 1e15, or 1e6 s, is unstable.
 struct StabilityLimit {
@@ -48,8 +37,7 @@ struct RootLocusPoint {
 };
 
 /// The largest stable value of one case under the scenario's integrator, where the springs of its algorithm have the
-/// given lambda: infinite when nothing is unstable, none when there is no closed form (spring and damper together under
-/// velocity_verlet and rk4). Precondition: defaults are filled in.
+/// given lambda: infinite when nothing is unstable, none when the integrator has no closed form of it.
 std::optional<double> analytic_limit(StabilityCase which, const Scenario& scenario, double lambda);
 
 /// The same by bisection on the eigenvalues of A, to 1e-10, from `start` on (see largest_stable): infinite when nothing

@@ -41,10 +41,10 @@ struct Probe {
 
 Probe probe(const Scenario& scenario) {
   FirstRow first;
-  MotionClassifier classifier(static_cast<std::uint64_t>(*scenario.time.steps));
+  MotionClassifier classifier(static_cast<std::uint64_t>(scenario.time.steps));
   Simulation simulation(simulation_config(scenario), assemble(scenario), {&first, &classifier});
   const MotionClass motion = classify(simulation, classifier);
-  const double K = scenario.rendering.config.stiffness;
+  const double K = scenario.rendering.stiffness;
   // Sums of up to a hundred springs; exact_shaping's weights are good to 1e-12.
   const double rounding = 1e-10 * K * (1.0 + first.S.norm()) * first.position.norm();
   const bool linear = (first.spring + K * (first.S * first.position)).norm() <= rounding;
@@ -61,10 +61,10 @@ MapPoint map_point(const StabilityMap& map, const MapSubject& subject, double x,
   const Scenario scenario = scene(map, subject, x, y);
   const Probe run = probe(scenario);
   MapPoint point{x, y, run.motion, run.lambdas[2], {}};
-  if (map.no_theory != nullptr || !run.linear || subject.integrator != Integrator::leapfrog) return point;
-  const double K = scenario.rendering.config.stiffness, M = *scenario.rendering.mass;
-  const double B = 2.0 * scenario.rendering.config.damping_ratio * std::sqrt(K * M);
-  point.margin = SpringDamper{K, B, M, scenario.time.step, run.lambdas[2]}.margin();
+  if (map.no_theory != nullptr || !run.linear) return point;
+  const double K = scenario.rendering.stiffness, M = scenario.rendering.mass;
+  const double B = 2.0 * scenario.rendering.damping_ratio * std::sqrt(K * M);
+  point.margin = SpringDamper{K, B, M, scenario.time.step, run.lambdas[2], subject.integrator}.margin();
   return point;
 }
 
@@ -75,8 +75,7 @@ double theory_of(const Scenario& start, const Vec3& lambdas) {
   double least = std::numeric_limits<double>::infinity();
   for (const double lambda : lambdas) {
     const std::optional<double> closed = analytic_limit(kCase, start, lambda);
-    least =
-        std::min(least, closed ? *closed : eigenvalue_limit(kCase, start, lambda, start.rendering.config.stiffness));
+    least = std::min(least, closed ? *closed : eigenvalue_limit(kCase, start, lambda, start.rendering.stiffness));
   }
   return least;
 }

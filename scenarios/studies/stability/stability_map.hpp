@@ -16,8 +16,7 @@ struct MapPoint {
   double x = 0.0, y = 0.0;
   MotionClass motion = MotionClass::stable;
   double lambda = 0.0;  ///< lambda_max(S) of the first row
-  /// 4 - 2 lambda B dt / M - lambda K dt^2 / M; none where the theory does not apply, nor of other integrators than
-  /// leapfrog, whose inequality it is.
+  /// SpringDamper::margin; none where the theory does not apply, nor of integrators without a closed form of it.
   std::optional<double> margin;
 };
 
@@ -39,7 +38,7 @@ struct BoundaryPoint {
 /// What a map is of.
 struct MapSubject {
   std::string algorithm;
-  Integrator integrator = Integrator::leapfrog;
+  const IntegratorEntry* integrator = &kLeapfrog;
 };
 
 struct MapResult {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <mutex>
 
-#include "algorithms/proxy/proxy_rendering.hpp"
 #include "algorithms/registry.hpp"
 #include "algorithms/shell_source.hpp"
 #include "sim/contact/shell_query.hpp"
@@ -56,29 +55,6 @@ bool damping_in_bound(const ContactSet& set, const RenderedForce& force) {
   return force.rendered.norm() <= (1.0 + kRounding) * bound;
 }
 
-/// Of a force law, in units of K times the depth of the deepest contact.
-double law_bound(const RenderingConfig& config, std::size_t contacts) noexcept {
-  const double n = static_cast<double>(contacts);
-  const std::string& law = config.algorithm;
-  // |sum c d u| <= d sum c, and c = 1 / n.
-  if (law == "mean") return std::min(1.0, n);
-  // sum d_i / |sum u_i|, where |sum u_i| > 1e-9 n, or the force is zero.
-  if (law == "original_averaging") return 1e9 * std::min(1.0, n);
-  // (I + U U^T)^-1 U has the singular values s / (1 + s^2) <= 1/2, and |(d_1 … d_n)| <= sqrt(n) d. (K_vc = K.)
-  if (law == "virtual_coupling") return 0.5 * std::sqrt(n);
-  // sum c: at the optimum of exact_shaping tr S >= |S|^2_F >= (tr S)^2 / 3, so that tr S <= 3, and tr S = sum c. After
-  // an update c_i <- c_i / rho_i with rho_i = u_i^T S u_i >= 1 / (u_i^T S^+ u_i) for unit u_i (Cauchy and Schwarz), sum
-  // c_i / rho_i <= sum c_i u_i^T S^+ u_i = tr(S^+ S) <= 3.
-  if (law == "exact_shaping" || law == "merged_shaping") return std::min(3.0, n);
-  if (law == "shaped_stiffness" || law == "normal_projection" || law == "continuous_normal_projection") {
-    return config.iterations > 0 ? std::min(3.0, n) : n;
-  }
-  // c = beta / sigma keeps the energy: sum c d_i^2 = sum d_i^2 <= n d^2, and sum c <= n / sigma, since beta <= 1.
-  // Cauchy and Schwarz: sum c d_i <= n d / sqrt(sigma), where sigma > 1e-12, or the force is zero.
-  if (law == "tandpasta") return 1e6 * n;
-  return n;
-}
-
 void count_answer(const ContactSet& set, const RenderingConfig& config, std::uint64_t number, const Answer& answer,
                   StressCounts& counts) {
   ++counts.sets;
@@ -87,22 +63,30 @@ void count_answer(const ContactSet& set, const RenderingConfig& config, std::uin
   const RenderedForce& force = answer.force;
   const bool bad = counts.non_finite + counts.out_of_bound > 0;
   const double unit = config.stiffness * force.depth_max;
-  const double bound = config.stiffness * force_bound(config, set.tool, answer.rendered, force.depth_max);
+  const auto bound_of = find_algorithm(config.algorithm)->theory->force_bound;
+  const std::optional<double> bound =
+      bound_of == nullptr
+          ? std::nullopt
+          : std::optional(config.stiffness * bound_of(config, set.tool, answer.rendered, force.depth_max));
   if (!finite(force)) {
     ++counts.non_finite;
-  } else if (force.spring.norm() > (1.0 + kRounding) * bound || !depth_in_bound(set.tool, force.depth_max) ||
-             !damping_in_bound(set, force)) {
+  } else if ((bound && force.spring.norm() > (1.0 + kRounding) * *bound) ||
+             !depth_in_bound(set.tool, force.depth_max) || !damping_in_bound(set, force)) {
     ++counts.out_of_bound;
   }
   if (!bad && counts.non_finite + counts.out_of_bound > 0) counts.first_bad = number;
   if (!(unit > 0.0)) return;
   counts.largest_force = std::max(counts.largest_force, force.spring.norm() / unit);
-  if (bound > 0.0) counts.largest_share = std::max(counts.largest_share, force.spring.norm() / bound);
+  if (bound && *bound > 0.0) counts.largest_share = std::max(*counts.largest_share, force.spring.norm() / *bound);
 }
 
 std::vector<StressCounts> no_counts() {
   std::vector<StressCounts> counts;
-  for (const AlgorithmEntry& entry : algorithms()) counts.emplace_back().algorithm = entry.info->name;
+  for (const AlgorithmEntry& entry : algorithms()) {
+    StressCounts& of = counts.emplace_back();
+    of.algorithm = entry.info->name;
+    if (entry.theory->force_bound != nullptr) of.largest_share = 0.0;
+  }
   return counts;
 }
 
@@ -116,16 +100,10 @@ void add(const StressCounts& other, StressCounts& all) {
   all.out_of_bound += other.out_of_bound;
   all.points_dropped += other.points_dropped;
   all.largest_force = std::max(all.largest_force, other.largest_force);
-  all.largest_share = std::max(all.largest_share, other.largest_share);
+  if (all.largest_share) all.largest_share = std::max(*all.largest_share, *other.largest_share);
 }
 
 }  // namespace
-
-double force_bound(const RenderingConfig& config, const ToolShape& tool, std::size_t n, double depth) noexcept {
-  // Placed on the tool, the proxy moves by at most a margin a pass.
-  if (config.algorithm == "proxy") return kProxyPasses * kProxyMargin * tool.half_width();
-  return law_bound(config, n) * depth;
-}
 
 ContactSet stress_set(std::uint64_t seed, std::uint64_t i) {
   constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15;  // 2^64 / golden ratio

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,17 +17,13 @@ struct StressCounts {
   std::uint64_t sets = 0;            ///< drawn
   std::uint64_t in_contact = 0;      ///< whose tool touches a point
   std::uint64_t non_finite = 0;      ///< force, tensor or depth not finite
-  std::uint64_t out_of_bound = 0;    ///< finite, but beyond the bounds below
+  std::uint64_t out_of_bound = 0;    ///< finite, but beyond a bound
   std::uint64_t points_dropped = 0;  ///< by a full reduction
   double largest_force = 0.0;        ///< largest |f_spring| in units of K d, d the deepest point of the set
-  double largest_share = 0.0;        ///< largest |f_spring| in units of its bound
-  std::uint64_t first_bad = 0;       ///< number of the first set that was counted as bad; meaningful when there is one
+  /// Largest |f_spring| in units of its bound (AlgorithmTheory::force_bound); none for algorithms without one.
+  std::optional<double> largest_share;
+  std::uint64_t first_bad = 0;  ///< number of the first set that was counted as bad; meaningful when there is one
 };
-
-/// The most |f_spring| / K [m] that n contacts, the deepest of them by `depth` [m], may cause under an algorithm in one
-/// step. See the source for the derivations. Of laws it does not know: n times the depth, what all springs pull in one
-/// direction.
-double force_bound(const RenderingConfig& config, const ToolShape& tool, std::size_t n, double depth) noexcept;
 
 /// Set number `i` of the seed: what the counts speak of.
 ContactSet stress_set(std::uint64_t seed, std::uint64_t i);

@@ -140,7 +140,7 @@ const char* metric_name(Badness badness) {
 /// What the found run shows, with room for another compiler's rounding.
 ExpectFields expectation(Badness badness, const RunSummary& run) {
   ExpectFields expect;
-  expect.outcomes = {std::string(outcome_name(run.result.outcome))};
+  expect.outcomes = {run.result.outcome};
   const double value =
       badness == Badness::created ? run.energy->created_sum : run.metrics.vibration_power.value_or(0.0);
   expect.metrics[metric_name(badness)] = MetricBound{kKept * value, std::nullopt};

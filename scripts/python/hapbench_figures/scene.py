@@ -19,11 +19,6 @@ class Contacts:
     gradient: np.ndarray
     weight: np.ndarray
 
-    def tensor(self, weight=None):
-        """S = sum c u u^T in units of K."""
-        c = self.weight if weight is None else weight
-        return np.einsum("i,ij,ik->jk", np.broadcast_to(c, self.depth.shape), self.gradient, self.gradient)
-
     def flipped(self):
         """Those whose gradient points against the inverse of the surface normal: they pull the tool in."""
         return np.einsum("ij,ij->i", self.gradient, self.normal) > 0

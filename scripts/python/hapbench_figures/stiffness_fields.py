@@ -7,6 +7,8 @@ from matplotlib.patches import Circle, Polygon
 from . import published, scene, style
 
 SWEEP = "tilt_sweep_shaped_stiffness"
+# That sweep, and the wedge, under every algorithm.
+PEG, WEDGE = "stiffness/peg", "stiffness/wedge"
 TITLES = {"summation": "sum", "mean": "mean", "virtual_coupling": "coupling", "shaped_stiffness": "shaping"}
 DIRECTIONS = np.linspace(0, 2 * np.pi, 181)
 # Half of a panel's side and the marks on it, in units of K.
@@ -14,19 +16,16 @@ REACH, TICKS = 1.6, (-1, 0, 1)
 SUMMATION_REACH, SUMMATION_TICKS = 45, (-40, 0, 40)
 
 
-def merged(contacts):
-    """Name, stiffness tensor in units of K and spring force per K [m] of four laws: closed forms, and for the shaping
-    the weights that hapbench recorded."""
-    n = len(contacts.depth)
-    total, force = contacts.tensor(1.0), -contacts.depth @ contacts.gradient
-    # A coupling of stiffness K in series with the contacts.
-    series = np.linalg.inv(np.eye(2) + total)
-    return (
-        ("summation", total, force),
-        ("mean", total / n, force / n),
-        ("virtual_coupling", series @ total, series @ force),
-        ("shaped_stiffness", contacts.tensor(), -(contacts.weight * contacts.depth) @ contacts.gradient),
-    )
+def merged(results, step):
+    """Name, stiffness tensor in units of K and spring force [N] of four laws in the step of the sweep, as recorded."""
+    for name in TITLES:
+        yield name, rendered_tensor(results, f"{PEG}/{name}", step), scene.Sweep(results, name, PEG).force(step)
+
+
+def rendered_tensor(results, directory, step):
+    """S of one row in the plane, as the algorithm rendered it."""
+    row = {name: column[step] for name, column in results.table(f"{directory}/stiffness_tensor.csv").items()}
+    return np.array([[row["sxx"], row["sxy"]], [row["sxy"], row["syy"]]])
 
 
 def field(tensor):
@@ -68,7 +67,7 @@ def excessive_stiffness(results):
     figure, axes = style.panels(1, 5, 2.15, gridspec_kw={"width_ratios": [0.62, 1, 1, 1, 1]})
     contacts = draw_contacts(axes[0, 0], sweep, step)
     axes[0, 0].set_title("contacts")
-    for ax, (name, tensor, _) in zip(axes[0, 1:], merged(contacts)):
+    for ax, (name, tensor, _) in zip(axes[0, 1:], merged(results, step)):
         ratio = draw_field(ax, tensor, contacts, *scale(name))
         ax.set_title(TITLES[name])
         ax.set_xlabel("stiffness / K")
@@ -81,8 +80,8 @@ def excessive_stiffness(results):
         "Excessive stiffness: (a) a tilted peg in a hole, its contacts (vermilion) and depths; (b-e) the stiffness "
         "in every direction, in units of K, that four ways of merging these contacts give. Green: the published "
         "largest renderable stiffness, 4 K = 80 000 N/m (4.3), outside the frames of (c-e); dashed: K. Vermilion "
-        "dots and numbers: the ratios along the contacts. The scale of (b) is 28 times that of the others. Ours: "
-        "contacts and weights of (e) are hapbench's, (b-d) the laws' closed forms."
+        "dots and numbers: the ratios along the contacts. The scale of (b) is 28 times that of the others. Contacts "
+        "and tensors are those that the runs recorded. Ours."
     )
 
 
@@ -94,7 +93,7 @@ def fields_over_tilt(results):
         step = sweep.step_at(tilt)
         contacts = draw_contacts(row[0], sweep, step)
         row[0].set_ylabel(f"tilt {sweep.tilt[step]:.2f} rad\ny [mm]")
-        for ax, (name, tensor, force) in zip(row[1:], merged(contacts)):
+        for ax, (name, tensor, force) in zip(row[1:], merged(results, step)):
             draw_field(ax, tensor, contacts, *scale(name))
             length = 0.75 * ax.get_xlim()[1]
             scene.draw_arrow(ax, (0, 0), length * force / np.linalg.norm(force), style.BLACK)
@@ -109,20 +108,13 @@ def fields_over_tilt(results):
         "The stiffness field as the peg tilts (rows): contacts (a) and the stiffness in every direction, in units "
         "of K, of four ways of merging them (b-e). Black arrow: direction of the spring force. Green: published "
         "largest renderable stiffness, 4 K; dashed: K; the scale of (b) is 28 times that of the others. Summation "
-        "and mean follow the number of points on the side walls, shaping does not. Ours: contacts and the weights "
-        "of (e) are hapbench's, (b-d) the laws' closed forms."
+        "and mean follow the number of points on the side walls, shaping does not. Contacts and tensors are those "
+        "that the runs recorded. Ours."
     )
 
 
-PEG, WEDGE = "stiffness/peg", "stiffness/wedge"
 SHAPING = "shaped_stiffness"
 PEG_TILT = 0.12  # that of figure 2 [rad]
-
-
-def rendered_tensor(results, directory, step):
-    """S of one row in the plane, as the algorithm rendered it."""
-    row = {name: column[step] for name, column in results.table(f"{directory}/stiffness_tensor.csv").items()}
-    return np.array([[row["sxx"], row["sxy"]], [row["sxy"], row["syy"]]])
 
 
 def own_scale(tensor):

@@ -17,7 +17,6 @@ TENSOR_COLUMNS = ("sxx", "sxy", "sxz", "syy", "syz", "szz")
 ROW_COLUMNS = ("time_s", "px_m", "py_m", "pz_m", "axis_x", "axis_y", "axis_z", "fx_N", "fy_N", "fz_N",
                *TENSOR_COLUMNS, "ratio_min", "ratio_max", "depth_max_m")
 CONTACT_COLUMNS = ("x_m", "y_m", "z_m", "depth_m", "gradient_x", "gradient_y", "gradient_z", "weight")
-SMALLEST_NORM = 1e-9
 
 
 def numbers(file, columns):
@@ -47,19 +46,6 @@ def finite(value, file, line, name):
     return parsed
 
 
-def tensor(algorithm, contacts):
-    """S in units of K, as (xx, xy, xz, yy, yz, zz): sum of c u u^T, but for the original algorithm, which pushes along
-    the mean gradient only, u_r u_r^T."""
-    springs = [(c[7], c[4:7]) for c in contacts]
-    if algorithm == "original_averaging":
-        mean = [math.fsum(u[i] for _, u in springs) for i in range(3)]
-        length = math.hypot(*mean)
-        if length <= SMALLEST_NORM * max(1, len(springs)):
-            return [0.0] * 6
-        springs = [(1.0, [x / length for x in mean])]
-    return [math.fsum(c * u[i] * u[j] for c, u in springs) for i, j in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))]
-
-
 def by_step(file):
     """contacts.csv by step, in the order of the file."""
     rows = {}
@@ -85,8 +71,12 @@ class Recording:
             raise InputError(f"{directory / 'trajectory.csv'}: holds no row")
         contacts = by_step(directory / "contacts.csv")
         self.contacts = [contacts.get(int(row["step"]), []) for row in self.rows]
-        for row, of_row in zip(self.rows, self.contacts):
-            row.update(zip(TENSOR_COLUMNS, tensor(self.algorithm, of_row)))
+        tensors = directory / "stiffness_tensor.csv"
+        of_step = {int(step): tensor for step, *tensor in numbers(tensors, ("step", *TENSOR_COLUMNS))}
+        for row in self.rows:
+            if int(row["step"]) not in of_step:
+                raise InputError(f"{tensors}: no row of step {int(row['step'])}")
+            row.update(zip(TENSOR_COLUMNS, of_step[int(row["step"])]))
 
     def story(self):
         """What became of it, in a few words."""

@@ -27,6 +27,9 @@ SCENES = (
           "The scene of appendix A.1: the peg is tilted at constant speed and nobody holds it."),
 )
 
+# Beside the trajectory.
+RECORDED = ("record.contacts=true", "record.stiffness_tensor=true")
+
 # The bundled expectations are for the scenario's own algorithm; another one may miss them.
 SUCCESS, UNEXPECTED_OUTCOME = 0, 3
 
@@ -34,7 +37,7 @@ SUCCESS, UNEXPECTED_OUTCOME = 0, 3
 def record_replays(program: Path, out: Path):
     for scene in SCENES:
         for algorithm in scene.algorithms:
-            settings = ("record.contacts=true", f"record.every={scene.every}", "record.ratio_iterations=[]",
+            settings = (*RECORDED, f"record.every={scene.every}", "record.ratio_iterations=[]",
                         f"rendering.algorithm={algorithm}", *scene.settings)
             call(program, "run", scene.scenario, *overrides(settings), "--out", out / scene.id / algorithm)
         call(program, "shell", scene.scenario, "--out", out / scene.id / "shell.csv")
@@ -46,7 +49,7 @@ def overrides(settings):
 
 def rerun_commands(scene):
     """What a reader types to get one recording."""
-    settings = " ".join(overrides(("record.contacts=true", f"record.every={scene.every}", *scene.settings)))
+    settings = " ".join(overrides((*RECORDED, f"record.every={scene.every}", *scene.settings)))
     return [f"hapbench run {scene.scenario} {settings} --set rendering.algorithm={scene.algorithms[0]} --out {scene.id}",
             f"hapbench shell {scene.scenario} --out shell.csv"]
 

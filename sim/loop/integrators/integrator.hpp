@@ -1,21 +1,9 @@
 #pragma once
 
-#include <array>
-#include <string_view>
-
 #include "sim/loop/force_algorithm.hpp"
 #include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
-
-/// How forces become motion. Each has a header of its own, with its formula, order, stability and energy.
-enum class Integrator { leapfrog, velocity_verlet, rk4, implicit_euler, implicit_midpoint };
-
-inline constexpr std::array kIntegrators = {Integrator::leapfrog, Integrator::velocity_verlet, Integrator::rk4,
-                                            Integrator::implicit_euler, Integrator::implicit_midpoint};
-
-/// "leapfrog", "velocity_verlet", "rk4", "implicit_euler" or "implicit_midpoint".
-std::string_view integrator_name(Integrator integrator) noexcept;
 
 /// The force on the tool during one step, for integrators that need more than the force of the row.
 class ForceField {
@@ -29,9 +17,16 @@ class ForceField {
   virtual ForceJacobian jacobian() const noexcept = 0;
 };
 
-/// One step of dt [s] with any of them: moves position and velocity of the tool, on which `force` [N] acts at the
-/// row. Leaves the axis alone. Allocates nothing.
-void integrate(Integrator integrator, ToolState& tool, const Vec3& force, double mass, double dt,
-               ForceField& field) noexcept;
+/// How forces become motion. One object is the state of one run; the integrators there are stand in table.hpp, each in
+/// a file of its own with its formula, order, stability and energy.
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  /// Back to t = 0: what is kept from step to step is forgotten.
+  virtual void reset() noexcept {}
+  /// One step of dt [s]: moves position and velocity of the tool of `mass` [kg], on which `force` [N] acts at the row.
+  /// Leaves the axis alone. Allocates nothing.
+  virtual void step(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field) noexcept = 0;
+};
 
 }  // namespace hapbench

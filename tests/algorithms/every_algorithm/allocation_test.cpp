@@ -196,13 +196,13 @@ TEST_P(NoAllocation, InAStepOrAReset) {
 
 // ---- And with every integrator, some of which search and render again within a step.
 
-class NoAllocationOf : public testing::TestWithParam<std::tuple<AlgorithmEntry, Integrator>> {};
+class NoAllocationOf : public testing::TestWithParam<std::tuple<AlgorithmEntry, const IntegratorEntry*>> {};
 INSTANTIATE_TEST_SUITE_P(Every, NoAllocationOf,
                          testing::Combine(testing::ValuesIn(algorithms().begin(), algorithms().end()),
                                           testing::ValuesIn(kIntegrators)),
                          [](const auto& instance) {
                            return std::string(std::get<AlgorithmEntry>(instance.param).info->name) + "_" +
-                                  std::string(integrator_name(std::get<Integrator>(instance.param)));
+                                  std::get<const IntegratorEntry*>(instance.param)->info.name;
                          });
 
 TEST_P(NoAllocationOf, AnIntegrator) {

@@ -1,8 +1,7 @@
 // summation (c = 1) and mean (c = 1/n).
 #include <gtest/gtest.h>
 
-#include "algorithms/laws/mean.hpp"
-#include "algorithms/laws/summation.hpp"
+#include "algorithms/laws/laws.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 

@@ -1,34 +1,31 @@
-#include "algorithms/laws/normal_projection.hpp"
-
 #include <gtest/gtest.h>
 
-#include "algorithms/laws/continuous_normal_projection.hpp"
-#include "algorithms/laws/shaped_stiffness.hpp"
+#include "algorithms/registry.hpp"
 #include "tests/support/bits.hpp"
-#include "tests/support/contact_sets.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace hapbench {
 namespace {
 
-/// The laws of both kinds of normal projection, which differ in their depth models only.
-class NormalProjectionLaw : public testing::TestWithParam<decltype(&make_normal_projection)> {};
+/// Both kinds of normal projection differ from stiffness shaping in their depth models only.
+class NormalProjectionLaw : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Both, NormalProjectionLaw,
-                         testing::Values(make_normal_projection, make_continuous_normal_projection),
-                         [](const auto& law) { return law.index == 0 ? "plain" : "continuous"; });
+                         testing::Values("normal_projection", "continuous_normal_projection"),
+                         [](const auto& law) { return std::string(law.param); });
 
-TEST_P(NormalProjectionLaw, IsStiffnessShapingWithTheSameIterations) {
-  Random random(1);
-  for (const int m : {0, 3, 10}) {
-    RenderingConfig config;
-    config.iterations = m;
-    std::vector<Vec3> gradients(30);
-    for (Vec3& u : gradients) u = random.direction();
-    ContactBuffer a = test::contacts_of(gradients, test::random_depths(random, 30)), b = a;
-    const LawForce projected = GetParam()(config)->evaluate(a);
-    const LawForce shaped = make_shaped_stiffness(config)->evaluate(b);
-    EXPECT_EQ(projected.spring, shaped.spring);
-    EXPECT_EQ(projected.S, shaped.S);
-    EXPECT_EQ(test::hash_of(a), test::hash_of(b));
+TEST_P(NormalProjectionLaw, IsStiffnessShapingOnItsDepthModelWithTheSameIterations) {
+  for (const test::AnalyticScene& scene : test::analytic_scenes()) {
+    for (const int m : {0, 3, 10}) {
+      RenderingConfig projected = test::config_for(GetParam(), scene);
+      projected.iterations = m;
+      RenderingConfig shaped = projected;
+      shaped.algorithm = "shaped_stiffness";
+      shaped.depth_model = GetParam();  // depth model and law have the same name
+      test::Probe a(scene.setting(), projected), b(scene.setting(), shaped);
+      const RenderedForce force = a.force_at(scene.setting().pose);
+      EXPECT_EQ(test::hash_of(force, a.contacts()), test::hash_of(b.force_at(scene.setting().pose), b.contacts()))
+          << scene.name << " m = " << m;
+    }
   }
 }
 

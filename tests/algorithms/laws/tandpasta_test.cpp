@@ -1,4 +1,4 @@
-#include "algorithms/laws/tandpasta.hpp"
+#include "algorithms/laws/laws.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,12 +4,8 @@
 #include <limits>
 
 #include "algorithms/laws/exact_shaping.hpp"
-#include "algorithms/laws/mean.hpp"
-#include "algorithms/laws/original_averaging.hpp"
+#include "algorithms/laws/laws.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
-#include "algorithms/laws/summation.hpp"
-#include "algorithms/laws/tandpasta.hpp"
-#include "algorithms/laws/virtual_coupling.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 

@@ -1,8 +1,7 @@
-#include "algorithms/laws/virtual_coupling.hpp"
+#include "algorithms/laws/laws.hpp"
 
 #include <gtest/gtest.h>
 
-#include "algorithms/laws/summation.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 

@@ -118,7 +118,7 @@ TEST(EnergyLedger, ClosesToRoundingForEveryAlgorithmWithTheIdealDevice) {
 }
 
 TEST(EnergyLedger, ClosesToRoundingForEveryIntegrator) {
-  for (const Integrator integrator : kIntegrators) {
+  for (const IntegratorEntry* integrator : kIntegrators) {
     for (const test::AnalyticScene& scene : test::analytic_scenes()) {
       const RenderingConfig config = test::config_for("shaped_stiffness", scene);
       const Setting setting = scene.setting();
@@ -128,7 +128,7 @@ TEST(EnergyLedger, ClosesToRoundingForEveryIntegrator) {
       run.integrator = integrator;
       const Accounts a = keep_accounts(run, std::move(parts));
       const double rounding = 400 * 20 * kEpsilon * (a.turnover + std::abs(a.metrics.balance.integration));
-      SCOPED_TRACE(std::string(scene.name) + " " + std::string(integrator_name(integrator)));
+      SCOPED_TRACE(std::string(scene.name) + " " + integrator->info.name);
       expect_closed(a, rounding);
     }
   }
@@ -139,16 +139,16 @@ TEST(EnergyLedger, ChargesTheIntegratorWithWhatItMakesOfAnUndampedSpring) {
   RenderingConfig config = rendering("summation");
   config.damping_ratio = 0.0;
   const double stored = 0.5 * 5 * config.stiffness * 9e-6;
-  for (const Integrator integrator : kIntegrators) {
+  for (const IntegratorEntry* integrator : kIntegrators) {
     SimulationConfig run = test::free_run_config(setting, config, 200);
     run.integrator = integrator;
     const EnergyBalance b = keep_accounts(run, test::free_run(setting, config)).metrics.balance;
-    SCOPED_TRACE(integrator_name(integrator));
+    SCOPED_TRACE(integrator->info.name);
     // Whatever is missing of the energy at the start is the integrator's doing, and nobody else's.
     EXPECT_NEAR(b.integration, b.kinetic + b.stored - stored, 200 * 20 * kEpsilon * stored);
-    if (integrator == Integrator::implicit_midpoint) {
+    if (integrator == &kImplicitMidpoint) {
       EXPECT_NEAR(b.integration, 0.0, 200 * 20 * kEpsilon * stored);
-    } else if (integrator == Integrator::implicit_euler) {
+    } else if (integrator == &kImplicitEuler) {
       // It keeps 1 / (1 + k) a step, k = 5 K dt^2 / M = 0.125: nothing is left after 200.
       EXPECT_NEAR(b.integration, -stored, 1e-9 * stored);
     }

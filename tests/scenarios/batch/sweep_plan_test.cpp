@@ -27,7 +27,7 @@ TEST(SweepPlan, LoadsTheScenarioOfEachRun) {
   const SweepPlan plan = plan_of(minimal_scenario("plane"), {"time.steps=1,2", "rendering.algorithm=mean,summation"});
   const LoadedScenario loaded = scenario_of(plan, 2);
   EXPECT_EQ(loaded.scenario.time.steps, 2);
-  EXPECT_EQ(loaded.scenario.rendering.config.algorithm, "mean");
+  EXPECT_EQ(loaded.scenario.rendering.algorithm, "mean");
 }
 
 TEST(SweepPlan, RefusesTheLowestBadRunWhateverTheThreads) {

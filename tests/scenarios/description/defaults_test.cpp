@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "algorithms/registry.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
@@ -159,7 +160,7 @@ TEST(FixedDepthModel, IsTakenWithoutAWarningWhenNothingElseIsGiven) {
     Json json = test::minimal_scenario("plane");
     json["rendering"] = {{"algorithm", algorithm}};
     EXPECT_TRUE(loaded(json).warnings.empty());
-    const std::string fixed = *loaded(json).scenario.rendering.depth_model;
+    const std::string fixed = loaded(json).scenario.rendering.depth_model;
     EXPECT_NE(fixed, "surface_normal");
     json["rendering"]["depth_model"] = fixed;
     EXPECT_TRUE(loaded(json).warnings.empty());
@@ -177,6 +178,31 @@ TEST(OriginalAveraging, RunsWithoutReductionAndWarnsAboutAGivenOne) {
   EXPECT_EQ(scenario.warnings[0].find("/rendering/reduction: not used"), 0u);
   json["rendering"]["reduction"] = nullptr;
   EXPECT_TRUE(loaded(json).warnings.empty());
+}
+
+TEST(ScenarioInCode, IsThatOfSpringsWithoutAnyField) {
+  Json springs = test::minimal_scenario("springs");
+  springs["time"]["steps"] = 1;
+  EXPECT_EQ(effective_scenario(Scenario{}, ""), effective(springs));
+}
+
+TEST(ScenarioInCode, HasWhatAnotherAlgorithmFixes) {
+  const Scenario given = loaded(test::minimal_scenario("plane")).scenario;
+  for (const AlgorithmEntry& entry : algorithms()) {
+    Json json = test::minimal_scenario("plane");
+    json["rendering"]["algorithm"] = entry.info->name;
+    EXPECT_EQ(effective_scenario(with_algorithm(given, entry.info->name), ""), effective(json)) << entry.info->name;
+  }
+}
+
+TEST(Orientation, IsThatOfARecordedMotionAlone) {
+  Json json = test::minimal_scenario("plane");
+  json["motion"]["position"] = {{"type", "file"}, {"file", "stroke.csv"}};
+  EXPECT_FALSE(loaded(json).scenario.motion.orientation);
+  json["motion"]["orientation"] = Json::object();
+  const auto error = test::input_error_of([&] { loaded(json); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->place(), "/motion/orientation");
 }
 
 TEST(Orientation, WantsPerpendicularDirections) {

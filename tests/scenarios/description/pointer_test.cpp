@@ -3,8 +3,7 @@
 #include <limits>
 #include <string>
 
-#include "scenarios/description/codec.hpp"
-#include "tests/scenarios/support/errors.hpp"
+#include "scenarios/input/json_file.hpp"
 
 /// How messages name a place (JSON pointer, RFC 6901) and show a value.
 namespace hapbench {
@@ -54,13 +53,6 @@ TEST(ShownValue, IsAsciiEvenForBytesThatAreNoText) {
     const std::string text = shown(Json(bytes));
     EXPECT_EQ(text.find_first_not_of("\"\\u0123456789abcdef"), std::string::npos) << text;
   }
-}
-
-TEST(Refusal, SaysValueAllowedAndHintInOneLine) {
-  const auto error = test::input_error_of([] { refuse(Json(-1), "/a/0", "a number > 0", "; nearest: 1"); });
-  ASSERT_TRUE(error);
-  EXPECT_STREQ(error->what(), "/a/0: got -1; allowed: a number > 0; nearest: 1");
-  EXPECT_EQ(error->kind(), InputError::Kind::shape);
 }
 
 }  // namespace

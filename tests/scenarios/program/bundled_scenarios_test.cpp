@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
+#include <memory>
 
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
+#include "tests/scenarios/support/recorded_hashes.hpp"
 #include "tests/scenarios/support/shortened.hpp"
 
 /// Every scenario that comes with the program, run by the program.
@@ -18,47 +21,77 @@ namespace fs = std::filesystem;
 using test::lines_of;
 using test::ProgramRun;
 
-TEST(BundledScenarios, EndAsTheirExpectBlocksSayAndAllocateNothingInTheirStepLoops) {
-  const test::TemporaryDirectory directory;
-  std::vector<std::string> arguments = {"run", "--out", directory.path().string()};
-  for (const BundledScenario& bundled : bundled_scenarios()) arguments.push_back(bundled.file.string());
-  test::ProgramOptions options;
-  options.patience_s = 280.0;
-  const ProgramRun run = test::run_program(test::hapbench_program(), arguments, options);
+/// The scenarios run once in full and once shortened, for all tests of the suite.
+class BundledScenarios : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { directory_ = std::make_unique<test::TemporaryDirectory>(); }
+  static void TearDownTestSuite() { directory_.reset(); }
+
+  static fs::path directory(const std::string& name) { return *directory_ / name; }
+
+  /// All of them in full, in one process.
+  static const ProgramRun& full_run() {
+    static const ProgramRun run = [] {
+      std::vector<std::string> arguments = {"run", "--out", directory("full").string()};
+      for (const BundledScenario& bundled : bundled_scenarios()) arguments.push_back(bundled.file.string());
+      test::ProgramOptions options;
+      options.patience_s = 280.0;
+      return test::run_program(test::hapbench_program(), arguments, options);
+    }();
+    return run;
+  }
+
+  static void run_shortened(const std::string& name, const fs::path& program) {
+    for (const BundledScenario& bundled : bundled_scenarios()) {
+      std::vector<std::string> arguments = {"run", bundled.file.string(), "--out",
+                                            (directory(name) / bundled.name).string()};
+      const std::vector<std::string> more = test::shortened(bundled);
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      const ProgramRun run = test::run_program(program, arguments);
+      EXPECT_EQ(run.status, 0) << bundled.name << ": " << run.err;
+    }
+  }
+
+  static fs::path shortened_runs() {
+    if (!fs::exists(directory("short"))) run_shortened("short", test::hapbench_program());
+    return directory("short");
+  }
+
+ private:
+  static std::unique_ptr<test::TemporaryDirectory> directory_;
+};
+
+std::unique_ptr<test::TemporaryDirectory> BundledScenarios::directory_;
+
+TEST_F(BundledScenarios, EndAsTheirExpectBlocksSayAndAllocateNothingInTheirStepLoops) {
+  const ProgramRun& run = full_run();
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "");
   for (const BundledScenario& bundled : bundled_scenarios()) {
-    const Json summary = Json::parse(test::read_file(directory.path() / bundled.name / "summary.json"));
+    const Json summary = Json::parse(test::read_file(directory("full") / bundled.name / "summary.json"));
     EXPECT_EQ(summary["expected"], true) << bundled.name;
     EXPECT_EQ(summary["name"], bundled.name) << "the name in the file is the file's";
     EXPECT_EQ(summary["work"]["allocations"], 0) << bundled.name;
   }
 }
 
-void run_shortened(const BundledScenario& bundled, const fs::path& directory, const fs::path& program) {
-  std::vector<std::string> arguments = {"run", bundled.file.string(), "--out", (directory / bundled.name).string()};
-  const std::vector<std::string> more = test::shortened(bundled);
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  const ProgramRun run = test::run_program(program, arguments);
-  EXPECT_EQ(run.status, 0) << bundled.name << ": " << run.err;
+TEST_F(BundledScenarios, HaveTheResultsOnRecord) {
+  full_run();
+  std::map<std::string, std::string> hashes;
+  for (const BundledScenario& bundled : bundled_scenarios()) {
+    hashes["scenario: " + bundled.name] = test::hash_of_results(directory("full") / bundled.name);
+  }
+  test::expect_recorded("scenario:", hashes);
 }
 
-TEST(BundledScenarios, GiveTheSameBytesTwice) {
-  const test::TemporaryDirectory directory;
-  for (const BundledScenario& bundled : bundled_scenarios()) {
-    run_shortened(bundled, directory / "a", test::hapbench_program());
-    run_shortened(bundled, directory / "b", test::hapbench_program());
-  }
-  test::expect_same_files(directory / "a", directory / "b", {"timing.json"});
+TEST_F(BundledScenarios, GiveTheSameBytesTwice) {
+  run_shortened("again", test::hapbench_program());
+  test::expect_same_files(shortened_runs(), directory("again"), {"timing.json"});
 }
 
-TEST(BundledScenarios, GiveTheSameBytesInTheScalarBuild) {
-  const test::TemporaryDirectory directory;
-  for (const BundledScenario& bundled : bundled_scenarios()) {
-    run_shortened(bundled, directory / "simd", test::hapbench_program());
-    run_shortened(bundled, directory / "scalar", test::hapbench_scalar_program());
-  }
-  test::expect_same_files(directory / "simd", directory / "scalar", {"timing.json"});
+TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuild) {
+  run_shortened("scalar", test::hapbench_scalar_program());
+  test::expect_same_files(shortened_runs(), directory("scalar"), {"timing.json"});
 }
 
 TEST(Trajectory, HasTheColumnsOfTheDesignInTheirOrder) {

@@ -5,8 +5,8 @@
 #include "algorithms/registry.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/environment_codec.hpp"
-#include "scenarios/description/scenario_codec.hpp"
+#include "scenarios/description/descriptions.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "sim/loop/integrators/integrator.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
@@ -30,8 +30,8 @@ TEST(ListCommand, NamesAllThereIs) {
   }
   for (const AlgorithmEntry& entry : algorithms()) EXPECT_TRUE(names.contains(entry.info->name)) << entry.info->name;
   for (const DepthModelEntry& entry : depth_models()) EXPECT_TRUE(names.contains(entry.info->name)) << entry.info->name;
-  for (const Integrator integrator : kIntegrators) {
-    EXPECT_TRUE(names.contains(std::string(integrator_name(integrator)))) << integrator_name(integrator);
+  for (const IntegratorEntry* integrator : kIntegrators) {
+    EXPECT_TRUE(names.contains(integrator->info.name)) << integrator->info.name;
   }
   for (const std::string& name : environment_names()) EXPECT_TRUE(names.contains(name)) << name;
   for (const BundledScenario& bundled : bundled_scenarios()) EXPECT_TRUE(names.contains(bundled.name)) << bundled.name;

@@ -27,7 +27,7 @@ TEST(Expectation, IsMetByAnyOfItsOutcomes) {
     run.result.outcome = outcome;
     EXPECT_EQ(unmet_expectations(expect, run), Sentences{});
   }
-  expect.outcomes = {"diverges"};
+  expect.outcomes = {Outcome::diverges};
   EXPECT_EQ(unmet_expectations(expect, run), Sentences{"outcome is \"tool_horizontal\"; expected \"diverges\""});
 }
 

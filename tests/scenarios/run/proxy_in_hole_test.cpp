@@ -47,7 +47,7 @@ TEST(ProxyInHole, NeitherEntersTheShellNorGetsStifferThanOneSpring) {
   scenario.time.steps = 10'240;  // one period of the tilt
   const auto shell = make_shell(scenario, environment_points(scenario, ShellCache()).points);
   SimulationParts parts = assemble(scenario, shell, {});
-  PointsInProxy points(*shell, *parts.tool, scenario.rendering.config.stiffness);
+  PointsInProxy points(*shell, *parts.tool, scenario.rendering.stiffness);
   Simulation simulation(simulation_config(scenario, Skips::taken), std::move(parts), {&points});
   EXPECT_EQ(simulation.run().outcome, Outcome::completes);
   EXPECT_LE(points.deepest, 1e-6);

@@ -27,15 +27,15 @@ TEST(TenMinutesInContact, EndWhereTheClosedFormSaysAndMakeNoEnergy) {
   EXPECT_EQ(report.unmet, std::vector<std::string>{});
   EXPECT_EQ(report.summary.result.rows, 1'200'000u);
 
-  const double K = scenario.rendering.config.stiffness, M = *scenario.rendering.mass;
-  const double B = 2.0 * scenario.rendering.config.damping_ratio * std::sqrt(K * M);
+  const double K = scenario.rendering.stiffness, M = scenario.rendering.mass;
+  const double B = 2.0 * scenario.rendering.damping_ratio * std::sqrt(K * M);
   const auto& force = std::get<Profile::Sine>(std::get<ForceHandFields>(scenario.hand).force[2].shape());
   const double expected = steady_response(K, B, M, scenario.time.step, force, 1'199'999.0);
   // The transient is gone, e^(-100 000). Rounding of position and force, 1e-16 of 0.3 mm each, is forgotten within a
   // hundred steps; the phase of the sine, 5386 rad, is known to 1e-12, which is 1e-12 of its 0.05 mm.
   EXPECT_NEAR(report.summary.metrics.final_position.z(), expected, 1e-15);
   const auto& bound = scenario.expect.metrics.at("final_position_m.z");
-  EXPECT_NEAR(0.5 * (*bound->min + *bound->max), expected, 1e-14) << "the file's bounds are about the closed form";
+  EXPECT_NEAR(0.5 * (*bound.min + *bound.max), expected, 1e-14) << "the file's bounds are about the closed form";
 
   // Energy made in a step is the rounding of the ledger's sums of terms up to 3 mJ: 1e-18 J, 1.2 million times.
   EXPECT_LE(report.summary.energy->created_sum, 1.2e-12);

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/description/codec.hpp"
+#include "scenarios/input/json_file.hpp"
 #include "sim/core/random.hpp"
 
 namespace hapbench::test {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/description/codec.hpp"
+#include "scenarios/input/json_file.hpp"
 
 /// Scenarios to test with.
 namespace hapbench::test {

@@ -10,7 +10,7 @@ namespace hapbench::test {
 std::vector<std::string> shortened(const BundledScenario& bundled) {
   const Scenario scenario = load_scenario(bundled.file).scenario;
   const bool tracking = std::holds_alternative<TrackingHandFields>(scenario.hand);
-  if (*scenario.time.steps <= 10'000) return {};
+  if (scenario.time.steps <= 10'000) return {};
   std::vector<std::string> arguments = {
       "--set", R"(expect={"outcome": ["completes", "leaves_hole", "tool_horizontal", "diverges"]})", "--set",
       fmt::format("time={{\"step_s\": {}, \"steps\": 2000}}", scenario.time.step)};

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/loop/integrators/leapfrog.hpp"
+#include "tests/support/leapfrog.hpp"
 
 namespace hapbench {
 namespace {
@@ -21,7 +21,7 @@ ToolState run_spring(ObservedEnergy& observed, double damping, double position, 
     observed.move(tool);
     const Vec3 force{-kK * x - damping * tool.velocity.x(), 0, 0};
     observed.answer(tool, force, {0.5 * kK * x * x, Vec3::Zero()});
-    if (k + 1 < rows) leapfrog(tool, force, kMass, kDt);
+    if (k + 1 < rows) test::leapfrog(tool, force, kMass, kDt);
   }
   return tool;
 }

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "sim/geometry/analytic_shells.hpp"
-#include "sim/loop/integrators/leapfrog.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/fakes.hpp"
+#include "tests/support/leapfrog.hpp"
 
 namespace hapbench {
 namespace {
@@ -80,7 +80,7 @@ TEST(Simulation, EachRowIsEvaluatedBeforeItsStepIsTaken) {
     EXPECT_EQ(row.tool.pose.position, tool.pose.position);
     EXPECT_EQ(row.tool.velocity, tool.velocity);
     EXPECT_EQ(row.force.rendered, spring(tool));
-    leapfrog(tool, row.force.rendered, config.mass, config.dt);
+    test::leapfrog(tool, row.force.rendered, config.mass, config.dt);
   }
 }
 
@@ -94,7 +94,7 @@ TEST(Simulation, TheLimitedHandForceDrivesTheTool) {
   EXPECT_EQ(recorder.rows[0].hand.measured, Vec3(3, 0, -4));
   EXPECT_EQ(recorder.rows[0].hand.input, Vec3(3, 0, -4) * (2.0 / 5.0));
   ToolState tool = recorder.rows[0].tool;
-  leapfrog(tool, recorder.rows[0].hand.input, config.mass, config.dt);
+  test::leapfrog(tool, recorder.rows[0].hand.input, config.mass, config.dt);
   EXPECT_EQ(recorder.rows[1].tool.velocity, tool.velocity);
 }
 

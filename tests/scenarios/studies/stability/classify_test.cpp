@@ -109,8 +109,8 @@ TEST(SpringDamperMargin, ChangesItsSignWhereAnEigenvalueLeavesTheUnitCircle) {
   for (const double lambda : {0.5, 1.0, 7.0}) {
     for (double K = 1e4; K < 1e7; K *= 1.1) {
       const SpringDamper system{K, 1.4 * std::sqrt(0.1 * K), 0.1, 0.0005, lambda};
-      if (std::abs(system.margin()) < 1e-9) continue;  // the limit itself, to rounding
-      EXPECT_EQ(system.margin() > 0.0, system.spectral_radius() < 1.0) << K << " " << lambda;
+      if (std::abs(*system.margin()) < 1e-9) continue;  // the limit itself, to rounding
+      EXPECT_EQ(*system.margin() > 0.0, system.spectral_radius() < 1.0) << K << " " << lambda;
     }
   }
 }

@@ -25,6 +25,7 @@ TEST(LawStress, NoForceIsInfiniteOrOutOfBound) {
     EXPECT_EQ(c.out_of_bound, 0u) << c.algorithm << ", first in set " << c.first_bad;
     // n_ext overflows wherever there is a reduction.
     EXPECT_EQ(c.points_dropped > 0, find_algorithm(c.algorithm)->may_reduce) << c.algorithm;
+    EXPECT_EQ(c.largest_share.has_value(), find_algorithm(c.algorithm)->theory->force_bound != nullptr) << c.algorithm;
   }
 }
 
@@ -32,10 +33,11 @@ TEST(LawStress, ReachesTheBoundsThatCanBeReached) {
   // Parallel springs of one depth: all of the sum, of the mean, of a shaped direction; coupled ones, s / (1 + s^2) at s
   // = 1.
   for (const StressCounts& c : stress_laws(test::cases(20'000), 2, {2, ""})) {
+    if (!c.largest_share) continue;
     if (c.algorithm == "tandpasta" || c.algorithm == "original_averaging") continue;  // worst cases of rounding
     if (c.algorithm == "proxy") continue;  // its bound is how far it can move in a step, which nothing makes it do
-    EXPECT_GT(c.largest_share, 0.9) << c.algorithm;
-    EXPECT_LE(c.largest_share, 1.0 + 1e-9) << c.algorithm;
+    EXPECT_GT(*c.largest_share, 0.9) << c.algorithm;
+    EXPECT_LE(*c.largest_share, 1.0 + 1e-9) << c.algorithm;
   }
 }
 
@@ -48,26 +50,6 @@ TEST(LawStress, DoesNotDependOnTheNumberOfThreads) {
     EXPECT_EQ(one[i].largest_force, four[i].largest_force);
     EXPECT_EQ(one[i].largest_share, four[i].largest_share);
   }
-}
-
-TEST(ForceBound, HoldsForSpringsOfEqualDepthInClosedForm) {
-  RenderingConfig config;
-  const auto bound = [&](const char* algorithm, std::size_t n) {
-    config.algorithm = algorithm;
-    return force_bound(config, Cylinder{}, n, 1.0);
-  };
-  for (const std::size_t n : {1u, 2u, 10u, 200u}) {
-    const auto points = static_cast<double>(n);
-    EXPECT_EQ(bound("summation", n), points);  // n parallel springs
-    EXPECT_EQ(bound("mean", n), 1.0);
-    EXPECT_GE(bound("virtual_coupling", n), points / (1.0 + points));  // n parallel springs in series with one
-    EXPECT_GE(bound("shaped_stiffness", n), 1.0);
-    EXPECT_LE(bound("shaped_stiffness", n), 3.0);
-  }
-  // A proxy is not bounded by a depth but by how far it moves: 64 passes of a fifth of the radius, 0.5 mm.
-  EXPECT_DOUBLE_EQ(bound("proxy", 1), 64 * 0.2 * 0.0005);
-  config.iterations = 0;
-  EXPECT_EQ(bound("shaped_stiffness", 50), 50.0);  // summation
 }
 
 /// What the families promise, over sets that the tool touches.

@@ -1,4 +1,4 @@
-#include "sim/loop/integrators/integrator.hpp"
+#include "sim/loop/integrators/table.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "sim/core/random.hpp"
-#include "sim/loop/integrators/linearly_implicit.hpp"
 #include "tests/support/fakes.hpp"
 
 namespace hapbench {
@@ -37,11 +36,12 @@ ToolState displaced() {
   return {{Vec3(0.001, 0.0, -0.002), -Vec3::UnitZ()}, Vec3(0.3, -0.1, 0.0)};
 }
 
-ToolState run(Integrator integrator, SpringField field, double dt, int steps) {
+ToolState run(const IntegratorEntry* integrator, SpringField field, double dt, int steps) {
   ToolState tool = displaced();
+  const auto stepper = integrator->make();
   for (int i = 0; i < steps; ++i) {
     const Vec3 force = -field.K * tool.pose.position - field.B * tool.velocity;
-    integrate(integrator, tool, force, kMass, dt, field);
+    stepper->step(tool, force, kMass, dt, field);
   }
   return tool;
 }
@@ -72,16 +72,8 @@ double error(const ToolState& a, const ToolState& b, double K) {
 }
 
 TEST(Integrators, ConvergeWithTheirOrders) {
-  const struct {
-    Integrator integrator;
-    double undamped, damped;
-  } kOrders[] = {{Integrator::leapfrog, 1.0, 1.0},
-                 {Integrator::velocity_verlet, 2.0, 1.0},
-                 {Integrator::rk4, 4.0, 4.0},
-                 {Integrator::implicit_euler, 1.0, 1.0},
-                 {Integrator::implicit_midpoint, 2.0, 2.0}};
   constexpr double kEnd = 0.0173;
-  for (const auto& [integrator, undamped, damped] : kOrders) {
+  for (const IntegratorEntry* integrator : kIntegrators) {
     for (const double B : {0.0, 20.0}) {
       const SpringField field(20000.0, B);
       const auto error_of = [&](int steps) {
@@ -90,34 +82,34 @@ TEST(Integrators, ConvergeWithTheirOrders) {
       const double order = std::log2(error_of(400) / error_of(800));
       // error = C h^p (1 + D h + ...): w h = 0.014 at the coarser step, and D is of the order of w times the 5 radians
       // of the run, so that the ratio is 2^p to within some 3.5 %, log2 of which is 0.05.
-      EXPECT_NEAR(order, B == 0.0 ? undamped : damped, 0.05) << integrator_name(integrator) << " B = " << B;
+      EXPECT_NEAR(order, B == 0.0 ? integrator->order : integrator->damped_order, 0.05)
+          << integrator->info.name << " B = " << B;
     }
   }
 }
 
 TEST(Integrators, AskForTheForceAsOftenAsTheySay) {
-  const int kCalls[] = {0, 1, 3, 0, 0};  // beside the row's
-  for (std::size_t i = 0; i < kIntegrators.size(); ++i) {
+  for (const IntegratorEntry* integrator : kIntegrators) {
     SpringField field(20000.0, 5.0);
     ToolState tool = displaced();
-    integrate(kIntegrators[i], tool, Vec3::UnitX(), kMass, 0.0005, field);
-    EXPECT_EQ(field.calls, kCalls[i]) << integrator_name(kIntegrators[i]);
+    integrator->make()->step(tool, Vec3::UnitX(), kMass, 0.0005, field);
+    EXPECT_EQ(field.calls, integrator->forces - 1) << integrator->info.name << " beside the row's";
     EXPECT_EQ(tool.pose.axis, Vec3(-Vec3::UnitZ()));
   }
 }
 
 TEST(Integrators, MoveAFreeMassAlike) {
-  // A constant force: only leapfrog and implicit Euler, of order 1, differ from the parabola, by half a step's fall.
+  // A constant force: only methods of order 1 differ from the parabola, by half a step's fall.
   struct Constant final : ForceField {
     Vec3 force_at(double, const Vec3&, const Vec3&) noexcept override { return {0, 0, -2}; }
     ForceJacobian jacobian() const noexcept override { return {}; }
   } field;
-  for (const Integrator integrator : kIntegrators) {
+  for (const IntegratorEntry* integrator : kIntegrators) {
     ToolState tool;
-    integrate(integrator, tool, {0, 0, -2}, 0.5, 0.25, field);
-    EXPECT_EQ(tool.velocity, Vec3(0, 0, -1)) << integrator_name(integrator);
-    const bool first_order = integrator == Integrator::leapfrog || integrator == Integrator::implicit_euler;
-    EXPECT_NEAR(tool.pose.position.z(), first_order ? -0.25 : -0.125, 4 * kEps) << integrator_name(integrator);
+    integrator->make()->step(tool, {0, 0, -2}, 0.5, 0.25, field);
+    EXPECT_EQ(tool.velocity, Vec3(0, 0, -1)) << integrator->info.name;
+    const bool first_order = integrator->order == 1;
+    EXPECT_NEAR(tool.pose.position.z(), first_order ? -0.25 : -0.125, 4 * kEps) << integrator->info.name;
   }
 }
 
@@ -127,7 +119,7 @@ TEST(ImplicitMidpoint, IsTheTrapezoidalRuleOnASpringDamper) {
     for (const double B : {0.0, 50.0, 2e4}) {
       const SpringField field(K, B);
       const double dt = 0.0005, k = K * dt * dt / kMass, b = B * dt / kMass;
-      const ToolState start = displaced(), moved = run(Integrator::implicit_midpoint, field, dt, 1);
+      const ToolState start = displaced(), moved = run(&kImplicitMidpoint, field, dt, 1);
       const double D = 1.0 + 0.5 * b + 0.25 * k;
       const Vec3 p = ((1.0 + 0.5 * b - 0.25 * k) * start.pose.position + dt * start.velocity) / D;
       const Vec3 v = ((1.0 - 0.5 * b - 0.25 * k) * start.velocity - k / dt * start.pose.position) / D;
@@ -144,9 +136,7 @@ TEST(ImplicitMidpoint, KeepsTheEnergyOfUndampedSpringsHoweverStiff) {
     const double start = energy(displaced(), K);
     constexpr int kSteps = 10'000;
     // Each step rounds position and velocity, some ten times.
-    EXPECT_NEAR(energy(run(Integrator::implicit_midpoint, {K, 0.0}, 0.0005, kSteps), K), start,
-                10 * kSteps * kEps * start)
-        << K;
+    EXPECT_NEAR(energy(run(&kImplicitMidpoint, {K, 0.0}, 0.0005, kSteps), K), start, 10 * kSteps * kEps * start) << K;
   }
 }
 
@@ -155,7 +145,7 @@ TEST(ImplicitEuler, TakesItsShareOfTheEnergyInEveryStep) {
     const double k = K * 0.0005 * 0.0005 / kMass;
     double before = energy(displaced(), K);
     for (int steps = 1; steps <= 5; ++steps) {
-      const double now = energy(run(Integrator::implicit_euler, {K, 0.0}, 0.0005, steps), K);
+      const double now = energy(run(&kImplicitEuler, {K, 0.0}, 0.0005, steps), K);
       // The map is normal in the norm of the energy, with eigenvalues of modulus 1 / sqrt(1 + k). Stiff springs lose
       // digits of what is left to what was there: the force is known to eps, and k of it cancels.
       EXPECT_NEAR(now / before, 1.0 / (1.0 + k), 100 * kEps * (1.0 + k)) << K << " step " << steps;
@@ -171,16 +161,27 @@ TEST(VelocityVerlet, SwingsAboutItsEnergyWithoutDrift) {
   const auto kept = [&](const ToolState& tool) {
     return energy(tool, K) - 0.125 * k * K * tool.pose.position.squaredNorm();
   };
-  const ToolState tool = run(Integrator::velocity_verlet, field, 0.0005, 100'000);
+  const ToolState tool = run(&kVelocityVerlet, field, 0.0005, 100'000);
   EXPECT_NEAR(kept(tool), kept(displaced()), 1e6 * kEps * kept(displaced()));
 }
 
 TEST(RungeKutta, DissipatesAsItsAmplificationSays) {
   const double K = 20000.0, k = K * 0.0005 * 0.0005 / kMass;
   const double factor = 1.0 - k * k * k / 72.0 + k * k * k * k / 576.0;  // |1 + z + ... + z^4 / 24|^2, z = i sqrt(k)
-  const double end = energy(run(Integrator::rk4, {K, 0.0}, 0.0005, 1000), K);
+  const double end = energy(run(&kRk4, {K, 0.0}, 0.0005, 1000), K);
   EXPECT_NEAR(end / energy(displaced(), K), std::pow(factor, 1000), 1000 * 20 * kEps);
 }
+
+/// Holds a Jacobian that no step asks to be evaluated elsewhere.
+class HeldJacobian final : public ForceField {
+ public:
+  explicit HeldJacobian(ForceJacobian jacobian) : jacobian_(std::move(jacobian)) {}
+  Vec3 force_at(double, const Vec3&, const Vec3&) noexcept override { return Vec3::Zero(); }
+  ForceJacobian jacobian() const noexcept override { return jacobian_; }
+
+ private:
+  ForceJacobian jacobian_;
+};
 
 TEST(LinearlyImplicit, CopesWithDampingThatDrives) {
   Random random(1);
@@ -196,7 +197,8 @@ TEST(LinearlyImplicit, CopesWithDampingThatDrives) {
     ToolState tool;
     tool.velocity = random.direction();
     const Vec3 force = 1e3 * random.direction(), v = tool.velocity;
-    implicit_euler(tool, force, jacobian, kMass, 0.0005);
+    HeldJacobian field(jacobian);
+    kImplicitEuler.make()->step(tool, force, kMass, 0.0005, field);
     // Never more than twice what the explicit step would make of the same impulse.
     const Vec3 impulse = 0.0005 * (force - 0.0005 * (jacobian.stiffness * v));
     ASSERT_TRUE(tool.velocity.allFinite());
@@ -207,14 +209,15 @@ TEST(LinearlyImplicit, CopesWithDampingThatDrives) {
 TEST(LinearlyImplicit, AnswersAnInfiniteJacobianWithTheExplicitStep) {
   for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
     ToolState tool;
-    implicit_midpoint(tool, {1, 0, 0}, {Mat3::Zero(), Mat3::Constant(bad)}, 0.5, 0.25);
+    HeldJacobian field({Mat3::Zero(), Mat3::Constant(bad)});
+    kImplicitMidpoint.make()->step(tool, {1, 0, 0}, 0.5, 0.25, field);
     EXPECT_EQ(tool.velocity, Vec3(0.5, 0, 0));
   }
 }
 
 // ---- In the step loop.
 
-SimulationConfig config_of(Integrator integrator, std::uint64_t steps) {
+SimulationConfig config_of(const IntegratorEntry* integrator, std::uint64_t steps) {
   SimulationConfig config;
   config.integrator = integrator;
   config.steps = steps;
@@ -224,18 +227,19 @@ SimulationConfig config_of(Integrator integrator, std::uint64_t steps) {
 }
 
 TEST(IntegratorInTheLoop, MovesTheToolAsItDoesAlone) {
-  for (const Integrator integrator : {Integrator::velocity_verlet, Integrator::rk4}) {
+  for (const IntegratorEntry* integrator : {&kLeapfrog, &kVelocityVerlet, &kRk4}) {
     test::Recorder recorder;
     const SimulationConfig config = config_of(integrator, 50);
     SpringField field(20000.0, 50.0);
     const auto law = [](const ToolState& t) { return Vec3(-20000.0 * t.pose.position - 50.0 * t.velocity); };
     Simulation(config, test::fake_parts(law), {&recorder}).run();
     ToolState tool = recorder.rows[0].tool;
+    const auto stepper = integrator->make();
     for (const StepRecord& row : recorder.rows) {
       EXPECT_EQ(row.tool.pose.position, tool.pose.position);
       EXPECT_EQ(row.tool.velocity, tool.velocity);
       EXPECT_EQ(row.force.rendered, law(tool)) << "rows are evaluated at their own states";
-      integrate(integrator, tool, row.force.rendered, config.mass, config.dt, field);
+      stepper->step(tool, row.force.rendered, config.mass, config.dt, field);
     }
   }
 }
@@ -262,7 +266,7 @@ class Witness final : public ForceAlgorithm {
 const Orientation kTurn{{0, 0, 1}, {1, 0, 0}, Profile::Shape(Profile::Ramp{0.1, 3.0}), {}};
 
 /// What an algorithm sees of a tool that tilts from -z towards -x, about y, at 3 rad/s.
-std::vector<ToolState> seen_of_a_turn(Integrator integrator, std::uint64_t steps, double cutoff) {
+std::vector<ToolState> seen_of_a_turn(const IntegratorEntry* integrator, std::uint64_t steps, double cutoff) {
   std::vector<ToolState> seen;
   SimulationParts parts = test::fake_parts(test::weightless);
   parts.algorithm = std::make_unique<Witness>(seen, cutoff);
@@ -272,7 +276,7 @@ std::vector<ToolState> seen_of_a_turn(Integrator integrator, std::uint64_t steps
 }
 
 TEST(IntegratorInTheLoop, SeesTheAxisAndTheTurnOfItsTime) {
-  const auto seen = seen_of_a_turn(Integrator::rk4, 3, std::numeric_limits<double>::infinity());
+  const auto seen = seen_of_a_turn(&kRk4, 3, std::numeric_limits<double>::infinity());
   ASSERT_EQ(seen.size(), 12u);
   const double kParts[] = {0.0, 0.5, 0.5, 1.0};
   for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -289,12 +293,12 @@ TEST(IntegratorInTheLoop, SeesTheTurnThroughTheLowPassOfTheAlgorithm) {
   constexpr double kCutoff = 40.0;
   const double dt = SimulationConfig{}.dt;
   const auto response = [&](double t) { return 3.0 * (1.0 - std::exp(-2.0 * std::numbers::pi * kCutoff * t)); };
-  const auto rows = seen_of_a_turn(Integrator::leapfrog, 40, kCutoff);
+  const auto rows = seen_of_a_turn(&kLeapfrog, 40, kCutoff);
   ASSERT_EQ(rows.size(), 40u);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     EXPECT_LE((rows[k].angular_velocity - Vec3(0.0, response(static_cast<double>(k) * dt), 0.0)).norm(), 1e-11) << k;
   }
-  const auto within = seen_of_a_turn(Integrator::rk4, 3, kCutoff);
+  const auto within = seen_of_a_turn(&kRk4, 3, kCutoff);
   ASSERT_EQ(within.size(), 12u);
   for (std::size_t i = 0; i < within.size(); ++i) {
     constexpr double kParts[] = {0.0, 0.5, 0.5, 1.0};
@@ -303,22 +307,51 @@ TEST(IntegratorInTheLoop, SeesTheTurnThroughTheLowPassOfTheAlgorithm) {
   }
 }
 
+/// Moves the tool by 1 in its first step and by one more in each that follows.
+class Counting final : public Integrator {
+ public:
+  void reset() noexcept override { steps_ = 0; }
+  void step(ToolState& tool, const Vec3&, double, double, ForceField&) noexcept override {
+    tool.pose.position.x() += ++steps_;
+  }
+
+ private:
+  int steps_ = 0;
+};
+
+TEST(IntegratorInTheLoop, MayKeepAStateThatResetForgets) {
+  const IntegratorEntry counting = {
+      .info = {}, .make = []() -> std::unique_ptr<Integrator> { return std::make_unique<Counting>(); }};
+  test::Recorder recorder;
+  SimulationConfig config = config_of(&counting, 4);
+  config.position = Vec3::Zero();
+  Simulation simulation(config, test::fake_parts(test::weightless), {&recorder});
+  simulation.run();
+  simulation.reset();
+  simulation.run();
+  ASSERT_EQ(recorder.rows.size(), 8u);
+  for (const std::size_t run : {0u, 4u}) {
+    for (const auto& [row, x] : {std::pair{0u, 0.0}, {1u, 1.0}, {2u, 3.0}, {3u, 6.0}}) {
+      EXPECT_EQ(recorder.rows[run + row].tool.pose.position.x(), x) << run << " " << row;
+    }
+  }
+}
+
 TEST(IntegratorInTheLoop, HoldsTheInputForceOverTheStep) {
-  for (const Integrator integrator : kIntegrators) {
+  for (const IntegratorEntry* integrator : kIntegrators) {
     SimulationParts parts = test::fake_parts(test::weightless);
     parts.hand = std::make_unique<ForceHand>(std::array<Profile, 3>{Profile::Shape(Profile::Ramp{1.0, 1000.0}), 0, 0});
     SimulationConfig config = config_of(integrator, 2);
     config.velocity = Vec3::Zero();
     test::Recorder recorder;
     Simulation(config, std::move(parts), {&recorder}).run();
-    EXPECT_NEAR(recorder.rows[1].tool.velocity.x(), 1.0 / config.mass * config.dt, 4 * kEps)
-        << integrator_name(integrator);
+    EXPECT_NEAR(recorder.rows[1].tool.velocity.x(), 1.0 / config.mass * config.dt, 4 * kEps) << integrator->info.name;
   }
 }
 
 TEST(IntegratorInTheLoop, LeavesAPrescribedPositionAlone) {
   std::vector<StepRecord> leapfrog_rows;
-  for (const Integrator integrator : kIntegrators) {
+  for (const IntegratorEntry* integrator : kIntegrators) {
     test::Calls calls;
     SimulationParts parts = test::fake_parts([](const ToolState&) { return Vec3(1e6, 0, 0); }, &calls);
     parts.motion = std::make_unique<ScriptedMotion>(

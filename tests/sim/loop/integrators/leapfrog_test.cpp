@@ -1,13 +1,15 @@
-#include "sim/loop/integrators/leapfrog.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <complex>
 #include <vector>
 
+#include "tests/support/leapfrog.hpp"
+
 namespace hapbench {
 namespace {
+
+using test::leapfrog;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 

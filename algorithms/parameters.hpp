@@ -1,0 +1,38 @@
+#pragma once
+
+#include "sim/core/number_range.hpp"
+
+namespace hapbench {
+
+/// A parameter of the rendering: the scenario field that sets it, with unit and range. Its default is the member's in
+/// RenderingConfig.
+struct Parameter {
+  const char* field;
+  NumberRange range;
+};
+
+/// The parameters that the documentation of models names.
+namespace parameter {
+
+inline constexpr NumberRange kSwitch = {0, 1, "1"};
+
+inline constexpr Parameter kIterations = {"rendering.iterations", {0, 100'000, "1"}};
+inline constexpr Parameter kLocalAverage = {"rendering.local_average", kSwitch};
+inline constexpr Parameter kThreshold = {"rendering.reduction.threshold", {-1.0, 1.0, "1", true}};
+inline constexpr Parameter kMaxPoints = {"rendering.reduction.max_points", {1, 100'000, "1"}};
+inline constexpr Parameter kShuffleSeed = {"rendering.reduction.shuffle_seed", {0, 0x1p53, "1"}};
+inline constexpr Parameter kStiffness = {"rendering.stiffness_N_per_m", {0.0, 1e12, "N/m"}};
+inline constexpr Parameter kDampingRatio = {"rendering.damping_ratio", {0.0, 1e6, "1"}};
+inline constexpr Parameter kDamping = {"rendering.damping_N_s_per_m", {0.0, 1e12, "N s/m"}};
+inline constexpr Parameter kAngularDamping = {"rendering.angular_damping", kSwitch};
+inline constexpr Parameter kAngularVelocityCutoff = {"rendering.angular_velocity_cutoff_Hz", {0.0, 1e6, "Hz", true}};
+inline constexpr Parameter kMass = {"rendering.mass_kg", {0.0, 1e6, "kg", true}};
+inline constexpr Parameter kMuS = {"rendering.friction.mu_s_N_s_per_m", {0.0, 1e9, "N s/m"}};
+inline constexpr Parameter kMuF = {"rendering.friction.mu_f_s_per_m", {0.0, 1e9, "s/m"}};
+inline constexpr Parameter kMaxDamping = {"rendering.limits.max_damping_N_s_per_m", {0.0, 1e12, "N s/m"}};
+inline constexpr Parameter kMaxForce = {"rendering.limits.max_force_N", {0.0, 1e12, "N"}};
+inline constexpr Parameter kVirtualCoupling = {"rendering.virtual_coupling_N_per_m", {0.0, 1e12, "N/m", true}};
+inline constexpr Parameter kPassivityController = {"rendering.passivity_controller", kSwitch};
+
+}  // namespace parameter
+}  // namespace hapbench

@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scenarios/description/descriptions.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/size_limits.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr NumberRange kLength = {0.0, 1000.0, "m", true};
+constexpr IntegerRange kSpringCount = {0, 20'000'000};
+/// Anything much shorter loses digits, or all, when it is squared.
+constexpr double kShortestDirection = 1e-12;
+
+/// In the order of the variant.
+constexpr std::array kTypes = {"springs", "hole_2d", "plane", "slot", "block_with_hole", "point_shell", "mesh"};
+
+constexpr Choice<Density> kDensities[] = {{"signed_distance", Density::signed_distance}, {"binary", Density::binary}};
+
+void refuse_too_many(double count, const std::string& at, const char* what) {
+  if (count <= kMostPoints) return;
+  throw InputError(InputError::Kind::relation, at,
+                   fmt::format("got {:.3g} {}; allowed: at most {:.0g}", count, what, kMostPoints));
+}
+
+template <class Shell>
+void check_point_count(Fields& f, const Shell& shell) {
+  if (f.reads()) refuse_too_many(point_count(shell), f.at(), "shell points (from the lengths and spacing_m)");
+}
+
+void check_springs(const SpringsEnvironment& springs, const std::string& at) {
+  double count = static_cast<double>(springs.random.count);
+  for (std::size_t i = 0; i < springs.groups.size(); ++i) {
+    count += static_cast<double>(springs.groups[i].count);
+    const Vec3& direction = springs.groups[i].direction;
+    if (direction.norm() >= kShortestDirection) continue;
+    throw InputError(InputError::Kind::relation, fmt::format("{}/groups/{}/direction", at, i),
+                     fmt::format("got [{}, {}, {}]; allowed: a direction that is not zero, length at least {}",
+                                 direction.x(), direction.y(), direction.z(), kShortestDirection));
+  }
+  refuse_too_many(count, at, "springs");
+}
+
+void check_block(const BlockEnvironment& environment, const std::string& at) {
+  const auto& [block, grid, density] = environment;
+  const Vec3& size = block.size;
+  // Cells smaller than this cannot be numbered; thinner walls have no nodes on both sides.
+  const double longest = 1e5 * grid, thinnest = 3.0 * grid;
+  const auto fail = [&at](const char* field, const std::string& problem) {
+    throw InputError(InputError::Kind::relation, at + "/" + field, problem);
+  };
+  if (size.maxCoeff() > longest) fail("grid_m", fmt::format("got {}; allowed: at least size_m / 1e5", grid));
+  const double area = 2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
+  refuse_too_many(area / (grid * grid), at, "shell points (from size_m and grid_m)");
+  if (block.hole_diameter > std::min(size.x(), size.y()) - 2.0 * thinnest || block.hole_diameter < thinnest) {
+    fail("hole_diameter_m",
+         fmt::format("got {}; allowed: at least 3 grid_m, leaving walls of 3 grid_m", block.hole_diameter));
+  }
+  if (block.hole_depth > size.z() - thinnest || block.hole_depth < thinnest) {
+    fail("hole_depth_m",
+         fmt::format("got {}; allowed: at least 3 grid_m, leaving a bottom of 3 grid_m", block.hole_depth));
+  }
+}
+
+}  // namespace
+
+static void describe(Fields& f, SpringGroup& group) {
+  f.vector3("direction", group.direction, {-1e9, 1e9, "1"},
+            "gradient u of the springs, towards deeper penetration; normalised", Presence::required);
+  f.integer("count", group.count, kSpringCount, "number of springs", Presence::required);
+}
+
+static void describe(Fields& f, RandomSprings& random) {
+  f.integer("count", random.count, kSpringCount, "number of springs with random gradients from the seed");
+  f.boolean("planar", random.planar, "gradients uniform on the circle z = 0 instead of the sphere");
+}
+
+static void describe(Fields& f, SpringsEnvironment& springs) {
+  f.boolean("bilateral", springs.bilateral, "springs push and pull; false: only while their depth is positive");
+  f.objects("groups", springs.groups, {0, 10'000}, "springs by direction, in this order");
+  f.object("random", springs.random, "springs with random directions, after the groups");
+  if (f.reads()) check_springs(springs, f.at());
+}
+
+static void describe(Fields& f, Hole2d& hole) {
+  f.number("width_m", hole.width, kLength, "width of the hole");
+  f.number("depth_m", hole.depth, kLength, "depth of the hole");
+  f.number("spacing_m", hole.spacing, kLength, "largest distance of neighbours");
+  f.number("mouth_m", hole.mouth, kLength, "flat top either side");
+  check_point_count(f, hole);
+}
+
+static void describe(Fields& f, Plane& plane) {
+  f.number("size_m", plane.size, kLength, "edge of the square, centred at 0");
+  f.number("spacing_m", plane.spacing, kLength, "largest distance of neighbours");
+  check_point_count(f, plane);
+}
+
+static void describe(Fields& f, Slot& slot) {
+  f.number("gap_m", slot.gap, kLength, "distance of the two faces, along x", Presence::required);
+  f.number("depth_m", slot.depth, kLength, "height of the faces below z = 0", Presence::required);
+  f.number("length_m", slot.length, kLength, "width of the faces along y", Presence::required);
+  f.number("spacing_m", slot.spacing, kLength, "largest distance of neighbours", Presence::required);
+  check_point_count(f, slot);
+}
+
+static void describe(Fields& f, BlockEnvironment& environment) {
+  BlockWithHole& block = environment.block;
+  f.vector3("size_m", block.size, kLength, "edges of the block, centred at x = y = 0, top face in z = 0");
+  f.number("hole_diameter_m", block.hole_diameter, kLength, "round blind hole");
+  f.number("hole_depth_m", block.hole_depth, kLength, "below the top face");
+  f.number("grid_m", environment.grid, kLength, "grid of the density field; its nodes lie at half-integer multiples");
+  f.choice("density", environment.density, kDensities, "density",
+           "what the nodes store: minus the signed distance, or 1 and 0");
+  if (f.reads()) check_block(environment, f.at());
+}
+
+static void describe(Fields& f, PointShellEnvironment& shell) {
+  f.text("file", shell.file, 4096,
+         "CSV with header x_m,y_m,z_m,nx,ny,nz, or PLY with normals; relative to the scenario file",
+         Presence::required);
+  f.number("grid_m", shell.grid, kLength, "cell of the local average; null: no grid");
+}
+
+static void describe(Fields& f, MeshEnvironment& mesh) {
+  f.text("file", mesh.file, 4096, "surface as OBJ, PLY, STL or OFF, ASCII or binary; relative to the scenario file",
+         Presence::required);
+  f.number("scale", mesh.scale, {0.0, 1e6, "m", true}, "length of the file's unit: 0.001 for millimetres",
+           Presence::required);
+  f.number("spacing_m", mesh.spacing, kLength,
+           "resamples: no edge longer, one point in a cube of this size; null: the mesh's own vertices");
+  f.number("grid_m", mesh.grid, kLength, "cell of the local average; null: no grid");
+}
+
+void describe(Fields& f, Environment& environment) {
+  f.variant(environment, "environment", kTypes, [](Fields& e, auto& fields) { describe(e, fields); });
+}
+
+std::vector<std::string> environment_names() {
+  return {kTypes.begin(), kTypes.end()};
+}
+
+}  // namespace hapbench

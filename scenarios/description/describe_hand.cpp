@@ -1,0 +1,77 @@
+#include "scenarios/description/descriptions.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr NumberRange kCoordinate = {-1000.0, 1000.0, "m"};
+
+constexpr Choice<TargetDisplay> kDisplays[] = {{"panel", TargetDisplay::panel}, {"height", TargetDisplay::height}};
+
+}  // namespace
+
+static void describe(Fields&, NoHandFields&) {}
+
+static void describe(Fields& f, ForceHandFields& hand) {
+  constexpr const char* kNames[] = {"x_N", "y_N", "z_N"};
+  for (std::size_t i = 0; i < 3; ++i) profile(f, kNames[i], hand.force[i], "N", "force on the handle over time");
+}
+
+static void describe(Fields& f, ImpedanceHandFields& hand) {
+  f.number("stiffness_N_per_m", hand.stiffness, {0.0, 1e9, "N/m"}, "of the spring from target to handle");
+  f.number("damping_N_s_per_m", hand.damping, {0.0, 1e9, "N s/m"}, "of the damper beside it");
+  f.group(
+      "target", "where the hand wants the handle",
+      [&hand](Fields& target) {
+        constexpr const char* kNames[] = {"x_m", "y_m", "z_m"};
+        for (std::size_t i = 0; i < 3; ++i) {
+          profile(target, kNames[i], hand.target[i], "m", "over time", Presence::required);
+        }
+      },
+      Presence::required);
+}
+
+static void describe(Fields& f, TargetRules& task) {
+  f.choice("display", task.display, kDisplays, "display",
+           "panel: x and y count, the orientation is scripted; height: z counts, the hand turns the tool");
+  f.list(
+      "places_m", task.places, {1, 100}, "where targets appear",
+      [](Fields& p, Vec3& place) { p.vector3(place, kCoordinate); }, Presence::required);
+  f.integer("targets_per_place", task.targets_per_place, {1, 1000}, "in one trial");
+  f.number("tolerance_m", task.tolerance, {0.0, 1.0, "m", true}, "the tip is on the target within this distance");
+  f.number("least_press_N", task.least_press, {0.0, 1000.0, "N"}, "model force along +z that activates the task");
+  f.number("hold_s", task.hold, {0.0, 1000.0, "s", true}, "time on the target, without a break, that removes it");
+  f.number("time_limit_s", task.time_limit, {0.0, 1000.0, "s", true},
+           "from the activation until the target disappears");
+}
+
+static void describe(Fields& f, Subject& subject) {
+  f.number("reaction_delay_s", subject.reaction_delay, {0.0, 10.0, "s"}, "from the display to the hand (ours)");
+  f.number("bandwidth_Hz", subject.bandwidth, {0.0, 100.0, "Hz"}, "of following the target on the display (ours)");
+  f.number("stiffness_N_per_m", subject.stiffness, {1.0, 1e6, "N/m"}, "of the hand about its intended position (ours)");
+  f.number("damping_N_s_per_m", subject.damping, {0.0, 1e6, "N s/m"}, "of the hand (ours)");
+  f.number("press_N", subject.press, {0.0, 1000.0, "N"}, "force the subject wants to see on the gauge (ours)");
+  f.number("press_bandwidth_Hz", subject.press_bandwidth, {0.0, 100.0, "Hz"}, "of correcting it (ours)");
+  f.number("motor_noise_N", subject.motor_noise, {0.0, 1000.0, "N"},
+           "standard deviation of each force component (ours)");
+  f.number("tilt_noise_rad", subject.tilt_noise, {0.0, 1.0, "rad"},
+           "standard deviation of the tilt, where the wrist turns the tool (ours)");
+  f.number("noise_bandwidth_Hz", subject.noise_bandwidth, {0.0, 1e4, "Hz"}, "of both noises, first order (ours)");
+  f.number("height_per_tilt_m_per_rad", subject.height_per_tilt, {1e-6, 1.0, "m/rad"},
+           "how much the subject expects the tip to rise with the tilt (ours)");
+  f.number("max_speed_m_per_s", subject.max_speed, {0.0, 100.0, "m/s"}, "of the intended position (ours)");
+  f.number("max_turn_rad_per_s", subject.max_turn, {0.0, 100.0, "rad/s"}, "of the wrist (ours)");
+  f.number("max_force_N", subject.max_force, {0.0, 1000.0, "N"}, "the arm yields rather than push harder (ours)");
+}
+
+static void describe(Fields& f, TrackingHandFields& hand) {
+  f.object("task", hand.task, "targets and rules of a trial", Presence::required);
+  f.objects("subjects", hand.subjects, {1, 1000}, "simulated subjects");
+  f.integer("trials", hand.trials, {1, 1000}, "of each subject, each from the initial state with a seed of its own");
+}
+
+void describe(Fields& f, HandFields& hand) {
+  f.variant(hand, "hand", {"none", "force", "impedance", "tracking"},
+            [](Fields& h, auto& fields) { describe(h, fields); });
+}
+
+}  // namespace hapbench

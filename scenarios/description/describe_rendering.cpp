@@ -1,0 +1,84 @@
+#include "algorithms/parameters.hpp"
+#include "algorithms/registry.hpp"
+#include "scenarios/description/descriptions.hpp"
+
+namespace hapbench {
+namespace {
+
+template <class Table>
+std::vector<std::string> names(const Table& table) {
+  std::vector<std::string> names;
+  for (const auto& entry : table) names.emplace_back(entry.info->name);
+  return names;
+}
+
+/// The field's name without the objects it lies in.
+std::string_view key(const Parameter& parameter) {
+  const std::string_view path = parameter.field;
+  return path.substr(path.rfind('.') + 1);
+}
+
+IntegerRange integers(const Parameter& parameter) {
+  return {static_cast<std::int64_t>(parameter.range.min), static_cast<std::int64_t>(parameter.range.max)};
+}
+
+/// A number, or a number or null.
+template <class Number>
+void number(Fields& f, const Parameter& parameter, Number& value, const char* doc,
+            Presence presence = Presence::has_default) {
+  f.number(key(parameter), value, parameter.range, doc, presence);
+}
+
+}  // namespace
+
+static void describe(Fields& f, ReductionConfig& reduction) {
+  number(f, parameter::kThreshold, reduction.threshold, "alpha_TH: gradients with a larger inner product are similar");
+  f.integer(key(parameter::kMaxPoints), reduction.max_points, integers(parameter::kMaxPoints),
+            "n_ext: most points kept");
+  f.field(key(parameter::kShuffleSeed), "visit the points in a fixed random order; null: ascending index",
+          Presence::has_default, [&reduction](Fields& seed) {
+            seed.nullable(reduction.shuffle_seed,
+                          [](Fields& s, std::uint64_t& value) { s.integer(value, integers(parameter::kShuffleSeed)); });
+          });
+}
+
+void describe(Fields& f, RenderingConfig& rendering) {
+  static const std::vector<std::string> kAlgorithms = names(algorithms()), kDepthModels = names(depth_models());
+  f.name("algorithm", rendering.algorithm, kAlgorithms, "algorithm", "force algorithm");
+  // What the algorithm fixes is the default of what follows.
+  if (f.reads()) rendering = with_fixed_stages(rendering);
+  f.integer(key(parameter::kIterations), rendering.iterations, integers(parameter::kIterations),
+            "m of the shaping iteration");
+  f.name("depth_model", rendering.depth_model, kDepthModels, "depth model",
+         "default surface_normal, or what the algorithm's definition fixes", Presence::no_default);
+  f.boolean(key(parameter::kLocalAverage), rendering.local_average,
+            "merge colliding points that share a grid cell of the shell");
+  f.field("reduction", "gradient-based reduction; null: off; default on in 3-D scenes, off in planar ones",
+          Presence::no_default, [&rendering](Fields& value) {
+            value.nullable(rendering.reduction, [](Fields& r, ReductionConfig& reduction) { r.object(reduction); });
+          });
+  number(f, parameter::kStiffness, rendering.stiffness, "K");
+  number(f, parameter::kDampingRatio, rendering.damping_ratio, "zeta; B = 2 zeta sqrt(K M)");
+  number(f, parameter::kDamping, rendering.damping, "B instead of the one from zeta; null: from zeta");
+  f.boolean(key(parameter::kAngularDamping), rendering.angular_damping,
+            "damping and friction see the velocity of the tool's material at each contact, not only the tip centre's");
+  number(f, parameter::kAngularVelocityCutoff, rendering.angular_velocity_cutoff,
+         "first-order low-pass of the angular velocity that angular_damping sees; null: none");
+  number(f, parameter::kMass, rendering.mass, "M of the virtual tool; default 0.2 in planar scenes, else 0.1",
+         Presence::no_default);
+  f.group("friction", "tangential damping", [&rendering](Fields& friction) {
+    number(friction, parameter::kMuS, rendering.mu_s, "viscous friction; default 0 for springs, else 5",
+           Presence::no_default);
+    number(friction, parameter::kMuF, rendering.mu_f,
+           "viscous friction per newton of spring force; default 0 for springs, else 10", Presence::no_default);
+  });
+  f.group("limits", "optional limits", [&rendering](Fields& limits) {
+    number(limits, parameter::kMaxDamping, rendering.max_damping, "B_max; null: off");
+    number(limits, parameter::kMaxForce, rendering.max_force, "F_max; null: off");
+  });
+  number(f, parameter::kVirtualCoupling, rendering.virtual_coupling, "K_vc of algorithm virtual_coupling; null: K");
+  f.boolean(key(parameter::kPassivityController), rendering.passivity_controller,
+            "adaptive damping that lets the algorithm create no energy");
+}
+
+}  // namespace hapbench

@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "algorithms/registry.hpp"
+#include "results/summary/outcome_names.hpp"
+#include "scenarios/description/descriptions.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/size_limits.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr auto kMostStepsOrRows = static_cast<std::int64_t>(kMostSteps);
+
+constexpr Choice<StopCondition> kStopConditions[] = {{"leaves_hole", StopCondition::leaves_hole},
+                                                     {"tool_horizontal", StopCondition::tool_horizontal}};
+constexpr Choice<Tip> kTips[] = {{"flat", Tip::flat}, {"round", Tip::round}};
+
+/// Returns the number of steps, which may be more than a scenario can hold.
+double describe_time(Fields& f, TimeFields& time) {
+  std::optional<double> duration;
+  f.number("step_s", time.step, {0.0, 1.0, "s", true}, "time step", Presence::required);
+  f.integer("steps", time.steps, {1, kMostStepsOrRows}, "number of steps (rows)", Presence::no_default);
+  f.if_any("duration_s", duration, "instead of steps: duration_s / step_s, rounded", [](Fields& d, double& value) {
+    d.number(value, {0.0, 1e9, "s", true});
+  });
+  f.list("stop_when", time.stop_when, {0, 2}, "end early: tip centre above height 0; axis in the horizontal plane",
+         [](Fields& s, StopCondition& value) { s.choice(value, kStopConditions, "stop condition"); });
+  f.exactly_one_of("steps", "duration_s");
+  return duration ? std::round(*duration / time.step) : static_cast<double>(time.steps);
+}
+
+/// One outcome, or a list of them.
+void describe_outcomes(Fields& f, std::vector<Outcome>& outcomes) {
+  std::vector<Choice<Outcome>> choices;
+  for (const std::string_view name : outcome_names()) choices.push_back({name, *outcome_named(name)});
+  const auto outcome = [&choices](Fields& o, Outcome& value) { o.choice(value, choices, "outcome"); };
+  f.one_or_list(
+      outcomes.size() != 1,
+      [&](Fields& one) {
+        Outcome value = outcomes.empty() ? Outcome::completes : outcomes.front();
+        outcome(one, value);
+        if (one.reads()) outcomes = {value};
+      },
+      [&](Fields& several) {
+        several.list(outcomes, {1, 4}, outcome);
+      });
+}
+
+/// What the algorithm's definition overrides gives way, with a warning.
+void fix_stages(Fields& f, Scenario& scenario) {
+  RenderingConfig& given = scenario.rendering;
+  const RenderingConfig fixed = with_fixed_stages(given);
+  const bool has_depth_model = !std::holds_alternative<SpringsEnvironment>(scenario.environment);
+  if (has_depth_model && given.depth_model != fixed.depth_model) {
+    f.warn(fmt::format("/rendering/depth_model: \"{}\" is not used: algorithm \"{}\" is defined with \"{}\"",
+                       given.depth_model, given.algorithm, fixed.depth_model));
+  }
+  if (given.reduction && !fixed.reduction) {
+    f.warn(fmt::format("/rendering/reduction: not used: algorithm \"{}\" is defined without", given.algorithm));
+  }
+  given = fixed;
+}
+
+}  // namespace
+
+static void describe(Fields& f, InitialFields& initial) {
+  f.vector3("position_m", initial.position, {-1000.0, 1000.0, "m"},
+            "tip centre at t = 0; ignored when the motion prescribes it");
+  f.vector3("velocity_m_per_s", initial.velocity, {-1e6, 1e6, "m/s"}, "velocity at t = 0");
+}
+
+static void describe(Fields& f, ToolFields& tool) {
+  f.number("diameter_m", tool.diameter, {0.0, 1000.0, "m", true}, "diameter of the cylinder; default 0.001",
+           Presence::no_default);
+  f.number("length_m", tool.length, {0.0, 1000.0, "m", true},
+           "from the tip plane to the bottom; default 0.005 in hole_2d, else 0.01", Presence::no_default);
+  f.choice("tip", tool.tip, kTips, "tip", "round adds a half ball; default round in hole_2d, else flat",
+           Presence::no_default);
+}
+
+static void describe(Fields& f, IntegratorFields& integrator) {
+  std::vector<Choice<const IntegratorEntry*>> choices;
+  for (const IntegratorEntry* entry : kIntegrators) choices.push_back({entry->info.name, entry});
+  f.choice("type", integrator.type, choices, "integrator",
+           "leapfrog is the thesis's; \"hapbench describe NAME\" explains each", Presence::required);
+}
+
+static void describe(Fields& f, DivergenceBounds& bounds) {
+  f.number("position_m", bounds.position, {0.0, 1e9, "m", true},
+           "a run whose tip centre is further from the origin has diverged");
+  f.number("speed_m_per_s", bounds.speed, {0.0, 1e12, "m/s", true}, "a run whose tool is faster has diverged");
+  f.number("force_N", bounds.force, {0.0, 1e15, "N", true}, "a run whose rendered force is larger has diverged");
+}
+
+static void describe(Fields& f, RecordFields& record) {
+  f.boolean("trajectory", record.trajectory, "write trajectory.csv");
+  f.integer("every", record.every, {1, kMostStepsOrRows}, "record each N-th step only");
+  f.list("ratio_iterations", record.ratio_iterations, {0, 1000},
+         "write ratios.csv after these numbers of shaping iterations", [](Fields& i, std::int64_t& value) {
+           i.integer(value, {0, 100'000});
+         });
+  f.boolean("contacts", record.contacts, "write contacts.csv");
+  f.boolean("stiffness_tensor", record.stiffness_tensor, "write stiffness_tensor.csv");
+  f.boolean("timing", record.timing, "time every step and write timing.json");
+  f.boolean("energy", record.energy, "keep the energy ledger and write energy.csv");
+  f.boolean("ideal_trajectory", record.ideal_trajectory,
+            "block_with_hole only: compare with the ideal trajectory and write ideal_trajectory.csv");
+}
+
+static void describe(Fields& f, MetricBound& bound) {
+  const auto number = [](Fields& b, double& value) { b.number(value, {-1e15, 1e15}); };
+  f.if_any("min", bound.min, "smallest value allowed", number);
+  f.if_any("max", bound.max, "largest value allowed", number);
+  if (!f.reads() || !bound.min || !bound.max || !(*bound.min > *bound.max)) return;
+  throw InputError(InputError::Kind::relation, f.at(),
+                   fmt::format("got min {} above max {}; allowed: min <= max", *bound.min, *bound.max));
+}
+
+static void describe(Fields& f, ExpectFields& expect) {
+  static const std::vector<std::string> kMetrics = metric_names();
+  f.field("outcome", "how the run must end, or a list of ways", Presence::has_default,
+          [&expect](Fields& value) { describe_outcomes(value, expect.outcomes); });
+  f.group("metrics", "bounds on the run's metrics", [&expect](Fields& metrics) {
+    for (const std::string& name : kMetrics) {
+      const auto known = expect.metrics.find(name);
+      std::optional<MetricBound> bound;
+      if (known != expect.metrics.end()) bound = known->second;
+      metrics.if_any(name, bound, "bounds of this metric of summary.json",
+                     [](Fields& b, MetricBound& value) { b.object(value); });
+      if (bound) expect.metrics[name] = *bound;
+    }
+  });
+}
+
+void describe(Fields& f, Scenario& scenario) {
+  double steps = 0.0;
+  f.ignored("$schema", "the JSON Schema, for editors");
+  f.text("name", scenario.name, 200, "default: the file's name");
+  f.text("description", scenario.description, 10'000, "what it shows");
+  f.text("source", scenario.source, 1000, "where the numbers come from");
+  f.integer("seed", scenario.seed, {0, std::int64_t{1} << 53}, "of everything random");
+  f.group(
+      "time", "time steps", [&](Fields& time) { steps = describe_time(time, scenario.time); }, Presence::required);
+  f.value("environment", scenario.environment, "what the tool touches", Presence::required);
+  if (f.reads()) set_scene_defaults(scenario);
+  f.object("initial", scenario.initial, "state at t = 0");
+  f.object("tool", scenario.tool, "the tool");
+  f.object("motion", scenario.motion, "scripted motion");
+  f.value("hand", scenario.hand, "who holds the handle");
+  f.value("device", scenario.device, "the haptic device");
+  f.object("rendering", scenario.rendering, "how contacts become a force");
+  f.object("integrator", scenario.integrator, "how forces become motion");
+  f.object("bounds", scenario.bounds, "where a run counts as diverged");
+  f.object("record", scenario.record, "what is written beside the summary");
+  f.object("expect", scenario.expect, "what the run must show; each scenario is its own regression test");
+  if (!f.reads()) return;
+  check_relations(scenario, steps);
+  scenario.time.steps = static_cast<std::int64_t>(steps);
+  fix_stages(f, scenario);
+}
+
+}  // namespace hapbench

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "scenarios/description/fields.hpp"
+#include "scenarios/description/scenario.hpp"
+
+/// The description of a scenario file: every field with its meaning, unit, range and default.
+namespace hapbench {
+
+// Objects.
+void describe(Fields& f, Scenario& scenario);
+void describe(Fields& f, MotionFields& motion);
+void describe(Fields& f, RenderingConfig& rendering);
+
+// Objects whose type chooses the fields.
+void describe(Fields& f, Environment& environment);
+void describe(Fields& f, PositionFields& position);
+void describe(Fields& f, HandFields& hand);
+void describe(Fields& f, DeviceFields& device);
+
+/// A field that holds a function of time with values in `unit`.
+void profile(Fields& f, std::string_view name, Profile& profile, const char* unit, const char* doc,
+             Presence presence = Presence::has_default);
+
+/// The types of environments.
+std::vector<std::string> environment_names();
+
+/// Puts the thesis's parameters of the scene (Tables A.1, A.2, B.1; reduction 2.8) in place of those of springs.
+void set_scene_defaults(Scenario& scenario);
+
+/// Throws InputError for fields of a scenario that contradict each other. `steps` is their number, which may be more
+/// than a scenario can hold.
+void check_relations(const Scenario& scenario, double steps);
+
+}  // namespace hapbench

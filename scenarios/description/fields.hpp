@@ -1,0 +1,231 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "scenarios/description/function_ref.hpp"
+#include "sim/core/number_range.hpp"
+#include "sim/core/types.hpp"
+
+/// The format of scenario files, described once. A function `describe(Fields&, T&)` for each struct names its fields
+/// with meaning, unit and range; Reader, Writer and SchemaWriter do with them what their names say. So the program, the
+/// files it writes and the schema cannot disagree.
+namespace hapbench {
+
+/// Bounds of an integer, included.
+struct IntegerRange {
+  std::int64_t min;
+  std::int64_t max;
+};
+
+/// Fewest and most entries of a list.
+struct ListSize {
+  std::size_t min;
+  std::size_t max;
+};
+
+/// Whether a field must be in a file, and what holds when it is not.
+enum class Presence {
+  required,
+  has_default,  ///< the member's value in a default-constructed object
+  no_default,   ///< none that holds for every scenario; the field's meaning says what holds
+  left_out      ///< as no_default, and the object has no value to write
+};
+
+/// A name of a value of an enumeration.
+template <class Enum>
+struct Choice {
+  std::string_view name;
+  Enum value;
+};
+
+/// Visitor of one JSON value: of what kind it is, bound to the C++ object that holds it. Of an object it visits the
+/// fields, each of which is a value of its own and has a visitor of its own.
+class Fields {
+ public:
+  using Body = FunctionRef<Fields&>;
+
+  virtual ~Fields() = default;
+
+  // What the value is. A visitor is told one of these, once.
+  virtual void number(double& value, NumberRange range) = 0;
+  /// A JSON number such as 1e3 counts as an integer.
+  virtual void integer(std::int64_t& value, IntegerRange range) = 0;
+  virtual void boolean(bool& value) = 0;
+  /// Any text up to `max_length` characters (code points).
+  virtual void text(std::string& value, std::size_t max_length) = 0;
+  /// One of `names`, by its index; `what` says of what kind, for messages.
+  virtual void name(std::size_t& index, const std::vector<std::string>& names, const char* what) = 0;
+  /// Three numbers [x, y, z].
+  virtual void vector3(Vec3& value, NumberRange component) = 0;
+  /// A list of two values; `allowed` says which, for messages.
+  virtual void pair(const char* allowed, Body first, Body second) = 0;
+  /// A list that has `length` entries and can be resized. The entry behind the last is an example, for the schema.
+  virtual void entries(std::size_t length, ListSize size, FunctionRef<std::size_t> resize,
+                       FunctionRef<Fields&, std::size_t> entry) = 0;
+  /// null, or what `value` describes.
+  virtual void or_null(bool is_null, FunctionRef<> set_null, Body value) = 0;
+  /// A number, or an object.
+  virtual void number_or_object(bool is_object, Body number, Body object) = 0;
+  /// A value that is no list, or a list.
+  virtual void one_or_list(bool is_list, Body one, Body list) = 0;
+  /// An object whose field "type" is one of `names` and chooses the other fields; `what` says of what kind. `held` is
+  /// the index of the alternative to write. `fields` describes those of an alternative.
+  virtual void alternatives(const char* what, std::span<const char* const> names, std::size_t held,
+                            FunctionRef<Fields&, std::size_t> fields) = 0;
+  /// An object. `body` is called with this visitor, perhaps more than once, and describes the object's fields.
+  virtual void fields(Body body) = 0;
+
+  // Inside `fields`: the object's fields.
+  virtual void field(std::string_view name, const char* doc, Presence presence, Body value) = 0;
+  /// A field that may hold anything and means nothing, such as "$schema".
+  virtual void ignored(std::string_view name, const char* doc) = 0;
+  /// Exactly one of two fields must be there. Called after both and at most once for an object.
+  virtual void exactly_one_of(const char* a, const char* b) = 0;
+
+  // Inside `fields`, for what a schema cannot say.
+  /// True while fields are being read: what was described so far has its value.
+  virtual bool reads() const { return false; }
+  /// JSON pointer of the value that is being read.
+  virtual std::string at() const { return {}; }
+  /// Whether the file has that field. False unless reading.
+  virtual bool given(std::string_view name) const {
+    static_cast<void>(name);
+    return false;
+  }
+  /// Tells the reader's user something that is no error.
+  virtual void warn(const std::string& text) { static_cast<void>(text); }
+
+  // ---- The same for C++ types, by the primitives above. ----
+
+  template <class T>
+  void object(T& value) {
+    fields([&value](Fields& f) { describe(f, value); });
+  }
+
+  template <class Integer>
+  void integer(Integer& value, IntegerRange range) {
+    auto wide = static_cast<std::int64_t>(value);
+    integer(wide, range);
+    value = static_cast<Integer>(wide);
+  }
+
+  template <class Enum>
+  void choice(Enum& value, std::type_identity_t<std::span<const Choice<Enum>>> choices, const char* what) {
+    std::vector<std::string> names;
+    std::size_t index = choices.size();
+    for (const Choice<Enum>& choice : choices) {
+      if (choice.value == value) index = names.size();
+      names.emplace_back(choice.name);
+    }
+    name(index, names, what);
+    if (reads()) value = choices[index].value;
+  }
+
+  /// `each(Fields&, T&)` describes an entry.
+  template <class T, class Each>
+  void list(std::vector<T>& values, ListSize size, Each each) {
+    entries(
+        values.size(), size, [&values](std::size_t length) { values.assign(length, T{}); },
+        [&values, &each](Fields& f, std::size_t i) {
+          T example{};
+          each(f, i < values.size() ? values[i] : example);
+        });
+  }
+
+  /// null for none; `each(Fields&, T&)` describes the value, which starts as a default-constructed one.
+  template <class T, class Each>
+  void nullable(std::optional<T>& value, Each each) {
+    or_null(
+        !value, [&value] { value.reset(); },
+        [&value, &each](Fields& f) {
+          T inner = value.value_or(T{});
+          each(f, inner);
+          if (f.reads()) value = std::move(inner);
+        });
+  }
+
+  /// The types of a variant, named in the variant's order; `each(Fields&, T&)` describes the fields of one.
+  template <class... Ts, class Each>
+  void variant(std::variant<Ts...>& value, const char* what, const std::array<const char*, sizeof...(Ts)>& names,
+               Each each) {
+    alternatives(what, names, value.index(), [&value, &each](Fields& f, std::size_t i) {
+      if (f.reads()) emplace(value, i, std::index_sequence_for<Ts...>{});
+      std::variant<Ts...> example;
+      if (i != value.index()) emplace(example, i, std::index_sequence_for<Ts...>{});
+      std::visit([&](auto& held) { each(f, held); }, i == value.index() ? value : example);
+    });
+  }
+
+  // ---- Fields of the kinds above: a name, the member, its range, and what it means. ----
+
+  void number(std::string_view name, double& value, NumberRange range, const char* doc,
+              Presence presence = Presence::has_default);
+  /// null for none.
+  void number(std::string_view name, std::optional<double>& value, NumberRange range, const char* doc,
+              Presence presence = Presence::has_default);
+  void boolean(std::string_view name, bool& value, const char* doc);
+  void text(std::string_view name, std::string& value, std::size_t max_length, const char* doc,
+            Presence presence = Presence::has_default);
+  void vector3(std::string_view name, Vec3& value, NumberRange component, const char* doc,
+               Presence presence = Presence::has_default);
+  void name(std::string_view name, std::string& value, const std::vector<std::string>& names, const char* what,
+            const char* doc, Presence presence = Presence::has_default);
+
+  template <class Integer>
+  void integer(std::string_view name, Integer& value, IntegerRange range, const char* doc,
+               Presence presence = Presence::has_default) {
+    field(name, doc, presence, [&](Fields& f) { f.integer(value, range); });
+  }
+  template <class Enum>
+  void choice(std::string_view name, Enum& value, std::type_identity_t<std::span<const Choice<Enum>>> choices,
+              const char* what, const char* doc, Presence presence = Presence::has_default) {
+    field(name, doc, presence, [&](Fields& f) { f.choice(value, choices, what); });
+  }
+  template <class T>
+  void object(std::string_view name, T& value, const char* doc, Presence presence = Presence::has_default) {
+    field(name, doc, presence, [&value](Fields& f) { f.object(value); });
+  }
+  /// A value whose `describe` says of what kind it is.
+  template <class T>
+  void value(std::string_view name, T& value, const char* doc, Presence presence = Presence::has_default) {
+    field(name, doc, presence, [&value](Fields& f) { describe(f, value); });
+  }
+  /// Fields of the same C++ object that lie in a JSON object of their own.
+  void group(std::string_view name, const char* doc, Body fields, Presence presence = Presence::has_default);
+  template <class T, class Each>
+  void list(std::string_view name, std::vector<T>& values, ListSize size, const char* doc, Each each,
+            Presence presence = Presence::has_default) {
+    field(name, doc, presence, [&](Fields& f) { f.list(values, size, each); });
+  }
+  template <class T>
+  void objects(std::string_view name, std::vector<T>& values, ListSize size, const char* doc) {
+    list(name, values, size, doc, [](Fields& f, T& value) { f.object(value); });
+  }
+  /// A field that is in the file exactly when the optional has a value.
+  template <class T, class Each>
+  void if_any(std::string_view name, std::optional<T>& value, const char* doc, Each each) {
+    field(name, doc, value ? Presence::no_default : Presence::left_out, [&](Fields& f) {
+      T inner = value.value_or(T{});
+      each(f, inner);
+      if (f.reads()) value = std::move(inner);
+    });
+  }
+
+ private:
+  template <class Variant, std::size_t... I>
+  static void emplace(Variant& value, std::size_t index, std::index_sequence<I...>) {
+    ((index == I ? static_cast<void>(value.template emplace<I>()) : void()), ...);
+  }
+};
+
+}  // namespace hapbench

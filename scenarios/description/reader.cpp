@@ -1,0 +1,182 @@
+#include "scenarios/description/reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenarios/description/schema_writer.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Code points of a UTF-8 text, which is what a schema counts.
+std::size_t characters(const std::string& text) {
+  const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; };
+  return text.size() - static_cast<std::size_t>(std::count_if(text.begin(), text.end(), continues));
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+}  // namespace
+
+void Reader::refuse(Body what, const std::string& hint) const {
+  SchemaWriter description;
+  what(description);
+  throw InputError(InputError::Kind::shape, at_,
+                   fmt::format("got {}; allowed: {}{}{}", shown(json_), null_allowed_ ? "null or " : "",
+                               description.allowed(), hint));
+}
+
+void Reader::number(double& value, NumberRange range) {
+  const auto allowed = [&](Fields& f) { f.number(value, range); };
+  if (!json_.is_number()) refuse(allowed);
+  const double given = json_.get<double>();
+  const bool above = range.above_min ? given > range.min : given >= range.min;
+  if (!above || !(given <= range.max)) refuse(allowed);
+  value = given;
+}
+
+void Reader::integer(std::int64_t& value, IntegerRange range) {
+  const auto allowed = [&](Fields& f) { f.integer(value, range); };
+  if (!json_.is_number()) refuse(allowed);
+  // Through double, which sees unsigned and 1e3 alike and is exact for every integer that a range allows.
+  const double given = json_.get<double>();
+  const auto min = static_cast<double>(range.min), max = static_cast<double>(range.max);
+  if (!(given >= min && given <= max) || given != std::floor(given)) refuse(allowed);
+  const auto whole = static_cast<std::int64_t>(given);
+  // 2^53 + 1 would round to 2^53.
+  if (json_.is_number_integer() && json_ != Json(whole)) refuse(allowed);
+  value = whole;
+}
+
+void Reader::boolean(bool& value) {
+  if (!json_.is_boolean()) refuse([&](Fields& f) { f.boolean(value); });
+  value = json_.get<bool>();
+}
+
+void Reader::text(std::string& value, std::size_t max_length) {
+  if (!json_.is_string() || characters(json_.get_ref<const std::string&>()) > max_length) {
+    refuse([&](Fields& f) { f.text(value, max_length); });
+  }
+  value = json_.get<std::string>();
+}
+
+void Reader::name(std::size_t& index, const std::vector<std::string>& names, const char* what) {
+  const auto allowed = [&](Fields& f) { f.name(index, names, what); };
+  if (!json_.is_string()) refuse(allowed);
+  const auto& given = json_.get_ref<const std::string&>();
+  const auto found = std::find(names.begin(), names.end(), given);
+  if (found == names.end()) refuse(allowed, nearest_name_hint(given, names));
+  index = static_cast<std::size_t>(found - names.begin());
+}
+
+void Reader::vector3(Vec3& value, NumberRange component) {
+  if (!json_.is_array() || json_.size() != 3) refuse([&](Fields& f) { f.vector3(value, component); });
+  for (std::size_t i = 0; i < 3; ++i) {
+    Reader(json_[i], element(at_, i)).number(value[static_cast<Eigen::Index>(i)], component);
+  }
+}
+
+void Reader::pair(const char* allowed, Body first, Body second) {
+  if (!json_.is_array() || json_.size() != 2) refuse([&](Fields& f) { f.pair(allowed, first, second); });
+  Reader first_reader(json_[0], element(at_, 0)), second_reader(json_[1], element(at_, 1));
+  first(first_reader);
+  second(second_reader);
+}
+
+void Reader::entries(std::size_t length, ListSize size, FunctionRef<std::size_t> resize,
+                     FunctionRef<Fields&, std::size_t> entry) {
+  if (!json_.is_array() || json_.size() < size.min || json_.size() > size.max) {
+    refuse([&](Fields& f) { f.entries(length, size, resize, entry); });
+  }
+  resize(json_.size());
+  for (std::size_t i = 0; i < json_.size(); ++i) {
+    Reader reader(json_[i], element(at_, i));
+    entry(reader, i);
+  }
+}
+
+void Reader::or_null(bool, FunctionRef<> set_null, Body value) {
+  if (json_.is_null()) return set_null();
+  null_allowed_ = true;
+  value(*this);
+}
+
+void Reader::number_or_object(bool is_object, Body number, Body object) {
+  if (json_.is_object()) return object(*this);
+  if (json_.is_number()) return number(*this);
+  refuse([&](Fields& f) { f.number_or_object(is_object, number, object); });
+}
+
+void Reader::one_or_list(bool, Body one, Body list) {
+  (json_.is_array() ? list : one)(*this);
+}
+
+void Reader::alternatives(const char* what, std::span<const char* const> names, std::size_t held,
+                          FunctionRef<Fields&, std::size_t> fields) {
+  if (!json_.is_object()) refuse([&](Fields& f) { f.alternatives(what, names, held, fields); });
+  const std::vector<std::string> types(names.begin(), names.end());
+  const auto type = json_.find(kTypeField);
+  if (type == json_.end()) {
+    throw InputError(InputError::Kind::shape, at_,
+                     fmt::format("missing field \"{}\"; allowed: {}: one of {}", kTypeField, what, quoted_list(types)));
+  }
+  std::size_t index = 0;
+  Reader(*type, member(at_, kTypeField)).name(index, types, what);
+  read_fields([&](Fields& f) { fields(f, index); }, {kTypeField});
+}
+
+void Reader::fields(Body body) {
+  if (!json_.is_object()) refuse([&](Fields& f) { f.fields(body); });
+  read_fields(body, {});
+}
+
+/// `names` are the fields that `body` does not describe.
+void Reader::read_fields(Body body, std::vector<std::string> names) {
+  names_ = &names;
+  body(*this);
+  names_ = nullptr;
+  for (const auto& entry : json_.items()) {
+    if (contains(names, entry.key())) continue;
+    throw InputError(InputError::Kind::shape, member(at_, entry.key()),
+                     "unknown field; allowed here: " + quoted_list(names) + nearest_name_hint(entry.key(), names));
+  }
+  body(*this);
+}
+
+void Reader::field(std::string_view name, const char*, Presence presence, Body value) {
+  const std::string key(name);
+  if (!reads()) return names_->push_back(key);
+  const auto entry = json_.find(key);
+  if (entry != json_.end()) {
+    Reader reader(*entry, member(at_, key));
+    return value(reader);
+  }
+  if (presence != Presence::required) return;
+  SchemaWriter description;
+  value(description);
+  throw InputError(InputError::Kind::shape, at_,
+                   fmt::format("missing field \"{}\"; allowed: {}", key, description.allowed()));
+}
+
+void Reader::ignored(std::string_view name, const char*) {
+  if (!reads()) names_->emplace_back(name);
+}
+
+void Reader::exactly_one_of(const char* a, const char* b) {
+  if (!reads()) return;
+  const bool has_a = json_.contains(a), has_b = json_.contains(b);
+  if (has_a != has_b) return;
+  const char* problem = has_a ? "got both \"{}\" and \"{}\", which contradict; allowed: exactly one of them"
+                              : "missing field; allowed: exactly one of \"{}\" and \"{}\"";
+  throw InputError(InputError::Kind::shape, at_, fmt::format(fmt::runtime(problem), a, b));
+}
+
+void Reader::warn(const std::string& text) {
+  if (warnings_ != nullptr) warnings_->push_back(text);
+}
+
+}  // namespace hapbench

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "scenarios/description/fields.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
+
+namespace hapbench {
+
+/// Reads and checks a JSON value. Fields that the file does not have leave their members as they are. Throws
+/// InputError: of kind shape for what the schema refuses too, naming the place, the value and what is allowed.
+class Reader final : public Fields {
+ public:
+  /// Reads `json`, found at the JSON pointer `at`; both must outlive the reader. Warnings are added to `warnings`, if
+  /// any.
+  Reader(const Json& json, std::string at, std::vector<std::string>* warnings = nullptr)
+      : json_(json), at_(std::move(at)), warnings_(warnings) {}
+
+  void number(double& value, NumberRange range) override;
+  void integer(std::int64_t& value, IntegerRange range) override;
+  void boolean(bool& value) override;
+  void text(std::string& value, std::size_t max_length) override;
+  void name(std::size_t& index, const std::vector<std::string>& names, const char* what) override;
+  void vector3(Vec3& value, NumberRange component) override;
+  void pair(const char* allowed, Body first, Body second) override;
+  void entries(std::size_t length, ListSize size, FunctionRef<std::size_t> resize,
+               FunctionRef<Fields&, std::size_t> entry) override;
+  void or_null(bool is_null, FunctionRef<> set_null, Body value) override;
+  void number_or_object(bool is_object, Body number, Body object) override;
+  void one_or_list(bool is_list, Body one, Body list) override;
+  void alternatives(const char* what, std::span<const char* const> names, std::size_t held,
+                    FunctionRef<Fields&, std::size_t> fields) override;
+  void fields(Body body) override;
+
+  void field(std::string_view name, const char* doc, Presence presence, Body value) override;
+  void ignored(std::string_view name, const char* doc) override;
+  void exactly_one_of(const char* a, const char* b) override;
+
+  bool reads() const override { return names_ == nullptr; }
+  std::string at() const override { return at_; }
+  bool given(std::string_view name) const override { return reads() && json_.contains(std::string(name)); }
+  void warn(const std::string& text) override;
+
+ private:
+  /// Refuses the value: "got VALUE; allowed: …", in the words the schema writer has for `what`.
+  [[noreturn]] void refuse(Body what, const std::string& hint = "") const;
+  void read_fields(Body body, std::vector<std::string> names);
+
+  const Json& json_;
+  std::string at_;
+  std::vector<std::string>* warnings_;
+  bool null_allowed_ = false;
+  /// While not null, the body of an object is called for the names of its fields alone.
+  std::vector<std::string>* names_ = nullptr;
+};
+
+}  // namespace hapbench

@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "scenarios/description/descriptions.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/size_limits.hpp"
+
+/// What fields of a scenario say together, beyond a schema.
+namespace hapbench {
+namespace {
+
+constexpr double kMostDelaySamples = 1e6;  ///< that a simulated subject keeps in mind
+
+[[noreturn]] void fail(const std::string& at, const std::string& problem) {
+  throw InputError(InputError::Kind::relation, at, problem);
+}
+
+double trial_count(const HandFields& hand) {
+  const auto* tracking = std::get_if<TrackingHandFields>(&hand);
+  return tracking == nullptr ? 1.0
+                             : static_cast<double>(tracking->subjects.size()) * static_cast<double>(tracking->trials);
+}
+
+void check_sizes(const Scenario& scenario, double steps) {
+  if (!(steps >= 1.0 && steps <= kMostSteps)) {
+    fail("/time/duration_s",
+         fmt::format("got {:.3g} steps (duration_s / step_s); allowed: 1 ... {:.0g}", steps, kMostSteps));
+  }
+  const double rows = steps / static_cast<double>(scenario.record.every);
+  if (records_rows(scenario.record) && rows > kMostRows) {
+    fail("/record/every",
+         fmt::format("got {:.3g} recorded rows; allowed: at most {:.0g}, record less often or less", rows, kMostRows));
+  }
+  // Every step of every trial has its time in memory.
+  const double timed = steps * trial_count(scenario.hand);
+  if (scenario.record.timing && timed > kMostRows) {
+    fail("/record/timing", fmt::format("got {:.3g} timed steps; allowed: at most {:.0g}", timed, kMostRows));
+  }
+}
+
+void check_orientation(const MotionFields& motion) {
+  if (!motion.orientation) return;
+  const Vec3 &up = motion.orientation->up, &lean = motion.orientation->lean;
+  // 1e-9 forgives the rounding of directions that were normalised by somebody else.
+  if (up.norm() >= 1e-12 && lean.norm() >= 1e-12 && std::abs(up.dot(lean)) <= 1e-9 * up.norm() * lean.norm()) return;
+  fail("/motion/orientation", fmt::format("got up {} and lean {}; allowed: two perpendicular directions, not zero",
+                                          shown({up.x(), up.y(), up.z()}), shown({lean.x(), lean.y(), lean.z()})));
+}
+
+void check_local_average(const Scenario& scenario) {
+  if (!scenario.rendering.local_average) return;
+  const auto* shell = std::get_if<PointShellEnvironment>(&scenario.environment);
+  const auto* mesh = std::get_if<MeshEnvironment>(&scenario.environment);
+  if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) {
+    fail("/rendering/local_average", "got true; allowed: false, because springs have no grid cells");
+  }
+  if ((shell != nullptr && !shell->grid) || (mesh != nullptr && !mesh->grid)) {
+    fail("/rendering/local_average", "got true; allowed: false, unless environment.grid_m gives the cells");
+  }
+}
+
+void check_ideal_trajectory(const Scenario& scenario) {
+  if (!scenario.record.ideal_trajectory) return;
+  if (std::holds_alternative<BlockEnvironment>(scenario.environment) && scenario.tool.tip == Tip::flat) return;
+  fail("/record/ideal_trajectory",
+       "got true; allowed: false, unless the environment is block_with_hole and the tool's tip flat");
+}
+
+void check_tracking_hand(const Scenario& scenario, double steps) {
+  const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
+  if (hand == nullptr) return;
+  if (!std::holds_alternative<FreePosition>(scenario.motion.position)) {
+    fail("/motion/position/type",
+         "got a prescribed position; allowed: \"free\" with hand \"tracking\", which moves the tool");
+  }
+  for (std::size_t i = 0; i < hand->subjects.size(); ++i) {
+    const double samples = hand->subjects[i].reaction_delay / scenario.time.step;
+    if (samples <= kMostDelaySamples) continue;
+    fail(fmt::format("/hand/subjects/{}/reaction_delay_s", i),
+         fmt::format("got {:.3g} time steps; allowed: at most {:.0g}", samples, kMostDelaySamples));
+  }
+  const double all_steps = trial_count(scenario.hand) * steps;
+  if (all_steps <= kMostSteps) return;
+  fail("/hand/trials", fmt::format("got {:.3g} steps in all trials; allowed: at most {:.0g}", all_steps, kMostSteps));
+}
+
+}  // namespace
+
+void check_relations(const Scenario& scenario, double steps) {
+  check_sizes(scenario, steps);
+  check_orientation(scenario.motion);
+  check_local_average(scenario);
+  check_ideal_trajectory(scenario);
+  check_tracking_hand(scenario, steps);
+}
+
+}  // namespace hapbench

@@ -1,0 +1,39 @@
+#include "scenarios/description/scenario.hpp"
+
+#include "algorithms/registry.hpp"
+#include "scenarios/description/descriptions.hpp"
+
+namespace hapbench {
+
+bool records_rows(const RecordFields& record) {
+  return record.trajectory || !record.ratio_iterations.empty() || record.contacts || record.stiffness_tensor ||
+         record.energy || record.ideal_trajectory;
+}
+
+std::filesystem::path resolve_path(const Scenario& scenario, const std::string& file) {
+  return scenario.directory / file;  // an absolute `file` replaces the directory
+}
+
+Scenario with_algorithm(Scenario scenario, std::string_view algorithm) {
+  scenario.rendering.algorithm = algorithm;
+  scenario.rendering = with_fixed_stages(scenario.rendering);
+  return scenario;
+}
+
+void set_scene_defaults(Scenario& scenario) {
+  // Those of springs are in the structs.
+  if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return;
+  RenderingConfig& rendering = scenario.rendering;
+  rendering.mu_s = 5.0;
+  rendering.mu_f = 10.0;
+  if (std::holds_alternative<Hole2d>(scenario.environment)) {
+    scenario.tool.length = 0.005;
+    scenario.tool.tip = Tip::round;
+  } else {
+    scenario.motion.orientation->up = {0.0, 0.0, 1.0};
+    rendering.mass = 0.1;
+    rendering.reduction = ReductionConfig{};
+  }
+}
+
+}  // namespace hapbench

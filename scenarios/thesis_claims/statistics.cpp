@@ -1,0 +1,32 @@
+#include "scenarios/thesis_claims/statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hapbench {
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return values.empty() ? std::nan("") : sum / static_cast<double>(values.size());
+}
+
+double paired_t(const std::vector<double>& a, const std::vector<double>& b) {
+  const auto n = static_cast<double>(a.size());
+  if (a.size() < 2) return 0.0;
+  double mean = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) mean += a[i] - b[i];
+  mean /= n;
+  for (std::size_t i = 0; i < a.size(); ++i) squares += std::pow(a[i] - b[i] - mean, 2);
+  const double error = std::sqrt(squares / (n - 1.0) / n);
+  if (error == 0.0) return mean == 0.0 ? 0.0 : std::copysign(std::numeric_limits<double>::infinity(), mean);
+  return mean / error;
+}
+
+double critical_t(std::size_t degrees) {
+  constexpr double kCritical[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228};
+  return degrees == 0 ? std::numeric_limits<double>::infinity() : kCritical[std::min<std::size_t>(degrees, 10) - 1];
+}
+
+}  // namespace hapbench

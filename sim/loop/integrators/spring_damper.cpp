@@ -1,0 +1,101 @@
+#include "sim/loop/integrators/spring_damper.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hapbench {
+namespace {
+
+/// The force of the spring-damper, in x alone.
+class LinearForce final : public ForceField {
+ public:
+  explicit LinearForce(const SpringDamper& s)
+      : jacobian_{s.lambda * s.K * Mat3::Identity(), s.lambda * s.B * Mat3::Identity()} {}
+
+  Vec3 force_at(double, const Vec3& position, const Vec3& velocity) noexcept override {
+    return -jacobian_.stiffness * position - jacobian_.damping * velocity;
+  }
+  ForceJacobian jacobian() const noexcept override { return jacobian_; }
+
+ private:
+  ForceJacobian jacobian_;
+};
+
+}  // namespace
+
+Eigen::Matrix2d SpringDamper::step_matrix() const {
+  if (integrator->step_matrix != nullptr) return integrator->step_matrix(*this);
+  LinearForce field(*this);
+  const auto stepper = integrator->make();
+  Eigen::Matrix2d A;
+  for (const int column : {0, 1}) {
+    ToolState tool;
+    (column == 0 ? tool.pose.position : tool.velocity) = Vec3::UnitX();
+    const Vec3 force = field.force_at(0.0, tool.pose.position, tool.velocity);
+    stepper->reset();
+    stepper->step(tool, force, M, dt, field);
+    A.col(column) << tool.pose.position.x(), tool.velocity.x();
+  }
+  return A;
+}
+
+std::pair<std::complex<double>, std::complex<double>> SpringDamper::eigenvalues() const {
+  const Eigen::Vector2cd values = Eigen::EigenSolver<Eigen::Matrix2d>(step_matrix(), false).eigenvalues();
+  return {values[0], values[1]};
+}
+
+double SpringDamper::spectral_radius() const {
+  const auto [first, second] = eigenvalues();
+  return std::max(std::abs(first), std::abs(second));
+}
+
+bool SpringDamper::is_stable() const {
+  constexpr double kRounding = 1e-12;
+  const Eigen::Matrix2d A = step_matrix();
+  const double trace = A.trace(), determinant = A.determinant();
+  return std::abs(determinant) <= 1.0 + kRounding && std::abs(trace) <= 1.0 + determinant + kRounding;
+}
+
+std::optional<double> SpringDamper::margin() const {
+  if (integrator->stability_margin == nullptr) return std::nullopt;
+  return integrator->stability_margin(*this);
+}
+
+SpringDamper RaisedSpringDamper::at(double value) const {
+  SpringDamper system = given;
+  system.B = 0.0;
+  const auto damping_of = [&] { return damping.value_or(2.0 * damping_ratio * std::sqrt(system.K * system.M)); };
+  switch (raised) {
+    case StabilityCase::stiffness_undamped:
+      system.K = value;
+      break;
+    case StabilityCase::damping_alone:
+      system.K = 0.0;
+      system.B = value;
+      break;
+    case StabilityCase::stiffness_damped:
+      system.K = value;
+      system.B = damping_of();
+      break;
+    case StabilityCase::time_step:
+      system.dt = value;
+      system.B = damping_of();
+      break;
+  }
+  return system;
+}
+
+std::optional<double> limit_of_one_alone(const RaisedSpringDamper& problem, const LimitsAlone& limits) {
+  const SpringDamper one = problem.at(1.0);
+  if (one.lambda == 0.0 || (one.K == 0.0 && one.B == 0.0)) return std::numeric_limits<double>::infinity();
+  if (one.K != 0.0 && one.B != 0.0) return std::nullopt;
+  const double spring = limits.spring * one.M / one.lambda, damper = limits.damper * one.M / one.lambda;
+  if (problem.raised == StabilityCase::time_step) return one.B == 0.0 ? std::sqrt(spring / one.K) : damper / one.B;
+  return one.B == 0.0 ? spring / (one.dt * one.dt) : damper / one.dt;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,180 @@
+// Prints a hash of every bit of what the engine and the algorithms compute, one line per case. Built once with each
+// variant of the libraries; their outputs must be the same text.
+#include <cmath>
+#include <cstdint>
+#include <iomanip>
+#include <iostream>
+#include <string>
+
+#include "algorithms/laws/exact_shaping.hpp"
+#include "algorithms/laws/shaped_stiffness.hpp"
+#include "device_model/hands/scripted_hands.hpp"
+#include "sim/contact/shell_query.hpp"
+#include "sim/geometry/analytic_shells.hpp"
+#include "tests/support/bits.hpp"
+#include "tests/support/contact_sets.hpp"
+#include "tests/support/setting.hpp"
+#include "tests/support/tool_geometry.hpp"
+
+namespace hapbench::test {
+namespace {
+
+void print(const std::string& name, std::uint64_t hash) {
+  std::cout << name << ' ' << std::hex << std::setw(16) << std::setfill('0') << hash << std::dec << '\n';
+}
+
+RenderingConfig config_of(std::string_view algorithm) {
+  RenderingConfig config;
+  config.algorithm = algorithm;
+  config.mu_s = 5.0;
+  config.mu_f = 10.0;
+  return config;
+}
+
+/// Random springs at random places: the laws on every family of gradients.
+void print_springs(const AlgorithmEntry& algorithm) {
+  for (const GradientFamily& family : gradient_families()) {
+    Random random(1);
+    Hash hash;
+    for (int i = 0; i < 20; ++i) {
+      Setting setting;
+      setting.springs = SpringSet{family.draw(random, random_size(random, 200)), i % 2 == 0};
+      setting.pose.position = 0.001 * random.direction();
+      Probe probe(setting, config_of(algorithm.info->name));
+      hash.add(probe.force_at(setting.pose, random.direction()));
+      hash.add(probe.contacts());
+    }
+    print(std::string(algorithm.info->name) + " springs " + family.name, hash.value());
+  }
+}
+
+/// The 2-D peg: tilting, round tip.
+SimulationParts peg(const RenderingConfig& config) {
+  Setting setting;
+  setting.tool = {0.0005, 0.005, Tip::round};
+  setting.points = surface_points(Hole2d{});
+  setting.cell_size = 0.0003;
+  SimulationParts parts = free_run(setting, config);
+  parts.motion = std::make_unique<ScriptedMotion>(
+      Orientation{{0, 1, 0}, {1, 0, 0}, Profile::Shape(Profile::Ramp{0.1, 1.2}), {}}, std::nullopt);
+  return parts;
+}
+
+/// A hand that grinds the flat tool, tilting and turning, into a plane.
+SimulationParts plane(const RenderingConfig& config) {
+  Setting setting;
+  setting.points = surface_points(Plane{0.006, 0.00011});
+  setting.cell_size = 0.00022;
+  SimulationParts parts = free_run(setting, config);
+  parts.motion = std::make_unique<ScriptedMotion>(Orientation{{0, 0, 1},
+                                                              {1, 0, 0},
+                                                              Profile::Shape(Profile::Sine{0.3, 0.3, 0.4, 0.0}),
+                                                              Profile::Shape(Profile::Ramp{0.0, 3.0})},
+                                                  std::nullopt);
+  parts.hand = std::make_unique<ForceHand>(std::array<Profile, 3>{
+      Profile::Shape(Profile::Sine{0.0, 1.0, 0.21, 0.0}), Profile::Shape(Profile::Sine{0.0, 1.0, 0.17, 1.0}), -2.0});
+  return parts;
+}
+
+void print_runs(const AlgorithmEntry& algorithm, const std::string& depth_model) {
+  for (const bool average : {false, true}) {
+    for (const bool reduce : {false, true}) {
+      RenderingConfig config = config_of(algorithm.info->name);
+      config.depth_model = depth_model;
+      config.local_average = average;
+      if (reduce) config.reduction = ReductionConfig{0.99, 20, 3};
+      config.passivity_controller = average && reduce;  // once is enough
+      const std::string name = std::string(algorithm.info->name) + ' ' + depth_model + (average ? " averaged" : "") +
+                               (reduce ? " reduced" : "");
+      HashingObserver hash;
+      SimulationConfig simulation;
+      simulation.steps = 1000;
+      simulation.position = {0.0, -0.004, 0.0};
+      Simulation(simulation, peg(config), {&hash}).run();
+      print(name + " peg", hash.value());
+
+      hash.clear();
+      simulation.steps = 400;
+      simulation.position = {0.0, 0.0, 0.0001};
+      Simulation(simulation, plane(config), {&hash}).run();
+      print(name + " plane", hash.value());
+    }
+  }
+}
+
+/// The 2-D peg under every integrator.
+void print_integrators(const AlgorithmEntry& algorithm) {
+  for (const IntegratorEntry* integrator : kIntegrators) {
+    HashingObserver hash;
+    SimulationConfig simulation;
+    simulation.steps = 500;
+    simulation.position = {0.0, -0.004, 0.0};
+    simulation.integrator = integrator;
+    Simulation(simulation, peg(config_of(algorithm.info->name)), {&hash}).run();
+    print(std::string(algorithm.info->name) + ' ' + integrator->info.name, hash.value());
+  }
+}
+
+/// The depth models on points everywhere in and on the tool.
+void print_depths(const DepthModelEntry& model) {
+  for (const Tip tip : {Tip::flat, Tip::round}) {
+    Random random(2);
+    Hash hash;
+    for (int i = 0; i < 200; ++i) {
+      Setting setting;
+      setting.tool = random_tool(random, tip);
+      setting.pose = random_pose(random);
+      for (int k = 0; k < 50; ++k) {
+        setting.points.push_back({random_point_near(setting.tool, setting.pose, random), random.direction()});
+        setting.points.push_back({random_point_on(setting.tool, setting.pose, random), random.direction()});
+      }
+      RenderingConfig config = config_of("summation");
+      config.depth_model = model.info->name;
+      Probe probe(setting, config);
+      hash.add(probe.force_at(setting.pose));
+      hash.add(probe.contacts());
+
+      // Probes search by neighbour lists; brute force has its own loop.
+      const PointShell shell(setting.points, setting.cell_size);
+      ShellQuery brute_force(shell, setting.tool);
+      ContactBuffer contacts(brute_force.capacity());
+      brute_force.contacts_at(setting.pose, contacts);
+      hash.add(contacts);
+    }
+    print(std::string(model.info->name) + (tip == Tip::flat ? " flat" : " round"), hash.value());
+  }
+}
+
+/// The two iterations that could amplify a difference in the last bit, on the sets that stress them.
+void print_shaping(const GradientFamily& family) {
+  Random random(3);
+  Hash exact, iterated;
+  for (int i = 0; i < 200; ++i) {
+    ContactBuffer contacts = contacts_of(family.draw(random, random_size(random, 1000)));
+    exact.add(static_cast<std::uint64_t>(solve_exact_shaping(contacts)));
+    exact.add(contacts);
+    iterated.add(shape_weights(contacts, 30));
+    iterated.add(contacts);
+  }
+  print(std::string("exact ") + family.name, exact.value());
+  print(std::string("iterated ") + family.name, iterated.value());
+}
+
+}  // namespace
+}  // namespace hapbench::test
+
+int main() {
+  using namespace hapbench;
+  using namespace hapbench::test;
+  for (const GradientFamily& family : gradient_families()) print_shaping(family);
+  for (const DepthModelEntry& model : depth_models()) print_depths(model);
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    print_springs(algorithm);
+    print_integrators(algorithm);
+    for (const DepthModelEntry& model : depth_models()) {
+      if (algorithm.fixed_depth_model.empty() || algorithm.fixed_depth_model == model.info->name) {
+        print_runs(algorithm, model.info->name);
+      }
+    }
+  }
+}

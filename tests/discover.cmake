@@ -1,0 +1,25 @@
+# Lists the tests of a GoogleTest executable for ctest, after it is built. One test of ctest is one suite, with all its cases and
+# parameters in one process: a process for each of 2 500 cases takes longer than the cases themselves.
+#   cmake -D EXECUTABLE=… -D OUTPUT=… -D PREFIX=… -D PROPERTIES=… -P discover.cmake
+execute_process(COMMAND ${EXECUTABLE} --gtest_list_tests OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
+string(REPLACE ";" "," listing "${listing}")
+string(REPLACE "\n" ";" lines "${listing}")
+set(suites "")
+foreach(line ${lines})
+  string(REGEX REPLACE " *#.*" "" line "${line}")
+  if(line MATCHES "^([A-Za-z0-9_/]+)\\.$")
+    set(listed ${CMAKE_MATCH_1})
+    string(REGEX REPLACE "/[0-9]+$" "" suite ${listed})  # Suite/0 is a type of a typed suite
+    string(REGEX REPLACE "^.*/" "" suite ${suite})  # Instance/Suite is an instance of a parametrised one
+    list(APPEND suites ${suite})
+    list(APPEND filter_${suite} "${listed}.*")
+  endif()
+endforeach()
+list(REMOVE_DUPLICATES suites)
+set(script "")
+foreach(suite ${suites})
+  list(JOIN filter_${suite} ":" filter)
+  string(APPEND script "add_test(\"${PREFIX}${suite}\" \"${EXECUTABLE}\" \"--gtest_filter=${filter}\")\n"
+    "set_tests_properties(\"${PREFIX}${suite}\" PROPERTIES ${PROPERTIES})\n")
+endforeach()
+file(WRITE ${OUTPUT} "${script}")

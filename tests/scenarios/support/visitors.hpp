@@ -1,0 +1,46 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "scenarios/description/reader.hpp"
+#include "scenarios/description/schema_writer.hpp"
+#include "scenarios/description/writer.hpp"
+#include "tests/scenarios/support/errors.hpp"
+
+/// What the three visitors make of a value, which `describe(Fields&, T&)` describes.
+namespace hapbench::test {
+
+/// Reads a JSON text, found at `at`, into `value`.
+template <class T, class Describe>
+void read_json(const Json& json, const std::string& at, T& value, Describe describe) {
+  Reader reader(json, at);
+  describe(static_cast<Fields&>(reader), value);
+}
+
+/// The message with which a JSON text, found at "/v", is refused for its shape.
+template <class T, class Describe>
+std::string refusal_of(const std::string& text, T value, Describe describe) {
+  SCOPED_TRACE(text);
+  const auto error = input_error_of([&] { read_json(Json::parse(text), "/v", value, describe); });
+  if (!error) return "";
+  EXPECT_EQ(error->kind(), InputError::Kind::shape);
+  return error->what();
+}
+
+template <class T, class Describe>
+Json written_by(Describe describe, T value) {
+  Writer writer;
+  describe(static_cast<Fields&>(writer), value);
+  return writer.json();
+}
+
+template <class T, class Describe>
+Json schema_of(Describe describe, T value) {
+  SchemaWriter writer;
+  describe(static_cast<Fields&>(writer), value);
+  return writer.schema();
+}
+
+}  // namespace hapbench::test
