@@ -7,7 +7,6 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
-#include "results/io/stale_temporaries.hpp"
 #include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/stop_signal.hpp"

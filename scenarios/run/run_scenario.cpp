@@ -4,7 +4,6 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
-#include "results/io/stale_temporaries.hpp"
 #include "results/record/target_table.hpp"
 #include "scenarios/run/environment_points.hpp"
 #include "scenarios/run/expectation.hpp"
