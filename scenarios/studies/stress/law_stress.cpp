@@ -129,8 +129,7 @@ double force_bound(const RenderingConfig& config, const Tool& tool, std::size_t 
 }
 
 ContactSet stress_set(std::uint64_t seed, std::uint64_t i) {
-  constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15;  // 2^64 / golden ratio
-  Random random((seed + 1) * kGolden + i);
+  Random random(Random::derive(seed + 1, i));
   return draw_contact_set(random);
 }
 
