@@ -6,7 +6,6 @@
 #include "scenarios/description/environment_codec.hpp"
 #include "scenarios/description/values.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/input/number_table.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
@@ -59,9 +58,9 @@ std::string* named_motion(Scenario& scenario) {
   return nullptr;
 }
 
-/// Puts the hash of a named file's contents in place of its path.
-void name_by_content(std::string* file, const Scenario& scenario) {
-  if (file != nullptr) *file = hash_text(hash_of(read_text_file(resolve_path(scenario, *file), kLargestTable)));
+/// Puts the hash of a file's contents in place of its path.
+void name_by_content(std::string* path, NamedFile* file) {
+  if (path != nullptr) *path = file->hash();
 }
 
 }  // namespace
@@ -76,6 +75,7 @@ LoadedScenario read_scenario(const Json& json, const std::filesystem::path& dire
   loaded.scenario.directory = directory;
   scenario_codec().read(json, "", loaded.scenario);
   loaded.warnings = fill_defaults(loaded.scenario);
+  loaded.files = NamedFiles(loaded.scenario);
   return loaded;
 }
 
@@ -116,15 +116,16 @@ Json effective_scenario(const Scenario& scenario, const std::filesystem::path& d
   return scenario_codec().write(effective);
 }
 
-Json environment_content(const Scenario& scenario) {
+Json environment_content(const Scenario& scenario, const NamedFiles& files) {
   Scenario content = scenario;
-  name_by_content(named_file(content), scenario);
+  name_by_content(named_file(content), files.environment());
   return environment_codec()->write(content.environment);
 }
 
-std::string scenario_hash(const Scenario& scenario) {
+std::string scenario_hash(const Scenario& scenario, const NamedFiles& files) {
   Scenario content = scenario;
-  for (std::string* file : {named_file(content), named_motion(content)}) name_by_content(file, scenario);
+  name_by_content(named_file(content), files.environment());
+  name_by_content(named_motion(content), files.motion());
   return hash_text(hash_of(json_text(scenario_codec().write(content))));
 }
 
