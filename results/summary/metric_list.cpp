@@ -10,7 +10,7 @@ Metric number(const char* name, std::optional<double> value) {
   return {name, value && std::isfinite(*value) ? Metric::Value(*value) : Metric::Value()};
 }
 
-/// Of what need not exist.
+/// A number that need not exist.
 Metric number_if(bool exists, const char* name, double value) {
   return number(name, exists ? std::optional(value) : std::nullopt);
 }

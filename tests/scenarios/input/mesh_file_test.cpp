@@ -28,7 +28,7 @@ class MeshFile : public testing::Test {
  protected:
   MeshPoints read(const std::string& name, const std::string& text, const MeshSampling& sampling = {}) const {
     test::write_plainly(directory_ / name, text);
-    const MeshFile mesh(read_named_file(directory_ / name), directory_ / name, sampling);
+    const hapbench::MeshFile mesh(read_named_file(directory_ / name), directory_ / name, sampling);
     return {mesh.points(), mesh.warnings()};
   }
 
