@@ -1,17 +1,11 @@
 #pragma once
 
-#include "sim/core/number_range.hpp"
+#include "sim/core/model_info.hpp"
 
 namespace hapbench {
 
-/// A parameter of the rendering: the scenario field that sets it, with unit and range. Its default is the member's in
+/// The parameters of the rendering that the documentation of models names. The default of each is the member's in
 /// RenderingConfig.
-struct Parameter {
-  const char* field;
-  NumberRange range;
-};
-
-/// The parameters that the documentation of models names.
 namespace parameter {
 
 inline constexpr NumberRange kSwitch = {0, 1, "1"};

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "algorithms/parameters.hpp"
 #include "algorithms/rendering_config.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/core/model_info.hpp"

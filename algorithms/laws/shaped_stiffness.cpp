@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algorithms/parameters.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "algorithms/laws/laws.hpp"
+#include "algorithms/parameters.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "algorithms/parameters.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 
 namespace hapbench {

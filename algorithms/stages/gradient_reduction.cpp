@@ -4,6 +4,7 @@
 #include <numeric>
 #include <vector>
 
+#include "algorithms/parameters.hpp"
 #include "sim/core/random.hpp"
 #include "sim/core/simd.hpp"
 

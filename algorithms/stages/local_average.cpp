@@ -1,4 +1,5 @@
 #include "algorithms/stages/local_average.hpp"
+#include "algorithms/parameters.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,4 +1,5 @@
 #include "algorithms/stages/passivity_controller.hpp"
+#include "algorithms/parameters.hpp"
 
 #include <algorithm>
 #include <cmath>

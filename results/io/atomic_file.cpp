@@ -8,9 +8,8 @@
 
 #include <cassert>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
-#include <thread>
+#include <random>
 #include <utility>
 
 namespace hapbench {
@@ -25,47 +24,44 @@ std::error_code last_error() {
   return {errno, std::generic_category()};
 }
 
+/// ".<name>.<random number in hexadecimal>.tmp"
 fs::path temporary_name(const fs::path& target) {
-  return target.parent_path() / fmt::format(".{}.{}.tmp", target.filename().string(), ::getpid());
+  std::random_device random;
+  return target.parent_path() / fmt::format(".{}.{:08x}{:08x}.tmp", target.filename().string(), random(), random());
 }
 
-/// True when `path` still leads to the open file, that is, nobody removed it between open and lock.
-bool is_file_at(int descriptor, const fs::path& path) {
-  struct stat open_file {};
-  struct stat named_file {};
-  return ::fstat(descriptor, &open_file) == 0 && ::stat(path.c_str(), &named_file) == 0 &&
-         open_file.st_ino == named_file.st_ino && open_file.st_dev == named_file.st_dev;
+bool is_temporary_name(std::string_view name) {
+  constexpr std::string_view end = ".tmp";
+  if (name.size() <= end.size() || !name.starts_with('.') || !name.ends_with(end)) return false;
+  name.remove_prefix(1);
+  name.remove_suffix(end.size());
+  const std::size_t dot = name.rfind('.');
+  return dot != std::string_view::npos && dot > 0 && dot + 1 < name.size() &&
+         name.find_first_not_of("0123456789abcdef", dot + 1) == std::string_view::npos;
 }
 
-/// Opens `path` for writing and locks it; -1 with errno set when that fails. Where the file system knows no locks the
-/// file stays unlocked, and remove_stale_temporaries then leaves it alone.
-int open_locked(const fs::path& path) {
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-  if (descriptor < 0) return -1;
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 ? is_file_at(descriptor, path) : errno != EWOULDBLOCK) {
-    return descriptor;
-  }
+/// Removes the file if nobody holds its lock; a writer holds it until the file has its final name.
+bool remove_if_abandoned(const fs::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (descriptor < 0) return false;
+  const bool removed = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::unlink(path.c_str()) == 0;
   ::close(descriptor);
-  errno = EBUSY;
-  return -1;
+  return removed;
 }
 
 }  // namespace
 
 AtomicFile::AtomicFile(fs::path target)
-    : target_(std::move(target)),
-      temporary_(temporary_name(target_)),
-      buffer_(std::make_unique_for_overwrite<char[]>(kBufferSize)) {
-  // A clean-up may hold the new file for an instant; another writer holds it for good.
-  constexpr int attempts = 20;
-  for (int i = 0; i < attempts && descriptor_ < 0; ++i) {
-    if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    descriptor_ = open_locked(temporary_);
-    if (descriptor_ < 0 && errno != EBUSY) break;
+    : target_(std::move(target)), buffer_(std::make_unique_for_overwrite<char[]>(kBufferSize)) {
+  // A clean-up may remove the file before it is locked; then another one is made.
+  for (struct stat status{}; status.st_nlink == 0;) {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    temporary_ = temporary_name(target_);
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) throw IoError("create", target_, last_error());
+    ::flock(descriptor_, LOCK_EX);
+    if (::fstat(descriptor_, &status) != 0) break;
   }
-  if (descriptor_ < 0) throw IoError("create", target_, last_error());
-  // Leavings of a killed run whose process number has come round again.
-  if (::ftruncate(descriptor_, 0) != 0) error_ = last_error();
 }
 
 AtomicFile::~AtomicFile() {
@@ -123,6 +119,20 @@ void write_file_atomically(const fs::path& target, std::string_view contents) {
   AtomicFile file(target);
   file.append(contents);
   file.commit();
+}
+
+std::size_t remove_stale_temporaries(const fs::path& directory) {
+  std::error_code error;
+  fs::directory_iterator entry(directory, error);
+  if (error == std::errc::no_such_file_or_directory) return 0;
+  std::size_t removed = 0;
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    std::error_code unknown_type;
+    if (!is_temporary_name(entry->path().filename().native()) || !entry->is_regular_file(unknown_type)) continue;
+    if (remove_if_abandoned(entry->path())) ++removed;
+  }
+  if (error) throw IoError("list", directory, error);
+  return removed;
 }
 
 }  // namespace hapbench

@@ -11,15 +11,13 @@ namespace hapbench {
 
 /// A file that appears under its final name complete or not at all.
 ///
-/// Bytes go to the hidden temporary ".<name>.<pid>.tmp" in the same directory; `commit` gives it its name. The
-/// temporary is locked (flock) for as long as it is written, so that remove_stale_temporaries can tell the leavings of
-/// a killed run from the work of a living one, in another container or on another host too, where process numbers mean
-/// nothing.
+/// Bytes go to a hidden temporary of a random name in the same directory; `commit` gives it its final name. Several
+/// writers of one target do not disturb each other: the last to commit wins. The temporary is locked (flock) while it
+/// is written, which tells remove_stale_temporaries that its writer lives, in another container or on another host,
+/// too.
 ///
 /// Safe against a killed process, not against a power cut: fsync would cost milliseconds for each of the thousands of
 /// files of a sweep, whose rows can be computed again.
-///
-/// One writer per target at a time; a second one in the same process is refused.
 class AtomicFile {
  public:
   /// Opens the temporary. The directory must exist. Throws IoError.
@@ -55,5 +53,10 @@ class AtomicFile {
 
 /// The whole contents at once. Throws IoError.
 void write_file_atomically(const std::filesystem::path& target, std::string_view contents);
+
+/// Removes the temporaries of AtomicFile that killed processes left in `directory` and returns how many. Temporaries
+/// that are being written stay, and so does every other file. Call when a run starts to write there. A directory that
+/// does not exist has none; one that cannot be listed throws IoError. A file that cannot be removed is left.
+std::size_t remove_stale_temporaries(const std::filesystem::path& directory);
 
 }  // namespace hapbench

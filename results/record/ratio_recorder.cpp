@@ -32,10 +32,7 @@ void RatioRecorder::on_step(const StepRecord& record) noexcept {
   if (!is_recorded(record, every_) || rendered.empty()) return;
   assert(rendered.size() <= contacts_.capacity());
 
-  contacts_.clear();
-  for (std::size_t i = 0; i < rendered.size(); ++i) contacts_.push_copy_of(rendered, i);
-  contacts_.pad();
-
+  contacts_.assign(rendered);
   // From each requested count on to the next.
   Mat3 S = shaping_.start(contacts_);
   int done = 0;

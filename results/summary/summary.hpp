@@ -6,11 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "results/observe/energy_ledger.hpp"
-#include "results/observe/ideal_trajectory.hpp"
-#include "results/observe/metrics.hpp"
-#include "results/observe/passivity_observer.hpp"
-#include "results/observe/target_metrics.hpp"
+#include "results/summary/metric_list.hpp"
 #include "results/summary/provenance.hpp"
 #include "sim/loop/simulation.hpp"
 
@@ -22,6 +18,14 @@ struct RunWork {
   std::uint64_t steps_skipped = 0;  ///< steps without any contact search
   AlgorithmWork algorithm;
   std::uint64_t allocations = 0;  ///< on the heap, inside the step loop
+
+  RunWork& operator+=(const RunWork& other) noexcept {
+    search += other.search;
+    steps_skipped += other.steps_skipped;
+    algorithm += other.algorithm;
+    allocations += other.allocations;
+    return *this;
+  }
 };
 
 /// Everything summary.json says about one run.
@@ -45,11 +49,13 @@ struct RunSummary {
 /// (a ratio without contact, the final position of no row) or is not finite is null.
 nlohmann::ordered_json summary_json(const RunSummary& run);
 
-/// The numbers of a summary that a scenario's `expect` may bound, by name: those of "metrics" under their own names,
-/// those of "passivity" and of the sections "energy", "ideal_trajectory" and "targets", which not every run has, with
-/// dots between the keys, as in "energy.created_sum_J" or "targets.0.success_rate.mean", and the final position's
-/// coordinates, as "final_position_m.x". Null for none.
-nlohmann::ordered_json boundable_metrics(const RunSummary& run);
+/// The numbers of a summary that a scenario's `expect` may bound and the table of a sweep holds: those of "metrics"
+/// under their own names, the final position's coordinates, as "final_position_m.x", and those of "passivity" and of
+/// the sections "energy", "ideal_trajectory" and "targets", which not every run has, as in "energy.created_sum_J" or
+/// "targets.0.success_rate.mean".
+MetricList metric_list(const RunSummary& run);
+
+/// summary.json as text.
 std::string summary_text(const RunSummary& run);
 
 }  // namespace hapbench

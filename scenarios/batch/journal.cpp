@@ -20,10 +20,6 @@ std::error_code last_error() {
   return {errno, std::generic_category()};
 }
 
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& problem) {
-  throw InputError(InputError::Kind::relation, file.string(), problem);
-}
-
 std::string line_of(std::string_view row) {
   return hash_text(hash_of(row)) + " " + std::string(row) + "\n";
 }
@@ -43,9 +39,9 @@ Journal::Journal(std::filesystem::path file, const std::string& sweep, bool resu
   if (descriptor_ < 0) throw IoError("create", file_, last_error());
   try {
     struct stat status {};
-    if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) refuse(file_, "is no file");
+    if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) fail_in_file(file_, "is no file");
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-      refuse(file_, "another sweep is writing to this directory; allowed: one at a time");
+      fail_in_file(file_, "another sweep is writing to this directory; allowed: one at a time");
     }
     const std::string first_line = "hapbench sweep journal 1, " + sweep + "\n";
     if (resume) read(first_line);
@@ -68,9 +64,10 @@ void Journal::read(const std::string& first_line) {
   std::size_t whole = text.find('\n') + 1;  // 0 when there is not even one line
   if (whole == 0) return;
   if (text.substr(0, whole) != first_line) {
-    refuse(file_,
-           "is not the journal of this sweep; --resume needs the same scenario, --set, --vary, --shard, --keep-runs, "
-           "named files and program; without --resume the sweep begins anew");
+    fail_in_file(
+        file_,
+        "is not the journal of this sweep; --resume needs the same scenario, --set, --vary, --shard, --keep-runs, "
+        "named files and program; without --resume the sweep begins anew");
   }
   for (std::size_t end; (end = text.find('\n', whole)) != std::string::npos; whole = end + 1) {
     const std::string_view row = row_in(std::string_view(text).substr(whole, end - whole));

@@ -7,7 +7,6 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
-#include "results/io/stale_temporaries.hpp"
 #include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/stop_signal.hpp"
@@ -39,8 +38,7 @@ Rows journal_rows(const SweepPlan& plan, const SweepOptions& options, const Jour
   for (const std::string& row : journal.rows()) {
     const auto run = run_of_row(plan, row);
     if (!run || !options.part().has(*run)) {
-      throw InputError(InputError::Kind::relation, journal.file().string(),
-                       fmt::format("got the row \"{}\"; allowed: rows of this sweep", row.substr(0, 60)));
+      fail_in_file(journal.file(), fmt::format("got the row \"{}\"; allowed: rows of this sweep", row.substr(0, 60)));
     }
     rows[*run] = row;
   }

@@ -80,7 +80,7 @@ class Collector {
         if (std::find(plan_.warnings.begin(), end, warning) == end) plan_.warnings.push_back(std::move(warning));
       }
       loaded.scenario.name.clear();  // which may be that of the scenario's file
-      hashes.push_back(with_file(loaded, [&] { return scenario_hash(loaded.scenario); }));
+      hashes.push_back(with_file(loaded, [&] { return scenario_hash(loaded.scenario, loaded.files); }));
     }
     return hashes;
   }

@@ -13,9 +13,10 @@
 namespace hapbench {
 namespace {
 
-std::string cell(const Json& value) {
-  if (!value.is_number()) return "";
-  return value.is_number_float() ? std::string(std::string_view(NumberText(value.get<double>()))) : value.dump();
+std::string cell(const Metric::Value& value) {
+  if (const auto* count = std::get_if<std::uint64_t>(&value)) return std::to_string(*count);
+  const auto* number = std::get_if<double>(&value);
+  return number != nullptr ? std::string(NumberText(*number)) : "";
 }
 
 /// The cells every row begins with.
@@ -41,8 +42,8 @@ std::string sweep_row(const SweepPlan& plan, std::size_t run, const RunSummary& 
   cells.emplace_back(outcome_name(summary.result.outcome));
   cells.emplace_back(summary.expected ? "true" : "false");
   cells.push_back(std::to_string(summary.result.rows));
-  const Json metrics = boundable_metrics(summary);
-  for (const std::string& name : plan.metrics) cells.push_back(cell(metrics.value(name, Json(nullptr))));
+  const MetricList metrics = metric_list(summary);
+  for (const std::string& name : plan.metrics) cells.push_back(cell(value_of(metrics, name)));
   cells.push_back(hash_text(summary.metrics.state_hash));
   return fmt::format("{}", fmt::join(cells, ","));
 }

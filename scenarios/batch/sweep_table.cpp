@@ -8,6 +8,8 @@
 
 #include "results/io/atomic_file.hpp"
 #include "scenarios/batch/sweep_row.hpp"
+#include "scenarios/input/csv_reader.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/number_table.hpp"
 #include "scenarios/input/text_lines.hpp"
 
@@ -42,27 +44,18 @@ void read_title(std::string_view line, ShardTable& table) {
   fail_in_line(table.file, 1, "is not the table of a shard, as \"hapbench sweep --shard i/n\" writes it");
 }
 
-void check_row(const ShardTable& table, std::size_t line, std::string_view row, std::size_t run) {
-  const Words cells = parts_of(row, ',');
-  const std::size_t columns = parts_of(table.header, ',').size();
-  if (cells.size() != columns) {
-    fail_in_line(table.file, line, fmt::format("got {} cells; allowed: {}", cells.size(), columns));
-  }
-  if (run >= table.runs) fail_in_line(table.file, line, "got a row behind the last one");
-  if (whole_number(cells[0]) != run) {
-    fail_in_line(table.file, line, fmt::format("got run \"{}\"; allowed: {}, the next of the shard", cells[0], run));
-  }
-}
-
-[[noreturn]] void refuse(const fs::path& file, const std::string& problem) {
-  throw InputError(InputError::Kind::relation, file.string(), problem);
+void check_row(const ShardTable& table, const CsvReader& csv, std::size_t run) {
+  if (run >= table.runs) fail_in_line(table.file, csv.line(), "got a row behind the last one");
+  const std::string_view number = csv.cells()[0];
+  if (whole_number(number) == run) return;
+  fail_in_line(table.file, csv.line(), fmt::format("got run \"{}\"; allowed: {}, the next of the shard", number, run));
 }
 
 void check_belongs(const ShardTable& table, const ShardTable& first) {
   const auto differs = [&](const char* what, const std::string& here, const std::string& there) {
     if (here == there) return;
-    refuse(table.file, fmt::format("is of another sweep than {}: {} {}, there {}; allowed: shards of one sweep",
-                                   first.file.string(), what, here, there));
+    fail_in_file(table.file, fmt::format("is of another sweep than {}: {} {}, there {}; allowed: shards of one sweep",
+                                         first.file.string(), what, here, there));
   };
   differs("definition", table.definition, first.definition);
   differs("runs", std::to_string(table.runs), std::to_string(first.runs));
@@ -93,17 +86,18 @@ ShardTable read_shard_table(const fs::path& file) {
   table.file = file;
   LineReader lines(text);
   read_title(lines.next().value_or(""), table);
-  table.header = lines.next().value_or("");
+  CsvReader csv(lines, file);
+  table.header = csv.header();
   if (!table.header.starts_with("index,")) fail_in_line(file, 2, "is not the header of a sweep's table");
-  for (std::size_t run = table.shard.index; const auto row = lines.next(); run += table.shard.count) {
-    check_row(table, lines.line(), *row, run);
-    table.rows.emplace_back(*row);
+  for (std::size_t run = table.shard.index; csv.next(); run += table.shard.count) {
+    check_row(table, csv, run);
+    table.rows.emplace_back(csv.row());
   }
   const std::size_t rows = table.shard.size(table.runs);
   if (table.rows.size() < rows) {
-    refuse(file, fmt::format("ends after {} of {} rows; allowed: complete tables", table.rows.size(), rows));
+    fail_in_file(file, fmt::format("ends after {} of {} rows; allowed: complete tables", table.rows.size(), rows));
   }
-  if (!text.ends_with('\n')) refuse(file, "ends within a line; allowed: complete tables");
+  if (!text.ends_with('\n')) fail_in_file(file, "ends within a line; allowed: complete tables");
   return table;
 }
 
@@ -113,8 +107,8 @@ void check_complete(std::span<const ShardTable> tables) {
     check_belongs(table, tables.front());
     const auto [other, is_new] = shards.emplace(table.shard.index, &table);
     if (!is_new) {
-      refuse(table.file, fmt::format("is shard {}, as is {}; allowed: each shard once", shard_text(table.shard),
-                                     other->second->file.string()));
+      fail_in_file(table.file, fmt::format("is shard {}, as is {}; allowed: each shard once", shard_text(table.shard),
+                                           other->second->file.string()));
     }
   }
   const std::size_t count = tables.front().shard.count;

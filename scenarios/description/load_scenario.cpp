@@ -8,7 +8,6 @@
 #include "scenarios/description/schema_writer.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/input/number_table.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
@@ -61,9 +60,9 @@ std::string* named_motion(Scenario& scenario) {
   return nullptr;
 }
 
-/// Puts the hash of a named file's contents in place of its path.
-void name_by_content(std::string* file, const Scenario& scenario) {
-  if (file != nullptr) *file = hash_text(hash_of(read_text_file(resolve_path(scenario, *file), kLargestTable)));
+/// Puts the hash of a file's contents in place of its path.
+void name_by_content(std::string* path, NamedFile* file) {
+  if (path != nullptr) *path = file->hash();
 }
 
 }  // namespace
@@ -78,6 +77,7 @@ LoadedScenario read_scenario(const Json& json, const std::filesystem::path& dire
   loaded.scenario.directory = directory;
   Reader reader(json, "", &loaded.warnings);
   reader.object(loaded.scenario);
+  loaded.files = NamedFiles(loaded.scenario);
   return loaded;
 }
 
@@ -129,15 +129,16 @@ Json scenario_schema() {
   return schema;
 }
 
-Json environment_content(const Scenario& scenario) {
+Json environment_content(const Scenario& scenario, const NamedFiles& files) {
   Scenario content = scenario;
-  name_by_content(named_file(content), scenario);
+  name_by_content(named_file(content), files.environment());
   return written(content.environment);
 }
 
-std::string scenario_hash(const Scenario& scenario) {
+std::string scenario_hash(const Scenario& scenario, const NamedFiles& files) {
   Scenario content = scenario;
-  for (std::string* file : {named_file(content), named_motion(content)}) name_by_content(file, scenario);
+  name_by_content(named_file(content), files.environment());
+  name_by_content(named_motion(content), files.motion());
   return hash_text(hash_of(json_text(written_object(content))));
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/description/named_files.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
@@ -15,6 +16,7 @@ namespace hapbench {
 struct LoadedScenario {
   Scenario scenario;
   std::filesystem::path file;
+  NamedFiles files;                   ///< that the scenario names
   std::vector<std::string> warnings;  ///< given values that the algorithm's definition overrides, with file and pointer
 };
 
@@ -54,13 +56,13 @@ Json effective_scenario(const Scenario& scenario, const std::filesystem::path& d
 
 /// The environment with every default filled in, with hashes of the contents of named files in place of their paths:
 /// equal for equal point shells. Throws InputError.
-Json environment_content(const Scenario& scenario);
+Json environment_content(const Scenario& scenario, const NamedFiles& files);
 
 /// The whole JSON Schema (draft 7) that scenarios/scenario.schema.json holds.
 Json scenario_schema();
 
 /// Identifies what is simulated: FNV-1a over the effective scenario, with the contents of named files in place of their
-/// paths, as 16 hexadecimal digits.
-std::string scenario_hash(const Scenario& scenario);
+/// paths, as 16 hexadecimal digits. Throws InputError.
+std::string scenario_hash(const Scenario& scenario, const NamedFiles& files);
 
 }  // namespace hapbench

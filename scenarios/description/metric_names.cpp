@@ -10,10 +10,7 @@ std::vector<std::string> metric_names(const MetricSections& sections) {
   if (sections.places > 0) run.targets.emplace();
   for (std::size_t place = 0; place < sections.places; ++place) run.targets->emplace_back().place = place;
   std::vector<std::string> names;
-  const auto metrics = boundable_metrics(run);
-  for (const auto& metric : metrics.items()) {
-    if (metric.key() != "final_position_m") names.push_back(metric.key());
-  }
+  for (Metric& metric : metric_list(run)) names.push_back(std::move(metric.name));
   return names;
 }
 

@@ -33,6 +33,14 @@ std::string one_line(std::string text) {
   return text;
 }
 
+void fail_in_file(const std::filesystem::path& file, const std::string& problem) {
+  throw InputError(InputError::Kind::relation, file.string(), problem);
+}
+
+void fail_in_line(const std::filesystem::path& file, std::size_t line, const std::string& problem) {
+  throw InputError(InputError::Kind::relation, fmt::format("{}, line {}", file.string(), line), problem);
+}
+
 std::string nearest_name(std::string_view given, std::span<const std::string> valid) {
   // A hostile name may be megabytes long; nothing that long is near a name of ours.
   if (given.size() > 200) return "";
@@ -53,6 +61,12 @@ std::string nearest_name(std::string_view given, std::span<const std::string> va
 std::string nearest_name_hint(std::string_view given, std::span<const std::string> valid) {
   const std::string name = nearest_name(given, valid);
   return name.empty() ? "" : fmt::format("; nearest valid name: \"{}\"", name);
+}
+
+void require_valid_name(std::string_view got, const std::string& name, std::span<const std::string> valid) {
+  if (std::find(valid.begin(), valid.end(), name) != valid.end()) return;
+  throw InputError(
+      fmt::format("{} \"{}\"; allowed: {}{}", got, name, quoted_list(valid), nearest_name_hint(name, valid)));
 }
 
 std::string quoted_list(std::span<const std::string> names) {

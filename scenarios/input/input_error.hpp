@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -39,11 +40,18 @@ class InputError : public std::runtime_error {
   std::string problem_;
 };
 
+/// Throws an InputError (a relation) about a file, or about a line of it.
+[[noreturn]] void fail_in_file(const std::filesystem::path& file, const std::string& problem);
+[[noreturn]] void fail_in_line(const std::filesystem::path& file, std::size_t line, const std::string& problem);
+
 /// The valid name nearest to `given` in edit distance, or empty when none is near enough to suggest.
 std::string nearest_name(std::string_view given, std::span<const std::string> valid);
 
 /// `; nearest valid name: "x"`, or empty.
 std::string nearest_name_hint(std::string_view given, std::span<const std::string> valid);
+
+/// Throws an InputError, `got` before the name, when the name is not among the valid ones.
+void require_valid_name(std::string_view got, const std::string& name, std::span<const std::string> valid);
 
 /// "a", "b", "c"
 std::string quoted_list(std::span<const std::string> names);

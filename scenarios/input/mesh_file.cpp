@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/mesh_library.hpp"
-#include "scenarios/input/mesh_text.hpp"
+#include "scenarios/input/mesh_formats.hpp"
+#include "scenarios/input/number_table.hpp"
 #include "scenarios/input/size_limits.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "sim/mesh/mesh_from_triangles.hpp"
 #include "sim/mesh/resample.hpp"
 
@@ -16,19 +17,37 @@ namespace fs = std::filesystem;
 
 constexpr double kFarthest = 1000.0;  // [m]
 
-[[noreturn]] void fail(const fs::path& file, const std::string& problem) {
-  throw InputError(InputError::Kind::relation, file.string(), problem);
+TriangleSoup triangles_in(std::string_view text, const fs::path& file) {
+  const std::string extension = mesh_extension(file);
+  if (text.empty()) fail_in_file(file, "the file is empty; allowed: a mesh with faces");
+  if (extension == ".obj") return read_obj(text, file);
+  if (extension == ".ply") return read_ply(text, file);
+  if (extension == ".stl") return read_stl(text, file);
+  return read_off(text, file);
+}
+
+void check_indices(const TriangleSoup& soup, const fs::path& file) {
+  for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
+    for (const std::uint32_t vertex : soup.triangles[t]) {
+      if (vertex < soup.vertices.size()) continue;
+      fail_in_file(file,
+                   fmt::format("triangle {}: got vertex {}; allowed: 0 ... {}, the vertices of the file", t,
+                               static_cast<std::int32_t>(vertex), static_cast<std::int64_t>(soup.vertices.size()) - 1));
+    }
+  }
 }
 
 void scale_and_check(TriangleSoup& soup, double scale, const fs::path& file) {
   for (std::size_t i = 0; i < soup.vertices.size(); ++i) {
     Vec3& vertex = soup.vertices[i];
     vertex *= scale;
-    if (!vertex.allFinite()) fail(file, fmt::format("vertex {}: is not finite; allowed: finite coordinates", i));
+    if (!vertex.allFinite())
+      fail_in_file(file, fmt::format("vertex {}: is not finite; allowed: finite coordinates", i));
     const double largest = vertex.cwiseAbs().maxCoeff();
     if (largest > kFarthest) {
-      fail(file, fmt::format("vertex {}: got coordinate {} after scaling; allowed: at most {} m (is \"scale\" right?)",
-                             i, largest, kFarthest));
+      fail_in_file(
+          file, fmt::format("vertex {}: got coordinate {} after scaling; allowed: at most {} m (is \"scale\" right?)",
+                            i, largest, kFarthest));
     }
   }
 }
@@ -37,7 +56,7 @@ CheckedMesh connect(const TriangleSoup& soup, const fs::path& file) {
   try {
     return mesh_from_triangles(soup);
   } catch (const MeshError& error) {
-    fail(file, error.what());
+    fail_in_file(file, error.what());
   }
 }
 
@@ -47,6 +66,7 @@ std::vector<std::string> warnings_about(const MeshFindings& found, const fs::pat
     if (count > 0) warnings.push_back(one_line(file.string() + ": " + fmt::format(fmt::runtime(text), count)));
   };
   warn(found.boundary_edges, "the mesh is open: {} boundary edges");
+  warn(found.crowded_edges, "the surface is cut along edges with more than two faces: {}");
   warn(found.degenerate_triangles, "faces left out, two of their corners being the same: {}");
   warn(found.rewound_triangles, "faces turned, which were wound against their neighbours: {}");
   warn(found.inside_out_parts, "closed parts turned, which were inside out: {}");
@@ -58,31 +78,49 @@ void check_spacing(const HalfEdgeMesh& mesh, double spacing, const fs::path& fil
   // A triangle mesh has half as many vertices as faces, more only in so far as it is open.
   constexpr double kMostFaces = 2.0 * kMostPoints;
   if (refined_face_count(mesh, spacing, kMostFaces) <= kMostFaces) return;
-  fail(file,
-       fmt::format("spacing_m {} would need more than {:.0g} points; allowed: a wider spacing", spacing, kMostPoints));
+  fail_in_file(file, fmt::format("spacing_m {} would need more than {:.0g} points; allowed: a wider spacing", spacing,
+                                 kMostPoints));
 }
 
 /// The surface in the file, all checks done.
-CheckedMesh read_surface(const fs::path& file, const MeshSampling& sampling) {
-  TriangleSoup soup = read_with_mesh_library(read_mesh_text(file), file);
+CheckedMesh surface_in(std::string_view bytes, const fs::path& file, const MeshSampling& sampling) {
+  TriangleSoup soup = triangles_in(bytes, file);
+  check_indices(soup, file);
   scale_and_check(soup, sampling.scale, file);
   CheckedMesh surface = connect(soup, file);
-  if (vertices_with_normals(surface.mesh).empty()) fail(file, "has no faces with an area; allowed: at least one");
+  const std::size_t vertices = surface.mesh.n_vertices();
+  if (static_cast<double>(vertices) > kMostPoints)
+    fail_in_file(file, fmt::format("has {} vertices; allowed: at most {:.0g}", vertices, kMostPoints));
+  if (vertices_with_normals(surface.mesh).empty())
+    fail_in_file(file, "has no faces with an area; allowed: at least one");
   if (sampling.spacing) check_spacing(surface.mesh, *sampling.spacing, file);
   return surface;
 }
 
 }  // namespace
 
-std::vector<SurfacePoint> read_mesh_points(const fs::path& file, const MeshSampling& sampling) {
-  HalfEdgeMesh mesh = read_surface(file, sampling).mesh;
-  if (!sampling.spacing) return vertices_with_normals(mesh);
-  refine(mesh, *sampling.spacing);
-  return thinned(vertices_with_normals(mesh), *sampling.spacing);
+std::string mesh_extension(const fs::path& file) {
+  const std::string extension = lower_case(file.extension().string());
+  const bool known = extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off";
+  if (!known) fail_in_file(file, "has another extension; allowed: .obj, .ply, .stl or .off");
+  return extension;
 }
 
-std::vector<std::string> mesh_warnings(const fs::path& file, const MeshSampling& sampling) {
-  return warnings_about(read_surface(file, sampling).findings, file);
+MeshFile::MeshFile(std::string_view bytes, const fs::path& file, const MeshSampling& sampling)
+    : sampling_(sampling),
+      surface_(std::make_shared<const CheckedMesh>(surface_in(bytes, file, sampling))),
+      warnings_(warnings_about(surface_->findings, file)) {}
+
+std::vector<SurfacePoint> MeshFile::points() const {
+  if (!sampling_.spacing) return vertices_with_normals(surface_->mesh);
+  HalfEdgeMesh mesh = surface_->mesh;
+  refine(mesh, *sampling_.spacing);
+  return thinned(vertices_with_normals(mesh), *sampling_.spacing);
+}
+
+std::vector<SurfacePoint> read_mesh_points(const fs::path& file, const MeshSampling& sampling) {
+  mesh_extension(file);  // refused unread if it is another
+  return MeshFile(read_named_file(file), file, sampling).points();
 }
 
 }  // namespace hapbench

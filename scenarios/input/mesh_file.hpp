@@ -1,13 +1,17 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/geometry/point_shell.hpp"
 
 namespace hapbench {
+
+struct CheckedMesh;
 
 /// How a mesh becomes a point shell.
 struct MeshSampling {
@@ -15,13 +19,30 @@ struct MeshSampling {
   std::optional<double> spacing;  ///< [m]; none: the mesh's own vertices
 };
 
-/// Reads a mesh (.obj, .ply, .stl, .off; ASCII or binary) as points with normals: its vertices, or with a spacing those
-/// of the same surface refined until no edge is longer, thinned where there are more than one point in a cube of that
-/// size. Throws InputError that names the file and says why it is refused.
-std::vector<SurfacePoint> read_mesh_points(const std::filesystem::path& file, const MeshSampling& sampling);
+/// The extension of a mesh file, in lower case. Throws InputError when it is that of no format that is read.
+std::string mesh_extension(const std::filesystem::path& file);
 
-/// What is odd about a mesh that can be read: it is open, or its winding had to be changed. Each names the file. Throws
-/// whenever read_mesh_points would, and is cheaper, because it does not resample.
-std::vector<std::string> mesh_warnings(const std::filesystem::path& file, const MeshSampling& sampling);
+/// The surface in a mesh file (.obj, .ply, .stl, .off; text or binary). Copies share it.
+class MeshFile {
+ public:
+  /// `bytes` are the contents of the file; its name tells the format. Does all checks. Throws InputError that names the
+  /// file and says why it is refused.
+  MeshFile(std::string_view bytes, const std::filesystem::path& file, const MeshSampling& sampling);
+
+  /// What is odd about the mesh: it is open, or its winding had to be changed. Each names the file.
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+  /// Points with normals: the mesh's vertices, or with a spacing those of the same surface refined until no edge is
+  /// longer, thinned where there are more than one point in a cube of that size.
+  std::vector<SurfacePoint> points() const;
+
+ private:
+  MeshSampling sampling_;
+  std::shared_ptr<const CheckedMesh> surface_;
+  std::vector<std::string> warnings_;
+};
+
+/// The points of a mesh file.
+std::vector<SurfacePoint> read_mesh_points(const std::filesystem::path& file, const MeshSampling& sampling);
 
 }  // namespace hapbench

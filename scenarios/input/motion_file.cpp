@@ -16,8 +16,8 @@ constexpr std::size_t kMostSamples = 10'000'000;
 
 }  // namespace
 
-RecordedMotion read_motion(const std::filesystem::path& file) {
-  const NumberTable table = read_number_table(file, "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z", kMostSamples);
+RecordedMotion motion_in(std::string_view text, const std::filesystem::path& file) {
+  const NumberTable table = number_table_in(text, file, "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z", kMostSamples);
   if (table.rows() == 0) fail(file, 0, "no samples; allowed: at least one");
   std::vector<RecordedMotion::Sample> samples;
   samples.reserve(table.rows());
@@ -35,6 +35,10 @@ RecordedMotion read_motion(const std::filesystem::path& file) {
     samples.push_back({row[0], {row[1], row[2], row[3]}, axis / length});
   }
   return RecordedMotion(std::move(samples));
+}
+
+RecordedMotion read_motion(const std::filesystem::path& file) {
+  return motion_in(read_named_file(file), file);
 }
 
 }  // namespace hapbench

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hapbench {
@@ -23,9 +24,10 @@ struct NumberTable {
   std::span<const double> row(std::size_t i) const { return {values.data() + i * columns, columns}; }
 };
 
-/// Reads a CSV file whose first line is exactly `header`; blank lines are skipped, line ends may be CR LF. Throws
-/// InputError that names file, line and column for a wrong header, a wrong number of cells, a cell that is no finite
-/// number, or more than `most_rows` rows.
-NumberTable read_number_table(const std::filesystem::path& file, const std::string& header, std::size_t most_rows);
+/// The table in the contents of a CSV file, whose first line is exactly `header`; blank lines are skipped, line ends
+/// may be CR LF. Throws InputError that names file, line and column for a wrong header, a wrong number of cells, a cell
+/// that is no finite number, or more than `most_rows` rows.
+NumberTable number_table_in(std::string_view text, const std::filesystem::path& file, const std::string& header,
+                            std::size_t most_rows);
 
 }  // namespace hapbench

@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/json_file.hpp"
 
 namespace hapbench {
 namespace {
@@ -33,6 +34,20 @@ std::optional<PlyType> ply_type(std::string_view name) {
   return std::nullopt;
 }
 
+double take_ply_number(ByteReader& reader, PlyType type) {
+  switch (type.kind) {
+    case PlyType::Kind::signed_integer:
+      if (type.size == 1) return reader.take<std::int8_t>();
+      return type.size == 2 ? reader.take<std::int16_t>() : reader.take<std::int32_t>();
+    case PlyType::Kind::unsigned_integer:
+      if (type.size == 1) return reader.take<std::uint8_t>();
+      return type.size == 2 ? reader.take<std::uint16_t>() : reader.take<std::uint32_t>();
+    case PlyType::Kind::real:
+      return type.size == 4 ? reader.take<float>() : reader.take<double>();
+  }
+  return 0.0;
+}
+
 PlyHeader read_ply_header(LineReader& lines, const std::filesystem::path& file) {
   PlyHeader header;
   std::optional<PlyFormat> format;
@@ -55,8 +70,8 @@ PlyHeader read_ply_header(LineReader& lines, const std::filesystem::path& file) 
       if (header.elements.empty()) fail("got a property before an element; allowed: after one");
       header.elements.back().properties.push_back({lines.line(), words});
     } else if (first != "comment" && first != "obj_info") {
-      fail(fmt::format("got {}; allowed: format, comment, obj_info, element, property, end_header",
-                       shown(Json(first.substr(0, 60)))));
+      fail(
+          fmt::format("got {}; allowed: format, comment, obj_info, element, property, end_header", quoted_word(first)));
     }
   }
   if (!format) fail("allowed: a header with \"format\"");

@@ -1,15 +1,22 @@
 #pragma once
 
+#include <bit>
 #include <filesystem>
 #include <optional>
 #include <string_view>
 #include <vector>
 
+#include "scenarios/input/byte_reader.hpp"
 #include "scenarios/input/text_lines.hpp"
 
 namespace hapbench {
 
 enum class PlyFormat { ascii, little_endian, big_endian };
+
+/// Precondition: the format is a binary one.
+inline std::endian byte_order(PlyFormat format) {
+  return format == PlyFormat::big_endian ? std::endian::big : std::endian::little;
+}
 
 /// Type of a number in a PLY file.
 struct PlyType {
@@ -18,6 +25,9 @@ struct PlyType {
   std::size_t size;  ///< in a binary file [bytes]
 };
 std::optional<PlyType> ply_type(std::string_view name);
+
+/// The next number of a binary file; a double holds every one. Precondition: as many bytes are left.
+double take_ply_number(ByteReader& reader, PlyType type);
 
 /// The declarations of a PLY file, as words with the number of their line: what is allowed in them depends on the use.
 struct PlyHeader {

@@ -4,15 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 #include <string_view>
 
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/json_file.hpp"
-#include "scenarios/input/number_table.hpp"
 #include "scenarios/input/ply_header.hpp"
 #include "scenarios/input/size_limits.hpp"
 
@@ -29,7 +25,7 @@ struct Property : PlyType {
 /// The vertices of a file, taken line by line or, in a binary file, value by value.
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& file) : file_(file), text_(read_named_file(file)), lines_(text_) {}
+  Reader(std::string_view text, const std::filesystem::path& file) : file_(file), lines_(text) {}
 
   std::vector<SurfacePoint> points() {
     read_header();
@@ -38,7 +34,7 @@ class Reader {
       fail_in_line(file_, lines_.line(),
                    fmt::format("the file ends before its {} vertices; allowed: a complete file", vertices_));
     }
-    rest_ = lines_.rest();
+    rest_ = ByteReader(lines_.rest(), byte_order(format_));
     std::vector<SurfacePoint> points;
     points.reserve(vertices_);
     for (std::size_t i = 0; i < vertices_; ++i) {
@@ -73,9 +69,9 @@ class Reader {
       fail_in_line(file_, element.line, "allowed: \"element vertex COUNT\" as the first element");
     const auto count = whole_number(words[2]);
     if (!count || static_cast<double>(*count) > kMostPoints) {
-      fail_in_line(file_, element.line,
-                   fmt::format("got {} vertices; allowed: an integer, at most {:.0g}",
-                               shown(Json(words[2].substr(0, 60))), kMostPoints));
+      fail_in_line(
+          file_, element.line,
+          fmt::format("got {} vertices; allowed: an integer, at most {:.0g}", quoted_word(words[2]), kMostPoints));
     }
     return *count;
   }
@@ -111,9 +107,8 @@ class Reader {
     for (std::size_t p = 0; p < words.size(); ++p) {
       const auto value = finite_number(words[p]);
       if (!value) {
-        fail_in_line(
-            file_, lines_.line(),
-            fmt::format("vertex {}: got {}; allowed: a finite number", index, shown(Json(words[p].substr(0, 60)))));
+        fail_in_line(file_, lines_.line(),
+                     fmt::format("vertex {}: got {}; allowed: a finite number", index, quoted_word(words[p])));
       }
       if (properties_[p].wanted) values[static_cast<std::size_t>(*properties_[p].wanted)] = *value;
     }
@@ -123,43 +118,19 @@ class Reader {
   Values read_binary_vertex(std::size_t index) {
     Values values{};
     for (const Property& property : properties_) {
-      const double value = read_binary(property);
+      const double value = take_ply_number(rest_, property);
       if (property.wanted) values[static_cast<std::size_t>(*property.wanted)] = value;
     }
     for (const double value : values) {
       if (std::isfinite(value)) continue;
-      throw InputError(InputError::Kind::relation, file_.string(),
-                       fmt::format("vertex {}: got {}; allowed: finite numbers", index, value));
+      fail_in_file(file_, fmt::format("vertex {}: got {}; allowed: finite numbers", index, value));
     }
     return values;
   }
 
-  /// Precondition: enough bytes are left.
-  double read_binary(const Property& property) {
-    std::uint64_t bits = 0;
-    for (std::size_t i = 0; i < property.size; ++i) {
-      const std::size_t from = format_ == PlyFormat::big_endian ? i : property.size - 1 - i;
-      bits = bits << 8 | static_cast<unsigned char>(rest_[from]);
-    }
-    rest_.remove_prefix(property.size);
-    switch (property.kind) {
-      case PlyType::Kind::signed_integer:
-        return property.size == 1   ? static_cast<std::int8_t>(bits)
-               : property.size == 2 ? static_cast<std::int16_t>(bits)
-                                    : static_cast<std::int32_t>(bits);
-      case PlyType::Kind::unsigned_integer:
-        return static_cast<double>(bits);
-      case PlyType::Kind::real:
-        return property.size == 4 ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)))
-                                  : std::bit_cast<double>(bits);
-    }
-    return 0.0;
-  }
-
   const std::filesystem::path& file_;
-  const std::string text_;
   LineReader lines_;
-  std::string_view rest_;  ///< of a binary file: what has not been read yet
+  ByteReader rest_{"", std::endian::little};  ///< of a binary file: what has not been read yet
   PlyFormat format_ = PlyFormat::ascii;
   std::size_t vertices_ = 0;
   std::vector<Property> properties_;  ///< of a vertex, in their order
@@ -167,8 +138,8 @@ class Reader {
 
 }  // namespace
 
-std::vector<SurfacePoint> read_ply_points(const std::filesystem::path& file) {
-  return Reader(file).points();
+std::vector<SurfacePoint> ply_points_in(std::string_view text, const std::filesystem::path& file) {
+  return Reader(text, file).points();
 }
 
 }  // namespace hapbench

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "results/io/atomic_file.hpp"
-#include "results/io/stale_temporaries.hpp"
 #include "scenarios/input/size_limits.hpp"
 #include "sim/core/hash.hpp"
 

@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <OpenMesh/Core/IO/MeshIO.hh>
-#include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 #include <cmath>
-#include <sstream>
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/number_table.hpp"
@@ -17,18 +14,8 @@ namespace {
 
 constexpr const char* kHeader = "x_m,y_m,z_m,nx,ny,nz";
 
-struct DoubleTraits : OpenMesh::DefaultTraits {
-  using Point = OpenMesh::Vec3d;
-  using Normal = OpenMesh::Vec3d;
-};
-using Mesh = OpenMesh::PolyMesh_ArrayKernelT<DoubleTraits>;
-
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& problem) {
-  throw InputError(InputError::Kind::relation, file.string(), problem);
-}
-
-std::vector<SurfacePoint> read_csv(const std::filesystem::path& file) {
-  const NumberTable table = read_number_table(file, kHeader, static_cast<std::size_t>(kMostPoints));
+std::vector<SurfacePoint> csv_points_in(std::string_view text, const std::filesystem::path& file) {
+  const NumberTable table = number_table_in(text, file, kHeader, static_cast<std::size_t>(kMostPoints));
   std::vector<SurfacePoint> points;
   points.reserve(table.rows());
   for (std::size_t i = 0; i < table.rows(); ++i) {
@@ -39,16 +26,16 @@ std::vector<SurfacePoint> read_csv(const std::filesystem::path& file) {
 }
 
 void check_and_normalise(std::vector<SurfacePoint>& points, const std::filesystem::path& file) {
-  if (points.empty()) fail(file, "has no points; allowed: at least one");
+  if (points.empty()) fail_in_file(file, "has no points; allowed: at least one");
   for (std::size_t i = 0; i < points.size(); ++i) {
     SurfacePoint& point = points[i];
     const double largest = point.position.cwiseAbs().maxCoeff();
     if (!(largest <= 1000.0)) {
-      fail(file, fmt::format("point {}: got coordinate {}; allowed: finite, at most 1000 m", i, largest));
+      fail_in_file(file, fmt::format("point {}: got coordinate {}; allowed: finite, at most 1000 m", i, largest));
     }
     const double length = point.normal.norm();
     if (!(std::abs(length - 1.0) <= 1e-3)) {
-      fail(file, fmt::format("point {}: got a normal of length {}; allowed: unit normals", i, length));
+      fail_in_file(file, fmt::format("point {}: got a normal of length {}; allowed: unit normals", i, length));
     }
     // Unit to rounding is left alone, so that an exported shell reads back bit for bit.
     if (std::abs(length - 1.0) > 1e-12) point.normal /= length;
@@ -56,7 +43,7 @@ void check_and_normalise(std::vector<SurfacePoint>& points, const std::filesyste
 }
 
 std::string csv_text(const std::vector<SurfacePoint>& points) {
-  std::string text = std::string(kHeader) + "\n";
+  std::string text = fmt::format("{}\n", kHeader);
   for (const SurfacePoint& p : points) {
     fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{}\n", p.position.x(), p.position.y(), p.position.z(),
                    p.normal.x(), p.normal.y(), p.normal.z());
@@ -65,40 +52,44 @@ std::string csv_text(const std::vector<SurfacePoint>& points) {
 }
 
 std::string ply_text(const std::vector<SurfacePoint>& points) {
-  Mesh mesh;
-  mesh.request_vertex_normals();
+  std::string text = fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float nx\nproperty float ny\nproperty float nz\nelement face 0\n"
+      "property list uchar int vertex_indices\nend_header\n",
+      points.size());
+  // Nine digits are all that single precision holds.
+  const auto add = [&text](const Vec3& v, char end) {
+    fmt::format_to(std::back_inserter(text), "{:.9g} {:.9g} {:.9g}{}", static_cast<float>(v.x()),
+                   static_cast<float>(v.y()), static_cast<float>(v.z()), end);
+  };
   for (const SurfacePoint& p : points) {
-    const auto vertex = mesh.add_vertex({p.position.x(), p.position.y(), p.position.z()});
-    mesh.set_normal(vertex, {p.normal.x(), p.normal.y(), p.normal.z()});
+    add(p.position, ' ');
+    add(p.normal, '\n');
   }
-  std::ostringstream stream;
-  constexpr std::streamsize kFloatDigits = 9;  // all that single precision holds
-  OpenMesh::IO::Options options(OpenMesh::IO::Options::VertexNormal);
-  if (!OpenMesh::IO::write_mesh(mesh, stream, ".PLY", options, kFloatDigits)) {
-    throw std::runtime_error("the mesh library could not write PLY");
-  }
-  return stream.str();
+  return text;
 }
 
 }  // namespace
 
-std::vector<SurfacePoint> read_point_shell(const std::filesystem::path& file) {
-  std::vector<SurfacePoint> points;
-  if (file.extension() == ".csv") {
-    points = read_csv(file);
-  } else if (file.extension() == ".ply") {
-    points = read_ply_points(file);
-  } else {
-    fail(file, "has another extension; allowed: .csv or .ply");
-  }
+std::string shell_extension(const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  if (extension != ".csv" && extension != ".ply") fail_in_file(file, "has another extension; allowed: .csv or .ply");
+  return extension;
+}
+
+std::vector<SurfacePoint> point_shell_in(std::string_view text, const std::filesystem::path& file) {
+  auto points = shell_extension(file) == ".csv" ? csv_points_in(text, file) : ply_points_in(text, file);
   check_and_normalise(points, file);
   return points;
 }
 
+std::vector<SurfacePoint> read_point_shell(const std::filesystem::path& file) {
+  shell_extension(file);  // refused unread if it is another
+  return point_shell_in(read_named_file(file), file);
+}
+
 std::string point_shell_text(const std::vector<SurfacePoint>& points, const std::filesystem::path& file) {
-  if (file.extension() == ".csv") return csv_text(points);
-  if (file.extension() == ".ply") return ply_text(points);
-  fail(file, "has another extension; allowed: .csv or .ply");
+  return shell_extension(file) == ".csv" ? csv_text(points) : ply_text(points);
 }
 
 }  // namespace hapbench

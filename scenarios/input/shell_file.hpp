@@ -2,15 +2,20 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/geometry/point_shell.hpp"
 
 namespace hapbench {
 
-/// Reads a point shell: CSV with header x_m,y_m,z_m,nx,ny,nz or PLY with vertex normals (ply_points.hpp). Normals must
-/// be unit to 1e-3 and are normalised unless they are unit to rounding; coordinates must be finite and within 1 km.
-/// Throws InputError that names file and point.
+/// The extension of a point shell's file. Throws InputError when it is neither .csv nor .ply.
+std::string shell_extension(const std::filesystem::path& file);
+
+/// The point shell in the contents of a file: CSV with header x_m,y_m,z_m,nx,ny,nz or PLY with vertex normals
+/// (ply_points.hpp). Normals must be unit to 1e-3 and are normalised unless they are unit to rounding; coordinates must
+/// be finite and within 1 km. Throws InputError that names file and point.
+std::vector<SurfacePoint> point_shell_in(std::string_view text, const std::filesystem::path& file);
 std::vector<SurfacePoint> read_point_shell(const std::filesystem::path& file);
 
 /// The shell as the text of a .csv (shortest round-trip numbers) or .ply file (single precision, for viewers), by the

@@ -1,12 +1,11 @@
 #include "scenarios/input/text_lines.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 
-#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
 
 namespace hapbench {
 
@@ -45,6 +44,16 @@ std::optional<std::size_t> whole_number(std::string_view word) {
   return value;
 }
 
+std::string quoted_word(std::string_view word) {
+  return shown(Json(word.substr(0, 60)));
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
+}
+
 std::optional<std::string_view> LineReader::next() {
   if (rest_.empty()) return std::nullopt;
   ++line_;
@@ -52,10 +61,6 @@ std::optional<std::string_view> LineReader::next() {
   const std::string_view line = rest_.substr(0, end);
   rest_.remove_prefix(std::min(end + 1, rest_.size()));
   return line;
-}
-
-void fail_in_line(const std::filesystem::path& file, std::size_t line, const std::string& problem) {
-  throw InputError(InputError::Kind::relation, fmt::format("{}, line {}", file.string(), line), problem);
 }
 
 }  // namespace hapbench

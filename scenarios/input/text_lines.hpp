@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,6 +23,12 @@ std::optional<double> finite_number(std::string_view word);
 /// The whole word as a count or index, or none.
 std::optional<std::size_t> whole_number(std::string_view word);
 
+/// The word as an error message shows it: in quotes, control characters escaped, cut when long.
+std::string quoted_word(std::string_view word);
+
+/// ASCII letters in lower case.
+std::string lower_case(std::string_view text);
+
 /// Gives the lines of a text, which must outlive it, one by one.
 class LineReader {
  public:
@@ -40,8 +45,5 @@ class LineReader {
   std::string_view rest_;
   std::size_t line_ = 0;
 };
-
-/// Throws an InputError about a line of the file.
-[[noreturn]] void fail_in_line(const std::filesystem::path& file, std::size_t line, const std::string& problem);
 
 }  // namespace hapbench

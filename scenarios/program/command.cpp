@@ -50,20 +50,44 @@ std::vector<std::string> all_algorithms() {
   return names;
 }
 
-void require_names(const std::string& option, const std::vector<std::string>& names,
-                   const std::vector<std::string>& valid) {
+void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid) {
   std::set<std::string> seen;
   for (const std::string& name : names) {
-    if (std::find(valid.begin(), valid.end(), name) == valid.end()) {
-      throw InputError(fmt::format("{}: got \"{}\"; allowed: {}{}", option, name, quoted_list(valid),
-                                   nearest_name_hint(name, valid)));
-    }
-    if (!seen.insert(name).second) throw InputError(fmt::format("{}: got \"{}\" twice; allowed: once", option, name));
+    require_valid_name(got, name, valid);
+    if (!seen.insert(name).second) throw InputError(fmt::format("{} \"{}\" twice; allowed: once", got, name));
   }
 }
 
+std::vector<std::string> chosen_names(std::string_view got, const std::vector<std::string>& given,
+                                      const std::vector<std::string>& all) {
+  if (given == std::vector<std::string>{"all"}) return all;
+  if (std::find(given.begin(), given.end(), "all") != given.end())
+    throw InputError(fmt::format("{} \"all\" beside other names; allowed: \"all\" alone", got));
+  std::vector<std::string> valid = all;
+  valid.insert(valid.begin(), "all");
+  require_names(got, given, valid);
+  return given;
+}
+
 void require_algorithms(const std::vector<std::string>& names) {
-  require_names("--algorithms", names, all_algorithms());
+  require_names("--algorithms: got", names, all_algorithms());
+}
+
+std::vector<fs::path> output_directories(const std::string& out, const std::vector<LoadedScenario>& scenarios,
+                                         const std::string& prefix, const std::string& allowed) {
+  std::vector<fs::path> directories;
+  std::set<std::string> stems;
+  for (const LoadedScenario& scenario : scenarios) {
+    const std::string stem = scenario.file.stem().string();
+    if (!stems.insert(stem).second) {
+      throw InputError(
+          fmt::format("{}: a second scenario named \"{}\"; allowed: {}", scenario.file.string(), stem, allowed));
+    }
+    directories.push_back(out.empty()             ? fs::path("results") / "out" / (prefix + stem)
+                          : scenarios.size() == 1 ? fs::path(out)
+                                                  : fs::path(out) / stem);
+  }
+  return directories;
 }
 
 void require_writable_directory(const fs::path& directory) {

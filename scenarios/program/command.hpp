@@ -2,8 +2,10 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/shell_cache.hpp"
 #include "scenarios/program/command_line.hpp"
@@ -57,11 +59,21 @@ void print_warnings(const std::vector<std::string>& warnings);
 /// The names of all registered algorithms.
 std::vector<std::string> all_algorithms();
 
-/// Makes sure the names given to an option are among the valid ones, each once; throws InputError otherwise.
-void require_names(const std::string& option, const std::vector<std::string>& names,
-                   const std::vector<std::string>& valid);
+/// Makes sure the names given are among the valid ones, each once; throws InputError otherwise, in whose message `got`
+/// stands before the name, as in "--only: got".
+void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid);
+/// The same where "all" may be given instead of names, and stands for all of them; returns the names.
+std::vector<std::string> chosen_names(std::string_view got, const std::vector<std::string>& given,
+                                      const std::vector<std::string>& all);
 /// The same for the names given to --algorithms.
 void require_algorithms(const std::vector<std::string>& names);
+
+/// One directory a scenario: `out` itself for a single one, a subdirectory named after the file for several; without
+/// `out`, one of results/out, named after the file behind `prefix`. Throws InputError when two files have the same
+/// name; `allowed` is for its message.
+std::vector<std::filesystem::path> output_directories(const std::string& out,
+                                                      const std::vector<LoadedScenario>& scenarios,
+                                                      const std::string& prefix, const std::string& allowed);
 
 /// Makes sure results can be written to `directory`; throws InputError otherwise. Creates it.
 void require_writable_directory(const std::filesystem::path& directory);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -30,19 +31,13 @@ struct PrecisionCommandOptions {
   OutputOptions output;
 };
 
-std::vector<const PrecisionStudy*> chosen_studies(const std::vector<std::string>& names) {
-  std::vector<std::string> valid = {"all"};
-  for (const PrecisionStudy& study : precision_studies()) valid.emplace_back(study.name);
+std::vector<const PrecisionStudy*> chosen_studies(const std::vector<std::string>& given) {
+  std::vector<std::string> all;
+  for (const PrecisionStudy& study : precision_studies()) all.emplace_back(study.name);
   std::vector<const PrecisionStudy*> studies;
-  for (const std::string& name : names) {
-    const std::size_t before = studies.size();
-    for (const PrecisionStudy& study : precision_studies()) {
-      if (name == study.name || name == "all") studies.push_back(&study);
-    }
-    if (studies.size() == before) {
-      throw InputError(
-          fmt::format("got study \"{}\"; allowed: {}{}", name, quoted_list(valid), nearest_name_hint(name, valid)));
-    }
+  for (const std::string& name : chosen_names("got study", given, all)) {
+    const auto study = std::find(all.begin(), all.end(), name) - all.begin();
+    studies.push_back(&precision_studies()[static_cast<std::size_t>(study)]);
   }
   return studies;
 }

@@ -43,22 +43,18 @@ std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
   if (ids.empty()) return claims;
   std::vector<std::string> valid;
   for (const Claim& claim : claims) valid.emplace_back(claim.id);
-  for (const std::string& id : ids) {
-    if (std::find(valid.begin(), valid.end(), id) != valid.end()) continue;
-    throw InputError(
-        fmt::format("--only: got \"{}\"; allowed: {}{}", id, quoted_list(valid), nearest_name_hint(id, valid)));
-  }
+  for (const std::string& id : ids) require_valid_name("--only: got", id, valid);
   std::erase_if(claims, [&ids](const Claim& c) { return std::find(ids.begin(), ids.end(), c.id) == ids.end(); });
   return claims;
 }
 
 /// Returns true if the directory holds results of exactly this scenario, computed by exactly this program.
-bool is_current(const fs::path& directory, const Scenario& scenario) {
+bool is_current(const fs::path& directory, const LoadedScenario& loaded) {
   try {
     const Json summary = parse_json(read_text_file(directory / "summary.json", kLargestJsonFile));
     const Json& made = summary.at("provenance");
-    return made.at("scenario_hash") == scenario_hash(scenario) && made.at("commit") == provenance().commit &&
-           !provenance().commit.ends_with("-dirty");
+    return made.at("scenario_hash") == scenario_hash(loaded.scenario, loaded.files) &&
+           made.at("commit") == provenance().commit && !provenance().commit.ends_with("-dirty");
   } catch (const std::exception&) {
     return false;  // missing, damaged or of another version: run it
   }
@@ -104,7 +100,7 @@ class ThesisRuns {
  private:
   std::vector<std::string> run(const BundledScenario& bundled) const {
     const LoadedScenario loaded = load_scenario(bundled.file);
-    if (!anew_ && is_current(directory_ / bundled.name, loaded.scenario)) return {};
+    if (!anew_ && is_current(directory_ / bundled.name, loaded)) return {};
     return run_scenario(loaded, directory_ / bundled.name, false, cache_).unmet;
   }
   void tell(const BundledScenario& bundled, const std::vector<std::string>& problems) {

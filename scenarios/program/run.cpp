@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <set>
 
 #include "results/io/io_error.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
@@ -25,23 +24,6 @@ struct RunOptions {
   OutputOptions output;
 };
 
-/// One directory a scenario: --out itself for a single one, a subdirectory named after the file for several.
-std::vector<fs::path> output_directories(const RunOptions& options, const std::vector<LoadedScenario>& scenarios) {
-  const fs::path root = options.out.empty() ? fs::path("results") / "out" : fs::path(options.out);
-  if (scenarios.size() == 1 && !options.out.empty()) return {root};
-  std::vector<fs::path> directories;
-  std::set<std::string> stems;
-  for (const LoadedScenario& scenario : scenarios) {
-    const std::string stem = scenario.file.stem().string();
-    if (!stems.insert(stem).second) {
-      throw InputError(fmt::format("{}: a second scenario named \"{}\"; allowed: one of each name in a run",
-                                   scenario.file.string(), stem));
-    }
-    directories.push_back(root / stem);
-  }
-  return directories;
-}
-
 int run(const RunOptions& options) {
   // All input is checked before anything runs or is written.
   std::vector<std::string> overrides = options.overrides;
@@ -50,7 +32,7 @@ int run(const RunOptions& options) {
   for (const std::string& argument : options.scenarios) {
     scenarios.push_back(load_scenario(find_scenario(argument), overrides));
   }
-  const std::vector<fs::path> directories = output_directories(options, scenarios);
+  const std::vector<fs::path> directories = output_directories(options.out, scenarios, "", "one of each name in a run");
   for (const LoadedScenario& scenario : scenarios) {
     const std::vector<std::string> warnings = check_named_files(scenario);
     print_warnings(scenario.warnings);

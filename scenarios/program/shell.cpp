@@ -27,7 +27,8 @@ int shell(const ShellOptions& options) {
     throw InputError(loaded.file.string() + ": /environment/type: got \"springs\", which have no point shell");
   }
   print_warnings(check_named_files(loaded));
-  const std::vector<SurfacePoint> points = environment_points(loaded.scenario, shell_cache(options.no_cache)).points;
+  const std::vector<SurfacePoint> points =
+      environment_points(loaded.scenario, shell_cache(options.no_cache), loaded.files).points;
   const std::filesystem::path file = options.out;
   const std::string text = point_shell_text(points, file);
   std::error_code ignored;

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
-#include <set>
 #include <thread>
 
 #include "results/io/atomic_file.hpp"
@@ -20,17 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string_view case_name(StabilityCase which) {
-  switch (which) {
-    case StabilityCase::stiffness_undamped:
-      return "stiffness_undamped";
-    case StabilityCase::damping_alone:
-      return "damping_alone";
-    case StabilityCase::stiffness_damped:
-      return "stiffness_damped";
-    case StabilityCase::time_step:
-      return "time_step";
-  }
-  return "";
+  // In the order of the enumeration.
+  constexpr std::array<std::string_view, 4> kNames = {"stiffness_undamped", "damping_alone", "stiffness_damped",
+                                                      "time_step"};
+  return kNames[static_cast<std::size_t>(which)];
 }
 
 void write_limits(const fs::path& file, const std::vector<StabilityLimit>& limits) {
@@ -96,24 +89,6 @@ std::string limits_text(const LoadedScenario& loaded, const std::vector<Stabilit
          disagreement_text(limits);
 }
 
-/// One directory a scenario: --out itself for a single one, a subdirectory named after the file for several.
-std::vector<fs::path> output_directories(const StabilityOptions& options,
-                                         const std::vector<LoadedScenario>& scenarios) {
-  std::vector<fs::path> directories;
-  std::set<std::string> stems;
-  for (const LoadedScenario& scenario : scenarios) {
-    const std::string stem = scenario.file.stem().string();
-    if (!stems.insert(stem).second) {
-      throw InputError(
-          fmt::format("{}: a second scenario named \"{}\"; allowed: one of each name", scenario.file.string(), stem));
-    }
-    directories.push_back(options.out.empty()     ? fs::path("results") / "out" / ("stability_" + stem)
-                          : scenarios.size() == 1 ? fs::path(options.out)
-                                                  : fs::path(options.out) / stem);
-  }
-  return directories;
-}
-
 int limits(const StabilityOptions& options) {
   if (options.scenarios.empty()) {
     throw InputError("stability: got no scenario; allowed: springs scenarios, --map, --stress, --search");
@@ -127,7 +102,8 @@ int limits(const StabilityOptions& options) {
   for (const LoadedScenario& loaded : scenarios) {
     all_limits.push_back(with_file(loaded, [&] { return stability_limits(loaded.scenario); }));
   }
-  const std::vector<fs::path> directories = output_directories(options, scenarios);
+  const std::vector<fs::path> directories =
+      output_directories(options.out, scenarios, "stability_", "one of each name");
   for (const fs::path& directory : directories) require_writable_directory(directory);
 
   std::string text;

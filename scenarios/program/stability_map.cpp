@@ -15,24 +15,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The names given to an option that also takes "all", alone.
-std::vector<std::string> chosen_names(const std::string& option, const std::vector<std::string>& given,
-                                      const std::vector<std::string>& all) {
-  if (given == std::vector<std::string>{"all"}) return all;
-  if (std::find(given.begin(), given.end(), "all") != given.end()) {
-    throw InputError(option + ": got \"all\" beside other names; allowed: \"all\" alone");
-  }
-  std::vector<std::string> valid = all;
-  valid.insert(valid.begin(), "all");
-  require_names(option, given, valid);
-  return given;
-}
-
 std::vector<const StabilityMap*> chosen_maps(const StabilityOptions& options) {
   std::vector<std::string> names;
   for (const StabilityMap& map : stability_maps()) names.emplace_back(map.name);
   std::vector<const StabilityMap*> maps;
-  for (const std::string& name : chosen_names("--map", options.maps, names)) maps.push_back(find_stability_map(name));
+  for (const std::string& name : chosen_names("--map: got", options.maps, names))
+    maps.push_back(find_stability_map(name));
   return maps;
 }
 
@@ -41,7 +29,7 @@ std::vector<const IntegratorEntry*> chosen_integrators(const StabilityOptions& o
   std::vector<std::string> names;
   for (const IntegratorEntry* entry : kIntegrators) names.emplace_back(entry->info.name);
   std::vector<const IntegratorEntry*> integrators;
-  for (const std::string& name : chosen_names("--integrators", options.integrators, names)) {
+  for (const std::string& name : chosen_names("--integrators: got", options.integrators, names)) {
     integrators.push_back(find_integrator(name));
   }
   return integrators;

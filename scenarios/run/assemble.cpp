@@ -10,8 +10,6 @@
 #include "device_model/hands/scripted_hands.hpp"
 #include "device_model/hands/tracking_hand.hpp"
 #include "device_model/ideal_device.hpp"
-#include "scenarios/input/mesh_file.hpp"
-#include "scenarios/input/motion_file.hpp"
 #include "scenarios/run/environment_points.hpp"
 #include "sim/contact/spring_source.hpp"
 #include "sim/core/random.hpp"
@@ -54,10 +52,9 @@ Orientation make_orientation(const OrientationFields& fields) {
   return {fields.up.normalized(), fields.lean.normalized(), fields.tilt, fields.azimuth};
 }
 
-std::unique_ptr<Motion> make_motion(const Scenario& scenario) {
-  if (const auto* recorded = std::get_if<RecordedPosition>(&scenario.motion.position)) {
-    return std::make_unique<RecordedMotion>(read_motion(resolve_path(scenario, recorded->file)));
-  }
+std::unique_ptr<Motion> make_motion(const Scenario& scenario, const NamedFiles& files) {
+  if (std::holds_alternative<RecordedPosition>(scenario.motion.position))
+    return std::make_unique<RecordedMotion>(files.recorded_motion());
   std::optional<std::array<Profile, 3>> position;
   if (const auto* prescribed = std::get_if<PrescribedPosition>(&scenario.motion.position)) {
     position = prescribed->coordinates;
@@ -67,10 +64,9 @@ std::unique_ptr<Motion> make_motion(const Scenario& scenario) {
 
 /// A seed of its own for each use of randomness in each trial: far apart in the 64 bits, whatever the scenario's seed.
 std::uint64_t derived_seed(const Scenario& scenario, Trial trial, std::uint64_t use) {
-  constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15;  // 2^64 / golden ratio
   std::uint64_t seed = static_cast<std::uint64_t>(scenario.seed);
   for (const std::uint64_t part : {use, std::uint64_t{trial.subject}, std::uint64_t{trial.number}}) {
-    seed = (seed ^ (seed >> 29)) * kGolden + part;
+    seed = Random::derive(seed ^ (seed >> 29), part);
   }
   return seed;
 }
@@ -86,18 +82,18 @@ std::unique_ptr<TrackingHand> make_tracking_hand(const Scenario& scenario, const
 }
 
 /// The hand, and the motion, which a tracking hand may steer.
-void add_hand_and_motion(const Scenario& scenario, Trial trial, SimulationParts& parts) {
+void add_hand_and_motion(const Scenario& scenario, const NamedFiles& files, Trial trial, SimulationParts& parts) {
   if (const auto* fields = std::get_if<TrackingHandFields>(&scenario.hand)) {
     auto hand = make_tracking_hand(scenario, *fields, trial);
     if (fields->task.display == TargetDisplay::height) {
       parts.motion = std::make_unique<HeldOrientation>(make_orientation(*scenario.motion.orientation), *hand);
     } else {
-      parts.motion = make_motion(scenario);
+      parts.motion = make_motion(scenario, files);
     }
     parts.hand = std::move(hand);
     return;
   }
-  parts.motion = make_motion(scenario);
+  parts.motion = make_motion(scenario, files);
   if (const auto* force = std::get_if<ForceHandFields>(&scenario.hand)) {
     parts.hand = std::make_unique<ForceHand>(force->force);
   } else if (const auto* impedance = std::get_if<ImpedanceHandFields>(&scenario.hand)) {
@@ -134,15 +130,14 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
     }
   };
   if (std::holds_alternative<PointShellEnvironment>(scenario.environment)) {
-    at("/environment/file", [&] { environment_points(scenario, ShellCache()); });
+    at("/environment/file", [&] { loaded.files.shell_points(); });
   }
-  if (const auto* mesh = std::get_if<MeshEnvironment>(&scenario.environment)) {
-    const MeshSampling sampling{mesh->scale, mesh->spacing};
-    at("/environment/file", [&] { warnings = mesh_warnings(resolve_path(scenario, mesh->file), sampling); });
+  if (std::holds_alternative<MeshEnvironment>(scenario.environment)) {
+    at("/environment/file", [&] { warnings = loaded.files.mesh().warnings(); });
     for (std::string& warning : warnings) warning = loaded.file.string() + ": /environment/file: " + warning;
   }
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
-    at("/motion/position/file", [&] { make_motion(scenario); });
+    at("/motion/position/file", [&] { loaded.files.recorded_motion(); });
   }
   return warnings;
 }
@@ -172,7 +167,8 @@ std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const std
   return std::make_shared<const PointShell>(points, cell_size(scenario.environment));
 }
 
-SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial, Skips skips) {
+SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std::shared_ptr<const PointShell> shell,
+                         Trial trial, Skips skips) {
   SimulationParts parts;
   parts.tool = std::make_shared<Cylinder>(make_cylinder(scenario.tool));
   parts.shell = std::move(shell);
@@ -188,13 +184,18 @@ SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointSh
         std::make_unique<ShellSource>(*parts.shell, *parts.tool, std::move(search), make_depth_model(rendering), skips);
   }
   parts.algorithm = make_algorithm(rendering);
-  add_hand_and_motion(scenario, trial, parts);
+  add_hand_and_motion(scenario, files, trial, parts);
   parts.device = make_device(scenario, trial);
   return parts;
 }
 
+SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial, Skips skips) {
+  return assemble(scenario, NamedFiles(scenario), std::move(shell), trial, skips);
+}
+
 SimulationParts assemble(const Scenario& scenario) {
-  return assemble(scenario, make_shell(scenario, environment_points(scenario, ShellCache()).points), {});
+  const NamedFiles files(scenario);
+  return assemble(scenario, files, make_shell(scenario, environment_points(scenario, ShellCache(), files).points), {});
 }
 
 }  // namespace hapbench

@@ -8,8 +8,9 @@
 
 namespace hapbench {
 
-/// Reads the files the scenario names, to find what is wrong with them before anything is written. Returns warnings
-/// about what is odd, each with file and pointer. Throws InputError.
+/// Reads and parses the files the scenario names, so that what is wrong with them is found before anything is written;
+/// `loaded.files` keeps them for the run. Returns warnings about what is odd, each with file and pointer. Throws
+/// InputError.
 std::vector<std::string> check_named_files(const LoadedScenario& loaded);
 
 /// The tool, for those who need to know that it is a cylinder.
@@ -30,6 +31,9 @@ std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const std
 
 /// Everything the run is made of. Precondition: `shell` is make_shell of this scenario. Throws InputError when a named
 /// file cannot be used. With skips off, every step compares every point with the tool.
+SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std::shared_ptr<const PointShell> shell,
+                         Trial trial, Skips skips = Skips::taken);
+/// The same, reading the scenario's files.
 SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial,
                          Skips skips = Skips::taken);
 /// The only or first run, with a shell of its own.

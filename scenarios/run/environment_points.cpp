@@ -2,8 +2,6 @@
 
 #include "results/io/json_text.hpp"
 #include "scenarios/input/loaded_code.hpp"
-#include "scenarios/input/mesh_file.hpp"
-#include "scenarios/input/shell_file.hpp"
 #include "sim/contact/grid_index.hpp"
 #include "sim/mesh/block_field.hpp"
 
@@ -18,15 +16,12 @@ std::vector<SurfacePoint> block_points(const BlockEnvironment& environment) {
 
 /// Builds the points of each type of environment.
 struct Build {
-  const Scenario& scenario;
+  const NamedFiles& files;
 
   std::vector<SurfacePoint> operator()(const SpringsEnvironment&) const { return {}; }
-  std::vector<SurfacePoint> operator()(const PointShellEnvironment& shell) const {
-    return read_point_shell(resolve_path(scenario, shell.file));
-  }
+  std::vector<SurfacePoint> operator()(const PointShellEnvironment&) const { return files.shell_points(); }
   std::vector<SurfacePoint> operator()(const MeshEnvironment& mesh) const {
-    return in_grid_order(read_mesh_points(resolve_path(scenario, mesh.file), {mesh.scale, mesh.spacing}),
-                         mesh.grid.value_or(0.0));
+    return in_grid_order(files.mesh().points(), mesh.grid.value_or(0.0));
   }
   std::vector<SurfacePoint> operator()(const BlockEnvironment& block) const { return block_points(block); }
   template <class Analytic>
@@ -42,21 +37,25 @@ bool is_worth_keeping(const Environment& environment) {
 
 }  // namespace
 
-std::string shell_definition(const Scenario& scenario) {
+std::string shell_definition(const Scenario& scenario, const NamedFiles& files) {
   const std::string code = loaded_code_id();
   if (code.empty()) return "";
-  return json_text({{"environment", environment_content(scenario)}, {"code", code}});
+  return json_text({{"environment", environment_content(scenario, files)}, {"code", code}});
 }
 
-EnvironmentPoints environment_points(const Scenario& scenario, const ShellCache& cache) {
-  const auto build = [&scenario] { return std::visit(Build{scenario}, scenario.environment); };
+EnvironmentPoints environment_points(const Scenario& scenario, const ShellCache& cache, const NamedFiles& files) {
+  const auto build = [&] { return std::visit(Build{files}, scenario.environment); };
   if (!cache.is_on() || !is_worth_keeping(scenario.environment)) return {build()};
-  const std::string definition = shell_definition(scenario);
+  const std::string definition = shell_definition(scenario, files);
   if (definition.empty()) return {build()};
   if (auto points = cache.find(definition)) return {std::move(*points), true};
   EnvironmentPoints built{build()};
   cache.keep(definition, built.points);
   return built;
+}
+
+EnvironmentPoints environment_points(const Scenario& scenario, const ShellCache& cache) {
+  return environment_points(scenario, cache, NamedFiles(scenario));
 }
 
 }  // namespace hapbench

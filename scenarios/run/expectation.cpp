@@ -34,18 +34,17 @@ std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Ru
     unmet.push_back(fmt::format("outcome is \"{}\"{}; expected {}", outcome_name(run.result.outcome),
                                 divergence_text(run.result), quoted_list(names_of(expect.outcomes))));
   }
-  const auto metrics = boundable_metrics(run);
+  const MetricList metrics = metric_list(run);
   for (const auto& [name, bound] : expect.metrics) {
-    const auto value = metrics.value(name, nlohmann::ordered_json(nullptr));
-    if (!value.is_number()) {
+    const auto number = number_of(value_of(metrics, name));
+    if (!number) {
       unmet.push_back(fmt::format("{} has no value; expected one", name));
       continue;
     }
-    const double number = value.get<double>();
-    if (bound.min && number < *bound.min)
-      unmet.push_back(fmt::format("{} is {}; expected at least {}", name, number, *bound.min));
-    if (bound.max && number > *bound.max)
-      unmet.push_back(fmt::format("{} is {}; expected at most {}", name, number, *bound.max));
+    if (bound.min && *number < *bound.min)
+      unmet.push_back(fmt::format("{} is {}; expected at least {}", name, *number, *bound.min));
+    if (bound.max && *number > *bound.max)
+      unmet.push_back(fmt::format("{} is {}; expected at most {}", name, *number, *bound.max));
   }
   return unmet;
 }

@@ -4,10 +4,10 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
-#include "results/io/stale_temporaries.hpp"
 #include "results/record/target_table.hpp"
 #include "scenarios/run/environment_points.hpp"
 #include "scenarios/run/expectation.hpp"
+#include "scenarios/run/recorders.hpp"
 #include "scenarios/run/run_trial.hpp"
 
 namespace hapbench {
@@ -20,10 +20,10 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-std::vector<SurfacePoint> timed_environment_points(const Scenario& scenario, const ShellCache& cache,
+std::vector<SurfacePoint> timed_environment_points(const LoadedScenario& loaded, const ShellCache& cache,
                                                    RunTiming& timing) {
   const auto start = Clock::now();
-  EnvironmentPoints shell = environment_points(scenario, cache);
+  EnvironmentPoints shell = environment_points(loaded.scenario, cache, loaded.files);
   timing.shell = seconds_since(start);
   timing.shell_from_cache = shell.from_cache;
   return std::move(shell.points);
@@ -60,10 +60,9 @@ void create_output(const fs::path& directory) {
 /// Optional files that an earlier run with other settings may have left: they would not belong to this run.
 void remove_files_of_earlier_runs(const fs::path& directory) {
   std::error_code ignored;
-  for (const char* name : {"summary.json", "trajectory.csv", "contacts.csv", "ratios.csv", "stiffness_tensor.csv",
-                           "energy.csv", "ideal_trajectory.csv", "targets.csv", "timing.json"}) {
-    fs::remove(directory / name, ignored);
-  }
+  std::vector<std::string> files = record_files();
+  files.insert(files.end(), {"summary.json", "targets.csv", "timing.json"});
+  for (const std::string& name : files) fs::remove(directory / name, ignored);
   for (const auto& entry : fs::directory_iterator(directory, ignored)) {
     if (!entry.is_directory(ignored) || !entry.path().filename().string().starts_with(kTrialDirectory)) continue;
     remove_files_of_earlier_runs(entry.path());
@@ -77,24 +76,8 @@ SimulationResult merged_result(const std::vector<TrialResult>& trials) {
   for (std::size_t i = 1; i < trials.size(); ++i) {
     const SimulationResult& result = trials[i].result;
     const std::uint64_t rows = all.rows + result.rows;
-    if (static_cast<int>(result.outcome) > static_cast<int>(all.outcome)) all = result;
+    if (result.outcome > all.outcome) all = result;
     all.rows = rows;
-  }
-  return all;
-}
-
-RunWork merged_work(const std::vector<TrialResult>& trials) {
-  RunWork all;
-  for (const TrialResult& trial : trials) {
-    all.search.queries += trial.work.search.queries;
-    all.search.points_tested += trial.work.search.points_tested;
-    all.search.lists_rebuilt += trial.work.search.lists_rebuilt;
-    all.search.skipped += trial.work.search.skipped;
-    all.steps_skipped += trial.work.steps_skipped;
-    all.algorithm.iterations += trial.work.algorithm.iterations;
-    all.algorithm.points_dropped += trial.work.algorithm.points_dropped;
-    all.algorithm.steps_controlled += trial.work.algorithm.steps_controlled;
-    all.allocations += trial.work.allocations;
   }
   return all;
 }
@@ -119,7 +102,7 @@ RunSummary summarise(const Scenario& scenario, const std::vector<TrialResult>& t
     summary.ideal_trajectory = trials.front().ideal_trajectory;
   }
   if (std::holds_alternative<TrackingHandFields>(scenario.hand)) summary.targets = place_metrics(targets);
-  summary.work = merged_work(trials);
+  for (const TrialResult& trial : trials) summary.work += trial.work;
   return summary;
 }
 
@@ -142,7 +125,7 @@ void write_results(const fs::path& directory, const Scenario& scenario, const Ru
 RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,
                        const ShellCache& cache, Skips skips) {
   RunTiming timing;
-  const auto shell = make_shell(loaded.scenario, timed_environment_points(loaded.scenario, cache, timing));
+  const auto shell = make_shell(loaded.scenario, timed_environment_points(loaded, cache, timing));
   return run_with_shell(loaded, shell, output, progress, timing, skips);
 }
 
@@ -160,6 +143,7 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
   for (const Trial trial : trials) {
     TrialOptions options;
     options.skips = skips;
+    options.files = loaded.files;
     if (output && records_rows(scenario.record)) options.directory = trial_directory(*output, trial, trials.size());
     if (options.directory) create_output(*options.directory);
     if (progress) options.label = scenario.name;
@@ -178,7 +162,7 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
   report.summary = summarise(scenario, results, report.targets);
   if (output) {
     report.summary.provenance = provenance();
-    report.summary.scenario_hash = scenario_hash(scenario);
+    report.summary.scenario_hash = scenario_hash(scenario, loaded.files);
   }
   report.unmet = unmet_expectations(scenario.expect, report.summary);
   report.summary.expected = report.unmet.empty();

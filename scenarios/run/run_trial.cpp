@@ -4,24 +4,14 @@
 
 #include <chrono>
 
-#include "algorithms/laws/shaped_stiffness.hpp"
-#include "results/record/contact_recorder.hpp"
-#include "results/record/energy_recorder.hpp"
-#include "results/record/ideal_trajectory_recorder.hpp"
-#include "results/record/ratio_recorder.hpp"
-#include "results/record/stiffness_recorder.hpp"
-#include "results/record/trajectory_recorder.hpp"
 #include "scenarios/run/allocations.hpp"
 #include "scenarios/run/progress.hpp"
+#include "scenarios/run/recorders.hpp"
 
 namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
-
-Mat3 start_shaping(ContactBuffer& contacts) noexcept {
-  return shape_weights(contacts, 0);
-}
 
 /// Those who watch a trial: what the scenario asks for and nothing else.
 class TrialObservers {
@@ -45,21 +35,11 @@ class TrialObservers {
     }
   }
 
-  /// Recorders for what the scenario asks for. Throws IoError.
+  /// Adds recorders for what the scenario asks for. Throws IoError.
   void record(const RecordFields& fields, const fs::path& directory, std::size_t contact_capacity) {
-    const auto every = static_cast<std::uint64_t>(fields.every);
-    if (fields.trajectory) add(std::make_unique<TrajectoryRecorder>(directory / "trajectory.csv", every));
-    if (fields.contacts) add(std::make_unique<ContactRecorder>(directory / "contacts.csv", every));
-    if (fields.stiffness_tensor) {
-      add(std::make_unique<StiffnessRecorder>(directory / "stiffness_tensor.csv", every));
-    }
-    if (!fields.ratio_iterations.empty()) {
-      const std::vector<int> iterations(fields.ratio_iterations.begin(), fields.ratio_iterations.end());
-      const ShapingOperations shaping{start_shaping, update_shaped_weights};
-      add(std::make_unique<RatioRecorder>(directory / "ratios.csv", every, iterations, shaping, contact_capacity));
-    }
-    if (ledger_) add(std::make_unique<EnergyRecorder>(directory / "energy.csv", every, *ledger_));
-    if (ideal_) add(std::make_unique<IdealTrajectoryRecorder>(directory / "ideal_trajectory.csv", every, *ideal_));
+    recorders_ = make_recorders({fields, contact_capacity, ledger_ ? &*ledger_ : nullptr, ideal_ ? &*ideal_ : nullptr},
+                                directory);
+    for (const auto& recorder : recorders_) observers_.push_back(recorder.get());
   }
 
   void add(Observer& observer) { observers_.push_back(&observer); }
@@ -76,11 +56,6 @@ class TrialObservers {
   }
 
  private:
-  void add(std::unique_ptr<Recorder> recorder) {
-    observers_.push_back(recorder.get());
-    recorders_.push_back(std::move(recorder));
-  }
-
   MetricsObserver metrics_;
   PassivityObserver passivity_;
   std::optional<EnergyLedger> ledger_;
@@ -107,7 +82,8 @@ std::uint64_t involuntary_context_switches() {
 
 TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial,
                       const TrialOptions& options) {
-  SimulationParts parts = assemble(scenario, std::move(shell), trial, options.skips);
+  const NamedFiles files = options.files ? *options.files : NamedFiles(scenario);
+  SimulationParts parts = assemble(scenario, files, std::move(shell), trial, options.skips);
   TrialObservers observers(scenario, parts, trial);
   if (options.directory) observers.record(scenario.record, *options.directory, parts.source->capacity());
   Progress bar(options.label, static_cast<std::uint64_t>(scenario.time.steps), !options.label.empty());

@@ -6,10 +6,10 @@
 #include <charconv>
 #include <cmath>
 
+#include "scenarios/input/csv_reader.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/number_table.hpp"
-#include "scenarios/input/text_lines.hpp"
 
 namespace hapbench {
 namespace {
@@ -76,18 +76,13 @@ std::map<std::string, std::vector<double>> ResultFiles::table(const std::string&
   provide_(scenario);
   const std::filesystem::path path = directory_ / scenario / file;
   const std::string text = read_named_file(path);
-  LineReader lines(text);
-  const auto header = lines.next();
-  if (!header) throw InputError(fmt::format("{}: is empty", path.string()));
+  if (text.empty()) throw InputError(fmt::format("{}: is empty", path.string()));
+  CsvReader csv{LineReader(text), path};
   std::vector<std::vector<double>*> columns;
   std::map<std::string, std::vector<double>> table;
-  for (const std::string_view name : parts_of(*header, ',')) columns.push_back(&table[std::string(name)]);
-  while (const auto line = lines.next()) {
-    const auto cells = parts_of(*line, ',');
-    if (cells.size() != columns.size()) {
-      fail_in_line(path, lines.line(), fmt::format("got {} cells; allowed: {}", cells.size(), columns.size()));
-    }
-    for (std::size_t i = 0; i < cells.size(); ++i) columns[i]->push_back(value_of(cells[i]));
+  for (const std::string_view name : csv.columns()) columns.push_back(&table[std::string(name)]);
+  while (csv.next()) {
+    for (std::size_t i = 0; i < columns.size(); ++i) columns[i]->push_back(value_of(csv.cells()[i]));
   }
   return table;
 }

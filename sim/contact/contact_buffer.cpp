@@ -30,6 +30,12 @@ void ContactBuffer::push_copy_of(const ContactBuffer& other, std::size_t from) {
   weight[k] = other.weight[from];
 }
 
+void ContactBuffer::assign(const ContactBuffer& other) {
+  clear();
+  for (std::size_t i = 0; i < other.size(); ++i) push_copy_of(other, i);
+  pad();
+}
+
 void ContactBuffer::copy(std::size_t from, std::size_t to) {
   index[to] = index[from];
   for (AlignedDoubles* column : {&x, &y, &z, &nx, &ny, &nz, &depth, &ux, &uy, &uz, &weight})

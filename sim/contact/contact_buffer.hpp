@@ -37,6 +37,8 @@ class ContactBuffer {
   void extend(std::size_t n) { size_ += n; }
   /// Appends a copy of contact `from` of another buffer. Precondition: size() < capacity().
   void push_copy_of(const ContactBuffer& other, std::size_t from);
+  /// Holds the contacts of another buffer, padded. Precondition: other.size() <= capacity().
+  void assign(const ContactBuffer& other);
   /// Overwrites contact `to` with contact `from`.
   void copy(std::size_t from, std::size_t to);
   /// Keeps the first n contacts. Precondition: n <= size().

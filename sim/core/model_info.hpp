@@ -2,9 +2,15 @@
 
 #include <span>
 
-#include "algorithms/parameters.hpp"
+#include "sim/core/number_range.hpp"
 
 namespace hapbench {
+
+/// A parameter: the scenario field that sets it, with unit and range.
+struct Parameter {
+  const char* field;
+  NumberRange range;
+};
 
 /// What a parameter means to a model.
 struct ParameterInfo {

@@ -17,6 +17,12 @@ class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
 
+  /// A seed of its own for each number in a stream of random uses; seeds of neighbouring numbers and streams lie far
+  /// apart in the 64 bits.
+  static constexpr std::uint64_t derive(std::uint64_t stream, std::uint64_t number) {
+    return stream * 0x9e3779b97f4a7c15 + number;  // 2^64 / golden ratio
+  }
+
   /// Uniform in [0, 1), 53 bits.
   double uniform() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
   /// Uniform in [low, high).

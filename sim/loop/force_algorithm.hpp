@@ -52,6 +52,14 @@ struct AlgorithmWork {
   std::uint64_t points_dropped = 0;    ///< contacts a full buffer refused (reduction's max_points)
   SearchWork search = {};              ///< of queries of its own, at poses of its own
   std::uint64_t steps_controlled = 0;  ///< in which a passivity controller changed the force
+
+  AlgorithmWork& operator+=(const AlgorithmWork& other) noexcept {
+    iterations += other.iterations;
+    points_dropped += other.points_dropped;
+    search += other.search;
+    steps_controlled += other.steps_controlled;
+    return *this;
+  }
 };
 
 /// A force algorithm: contacts and the tool's state to a force on the tool. One object is the state of one run.

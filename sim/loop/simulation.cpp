@@ -142,28 +142,27 @@ void Simulation::note_springs() noexcept {
 }
 
 bool Simulation::check_bounds() noexcept {
+  const DivergenceBounds& bounds = config_.bounds;
+  const auto all = [&](auto within, bool handle_too) {
+    return within("position", tool_.pose.position, bounds.position) &&
+           within("velocity", tool_.velocity, bounds.speed) &&
+           within("rendered force", record_.force.rendered, bounds.force) &&
+           (!handle_too || (within("handle position", record_.handle.position, bounds.position) &&
+                            within("handle velocity", record_.handle.velocity, bounds.speed) &&
+                            within("measured force", record_.hand.measured, bounds.force)));
+  };
   // Well inside, as nearly every step is, nothing needs a square root; what is not finite is not inside.
-  const auto well_inside = [](const Vec3& v, double bound) { return v.squaredNorm() <= 0.5 * bound * bound; };
-  if (well_inside(tool_.pose.position, config_.bounds.position) && well_inside(tool_.velocity, config_.bounds.speed) &&
-      well_inside(record_.force.rendered, config_.bounds.force) &&
-      (!handle_is_apart_ || (well_inside(record_.handle.position, config_.bounds.position) &&
-                             well_inside(record_.handle.velocity, config_.bounds.speed) &&
-                             well_inside(record_.hand.measured, config_.bounds.force)))) {
-    return true;
-  }
-  const auto within = [this](const char* quantity, double magnitude, double bound) {
+  const auto well_inside = [](const char*, const Vec3& v, double bound) {
+    return v.squaredNorm() <= 0.5 * bound * bound;
+  };
+  if (all(well_inside, handle_is_apart_)) return true;
+  const auto inside = [this](const char* quantity, const Vec3& v, double bound) {
+    const double magnitude = v.norm();
     if (magnitude <= bound) return true;  // false for NaN
     result_.divergence = {row_, record_.time, quantity, magnitude, bound};
     return false;
   };
-  if (within("position", tool_.pose.position.norm(), config_.bounds.position) &&
-      within("velocity", tool_.velocity.norm(), config_.bounds.speed) &&
-      within("rendered force", record_.force.rendered.norm(), config_.bounds.force) &&
-      within("handle position", record_.handle.position.norm(), config_.bounds.position) &&
-      within("handle velocity", record_.handle.velocity.norm(), config_.bounds.speed) &&
-      within("measured force", record_.hand.measured.norm(), config_.bounds.force)) {
-    return true;
-  }
+  if (all(inside, true)) return true;
   end(Outcome::diverges);
   return false;
 }

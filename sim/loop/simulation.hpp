@@ -17,7 +17,7 @@
 
 namespace hapbench {
 
-/// How a run ended.
+/// How a run ended, from the best to the worst: several trials end as the worst of them does.
 enum class Outcome {
   completes,        ///< all steps done, or the hand has finished its task
   leaves_hole,      ///< the tip centre rose above height 0 along `up`

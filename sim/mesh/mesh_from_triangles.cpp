@@ -79,18 +79,16 @@ std::vector<Side> sides_by_edge(const std::vector<Triangle>& triangles) {
   return sides;
 }
 
-/// Pairs of triangles at an edge. Throws when an edge has more than two.
-std::vector<Hinge> hinges_of(const std::vector<Side>& sides, const std::vector<Vec3>& vertices) {
+/// Pairs of triangles at the edges that have two; counts the other edges.
+std::vector<Hinge> hinges_of(const std::vector<Side>& sides, MeshFindings& found) {
   std::vector<Hinge> hinges;
   for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
     const auto same_edge = [&](std::size_t j) {
       return sides[j].low == sides[i].low && sides[j].high == sides[i].high;
     };
     for (end = i + 1; end < sides.size() && same_edge(end);) ++end;
-    if (end - i > 2) {
-      throw MeshError("the edge from " + text(vertices[sides[i].low]) + " to " + text(vertices[sides[i].high]) +
-                      " has " + std::to_string(end - i) + " faces; allowed: one or two");
-    }
+    if (end - i == 1) ++found.boundary_edges;
+    if (end - i > 2) ++found.crowded_edges;
     if (end - i == 2) {
       const Side &a = sides[i], &b = sides[i + 1];
       hinges.push_back({{a.triangle, b.triangle}, {a.corner, b.corner}, a.forward != b.forward});
@@ -100,7 +98,9 @@ std::vector<Hinge> hinges_of(const std::vector<Side>& sides, const std::vector<V
 }
 
 /// Corners of triangles as classes of those that are one vertex of the surface: corner 3 t + i is corner i of triangle
-/// t. Corners are joined across common edges, so that every class is one fan.
+/// t. Corners are joined across hinges, so that every class is one fan: a half-edge mesh holds any such surface,
+/// because at most two sides of an edge, the ends of an open fan, have the same vertices, and they run in opposite
+/// directions.
 class Fans {
  public:
   explicit Fans(std::size_t triangles) : parent_(3 * triangles) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -171,8 +171,7 @@ CheckedMesh mesh_from_triangles(const TriangleSoup& soup) {
   if (triangles.empty()) throw MeshError("has no faces; allowed: at least one, with three different corners");
   result.findings.degenerate_triangles = soup.triangles.size() - triangles.size();
 
-  const std::vector<Hinge> hinges = hinges_of(sides_by_edge(triangles), soup.vertices);
-  result.findings.boundary_edges = 3 * triangles.size() - 2 * hinges.size();
+  const std::vector<Hinge> hinges = hinges_of(sides_by_edge(triangles), result.findings);
   MeshParts parts(triangles.size(), hinges);
   if (const auto hinge = parts.contradiction()) {
     const Triangle& t = triangles[hinge->triangles[0]];

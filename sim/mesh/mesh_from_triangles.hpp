@@ -1,20 +1,11 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <stdexcept>
-#include <vector>
 
 #include "sim/mesh/half_edge_mesh.hpp"
+#include "sim/mesh/triangle_soup.hpp"
 
 namespace hapbench {
-
-/// Triangles as files hold them: loose, in any winding, with vertices repeated or unused.
-struct TriangleSoup {
-  using Triangle = std::array<std::uint32_t, 3>;  ///< indices of its vertices
-  std::vector<Vec3> vertices;                     ///< [m]
-  std::vector<Triangle> triangles;
-};
 
 /// What was odd about triangles that make a surface all the same.
 struct MeshFindings {
@@ -22,6 +13,7 @@ struct MeshFindings {
   std::size_t rewound_triangles = 0;     ///< wound against most of their part: turned
   std::size_t inside_out_parts = 0;      ///< closed parts whose normals pointed inwards: turned
   std::size_t boundary_edges = 0;        ///< with a triangle on one side only: the surface is open
+  std::size_t crowded_edges = 0;         ///< with more than two triangles: the surface is cut along them
 };
 
 struct CheckedMesh {
@@ -36,11 +28,12 @@ class MeshError : public std::runtime_error {
 };
 
 /// The surface the triangles make. Vertices at the same position are one, except that each fan of triangles has its own
-/// where several meet in a point; unused ones are left out; the rest keep their order. The winding of each connected
-/// part is made consistent, with the majority, and outward if the part is closed; a part in the bounding box of a
-/// larger one, which may be a cavity, turns with it. Throws MeshError when there are no triangles, an edge has more
-/// than two, one side cannot be told from the other (a Moebius band), a coordinate is not finite, or more than 10,000
-/// triangles meet in a vertex, which would take quadratic time. O(n log n) otherwise. Precondition: indices are valid.
+/// where several meet in a point; unused ones are left out; the rest keep their order. An edge with more than two
+/// triangles joins none of them, so that each fan at its ends has its own vertices there, too. The winding of each
+/// connected part is made consistent, with the majority, and outward if the part is closed; a part in the bounding box
+/// of a larger one, which may be a cavity, turns with it. Throws MeshError when there are no triangles, one side cannot
+/// be told from the other (a Moebius band), a coordinate is not finite, or more than 10,000 triangles meet in a vertex,
+/// which would take quadratic time. O(n log n) otherwise. Precondition: indices are valid.
 CheckedMesh mesh_from_triangles(const TriangleSoup& soup);
 
 }  // namespace hapbench

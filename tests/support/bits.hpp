@@ -1,21 +1,19 @@
 #pragma once
 
-#include <bit>
 #include <cstdint>
 
+#include "sim/core/hash.hpp"
 #include "sim/core/types.hpp"
 #include "sim/loop/observer.hpp"
 
 /// Bit-for-bit comparison: where a claim says "the same", no tolerance hides a difference.
 namespace hapbench::test {
 
-/// FNV-1a over the bits of what it is fed. Distinguishes -0 from 0 and one NaN from another.
+/// A hash of the bits of what it is fed. Distinguishes -0 from 0 and one NaN from another.
 class Hash {
  public:
-  void add(std::uint64_t word) {
-    for (int byte = 0; byte < 8; ++byte) value_ = (value_ ^ ((word >> (8 * byte)) & 0xff)) * 0x100000001b3u;
-  }
-  void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
+  void add(std::uint64_t word) { hash_.word(word); }
+  void add(double number) { hash_.real(number); }
   template <class Derived>
   void add(const Eigen::MatrixBase<Derived>& matrix) {
     for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
@@ -55,10 +53,10 @@ class Hash {
     add(record.ratio.min);
     add(record.ratio.max);
   }
-  std::uint64_t value() const { return value_; }
+  std::uint64_t value() const { return hash_.value(); }
 
  private:
-  std::uint64_t value_ = 0xcbf29ce484222325u;
+  Hash64 hash_;
 };
 
 /// The hash of all arguments in turn.

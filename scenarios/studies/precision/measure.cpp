@@ -30,9 +30,7 @@ class ContactSampler final : public Observer {
   void on_step(const StepRecord& record) noexcept override {
     const ContactBuffer& seen = *record.rendered;
     if (record.step % stride_ != 0 || seen.empty()) return;
-    ContactBuffer& set = sets_->emplace_back(seen.size());
-    for (std::size_t i = 0; i < seen.size(); ++i) set.push_copy_of(seen, i);
-    set.pad();
+    sets_->emplace_back(seen.size()).assign(seen);
   }
 
  private:

@@ -45,11 +45,7 @@ class Forces {
     law_->prepare(capacity);
   }
 
-  void load(const ContactBuffer& set) {
-    work_.clear();
-    for (std::size_t i = 0; i < set.size(); ++i) work_.push_copy_of(set, i);
-    work_.pad();
-  }
+  void load(const ContactBuffer& set) { work_.assign(set); }
   void load(const ContactBuffer& set, const Order& order) {
     work_.clear();
     for (const std::size_t i : order) work_.push_copy_of(set, i);

@@ -43,7 +43,7 @@ class Measurement {
   Measurement(const std::vector<ContactBuffer>& sets, int iterations)
       : sets_(sets), iterations_(iterations), work_(largest_size(sets)) {
     for (const ContactBuffer& set : sets) {
-      load(set);
+      work_.assign(set);
       exact_.push_back(depth_vector(work_, true, iterations_));
     }
   }
@@ -53,7 +53,7 @@ class Measurement {
         make_gradient_reduction({.threshold = std::min(way.threshold, 1.0), .max_points = 100'000, .shuffle_seed = {}});
     reduction->prepare({});
     const auto force = [&](const ContactBuffer& set) {
-      load(set);
+      work_.assign(set);
       if (way.threshold != kOff) reduction->process(work_);
       return depth_vector(work_, way.exact, iterations_);
     };
@@ -66,7 +66,7 @@ class Measurement {
       kept += static_cast<double>(work_.size()) / static_cast<double>(sets_.size());
     }
     const double copying = seconds_per_call(sets_.size(), repetitions, [&] {
-      for (const ContactBuffer& set : sets_) load(set);
+      for (const ContactBuffer& set : sets_) work_.assign(set);
     });
     const double seconds = seconds_per_call(sets_.size(), repetitions, [&] {
       for (const ContactBuffer& set : sets_) force(set);
@@ -79,12 +79,6 @@ class Measurement {
   }
 
  private:
-  void load(const ContactBuffer& set) {
-    work_.clear();
-    for (std::size_t i = 0; i < set.size(); ++i) work_.push_copy_of(set, i);
-    work_.pad();
-  }
-
   const std::vector<ContactBuffer>& sets_;
   int iterations_;
   ContactBuffer work_;

@@ -1,6 +1,7 @@
 #include "scenarios/studies/stability/classify.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace hapbench {
 namespace {
@@ -13,15 +14,9 @@ constexpr double kRest = 1e-12;
 }  // namespace
 
 std::string_view motion_class_name(MotionClass motion) noexcept {
-  switch (motion) {
-    case MotionClass::stable:
-      return "stable";
-    case MotionClass::vibrating:
-      return "vibrating";
-    case MotionClass::diverged:
-      return "diverged";
-  }
-  return "";
+  // In the order of the enumeration.
+  constexpr std::array<std::string_view, 3> kNames = {"stable", "vibrating", "diverged"};
+  return kNames[static_cast<std::size_t>(motion)];
 }
 
 void MotionClassifier::on_step(const StepRecord& record) noexcept {

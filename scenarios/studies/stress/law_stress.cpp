@@ -106,8 +106,7 @@ void add(const StressCounts& other, StressCounts& all) {
 }  // namespace
 
 ContactSet stress_set(std::uint64_t seed, std::uint64_t i) {
-  constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15;  // 2^64 / golden ratio
-  Random random((seed + 1) * kGolden + i);
+  Random random(Random::derive(seed + 1, i));
   return draw_contact_set(random);
 }
 

@@ -77,7 +77,7 @@ struct Best {
 Best search_round(const Bench& bench, const TrajectoryDraws& draws, const SearchOptions& options, std::uint64_t begin,
                   std::uint64_t end) {
   // Each trajectory has random numbers of its own, by its place in the search.
-  const auto random = [&](std::uint64_t run) { return Random(options.seed * 0x9e3779b97f4a7c15 + run); };
+  const auto random = [&](std::uint64_t run) { return Random(Random::derive(options.seed, run)); };
   Best best;
   std::vector<Trajectory> batch;
   std::uint64_t run = begin;

@@ -1,4 +1,4 @@
-#include "results/io/stale_temporaries.hpp"
+#include "results/io/atomic_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -8,7 +8,6 @@
 #include <fstream>
 #include <string>
 
-#include "results/io/atomic_file.hpp"
 #include "tests/results/files.hpp"
 
 namespace hapbench {
@@ -46,6 +45,40 @@ TEST(StaleTemporaries, ThatAreBeingWrittenStay) {
   file.append("still here");
   EXPECT_EQ(remove_stale_temporaries(dir.path()), 0u);
   file.commit();
+  EXPECT_EQ(test::read_file(dir / "a.csv"), "still here");
+}
+
+TEST(StaleTemporaries, OfAKilledProcessDoNotDisturbTheNextWriter) {
+  const TemporaryDirectory dir;
+  kill_a_writer_of(dir / "a.csv");
+  write_file_atomically(dir / "a.csv", "new");
+  EXPECT_EQ(test::read_file(dir / "a.csv"), "new");
+  EXPECT_EQ(remove_stale_temporaries(dir.path()), 1u);
+  EXPECT_EQ(dir.entries(), Names{"a.csv"});
+}
+
+TEST(StaleTemporaries, ThatAnotherProcessWritesStay) {
+  const TemporaryDirectory dir;
+  int ready[2], go[2];
+  ASSERT_EQ(::pipe(ready), 0);
+  ASSERT_EQ(::pipe(go), 0);
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  char byte = 0;
+  if (child == 0) {
+    AtomicFile file(dir / "a.csv");
+    file.append("still here");
+    (void)!::write(ready[1], "r", 1);
+    (void)!::read(go[0], &byte, 1);
+    file.commit();
+    ::_exit(0);
+  }
+  ASSERT_EQ(::read(ready[0], &byte, 1), 1);
+  EXPECT_EQ(remove_stale_temporaries(dir.path()), 0u);
+  ASSERT_EQ(::write(go[1], "g", 1), 1);
+  int status = 1;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
   EXPECT_EQ(test::read_file(dir / "a.csv"), "still here");
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace hapbench {
@@ -147,18 +148,44 @@ TEST(Summary, OfNoRowsHasNoObservedEnergy) {
   RunSummary run = example();
   run.passivity.reset();
   EXPECT_TRUE(summary_json(run)["passivity"]["net_created_J"].is_null());
-  EXPECT_TRUE(boundable_metrics(run)["passivity.net_created_J"].is_null());
-  EXPECT_EQ(boundable_metrics(example())["passivity.net_created_J"], 0.25);
+  EXPECT_FALSE(number_of(value_of(metric_list(run), "passivity.net_created_J")));
+  EXPECT_EQ(number_of(value_of(metric_list(example()), "passivity.net_created_J")), 0.25);
 }
 
 TEST(Summary, GivesTheFinalPositionToExpectationsByCoordinate) {
   RunSummary run = example();
-  const auto metrics = boundable_metrics(run);
-  EXPECT_EQ(metrics["final_position_m.x"], 0.5);
-  EXPECT_EQ(metrics["final_position_m.y"], -0.25);
-  EXPECT_EQ(metrics["final_position_m.z"], 0.0);
+  const MetricList metrics = metric_list(run);
+  EXPECT_EQ(number_of(value_of(metrics, "final_position_m.x")), 0.5);
+  EXPECT_EQ(number_of(value_of(metrics, "final_position_m.y")), -0.25);
+  EXPECT_EQ(number_of(value_of(metrics, "final_position_m.z")), 0.0);
   run.metrics = {};
-  EXPECT_TRUE(boundable_metrics(run)["final_position_m.x"].is_null());
+  EXPECT_FALSE(number_of(value_of(metric_list(run), "final_position_m.x")));
+  EXPECT_FALSE(number_of(value_of(metrics, "final_position_m.w"))) << "there is no such metric";
+}
+
+/// Every number of the sections is there under its path, counts as counts.
+TEST(Summary, ListsTheNumbersOfItsSections) {
+  RunSummary run = example();
+  run.energy.emplace();
+  run.ideal_trajectory.emplace();
+  run.targets.emplace().resize(2);
+  run.targets->back().place = 7;
+  const auto json = summary_json(run);
+  std::size_t in_sections = 0;
+  for (const auto& [name, value] : metric_list(run)) {
+    if (name.starts_with("final_position_m.")) continue;
+    const bool in_metrics = name.find('.') == std::string::npos;
+    std::string pointer = (in_metrics ? "/metrics/" : "/") + name;
+    std::replace(pointer.begin(), pointer.end(), '.', '/');
+    const auto& entry = json.at(nlohmann::ordered_json::json_pointer(pointer));
+    EXPECT_EQ(entry.is_number_unsigned(), std::holds_alternative<std::uint64_t>(value)) << name;
+    EXPECT_EQ(entry.is_null(), std::holds_alternative<std::monostate>(value)) << name;
+    if (const auto number = number_of(value)) EXPECT_EQ(entry.get<double>(), *number) << name;
+    in_sections += in_metrics ? 0 : 1;
+  }
+  // Passivity, energy, ideal trajectory of two hands, and two target places with four means each.
+  EXPECT_EQ(in_sections, 4u + 12u + (2u * 10u + 1u) + 2u * 4u * 3u);
+  EXPECT_FALSE(json["energy"]["events"].is_null());
 }
 
 // What differs between the scalar and the SIMD build must not be named, or their summaries could not be identical.

@@ -129,7 +129,6 @@ TEST_P(MeshFuzz, MeshesAreReadOrRefusedSoon) {
     write_anew(file, mutant);
     const auto start = Clock::now();
     const auto points = read_mesh_points(file, {});
-    // Of a file this small the reader has one second of processor time.
     EXPECT_LT(Clock::now() - start, std::chrono::seconds(30));
     EXPECT_FALSE(points.empty());
     for (const SurfacePoint& point : points) {
@@ -166,7 +165,6 @@ TEST(Fuzz, GarbageIsRefused) {
       EXPECT_THROW(read_point_shell(directory / name), InputError);
     }
     EXPECT_THROW(read_motion(directory / "g.csv"), InputError);
-    if (i % 10 != 0) continue;  // each starts a process
     for (const char* name : {"g.obj", "g.off", "g.stl", "g.ply"}) {
       write_anew(directory / name, garbage);
       EXPECT_THROW(read_mesh_points(directory / name, {}), InputError);

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/scenarios/support/errors.hpp"
+
 namespace hapbench {
 namespace {
 
@@ -57,6 +59,22 @@ TEST(NearestName, PrefersTheCloserOfTwo) {
 TEST(NearestNameHint, IsAClauseOrNothing) {
   EXPECT_EQ(nearest_name_hint("mas_kg", kNames), "; nearest valid name: \"mass_kg\"");
   EXPECT_EQ(nearest_name_hint("colour", kNames), "");
+}
+
+TEST(RequireValidName, RefusesOtherNamesAndSaysWhichAreAllowed) {
+  EXPECT_NO_THROW(require_valid_name("--only: got", kNames[0], kNames));
+  try {
+    require_valid_name("--only: got", "mas_kg", kNames);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "--only: got \"mas_kg\"; allowed: " + quoted_list(kNames) + "; nearest valid name: \"mass_kg\"");
+  }
+}
+
+TEST(FailIn, NamesTheFileAndItsLine) {
+  EXPECT_STREQ(test::input_error_of([] { fail_in_file("a.csv", "is odd"); })->what(), "a.csv: is odd");
+  EXPECT_STREQ(test::input_error_of([] { fail_in_line("a.csv", 3, "is odd"); })->what(), "a.csv, line 3: is odd");
 }
 
 TEST(QuotedList, NamesAllOrSaysNothing) {

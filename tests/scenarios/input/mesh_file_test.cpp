@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
+#include "scenarios/input/number_table.hpp"
+#include "sim/mesh/mesh_from_triangles.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/mesh_texts.hpp"
@@ -24,22 +28,19 @@ class MeshFile : public testing::Test {
  protected:
   MeshPoints read(const std::string& name, const std::string& text, const MeshSampling& sampling = {}) const {
     test::write_plainly(directory_ / name, text);
-    return {read_mesh_points(directory_ / name, sampling), mesh_warnings(directory_ / name, sampling)};
+    const hapbench::MeshFile mesh(read_named_file(directory_ / name), directory_ / name, sampling);
+    return {mesh.points(), mesh.warnings()};
   }
 
   /// The message behind the file's name.
   std::string refusal_of(const std::string& name, const std::string& text, const MeshSampling& sampling = {}) const {
     const auto error = test::input_error_of([&] { read(name, text, sampling); });
     if (!error) return "";
-    EXPECT_EQ(warnings_refusal_of(name, sampling), error->what()) << "found without resampling, too";
+    const auto again = test::input_error_of([&] { read_mesh_points(directory_ / name, sampling); });
+    EXPECT_EQ(std::string(again ? again->what() : ""), error->what());
     const std::string file = (directory_ / name).string(), message = error->what();
     EXPECT_EQ(message.substr(0, file.size()), file);
     return message.substr(file.size());
-  }
-
-  std::string warnings_refusal_of(const std::string& name, const MeshSampling& sampling) const {
-    const auto error = test::input_error_of([&] { mesh_warnings(directory_ / name, sampling); });
-    return error ? error->what() : "";
   }
 
   /// The one warning behind the file's name.
@@ -82,12 +83,14 @@ TEST_F(MeshFile, IsReadFromEveryFormatAndEncoding) {
   }
 }
 
-TEST_F(MeshFile, IsReadInSinglePrecisionAndScaledInDouble) {
+TEST_F(MeshFile, IsReadInThePrecisionItIsWrittenIn) {
   TriangleSoup soup = test::cube();
   for (Vec3& v : soup.vertices) v *= 1.0 / 3.0;
   for (const auto& [name, text] : test::mesh_texts(soup)) {
+    const bool single = name.starts_with("binary") || name.find("float") != std::string::npos;
+    const double third = single ? static_cast<double>(1.0f / 3.0f) : 1.0 / 3.0;
     for (const SurfacePoint& p : read(name, text, {0.001, {}}).points) {
-      for (const double c : p.position) EXPECT_EQ(std::abs(c), 0.001 * static_cast<double>(1.0f / 3.0f)) << name;
+      for (const double c : p.position) EXPECT_EQ(std::abs(c), 0.001 * third) << name;
     }
   }
 }
@@ -99,9 +102,20 @@ TEST_F(MeshFile, IsReadWhateverElseItsTextHolds) {
        "mtllib none.mtl\r\nv 0 0 0 1\r\nv 1 0 0\r\n\tv +0 1e0 -0.0 # comment\r\nv 0 0 1\r\nvt 0 0\r\nvn 0 0 "
        "1\r\nusemtl x\r\n"
        "f 1//1 3//1 2//1\r\nf 1/1 2/1 4/1\r\nf -4/1/1 -1/1/1 -2/1/1\r\nf 2 3 4"},
+      {"colours.obj",
+       "\n# colours behind positions, quadrilaterals none\nv 0 0 0 .1 .2 .3\nv 1 0 0 .1 .2 .3\nv 0 1 0 .1 .2 .3\nv 0 0 "
+       "1 "
+       ".1 .2 .3\ng a\ns off\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4 # last\n"},
       {"counts_in_header.off", "OFF 4 4 6\n" + tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3"},
       {"comments.off",
        "OFF # header\n# nothing\n\n4 4\n" + tetrahedron + "3 0 2 1 255 0 0\n\n3 0 1 3 # face\n3 0 3 2 1\n3 1 2 3\n"},
+      {"comments_first.off",
+       "# written by a program\r\n\r\nOFF\r\n# counts\r\n4 4 0\r\n\r\n0 0 0\r\n1 0 0\r\n0 1 0\r\n0 0 1\r\n3 0 2 1\r\n3 "
+       "0 "
+       "1 3\r\n3 0 3 2\r\n3 1 2 3\r\n"},
+      {"colours.off",
+       "COFF\n4 4 0\n0 0 0 255 0 0 255\n1 0 0 255 0 0 255\n0 1 0 255 0 0 255\n0 0 1 255 0 0 255\n3 0 2 1\n3 0 1 3\n3 0 "
+       "3 2\n3 1 2 3\n"},
       {"normals.off",
        "NOFF\n4 4 0\n0 0 0 1 0 0\n1 0 0 1 0 0\n0 1 0 1 0 0\n0 0 1 1 0 0\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"},
       {"Capitals.STL",
@@ -115,13 +129,58 @@ TEST_F(MeshFile, IsReadWhateverElseItsTextHolds) {
        "property float32 z\nproperty float64 x\nproperty float y\nelement face 4\nproperty list uint8 uint "
        "vertex_index\n"
        "property uchar flag\nelement edge 1\nproperty list uchar int whatever\nend_header\n"
-       "7\n9 0 0 0\n9 0 1 0\n9 0 0 1\n9 1 0 0\n3 0 2 1 5\n3 0 1 3 5\n3 0 3 2 5\n3 1 2 3 5\n1 1"}};
+       "7\n9 0 0 0\n9 0 1 0\n9 0 0 1\n9 1 0 0\n3 0 2 1 5\n3 0 1 3 5\n3 0 3 2 5\n3 1 2 3 5\n1 1"},
+      {"lists.ply",
+       "ply\r\nformat ascii 1.0\r\nobj_info none\r\nelement strip 1\r\nproperty list int int indices\r\nelement "
+       "vertex 4\r\nproperty list uchar uchar tags\r\nproperty double x\r\nproperty double y\r\nproperty double z\r\n"
+       "property float nx\r\nelement nothing 9\r\nelement face 4\r\nproperty list uchar float texcoord\r\nproperty "
+       "uchar flag\r\nproperty list uchar uint8 vertex_indices\r\nproperty list uchar float more\r\nend_header\r\n"
+       "2 7 8\r\n2 1 2 0 0 0 nan\r\n0 1 0 0 0\r\n0 0 1 0 0\r\n0 0 0 1 0\r\n"
+       "1 .5 0 3 0 2 1 0\r\n0 0 3 0 1 3 0\r\n0 0 3 0 3 2 0\r\n0 0 3 1 2 3 0\r\n"}};
   for (const auto& [name, text] : texts) {
     SCOPED_TRACE(name);
     const MeshPoints mesh = read(name, text);
     EXPECT_TRUE(mesh.warnings.empty());
     EXPECT_EQ(sorted_positions(mesh.points), (std::vector<Vec3>{{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, {1, 0, 0}}));
   }
+}
+
+/// Lists and other properties before, between and behind what makes the surface.
+TEST_F(MeshFile, IsReadFromABinaryPlyWithMoreInIt) {
+  std::string text =
+      "ply\nformat binary_little_endian 1.0\nelement strip 1\nproperty list ushort short indices\nelement nothing 3\n"
+      "element vertex 4\nproperty uchar red\nproperty float z\nproperty list uchar double tags\nproperty double x\n"
+      "property float y\nelement face 4\nproperty list uchar float texcoord\nproperty list int ushort vertex_index\n"
+      "property char flag\nelement edge 1\nproperty int cut_off\nend_header\n";
+  const auto add = [&text](auto value) { text.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  add(std::uint16_t{2});
+  for (const std::int16_t index : {-1, -2}) add(index);
+  for (const auto& [x, y, z] : std::vector<std::array<double, 3>>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) {
+    add(std::uint8_t{200});
+    add(static_cast<float>(z));
+    add(static_cast<std::uint8_t>(x));  // as many tags
+    if (x > 0.0) add(7.0);
+    add(x);
+    add(static_cast<float>(y));
+  }
+  for (const auto& corners : std::vector<std::array<std::uint16_t, 3>>{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}) {
+    add(std::uint8_t{1});
+    add(0.5f);
+    add(std::int32_t{3});
+    for (const std::uint16_t corner : corners) add(corner);
+    add(std::int8_t{-1});
+  }
+  const MeshPoints mesh = read("more.ply", text);
+  EXPECT_TRUE(mesh.warnings.empty());
+  EXPECT_EQ(sorted_positions(mesh.points), (std::vector<Vec3>{{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, {1, 0, 0}}));
+}
+
+TEST_F(MeshFile, IsReadFromABinaryStlWhateverItsHeaderAndEnd) {
+  const std::string text = test::binary_stl_text(test::cube());
+  EXPECT_EQ(read("solid.stl", text).points.size(), 8u);
+  EXPECT_EQ(read("longer.stl", text + "more").points.size(), 8u);
+  EXPECT_EQ(read("other.stl", std::string(80, 'x') + text.substr(80)).points.size(), 8u);
+  EXPECT_EQ(read("spaces.stl", "solid" + std::string(75, ' ') + text.substr(80)).points.size(), 8u);
 }
 
 TEST_F(MeshFile, CutsPolygonsIntoTriangles) {
@@ -144,6 +203,8 @@ TEST_F(MeshFile, WarnsOnceAboutWhatIsOdd) {
             ": faces turned, which were wound against their neighbours: 1");
   EXPECT_EQ(warning_of("inside_out.ply", test::ply_text(test::reversed(cube))),
             ": closed parts turned, which were inside out: 1");
+  EXPECT_EQ(warning_of("touching.obj", test::obj_text(test::together(cube, test::cube(1.0, {2, 2, 0})))),
+            ": the surface is cut along edges with more than two faces: 1");
   odd = cube;
   odd.triangles.push_back({0, 1, 1});
   EXPECT_EQ(warning_of("degenerate.off", test::off_text(odd)),
@@ -206,7 +267,6 @@ TEST_F(MeshFile, IsRefusedWhenItIsCutAnywhere) {
 TEST_F(MeshFile, LeavesNothingBehindAndPrintsNothing) {
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  // OpenMesh complains about the faces of this one.
   EXPECT_NE(refusal_of("bad.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n"), "");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");

@@ -14,7 +14,7 @@ class NumberTableFile : public testing::Test {
  protected:
   NumberTable read(const std::string& text, std::size_t most_rows = 100) const {
     test::write_plainly(file_, text);
-    return read_number_table(file_, "a,b", most_rows);
+    return number_table_in(read_named_file(file_), file_, "a,b", most_rows);
   }
   /// The refusal without the file in front.
   std::string refusal_of(const std::string& text, std::size_t most_rows = 100) const {
@@ -84,7 +84,7 @@ TEST_F(NumberTableFile, MayHaveAsManyRowsAsAllowed) {
 
 TEST_F(NumberTableFile, ThatIsMissingOrADirectoryIsRefused) {
   const auto refusal = [](const std::filesystem::path& file) {
-    const auto error = test::input_error_of([&] { read_number_table(file, "a,b", 1); });
+    const auto error = test::input_error_of([&] { number_table_in(read_named_file(file), file, "a,b", 1); });
     return error ? error->problem() : "";
   };
   EXPECT_EQ(refusal(directory_ / "no.csv"), "cannot be read: No such file or directory");

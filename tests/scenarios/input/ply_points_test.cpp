@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "scenarios/input/number_table.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
@@ -37,7 +38,7 @@ class PlyPoints : public testing::Test {
  protected:
   std::vector<SurfacePoint> read(const std::string& contents) const {
     test::write_plainly(file_, contents);
-    return read_ply_points(file_);
+    return ply_points_in(read_named_file(file_), file_);
   }
   std::string refusal_of(const std::string& contents) const {
     SCOPED_TRACE(contents.substr(0, 300));

@@ -51,6 +51,20 @@ TEST(Usage, ErrorsExitWith2AndSayWhatIsWrongOnStandardError) {
   EXPECT_EQ(directory.entries(), std::vector<std::string>{});
 }
 
+// A study run twice would write the same files twice.
+TEST(Usage, TakesEachPrecisionStudyOnce) {
+  const auto refusal = [](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "precision");
+    const ProgramRun run = hapbench(arguments);
+    EXPECT_EQ(run.status, 2);
+    return run.err;
+  };
+  EXPECT_EQ(refusal({"shaping", "shaping"}), "hapbench: error: got study \"shaping\" twice; allowed: once\n");
+  EXPECT_EQ(refusal({"all", "shaping"}),
+            "hapbench: error: got study \"all\" beside other names; allowed: \"all\" alone\n");
+  EXPECT_NE(refusal({"shapin"}).find("got study \"shapin\"; allowed: \"all\", "), std::string::npos);
+}
+
 TEST(Usage, HelpExitsWith0AndNamesTheCommandsAndExitStatuses) {
   const ProgramRun run = hapbench({"--help"});
   EXPECT_EQ(run.status, 0);

@@ -21,6 +21,10 @@ Scenario block_scenario(const char* patch = "{}") {
   return read_scenario(json, "").scenario;
 }
 
+std::string definition_of(const Scenario& scenario) {
+  return shell_definition(scenario, NamedFiles(scenario));
+}
+
 bool same_bits(const std::vector<SurfacePoint>& a, const std::vector<SurfacePoint>& b) {
   return a.size() == b.size() &&
          std::memcmp(static_cast<const void*>(a.data()), b.data(), a.size() * sizeof(SurfacePoint)) == 0;
@@ -57,7 +61,7 @@ TEST(EnvironmentPoints, AreKeptOnlyWhereBuildingTakesLonger) {
 }
 
 TEST(ShellDefinition, DiffersWhenAnyFieldOfTheEnvironmentDiffers) {
-  std::set<std::string> definitions = {shell_definition(block_scenario())};
+  std::set<std::string> definitions = {definition_of(block_scenario())};
   const auto patches = {R"({"environment": {"size_m": [0.0060000000000000001, 0.005, 0.0041]}})",
                         R"({"environment": {"size_m": [0.006000000000000001, 0.005, 0.004]}})",
                         R"({"environment": {"hole_diameter_m": 0.0021}})",
@@ -65,16 +69,16 @@ TEST(ShellDefinition, DiffersWhenAnyFieldOfTheEnvironmentDiffers) {
                         R"({"environment": {"grid_m": 0.00020000000000000004}})",
                         R"({"environment": {"density": "binary"}})"};
   for (const char* patch : patches) {
-    EXPECT_TRUE(definitions.insert(shell_definition(block_scenario(patch))).second) << patch;
+    EXPECT_TRUE(definitions.insert(definition_of(block_scenario(patch))).second) << patch;
   }
 }
 
 TEST(ShellDefinition, IsThatOfTheEnvironmentAlone) {
-  const std::string definition = shell_definition(block_scenario());
+  const std::string definition = definition_of(block_scenario());
   for (const char* patch :
        {R"({"name": "b"})", R"({"seed": 2})", R"({"time": {"steps": 7}})", R"({"tool": {"diameter_m": 0.003}})",
         R"({"rendering": {"stiffness_N_per_m": 1}})", R"({"environment": {"density": "signed_distance"}})"}) {
-    EXPECT_EQ(shell_definition(block_scenario(patch)), definition) << patch;
+    EXPECT_EQ(definition_of(block_scenario(patch)), definition) << patch;
   }
 }
 
@@ -86,7 +90,7 @@ TEST(ShellDefinition, HoldsContentsNotPaths) {
   const auto definition_with = [&directory](const char* file) {
     Json json = test::minimal_scenario("point_shell");
     json["environment"]["file"] = file;
-    return shell_definition(read_scenario(json, directory.path()).scenario);
+    return definition_of(read_scenario(json, directory.path()).scenario);
   };
   EXPECT_EQ(definition_with("b.csv"), definition_with("a.csv"));
   EXPECT_NE(definition_with("c.csv"), definition_with("a.csv"));

@@ -6,14 +6,14 @@
 
 #include "sim/mesh/mesh_from_triangles.hpp"
 
-/// Mesh files, written without the library that reads them.
+/// Mesh files, written apart from the readers.
 namespace hapbench::test {
 
 std::string obj_text(const TriangleSoup& soup);
 std::string off_text(const TriangleSoup& soup);
 std::string stl_text(const TriangleSoup& soup);
 std::string ply_text(const TriangleSoup& soup);
-/// The dialect of the library: little endian, no colours.
+/// As OpenMesh writes it: little endian, no colours.
 std::string binary_off_text(const TriangleSoup& soup);
 std::string binary_stl_text(const TriangleSoup& soup);
 /// Coordinates as float or double, indices as int.

@@ -86,5 +86,13 @@ TEST(ContactBuffer, PushCopyOfTakesEveryColumnFromTheOtherBuffer) {
   EXPECT_EQ(test::hash_of(to), test::hash_of(from));
 }
 
+TEST(ContactBuffer, AssignTakesAllContactsInPlaceOfItsOwn) {
+  const ContactBuffer from = random_contacts(5);
+  ContactBuffer to = random_contacts(20);
+  to.assign(from);
+  EXPECT_EQ(test::hash_of(to), test::hash_of(from));
+  for (std::size_t i = 5; i < to.padded_size(); ++i) EXPECT_EQ(to.weight[i], 0.0) << "padded";
+}
+
 }  // namespace
 }  // namespace hapbench

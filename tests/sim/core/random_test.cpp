@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <set>
 
 namespace hapbench {
 namespace {
@@ -50,6 +51,15 @@ TEST(Random, NormalNumbersHaveTheMomentsOfTheNormalDistribution) {
   EXPECT_NEAR(moments[2], 1.0, 5 * std::sqrt(2.0) / root);
   EXPECT_NEAR(moments[3], 0.0, 5 * std::sqrt(15.0) / root);
   EXPECT_NEAR(moments[4], 3.0, 5 * std::sqrt(96.0) / root);
+}
+
+TEST(Random, DerivesSeedsThatDifferForNeighboursOfBothKinds) {
+  std::set<std::uint64_t> seeds;
+  for (std::uint64_t stream = 0; stream < 100; ++stream) {
+    for (std::uint64_t number = 0; number < 100; ++number) seeds.insert(Random::derive(stream, number));
+  }
+  EXPECT_EQ(seeds.size(), 10'000u);
+  static_assert(Random::derive(3, 5) == 3 * 0x9e3779b97f4a7c15u + 5, "results depend on it");
 }
 
 TEST(Random, DirectionsAreUnitVectors) {

@@ -124,16 +124,61 @@ TEST(MeshFromTriangles, RefusesCoordinatesThatAreNotFinite) {
   }
 }
 
-TEST(MeshFromTriangles, RefusesAnEdgeWithThreeFacesAndSaysWhere) {
-  TriangleSoup soup = cube();
-  soup.vertices.push_back({0, 0, 5});
-  soup.triangles.push_back({4, 5, 8});
-  EXPECT_EQ(refusal_of(soup), "the edge from (-1, -1, 1) m to (1, -1, 1) m has 3 faces; allowed: one or two");
-  // The same triangle twice, and two cubes that share an edge, are no surfaces either.
-  soup = cube();
-  soup.triangles.push_back(soup.triangles[0]);
-  EXPECT_NE(refusal_of(soup).find("has 3 faces"), std::string::npos);
-  EXPECT_NE(refusal_of(together(cube(), cube(1.0, {2, 2, 0}))).find("has 4 faces"), std::string::npos);
+TEST(MeshFromTriangles, CutsTheSurfaceAlongEdgesWithMoreThanTwoFaces) {
+  TriangleSoup winged = cube();
+  winged.vertices.push_back({0, 0, 5});
+  winged.triangles.push_back({4, 5, 8});
+  TriangleSoup doubled = cube();
+  doubled.triangles.push_back(doubled.triangles[0]);
+  const struct {
+    TriangleSoup soup;
+    std::size_t crowded, boundary, vertices;
+  } cases[] = {
+      {winged, 1, 2, 8 + 3},
+      {doubled, 3, 0, 8 + 3 + 3},
+      {together(cube(), cube(1.0, {2, 2, 0})), 1, 0, 8 + 8},
+  };
+  for (const auto& c : cases) {
+    const auto [mesh, found] = mesh_from_triangles(c.soup);
+    EXPECT_EQ(found.crowded_edges, c.crowded);
+    EXPECT_EQ(found.boundary_edges, c.boundary);
+    EXPECT_EQ(found.rewound_triangles, 0u);
+    EXPECT_EQ(mesh.n_faces(), c.soup.triangles.size());
+    EXPECT_EQ(mesh.n_vertices(), c.vertices);
+  }
+  // What touches the cube does not bend its normals.
+  const auto expected = vertices_with_normals(mesh_from_triangles(cube()).mesh);
+  const auto points = vertices_with_normals(mesh_from_triangles(winged).mesh);
+  for (const SurfacePoint& e : expected) {
+    EXPECT_EQ(std::count_if(points.begin(), points.end(),
+                            [&e](const SurfacePoint& p) { return p.position == e.position && p.normal == e.normal; }),
+              1);
+  }
+}
+
+TEST(MeshFromTriangles, HoldsWhateverTrianglesThereAre) {
+  Random random(4);
+  std::size_t held = 0, crowded = 0;
+  for (std::size_t round = 0; round < cases(3000); ++round) {
+    TriangleSoup soup;
+    const std::uint64_t vertices = 4 + random.below(6);
+    for (std::uint64_t i = 0; i < vertices; ++i) soup.vertices.push_back(random.direction());
+    for (std::uint64_t n = 1 + random.below(12); n > 0; --n) {
+      Triangle t{};
+      for (std::uint32_t& corner : t) corner = static_cast<std::uint32_t>(random.below(vertices));
+      soup.triangles.push_back(t);
+    }
+    try {
+      const auto [mesh, found] = mesh_from_triangles(soup);
+      EXPECT_EQ(mesh.n_faces(), soup.triangles.size() - found.degenerate_triangles);
+      ++held;
+      crowded += found.crowded_edges > 0 ? 1 : 0;
+    } catch (const MeshError& error) {
+      const std::string message = error.what();
+      EXPECT_TRUE(message.starts_with("is not orientable") || message.starts_with("has no faces")) << message;
+    }
+  }
+  EXPECT_GT(crowded, held / 4);
 }
 
 TEST(MeshFromTriangles, RefusesSurfacesWithOneSide) {

@@ -1,0 +1,84 @@
+#include "scenarios/description/named_files.hpp"
+
+#include <gtest/gtest.h>
+
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "sim/core/hash.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/errors.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+class NamedFilesOfAScenario : public testing::Test {
+ protected:
+  NamedFilesOfAScenario() {
+    for (const char* name : {"cube.obj", "shell.csv", "stroke.csv"})
+      test::write_plainly(directory_ / name, test::read_file(test::data_directory() / name));
+  }
+  LoadedScenario load(const char* environment, const char* patch = "{}") const {
+    Json json = test::minimal_scenario(environment);
+    json.merge_patch(Json::parse(patch));
+    return read_scenario(json, directory_.path());
+  }
+
+  test::TemporaryDirectory directory_;
+};
+
+constexpr const char* kStroke = R"({"motion": {"position": {"type": "file", "file": "stroke.csv"}}})";
+
+TEST_F(NamedFilesOfAScenario, AreThoseItNames) {
+  const NamedFiles none = load("plane").files;
+  EXPECT_EQ(none.environment(), nullptr);
+  EXPECT_EQ(none.motion(), nullptr);
+  const NamedFiles both = load("point_shell", kStroke).files;
+  ASSERT_NE(both.environment(), nullptr);
+  ASSERT_NE(both.motion(), nullptr);
+  EXPECT_EQ(both.environment()->path(), directory_ / "shell.csv");
+  EXPECT_EQ(both.environment()->hash(), hash_text(hash_of(test::read_file(directory_ / "shell.csv"))));
+  EXPECT_EQ(both.motion()->hash(), hash_text(hash_of(test::read_file(directory_ / "stroke.csv"))));
+}
+
+// Whoever changes a file while a run is under way changes neither the run nor what it says of itself.
+TEST_F(NamedFilesOfAScenario, AreReadOnce) {
+  for (const char* environment : {"mesh", "point_shell"}) {
+    const LoadedScenario loaded = load(environment, kStroke);
+    check_named_files(loaded);
+    const RunReport report = run_scenario(loaded, directory_ / "out", false, ShellCache());
+    for (const char* name : {"cube.obj", "shell.csv", "stroke.csv"})
+      fs::rename(directory_ / name, directory_ / (std::string(name) + ".gone"));
+    const RunReport again = run_scenario(loaded, directory_ / "again", false, ShellCache());
+    EXPECT_EQ(again.summary.metrics.state_hash, report.summary.metrics.state_hash);
+    EXPECT_EQ(again.summary.scenario_hash, report.summary.scenario_hash);
+    EXPECT_THROW(run_scenario(load(environment, kStroke), {}, false, ShellCache()), InputError);
+    for (const char* name : {"cube.obj", "shell.csv", "stroke.csv"})
+      fs::rename(directory_ / (std::string(name) + ".gone"), directory_ / name);
+  }
+}
+
+TEST_F(NamedFilesOfAScenario, AreReadByTheFirstOfTheirCopies) {
+  const LoadedScenario loaded = load("mesh");
+  const NamedFiles copy = loaded.files;
+  const auto points = copy.mesh().points();
+  fs::remove(directory_ / "cube.obj");
+  EXPECT_EQ(loaded.files.mesh().points().size(), points.size());
+}
+
+TEST_F(NamedFilesOfAScenario, AreRefusedEveryTime) {
+  test::write_plainly(directory_ / "cube.obj", "v 0 0 up\n");
+  const LoadedScenario loaded = load("mesh");
+  for (int i = 0; i < 2; ++i) {
+    const auto error = test::input_error_of([&] { loaded.files.mesh(); });
+    ASSERT_TRUE(error);
+    EXPECT_NE(std::string(error->what()).find("line 1: got \"up\"; allowed: a finite number"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace hapbench
