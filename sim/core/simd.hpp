@@ -142,13 +142,11 @@ inline bool lane(const Mask& m, std::size_t i) {
 
 /// Bit i of the result is lane i of the mask.
 inline std::uint8_t bits(const Mask& m) {
-#if HAPBENCH_SIMD && defined(__AVX512VL__)
-  const Pack ones = select(m, Pack(1.0), Pack(0.0));
-  return _mm512_cmp_pd_mask(static_cast<__m512d>(ones), _mm512_setzero_pd(), _CMP_NEQ_OQ);
+#if HAPBENCH_SIMD
+  return static_cast<std::uint8_t>(m.__to_bitset().to_ulong());  // libstdc++'s name of what C++26 calls to_bitset
 #else
-  if (!any(m)) return 0;
   unsigned b = 0;
-  for (std::size_t i = 0; i < lanes; ++i) b |= static_cast<unsigned>(lane(m, i)) << i;
+  for (std::size_t i = 0; i < lanes; ++i) b |= static_cast<unsigned>(m.v[i]) << i;
   return static_cast<std::uint8_t>(b);
 #endif
 }

@@ -9,11 +9,13 @@
 namespace hapbench {
 namespace {
 
-/// Writes the marks of the packs of all ranges, `test` being the mask of one.
+/// Writes the marks of the packs of all ranges, `test` being the mask of one. Pose and points are copied, because for
+/// all the compiler knows a mark is a byte of whatever is referred to, and would have to be read again for the next
+/// pack.
 template <class Test>
-void mark(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges, std::uint8_t* marks,
+void mark(const ToolPose pose, const PointArrays points, std::span<const PackRange> ranges, std::uint8_t* marks,
           const Test& test) {
-  for (const PackRange& range : ranges) {
+  for (const PackRange range : ranges) {
     for (std::size_t i = range.first * simd::lanes; i < range.last * simd::lanes; i += simd::lanes) {
       *marks++ = simd::bits(test(AxialPack(pose, points.x + i, points.y + i, points.z + i)));
     }

@@ -13,9 +13,9 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 /// A radial direction shorter than this fraction of the radius is undefined.
 constexpr double kUndefinedBelow = 1e-12;
 
-Vec3 shortest_gradient(const Cylinder& tool, const ToolPose& pose, const Vec3& point, const Vec3& normal) {
+Vec3 shortest_gradient(const Cylinder& tool, const ToolPose& pose, const ContactBuffer& contacts, std::size_t i) {
   // The same order of operations as AxialPack, so that "which surface is nearest" is decided on the same numbers.
-  const Vec3 x = point - pose.position;
+  const Vec3 x = contacts.point(i) - pose.position;
   const double s = x.x() * pose.axis.x() + x.y() * pose.axis.y() + x.z() * pose.axis.z();
   const bool in_ball = tool.tip() == Tip::round && s > 0.0;
   const Vec3 radial = in_ball ? x : Vec3(x - s * pose.axis);
@@ -27,7 +27,7 @@ Vec3 shortest_gradient(const Cylinder& tool, const ToolPose& pose, const Vec3& p
     if (d_tip < d_radial && d_tip <= d_bottom) return pose.axis;
     if (d_bottom < d_radial && d_bottom < d_tip) return -pose.axis;
   }
-  return length < kUndefinedBelow * tool.radius() ? Vec3(-normal) : Vec3(radial / length);
+  return length < kUndefinedBelow * tool.radius() ? Vec3(-contacts.normal(i)) : Vec3(radial / length);
 }
 
 /// Only positive exits count, as the thesis says ("the minimal positive value"): a point exactly on one surface whose
@@ -97,7 +97,7 @@ void Cylinder::shortest_depths(const ToolPose& pose, ContactBuffer& contacts) co
 
 void Cylinder::shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    contacts.set_gradient(i, shortest_gradient(*this, pose, contacts.point(i), contacts.normal(i)));
+    contacts.set_gradient(i, shortest_gradient(*this, pose, contacts, i));
   }
 }
 
