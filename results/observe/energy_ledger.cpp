@@ -21,8 +21,9 @@ std::size_t missing(const std::vector<std::uint32_t>& a, const std::vector<std::
 
 }  // namespace
 
-EnergyLedger::EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity, bool force_is_held)
-    : mass_(mass), dt_(dt), free_(position_is_free), row_force_moves_(!position_is_free || force_is_held) {
+EnergyLedger::EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity,
+                           const IntegratorEntry& integrator)
+    : mass_(mass), dt_(dt), free_(position_is_free), row_force_moves_(!position_is_free || integrator.holds_force) {
   last_.rendered.reserve(capacity);
   rendered_.reserve(capacity);
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "sim/loop/integrators/table.hpp"
 #include "sim/loop/observer.hpp"
 
 namespace hapbench {
@@ -15,11 +16,11 @@ namespace hapbench {
 ///   input = hand + actuator                                        (when the handle is the tool)
 ///   device.stored = device.hand + device.actuator + device.dissipated   (when it has mechanics of its own)
 ///
-/// If the integrator holds the row's force over the step (leapfrog), the work of a force is the row's force times dt times
-/// the mean of the velocities before and after the step, which equals its contribution to the kinetic energy exactly.
-/// Other integrators evaluate forces at intermediate states that are not recorded. For them, work is the mean of the
-/// forces of both rows (f_in is held) times the displacement between the rows, and the difference to the change of
-/// kinetic energy counts as the integrator's.
+/// If the integrator holds the row's force over the step (leapfrog), the work of a force is the row's force times dt
+/// times the mean of the velocities before and after the step, which equals its contribution to the kinetic energy
+/// exactly. Other integrators evaluate forces at intermediate states that are not recorded. For them, work is the mean
+/// of the forces of both rows (f_in is held) times the displacement between the rows, and the difference to the change
+/// of kinetic energy counts as the integrator's.
 struct EnergyBalance {
   double kinetic = 0.0;  ///< of the virtual mass, now
   double stored = 0.0;   ///< elastic energy of the penalty springs, now
@@ -66,9 +67,9 @@ class EnergyLedger final : public Observer {
  public:
   static constexpr std::size_t kEvents = 10;
 
-  /// mass of the virtual tool [kg], time step [s], the most contacts a row can have; of a free position, whether its
-  /// integrator holds the row's force over the step (IntegratorEntry::holds_force).
-  EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity, bool force_is_held = true);
+  /// mass of the virtual tool [kg], time step [s], the most contacts a row can have, what moves a free position.
+  EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity,
+               const IntegratorEntry& integrator = kLeapfrog);
 
   bool wants_energy() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override;

@@ -22,7 +22,7 @@ class TrialObservers {
     observers_.push_back(&passivity_);
     if (scenario.record.energy) {
       ledger_.emplace(scenario.rendering.mass, scenario.time.step, parts.motion->position_is_free(),
-                      parts.source->capacity(), scenario.integrator.type->holds_force);
+                      parts.source->capacity(), *scenario.integrator.type);
       observers_.push_back(&*ledger_);
     }
     if (scenario.record.ideal_trajectory) {

@@ -46,7 +46,7 @@ struct Accounts {
 /// Runs a setting with the energy ledger.
 Accounts keep_accounts(SimulationConfig config, SimulationParts parts) {
   EnergyLedger ledger(config.mass, config.dt, parts.motion->position_is_free(), parts.source->capacity(),
-                      config.integrator);
+                      *config.integrator);
   Turnover turnover(ledger);
   Simulation simulation(config, std::move(parts), {&ledger, &turnover});
   simulation.step();

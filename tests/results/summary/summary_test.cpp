@@ -180,7 +180,8 @@ TEST(Summary, ListsTheNumbersOfItsSections) {
     const auto& entry = json.at(nlohmann::ordered_json::json_pointer(pointer));
     EXPECT_EQ(entry.is_number_unsigned(), std::holds_alternative<std::uint64_t>(value)) << name;
     EXPECT_EQ(entry.is_null(), std::holds_alternative<std::monostate>(value)) << name;
-    if (const auto number = number_of(value)) EXPECT_EQ(entry.get<double>(), *number) << name;
+    const auto number = entry.is_null() ? std::nullopt : std::optional(entry.get<double>());
+    EXPECT_EQ(number, number_of(value)) << name;
     in_sections += in_metrics ? 0 : 1;
   }
   // Passivity, energy, ideal trajectory of two hands, and two target places with four means each.

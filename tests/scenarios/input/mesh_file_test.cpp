@@ -154,7 +154,7 @@ TEST_F(MeshFile, IsReadFromABinaryPlyWithMoreInIt) {
       "property char flag\nelement edge 1\nproperty int cut_off\nend_header\n";
   const auto add = [&text](auto value) { text.append(reinterpret_cast<const char*>(&value), sizeof value); };
   add(std::uint16_t{2});
-  for (const std::int16_t index : {-1, -2}) add(index);
+  for (const std::int16_t index : {std::int16_t{-1}, std::int16_t{-2}}) add(index);
   for (const auto& [x, y, z] : std::vector<std::array<double, 3>>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) {
     add(std::uint8_t{200});
     add(static_cast<float>(z));
