@@ -84,7 +84,7 @@ TEST_P(CylinderOfTip, HasItsForemostPlaceOnTheSurfaceAndNoneBeyondIt) {
   for (std::size_t i = 0; i < cases(5000); ++i) {
     const Cylinder tool = test::random_tool(random, GetParam());
     const ToolPose pose = test::random_pose(random);
-    const Vec3 normal = i % 4 == 0 ? Vec3((i % 8 == 0 ? 1.0 : -1.0) * pose.axis) : random.direction();
+    const Vec3 normal = random.direction();
     ContactBuffer contacts(1);
     contacts.push(0, test::random_point_near(tool, pose, random), normal);
     Vec3 place;
