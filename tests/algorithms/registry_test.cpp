@@ -47,12 +47,13 @@ TEST(Registry, EveryModelDocumentsItself) {
       EXPECT_FALSE(std::string(text).empty()) << model->name;
     }
     for (const ParameterInfo& parameter : model->parameters) {
-      for (const char* text :
-           {parameter.name, parameter.unit, parameter.default_value, parameter.range, parameter.meaning}) {
+      const auto& [field, range] = parameter.parameter;
+      for (const char* text : {field, range.unit, parameter.meaning}) {
         ASSERT_NE(text, nullptr);
         EXPECT_FALSE(std::string(text).empty()) << model->name;
       }
-      EXPECT_EQ(std::string(parameter.name).rfind("rendering.", 0), 0u) << parameter.name;
+      EXPECT_EQ(std::string(field).rfind("rendering.", 0), 0u) << field;
+      EXPECT_LT(range.min, range.max) << field;
     }
   }
 }
