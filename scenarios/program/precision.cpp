@@ -33,11 +33,11 @@ struct PrecisionCommandOptions {
 
 std::vector<const PrecisionStudy*> chosen_studies(const std::vector<std::string>& given) {
   std::vector<std::string> all;
-  for (const PrecisionStudy& study : precision_studies()) all.emplace_back(study.name);
+  for (const PrecisionStudy* study : kPrecisionStudies) all.emplace_back(study->name);
   std::vector<const PrecisionStudy*> studies;
   for (const std::string& name : chosen_names("got study", given, all)) {
     const auto study = std::find(all.begin(), all.end(), name) - all.begin();
-    studies.push_back(&precision_studies()[static_cast<std::size_t>(study)]);
+    studies.push_back(kPrecisionStudies[static_cast<std::size_t>(study)]);
   }
   return studies;
 }
@@ -131,7 +131,7 @@ void add_precision(CommandLine& line) {
   auto options = std::make_shared<PrecisionCommandOptions>();
   Command command = line.command("precision", "Run time against error: one row per setting");
   std::string names = "all";
-  for (const PrecisionStudy& study : precision_studies()) names += fmt::format(", {} ({})", study.name, study.summary);
+  for (const PrecisionStudy* study : kPrecisionStudies) names += fmt::format(", {} ({})", study->name, study->summary);
   command.add("studies", options->studies, names).required();
   command.add("--scenario", options->scenario, "scenario to start from, instead of the study's own");
   command.add("--out", options->out, "directory of the results (default: results/out/precision)");

@@ -47,7 +47,7 @@ PrecisionRow ideal_row(std::string setting, const Scenario& scenario, std::share
 
 }  // namespace
 
-PrecisionResult study_spacing(const Scenario& given, const PrecisionOptions& options) {
+static PrecisionResult study_spacing(const Scenario& given, const PrecisionOptions& options) {
   PrecisionResult result;
   result.columns = {"spacing_m", "points", "shell_bytes"};
   result.columns.insert(result.columns.end(), kIdealColumns.begin(), kIdealColumns.end());
@@ -70,7 +70,7 @@ PrecisionResult study_spacing(const Scenario& given, const PrecisionOptions& opt
   return result;
 }
 
-PrecisionResult study_algorithms(const Scenario& given, const PrecisionOptions& options) {
+static PrecisionResult study_algorithms(const Scenario& given, const PrecisionOptions& options) {
   const Scenario scenario = drill_in_hole(given);
   const auto shell = shell_of(scenario, options);
   PrecisionResult result;
@@ -106,5 +106,11 @@ PrecisionResult study_algorithms(const Scenario& given, const PrecisionOptions& 
   }
   return result;
 }
+
+const PrecisionStudy kSpacingStudy = {"spacing", "shell spacing and density against the ideal trajectory",
+                                      "task2_rotate_signed_distance", study_spacing};
+
+const PrecisionStudy kAlgorithmsStudy = {"algorithms", "every algorithm against the ideal trajectory",
+                                         "task2_rotate_signed_distance", study_algorithms};
 
 }  // namespace hapbench

@@ -124,7 +124,7 @@ FittedOrder order_of(const IntegratorEntry& integrator, const PrecisionResult& r
 
 }  // namespace
 
-PrecisionResult study_integrators(const Scenario& scenario, const PrecisionOptions& options) {
+static PrecisionResult study_integrators(const Scenario& scenario, const PrecisionOptions& options) {
   check_scenario(scenario);
   FirstTensor tensor;
   sampled_run(scenario, nullptr, 1, {&tensor});
@@ -157,5 +157,9 @@ PrecisionResult study_integrators(const Scenario& scenario, const PrecisionOptio
   }
   return result;
 }
+
+const PrecisionStudy kIntegratorsStudy = {
+    "integrators", "every integrator on springs against the exact solution, over the time step; energy without damping",
+    "springs_oscillation", study_integrators};
 
 }  // namespace hapbench

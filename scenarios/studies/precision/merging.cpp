@@ -121,7 +121,7 @@ std::vector<Vec3> exact_forces(const std::vector<ContactBuffer>& sets, const Ren
 
 }  // namespace
 
-PrecisionResult study_merging(const Scenario& given, const PrecisionOptions& options) {
+static PrecisionResult study_merging(const Scenario& given, const PrecisionOptions& options) {
   PrecisionResult result;
   result.columns = {"spacing_m", "contacts_mean", "kept_mean", "force_error_relative", "order_spread_relative"};
   result.timed = "call";
@@ -138,5 +138,8 @@ PrecisionResult study_merging(const Scenario& given, const PrecisionOptions& opt
   }
   return result;
 }
+
+const PrecisionStudy kMergingStudy = {"merging", "reduced, merged and all contacts, from dozens to hundreds",
+                                      "task2_rotate_signed_distance", study_merging};
 
 }  // namespace hapbench

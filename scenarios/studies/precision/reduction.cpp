@@ -87,7 +87,7 @@ class Measurement {
 
 }  // namespace
 
-PrecisionResult study_reduction(const Scenario& scenario, const PrecisionOptions& options) {
+static PrecisionResult study_reduction(const Scenario& scenario, const PrecisionOptions& options) {
   const std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(scenario), options, kStride);
   if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
   Measurement measurement(sets, scenario.rendering.iterations);
@@ -105,5 +105,8 @@ PrecisionResult study_reduction(const Scenario& scenario, const PrecisionOptions
   }
   return result;
 }
+
+const PrecisionStudy kReductionStudy = {"reduction", "gradient-based reduction against exact shaping of all contacts",
+                                        "task2_rotate_signed_distance", study_reduction};
 
 }  // namespace hapbench

@@ -44,7 +44,7 @@ PrecisionRow measure(int iterations, std::vector<ContactBuffer>& sets, const std
 
 }  // namespace
 
-PrecisionResult study_shaping(const Scenario& scenario, const PrecisionOptions& options) {
+static PrecisionResult study_shaping(const Scenario& scenario, const PrecisionOptions& options) {
   std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(scenario), options, kStride);
   if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
   std::vector<Mat3> optimum;
@@ -60,5 +60,9 @@ PrecisionResult study_shaping(const Scenario& scenario, const PrecisionOptions& 
   result.rows.push_back(measure(kExact, sets, optimum, options.repetitions));
   return result;
 }
+
+const PrecisionStudy kShapingStudy = {
+    "shaping", "shaping iterations against the exact optimum, on the contacts of a drill turned in a hole",
+    "task2_rotate_signed_distance", study_shaping};
 
 }  // namespace hapbench

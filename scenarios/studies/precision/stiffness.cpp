@@ -47,7 +47,7 @@ PrecisionRow wedge_row(const Scenario& scenario, double degrees, int repetitions
 
 }  // namespace
 
-PrecisionResult study_stiffness(const Scenario& scenario, const PrecisionOptions& options) {
+static PrecisionResult study_stiffness(const Scenario& scenario, const PrecisionOptions& options) {
   PrecisionResult result;
   result.columns = {"half_angle_rad", "ratio_min", "ratio_max",      "along_way_out",
                     "along_formula",  "across",    "across_formula", "lambda_max"};
@@ -62,5 +62,9 @@ PrecisionResult study_stiffness(const Scenario& scenario, const PrecisionOptions
   }
   return result;
 }
+
+const PrecisionStudy kStiffnessStudy = {
+    "stiffness", "every algorithm in a wedge against closed forms: stiffness along the contacts and the way out",
+    "wedge_stiffness", study_stiffness};
 
 }  // namespace hapbench

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -49,16 +49,18 @@ struct PrecisionStudy {
   PrecisionResult (*run)(const Scenario& scenario, const PrecisionOptions& options);
 };
 
-/// The one table of studies.
-std::span<const PrecisionStudy> precision_studies();
+// The table. Each row is defined beside its study; adding one is its file and two lines here.
+extern const PrecisionStudy kIntegratorsStudy;
+extern const PrecisionStudy kTimeStepStudy;
+extern const PrecisionStudy kShapingStudy;
+extern const PrecisionStudy kSpacingStudy;
+extern const PrecisionStudy kReductionStudy;
+extern const PrecisionStudy kMergingStudy;
+extern const PrecisionStudy kAlgorithmsStudy;
+extern const PrecisionStudy kStiffnessStudy;
 
-PrecisionResult study_integrators(const Scenario& scenario, const PrecisionOptions& options);
-PrecisionResult study_time_step(const Scenario& scenario, const PrecisionOptions& options);
-PrecisionResult study_shaping(const Scenario& scenario, const PrecisionOptions& options);
-PrecisionResult study_spacing(const Scenario& scenario, const PrecisionOptions& options);
-PrecisionResult study_reduction(const Scenario& scenario, const PrecisionOptions& options);
-PrecisionResult study_merging(const Scenario& scenario, const PrecisionOptions& options);
-PrecisionResult study_algorithms(const Scenario& scenario, const PrecisionOptions& options);
-PrecisionResult study_stiffness(const Scenario& scenario, const PrecisionOptions& options);
+inline constexpr std::array kPrecisionStudies = {&kIntegratorsStudy, &kTimeStepStudy,  &kShapingStudy,
+                                                 &kSpacingStudy,     &kReductionStudy, &kMergingStudy,
+                                                 &kAlgorithmsStudy,  &kStiffnessStudy};
 
 }  // namespace hapbench

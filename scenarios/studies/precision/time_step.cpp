@@ -24,7 +24,7 @@ Scenario with_step(const Scenario& scenario, double factor) {
 
 }  // namespace
 
-PrecisionResult study_time_step(const Scenario& given, const PrecisionOptions& options) {
+static PrecisionResult study_time_step(const Scenario& given, const PrecisionOptions& options) {
   const Scenario scenario = drill_in_hole(given);
   const BlockWithHole& block = std::get<BlockEnvironment>(scenario.environment).block;
   const Cylinder tool = make_cylinder(scenario.tool);
@@ -60,5 +60,9 @@ PrecisionResult study_time_step(const Scenario& given, const PrecisionOptions& o
                            fitted_order(steps, errors)});
   return result;
 }
+
+const PrecisionStudy kTimeStepStudy = {
+    "time_step", "a drill turned in a hole against a time step 64 times finer, over the time step",
+    "task2_rotate_signed_distance", study_time_step};
 
 }  // namespace hapbench

@@ -20,7 +20,7 @@ Scenario wedge_scenario(const std::vector<std::string>& overrides = {}) {
 PrecisionResult study(const std::vector<std::string>& overrides = {}) {
   PrecisionOptions options;
   options.repetitions = 1;
-  return study_stiffness(wedge_scenario(overrides), options);
+  return kStiffnessStudy.run(wedge_scenario(overrides), options);
 }
 
 enum Column { kHalfAngle, kRatioMin, kRatioMax, kAlong, kAlongFormula, kAcross, kAcrossFormula, kLambdaMax };
@@ -64,7 +64,7 @@ TEST(PrecisionStiffness, RefusesWhatIsNoWedge) {
                                     std::string("[") + direction + R"(, {"direction": [0, 1, 0], "count": 2}])"}) {
     EXPECT_THROW(study({"environment.groups=" + groups}), InputError) << groups;
   }
-  EXPECT_THROW(study_stiffness(load_scenario(find_scenario("poke_plane"), {}).scenario, {}), InputError);
+  EXPECT_THROW(kStiffnessStudy.run(load_scenario(find_scenario("poke_plane"), {}).scenario, {}), InputError);
 }
 
 TEST(WedgeStiffness, HasNoFormulaForAlgorithmsItDoesNotKnow) {
