@@ -47,12 +47,12 @@ TEST(Registry, EveryModelDocumentsItself) {
       EXPECT_FALSE(std::string(text).empty()) << model->name;
     }
     for (const ParameterInfo& parameter : model->parameters) {
-      for (const char* text :
-           {parameter.name, parameter.unit, parameter.default_value, parameter.range, parameter.meaning}) {
+      for (const char* text : {parameter.parameter.field, parameter.meaning}) {
         ASSERT_NE(text, nullptr);
         EXPECT_FALSE(std::string(text).empty()) << model->name;
       }
-      EXPECT_EQ(std::string(parameter.name).rfind("rendering.", 0), 0u) << parameter.name;
+      const std::string field = parameter.parameter.field;
+      EXPECT_EQ(field.rfind("rendering.", 0), 0u) << field;
     }
   }
 }
