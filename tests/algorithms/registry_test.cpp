@@ -47,12 +47,13 @@ TEST(Registry, EveryModelDocumentsItself) {
       EXPECT_FALSE(std::string(text).empty()) << model->name;
     }
     for (const ParameterInfo& parameter : model->parameters) {
-      for (const char* text : {parameter.parameter.field, parameter.meaning}) {
+      const auto& [field, range] = parameter.parameter;
+      for (const char* text : {field, range.unit, parameter.meaning}) {
         ASSERT_NE(text, nullptr);
         EXPECT_FALSE(std::string(text).empty()) << model->name;
       }
-      const std::string field = parameter.parameter.field;
-      EXPECT_EQ(field.rfind("rendering.", 0), 0u) << field;
+      EXPECT_EQ(std::string(field).rfind("rendering.", 0), 0u) << field;
+      EXPECT_LT(range.min, range.max) << field;
     }
   }
 }
