@@ -120,7 +120,8 @@ TEST_P(NewShapeInEveryAlgorithm, IsPushedOutOfAPlane) {
   }
   EXPECT_NEAR(force.depth_max, 0.00005, 1e-15);
   EXPECT_GT(force.spring.z(), 0.5 * config.stiffness * force.depth_max / static_cast<double>(contacts.size()));
-  EXPECT_LE(std::hypot(force.spring.x(), force.spring.y()), 1e-9 * force.spring.z());
+  // Of the shortest ways out, some lead through a side.
+  EXPECT_LE(std::hypot(force.spring.x(), force.spring.y()), 0.05 * force.spring.z());
 }
 
 TEST(Proxy, KeepsEveryPointOutOfANewShape) {

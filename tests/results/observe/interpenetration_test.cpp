@@ -77,7 +77,7 @@ TEST(Interpenetration, EqualsADenseSearchOverTheWholeTool) {
     const double along = 0.006;  // the rest of the tool is in the air
     for (int a = 0; a < kAngles; ++a) {
       const double angle = 2.0 * std::numbers::pi * a / kAngles;
-      const Vec3 side = kTool.radius * (std::cos(angle) * e1 + std::sin(angle) * e2);
+      const Vec3 side = kTool.radius() * (std::cos(angle) * e1 + std::sin(angle) * e2);
       for (int h = 0; h < kHeights; ++h) {
         const Vec3 q = pose.position + side - (along * h / kHeights) * pose.axis;
         deepest = std::max(deepest, -signed_distance(kBlock, q));
@@ -85,7 +85,7 @@ TEST(Interpenetration, EqualsADenseSearchOverTheWholeTool) {
     }
     EXPECT_LE(deepest, answer + kRounding);
     // The samples lie at most half a height and half an arc from the deepest point.
-    const double spacing = 0.5 * std::hypot(along / kHeights, kTool.radius * 2.0 * std::numbers::pi / kAngles);
+    const double spacing = 0.5 * std::hypot(along / kHeights, kTool.radius() * 2.0 * std::numbers::pi / kAngles);
     EXPECT_GE(deepest, answer - spacing);
   }
 }
