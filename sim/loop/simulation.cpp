@@ -40,6 +40,7 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
     springs_wanted_ |= observer->wants_springs();
     energy_wanted_ |= observer->wants_energy();
   }
+  position_is_free_ = parts_.motion->position_is_free();
   input_wanted_ = parts_.algorithm->wants_input();
   handle_is_apart_ = parts_.device->energy().has_value();
   angular_velocity_cutoff_ = parts_.algorithm->angular_velocity_cutoff();
@@ -77,7 +78,7 @@ void Simulation::move_tool_by_script() noexcept {
   const Vec3 axis = parts_.motion->axis_at(t);
   if (angular_velocity_cutoff_ && row_ > 0) tool_.angular_velocity = angular_velocity_after(1.0, axis);
   tool_.pose.axis = axis;
-  if (parts_.motion->position_is_free()) return;
+  if (position_is_free_) return;
   const Vec3 position = parts_.motion->position_at(t);
   tool_.velocity = row_ == 0 ? Vec3::Zero() : Vec3((position - tool_.pose.position) / config_.dt);
   tool_.pose.position = position;
@@ -114,7 +115,7 @@ bool Simulation::step() noexcept {
   ++result_.rows;
   if (check_stop_conditions()) return true;
 
-  if (parts_.motion->position_is_free()) move_tool_by_force();
+  if (position_is_free_) move_tool_by_force();
   ++row_;
   if (row_ == config_.steps) {
     end(Outcome::completes);

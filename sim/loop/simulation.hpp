@@ -113,6 +113,7 @@ class Simulation {
   bool ratio_wanted_ = false;
   bool springs_wanted_ = false;
   bool energy_wanted_ = false;
+  bool position_is_free_ = false;
   bool input_wanted_ = false;
   bool handle_is_apart_ = false;                   ///< the handle is a body of its own
   std::optional<double> angular_velocity_cutoff_;  ///< none: nobody wants it

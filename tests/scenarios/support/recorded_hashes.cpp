@@ -43,6 +43,15 @@ std::map<std::string, std::string> read_record(const fs::path& file) {
   return hashes;
 }
 
+/// Takes the directories off the files that a scenario names: results are written relative to where they are.
+void keep_file_names(Json& json) {
+  if (!json.is_structured()) return;
+  for (auto& [key, value] : json.items()) {
+    if (key == "file" && value.is_string()) value = fs::path(value.get<std::string>()).filename().string();
+    keep_file_names(value);
+  }
+}
+
 void renew(const fs::path& file, const std::string& prefix, const std::map<std::string, std::string>& hashes) {
   std::map<std::string, std::string> record = read_record(file);
   std::erase_if(record, [&prefix](const auto& entry) { return entry.first.starts_with(prefix); });
@@ -67,6 +76,7 @@ std::string hash_of_results(const fs::path& directory) {
     }
     Json json = Json::parse(contents);
     if (json.is_object()) json.erase("provenance");
+    keep_file_names(json);
     hash.bytes(json.dump());
   }
   return hash_text(hash.value());

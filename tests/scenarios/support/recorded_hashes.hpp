@@ -12,7 +12,8 @@
 namespace hapbench::test {
 
 /// Hash of the names and contents of all files below `directory`, without what differs between two builds or two runs
-/// of the same code: "provenance" in JSON files, and timing.json. Sixteen hexadecimal digits.
+/// of the same code: "provenance" in JSON files, the directories of files that scenarios name, and timing.json. Sixteen
+/// hexadecimal digits.
 std::string hash_of_results(const std::filesystem::path& directory);
 
 /// Compares hashes by name with those on record whose names begin with `prefix`; fails the test where any differs, is
