@@ -10,9 +10,9 @@ namespace hapbench {
 namespace {
 
 constexpr std::size_t kSampled = 100;
-/// Of the spacing: reaches the middle of four points of a square lattice, 0.707 away.
+/// Radius of a patch as a share of the spacing: reaches the centre of four points of a square lattice, 0.707 away.
 constexpr double kPatch = 0.75;
-/// Of the spacing.
+/// Largest depth at which an edge constraint applies, as a share of the spacing.
 constexpr double kDeepest = 0.1;
 
 double distance_to_second(const PointShell& shell, std::size_t from) {

@@ -15,7 +15,7 @@ struct AllowedMove {
   Vec3 move = Vec3::Zero();   ///< x [m]
   Mat3 held = Mat3::Zero();   ///< I - dx/dt: the projector onto the span of the contacts that hold the tool back
   bool feasible = true;       ///< false: no move satisfies all contacts, x is the least-squares compromise
-  Vec3 share = Vec3::Zero();  ///< of a compromise: <u_i, share> of t - x falls on contact i [m]
+  Vec3 share = Vec3::Zero();  ///< if infeasible: contact i bears <u_i, share> of the residual t - x [m]
   int iterations = 0;
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 /// The search looks a little further than the proxy moves, for the rounding of both.
 constexpr double kQueryMargin = 1.0 + 1e-6;
-/// Of the spacing: how far a point may be inside one plane of an edge and still pass it by.
+/// How far a point may lie inside one plane of an edge and still count as passing it, as a share of the spacing.
 constexpr double kEdgeSlack = 1e-3;
 
 }  // namespace

@@ -73,7 +73,7 @@ void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, Ren
   hand_over_holding(contacts);
   out.spring = spring_ = K_ * (proxy_ - tool.pose.position);
   out.S = held_;
-  // Of a tool that nothing holds all velocity would count as tangential.
+  // Without contact, S = 0 would make the whole velocity tangential, so friction must not be applied.
   out.rendered = contacts.empty() ? spring_ : damping_and_limits_.rendered_force(spring_, held_, velocity_at(tool));
 }
 

@@ -20,8 +20,8 @@ struct TipPlace {
 ///
 ///   lateral = -R + r cos(alpha),  height = (r (1 + cos^2 alpha) - 2 R cos(alpha)) / sin(alpha)
 ///
-/// None when that is no such contact: the tip's edge above the mouth, or its other edge below the hole's bottom, or no
-/// tilt in (0, pi / 2).
+/// Returns nothing if there is no such contact: the tip's edge above the mouth, or its other edge below the hole's
+/// bottom, or no tilt in (0, pi / 2).
 std::optional<TipPlace> ideal_place(const BlockWithHole& block, double tool_radius, double tilt);
 
 /// Hands that push with less than this are gentle [N]: the thesis splits its figure 7 there.

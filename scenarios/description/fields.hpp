@@ -33,7 +33,7 @@ struct ListSize {
   std::size_t max;
 };
 
-/// Whether a field must be in a file, and what holds when it is not.
+/// Tells whether a field must be in a file, and what applies if it is not.
 enum class Presence {
   required,
   has_default,  ///< the member's value in a default-constructed object
@@ -97,12 +97,12 @@ class Fields {
   virtual bool reads() const { return false; }
   /// JSON pointer of the value that is being read.
   virtual std::string at() const { return {}; }
-  /// Whether the file has that field. False unless reading.
+  /// Returns true if the file being read has that field; always false for writers.
   virtual bool given(std::string_view name) const {
     static_cast<void>(name);
     return false;
   }
-  /// Tells the reader's user something that is no error.
+  /// Reports something odd that is not an error.
   virtual void warn(const std::string& text) { static_cast<void>(text); }
 
   // ---- The same for C++ types, by the primitives above. ----

@@ -41,7 +41,7 @@ void apply_override(Json& json, const std::string& text) {
   *node = Json::accept(value) ? parse_json(value) : Json(value);
 }
 
-/// The absolute path with links followed, because ".." behind a link leads elsewhere than its spelling says.
+/// The absolute path with symlinks resolved first, because a lexical ".." is wrong behind a symlink.
 std::filesystem::path without_links(const std::filesystem::path& path) {
   const auto absolute = std::filesystem::current_path() / path;  // fs::absolute refuses the empty path
   std::error_code error;

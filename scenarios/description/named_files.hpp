@@ -33,11 +33,11 @@ class NamedFile {
   std::string bytes_;
 };
 
-/// The files that a scenario names, each read and parsed once. Copies share what was read and are for one thread at a
-/// time. What gives the contents of a file throws InputError when the file cannot be used.
+/// The files that a scenario names, each read and parsed once. Copies share what was read, and must
+/// not be used by two threads at once. Functions that return contents throw InputError if the file cannot be used.
 class NamedFiles {
  public:
-  /// Those of a scenario that names none.
+  /// No files, for a scenario that names none.
   NamedFiles() = default;
   explicit NamedFiles(const Scenario& scenario);
 

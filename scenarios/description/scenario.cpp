@@ -21,7 +21,7 @@ Scenario with_algorithm(Scenario scenario, std::string_view algorithm) {
 }
 
 void set_scene_defaults(Scenario& scenario) {
-  // Those of springs are in the structs.
+  // The structs hold the defaults of springs.
   if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return;
   RenderingConfig& rendering = scenario.rendering;
   rendering.mu_s = 5.0;

@@ -3,11 +3,11 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <thread>
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/csv_writer.hpp"
 #include "results/io/json_text.hpp"
+#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/stability.hpp"
@@ -61,7 +61,7 @@ Json limits_json(const LoadedScenario& loaded, const std::vector<StabilityLimit>
           {"limits", std::move(rows)}};
 }
 
-/// Said when theory and runs disagree by more than a percent: the theory is that of a constant stiffness.
+/// Warning for limits in which theory and runs disagree by more than 1 %: the theory assumes a constant stiffness.
 std::string disagreement_text(const std::vector<StabilityLimit>& limits) {
   for (const StabilityLimit& limit : limits) {
     if (std::abs(limit.simulation / limit.limit() - 1.0) <= 0.01 || limit.simulation == limit.limit()) continue;
@@ -189,8 +189,7 @@ fs::path StabilityOptions::directory(const std::string& name) const {
 }
 
 JobOptions StabilityOptions::job_options(const std::string& label) const {
-  const unsigned machine = std::max(1u, std::thread::hardware_concurrency());
-  return {jobs == 0 ? machine : jobs, output.quiet ? "" : label};
+  return {jobs == 0 ? static_cast<unsigned>(available_threads()) : jobs, output.quiet ? "" : label};
 }
 
 void add_stability(CommandLine& line) {

@@ -30,7 +30,7 @@ struct Build {
   }
 };
 
-/// Whether building takes longer than reading what was built.
+/// Returns true if building the shell takes longer than reading it from the cache.
 bool is_worth_keeping(const Environment& environment) {
   return std::holds_alternative<BlockEnvironment>(environment) || std::holds_alternative<MeshEnvironment>(environment);
 }

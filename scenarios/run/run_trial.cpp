@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Those who watch a trial: what the scenario asks for and nothing else.
+/// The observers of a trial: only those that the scenario asks for.
 class TrialObservers {
  public:
   TrialObservers(const Scenario& scenario, const SimulationParts& parts, Trial trial)
@@ -71,7 +71,7 @@ SimulationResult run_timed(Simulation& simulation, StepTimes& times) noexcept {
   return simulation.result();
 }
 
-/// Of this process so far.
+/// Number of involuntary context switches of this process so far.
 std::uint64_t involuntary_context_switches() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);

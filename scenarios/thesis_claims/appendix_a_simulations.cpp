@@ -46,13 +46,13 @@ Finding judge_peg_motion(const Measured& measured, const PublishedNumbers&) {
 
 // ---- A2, A3: the springs without and with limits. A case for each algorithm.
 
-/// Those that have scenarios of the springs.
+/// The algorithms that have scenarios of the springs.
 constexpr const char* kAlgorithms[] = {"original_averaging", "summation",        "mean",
                                        "virtual_coupling",   "shaped_stiffness", "tandpasta",
                                        "normal_projection",  "exact_shaping"};
 constexpr const char* kProposed = "shaped_stiffness";
 
-/// Of the distance at the start: what is nearer has settled.
+/// A run has settled within this share of the distance at the start.
 constexpr double kSettled = 0.01;
 constexpr double kSameTime = 0.1;
 constexpr double kTakesLonger = 1.5;

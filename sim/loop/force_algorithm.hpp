@@ -71,22 +71,22 @@ class ForceAlgorithm {
   virtual void prepare(const Scene& scene) = 0;
   /// Back to t = 0, bit for bit.
   virtual void reset() noexcept = 0;
-  /// Once before the `compute` of each row, for algorithms that want it: f_in, which drives the tool besides f_render
-  /// over the coming step [N].
+  /// Passes f_in [N], which drives the tool together with f_render over the coming step. Called once before the
+  /// `compute` of each row if `wants_input` is true.
   virtual void take_input(const Vec3& input) noexcept { static_cast<void>(input); }
   /// One step, or one state within it: some integrators (sim/loop/integrators) ask several times a step, the first
   /// time at the row. `contacts` holds the contacts at the tool's pose, with depth and gradient (ContactSource); on
   /// return it holds the rendered ones, with their weights.
   virtual void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept = 0;
-  /// Elastic energy and moment of the springs behind the last `compute`, whose contacts are handed in. Called only when
-  /// somebody keeps accounts.
+  /// Elastic energy and moment of the springs behind the last `compute`, whose contacts are handed in. Called only if
+  /// an observer or controller needs them.
   virtual SpringState spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept = 0;
-  /// Of the last `compute`, with the contacts held as they were. Called only by integrators that ask for it.
+  /// Jacobian of the force of the last `compute`, for constant contacts. Only implicit integrators call it.
   virtual ForceJacobian jacobian() const noexcept = 0;
   /// Cut-off frequency [Hz] of the low-pass through which `compute` reads the tool's angular velocity, infinite for the
-  /// velocity as it is; none when it does not read it: then nobody computes it.
+  /// unfiltered velocity. Nothing if `compute` does not read it; it is then not computed.
   virtual std::optional<double> angular_velocity_cutoff() const noexcept { return std::nullopt; }
-  /// True when `take_input` is to be called.
+  /// Returns true if `take_input` must be called.
   virtual bool wants_input() const noexcept { return false; }
   virtual AlgorithmWork work() const noexcept { return {}; }
 };

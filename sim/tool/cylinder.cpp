@@ -83,7 +83,7 @@ Box Cylinder::box_near(const ToolPose& pose, double margin, const Box& bounds) c
   if (part.low > part.high) return {Vec3::Ones(), -Vec3::Ones()};
   const Vec3 tip = pose.position + part.high * pose.axis;
   const Vec3 bottom = pose.position + part.low * pose.axis;
-  // Of a disc with normal a, the half extent along e is radius sqrt(1 - <a, e>^2).
+  // A disc with normal a has the half extent radius sqrt(1 - <a, e>^2) along e.
   const Vec3 disc = radius * (Vec3::Ones() - pose.axis.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
   return {tip.cwiseMin(bottom) - disc, tip.cwiseMax(bottom) + disc};
 }

@@ -13,7 +13,7 @@
 #include "scenarios/studies/precision/study.hpp"
 #include "sim/core/random.hpp"
 
-/// Whether it pays to merge or drop contacts before a force law, from dozens of contacts to hundreds.
+/// Tells whether merging or dropping contacts before the force law saves time, from dozens of contacts to hundreds.
 namespace hapbench {
 namespace {
 
@@ -51,7 +51,7 @@ class Forces {
     for (const std::size_t i : order) work_.push_copy_of(set, i);
     work_.pad();
   }
-  /// Of what is loaded [N].
+  /// Force of the loaded contacts [N].
   Vec3 force() {
     if (reduction_) reduction_->process(work_);
     return law_->evaluate(work_).spring;

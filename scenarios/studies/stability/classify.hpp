@@ -7,7 +7,7 @@
 #include "sim/loop/observer.hpp"
 #include "sim/loop/simulation.hpp"
 
-/// Whether a run is stable, judged by its motion alone: no eigenvalue, no tensor, no knowledge of the law.
+/// Judges whether a run is stable by its motion alone, without eigenvalues, tensors or knowledge of the law.
 ///
 /// The run is cut into quarters. Their amplitude is the largest speed of the tool in them; a turn is a change of sign
 /// of a component of the velocity, two for each period of an oscillation.
@@ -39,7 +39,7 @@ class MotionClassifier final : public Observer {
   /// True once the tool has come to rest to 1e-12 of its largest speed for 200 rows: what is left is rounding, and the
   /// run may be cut short.
   bool at_rest() const noexcept { return rows_at_rest_ >= kRowsAtRest; }
-  /// Of the whole run, or of one that came to rest before.
+  /// Class of a complete run, or of one that was cut short because it came to rest.
   MotionClass motion_class(Outcome outcome) const noexcept;
 
  private:

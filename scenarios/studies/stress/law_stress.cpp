@@ -12,8 +12,8 @@
 namespace hapbench {
 namespace {
 
-/// Of sums over at most kMostContacts contacts, and of exact_shaping's weights, which an epsilon of 1e-6 makes
-/// sensitive.
+/// Relative rounding error allowed in sums over at most kMostContacts contacts and in exact_shaping's weights, which
+/// its epsilon of 1e-6 makes sensitive.
 constexpr double kRounding = 1e-6;
 constexpr std::uint64_t kSetsOfAJob = 1000;
 

@@ -8,7 +8,7 @@ namespace {
 
 /// Shorter ends cut off a motion, as shares of its duration.
 constexpr double kCuts[] = {0.5, 0.8, 0.95};
-/// Of one waypoint: tilt, azimuth, three components of the force.
+/// Numbers of one waypoint: tilt, azimuth, three components of the force.
 constexpr std::size_t kNumbers = 5;
 
 double& number(Waypoint& w, std::size_t i) {

@@ -13,7 +13,7 @@ class ForceField {
   /// The axis follows the script; f_in is held over the step, as a sampled device holds it. Costs a contact search and
   /// a rendered force.
   virtual Vec3 force_at(double part, const Vec3& position, const Vec3& velocity) noexcept = 0;
-  /// Of the row's force. Precondition: nobody has called force_at in this step.
+  /// Jacobian of the row's force. Precondition: force_at has not been called in this step.
   virtual ForceJacobian jacobian() const noexcept = 0;
 };
 
@@ -22,7 +22,7 @@ class ForceField {
 class Integrator {
  public:
   virtual ~Integrator() = default;
-  /// Back to t = 0: what is kept from step to step is forgotten.
+  /// Returns to t = 0: clears the state kept between steps.
   virtual void reset() noexcept {}
   /// One step of dt [s]: moves position and velocity of the tool of `mass` [kg], on which `force` [N] acts at the row.
   /// Leaves the axis alone. Allocates nothing.

@@ -22,7 +22,8 @@ class Rk4 final : public Integrator {
   }
 };
 
-/// Of |1 + z + z^2/2 + z^3/6 + z^4/24| <= 1 on the imaginary axis, z^2 = -8, and on the real one.
+/// Ends of the stability region |1 + z + z^2/2 + z^3/6 + z^4/24| <= 1 on the imaginary axis, z^2 = -8, and on the real
+/// one.
 std::optional<double> limit(const RaisedSpringDamper& problem) {
   return limit_of_one_alone(problem, {8.0, 2.785293563405282});
 }
