@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "scenarios/run/allocations.hpp"
+#include "results/allocations/allocations.hpp"
 #include "scenarios/run/progress.hpp"
 #include "scenarios/run/recorders.hpp"
 
