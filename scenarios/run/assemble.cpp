@@ -13,6 +13,7 @@
 #include "scenarios/run/environment_points.hpp"
 #include "sim/contact/spring_source.hpp"
 #include "sim/core/random.hpp"
+#include "sim/loop/stop_rules.hpp"
 
 namespace hapbench {
 namespace {
@@ -113,8 +114,15 @@ std::unique_ptr<Device> make_device(const Scenario& scenario, Trial trial) {
   return std::make_unique<AdmittanceDevice>(config);
 }
 
-bool contains(const std::vector<StopCondition>& list, StopCondition condition) {
-  return std::find(list.begin(), list.end(), condition) != list.end();
+/// In one order whatever the scenario's is, since the first that holds gives the run its outcome.
+std::vector<StopRule> stop_rules(const Scenario& scenario) {
+  const auto& wanted = scenario.time.stop_when;
+  const auto wants = [&wanted](StopCondition c) { return std::find(wanted.begin(), wanted.end(), c) != wanted.end(); };
+  const Vec3 up = scenario.motion.orientation ? scenario.motion.orientation->up.normalized() : Vec3(0.0, 0.0, 1.0);
+  std::vector<StopRule> rules;
+  if (wants(StopCondition::leaves_hole)) rules.push_back(when_tool_leaves_hole(up));
+  if (wants(StopCondition::tool_horizontal)) rules.push_back(when_tool_is_horizontal(up));
+  return rules;
 }
 
 }  // namespace
@@ -155,9 +163,7 @@ SimulationConfig simulation_config(const Scenario& scenario, Skips skips) {
   config.integrator = scenario.integrator.type;
   config.position = scenario.initial.position;
   config.velocity = scenario.initial.velocity;
-  if (scenario.motion.orientation) config.up = scenario.motion.orientation->up.normalized();
-  config.stop_when_leaves_hole = contains(scenario.time.stop_when, StopCondition::leaves_hole);
-  config.stop_when_horizontal = contains(scenario.time.stop_when, StopCondition::tool_horizontal);
+  config.stop_when = stop_rules(scenario);
   config.bounds = scenario.bounds;
   return config;
 }
