@@ -154,9 +154,9 @@ Cylinder make_cylinder(const ToolFields& fields) {
   return {fields.diameter / 2.0, fields.length, fields.tip};
 }
 
-SimulationConfig simulation_config(const Scenario& scenario, Skips skips) {
+SimulationConfig simulation_config(const Scenario& scenario) {
   SimulationConfig config;
-  config.skips = skips;
+  config.skips = scenario.rendering.skips;
   config.dt = scenario.time.step;
   config.steps = static_cast<std::uint64_t>(scenario.time.steps);
   config.mass = scenario.rendering.mass;
@@ -174,20 +174,19 @@ std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const std
 }
 
 SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std::shared_ptr<const PointShell> shell,
-                         Trial trial, Skips skips) {
+                         Trial trial) {
   SimulationParts parts;
   parts.tool = std::make_shared<Cylinder>(make_cylinder(scenario.tool));
   parts.shell = std::move(shell);
-  RenderingConfig rendering = scenario.rendering;
-  rendering.skips = skips;
+  const RenderingConfig& rendering = scenario.rendering;
   if (const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment)) {
     const auto seed = static_cast<std::uint64_t>(scenario.seed);
     parts.springs = std::make_shared<const SpringSet>(make_springs(*springs, seed));
     parts.source = std::make_unique<SpringSource>(parts.springs);
   } else {
-    auto search = make_contact_query(*parts.shell, *parts.tool, skips);
-    parts.source =
-        std::make_unique<ShellSource>(*parts.shell, *parts.tool, std::move(search), make_depth_model(rendering), skips);
+    auto search = make_contact_query(*parts.shell, *parts.tool, rendering.skips);
+    parts.source = std::make_unique<ShellSource>(*parts.shell, *parts.tool, std::move(search),
+                                                 make_depth_model(rendering), rendering.skips);
   }
   parts.algorithm = make_algorithm(rendering);
   add_hand_and_motion(scenario, files, trial, parts);
@@ -195,8 +194,8 @@ SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std:
   return parts;
 }
 
-SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial, Skips skips) {
-  return assemble(scenario, NamedFiles(scenario), std::move(shell), trial, skips);
+SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial) {
+  return assemble(scenario, NamedFiles(scenario), std::move(shell), trial);
 }
 
 SimulationParts assemble(const Scenario& scenario) {
