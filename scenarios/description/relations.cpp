@@ -62,8 +62,7 @@ void check_local_average(const Scenario& scenario) {
 }
 
 void check_ideal_trajectory(const Scenario& scenario) {
-  if (!scenario.record.ideal_trajectory) return;
-  if (std::holds_alternative<BlockEnvironment>(scenario.environment) && scenario.tool.tip == Tip::flat) return;
+  if (!scenario.record.ideal_trajectory || has_ideal_trajectory(scenario)) return;
   fail("/record/ideal_trajectory",
        "got true; allowed: false, unless the environment is block_with_hole and the tool's tip flat");
 }

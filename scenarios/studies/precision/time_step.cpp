@@ -47,8 +47,8 @@ static PrecisionResult study_time_step(const Scenario& given, const PrecisionOpt
                            std::string(outcome_name(sampled.result.outcome)),
                            {run.time.step, d.final, d.rms, d.max, ideal.metrics().gentle.height_rms},
                            seconds_per_step(run, shell, options.repetitions)});
-    // A drill that was thrown out is anywhere, which has no order.
-    if (sampled.positions.size() != reference.positions.size() || !(d.max <= tool.radius())) {
+    // A drill that was thrown out may be anywhere: its distance from the reference does not converge.
+    if (sampled.positions.size() != reference.positions.size() || !(d.max <= tool.half_width())) {
       options.progress(result.rows.size(), std::size(kFactors));
       continue;
     }
