@@ -11,7 +11,7 @@
 namespace hapbench {
 namespace {
 
-/// Steps of the study over the scenario's own one.
+/// The time steps of the study, in units of the scenario's own.
 constexpr double kFactors[] = {4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625};
 constexpr int kReference = 64;  // times finer than the scenario's own step
 
