@@ -15,8 +15,9 @@ namespace {
 
 using simd::load, simd::Pack;
 
-/// Squared sine of the angle between a gradient and the span of others below which it counts as lying in it: those of a
-/// flat tip, or of one line along the side, differ by rounding, 1e-15; other neighbours by far more than this 3e-8.
+/// Squared sine of the angle between a gradient and the span of others below which it counts as lying in it: those on
+/// one flat face of the tool, or along one line of its side, differ by rounding, 1e-15; other neighbours by far more
+/// than this 3e-8.
 constexpr double kInSpan = 1e-15;
 constexpr int kMostIterations = 100;
 
