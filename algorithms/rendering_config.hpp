@@ -48,7 +48,9 @@ struct RenderingConfig {
     return angular_velocity_cutoff.value_or(std::numeric_limits<double>::infinity());
   }
 
-  Skips skips = Skips::taken;  ///< stages without contacts, the reduction of one, friction with coefficients of zero
+  /// Stages without contacts, the reduction of one, friction with coefficients of zero. The run that is made of this
+  /// takes the same for its search and its records.
+  Skips skips = Skips::taken;
 };
 
 }  // namespace hapbench

@@ -5,9 +5,7 @@ namespace hapbench {
 const ModelInfo kNormalProjectionDepthInfo = {
     .name = "normal_projection",
     .summary = "distance along the inverse surface normal to where it leaves the tool",
-    .formula =
-        "u = -n, d = smallest exit of the ray x + d u through side (F.7), tip (F.9) and bottom (F.12); "
-        "a round tip replaces the tip plane by the half ball",
+    .formula = "u = -n, d = smallest d > 0 at which the ray x + d u leaves the tool (a cylinder: F.7, F.9, F.12)",
     .source = "thesis F.1 (F.6 printed with a minus; F.7 shows that r_p + d r_n is meant)",
     .known_failure = "a point that appears at a corner can start with a large depth: the force jumps (Fig. F.4)",
 };

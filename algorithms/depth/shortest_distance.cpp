@@ -5,7 +5,7 @@ namespace hapbench {
 const ModelInfo kShortestDistanceInfo = {
     .name = "shortest_distance",
     .summary = "distance to the nearest surface of the tool, gradient towards it",
-    .formula = "d = min(r - |rho|, -s, L + s), u = rho/|rho|, axis, -axis; round tip, s > 0: d = r - |x|, u = x/|x|",
+    .formula = "d = |q - x|, u = (q - x) / d, with q the place of the tool's surface nearest to the point x",
     .source =
         "thesis B.1, with depths >= 0 of which the smallest wins (as printed, negative depths would pull the tool in)",
     .known_failure = "the gradient flips by 180 degrees when a point crosses the tool's median line (thesis B.3.1)",

@@ -9,7 +9,7 @@ const ModelInfo kSurfaceNormalInfo = {
     .summary = "depth of shortest_distance, gradient against the surface normal (default)",
     .formula = "d as in shortest_distance, u = -n",
     .source = "thesis C.1, 2.3",
-    .known_failure = "underestimates the depth; on a flat it saturates at the tool's radius (thesis C.1, F.1)",
+    .known_failure = "underestimates the depth; on a flat it saturates at half the tool's width (thesis C.1, F.1)",
 };
 
 namespace {

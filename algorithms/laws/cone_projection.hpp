@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -95,9 +95,7 @@ Pass evaluate(const Tensors& tensors, const Vec6& w) noexcept {
 }
 
 /// (eps I + G)^-1 b
-inline Vec6 solve_step(const Mat6& G, double eps, const Vec6& b) noexcept {
-  return Eigen::LDLT<Mat6>(G + eps * Mat6::Identity()).solve(b);
-}
+Vec6 solve_step(const Mat6& G, double eps, const Vec6& b) noexcept;
 
 /// Gradient of the convex dual ½|eps w - I|² / eps + ½ sum max(0, a_i . w)²: zero at the optimum.
 inline Vec6 dual_gradient(const Vec6& w, double eps, const Pass& pass) noexcept {

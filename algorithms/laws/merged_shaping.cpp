@@ -113,17 +113,17 @@ class MergedShaping final : public ForceLaw {
       cell.tensor[4] += x * z;
       cell.tensor[5] += y * z;
     }
-    // The order of the contacts must not be that of the groups.
+    // Sorted, so that the groups do not depend on the order of the contacts.
     std::sort(touched_.begin(), touched_.end());
   }
 
-  /// One group a cell; leaves the sums at zero.
+  /// Makes one group of each cell and sets the cell's sums back to zero.
   void make_groups() noexcept {
     groups_.size = touched_.size();
     for (std::size_t k = 0; k < groups_.size; ++k) {
       CellSum& cell = cells_[touched_[k]];
       const double trace = cell.tensor[0] + cell.tensor[1] + cell.tensor[2];
-      // Zero gradients alone: a tensor of zero, whose weight does nothing.
+      // A cell that holds zero gradients only has a zero tensor, and its weight has no effect.
       const double scale = trace > 0.0 ? 1.0 / trace : 0.0;
       trace_[k] = trace > 0.0 ? trace : 1.0;
       weight_[k] = 1.0;

@@ -42,13 +42,13 @@ class OriginalAveraging final : public ForceLaw {
     return {-K_ * (simd::sum(depths) / length) * u, u * u.transpose()};
   }
 
-  /// One spring, compressed by d_r. It has no point of attack of its own; the middle of the contacts is as good as any.
+  /// One spring, compressed by d_r. The law gives it no point of application; the middle of the contacts is taken.
   SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
     if (K_ == 0.0) return {};
     return {spring.squaredNorm() / (2.0 * K_), mean_arm(contacts, tip).cross(spring)};
   }
 
-  /// The velocity at that point of attack, along u_r.
+  /// The velocity at that point of application, along u_r.
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
     return S * tool.angular_velocity.cross(mean_arm(contacts, tool.pose.position));
   }

@@ -97,7 +97,7 @@ double bound(const RenderingConfig& config, const ToolShape&, std::size_t n, dou
   return (config.iterations > 0 ? std::min(3.0, most) : most) * depth;
 }
 
-/// From the first update on.
+/// The closed form holds from the first update on.
 WedgeStiffness wedge(const RenderingConfig& config, double w, double n) {
   return wedge_of_weight(config.iterations == 0 ? n : shaped_wedge_weight(w), w);
 }

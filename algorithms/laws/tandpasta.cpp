@@ -71,7 +71,7 @@ double bound(const RenderingConfig&, const ToolShape&, std::size_t n, double dep
   return 1e6 * static_cast<double>(n) * depth;
 }
 
-/// All springs fight alike, and sigma_E undoes that.
+/// On a wedge every spring has the same beta, and sigma_E cancels it.
 WedgeStiffness wedge(const RenderingConfig&, double w, double n) {
   return wedge_of_weight(n, w);
 }

@@ -19,11 +19,11 @@ double typical_spacing(const PointShell& shell);
 ///
 ///     <n_i, v_i + x - x_i> >= 0, appended as contact with depth <n_i, x_i - v_i> and gradient -n_i.
 ///
-/// A drill's edge on a wall touches points with its tip plane and others with its side, and between two rows of
-/// points 0.1 mm apart it finds up to 0.05 mm of room; a patch leaves none. Patches apply up to `margin` away, and to
-/// depths up to a tenth of the spacing: the tool never gets deeper, so a patch that lies further out faces something
-/// else (the other side of a rim). Call after ToolShape::surface_constraints. `places` is scratch
-/// memory for a place of each contact. Preconditions: room for as many contacts again, and as many places. O(n).
+/// A drill's edge on a wall touches points with both of its faces, and between two rows of points 0.1 mm apart it finds
+/// up to 0.05 mm of room; a patch leaves none. Patches apply up to `margin` away, and to depths up to a tenth of the
+/// spacing: the tool never gets deeper, so a patch that lies further out faces something else (the other side of a
+/// rim). Call after ToolShape::surface_constraints. `places` is scratch memory for a place of each contact.
+/// Preconditions: room for as many contacts again, and as many places. O(n).
 void add_edge_constraints(const ToolShape& tool, const ToolPose& pose, double spacing, double margin,
                           std::vector<Vec3>& places, ContactBuffer& contacts) noexcept;
 

@@ -1,12 +1,13 @@
 #include "algorithms/proxy/nearest_allowed.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <span>
 
 #include "algorithms/laws/force_law.hpp"
+#include "algorithms/proxy/small_qr.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
@@ -14,8 +15,9 @@ namespace {
 
 using simd::load, simd::Pack;
 
-/// Squared sine of the angle between a gradient and the span of others below which it counts as lying in it: those of a
-/// flat tip, or of one line along the side, differ by rounding, 1e-15; other neighbours by far more than this 3e-8.
+/// Squared sine of the angle between a gradient and the span of others below which it counts as lying in it: those on
+/// one flat face of the tool, or along one line of its side, differ by rounding, 1e-15; other neighbours by far more
+/// than this 3e-8.
 constexpr double kInSpan = 1e-15;
 constexpr int kMostIterations = 100;
 
@@ -52,56 +54,52 @@ double largest_length(const ContactBuffer& c, const Vec3& wanted) noexcept {
 /// The contacts that hold the tool back, at most three, with independent gradients.
 class ActiveSet {
  public:
-  using Columns = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3>;
-  using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
-
-  int size() const { return size_; }
+  int size() const { return static_cast<int>(size_); }
   std::size_t contact(int k) const { return contact_[static_cast<std::size_t>(k)]; }
   double& lambda(int k) { return lambda_[static_cast<std::size_t>(k)]; }
 
   bool contains(std::size_t contact) const {
-    return std::find(contact_.begin(), contact_.begin() + size_, contact) != contact_.begin() + size_;
+    const auto end = contact_.begin() + static_cast<std::ptrdiff_t>(size_);
+    return std::find(contact_.begin(), end, contact) != end;
   }
   void add(std::size_t contact, const Vec3& gradient, double lambda) {
-    contact_[static_cast<std::size_t>(size_)] = contact;
-    lambda_[static_cast<std::size_t>(size_)] = lambda;
-    gradients_.col(size_++) = gradient;
+    contact_[size_] = contact;
+    lambda_[size_] = lambda;
+    gradients_[size_++] = gradient;
   }
   void drop(int k) {
-    for (int j = k; j + 1 < size_; ++j) {
-      contact_[static_cast<std::size_t>(j)] = contact_[static_cast<std::size_t>(j + 1)];
-      lambda_[static_cast<std::size_t>(j)] = lambda_[static_cast<std::size_t>(j + 1)];
-      gradients_.col(j) = Vec3(gradients_.col(j + 1));
-    }
     --size_;
+    for (auto j = static_cast<std::size_t>(k); j < size_; ++j) {
+      contact_[j] = contact_[j + 1];
+      lambda_[j] = lambda_[j + 1];
+      gradients_[j] = gradients_[j + 1];
+    }
   }
-  /// u = sum of the active gradients times these, plus a remainder perpendicular to all of them.
-  Coefficients along(const Vec3& u) const {
-    if (size_ == 0) return Coefficients(0);
-    return Eigen::HouseholderQR<Columns>(gradients_.leftCols(size_)).solve(u);
-  }
-  Vec3 combine(const Coefficients& coefficients) const {
-    return size_ == 0 ? Vec3(Vec3::Zero()) : Vec3(gradients_.leftCols(size_) * coefficients);
+  /// u = sum of the active gradients times the first of these, plus a remainder perpendicular to all of them.
+  Vec3 along(const Vec3& u) const { return SmallQr(gradients()).solve(u); }
+  Vec3 combine(const Vec3& coefficients) const {
+    if (size_ == 0) return Vec3::Zero();
+    Vec3 sum = coefficients[0] * gradients_[0];
+    for (std::size_t k = 1; k < size_; ++k) sum += coefficients[static_cast<Eigen::Index>(k)] * gradients_[k];
+    return sum;
   }
   /// The orthogonal projector onto the span of the gradients.
-  Mat3 projector() const {
-    if (size_ == 0) return Mat3::Zero();
-    const Mat3 Q = Eigen::HouseholderQR<Columns>(gradients_.leftCols(size_)).householderQ();
-    return Q.leftCols(size_) * Q.leftCols(size_).transpose();
-  }
+  Mat3 projector() const { return SmallQr(gradients()).projector(); }
 
  private:
-  int size_ = 0;
+  std::span<const Vec3> gradients() const { return {gradients_.data(), size_}; }
+
+  std::size_t size_ = 0;
   std::array<std::size_t, 3> contact_{};
   std::array<double, 3> lambda_{};
-  Mat3 gradients_ = Mat3::Zero();
+  std::array<Vec3, 3> gradients_{};
 };
 
 /// Makes contact `p` satisfied, letting go of active ones that no longer hold. False when that is impossible.
 bool satisfy(std::size_t p, double violation, const Vec3& u, Vec3& x, ActiveSet& active) noexcept {
   double lambda = 0.0;
   for (;;) {
-    const ActiveSet::Coefficients r = active.along(u);
+    const Vec3 r = active.along(u);
     const Vec3 free = u - active.combine(r);
     const double free2 = active.size() == 3 ? 0.0 : free.squaredNorm();
     const double whole_step = free2 > kInSpan ? violation / free2 : kNever;

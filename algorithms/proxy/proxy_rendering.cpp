@@ -20,14 +20,12 @@ const ModelInfo kProxyInfo = {
     .formula =
         "x = argmin |x - p|^2 with <m_i, x - x_proxy> <= g_i for all points within the margin (g_i signed distance of "
         "the point to the tool, m_i the tool's normal there), and with the tool's foremost edge above the surface's "
-        "flat "
-        "patch about each point; f_spring = K (x - p), S = projector onto the span of the active gradients",
+        "flat patch about each point; f_spring = K (x - p), S = projector onto the span of the active gradients",
     .source = "ours; after Zilles and Salisbury 1995 (god-object) and Ruspini et al. 1997, which thesis 1.2 rejects",
     .known_failure =
         "a scene that starts in deep penetration, or a hole that the turned tool does not fit into, throws the proxy "
-        "out "
-        "at once; a flat tip bumps on a face whose normals are off by more than 6 degrees; no depth model or reduction "
-        "applies",
+        "out at once; a flat face of the tool bumps on a surface whose normals are off by more than 6 degrees; no "
+        "depth model or reduction applies",
     .parameters = kParameters,
 };
 

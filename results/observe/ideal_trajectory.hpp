@@ -15,8 +15,10 @@ struct TipPlace {
   double height = 0.0;   ///< above the hole's mouth, so negative in the hole [m]
 };
 
-/// The ideal trajectory of thesis 3.6: a flat-tipped tool of radius r, tilted by alpha in a hole of radius R and depth
-/// H, touches the wall with the lower edge of its tip and the rim opposite with its side:
+/// The ideal trajectory of thesis 3.6, which is a formula for the thesis's drill, a flat-tipped cylinder: this file and
+/// interpenetration.hpp are about that one tool and ask no ToolShape. A flat-tipped tool of radius r, tilted by alpha
+/// in a hole of radius R and depth H, touches the wall with the lower edge of its tip and the rim opposite with its
+/// side:
 ///
 ///   lateral = -R + r cos(alpha),  height = (r (1 + cos^2 alpha) - 2 R cos(alpha)) / sin(alpha)
 ///

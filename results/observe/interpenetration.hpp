@@ -5,9 +5,10 @@
 
 namespace hapbench {
 
-/// True interpenetration of a flat-tipped tool with the block [m]: the depth below the block's surface of the tool's
-/// deepest point, from the exact shapes and not from a shell; 0 when they do not overlap. For a tool that touches the
-/// hole and the top face round it; the block's other edges are not looked at.
+/// True interpenetration of a flat-tipped cylinder (ideal_trajectory.hpp says why of no other tool) with the block [m]:
+/// the depth below the block's surface of the tool's deepest point, from the exact shapes and not from a shell; 0 when
+/// they do not overlap. For a tool that touches the hole and the top face round it; the block's other edges are not
+/// looked at.
 ///
 /// In the material near the hole the depth is min(rho - R, -z) above the hole's bottom, and convex below it. A convex
 /// function is largest on the tip's edge; the minimum of the two may also be largest where they are equal, on the cone

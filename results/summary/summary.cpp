@@ -1,6 +1,7 @@
 #include "results/summary/summary.hpp"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "results/io/json_text.hpp"

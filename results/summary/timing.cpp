@@ -1,5 +1,7 @@
 #include "results/summary/timing.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include "results/io/json_text.hpp"
 
 namespace hapbench {

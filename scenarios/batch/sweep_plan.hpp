@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "scenarios/batch/grid.hpp"
-#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/scenario_text.hpp"
 
 namespace hapbench {
 

@@ -1,10 +1,12 @@
 #include "scenarios/description/load_scenario.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "results/io/json_text.hpp"
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/reader.hpp"
+#include "scenarios/description/scenario_text.hpp"
 #include "scenarios/description/schema_writer.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/json_file.hpp"

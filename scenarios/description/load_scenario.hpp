@@ -20,22 +20,12 @@ struct LoadedScenario {
   std::vector<std::string> warnings;  ///< given values that the algorithm's definition overrides, with file and pointer
 };
 
-/// A scenario file as it stands, for loading it several times with different overrides.
-struct ScenarioText {
-  std::filesystem::path file;
-  Json json;
-};
-
 /// Throws the error again with the file in front.
 [[noreturn]] void rethrow_with_file(const InputError& error, const std::filesystem::path& file);
 
 /// Reads a scenario file, applies overrides `path=value` (dotted path, value as JSON or else as text; later ones win)
 /// and checks it. Throws InputError whose message starts with the file's name.
 LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const std::string> overrides = {});
-
-/// The same in two steps. Both throw InputError; the second may be called from several threads.
-ScenarioText read_scenario_text(const std::filesystem::path& file);
-LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::string> overrides);
 
 /// The same from JSON in memory; `directory` is what relative paths start from.
 LoadedScenario read_scenario(const Json& json, const std::filesystem::path& directory);

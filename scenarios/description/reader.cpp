@@ -1,6 +1,7 @@
 #include "scenarios/description/reader.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -28,6 +29,10 @@ void Reader::refuse(Body what, const std::string& hint) const {
   throw InputError(InputError::Kind::shape, at_,
                    fmt::format("got {}; allowed: {}{}{}", shown(json_), null_allowed_ ? "null or " : "",
                                description.allowed(), hint));
+}
+
+bool Reader::given(std::string_view name) const {
+  return reads() && json_.contains(std::string(name));
 }
 
 void Reader::number(double& value, NumberRange range) {

@@ -45,8 +45,8 @@ void check_orientation(const MotionFields& motion) {
   const Vec3 &up = motion.orientation->up, &lean = motion.orientation->lean;
   // 1e-9 forgives the rounding of directions that were normalised by somebody else.
   if (up.norm() >= 1e-12 && lean.norm() >= 1e-12 && std::abs(up.dot(lean)) <= 1e-9 * up.norm() * lean.norm()) return;
-  fail("/motion/orientation", fmt::format("got up {} and lean {}; allowed: two perpendicular directions, not zero",
-                                          shown({up.x(), up.y(), up.z()}), shown({lean.x(), lean.y(), lean.z()})));
+  fail("/motion/orientation",
+       fmt::format("got up {} and lean {}; allowed: two perpendicular directions, not zero", shown(up), shown(lean)));
 }
 
 void check_local_average(const Scenario& scenario) {
@@ -62,8 +62,7 @@ void check_local_average(const Scenario& scenario) {
 }
 
 void check_ideal_trajectory(const Scenario& scenario) {
-  if (!scenario.record.ideal_trajectory) return;
-  if (std::holds_alternative<BlockEnvironment>(scenario.environment) && scenario.tool.tip == Tip::flat) return;
+  if (!scenario.record.ideal_trajectory || has_ideal_trajectory(scenario)) return;
   fail("/record/ideal_trajectory",
        "got true; allowed: false, unless the environment is block_with_hole and the tool's tip flat");
 }

@@ -10,6 +10,10 @@ bool records_rows(const RecordFields& record) {
          record.energy || record.ideal_trajectory;
 }
 
+bool has_ideal_trajectory(const Scenario& scenario) {
+  return std::holds_alternative<BlockEnvironment>(scenario.environment) && scenario.tool.tip == Tip::flat;
+}
+
 std::filesystem::path resolve_path(const Scenario& scenario, const std::string& file) {
   return scenario.directory / file;  // an absolute `file` replaces the directory
 }

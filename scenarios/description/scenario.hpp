@@ -166,6 +166,10 @@ struct Scenario {
   std::filesystem::path directory;  ///< of the scenario file: what relative paths start from
 };
 
+/// True when the ideal trajectory and the exact depth in the hole are known (results/observe/ideal_trajectory.hpp): of
+/// a flat-tipped cylinder in a block_with_hole.
+bool has_ideal_trajectory(const Scenario& scenario);
+
 /// Where a file named in the scenario lies.
 std::filesystem::path resolve_path(const Scenario& scenario, const std::string& file);
 

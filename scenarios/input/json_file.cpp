@@ -1,6 +1,7 @@
 #include "scenarios/input/json_file.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cerrno>
@@ -144,6 +145,18 @@ std::string shown(const Json& json) {
   std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
   if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
   return text;
+}
+
+std::string shown(double value) {
+  return shown(Json(value));
+}
+
+std::string shown(const Vec3& value) {
+  return shown(Json({value.x(), value.y(), value.z()}));
+}
+
+std::string shown(std::string_view text) {
+  return shown(Json(text));
 }
 
 std::string member(const std::string& at, const std::string& name) {

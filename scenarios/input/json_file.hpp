@@ -1,12 +1,16 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
+
+#include "sim/core/types.hpp"
 
 namespace hapbench {
 
-/// Keeps the order of keys, so that written scenarios read like the documentation.
+/// Keeps the order of keys, so that written scenarios read like the documentation. Only declared here, because its
+/// definition takes a compiler long: a source that makes one or takes one apart includes <nlohmann/json.hpp>.
 using Json = nlohmann::ordered_json;
 
 /// Largest JSON file read [bytes].
@@ -21,6 +25,9 @@ Json parse_json(const std::string& text);
 
 /// The value as an error message shows it: JSON on one line, cut when long.
 std::string shown(const Json& json);
+std::string shown(double value);
+std::string shown(const Vec3& value);
+std::string shown(std::string_view text);
 
 /// Pointer of a member or an element; `~` and `/` escaped as RFC 6901 says.
 std::string member(const std::string& at, const std::string& name);

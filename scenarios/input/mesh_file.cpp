@@ -118,9 +118,4 @@ std::vector<SurfacePoint> MeshFile::points() const {
   return thinned(vertices_with_normals(mesh), *sampling_.spacing);
 }
 
-std::vector<SurfacePoint> read_mesh_points(const fs::path& file, const MeshSampling& sampling) {
-  mesh_extension(file);  // refused unread if it is another
-  return MeshFile(read_named_file(file), file, sampling).points();
-}
-
 }  // namespace hapbench

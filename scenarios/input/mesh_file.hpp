@@ -42,7 +42,4 @@ class MeshFile {
   std::vector<std::string> warnings_;
 };
 
-/// The points of a mesh file.
-std::vector<SurfacePoint> read_mesh_points(const std::filesystem::path& file, const MeshSampling& sampling);
-
 }  // namespace hapbench

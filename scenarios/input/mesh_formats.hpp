@@ -9,7 +9,7 @@
 /// The mesh formats. Each reader takes the contents of a file, whose name is for messages, and returns vertices and
 /// faces in the file's unit: numbers of text in double precision, those of binary files as they are stored. Vertex
 /// indices are not compared with the number of vertices, and coordinates of binary files may be no finite numbers:
-/// read_mesh_points checks both for all formats. Files come from outside: each word is checked, and memory grows with
+/// MeshFile checks both for all formats. Files come from outside: each word is checked, and memory grows with
 /// what a file holds, never with what it declares. Throws InputError that names the file, and the line of a text.
 namespace hapbench {
 

@@ -37,8 +37,4 @@ RecordedMotion motion_in(std::string_view text, const std::filesystem::path& fil
   return RecordedMotion(std::move(samples));
 }
 
-RecordedMotion read_motion(const std::filesystem::path& file) {
-  return motion_in(read_named_file(file), file);
-}
-
 }  // namespace hapbench

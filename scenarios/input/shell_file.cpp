@@ -83,11 +83,6 @@ std::vector<SurfacePoint> point_shell_in(std::string_view text, const std::files
   return points;
 }
 
-std::vector<SurfacePoint> read_point_shell(const std::filesystem::path& file) {
-  shell_extension(file);  // refused unread if it is another
-  return point_shell_in(read_named_file(file), file);
-}
-
 std::string point_shell_text(const std::vector<SurfacePoint>& points, const std::filesystem::path& file) {
   return shell_extension(file) == ".csv" ? csv_text(points) : ply_text(points);
 }

@@ -16,7 +16,6 @@ std::string shell_extension(const std::filesystem::path& file);
 /// (ply_points.hpp). Normals must be unit to 1e-3 and are normalised unless they are unit to rounding; coordinates must
 /// be finite and within 1 km. Throws InputError that names file and point.
 std::vector<SurfacePoint> point_shell_in(std::string_view text, const std::filesystem::path& file);
-std::vector<SurfacePoint> read_point_shell(const std::filesystem::path& file);
 
 /// The shell as the text of a .csv (shortest round-trip numbers) or .ply file (single precision, for viewers), by the
 /// file's extension. Throws InputError for another extension.

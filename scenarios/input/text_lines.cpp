@@ -45,7 +45,7 @@ std::optional<std::size_t> whole_number(std::string_view word) {
 }
 
 std::string quoted_word(std::string_view word) {
-  return shown(Json(word.substr(0, 60)));
+  return shown(word.substr(0, 60));
 }
 
 std::string lower_case(std::string_view text) {

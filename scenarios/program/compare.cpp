@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <memory>
 
@@ -51,6 +52,7 @@ int compare(const CompareOptions& options) {
     std::vector<std::string> overrides = options.overrides;
     overrides.push_back("rendering.algorithm=" + algorithm);
     scenarios.push_back(load_scenario(file, overrides));
+    scenarios.back().scenario.rendering.skips = options.skips;
     const std::vector<std::string> warnings = check_named_files(scenarios.back());
     // All have the same files.
     if (scenarios.size() == 1) print_warnings(warnings);
@@ -67,7 +69,7 @@ int compare(const CompareOptions& options) {
   const ShellCache cache = shell_cache(options.no_cache || options.skips == Skips::off);
   int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
-    RunReport report = run_scenario(scenarios[i], out / algorithms[i], !options.output.quiet, cache, options.skips);
+    RunReport report = run_scenario(scenarios[i], out / algorithms[i], !options.output.quiet, cache);
     std::vector<std::string> cells = run_cells(report);
     cells.insert(cells.begin(), report.summary.algorithm);
     table.add(std::move(cells));

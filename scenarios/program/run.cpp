@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <memory>
 
@@ -31,6 +32,7 @@ int run(const RunOptions& options) {
   std::vector<LoadedScenario> scenarios;
   for (const std::string& argument : options.scenarios) {
     scenarios.push_back(load_scenario(find_scenario(argument), overrides));
+    scenarios.back().scenario.rendering.skips = options.skips;
   }
   const std::vector<fs::path> directories = output_directories(options.out, scenarios, "", "one of each name in a run");
   for (const LoadedScenario& scenario : scenarios) {
@@ -49,7 +51,7 @@ int run(const RunOptions& options) {
   std::string targets;
   int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
-    const RunReport report = run_scenario(scenarios[i], directories[i], !options.output.quiet, cache, options.skips);
+    const RunReport report = run_scenario(scenarios[i], directories[i], !options.output.quiet, cache);
     std::vector<std::string> cells = run_cells(report);
     cells.insert(cells.begin(), {report.summary.name, report.summary.algorithm});
     table.add(std::move(cells));

@@ -1,6 +1,7 @@
 #include "scenarios/program/schema_text.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/table.hpp"

@@ -1,6 +1,7 @@
 #include "scenarios/studies/stability/stability_map.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "results/io/csv_writer.hpp"
 #include "scenarios/program/stability.hpp"

@@ -1,6 +1,7 @@
 #include "scenarios/program/sweep_summary.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

@@ -13,6 +13,7 @@
 #include "scenarios/run/environment_points.hpp"
 #include "sim/contact/spring_source.hpp"
 #include "sim/core/random.hpp"
+#include "sim/loop/stop_rules.hpp"
 
 namespace hapbench {
 namespace {
@@ -113,8 +114,15 @@ std::unique_ptr<Device> make_device(const Scenario& scenario, Trial trial) {
   return std::make_unique<AdmittanceDevice>(config);
 }
 
-bool contains(const std::vector<StopCondition>& list, StopCondition condition) {
-  return std::find(list.begin(), list.end(), condition) != list.end();
+/// In one order whatever the scenario's is, since the first that holds gives the run its outcome.
+std::vector<StopRule> stop_rules(const Scenario& scenario) {
+  const auto& wanted = scenario.time.stop_when;
+  const auto wants = [&wanted](StopCondition c) { return std::find(wanted.begin(), wanted.end(), c) != wanted.end(); };
+  const Vec3 up = scenario.motion.orientation ? scenario.motion.orientation->up.normalized() : Vec3(0.0, 0.0, 1.0);
+  std::vector<StopRule> rules;
+  if (wants(StopCondition::leaves_hole)) rules.push_back(when_tool_leaves_hole(up));
+  if (wants(StopCondition::tool_horizontal)) rules.push_back(when_tool_is_horizontal(up));
+  return rules;
 }
 
 }  // namespace
@@ -146,18 +154,16 @@ Cylinder make_cylinder(const ToolFields& fields) {
   return {fields.diameter / 2.0, fields.length, fields.tip};
 }
 
-SimulationConfig simulation_config(const Scenario& scenario, Skips skips) {
+SimulationConfig simulation_config(const Scenario& scenario) {
   SimulationConfig config;
-  config.skips = skips;
+  config.skips = scenario.rendering.skips;
   config.dt = scenario.time.step;
   config.steps = static_cast<std::uint64_t>(scenario.time.steps);
   config.mass = scenario.rendering.mass;
   config.integrator = scenario.integrator.type;
   config.position = scenario.initial.position;
   config.velocity = scenario.initial.velocity;
-  if (scenario.motion.orientation) config.up = scenario.motion.orientation->up.normalized();
-  config.stop_when_leaves_hole = contains(scenario.time.stop_when, StopCondition::leaves_hole);
-  config.stop_when_horizontal = contains(scenario.time.stop_when, StopCondition::tool_horizontal);
+  config.stop_when = stop_rules(scenario);
   config.bounds = scenario.bounds;
   return config;
 }
@@ -168,20 +174,19 @@ std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const std
 }
 
 SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std::shared_ptr<const PointShell> shell,
-                         Trial trial, Skips skips) {
+                         Trial trial) {
   SimulationParts parts;
   parts.tool = std::make_shared<Cylinder>(make_cylinder(scenario.tool));
   parts.shell = std::move(shell);
-  RenderingConfig rendering = scenario.rendering;
-  rendering.skips = skips;
+  const RenderingConfig& rendering = scenario.rendering;
   if (const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment)) {
     const auto seed = static_cast<std::uint64_t>(scenario.seed);
     parts.springs = std::make_shared<const SpringSet>(make_springs(*springs, seed));
     parts.source = std::make_unique<SpringSource>(parts.springs);
   } else {
-    auto search = make_contact_query(*parts.shell, *parts.tool, skips);
-    parts.source =
-        std::make_unique<ShellSource>(*parts.shell, *parts.tool, std::move(search), make_depth_model(rendering), skips);
+    auto search = make_contact_query(*parts.shell, *parts.tool, rendering.skips);
+    parts.source = std::make_unique<ShellSource>(*parts.shell, *parts.tool, std::move(search),
+                                                 make_depth_model(rendering), rendering.skips);
   }
   parts.algorithm = make_algorithm(rendering);
   add_hand_and_motion(scenario, files, trial, parts);
@@ -189,8 +194,8 @@ SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std:
   return parts;
 }
 
-SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial, Skips skips) {
-  return assemble(scenario, NamedFiles(scenario), std::move(shell), trial, skips);
+SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial) {
+  return assemble(scenario, NamedFiles(scenario), std::move(shell), trial);
 }
 
 SimulationParts assemble(const Scenario& scenario) {

@@ -17,7 +17,7 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded);
 Cylinder make_cylinder(const ToolFields& fields);
 
 /// Numbers of the run.
-SimulationConfig simulation_config(const Scenario& scenario, Skips skips = Skips::taken);
+SimulationConfig simulation_config(const Scenario& scenario);
 
 /// One run of a scenario that has several: a simulated subject's trial. Both count from 0.
 struct Trial {
@@ -30,12 +30,11 @@ struct Trial {
 std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const std::vector<SurfacePoint>& points);
 
 /// Everything the run is made of. Precondition: `shell` is make_shell of this scenario. Throws InputError when a named
-/// file cannot be used. With skips off, every step compares every point with the tool.
+/// file cannot be used. With skips off (RenderingConfig), every step compares every point with the tool.
 SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std::shared_ptr<const PointShell> shell,
-                         Trial trial, Skips skips = Skips::taken);
+                         Trial trial);
 /// The same, reading the scenario's files.
-SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial,
-                         Skips skips = Skips::taken);
+SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial);
 /// The only or first run, with a shell of its own.
 SimulationParts assemble(const Scenario& scenario);
 

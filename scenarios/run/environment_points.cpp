@@ -1,5 +1,7 @@
 #include "scenarios/run/environment_points.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include "results/io/json_text.hpp"
 #include "scenarios/input/loaded_code.hpp"
 #include "sim/contact/grid_index.hpp"

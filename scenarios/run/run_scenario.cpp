@@ -1,6 +1,7 @@
 #include "scenarios/run/run_scenario.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
@@ -123,14 +124,14 @@ void write_results(const fs::path& directory, const Scenario& scenario, const Ru
 }  // namespace
 
 RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,
-                       const ShellCache& cache, Skips skips) {
+                       const ShellCache& cache) {
   RunTiming timing;
   const auto shell = make_shell(loaded.scenario, timed_environment_points(loaded, cache, timing));
-  return run_with_shell(loaded, shell, output, progress, timing, skips);
+  return run_with_shell(loaded, shell, output, progress, timing);
 }
 
 RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
-                         const std::optional<fs::path>& output, bool progress, const RunTiming& timing, Skips skips) {
+                         const std::optional<fs::path>& output, bool progress, const RunTiming& timing) {
   const Scenario& scenario = loaded.scenario;
   RunReport report;
   report.timing = timing;
@@ -142,7 +143,6 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
   std::vector<TrialResult> results;
   for (const Trial trial : trials) {
     TrialOptions options;
-    options.skips = skips;
     options.files = loaded.files;
     if (output && records_rows(scenario.record)) options.directory = trial_directory(*output, trial, trials.size());
     if (options.directory) create_output(*options.directory);

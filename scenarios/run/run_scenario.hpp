@@ -10,7 +10,6 @@
 #include "results/summary/timing.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/shell_cache.hpp"
-#include "sim/core/skips.hpp"
 
 namespace hapbench {
 
@@ -25,16 +24,16 @@ struct RunReport {
 /// Runs a scenario. With `output`, writes summary.json, scenario.effective.json and what the scenario records into that
 /// directory, which is created, records of several trials into a subdirectory each; each file appears complete or not
 /// at all, the summary last; without it, the summary has no provenance and no scenario hash. `progress` allows a
-/// progress bar. The environment's shell may come from `cache`. With skips off, the results are the same but for the
-/// counted work. Throws InputError for files it cannot use (before
-/// anything is written), IoError when writing fails.
+/// progress bar. The environment's shell may come from `cache`. With skips off (RenderingConfig), the results are the
+/// same but for the counted work. Throws InputError for files it cannot use (before anything is written), IoError when
+/// writing fails.
 RunReport run_scenario(const LoadedScenario& loaded, const std::optional<std::filesystem::path>& output, bool progress,
-                       const ShellCache& cache, Skips skips = Skips::taken);
+                       const ShellCache& cache);
 
 /// The same in a shell that is there already and that several runs, also at once, may share: make_shell of the
 /// scenario. `timing` says what is known of the shell's making.
 RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
                          const std::optional<std::filesystem::path>& output, bool progress,
-                         const RunTiming& timing = {}, Skips skips = Skips::taken);
+                         const RunTiming& timing = {});
 
 }  // namespace hapbench

@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "scenarios/run/allocations.hpp"
+#include "results/allocations/allocations.hpp"
 #include "scenarios/run/progress.hpp"
 #include "scenarios/run/recorders.hpp"
 
@@ -83,12 +83,12 @@ std::uint64_t involuntary_context_switches() {
 TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial,
                       const TrialOptions& options) {
   const NamedFiles files = options.files ? *options.files : NamedFiles(scenario);
-  SimulationParts parts = assemble(scenario, files, std::move(shell), trial, options.skips);
+  SimulationParts parts = assemble(scenario, files, std::move(shell), trial);
   TrialObservers observers(scenario, parts, trial);
   if (options.directory) observers.record(scenario.record, *options.directory, parts.source->capacity());
   Progress bar(options.label, static_cast<std::uint64_t>(scenario.time.steps), !options.label.empty());
   observers.add(bar);
-  Simulation simulation(simulation_config(scenario, options.skips), std::move(parts), observers.all());
+  Simulation simulation(simulation_config(scenario), std::move(parts), observers.all());
 
   TrialResult out;
   const std::uint64_t allocations_before = heap_allocations();

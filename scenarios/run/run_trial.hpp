@@ -33,8 +33,7 @@ struct TrialOptions {
   std::optional<std::filesystem::path> directory;  ///< exists; what the scenario records goes there
   std::string label;                               ///< of the progress bar; none when empty
   StepTimes* times = nullptr;                      ///< when not null, every step is timed into it
-  Skips skips = Skips::taken;
-  std::optional<NamedFiles> files;  ///< of the scenario; read when not given
+  std::optional<NamedFiles> files;                 ///< of the scenario; read when not given
 };
 
 /// Runs one trial. `shell` is make_shell of the scenario. Throws InputError for files it cannot use and IoError when a

@@ -1,6 +1,7 @@
 #include "scenarios/thesis_claims/evidence.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <charconv>

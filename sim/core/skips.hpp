@@ -2,8 +2,9 @@
 
 namespace hapbench {
 
-/// Whether a run may skip work that cannot change its results. This is an option of the run and not of the scenario:
-/// the output must be identical either way, and `off` exists to test that.
+/// Whether a run may skip work that cannot change its results. The output must be identical either way, and `off`
+/// exists to test that. So it is no field of a scenario file, though a scenario in memory carries it, beside what the
+/// force algorithm is made of (RenderingConfig).
 enum class Skips {
   taken,  ///< compute only what the results depend on
   off     ///< compute everything, by brute force, even if nothing reads it

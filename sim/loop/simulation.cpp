@@ -113,7 +113,7 @@ bool Simulation::step() noexcept {
   if (energy_wanted_) r.device = parts_.device->energy();
   for (Observer* observer : observers_) observer->on_step(r);
   ++result_.rows;
-  if (check_stop_conditions()) return true;
+  if (check_stop_rules()) return true;
 
   if (position_is_free_) move_tool_by_force();
   ++row_;
@@ -168,14 +168,13 @@ bool Simulation::check_bounds() noexcept {
   return false;
 }
 
-bool Simulation::check_stop_conditions() noexcept {
-  if (config_.stop_when_leaves_hole && tool_.pose.position.dot(config_.up) > 0.0) {
-    end(Outcome::leaves_hole);
-  } else if (config_.stop_when_horizontal && tool_.pose.axis.dot(config_.up) >= 0.0) {
-    end(Outcome::tool_horizontal);
-  } else if (parts_.hand->finished()) {
-    end(Outcome::completes);
+bool Simulation::check_stop_rules() noexcept {
+  for (const StopRule& rule : config_.stop_when) {
+    if (!rule.holds(tool_)) continue;
+    end(rule.outcome);
+    return true;
   }
+  if (parts_.hand->finished()) end(Outcome::completes);
   return ended_;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,9 +21,15 @@ namespace hapbench {
 /// How a run ended, from the best to the worst: several trials end as the worst of them does.
 enum class Outcome {
   completes,        ///< all steps done, or the hand has finished its task
-  leaves_hole,      ///< the tip centre rose above height 0 along `up`
-  tool_horizontal,  ///< the axis reached the plane perpendicular to `up`
+  leaves_hole,      ///< the tip centre rose above height 0 (stop_rules.hpp)
+  tool_horizontal,  ///< the axis reached the horizontal plane (stop_rules.hpp)
   diverges          ///< a value stopped being finite or left its bound
+};
+
+/// Ends a run early: after the first row for whose tool `holds` is true.
+struct StopRule {
+  Outcome outcome;
+  std::function<bool(const ToolState& tool)> holds;
 };
 
 /// A run beyond these is stopped as diverged: absurd for a dental drill, still far from overflow.
@@ -38,11 +45,9 @@ struct SimulationConfig {
   std::uint64_t steps = 0;                         ///< rows 0 … steps - 1
   double mass = 0.2;                               ///< of the virtual tool [kg]
   const IntegratorEntry* integrator = &kLeapfrog;  ///< of a free position; never null
-  Vec3 position = Vec3::Zero();  ///< of the tip centre at t = 0 [m]; ignored when the motion prescribes it
-  Vec3 velocity = Vec3::Zero();  ///< [m/s]
-  Vec3 up = {0.0, 0.0, 1.0};     ///< unit; what the stop conditions call height
-  bool stop_when_leaves_hole = false;
-  bool stop_when_horizontal = false;
+  Vec3 position = Vec3::Zero();     ///< of the tip centre at t = 0 [m]; ignored when the motion prescribes it
+  Vec3 velocity = Vec3::Zero();     ///< [m/s]
+  std::vector<StopRule> stop_when;  ///< if several hold, the first one counts
   DivergenceBounds bounds;
   Skips skips = Skips::taken;  ///< ratios and energies that no observer wants
 };
@@ -103,7 +108,7 @@ class Simulation {
   Vec3 angular_velocity_after(double part, const Vec3& axis) const noexcept;
   void note_springs() noexcept;
   bool check_bounds() noexcept;
-  bool check_stop_conditions() noexcept;
+  bool check_stop_rules() noexcept;
   void end(Outcome outcome) noexcept;
 
   SimulationConfig config_;

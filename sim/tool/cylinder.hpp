@@ -34,6 +34,8 @@ class Cylinder final : public ToolShape {
                  std::uint8_t* marks) const noexcept override;
   Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept override;
   double moved_at_most(const ToolPose& from, const ToolPose& to) const noexcept override;
+  /// d = min(r - |rho|, -s, L + s), u = rho / |rho|, axis, -axis (B.1); with a round tip, for s > 0, d = r - |x| and
+  /// u = x / |x|.
   void shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept override;
   /// Ties prefer the side, then the tip, then the bottom.
   void shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept override;

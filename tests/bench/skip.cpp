@@ -71,7 +71,8 @@ void clearance_benchmark(benchmark::State& state, Skips skips) {
 void records_benchmark(benchmark::State& state, Skips skips) {
   const Scenario& scenario = step_scenario("T3").scenario;
   const auto run = [&scenario](Skips s) {
-    SimulationConfig config = simulation_config(scenario, s);
+    SimulationConfig config = simulation_config(scenario);
+    config.skips = s;
     return Simulation(config, assemble(scenario, block_shell(), {}), {});
   };
   Simulation simulation = run(skips), other = run(skips == Skips::off ? Skips::taken : Skips::off);

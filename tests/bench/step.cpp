@@ -34,13 +34,14 @@ class TimedRun::MemoryRecorder final : public Observer {
 };
 
 TimedRun::TimedRun(const std::string& name, Skips skips) {
-  const Scenario& scenario = step_scenario(name).scenario;
-  const SimulationConfig config = simulation_config(scenario, skips);
+  Scenario scenario = step_scenario(name).scenario;
+  scenario.rendering.skips = skips;
+  const SimulationConfig config = simulation_config(scenario);
   steps_ = config.steps;
   metrics_ = std::make_unique<MetricsObserver>(config.dt);
   passivity_ = std::make_unique<PassivityObserver>(config.dt);
   recorder_ = std::make_unique<MemoryRecorder>(steps_);
-  simulation_ = std::make_unique<Simulation>(config, assemble(scenario, block_shell(), {}, skips),
+  simulation_ = std::make_unique<Simulation>(config, assemble(scenario, block_shell(), {}),
                                              std::vector<Observer*>{metrics_.get(), passivity_.get(), recorder_.get()});
 }
 

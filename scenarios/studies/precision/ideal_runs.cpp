@@ -86,7 +86,7 @@ static PrecisionResult study_algorithms(const Scenario& given, const PrecisionOp
     options.progress(result.rows.size(), all);
   };
   RenderingConfig config = scenario.rendering;
-  // The rows say which of them have these.
+  // Off, except in the rows whose setting names them.
   config.angular_damping = config.passivity_controller = false;
   for (const AlgorithmEntry& algorithm : algorithms()) {
     config.algorithm = algorithm.info->name;

@@ -55,9 +55,9 @@ void check_scenario(const Scenario& scenario) {
       "and passivity controller");
 }
 
-/// Coarsest step over the others: three decades.
+/// The study's time steps are the coarsest one divided by these: three decades.
 constexpr int kDivisions[] = {1, 2, 5, 10, 20, 50, 100, 200, 500, 1000};
-/// Errors below this share of the largest displacement are rounding, which has no order.
+/// Errors below this share of the largest displacement are rounding errors and say nothing about the order.
 constexpr double kRounding = 1e-10;
 
 /// The mechanical energy of a run on springs of constant S, without the contacts: M v^2 / 2 + K p S p / 2.
@@ -109,7 +109,7 @@ PrecisionRow measure(const Scenario& run, int division, const Mat3& S, const std
           seconds_per_step(run, nullptr, repetitions)};
 }
 
-/// The order of the rows from `begin` on, as far as their errors are not rounding.
+/// The order fitted to the rows from `begin` on, without those whose error is rounding.
 FittedOrder order_of(const IntegratorEntry& integrator, const PrecisionResult& result, std::size_t begin,
                      double rounding) {
   constexpr std::size_t kStep = 0, kRms = 2;

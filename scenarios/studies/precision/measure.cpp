@@ -108,7 +108,7 @@ Scenario drill_in_hole(Scenario scenario) {
     throw InputError(InputError::Kind::relation, "/environment/type",
                      "got another environment; allowed for this study: block_with_hole");
   }
-  if (scenario.tool.tip != Tip::flat) {
+  if (!has_ideal_trajectory(scenario)) {
     throw InputError(InputError::Kind::relation, "/tool/tip",
                      "got \"round\"; allowed for this study: \"flat\", whose ideal trajectory is known");
   }

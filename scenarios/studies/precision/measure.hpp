@@ -57,9 +57,10 @@ double seconds_per_call(std::size_t calls, int repetitions, Work work) {
   return least / static_cast<double>(calls);
 }
 
-/// A drill that a hand presses into the block's hole, as the studies want it: an ideal device, so that the dynamics
-/// under study are the only ones, the limit of its device, one period of its tilt, nothing recorded. Throws InputError
-/// when the scenario has no block_with_hole.
+/// Prepares a scenario in which a hand presses a drill into the block's hole for the studies: its device becomes an
+/// ideal one with the same force limit, so that the device adds no dynamics of its own; it ends after one period of the
+/// tilt and records nothing. Throws InputError when the scenario has no block_with_hole, or a tool whose ideal
+/// trajectory is not known.
 Scenario drill_in_hole(Scenario scenario);
 
 /// The colliding points of every `stride`-th row of a scenario, with depth and gradient, before any point stage. Rows

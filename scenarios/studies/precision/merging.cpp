@@ -36,7 +36,7 @@ constexpr Way kWays[] = {
 
 using Order = std::vector<std::size_t>;
 
-/// One way to the force of a contact set.
+/// One way to compute the force of a contact set.
 class Forces {
  public:
   Forces(const Way& way, const RenderingConfig& config, std::size_t capacity)
@@ -64,7 +64,7 @@ class Forces {
   ContactBuffer work_;
 };
 
-/// Largest change of the force of a set when its contacts come in other orders [N].
+/// The largest change of the force when the contacts of a set are put in another order [N].
 double spread_over_orders(Forces& forces, const ContactBuffer& set, const Vec3& force, Random& random) {
   Order order(set.size());
   double largest = 0.0;

@@ -17,7 +17,7 @@ constexpr double kThresholds[] = {0.9, 0.95, 0.99, 0.995, 0.999, 0.9999};
 constexpr double kOff = 2.0;  // no inner product of unit vectors is larger
 constexpr std::uint64_t kStride = 64;
 
-/// One way to a force: reduction (or none) and a law.
+/// One way to compute a force: a reduction, or none, and a law.
 struct Way {
   double threshold;
   bool exact;

@@ -13,8 +13,8 @@ namespace hapbench {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-/// Relative width at which bisection stops: of runs a hundredth of the 1 % within which the three ways must agree, of
-/// eigenvalues, which cost nothing, near rounding.
+/// Relative width at which bisection stops. On runs: a hundredth of the 1 % within which the three ways must agree. On
+/// eigenvalues, which cost nothing: close to rounding.
 constexpr double kPrecision = 1e-4;
 constexpr double kEigenvaluePrecision = 1e-10;
 /// A probe is cut short as unstable when it has grown by this factor; a stable one swings to 1 / sqrt of its relative
@@ -27,11 +27,11 @@ constexpr double kGrowth = 1e6;
 constexpr std::int64_t kProbeSteps = 20'000;
 constexpr double kLateGrowth = 1.01;
 constexpr int kLocusPoints = 400;
-/// Time steps beyond this [s] are taken for "never unstable": of the velocities that a step as long multiplies,
-/// rounding alone would be motion.
+/// If time steps up to this [s] are stable, all are taken to be: multiplied by a longer one, the rounding error of a
+/// velocity would pass for motion.
 constexpr double kLongestStep = 1e6;
 
-/// Where bisection starts, and beyond what it gives up.
+/// The value at which bisection starts, and the one beyond which it gives up.
 struct Probes {
   double start, largest;
 };

@@ -10,7 +10,7 @@
 namespace hapbench {
 namespace {
 
-/// 10^u with u uniform.
+/// A number whose logarithm is uniform.
 double log_uniform(Random& random, double low, double high) {
   return low * std::pow(high / low, random.uniform());
 }
@@ -19,7 +19,7 @@ bool chance(Random& random, double probability) {
   return random.uniform() < probability;
 }
 
-/// Something that only rounding tells from u, or nearly so: an error of 1e-16 … 1.
+/// A unit vector that differs from u by 1e-16 (rounding) … 1.
 Vec3 nearly(Random& random, const Vec3& u) {
   return (u + log_uniform(random, 1e-16, 1.0) * random.direction()).normalized();
 }
@@ -101,7 +101,7 @@ Points nearly_parallel(Random& random, const ContactSet& set, std::size_t n) {
       n, [&] { return in_tool(random, set); }, [&] { return nearly(random, u); });
 }
 
-/// On the side wall, in the tip plane, on its rim: depth 0 up to rounding, of which the search drops what lies outside.
+/// Points on the side, in the tip plane, on its rim. Their depth is 0 up to rounding; the search drops those outside.
 Points on_the_surface(Random& random, const ContactSet& set, std::size_t n) {
   const auto position = [&] {
     const double radius = chance(random, 0.6) ? set.tool.radius() : set.tool.radius() * std::sqrt(random.uniform());
@@ -143,7 +143,7 @@ constexpr auto kFamilyNames = [] {
 }();
 
 void draw_tool(Random& random, ContactSet& set) {
-  // A third of the scenes at each end of the scale, the others between.
+  // A fifth of the scenes at each end of the scale, the others in between.
   const double which = random.uniform();
   const double scale = which < 0.2 ? 1e-12 : which < 0.4 ? 1e3 : log_uniform(random, 1e-12, 1e3);
   set.tool = {scale * random.uniform(0.05, 1.0), scale * random.uniform(0.1, 3.0),
@@ -173,7 +173,8 @@ ContactSet draw_contact_set(Random& random) {
   draw_rendering(random, set.rendering);
   const Family& family = kFamilies[random.below(std::size(kFamilies))];
   set.family = family.name;
-  // One point in every fifth set; else log-uniform, because small sets have the fewest ways out.
+  // Every fifth set has one point. The other sizes are log-uniform, so that small sets, which are degenerate most
+  // often, are common.
   const double n = chance(random, 0.2) ? 1.0 : log_uniform(random, 1.0, static_cast<double>(kMostContacts));
   set.points = family.draw(random, set, static_cast<std::size_t>(n));
   return set;

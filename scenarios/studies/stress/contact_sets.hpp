@@ -10,7 +10,8 @@
 #include "sim/geometry/point_shell.hpp"
 #include "sim/tool/cylinder.hpp"
 
-/// Random contact situations, most of them degenerate: where a force may stop being finite.
+/// Random contact situations, most of them degenerate: where a force may stop being finite. All are about cylinders,
+/// whose axis, side and edges are where directions are lost.
 namespace hapbench {
 
 /// A tool among points that it touches, and how they are rendered.

@@ -8,7 +8,7 @@
 #include "scenarios/batch/jobs.hpp"
 #include "scenarios/studies/stress/contact_sets.hpp"
 
-/// Random contact sets through every law, counting what no law may answer.
+/// Sends random contact sets through every law and counts the answers that no law may give.
 namespace hapbench {
 
 /// What one algorithm made of all sets.
@@ -25,7 +25,7 @@ struct StressCounts {
   std::uint64_t first_bad = 0;  ///< number of the first set that was counted as bad; meaningful when there is one
 };
 
-/// Set number `i` of the seed: what the counts speak of.
+/// Set number `i` of the seed, by the numbers that the counts name.
 ContactSet stress_set(std::uint64_t seed, std::uint64_t i);
 
 /// Sends sets 0 … count - 1 of the seed through every algorithm of the registry; one entry each, in its order. The same

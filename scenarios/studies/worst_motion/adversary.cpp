@@ -76,7 +76,7 @@ struct Best {
 /// One round of the search, from run number `begin` to before `end`.
 Best search_round(const Bench& bench, const TrajectoryDraws& draws, const SearchOptions& options, std::uint64_t begin,
                   std::uint64_t end) {
-  // Each trajectory has random numbers of its own, by its place in the search.
+  // Each trajectory draws from a generator seeded by its place in the search, so that threads do not matter.
   const auto random = [&](std::uint64_t run) { return Random(Random::derive(options.seed, run)); };
   Best best;
   std::vector<Trajectory> batch;

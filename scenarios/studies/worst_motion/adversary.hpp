@@ -9,9 +9,9 @@
 #include "scenarios/description/scenario.hpp"
 #include "sim/geometry/point_shell.hpp"
 
-/// Looks for the motion of the hand that an algorithm renders worst: a seeded random search, then small changes to the
-/// best motion, of whose children the best survives when it is better ((1 + lambda) evolution), then what the motion
-/// does not need is left out.
+/// Looks for the motion of the hand that an algorithm renders worst: a seeded random search; then an evolution
+/// (1 + lambda), in which the best of several slightly changed copies replaces the motion if it is worse rendered; then
+/// a simplification that removes what the motion does not need.
 namespace hapbench {
 
 /// What "worst" means.
@@ -66,8 +66,8 @@ double badness_of(Badness badness, const RunSummary& run);
 void check_adversary_scene(const Scenario& scenario);
 
 /// Searches in a scene, from its initial position and orientation on. The same for the same seed, whatever the number
-/// of threads. Throws as check_adversary_scene does. Costs a run of
-/// the scene, at most bounds.duration long, for every evaluation.
+/// of threads. Throws as check_adversary_scene does. Each evaluation costs a run of the scene, at most bounds.duration
+/// long.
 SearchResult search_adversary(const Scenario& scenario, const SearchOptions& options);
 
 }  // namespace hapbench

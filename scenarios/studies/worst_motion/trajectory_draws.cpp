@@ -90,7 +90,7 @@ std::optional<Trajectory> TrajectoryDraws::simplified(const Trajectory& trajecto
     const double end = rounded(kCuts[i] * trajectory.back().time, 1e3);
     std::erase_if(simpler, [&](const Waypoint& w) { return w.time >= end && w.time > 0.0; });
     if (end <= 0.0 || end >= trajectory.back().time || simpler.size() == trajectory.size()) return std::nullopt;
-    // The waypoint that the motion was on its way to, at the new end.
+    // The waypoint that the motion was approaching moves to the new end.
     simpler.push_back(trajectory[simpler.size()]);
     simpler.back().time = end;
   } else if (i - std::size(kCuts) < trajectory.size()) {

@@ -1,8 +1,7 @@
 #include "sim/loop/integrators/spring_damper.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Jacobi>
 #include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,6 +24,32 @@ class LinearForce final : public ForceField {
   ForceJacobian jacobian_;
 };
 
+/// Eigen's solver for matrices of any size takes seconds to compile; two by two need one rotation, which makes the
+/// matrix triangular if the eigenvalues are real.
+std::pair<std::complex<double>, std::complex<double>> eigenvalues_of(const Eigen::Matrix2d& A) {
+  constexpr double kSmallest = std::numeric_limits<double>::min(), kEpsilon = std::numeric_limits<double>::epsilon();
+  const double scale = A.cwiseAbs().maxCoeff();
+  if (scale < kSmallest) return {};
+  Eigen::Matrix2d T = A / scale;  // whose squares do not overflow
+  const double half = 0.5 * (T(0, 0) - T(1, 1)), discriminant = half * half + T(1, 0) * T(0, 1);
+  const bool triangular = std::abs(T(1, 0)) <= std::max(kEpsilon * (std::abs(T(0, 0)) + std::abs(T(1, 1))), kSmallest);
+  if (!triangular && discriminant < 0.0) {
+    T *= scale;
+    const double p = 0.5 * (T(0, 0) - T(1, 1));
+    const double largest = std::max({std::abs(p), std::abs(T(1, 0)), std::abs(T(0, 1))}), q = p / largest;
+    const double imaginary = largest * std::sqrt(std::abs(q * q + (T(1, 0) / largest) * (T(0, 1) / largest)));
+    return {{T(1, 1) + p, imaginary}, {T(1, 1) + p, -imaginary}};
+  }
+  if (!triangular) {
+    const double root = std::sqrt(discriminant);
+    Eigen::JacobiRotation<double> rotation;
+    rotation.makeGivens(half >= 0.0 ? half + root : half - root, T(1, 0));
+    T.applyOnTheLeft(0, 1, rotation.adjoint());
+    T.applyOnTheRight(0, 1, rotation);
+  }
+  return {T(0, 0) * scale, T(1, 1) * scale};
+}
+
 }  // namespace
 
 Eigen::Matrix2d SpringDamper::step_matrix() const {
@@ -44,8 +69,7 @@ Eigen::Matrix2d SpringDamper::step_matrix() const {
 }
 
 std::pair<std::complex<double>, std::complex<double>> SpringDamper::eigenvalues() const {
-  const Eigen::Vector2cd values = Eigen::EigenSolver<Eigen::Matrix2d>(step_matrix(), false).eigenvalues();
-  return {values[0], values[1]};
+  return eigenvalues_of(step_matrix());
 }
 
 double SpringDamper::spectral_radius() const {

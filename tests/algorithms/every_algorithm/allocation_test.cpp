@@ -1,5 +1,4 @@
 // No heap allocation in a step, for every algorithm with every stage on springs and on a shell.
-#include "tests/support/allocation_counter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +8,7 @@
 #include <ostream>
 #include <tuple>
 
+#include "results/allocations/allocations.hpp"
 #include "sim/core/aligned.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/setting.hpp"
@@ -25,7 +25,7 @@ void use(const void* block) {
 
 TEST(AllocationCounter, CountsEveryWayToAllocate) {
   const auto count_of = [](auto allocate) {
-    const test::AllocationCount count;
+    const AllocationCount count;
     allocate();
     return count.value();
   };
@@ -76,7 +76,7 @@ TEST(AllocationCounter, SeesAnAllocationInsideAStep) {
   test::Setting setting;
   setting.springs = SpringSet{{Vec3::UnitX()}, true};
   Simulation simulation(test::free_run_config(setting, {}, 10), test::free_run(setting, {}), {&observer});
-  const test::AllocationCount count;
+  const AllocationCount count;
   simulation.run();
   EXPECT_GE(count.value(), 1u);
 }
@@ -186,7 +186,7 @@ TEST_P(NoAllocation, InAStepOrAReset) {
   Simulation simulation(run, parts_of(GetParam(), config), {&observer});
 
   // From the very first step: nothing warms up.
-  const test::AllocationCount count;
+  const AllocationCount count;
   simulation.run();
   simulation.reset();
   simulation.run();
@@ -220,7 +220,7 @@ TEST_P(NoAllocationOf, AnIntegrator) {
     if (!springs) run.position = {0.0002, -0.004, 0.0};
     ContactCounter observer;
     Simulation simulation(run, test::free_run(setting, config), {&observer});
-    const test::AllocationCount count;
+    const AllocationCount count;
     simulation.run();
     simulation.reset();
     simulation.run();

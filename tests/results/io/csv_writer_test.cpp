@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
+#include "results/allocations/allocations.hpp"
 #include "tests/results/files.hpp"
-#include "tests/support/allocation_counter.hpp"
 
 namespace hapbench {
 namespace {
@@ -73,12 +73,12 @@ TEST(CsvWriter, NumbersReadBackBitForBit) {
 TEST(CsvWriter, AllocatesNothingInRows) {
   const TemporaryDirectory dir;
   CsvWriter csv(dir / "a.csv", "n,x,y,z,maybe,name");
-  const std::size_t before = test::heap_allocations();
+  const std::size_t before = heap_allocations();
   // About 300 kB, several times the buffer.
   for (std::uint64_t i = 0; i < 5000; ++i) {
     csv.row(i, Vec3(0.1, 0.2, 1.0 / 3.0), std::optional(static_cast<double>(i) / 7.0), "a,b");
   }
-  EXPECT_EQ(test::heap_allocations(), before);
+  EXPECT_EQ(heap_allocations(), before);
   csv.finish();
   EXPECT_EQ(lines_of(read_file(dir / "a.csv")).size(), 5001u);
 }

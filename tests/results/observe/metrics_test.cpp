@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
+#include "results/allocations/allocations.hpp"
 #include "tests/results/rows.hpp"
-#include "tests/support/allocation_counter.hpp"
 
 namespace hapbench {
 namespace {
@@ -239,10 +239,10 @@ TEST(MetricsObserver, AsksForTheRatio) {
 TEST(MetricsObserver, AllocatesNothing) {
   const ContactBuffer contacts = contacts_along({Vec3::UnitX()});
   const StepRecord r = row(0, 0.0, contacts);
-  const std::size_t before = test::heap_allocations();
+  const std::size_t before = heap_allocations();
   MetricsObserver observer(kDt);
   for (int k = 0; k < 100; ++k) observer.on_step(r);
-  EXPECT_EQ(test::heap_allocations(), before);
+  EXPECT_EQ(heap_allocations(), before);
   EXPECT_EQ(observer.metrics().rows, 100u);
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/support/allocation_counter.hpp"
+#include "results/allocations/allocations.hpp"
 #include "tests/support/fakes.hpp"
 
 namespace hapbench {
@@ -88,7 +88,7 @@ TEST(PassivityObserver, WantsSpringsOnlyAndAllocatesNothing) {
   PassivityObserver observer(kDt);
   EXPECT_TRUE(observer.wants_springs());
   EXPECT_FALSE(observer.wants_energy());
-  const test::AllocationCount count;
+  const AllocationCount count;
   for (std::uint64_t k = 0; k < 100; ++k) observer.on_step(row(k, 1.0));
   EXPECT_EQ(count.value(), 0u);
 }

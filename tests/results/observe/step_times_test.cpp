@@ -1,12 +1,11 @@
 #include "results/observe/step_times.hpp"
+#include "results/allocations/allocations.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numeric>
 #include <vector>
-
-#include "tests/support/allocation_counter.hpp"
 
 namespace hapbench {
 namespace {
@@ -62,7 +61,7 @@ TEST(StepTimes, AnEmptyStepTakesAboutNothing) {
 
 TEST(StepTimes, AStepDoesNotAllocate) {
   StepTimes times(100);
-  const test::AllocationCount count;
+  const AllocationCount count;
   times.start();
   for (int i = 0; i < 100; ++i) times.lap();
   EXPECT_EQ(count.value(), 0u);

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "results/allocations/allocations.hpp"
 #include "tests/results/files.hpp"
 #include "tests/results/rows.hpp"
-#include "tests/support/allocation_counter.hpp"
 
 namespace hapbench {
 namespace {
@@ -46,9 +46,9 @@ TEST(ContactRecorder, AllocatesNothingInAStep) {
   const ContactBuffer contacts = test::contacts_along(std::vector<Vec3>(100, Vec3::UnitX()));
   ContactRecorder recorder(dir / "contacts.csv");
   const StepRecord r = test::row(0, 0.0, contacts);
-  const std::size_t before = test::heap_allocations();
+  const std::size_t before = heap_allocations();
   for (int k = 0; k < 100; ++k) recorder.on_step(r);
-  EXPECT_EQ(test::heap_allocations(), before);
+  EXPECT_EQ(heap_allocations(), before);
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "results/allocations/allocations.hpp"
 #include "tests/results/files.hpp"
 #include "tests/results/rows.hpp"
-#include "tests/support/allocation_counter.hpp"
 
 namespace hapbench {
 namespace {
@@ -56,13 +56,13 @@ TEST(EnergyRecorder, AllocatesNothingInAStep) {
   EnergyLedger ledger(2.0, 0.5, true, 100);
   EnergyRecorder recorder(dir / "energy.csv", 1, ledger);
   StepRecord r = test::row(0, 0.0, contacts);
-  const std::size_t before = test::heap_allocations();
+  const std::size_t before = heap_allocations();
   for (int k = 0; k < 100; ++k) {
     r.springs.energy += k;  // an event every step
     ledger.on_step(r);
     recorder.on_step(r);
   }
-  EXPECT_EQ(test::heap_allocations(), before);
+  EXPECT_EQ(heap_allocations(), before);
 }
 
 }  // namespace

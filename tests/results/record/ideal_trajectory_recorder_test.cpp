@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "results/allocations/allocations.hpp"
 #include "tests/results/files.hpp"
 #include "tests/results/rows.hpp"
-#include "tests/support/allocation_counter.hpp"
 
 namespace hapbench {
 namespace {
@@ -44,12 +44,12 @@ TEST(IdealTrajectoryRecorder, AllocatesNothingInAStep) {
   IdealTrajectoryObserver observer({}, {});
   IdealTrajectoryRecorder recorder(dir / "ideal.csv", 1, observer);
   const StepRecord r = tilted_row(0, 0.5, none);
-  const std::size_t before = test::heap_allocations();
+  const std::size_t before = heap_allocations();
   for (int k = 0; k < 100; ++k) {
     observer.on_step(r);
     recorder.on_step(r);
   }
-  EXPECT_EQ(test::heap_allocations(), before);
+  EXPECT_EQ(heap_allocations(), before);
 }
 
 }  // namespace

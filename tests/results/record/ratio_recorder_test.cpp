@@ -5,11 +5,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "results/allocations/allocations.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/core/random.hpp"
 #include "tests/results/files.hpp"
 #include "tests/results/rows.hpp"
-#include "tests/support/allocation_counter.hpp"
 
 namespace hapbench {
 namespace {
@@ -145,10 +145,10 @@ TEST(RatioRecorder, AllocatesNothingInAStep) {
   const ContactBuffer contacts = test::contacts_along(random_directions(50, 4));
   RatioRecorder recorder(dir / "ratios.csv", 1, {0, 1, 2, 3, 4, 5, 10}, kShaping, 50);
   const StepRecord r = test::row(0, 0.0, contacts);
-  const std::size_t before = test::heap_allocations();
+  const std::size_t before = heap_allocations();
   // Several times the file's buffer.
   for (int k = 0; k < 1000; ++k) recorder.on_step(r);
-  EXPECT_EQ(test::heap_allocations(), before);
+  EXPECT_EQ(heap_allocations(), before);
 }
 
 }  // namespace

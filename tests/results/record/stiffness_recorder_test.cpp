@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "results/allocations/allocations.hpp"
 #include "tests/results/files.hpp"
 #include "tests/results/rows.hpp"
-#include "tests/support/allocation_counter.hpp"
 
 namespace hapbench {
 namespace {
@@ -61,10 +61,10 @@ TEST(StiffnessRecorder, AllocatesNothingInAStep) {
   StepRecord r = test::row(0, 0.0, contacts);
   r.force.S = Mat3::Identity() / 3.0;
   StiffnessRecorder recorder(dir / "stiffness_tensor.csv");
-  const std::size_t before = test::heap_allocations();
+  const std::size_t before = heap_allocations();
   // Several times the file's buffer.
   for (int k = 0; k < 5000; ++k) recorder.on_step(r);
-  EXPECT_EQ(test::heap_allocations(), before);
+  EXPECT_EQ(heap_allocations(), before);
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "results/allocations/allocations.hpp"
 #include "tests/results/files.hpp"
 #include "tests/results/rows.hpp"
-#include "tests/support/allocation_counter.hpp"
 
 namespace hapbench {
 namespace {
@@ -74,10 +74,10 @@ TEST(TrajectoryRecorder, AllocatesNothingInAStep) {
   const ContactBuffer contacts = test::contacts_along({Vec3::UnitX()});
   TrajectoryRecorder recorder(dir / "trajectory.csv");
   const StepRecord r = full_row(contacts);
-  const std::size_t before = test::heap_allocations();
+  const std::size_t before = heap_allocations();
   // Several times the file's buffer.
   for (int k = 0; k < 5000; ++k) recorder.on_step(r);
-  EXPECT_EQ(test::heap_allocations(), before);
+  EXPECT_EQ(heap_allocations(), before);
 }
 
 TEST(TrajectoryRecorder, ThatIsNeverFinishedLeavesNoFile) {

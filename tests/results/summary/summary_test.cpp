@@ -1,6 +1,7 @@
 #include "results/summary/summary.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <limits>

@@ -24,13 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Some file systems flush a file that is cut and written again to the disk, which takes milliseconds; a new one stays
-/// in memory.
-void write_anew(const fs::path& file, const std::string& text) {
-  fs::remove(file);
-  test::write_plainly(file, text);
-}
-
 /// How the mutants of one kind of file fared.
 struct Tally {
   std::size_t accepted = 0, refused = 0;
@@ -78,13 +71,10 @@ TEST(Fuzz, ScenarioTextsAreReadOrRefused) {
 }
 
 TEST(Fuzz, PointShellsInCsvAreReadOrRefused) {
-  const test::TemporaryDirectory directory;
-  const fs::path file = directory / "shell.csv";
   const std::vector<std::string> texts = {test::read_file(test::data_directory() / "shell.csv"),
                                           "x_m,y_m,z_m,nx,ny,nz\r\n0,0,0,0,0,1\r\n1e-3,-2.5,0.125,0.6,0,-0.8"};
-  expect_mixture(fuzz(texts, test::cases(10'000), 2, [&file](const std::string& text) {
-    write_anew(file, text);
-    const auto points = read_point_shell(file);
+  expect_mixture(fuzz(texts, test::cases(10'000), 2, [](const std::string& text) {
+    const auto points = point_shell_in(text, "shell.csv");
     EXPECT_FALSE(points.empty());
     for (const SurfacePoint& point : points) {
       EXPECT_TRUE(point.position.cwiseAbs().maxCoeff() <= 1000.0) << text;
@@ -94,9 +84,7 @@ TEST(Fuzz, PointShellsInCsvAreReadOrRefused) {
 }
 
 TEST(Fuzz, PointShellsInPlyAreReadOrRefused) {
-  const test::TemporaryDirectory directory;
-  const fs::path file = directory / "shell.ply";
-  const auto points = read_point_shell(test::data_directory() / "shell.csv");
+  const auto points = point_shell_in(test::read_file(test::data_directory() / "shell.csv"), "shell.csv");
   const std::string text = point_shell_text({points[0], points[40], points[80]}, "x.ply");
   std::string binary =
       "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
@@ -104,9 +92,8 @@ TEST(Fuzz, PointShellsInPlyAreReadOrRefused) {
       "vertex_indices\nend_header\n";
   const std::string vertex = std::string(20, '\0') + std::string("\0\0\1", 3);  // normal (0, 0, 1)
   binary += vertex + vertex + std::string("\3\0\0\0\0\1\0\0\0\1\0\0\0", 13);
-  expect_mixture(fuzz({text, binary}, test::cases(20'000), 3, [&file](const std::string& mutant) {
-    write_anew(file, mutant);
-    for (const SurfacePoint& point : read_point_shell(file)) {
+  expect_mixture(fuzz({text, binary}, test::cases(20'000), 3, [](const std::string& mutant) {
+    for (const SurfacePoint& point : point_shell_in(mutant, "shell.ply")) {
       EXPECT_TRUE(point.position.cwiseAbs().maxCoeff() <= 1000.0) << mutant;
       EXPECT_NEAR(point.normal.norm(), 1.0, 1e-12) << mutant;
     }
@@ -123,12 +110,9 @@ INSTANTIATE_TEST_SUITE_P(Formats, MeshFuzz, testing::ValuesIn(test::mesh_texts(t
 
 TEST_P(MeshFuzz, MeshesAreReadOrRefusedSoon) {
   using Clock = std::chrono::steady_clock;
-  const test::TemporaryDirectory directory;
-  const fs::path file = directory / GetParam().name;
-  const Tally tally = fuzz({GetParam().text}, test::cases(2000), 6, [&file](const std::string& mutant) {
-    write_anew(file, mutant);
+  const Tally tally = fuzz({GetParam().text}, test::cases(2000), 6, [](const std::string& mutant) {
     const auto start = Clock::now();
-    const auto points = read_mesh_points(file, {});
+    const auto points = MeshFile(mutant, GetParam().name, {}).points();
     EXPECT_LT(Clock::now() - start, std::chrono::seconds(30));
     EXPECT_FALSE(points.empty());
     for (const SurfacePoint& point : points) {
@@ -142,12 +126,9 @@ TEST_P(MeshFuzz, MeshesAreReadOrRefusedSoon) {
 }
 
 TEST(Fuzz, RecordedMotionsAreReadOrRefused) {
-  const test::TemporaryDirectory directory;
-  const fs::path file = directory / "stroke.csv";
   const std::vector<std::string> texts = {test::read_file(test::data_directory() / "stroke.csv")};
-  expect_mixture(fuzz(texts, test::cases(10'000), 4, [&file](const std::string& text) {
-    write_anew(file, text);
-    const RecordedMotion motion = read_motion(file);
+  expect_mixture(fuzz(texts, test::cases(10'000), 4, [](const std::string& text) {
+    const RecordedMotion motion = motion_in(text, "stroke.csv");
     EXPECT_NEAR(motion.axis_at(-1.0).norm(), 1.0, 1e-12) << text;
     EXPECT_NEAR(motion.axis_at(1e9).norm(), 1.0, 1e-12) << text;
   }));
@@ -155,20 +136,13 @@ TEST(Fuzz, RecordedMotionsAreReadOrRefused) {
 
 TEST(Fuzz, GarbageIsRefused) {
   Random random(5);
-  const test::TemporaryDirectory directory;
   for (std::size_t i = 0; i < test::cases(2000); ++i) {
     std::string garbage;
     for (std::uint64_t n = random.below(300); n > 0; --n) garbage += static_cast<char>(random.below(256));
     EXPECT_THROW(read_scenario(parse_json(garbage), ""), InputError);
-    for (const char* name : {"g.csv", "g.ply"}) {
-      write_anew(directory / name, garbage);
-      EXPECT_THROW(read_point_shell(directory / name), InputError);
-    }
-    EXPECT_THROW(read_motion(directory / "g.csv"), InputError);
-    for (const char* name : {"g.obj", "g.off", "g.stl", "g.ply"}) {
-      write_anew(directory / name, garbage);
-      EXPECT_THROW(read_mesh_points(directory / name, {}), InputError);
-    }
+    for (const char* name : {"g.csv", "g.ply"}) EXPECT_THROW(point_shell_in(garbage, name), InputError);
+    EXPECT_THROW(motion_in(garbage, "g.csv"), InputError);
+    for (const char* name : {"g.obj", "g.off", "g.stl", "g.ply"}) EXPECT_THROW(MeshFile(garbage, name, {}), InputError);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "scenarios/input/json_file.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <string>
 

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
 namespace hapbench {
@@ -10,20 +9,16 @@ namespace {
 
 const std::string kHeader = "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n";
 
+constexpr const char* kFile = "stroke.csv";
+
 class MotionFile : public testing::Test {
  protected:
-  RecordedMotion read(const std::string& rows) const {
-    test::write_plainly(file_, kHeader + rows);
-    return read_motion(file_);
-  }
+  static RecordedMotion read(const std::string& rows) { return motion_in(kHeader + rows, kFile); }
   std::string refusal_of(const std::string& rows) const {
     SCOPED_TRACE(rows);
     const auto error = test::input_error_of([&] { read(rows); });
-    return error ? std::string(error->what()).substr(file_.string().size()) : "";
+    return error ? std::string(error->what()).substr(std::string_view(kFile).size()) : "";
   }
-
-  test::TemporaryDirectory directory_;
-  std::filesystem::path file_ = directory_ / "stroke.csv";
 };
 
 TEST_F(MotionFile, IsPlayedBackLinearly) {

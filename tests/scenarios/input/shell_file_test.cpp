@@ -8,7 +8,6 @@
 
 #include "sim/core/random.hpp"
 #include "sim/geometry/analytic_shells.hpp"
-#include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
 namespace hapbench {
@@ -16,23 +15,20 @@ namespace {
 
 class ShellFile : public testing::Test {
  protected:
-  std::vector<SurfacePoint> read(const std::string& name, const std::string& contents) const {
-    test::write_plainly(directory_ / name, contents);
-    return read_point_shell(directory_ / name);
+  static std::vector<SurfacePoint> read(const std::string& name, const std::string& contents) {
+    return point_shell_in(contents, name);
   }
   std::string refusal_of(const std::string& name, const std::string& contents) const {
     SCOPED_TRACE(contents);
     const auto error = test::input_error_of([&] { read(name, contents); });
     if (!error) return "";
     const std::string message = error->what();
-    EXPECT_EQ(message.find((directory_ / name).string()), 0u);
-    return message.substr((directory_ / name).string().size());
+    EXPECT_EQ(message.find(name), 0u);
+    return message.substr(name.size());
   }
   std::string csv_refusal_of(const std::string& rows) const {
     return refusal_of("s.csv", "x_m,y_m,z_m,nx,ny,nz\n" + rows);
   }
-
-  test::TemporaryDirectory directory_;
 };
 
 std::vector<SurfacePoint> random_points(std::size_t n) {

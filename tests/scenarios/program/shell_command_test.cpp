@@ -17,13 +17,16 @@ using test::ProgramRun;
 class ShellCommand : public testing::Test {
  protected:
   std::string path(const std::string& name) const { return (directory_ / name).string(); }
+  std::vector<SurfacePoint> points_in(const std::string& name) const {
+    return point_shell_in(test::read_file(directory_ / name), directory_ / name);
+  }
   test::TemporaryDirectory directory_;
 };
 
 TEST_F(ShellCommand, WritesTheEnvironmentsPointsExactlyAsCsv) {
   const ProgramRun run = hapbench({"shell", "peg_in_hole_2d_mean", "--out", path("hole.csv")});
   EXPECT_EQ(run.status, 0) << run.err;
-  const auto points = read_point_shell(path("hole.csv")), expected = surface_points(Hole2d{});
+  const auto points = points_in("hole.csv"), expected = surface_points(Hole2d{});
   ASSERT_EQ(points.size(), expected.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_EQ(points[i].position, expected[i].position) << i;
@@ -35,7 +38,7 @@ TEST_F(ShellCommand, WritesTheEnvironmentsPointsExactlyAsCsv) {
 TEST_F(ShellCommand, WritesPlyForViewers) {
   EXPECT_EQ(hapbench({"shell", "peg_in_hole_2d_mean", "--out", path("hole.ply")}).status, 0);
   EXPECT_EQ(test::read_file(path("hole.ply")).substr(0, 4), "ply\n");
-  EXPECT_EQ(read_point_shell(path("hole.ply")).size(), surface_points(Hole2d{}).size());
+  EXPECT_EQ(points_in("hole.ply").size(), surface_points(Hole2d{}).size());
 }
 
 TEST_F(ShellCommand, WritesWhatARunReadsAsTheSameEnvironment) {
@@ -57,7 +60,7 @@ TEST_F(ShellCommand, WritesWhatItReadBitForBit) {
   test::write_plainly(directory_ / "scene.json", test::minimal_scenario("point_shell").dump());
   fs::copy_file(test::data_directory() / "shell.csv", directory_ / "shell.csv");
   ASSERT_EQ(hapbench({"shell", path("scene.json"), "--out", path("again.csv")}).status, 0);
-  const auto points = read_point_shell(path("shell.csv")), again = read_point_shell(path("again.csv"));
+  const auto points = points_in("shell.csv"), again = points_in("again.csv");
   ASSERT_EQ(again.size(), points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_EQ(again[i].position, points[i].position);

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"

@@ -48,7 +48,7 @@ TEST(ProxyInHole, NeitherEntersTheShellNorGetsStifferThanOneSpring) {
   const auto shell = make_shell(scenario, environment_points(scenario, ShellCache()).points);
   SimulationParts parts = assemble(scenario, shell, {});
   PointsInProxy points(*shell, *parts.tool, scenario.rendering.stiffness);
-  Simulation simulation(simulation_config(scenario, Skips::taken), std::move(parts), {&points});
+  Simulation simulation(simulation_config(scenario), std::move(parts), {&points});
   EXPECT_EQ(simulation.run().outcome, Outcome::completes);
   EXPECT_LE(points.deepest, 1e-6);
   EXPECT_LE(points.stiffest, 1.0 + 1e-12);

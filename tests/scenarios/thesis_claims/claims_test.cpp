@@ -1,6 +1,7 @@
 #include "scenarios/thesis_claims/claims.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <limits>

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/loop/stop_rules.hpp"
 #include "tests/support/fakes.hpp"
 
 namespace hapbench {
@@ -11,11 +12,12 @@ namespace {
 using test::fake_parts;
 using test::Recorder;
 
+const Vec3 kUp(0, 0, 1);
+
 /// A weightless tool that rises at 1 m/s along `up` from 10.5 steps below height 0.
 SimulationConfig rising(const Vec3& up) {
   SimulationConfig config;
   config.steps = 100;
-  config.up = up;
   config.velocity = up;
   config.position = -10.5 * config.dt * up;
   return config;
@@ -24,7 +26,7 @@ SimulationConfig rising(const Vec3& up) {
 TEST(StopConditions, LeavesTheHoleAtTheFirstRowAboveHeightZeroWhichIsRecorded) {
   for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0)}) {
     SimulationConfig config = rising(up);
-    config.stop_when_leaves_hole = true;
+    config.stop_when = {when_tool_leaves_hole(up)};
     Recorder recorder;
     const SimulationResult result = Simulation(config, fake_parts(test::weightless), {&recorder}).run();
     EXPECT_EQ(result.outcome, Outcome::leaves_hole);
@@ -39,14 +41,14 @@ TEST(StopConditions, LeavesTheHoleAtTheFirstRowAboveHeightZeroWhichIsRecorded) {
 TEST(StopConditions, ExactlyAtHeightZeroTheToolIsStillInTheHole) {
   SimulationConfig config;
   config.steps = 3;
-  config.stop_when_leaves_hole = true;
+  config.stop_when = {when_tool_leaves_hole(kUp)};
   Recorder recorder;
   EXPECT_EQ(Simulation(config, fake_parts(test::weightless), {&recorder}).run().outcome, Outcome::completes);
 }
 
 TEST(StopConditions, AreOffByDefault) {
   Recorder recorder;
-  EXPECT_EQ(Simulation(rising({0, 0, 1}), fake_parts(test::weightless), {&recorder}).run().outcome, Outcome::completes);
+  EXPECT_EQ(Simulation(rising(kUp), fake_parts(test::weightless), {&recorder}).run().outcome, Outcome::completes);
   EXPECT_EQ(recorder.rows.size(), 100u);
 }
 
@@ -61,8 +63,7 @@ TEST(StopConditions, ToolIsHorizontalAtTheFirstRowWhereItsAxisReachesThePlaneWhi
   for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0)}) {
     SimulationConfig config;
     config.steps = 10000;
-    config.up = up;
-    config.stop_when_horizontal = true;
+    config.stop_when = {when_tool_is_horizontal(up)};
     Recorder recorder;
     const SimulationResult result = Simulation(config, tilting(up, 0.1, 1.2), {&recorder}).run();
     EXPECT_EQ(result.outcome, Outcome::tool_horizontal);
@@ -79,28 +80,28 @@ TEST(StopConditions, HorizontalIsIgnoredUnlessAskedFor) {
   SimulationConfig config;
   config.steps = 10;
   Recorder recorder;
-  EXPECT_EQ(Simulation(config, tilting({0, 0, 1}, 2.0, 0.0), {&recorder}).run().outcome, Outcome::completes);
+  EXPECT_EQ(Simulation(config, tilting(kUp, 2.0, 0.0), {&recorder}).run().outcome, Outcome::completes);
 }
 
 TEST(StopConditions, TheEarlierOneWins) {
-  SimulationConfig config = rising({0, 0, 1});
-  config.stop_when_leaves_hole = config.stop_when_horizontal = true;
+  SimulationConfig config = rising(kUp);
+  config.stop_when = {when_tool_leaves_hole(kUp), when_tool_is_horizontal(kUp)};
   Recorder recorder;
-  EXPECT_EQ(Simulation(config, tilting({0, 0, 1}, 0.1, 0.0), {&recorder}).run().outcome, Outcome::leaves_hole);
-  EXPECT_EQ(Simulation(config, tilting({0, 0, 1}, 2.0, 0.0), {&recorder}).run().outcome, Outcome::tool_horizontal);
+  EXPECT_EQ(Simulation(config, tilting(kUp, 0.1, 0.0), {&recorder}).run().outcome, Outcome::leaves_hole);
+  EXPECT_EQ(Simulation(config, tilting(kUp, 2.0, 0.0), {&recorder}).run().outcome, Outcome::tool_horizontal);
 }
 
 TEST(StopConditions, AStopOnTheLastRowIsStillAStop) {
-  SimulationConfig config = rising({0, 0, 1});
-  config.stop_when_leaves_hole = true;
+  SimulationConfig config = rising(kUp);
+  config.stop_when = {when_tool_leaves_hole(kUp)};
   config.steps = 12;
   Recorder recorder;
   EXPECT_EQ(Simulation(config, fake_parts(test::weightless), {&recorder}).run().outcome, Outcome::leaves_hole);
 }
 
 TEST(StopConditions, AStoppedRunTakesNoFurtherSteps) {
-  SimulationConfig config = rising({0, 0, 1});
-  config.stop_when_leaves_hole = true;
+  SimulationConfig config = rising(kUp);
+  config.stop_when = {when_tool_leaves_hole(kUp)};
   Recorder recorder;
   Simulation simulation(config, fake_parts(test::weightless), {&recorder});
   simulation.run();

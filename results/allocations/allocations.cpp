@@ -1,18 +1,24 @@
-#include "tests/support/allocation_counter.hpp"
+#include "results/allocations/allocations.hpp"
 
-#include <atomic>
 #include <cerrno>
 #include <cstddef>
 
-#include "tests/support/scale.hpp"
-
 namespace {
 
-std::atomic<std::uint64_t> allocations{0};
+/// Of each thread by itself: a run stays on one thread, beside which others may run.
+constinit thread_local std::uint64_t allocations = 0;
 
 }  // namespace
 
-#if HAPBENCH_TEST_SANITIZED
+#ifdef __SANITIZE_ADDRESS__
+#define HAPBENCH_SANITIZED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define HAPBENCH_SANITIZED
+#endif
+#endif
+
+#ifdef HAPBENCH_SANITIZED
 
 // AddressSanitizer owns malloc and offers hooks instead.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*, std::size_t),
@@ -63,10 +69,10 @@ int posix_memalign(void** block, std::size_t alignment, std::size_t size) noexce
 
 #endif
 
-namespace hapbench::test {
+namespace hapbench {
 
-std::uint64_t heap_allocations() {
-  return allocations.load();
+std::uint64_t heap_allocations() noexcept {
+  return allocations;
 }
 
-}  // namespace hapbench::test
+}  // namespace hapbench

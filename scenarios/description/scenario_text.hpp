@@ -1,0 +1,20 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "scenarios/description/load_scenario.hpp"
+
+namespace hapbench {
+
+/// A scenario file as it stands, for loading it several times with different overrides.
+struct ScenarioText {
+  std::filesystem::path file;
+  Json json;
+};
+
+/// What `load_scenario` of a file does, in two steps. Both throw InputError; the second may be called from several
+/// threads.
+ScenarioText read_scenario_text(const std::filesystem::path& file);
+LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::string> overrides);
+
+}  // namespace hapbench
