@@ -47,10 +47,16 @@ struct SpringsEnvironment {
   std::vector<SpringGroup> groups;
   RandomSprings random;
 };
+/// How often the shell lists a vertex of the block's surface.
+enum class BlockVertices {
+  shared,   ///< once
+  per_cell  ///< once for each grid cell that has it on an edge, as thesis 2.1 and C.2 have it
+};
 struct BlockEnvironment {
   BlockWithHole block;
   double grid = 0.0001;  ///< of the density field [m]
   Density density = Density::signed_distance;
+  BlockVertices vertices = BlockVertices::shared;
 };
 struct PointShellEnvironment {
   std::string file;            ///< CSV or PLY, relative to the scenario file

@@ -162,9 +162,9 @@ SimulationConfig simulation_config(const Scenario& scenario, Skips skips) {
   return config;
 }
 
-std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const std::vector<SurfacePoint>& points) {
+std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, ShellPoints points) {
   if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return nullptr;
-  return std::make_shared<const PointShell>(points, cell_size(scenario.environment));
+  return std::make_shared<const PointShell>(points.points, cell_size(scenario.environment), std::move(points.cells));
 }
 
 SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std::shared_ptr<const PointShell> shell,
@@ -195,7 +195,7 @@ SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointSh
 
 SimulationParts assemble(const Scenario& scenario) {
   const NamedFiles files(scenario);
-  return assemble(scenario, files, make_shell(scenario, environment_points(scenario, ShellCache(), files).points), {});
+  return assemble(scenario, files, make_shell(scenario, environment_points(scenario, ShellCache(), files)), {});
 }
 
 }  // namespace hapbench

@@ -105,7 +105,8 @@ TEST(Defaults, OfTheBlockAreTheExperimentsPart) {
   expect_fields(
       effective(test::minimal_scenario("block_with_hole")),
       {{"/environment", R"({"type": "block_with_hole", "size_m": [0.015, 0.015, 0.01], "hole_diameter_m": 0.002,
-                                      "hole_depth_m": 0.005, "grid_m": 0.0001, "density": "signed_distance"})"}});
+                                      "hole_depth_m": 0.005, "grid_m": 0.0001, "density": "signed_distance",
+                                      "vertices": "shared"})"}});
 }
 
 TEST(Defaults, OfAPartlyGivenObjectFillTheRest) {

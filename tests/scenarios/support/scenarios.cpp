@@ -55,7 +55,7 @@ std::vector<NamedScenario> rich_scenarios() {
           {"drilled_block", Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 10},
       "environment": {"type": "block_with_hole", "size_m": [0.006, 0.006, 0.004], "hole_diameter_m": 0.002,
-        "hole_depth_m": 0.002, "grid_m": 0.0002, "density": "binary"},
+        "hole_depth_m": 0.002, "grid_m": 0.0002, "density": "binary", "vertices": "per_cell"},
       "initial": {"position_m": [0.0006, 0, -0.001]},
       "rendering": {"local_average": true}})")},
           {"recorded_shell", Json::parse(R"({
