@@ -46,6 +46,9 @@ void check_springs(const SpringsEnvironment& springs, const std::string& at) {
                                  direction.x(), direction.y(), direction.z(), kShortestDirection));
   }
   refuse_too_many(count, at, "springs");
+  if (springs.bilateral || springs.signed_depths) return;
+  throw InputError(InputError::Kind::relation, at + "/signed",
+                   "got false; allowed: true with \"bilateral\": false, whose depths are positive as they are");
 }
 
 void check_block(const BlockEnvironment& environment, const std::string& at) {
@@ -85,6 +88,8 @@ static void describe(Fields& f, RandomSprings& random) {
 
 static void describe(Fields& f, SpringsEnvironment& springs) {
   f.boolean("bilateral", springs.bilateral, "springs push and pull; false: only while their depth is positive");
+  f.boolean("signed", springs.signed_depths,
+            "depths of bilateral springs are <p, u>; false: |<p, u>|, with gradients along the displacement");
   f.objects("groups", springs.groups, {0, 10'000}, "springs by direction, in this order");
   f.object("random", springs.random, "springs with random directions, after the groups");
   if (f.reads()) check_springs(springs, f.at());

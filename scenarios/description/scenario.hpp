@@ -44,6 +44,7 @@ struct RandomSprings {
 };
 struct SpringsEnvironment {
   bool bilateral = true;
+  bool signed_depths = true;
   std::vector<SpringGroup> groups;
   RandomSprings random;
 };

@@ -25,6 +25,7 @@ struct Overloaded : Visitors... {
 SpringSet make_springs(const SpringsEnvironment& fields, std::uint64_t seed) {
   SpringSet springs;
   springs.bilateral = fields.bilateral;
+  springs.signed_depths = fields.signed_depths;
   for (const SpringGroup& group : fields.groups) {
     const double length = group.direction.norm();
     // Unit to rounding is left alone: dividing would change last digits.

@@ -74,6 +74,7 @@ TEST(Defaults, OfSpringsAreThoseOfA2) {
                  {"/rendering/reduction", "null"},
                  {"/motion/orientation/up", "[0.0, 1.0, 0.0]"},
                  {"/environment/bilateral", "true"},
+                 {"/environment/signed", "true"},
                  {"/environment/groups", "[]"},
                  {"/environment/random", R"({"count": 0, "planar": true})"}});
 }
