@@ -4,6 +4,7 @@ namespace hapbench {
 namespace {
 
 constexpr NumberRange kCoordinate = {-1000.0, 1000.0, "m"};
+constexpr NumberRange kAngle = {-6.3, 6.3, "rad"};  ///< a full turn either way
 
 constexpr Choice<TargetDisplay> kDisplays[] = {{"panel", TargetDisplay::panel}, {"height", TargetDisplay::height}};
 
@@ -14,6 +15,12 @@ static void describe(Fields&, NoHandFields&) {}
 static void describe(Fields& f, ForceHandFields& hand) {
   constexpr const char* kNames[] = {"x_N", "y_N", "z_N"};
   for (std::size_t i = 0; i < 3; ++i) profile(f, kNames[i], hand.force[i], "N", "force on the handle over time");
+}
+
+static void describe(Fields& f, PushHandFields& hand) {
+  profile(f, "force_N", hand.force, "N", "force on the handle over time", Presence::required);
+  f.number("angle_rad", hand.angle, kAngle, "of the force from straight down, -z; 3-D scenes only");
+  f.number("azimuth_rad", hand.azimuth, kAngle, "of its lean, from +x about z");
 }
 
 static void describe(Fields& f, ImpedanceHandFields& hand) {
@@ -70,7 +77,7 @@ static void describe(Fields& f, TrackingHandFields& hand) {
 }
 
 void describe(Fields& f, HandFields& hand) {
-  f.variant(hand, "hand", {"none", "force", "impedance", "tracking"},
+  f.variant(hand, "hand", {"none", "force", "push", "impedance", "tracking"},
             [](Fields& h, auto& fields) { describe(h, fields); });
 }
 

@@ -106,6 +106,11 @@ struct NoHandFields {};
 struct ForceHandFields {
   std::array<Profile, 3> force;  ///< [N]
 };
+struct PushHandFields {
+  Profile force;         ///< [N]
+  double angle = 0.0;    ///< from straight down [rad]
+  double azimuth = 0.0;  ///< of the lean, from +x about z [rad]
+};
 struct ImpedanceHandFields {
   double stiffness = 300.0;       ///< [N/m]
   double damping = 6.0;           ///< [N s/m]
@@ -117,7 +122,7 @@ struct TrackingHandFields {
   std::vector<Subject> subjects = {Subject{}};
   std::int64_t trials = 1;
 };
-using HandFields = std::variant<NoHandFields, ForceHandFields, ImpedanceHandFields, TrackingHandFields>;
+using HandFields = std::variant<NoHandFields, ForceHandFields, PushHandFields, ImpedanceHandFields, TrackingHandFields>;
 
 struct IdealDeviceFields {
   std::optional<double> force_limit;  ///< [N]

@@ -97,6 +97,8 @@ void add_hand_and_motion(const Scenario& scenario, const NamedFiles& files, Tria
   parts.motion = make_motion(scenario, files);
   if (const auto* force = std::get_if<ForceHandFields>(&scenario.hand)) {
     parts.hand = std::make_unique<ForceHand>(force->force);
+  } else if (const auto* push = std::get_if<PushHandFields>(&scenario.hand)) {
+    parts.hand = std::make_unique<PushHand>(push->force, push_direction(push->angle, push->azimuth));
   } else if (const auto* impedance = std::get_if<ImpedanceHandFields>(&scenario.hand)) {
     parts.hand = std::make_unique<ImpedanceHand>(impedance->stiffness, impedance->damping, impedance->target);
   } else {

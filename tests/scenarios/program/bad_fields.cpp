@@ -115,6 +115,7 @@ std::vector<BadInput> wrong_values() {
        "allowed: null or a number > 0"},
       {"IntegratorMisspelt", plane("/integrator", R"({"type": "leap-frog"})"), "/integrator/type",
        "nearest valid name: \"leapfrog\""},
+      {"PushWithoutForce", plane("/hand", R"({"type": "push"})"), "/hand", "missing field \"force_N\""},
       {"IntegratorWithoutType", plane("/integrator", "{}"), "/integrator", "missing field \"type\""},
       {"IntegratorOfAnotherType", plane("/integrator", R"({"type": 4})"), "/integrator/type",
        "allowed: integrator: one of \"leapfrog\", \"velocity_verlet\", \"rk4\", \"implicit_euler\", "
@@ -242,6 +243,8 @@ std::vector<BadInput> contradictions() {
       {"SpringsUnsignedButUnilateral",
        with_value("springs", "/environment", R"({"type": "springs", "bilateral": false, "signed": false})"),
        "/environment/signed", "got false; allowed: true with \"bilateral\": false"},
+      {"PushInThePlane", with_value("hole_2d", "/hand", R"({"type": "push", "force_N": 1})"), "/hand/type",
+       "got \"push\", which pushes along z"},
       {"SpringWithoutDirection",
        with_value("springs", "/environment/groups", R"([{"direction": [0,0,0], "count": 1}])"),
        "/environment/groups/0/direction", "got [0, 0, 0]; allowed: a direction that is not zero"},

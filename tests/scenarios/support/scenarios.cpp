@@ -96,6 +96,11 @@ std::vector<NamedScenario> rich_scenarios() {
         "mechanics": {"carriage_mass_kg": 0.3, "handle_mass_kg": 0.08, "friction_N_s_per_m": 1,
           "structure_stiffness_N_per_m": 1e5, "structure_damping_N_s_per_m": 20}},
       "record": {"trajectory": true, "energy": true, "ideal_trajectory": true}})")},
+          {"pushed_plane", Json::parse(R"({
+      "time": {"step_s": 0.0005, "steps": 100},
+      "environment": {"type": "plane", "size_m": 0.004, "spacing_m": 0.0002},
+      "hand": {"type": "push", "force_N": {"type": "ramp", "start": 0, "rate_per_s": 10}, "angle_rad": 0.3,
+        "azimuth_rad": -1.5}})")},
           {"held_plane", Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 100},
       "environment": {"type": "plane", "size_m": 0.004, "spacing_m": 0.0002},
