@@ -37,6 +37,12 @@ static void describe(Fields& f, ImpedanceHandFields& hand) {
       Presence::required);
 }
 
+static void describe(Fields& f, Gauge& gauge) {
+  f.number("cutoff_Hz", gauge.cutoff, {0.0, 1e6, "Hz", true}, "of the low-pass of the spring force it shows");
+  f.number("grace_s", gauge.grace, {0.0, 1000.0, "s"},
+           "how long it may show less than least_press_N without a break of the hold");
+}
+
 static void describe(Fields& f, TargetRules& task) {
   f.choice("display", task.display, kDisplays, "display",
            "panel: x and y count, the orientation is scripted; height: z counts, the hand turns the tool");
@@ -45,7 +51,9 @@ static void describe(Fields& f, TargetRules& task) {
       [](Fields& p, Vec3& place) { p.vector3(place, kCoordinate); }, Presence::required);
   f.integer("targets_per_place", task.targets_per_place, {1, 1000}, "in one trial");
   f.number("tolerance_m", task.tolerance, {0.0, 1.0, "m", true}, "the tip is on the target within this distance");
-  f.number("least_press_N", task.least_press, {0.0, 1000.0, "N"}, "model force along +z that activates the task");
+  f.number("least_press_N", task.least_press, {0.0, 1000.0, "N"}, "force along +z that activates the task");
+  f.field("gauge", "a display of the spring force; null: the rendered force, every sample of it", Presence::has_default,
+          [&task](Fields& gauge) { gauge.nullable(task.gauge, [](Fields& g, Gauge& value) { g.object(value); }); });
   f.number("hold_s", task.hold, {0.0, 1000.0, "s", true}, "time on the target, without a break, that removes it");
   f.number("time_limit_s", task.time_limit, {0.0, 1000.0, "s", true},
            "from the activation until the target disappears");
