@@ -60,6 +60,7 @@ TEST(Defaults, ThatHoldEverywhere) {
                    {"/rendering/angular_velocity_cutoff_Hz", "20.0"},
                    {"/rendering/limits", R"({"max_damping_N_s_per_m": null, "max_force_N": null})"},
                    {"/rendering/virtual_coupling_N_per_m", "null"},
+                   {"/rendering/regularisation", "0.01"},
                    {"/integrator", R"({"type": "leapfrog"})"},
                    {"/record", R"({"trajectory": true, "every": 1, "ratio_iterations": [], "contacts": false,
                                    "stiffness_tensor": false, "timing": false, "energy": false, "ideal_trajectory": false})"},

@@ -61,6 +61,8 @@ std::vector<BadInput> wrong_values() {
        "/rendering/friction/mu_f_s_per_m", "got null; allowed: a number >= 0"},
       {"ForceLimitNegative", plane("/rendering", R"({"limits": {"max_force_N": -1}})"), "/rendering/limits/max_force_N",
        "got -1; allowed: null or a number >= 0"},
+      {"RegularisationZero", plane("/rendering", R"({"regularisation": 0})"), "/rendering/regularisation",
+       "got 0; allowed: a number >= 1e-09 and <= 1000000"},
       {"CouplingZero", plane("/rendering", R"({"virtual_coupling_N_per_m": 0})"), "/rendering/virtual_coupling_N_per_m",
        "got 0; allowed: null or a number > 0"},
       {"AlgorithmMisspelt", plane("/rendering", R"({"algorithm": "shaped_stifness"})"), "/rendering/algorithm",
