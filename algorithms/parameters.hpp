@@ -26,6 +26,8 @@ inline constexpr Parameter kMuF = {"rendering.friction.mu_f_s_per_m", {0.0, 1e9,
 inline constexpr Parameter kMaxDamping = {"rendering.limits.max_damping_N_s_per_m", {0.0, 1e12, "N s/m"}};
 inline constexpr Parameter kMaxForce = {"rendering.limits.max_force_N", {0.0, 1e12, "N"}};
 inline constexpr Parameter kVirtualCoupling = {"rendering.virtual_coupling_N_per_m", {0.0, 1e12, "N/m", true}};
+/// Below 1e-9, the rounding of sum d_i u_i (1e-16 n d) over eps is no longer far below a depth.
+inline constexpr Parameter kRegularisation = {"rendering.regularisation", {1e-9, 1e6, "1"}};
 inline constexpr Parameter kPassivityController = {"rendering.passivity_controller", kSwitch};
 
 }  // namespace parameter

@@ -56,6 +56,14 @@ constexpr AlgorithmEntry kAlgorithms[] = {
      .theory = &kProxyTheory,
      .may_reduce = false,
      .reported_depth_model = "surface_normal"},
+    {.info = &kLeastSquaresInfo,
+     .make = penalty<make_least_squares>,
+     .theory = &kLeastSquaresTheory,
+     .may_reduce = false},
+    {.info = &kHighestDepthInfo,
+     .make = penalty<make_highest_depth>,
+     .theory = &kHighestDepthTheory,
+     .may_reduce = false},
 };
 
 constexpr DepthModelEntry kDepthModels[] = {

@@ -36,6 +36,7 @@ struct RenderingConfig {
   std::optional<double> max_damping;       ///< B_max [N s/m]
   std::optional<double> max_force;         ///< F_max [N]
   std::optional<double> virtual_coupling;  ///< K_vc [N/m]; off: K
+  double regularisation = 0.01;            ///< eps of least_squares
 
   bool angular_damping = false;  ///< damping and friction see the velocity of the tool at each contact
   std::optional<double> angular_velocity_cutoff = 20.0;  ///< of the low-pass of the angular velocity they see [Hz]

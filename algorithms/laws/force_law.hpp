@@ -21,8 +21,8 @@ struct LawForce {
 };
 
 /// A force law: merges the penalty springs of all contacts into one force (thesis C.4). All laws but
-/// `original_averaging` and `virtual_coupling` are f_spring = -K sum c_i d_i u_i and S = sum c_i u_i u_i^T and differ
-/// in the weights c_i only. Per-run state; one virtual call per step.
+/// `original_averaging`, `highest_depth`, `virtual_coupling` and `least_squares` are f_spring = -K sum c_i d_i u_i and
+/// S = sum c_i u_i u_i^T and differ in the weights c_i only. Per-run state; one virtual call per step.
 class ForceLaw {
  public:
   explicit ForceLaw(double stiffness) : K_(stiffness) {}
@@ -56,6 +56,10 @@ Vec3 gradient_sum(const ContactBuffer& contacts) noexcept;
 /// Mean of the vectors from the tip centre `tip` to the colliding points, by the weights in the buffer [m]; zero
 /// without weights. O(n).
 Vec3 mean_arm(const ContactBuffer& contacts, const Vec3& tip) noexcept;
+
+/// Energy and moment about `tip` of unweighted springs of stiffness K [N/m] whose ends have moved by `shift` [m]: the
+/// depths are d_i + <u_i, shift>. O(n).
+SpringState shifted_springs(const ContactBuffer& contacts, const Vec3& shift, const Vec3& tip, double K) noexcept;
 
 /// f_spring and S of the weights in the buffer. O(n).
 LawForce weighted_force(const ContactBuffer& contacts, double K) noexcept;

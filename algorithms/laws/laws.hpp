@@ -9,6 +9,8 @@ namespace hapbench {
 
 extern const ModelInfo kContinuousNormalProjectionInfo;  ///< shaped_stiffness on a depth model of its own
 extern const ModelInfo kExactShapingInfo;
+extern const ModelInfo kHighestDepthInfo;
+extern const ModelInfo kLeastSquaresInfo;
 extern const ModelInfo kMeanInfo;
 extern const ModelInfo kMergedShapingInfo;
 extern const ModelInfo kNormalProjectionInfo;  ///< shaped_stiffness on a depth model of its own
@@ -19,6 +21,8 @@ extern const ModelInfo kTandpastaInfo;
 extern const ModelInfo kVirtualCouplingInfo;
 
 extern const AlgorithmTheory kExactShapingTheory;  ///< of merged_shaping too
+extern const AlgorithmTheory kHighestDepthTheory;
+extern const AlgorithmTheory kLeastSquaresTheory;
 extern const AlgorithmTheory kMeanTheory;
 extern const AlgorithmTheory kOriginalAveragingTheory;
 extern const AlgorithmTheory kShapedStiffnessTheory;
@@ -27,6 +31,8 @@ extern const AlgorithmTheory kTandpastaTheory;
 extern const AlgorithmTheory kVirtualCouplingTheory;
 
 std::unique_ptr<ForceLaw> make_exact_shaping(const RenderingConfig& config);
+std::unique_ptr<ForceLaw> make_highest_depth(const RenderingConfig& config);
+std::unique_ptr<ForceLaw> make_least_squares(const RenderingConfig& config);
 std::unique_ptr<ForceLaw> make_mean(const RenderingConfig& config);
 std::unique_ptr<ForceLaw> make_merged_shaping(const RenderingConfig& config);
 std::unique_ptr<ForceLaw> make_original_averaging(const RenderingConfig& config);

@@ -3,7 +3,6 @@
 
 #include "algorithms/laws/laws.hpp"
 #include "algorithms/parameters.hpp"
-#include "sim/core/simd.hpp"
 
 namespace hapbench {
 namespace {
@@ -45,22 +44,9 @@ class VirtualCoupling final : public ForceLaw {
   SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
     if (K_ == 0.0) return {};
     const Vec3 stretch = spring * (K_over_K_vc_ / K_);
-    // The springs with those depths; the law has given them the weight 1.
-    using simd::load, simd::Pack;
-    const Pack sx(stretch.x()), sy(stretch.y()), sz(stretch.z());
-    Pack energy(0.0), mx(0.0), my(0.0), mz(0.0);
-    for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
-      const Pack ux = load(&contacts.ux[i]), uy = load(&contacts.uy[i]), uz = load(&contacts.uz[i]);
-      const Pack d = load(&contacts.depth[i]) + (ux * sx + uy * sy + uz * sz);
-      const Pack x = load(&contacts.x[i]) - Pack(tip.x()), y = load(&contacts.y[i]) - Pack(tip.y()),
-                 z = load(&contacts.z[i]) - Pack(tip.z());
-      energy += d * d;
-      mx += d * (y * uz - z * uy);
-      my += d * (z * ux - x * uz);
-      mz += d * (x * uy - y * ux);
-    }
-    return {0.5 * spring.dot(stretch) + 0.5 * K_ * simd::sum(energy),
-            -K_ * Vec3(simd::sum(mx), simd::sum(my), simd::sum(mz))};
+    SpringState state = shifted_springs(contacts, stretch, tip, K_);
+    state.energy += 0.5 * spring.dot(stretch);
+    return state;
   }
 
   /// The coupling passes velocities on as it does depths.

@@ -41,7 +41,8 @@ void TrackingHand::reset() noexcept {
 Vec3 TrackingHand::force(double, const HandView& view) noexcept {
   if (!started_) intended_ = view.handle.position;
   started_ = true;
-  task_.advance(view.tool.position, view.model_force.z(), dt_);
+  const Vec3& gauged = task_.rules().gauge ? view.spring_force : view.model_force;
+  task_.advance(view.tool.position, gauged.z(), dt_);
   follow(look(view));
   hold_within_strength(view.handle);
   for (double& component : force_noise_) component = coloured(component);
@@ -54,7 +55,7 @@ Vec3 TrackingHand::force(double, const HandView& view) noexcept {
 TrackingHand::Seen TrackingHand::look(const HandView& view) noexcept {
   Seen& now = seen_[next_];
   now.error = task_.finished() ? Vec3(Vec3::Zero()) : task_.error(view.tool.position);
-  now.gauge = view.model_force.z();
+  now.gauge = task_.reading();
   next_ = (next_ + 1) % seen_.size();
   return seen_[next_];
 }

@@ -17,7 +17,7 @@ struct Subject {
   double bandwidth = 0.6;          ///< of following the target on the display [Hz]
   double stiffness = 300.0;        ///< of the hand about its intended position [N/m]
   double damping = 6.0;            ///< of the hand [N s/m]
-  double press = 1.7;              ///< model force along +z the subject wants to see on the gauge [N]
+  double press = 1.7;              ///< force along +z the subject wants to see on the gauge [N]
   double press_bandwidth = 0.4;    ///< of correcting it [Hz]
   double motor_noise = 0.04;       ///< standard deviation of each force component [N]
   double tilt_noise = 0.004;       ///< standard deviation of the wrist's angle, when it turns the tool [rad]

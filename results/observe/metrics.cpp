@@ -15,8 +15,12 @@ void add(Hash64& hash, const Vec3& v) noexcept {
 
 }  // namespace
 
-MetricsObserver::MetricsObserver(double dt) {
+MetricsObserver::MetricsObserver(double dt, std::optional<double> friction_limit) {
   assert(dt > 0.0);
+  if (friction_limit) {
+    metrics_.explicit_friction = ExplicitFriction{*friction_limit, 0, {}};
+    friction_limit_squared_ = *friction_limit * *friction_limit;
+  }
   const double sampling_rate = 1.0 / dt;
   if (sampling_rate > 2.0 * kVibrationCutoff) high_pass_.emplace(kVibrationCutoff, sampling_rate);
 }
@@ -53,6 +57,11 @@ void MetricsObserver::add_force(const RenderedForce& force) noexcept {
     force_step_max_squared_ = std::max(force_step_max_squared_, (force.rendered - last_force_).squaredNorm());
   }
   metrics_.depth_max = std::max(metrics_.depth_max, force.depth_max);
+  if (force.spring.squaredNorm() > friction_limit_squared_) {
+    ExplicitFriction& friction = *metrics_.explicit_friction;
+    if (!friction.first_step) friction.first_step = metrics_.rows;
+    ++friction.rows_beyond;
+  }
   last_force_ = force.rendered;
 }
 
@@ -110,6 +119,12 @@ Metrics merged(const std::vector<Metrics>& runs) noexcept {
     all.rendered_max = std::max(all.rendered_max, run.rendered_max);
     all.steps_in_contact += run.steps_in_contact;
     all.speed_max = std::max(all.speed_max, run.speed_max);
+    if (run.explicit_friction) {
+      if (!all.explicit_friction) all.explicit_friction = ExplicitFriction{run.explicit_friction->limit, 0, {}};
+      ExplicitFriction& friction = *all.explicit_friction;
+      friction.rows_beyond += run.explicit_friction->rows_beyond;
+      if (!friction.first_step) friction.first_step = run.explicit_friction->first_step;
+    }
     all.final_position = run.final_position;
     hash.word(run.state_hash);
   }

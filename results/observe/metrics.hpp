@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
+#include "results/observe/explicit_friction.hpp"
 #include "results/observe/high_pass.hpp"
 #include "sim/core/hash.hpp"
 #include "sim/loop/observer.hpp"
@@ -31,10 +33,11 @@ struct Metrics {
   std::uint64_t colliding_max = 0;
   double rendered_mean = 0.0;  ///< the same for the points the force law saw
   std::uint64_t rendered_max = 0;
-  std::uint64_t steps_in_contact = 0;  ///< rows with a colliding point
-  double speed_max = 0.0;              ///< [m/s]
-  Vec3 final_position = Vec3::Zero();  ///< of the last row [m]
-  std::uint64_t state_hash = 0;        ///< over the bit patterns of p, v and f_render of every row
+  std::uint64_t steps_in_contact = 0;                      ///< rows with a colliding point
+  double speed_max = 0.0;                                  ///< [m/s]
+  Vec3 final_position = Vec3::Zero();                      ///< of the last row [m]
+  std::optional<ExplicitFriction> explicit_friction = {};  ///< none where friction cannot become unstable
+  std::uint64_t state_hash = 0;                            ///< over the bit patterns of p, v and f_render of every row
 };
 
 /// Combines several runs as if they were one: sums and means over the rows of all of them, and the last one's final
@@ -45,8 +48,8 @@ Metrics merged(const std::vector<Metrics>& runs) noexcept;
 /// Computes the metrics while a run goes on, in constant memory; about 20 ns a row.
 class MetricsObserver final : public Observer {
  public:
-  /// `dt`: time from row to row [s]. Precondition: dt > 0.
-  explicit MetricsObserver(double dt);
+  /// `dt`: time from row to row [s], > 0. `friction_limit`: of explicit_friction_limit [N].
+  explicit MetricsObserver(double dt, std::optional<double> friction_limit = std::nullopt);
 
   bool wants_ratio() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override;
@@ -61,6 +64,7 @@ class MetricsObserver final : public Observer {
 
   Metrics metrics_;                    ///< everything that needs no final division
   std::optional<HighPass> high_pass_;  ///< none when the sampling rate is too low
+  double friction_limit_squared_ = std::numeric_limits<double>::infinity();
   Hash64 hash_;
   Vec3 last_velocity_ = Vec3::Zero();
   Vec3 last_force_ = Vec3::Zero();

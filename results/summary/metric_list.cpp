@@ -19,6 +19,11 @@ Metric count(const char* name, std::uint64_t value) {
   return {name, value};
 }
 
+/// A count that need not exist.
+Metric count_if(bool exists, const char* name, std::uint64_t value) {
+  return {name, exists ? Metric::Value(value) : Metric::Value()};
+}
+
 MetricList metric_list(const TrajectoryErrors& e) {
   const bool any = e.rows > 0;
   return {count("rows", e.rows),
@@ -60,6 +65,7 @@ void append(MetricList& list, std::string_view section, const MetricList& more) 
 MetricList metric_list(const Metrics& m) {
   const bool any = m.rows > 0;
   const auto ratio = m.ratio.value_or(RatioRange{});
+  const auto friction = m.explicit_friction.value_or(ExplicitFriction{});
   return {number("force_max_N", m.force_max),
           number("force_step_max_N", m.force_step_max),
           number("velocity_total_variation_m_per_s", m.velocity_total_variation),
@@ -73,7 +79,10 @@ MetricList metric_list(const Metrics& m) {
           number_if(any, "rendered_mean", m.rendered_mean),
           count("rendered_max", m.rendered_max),
           count("steps_in_contact", m.steps_in_contact),
-          number("speed_max_m_per_s", m.speed_max)};
+          number("speed_max_m_per_s", m.speed_max),
+          number_if(m.explicit_friction.has_value(), "explicit_friction_limit_N", friction.limit),
+          count_if(m.explicit_friction.has_value(), "explicit_friction_rows_beyond", friction.rows_beyond),
+          count_if(friction.first_step.has_value(), "explicit_friction_first_step", friction.first_step.value_or(0))};
 }
 
 MetricList final_position_list(const Metrics& m) {

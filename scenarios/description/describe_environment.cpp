@@ -17,6 +17,11 @@ constexpr double kShortestDirection = 1e-12;
 /// In the order of the variant.
 constexpr std::array kTypes = {"springs", "hole_2d", "plane", "slot", "block_with_hole", "point_shell", "mesh"};
 
+constexpr Choice<BlockVertices> kVertices[] = {{"shared", BlockVertices::shared},
+                                               {"per_cell", BlockVertices::per_cell}};
+/// A vertex lies on an edge of four cells.
+constexpr double kCellsOfVertex = 4.0;
+
 constexpr Choice<Density> kDensities[] = {{"signed_distance", Density::signed_distance}, {"binary", Density::binary}};
 
 void refuse_too_many(double count, const std::string& at, const char* what) {
@@ -41,10 +46,13 @@ void check_springs(const SpringsEnvironment& springs, const std::string& at) {
                                  direction.x(), direction.y(), direction.z(), kShortestDirection));
   }
   refuse_too_many(count, at, "springs");
+  if (springs.bilateral || springs.signed_depths) return;
+  throw InputError(InputError::Kind::relation, at + "/signed",
+                   "got false; allowed: true with \"bilateral\": false, whose depths are positive as they are");
 }
 
 void check_block(const BlockEnvironment& environment, const std::string& at) {
-  const auto& [block, grid, density] = environment;
+  const auto& [block, grid, density, vertices] = environment;
   const Vec3& size = block.size;
   // Cells smaller than this cannot be numbered; thinner walls have no nodes on both sides.
   const double longest = 1e5 * grid, thinnest = 3.0 * grid;
@@ -53,7 +61,8 @@ void check_block(const BlockEnvironment& environment, const std::string& at) {
   };
   if (size.maxCoeff() > longest) fail("grid_m", fmt::format("got {}; allowed: at least size_m / 1e5", grid));
   const double area = 2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
-  refuse_too_many(area / (grid * grid), at, "shell points (from size_m and grid_m)");
+  const double copies = vertices == BlockVertices::per_cell ? kCellsOfVertex : 1.0;
+  refuse_too_many(copies * area / (grid * grid), at, "shell points (from size_m, grid_m and vertices)");
   if (block.hole_diameter > std::min(size.x(), size.y()) - 2.0 * thinnest || block.hole_diameter < thinnest) {
     fail("hole_diameter_m",
          fmt::format("got {}; allowed: at least 3 grid_m, leaving walls of 3 grid_m", block.hole_diameter));
@@ -79,6 +88,8 @@ static void describe(Fields& f, RandomSprings& random) {
 
 static void describe(Fields& f, SpringsEnvironment& springs) {
   f.boolean("bilateral", springs.bilateral, "springs push and pull; false: only while their depth is positive");
+  f.boolean("signed", springs.signed_depths,
+            "depths of bilateral springs are <p, u>; false: |<p, u>|, with gradients along the displacement");
   f.objects("groups", springs.groups, {0, 10'000}, "springs by direction, in this order");
   f.object("random", springs.random, "springs with random directions, after the groups");
   if (f.reads()) check_springs(springs, f.at());
@@ -114,6 +125,8 @@ static void describe(Fields& f, BlockEnvironment& environment) {
   f.number("grid_m", environment.grid, kLength, "grid of the density field; its nodes lie at half-integer multiples");
   f.choice("density", environment.density, kDensities, "density",
            "what the nodes store: minus the signed distance, or 1 and 0");
+  f.choice("vertices", environment.vertices, kVertices, "listing",
+           "points of the shell: each vertex once, or once for each grid cell that has it on an edge (the thesis)");
   if (f.reads()) check_block(environment, f.at());
 }
 

@@ -4,6 +4,7 @@ namespace hapbench {
 namespace {
 
 constexpr NumberRange kCoordinate = {-1000.0, 1000.0, "m"};
+constexpr NumberRange kAngle = {-6.3, 6.3, "rad"};  ///< a full turn either way
 
 constexpr Choice<TargetDisplay> kDisplays[] = {{"panel", TargetDisplay::panel}, {"height", TargetDisplay::height}};
 
@@ -14,6 +15,12 @@ static void describe(Fields&, NoHandFields&) {}
 static void describe(Fields& f, ForceHandFields& hand) {
   constexpr const char* kNames[] = {"x_N", "y_N", "z_N"};
   for (std::size_t i = 0; i < 3; ++i) profile(f, kNames[i], hand.force[i], "N", "force on the handle over time");
+}
+
+static void describe(Fields& f, PushHandFields& hand) {
+  profile(f, "force_N", hand.force, "N", "force on the handle over time", Presence::required);
+  f.number("angle_rad", hand.angle, kAngle, "of the force from straight down, -z; 3-D scenes only");
+  f.number("azimuth_rad", hand.azimuth, kAngle, "of its lean, from +x about z");
 }
 
 static void describe(Fields& f, ImpedanceHandFields& hand) {
@@ -30,6 +37,12 @@ static void describe(Fields& f, ImpedanceHandFields& hand) {
       Presence::required);
 }
 
+static void describe(Fields& f, Gauge& gauge) {
+  f.number("cutoff_Hz", gauge.cutoff, {0.0, 1e6, "Hz", true}, "of the low-pass of the spring force it shows");
+  f.number("grace_s", gauge.grace, {0.0, 1000.0, "s"},
+           "how long it may show less than least_press_N without a break of the hold");
+}
+
 static void describe(Fields& f, TargetRules& task) {
   f.choice("display", task.display, kDisplays, "display",
            "panel: x and y count, the orientation is scripted; height: z counts, the hand turns the tool");
@@ -38,7 +51,9 @@ static void describe(Fields& f, TargetRules& task) {
       [](Fields& p, Vec3& place) { p.vector3(place, kCoordinate); }, Presence::required);
   f.integer("targets_per_place", task.targets_per_place, {1, 1000}, "in one trial");
   f.number("tolerance_m", task.tolerance, {0.0, 1.0, "m", true}, "the tip is on the target within this distance");
-  f.number("least_press_N", task.least_press, {0.0, 1000.0, "N"}, "model force along +z that activates the task");
+  f.number("least_press_N", task.least_press, {0.0, 1000.0, "N"}, "force along +z that activates the task");
+  f.field("gauge", "a display of the spring force; null: the rendered force, every sample of it", Presence::has_default,
+          [&task](Fields& gauge) { gauge.nullable(task.gauge, [](Fields& g, Gauge& value) { g.object(value); }); });
   f.number("hold_s", task.hold, {0.0, 1000.0, "s", true}, "time on the target, without a break, that removes it");
   f.number("time_limit_s", task.time_limit, {0.0, 1000.0, "s", true},
            "from the activation until the target disappears");
@@ -70,7 +85,7 @@ static void describe(Fields& f, TrackingHandFields& hand) {
 }
 
 void describe(Fields& f, HandFields& hand) {
-  f.variant(hand, "hand", {"none", "force", "impedance", "tracking"},
+  f.variant(hand, "hand", {"none", "force", "push", "impedance", "tracking"},
             [](Fields& h, auto& fields) { describe(h, fields); });
 }
 

@@ -77,6 +77,7 @@ void describe(Fields& f, RenderingConfig& rendering) {
     number(limits, parameter::kMaxForce, rendering.max_force, "F_max; null: off");
   });
   number(f, parameter::kVirtualCoupling, rendering.virtual_coupling, "K_vc of algorithm virtual_coupling; null: K");
+  number(f, parameter::kRegularisation, rendering.regularisation, "eps of algorithm least_squares");
   f.boolean(key(parameter::kPassivityController), rendering.passivity_controller,
             "adaptive damping that lets the algorithm create no energy");
 }

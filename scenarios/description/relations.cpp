@@ -67,6 +67,12 @@ void check_ideal_trajectory(const Scenario& scenario) {
        "got true; allowed: false, unless the environment is block_with_hole and the tool's tip flat");
 }
 
+void check_push_hand(const Scenario& scenario) {
+  if (!std::holds_alternative<PushHandFields>(scenario.hand)) return;
+  if (!std::holds_alternative<Hole2d>(scenario.environment)) return;
+  fail("/hand/type", "got \"push\", which pushes along z; allowed in the plane of \"hole_2d\": \"force\"");
+}
+
 void check_tracking_hand(const Scenario& scenario, double steps) {
   const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
   if (hand == nullptr) return;
@@ -92,6 +98,7 @@ void check_relations(const Scenario& scenario, double steps) {
   check_orientation(scenario.motion);
   check_local_average(scenario);
   check_ideal_trajectory(scenario);
+  check_push_hand(scenario);
   check_tracking_hand(scenario, steps);
 }
 

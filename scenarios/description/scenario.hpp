@@ -44,13 +44,20 @@ struct RandomSprings {
 };
 struct SpringsEnvironment {
   bool bilateral = true;
+  bool signed_depths = true;
   std::vector<SpringGroup> groups;
   RandomSprings random;
+};
+/// How often the shell lists a vertex of the block's surface.
+enum class BlockVertices {
+  shared,   ///< once
+  per_cell  ///< once for each grid cell that has it on an edge, as thesis 2.1 and C.2 have it
 };
 struct BlockEnvironment {
   BlockWithHole block;
   double grid = 0.0001;  ///< of the density field [m]
   Density density = Density::signed_distance;
+  BlockVertices vertices = BlockVertices::shared;
 };
 struct PointShellEnvironment {
   std::string file;            ///< CSV or PLY, relative to the scenario file
@@ -99,6 +106,11 @@ struct NoHandFields {};
 struct ForceHandFields {
   std::array<Profile, 3> force;  ///< [N]
 };
+struct PushHandFields {
+  Profile force;         ///< [N]
+  double angle = 0.0;    ///< from straight down [rad]
+  double azimuth = 0.0;  ///< of the lean, from +x about z [rad]
+};
 struct ImpedanceHandFields {
   double stiffness = 300.0;       ///< [N/m]
   double damping = 6.0;           ///< [N s/m]
@@ -110,7 +122,7 @@ struct TrackingHandFields {
   std::vector<Subject> subjects = {Subject{}};
   std::int64_t trials = 1;
 };
-using HandFields = std::variant<NoHandFields, ForceHandFields, ImpedanceHandFields, TrackingHandFields>;
+using HandFields = std::variant<NoHandFields, ForceHandFields, PushHandFields, ImpedanceHandFields, TrackingHandFields>;
 
 struct IdealDeviceFields {
   std::optional<double> force_limit;  ///< [N]

@@ -17,39 +17,42 @@ namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
-using Points = std::vector<SurfacePoint>;
 
 // Six doubles without gaps, so that a file can hold points as they lie in memory. The byte order is this machine's:
 // definitions name the machine code, which another byte order does not share.
 static_assert(std::is_standard_layout_v<SurfacePoint> && sizeof(SurfacePoint) == 6 * sizeof(double));
 
-constexpr std::array<char, 8> kMagic = {'h', 'a', 'p', 's', 'h', 'e', 'l', '1'};
+constexpr std::array<char, 8> kMagic = {'h', 'a', 'p', 's', 'h', 'e', 'l', '2'};
 constexpr const char* kExtension = ".shell";
 
-/// What a file starts with; the definition and the points follow.
+/// What a file starts with; the definition, the points and their cells follow.
 struct Header {
   std::array<char, 8> magic = kMagic;
   std::uint64_t definition_size = 0;  ///< [bytes]
   std::uint64_t points = 0;
+  std::uint64_t cells = 0;     ///< as many as points, or none
   std::uint64_t checksum = 0;  ///< of everything else
 };
 
 /// Each round of the hash can be undone, so one changed bit, byte or word always changes the sum.
-std::uint64_t checksum(const Header& header, std::string_view definition, const Points& points) {
+std::uint64_t checksum(const Header& header, std::string_view definition, const ShellPoints& shell) {
   Hash64 hash;
   hash.bytes({header.magic.data(), header.magic.size()});
   hash.word(header.definition_size);
   hash.word(header.points);
+  hash.word(header.cells);
   hash.bytes(definition);
-  for (const SurfacePoint& point : points) {
+  for (const SurfacePoint& point : shell.points) {
     for (const double value : point.position) hash.real(value);
     for (const double value : point.normal) hash.real(value);
   }
+  for (const std::uint32_t cell : shell.cells) hash.word(cell);
   return hash.value();
 }
 
 std::uintmax_t file_size(const Header& header) {
-  return sizeof(Header) + header.definition_size + header.points * sizeof(SurfacePoint);
+  return sizeof(Header) + header.definition_size + header.points * sizeof(SurfacePoint) +
+         header.cells * sizeof(std::uint32_t);
 }
 
 template <class T>
@@ -63,22 +66,23 @@ bool read(std::ifstream& stream, T* objects, std::size_t count) {
   return stream.good();
 }
 
-/// The points in the file when it is whole and of this definition. Sizes are believed only when the file has them.
-std::optional<Points> read_entry(const fs::path& file, const std::string& definition) {
+/// The shell in the file when it is whole and of this definition. Sizes are believed only when the file has them.
+std::optional<ShellPoints> read_entry(const fs::path& file, const std::string& definition) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return {};  // opening a pipe would wait for its writer
   std::ifstream stream(file, std::ios::binary);
   Header header;
   if (!read(stream, &header, 1) || header.magic != kMagic || header.definition_size != definition.size()) return {};
-  if (header.points > static_cast<std::uint64_t>(kMostPoints) || fs::file_size(file, error) != file_size(header)) {
-    return {};
-  }
+  if (header.points > static_cast<std::uint64_t>(kMostPoints)) return {};
+  if (header.cells != 0 && header.cells != header.points) return {};
+  if (fs::file_size(file, error) != file_size(header)) return {};
   std::string stored(definition.size(), '\0');
   if (!read(stream, stored.data(), stored.size()) || stored != definition) return {};
-  Points points(header.points);
-  if (!read(stream, points.data(), points.size())) return {};
-  if (checksum(header, definition, points) != header.checksum) return {};
-  return points;
+  ShellPoints shell{std::vector<SurfacePoint>(header.points), std::vector<std::uint32_t>(header.cells)};
+  if (!read(stream, shell.points.data(), shell.points.size())) return {};
+  if (!read(stream, shell.cells.data(), shell.cells.size())) return {};
+  if (checksum(header, definition, shell) != header.checksum) return {};
+  return shell;
 }
 
 struct Entry {
@@ -129,32 +133,34 @@ fs::path ShellCache::entry(const std::string& definition) const {
   return directory_ / (hash_text(hash_of(definition)) + kExtension);
 }
 
-std::optional<Points> ShellCache::find(const std::string& definition) const noexcept {
+std::optional<ShellPoints> ShellCache::find(const std::string& definition) const noexcept {
   if (!is_on()) return {};
   try {
     const fs::path file = entry(definition);
-    std::optional<Points> points = read_entry(file, definition);
+    std::optional<ShellPoints> shell = read_entry(file, definition);
     std::error_code ignored;
-    if (points) fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
-    return points;
+    if (shell) fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
+    return shell;
   } catch (const std::exception&) {  // no memory for the file's points
     return {};
   }
 }
 
-void ShellCache::keep(const std::string& definition, const Points& points) const noexcept {
+void ShellCache::keep(const std::string& definition, const ShellPoints& shell) const noexcept {
   Header header;
   header.definition_size = definition.size();
-  header.points = points.size();
+  header.points = shell.points.size();
+  header.cells = shell.cells.size();
   if (!is_on() || file_size(header) > largest_) return;
-  header.checksum = checksum(header, definition, points);
+  header.checksum = checksum(header, definition, shell);
   try {
     fs::create_directories(directory_);
     remove_stale_temporaries(directory_);
     AtomicFile file(entry(definition));
     file.append(bytes_of(&header, 1));
     file.append(definition);
-    file.append(bytes_of(points.data(), points.size()));
+    file.append(bytes_of(shell.points.data(), shell.points.size()));
+    file.append(bytes_of(shell.cells.data(), shell.cells.size()));
     file.commit();
     remove_oldest(directory_, largest_);
   } catch (const std::exception&) {

@@ -12,7 +12,7 @@ namespace hapbench {
 
 /// Point shells on disk, each under the text that defines it, for those that take longer to build than to read.
 ///
-/// A file is named by a hash of its definition and holds the definition, the points as they lie in memory and a
+/// A file is named by a hash of its definition and holds the definition, points and cells as they lie in memory and a
 /// checksum of all that. What does not agree in every part (damaged, half of it, another definition with the same hash)
 /// is not there for `find`, and the next `keep` replaces it. Several processes may use one directory at once: files
 /// appear whole (results/io/atomic_file.hpp), and of two that build the same shell the later replaces the earlier by
@@ -30,10 +30,10 @@ class ShellCache {
   /// A cache in this directory, which is created when it is first written to; no caching when the path is empty.
   explicit ShellCache(std::filesystem::path directory, std::uintmax_t largest = kLargest);
 
-  /// The points kept under this definition, bit for bit. O(points): reads and checks the whole file.
-  std::optional<std::vector<SurfacePoint>> find(const std::string& definition) const noexcept;
-  /// Keeps the points for later processes and drops the entries used longest ago that are too many.
-  void keep(const std::string& definition, const std::vector<SurfacePoint>& points) const noexcept;
+  /// The shell kept under this definition, bit for bit. O(points): reads and checks the whole file.
+  std::optional<ShellPoints> find(const std::string& definition) const noexcept;
+  /// Keeps the shell for later processes and drops the entries used longest ago that are too many.
+  void keep(const std::string& definition, const ShellPoints& shell) const noexcept;
 
   bool is_on() const { return !directory_.empty(); }
   const std::filesystem::path& directory() const { return directory_; }

@@ -85,7 +85,9 @@ int compare(const CompareOptions& options) {
   }
   write_comparison(out / "comparison.csv", reports);
   print(options.output,
-        fmt::format("{}\n\n{}\nresults in {}\n", scenarios[0].scenario.name, table.text(), out.string()), summaries);
+        fmt::format("{}\n\n{}{}\nresults in {}\n", scenarios[0].scenario.name, table.text(), friction_text(reports),
+                    out.string()),
+        summaries);
   return status;
 }
 

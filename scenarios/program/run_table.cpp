@@ -28,6 +28,22 @@ std::vector<std::string> run_cells(const RunReport& report) {
           significant(1e6 * report.timing.loop / rows, 3)};
 }
 
+std::string friction_text(std::span<const RunReport> reports) {
+  std::string names;
+  double limit = 0.0;
+  for (const RunReport& report : reports) {
+    const auto& friction = report.summary.metrics.explicit_friction;
+    if (!friction || !friction->first_step) continue;
+    limit = friction->limit;
+    names += fmt::format("{}{} (step {})", names.empty() ? "" : ", ", report.summary.algorithm, *friction->first_step);
+  }
+  if (names.empty()) return "";
+  return fmt::format(
+      "warning: beyond {} N of spring force the explicit step of friction is unstable; what follows is the "
+      "integrator's doing, not the law's: {}\n",
+      significant(limit, 3), names);
+}
+
 std::string targets_text(const RunReport& report) {
   if (!report.summary.targets) return "";
   const auto cell = [](const SubjectMean& m, int digits) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,5 +17,9 @@ std::vector<std::string> run_cells(const RunReport& report);
 /// The tables of thesis D.4 for a report with targets: mean and standard error over subjects, a line for each place.
 /// Empty for other reports.
 std::string targets_text(const RunReport& report);
+
+/// What to know of those of several runs of one scene whose spring force passed the limit of explicit friction
+/// (results/observe/explicit_friction.hpp), a line with their algorithms; empty when none did.
+std::string friction_text(std::span<const RunReport> reports);
 
 }  // namespace hapbench

@@ -26,6 +26,7 @@ struct Overloaded : Visitors... {
 SpringSet make_springs(const SpringsEnvironment& fields, std::uint64_t seed) {
   SpringSet springs;
   springs.bilateral = fields.bilateral;
+  springs.signed_depths = fields.signed_depths;
   for (const SpringGroup& group : fields.groups) {
     const double length = group.direction.norm();
     // Unit to rounding is left alone: dividing would change last digits.
@@ -97,6 +98,8 @@ void add_hand_and_motion(const Scenario& scenario, const NamedFiles& files, Tria
   parts.motion = make_motion(scenario, files);
   if (const auto* force = std::get_if<ForceHandFields>(&scenario.hand)) {
     parts.hand = std::make_unique<ForceHand>(force->force);
+  } else if (const auto* push = std::get_if<PushHandFields>(&scenario.hand)) {
+    parts.hand = std::make_unique<PushHand>(push->force, push_direction(push->angle, push->azimuth));
   } else if (const auto* impedance = std::get_if<ImpedanceHandFields>(&scenario.hand)) {
     parts.hand = std::make_unique<ImpedanceHand>(impedance->stiffness, impedance->damping, impedance->target);
   } else {
@@ -168,9 +171,9 @@ SimulationConfig simulation_config(const Scenario& scenario) {
   return config;
 }
 
-std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const std::vector<SurfacePoint>& points) {
+std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, ShellPoints points) {
   if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return nullptr;
-  return std::make_shared<const PointShell>(points, cell_size(scenario.environment));
+  return std::make_shared<const PointShell>(points.points, cell_size(scenario.environment), std::move(points.cells));
 }
 
 SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std::shared_ptr<const PointShell> shell,
@@ -200,7 +203,7 @@ SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointSh
 
 SimulationParts assemble(const Scenario& scenario) {
   const NamedFiles files(scenario);
-  return assemble(scenario, files, make_shell(scenario, environment_points(scenario, ShellCache(), files).points), {});
+  return assemble(scenario, files, make_shell(scenario, environment_points(scenario, ShellCache(), files)), {});
 }
 
 }  // namespace hapbench

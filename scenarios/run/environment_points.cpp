@@ -6,29 +6,35 @@
 #include "scenarios/input/loaded_code.hpp"
 #include "sim/contact/grid_index.hpp"
 #include "sim/mesh/block_field.hpp"
+#include "sim/mesh/points_by_cell.hpp"
 
 namespace hapbench {
 namespace {
 
 /// The vertices of the surface of the density field, in the order that the contact search likes best.
-std::vector<SurfacePoint> block_points(const BlockEnvironment& environment) {
+ShellPoints block_points(const BlockEnvironment& environment) {
   const DensityField field = density_field(environment.block, environment.grid, environment.density);
-  return in_grid_order(vertices_with_normals(marching_cubes(field)), environment.grid);
+  if (environment.vertices == BlockVertices::shared) {
+    return {in_grid_order(vertices_with_normals(marching_cubes(field)), environment.grid), {}};
+  }
+  CutCells cells;
+  const HalfEdgeMesh mesh = marching_cubes(field, &cells);
+  return points_by_cell(mesh, cells, environment.grid);
 }
 
 /// Builds the points of each type of environment.
 struct Build {
   const NamedFiles& files;
 
-  std::vector<SurfacePoint> operator()(const SpringsEnvironment&) const { return {}; }
-  std::vector<SurfacePoint> operator()(const PointShellEnvironment&) const { return files.shell_points(); }
-  std::vector<SurfacePoint> operator()(const MeshEnvironment& mesh) const {
-    return in_grid_order(files.mesh().points(), mesh.grid.value_or(0.0));
+  ShellPoints operator()(const SpringsEnvironment&) const { return {}; }
+  ShellPoints operator()(const PointShellEnvironment&) const { return {files.shell_points(), {}}; }
+  ShellPoints operator()(const MeshEnvironment& mesh) const {
+    return {in_grid_order(files.mesh().points(), mesh.grid.value_or(0.0)), {}};
   }
-  std::vector<SurfacePoint> operator()(const BlockEnvironment& block) const { return block_points(block); }
+  ShellPoints operator()(const BlockEnvironment& block) const { return block_points(block); }
   template <class Analytic>
-  std::vector<SurfacePoint> operator()(const Analytic& shape) const {
-    return surface_points(shape);
+  ShellPoints operator()(const Analytic& shape) const {
+    return {surface_points(shape), {}};
   }
 };
 
@@ -52,7 +58,7 @@ EnvironmentPoints environment_points(const Scenario& scenario, const ShellCache&
   if (definition.empty()) return {build()};
   if (auto points = cache.find(definition)) return {std::move(*points), true};
   EnvironmentPoints built{build()};
-  cache.keep(definition, built.points);
+  cache.keep(definition, built);
   return built;
 }
 

@@ -8,8 +8,7 @@
 namespace hapbench {
 
 /// The point shell of an environment and how it was come by.
-struct EnvironmentPoints {
-  std::vector<SurfacePoint> points;
+struct EnvironmentPoints : ShellPoints {
   bool from_cache = false;
 };
 

@@ -21,13 +21,12 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-std::vector<SurfacePoint> timed_environment_points(const LoadedScenario& loaded, const ShellCache& cache,
-                                                   RunTiming& timing) {
+ShellPoints timed_environment_points(const LoadedScenario& loaded, const ShellCache& cache, RunTiming& timing) {
   const auto start = Clock::now();
   EnvironmentPoints shell = environment_points(loaded.scenario, cache, loaded.files);
   timing.shell = seconds_since(start);
   timing.shell_from_cache = shell.from_cache;
-  return std::move(shell.points);
+  return shell;
 }
 
 /// The trials of a scenario, subject by subject.

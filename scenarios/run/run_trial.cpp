@@ -13,11 +13,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// None where the position is prescribed: no force moves the tool.
+std::optional<double> friction_limit(const Scenario& scenario, const Motion& motion) {
+  if (!motion.position_is_free()) return std::nullopt;
+  const RenderingConfig& rendering = scenario.rendering;
+  return explicit_friction_limit(*scenario.integrator.type, rendering.mass, scenario.time.step, rendering.mu_s,
+                                 rendering.mu_f);
+}
+
 /// The observers of a trial: only those that the scenario asks for.
 class TrialObservers {
  public:
   TrialObservers(const Scenario& scenario, const SimulationParts& parts, Trial trial)
-      : metrics_(scenario.time.step), passivity_(scenario.time.step) {
+      : metrics_(scenario.time.step, friction_limit(scenario, *parts.motion)), passivity_(scenario.time.step) {
     observers_.push_back(&metrics_);
     observers_.push_back(&passivity_);
     if (scenario.record.energy) {

@@ -13,7 +13,7 @@ SharedShells::SharedShells(const std::vector<std::size_t>& uses, ShellCache cach
 std::shared_ptr<const PointShell> SharedShells::take(std::size_t environment, const Scenario& scenario) {
   Entry& entry = entries_[environment];
   const std::lock_guard lock(entry.mutex);
-  if (!entry.shell) entry.shell = make_shell(scenario, environment_points(scenario, cache_).points);
+  if (!entry.shell) entry.shell = make_shell(scenario, environment_points(scenario, cache_));
   auto shell = entry.shell;
   if (--entry.uses == 0) entry.shell.reset();
   return shell;

@@ -75,11 +75,15 @@ std::uint32_t GridIndex::cell_of(const Vec3& point) const {
   return static_cast<std::uint32_t>(index);
 }
 
-std::vector<SurfacePoint> in_grid_order(const std::vector<SurfacePoint>& points, double cell_size) {
+std::vector<std::uint32_t> grid_order(const std::vector<SurfacePoint>& points, double cell_size) {
   const GridIndex grid(PointShell(points, cell_size));
+  return {grid.shell_indices(), grid.shell_indices() + points.size()};
+}
+
+std::vector<SurfacePoint> in_grid_order(const std::vector<SurfacePoint>& points, double cell_size) {
   std::vector<SurfacePoint> ordered;
   ordered.reserve(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) ordered.push_back(points[grid.shell_index(i)]);
+  for (const std::uint32_t i : grid_order(points, cell_size)) ordered.push_back(points[i]);
   return ordered;
 }
 

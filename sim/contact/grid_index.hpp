@@ -68,6 +68,8 @@ class GridIndex {
   bool keeps_order_ = true;
 };
 
+/// The numbers of the points in the order of the grid a shell of them would have. `cell_size` as for PointShell.
+std::vector<std::uint32_t> grid_order(const std::vector<SurfacePoint>& points, double cell_size);
 /// The points in the order of the grid a shell of them would have, so that the grid keeps it and no search has to sort.
 /// `cell_size` as for PointShell.
 std::vector<SurfacePoint> in_grid_order(const std::vector<SurfacePoint>& points, double cell_size);

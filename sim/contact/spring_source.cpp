@@ -7,7 +7,9 @@ void SpringSource::contacts_at(const ToolPose& pose, ContactBuffer& contacts) no
   for (std::size_t j = 0; j < springs_->gradients.size(); ++j) {
     const Vec3& u = springs_->gradients[j];
     const double depth = pose.position.dot(u);
-    if (springs_->bilateral || depth > 0.0) push_spring(j, pose.position, depth, u, contacts);
+    if (!springs_->bilateral && !(depth > 0.0)) continue;
+    const bool turned = !springs_->signed_depths && depth < 0.0;
+    push_spring(j, pose.position, turned ? -depth : depth, turned ? Vec3(-u) : u, contacts);
   }
   contacts.pad();
   ++work_.queries;

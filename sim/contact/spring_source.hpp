@@ -7,7 +7,7 @@
 
 namespace hapbench {
 
-/// The springs scene of thesis A.2 as contacts of the tool's position: depth <p, u_j>, gradient u_j.
+/// The springs scene of thesis A.2 as contacts of the tool's position, with the depths and gradients of SpringSet.
 class SpringSource final : public ContactSource {
  public:
   explicit SpringSource(std::shared_ptr<const SpringSet> springs) : springs_(std::move(springs)) {}

@@ -3,13 +3,14 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
 
-PointShell::PointShell(const std::vector<SurfacePoint>& points, double cell_size)
-    : size_(points.size()), cell_size_(cell_size) {
+PointShell::PointShell(const std::vector<SurfacePoint>& points, double cell_size, std::vector<std::uint32_t> cells)
+    : size_(points.size()), cell_size_(cell_size), cells_(std::move(cells)) {
   const std::size_t padded = simd::padded(points.size());
   for (AlignedDoubles* column : {&x_, &y_, &z_}) column->assign(padded, kFarAway);
   for (AlignedDoubles* column : {&nx_, &ny_, &nz_}) column->assign(padded, 0.0);
@@ -28,6 +29,7 @@ SurfacePoint PointShell::point(std::size_t i) const {
 }
 
 std::vector<std::uint32_t> PointShell::cell_of_points() const {
+  if (!cells_.empty()) return cells_;
   std::map<std::array<double, 3>, std::uint32_t> cells;
   std::vector<std::uint32_t> cell(size_);
   const auto along = [this](double a) { return std::floor(a / cell_size_ + 0.5); };

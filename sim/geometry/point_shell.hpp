@@ -14,6 +14,14 @@ struct SurfacePoint {
   Vec3 normal = {0.0, 0.0, 1.0};
 };
 
+/// The points of a shell, and the grid cells they were listed by.
+struct ShellPoints {
+  std::vector<SurfacePoint> points;
+  /// Number of each point's grid cell, 0 … cells - 1 in order of first appearance; empty when the cells follow from the
+  /// positions.
+  std::vector<std::uint32_t> cells;
+};
+
 /// The environment object as points with normals, laid out for the contact search: one array per coordinate, 64-byte
 /// aligned, padded to whole packs with points far outside any scene, so that no loop has a tail.
 class PointShell {
@@ -22,7 +30,8 @@ class PointShell {
   static constexpr double kFarAway = 1e9;
 
   /// cell_size is the edge [m] of the grid cells in which the local average merges points; 0 when there is no grid.
-  PointShell(const std::vector<SurfacePoint>& points, double cell_size);
+  /// `cells` is empty, or says which cell lists each point, as in ShellPoints.
+  PointShell(const std::vector<SurfacePoint>& points, double cell_size, std::vector<std::uint32_t> cells = {});
 
   std::size_t size() const { return size_; }
   std::size_t padded_size() const { return x_.size(); }
@@ -37,15 +46,16 @@ class PointShell {
 
   SurfacePoint point(std::size_t i) const;
 
-  /// Number of each point's grid cell, 0 … cells - 1 in order of first appearance. A cell is the cube between
-  /// half-integer multiples of cell_size, so a shell spaced by cell_size from the origin has one
-  /// point in each cell. O(size log size); call it in preparation, not in a step.
+  /// Number of each point's grid cell, 0 … cells - 1 in order of first appearance: the cells the shell was made with,
+  /// else the cubes between half-integer multiples of cell_size, so that a shell spaced by cell_size from the origin
+  /// has one point in each. O(size log size); call it in preparation, not in a step.
   std::vector<std::uint32_t> cell_of_points() const;
 
  private:
   std::size_t size_;
   double cell_size_;
   AlignedDoubles x_, y_, z_, nx_, ny_, nz_;
+  std::vector<std::uint32_t> cells_;
 };
 
 }  // namespace hapbench

@@ -14,8 +14,9 @@ struct HandleState {
 /// What the user of the device perceives in one step: the handle in the hand and the contents of the display.
 struct HandView {
   HandleState handle;
-  ToolPose tool;                    ///< on the display
-  Vec3 model_force = Vec3::Zero();  ///< f_render of the step before, on the force gauge [N]
+  ToolPose tool;                     ///< on the display
+  Vec3 model_force = Vec3::Zero();   ///< f_render of the step before, for the force gauge [N]
+  Vec3 spring_force = Vec3::Zero();  ///< f_spring of the step before, for the force gauge [N]
 };
 
 /// Model of the human hand: its force on the handle as a function of time and of what it perceives.

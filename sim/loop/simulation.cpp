@@ -97,7 +97,7 @@ bool Simulation::step() noexcept {
   r.time = static_cast<double>(row_) * config_.dt;
   r.tool = tool_;
   r.handle = parts_.device->handle();
-  r.hand_force = parts_.hand->force(r.time, {r.handle, tool_.pose, r.force.rendered});
+  r.hand_force = parts_.hand->force(r.time, {r.handle, tool_.pose, r.force.rendered, r.force.spring});
   r.task = parts_.hand->task();
   r.hand = parts_.device->measure(r.hand_force);
 

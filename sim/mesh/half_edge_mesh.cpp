@@ -21,7 +21,7 @@ Vec3 unit_normal(const HalfEdgeMesh& mesh, OpenMesh::FaceHandle face) {
 
 }  // namespace
 
-std::vector<SurfacePoint> vertices_with_normals(const HalfEdgeMesh& mesh) {
+std::vector<SurfacePoint> all_vertices(const HalfEdgeMesh& mesh) {
   std::vector<Vec3> face_normals;
   face_normals.reserve(mesh.n_faces());
   for (const auto face : mesh.faces()) face_normals.push_back(unit_normal(mesh, face));
@@ -33,8 +33,14 @@ std::vector<SurfacePoint> vertices_with_normals(const HalfEdgeMesh& mesh) {
     for (auto face = mesh.cvf_iter(vertex); face.is_valid(); ++face)
       sum += face_normals[static_cast<std::size_t>(face->idx())];
     const double length = sum.norm();
-    if (length > 0.0) points.push_back({position(mesh, vertex), sum / length});
+    points.push_back({position(mesh, vertex), length > 0.0 ? Vec3(sum / length) : Vec3::Zero()});
   }
+  return points;
+}
+
+std::vector<SurfacePoint> vertices_with_normals(const HalfEdgeMesh& mesh) {
+  std::vector<SurfacePoint> points = all_vertices(mesh);
+  std::erase_if(points, [](const SurfacePoint& point) { return point.normal.isZero(0.0); });
   return points;
 }
 

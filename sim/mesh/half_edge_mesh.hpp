@@ -15,8 +15,10 @@ struct HalfEdgeMeshTraits : OpenMesh::DefaultTraits {
 /// A triangle mesh that knows its neighbours; double precision, coordinates in m, faces counter-clockwise from outside.
 using HalfEdgeMesh = OpenMesh::TriMesh_ArrayKernelT<HalfEdgeMeshTraits>;
 
-/// The mesh's vertices with outward normals: the normalised, unweighted mean of the unit normals of the adjacent faces
-/// (thesis C.1). A vertex without a face of positive area has no normal and is left out. Order: that of the vertices.
+/// All vertices of the mesh in order, with outward normals: the normalised, unweighted mean of the unit normals of the
+/// adjacent faces (thesis C.1). The normal is zero where no adjacent face has a positive area.
+std::vector<SurfacePoint> all_vertices(const HalfEdgeMesh& mesh);
+/// The same without the vertices that have no normal.
 std::vector<SurfacePoint> vertices_with_normals(const HalfEdgeMesh& mesh);
 
 }  // namespace hapbench

@@ -12,12 +12,14 @@ namespace hapbench {
 namespace {
 
 using Index = std::array<std::int64_t, 3>;
+/// The vertex on each edge of a cell, numbered as in cube_cases.hpp; invalid where the surface does not cross it.
+using EdgeVertices = std::array<OpenMesh::VertexHandle, 24>;
 
 /// Cell (i, j, k) spans the nodes (i - 1/2, j - 1/2, k - 1/2) … (i + 1/2, …) in units of the spacing; node (i, j, k) is
 /// its lowest corner.
 class Builder {
  public:
-  explicit Builder(const DensityField& field) : field_(field) {}
+  Builder(const DensityField& field, CutCells* cells) : field_(field), cells_(cells) {}
 
   HalfEdgeMesh build() {
     Index first, last;
@@ -66,12 +68,27 @@ class Builder {
       values[c] = density(corner(cell, static_cast<int>(c)));
       if (values[c] > 0.0) inside |= 1u << c;
     }
+    EdgeVertices on_edge;
     for (const CubeTriangle& triangle : cube_triangles(inside)) {
       std::array<OpenMesh::VertexHandle, 3> v;
-      for (std::size_t i = 0; i < 3; ++i) v[i] = vertex(cell, triangle[i], values);
+      for (std::size_t i = 0; i < 3; ++i) {
+        v[i] = on_edge[static_cast<std::size_t>(triangle[i])];
+        if (!v[i].is_valid()) {
+          v[i] = on_edge[static_cast<std::size_t>(triangle[i])] = vertex(cell, triangle[i], values);
+        }
+      }
       if (!mesh_.add_face(v[0], v[1], v[2]).is_valid())
         throw std::runtime_error("marching cubes: the surface is not manifold");
     }
+    if (cells_ != nullptr && inside != 0 && inside != 0xff) list(cell, on_edge);
+  }
+
+  void list(const Index& cell, const EdgeVertices& on_edge) {
+    cells_->centres.push_back(node(cell) + Vec3::Constant(0.5 * field_.spacing));
+    for (const OpenMesh::VertexHandle vertex : on_edge) {
+      if (vertex.is_valid()) cells_->vertices.push_back(static_cast<std::uint32_t>(vertex.idx()));
+    }
+    cells_->starts.push_back(static_cast<std::uint32_t>(cells_->vertices.size()));
   }
 
   static Index corner(const Index& cell, int c) {
@@ -101,6 +118,7 @@ class Builder {
   }
 
   const DensityField& field_;
+  CutCells* cells_;
   HalfEdgeMesh mesh_;
   std::unordered_map<std::uint64_t, OpenMesh::VertexHandle> vertices_;
 };
@@ -112,8 +130,8 @@ double cell_count(const DensityField& field) {
   return cells.x() * cells.y() * cells.z();
 }
 
-HalfEdgeMesh marching_cubes(const DensityField& field) {
-  return Builder(field).build();
+HalfEdgeMesh marching_cubes(const DensityField& field, CutCells* cells) {
+  return Builder(field, cells).build();
 }
 
 }  // namespace hapbench

@@ -1,8 +1,18 @@
 #include "sim/task/target_task.hpp"
 
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace hapbench {
+namespace {
+
+/// What a first-order low-pass takes over of a value that is held for dt seconds.
+double low_pass_share(double cutoff, double dt) noexcept {
+  return -std::expm1(-2.0 * std::numbers::pi * cutoff * dt);
+}
+
+}  // namespace
 
 TargetTask::TargetTask(TargetRules rules, std::uint64_t seed) : rules_(std::move(rules)) {
   for (std::size_t place = 0; place < rules_.places.size(); ++place) {
@@ -18,6 +28,7 @@ void TargetTask::reset() noexcept {
   results_.clear();
   active_ = false;
   shown_ = held_ = 0.0;
+  reading_ = low_for_ = 0.0;
 }
 
 Vec3 TargetTask::error(const Vec3& tip) const noexcept {
@@ -26,8 +37,9 @@ Vec3 TargetTask::error(const Vec3& tip) const noexcept {
 }
 
 void TargetTask::advance(const Vec3& tip, double press, double dt) noexcept {
+  reading_ = rules_.gauge ? reading_ + low_pass_share(rules_.gauge->cutoff, dt) * (press - reading_) : press;
   if (finished()) return;
-  const bool pressed = press >= rules_.least_press;
+  const bool pressed = is_pressed(dt);
   if (pressed && !active_) {
     active_ = true;
     shown_ = 0.0;
@@ -39,6 +51,16 @@ void TargetTask::advance(const Vec3& tip, double press, double dt) noexcept {
   } else if (shown_ >= rules_.time_limit) {
     next_target(false, rules_.time_limit);
   }
+}
+
+/// The reading is enough or, while a target is active, was enough within the grace.
+bool TargetTask::is_pressed(double dt) noexcept {
+  if (reading_ >= rules_.least_press) {
+    low_for_ = 0.0;
+    return true;
+  }
+  low_for_ += dt;
+  return active_ && rules_.gauge && low_for_ <= rules_.gauge->grace;
 }
 
 void TargetTask::next_target(bool removed, double time) noexcept {

@@ -93,6 +93,8 @@ TEST(ForceBound, HoldsForSpringsOfEqualDepthInClosedForm) {
     EXPECT_EQ(bound("summation", n), points);  // n parallel springs
     EXPECT_EQ(bound("mean", n), 1.0);
     EXPECT_GE(bound("virtual_coupling", n), points / (1.0 + points));  // n parallel springs in series with one
+    EXPECT_GE(bound("least_squares", n), points / (0.01 + points));
+    EXPECT_EQ(bound("highest_depth", n), 1.0);
     EXPECT_GE(bound("shaped_stiffness", n), 1.0);
     EXPECT_LE(bound("shaped_stiffness", n), 3.0);
   }

@@ -25,6 +25,15 @@ Vec3 virtual_coupling(const Dense& c) {
   return series.inverse() * c.spring(1.0, Eigen::VectorXd::Ones(c.n()));
 }
 
+Vec3 least_squares(const Dense& c) {
+  const Mat3 normal = RenderingConfig().regularisation * Mat3::Identity() + c.S(Eigen::VectorXd::Ones(c.n()));
+  return normal.inverse() * c.spring(1.0, Eigen::VectorXd::Ones(c.n()));
+}
+
+Vec3 highest_depth(const Dense& c) {
+  return -c.d.maxCoeff() * c.U.rowwise().sum().normalized();
+}
+
 /// Of a law that is weights on penalty springs.
 using Weights = std::function<Eigen::VectorXd(const Dense&)>;
 Vec3 weighted(const Dense& c, const Weights& weights) {
@@ -37,6 +46,8 @@ std::function<Vec3(const Dense&)> reference(std::string_view algorithm) {
   const auto shaped = [](const Dense& c) { return test::shaped_weights(c.A(), 3); };
   if (algorithm == "original_averaging") return original_averaging;
   if (algorithm == "virtual_coupling") return virtual_coupling;
+  if (algorithm == "least_squares") return least_squares;
+  if (algorithm == "highest_depth") return highest_depth;
   if (algorithm == "summation") return [=](const Dense& c) { return weighted(c, ones); };
   if (algorithm == "mean") return [=](const Dense& c) -> Vec3 { return weighted(c, ones) / double(c.n()); };
   if (algorithm == "tandpasta") return [](const Dense& c) { return weighted(c, test::tandpasta_weights); };

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kDeep = 0.001;  ///< compression of the springs [m]
 constexpr double kEps = kExactShapingEpsilon;
+const double kRegularisation = RenderingConfig().regularisation;
 const Vec3 kFarAway(1.0, 1.0, 1.0);
 
 Setting springs(std::vector<Vec3> gradients, const Vec3& position, bool bilateral) {
@@ -39,7 +40,9 @@ Answer single_spring_answer() {
            {"tandpasta", d},
            {"normal_projection", d},
            {"continuous_normal_projection", d},
-           {"exact_shaping", d / (1 + kEps)}}};
+           {"exact_shaping", d / (1 + kEps)},
+           {"least_squares", d / (1 + kRegularisation)},
+           {"highest_depth", d}}};
 }
 
 Setting parallel_springs() {
@@ -58,7 +61,9 @@ Answer parallel_springs_answer() {
            {"tandpasta", 5 * d},
            {"normal_projection", d},
            {"continuous_normal_projection", d},
-           {"exact_shaping", d * 5 / (5 + kEps)}}};
+           {"exact_shaping", d * 5 / (5 + kEps)},
+           {"least_squares", d * 5 / (5 + kRegularisation)},
+           {"highest_depth", d}}};
 }
 
 // Three orthogonal springs, equally compressed: S_sum = I, sum u = (1, 1, 1).
@@ -78,7 +83,9 @@ Answer corner_springs_answer() {
            {"tandpasta", d},
            {"normal_projection", d},
            {"continuous_normal_projection", d},
-           {"exact_shaping", d / (1 + kEps)}}};
+           {"exact_shaping", d / (1 + kEps)},
+           {"least_squares", d / (1 + kRegularisation)},
+           {"highest_depth", kDeep}}};
 }
 
 // One spring pushes, the other pulls: depths d and -d on gradients x and -x.
@@ -98,7 +105,9 @@ Answer opposite_springs_answer() {
            {"tandpasta", 0.0},
            {"normal_projection", d},
            {"continuous_normal_projection", d},
-           {"exact_shaping", d * 2 / (2 + kEps)}}};
+           {"exact_shaping", d * 2 / (2 + kEps)},
+           {"least_squares", d * 2 / (2 + kRegularisation)},
+           {"highest_depth", 0.0}}};
 }
 
 // Two faces 120 degrees apart, the tool pressed straight in: depths d/2, <u_1, u_2> = -1/2, and along the way out each
@@ -120,7 +129,9 @@ Answer wedge_springs_answer() {
            {"tandpasta", d / 2},
            {"normal_projection", d * 0.4},
            {"continuous_normal_projection", d * 0.4},
-           {"exact_shaping", d * 0.5 / (1.25 + kEps)}}};
+           {"exact_shaping", d * 0.5 / (1.25 + kEps)},
+           {"least_squares", d * 0.5 / (0.5 + kRegularisation)},
+           {"highest_depth", d / 2}}};
 }
 
 Setting springs_at_rest() {

@@ -46,12 +46,13 @@ std::vector<Vec3> exact_positions(const Scenario& scenario, const Mat3& S, doubl
 void check_scenario(const Scenario& scenario) {
   const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment);
   const RenderingConfig& r = scenario.rendering;
-  const bool linear = springs != nullptr && springs->bilateral && r.mu_f == 0.0 && !r.max_damping && !r.max_force &&
-                      !r.reduction && !r.passivity_controller && std::holds_alternative<NoHandFields>(scenario.hand) &&
+  const bool linear = springs != nullptr && springs->bilateral && springs->signed_depths && r.mu_f == 0.0 &&
+                      !r.max_damping && !r.max_force && !r.reduction && !r.passivity_controller &&
+                      std::holds_alternative<NoHandFields>(scenario.hand) &&
                       std::holds_alternative<FreePosition>(scenario.motion.position);
   if (linear) return;
   throw InputError(
-      "the study needs a linear scenario: bilateral springs and a free position, without hand, reduction, limits, mu_f "
+      "the study needs a linear scenario: signed bilateral springs and a free position, without hand, reduction, limits, mu_f "
       "and passivity controller");
 }
 

@@ -43,7 +43,7 @@ constexpr double kPeriod = 6.0;  // of the tilt of task 2 [s]
 }  // namespace
 
 std::shared_ptr<const PointShell> shell_of(const Scenario& scenario, const PrecisionOptions& options) {
-  return make_shell(scenario, environment_points(scenario, options.cache).points);
+  return make_shell(scenario, environment_points(scenario, options.cache));
 }
 
 SampledRun sampled_run(const Scenario& scenario, std::shared_ptr<const PointShell> shell, std::uint64_t stride,

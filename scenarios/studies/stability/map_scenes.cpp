@@ -13,7 +13,7 @@ Scenario springs(std::vector<SpringGroup> groups, double K, std::string_view alg
   Scenario scenario;
   scenario.name = "stability_map";
   scenario.time.steps = kMapSteps;
-  scenario.environment = SpringsEnvironment{true, std::move(groups), {}};
+  scenario.environment.emplace<SpringsEnvironment>().groups = std::move(groups);
   scenario.initial.position = {0.6e-3, 0.64e-3, 0.48e-3};
   scenario.rendering.stiffness = K;
   scenario.rendering.mass = 0.1;

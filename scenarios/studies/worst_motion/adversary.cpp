@@ -27,7 +27,7 @@ class Bench {
   Bench(const Scenario& scenario, Badness badness)
       : scenario_(scenario),
         badness_(badness),
-        shell_(make_shell(scenario, environment_points(scenario, ShellCache()).points)) {}
+        shell_(make_shell(scenario, environment_points(scenario, ShellCache()))) {}
 
   RunSummary run(const Trajectory& trajectory) const {
     TrialResult trial = run_trial(with_trajectory(scenario_, trajectory), shell_, {}, {});

@@ -68,6 +68,20 @@ TEST(TrackingHand, PressesHarderOrSofterUntilTheGaugeShowsWhatItWants) {
   }
 }
 
+TEST(TrackingHand, ReadsTheSpringForceFromAGaugeAndTheRenderedForceWithoutOne) {
+  HandView view;
+  view.model_force.z() = 3.0;
+  view.spring_force.z() = 2.0;
+  TargetRules rules;
+  rules.places = {Vec3(0, 0, 0)};
+  for (const bool has_gauge : {false, true}) {
+    if (has_gauge) rules.gauge = Gauge{1e6, 0.1};  // too fast to filter anything
+    TrackingHand hand(calm(), TargetTask(rules, 1), 0.0, kStep, 1);
+    hand.force(0.0, view);
+    EXPECT_EQ(hand.task()->reading(), has_gauge ? 2.0 : 3.0);
+  }
+}
+
 TEST(TrackingHand, NeverPushesHarderThanItsStrength) {
   Subject subject = calm();
   TrackingHand hand(subject, one_target(TargetDisplay::panel, {1, 0, 0}), 0.0, kStep, 1);

@@ -32,6 +32,7 @@ RunSummary example() {
                  .steps_in_contact = 300,
                  .speed_max = 0.5,
                  .final_position = {0.5, -0.25, 0.0},
+                 .explicit_friction = ExplicitFriction{.limit = 79.5, .rows_beyond = 4, .first_step = 17},
                  .state_hash = 0x0123456789abcdefu};
   run.passivity = PassivityMetrics{.energy_min = -0.25, .time_of_min = 0.125, .energy_end = 0.5};
   run.work = {.search = {.queries = 401, .points_tested = 5000, .lists_rebuilt = 7},
@@ -72,6 +73,9 @@ TEST(Summary, TextHoldsEveryField) {
     "rendered_max": 6,
     "steps_in_contact": 300,
     "speed_max_m_per_s": 0.5,
+    "explicit_friction_limit_N": 79.5,
+    "explicit_friction_rows_beyond": 4,
+    "explicit_friction_first_step": 17,
     "final_position_m": [0.5, -0.25, 0]
   },
   "passivity": {

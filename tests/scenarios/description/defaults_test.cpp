@@ -60,6 +60,7 @@ TEST(Defaults, ThatHoldEverywhere) {
                    {"/rendering/angular_velocity_cutoff_Hz", "20.0"},
                    {"/rendering/limits", R"({"max_damping_N_s_per_m": null, "max_force_N": null})"},
                    {"/rendering/virtual_coupling_N_per_m", "null"},
+                   {"/rendering/regularisation", "0.01"},
                    {"/integrator", R"({"type": "leapfrog"})"},
                    {"/record", R"({"trajectory": true, "every": 1, "ratio_iterations": [], "contacts": false,
                                    "stiffness_tensor": false, "timing": false, "energy": false, "ideal_trajectory": false})"},
@@ -74,6 +75,7 @@ TEST(Defaults, OfSpringsAreThoseOfA2) {
                  {"/rendering/reduction", "null"},
                  {"/motion/orientation/up", "[0.0, 1.0, 0.0]"},
                  {"/environment/bilateral", "true"},
+                 {"/environment/signed", "true"},
                  {"/environment/groups", "[]"},
                  {"/environment/random", R"({"count": 0, "planar": true})"}});
 }
@@ -105,7 +107,8 @@ TEST(Defaults, OfTheBlockAreTheExperimentsPart) {
   expect_fields(
       effective(test::minimal_scenario("block_with_hole")),
       {{"/environment", R"({"type": "block_with_hole", "size_m": [0.015, 0.015, 0.01], "hole_diameter_m": 0.002,
-                                      "hole_depth_m": 0.005, "grid_m": 0.0001, "density": "signed_distance"})"}});
+                                      "hole_depth_m": 0.005, "grid_m": 0.0001, "density": "signed_distance",
+                                      "vertices": "shared"})"}});
 }
 
 TEST(Defaults, OfAPartlyGivenObjectFillTheRest) {

@@ -18,20 +18,24 @@ namespace {
 namespace fs = std::filesystem;
 using test::read_file;
 using test::write_plainly;
-using Points = std::vector<SurfacePoint>;
 
 const std::string kDefinition = "a block with a hole";
 
-Points random_points(std::size_t count, std::uint64_t seed = 1) {
+/// Points, each in a cell.
+ShellPoints random_points(std::size_t count, std::uint64_t seed = 1) {
   Random random(seed);
-  Points points(count);
-  for (SurfacePoint& point : points) point = {random.direction() * 0.01, random.direction()};
-  return points;
+  ShellPoints shell;
+  for (std::size_t i = 0; i < count; ++i) {
+    shell.points.push_back({random.direction() * 0.01, random.direction()});
+    shell.cells.push_back(static_cast<std::uint32_t>(i / 4));
+  }
+  return shell;
 }
 
-bool same_bits(const Points& a, const Points& b) {
-  return a.size() == b.size() &&
-         std::memcmp(static_cast<const void*>(a.data()), b.data(), a.size() * sizeof(SurfacePoint)) == 0;
+bool same_bits(const ShellPoints& a, const ShellPoints& b) {
+  return a.points.size() == b.points.size() && a.cells == b.cells &&
+         std::memcmp(static_cast<const void*>(a.points.data()), b.points.data(),
+                     a.points.size() * sizeof(SurfacePoint)) == 0;
 }
 
 std::string file_name(const std::string& definition) {
@@ -55,7 +59,7 @@ class ShellCacheFile : public testing::Test {
 
   test::TemporaryDirectory directory_;
   ShellCache cache_{directory_.path()};
-  const Points points_ = random_points(2);  // few, so that every bit can have its turn
+  const ShellPoints points_ = random_points(2);  // few, so that every bit can have its turn
   const fs::path file_ = directory_ / file_name(kDefinition);
   const std::string good_ = [this] {
     cache_.keep(kDefinition, points_);
@@ -65,10 +69,19 @@ class ShellCacheFile : public testing::Test {
 
 TEST_F(ShellCacheFile, GivesBackEveryBit) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), tiny = std::numeric_limits<double>::denorm_min();
-  Points points = random_points(10'000);
-  points.push_back({{-0.0, 0.0, tiny}, {nan, -nan, -std::numeric_limits<double>::infinity()}});
+  ShellPoints points = random_points(10'000);
+  points.points.push_back({{-0.0, 0.0, tiny}, {nan, -nan, -std::numeric_limits<double>::infinity()}});
+  points.cells.push_back(0xffffffff);
   cache_.keep("odd numbers", points);
   const auto found = cache_.find("odd numbers");
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(same_bits(*found, points));
+}
+
+TEST_F(ShellCacheFile, MayHoldPointsWithoutCells) {
+  const ShellPoints points{random_points(100).points, {}};
+  cache_.keep("no cells", points);
+  const auto found = cache_.find("no cells");
   ASSERT_TRUE(found);
   EXPECT_TRUE(same_bits(*found, points));
 }
@@ -76,7 +89,7 @@ TEST_F(ShellCacheFile, GivesBackEveryBit) {
 TEST_F(ShellCacheFile, MayHoldNoPoints) {
   cache_.keep("nothing", {});
   ASSERT_TRUE(cache_.find("nothing"));
-  EXPECT_TRUE(cache_.find("nothing")->empty());
+  EXPECT_TRUE(cache_.find("nothing")->points.empty());
 }
 
 TEST_F(ShellCacheFile, IsNotFoundUnderAnotherDefinition) {
@@ -105,9 +118,12 @@ TEST_F(ShellCacheFile, WithMoreBehindItsEndIsRebuilt) {
 }
 
 TEST_F(ShellCacheFile, WithPartsSwappedOrZeroIsRebuilt) {
-  const std::size_t half = sizeof(SurfacePoint), start = good_.size() - 2 * half;
-  expect_rebuilt(good_.substr(0, start) + good_.substr(start + half) + good_.substr(start, half), "points swapped");
-  expect_rebuilt(good_.substr(0, start) + std::string(2 * half, '\0'), "zero points");
+  const std::size_t half = sizeof(SurfacePoint), cells = good_.size() - 2 * sizeof(std::uint32_t);
+  const std::size_t start = cells - 2 * half;
+  expect_rebuilt(
+      good_.substr(0, start) + good_.substr(start + half, half) + good_.substr(start, half) + good_.substr(cells),
+      "points swapped");
+  expect_rebuilt(good_.substr(0, start) + std::string(2 * half, '\0') + good_.substr(cells), "zero points");
   expect_rebuilt(std::string(good_.size(), '\0'), "zeros");
 }
 
@@ -120,10 +136,10 @@ TEST_F(ShellCacheFile, OfAnotherDefinitionUnderTheSameNameIsRebuilt) {
 }
 
 /// Byte offsets of the numbers in the header.
-constexpr std::size_t kDefinitionSizeAt = 8, kPointsAt = 16;
+constexpr std::size_t kDefinitionSizeAt = 8, kPointsAt = 16, kCellsAt = 24;
 
 TEST_F(ShellCacheFile, WithHugeCountsIsRebuiltWithoutAllocatingForThem) {
-  for (const std::size_t at : {kDefinitionSizeAt, kPointsAt}) {
+  for (const std::size_t at : {kDefinitionSizeAt, kPointsAt, kCellsAt}) {
     // Among them counts whose bytes overflow to the file's true size.
     for (const std::uint64_t count : {~std::uint64_t{0}, std::uint64_t{1} << 63, (std::uint64_t{1} << 60) + 2,
                                       std::uint64_t{1} << 32, std::uint64_t{20'000'000}}) {
@@ -141,7 +157,7 @@ TEST_F(ShellCacheFile, AsLargeAsItsHugeCountClaimsIsRebuilt) {
   put(bytes);
   // A file with a hole, without blocks on the disk. Not every file system has files so large.
   std::error_code error;
-  fs::resize_file(file_, good_.size() + (count - points_.size()) * sizeof(SurfacePoint), error);
+  fs::resize_file(file_, good_.size() + (count - points_.points.size()) * sizeof(SurfacePoint), error);
   EXPECT_FALSE(cache_.find(kDefinition));
   cache_.keep(kDefinition, points_);
   EXPECT_TRUE(read_file(file_) == good_);
@@ -231,8 +247,8 @@ class FullShellCache : public testing::Test {
   static std::string name(int i) { return "shell " + std::to_string(i); }
 
   test::TemporaryDirectory directory_;
-  const Points points_ = random_points(100);
-  const std::uintmax_t one_ = 32 + name(0).size() + points_.size() * sizeof(SurfacePoint);
+  const ShellPoints points_ = random_points(100);
+  const std::uintmax_t one_ = 40 + name(0).size() + 100 * (sizeof(SurfacePoint) + sizeof(std::uint32_t));
   ShellCache cache_{directory_.path(), 3 * one_};
 };
 

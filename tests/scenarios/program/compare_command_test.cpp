@@ -40,6 +40,15 @@ TEST_F(CompareCommand, ShowsARowForEachAlgorithm) {
   EXPECT_EQ(lines[6].find("exact_shaping       leaves_hole"), 0u);
 }
 
+TEST_F(CompareCommand, NamesTheAlgorithmsWhoseFrictionTheIntegratorCannotStep) {
+  const std::string out = compare({"--algorithms", "mean,summation"}).out;
+  EXPECT_NE(out.find("\nwarning: beyond 79.5 N of spring force "), std::string::npos) << out;
+  EXPECT_NE(out.find("not the law's: summation (step 0)\n"), std::string::npos) << out;
+  EXPECT_EQ(compare({"--algorithms", "mean"}).out.find("warning"), std::string::npos);
+  EXPECT_EQ(compare({"--algorithms", "summation", "--set", "integrator.type=implicit_euler"}).out.find("warning"),
+            std::string::npos);
+}
+
 TEST_F(CompareCommand, WritesTheFilesOfEachSideBySideAndTheTable) {
   compare({"--algorithms", "mean,summation"});
   for (const char* algorithm : {"mean", "summation"}) {

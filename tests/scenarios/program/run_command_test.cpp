@@ -221,5 +221,16 @@ TEST_F(RunCommand, StopsADivergenceOfTheFirstRow) {
   EXPECT_EQ(lines_of(test::read_file(directory_ / "out/trajectory.csv")).size(), 1u);
 }
 
+TEST_F(RunCommand, WarnsOfFrictionThatTheIntegratorCannotStep) {
+  const std::string shown = hapbench({"run", "peg_in_hole_2d_summation", "--out", out()}).out;
+  EXPECT_NE(shown.find("\npeg_in_hole_2d_summation: warning: beyond 79.5 N of spring force "), std::string::npos)
+      << shown;
+  EXPECT_EQ(summary()["metrics"]["explicit_friction_limit_N"], 79.5);
+  EXPECT_EQ(summary()["metrics"]["explicit_friction_first_step"], 0);
+  const ProgramRun gentle = hapbench({"run", "peg_in_hole_2d_mean", "--out", out("gentle")});
+  EXPECT_EQ(gentle.out.find("warning"), std::string::npos);
+  EXPECT_EQ(summary("gentle")["metrics"]["explicit_friction_rows_beyond"], 0);
+}
+
 }  // namespace
 }  // namespace hapbench

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <set>
 
+#include "scenarios/run/assemble.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
@@ -34,7 +35,8 @@ TEST(EnvironmentPoints, FromTheCacheAreThoseBuiltBitForBit) {
   const test::TemporaryDirectory directory;
   const ShellCache cache(directory.path());
   for (const char* patch :
-       {"{}", R"({"environment": {"density": "binary"}})", R"({"environment": {"grid_m": 0.00015}})"}) {
+       {"{}", R"({"environment": {"density": "binary"}})", R"({"environment": {"grid_m": 0.00015}})",
+        R"({"environment": {"vertices": "per_cell"}})"}) {
     const Scenario scenario = block_scenario(patch);
     const EnvironmentPoints built = environment_points(scenario, ShellCache());
     const EnvironmentPoints first = environment_points(scenario, cache), second = environment_points(scenario, cache);
@@ -43,8 +45,19 @@ TEST(EnvironmentPoints, FromTheCacheAreThoseBuiltBitForBit) {
     EXPECT_FALSE(built.points.empty());
     EXPECT_TRUE(same_bits(first.points, built.points)) << patch;
     EXPECT_TRUE(same_bits(second.points, built.points)) << patch;
+    EXPECT_EQ(first.cells, built.cells) << patch;
+    EXPECT_EQ(second.cells, built.cells) << patch;
   }
-  EXPECT_EQ(cache.contents().shells, 3u);
+  EXPECT_EQ(cache.contents().shells, 4u);
+}
+
+TEST(EnvironmentPoints, OfABlockListVerticesOnceOrForEachCell) {
+  const EnvironmentPoints shared = environment_points(block_scenario(), ShellCache());
+  const Scenario scenario = block_scenario(R"({"environment": {"vertices": "per_cell"}})");
+  const EnvironmentPoints per_cell = environment_points(scenario, ShellCache());
+  EXPECT_TRUE(shared.cells.empty());
+  EXPECT_EQ(per_cell.points.size(), 4 * shared.points.size());
+  EXPECT_EQ(make_shell(scenario, per_cell)->cell_of_points(), per_cell.cells);
 }
 
 TEST(EnvironmentPoints, AreKeptOnlyWhereBuildingTakesLonger) {
@@ -67,7 +80,8 @@ TEST(ShellDefinition, DiffersWhenAnyFieldOfTheEnvironmentDiffers) {
                         R"({"environment": {"hole_diameter_m": 0.0021}})",
                         R"({"environment": {"hole_depth_m": 0.0021}})",
                         R"({"environment": {"grid_m": 0.00020000000000000004}})",
-                        R"({"environment": {"density": "binary"}})"};
+                        R"({"environment": {"density": "binary"}})",
+                        R"({"environment": {"vertices": "per_cell"}})"};
   for (const char* patch : patches) {
     EXPECT_TRUE(definitions.insert(definition_of(block_scenario(patch))).second) << patch;
   }

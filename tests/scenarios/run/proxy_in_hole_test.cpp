@@ -45,7 +45,7 @@ class PointsInProxy final : public Observer {
 TEST(ProxyInHole, NeitherEntersTheShellNorGetsStifferThanOneSpring) {
   Scenario scenario = rotate_in_hole("proxy").scenario;
   scenario.time.steps = 10'240;  // one period of the tilt
-  const auto shell = make_shell(scenario, environment_points(scenario, ShellCache()).points);
+  const auto shell = make_shell(scenario, environment_points(scenario, ShellCache()));
   SimulationParts parts = assemble(scenario, shell, {});
   PointsInProxy points(*shell, *parts.tool, scenario.rendering.stiffness);
   Simulation simulation(simulation_config(scenario), std::move(parts), {&points});

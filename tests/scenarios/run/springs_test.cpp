@@ -98,6 +98,17 @@ TEST(ShapedSpringsOfTableA3, ActAsOneSpringDamperAlongEachAxis) {
   }
 }
 
+TEST(UnsignedSpringsOfTableA3, ReachTheOriginUnderTheOriginalAlgorithmToo) {
+  // Thesis A.2: every algorithm arrives. With signed depths the gradients of opposite springs cancel and leave the ten
+  // upward ones, 100 times too soft along x: the tool stays where it was.
+  const auto x_at_end = [](const char* is_signed) {
+    const auto rows = rows_of("springs_unlimited_original_averaging", {std::string("environment.signed=") + is_signed});
+    return std::abs(rows.back().tool.pose.position.x());
+  };
+  EXPECT_EQ(x_at_end("true"), 0.005);
+  EXPECT_LT(x_at_end("false"), 0.0005);
+}
+
 TEST(SummedSpringsOfTableA3, AreTooStiffForTheTimeStep) {
   // 200 springs along x: lambda K = 4e6 N/m and lambda B = 17.7e3 N s/m, far beyond 4 M / dt^2 = 3.2e6 and 2 M / dt =
   // 800.

@@ -44,7 +44,7 @@ std::vector<NamedScenario> rich_scenarios() {
         "position": {"type": "prescribed", "x_m": {"type": "ramp", "start": 0, "rate_per_s": 1e-4}, "y_m": 0,
           "z_m": {"type": "waypoints", "points": [[0, 0.001], [1.5, -0.001], [2, 0]], "interpolation": "cosine"}}},
       "rendering": {"algorithm": "virtual_coupling", "depth_model": "shortest_distance", "local_average": true,
-        "reduction": {"threshold": 0.9, "max_points": 7, "shuffle_seed": 5}, "virtual_coupling_N_per_m": 1000,
+        "reduction": {"threshold": 0.9, "max_points": 7, "shuffle_seed": 5}, "virtual_coupling_N_per_m": 1000, "regularisation": 0.5,
         "passivity_controller": true, "damping_N_s_per_m": 3, "angular_damping": true,
         "angular_velocity_cutoff_Hz": 30,
         "limits": {"max_damping_N_s_per_m": 0, "max_force_N": 2.5}},
@@ -55,7 +55,7 @@ std::vector<NamedScenario> rich_scenarios() {
           {"drilled_block", Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 10},
       "environment": {"type": "block_with_hole", "size_m": [0.006, 0.006, 0.004], "hole_diameter_m": 0.002,
-        "hole_depth_m": 0.002, "grid_m": 0.0002, "density": "binary"},
+        "hole_depth_m": 0.002, "grid_m": 0.0002, "density": "binary", "vertices": "per_cell"},
       "initial": {"position_m": [0.0006, 0, -0.001]},
       "rendering": {"local_average": true}})")},
           {"recorded_shell", Json::parse(R"({
@@ -67,7 +67,7 @@ std::vector<NamedScenario> rich_scenarios() {
       "record": {"contacts": true}})")},
           {"pushed_springs", Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 50},
-      "environment": {"type": "springs", "bilateral": false, "groups": [{"direction": [0, -2, 0], "count": 0},
+      "environment": {"type": "springs", "bilateral": false, "signed": true, "groups": [{"direction": [0, -2, 0], "count": 0},
         {"direction": [1, 1, 1], "count": 3}], "random": {"count": 20, "planar": false}},
       "initial": {"position_m": [0.001, 0, 0], "velocity_m_per_s": [0, 0.1, 0]},
       "hand": {"type": "force", "x_N": 1, "y_N": {"type": "sine", "mean": 0, "amplitude": 3, "period_s": 0.01},
@@ -85,7 +85,7 @@ std::vector<NamedScenario> rich_scenarios() {
       "initial": {"position_m": [0, 0, -0.0018]},
       "hand": {"type": "tracking", "trials": 2,
         "task": {"display": "height", "places_m": [[0, 0, -0.001], [0, 0, -0.0015]], "targets_per_place": 1,
-          "tolerance_m": 0.0003, "least_press_N": 0.5, "hold_s": 0.1, "time_limit_s": 0.4},
+          "tolerance_m": 0.0003, "least_press_N": 0.5, "gauge": {"cutoff_Hz": 20, "grace_s": 0.05}, "hold_s": 0.1, "time_limit_s": 0.4},
         "subjects": [{"reaction_delay_s": 0.1, "bandwidth_Hz": 1, "stiffness_N_per_m": 200, "damping_N_s_per_m": 5,
           "press_N": 1.2, "press_bandwidth_Hz": 0.5, "motor_noise_N": 0.01, "tilt_noise_rad": 0.001,
           "noise_bandwidth_Hz": 5, "height_per_tilt_m_per_rad": 0.003, "max_speed_m_per_s": 0.03,
@@ -96,6 +96,11 @@ std::vector<NamedScenario> rich_scenarios() {
         "mechanics": {"carriage_mass_kg": 0.3, "handle_mass_kg": 0.08, "friction_N_s_per_m": 1,
           "structure_stiffness_N_per_m": 1e5, "structure_damping_N_s_per_m": 20}},
       "record": {"trajectory": true, "energy": true, "ideal_trajectory": true}})")},
+          {"pushed_plane", Json::parse(R"({
+      "time": {"step_s": 0.0005, "steps": 100},
+      "environment": {"type": "plane", "size_m": 0.004, "spacing_m": 0.0002},
+      "hand": {"type": "push", "force_N": {"type": "ramp", "start": 0, "rate_per_s": 10}, "angle_rad": 0.3,
+        "azimuth_rad": -1.5}})")},
           {"held_plane", Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 100},
       "environment": {"type": "plane", "size_m": 0.004, "spacing_m": 0.0002},

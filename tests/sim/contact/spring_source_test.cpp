@@ -42,6 +42,25 @@ TEST(SpringSource, UnilateralSpringsActOnlyWhenCompressed) {
   EXPECT_EQ(contacts.depth[1], 0.125);
 }
 
+TEST(SpringSource, UnsignedSpringsHaveDepthsOfEitherSideAndGradientsAlongTheDisplacement) {
+  const Vec3 p(0.25, -0.5, 0.0);
+  SpringSource source(std::make_shared<const SpringSet>(SpringSet{kGradients, true, false}));
+  ContactBuffer contacts(source.capacity());
+  source.contacts_at({p, -Vec3::UnitZ()}, contacts);
+  ASSERT_EQ(contacts.size(), 4u);
+  const std::vector<double> depths = {0.25, 0.25, 0.5, 0.0};
+  // The second spring's <p, u> is negative; the fourth is at its natural length and keeps its gradient.
+  const std::vector<Vec3> gradients = {{1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
+  const ContactBuffer signed_contacts = contacts_at(p, true);
+  for (std::size_t j = 0; j < 4; ++j) {
+    EXPECT_EQ(contacts.depth[j], depths[j]);
+    EXPECT_EQ(contacts.gradient(j), gradients[j]);
+    EXPECT_EQ(contacts.normal(j), Vec3(-gradients[j]));
+    EXPECT_EQ(contacts.depth[j] * contacts.gradient(j), signed_contacts.depth[j] * signed_contacts.gradient(j))
+        << "the same force";
+  }
+}
+
 TEST(SpringSource, AUnilateralSpringAtItsNaturalLengthDoesNotAct) {
   EXPECT_TRUE(contacts_at(Vec3::Zero(), false).empty());
   EXPECT_EQ(contacts_at(Vec3::Zero(), true).size(), 4u);

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace hapbench {
 namespace {
@@ -45,6 +47,94 @@ TEST(TargetTask, LeavingOrLettingGoStartsTheHoldAnew) {
     ASSERT_TRUE(task.finished());
     EXPECT_EQ(task.results()[0].time, 2.0);
   }
+}
+
+/// A gauge whose grace is a whole number of samples.
+TargetRules with_gauge(double cutoff, double grace) {
+  TargetRules rules = one_target();
+  rules.gauge = Gauge{cutoff, grace};
+  return rules;
+}
+
+TEST(ForceGauge, ShowsAStepAsAFirstOrderLowPassDoes) {
+  const double cutoff = 30.0, pi = std::numbers::pi;
+  TargetTask task(with_gauge(cutoff, 0.1), 1);
+  for (int i = 1; i <= kSecond; ++i) {
+    task.advance(kOff, 2.0, kStep);
+    // 1024 roundings of a number of at most 2, each forgotten with the low-pass.
+    ASSERT_NEAR(task.reading(), 2.0 * -std::expm1(-2.0 * pi * cutoff * i * kStep), 1e-13) << i;
+  }
+}
+
+TEST(ForceGauge, ActivatesWhenTheStepResponseCrossesTheThreshold) {
+  // 1.6 (1 - e^(-2 pi f t)) >= 1 from t = ln(1.6 / 0.6) / (2 pi f) on, 5.33 samples.
+  TargetTask task(with_gauge(30.0, 0.1), 1);
+  const double crossing = std::log(1.6 / 0.6) / (2.0 * std::numbers::pi * 30.0) / kStep;
+  for (int i = 1; i <= 20; ++i) {
+    task.advance(kOff, 1.6, kStep);
+    ASSERT_EQ(task.active(), i >= crossing) << i;
+  }
+}
+
+/// A press of `before` samples at 2 N, a dropout to 0 and a press again until the target ends: when it is removed [s].
+/// The low-pass is so fast that the gauge shows what it is given.
+double removed_after_dropout(int before, int dropout, double grace) {
+  TargetTask task(with_gauge(1e6, grace), 1);
+  advance(task, before, kOn, 2.0);
+  advance(task, dropout, kOn, 0.0);
+  while (!task.finished()) advance(task, 1, kOn, 2.0);
+  EXPECT_TRUE(task.results()[0].removed);
+  return task.results()[0].time;
+}
+
+TEST(ForceGauge, ADropoutWithinTheGraceDoesNotBreakTheHold) {
+  const int grace = 100;
+  for (const int dropout : {1, 50, grace}) {
+    EXPECT_EQ(removed_after_dropout(500, dropout, grace * kStep), 1.0) << dropout;
+  }
+}
+
+TEST(ForceGauge, ALongerDropoutBreaksTheHoldThatStartsAnewAfterIt) {
+  const int grace = 100;
+  for (const int dropout : {grace + 1, 2 * grace}) {
+    EXPECT_EQ(removed_after_dropout(500, dropout, grace * kStep), 1.0 + (500 + dropout) * kStep) << dropout;
+  }
+}
+
+TEST(ForceGauge, DipsThatAreShortEachDoNotAddUp) {
+  TargetTask task(with_gauge(1e6, 10 * kStep), 1);
+  for (int i = 0; i < kSecond / 16; ++i) {
+    advance(task, 6, kOn, 2.0);
+    advance(task, 10, kOn, 0.0);
+  }
+  ASSERT_TRUE(task.finished());
+  EXPECT_EQ(task.results()[0].time, 1.0);
+}
+
+TEST(ForceGauge, GraceNeitherActivatesATargetNorCarriesOverFromTheLast) {
+  TargetRules rules = with_gauge(1e6, 0.1);
+  rules.targets_per_place = 2;
+  TargetTask task(rules, 1);
+  advance(task, 10, kOn, 0.999);
+  EXPECT_FALSE(task.active());
+  advance(task, kSecond, kOn, 2.0);
+  ASSERT_EQ(task.number(), 1u);
+  advance(task, 10, kOn, 0.0);
+  EXPECT_FALSE(task.active());
+}
+
+TEST(ForceGauge, AResetClearsTheReading) {
+  TargetTask task(with_gauge(30.0, 0.1), 1);
+  advance(task, 100, kOn, 2.0);
+  EXPECT_GT(task.reading(), 1.0);
+  task.reset();
+  EXPECT_EQ(task.reading(), 0.0);
+}
+
+TEST(ForceGauge, IsTheGivenForceWhenThereIsNone) {
+  TargetTask task(one_target(), 1);
+  advance(task, 1, kOff, 0.7);
+  EXPECT_EQ(task.reading(), 0.7);
 }
 
 TEST(TargetTask, ATargetDisappearsTenSecondsAfterItsActivation) {

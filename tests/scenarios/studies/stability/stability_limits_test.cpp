@@ -169,6 +169,7 @@ TEST(StabilityLimits, AreRefusedWhereNoneExist) {
   } kCases[] = {
       {R"(environment={"type":"plane"})", "/environment/type"},
       {"environment.bilateral=false", "/environment/bilateral"},
+      {"environment.signed=false", "/environment/signed"},
       {"rendering.friction.mu_s_N_s_per_m=1", "/rendering/friction"},
       {"rendering.friction.mu_f_s_per_m=1", "/rendering/friction"},
       {"rendering.limits.max_damping_N_s_per_m=1", "/rendering/limits/max_damping_N_s_per_m"},
