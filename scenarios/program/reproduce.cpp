@@ -152,7 +152,9 @@ int reproduce(const ReproduceOptions& options) {
   if (options.only.empty()) runs.run_all(options.jobs, !options.output.quiet);
 
   const Evidence evidence{
-      published, ResultFiles(runs.directory(), [&runs](const std::string& name) { runs.provide(name); }), cache};
+      published,
+      ResultFiles(runs.directory(), [&runs](const std::string& name, const std::string&) { runs.provide(name); }),
+      cache};
   std::vector<Judged> judged;
   Table table({{"id", false}, {"verdict", false}, {"measured", false}});
   for (const Claim& claim : claims) {
