@@ -114,11 +114,11 @@ class ThesisRuns {
   bool as_expected_ = true;
 };
 
-/// Judges the claims by the thesis's runs, and notes in `read` which files of theirs that takes.
+/// Judges the claims by the thesis's runs, and notes in `read` what of their results that takes.
 std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const PublishedNumbers& published, ThesisRuns& runs,
-                               const ShellCache& cache, FilesRead& read) {
-  const auto provide = [&](const std::string& scenario, const std::string& file) {
-    read[scenario].insert(file);
+                               const ShellCache& cache, ResultsRead& read) {
+  const auto provide = [&](const std::string& scenario, const std::string& part) {
+    read[scenario].insert(part);
     runs.provide(scenario);
   };
   const Evidence evidence{published, ResultFiles(runs.directory(), provide), cache};
@@ -147,7 +147,7 @@ void print_problems(const std::vector<std::string>& problems) {
 /// stopped it, or 0.
 int write_robustness(const ReproduceOptions& options, const RobustnessPlan& plan,
                      const std::vector<JudgedClaim>& on_record, const fs::path& directory) {
-  RobustnessReport report = run_robustness(plan, {options.out, options.jobs, !options.output.quiet});
+  RobustnessReport report = run_robustness(plan, {options.out, options.jobs, options.anew, !options.output.quiet});
   print_problems(report.problems);
   if (report.signal != 0) {
     fmt::print(stderr, "hapbench: stopped after {} of {} samples; the same command goes on from there\n", report.done,
@@ -174,7 +174,7 @@ int reproduce(const ReproduceOptions& options) {
   // Single claims run what they ask for.
   if (options.only.empty()) runs.run_all(options.jobs, !options.output.quiet);
 
-  FilesRead read;
+  ResultsRead read;
   const std::vector<JudgedClaim> judged = judge(claims, published, runs, cache, read);
   const fs::path ledger = options.ledger.empty() ? fs::path(options.out) / "claims.json" : fs::path(options.ledger);
   fs::path record = reference / "robustness.json";
@@ -211,7 +211,7 @@ void add_reproduce(CommandLine& line) {
   command.add("--only", options->only, "ids of claims, separated by commas").comma_separated();
   command.add("--out", options->out, "directory of the results (default: results/out/reproduce)");
   command.add("--ledger", options->ledger, "the ledger, JSON; a Markdown table beside it (default: OUT/claims.json)");
-  command.flag("--anew", options->anew, "run every scenario, current results or not");
+  command.flag("--anew", options->anew, "run every scenario and judge every sample, current results or not");
   command.add("--jobs", options->jobs, "runs at once (default: one for each processor)").range(1, 1024);
   command
       .add(

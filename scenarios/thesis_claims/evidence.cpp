@@ -62,13 +62,18 @@ Published PublishedNumbers::mean_and_spread(const std::string& id) const {
 
 Json ResultFiles::summary(const std::string& scenario) const {
   provide_(scenario, "summary.json");
+  return read_summary(scenario);
+}
+
+Json ResultFiles::read_summary(const std::string& scenario) const {
   return parse_json(read_text_file(directory_ / scenario / "summary.json", kLargestJsonFile));
 }
 
 double ResultFiles::number(const std::string& scenario, const std::string& path) const {
+  provide_(scenario, path.substr(0, path.find('.')));
   std::string pointer = "/" + path;
   std::replace(pointer.begin(), pointer.end(), '.', '/');
-  const Json value = summary(scenario).value(Json::json_pointer(pointer), Json(nullptr));
+  const Json value = read_summary(scenario).value(Json::json_pointer(pointer), Json(nullptr));
   return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
 }
 

@@ -38,8 +38,9 @@ class PublishedNumbers {
 /// Result files of scenarios that are run into subdirectories of one directory.
 class ResultFiles {
  public:
-  /// Called with a scenario's name and a file's before that file is read: whoever runs on demand runs it then.
-  using Provide = std::function<void(const std::string& scenario, const std::string& file)>;
+  /// Called before results are read, with a scenario's name and which of them: a file's name, or for a number that of
+  /// its section of summary.json, as "metrics". Whoever runs on demand runs it then.
+  using Provide = std::function<void(const std::string& scenario, const std::string& part)>;
   ResultFiles(std::filesystem::path directory, Provide provide)
       : directory_(std::move(directory)), provide_(std::move(provide)) {}
 
@@ -52,6 +53,8 @@ class ResultFiles {
   std::map<std::string, std::vector<double>> table(const std::string& scenario, const std::string& file) const;
 
  private:
+  Json read_summary(const std::string& scenario) const;
+
   std::filesystem::path directory_;
   Provide provide_;
 };

@@ -32,12 +32,19 @@ class ScratchDirectory {
   fs::path path_;
 };
 
-/// Leaves out the tables that nobody reads. Energy and ideal trajectory stay, because summary.json has parts of them.
-void record_only(const std::set<std::string>& files, RecordFields& record) {
-  record.trajectory = record.trajectory && files.contains("trajectory.csv");
-  record.contacts = record.contacts && files.contains("contacts.csv");
-  record.stiffness_tensor = record.stiffness_tensor && files.contains("stiffness_tensor.csv");
-  if (!files.contains("ratios.csv")) record.ratio_iterations.clear();
+/// Switches off the records that nobody reads.
+void record_only(const std::set<std::string>& parts, RecordFields& record) {
+  const auto read = [&parts](std::initializer_list<const char*> any_of) {
+    return std::any_of(any_of.begin(), any_of.end(), [&parts](const char* part) { return parts.contains(part); });
+  };
+  record.trajectory = record.trajectory && read({"trajectory.csv"});
+  record.contacts = record.contacts && read({"contacts.csv"});
+  record.stiffness_tensor = record.stiffness_tensor && read({"stiffness_tensor.csv"});
+  if (!read({"ratios.csv"})) record.ratio_iterations.clear();
+  // The summary as a whole has sections of these.
+  record.energy = record.energy && read({"energy.csv", "energy", "summary.json"});
+  record.ideal_trajectory =
+      record.ideal_trajectory && read({"ideal_trajectory.csv", "ideal_trajectory", "summary.json"});
   record.timing = false;
 }
 
@@ -45,14 +52,18 @@ void record_only(const std::set<std::string>& files, RecordFields& record) {
 class SampleRuns {
  public:
   SampleRuns(const RobustnessPlan& plan, RecentShells& shells, std::size_t sample, const fs::path& directory)
-      : plan_(plan), shells_(shells), sample_(sample), directory_(directory) {}
+      : shells_(shells),
+        directory_(directory),
+        read_(plan.read),
+        evidence_{plan.published,
+                  ResultFiles(directory, [this](const auto& scenario, const auto& part) { provide(scenario, part); }),
+                  plan.cache, [&plan, sample](const Scenario& scenario) {
+                    return plan.choices.overrides(scenario, plan.values[sample]);
+                  }} {}
+  SampleRuns(const SampleRuns&) = delete;
+  SampleRuns& operator=(const SampleRuns&) = delete;
 
-  Evidence evidence() {
-    return {plan_.published,
-            ResultFiles(directory_,
-                        [this](const std::string& scenario, const std::string& file) { provide(scenario, file); }),
-            plan_.cache, [this](const Scenario& scenario) { return overrides(scenario); }};
-  }
+  const Evidence& evidence() const { return evidence_; }
 
  private:
   struct Run {
@@ -60,13 +71,9 @@ class SampleRuns {
     std::string problem;    ///< that ended it
   };
 
-  std::vector<std::string> overrides(const Scenario& scenario) const {
-    return plan_.choices.overrides(scenario, plan_.values[sample_]);
-  }
-
-  void provide(const std::string& scenario, const std::string& file) {
-    const auto read = plan_.read.find(scenario);
-    const bool foreseen = read != plan_.read.end() && read->second.contains(file);
+  void provide(const std::string& scenario, const std::string& part) {
+    const auto read = read_.find(scenario);
+    const bool foreseen = read != read_.end() && read->second.contains(part);
     auto found = runs_.find(scenario);
     if (found == runs_.end() || (!foreseen && !found->second.complete && found->second.problem.empty())) {
       found = runs_.insert_or_assign(scenario, run(scenario, foreseen ? &read->second : nullptr)).first;
@@ -74,24 +81,24 @@ class SampleRuns {
     if (!found->second.problem.empty()) throw InputError(found->second.problem);
   }
 
-  Run run(const std::string& name, const std::set<std::string>* files) {
+  Run run(const std::string& name, const std::set<std::string>* parts) {
     try {
-      LoadedScenario loaded = evidence().loaded_scenario(name);
-      if (files != nullptr) record_only(*files, loaded.scenario.record);
+      LoadedScenario loaded = evidence_.loaded_scenario(name);
+      if (parts != nullptr) record_only(*parts, loaded.scenario.record);
       const RunReport report = run_with_shell(loaded, shells_.of(loaded), directory_ / name, false);
       const std::vector<Outcome>& expected = loaded.scenario.expect.outcomes;
       const bool diverged = report.summary.result.outcome == Outcome::diverges &&
                             std::find(expected.begin(), expected.end(), Outcome::diverges) == expected.end();
-      return {files == nullptr, diverged ? name + ": diverged" : ""};
+      return {parts == nullptr, diverged ? name + ": diverged" : ""};
     } catch (const InputError& error) {
-      return {files == nullptr, error.what()};
+      return {parts == nullptr, error.what()};
     }
   }
 
-  const RobustnessPlan& plan_;
   RecentShells& shells_;
-  std::size_t sample_;
   fs::path directory_;
+  const ResultsRead& read_;
+  Evidence evidence_;
   std::map<std::string, Run> runs_;
 };
 
@@ -130,7 +137,7 @@ std::optional<ClaimRobustness::DecidingChoice> deciding_choice(const RobustnessP
 
 }  // namespace
 
-RobustnessPlan plan_robustness(Choices choices, PublishedNumbers published, std::vector<Claim> claims, FilesRead read,
+RobustnessPlan plan_robustness(Choices choices, PublishedNumbers published, std::vector<Claim> claims, ResultsRead read,
                                ShellCache cache, std::size_t samples) {
   std::erase_if(claims, [](const Claim& claim) { return claim.timing; });
   RobustnessPlan plan{std::move(choices), std::move(published), std::move(claims),
@@ -145,8 +152,7 @@ RobustnessPlan plan_robustness(Choices choices, PublishedNumbers published, std:
 SampleVerdicts judge_sample(const RobustnessPlan& plan, RecentShells& shells, std::size_t sample,
                             const fs::path& directory) {
   const ScratchDirectory scratch(directory);
-  SampleRuns runs(plan, shells, sample, directory);
-  const Evidence evidence = runs.evidence();
+  const SampleRuns runs(plan, shells, sample, directory);
   SampleVerdicts judged;
   for (const Claim& claim : plan.claims) {
     if (claim.costly && sample >= plan.costly_samples()) {
@@ -154,7 +160,7 @@ SampleVerdicts judge_sample(const RobustnessPlan& plan, RecentShells& shells, st
       continue;
     }
     try {
-      judged.verdicts.emplace_back(verdict_name(claim.judge(claim.measure(evidence), plan.published).verdict));
+      judged.verdicts.emplace_back(verdict_name(claim.judge(claim.measure(runs.evidence()), plan.published).verdict));
     } catch (const IoError&) {
       throw;  // a full disk says nothing about a claim
     } catch (const std::exception& error) {

@@ -16,15 +16,15 @@
 /// ranges. The point on record is not among them; the ledger is that.
 namespace hapbench {
 
-/// The files that claims read of each scenario.
-using FilesRead = std::map<std::string, std::set<std::string>>;
+/// What claims read of each scenario's results: files, and sections of summary.json.
+using ResultsRead = std::map<std::string, std::set<std::string>>;
 
 /// Everything that the verdicts of a sample are a function of, and the program.
 struct RobustnessPlan {
   Choices choices;
   PublishedNumbers published;
   std::vector<Claim> claims;
-  FilesRead read;  ///< what they read; other files are recorded only when a claim asks all the same
+  ResultsRead read;  ///< by them; what else a scenario records is left out until a claim asks for it all the same
   ShellCache cache;
   std::vector<std::vector<std::string>> values;  ///< for each sample one of each choice
 
@@ -36,7 +36,7 @@ struct RobustnessPlan {
 inline constexpr std::uint64_t kRobustnessSeed = 1;
 
 /// The plan for so many samples. Of the claims those about time are left out.
-RobustnessPlan plan_robustness(Choices choices, PublishedNumbers published, std::vector<Claim> claims, FilesRead read,
+RobustnessPlan plan_robustness(Choices choices, PublishedNumbers published, std::vector<Claim> claims, ResultsRead read,
                                ShellCache cache, std::size_t samples);
 
 /// Cells of claims without a verdict: one that could not be measured (a run diverged where its scenario does not expect

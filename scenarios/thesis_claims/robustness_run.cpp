@@ -77,7 +77,8 @@ RobustnessReport run_robustness(const RobustnessPlan& plan, const RobustnessOpti
   const fs::path file = options.directory / "robustness.journal", scratch = options.directory / "robustness";
   const std::string title = definition(plan);
   // What a program without an identity computed is computed again.
-  Journal journal(file, title, !loaded_code_id().empty() && Journal::is_of(file, title));
+  const bool resume = !options.anew && !loaded_code_id().empty() && Journal::is_of(file, title);
+  Journal journal(file, title, resume);
   RobustnessReport report;
   report.verdicts.resize(plan.samples());
   const std::vector<std::size_t> left = samples_to_do(plan, journal, report);

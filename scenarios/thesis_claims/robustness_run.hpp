@@ -12,6 +12,7 @@ namespace hapbench {
 struct RobustnessOptions {
   std::filesystem::path directory;  ///< of the journal and of results while they are needed; exists
   std::size_t jobs = 1;             ///< samples at once
+  bool anew = false;                ///< use nothing that an interrupted run has left
   bool progress = false;            ///< allow a progress bar
 };
 

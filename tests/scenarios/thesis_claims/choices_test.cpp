@@ -75,6 +75,11 @@ TEST(ChoicesOnRecord, NameScenariosThatThereAre) {
   }
 }
 
+TEST(ChoicesOnRecord, AreTheTableInTheTree) {
+  EXPECT_EQ(test::read_file(kReference / "choices.md"), Choices(kReference / "choices.json").markdown())
+      << "renew it with hapbench reproduce --ledger results/reference/claims.json";
+}
+
 TEST(ChoicesSchema, InTheTreeIsTheOneTheReaderHas) {
   EXPECT_EQ(test::read_file(kReference / "choices.schema.json"), json_text(choices_schema()))
       << "renew it with hapbench describe choices_schema >results/reference/choices.schema.json";
