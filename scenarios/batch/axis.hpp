@@ -21,7 +21,7 @@ struct Range {
 struct Axis {
   std::string path;                 ///< dotted, as in --set
   std::vector<std::string> values;  ///< as in --set; numbers as shortest decimals, nothing that CSV would have to quote
-  std::optional<Range> range;       ///< in place of values, for a sample alone
+  std::optional<Range> range = {};  ///< in place of values, for a sample alone
 };
 
 /// Reads "path=a:b:n" (n numbers from a to b, both exactly, in equal steps), "path=a:b:n:log" (in equal ratios) or

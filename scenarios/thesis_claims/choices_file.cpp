@@ -103,8 +103,6 @@ static void describe(Fields& f, OpenChoice& choice) {
   f.text("id", choice.id, kLongest, "name, as in task2.hand_angle", Presence::required);
   f.text("what", choice.what, kLongest, "was chosen", Presence::required);
   f.text("thesis", choice.thesis, kLongest, "what the thesis says of it, or that it does not", Presence::required);
-  describe_value(f, choice, f.given("options"));
-  f.text("unit", choice.unit, kLongest, "of the number; none for a ratio or options");
   f.if_any("range", choice.range, "plausible values", [](Fields& r, std::pair<double, double>& range) {
     r.pair(
         "a pair of numbers [least, greatest]", [&](Fields& a) { a.number(range.first, kAnyNumber); },
@@ -115,6 +113,8 @@ static void describe(Fields& f, OpenChoice& choice) {
              o.list(options, {2, 100}, [](Fields& t, std::string& text) { t.text(text, kLongest); });
            });
   f.exactly_one_of("range", "options");
+  describe_value(f, choice, f.given("options"));
+  f.text("unit", choice.unit, kLongest, "of the number; none for a ratio or options");
   f.choice("scale", choice.scale, kScales, "scale", "of the range: values are sampled evenly in it");
   f.choice("chosen", choice.chosen, kChosen, "time", "before or after results were seen", Presence::required);
   f.text("why", choice.why, kLongest, "this value", Presence::required);

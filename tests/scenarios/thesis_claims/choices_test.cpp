@@ -50,10 +50,8 @@ TEST(ChoicesOnRecord, ConcernEachAScenarioThatThenDiffers) {
       for (const Texts& other : {low, high}) {
         Texts values = on_record;
         values[c] = other[c];
-        changed += effective(bundled, choices.overrides(load_scenario(bundled.file).scenario, values)) !=
-                           effective(bundled, {})
-                       ? 1
-                       : 0;
+        const Texts overrides = choices.overrides(load_scenario(bundled.file).scenario, values);
+        if (effective(bundled, overrides) != effective(bundled, {})) ++changed;
       }
     }
     EXPECT_GT(changed, 0u) << choices.all()[c].id;
@@ -138,7 +136,7 @@ TEST_F(ChoicesFile, GivesOverridesOfScenariosItNames) {
   EXPECT_EQ(choices.values_at(std::vector<double>{0.5, 0.7}), (Texts{"1", "b"}));
   Json springs = {{"name", "task1"},
                   {"time", {{"step_s", 0.001}, {"steps", 1}}},
-                  {"environment", {{"type", "springs"}, {"groups", {{{"direction", {1, 0, 0}}}}}}}};
+                  {"environment", {{"type", "springs"}, {"groups", {{{"direction", {1, 0, 0}}, {"count", 1}}}}}}};
   EXPECT_EQ(choices.overrides(scenario_of(springs), Texts{"1.5", "b"}), (Texts{"rendering.stiffness_N_per_m=30000"}));
   springs["name"] = "atask1";
   EXPECT_TRUE(choices.overrides(scenario_of(springs), Texts{"1.5", "b"}).empty());
