@@ -44,5 +44,27 @@ TEST(RobustnessOnRecord, IsWhatTheProgramMakesOfAFewSamples) {
   }
 }
 
+/// What a sample does to get at verdicts is what the ledger does.
+TEST(RobustnessOnRecord, OfTheChoicesOnRecordIsTheLedger) {
+  const Json ledger = Json::parse(test::read_file(kReference / "claims.json")).at("claims");
+  std::vector<Claim> claims;
+  std::vector<std::string> verdicts;
+  for (const Json& entry : ledger) {
+    for (const Claim& claim : all_claims()) {
+      if (claim.id != entry.at("id") || claim.timing || claim.costly) continue;
+      claims.push_back(claim);
+      verdicts.push_back(entry.at("verdict"));
+    }
+  }
+  RobustnessPlan plan = plan_robustness(Choices(kReference / "choices.json"),
+                                        PublishedNumbers(kReference / "published"), claims, {}, ShellCache(), 1);
+  plan.values = {plan.choices.values_on_record()};
+  const test::TemporaryDirectory directory;
+  RecentShells shells((ShellCache()));
+  const SampleVerdicts judged = judge_sample(plan, shells, 0, directory / "sample");
+  EXPECT_EQ(judged.verdicts, verdicts);
+  EXPECT_TRUE(judged.problems.empty());
+}
+
 }  // namespace
 }  // namespace hapbench
