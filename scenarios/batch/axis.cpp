@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "results/io/number_text.hpp"
-#include "scenarios/batch/grid.hpp"
+#include "scenarios/batch/sweep_points.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 
@@ -35,39 +35,60 @@ double range_end(const std::string& text, std::string_view word) {
   return *number;
 }
 
-/// Value i of 0 ... last between the ends, which are exact. Weighting them, rather than adding up steps, gives 0.3 and
+/// Between the ends, which are exact, at i of 0 ... last. Weighting them, rather than adding up steps, gives 0.3 and
 /// not 0.30000000000000004 for the third of ten steps from 0 to 1.
 double linear_value(double a, double b, double i, double last) {
   if (i == 0.0 || i == last) return i == 0.0 ? a : b;
   return std::clamp((a * (last - i) + b * i) / last, std::min(a, b), std::max(a, b));
 }
 
-/// Decimal logarithms, so that decades come out as such.
-double logarithmic_value(double a, double b, double i, double last) {
-  if (i == 0.0 || i == last) return i == 0.0 ? a : b;
+double value_between(const Range& range, double i, double last) {
+  const double a = range.from, b = range.to;
+  if (!range.logarithmic || i == 0.0 || i == last) return linear_value(a, b, i, last);
+  // Decimal logarithms, so that decades come out as such.
   return std::clamp(std::pow(10.0, linear_value(std::log10(a), std::log10(b), i, last)), std::min(a, b),
                     std::max(a, b));
 }
 
-std::vector<std::string> range_values(const std::string& text, std::string_view range) {
-  const Words parts = parts_of(range, ':');
-  if (parts.size() != 3 && parts.size() != 4) {
-    refuse_axis(text, fmt::format("got {} parts between colons", parts.size()), "a:b:n or a:b:n:log");
+/// The parts of "a:b", or of "a:b:n" for a grid, perhaps with ":log" behind.
+struct RangeText {
+  Range range;
+  std::string_view count;  ///< empty for a sample
+};
+
+RangeText read_range(const std::string& text, std::string_view words, bool sampled) {
+  const Words parts = parts_of(words, ':');
+  const std::size_t least = sampled ? 2 : 3;
+  if (sampled && parts.size() > 2 && whole_number(parts[2])) {
+    refuse_axis(text, "got a number of values beside --sample, which has its own", "a:b or a:b:log");
   }
-  const double a = range_end(text, parts[0]), b = range_end(text, parts[1]);
-  const auto n = whole_number(parts[2]);
+  if (!sampled && parts.size() == 2) {
+    refuse_axis(text, "got 2 parts between colons", "a:b:n or a:b:n:log; a:b and a:b:log with --sample");
+  }
+  if (parts.size() != least && parts.size() != least + 1) {
+    refuse_axis(text, fmt::format("got {} parts between colons", parts.size()),
+                sampled ? "a:b or a:b:log" : "a:b:n or a:b:n:log");
+  }
+  RangeText read{{range_end(text, parts[0]), range_end(text, parts[1]), parts.size() > least},
+                 sampled ? std::string_view() : parts[2]};
+  if (!read.range.logarithmic) return read;
+  if (parts.back() != "log") refuse_axis(text, fmt::format("got \"{}\"", parts.back()), "\"log\" or nothing");
+  if (!(read.range.from > 0.0 && read.range.to > 0.0)) {
+    refuse_axis(text, fmt::format("got ends {} and {} of a logarithmic range", read.range.from, read.range.to),
+                "numbers > 0");
+  }
+  return read;
+}
+
+std::vector<std::string> range_values(const std::string& text, std::string_view words) {
+  const RangeText read = read_range(text, words, false);
+  const auto n = whole_number(read.count);
   if (!n || *n < 2 || *n > kMostRuns) {
-    refuse_axis(text, fmt::format("got \"{}\" values", parts[2]), fmt::format("an integer 2 ... {}", kMostRuns));
+    refuse_axis(text, fmt::format("got \"{}\" values", read.count), fmt::format("an integer 2 ... {}", kMostRuns));
   }
-  const bool logarithmic = parts.size() == 4;
-  if (logarithmic && parts[3] != "log") refuse_axis(text, fmt::format("got \"{}\"", parts[3]), "\"log\" or nothing");
-  if (logarithmic && !(a > 0.0 && b > 0.0)) {
-    refuse_axis(text, fmt::format("got ends {} and {} of a logarithmic range", a, b), "numbers > 0");
-  }
-  const auto value = logarithmic ? logarithmic_value : linear_value;
   std::vector<std::string> values;
   for (std::size_t i = 0; i < *n; ++i) {
-    values.push_back(number_text(value(a, b, static_cast<double>(i), static_cast<double>(*n - 1))));
+    values.push_back(number_text(value_between(read.range, static_cast<double>(i), static_cast<double>(*n - 1))));
   }
   return values;
 }
@@ -86,15 +107,15 @@ std::vector<std::string> listed_values(const std::string& text, std::string_view
   return values;
 }
 
-}  // namespace
-
-Axis parse_axis(const std::string& text) {
+Axis read_axis(const std::string& text, bool sampled) {
   const std::size_t equals = text.find('=');
-  Axis axis{text.substr(0, equals), {}};
+  Axis axis{text.substr(0, equals), {}, {}};
   constexpr const char* kPathCharacters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.$";
   if (equals == std::string::npos || axis.path.empty() ||
       axis.path.find_first_not_of(kPathCharacters) != std::string::npos) {
-    refuse_axis(text, "has no path", "path=a:b:n, path=a:b:n:log or path=v,w, as in time.step_s=0.0001:0.001:10");
+    refuse_axis(text, "has no path",
+                sampled ? "path=a:b, path=a:b:log or path=v,w, as in time.step_s=0.0001:0.001"
+                        : "path=a:b:n, path=a:b:n:log or path=v,w, as in time.step_s=0.0001:0.001:10");
   }
   const std::string_view values = std::string_view(text).substr(equals + 1);
   const auto needs_quotes = [](unsigned char c) { return c < 0x20 || c == 0x7f || c == '"'; };
@@ -102,8 +123,34 @@ Axis parse_axis(const std::string& text) {
     refuse_axis(text, "has quotes or control characters", "numbers or plain texts");
   }
   const bool is_range = values.find(',') == std::string_view::npos && values.find(':') != std::string_view::npos;
-  axis.values = is_range ? range_values(text, values) : listed_values(text, values);
+  if (!is_range) {
+    axis.values = listed_values(text, values);
+  } else if (sampled) {
+    axis.range = read_range(text, values, true).range;
+  } else {
+    axis.values = range_values(text, values);
+  }
   return axis;
+}
+
+}  // namespace
+
+double Range::value_at(double part) const {
+  return value_between(*this, part, 1.0);
+}
+
+Axis parse_axis(const std::string& text) {
+  return read_axis(text, false);
+}
+
+Axis parse_sampled_axis(const std::string& text) {
+  return read_axis(text, true);
+}
+
+std::string value_at(const Axis& axis, double coordinate) {
+  if (axis.range) return number_text(axis.range->value_at(coordinate));
+  const auto count = static_cast<double>(axis.values.size());
+  return axis.values[std::min(static_cast<std::size_t>(coordinate * count), axis.values.size() - 1)];
 }
 
 }  // namespace hapbench

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <fstream>
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/number_table.hpp"
@@ -18,6 +19,10 @@ constexpr std::size_t kSumLength = 16;
 
 std::error_code last_error() {
   return {errno, std::generic_category()};
+}
+
+std::string title_line(const std::string& sweep) {
+  return "hapbench sweep journal 1, " + sweep + "\n";
 }
 
 std::string line_of(std::string_view row) {
@@ -43,7 +48,7 @@ Journal::Journal(std::filesystem::path file, const std::string& sweep, bool resu
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       fail_in_file(file_, "another sweep is writing to this directory; allowed: one at a time");
     }
-    const std::string first_line = "hapbench sweep journal 1, " + sweep + "\n";
+    const std::string first_line = title_line(sweep);
     if (resume) read(first_line);
     if (rows_.empty()) {
       if (::ftruncate(descriptor_, 0) != 0) throw IoError("write", file_, last_error());
@@ -57,6 +62,13 @@ Journal::Journal(std::filesystem::path file, const std::string& sweep, bool resu
 
 Journal::~Journal() {
   ::close(descriptor_);
+}
+
+bool Journal::is_of(const std::filesystem::path& file, const std::string& sweep) {
+  const std::string expected = title_line(sweep);
+  std::string found(expected.size(), '\0');
+  std::ifstream in(file, std::ios::binary);
+  return in.read(found.data(), static_cast<std::streamsize>(found.size())) && found == expected;
 }
 
 void Journal::read(const std::string& first_line) {

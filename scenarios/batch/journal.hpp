@@ -24,6 +24,9 @@ class Journal {
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
+  /// True for a file that begins as the journal of this work does.
+  static bool is_of(const std::filesystem::path& file, const std::string& sweep);
+
   /// The rows found, in the order in which they were added.
   const std::vector<std::string>& rows() const { return rows_; }
   const std::filesystem::path& file() const { return file_; }

@@ -48,7 +48,7 @@ Rows journal_rows(const SweepPlan& plan, const SweepOptions& options, const Jour
 /// The runs that are to be done, those of one environment after each other, so that few shells are needed at a time.
 std::vector<std::size_t> runs_to_do(const SweepPlan& plan, const Shard& shard, const Rows& done) {
   std::vector<std::size_t> runs;
-  for (std::size_t run = shard.index; run < plan.grid.size(); run += shard.count) {
+  for (std::size_t run = shard.index; run < plan.points.size(); run += shard.count) {
     if (!done.contains(run)) runs.push_back(run);
   }
   std::stable_sort(runs.begin(), runs.end(),
@@ -95,7 +95,7 @@ void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& j
     }
   };
   parallel_for(runs, options.jobs, work, [&stop] { return stop.received() != 0; });
-  if (rows.size() < options.part().size(plan.grid.size())) report.signal = stop.received();
+  if (rows.size() < options.part().size(plan.points.size())) report.signal = stop.received();
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "scenarios/batch/grid.hpp"
+#include "scenarios/batch/sweep_points.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 

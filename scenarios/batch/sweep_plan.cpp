@@ -49,7 +49,7 @@ Point examine(const SweepPlan& plan, std::size_t run) {
 /// Collects the points of a plan, one by one in whatever order; the outcome does not depend on it.
 class Collector {
  public:
-  explicit Collector(SweepPlan& plan) : plan_(plan), environments_of_runs_(plan.grid.size()) {}
+  explicit Collector(SweepPlan& plan) : plan_(plan), environments_of_runs_(plan.points.size()) {}
 
   void add(std::size_t run, const Point& point) {
     sections_.energy |= point.sections.energy;
@@ -110,7 +110,7 @@ class Collector {
 
 /// Fills the collector; throws the error of the lowest run that has one.
 void examine_all(const SweepPlan& plan, std::size_t jobs, bool progress, Collector& collector) {
-  std::vector<std::size_t> runs(plan.grid.size());
+  std::vector<std::size_t> runs(plan.points.size());
   std::iota(runs.begin(), runs.end(), std::size_t{0});
   ProgressBar bar("checking", runs.size(), progress);
   std::size_t done = 0;
@@ -132,28 +132,37 @@ void examine_all(const SweepPlan& plan, std::size_t jobs, bool progress, Collect
   if (!errors.empty()) std::rethrow_exception(errors.begin()->second);
 }
 
+Json axis_content(const Axis& axis) {
+  if (!axis.range) return {{"path", axis.path}, {"values", axis.values}};
+  return {{"path", axis.path},
+          {"range", {axis.range->from, axis.range->to}},
+          {"scale", axis.range->logarithmic ? "log" : "linear"}};
+}
+
 /// The CPU does not count: shards of one sweep may come from several machines.
 Json content_of(const SweepPlan& plan, const Json& files) {
   const Provenance program = provenance();
   Json vary = Json::array();
-  for (const Axis& axis : plan.grid.axes()) vary.push_back({{"path", axis.path}, {"values", axis.values}});
-  return {{"scenario", plan.scenario.json},
-          {"set", plan.overrides},
-          {"vary", std::move(vary)},
-          {"files", files},
-          {"program",
-           {{"hapbench_version", program.version},
-            {"commit", program.commit},
-            {"compiler", program.compiler},
-            {"build_type", program.build_type},
-            {"flags", program.flags}}}};
+  for (const Axis& axis : plan.points.axes()) vary.push_back(axis_content(axis));
+  Json content = {{"scenario", plan.scenario.json}, {"set", plan.overrides}, {"vary", std::move(vary)}};
+  if (const auto& sampling = plan.points.sampling()) {
+    content["sample"] = {
+        {"method", sampling_name(sampling->method)}, {"runs", sampling->count}, {"seed", sampling->seed}};
+  }
+  content["files"] = files;
+  content["program"] = {{"hapbench_version", program.version},
+                        {"commit", program.commit},
+                        {"compiler", program.compiler},
+                        {"build_type", program.build_type},
+                        {"flags", program.flags}};
+  return content;
 }
 
 }  // namespace
 
-SweepPlan plan_sweep(ScenarioText scenario, std::vector<std::string> overrides, Grid grid, std::size_t jobs,
+SweepPlan plan_sweep(ScenarioText scenario, std::vector<std::string> overrides, SweepPoints points, std::size_t jobs,
                      bool progress) {
-  SweepPlan plan{std::move(scenario), std::move(overrides), std::move(grid), {}, {}, {}, 0, {}, ""};
+  SweepPlan plan{std::move(scenario), std::move(overrides), std::move(points), {}, {}, {}, 0, {}, ""};
   Collector collector(plan);
   examine_all(plan, jobs, progress, collector);
   collector.finish();
@@ -164,7 +173,7 @@ SweepPlan plan_sweep(ScenarioText scenario, std::vector<std::string> overrides, 
 
 LoadedScenario scenario_of(const SweepPlan& plan, std::size_t run) {
   std::vector<std::string> overrides = plan.overrides;
-  for (std::string& override : plan.grid.overrides(run)) overrides.push_back(std::move(override));
+  for (std::string& override : plan.points.overrides(run)) overrides.push_back(std::move(override));
   return load_scenario(plan.scenario, overrides);
 }
 

@@ -21,7 +21,7 @@ std::string cell(const Metric::Value& value) {
 
 /// The cells every row begins with.
 std::vector<std::string> leading_cells(const SweepPlan& plan, std::size_t run) {
-  std::vector<std::string> cells = plan.grid.values(run);
+  std::vector<std::string> cells = plan.points.values(run);
   cells.insert(cells.begin(), std::to_string(run));
   return cells;
 }
@@ -30,7 +30,7 @@ std::vector<std::string> leading_cells(const SweepPlan& plan, std::size_t run) {
 
 std::string sweep_header(const SweepPlan& plan) {
   std::vector<std::string> columns = {"index"};
-  for (const Axis& axis : plan.grid.axes()) columns.push_back(axis.path);
+  for (const Axis& axis : plan.points.axes()) columns.push_back(axis.path);
   columns.insert(columns.end(), {"outcome", "expected", "steps"});
   columns.insert(columns.end(), plan.metrics.begin(), plan.metrics.end());
   columns.emplace_back("state_hash");
@@ -60,7 +60,7 @@ std::optional<std::size_t> run_of_row(const SweepPlan& plan, std::string_view ro
   const Words cells = parts_of(row, ',');
   const auto run = whole_number(cells[0]);
   const std::size_t columns = parts_of(sweep_header(plan), ',').size();
-  if (!run || *run >= plan.grid.size() || cells.size() != columns) return std::nullopt;
+  if (!run || *run >= plan.points.size() || cells.size() != columns) return std::nullopt;
   const std::vector<std::string> leading = leading_cells(plan, *run);
   return std::equal(leading.begin(), leading.end(), cells.begin()) ? run : std::nullopt;
 }

@@ -68,14 +68,14 @@ void check_belongs(const ShardTable& table, const ShardTable& first) {
 void write_sweep_table(const fs::path& file, const SweepPlan& plan, const std::optional<Shard>& shard,
                        std::span<const std::string> rows) {
   AtomicFile out(file);
-  if (shard) append_line(out, title(*shard, plan.grid.size(), plan.definition));
+  if (shard) append_line(out, title(*shard, plan.points.size(), plan.definition));
   append_line(out, sweep_header(plan));
   for (const std::string& row : rows) append_line(out, row);
   out.commit();
 }
 
 Json sweep_description(const SweepPlan& plan, const Shard& shard) {
-  Json description = {{"definition", plan.definition}, {"runs", plan.grid.size()}, {"shard", shard_text(shard)}};
+  Json description = {{"definition", plan.definition}, {"runs", plan.points.size()}, {"shard", shard_text(shard)}};
   description.update(plan.content);
   return description;
 }

@@ -12,6 +12,7 @@
 #include "scenarios/program/schema_text.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/studies/stability/map_scenes.hpp"
+#include "scenarios/thesis_claims/choices_file.hpp"
 #include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
@@ -107,7 +108,7 @@ Description describe_stability() {
 }
 
 std::vector<std::string> all_names() {
-  std::vector<std::string> names = {"cache", "scenario", "schema", "stability"};
+  std::vector<std::string> names = {"cache", "choices_schema", "scenario", "schema", "stability"};
   for (const AlgorithmEntry& entry : algorithms()) names.emplace_back(entry.info->name);
   for (const DepthModelEntry& entry : depth_models()) names.emplace_back(entry.info->name);
   for (const ModelInfo* stage : stages()) names.emplace_back(stage->name);
@@ -120,6 +121,7 @@ std::vector<std::string> all_names() {
 Description describe_name(const std::string& name) {
   if (name == "cache") return describe_cache();
   if (name == "stability") return describe_stability();
+  if (name == "choices_schema") return {json_text(choices_schema()), choices_schema()};
   if (name == "schema") return {json_text(scenario_schema()), scenario_schema()};
   Description d;
   const auto add = [&d](Description more) {
@@ -158,7 +160,7 @@ void add_describe(CommandLine& line) {
   command
       .add("name", options->name,
            "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
-           "\"stability\", or \"cache\"")
+           "\"choices_schema\", \"stability\", or \"cache\"")
       .required();
   add_output_options(command, options->output);
   command.runs([options] {

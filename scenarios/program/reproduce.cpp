@@ -17,7 +17,8 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/thesis_claims/claims.hpp"
+#include "scenarios/thesis_claims/ledger.hpp"
+#include "scenarios/thesis_claims/robustness_run.hpp"
 
 namespace hapbench {
 namespace {
@@ -30,13 +31,9 @@ struct ReproduceOptions {
   std::string ledger;
   bool no_cache = false;
   bool anew = false;
+  std::int64_t samples = 0;  ///< of the choices; 0 for none
   std::size_t jobs = available_threads();
   OutputOptions output;
-};
-
-struct Judged {
-  Claim claim;
-  Finding finding;
 };
 
 std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
@@ -118,52 +115,91 @@ class ThesisRuns {
   bool as_expected_ = true;
 };
 
-Json ledger_json(const std::vector<Judged>& judged, const PublishedNumbers& published) {
-  Json claims = Json::array();
-  for (const Judged& j : judged) {
-    claims.push_back({{"id", j.claim.id},
-                      {"place", j.claim.place},
-                      {"claim", j.claim.claim},
-                      {"published", j.claim.published},
-                      {"measured", j.finding.measured},
-                      {"rule", j.claim.rule(published)},
-                      {"verdict", verdict_name(j.finding.verdict)},
-                      {"why", j.finding.why},
-                      {"timing", j.claim.timing}});
-  }
-  return {{"claims", std::move(claims)}};
+/// Judges the claims by the thesis's runs, and notes in `read` what of their results that takes.
+std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const PublishedNumbers& published, ThesisRuns& runs,
+                               const ShellCache& cache, ResultsRead& read) {
+  const auto provide = [&](const std::string& scenario, const std::string& part) {
+    read[scenario].insert(part);
+    runs.provide(scenario);
+  };
+  const Evidence evidence{published, ResultFiles(runs.directory(), provide), cache};
+  std::vector<JudgedClaim> judged;
+  for (const Claim& claim : claims) judged.push_back({claim, claim.judge(claim.measure(evidence), published)});
+  return judged;
 }
 
-std::string ledger_markdown(const std::vector<Judged>& judged) {
-  std::string text = "| id | place | claim | published | measured | verdict | why |\n|---|---|---|---|---|---|---|\n";
-  for (const Judged& j : judged) {
-    text += fmt::format("| {} | {} | {} | {} | {} | **{}** | {} |\n", j.claim.id, j.claim.place, j.claim.claim,
-                        j.claim.published, j.finding.measured, verdict_name(j.finding.verdict), j.finding.why);
+/// What a sample can judge: claims that a simulation can show, and that are not about this machine's times.
+std::vector<JudgedClaim> to_judge_again(std::vector<JudgedClaim> judged) {
+  std::erase_if(judged,
+                [](const JudgedClaim& j) { return j.claim.timing || j.finding.verdict == Verdict::not_reproducible; });
+  return judged;
+}
+
+/// Prints the first few problems of a sample's runs.
+void print_problems(const std::vector<std::string>& problems) {
+  constexpr std::size_t kMost = 10;
+  for (std::size_t i = 0; i < std::min(problems.size(), kMost); ++i) {
+    fmt::print(stderr, "hapbench: not measured: {}\n", one_line(problems[i]));
   }
-  return text;
+  if (problems.size() > kMost) fmt::print(stderr, "hapbench: {} more like these\n", problems.size() - kMost);
+}
+
+/// Judges the claims again at samples of the choices, and writes robustness.* into `directory`. Returns the signal that
+/// stopped it, or 0.
+int write_robustness(const ReproduceOptions& options, const RobustnessPlan& plan,
+                     const std::vector<JudgedClaim>& on_record, const fs::path& directory) {
+  RobustnessReport report = run_robustness(plan, {options.out, options.jobs, options.anew, !options.output.quiet});
+  print_problems(report.problems);
+  if (report.signal != 0) {
+    fmt::print(stderr, "hapbench: stopped after {} of {} samples; the same command goes on from there\n", report.done,
+               plan.samples());
+    return report.signal;
+  }
+  std::vector<std::string> verdicts;
+  for (const JudgedClaim& j : on_record) verdicts.emplace_back(verdict_name(j.finding.verdict));
+  const std::vector<ClaimRobustness> robustness = robustness_of(plan, verdicts, report.verdicts);
+  write_file_atomically(directory / "robustness.csv", robustness_table(plan, report.verdicts));
+  write_file_atomically(directory / "robustness.json", json_text(robustness_json(plan, robustness)));
+  write_file_atomically(directory / "robustness.md", robustness_markdown(plan, robustness));
+  return 0;
 }
 
 int reproduce(const ReproduceOptions& options) {
+  const fs::path reference = HAPBENCH_REFERENCE_DIR;
   const std::vector<Claim> claims = chosen_claims(options.only);
-  const PublishedNumbers published(HAPBENCH_PUBLISHED_DIR);
+  const PublishedNumbers published(reference / "published");
+  const Choices choices(reference / "choices.json");
   require_writable_directory(options.out);
   const ShellCache cache = shell_cache(options.no_cache);
   ThesisRuns runs(options, cache);
   // Single claims run what they ask for.
   if (options.only.empty()) runs.run_all(options.jobs, !options.output.quiet);
 
-  const Evidence evidence{
-      published, ResultFiles(runs.directory(), [&runs](const std::string& name) { runs.provide(name); }), cache};
-  std::vector<Judged> judged;
-  Table table({{"id", false}, {"verdict", false}, {"measured", false}});
-  for (const Claim& claim : claims) {
-    judged.push_back({claim, claim.judge(claim.measure(evidence), published)});
-    table.add({claim.id, std::string(verdict_name(judged.back().finding.verdict)), judged.back().finding.measured});
-  }
-  const Json json = ledger_json(judged, published);
+  ResultsRead read;
+  const std::vector<JudgedClaim> judged = judge(claims, published, runs, cache, read);
   const fs::path ledger = options.ledger.empty() ? fs::path(options.out) / "claims.json" : fs::path(options.ledger);
+  fs::path record = reference / "robustness.json";
+  if (options.samples > 0) {
+    const std::vector<JudgedClaim> again = to_judge_again(judged);
+    std::vector<Claim> sampled;
+    for (const JudgedClaim& j : again) sampled.push_back(j.claim);
+    const RobustnessPlan plan =
+        plan_robustness(choices, published, sampled, read, cache, static_cast<std::size_t>(options.samples));
+    const int signal = write_robustness(options, plan, again, ledger.parent_path());
+    if (signal != 0) return 128 + signal;  // as shells say it
+    record = ledger.parent_path() / "robustness.json";
+  }
+
+  const RobustnessOnRecord robustness(record, choices.hash());
+  Table table({{"id", false}, {"verdict", false}, {"measured", false}, {"robustness", false}});
+  for (const JudgedClaim& j : judged) {
+    table.add({j.claim.id, std::string(verdict_name(j.finding.verdict)), j.finding.measured,
+               robustness_text(robustness.of(j))});
+  }
+  const Json json = ledger_json(judged, published, robustness);
   write_file_atomically(ledger, json_text(json));
-  write_file_atomically(fs::path(ledger).replace_extension(".md"), ledger_markdown(judged));
+  write_file_atomically(fs::path(ledger).replace_extension(".md"), ledger_markdown(judged, robustness));
+  write_file_atomically(ledger.parent_path() / "choices.md", choices.markdown());
   print(options.output, table.text() + fmt::format("\nledger in {}\n", ledger.string()), json);
   return runs.all_as_expected() ? kSuccess : kUnexpectedOutcome;
 }
@@ -176,10 +212,21 @@ void add_reproduce(CommandLine& line) {
   command.add("--only", options->only, "ids of claims, separated by commas").comma_separated();
   command.add("--out", options->out, "directory of the results (default: results/out/reproduce)");
   command.add("--ledger", options->ledger, "the ledger, JSON; a Markdown table beside it (default: OUT/claims.json)");
-  command.flag("--anew", options->anew, "run every scenario, current results or not");
+  command.flag("--anew", options->anew, "run every scenario and judge every sample, current results or not");
   command.add("--jobs", options->jobs, "runs at once (default: one for each processor)").range(1, 1024);
+  command
+      .add(
+          "--robustness", options->samples,
+          "judge every claim again at so many samples of the choices on record (default: 256), appendix D at a quarter "
+          "of them; writes robustness.csv, .json and .md beside the ledger")
+      .value_if_none("256")
+      .range(4, 100'000);
   add_cache_option(command, options->no_cache);
   add_output_options(command, options->output);
+  command.footer(
+      "choices.md beside the ledger lists what the thesis leaves open (results/reference/choices.json). Ctrl-C stops "
+      "--robustness after the samples in flight; the same command goes on from there.\n"
+      "Exit status: 0 success, 2 bad input or usage, 3 a run did not end as its scenario expects, 130 stopped by Ctrl-C.");
   command.runs([options] { return reproduce(*options); });
 }
 

@@ -21,6 +21,8 @@ constexpr std::int64_t kMostJobs = 1024;
 struct SweepCommand {
   std::string scenario;
   std::vector<std::string> vary;
+  std::string sample;
+  std::uint64_t seed = 1;
   std::string out;
   std::vector<std::string> overrides;
   std::int64_t jobs = 0;  ///< 0: one for each thread there is
@@ -31,10 +33,12 @@ struct SweepCommand {
   OutputOptions output;
 };
 
-Grid grid_of(const SweepCommand& command) {
+SweepPoints points_of(const SweepCommand& command) {
+  const bool sampled = !command.sample.empty();
   std::vector<Axis> axes;
-  for (const std::string& text : command.vary) axes.push_back(parse_axis(text));
-  return Grid(std::move(axes));
+  for (const std::string& text : command.vary) axes.push_back(sampled ? parse_sampled_axis(text) : parse_axis(text));
+  if (!sampled) return SweepPoints(std::move(axes));
+  return SweepPoints(std::move(axes), parse_sampling(command.sample, command.seed));
 }
 
 SweepOptions sweep_options(const SweepCommand& command, const fs::path& scenario) {
@@ -54,7 +58,7 @@ SweepOptions sweep_options(const SweepCommand& command, const fs::path& scenario
   return options;
 }
 
-/// A grid may give as many warnings as it has runs.
+/// A sweep may give as many warnings as it has runs.
 void print_some_warnings(std::vector<std::string> warnings) {
   constexpr std::size_t kMost = 20;
   const std::size_t count = warnings.size();
@@ -66,7 +70,7 @@ void print_some_warnings(std::vector<std::string> warnings) {
 }
 
 std::string run_text(const SweepPlan& plan, std::size_t run) {
-  return fmt::format("run {} ({})", run, fmt::join(plan.grid.overrides(run), ", "));
+  return fmt::format("run {} ({})", run, fmt::join(plan.points.overrides(run), ", "));
 }
 
 /// Says what is wrong with the runs and returns the exit status.
@@ -91,14 +95,14 @@ int sweep(const SweepCommand& command) {
   const fs::path file = find_scenario(command.scenario);
   const SweepOptions options = sweep_options(command, file);
   const SweepPlan plan =
-      plan_sweep(read_scenario_text(file), command.overrides, grid_of(command), options.jobs, options.progress);
+      plan_sweep(read_scenario_text(file), command.overrides, points_of(command), options.jobs, options.progress);
   print_some_warnings(plan.warnings);
   require_writable_directory(options.directory);
 
   const SweepReport report = run_sweep(plan, options);
   if (report.signal != 0) {
     fmt::print(stderr, "hapbench: stopped after {} of {} runs; the same command with --resume goes on from there\n",
-               report.rows.size(), options.part().size(plan.grid.size()));
+               report.rows.size(), options.part().size(plan.points.size()));
     return 128 + report.signal;  // as shells say it
   }
   const SweepSummary summary = summarise(plan, report.rows);
@@ -117,14 +121,21 @@ void add_run_options(Command& command, SweepCommand& options) {
 
 void add_sweep(CommandLine& line) {
   auto options = std::make_shared<SweepCommand>();
-  Command command = line.command("sweep", "Run one scenario over a grid of values of any fields, in parallel");
+  Command command =
+      line.command("sweep", "Run one scenario over a grid or a sample of values of any fields, in parallel");
   command.add("scenario", options->scenario, "scenario file, or name of a bundled scenario").required();
   command
       .add("--vary", options->vary,
            "a field and its values: path=a:b:n (n numbers from a to b), path=a:b:n:log (in equal ratios) or "
-           "path=v,w,... (numbers or texts); several give all combinations, the last one varies fastest")
+           "path=v,w,... (numbers or texts); several give all combinations, the last one varies fastest. With --sample "
+           "path=a:b, path=a:b:log or path=v,w,...")
       .required()
       .repeatable();
+  const CommandOption sample =
+      command.add("--sample", options->sample,
+                  "runs at points of the box instead: lhs:N (Latin hypercube), sobol:N (shifted Sobol sequence, best "
+                  "for powers of two) or random:N; listed values take equal shares");
+  command.add("--seed", options->seed, "of the sample (default: 1)").needs(sample);
   command.add("--out", options->out, "directory of sweep.csv (default: results/out/sweep_NAME)");
   command.add("--set", options->overrides, "override a field of all runs: path=value").repeatable();
   add_run_options(command, *options);

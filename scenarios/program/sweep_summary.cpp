@@ -33,7 +33,7 @@ std::string runs_text(const SweepPlan& plan, const std::vector<std::string>& row
                                         {"velocity_total_variation_m_per_s", "velocity TV m/s", 1.0},
                                         {"force_reversals", "reversals", 1.0},
                                         {"depth_max_m", "max depth mm", 1e3}};
-  std::vector<Table::Column> columns = {{plan.grid.axes()[0].path}, {"outcome", false}};
+  std::vector<Table::Column> columns = {{plan.points.axes()[0].path}, {"outcome", false}};
   for (const Metric& metric : kMetrics) columns.push_back({metric.title});
   Table table(columns);
   const std::string header = sweep_header(plan);
@@ -54,7 +54,7 @@ std::string runs_text(const SweepPlan& plan, const std::vector<std::string>& row
 
 SweepSummary summarise(const SweepPlan& plan, const std::vector<std::string>& rows) {
   SweepSummary summary;
-  const std::size_t outcome_column = 1 + plan.grid.axes().size();
+  const std::size_t outcome_column = 1 + plan.points.axes().size();
   for (const std::string& row : rows) {
     const Words cells = parts_of(row, ',');
     const std::string_view outcome = cells[outcome_column];
@@ -72,7 +72,7 @@ SweepSummary summarise(const SweepPlan& plan, const std::vector<std::string>& ro
 
 std::string summary_text(const SweepPlan& plan, const SweepReport& report, const SweepSummary& summary) {
   std::string text;
-  if (plan.grid.axes().size() == 1 && report.rows.size() <= kMostShown) text = runs_text(plan, report.rows) + "\n";
+  if (plan.points.axes().size() == 1 && report.rows.size() <= kMostShown) text = runs_text(plan, report.rows) + "\n";
   Table table({{"outcome", false}, {"runs"}, {"as expected"}});
   for (const auto& [outcome, count] : summary.outcomes) {
     table.add({outcome, std::to_string(count.runs), std::to_string(count.expected)});

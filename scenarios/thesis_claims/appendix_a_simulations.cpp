@@ -6,8 +6,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/wording.hpp"
@@ -134,12 +132,12 @@ constexpr Figure kFigures[] = {kUndampedStiffness, kDampingAlone, kDampedStiffne
 constexpr double kEqualLimits = 0.02;
 constexpr double kAlikeLimits = 0.2;
 
-Measured measure_stability_limits(const Evidence&) {
+Measured measure_stability_limits(const Evidence& e) {
   Measured measured;
   const auto add = [&measured](const Figure& figure, double value) {
     measured.push_back({figure.name, {{"limit", {value}}}});
   };
-  for (const StabilityLimit& limit : stability_limits(load_scenario(find_scenario("single_spring")).scenario)) {
+  for (const StabilityLimit& limit : stability_limits(e.scenario("single_spring"))) {
     if (limit.which == StabilityCase::stiffness_undamped) add(kUndampedStiffness, limit.simulation);
     if (limit.which == StabilityCase::damping_alone) add(kDampingAlone, limit.simulation);
     if (limit.which != StabilityCase::stiffness_damped) continue;

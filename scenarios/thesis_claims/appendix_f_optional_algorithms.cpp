@@ -3,8 +3,6 @@
 #include <cmath>
 
 #include "algorithms/laws/laws.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/wording.hpp"
@@ -52,7 +50,7 @@ constexpr double kFaster = 5.0;
 double tandpasta_energy_ratio(const Evidence& e) {
   PrecisionOptions options;
   options.cache = e.cache;
-  const Scenario scenario = drill_in_hole(load_scenario(find_scenario("task2_rotate_signed_distance")).scenario);
+  const Scenario scenario = drill_in_hole(e.scenario("task2_rotate_signed_distance"));
   const auto law = make_tandpasta({});
   double ratio = 1.0;
   for (ContactBuffer& set : contact_sets(scenario, options, 64)) {

@@ -4,8 +4,6 @@
 #include <cmath>
 
 #include "algorithms/laws/exact_shaping.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/wording.hpp"
@@ -61,7 +59,7 @@ Measured measure_convergence(const Evidence& e) {
   PrecisionOptions options;
   options.cache = e.cache;
   for (const char* task : {"task2_rotate_signed_distance", "task3_spin_signed_distance"}) {
-    const Scenario scenario = drill_in_hole(load_scenario(find_scenario(task)).scenario);
+    const Scenario scenario = drill_in_hole(e.scenario(task));
     for (ContactBuffer& set : rendered_contact_sets(scenario, options, 64)) {
       solve_exact_shaping(set);
       limit_max = std::max(limit_max, ratio_range(set, stiffness_tensor(set)).max);

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/wording.hpp"
 
@@ -69,7 +67,7 @@ constexpr double kSinksIn = 0.8;
 constexpr double kWeightless = 0.01;
 
 Measured measure_parallel_faces(const Evidence& e) {
-  const Scenario scenario = load_scenario(find_scenario("parallel_faces")).scenario;
+  const Scenario scenario = e.scenario("parallel_faces");
   const double depth = e.results.number("parallel_faces", "metrics.depth_max_m");
   return {{"",
            {{"depth", {depth}},

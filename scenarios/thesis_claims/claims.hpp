@@ -25,6 +25,7 @@ struct Claim {
   /// Depends on its arguments alone.
   Finding (*judge)(const Measured& measured, const PublishedNumbers& published);
   bool timing = false;  ///< the finding holds times, so no two runs agree
+  bool costly = false;  ///< takes long to measure: judged again for a part of a sample only (robustness.hpp)
 };
 
 /// All of them, in the order of the ledger.

@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/scenario_text.hpp"
 #include "scenarios/input/csv_reader.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
@@ -61,20 +63,25 @@ Published PublishedNumbers::mean_and_spread(const std::string& id) const {
 }
 
 Json ResultFiles::summary(const std::string& scenario) const {
-  provide_(scenario);
+  provide_(scenario, "summary.json");
+  return read_summary(scenario);
+}
+
+Json ResultFiles::read_summary(const std::string& scenario) const {
   return parse_json(read_text_file(directory_ / scenario / "summary.json", kLargestJsonFile));
 }
 
 double ResultFiles::number(const std::string& scenario, const std::string& path) const {
+  provide_(scenario, path.substr(0, path.find('.')));
   std::string pointer = "/" + path;
   std::replace(pointer.begin(), pointer.end(), '.', '/');
-  const Json value = summary(scenario).value(Json::json_pointer(pointer), Json(nullptr));
+  const Json value = read_summary(scenario).value(Json::json_pointer(pointer), Json(nullptr));
   return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::map<std::string, std::vector<double>> ResultFiles::table(const std::string& scenario,
                                                               const std::string& file) const {
-  provide_(scenario);
+  provide_(scenario, file);
   const std::filesystem::path path = directory_ / scenario / file;
   const std::string text = read_named_file(path);
   if (text.empty()) throw InputError(fmt::format("{}: is empty", path.string()));
@@ -86,6 +93,13 @@ std::map<std::string, std::vector<double>> ResultFiles::table(const std::string&
     for (std::size_t i = 0; i < columns.size(); ++i) columns[i]->push_back(value_of(csv.cells()[i]));
   }
   return table;
+}
+
+LoadedScenario Evidence::loaded_scenario(const std::string& name) const {
+  const ScenarioText text = read_scenario_text(find_scenario(name));
+  LoadedScenario loaded = load_scenario(text, {});
+  if (!overrides) return loaded;
+  return load_scenario(text, overrides(loaded.scenario));
 }
 
 }  // namespace hapbench

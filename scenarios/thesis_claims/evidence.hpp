@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/shell_cache.hpp"
 #include "scenarios/thesis_claims/finding.hpp"
@@ -37,8 +38,10 @@ class PublishedNumbers {
 /// Result files of scenarios that are run into subdirectories of one directory.
 class ResultFiles {
  public:
-  /// `provide` is called with a scenario's name before its files are read: whoever runs on demand runs it then.
-  ResultFiles(std::filesystem::path directory, std::function<void(const std::string&)> provide)
+  /// Called before results are read, with a scenario's name and which of them: a file's name, or for a number that of
+  /// its section of summary.json, as "metrics". Whoever runs on demand runs it then.
+  using Provide = std::function<void(const std::string& scenario, const std::string& part)>;
+  ResultFiles(std::filesystem::path directory, Provide provide)
       : directory_(std::move(directory)), provide_(std::move(provide)) {}
 
   /// summary.json of a scenario. Throws InputError when it is missing.
@@ -50,8 +53,10 @@ class ResultFiles {
   std::map<std::string, std::vector<double>> table(const std::string& scenario, const std::string& file) const;
 
  private:
+  Json read_summary(const std::string& scenario) const;
+
   std::filesystem::path directory_;
-  std::function<void(const std::string&)> provide_;
+  Provide provide_;
 };
 
 /// What claims are judged by.
@@ -59,6 +64,13 @@ struct Evidence {
   PublishedNumbers published;
   ResultFiles results;
   ShellCache cache;
+  /// What to change in a bundled scenario, as for load_scenario; empty for nothing.
+  std::function<std::vector<std::string>(const Scenario&)> overrides = {};
+
+  /// A bundled scenario, changed as those are whose results these are. All that a claim computes by itself starts from
+  /// here. Throws InputError.
+  Scenario scenario(const std::string& name) const { return loaded_scenario(name).scenario; }
+  LoadedScenario loaded_scenario(const std::string& name) const;
 };
 
 }  // namespace hapbench

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "scenarios/batch/grid.hpp"
+#include "scenarios/batch/sweep_points.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 

@@ -75,9 +75,15 @@ TEST(SweepPlan, HasAnotherDefinitionForEveryOtherContent) {
     definitions.insert(plan_of(plane, vary).definition);
   }
   definitions.insert(plan_of(other, {"time.steps=1,2"}).definition);
-  const Grid grid({parse_axis("time.steps=1,2")});
+  const SweepPoints grid({parse_axis("time.steps=1,2")});
   definitions.insert(plan_sweep({"sweep.json", plane}, {"seed=5"}, grid, 1, false).definition);
-  EXPECT_EQ(definitions.size(), 7u);
+  const std::vector<Axis> box = {parse_sampled_axis("seed=1,2,3")};
+  for (const Sampling& sampling :
+       {Sampling{SamplingMethod::latin_hypercube, 3, 1}, Sampling{SamplingMethod::latin_hypercube, 3, 2},
+        Sampling{SamplingMethod::latin_hypercube, 4, 1}, Sampling{SamplingMethod::random, 3, 1}}) {
+    definitions.insert(plan_sweep({"sweep.json", plane}, {}, SweepPoints(box, sampling), 1, false).definition);
+  }
+  EXPECT_EQ(definitions.size(), 11u);
   // Threads, the file's place and spelling do not count.
   EXPECT_EQ(plan_sweep({"elsewhere.json", plane}, {}, grid, 7, false).definition,
             plan_of(plane, {"time.steps=1.0,2e0"}).definition);

@@ -14,7 +14,7 @@ inline SweepPlan plan_of(const Json& scenario, const std::vector<std::string>& v
                          const std::filesystem::path& file = data_directory() / "sweep.json") {
   std::vector<Axis> axes;
   for (const std::string& text : vary) axes.push_back(parse_axis(text));
-  return plan_sweep({file, scenario}, {}, Grid(axes), 2, false);
+  return plan_sweep({file, scenario}, {}, SweepPoints(axes), 2, false);
 }
 
 }  // namespace hapbench::test

@@ -137,6 +137,24 @@ TEST_F(InterruptedSweep, LeavesItsDirectoryToItselfWhileItRuns) {
   EXPECT_TRUE(sweep.is_running());
 }
 
+TEST_F(InterruptedSweep, OfASampleGoesOn) {
+  const auto sample = [&](const std::string& out, const Words& more = {}) {
+    Words words = {"sweep",    "single_spring",    "--set",  "record.trajectory=false",
+                   "--set",    "time.steps=20000", "--vary", "rendering.stiffness_N_per_m=1e3:1e4:log",
+                   "--sample", "sobol:180",        "--out",  (directory_ / out).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  RunningProgram sweep(test::hapbench_program(), sample("out"));
+  ASSERT_TRUE(wait_for_rows(sweep, "out", 20));
+  ASSERT_TRUE(sweep.kill());
+  const ProgramRun other = hapbench(sample("out", {"--resume", "--seed", "2"}));
+  EXPECT_EQ(other.status, 2) << "another sample is another sweep";
+  EXPECT_EQ(hapbench(sample("out", {"--resume"})).status, 0);
+  ASSERT_EQ(hapbench(sample("whole")).status, 0);
+  test::expect_same_files(directory_ / "whole", directory_ / "out");
+}
+
 TEST_F(InterruptedSweep, ShardsGoOnInOneDirectory) {
   for (const char* shard : {"0/2", "1/2"}) {
     RunningProgram sweep(test::hapbench_program(), words("out", {"--shard", shard}));

@@ -90,6 +90,32 @@ TEST_F(SweepCommand, GivesTheSameBytesWhateverTheJobsAndShards) {
   }
 }
 
+TEST_F(SweepCommand, OfASampleGivesTheSameBytesWhateverTheJobsAndShards) {
+  const auto sample = [&](const std::string& out, const Words& more) {
+    Words words = {"sweep",    "peg_in_hole_2d_shaped_stiffness",
+                   "--out",    (directory_ / out).string(),
+                   "--set",    "expect.metrics={}",
+                   "--vary",   "rendering.stiffness_N_per_m=5000:20000:log",
+                   "--vary",   "rendering.algorithm=mean,exact_shaping",
+                   "--sample", "lhs:12"};
+    words.insert(words.end(), more.begin(), more.end());
+    return hapbench(words);
+  };
+  const ProgramRun run = sample("whole", {"--jobs", "1"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(lines_of(table("whole")).size(), 13u);
+  EXPECT_EQ(Json::parse(read_file(directory_ / "whole/sweep.json"))["sample"],
+            (Json{{"method", "lhs"}, {"runs", 12}, {"seed", 1}}));
+  sample("two", {"--jobs", "2"});
+  test::expect_same_files(directory_ / "whole", directory_ / "two");
+  for (const char* shard : {"0/2", "1/2"}) EXPECT_EQ(sample("shards", {"--shard", shard}).status, 0);
+  hapbench({"merge", (directory_ / "shards/sweep_shard_0_of_2.csv").string(),
+            (directory_ / "shards/sweep_shard_1_of_2.csv").string(), "--out", (directory_ / "merged.csv").string()});
+  EXPECT_EQ(read_file(directory_ / "merged.csv"), table("whole"));
+  sample("other", {"--seed", "2"});
+  EXPECT_NE(table("other"), table("whole"));
+}
+
 TEST_F(SweepCommand, MayHaveMoreShardsThanRuns) {
   Words merge = {"merge", "--out", (directory_ / "merged.csv").string()};
   const auto seeds = [&](const Words& more) {
@@ -242,6 +268,9 @@ const BadSweep kBadSweeps[] = {
     {"TooManyRuns",
      {"--vary", "seed=1:1000:1000", "--vary", "time.steps=1:1001:1001"},
      "got a grid of 1001000 runs; allowed: at most 1000000"},
+    {"RangeWithACountBesideASample", {"--vary", "seed=1:9:9", "--sample", "lhs:4"}, "beside --sample"},
+    {"RangeWithoutACount", vary("time.step_s=1e-4:2e-4"), "a:b and a:b:log with --sample"},
+    {"NoSuchSample", {"--vary", "seed=1,2", "--sample", "halton:4"}, "--sample: got \"halton:4\""},
     {"ShardBeyondTheLast", {"--vary", "seed=1,2", "--shard", "2/2"}, "--shard: got \"2/2\""},
     {"ShardWithoutCount", {"--vary", "seed=1,2", "--shard", "1"}, "--shard: got \"1\""},
     {"NegativeJobs", {"--vary", "seed=1,2", "--jobs=-1"}, "--jobs: got -1"},

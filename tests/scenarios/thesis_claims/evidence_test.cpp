@@ -16,7 +16,9 @@ class ResultFile : public testing::Test {
   std::map<std::string, std::vector<double>> table_of(const std::string& text) {
     std::filesystem::create_directories(directory_ / "scene");
     test::write_plainly(directory_ / "scene/trajectory.csv", text);
-    const ResultFiles files(directory_.path(), [this](const std::string& name) { asked_for_ = name; });
+    const ResultFiles files(directory_.path(), [this](const std::string& name, const std::string& part) {
+      asked_for_ = name + "/" + part;
+    });
     return files.table("scene", "trajectory.csv");
   }
 
@@ -26,7 +28,7 @@ class ResultFile : public testing::Test {
 
 TEST_F(ResultFile, IsReadByColumn) {
   const auto table = table_of("time_s,outcome,force_N\n0,completes,1.5\n0.5,,\n");
-  EXPECT_EQ(asked_for_, "scene");
+  EXPECT_EQ(asked_for_, "scene/trajectory.csv");
   ASSERT_EQ(table.size(), 3u);
   EXPECT_EQ(table.at("time_s"), (std::vector<double>{0.0, 0.5}));
   EXPECT_EQ(table.at("force_N")[0], 1.5);
@@ -42,6 +44,19 @@ TEST_F(ResultFile, WithARowThatIsCutOffIsRefusedAndNotPassedOver) {
     EXPECT_NE(std::string(error->what()).find("line 3"), std::string::npos) << error->what();
     EXPECT_NE(std::string(error->what()).find("allowed: 2"), std::string::npos) << error->what();
   }
+}
+
+TEST_F(ResultFile, TellsWhichPartOfTheSummaryIsRead) {
+  std::filesystem::create_directories(directory_ / "scene");
+  test::write_plainly(directory_ / "scene/summary.json", R"({"metrics": {"a": 2, "b": null}, "steps": 7})");
+  std::string asked_for;
+  const ResultFiles files(directory_.path(),
+                          [&](const std::string&, const std::string& part) { asked_for += part + " "; });
+  EXPECT_EQ(files.number("scene", "metrics.a"), 2.0);
+  EXPECT_TRUE(std::isnan(files.number("scene", "metrics.b")));
+  EXPECT_EQ(files.number("scene", "steps"), 7.0);
+  EXPECT_EQ(files.summary("scene")["steps"], 7);
+  EXPECT_EQ(asked_for, "metrics metrics steps summary.json ");
 }
 
 TEST_F(ResultFile, ThatIsEmptyIsRefused) {

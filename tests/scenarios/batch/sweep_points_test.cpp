@@ -1,4 +1,4 @@
-#include "scenarios/batch/grid.hpp"
+#include "scenarios/batch/sweep_points.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace {
 using Values = std::vector<std::string>;
 
 TEST(Grid, HasAllCombinationsTheLastAxisFastest) {
-  const Grid grid({{"a", {"1", "2"}}, {"b", {"x"}}, {"c", {"p", "q", "r"}}});
+  const SweepPoints grid({{"a", {"1", "2"}}, {"b", {"x"}}, {"c", {"p", "q", "r"}}});
   ASSERT_EQ(grid.size(), 6u);
   EXPECT_EQ(grid.values(0), (Values{"1", "x", "p"}));
   EXPECT_EQ(grid.values(1), (Values{"1", "x", "q"}));
@@ -21,17 +21,17 @@ TEST(Grid, HasAllCombinationsTheLastAxisFastest) {
 }
 
 TEST(Grid, RefusesAFieldTwice) {
-  EXPECT_TRUE(test::input_error_of([] { Grid({{"a", {"1"}}, {"b", {"1"}}, {"a", {"2"}}}); }));
+  EXPECT_TRUE(test::input_error_of([] { SweepPoints({{"a", {"1"}}, {"b", {"1"}}, {"a", {"2"}}}); }));
 }
 
 TEST(Grid, RefusesMoreRunsThanItMayHaveHoweverMany) {
   const Values thousand(1000, "0");
-  EXPECT_EQ(Grid({{"a", thousand}, {"b", thousand}}).size(), kMostRuns);
-  EXPECT_TRUE(test::input_error_of([&] { Grid({{"a", thousand}, {"b", thousand}, {"c", {"0", "1"}}}); }));
+  EXPECT_EQ(SweepPoints({{"a", thousand}, {"b", thousand}}).size(), kMostRuns);
+  EXPECT_TRUE(test::input_error_of([&] { SweepPoints({{"a", thousand}, {"b", thousand}, {"c", {"0", "1"}}}); }));
   // 1000^7 is beyond 64 bits.
   std::vector<Axis> axes;
   for (const char* path : {"a", "b", "c", "d", "e", "f", "g"}) axes.push_back({path, thousand});
-  EXPECT_TRUE(test::input_error_of([&] { Grid grid(axes); }));
+  EXPECT_TRUE(test::input_error_of([&] { SweepPoints grid(axes); }));
 }
 
 TEST(Shard, IsReadFromItsText) {

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/input/shell_cache.hpp"
+
+namespace hapbench {
+
+/// The point shells used last, shared by runs in equal environments that come in no known order (where it is known:
+/// shared_shells.hpp). For several threads.
+class RecentShells {
+ public:
+  /// Keeps up to `most` shells; the one used longest ago goes first. Runs may hold more.
+  explicit RecentShells(ShellCache cache, std::size_t most = 12) : cache_(std::move(cache)), most_(most) {}
+
+  /// The shell of the scenario's environment; null for springs. Waits while another thread makes it. Throws InputError
+  /// when a named file cannot be used.
+  std::shared_ptr<const PointShell> of(const LoadedScenario& loaded);
+
+ private:
+  struct Entry {
+    explicit Entry(std::string content) : environment(std::move(content)) {}
+
+    std::string environment;
+    std::mutex mutex;
+    bool made = false;
+    std::shared_ptr<const PointShell> shell;
+  };
+  std::shared_ptr<Entry> entry_of(const std::string& environment);
+
+  ShellCache cache_;
+  std::size_t most_;
+  std::mutex mutex_;
+  std::list<std::shared_ptr<Entry>> entries_;  ///< the one used last first
+};
+
+}  // namespace hapbench

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "scenarios/description/load_scenario.hpp"
+
+/// What the thesis leaves open and the bundled scenarios had to choose: results/reference/choices.json.
+namespace hapbench {
+
+/// A field that a choice sets, in the scenarios that have it.
+struct ChosenField {
+  std::vector<std::string> scenarios;  ///< names of bundled ones; '*' stands for any characters
+  std::string path;                    ///< dotted, as in --set; '*' stands for every index of a list
+  bool times = false;                  ///< the choice multiplies what the file has, instead of replacing it
+};
+
+struct OpenChoice {
+  enum class Scale { linear, log };
+  enum class Chosen { before, after };
+
+  std::string id;
+  std::string what;
+  std::string thesis;                               ///< what it says of the matter, or that it does not
+  std::variant<double, std::string> value = 0.0;    ///< as the scenarios have it; a text is one of the options
+  std::string unit;                                 ///< of a number; empty for a ratio
+  std::optional<std::pair<double, double>> range;   ///< plausible values of a number; exactly one of this …
+  std::optional<std::vector<std::string>> options;  ///< … and this, texts as in --set
+  Scale scale = Scale::linear;                      ///< of the range
+  Chosen chosen = Chosen::after;                    ///< before or after results were seen
+  std::string why;
+  std::vector<ChosenField> fields;
+};
+
+/// True when a name of a choice's scenarios, with its stars, means this scenario.
+bool names_scenario(std::string_view pattern, std::string_view scenario);
+
+/// All choices on record.
+class Choices {
+ public:
+  /// Reads the file. Throws InputError with file, JSON pointer, the value given and what is allowed.
+  explicit Choices(const std::filesystem::path& file);
+
+  const std::vector<OpenChoice>& all() const { return all_; }
+  /// FNV-1a of the file's content, as 16 hexadecimal digits; spelling and white space do not count.
+  const std::string& hash() const { return hash_; }
+
+  /// The values on record, one for each choice, as texts for --set.
+  std::vector<std::string> values_on_record() const;
+  /// The values at a point of the unit cube with an axis for each choice: across a range in its scale, or an option
+  /// each on an equal share.
+  std::vector<std::string> values_at(std::span<const double> point) const;
+
+  /// What these values change in a scenario: overrides "path=value" for load_scenario. Choices that meet in one field
+  /// are applied in order. Throws InputError when a choice's path is no field of a scenario that it names, or a field
+  /// to multiply is no number. Precondition: one value for each choice.
+  std::vector<std::string> overrides(const Scenario& scenario, std::span<const std::string> values) const;
+
+  /// A Markdown table for people.
+  std::string markdown() const;
+
+ private:
+  std::vector<OpenChoice> all_;
+  std::string hash_;
+};
+
+}  // namespace hapbench

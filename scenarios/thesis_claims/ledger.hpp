@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scenarios/thesis_claims/claims.hpp"
+#include "scenarios/thesis_claims/robustness.hpp"
+
+/// The ledger's files: what became of each claim, and how far that hangs on the choices on record.
+namespace hapbench {
+
+/// A claim with the verdict on it.
+struct JudgedClaim {
+  Claim claim;
+  Finding finding;
+};
+
+/// robustness.json: the counts of every claim, and the hash of the choices they are about.
+Json robustness_json(const RobustnessPlan& plan, const std::vector<ClaimRobustness>& claims);
+/// The same as a Markdown table.
+std::string robustness_markdown(const RobustnessPlan& plan, const std::vector<ClaimRobustness>& claims);
+
+/// What robustness.json says of claims, by id.
+class RobustnessOnRecord {
+ public:
+  /// Nothing on record.
+  RobustnessOnRecord() = default;
+  /// Takes the record when it is about the choices of this hash; another one, for choices that have changed since, says
+  /// nothing. Throws InputError when it is no such record.
+  RobustnessOnRecord(const Json& record, const std::string& choices_hash);
+  /// The same from a file; nothing when there is none.
+  RobustnessOnRecord(const std::filesystem::path& file, const std::string& choices_hash);
+
+  /// The claim's counts, when the verdict on record there is this one; else null.
+  Json of(const JudgedClaim& judged) const;
+
+ private:
+  std::map<std::string, Json> claims_;
+};
+
+/// The counts for people: "holds in 91 of 100; decided by task2.hand_angle (S = 0.43)"; empty for null.
+std::string robustness_text(const Json& robustness);
+
+/// claims.json
+Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published,
+                 const RobustnessOnRecord& robustness);
+/// claims.md
+std::string ledger_markdown(const std::vector<JudgedClaim>& judged, const RobustnessOnRecord& robustness);
+
+}  // namespace hapbench

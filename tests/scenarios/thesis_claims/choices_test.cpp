@@ -1,0 +1,224 @@
+#include "scenarios/thesis_claims/choices.hpp"
+
+#include <gtest/gtest.h>
+
+#include "results/io/json_text.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/thesis_claims/choices_file.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/errors.hpp"
+#include "tests/scenarios/support/schema_validator.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+using Texts = std::vector<std::string>;
+
+const fs::path kReference = fs::path(HAPBENCH_SCENARIOS) / "../results/reference";
+
+Json effective(const BundledScenario& bundled, const Texts& overrides) {
+  const LoadedScenario loaded = load_scenario(bundled.file, overrides);
+  return effective_scenario(loaded.scenario, loaded.scenario.directory);
+}
+
+std::vector<BundledScenario> thesis_scenarios() {
+  std::vector<BundledScenario> all = bundled_scenarios();
+  std::erase_if(all, [](const BundledScenario& bundled) { return bundled.group != "thesis"; });
+  return all;
+}
+
+TEST(ChoicesOnRecord, AreWhatTheScenariosHave) {
+  const Choices choices(kReference / "choices.json");
+  const Texts on_record = choices.values_on_record();
+  for (const BundledScenario& bundled : thesis_scenarios()) {
+    const Texts overrides = choices.overrides(load_scenario(bundled.file).scenario, on_record);
+    EXPECT_EQ(effective(bundled, overrides), effective(bundled, {})) << bundled.name;
+  }
+}
+
+/// Each field of each choice, so that none has gone astray when a scenario was renamed.
+TEST(ChoicesOnRecord, ConcernEachAScenarioThatThenDiffers) {
+  const Choices choices(kReference / "choices.json");
+  const Texts on_record = choices.values_on_record();
+  // Ends of ranges and options other than the one on record; one of them differs from it.
+  const Texts low = choices.values_at(std::vector<double>(choices.all().size(), 0.0));
+  const Texts high = choices.values_at(std::vector<double>(choices.all().size(), 0.999));
+  for (std::size_t c = 0; c < choices.all().size(); ++c) {
+    std::size_t changed = 0;
+    for (const BundledScenario& bundled : thesis_scenarios()) {
+      for (const Texts& other : {low, high}) {
+        Texts values = on_record;
+        values[c] = other[c];
+        const Texts overrides = choices.overrides(load_scenario(bundled.file).scenario, values);
+        if (effective(bundled, overrides) != effective(bundled, {})) ++changed;
+      }
+    }
+    EXPECT_GT(changed, 0u) << choices.all()[c].id;
+  }
+}
+
+TEST(ChoicesOnRecord, NameScenariosThatThereAre) {
+  const Choices choices(kReference / "choices.json");
+  for (const OpenChoice& choice : choices.all()) {
+    for (const ChosenField& field : choice.fields) {
+      for (const std::string& pattern : field.scenarios) {
+        // A choice of this field and pattern alone concerns some scenario.
+        const auto names = thesis_scenarios();
+        EXPECT_TRUE(std::any_of(names.begin(), names.end(),
+                                [&](const BundledScenario& b) { return names_scenario(pattern, b.name); }))
+            << choice.id << ": " << pattern;
+      }
+    }
+  }
+}
+
+TEST(ChoicesOnRecord, AreTheTableInTheTree) {
+  EXPECT_EQ(test::read_file(kReference / "choices.md"), Choices(kReference / "choices.json").markdown())
+      << "renew it with hapbench reproduce --ledger results/reference/claims.json";
+}
+
+TEST(ChoicesSchema, InTheTreeIsTheOneTheReaderHas) {
+  EXPECT_EQ(test::read_file(kReference / "choices.schema.json"), json_text(choices_schema()))
+      << "renew it with hapbench describe choices_schema >results/reference/choices.schema.json";
+  const test::SchemaValidator schema(choices_schema());
+  EXPECT_EQ(schema.complaints(Json::parse(test::read_file(kReference / "choices.json"))), "");
+}
+
+class ChoicesFile : public testing::Test {
+ protected:
+  Choices read(const Json& file) const {
+    test::write_plainly(directory_ / "choices.json", file.dump());
+    return Choices(directory_ / "choices.json");
+  }
+  static Json factor() {
+    return {{"id", "stiffness"},
+            {"what", "w"},
+            {"thesis", "t"},
+            {"value", 1},
+            {"range", {0.5, 2}},
+            {"scale", "log"},
+            {"chosen", "after"},
+            {"why", "y"},
+            {"fields", {{{"scenarios", {"task*"}}, {"path", "rendering.stiffness_N_per_m"}, {"times", true}}}}};
+  }
+  static Json option() {
+    return {{"id", "density"},
+            {"what", "w"},
+            {"thesis", "t"},
+            {"value", "a"},
+            {"options", {"a", "b"}},
+            {"chosen", "before"},
+            {"why", "y"},
+            {"fields", {{{"scenarios", {"task2_*", "x"}}, {"path", "environment.density"}}}}};
+  }
+  static Json file(const std::vector<Json>& choices) { return {{"choices", choices}}; }
+  test::TemporaryDirectory directory_;
+};
+
+Scenario scenario_of(const Json& json) {
+  return read_scenario(json, ".").scenario;
+}
+
+Json subjects_scenario() {
+  return {{"name", "task2_x"},
+          {"time", {{"step_s", 0.001}, {"steps", 1}}},
+          {"environment", {{"type", "plane"}, {"size_m", 0.01}, {"spacing_m", 0.001}}},
+          {"hand",
+           {{"type", "tracking"},
+            {"task", {{"places_m", {{0, 0, 0}}}}},
+            {"subjects", {{{"press_N", 1.5}}, {{"press_N", 2}}}}}}};
+}
+
+TEST_F(ChoicesFile, GivesOverridesOfScenariosItNames) {
+  const Choices choices = read(file({factor(), option()}));
+  EXPECT_EQ(choices.values_on_record(), (Texts{"1", "a"}));
+  EXPECT_EQ(choices.values_at(std::vector<double>{0.5, 0.7}), (Texts{"1", "b"}));
+  Json springs = {{"name", "task1"},
+                  {"time", {{"step_s", 0.001}, {"steps", 1}}},
+                  {"environment", {{"type", "springs"}, {"groups", {{{"direction", {1, 0, 0}}, {"count", 1}}}}}}};
+  EXPECT_EQ(choices.overrides(scenario_of(springs), Texts{"1.5", "b"}), (Texts{"rendering.stiffness_N_per_m=30000"}));
+  springs["name"] = "atask1";
+  EXPECT_TRUE(choices.overrides(scenario_of(springs), Texts{"1.5", "b"}).empty());
+}
+
+TEST_F(ChoicesFile, ReachesEveryEntryOfAListAndMultipliesInOrder) {
+  Json every = factor(), again = factor();
+  every["fields"][0]["path"] = "hand.subjects.*.press_N";
+  again["id"] = "second";
+  again["fields"][0]["path"] = "hand.subjects.1.press_N";
+  const Choices choices = read(file({every, again}));
+  EXPECT_EQ(choices.overrides(scenario_of(subjects_scenario()), Texts{"2", "1.5"}),
+            (Texts{"hand.subjects.0.press_N=3", "hand.subjects.1.press_N=6"}));
+}
+
+TEST_F(ChoicesFile, RefusesPathsThatAreNotThere) {
+  for (const char* path : {"hand.subjects.2.press_N", "hand.subjects.*.pres_N", "hand.nothing", "hand.type"}) {
+    Json choice = factor();
+    choice["fields"][0]["path"] = path;
+    const Choices choices = read(file({choice}));
+    const auto error = test::input_error_of([&] { choices.overrides(scenario_of(subjects_scenario()), Texts{"2"}); });
+    ASSERT_TRUE(error) << path;
+    EXPECT_EQ(std::string(error->what()).find("choice \"stiffness\": in scenario task2_x, "), 0u) << error->what();
+  }
+}
+
+TEST_F(ChoicesFile, ChangesItsHashWithItsContentOnly) {
+  const std::string hash = read(file({factor()})).hash();
+  test::write_plainly(directory_ / "choices.json", file({factor()}).dump(7));
+  EXPECT_EQ(Choices(directory_ / "choices.json").hash(), hash);
+  EXPECT_NE(read(file({factor(), option()})).hash(), hash);
+}
+
+struct BadChoice {
+  Json change;  ///< merged into a choice
+  bool option;
+  const char* says;
+};
+
+TEST_F(ChoicesFile, RefusesWhatContradictsItself) {
+  const BadChoice kBad[] = {
+      {{{"value", 3}}, false, "/choices/0/value: got 3"},
+      {{{"value", "1"}}, false, "/choices/0/value: got \"1\"; allowed: a number"},
+      {{{"value", 1.5}}, false, "/choices/0/value: got 1.5 of a choice that multiplies; allowed: 1"},
+      {{{"range", {2, 0.5}}}, false, "/choices/0/range: got 2 and 0.5"},
+      {{{"range", {0, 2}}}, false, "/choices/0/range: got 0 for an end of a logarithmic range"},
+      {{{"range", nullptr}}, false, "/choices/0: missing field; allowed: exactly one of \"range\" and \"options\""},
+      {{{"options", {"a", "b"}}}, false, "/choices/0: got both \"range\" and \"options\""},
+      {{{"scale", "lin"}}, false, "/choices/0/scale: got \"lin\""},
+      {{{"chosen", nullptr}}, false, "/choices/0: missing field \"chosen\""},
+      {{{"fields", Json::array()}}, false, "/choices/0/fields: got []"},
+      {{{"wy", "y"}}, false, "/choices/0/wy: unknown field"},
+      {{{"id", "a b"}}, false, "/choices/0/id: got \"a b\""},
+      {{{"value", "c"}}, true, "/choices/0/value: got \"c\"; allowed: \"a\", \"b\""},
+      {{{"value", 1}}, true, "/choices/0/value: got 1; allowed: a text"},
+      {{{"options", {"a", "b,c"}}}, true, "/choices/0/options: got \"b,c\""},
+      {{{"fields", {{{"scenarios", {"x"}}, {"path", "seed"}, {"times", true}}}}},
+       true,
+       "/choices/0/fields: got \"times\" beside"},
+      {{{"scale", "log"}}, true, "/choices/0/scale: got \"log\" beside options"}};
+  for (const BadChoice& bad : kBad) {
+    Json choice = bad.option ? option() : factor();
+    choice.merge_patch(bad.change);
+    const auto error = test::input_error_of([&] { read(file({choice})); });
+    ASSERT_TRUE(error) << bad.says;
+    EXPECT_NE(std::string(error->what()).find("choices.json: " + std::string(bad.says)), std::string::npos)
+        << error->what();
+  }
+  const auto twice = test::input_error_of([&] { read(file({factor(), factor()})); });
+  ASSERT_TRUE(twice);
+  EXPECT_NE(std::string(twice->what()).find("/choices/1/id: got \"stiffness\" twice"), std::string::npos)
+      << twice->what();
+}
+
+TEST_F(ChoicesFile, IsATableForPeople) {
+  const std::string text = read(file({factor(), option()})).markdown();
+  EXPECT_NE(
+      text.find("| stiffness | w | t | 1 | 0.5 ... 2 (log) | after | y | `rendering.stiffness_N_per_m ×` of task* |\n"),
+      std::string::npos)
+      << text;
+  EXPECT_NE(text.find("| a | a, b | before | y | `environment.density` of task2_*, x |\n"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace hapbench
