@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "algorithms/laws/laws.hpp"
@@ -41,16 +42,19 @@ Finding judge_normal_projection(const Measured& measured, const PublishedNumbers
                       saturates ? "does" : "does not")};
 }
 
-// ---- F2: the energy of the weighed over the plain springs, and how many steps the peg takes to leave.
+// ---- F2: the energy of the weighed over the plain springs; at some tilts of the planar peg, prescribed, the outward
+// force over that of the plain springs in the same pose; and in a converged run without friction (a hundredth of the
+// step) the time until the peg leaves [s].
 
 constexpr double kEnergyKept = 1e-9;
-constexpr double kFaster = 5.0;
+constexpr double kBoosted = 2.0;
+constexpr double kTilts[] = {0.08, 0.12, 0.2, 0.4};
 
 /// The ratio farthest from 1 of all contact sets that give a force at all.
 double tandpasta_energy_ratio(const Evidence& e) {
   PrecisionOptions options;
   options.cache = e.cache;
-  const Scenario scenario = drill_in_hole(e.scenario("task2_rotate_signed_distance"));
+  const Scenario scenario = drill_in_hole(e.load("task2_rotate_signed_distance").scenario);
   const auto law = make_tandpasta({});
   double ratio = 1.0;
   for (ContactBuffer& set : contact_sets(scenario, options, 64)) {
@@ -66,22 +70,51 @@ double tandpasta_energy_ratio(const Evidence& e) {
   return ratio;
 }
 
+/// At the first rows beyond each tilt.
+std::vector<double> outward_boosts(const Evidence& e) {
+  const LoadedScenario loaded = e.load("tilt_sweep_tandpasta");
+  const double stiffness = loaded.scenario.rendering.stiffness;
+  std::vector<double> boosts;
+  e.for_each_row(loaded, [&](const StepRecord& row) {
+    if (boosts.size() == std::size(kTilts) || row.rendered->empty()) return;
+    const double tilt = std::acos(-row.tool.pose.axis.y());
+    if (tilt < kTilts[boosts.size()]) return;
+    Vec3 plain = Vec3::Zero();
+    for (std::size_t i = 0; i < row.rendered->size(); ++i) plain -= row.rendered->depth[i] * row.rendered->gradient(i);
+    boosts.push_back(row.force.spring.y() / (stiffness * plain.y()));
+  });
+  return boosts;
+}
+
+double leaving_time(const Evidence& e, const std::string& algorithm) {
+  const std::string overrides[] = {"time.step_s=5e-6", "time.steps=200000", "rendering.friction.mu_s_N_s_per_m=0",
+                                   "rendering.friction.mu_f_s_per_m=0", "record.ratio_iterations=[]"};
+  return e.run("peg_in_hole_2d_" + algorithm, overrides).summary.duration;
+}
+
 Measured measure_tandpasta(const Evidence& e) {
-  return {{"",
-           {{"energy_ratio", {tandpasta_energy_ratio(e)}},
-            {"steps", {e.results.number("peg_in_hole_2d_tandpasta", "steps")}},
-            {"steps_shaped", {e.results.number("peg_in_hole_2d_shaped_stiffness", "steps")}}}}};
+  MeasuredCase m{"", {{"energy_ratio", {tandpasta_energy_ratio(e)}}, {"boosts", outward_boosts(e)}}};
+  for (const char* algorithm : {"tandpasta", "summation", "shaped_stiffness"})
+    m.values[algorithm] = {leaving_time(e, algorithm)};
+  return {m};
 }
 
 Finding judge_tandpasta(const Measured& measured, const PublishedNumbers&) {
   const MeasuredCase& m = measured.at(0);
+  const std::vector<double>& boosts = m.all("boosts");
+  const double least = boosts.empty() ? 0.0 : *std::min_element(boosts.begin(), boosts.end());
   const bool unchanged = std::abs(m["energy_ratio"] - 1.0) <= kEnergyKept;
-  const bool jumps = kFaster * m["steps"] <= m["steps_shaped"];
-  return {decide(unchanged && jumps, unchanged || jumps),
-          fmt::format("energy ratio {:.12g}; the peg leaves after {} steps, {} with stiffness shaping",
-                      m["energy_ratio"], m["steps"], m["steps_shaped"]),
-          fmt::format("the weights {} the elastic energy; the peg {}", unchanged ? "keep" : "change",
-                      jumps ? "is thrown out" : "is not thrown out")};
+  return {
+      decide(unchanged && least >= kBoosted, unchanged && least > 1.0),
+      fmt::format("energy ratio {:.12g}; outward force at tilts of {} rad {:.1f} times that of the plain springs; in a "
+                  "converged run the peg leaves after {:.3f} s, with summation after {:.3f}, with stiffness shaping "
+                  "after {:.3f}",
+                  m["energy_ratio"], fmt::join(kTilts, ", "), fmt::join(boosts, ", "), m["tandpasta"], m["summation"],
+                  m["shaped_stiffness"]),
+      fmt::format(
+          "the weights {} the elastic energy and {} the outward force; that the peg leaves after 5 steps at the "
+          "thesis's step is explicit friction blowing up, not the law",
+          unchanged ? "keep" : "change", least > 1.0 ? "raise" : "do not raise")};
 }
 
 constexpr Claim kClaims[] = {
@@ -99,12 +132,14 @@ constexpr Claim kClaims[] = {
      .judge = judge_normal_projection},
     {.id = "F2",
      .place = "F.2, Fig. F.5",
-     .claim = "tandpasta keeps the elastic energy and throws the tool out",
+     .claim = "tandpasta keeps the elastic energy and boosts the force that pushes the tool out",
      .published = "",
      .rule =
          [](const PublishedNumbers&) {
-           return fmt::format("reproduced: energy unchanged to {}, the peg leaves {} times as fast", plain(kEnergyKept),
-                              in_words(kFaster));
+           return fmt::format(
+               "reproduced: energy unchanged to {}, at least {} times the outward force of the plain springs at every tilt "
+               "looked at; in kind: more at every tilt",
+               plain(kEnergyKept), in_words(kBoosted));
          },
      .measure = measure_tandpasta,
      .judge = judge_tandpasta},

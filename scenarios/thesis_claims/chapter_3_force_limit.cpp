@@ -2,18 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
+#include <numbers>
 
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/wording.hpp"
 
-/// Claims of chapter 3: the force limit and the ideal trajectory.
+/// Claims of 2.7, 3.5 and 4.5: the limit of the input force.
 namespace hapbench {
 namespace {
 
-// ---- L1: displacement into the flat against measured force. slope_times_stiffness: without limit, 1 is proportional;
-// onset: measured force from which the displacement stays [N]; plateau_spread: (max - min) / mean beyond it.
+// ---- L1: displacement into the flat against measured force. slope_times_stiffness: without limit, 1 is proportional
+// with the nominal K; onset: measured force from which the displacement stays [N]; plateau_spread: (max - min) / mean
+// beyond it.
 
 constexpr double kProportional = 0.02;
 constexpr double kOnset = 0.1;
@@ -35,8 +38,6 @@ Measured measure_force_limit(const Evidence& e) {
   std::vector<double> force_off, force_on;
   const std::vector<double> off = displacement(e, "force_limit_off", force_off);
   const std::vector<double> on = displacement(e, "force_limit_on", force_on);
-  const double K = e.results.number("force_limit_off", "metrics.force_max_N") /
-                   e.results.number("force_limit_off", "metrics.depth_max_m");
   // The plateau is that of the last quarter; the onset where the displacement first reaches 99 % of it.
   double plateau = 0.0;
   const std::size_t last = on.size() / 4;
@@ -51,8 +52,9 @@ Measured measure_force_limit(const Evidence& e) {
     low = std::min(low, on[i]);
     high = std::max(high, on[i]);
   }
+  const double stiffness = e.load("force_limit_off").scenario.rendering.stiffness;
   return {{"",
-           {{"slope_times_stiffness", {slope(force_off, off) * K}},
+           {{"slope_times_stiffness", {slope(force_off, off) * stiffness}},
             {"onset", {onset}},
             {"plateau_spread", {(high - low) / plateau}}}}};
 }
@@ -69,39 +71,106 @@ Finding judge_force_limit(const Measured& measured, const PublishedNumbers& publ
                       constant ? "constant" : "not constant", onset ? "onset as published" : "onset elsewhere")};
 }
 
-// ---- J1: against the ideal trajectory [m].
+// ---- L2: rows of task 2 in which the hand's force is limited and the reaction has reached the limit. The reaction
+// grows along v where <v, grad|f|> = -K <f, S v> / |f| > 0; `against` is the share of those rows in which it does not,
+// `uphill` how much of the way the tool goes there is uphill.
 
-Measured measure_ideal_trajectory(const Evidence& e) {
-  const auto low = [&](const char* key) {
-    return e.results.number("ideal_trajectory_low_force", std::string("ideal_trajectory.gentle.") + key);
-  };
-  const auto high = [&](const char* key) {
-    return e.results.number("ideal_trajectory_high_force", std::string("ideal_trajectory.firm.") + key);
-  };
-  return {{"",
-           {{"low_height_rms", {low("height_error_rms_m")}},
-            {"low_lateral_rms", {low("lateral_error_rms_m")}},
-            {"low_interpenetration", {low("interpenetration_mean_m")}},
-            {"high_interpenetration", {high("interpenetration_mean_m")}},
-            {"high_interpenetration_max", {high("interpenetration_max_m")}}}}};
+constexpr double kNearlyAlways = 0.95;
+constexpr double kMostly = 0.5;
+/// A hand that is beyond the limit, for one rotation of the drill to and fro.
+const std::string kFirmHand[] = {R"(hand.force_N={"type":"sine","mean":3.5,"amplitude":1.4,"period_s":1.7})",
+                                 "time.duration_s=6"};
+
+double force_limit(const Scenario& scenario) {
+  return std::visit([](const auto& device) { return device.force_limit; }, scenario.device).value();
 }
 
-Finding judge_ideal_trajectory(const Measured& measured, const PublishedNumbers& published) {
+Measured measure_saturated_motion(const Evidence& e) {
+  const LoadedScenario loaded = e.load("task2_rotate_signed_distance", kFirmHand);
+  const double limit = force_limit(loaded.scenario);
+  double rows = 0.0, against = 0.0, way = 0.0, uphill = 0.0;
+  e.for_each_row(loaded, [&](const StepRecord& row) {
+    const Vec3& spring = row.force.spring;
+    // The limiter scales to the limit, up to rounding.
+    if (row.hand.input.norm() < limit * (1.0 - 1e-12) || spring.norm() < limit) return;
+    const Vec3 gradient = -row.force.S * spring;
+    const double along = row.tool.velocity.dot(gradient) / gradient.norm();
+    rows += 1.0;
+    way += row.tool.velocity.norm();
+    if (along <= 0.0) against += 1.0;
+    uphill += std::max(0.0, along);
+  });
+  return {{"", {{"rows", {rows}}, {"against", {against / rows}}, {"uphill", {uphill / way}}}}};
+}
+
+Finding judge_saturated_motion(const Measured& measured, const PublishedNumbers&) {
   const MeasuredCase& m = measured.at(0);
-  const double most = published["J1.depth"].mean;
-  const bool follows = std::max(m["low_height_rms"], m["low_lateral_rms"]) <= most;
-  const bool bounded = m["high_interpenetration_max"] <= most;
-  const bool deeper = m["high_interpenetration"] > m["low_interpenetration"];
-  return {
-      decide(follows && bounded, follows && deeper),
-      fmt::format("low force: height {:.2f} mm rms, lateral {:.2f} mm rms, inside by {:.2f} mm on average; high force: "
-                  "{:.2f} mm on average, at most {:.2f} mm",
-                  1e3 * m["low_height_rms"], 1e3 * m["low_lateral_rms"], 1e3 * m["low_interpenetration"],
-                  1e3 * m["high_interpenetration"], 1e3 * m["high_interpenetration_max"]),
-      fmt::format(
-          "with low force the tip {} within {:.2f} mm of the ideal trajectory; with high force it falls {} than "
-          "{:.2f} mm inside",
-          follows ? "stays" : "does not stay", 1e3 * most, bounded ? "less" : "more", 1e3 * most)};
+  return {decide(m["against"] >= kNearlyAlways, m["against"] >= kMostly),
+          fmt::format("in {:.1f} % of {:.0f} rows at the limit the reaction does not grow along the tool's velocity; "
+                      "{:.1f} % of the way there is uphill",
+                      100.0 * m["against"], m["rows"], 100.0 * m["uphill"]),
+          "the limit bounds the force that drives the tool, which the tool's inertia carries a little beyond"};
+}
+
+// ---- L3: a tool shaken in free air. A case for each frequency.
+
+constexpr double kHeavier = 2.0;
+constexpr double kSameMass = 0.05;
+constexpr double kNormalShaking = 2.0;  ///< [Hz]
+constexpr double kFrequencies[] = {1.0, kNormalShaking, 3.0, 4.0};
+
+struct Shaking {
+  double apparent_mass = 0.0;  ///< amplitude of the hand's force over that of the handle's acceleration [kg]
+  double force_max = 0.0;      ///< of the hand, after the first second [N]
+};
+
+/// Fundamental components over the last second, which holds whole periods.
+Shaking shake(const Evidence& e, double frequency, bool limited) {
+  std::vector<std::string> overrides = {fmt::format("hand.target.x_m.period_s={}", 1.0 / frequency)};
+  if (!limited) overrides.push_back("device.force_limit_N=null");
+  const LoadedScenario loaded = e.load("shaking_in_free_air", overrides);
+  const double omega = 2.0 * std::numbers::pi * frequency;
+  const double start = loaded.scenario.time.step * static_cast<double>(loaded.scenario.time.steps) - 1.0;
+  std::complex<double> force, position;
+  Shaking shaking;
+  e.for_each_row(loaded, [&](const StepRecord& row) {
+    if (row.time < start) return;
+    const auto phase = std::polar(1.0, -omega * row.time);
+    force += row.hand_force.x() * phase;
+    position += row.handle.position.x() * phase;
+    shaking.force_max = std::max(shaking.force_max, row.hand_force.norm());
+  });
+  shaking.apparent_mass = std::abs(force) / (omega * omega * std::abs(position));
+  return shaking;
+}
+
+Measured measure_shaking(const Evidence& e) {
+  Measured measured;
+  for (const double frequency : kFrequencies) {
+    const Shaking with = shake(e, frequency, true), without = shake(e, frequency, false);
+    measured.push_back({fmt::format("{} Hz", frequency),
+                        {{"frequency", {frequency}},
+                         {"mass", {with.apparent_mass}},
+                         {"mass_unlimited", {without.apparent_mass}},
+                         {"force", {with.force_max}}}});
+  }
+  return measured;
+}
+
+Finding judge_shaking(const Measured& measured, const PublishedNumbers& published) {
+  const double limit = published["L1.threshold"].mean;
+  bool normal = false, heavier = false;
+  std::string text;
+  for (const MeasuredCase& m : measured) {
+    const double factor = m["mass"] / m["mass_unlimited"];
+    if (m["frequency"] == kNormalShaking) normal = m["force"] < limit && std::abs(factor - 1.0) <= kSameMass;
+    heavier = heavier || factor >= kHeavier;
+    text += fmt::format("{}{}: {:.2f} N, {:.3f} kg (without limit {:.3f})", text.empty() ? "" : "; ", m.name,
+                        m["force"], m["mass"], m["mass_unlimited"]);
+  }
+  return {decide(normal && heavier, heavier), text,
+          fmt::format("fast shaking {} like more mass; at {} Hz the force {}", heavier ? "feels" : "does not feel",
+                      kNormalShaking, normal ? "stays below the limit and nothing changes" : "reaches the limit")};
 }
 
 constexpr Claim kClaims[] = {
@@ -116,20 +185,33 @@ constexpr Claim kClaims[] = {
          },
      .measure = measure_force_limit,
      .judge = judge_force_limit},
-    {.id = "J1",
-     .place = "3.6, Fig. 7",
-     .claim = "the tip follows the ideal trajectory; with more than 2 N it falls inside a little",
-     .published = "inside by at most about 0.25 mm",
+    {.id = "L2",
+     .place = "2.7, C.4.4",
+     .claim = "once the input force is limited, the tool moves only where the reaction decreases",
+     .published = "no velocity along the gradient of the reaction",
+     .rule =
+         [](const PublishedNumbers&) {
+           return fmt::format(
+               "reproduced: not uphill in {} of the rows with limited input whose reaction has reached "
+               "the limit; in kind: in {}",
+               percent(kNearlyAlways), percent(kMostly));
+         },
+     .measure = measure_saturated_motion,
+     .judge = judge_saturated_motion},
+    {.id = "L3",
+     .place = "4.5, C.4.4",
+     .claim = "in free air the limit is felt as inertia when the tool is shaken violently, and not normally",
+     .published = "normal shaking stays below 2 N",
      .rule =
          [](const PublishedNumbers& published) {
-           const std::string most = plain(1e3 * published["J1.depth"].mean);
            return fmt::format(
-               "reproduced: low force within {} mm rms, high force inside by at most {} mm; in kind: "
-               "low force within, high force deeper",
-               most, most);
+               "reproduced: {} times the apparent mass at some frequency up to {} Hz; at {} Hz less than {} N and the "
+               "same mass within {}; in kind: the first",
+               in_words(kHeavier), plain(*std::max_element(std::begin(kFrequencies), std::end(kFrequencies))),
+               plain(kNormalShaking), plain(published["L1.threshold"].mean), percent(kSameMass));
          },
-     .measure = measure_ideal_trajectory,
-     .judge = judge_ideal_trajectory},
+     .measure = measure_shaking,
+     .judge = judge_shaking},
 };
 
 }  // namespace

@@ -32,14 +32,20 @@ struct Claim {
 std::vector<Claim> all_claims();
 
 /// By chapter.
-std::span<const Claim> chapter_3_reduction();             ///< T
+std::span<const Claim> chapter_1_penetration();           ///< V
+std::span<const Claim> chapter_3_reduction();             ///< T1 to T3
+std::span<const Claim> chapter_3_cost();                  ///< T4, T5
 std::span<const Claim> chapter_3_stiffness_ratios();      ///< R
-std::span<const Claim> chapter_3_force_limit();           ///< L, J
-std::span<const Claim> appendix_a_simulations();          ///< A
+std::span<const Claim> chapter_3_force_limit();           ///< L
+std::span<const Claim> chapter_3_ideal_trajectory();      ///< J
 std::span<const Claim> chapter_4_depths();                ///< G
-std::span<const Claim> appendix_b_original_algorithm();   ///< B
-std::span<const Claim> chapter_4_discussion();            ///< C
-std::span<const Claim> appendix_f_optional_algorithms();  ///< F
+std::span<const Claim> chapter_4_discussion();            ///< B4, C1 to C4
+std::span<const Claim> appendix_a_planar_peg();           ///< A1
+std::span<const Claim> appendix_a_springs();              ///< A2, A3
+std::span<const Claim> appendix_a_stability();            ///< A4
+std::span<const Claim> appendix_b_original_algorithm();   ///< B1 to B3
+std::span<const Claim> appendix_c_proposed_algorithm();   ///< P, C5, C6
 std::span<const Claim> appendix_d_experiments();          ///< D
+std::span<const Claim> appendix_f_optional_algorithms();  ///< F
 
 }  // namespace hapbench

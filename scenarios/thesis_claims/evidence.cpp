@@ -13,6 +13,8 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/number_table.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/environment_points.hpp"
 
 namespace hapbench {
 namespace {
@@ -95,11 +97,41 @@ std::map<std::string, std::vector<double>> ResultFiles::table(const std::string&
   return table;
 }
 
-LoadedScenario Evidence::loaded_scenario(const std::string& name) const {
+namespace {
+
+class RowObserver final : public Observer {
+ public:
+  explicit RowObserver(const std::function<void(const StepRecord&)>& row) : row_(row) {}
+  void on_step(const StepRecord& record) noexcept override { row_(record); }
+
+ private:
+  const std::function<void(const StepRecord&)>& row_;
+};
+
+}  // namespace
+
+LoadedScenario Evidence::load(const std::string& name, std::span<const std::string> more) const {
   const ScenarioText text = read_scenario_text(find_scenario(name));
-  LoadedScenario loaded = load_scenario(text, {});
-  if (!overrides) return loaded;
-  return load_scenario(text, overrides(loaded.scenario));
+  std::vector<std::string> all;
+  if (overrides) all = overrides(load_scenario(text, {}).scenario);
+  all.insert(all.end(), more.begin(), more.end());
+  return load_scenario(text, all);
+}
+
+RunReport Evidence::run(const std::string& name, std::span<const std::string> more) const {
+  const LoadedScenario loaded = load(name, more);
+  return run_with_shell(loaded, shell(loaded), std::nullopt, false);
+}
+
+std::shared_ptr<const PointShell> Evidence::shell(const LoadedScenario& loaded) const {
+  if (shells != nullptr) return shells->of(loaded);
+  return make_shell(loaded.scenario, environment_points(loaded.scenario, cache, loaded.files));
+}
+
+void Evidence::for_each_row(const LoadedScenario& loaded, const std::function<void(const StepRecord&)>& row) const {
+  const Scenario& scenario = loaded.scenario;
+  RowObserver observer(row);
+  Simulation(simulation_config(scenario), assemble(scenario, loaded.files, shell(loaded), {}), {&observer}).run();
 }
 
 }  // namespace hapbench

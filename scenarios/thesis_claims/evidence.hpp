@@ -4,13 +4,18 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/shell_cache.hpp"
+#include "scenarios/run/recent_shells.hpp"
+#include "scenarios/run/run_scenario.hpp"
 #include "scenarios/thesis_claims/finding.hpp"
+#include "sim/loop/observer.hpp"
 
 namespace hapbench {
 
@@ -67,10 +72,19 @@ struct Evidence {
   /// What to change in a bundled scenario, as for load_scenario; empty for nothing.
   std::function<std::vector<std::string>(const Scenario&)> overrides = {};
 
-  /// A bundled scenario, changed as those are whose results these are. All that a claim computes by itself starts from
-  /// here. Throws InputError.
-  Scenario scenario(const std::string& name) const { return loaded_scenario(name).scenario; }
-  LoadedScenario loaded_scenario(const std::string& name) const;
+  /// Environments that several runs share; null: each makes its own.
+  RecentShells* shells = nullptr;
+
+  // What claims compute by themselves starts from here. All throw InputError.
+
+  /// A bundled scenario, changed as those are whose results these are, and then by `more` overrides.
+  LoadedScenario load(const std::string& name, std::span<const std::string> more = {}) const;
+  /// Runs it in memory.
+  RunReport run(const std::string& name, std::span<const std::string> more = {}) const;
+  /// Its environment; null for springs.
+  std::shared_ptr<const PointShell> shell(const LoadedScenario& loaded) const;
+  /// Runs it in memory and calls `row` for each row.
+  void for_each_row(const LoadedScenario& loaded, const std::function<void(const StepRecord&)>& row) const;
 };
 
 }  // namespace hapbench

@@ -55,11 +55,12 @@ class SampleRuns {
       : shells_(shells),
         directory_(directory),
         read_(plan.read),
-        evidence_{plan.published,
-                  ResultFiles(directory, [this](const auto& scenario, const auto& part) { provide(scenario, part); }),
-                  plan.cache, [&plan, sample](const Scenario& scenario) {
-                    return plan.choices.overrides(scenario, plan.values[sample]);
-                  }} {}
+        evidence_{
+            plan.published,
+            ResultFiles(directory, [this](const auto& scenario, const auto& part) { provide(scenario, part); }),
+            plan.cache,
+            [&plan, sample](const Scenario& scenario) { return plan.choices.overrides(scenario, plan.values[sample]); },
+            &shells} {}
   SampleRuns(const SampleRuns&) = delete;
   SampleRuns& operator=(const SampleRuns&) = delete;
 
@@ -83,11 +84,13 @@ class SampleRuns {
 
   Run run(const std::string& name, const std::set<std::string>* parts) {
     try {
-      LoadedScenario loaded = evidence_.loaded_scenario(name);
+      LoadedScenario loaded = evidence_.load(name);
       if (parts != nullptr) record_only(*parts, loaded.scenario.record);
       const RunReport report = run_with_shell(loaded, shells_.of(loaded), directory_ / name, false);
       const std::vector<Outcome>& expected = loaded.scenario.expect.outcomes;
+      // A subject who loses the drill misses the targets that are left, which is a result.
       const bool diverged = report.summary.result.outcome == Outcome::diverges &&
+                            !std::holds_alternative<TrackingHandFields>(loaded.scenario.hand) &&
                             std::find(expected.begin(), expected.end(), Outcome::diverges) == expected.end();
       return {parts == nullptr, diverged ? name + ": diverged" : ""};
     } catch (const InputError& error) {

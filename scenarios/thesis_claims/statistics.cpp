@@ -12,14 +12,23 @@ double mean_of(const std::vector<double>& values) {
   return values.empty() ? std::nan("") : sum / static_cast<double>(values.size());
 }
 
+double standard_deviation(const std::vector<double>& values) {
+  if (values.size() < 2) return 0.0;
+  const double mean = mean_of(values);
+  double squares = 0.0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+double standard_error(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : standard_deviation(values) / std::sqrt(static_cast<double>(values.size()));
+}
+
 double paired_t(const std::vector<double>& a, const std::vector<double>& b) {
-  const auto n = static_cast<double>(a.size());
   if (a.size() < 2) return 0.0;
-  double mean = 0.0, squares = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) mean += a[i] - b[i];
-  mean /= n;
-  for (std::size_t i = 0; i < a.size(); ++i) squares += std::pow(a[i] - b[i] - mean, 2);
-  const double error = std::sqrt(squares / (n - 1.0) / n);
+  std::vector<double> differences;
+  for (std::size_t i = 0; i < a.size(); ++i) differences.push_back(a[i] - b[i]);
+  const double mean = mean_of(differences), error = standard_error(differences);
   if (error == 0.0) return mean == 0.0 ? 0.0 : std::copysign(std::numeric_limits<double>::infinity(), mean);
   return mean / error;
 }

@@ -47,7 +47,7 @@ class Robustness : public testing::Test {
          .rule = nullptr,
          .measure = [](const Evidence& e) -> Measured {
            return {{"",
-                    {{"stiffness", {e.scenario("springs_unlimited_mean").rendering.stiffness}},
+                    {{"stiffness", {e.load("springs_unlimited_mean").scenario.rendering.stiffness}},
                      {"force", {e.results.number("springs_unlimited_mean", "metrics.force_max_N")}}}}};
          },
          .judge = [](const Measured& m, const PublishedNumbers&) -> Finding {

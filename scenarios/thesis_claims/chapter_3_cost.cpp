@@ -1,0 +1,214 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/laws/shaped_stiffness.hpp"
+#include "algorithms/stages/gradient_reduction.hpp"
+#include "scenarios/studies/precision/measure.hpp"
+#include "scenarios/thesis_claims/claims.hpp"
+#include "scenarios/thesis_claims/statistics.hpp"
+#include "scenarios/thesis_claims/wording.hpp"
+#include "sim/core/random.hpp"
+
+/// Claims of 2.8 and 3.4: what the points cost. Times of this machine, so no two ledgers agree in digits.
+namespace hapbench {
+namespace {
+
+constexpr int kIterations = 3;  ///< the thesis's default
+constexpr int kRepetitions = 20;
+
+/// Iterations as the thesis writes them: with the n x n matrix of squared inner products.
+class DenseShaping {
+ public:
+  explicit DenseShaping(std::size_t capacity) : matrix_(capacity * capacity), ratio_(capacity) {}
+
+  void shape(ContactBuffer& contacts, int iterations) {
+    const std::size_t n = contacts.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) {
+        const double product = contacts.gradient(i).dot(contacts.gradient(j));
+        matrix_[i * n + j] = product * product;
+      }
+      contacts.weight[i] = 1.0;
+    }
+    for (int iteration = 0; iteration < iterations; ++iteration) {
+      for (std::size_t i = 0; i < n; ++i) {
+        ratio_[i] = 0.0;
+        for (std::size_t j = 0; j < n; ++j) ratio_[i] += matrix_[i * n + j] * contacts.weight[j];
+      }
+      for (std::size_t i = 0; i < n; ++i) contacts.weight[i] /= ratio_[i];
+    }
+  }
+
+ private:
+  std::vector<double> matrix_, ratio_;
+};
+
+// ---- T4, T4b: one step's work for 1000 contacts [s].
+
+constexpr std::size_t kThousand = 1000;
+
+/// Floating-point operations for n contacts: 5 for a scalar product, 1 for its square, 2 for a term of the ratio; with
+/// the tensor 12 to add u u^T, 17 for u^T S u and its quotient.
+double dense_operations(double n) {
+  return n * n * (6.0 + 2.0 * kIterations);
+}
+double tensor_operations(double n) {
+  return n * (12.0 + (12.0 + 17.0) * kIterations);
+}
+
+/// Random contacts round a hole: no two alike.
+ContactBuffer thousand_contacts() {
+  ContactBuffer contacts(kThousand);
+  Random random(1);
+  for (std::size_t i = 0; i < kThousand; ++i) {
+    contacts.push(static_cast<std::uint32_t>(i), Vec3::Zero(), Vec3::UnitZ());
+    contacts.set_gradient(i, random.direction());
+    contacts.depth[i] = random.uniform(0.0, 1e-4);
+  }
+  contacts.pad();
+  return contacts;
+}
+
+Measured measure_deadline(const Evidence&) {
+  const ContactBuffer all = thousand_contacts();
+  ContactBuffer contacts = all;
+  DenseShaping dense(all.size());
+  const auto reduction = make_gradient_reduction({});
+  reduction->prepare({});
+  return {{"",
+           {{"matrix", {seconds_per_call(1, kRepetitions, [&] { dense.shape(contacts, kIterations); })}},
+            {"tensor", {seconds_per_call(1, kRepetitions, [&] { shape_weights(contacts, kIterations); })}},
+            {"reduced", {seconds_per_call(1, kRepetitions, [&] {
+               contacts = all;
+               reduction->process(contacts);
+               dense.shape(contacts, kIterations);
+             })}}}}};
+}
+
+std::string deadline_text(const MeasuredCase& m, double deadline) {
+  return fmt::format(
+      "1000 contacts: n x n matrix {:.0f} µs ({:.2g} operations), reduced first {:.0f} µs, tensor without reduction "
+      "{:.1f} µs ({:.2g} operations); deadline {:.0f} µs",
+      1e6 * m["matrix"], dense_operations(kThousand), 1e6 * m["reduced"], 1e6 * m["tensor"],
+      tensor_operations(kThousand), 1e6 * deadline);
+}
+
+Finding judge_dense_deadline(const Measured& measured, const PublishedNumbers& published) {
+  const MeasuredCase& m = measured.at(0);
+  const double deadline = published["T4.step"].mean;
+  const bool missed = m["matrix"] > deadline, met = m["reduced"] < deadline;
+  return {decide(missed && met, met), deadline_text(m, deadline),
+          missed ? fmt::format("in the dense form the thesis uses, {}",
+                               met ? "the reduction is needed and suffices" : "even the reduction does not suffice")
+                 : "this machine is fast enough for the dense form"};
+}
+
+Finding judge_tensor_deadline(const Measured& measured, const PublishedNumbers& published) {
+  const MeasuredCase& m = measured.at(0);
+  const double deadline = published["T4.step"].mean;
+  const bool met = m["tensor"] < deadline;
+  return {met ? Verdict::refuted : Verdict::reproduced, deadline_text(m, deadline),
+          met ? "through the 3 x 3 stiffness tensor all points are shaped in time without a reduction"
+              : "without the reduction the tensor form misses the deadline, too"};
+}
+
+// ---- T5: one step's share of the period [1] for the contacts of task 3, in the dense form; and in the tensor form.
+
+/// An increase of the load that nobody has to plan for.
+constexpr double kSmallLoad = 0.01;
+
+Measured measure_loop_load(const Evidence& e) {
+  const LoadedScenario task = e.load("task3_spin_signed_distance");
+  PrecisionOptions options;
+  options.cache = e.cache;
+  std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(task.scenario), options, 128);
+  std::size_t largest = 0;
+  for (const ContactBuffer& set : sets) largest = std::max(largest, set.size());
+  DenseShaping dense(largest);
+  const auto reduction = make_gradient_reduction({});
+  reduction->prepare({});
+  ContactBuffer work(largest);
+  const auto load = [&](auto shape, bool reduce) {
+    const double seconds = seconds_per_call(sets.size(), kRepetitions, [&] {
+      for (const ContactBuffer& set : sets) {
+        work.assign(set);
+        if (reduce) reduction->process(work);
+        shape();
+      }
+    });
+    return std::vector<double>{seconds / task.scenario.time.step};
+  };
+  return {{"",
+           {{"points", {static_cast<double>(largest)}},
+            {"reduced_0", load([&] { dense.shape(work, 0); }, true)},
+            {"reduced_3", load([&] { dense.shape(work, kIterations); }, true)},
+            {"unreduced_3", load([&] { dense.shape(work, kIterations); }, false)},
+            {"tensor_reduced_3", load([&] { shape_weights(work, kIterations); }, true)},
+            {"tensor_unreduced_3", load([&] { shape_weights(work, kIterations); }, false)}}}};
+}
+
+Finding judge_loop_load(const Measured& measured, const PublishedNumbers&) {
+  const MeasuredCase& m = measured.at(0);
+  const bool small = m["reduced_3"] - m["reduced_0"] <= kSmallLoad;
+  const bool falls = m["reduced_3"] < m["unreduced_3"];
+  return {
+      decide(small && falls, small || falls),
+      fmt::format("task 3, up to {} points, share of the period: dense form without reduction {:.2g} %, with it "
+                  "{:.2g} %, of which the iterations {:.2g} %; tensor form {:.2g} % and {:.2g} %",
+                  m["points"], 100.0 * m["unreduced_3"], 100.0 * m["reduced_3"],
+                  100.0 * (m["reduced_3"] - m["reduced_0"]), 100.0 * m["tensor_unreduced_3"],
+                  100.0 * m["tensor_reduced_3"]),
+      fmt::format("the iterations cost {}; the reduction {} the load of the dense form and {} that of the tensor form",
+                  small ? "next to nothing" : "more than that", falls ? "lowers" : "raises",
+                  m["tensor_reduced_3"] < m["tensor_unreduced_3"] ? "lowers" : "raises")};
+}
+
+constexpr Claim kClaims[] = {
+    {.id = "T4",
+     .place = "2.8, 3.1",
+     .claim =
+         "in the thesis's dense form 1000 points cannot be rendered in 0.5 ms without the reduction, and can with it",
+     .published = "0.5 ms",
+     .rule =
+         [](const PublishedNumbers&) {
+           return std::string("reproduced: the n x n matrix misses the deadline, the reduction before it meets it");
+         },
+     .measure = measure_deadline,
+     .judge = judge_dense_deadline,
+     .timing = true},
+    {.id = "T4b",
+     .place = "2.8, 3.1",
+     .claim = "so many points cannot be rendered in time without a reduction, whatever the form",
+     .published = "0.5 ms",
+     .rule =
+         [](const PublishedNumbers&) {
+           return std::string("refuted: the tensor form meets the deadline without a reduction");
+         },
+     .measure = measure_deadline,
+     .judge = judge_tensor_deadline,
+     .timing = true},
+    {.id = "T5",
+     .place = "3.4, Fig. 4",
+     .claim = "the iterations hardly load the loop, the reduction relieves it",
+     .published = "small impact",
+     .rule =
+         [](const PublishedNumbers&) {
+           return fmt::format(
+               "reproduced: in the dense form {} iterations take at most {} of the period and the reduction lowers the "
+               "load; in kind: one of the two",
+               in_words(kIterations), percent(kSmallLoad));
+         },
+     .measure = measure_loop_load,
+     .judge = judge_loop_load,
+     .timing = true},
+};
+
+}  // namespace
+
+std::span<const Claim> chapter_3_cost() {
+  return kClaims;
+}
+
+}  // namespace hapbench
