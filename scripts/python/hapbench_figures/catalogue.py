@@ -55,6 +55,7 @@ FIGURES = (
     Figure("C.2", "C.2", "Distribution of the number of contacts", tasks.count_distribution),
     Figure("C.3", "C.3", "Stiffness fields as the peg tilts", stiffness_fields.fields_over_tilt),
     Figure("C.4", "C.4", "Convergence of the stiffness ratio", tasks.convergence),
+    Figure("D.6", "D.6", "Effort the subjects felt", experiments.questionnaires),
     Figure("D.7", "D.7", "Vertical peg-in-hole task", experiments.vertical),
     Figure("D.8", "D.8", "Rotational peg-in-hole task", experiments.rotational),
     Figure("E.1", "E.1", "Position of the tip over time", tasks.positions),

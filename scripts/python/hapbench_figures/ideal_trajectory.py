@@ -4,20 +4,22 @@ from matplotlib.patches import Polygon
 
 from . import published, style
 
-RUNS = (
-    ("ideal_trajectory_low_force", style.GREEN, "o", "hand force below 2 N"),
-    ("ideal_trajectory_high_force", style.VERMILION, "^", "above 2 N"),
+RUN = "task2_rotate_signed_distance"
+SIDES = (  # of the split of the hand's force
+    (False, style.GREEN, "o", "hand force below 2 N"),
+    (True, style.VERMILION, "^", "above 2 N"),
 )
-EVERY = 120  # rows: a drawn mark of every row could not be told from its neighbours
+MARKS = 130  # of a side at most: more could not be told from their neighbours
 
 
-def samples(results, name, high):
-    """Rows of the run on its side of the split of the hand's force, within the compared tilts."""
-    rows = results.table(f"thesis/{name}/ideal_trajectory.csv")
+def samples(results, high):
+    """Rows of the recording on one side of the split of the hand's force, within the compared tilts."""
+    rows = results.table(f"thesis/{RUN}/ideal_trajectory.csv")
     force, tilt = rows["hand_force_N"], rows["tilt_rad"]
     range_ = published.entries()["J1.tilt"]
     own = ((force > published.value("J1.split")) == high) & (tilt >= range_["at_least"]) & (tilt <= range_["at_most"])
-    picked = {key: column[own][::EVERY] for key, column in rows.items()}
+    every = max(1, own.sum() // MARKS)
+    picked = {key: column[own][::every] for key, column in rows.items()}
     return {key: (column if key in ("tilt_rad", "hand_force_N") else 1e3 * column) for key, column in picked.items()}
 
 
@@ -57,12 +59,12 @@ def draw_block(ax, environment):
 def trajectory(results):
     figure, axes = style.panels(1, 3, 3.1, gridspec_kw={"width_ratios": [0.75, 1.2, 1.2]})
     section, height, distance = axes[0]
-    environment = results.json(f"thesis/{RUNS[0][0]}/scenario.effective.json")["environment"]
+    environment = results.json(f"thesis/{RUN}/scenario.effective.json")["environment"]
     draw_block(section, environment)
     bottom = 1e3 * environment["hole_depth_m"]
     drawn = []
-    for high, (name, colour, marker, label) in enumerate(RUNS):
-        rows = samples(results, name, bool(high))
+    for high, colour, marker, label in SIDES:
+        rows = samples(results, high)
         drawn.append(rows)
         look = {"color": colour, "marker": marker, "ls": "none", "ms": 2.3, "mec": "none", "alpha": 0.7}
         section.plot(rows["lateral_m"], rows["height_m"], **look)
@@ -77,14 +79,17 @@ def trajectory(results):
     height.set(title="height over the bottom", xlabel="tilt α [rad]", ylabel="height [mm]")
     distance.set(title="distance to the median line", xlabel="tilt α [rad]", ylabel="distance [mm]")
     section.set_title("section")
+    for ax in (height, distance):
+        ax.set_xlim(published.entries()["J1.tilt"]["at_least"], published.entries()["J1.tilt"]["at_most"])
     height.legend(loc="lower right", markerscale=1.8)
     style.note(distance, 0.97, 0.9, "shaded: published,\nerror up to about\n0.25 mm", style.VERMILION, ha="right")
     style.letter(axes[0])
     low, high = (rows["interpenetration_m"].max() for rows in drawn)
     return figure, (
-        "The tip while the drill is rotated to and fro in the hole (task 2) and the ideal trajectory (black), which "
-        "the exact geometry of drill and hole allows; ours, a hand that presses with less (green circles) or more "
-        "(vermilion triangles) than 2 N, thinned. (a) section, (b) height, (c) distance to the median line. Shaded: "
-        "the published error of about 0.25 mm (Fig. 7, 3.6). In the drawn rows the drill overlaps the exact hole by "
+        "The tip while the drill is rotated to and fro in the hole (task 2, the recording of figures 4 and 5) and the "
+        "ideal trajectory (black), which the exact geometry of drill and hole allows; ours, rows in which the hand "
+        "presses with less (green circles) or, in three short taps, more (vermilion triangles) than 2 N, thinned. "
+        "(a) section, (b) height, (c) distance to the median line. Shaded: the published error of about 0.25 mm "
+        "(Fig. 7, 3.6). In the drawn rows the drill overlaps the exact hole by "
         f"at most {low:.2f} mm below and {high:.2f} mm above 2 N."
     )

@@ -20,6 +20,22 @@ def load_claims(file):
     return claims
 
 
+def robustness_text(robustness):
+    """How the verdict fares over the choices on record, as the ledger's Markdown says it."""
+    if not robustness:
+        return ""
+    text = f"holds in {robustness['holds']} of {robustness['judged']}"
+    if robustness["decided_by"]:
+        decided_by = robustness["decided_by"]
+        return f"{text}; decided by {decided_by['choice']} (S = {decided_by['index']:.2f})"
+    return text if robustness["holds"] == robustness["judged"] else f"{text}; no single choice decides"
+
+
+def load_choices(file):
+    """What the thesis leaves open: results/reference/choices.json."""
+    return objects(load_object(file), "choices", file)
+
+
 def shown_verdicts():
     return ", ".join(f'"{verdict}"' for verdict in VERDICTS)
 

@@ -5,7 +5,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from .claims import load_claims
+from .claims import load_choices, load_claims
 from .figures import load_figures
 from .json_input import InputError
 from .page import report
@@ -15,6 +15,7 @@ from .runs import REPLAY_DIRECTORY, load_runs
 from .studies import load_studies
 
 SUCCESS, BAD_INPUT = 0, 2
+CHOICES = Path(__file__).resolve().parents[3] / "results" / "reference" / "choices.json"
 
 
 def arguments(words):
@@ -23,6 +24,8 @@ def arguments(words):
     parser.add_argument("results", type=Path, metavar="RESULTS_DIR", help="what scripts/reproduce wrote")
     parser.add_argument("--figures", type=Path, metavar="DIR", help="what scripts/figures wrote; default: no figures")
     parser.add_argument("--claims", type=Path, metavar="FILE", help="the ledger, claims.json; default: no ledger")
+    parser.add_argument("--choices", type=Path, metavar="FILE", default=CHOICES,
+                        help="the choices on record; default: results/reference/choices.json of this tree")
     parser.add_argument("--program", type=Path, metavar="FILE", help="a built hapbench, to record the runs of the replay")
     parser.add_argument("--replay", type=Path, metavar="DIR",
                         help=f"runs recorded earlier; default: RESULTS_DIR/{REPLAY_DIRECTORY} if it is there")
@@ -64,7 +67,7 @@ def run(options):
     if not runs:
         raise InputError(f"{options.results}: holds no summary.json; allowed: a directory that scripts/reproduce wrote")
     page = report(runs, load_studies(options.results), load_claims(options.claims) if options.claims else [],
-                  load_figures(options.figures) if options.figures else [], scenes(options))
+                  load_choices(options.choices), load_figures(options.figures) if options.figures else [], scenes(options))
     out = options.out or options.results / "report.html"
     write(out, page)
     print(f"{out}: {len(page.encode()) / 1e6:.1f} MB, {len(runs)} runs")

@@ -3,7 +3,7 @@ from pathlib import Path
 
 from .markup import command, text
 from .section_figures import figures_section
-from .section_ledger import ledger_section, summary_section
+from .section_ledger import choices_section, ledger_section, summary_section
 from .section_replay import replay_section
 from .section_runs import (parameters_section, provenance_of, provenance_section, runs_section, studies_section,
                            timing_section)
@@ -15,12 +15,13 @@ SCRIPTS = ("theme.js", "tables.js", "replay_data.js", "replay_camera.js", "repla
            "replay_chart.js", "replay_player.js")
 
 
-def report(runs, studies, claims, figures, scenes):
+def report(runs, studies, claims, choices, figures, scenes):
     """The HTML of the report. Depends on nothing but its arguments."""
     tables, provenance = load_tables(), provenance_of(runs)
     sections = (
         ("summary", "Summary", "Summary", summary_section(runs, claims, figures, provenance)),
         ("ledger", "Ledger", "Ledger", ledger_section(claims)),
+        ("choices", "Choices", "Choices on record", choices_section(choices)),
         ("replay", "Replay", "Replay", replay_section(scenes)),
         ("thesis", "Index", "Figures and tables of the thesis", index_section(figures, tables)),
         ("figures", "Figures", "Figures", figures_section(figures)),

@@ -1,5 +1,5 @@
 """Summary and ledger."""
-from .claims import VERDICTS, verdict_counts
+from .claims import VERDICTS, robustness_text, verdict_counts
 from .markup import cell, heading_cell, table, text
 
 
@@ -44,13 +44,34 @@ def ledger_section(claims):
     rows = [[cell(f'<span id="claim-{text(c.get("id", ""))}">{text(c.get("id", ""))}</span>'), cell(text(c.get("place", ""))),
              cell(text(c.get("claim", "")), classes="prose"), cell(text(c.get("published", ""))),
              cell(text(c.get("measured", "")), classes="ours"), cell(verdict_mark(c["verdict"])),
-             cell(text(c.get("rule", "")), classes="prose"), cell(text(c.get("why", "")), classes="prose")] for c in claims]
-    headings = [heading_cell(t) for t in ("Id", "Place", "Claim", "Published", "Measured", "Verdict", "Rule", "Why")]
+             cell(text(robustness_text(c.get("robustness"))), classes="prose"), cell(text(c.get("rule", "")), classes="prose"), cell(text(c.get("why", "")), classes="prose")] for c in claims]
+    headings = [heading_cell(t) for t in ("Id", "Place", "Claim", "Published", "Measured", "Verdict", "Robustness", "Rule",
+                                           "Why")]
     return ("<p>Each claim of the thesis, what it publishes, what the runs below give, and a verdict by the rule beside it. "
-            "Hands were chosen so that the number of raw colliding points comes near the published one; all else is a "
-            "prediction, not a fit.</p>"
+            "Hands are calibrated to mean and standard deviation of the raw colliding points; all else is a prediction. "
+            "Robustness: how often the verdict is the same at points spread over the plausible ranges of everything the "
+            'thesis leaves open (<a href="#choices">choices on record</a>), and the choice that decides it, if one does.</p>'
             + filters("ledger-table", [("Verdict", 5)])
             + table(headings, rows, "<b>The ledger</b>", "sortable", "ledger-table"))
+
+
+def choices_section(choices):
+    if not choices:
+        return '<p class="note">None were given (<code>--choices</code>).</p>'
+    rows = [[cell(text(c["id"])), cell(text(c["what"]), classes="prose"), cell(text(c["thesis"]), classes="prose"),
+             cell(text(f"{c['value']} {c.get('unit', '')}".strip())), cell(text(plausible(c))), cell(text(c["chosen"])),
+             cell(text(c["why"]), classes="prose")] for c in choices]
+    headings = [heading_cell(t) for t in ("Choice", "Of what", "The thesis", "Value", "Plausible", "Results seen", "Why")]
+    return ("<p>Everything the thesis leaves open and a scenario had to choose. A value without a unit that stands beside a "
+            "range around 1 multiplies what the scenarios have. “after” means that results had been seen when it was "
+            "chosen.</p>" + table(headings, rows, "<b>Choices on record</b>", "sortable", "choices-table"))
+
+
+def plausible(choice):
+    if "options" in choice:
+        return ", ".join(choice["options"])
+    low, high = choice["range"]
+    return f"{low} to {high}{', log' if choice.get('scale') == 'log' else ''}"
 
 
 def filters(table_id, menus):

@@ -55,8 +55,8 @@ def index_section(figures, tables):
 def target_tables(runs, tables):
     parts = [
         "<p>Tables A.1 to A.4 of appendix D compare six people who removed targets with the original algorithm (DP) and with "
-        "stiffness shaping (HS). Ours are six simulated subjects, whose parameters were fixed before any result was looked "
-        "at. Values are means ± standard errors over subjects.</p>"
+        "stiffness shaping (HS). Ours are six simulated subjects, whose parameters are ours. "
+        "Values are means ± standard errors over subjects.</p>"
         '<p class="note">A simulated subject shows what the dynamics of hand, device and algorithm do to a task: whether a '
         "target can be held at all, at what force and speed. It cannot show what people feel, how they learn or tire, what "
         "they try, or how much one person differs from the next; agreement in sign and order of magnitude is what can be "
