@@ -122,7 +122,8 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
     read[scenario].insert(part);
     runs.provide(scenario);
   };
-  const Evidence evidence{published, ResultFiles(runs.directory(), provide), cache};
+  RecentShells shells(cache);
+  const Evidence evidence{published, ResultFiles(runs.directory(), provide), cache, {}, &shells};
   std::vector<JudgedClaim> judged;
   for (const Claim& claim : claims) judged.push_back({claim, claim.judge(claim.measure(evidence), published)});
   return judged;
