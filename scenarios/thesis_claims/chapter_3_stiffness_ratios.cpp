@@ -151,10 +151,10 @@ Finding judge_guarantee(const Measured& measured, const PublishedNumbers& publis
               sets, text),
           !holds
               ? fmt::format("a set of contacts exceeds {}", guaranteed)
-              : fmt::format("{} (1 + √3)/2 = {:.5f}, the bound that is proved at the limit of the iteration, and after "
-                            "any number of them where the stiffest direction is the stiffest one before the last, "
-                            "too; for the rest it is searched, not proved",
-                            largest <= proved + kSearchRounding ? "no set exceeds" : "some set exceeds", proved)};
+              : fmt::format(
+                    "{} (1 + √3)/2 = {:.5f}, which is proved to bound every direction after any number of iterations "
+                    "(BEYOND.md)",
+                    largest <= proved + kSearchRounding ? "no set exceeds" : "some set exceeds", proved)};
 }
 
 constexpr Claim kClaims[] = {

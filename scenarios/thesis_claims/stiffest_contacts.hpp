@@ -20,10 +20,8 @@ struct StiffestContacts {
 /// of shaping, has a larger and larger largest eigenvalue. The weights before the first iteration stand for many
 /// contacts in one direction. The same result on every call; about half a second.
 ///
-/// One update with any weights w gives S = sum w_i U_i / <U_i, S_0> with U_i = u_i u_i^T and S_0 = sum w_j U_j, so m
-/// iterations are one from the weights of m - 1, and the supremum over weighted sets is the same for every m >= 1. What
-/// is known of it: at the limit tr S >= |S|²_F gives (1 + sqrt 3)/2; the same holds after one update along
-/// the leading eigenvector of S_0. The search finds nothing beyond.
+/// No set exceeds (1 + sqrt 3)/2, in the plane (1 + sqrt 2)/2, whatever the number of iterations; the proof is in
+/// results/reference/BEYOND.md. The search shows that the bound is sharp, and would show an error in the proof.
 StiffestContacts stiffest_contacts(int iterations);
 
 }  // namespace hapbench

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 #include "tests/support/scale.hpp"
@@ -131,6 +134,24 @@ TEST(ShapedStiffness, LowersTheQuadraticObjectiveInEveryIteration) {
       const double before = objective(S), size = S.squaredNorm() + S.trace();
       S = update_shaped_weights(contacts, S);
       ASSERT_LE(objective(S), before + kTolerance * size) << family.name << ", m = " << m;
+    }
+  }
+}
+
+TEST(ShapedStiffness, IsNowhereStifferThanTheProvedBound) {
+  // The bound is one of weighted updates (results/reference/BEYOND.md). S is a sum of n <= 100 positive terms of the
+  // order of 1, each rounded a few times.
+  constexpr double kRounding = 1000 * std::numeric_limits<double>::epsilon();
+  Random random(7);
+  for (const auto& family : test::gradient_families()) {
+    const double bound = 0.5 * (1.0 + std::sqrt(family.planar ? 2.0 : 3.0));
+    for (int set = 0; set < 200; ++set) {
+      ContactBuffer contacts = random_contacts(family, random);
+      Mat3 S = shape_weights(contacts, 0);
+      for (int m = 1; m <= 10; ++m) {
+        S = update_shaped_weights(contacts, S);
+        ASSERT_LE(lambda_max(S), bound + kRounding) << family.name << ", m = " << m;
+      }
     }
   }
 }
