@@ -37,6 +37,18 @@ std::vector<StepLatency::Bin> histogram(const Times& sorted) {
   return bins;
 }
 
+std::vector<std::uint32_t> medians_over_time(std::span<const std::uint32_t> times) {
+  const std::size_t spans = std::min(times.size(), StepLatency::kSpans);
+  std::vector<std::uint32_t> medians;
+  for (std::size_t i = 0; i < spans; ++i) {
+    const std::size_t first = i * times.size() / spans, last = (i + 1) * times.size() / spans;
+    Times span(times.begin() + static_cast<std::ptrdiff_t>(first), times.begin() + static_cast<std::ptrdiff_t>(last));
+    std::sort(span.begin(), span.end());
+    medians.push_back(percentile(span, 500));
+  }
+  return medians;
+}
+
 double seconds(double nanoseconds) {
   return nanoseconds / 1e9;  // unlike times 1e-9, the double nearest to the decimal
 }
@@ -57,6 +69,7 @@ StepLatency step_latency(std::span<const std::uint32_t> nanoseconds, std::uint32
   latency.max = sorted.back();
   for (std::size_t i = 0; i < kStepDeadlines.size(); ++i) latency.misses[i] = longer_than(sorted, kStepDeadlines[i]);
   latency.histogram = histogram(sorted);
+  latency.over_time = medians_over_time(nanoseconds);
   return latency;
 }
 
@@ -72,7 +85,8 @@ ordered_json step_latency_json(const StepLatency& latency) {
                        {"p99_9_s", if_any(latency.p99_9)},
                        {"max_s", if_any(latency.max)},
                        {"deadline_misses", ordered_json::array()},
-                       {"histogram", ordered_json::array()}};
+                       {"histogram", ordered_json::array()},
+                       {"over_time_s", ordered_json::array()}};
   for (std::size_t i = 0; i < kStepDeadlines.size(); ++i) {
     json["deadline_misses"].push_back({{"deadline_s", kStepDeadlines[i]}, {"steps", latency.misses[i]}});
   }
@@ -81,6 +95,7 @@ ordered_json step_latency_json(const StepLatency& latency) {
                                  {"to_s", seconds(static_cast<double>(bin.to))},
                                  {"steps", bin.steps}});
   }
+  for (const std::uint32_t median : latency.over_time) json["over_time_s"].push_back(seconds(median));
   return json;
 }
 

@@ -20,6 +20,8 @@ struct StepLatency {
     std::uint64_t steps = 0;
   };
 
+  static constexpr std::size_t kSpans = 240;
+
   std::uint64_t steps = 0;
   /// Percentiles by nearest rank: the shortest time that at least so many percent of the steps do not exceed [ns].
   std::uint32_t p50 = 0, p95 = 0, p99 = 0, p99_9 = 0;
@@ -27,6 +29,9 @@ struct StepLatency {
   std::array<std::uint64_t, kStepDeadlines.size()> misses = {};  ///< steps longer than each deadline
   /// Bins between powers of two, from the first to the last that is not empty.
   std::vector<Bin> histogram;
+  /// Medians of up to kSpans spans of the run, of equal numbers of steps, in their order [ns]: the load of the loop
+  /// over time.
+  std::vector<std::uint32_t> over_time;
   std::uint32_t overhead = 0;  ///< of the clock, subtracted from each step [ns]
 };
 

@@ -95,5 +95,15 @@ TEST(StepLatency, JsonIsInSeconds) {
   EXPECT_EQ(json["histogram"][0]["to_s"], 4e-9);
 }
 
+TEST(StepLatency, GivesMediansOverTheRun) {
+  Times times;
+  for (std::uint32_t i = 0; i < 10 * StepLatency::kSpans; ++i) times.push_back(100 * (i / 10) + i % 10);
+  const std::vector<std::uint32_t> medians = step_latency(times, 0).over_time;
+  ASSERT_EQ(medians.size(), StepLatency::kSpans);
+  for (std::uint32_t span = 0; span < medians.size(); ++span) EXPECT_EQ(medians[span], 100 * span + 4);
+  EXPECT_EQ(step_latency(Times{5, 3, 4}, 0).over_time, (Times{5, 3, 4})) << "no more spans than steps";
+  EXPECT_TRUE(step_latency({}, 0).over_time.empty());
+}
+
 }  // namespace
 }  // namespace hapbench
