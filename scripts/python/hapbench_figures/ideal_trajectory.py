@@ -72,7 +72,7 @@ def trajectory(results):
         distance.plot(rows["tilt_rad"], np.abs(rows["lateral_m"]), **look)
     tilt, x, y = ideal(drawn)
     section.plot(x, y, color=style.BLACK)
-    height.plot(tilt, y + bottom, color=style.BLACK, label="ideal (exact geometry)")
+    height.plot(tilt, y + bottom, color=style.BLACK, label="ideal")
     distance.plot(tilt, np.abs(x), color=style.BLACK)
     inside = 1e3 * published.value("J1.lateral")
     distance.fill_between(tilt, np.abs(x), np.abs(x) + inside, color=style.VERMILION, alpha=0.13, lw=0)
@@ -81,7 +81,8 @@ def trajectory(results):
     section.set_title("section")
     for ax in (height, distance):
         ax.set_xlim(published.entries()["J1.tilt"]["at_least"], published.entries()["J1.tilt"]["at_most"])
-    height.legend(loc="lower right", markerscale=1.8)
+    height.legend(loc="upper left", markerscale=1.8)
+    height.margins(y=0.12)
     style.note(distance, 0.97, 0.9, "shaded: published,\nerror up to about\n0.25 mm", style.VERMILION, ha="right")
     style.letter(axes[0])
     low, high = (rows["interpenetration_m"].max() for rows in drawn)

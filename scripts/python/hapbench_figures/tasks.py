@@ -57,7 +57,10 @@ def loop_load(ax, results, task, duration):
     load = ax.twinx()
     time = (np.arange(len(medians)) + 0.5) * duration / len(medians)
     load.plot(time, 100 * medians / PERIOD, ".", color=style.BLACK, ms=1.8)
-    load.set(yscale="log", ylim=(0.03, 300))
+    # Above the points, which share the panel.
+    load.set(yscale="log", ylim=(1e-5, 2), yticks=[0.1, 1])
+    load.set_yticklabels(["0.1", "1"])
+    load.minorticks_off()
     load.grid(visible=False)
     load.spines["right"].set_visible(True)
     return load
