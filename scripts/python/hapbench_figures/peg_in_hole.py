@@ -72,8 +72,8 @@ def trajectories(results):
     return figure, (
         "A peg as wide as its hole is tilted at constant speed; outlines at six equally spaced times and the "
         "trajectory of the tip (green). (a) The original algorithm vibrates and throws the peg out, (b) stiffness "
-        "shaping moves it out smoothly; (c, d) the velocity of the tip. Ours, parameters of Table A.1 and friction of Table B.1; published: "
-        '"an obvious vibration" and "a smooth motion" (Fig. A.2).'
+        "shaping moves it out smoothly; (c, d) the velocity of the tip. Ours, parameters of Table A.1 and the friction of "
+        'Table B.1; published: "an obvious vibration" and "a smooth motion" (Fig. A.2).'
     )
 
 
