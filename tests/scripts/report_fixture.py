@@ -47,6 +47,10 @@ def claim(verdict, **more):
 def make_claims(file):
     verdicts = ("reproduced", "reproduced in kind", "not reproduced", "refuted", "not reproducible")
     claims = [claim(verdict, id=f"C{i}") for i, verdict in enumerate(verdicts)]
+    claims[0]["robustness"] = {"judged": 64, "holds": 64, "decided_by": None}
+    claims[1]["robustness"] = {"judged": 64, "holds": 31, "decided_by": {"choice": "hand.angle", "index": 0.4321}}
+    claims[2]["robustness"] = {"judged": 64, "holds": 31, "decided_by": None}
+    claims[3]["robustness"] = None
     file.write_text(json.dumps({"claims": claims}), encoding="utf-8")
 
 

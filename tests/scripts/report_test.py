@@ -62,6 +62,22 @@ class Page(WithResults):
         for file in self.results.glob("thesis/*/summary.json"):
             self.assertIn(json.loads(file.read_text())["provenance"]["scenario_hash"], page)
 
+    def test_the_ledger_tells_how_robust_its_verdicts_are(self):
+        page = self.full_page()
+        for text in ("holds in 64 of 64<", "holds in 31 of 64; decided by hand.angle (S = 0.43)",
+                     "holds in 31 of 64; no single choice decides"):
+            self.assertIn(text, page)
+
+    def test_every_choice_on_record_is_there(self):
+        choices = self.root / "choices.json"
+        choices.write_text(json.dumps({"choices": [
+            {"id": "hand.angle", "what": "its direction", "thesis": "silent", "value": 0.5, "unit": "rad", "range": [0, 0.9],
+             "scale": "log", "chosen": "after", "why": "none"},
+            {"id": "density", "value": "binary", "options": ["binary", "smooth"]}, {"id": "odd", "options": 1, "range": 2}]}))
+        page = self.page("--choices", choices)
+        for text in ("its direction", "0.5 rad", "0 to 0.9, log", "binary, smooth", "odd"):
+            self.assertIn(text, page)
+
     def test_the_index_tells_figures_of_the_same_number_apart(self):
         page = self.full_page()
         for title, target in (("Springs without limits", "figure-f1"), ("Root locus of the leapfrog step", "figure-f2"),
@@ -184,6 +200,7 @@ class BadInput(WithResults):
     def test_claims(self):
         for value, said in (([], "got []"), ({"claims": 1}, "/claims: got 1; allowed: an array"),
                             ({"claims": [1]}, "/claims/0: got 1; allowed: an object"),
+                            ({"claims": [claim("refuted", robustness=1)]}, "/claims/0/robustness: got 1; allowed: an object"),
                             ({"claims": [claim("maybe")]}, '/claims/0/verdict: got "maybe"; allowed: "reproduced"')):
             file = self.written("claims.json", json.dumps(value))
             self.assertIn(said, self.refused(self.results, "--claims", file))

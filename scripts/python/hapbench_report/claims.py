@@ -1,5 +1,5 @@
 """The ledger: what the thesis claims, what it publishes, what we measure, and the verdict."""
-from .json_input import InputError, load_object, objects, shown
+from .json_input import InputError, load_object, member, number_or_none, objects, shown
 
 # Verdict -> (mark, tone). The mark tells verdicts apart without colour.
 VERDICTS = {
@@ -17,6 +17,8 @@ def load_claims(file):
         verdict = claim.get("verdict")
         if verdict not in VERDICTS:
             raise InputError(f"{file}: /claims/{i}/verdict: got {shown(verdict)}; allowed: {shown_verdicts()}")
+        if claim.get("robustness") is not None:
+            member(claim, "robustness", dict, file, f"/claims/{i}")
     return claims
 
 
@@ -24,11 +26,11 @@ def robustness_text(robustness):
     """How the verdict fares over the choices on record, as the ledger's Markdown says it."""
     if not robustness:
         return ""
-    text = f"holds in {robustness['holds']} of {robustness['judged']}"
-    if robustness["decided_by"]:
-        decided_by = robustness["decided_by"]
-        return f"{text}; decided by {decided_by['choice']} (S = {decided_by['index']:.2f})"
-    return text if robustness["holds"] == robustness["judged"] else f"{text}; no single choice decides"
+    holds, judged, decided_by = (robustness.get(key) for key in ("holds", "judged", "decided_by"))
+    text = f"holds in {holds} of {judged}"
+    if isinstance(decided_by, dict):
+        return f"{text}; decided by {decided_by.get('choice')} (S = {number_or_none(decided_by.get('index')) or 0:.2f})"
+    return text if holds == judged else f"{text}; no single choice decides"
 
 
 def load_choices(file):

@@ -58,9 +58,10 @@ def ledger_section(claims):
 def choices_section(choices):
     if not choices:
         return '<p class="note">None were given (<code>--choices</code>).</p>'
-    rows = [[cell(text(c["id"])), cell(text(c["what"]), classes="prose"), cell(text(c["thesis"]), classes="prose"),
-             cell(text(f"{c['value']} {c.get('unit', '')}".strip())), cell(text(plausible(c))), cell(text(c["chosen"])),
-             cell(text(c["why"]), classes="prose")] for c in choices]
+    rows = [[cell(text(c.get("id", ""))), cell(text(c.get("what", "")), classes="prose"),
+             cell(text(c.get("thesis", "")), classes="prose"), cell(text(f"{c.get('value', '')} {c.get('unit', '')}".strip())),
+             cell(text(plausible(c))), cell(text(c.get("chosen", ""))), cell(text(c.get("why", "")), classes="prose")]
+            for c in choices]
     headings = [heading_cell(t) for t in ("Choice", "Of what", "The thesis", "Value", "Plausible", "Results seen", "Why")]
     return ("<p>Everything the thesis leaves open and a scenario had to choose. A value without a unit that stands beside a "
             "range around 1 multiplies what the scenarios have. “after” means that results had been seen when it was "
@@ -68,10 +69,11 @@ def choices_section(choices):
 
 
 def plausible(choice):
-    if "options" in choice:
-        return ", ".join(choice["options"])
-    low, high = choice["range"]
-    return f"{low} to {high}{', log' if choice.get('scale') == 'log' else ''}"
+    """The values a choice could as well have had, as text."""
+    options, range_ = choice.get("options"), choice.get("range")
+    if isinstance(options, list):
+        return ", ".join(map(str, options))
+    return " to ".join(map(str, range_ if isinstance(range_, list) else [])) + (", log" if choice.get("scale") == "log" else "")
 
 
 def filters(table_id, menus):
