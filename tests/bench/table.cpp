@@ -172,7 +172,7 @@ test::ProgramRun run_quietly(std::vector<std::string> arguments, const std::vect
 void add_processes(Targets& targets) {
   constexpr double kSimulated = 65.0;  // [s]
   const test::ProgramRun tasks =
-      run_quietly({"task1_flat_signed_distance", "task2_rotate_signed_distance", "task3_spin_signed_distance"},
+      run_quietly({"poke_on_flat", "rotate_in_hole", "round_the_wall"},
                   {"record.trajectory=false", "record.ratio_iterations=[]", "record.ideal_trajectory=false"});
   const double faster = kSimulated / tasks.cpu_seconds;
   targets.push_back({"tasks 1–3, 65 s at 2048 Hz, nothing recorded, shells built",

@@ -27,15 +27,15 @@ LoadedScenario load(const char* bundled, Overrides overrides) {
 }
 
 LoadedScenario load_step_scenario(const std::string& name) {
-  if (name == "T1") return load("task1_flat_signed_distance", {});
-  if (name == "T2") return load("task2_rotate_signed_distance", {});
-  if (name == "T2_proxy") return load("task2_rotate_signed_distance", {"rendering.algorithm=proxy"});
-  if (name == "T3") return load("task3_spin_signed_distance", {});
+  if (name == "T1") return load("poke_on_flat", {});
+  if (name == "T2") return load("rotate_in_hole", {});
+  if (name == "T2_proxy") return load("rotate_in_hole", {"rendering.algorithm=proxy"});
+  if (name == "T3") return load("round_the_wall", {});
   if (name == "unreduced_1000") {
-    return load("task3_spin_signed_distance",
+    return load("round_the_wall",
                 {"tool.diameter_m=0.00184", "initial.position_m=[0.00002,0,-0.0049]", "rendering.reduction=null"});
   }
-  return load("task3_spin_signed_distance",
+  return load("round_the_wall",
               {"hand={\"type\":\"none\"}", "device={\"type\":\"ideal\"}", "initial.position_m=[0,0,0.05]"});
 }
 

@@ -108,9 +108,9 @@ static PrecisionResult study_algorithms(const Scenario& given, const PrecisionOp
 }
 
 const PrecisionStudy kSpacingStudy = {"spacing", "shell spacing and density against the ideal trajectory",
-                                      "task2_rotate_signed_distance", study_spacing};
+                                      "rotate_in_hole", study_spacing};
 
 const PrecisionStudy kAlgorithmsStudy = {"algorithms", "every algorithm against the ideal trajectory",
-                                         "task2_rotate_signed_distance", study_algorithms};
+                                         "rotate_in_hole", study_algorithms};
 
 }  // namespace hapbench

@@ -140,6 +140,6 @@ static PrecisionResult study_merging(const Scenario& given, const PrecisionOptio
 }
 
 const PrecisionStudy kMergingStudy = {"merging", "reduced, merged and all contacts, from dozens to hundreds",
-                                      "task2_rotate_signed_distance", study_merging};
+                                      "rotate_in_hole", study_merging};
 
 }  // namespace hapbench

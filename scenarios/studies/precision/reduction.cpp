@@ -107,6 +107,6 @@ static PrecisionResult study_reduction(const Scenario& scenario, const Precision
 }
 
 const PrecisionStudy kReductionStudy = {"reduction", "gradient-based reduction against exact shaping of all contacts",
-                                        "task2_rotate_signed_distance", study_reduction};
+                                        "rotate_in_hole", study_reduction};
 
 }  // namespace hapbench

@@ -63,6 +63,6 @@ static PrecisionResult study_shaping(const Scenario& scenario, const PrecisionOp
 
 const PrecisionStudy kShapingStudy = {
     "shaping", "shaping iterations against the exact optimum, on the contacts of a drill turned in a hole",
-    "task2_rotate_signed_distance", study_shaping};
+    "rotate_in_hole", study_shaping};
 
 }  // namespace hapbench

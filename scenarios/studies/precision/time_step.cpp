@@ -63,6 +63,6 @@ static PrecisionResult study_time_step(const Scenario& given, const PrecisionOpt
 
 const PrecisionStudy kTimeStepStudy = {
     "time_step", "a drill turned in a hole against a time step 64 times finer, over the time step",
-    "task2_rotate_signed_distance", study_time_step};
+    "rotate_in_hole", study_time_step};
 
 }  // namespace hapbench
