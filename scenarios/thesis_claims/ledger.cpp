@@ -108,13 +108,24 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
   return {{"claims", std::move(claims)}};
 }
 
+namespace {
+
+/// The cell of a claim: its counts, or why it has none.
+std::string robustness_cell(const JudgedClaim& judged, const RobustnessOnRecord& robustness) {
+  if (judged.claim.timing) return "not sampled: times of one machine";
+  if (judged.finding.verdict == Verdict::not_reproducible) return "not sampled: nothing to simulate";
+  return robustness_text(robustness.of(judged));
+}
+
+}  // namespace
+
 std::string ledger_markdown(const std::vector<JudgedClaim>& judged, const RobustnessOnRecord& robustness) {
   std::string text =
       "| id | place | claim | published | measured | verdict | robustness | why |\n|---|---|---|---|---|---|---|---|\n";
   for (const JudgedClaim& j : judged) {
     text += fmt::format("| {} | {} | {} | {} | {} | **{}** | {} | {} |\n", j.claim.id, j.claim.place, j.claim.claim,
                         j.claim.published, j.finding.measured, verdict_name(j.finding.verdict),
-                        robustness_text(robustness.of(j)), j.finding.why);
+                        robustness_cell(j, robustness), j.finding.why);
   }
   return text;
 }

@@ -22,10 +22,11 @@ def load_claims(file):
     return claims
 
 
-def robustness_text(robustness):
-    """How the verdict fares over the choices on record, as the ledger's Markdown says it."""
+def robustness_text(claim):
+    """How a claim's verdict fares over the choices on record, as the ledger's Markdown says it."""
+    robustness = claim.get("robustness")
     if not robustness:
-        return ""
+        return "not sampled: times of one machine" if claim.get("timing") else ""
     holds, judged, decided_by = (robustness.get(key) for key in ("holds", "judged", "decided_by"))
     text = f"holds in {holds} of {judged}"
     if isinstance(decided_by, dict):

@@ -44,7 +44,7 @@ def ledger_section(claims):
     rows = [[cell(f'<span id="claim-{text(c.get("id", ""))}">{text(c.get("id", ""))}</span>'), cell(text(c.get("place", ""))),
              cell(text(c.get("claim", "")), classes="prose"), cell(text(c.get("published", ""))),
              cell(text(c.get("measured", "")), classes="ours"), cell(verdict_mark(c["verdict"])),
-             cell(text(robustness_text(c.get("robustness"))), classes="prose"), cell(text(c.get("rule", "")), classes="prose"), cell(text(c.get("why", "")), classes="prose")] for c in claims]
+             cell(text(robustness_text(c)), classes="prose"), cell(text(c.get("rule", "")), classes="prose"), cell(text(c.get("why", "")), classes="prose")] for c in claims]
     headings = [heading_cell(t) for t in ("Id", "Place", "Claim", "Published", "Measured", "Verdict", "Robustness", "Rule",
                                            "Why")]
     return ("<p>Each claim of the thesis, what it publishes, what the runs below give, and a verdict by the rule beside it. "
