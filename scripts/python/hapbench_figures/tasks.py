@@ -183,7 +183,7 @@ def convergence_by_task(results):
         ax.minorticks_off()
     axes[0, 0].set_ylabel("stiffness ratio")
     style.note(axes[0, 0], 0.97, 0.92, "published bound 1.5", style.VERMILION, ha="right")
-    style.note(axes[0, 1], 0.97, 0.72, "greatest", style.BLUE, ha="right")
+    style.note(axes[0, 1], 0.97, 0.86, "greatest", style.BLUE, ha="right")
     style.note(axes[0, 1], 0.97, 0.3, "least", "#9C6A00", ha="right")
     return figure, (
         "Greatest (blue circles) and least (orange squares) stiffness ratio of the contacts of a step after so many "
