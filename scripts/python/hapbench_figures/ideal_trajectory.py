@@ -3,6 +3,7 @@ import numpy as np
 from matplotlib.patches import Polygon
 
 from . import published, style
+from .results import MissingResult
 
 RUN = "task2_rotate_signed_distance"
 SIDES = (  # of the split of the hand's force
@@ -18,6 +19,8 @@ def samples(results, high):
     force, tilt = rows["hand_force_N"], rows["tilt_rad"]
     range_ = published.entries()["J1.tilt"]
     own = ((force > published.value("J1.split")) == high) & (tilt >= range_["at_least"]) & (tilt <= range_["at_most"])
+    if not own.any():
+        raise MissingResult(f"no row with a hand {'above' if high else 'below'} 2 N in {RUN}")
     every = max(1, own.sum() // MARKS)
     picked = {key: column[own][::every] for key, column in rows.items()}
     return {key: (column if key in ("tilt_rad", "hand_force_N") else 1e3 * column) for key, column in picked.items()}
