@@ -59,8 +59,8 @@ def draw_study(ax, results, study, column, label, scale, time_column, title):
     ax.set(xscale="log", yscale="log", title=title, ylabel=label, xlabel=time_label)
     if np.isfinite(ax.dataLim.get_points()).all():
         ax.set(xlim=decades(ax.dataLim.x0, ax.dataLim.x1), ylim=decades(ax.dataLim.y0, ax.dataLim.y1))
-    if study == "algorithms":  # room for the names
-        ax.set_xlim(left=ax.get_xlim()[0] / 50)
+    if study == "integrators":  # room for the names
+        ax.set_ylim(bottom=ax.get_ylim()[0] / 1e6)
 
 
 def draw_curves(ax, rows, study, column, scale, time_column):
@@ -71,7 +71,8 @@ def draw_curves(ax, rows, study, column, scale, time_column):
         time = 1e3 * time / numbers(own, "step_s") if study in VARYING_STEP else 1e6 * time
         fine = finished(own, error)
         ax.plot(time[fine], error[fine], color=colour, marker=marker, ls=line, label=name.replace("_", " "))
-        if i == 0 or not many:  # many have the same settings, whose names would cover one another
+        # Where the settings are the same, their names would cover one another.
+        if not many and (i == 0 or study != "spacing"):
             name_ends(ax, study, [row for row, keep in zip(own, fine) if keep], time[fine], error[fine])
     if len(split) > 1:
         ax.legend(loc="lower left" if many else "upper right", handlelength=2.4, fontsize=6 if many else None)
@@ -84,7 +85,6 @@ def draw_algorithms(ax, rows, column, scale, time_column):
             continue
         look = style.look(rows[i]["setting"])
         ax.plot(time[i], error[i], look.marker, color=look.colour, ms=5, label=look.label)
-    ax.legend(loc="upper left", fontsize=6, handletextpad=0.2, borderaxespad=0.1, labelspacing=0.3)
 
 
 def decades(low, high):
@@ -100,19 +100,28 @@ def name_ends(ax, study, rows, x, y):
             text = f"{1e3 * float(text):g} mm"
         elif text.startswith("dt="):
             text = f"Δt = {1e3 * float(text.removeprefix('dt=')):.3g} ms"
-        label = ax.annotate(text, (x[i], y[i]), xytext=(3, 3), textcoords="offset points", fontsize=6)
+        # The last one to the left, or it would reach into the next panel.
+        place = {"xytext": (3, 3)} if i == 0 else {"xytext": (2, 5 if study == "spacing" else -9), "ha": "right"}
+        label = ax.annotate(text, (x[i], y[i]), textcoords="offset points", fontsize=6, **place)
         label.set_in_layout(False)
 
 
 def work_precision(results):
-    figure, axes = style.panels(2, 3, 4.6)
-    for ax, study in zip(axes.flat, STUDIES):
+    figure, axes = style.panels(3, 3, 5.6, gridspec_kw={"height_ratios": [1, 1, 0.33]})
+    studies, legend = axes[:2].ravel(), axes[2]
+    for ax, study in zip(studies, STUDIES):
         draw_study(ax, results, *study)
-    style.letter(axes.flat)
+    style.letter(studies)
+    # The names of (f) below everything: they would cover its marks.
+    for ax in legend:
+        ax.axis("off")
+    handles, labels = studies[-1].get_legend_handles_labels()
+    names = legend[1].legend(handles, labels, loc="center", ncol=4, fontsize=6.5, handletextpad=0.2)
+    names.set_in_layout(False)  # it is wider than the panel it stands in
     return figure, (
         "Work against precision in six studies: error over run time on one core, a mark for each setting, first and "
-        "last named. (a) Integrators and time step, against the exact solution; (b) time step, against a 64 times finer one; "
-        "(c) shaping iterations against exact shaping; (d) threshold of the reduction, against exact shaping "
+        "last named in (b) to (e). (a) Integrators and time steps of 1 ms to 1 µs, against the exact solution; (b) time "
+        "step, against a 64 times finer one; (c) shaping iterations against exact shaping; (d) threshold of the reduction, against exact shaping "
         "of all points; (e) spacing of the block's points and (f) force algorithms, against the ideal trajectory of "
         "3.6. Left out: settings that diverged, were off by more than 10 mm or have no error. Ours; run times are "
         "those of the machine that measured them."

@@ -165,10 +165,10 @@ def draw_wedge_row(axes, results, names):
 
 def of_all_algorithms(results):
     names = [row["algorithm"] for row in results.records(f"{PEG}/comparison.csv")]
-    # Two lines of panels for each scene.
-    columns = len(names) // 2 + 1
-    figure, axes = style.panels(4, columns, 6.4)
-    for block, draw in ((axes[:2].ravel(), draw_peg_row), (axes[2:].ravel(), draw_wedge_row)):
+    columns = 5
+    lines = -(-(1 + len(names)) // columns)  # for each scene
+    figure, axes = style.panels(2 * lines, columns, 3.2 * lines)
+    for block, draw in ((axes[:lines].ravel(), draw_peg_row), (axes[lines:].ravel(), draw_wedge_row)):
         draw(block, results, names)
         block[0].set_title("contacts")
         for ax, name in zip(block[1:], names):

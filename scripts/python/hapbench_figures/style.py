@@ -42,7 +42,7 @@ ALGORITHMS = {
 
 # Those that the thesis's scenes are not run with, only the studies of every algorithm.
 BEYOND = {
-    "continuous_normal_projection": Look("continuous normal proj. (ours)", GREY, (0, (3, 1)), "*"),
+    "continuous_normal_projection": Look("contin. projection (ours)", GREY, (0, (3, 1)), "*"),
     "least_squares": Look("least squares (ours)", GREEN, (0, (1, 1.5)), "d"),
     "highest_depth": Look("highest depth", SKY, (0, (6, 2)), "<"),
     "merged_shaping": Look("merged shaping (ours)", PURPLE, (0, (4, 1, 1, 1)), "p"),
