@@ -9,6 +9,13 @@
 
 namespace hapbench {
 
+/// What contacts are copied from: points of a shell with their numbers and normals, one array per quantity, aligned and
+/// padded to whole packs.
+struct PointColumns {
+  const std::uint32_t* index;
+  const double *x, *y, *z, *nx, *ny, *nz;
+};
+
 /// The contacts of one step, one array per quantity, reused from step to step. The contact search fills index, point
 /// and normal; the depth model fills depth and gradient; point stages compact it in place; a force law that weighs its
 /// springs leaves the weights.

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "sim/contact/push_hits.hpp"
-
 namespace hapbench {
 namespace {
 
@@ -24,7 +22,6 @@ NeighbourListQuery::NeighbourListQuery(const PointShell& shell, const ToolShape&
       grid_(shell),
       scan_(grid_),
       index_(shell.padded_size()),
-      marks_(shell.padded_size() / simd::lanes),
       x_(shell.padded_size()),
       y_(shell.padded_size()),
       z_(shell.padded_size()),
@@ -90,12 +87,8 @@ void NeighbourListQuery::collect(const ToolPose& pose, double skin) noexcept {
 }
 
 void NeighbourListQuery::test_list(const ToolPose& pose, ContactBuffer& contacts) noexcept {
-  const PackRange all{0, simd::padded(list_size_) / simd::lanes};
-  tool_->mark_inside(pose, {x_.data(), y_.data(), z_.data()}, {&all, 1}, marks_.data());
   const PointColumns points{index_.data(), x_.data(), y_.data(), z_.data(), nx_.data(), ny_.data(), nz_.data()};
-  for (std::size_t pack = 0; pack < all.last; ++pack) {
-    if (marks_[pack] != 0) push_hits(marks_[pack], points, pack * simd::lanes, contacts);
-  }
+  tool_->push_inside(pose, points, list_size_, contacts);
   work_.points_tested += list_size_;
 }
 

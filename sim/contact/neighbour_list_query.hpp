@@ -42,7 +42,6 @@ class NeighbourListQuery final : public ContactQuery {
   double skin_ = 0.0;
   std::size_t list_size_ = 0;
   std::vector<std::uint32_t> index_;
-  std::vector<std::uint8_t> marks_;
   AlignedDoubles x_, y_, z_, nx_, ny_, nz_;
 };
 

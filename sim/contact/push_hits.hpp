@@ -7,12 +7,6 @@
 
 namespace hapbench {
 
-/// The points that a search compares with the tool, one array per quantity, aligned and padded to whole packs.
-struct PointColumns {
-  const std::uint32_t* index;
-  const double *x, *y, *z, *nx, *ny, *nz;
-};
-
 /// Appends those of the eight points from i on whose bit is set in `hits`, a column at a time: pushing them one by one
 /// takes longer than the search. Depth, gradient and weight are left to depth model and law. For source files only (see
 /// simd.hpp). Precondition: i is a multiple of eight, and there is room for the hits.

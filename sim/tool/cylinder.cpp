@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/contact/push_hits.hpp"
 #include "sim/tool/axial.hpp"
 
 namespace hapbench {
@@ -19,6 +20,15 @@ void mark(const ToolPose pose, const PointArrays points, std::span<const PackRan
     for (std::size_t i = range.first * simd::lanes; i < range.last * simd::lanes; i += simd::lanes) {
       *marks++ = simd::bits(test(AxialPack(pose, points.x + i, points.y + i, points.z + i)));
     }
+  }
+}
+
+/// Appends the points among the first n that pass the test. Copies for the same reason.
+template <class Test>
+void push(const ToolPose pose, const PointColumns points, std::size_t n, ContactBuffer& contacts, const Test test) {
+  for (std::size_t i = 0; i < n; i += simd::lanes) {
+    const std::uint8_t hits = simd::bits(test(AxialPack(pose, points.x + i, points.y + i, points.z + i)));
+    if (hits != 0) push_hits(hits, points, i, contacts);
   }
 }
 
@@ -60,13 +70,23 @@ Cylinder::Cylinder(double radius, double length, Tip tip)
       tip_(tip),
       radius2_(largest_square_within(radius)) {}
 
+/// Calls `use` with the test of a pack of points for the body.
+template <class Use>
+void Cylinder::with_test(const Use& use) const {
+  const simd::Pack bottom(-length_), radius2(radius2_), zero(0.0);
+  const auto in_cylinder = [=](const AxialPack& q) { return q.s <= zero && q.s >= bottom && q.rho2 <= radius2; };
+  if (tip_ == Tip::flat) return use(in_cylinder);
+  use([=](const AxialPack& q) { return in_cylinder(q) || (q.s > zero && q.distance2() <= radius2); });
+}
+
 void Cylinder::mark_inside(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges,
                            std::uint8_t* marks) const noexcept {
-  const simd::Pack bottom(-length_), radius2(radius2_), zero(0.0);
-  const auto in_cylinder = [&](const AxialPack& q) { return q.s <= zero && q.s >= bottom && q.rho2 <= radius2; };
-  if (tip_ == Tip::flat) return mark(pose, points, ranges, marks, in_cylinder);
-  mark(pose, points, ranges, marks,
-       [&](const AxialPack& q) { return in_cylinder(q) || (q.s > zero && q.distance2() <= radius2); });
+  with_test([&](const auto& test) { mark(pose, points, ranges, marks, test); });
+}
+
+void Cylinder::push_inside(const ToolPose& pose, const PointColumns& points, std::size_t n,
+                           ContactBuffer& contacts) const noexcept {
+  with_test([&](const auto& test) { push(pose, points, n, contacts, test); });
 }
 
 void Cylinder::mark_near(const ToolPose& pose, double margin, const PointArrays& points,

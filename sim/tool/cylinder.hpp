@@ -29,6 +29,8 @@ class Cylinder final : public ToolShape {
 
   void mark_inside(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges,
                    std::uint8_t* marks) const noexcept override;
+  void push_inside(const ToolPose& pose, const PointColumns& points, std::size_t n,
+                   ContactBuffer& contacts) const noexcept override;
   /// Not rounded: at the edges of a flat tip and of the bottom it reaches sqrt(2) margin, as `grown` does.
   void mark_near(const ToolPose& pose, double margin, const PointArrays& points, std::span<const PackRange> ranges,
                  std::uint8_t* marks) const noexcept override;
@@ -48,6 +50,9 @@ class Cylinder final : public ToolShape {
   Grown grown(double margin) const override;
 
  private:
+  template <class Use>
+  void with_test(const Use& use) const;
+
   double radius_;
   double length_;
   Tip tip_;

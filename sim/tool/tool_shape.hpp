@@ -49,6 +49,10 @@ class ToolShape {
   /// for each pack of the ranges, one range after the other. Marks of a pose that is not finite are zero.
   virtual void mark_inside(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges,
                            std::uint8_t* marks) const noexcept = 0;
+  /// Appends those of the first n points that `mark_inside` would mark, in their order: in one pass, since this is what
+  /// most steps ask. The points beyond n, up to the end of a pack, lie in no tool. Precondition: `contacts` has room.
+  virtual void push_inside(const ToolPose& pose, const PointColumns& points, std::size_t n,
+                           ContactBuffer& contacts) const noexcept = 0;
   /// Marks every point within `margin` >= 0 of the body, and perhaps some a little further away.
   virtual void mark_near(const ToolPose& pose, double margin, const PointArrays& points,
                          std::span<const PackRange> ranges, std::uint8_t* marks) const noexcept = 0;

@@ -56,6 +56,14 @@ void Brick::mark_inside(const ToolPose& pose, const PointArrays& points, std::sp
   mark(points, ranges, marks, [&](const Vec3& point) { return slack(pose, point) >= 0.0; });
 }
 
+void Brick::push_inside(const ToolPose& pose, const PointColumns& points, std::size_t n,
+                        ContactBuffer& contacts) const noexcept {
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 point(points.x[i], points.y[i], points.z[i]);
+    if (slack(pose, point) >= 0.0) contacts.push(points.index[i], point, {points.nx[i], points.ny[i], points.nz[i]});
+  }
+}
+
 void Brick::mark_near(const ToolPose& pose, double margin, const PointArrays& points, std::span<const PackRange> ranges,
                       std::uint8_t* marks) const noexcept {
   mark(points, ranges, marks, [&](const Vec3& point) { return slack(pose, point) >= -margin; });
