@@ -1,6 +1,6 @@
-#include <Eigen/Geometry>
 #include <algorithm>
 
+#include "algorithms/laws/averaged_direction.hpp"
 #include "algorithms/laws/laws.hpp"
 #include "sim/core/simd.hpp"
 
@@ -24,33 +24,16 @@ const ModelInfo kOriginalAveragingInfo = {
 
 namespace {
 
-/// Below this mean gradient the direction is rounding noise.
-constexpr double kCancelledBelow = 1e-9;
-
-class OriginalAveraging final : public ForceLaw {
+class OriginalAveraging final : public AveragedDirectionLaw {
  public:
-  explicit OriginalAveraging(double stiffness) : ForceLaw(stiffness) {}
+  using AveragedDirectionLaw::AveragedDirectionLaw;
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
-    set_weights(contacts, 1.0);
-    simd::Pack depths(0.0);
-    for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) depths += simd::load(&contacts.depth[i]);
-    const Vec3 gradients = gradient_sum(contacts);
-    const double length = gradients.norm();
-    if (length <= kCancelledBelow * static_cast<double>(contacts.size())) return {};
-    const Vec3 u = gradients / length;
-    return {-K_ * (simd::sum(depths) / length) * u, u * u.transpose()};
-  }
-
-  /// One spring, compressed by d_r. The law gives it no point of application; the middle of the contacts is taken.
-  SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
-    if (K_ == 0.0) return {};
-    return {spring.squaredNorm() / (2.0 * K_), mean_arm(contacts, tip).cross(spring)};
-  }
-
-  /// The velocity at that point of application, along u_r.
-  Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
-    return S * tool.angular_velocity.cross(mean_arm(contacts, tool.pose.position));
+    return force_along_mean(contacts, [&contacts](double length) {
+      simd::Pack depths(0.0);
+      for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) depths += simd::load(&contacts.depth[i]);
+      return simd::sum(depths) / length;
+    });
   }
 };
 
@@ -59,14 +42,9 @@ double bound(const RenderingConfig&, const ToolShape&, std::size_t n, double dep
   return 1e9 * std::min(1.0, static_cast<double>(n)) * depth;
 }
 
-/// S = u_r u_r^T, and the mean gradient u_r points straight in.
-WedgeStiffness wedge(const RenderingConfig&, double, double) {
-  return {1.0, 0.0};
-}
-
 }  // namespace
 
-const AlgorithmTheory kOriginalAveragingTheory = {.force_bound = bound, .wedge_stiffness = wedge};
+const AlgorithmTheory kOriginalAveragingTheory = {.force_bound = bound, .wedge_stiffness = averaged_direction_wedge};
 
 std::unique_ptr<ForceLaw> make_original_averaging(const RenderingConfig& config) {
   return std::make_unique<OriginalAveraging>(config.stiffness);
