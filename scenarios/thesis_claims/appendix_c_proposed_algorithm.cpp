@@ -19,6 +19,15 @@ constexpr const char* kLaws[] = {"shaped_stiffness", "original_averaging", "summ
                                  "virtual_coupling", "least_squares"};
 constexpr const char* kProposed = "shaped_stiffness";
 
+/// What an algorithm answers to contacts with depths and gradients, under a tool at rest.
+RenderedForce answer(ForceAlgorithm& algorithm, ContactBuffer contacts) {
+  ToolState tool;
+  tool.pose = kUpright;
+  RenderedForce force;
+  algorithm.compute(tool, contacts, force);
+  return force;
+}
+
 const MeasuredCase& proposed(const Measured& measured) {
   return *std::find_if(measured.begin(), measured.end(), [](const MeasuredCase& m) { return m.name == kProposed; });
 }
@@ -52,11 +61,7 @@ Mat3 stiffness_of(const char* law, ContactBuffer contacts) {
   Scene scene;
   scene.capacity = contacts.capacity();
   algorithm->prepare(scene);
-  ToolState tool;
-  tool.pose = kUpright;
-  RenderedForce force;
-  algorithm->compute(tool, contacts, force);
-  return force.S;
+  return answer(*algorithm, std::move(contacts)).S;
 }
 
 Measured measure_density(const Evidence&) {
@@ -91,14 +96,6 @@ Finding judge_density(const Measured& measured, const PublishedNumbers&) {
 
 constexpr double kUnnecessary = 0.05;
 
-Vec3 spring_force(ForceAlgorithm& algorithm, ContactBuffer contacts) {
-  ToolState tool;
-  tool.pose = kUpright;
-  RenderedForce force;
-  algorithm.compute(tool, contacts, force);
-  return force.spring;
-}
-
 Measured measure_local_average(const Evidence& e) {
   const LoadedScenario loaded = e.load("task2_rotate_signed_distance");
   PrecisionOptions options;
@@ -118,8 +115,8 @@ Measured measure_local_average(const Evidence& e) {
     with->prepare(scene);
     double difference = 0.0, force = 0.0;
     for (const ContactBuffer& contacts : sets) {
-      const Vec3 plain = spring_force(*without, contacts);
-      difference += (spring_force(*with, contacts) - plain).squaredNorm();
+      const Vec3 plain = answer(*without, contacts).spring;
+      difference += (answer(*with, contacts).spring - plain).squaredNorm();
       force += plain.squaredNorm();
     }
     measured.push_back({law, {{"change", {std::sqrt(difference / force)}}}});

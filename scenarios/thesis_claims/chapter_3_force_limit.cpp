@@ -8,6 +8,7 @@
 
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
+#include "scenarios/thesis_claims/firm_hand.hpp"
 #include "scenarios/thesis_claims/wording.hpp"
 
 /// Claims of 2.7, 3.5 and 4.5: the limit of the input force.
@@ -77,9 +78,6 @@ Finding judge_force_limit(const Measured& measured, const PublishedNumbers& publ
 
 constexpr double kNearlyAlways = 0.95;
 constexpr double kMostly = 0.5;
-/// A hand that is beyond the limit, for one rotation of the drill to and fro.
-const std::string kFirmHand[] = {R"(hand.force_N={"type":"sine","mean":3.5,"amplitude":1.4,"period_s":1.7})",
-                                 "time.duration_s=6"};
 
 double force_limit(const Scenario& scenario) {
   return std::visit([](const auto& device) { return device.force_limit; }, scenario.device).value();

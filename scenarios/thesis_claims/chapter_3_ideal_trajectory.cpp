@@ -7,6 +7,7 @@
 
 #include "results/summary/metric_list.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
+#include "scenarios/thesis_claims/firm_hand.hpp"
 #include "scenarios/thesis_claims/wording.hpp"
 
 /// Claim of 3.6: task 2 against the ideal trajectory. The same recording as T2 and R1.
@@ -22,10 +23,6 @@ constexpr double kAround = 1.2;
 constexpr double kDegrees[] = {0.0, 10.0, 20.0, 30.0, 40.0, 50.0};
 constexpr const char* kFirm = "the same hand held firm";
 constexpr const char* kDirection = "firm hand towards the rim by ";
-
-/// Beyond 2 N all the time, for one rotation of the drill to and fro.
-const std::vector<std::string> kHeldFirm = {R"(hand.force_N={"type":"sine","mean":3.5,"amplitude":1.4,"period_s":1.7})",
-                                            "time.duration_s=6"};
 
 /// `number(key)` is the number of that name in the section ideal_trajectory of summary.json.
 template <class Number>
@@ -56,7 +53,7 @@ Measured measure_ideal_trajectory(const Evidence& e) {
       return e.results.number("task2_rotate_" + density, "ideal_trajectory." + key);
     }));
   }
-  std::vector<std::string> overrides = kHeldFirm;
+  std::vector<std::string> overrides = kFirmHand;
   measured.push_back(firm_errors(e, kFirm, overrides));
   overrides.emplace_back();
   for (const double degrees : kDegrees) {
