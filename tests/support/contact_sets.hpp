@@ -40,4 +40,16 @@ struct GradientFamily {
 /// clustered gradients, and sets at the boundary of exact_shaping's cone.
 std::span<const GradientFamily> gradient_families();
 
+/// Calls f(contacts, family name) on random sets of all families, at most 300 contacts each, the same on every call.
+template <class F>
+void for_random_contacts(F f) {
+  Random random(1);
+  for (const auto& family : gradient_families()) {
+    for (int i = 0; i < 10; ++i) {
+      const auto gradients = family.draw(random, random_size(random, 300));
+      f(contacts_of(gradients, random_depths(random, gradients.size())), family.name);
+    }
+  }
+}
+
 }  // namespace hapbench::test

@@ -25,18 +25,6 @@ LawForce evaluate(ContactBuffer& contacts, double regularisation) {
   return make_least_squares(config_with(regularisation))->evaluate(contacts);
 }
 
-/// Calls f(contacts, family name) on random sets of all families.
-template <class F>
-void for_random_contacts(F f) {
-  Random random(1);
-  for (const auto& family : test::gradient_families()) {
-    for (int i = 0; i < 10; ++i) {
-      const auto gradients = family.draw(random, test::random_size(random, 300));
-      f(test::contacts_of(gradients, test::random_depths(random, gradients.size())), family.name);
-    }
-  }
-}
-
 /// Of x in units of a depth's sum: sums of n <= 300 terms, amplified by the condition of eps I + S_sum, at most
 /// 1 + n / eps, and by its inverse, at most 1 / eps.
 double rounding(const test::Dense& dense, double regularisation) {
@@ -45,7 +33,7 @@ double rounding(const test::Dense& dense, double regularisation) {
 }
 
 TEST(LeastSquares, IsItsFormula) {
-  for_random_contacts([](ContactBuffer contacts, const char* family) {
+  test::for_random_contacts([](ContactBuffer contacts, const char* family) {
     for (const double eps : kRegularisations) {
       const LawForce force = evaluate(contacts, eps);
       const test::Dense dense(contacts);
@@ -61,7 +49,7 @@ TEST(LeastSquares, IsItsFormula) {
 
 TEST(LeastSquares, ResolvesTheDepthsBetterThanAnyTranslationNearby) {
   Random random(2);
-  for_random_contacts([&random](ContactBuffer contacts, const char* family) {
+  test::for_random_contacts([&random](ContactBuffer contacts, const char* family) {
     for (const double eps : kRegularisations) {
       const Vec3 x = evaluate(contacts, eps).spring / -kK;
       const test::Dense dense(contacts);
@@ -79,7 +67,7 @@ TEST(LeastSquares, ResolvesTheDepthsBetterThanAnyTranslationNearby) {
 
 TEST(LeastSquares, IsVirtualCouplingOfPenaltySpringsOverEps) {
   // Penalty springs K / eps in series with a coupling spring K; S of a coupling is in units of its penalty springs.
-  for_random_contacts([](ContactBuffer contacts, const char* family) {
+  test::for_random_contacts([](ContactBuffer contacts, const char* family) {
     for (const double eps : kRegularisations) {
       RenderingConfig coupled;
       coupled.stiffness = kK / eps;
@@ -136,7 +124,7 @@ TEST(LeastSquares, OfParallelContactsApproachesKAsTheirNumberGrows) {
 }
 
 TEST(LeastSquares, IsNeverStifferThanK) {
-  for_random_contacts([](ContactBuffer contacts, const char* family) {
+  test::for_random_contacts([](ContactBuffer contacts, const char* family) {
     for (const double eps : kRegularisations) {
       const double n = static_cast<double>(contacts.size());
       // The largest eigenvalue is s / (eps + s) with s <= n.

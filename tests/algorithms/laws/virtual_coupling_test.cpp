@@ -18,18 +18,6 @@ LawForce evaluate(ContactBuffer& contacts, std::optional<double> coupling) {
   return make_virtual_coupling(config)->evaluate(contacts);
 }
 
-/// Calls f(contacts, family name) on random sets of all families.
-template <class F>
-void for_random_contacts(F f) {
-  Random random(1);
-  for (const auto& family : test::gradient_families()) {
-    for (int i = 0; i < 10; ++i) {
-      const auto gradients = family.draw(random, test::random_size(random, 300));
-      f(test::contacts_of(gradients, test::random_depths(random, gradients.size())), family.name);
-    }
-  }
-}
-
 // Rounding: sums of n <= 300 terms, amplified by the condition of K_vc I + K S, at most 1 + n K / K_vc.
 double rounding(const test::Dense& dense, double coupling) {
   const double n = static_cast<double>(dense.n());
@@ -37,7 +25,7 @@ double rounding(const test::Dense& dense, double coupling) {
 }
 
 TEST(VirtualCoupling, IsItsFormula) {
-  for_random_contacts([](ContactBuffer contacts, const char* name) {
+  test::for_random_contacts([](ContactBuffer contacts, const char* name) {
     for (const double coupling : {kK / 10, kK, 10 * kK}) {
       const LawForce force = evaluate(contacts, coupling);
       const test::Dense dense(contacts);
@@ -55,7 +43,7 @@ TEST(VirtualCoupling, IsItsFormula) {
 TEST(VirtualCoupling, BalancesAProxyBetweenTheCouplingAndTheContacts) {
   // The coupling spring ends at a proxy displaced by y from the tool, where each contact is d_i + <y, u_i> deep: what
   // the tool feels, K_vc y, is what the contacts push the proxy with.
-  for_random_contacts([](ContactBuffer contacts, const char* name) {
+  test::for_random_contacts([](ContactBuffer contacts, const char* name) {
     for (const double coupling : {kK / 10, kK, 10 * kK}) {
       const Vec3 felt = evaluate(contacts, coupling).spring;
       const Vec3 y = felt / coupling;
@@ -77,7 +65,7 @@ TEST(VirtualCoupling, OfOneContactIsTwoSpringsInSeries) {
 }
 
 TEST(VirtualCoupling, TendsToSummationAsTheCouplingStiffens) {
-  for_random_contacts([](ContactBuffer contacts, const char* name) {
+  test::for_random_contacts([](ContactBuffer contacts, const char* name) {
     RenderingConfig config;
     config.stiffness = kK;
     const LawForce sum = make_summation(config)->evaluate(contacts);
@@ -93,7 +81,7 @@ TEST(VirtualCoupling, TendsToSummationAsTheCouplingStiffens) {
 }
 
 TEST(VirtualCoupling, VanishesAsTheCouplingSoftens) {
-  for_random_contacts([](ContactBuffer contacts, const char* name) {
+  test::for_random_contacts([](ContactBuffer contacts, const char* name) {
     for (const double softer : {1e-4, 1e-8}) {
       // Both forces are at most K_vc times the proxy's displacement, and S_sum over itself plus something is at most 1.
       ASSERT_LE(lambda_max(evaluate(contacts, softer * kK).S), softer * (1 + 1e-6)) << name;
@@ -108,7 +96,7 @@ TEST(VirtualCoupling, CouplesWithKByDefault) {
 }
 
 TEST(VirtualCoupling, IsNeverStifferThanTheCoupling) {
-  for_random_contacts([](ContactBuffer contacts, const char* name) {
+  test::for_random_contacts([](ContactBuffer contacts, const char* name) {
     // S = K_vc S_sum / (K_vc + K S_sum) < K_vc / K in every direction.
     ASSERT_LE(lambda_max(evaluate(contacts, kK / 2).S), 0.5 * (1 + 1e-12)) << name;
   });
