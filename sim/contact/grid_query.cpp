@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "sim/contact/push_hits.hpp"
-
 namespace hapbench {
 
 GridQuery::GridQuery(const PointShell& shell, const ToolShape& tool)
@@ -17,15 +15,15 @@ void GridQuery::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexc
   const double reach = tool_->reach();
   const double margin = 1e-9 * reach + 1e-12 * (pose.position.cwiseAbs().maxCoeff() + reach);
   work_.points_tested += scan_.select(tool_->box_near(pose, margin, grid_.bounds()));
-  tool_->mark_inside(pose, scan_.points(), scan_.packs(), scan_.marks());
-  if (!grid_.keeps_order()) return push_sorted(contacts);
+  if (!grid_.keeps_order()) return push_sorted(pose, contacts);
   // The grid's order is the shell's.
   const PointColumns points{grid_.shell_indices(), shell_->x(),  shell_->y(), shell_->z(),
                             shell_->nx(),          shell_->ny(), shell_->nz()};
-  scan_.for_each_hit([&](std::uint8_t hits, std::size_t i) { push_hits(hits, points, i, contacts); });
+  tool_->push_inside(pose, points, scan_.packs(), contacts);
 }
 
-void GridQuery::push_sorted(ContactBuffer& contacts) noexcept {
+void GridQuery::push_sorted(const ToolPose& pose, ContactBuffer& contacts) noexcept {
+  tool_->mark_inside(pose, scan_.points(), scan_.packs(), scan_.marks());
   std::size_t found = 0;
   scan_.for_each_hit([&](std::uint8_t hits, std::size_t i) {
     for (; hits != 0; hits &= static_cast<std::uint8_t>(hits - 1)) {

@@ -19,7 +19,7 @@ class GridQuery final : public ContactQuery {
   void reset() noexcept override { work_ = {}; }
 
  private:
-  void push_sorted(ContactBuffer& contacts) noexcept;
+  void push_sorted(const ToolPose& pose, ContactBuffer& contacts) noexcept;
 
   const PointShell* shell_;
   const ToolShape* tool_;

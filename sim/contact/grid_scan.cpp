@@ -4,20 +4,16 @@ namespace hapbench {
 
 /// A run of n points meets at most n / 8 + 2 packs.
 GridScan::GridScan(const GridIndex& grid)
-    : grid_(&grid),
-      packs_(grid.columns()),
-      ends_(grid.columns()),
-      marks_(grid.size() / simd::lanes + 2 * grid.columns()) {}
+    : grid_(&grid), packs_(grid.columns()), marks_(grid.size() / simd::lanes + 2 * grid.columns()) {}
 
 std::size_t GridScan::select(const Box& box) noexcept {
   std::size_t points = 0;
   runs_ = 0;
   grid_->for_each_run(box, [&](std::uint32_t first, std::uint32_t last) {
     const std::size_t end = (last + simd::lanes - 1) / simd::lanes;
-    packs_[runs_] = {first / simd::lanes, end};
-    ends_[runs_] = {static_cast<std::uint8_t>(0xffu << first % simd::lanes),
-                    static_cast<std::uint8_t>(0xffu >> (end * simd::lanes - last))};
-    ++runs_;
+    // Whole packs: the first and the last one may reach into neighbouring columns.
+    packs_[runs_++] = {first / simd::lanes, end, static_cast<std::uint8_t>(0xffu << first % simd::lanes),
+                       static_cast<std::uint8_t>(0xffu >> (end * simd::lanes - last))};
     points += last - first;
   });
   return points;

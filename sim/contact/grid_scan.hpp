@@ -8,8 +8,8 @@
 
 namespace hapbench {
 
-/// The points of a grid in a box, as whole packs that a tool marks with one call, in memory that lasts from search to
-/// search.
+/// The points of a grid in a box, as runs of packs that a tool is asked about with one call, in memory that lasts from
+/// search to search.
 class GridScan {
  public:
   /// Allocates for the largest box. The grid must outlive the scan.
@@ -29,29 +29,17 @@ class GridScan {
   template <class Take>
   void for_each_hit(Take take) const {
     const std::uint8_t* marks = marks_.data();
-    for (std::size_t run = 0; run < runs_; ++run) {
-      const auto [first, last] = packs_[run];
-      // Whole packs, so the first and last one may reach into neighbouring columns: those points are passed over.
-      for (std::size_t pack = first; pack < last; ++pack) {
-        unsigned hits = *marks++;
-        if (hits == 0) continue;
-        if (pack == first) hits &= ends_[run].first;
-        if (pack + 1 == last) hits &= ends_[run].last;
-        if (hits != 0) take(static_cast<std::uint8_t>(hits), pack * simd::lanes);
+    for (const PackRange& run : packs()) {
+      for (std::size_t pack = run.first; pack < run.last; ++pack) {
+        if (const std::uint8_t hits = *marks++; hits != 0) take(hits, pack * simd::lanes);
       }
     }
   }
 
  private:
-  /// The bits of a run's own points in its first and its last pack.
-  struct Ends {
-    std::uint8_t first, last;
-  };
-
   const GridIndex* grid_;
   std::size_t runs_ = 0;
   std::vector<PackRange> packs_;
-  std::vector<Ends> ends_;
   std::vector<std::uint8_t> marks_;
 };
 

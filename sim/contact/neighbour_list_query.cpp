@@ -88,7 +88,8 @@ void NeighbourListQuery::collect(const ToolPose& pose, double skin) noexcept {
 
 void NeighbourListQuery::test_list(const ToolPose& pose, ContactBuffer& contacts) noexcept {
   const PointColumns points{index_.data(), x_.data(), y_.data(), z_.data(), nx_.data(), ny_.data(), nz_.data()};
-  tool_->push_inside(pose, points, list_size_, contacts);
+  const PackRange all{0, simd::padded(list_size_) / simd::lanes};
+  tool_->push_inside(pose, points, {&all, 1}, contacts);
   work_.points_tested += list_size_;
 }
 

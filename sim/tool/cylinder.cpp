@@ -17,18 +17,27 @@ template <class Test>
 void mark(const ToolPose pose, const PointArrays points, std::span<const PackRange> ranges, std::uint8_t* marks,
           const Test& test) {
   for (const PackRange range : ranges) {
+    std::uint8_t* const first = marks;
     for (std::size_t i = range.first * simd::lanes; i < range.last * simd::lanes; i += simd::lanes) {
       *marks++ = simd::bits(test(AxialPack(pose, points.x + i, points.y + i, points.z + i)));
     }
+    if (marks == first) continue;
+    *first &= range.own_in_first;
+    *(marks - 1) &= range.own_in_last;
   }
 }
 
-/// Appends the points among the first n that pass the test. Copies for the same reason.
+/// Appends the points of the ranges that pass the test. Copies for the same reason.
 template <class Test>
-void push(const ToolPose pose, const PointColumns points, std::size_t n, ContactBuffer& contacts, const Test test) {
-  for (std::size_t i = 0; i < n; i += simd::lanes) {
-    const std::uint8_t hits = simd::bits(test(AxialPack(pose, points.x + i, points.y + i, points.z + i)));
-    if (hits != 0) push_hits(hits, points, i, contacts);
+void push(const ToolPose pose, const PointColumns points, std::span<const PackRange> ranges, ContactBuffer& contacts,
+          const Test test) {
+  for (const PackRange range : ranges) {
+    for (std::size_t pack = range.first; pack < range.last; ++pack) {
+      const std::size_t i = pack * simd::lanes;
+      const std::uint8_t hits = simd::bits(test(AxialPack(pose, points.x + i, points.y + i, points.z + i)));
+      if (hits == 0) continue;
+      if (const std::uint8_t own = range.own(hits, pack); own != 0) push_hits(own, points, i, contacts);
+    }
   }
 }
 
@@ -84,9 +93,9 @@ void Cylinder::mark_inside(const ToolPose& pose, const PointArrays& points, std:
   with_test([&](const auto& test) { mark(pose, points, ranges, marks, test); });
 }
 
-void Cylinder::push_inside(const ToolPose& pose, const PointColumns& points, std::size_t n,
+void Cylinder::push_inside(const ToolPose& pose, const PointColumns& points, std::span<const PackRange> ranges,
                            ContactBuffer& contacts) const noexcept {
-  with_test([&](const auto& test) { push(pose, points, n, contacts, test); });
+  with_test([&](const auto& test) { push(pose, points, ranges, contacts, test); });
 }
 
 void Cylinder::mark_near(const ToolPose& pose, double margin, const PointArrays& points,

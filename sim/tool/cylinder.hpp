@@ -29,7 +29,7 @@ class Cylinder final : public ToolShape {
 
   void mark_inside(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges,
                    std::uint8_t* marks) const noexcept override;
-  void push_inside(const ToolPose& pose, const PointColumns& points, std::size_t n,
+  void push_inside(const ToolPose& pose, const PointColumns& points, std::span<const PackRange> ranges,
                    ContactBuffer& contacts) const noexcept override;
   /// Not rounded: at the edges of a flat tip and of the bottom it reaches sqrt(2) margin, as `grown` does.
   void mark_near(const ToolPose& pose, double margin, const PointArrays& points, std::span<const PackRange> ranges,

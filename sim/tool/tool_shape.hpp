@@ -15,9 +15,19 @@ struct PointArrays {
   const double *x, *y, *z;
 };
 
-/// Packs first … last - 1 of such arrays: points 8 first … 8 last - 1.
+/// A run of points in such arrays: packs first … last - 1, of the first and the last of which it may own but some
+/// points.
 struct PackRange {
   std::size_t first, last;
+  std::uint8_t own_in_first = 0xff;  ///< bit k: point k of the first pack belongs to the run
+  std::uint8_t own_in_last = 0xff;   ///< the same of the last pack
+
+  /// Those of the marks of a pack that are about the run's own points.
+  std::uint8_t own(std::uint8_t marks, std::size_t pack) const noexcept {
+    if (pack == first) marks &= own_in_first;
+    if (pack + 1 == last) marks &= own_in_last;
+    return marks;
+  }
 };
 
 /// The solid that touches the environment: everything that contact search, depth models, the proxy and metrics ask of
@@ -45,15 +55,15 @@ class ToolShape {
 
   // Contact search.
 
-  /// Tells which points lie in the body or on its surface: bit k of a mark says so of point k of a pack. Writes a mark
-  /// for each pack of the ranges, one range after the other. Marks of a pose that is not finite are zero.
+  /// Tells which points of the ranges lie in the body or on its surface: bit k of a mark says so of point k of a pack.
+  /// Writes a mark for each pack of the ranges, one range after the other. Marks of a pose that is not finite are zero.
   virtual void mark_inside(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges,
                            std::uint8_t* marks) const noexcept = 0;
-  /// Appends those of the first n points that `mark_inside` would mark, in their order: in one pass, since this is what
-  /// most steps ask. The points beyond n, up to the end of a pack, lie in no tool. Precondition: `contacts` has room.
-  virtual void push_inside(const ToolPose& pose, const PointColumns& points, std::size_t n,
+  /// Appends the points that `mark_inside` would mark, in their order: in one pass, since this is what most steps ask.
+  /// Precondition: `contacts` has room.
+  virtual void push_inside(const ToolPose& pose, const PointColumns& points, std::span<const PackRange> ranges,
                            ContactBuffer& contacts) const noexcept = 0;
-  /// Marks every point within `margin` >= 0 of the body, and perhaps some a little further away.
+  /// Marks every point of the ranges within `margin` >= 0 of the body, and perhaps some a little further away.
   virtual void mark_near(const ToolPose& pose, double margin, const PointArrays& points,
                          std::span<const PackRange> ranges, std::uint8_t* marks) const noexcept = 0;
   /// A box that holds every point of `bounds` that lies within `margin` of the body: best the box around the part of it

@@ -30,12 +30,13 @@ Face nearest_face(const Vec3& q, const Vec3& low, const Vec3& high) {
 template <class Inside>
 void mark(const PointArrays& points, std::span<const PackRange> ranges, std::uint8_t* marks, const Inside& inside) {
   for (const PackRange& range : ranges) {
-    for (std::size_t i = 8 * range.first; i < 8 * range.last; i += 8, ++marks) {
-      *marks = 0;
+    for (std::size_t pack = range.first; pack < range.last; ++pack) {
+      std::uint8_t bits = 0;
       for (std::size_t k = 0; k < 8; ++k) {
-        const Vec3 point(points.x[i + k], points.y[i + k], points.z[i + k]);
-        if (inside(point)) *marks = static_cast<std::uint8_t>(*marks | 1u << k);
+        const std::size_t i = 8 * pack + k;
+        if (inside(Vec3(points.x[i], points.y[i], points.z[i]))) bits = static_cast<std::uint8_t>(bits | 1u << k);
       }
+      *marks++ = range.own(bits, pack);
     }
   }
 }
@@ -56,11 +57,14 @@ void Brick::mark_inside(const ToolPose& pose, const PointArrays& points, std::sp
   mark(points, ranges, marks, [&](const Vec3& point) { return slack(pose, point) >= 0.0; });
 }
 
-void Brick::push_inside(const ToolPose& pose, const PointColumns& points, std::size_t n,
+void Brick::push_inside(const ToolPose& pose, const PointColumns& points, std::span<const PackRange> ranges,
                         ContactBuffer& contacts) const noexcept {
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 point(points.x[i], points.y[i], points.z[i]);
-    if (slack(pose, point) >= 0.0) contacts.push(points.index[i], point, {points.nx[i], points.ny[i], points.nz[i]});
+  for (const PackRange& range : ranges) {
+    for (std::size_t i = 8 * range.first; i < 8 * range.last; ++i) {
+      if ((range.own(static_cast<std::uint8_t>(1u << i % 8), i / 8)) == 0) continue;
+      const Vec3 point(points.x[i], points.y[i], points.z[i]);
+      if (slack(pose, point) >= 0.0) contacts.push(points.index[i], point, {points.nx[i], points.ny[i], points.nz[i]});
+    }
   }
 }
 
