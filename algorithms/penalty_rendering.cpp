@@ -1,7 +1,6 @@
 #include "algorithms/penalty_rendering.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <utility>
 
 #include "algorithms/stages/gradient_reduction.hpp"
@@ -41,10 +40,7 @@ void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, R
   in_contact_ = false;
   if (contacts.empty() && skips_ == Skips::taken) return;
 
-  const auto depths = contacts.depth.begin();
-  if (!contacts.empty()) {
-    out.depth_max = *std::max_element(depths, depths + static_cast<std::ptrdiff_t>(contacts.size()));
-  }
+  out.depth_max = contacts.largest_depth();
   if (local_average_) local_average_->process(contacts);
   if (reduction_) reduce(contacts);
   if (contacts.empty() && skips_ == Skips::taken) return;

@@ -2,7 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <algorithm>
 
 #include "algorithms/laws/force_law.hpp"
 #include "algorithms/proxy/nearest_allowed.hpp"
@@ -61,10 +60,7 @@ void ProxyRendering::reset() noexcept {
 
 void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   out = {};
-  if (!contacts.empty()) {
-    const auto depths = contacts.depth.begin();
-    out.depth_max = *std::max_element(depths, depths + static_cast<std::ptrdiff_t>(contacts.size()));
-  }
+  out.depth_max = contacts.largest_depth();
   if (!placed_) place(tool.pose.position);
   // A tool that jumps further than the proxy can follow, and touches nothing there, has been put there.
   if (!follow(tool.pose) && contacts.empty()) place(tool.pose.position);

@@ -53,6 +53,9 @@ class ContactBuffer {
   /// Zeroes depth, gradient and weight in the last pack beyond size().
   void pad();
 
+  /// The largest depth, perhaps negative; 0 without contacts.
+  double largest_depth() const noexcept;
+
   Vec3 point(std::size_t i) const { return {x[i], y[i], z[i]}; }
   Vec3 normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }
   Vec3 gradient(std::size_t i) const { return {ux[i], uy[i], uz[i]}; }
