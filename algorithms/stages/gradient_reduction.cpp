@@ -1,6 +1,7 @@
 #include "algorithms/stages/gradient_reduction.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 #include <vector>
 
@@ -51,30 +52,59 @@ class GradientReduction final : public PointStage {
 
   void process(ContactBuffer& contacts) noexcept override {
     if (shuffled_) shuffle(contacts);
+    const std::size_t n = contacts.size();
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      const std::size_t k = first_similar(contacts, i, kept);
-      if (k < kept) {
-        if (contacts.depth[i] > contacts.depth[k]) contacts.copy(i, k);
-      } else if (kept < config_.max_points) {
-        contacts.copy(i, kept++);
-      } else {
-        ++dropped_;
-      }
+    bool try_whole_pack = false;
+    for (std::size_t i = 0; i < n; i += simd::lanes) {
+      if (try_whole_pack && absorbs_pack(contacts, i, kept)) continue;
+      try_whole_pack = true;
+      for (std::size_t j = i; j < std::min(i + simd::lanes, n); ++j) try_whole_pack &= absorbs(contacts, j, kept);
     }
     contacts.shrink(kept);
     contacts.pad();
   }
 
  private:
+  /// Visits contact i. True if one that is kept, and stays as it is, absorbs it.
+  bool absorbs(ContactBuffer& contacts, std::size_t i, std::size_t& kept) noexcept {
+    const std::size_t k = first_similar(contacts, i, kept);
+    if (k < kept) {
+      if (!(contacts.depth[i] > contacts.depth[k])) return true;
+      contacts.copy(i, k);
+    } else if (kept < config_.max_points) {
+      contacts.copy(i, kept++);
+    } else {
+      ++dropped_;
+    }
+    return false;
+  }
+
+  /// True if those that are kept, as they are, absorb all of the eight contacts from i on, which then need no visit.
+  /// After the first packs of a smooth surface that is so for most.
+  bool absorbs_pack(const ContactBuffer& c, std::size_t i, std::size_t kept) const noexcept {
+    using simd::load, simd::Pack;
+    if (c.size() - i < simd::lanes) return false;
+    const Pack x = load(&c.ux[i]), y = load(&c.uy[i]), z = load(&c.uz[i]), threshold(config_.threshold);
+    const Pack depth = load(&c.depth[i]);
+    unsigned open = 0xff;  // lanes that nothing similar was found for
+    for (std::size_t k = 0; k < kept && open != 0; ++k) {
+      const Pack inner = x * Pack(c.ux[k]) + y * Pack(c.uy[k]) + z * Pack(c.uz[k]);
+      const unsigned similar = simd::bits(inner > threshold) & open;
+      if ((similar & simd::bits(depth > Pack(c.depth[k]))) != 0) return false;
+      open &= ~similar;
+    }
+    return open == 0;
+  }
+
   std::size_t first_similar(const ContactBuffer& c, std::size_t i, std::size_t kept) const noexcept {
     using simd::load, simd::Pack;
     const Pack x(c.ux[i]), y(c.uy[i]), z(c.uz[i]), threshold(config_.threshold);
     for (std::size_t k = 0; k < kept; k += simd::lanes) {
       const Pack inner = x * load(&c.ux[k]) + y * load(&c.uy[k]) + z * load(&c.uz[k]);
-      // Beyond `kept` lie contacts that are still to be visited.
-      const simd::Mask similar = inner > threshold && simd::lanes_between(0, kept - k);
-      if (simd::any(similar)) return k + simd::first(similar);
+      if (const unsigned similar = simd::bits(inner > threshold); similar != 0) {
+        // Beyond `kept` lie contacts that are still to be visited.
+        return std::min(kept, k + static_cast<std::size_t>(std::countr_zero(similar)));
+      }
     }
     return kept;
   }
