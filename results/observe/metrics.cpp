@@ -71,7 +71,10 @@ void MetricsObserver::add_contacts(const StepRecord& record) noexcept {
   rendered_sum_ += rendered;
   metrics_.colliding_max = std::max<std::uint64_t>(metrics_.colliding_max, record.colliding);
   metrics_.rendered_max = std::max(metrics_.rendered_max, rendered);
-  if (record.colliding > 0) ++metrics_.steps_in_contact;
+  if (record.colliding > 0) {
+    ++metrics_.steps_in_contact;
+    metrics_.last_contact = record.time;
+  }
   if (rendered == 0) return;
   if (!metrics_.ratio) metrics_.ratio = record.ratio;
   metrics_.ratio->min = std::min(metrics_.ratio->min, record.ratio.min);
@@ -118,6 +121,7 @@ Metrics merged(const std::vector<Metrics>& runs) noexcept {
     all.colliding_max = std::max(all.colliding_max, run.colliding_max);
     all.rendered_max = std::max(all.rendered_max, run.rendered_max);
     all.steps_in_contact += run.steps_in_contact;
+    if (run.last_contact) all.last_contact = std::max(*run.last_contact, all.last_contact.value_or(0.0));
     all.speed_max = std::max(all.speed_max, run.speed_max);
     if (run.explicit_friction) {
       if (!all.explicit_friction) all.explicit_friction = ExplicitFriction{run.explicit_friction->limit, 0, {}};

@@ -34,6 +34,7 @@ struct Metrics {
   double rendered_mean = 0.0;  ///< the same for the points the force law saw
   std::uint64_t rendered_max = 0;
   std::uint64_t steps_in_contact = 0;                      ///< rows with a colliding point
+  std::optional<double> last_contact = {};                 ///< time of the last of them [s]
   double speed_max = 0.0;                                  ///< [m/s]
   Vec3 final_position = Vec3::Zero();                      ///< of the last row [m]
   std::optional<ExplicitFriction> explicit_friction = {};  ///< none where friction cannot become unstable

@@ -79,6 +79,8 @@ MetricList metric_list(const Metrics& m) {
           number_if(any, "rendered_mean", m.rendered_mean),
           count("rendered_max", m.rendered_max),
           count("steps_in_contact", m.steps_in_contact),
+          number_if(any, "contact_share", static_cast<double>(m.steps_in_contact) / static_cast<double>(m.rows)),
+          number("last_contact_s", m.last_contact),
           number("speed_max_m_per_s", m.speed_max),
           number_if(m.explicit_friction.has_value(), "explicit_friction_limit_N", friction.limit),
           count_if(m.explicit_friction.has_value(), "explicit_friction_rows_beyond", friction.rows_beyond),

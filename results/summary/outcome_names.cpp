@@ -7,7 +7,8 @@ namespace hapbench {
 namespace {
 
 /// In the order of the enumeration.
-constexpr std::array<std::string_view, 4> kNames = {"completes", "leaves_hole", "tool_horizontal", "diverges"};
+constexpr std::array<std::string_view, 6> kNames = {"completes",  "leaves_hole",  "tool_horizontal",
+                                                    "no_contact", "lost_contact", "diverges"};
 static_assert(static_cast<std::size_t>(Outcome::diverges) == kNames.size() - 1);
 
 }  // namespace

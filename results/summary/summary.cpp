@@ -99,6 +99,7 @@ ordered_json summary_json(const RunSummary& run) {
                        {"steps", run.result.rows},
                        {"duration_s", number_or_null(run.duration)},
                        {"divergence", divergence_json(run.result)},
+                       {"warnings", run.warnings},
                        {"metrics", metrics_json(run.metrics)},
                        {"passivity", metrics_json(metric_list(run.passivity))}};
   if (run.energy) json["energy"] = energy_json(*run.energy);

@@ -40,6 +40,7 @@ struct RunSummary {
   std::optional<EnergyMetrics> energy;                     ///< when the scenario asks for it
   std::optional<IdealTrajectoryMetrics> ideal_trajectory;  ///< when the scenario asks for it
   std::optional<std::vector<PlaceMetrics>> targets;        ///< of a tracking hand
+  std::vector<std::string> warnings;                       ///< what may make the numbers mislead, a sentence each
   RunWork work;
   Provenance provenance;
   std::string scenario_hash;  ///< of the effective scenario

@@ -44,7 +44,7 @@ void describe_outcomes(Fields& f, std::vector<Outcome>& outcomes) {
         if (one.reads()) outcomes = {value};
       },
       [&](Fields& several) {
-        several.list(outcomes, {1, 4}, outcome);
+        several.list(outcomes, {1, outcome_names().size()}, outcome);
       });
 }
 

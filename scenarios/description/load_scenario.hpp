@@ -24,7 +24,9 @@ struct LoadedScenario {
 [[noreturn]] void rethrow_with_file(const InputError& error, const std::filesystem::path& file);
 
 /// Reads a scenario file, applies overrides `path=value` (dotted path, value as JSON or else as text; later ones win)
-/// and checks it. Throws InputError whose message starts with the file's name.
+/// and checks it. Expectations of the file are about the run it describes: with any field overridden that changes the
+/// run, its bounds on metrics do not count, and beside its outcomes those count that count by default. Throws
+/// InputError whose message starts with the file's name.
 LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
 /// The same from JSON in memory; `directory` is what relative paths start from.

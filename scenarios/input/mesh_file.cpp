@@ -65,7 +65,16 @@ std::vector<std::string> warnings_about(const MeshFindings& found, const fs::pat
   const auto warn = [&](std::size_t count, const char* text) {
     if (count > 0) warnings.push_back(one_line(file.string() + ": " + fmt::format(fmt::runtime(text), count)));
   };
-  warn(found.boundary_edges, "the mesh is open: {} boundary edges");
+  if (!found.open_edges.empty()) {
+    Box box{found.open_edges[0], found.open_edges[0]};
+    for (const Vec3& p : found.open_edges) box = {box.min.cwiseMin(p), box.max.cwiseMax(p)};
+    const Vec3 a = 1e3 * box.min, b = 1e3 * box.max;
+    warn(found.open_edges.size(),
+         fmt::format("the mesh is open: {{}} boundary edges, within x {:.3g} ... {:.3g}, y {:.3g} ... {:.3g}, z {:.3g} "
+                     "... {:.3g} mm; beyond them there is nothing to touch",
+                     a.x(), b.x(), a.y(), b.y(), a.z(), b.z())
+             .c_str());
+  }
   warn(found.crowded_edges, "the surface is cut along edges with more than two faces: {}");
   warn(found.degenerate_triangles, "faces left out, two of their corners being the same: {}");
   warn(found.rewound_triangles, "faces turned, which were wound against their neighbours: {}");
@@ -110,6 +119,10 @@ MeshFile::MeshFile(std::string_view bytes, const fs::path& file, const MeshSampl
     : sampling_(sampling),
       surface_(std::make_shared<const CheckedMesh>(surface_in(bytes, file, sampling))),
       warnings_(warnings_about(surface_->findings, file)) {}
+
+const std::vector<Vec3>& MeshFile::open_edges() const {
+  return surface_->findings.open_edges;
+}
 
 std::vector<SurfacePoint> MeshFile::points() const {
   if (!sampling_.spacing) return vertices_with_normals(surface_->mesh);

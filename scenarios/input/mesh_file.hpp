@@ -31,6 +31,8 @@ class MeshFile {
 
   /// What is odd about the mesh: it is open, or its winding had to be changed. Each names the file.
   const std::vector<std::string>& warnings() const { return warnings_; }
+  /// Middles of the edges where the surface ends [m]; none when it is closed.
+  const std::vector<Vec3>& open_edges() const;
 
   /// Points with normals: the mesh's vertices, or with a spacing those of the same surface refined until no edge is
   /// longer, thinned where there are more than one point in a cube of that size.

@@ -83,6 +83,7 @@ int compare(const CompareOptions& options) {
     }
     reports.push_back(std::move(report));
   }
+  print_warnings(run_warnings(reports));
   write_comparison(out / "comparison.csv", reports);
   print(options.output,
         fmt::format("{}\n\n{}{}\nresults in {}\n", scenarios[0].scenario.name, table.text(), friction_text(reports),

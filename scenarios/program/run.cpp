@@ -59,6 +59,7 @@ int run(const RunOptions& options) {
     if (const std::string text = friction_text({&report, 1}); !text.empty()) {
       friction += fmt::format("{}: {}", report.summary.name, text);
     }
+    print_warnings(run_warnings({&report, 1}));
     summaries.push_back(summary_json(report.summary));
     if (options.latency) {
       latencies.add(report.summary.name, *report.timing.latency);

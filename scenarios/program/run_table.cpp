@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "results/summary/outcome_names.hpp"
 
@@ -26,6 +28,26 @@ std::vector<std::string> run_cells(const RunReport& report) {
           significant(1e3 * m.depth_max),
           m.ratio ? fmt::format("{} ... {}", significant(m.ratio->min, 3), significant(m.ratio->max, 3)) : "-",
           significant(1e6 * report.timing.loop / rows, 3)};
+}
+
+std::vector<std::string> run_warnings(std::span<const RunReport> reports) {
+  std::vector<std::pair<std::string, std::string>> algorithms_by_text;  // in the order of their first appearance
+  for (const RunReport& report : reports) {
+    for (const std::string& warning : report.summary.warnings) {
+      const std::string text = report.summary.name + ": " + warning;
+      const auto known = std::find_if(algorithms_by_text.begin(), algorithms_by_text.end(),
+                                      [&text](const auto& entry) { return entry.first == text; });
+      if (known == algorithms_by_text.end()) {
+        algorithms_by_text.emplace_back(text, report.summary.algorithm);
+      } else {
+        known->second += ", " + report.summary.algorithm;
+      }
+    }
+  }
+  std::vector<std::string> warnings;
+  for (const auto& [text, algorithms] : algorithms_by_text)
+    warnings.push_back(reports.size() == 1 ? text : fmt::format("{} ({})", text, algorithms));
+  return warnings;
 }
 
 std::string friction_text(std::span<const RunReport> reports) {

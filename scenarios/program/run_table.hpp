@@ -18,6 +18,9 @@ std::vector<std::string> run_cells(const RunReport& report);
 /// Empty for other reports.
 std::string targets_text(const RunReport& report);
 
+/// The warnings of runs that were made side by side, each once with the algorithms it is about.
+std::vector<std::string> run_warnings(std::span<const RunReport> reports);
+
 /// What to know of those of several runs of one scene whose spring force passed the limit of explicit friction
 /// (results/observe/explicit_friction.hpp), a line with their algorithms; empty when none did.
 std::string friction_text(std::span<const RunReport> reports);

@@ -8,16 +8,53 @@
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/lengths.hpp"
+#include "scenarios/run/scene_facts.hpp"
 
 namespace hapbench {
 namespace {
 
 struct ValidateOptions {
   std::vector<std::string> files;
+  bool no_cache = false;
   OutputOptions output;
 };
 
+std::string surface_text(const SceneFacts::Surface& surface, std::optional<bool> is_closed) {
+  const std::string closed = is_closed ? (*is_closed ? ", closed" : ", open") : "";
+  const std::string start = surface.touching > 0 ? fmt::format("starts in contact: {} points in it, the deepest by {}",
+                                                               surface.touching, length_text(-surface.gap))
+                                                 : fmt::format("starts {} from the surface", length_text(surface.gap));
+  return fmt::format("  environment  {} ({}), {} points{}\n  tool         {}\n", size_text(surface.box),
+                     place_text(surface.box), surface.points, closed, start);
+}
+
+std::string facts_text(const Scenario& scenario, const SceneFacts& facts) {
+  std::string text = facts.surface ? surface_text(*facts.surface, facts.is_closed) : "  environment  springs\n";
+  const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);
+  text += fmt::format("  run          {} steps of {:.4g} ms = {:.4g} s", scenario.time.steps, 1e3 * scenario.time.step,
+                      duration);
+  if (facts.trials > 1) text += fmt::format(", {} trials", facts.trials);
+  return text + "\n";
+}
+
+Json box_json(const Box& box) {
+  return {{box.min.x(), box.min.y(), box.min.z()}, {box.max.x(), box.max.y(), box.max.z()}};
+}
+
+Json facts_json(const Scenario& scenario, const SceneFacts& facts) {
+  Json json = {{"steps", scenario.time.steps},
+               {"duration_s", scenario.time.step * static_cast<double>(scenario.time.steps)},
+               {"trials", facts.trials}};
+  if (!facts.surface) return json;
+  json["environment"] = {{"box_m", box_json(facts.surface->box)}, {"points", facts.surface->points}};
+  if (facts.is_closed) json["environment"]["closed"] = *facts.is_closed;
+  json["start"] = {{"gap_m", facts.surface->gap}, {"touching", facts.surface->touching}};
+  return json;
+}
+
 int validate(const ValidateOptions& options) {
+  const ShellCache cache = shell_cache(options.no_cache);
   std::string text;
   Json verdicts = Json::array();
   int status = kSuccess;
@@ -27,8 +64,10 @@ int validate(const ValidateOptions& options) {
       const std::vector<std::string> warnings = check_named_files(loaded);
       print_warnings(loaded.warnings);
       print_warnings(warnings);
-      text += fmt::format("{}: valid\n", argument);
+      const SceneFacts facts = scene_facts(loaded, cache);
+      text += fmt::format("{}: valid\n{}", argument, facts_text(loaded.scenario, facts));
       verdicts.push_back({{"file", argument}, {"valid", true}});
+      verdicts.back().update(facts_json(loaded.scenario, facts));
     } catch (const InputError& error) {
       fmt::print(stderr, "hapbench: error: {}\n", error.what());
       verdicts.push_back({{"file", argument}, {"valid", false}, {"error", error.what()}});
@@ -43,8 +82,10 @@ int validate(const ValidateOptions& options) {
 
 void add_validate(CommandLine& line) {
   auto options = std::make_shared<ValidateOptions>();
-  Command command = line.command("validate", "Check scenario files and the files they name, without running them");
+  Command command = line.command(
+      "validate", "Check scenario files and the files they name, without running them, and say what is in them");
   command.add("files", options->files, "scenario files").required();
+  add_cache_option(command, options->no_cache);
   add_output_options(command, options->output);
   command.runs([options] { return validate(*options); });
 }

@@ -1,5 +1,7 @@
 #include "scenarios/run/assemble.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -149,6 +151,14 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
   }
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
     at("/motion/position/file", [&] { loaded.files.recorded_motion(); });
+    const RecordedMotion& stroke = loaded.files.recorded_motion();
+    const double end = scenario.time.step * static_cast<double>(scenario.time.steps - 1);
+    if (stroke.start() > end || stroke.end() < 0.0) {
+      warnings.push_back(fmt::format(
+          "{}: /motion/position/file: the stroke's clock runs from {:.6g} to {:.6g} s and the run's from 0 to {:.6g} s: "
+          "the tool stays at the {} sample; let the stroke begin at 0 or adapt time",
+          loaded.file.string(), stroke.start(), stroke.end(), end, stroke.start() > end ? "first" : "last"));
+    }
   }
   return warnings;
 }

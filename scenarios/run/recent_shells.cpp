@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/environment_points.hpp"
 

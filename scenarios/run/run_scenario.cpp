@@ -1,6 +1,7 @@
 #include "scenarios/run/run_scenario.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "results/io/atomic_file.hpp"
@@ -82,6 +83,20 @@ SimulationResult merged_result(const std::vector<TrialResult>& trials) {
   return all;
 }
 
+/// Those of the first trial that has any, and how many others have some.
+std::vector<std::string> merged_warnings(const std::vector<TrialResult>& trials) {
+  const auto warns = [](const TrialResult& trial) { return !trial.warnings.empty(); };
+  const auto first = std::find_if(trials.begin(), trials.end(), warns);
+  if (first == trials.end()) return {};
+  std::vector<std::string> warnings = first->warnings;
+  if (trials.size() == 1) return warnings;
+  const auto count = std::count_if(trials.begin(), trials.end(), warns);
+  for (std::string& warning : warnings)
+    warning = fmt::format("in {} of {} trials, first in number {}: {}", count, trials.size(),
+                          first - trials.begin() + 1, warning);
+  return warnings;
+}
+
 RunSummary summarise(const Scenario& scenario, const std::vector<TrialResult>& trials,
                      const std::vector<TargetRow>& targets) {
   std::vector<Metrics> metrics;
@@ -103,6 +118,7 @@ RunSummary summarise(const Scenario& scenario, const std::vector<TrialResult>& t
   }
   if (std::holds_alternative<TrackingHandFields>(scenario.hand)) summary.targets = place_metrics(targets);
   for (const TrialResult& trial : trials) summary.work += trial.work;
+  summary.warnings = merged_warnings(trials);
   return summary;
 }
 

@@ -5,6 +5,8 @@
 #include <chrono>
 
 #include "results/allocations/allocations.hpp"
+#include "scenarios/run/encounter.hpp"
+#include "scenarios/run/open_edges.hpp"
 #include "scenarios/run/progress.hpp"
 #include "scenarios/run/recorders.hpp"
 
@@ -24,7 +26,7 @@ std::optional<double> friction_limit(const Scenario& scenario, const Motion& mot
 /// The observers of a trial: only those that the scenario asks for.
 class TrialObservers {
  public:
-  TrialObservers(const Scenario& scenario, const SimulationParts& parts, Trial trial)
+  TrialObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts, Trial trial)
       : metrics_(scenario.time.step, friction_limit(scenario, *parts.motion)), passivity_(scenario.time.step) {
     observers_.push_back(&metrics_);
     observers_.push_back(&passivity_);
@@ -36,6 +38,14 @@ class TrialObservers {
     if (scenario.record.ideal_trajectory) {
       ideal_.emplace(std::get<BlockEnvironment>(scenario.environment).block, make_cylinder(scenario.tool));
       observers_.push_back(&*ideal_);
+    }
+    if (parts.shell && parts.shell->size() > 0) {
+      approach_.emplace(parts.shell->bounds());
+      observers_.push_back(&*approach_);
+      if (std::holds_alternative<MeshEnvironment>(scenario.environment) && !files.mesh().open_edges().empty()) {
+        open_edges_.emplace(*parts.shell, files.mesh().open_edges(), parts.tool->half_width());
+        observers_.push_back(&*open_edges_);
+      }
     }
     if (const TargetTask* task = parts.hand->task()) {
       targets_.emplace(trial.subject, trial.number, task->targets());
@@ -54,8 +64,14 @@ class TrialObservers {
   const std::vector<Observer*>& all() const { return observers_; }
 
   /// Hands over what was observed.
-  void give(TrialResult& out) {
+  void give(const Scenario& scenario, const Box& environment, TrialResult& out) {
     out.metrics = metrics_.metrics();
+    if (approach_ && out.result.outcome == Outcome::completes) {
+      const Encounter encounter{out.metrics, approach_->approach(), environment};
+      out.result.outcome = outcome_of(scenario, encounter);
+      if (auto warning = warning_about(scenario, out.result.outcome, encounter)) out.warnings.push_back(*warning);
+    }
+    if (open_edges_ && open_edges_->warning()) out.warnings.push_back(*open_edges_->warning());
     out.passivity = passivity_.metrics();
     if (ledger_) out.energy = ledger_->metrics();
     if (ideal_) out.ideal_trajectory = ideal_->metrics();
@@ -68,6 +84,8 @@ class TrialObservers {
   PassivityObserver passivity_;
   std::optional<EnergyLedger> ledger_;
   std::optional<IdealTrajectoryObserver> ideal_;
+  std::optional<ApproachObserver> approach_;
+  std::optional<OpenEdgeObserver> open_edges_;
   std::optional<TargetMetricsObserver> targets_;
   std::vector<std::unique_ptr<Recorder>> recorders_;
   std::vector<Observer*> observers_;
@@ -92,7 +110,8 @@ TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell
                       const TrialOptions& options) {
   const NamedFiles files = options.files ? *options.files : NamedFiles(scenario);
   SimulationParts parts = assemble(scenario, files, std::move(shell), trial);
-  TrialObservers observers(scenario, parts, trial);
+  const Box environment = parts.shell ? parts.shell->bounds() : Box();
+  TrialObservers observers(scenario, files, parts, trial);
   if (options.directory) observers.record(scenario.record, *options.directory, parts.source->capacity());
   Progress bar(options.label, static_cast<std::uint64_t>(scenario.time.steps), !options.label.empty());
   observers.add(bar);
@@ -110,7 +129,7 @@ TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell
   out.work.steps_skipped = out.work.search.skipped;
   out.work.algorithm = simulation.algorithm().work();
   out.work.search += out.work.algorithm.search;
-  observers.give(out);
+  observers.give(scenario, environment, out);
   return out;
 }
 

@@ -20,7 +20,8 @@ struct TrialResult {
   std::optional<PassivityMetrics> passivity;
   std::optional<EnergyMetrics> energy;
   std::optional<IdealTrajectoryMetrics> ideal_trajectory;
-  std::vector<TargetRow> targets;  ///< of a tracking hand
+  std::vector<TargetRow> targets;     ///< of a tracking hand
+  std::vector<std::string> warnings;  ///< what may make the numbers mislead
   RunWork work;
   double loop_seconds = 0.0;      ///< wall time of the step loop
   std::uint64_t preemptions = 0;  ///< involuntary context switches in it

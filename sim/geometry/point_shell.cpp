@@ -14,7 +14,10 @@ PointShell::PointShell(const std::vector<SurfacePoint>& points, double cell_size
   const std::size_t padded = simd::padded(points.size());
   for (AlignedDoubles* column : {&x_, &y_, &z_}) column->assign(padded, kFarAway);
   for (AlignedDoubles* column : {&nx_, &ny_, &nz_}) column->assign(padded, 0.0);
+  if (!points.empty()) bounds_ = {points[0].position, points[0].position};
   for (std::size_t i = 0; i < points.size(); ++i) {
+    bounds_.min = bounds_.min.cwiseMin(points[i].position);
+    bounds_.max = bounds_.max.cwiseMax(points[i].position);
     x_[i] = points[i].position.x();
     y_[i] = points[i].position.y();
     z_[i] = points[i].position.z();

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/core/aligned.hpp"
+#include "sim/core/box.hpp"
 #include "sim/core/types.hpp"
 
 namespace hapbench {
@@ -36,6 +37,8 @@ class PointShell {
   std::size_t size() const { return size_; }
   std::size_t padded_size() const { return x_.size(); }
   double cell_size() const { return cell_size_; }
+  /// Of all points; at the origin when there are none.
+  const Box& bounds() const { return bounds_; }
 
   const double* x() const { return x_.data(); }
   const double* y() const { return y_.data(); }
@@ -54,6 +57,7 @@ class PointShell {
  private:
   std::size_t size_;
   double cell_size_;
+  Box bounds_;
   AlignedDoubles x_, y_, z_, nx_, ny_, nz_;
   std::vector<std::uint32_t> cells_;
 };

@@ -79,15 +79,15 @@ std::vector<Side> sides_by_edge(const std::vector<Triangle>& triangles) {
   return sides;
 }
 
-/// Pairs of triangles at the edges that have two; counts the other edges.
-std::vector<Hinge> hinges_of(const std::vector<Side>& sides, MeshFindings& found) {
+/// Pairs of triangles at the edges that have two; notes the other edges.
+std::vector<Hinge> hinges_of(const std::vector<Side>& sides, const std::vector<Vec3>& vertices, MeshFindings& found) {
   std::vector<Hinge> hinges;
   for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
     const auto same_edge = [&](std::size_t j) {
       return sides[j].low == sides[i].low && sides[j].high == sides[i].high;
     };
     for (end = i + 1; end < sides.size() && same_edge(end);) ++end;
-    if (end - i == 1) ++found.boundary_edges;
+    if (end - i == 1) found.open_edges.push_back(0.5 * (vertices[sides[i].low] + vertices[sides[i].high]));
     if (end - i > 2) ++found.crowded_edges;
     if (end - i == 2) {
       const Side &a = sides[i], &b = sides[i + 1];
@@ -171,7 +171,7 @@ CheckedMesh mesh_from_triangles(const TriangleSoup& soup) {
   if (triangles.empty()) throw MeshError("has no faces; allowed: at least one, with three different corners");
   result.findings.degenerate_triangles = soup.triangles.size() - triangles.size();
 
-  const std::vector<Hinge> hinges = hinges_of(sides_by_edge(triangles), result.findings);
+  const std::vector<Hinge> hinges = hinges_of(sides_by_edge(triangles), soup.vertices, result.findings);
   MeshParts parts(triangles.size(), hinges);
   if (const auto hinge = parts.contradiction()) {
     const Triangle& t = triangles[hinge->triangles[0]];

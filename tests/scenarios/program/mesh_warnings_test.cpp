@@ -25,7 +25,7 @@ class MeshWarnings : public testing::Test {
     const test::ProgramRun run = hapbench(arguments);
     EXPECT_EQ(run.status, 0);
     EXPECT_EQ(run.err, "hapbench: warning: " + path("scene.json") + ": /environment/file: " + path("cube.obj") +
-                           ": the mesh is open: 3 boundary edges\n")
+                           ": the mesh is open: 3 boundary edges, within x -2.5e+03 ... 2.5e+03, y -2.5e+03 ... 2.5e+03, z -2.5e+03 ... 2.5e+03 mm; beyond them there is nothing to touch\n")
         << arguments[0];
   }
   std::string path(const std::string& name) const { return (directory_ / name).string(); }

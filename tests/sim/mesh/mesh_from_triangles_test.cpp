@@ -66,7 +66,7 @@ void expect_nothing_found(const MeshFindings& found) {
   EXPECT_EQ(found.degenerate_triangles, 0u);
   EXPECT_EQ(found.rewound_triangles, 0u);
   EXPECT_EQ(found.inside_out_parts, 0u);
-  EXPECT_EQ(found.boundary_edges, 0u);
+  EXPECT_EQ(found.open_edges.size(), 0u);
 }
 
 TEST(MeshFromTriangles, OfACleanSurfaceIsThatSurface) {
@@ -96,7 +96,7 @@ TEST(MeshFromTriangles, WeldsEqualPositions) {
   loose.vertices[0].x() = std::nextafter(loose.vertices[0].x(), 2.0);
   const CheckedMesh torn = mesh_from_triangles(loose);
   EXPECT_EQ(torn.mesh.n_vertices(), 9u);
-  EXPECT_GT(torn.findings.boundary_edges, 0u);
+  EXPECT_GT(torn.findings.open_edges.size(), 0u);
 }
 
 TEST(MeshFromTriangles, LeavesOutUnusedVerticesAndTrianglesWithEqualCorners) {
@@ -107,7 +107,7 @@ TEST(MeshFromTriangles, LeavesOutUnusedVerticesAndTrianglesWithEqualCorners) {
   const auto [mesh, found] = mesh_from_triangles(soup);
   EXPECT_EQ(mesh.n_vertices(), 8u);
   EXPECT_EQ(found.degenerate_triangles, 2u);
-  EXPECT_EQ(found.boundary_edges, 0u);
+  EXPECT_EQ(found.open_edges.size(), 0u);
 }
 
 TEST(MeshFromTriangles, RefusesNothingness) {
@@ -141,7 +141,7 @@ TEST(MeshFromTriangles, CutsTheSurfaceAlongEdgesWithMoreThanTwoFaces) {
   for (const auto& c : cases) {
     const auto [mesh, found] = mesh_from_triangles(c.soup);
     EXPECT_EQ(found.crowded_edges, c.crowded);
-    EXPECT_EQ(found.boundary_edges, c.boundary);
+    EXPECT_EQ(found.open_edges.size(), c.boundary);
     EXPECT_EQ(found.rewound_triangles, 0u);
     EXPECT_EQ(mesh.n_faces(), c.soup.triangles.size());
     EXPECT_EQ(mesh.n_vertices(), c.vertices);
@@ -190,7 +190,7 @@ TEST(MeshFromTriangles, RefusesSurfacesWithOneSide) {
 
 TEST(MeshFromTriangles, AcceptsHandles) {
   const auto [mesh, found] = mesh_from_triangles(test::torus(12, 7));
-  EXPECT_EQ(found.boundary_edges, 0u);
+  EXPECT_EQ(found.open_edges.size(), 0u);
   EXPECT_EQ(euler_characteristic(mesh), 0);
   EXPECT_GT(enclosed_volume(mesh), 0.0);
 }
@@ -250,7 +250,7 @@ TEST(MeshFromTriangles, KeepsTheWindingOfOpenSurfaces) {
   open.triangles.erase(open.triangles.begin() + 2, open.triangles.begin() + 4);  // the top
   for (const bool turned : {false, true}) {
     const auto [mesh, found] = mesh_from_triangles(turned ? reversed(open) : open);
-    EXPECT_EQ(found.boundary_edges, 4u);
+    EXPECT_EQ(found.open_edges.size(), 4u);
     EXPECT_EQ(found.rewound_triangles, 0u);
     EXPECT_EQ(found.inside_out_parts, 0u);
     const auto points = vertices_with_normals(mesh);

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <limits>
+
+#include "sim/core/box.hpp"
+#include "sim/loop/observer.hpp"
+
+namespace hapbench {
+
+/// How near the tool's tip centre came to the box around an environment; 0 within the box.
+struct Approach {
+  double closest = std::numeric_limits<double>::infinity();  ///< [m]
+  double closest_time = 0.0;                                 ///< of the first row that close [s]
+  double last = std::numeric_limits<double>::infinity();     ///< of the last row [m]
+};
+
+/// Measures the approach while a run goes on; a few nanoseconds a row.
+class ApproachObserver final : public Observer {
+ public:
+  explicit ApproachObserver(const Box& environment) : environment_(environment) {}
+
+  void on_step(const StepRecord& record) noexcept override;
+  const Approach& approach() const { return approach_; }
+
+ private:
+  Box environment_;
+  Approach approach_;
+};
+
+}  // namespace hapbench

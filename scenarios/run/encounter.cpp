@@ -1,0 +1,90 @@
+#include "scenarios/run/encounter.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scenarios/run/lengths.hpp"
+
+namespace hapbench {
+namespace {
+
+/// An environment this much smaller than the tool is thick, or larger than it is long, is suspect: scenes are made of
+/// tools and places to work on, and millimetres taken for metres change either a thousandfold.
+constexpr double kTooSmall = 0.1, kTooLarge = 100.0;
+
+double diagonal(const Box& box) {
+  return (box.max - box.min).norm();
+}
+
+std::string scale_question(const Scenario& scenario) {
+  if (std::holds_alternative<MeshEnvironment>(scenario.environment)) return "is environment.scale right?";
+  if (std::holds_alternative<PointShellEnvironment>(scenario.environment))
+    return "are the points of environment.file in metres?";
+  return "are the sizes of environment in metres?";
+}
+
+/// How close the target of a hand's spring comes to the environment, looked at a thousand times.
+double closest_target(const ImpedanceHandFields& hand, const TimeFields& time, const Box& environment) {
+  constexpr int kLooks = 1000;
+  double closest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= kLooks; ++i) {
+    const double t = time.step * static_cast<double>(time.steps) * i / kLooks;
+    const Vec3 target(hand.target[0](t), hand.target[1](t), hand.target[2](t));
+    closest = std::min(closest, distance_to(environment, target));
+  }
+  return closest;
+}
+
+/// The likely cause as the end of a sentence; empty when none suggests itself.
+std::string likely_cause(const Scenario& scenario, Outcome outcome, const Encounter& e) {
+  const double size = diagonal(e.environment);
+  if (size < kTooSmall * scenario.tool.diameter || size > kTooLarge * scenario.tool.length)
+    return "; " + scale_question(scenario);
+  const bool recorded = std::holds_alternative<RecordedPosition>(scenario.motion.position);
+  if (recorded && e.approach.closest > kTooLarge * size)
+    return "; are the positions of motion.position.file in metres?";
+  if (const auto* hand = std::get_if<ImpedanceHandFields>(&scenario.hand)) {
+    const double closest = closest_target(*hand, scenario.time, e.environment);
+    if (closest > 0.0)
+      return fmt::format("; hand.target stays {} away from it: does it lead to the surface?", length_text(closest));
+  }
+  const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
+  if (is_free && std::holds_alternative<NoHandFields>(scenario.hand) && outcome == Outcome::no_contact)
+    return "; nothing pushes the tool: is hand missing?";
+  if (outcome == Outcome::lost_contact &&
+      (std::holds_alternative<ForceHandFields>(scenario.hand) || std::holds_alternative<PushHandFields>(scenario.hand)))
+    return "; a hand of constant force goes on pushing where there is no surface";
+  if (outcome == Outcome::lost_contact) return fmt::format("; the largest force was {:.3g} N", e.metrics.force_max);
+  return is_free ? "; is initial.position_m right?" : "; is motion.position right?";
+}
+
+std::string size_and_place(const Box& box) {
+  return fmt::format("{}: {}", size_text(box), place_text(box));
+}
+
+}  // namespace
+
+Outcome outcome_of(const Scenario& scenario, const Encounter& e) {
+  if (e.metrics.steps_in_contact == 0) return Outcome::no_contact;
+  const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
+  const bool left = e.approach.last > diagonal(e.environment) + scenario.tool.length;
+  return is_free && left ? Outcome::lost_contact : Outcome::completes;
+}
+
+std::optional<std::string> warning_about(const Scenario& scenario, Outcome outcome, const Encounter& e) {
+  if (outcome == Outcome::no_contact) {
+    return fmt::format("never in contact: the tip came as close as {} (at {:.4g} s) to the environment ({}){}",
+                       length_text(e.approach.closest), e.approach.closest_time, size_and_place(e.environment),
+                       likely_cause(scenario, outcome, e));
+  }
+  if (outcome != Outcome::lost_contact) return std::nullopt;
+  const double share = static_cast<double>(e.metrics.steps_in_contact) / static_cast<double>(e.metrics.rows);
+  return fmt::format("in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the environment ({}){}",
+                     100.0 * share, e.metrics.last_contact.value_or(0.0), length_text(e.approach.last),
+                     size_and_place(e.environment), likely_cause(scenario, outcome, e));
+}
+
+}  // namespace hapbench

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "results/observe/approach.hpp"
+#include "results/observe/metrics.hpp"
+#include "scenarios/description/scenario.hpp"
+
+namespace hapbench {
+
+/// What a run that did all its steps had to do with the environment.
+struct Encounter {
+  const Metrics& metrics;
+  const Approach& approach;
+  const Box& environment;  ///< around all points of the shell
+};
+
+/// The outcome of a run that completed, once it is known what it touched: `no_contact` when no row had a colliding
+/// point; `lost_contact` when a tool that moves freely ended further from the environment's box than the box is wide
+/// and the tool is long together, as one does that was thrown out or pushed past; else `completes`.
+Outcome outcome_of(const Scenario& scenario, const Encounter& encounter);
+
+/// For those two outcomes, what happened and what the likely cause is; none for others.
+std::optional<std::string> warning_about(const Scenario& scenario, Outcome outcome, const Encounter& encounter);
+
+}  // namespace hapbench

@@ -1,0 +1,56 @@
+#include "scenarios/run/scene_facts.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/environment_points.hpp"
+
+namespace hapbench {
+namespace {
+
+/// The tool's pose in the first row.
+ToolPose first_pose(const Scenario& scenario, const SimulationParts& parts) {
+  parts.hand->reset();  // it may steer the orientation
+  const bool is_free = parts.motion->position_is_free();
+  return {is_free ? scenario.initial.position : parts.motion->position_at(0.0), parts.motion->axis_at(0.0)};
+}
+
+void place_tool(const ToolShape& tool, const ToolPose& pose, const PointShell& shell, SceneFacts::Surface& surface) {
+  constexpr std::size_t kAtOnce = 4096;  // keeps the buffer small, however large the shell
+  ContactBuffer points(std::min(kAtOnce, shell.size()));
+  surface.gap = std::numeric_limits<double>::infinity();
+  for (std::size_t first = 0; first < shell.size(); first += kAtOnce) {
+    points.clear();
+    for (std::size_t i = first; i < std::min(first + kAtOnce, shell.size()); ++i) {
+      const SurfacePoint point = shell.point(i);
+      points.push(static_cast<std::uint32_t>(i), point.position, point.normal);
+    }
+    tool.surface_constraints(pose, Vec3::Zero(), 0.0, points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      surface.gap = std::min(surface.gap, -points.depth[i]);
+      if (points.depth[i] >= 0.0) ++surface.touching;
+    }
+  }
+}
+
+}  // namespace
+
+SceneFacts scene_facts(const LoadedScenario& loaded, const ShellCache& cache) {
+  const Scenario& scenario = loaded.scenario;
+  SceneFacts facts;
+  if (const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand))
+    facts.trials = hand->subjects.size() * static_cast<std::size_t>(hand->trials);
+  const auto shell = make_shell(scenario, environment_points(scenario, cache, loaded.files));
+  if (!shell || shell->size() == 0) return facts;
+  if (std::holds_alternative<MeshEnvironment>(scenario.environment))
+    facts.is_closed = loaded.files.mesh().open_edges().empty();
+  const SimulationParts parts = assemble(scenario, loaded.files, shell, {});
+  SceneFacts::Surface& surface = facts.surface.emplace();
+  surface.box = shell->bounds();
+  surface.points = shell->size();
+  place_tool(*parts.tool, first_pose(scenario, parts), *shell, surface);
+  return facts;
+}
+
+}  // namespace hapbench
