@@ -9,14 +9,20 @@
 
 namespace hapbench {
 
-/// The figures `run` and `compare` show of a run: outcome, largest force, total variation of velocity, force direction
-/// reversals, vibration power above 30 Hz, largest depth, ratio range, time per step.
+/// The figures `run` and `compare` show of a run, those that separate algorithms: outcome, share of rows in contact,
+/// largest force of the landings, then of settled contact mean force, 99 % of the force steps, rms above 30 Hz and
+/// reversals a second, then largest depth, ratio range, time per step.
 std::vector<Table::Column> run_columns();
 std::vector<std::string> run_cells(const RunReport& report);
 
 /// The tables of thesis D.4 for a report with targets: mean and standard error over subjects, a line for each place.
 /// Empty for other reports.
 std::string targets_text(const RunReport& report);
+
+/// What to know of those of several runs of one scene whose force steps far more where the reduction keeps other points
+/// than elsewhere (results/observe/reduction_jumps.hpp): a line with the numbers of the worst and all their algorithms;
+/// empty when there are none.
+std::string reduction_text(std::span<const RunReport> reports);
 
 /// What to know of those of several runs of one scene whose spring force passed the limit of explicit friction
 /// (results/observe/explicit_friction.hpp), a line with their algorithms; empty when none did.
