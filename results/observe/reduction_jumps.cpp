@@ -37,9 +37,10 @@ void ReductionJumpObserver::add(const ContactBuffer& kept, double step_squared, 
   const bool changed = !same && !now.empty() && !last_.empty();
   if (changed) ++jumps_.changes;
   if (settled && changed) jumps_.step_max_squared = std::max(jumps_.step_max_squared.value_or(0.0), step_squared);
-  if (settled && !changed) {
+  if (settled && !changed && !changed_) {
     jumps_.step_max_squared_elsewhere = std::max(jumps_.step_max_squared_elsewhere, step_squared);
   }
+  changed_ = changed;
   assert(now.size() <= last_.capacity());
   if (!same) last_.assign(now.begin(), now.end());
 }

@@ -11,9 +11,11 @@ namespace hapbench {
 /// What the reduction does to the force. It keeps some of the contacts; as the tool slides, others take their place,
 /// and the force jumps with them.
 struct ReductionJumps {
-  std::uint64_t changes = 0;                ///< rows whose set of kept points is another than the row before's
-  std::optional<double> step_max_squared;   ///< largest squared force step of such rows in settled contact [N^2]
-  double step_max_squared_elsewhere = 0.0;  ///< of the other rows in settled contact [N^2]
+  std::uint64_t changes = 0;               ///< rows whose set of kept points is another than the row before's
+  std::optional<double> step_max_squared;  ///< largest squared force step of such rows in settled contact [N^2]
+  /// Of the other rows in settled contact [N^2], but for those right after a change: a jump of the force is a jump of
+  /// the velocity one row later, which the damping answers.
+  double step_max_squared_elsewhere = 0.0;
 
   ReductionJumps& operator+=(const ReductionJumps& other) noexcept;
   std::optional<double> step_max() const noexcept;  ///< [N]
@@ -36,6 +38,7 @@ class ReductionJumpObserver {
 
  private:
   std::vector<std::uint32_t> last_;  ///< numbers of the points of the row before
+  bool changed_ = false;             ///< they were others than those before
   ReductionJumps jumps_;
 };
 

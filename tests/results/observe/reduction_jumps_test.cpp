@@ -34,6 +34,14 @@ TEST(ReductionJumps, CountRowsWithOtherPointsWhileInContact) {
   EXPECT_FALSE(jumps.stand_out());
 }
 
+TEST(ReductionJumps, LeaveOutTheRowAfterAChangeElsewhere) {
+  ReductionJumpObserver observer(1);
+  const std::pair<std::uint32_t, double> rows[] = {{1, 0.0}, {1, 1.0}, {2, 5.0}, {2, 4.0}, {2, 2.0}, {2, 1.0}};
+  for (const auto& [point, step] : rows) observer.add(kept({point}), step * step, true);
+  EXPECT_EQ(observer.jumps().step_max(), 5.0);
+  EXPECT_EQ(observer.jumps().step_max_elsewhere(), 2.0);
+}
+
 TEST(ReductionJumps, StandOutWhereTheForceStepsThreeTimesAsFar) {
   EXPECT_FALSE((ReductionJumps{5, 9.0, 1.0}.stand_out()));
   EXPECT_TRUE((ReductionJumps{5, 9.1, 1.0}.stand_out()));
