@@ -85,10 +85,10 @@ TEST_F(RunCommand, ShowsATableRowForEachScenario) {
   const ProgramRun run = hapbench({"run", "single_spring", "single_damper", "--out", out()});
   const auto lines = lines_of(run.out);
   ASSERT_EQ(lines.size(), 7u) << run.out;
-  for (const char* title : {"contact", "landing", "mean", "step", ">30 Hz", "revers.", "depth", "us/"}) {
+  for (const char* title : {"touch", "land.", "mean", "step", ">30Hz", "rev.", "depth", "us/"}) {
     EXPECT_NE(lines[0].find(title), std::string::npos) << title;
   }
-  for (const char* title : {"scenario", "algorithm", "outcome", "p99 N", "rms N", "1/s", "mm", "ratio"}) {
+  for (const char* title : {"scenario", "algorithm", "outcome", "%", "max N", "p99 N", "rms N", "1/s", "mm", "ratio"}) {
     EXPECT_NE(lines[1].find(title), std::string::npos) << title;
   }
   EXPECT_EQ(lines[3].find("single_spring  summation  completes"), 0u) << lines[3];
