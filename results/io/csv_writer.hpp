@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "results/io/atomic_file.hpp"
+#include "results/io/columns.hpp"
 #include "sim/core/types.hpp"
 
 namespace hapbench {
@@ -18,6 +20,9 @@ class CsvWriter {
  public:
   /// `header` is the first line, column names separated by commas. Throws IoError.
   CsvWriter(std::filesystem::path file, std::string_view header);
+  /// The same with the names of the columns.
+  CsvWriter(std::filesystem::path file, std::span<const Column> columns)
+      : CsvWriter(std::move(file), header_of(columns)) {}
 
   /// One row: numbers, Vec3 (three cells), text (quoted if it must be), std::optional<double> (an empty cell for none).
   /// Precondition: as many cells as the header has columns. Errors are kept for `finish`.

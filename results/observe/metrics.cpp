@@ -15,20 +15,20 @@ void add(Hash64& hash, const Vec3& v) noexcept {
 
 }  // namespace
 
-MetricsObserver::MetricsObserver(double dt, std::optional<double> friction_limit) {
+MetricsObserver::MetricsObserver(double dt, const MetricsConfig& config) : contact_forces_(dt, config.settling) {
   assert(dt > 0.0);
-  if (friction_limit) {
-    metrics_.explicit_friction = ExplicitFriction{*friction_limit, 0, {}};
-    friction_limit_squared_ = *friction_limit * *friction_limit;
+  if (config.friction_limit) {
+    metrics_.explicit_friction = ExplicitFriction{*config.friction_limit, 0, {}};
+    friction_limit_squared_ = *config.friction_limit * *config.friction_limit;
   }
+  if (config.most_reduced) reduction_.emplace(*config.most_reduced);
   const double sampling_rate = 1.0 / dt;
   if (sampling_rate > 2.0 * kVibrationCutoff) high_pass_.emplace(kVibrationCutoff, sampling_rate);
 }
 
 void MetricsObserver::on_step(const StepRecord& record) noexcept {
   add_motion(record.tool);
-  add_force(record.force);
-  add_contacts(record);
+  add_contacts(record, add_force(record.force));
   ++metrics_.rows;
 
   add(hash_, record.tool.pose.position);
@@ -49,13 +49,14 @@ void MetricsObserver::add_motion(const ToolState& tool) noexcept {
   last_velocity_ = v;
 }
 
-void MetricsObserver::add_force(const RenderedForce& force) noexcept {
+ForceChange MetricsObserver::add_force(const RenderedForce& force) noexcept {
   // Before the first row the last force is zero, which reverses nothing.
-  if (force.rendered.dot(last_force_) < 0.0) ++metrics_.force_reversals;
+  ForceChange change;
+  change.reverses = force.rendered.dot(last_force_) < 0.0;
+  if (change.reverses) ++metrics_.force_reversals;
   force_max_squared_ = std::max(force_max_squared_, force.rendered.squaredNorm());
-  if (metrics_.rows > 0) {
-    force_step_max_squared_ = std::max(force_step_max_squared_, (force.rendered - last_force_).squaredNorm());
-  }
+  if (metrics_.rows > 0) change.squared = (force.rendered - last_force_).squaredNorm();
+  force_step_max_squared_ = std::max(force_step_max_squared_, change.squared);
   metrics_.depth_max = std::max(metrics_.depth_max, force.depth_max);
   if (force.spring.squaredNorm() > friction_limit_squared_) {
     ExplicitFriction& friction = *metrics_.explicit_friction;
@@ -63,9 +64,14 @@ void MetricsObserver::add_force(const RenderedForce& force) noexcept {
     ++friction.rows_beyond;
   }
   last_force_ = force.rendered;
+  return change;
 }
 
-void MetricsObserver::add_contacts(const StepRecord& record) noexcept {
+void MetricsObserver::add_contacts(const StepRecord& record, const ForceChange& change) noexcept {
+  const auto phase = contact_forces_.add(record.force.rendered, change, record.colliding > 0);
+  if (reduction_) {
+    reduction_->add(*record.rendered, change.squared, phase == ContactForceObserver::Phase::settled);
+  }
   const std::uint64_t rendered = record.rendered->size();
   colliding_sum_ += record.colliding;
   rendered_sum_ += rendered;
@@ -87,6 +93,8 @@ Metrics MetricsObserver::metrics() const noexcept {
   m.force_step_max = std::sqrt(force_step_max_squared_);
   m.speed_max = std::sqrt(speed_max_squared_);
   m.state_hash = hash_.value();
+  m.contact = contact_forces_.forces();
+  if (reduction_) m.reduction = reduction_->jumps();
   if (m.rows == 0) return m;
 
   const auto rows = static_cast<double>(m.rows);
@@ -102,6 +110,8 @@ Metrics merged(const std::vector<Metrics>& runs) noexcept {
   Hash64 hash;
   double vibration = 0.0, colliding = 0.0, rendered = 0.0;
   bool has_vibration = true;
+  all.contact = runs.front().contact;
+  for (std::size_t i = 1; i < runs.size(); ++i) all.contact += runs[i].contact;
   for (const Metrics& run : runs) {
     const auto rows = static_cast<double>(run.rows);
     all.rows += run.rows;
@@ -129,6 +139,8 @@ Metrics merged(const std::vector<Metrics>& runs) noexcept {
       friction.rows_beyond += run.explicit_friction->rows_beyond;
       if (!friction.first_step) friction.first_step = run.explicit_friction->first_step;
     }
+    if (all.reduction && run.reduction) *all.reduction += *run.reduction;
+    if (!all.reduction) all.reduction = run.reduction;
     all.final_position = run.final_position;
     hash.word(run.state_hash);
   }

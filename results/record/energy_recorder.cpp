@@ -7,7 +7,7 @@
 namespace hapbench {
 
 EnergyRecorder::EnergyRecorder(std::filesystem::path file, std::uint64_t every, const EnergyLedger& ledger)
-    : csv_(std::move(file), kHeader), every_(every), ledger_(&ledger) {
+    : csv_(std::move(file), kColumns), every_(every), ledger_(&ledger) {
   assert(every > 0);
 }
 

@@ -7,7 +7,7 @@ namespace hapbench {
 
 IdealTrajectoryRecorder::IdealTrajectoryRecorder(std::filesystem::path file, std::uint64_t every,
                                                  const IdealTrajectoryObserver& observer)
-    : csv_(std::move(file), kHeader), every_(every), observer_(&observer) {
+    : csv_(std::move(file), kColumns), every_(every), observer_(&observer) {
   assert(every > 0);
 }
 

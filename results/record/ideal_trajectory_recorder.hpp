@@ -13,8 +13,16 @@ namespace hapbench {
 /// Lateral distances count towards where the tool leans, heights from the hole's mouth.
 class IdealTrajectoryRecorder final : public Recorder {
  public:
-  static constexpr const char* kHeader =
-      "step,time_s,tilt_rad,height_m,ideal_height_m,lateral_m,ideal_lateral_m,interpenetration_m,hand_force_N";
+  static constexpr Column kColumns[] = {
+      kStepColumn,
+      kTimeColumn,
+      {"tilt_rad", "rad", "angle of the tool's axis to the hole's"},
+      {"height_m", "m", "tip's centre above the hole's mouth; negative in the hole"},
+      {"ideal_height_m", "m", "the same of the ideal trajectory"},
+      {"lateral_m", "m", "tip's centre from the hole's axis, towards where the tool leans"},
+      {"ideal_lateral_m", "m", "the same of the ideal trajectory"},
+      {"interpenetration_m", "m", "true depth of the tool in the exact block"},
+      {"hand_force_N", "N", "norm of the hand's force"}};
 
   /// Keeps rows 0, every, 2 every, … Must observe after `observer`, which it reads. Precondition: every > 0. Throws
   /// IoError.

@@ -19,7 +19,7 @@ std::vector<int> ascending_unique(std::vector<int> values) {
 
 RatioRecorder::RatioRecorder(std::filesystem::path file, std::uint64_t every, std::vector<int> iterations,
                              ShapingOperations shaping, std::size_t capacity)
-    : csv_(std::move(file), kHeader),
+    : csv_(std::move(file), kColumns),
       every_(every),
       iterations_(ascending_unique(std::move(iterations))),
       shaping_(shaping),

@@ -24,7 +24,14 @@ struct ShapingOperations {
 /// copy of the contacts, so the run does not notice. O(n) per update, m updates in all, for the largest requested m.
 class RatioRecorder final : public Recorder {
  public:
-  static constexpr const char* kHeader = "step,time_s,iteration,rendered,ratio_min,ratio_max,lambda_max";
+  static constexpr Column kColumns[] = {
+      kStepColumn,
+      kTimeColumn,
+      {"iteration", "1", "number m of shaping updates, from equal weights 1"},
+      {"rendered", "1", "points that the force law saw"},
+      {"ratio_min", "1", "smallest stiffness ratio u^T S u of a rendered contact after m updates"},
+      {"ratio_max", "1", "largest stiffness ratio u^T S u of a rendered contact after m updates"},
+      {"lambda_max", "1", "largest eigenvalue of S after m updates: the stiffness in units of K"}};
 
   /// Keeps rows 0, every, 2 every, … `capacity`: the most contacts a row can have (ContactQuery::capacity).
   /// `iterations` in any order, duplicates count once. Precondition: every > 0, iterations >= 0. Throws IoError.

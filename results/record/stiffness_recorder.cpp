@@ -8,7 +8,7 @@
 namespace hapbench {
 
 StiffnessRecorder::StiffnessRecorder(std::filesystem::path file, std::uint64_t every)
-    : csv_(std::move(file), kHeader), every_(every) {
+    : csv_(std::move(file), kColumns), every_(every) {
   assert(every > 0);
 }
 

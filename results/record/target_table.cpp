@@ -7,7 +7,7 @@
 namespace hapbench {
 
 void write_target_table(const std::filesystem::path& file, const std::vector<TargetRow>& rows) {
-  CsvWriter csv(file, "subject,trial,target,place,removed,time_s,rows_on_target,model_force_N,speed_m_per_s");
+  CsvWriter csv(file, kTargetColumns);
   for (const TargetRow& row : rows) {
     const bool any = row.rows_on_target > 0;
     csv.row(std::uint64_t{row.subject}, std::uint64_t{row.trial}, std::uint64_t{row.target},

@@ -7,7 +7,7 @@
 namespace hapbench {
 
 TrajectoryRecorder::TrajectoryRecorder(std::filesystem::path file, std::uint64_t every)
-    : csv_(std::move(file), kHeader), every_(every) {
+    : csv_(std::move(file), kColumns), every_(every) {
   assert(every > 0);
 }
 

@@ -14,10 +14,38 @@ namespace hapbench {
 /// any point stage, 0 without contact; ratio_* are over the rendered points and empty when there is none.
 class TrajectoryRecorder final : public Recorder {
  public:
-  static constexpr const char* kHeader =
-      "step,time_s,px_m,py_m,pz_m,vx_m_per_s,vy_m_per_s,vz_m_per_s,axis_x,axis_y,axis_z,"
-      "fx_N,fy_N,fz_N,fspring_x_N,fspring_y_N,fspring_z_N,fmeas_x_N,fmeas_y_N,fmeas_z_N,fin_x_N,fin_y_N,fin_z_N,"
-      "hx_m,hy_m,hz_m,colliding,rendered,depth_max_m,ratio_min,ratio_max";
+  static constexpr Column kColumns[] = {
+      kStepColumn,
+      kTimeColumn,
+      {"px_m", "m", "x of the tip's centre"},
+      {"py_m", "m", "y of the tip's centre"},
+      {"pz_m", "m", "z of the tip's centre"},
+      {"vx_m_per_s", "m/s", "x of its velocity"},
+      {"vy_m_per_s", "m/s", "y of its velocity"},
+      {"vz_m_per_s", "m/s", "z of its velocity"},
+      {"axis_x", "1", "x of the tool's axis, the unit vector out of the tip"},
+      {"axis_y", "1", "y of the tool's axis"},
+      {"axis_z", "1", "z of the tool's axis"},
+      {"fx_N", "N", "x of f = f_render, the rendered force on the tool"},
+      {"fy_N", "N", "y of f"},
+      {"fz_N", "N", "z of f"},
+      {"fspring_x_N", "N", "x of f_spring, the part of f before damping, friction and limits"},
+      {"fspring_y_N", "N", "y of f_spring"},
+      {"fspring_z_N", "N", "z of f_spring"},
+      {"fmeas_x_N", "N", "x of f_meas, what the force sensor read of the hand"},
+      {"fmeas_y_N", "N", "y of f_meas"},
+      {"fmeas_z_N", "N", "z of f_meas"},
+      {"fin_x_N", "N", "x of f_in, what the input-force limiter made of f_meas: it moves the tool with f"},
+      {"fin_y_N", "N", "y of f_in"},
+      {"fin_z_N", "N", "z of f_in"},
+      {"hx_m", "m", "x of the handle"},
+      {"hy_m", "m", "y of the handle"},
+      {"hz_m", "m", "z of the handle"},
+      {"colliding", "1", "points in the tool or on its surface, before local average and reduction"},
+      {"rendered", "1", "points that the force law saw"},
+      {"depth_max_m", "m", "largest penetration depth of a colliding point; 0 without contact"},
+      {"ratio_min", "1", "smallest stiffness ratio u^T S u of a rendered contact; empty without contact"},
+      {"ratio_max", "1", "largest stiffness ratio u^T S u of a rendered contact; empty without contact"}};
 
   /// Keeps rows 0, every, 2 every, … Precondition: every > 0. Throws IoError.
   explicit TrajectoryRecorder(std::filesystem::path file, std::uint64_t every = 1);

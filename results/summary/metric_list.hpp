@@ -20,7 +20,9 @@ struct Metric {
   using Value = std::variant<std::monostate, std::uint64_t, double>;  ///< none, a count, a number
 
   std::string name;  ///< dots lead into sections, as in "gentle.rows"
-  Value value;
+  const char* unit = "";
+  const char* meaning = "";  ///< what it says and how it is computed; ||.|| is the Euclidean norm, f is f_render
+  Value value = {};
 };
 
 using MetricList = std::vector<Metric>;
@@ -39,6 +41,8 @@ MetricList metric_list(const std::vector<PlaceMetrics>& targets);
 Metric::Value value_of(const MetricList& list, std::string_view name);
 /// A value as a number.
 std::optional<double> number_of(const Metric::Value& value);
+/// A value as a cell of a CSV file; empty for none.
+std::string cell_text(const Metric::Value& value);
 
 /// Appends `more`, its names in the section, if one is given.
 void append(MetricList& list, std::string_view section, const MetricList& more);

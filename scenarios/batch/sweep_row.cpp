@@ -5,19 +5,12 @@
 
 #include <algorithm>
 
-#include "results/io/number_text.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
 namespace {
-
-std::string cell(const Metric::Value& value) {
-  if (const auto* count = std::get_if<std::uint64_t>(&value)) return std::to_string(*count);
-  const auto* number = std::get_if<double>(&value);
-  return number != nullptr ? std::string(NumberText(*number)) : "";
-}
 
 /// The cells every row begins with.
 std::vector<std::string> leading_cells(const SweepPlan& plan, std::size_t run) {
@@ -43,7 +36,7 @@ std::string sweep_row(const SweepPlan& plan, std::size_t run, const RunSummary& 
   cells.emplace_back(summary.expected ? "true" : "false");
   cells.push_back(std::to_string(summary.result.rows));
   const MetricList metrics = metric_list(summary);
-  for (const std::string& name : plan.metrics) cells.push_back(cell(value_of(metrics, name)));
+  for (const std::string& name : plan.metrics) cells.push_back(cell_text(value_of(metrics, name)));
   cells.push_back(hash_text(summary.metrics.state_hash));
   return fmt::format("{}", fmt::join(cells, ","));
 }

@@ -53,8 +53,8 @@ void describe(Fields& f, RenderingConfig& rendering) {
          "default surface_normal, or what the algorithm's definition fixes", Presence::no_default);
   f.boolean(key(parameter::kLocalAverage), rendering.local_average,
             "merge colliding points that share a grid cell of the shell");
-  f.field("reduction", "gradient-based reduction; null: off; default on in 3-D scenes, off in planar ones",
-          Presence::no_default, [&rendering](Fields& value) {
+  f.field("reduction", "gradient-based reduction, whose kept points change in jumps; null: off", Presence::has_default,
+          [&rendering](Fields& value) {
             value.nullable(rendering.reduction, [](Fields& r, ReductionConfig& reduction) { r.object(reduction); });
           });
   number(f, parameter::kStiffness, rendering.stiffness, "K");

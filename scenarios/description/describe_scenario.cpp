@@ -109,6 +109,14 @@ static void describe(Fields& f, RecordFields& record) {
             "block_with_hole only: compare with the ideal trajectory and write ideal_trajectory.csv");
 }
 
+static void describe(Fields& f, SettlingRule& metrics) {
+  f.number("from_s", metrics.from, {0.0, 1e9, "s"},
+           "rows in contact from here on are settled, all before are landing; null: a landing is what follows a first "
+           "touch");
+  f.number("settling_s", metrics.time, {0.0, 1e9, "s"},
+           "how long a landing lasts, and how long the tool must be away for the next touch to be a first one");
+}
+
 static void describe(Fields& f, MetricBound& bound) {
   const auto number = [](Fields& b, double& value) { b.number(value, {-1e15, 1e15}); };
   f.if_any("min", bound.min, "smallest value allowed", number);
@@ -119,16 +127,15 @@ static void describe(Fields& f, MetricBound& bound) {
 }
 
 static void describe(Fields& f, ExpectFields& expect) {
-  static const std::vector<std::string> kMetrics = metric_names();
+  static const MetricList kMetrics = metrics_without_values();
   f.field("outcome", "how the run must end, or a list of ways", Presence::has_default,
           [&expect](Fields& value) { describe_outcomes(value, expect.outcomes); });
-  f.group("metrics", "bounds on the run's metrics", [&expect](Fields& metrics) {
-    for (const std::string& name : kMetrics) {
+  f.group("metrics", "bounds on the run's metrics, min and max of each", [&expect](Fields& metrics) {
+    for (const auto& [name, unit, meaning, value] : kMetrics) {
       const auto known = expect.metrics.find(name);
       std::optional<MetricBound> bound;
       if (known != expect.metrics.end()) bound = known->second;
-      metrics.if_any(name, bound, "bounds of this metric of summary.json",
-                     [](Fields& b, MetricBound& value) { b.object(value); });
+      metrics.if_any(name, bound, meaning, [](Fields& b, MetricBound& limits) { b.object(limits); });
       if (bound) expect.metrics[name] = *bound;
     }
   });
@@ -154,6 +161,7 @@ void describe(Fields& f, Scenario& scenario) {
   f.object("integrator", scenario.integrator, "how forces become motion");
   f.object("bounds", scenario.bounds, "where a run counts as diverged");
   f.object("record", scenario.record, "what is written beside the summary");
+  f.object("metrics", scenario.metrics, "where metrics of settled contact begin");
   f.object("expect", scenario.expect, "what the run must show; each scenario is its own regression test");
   if (!f.reads()) return;
   check_relations(scenario, steps);

@@ -24,7 +24,7 @@ void profile(Fields& f, std::string_view name, Profile& profile, const char* uni
 /// The types of environments.
 std::vector<std::string> environment_names();
 
-/// Puts the thesis's parameters of the scene (Tables A.1, A.2, B.1; reduction 2.8) in place of those of springs.
+/// Puts the thesis's parameters of the scene (Tables A.1, A.2, B.1) in place of those of springs.
 void set_scene_defaults(Scenario& scenario);
 
 /// Throws InputError for fields of a scenario that contradict each other. `steps` is their number, which may be more

@@ -3,14 +3,20 @@
 
 namespace hapbench {
 
-std::vector<std::string> metric_names(const MetricSections& sections) {
+MetricList metrics_without_values(const MetricSections& sections) {
   RunSummary run;
   if (sections.energy) run.energy.emplace();
   if (sections.ideal_trajectory) run.ideal_trajectory.emplace();
   if (sections.places > 0) run.targets.emplace();
   for (std::size_t place = 0; place < sections.places; ++place) run.targets->emplace_back().place = place;
+  MetricList metrics = metric_list(run);
+  for (Metric& metric : metrics) metric.value = {};
+  return metrics;
+}
+
+std::vector<std::string> metric_names(const MetricSections& sections) {
   std::vector<std::string> names;
-  for (Metric& metric : metric_list(run)) names.push_back(std::move(metric.name));
+  for (Metric& metric : metrics_without_values(sections)) names.push_back(std::move(metric.name));
   return names;
 }
 

@@ -36,7 +36,6 @@ void set_scene_defaults(Scenario& scenario) {
   } else {
     scenario.motion.orientation->up = {0.0, 0.0, 1.0};
     rendering.mass = 0.1;
-    rendering.reduction = ReductionConfig{};
   }
 }
 

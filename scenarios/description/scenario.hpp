@@ -13,6 +13,8 @@
 #include "algorithms/rendering_config.hpp"
 #include "device_model/admittance_device.hpp"
 #include "device_model/hands/tracking_hand.hpp"
+#include "results/observe/contact_forces.hpp"
+#include "results/summary/metric_list.hpp"
 #include "sim/core/profile.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/analytic_shells.hpp"
@@ -173,6 +175,7 @@ struct Scenario {
   IntegratorFields integrator;
   DivergenceBounds bounds;
   RecordFields record;
+  SettlingRule metrics;
   ExpectFields expect;
 
   std::filesystem::path directory;  ///< of the scenario file: what relative paths start from
@@ -196,7 +199,10 @@ struct MetricSections {
   std::size_t places = 2;  ///< target places; the thesis's tasks have two
 };
 
-/// Names of the metrics of runs with these sections, in the order of the summary; by default those `expect` may bound.
+/// The metrics of runs with these sections without values, in the order of the summary; by default those `expect` may
+/// bound.
+MetricList metrics_without_values(const MetricSections& sections = {});
+/// Their names.
 std::vector<std::string> metric_names(const MetricSections& sections = {});
 
 }  // namespace hapbench

@@ -3,11 +3,10 @@
 
 #include <memory>
 
-#include "results/io/atomic_file.hpp"
-#include "results/io/csv_writer.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/comparison_table.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/expectation.hpp"
@@ -26,22 +25,6 @@ struct CompareOptions {
   Skips skips = Skips::taken;
   OutputOptions output;
 };
-
-/// The table as a file, without the time: the same comparison gives the same bytes.
-void write_comparison(const fs::path& file, const std::vector<RunReport>& reports) {
-  CsvWriter csv(file,
-                "algorithm,outcome,steps,force_max_N,velocity_total_variation_m_per_s,force_reversals,"
-                "vibration_power_above_30Hz_m2_per_s2,depth_max_m,ratio_min,ratio_max");
-  for (const RunReport& report : reports) {
-    const Metrics& m = report.summary.metrics;
-    const auto ratio_min = m.ratio ? std::optional(m.ratio->min) : std::nullopt;
-    const auto ratio_max = m.ratio ? std::optional(m.ratio->max) : std::nullopt;
-    csv.row(std::string_view(report.summary.algorithm), outcome_name(report.summary.result.outcome),
-            report.summary.result.rows, m.force_max, m.velocity_total_variation, m.force_reversals, m.vibration_power,
-            m.depth_max, ratio_min, ratio_max);
-  }
-  csv.finish();
-}
 
 int compare(const CompareOptions& options) {
   require_algorithms(options.algorithms);
@@ -86,8 +69,8 @@ int compare(const CompareOptions& options) {
   print_warnings(run_warnings(reports));
   write_comparison(out / "comparison.csv", reports);
   print(options.output,
-        fmt::format("{}\n\n{}{}\nresults in {}\n", scenarios[0].scenario.name, table.text(), friction_text(reports),
-                    out.string()),
+        fmt::format("{}\n\n{}{}{}\nresults in {}\n", scenarios[0].scenario.name, table.text(), friction_text(reports),
+                    reduction_text(reports), out.string()),
         summaries);
   return status;
 }

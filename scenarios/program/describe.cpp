@@ -9,6 +9,7 @@
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/describe_results.hpp"
 #include "scenarios/program/schema_text.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/studies/stability/map_scenes.hpp"
@@ -17,11 +18,6 @@
 
 namespace hapbench {
 namespace {
-
-struct Description {
-  std::string text;
-  Json json;
-};
 
 Description describe_model(const char* kind, const ModelInfo& info) {
   Description d;
@@ -115,7 +111,19 @@ std::vector<std::string> all_names() {
   for (const IntegratorEntry* entry : kIntegrators) names.emplace_back(entry->info.name);
   for (const std::string& name : environment_names()) names.push_back(name);
   for (const BundledScenario& bundled : bundled_scenarios()) names.push_back(bundled.name);
+  for (const std::string& name : result_names()) names.push_back(name);
   return names;
+}
+
+Description joined(const std::vector<Description>& meanings) {
+  if (meanings.size() == 1) return meanings.front();
+  Description all;
+  all.json = Json::array();
+  for (const Description& meaning : meanings) {
+    all.text += (all.text.empty() ? "" : "\n") + meaning.text;
+    all.json.push_back(meaning.json);
+  }
+  return all;
 }
 
 Description describe_name(const std::string& name) {
@@ -123,18 +131,16 @@ Description describe_name(const std::string& name) {
   if (name == "stability") return describe_stability();
   if (name == "choices_schema") return {json_text(choices_schema()), choices_schema()};
   if (name == "schema") return {json_text(scenario_schema()), scenario_schema()};
-  Description d;
-  const auto add = [&d](Description more) {
-    d.text += (d.text.empty() ? "" : "\n") + more.text;
-    d.json = d.json.is_null() ? more.json : Json::array({d.json, more.json});
-  };
+  std::vector<Description> meanings;
+  const auto add = [&meanings](Description more) { meanings.push_back(std::move(more)); };
   // A name may mean two things: normal_projection is an algorithm and a depth model.
   if (const AlgorithmEntry* entry = find_algorithm(name)) add(describe_model("algorithm", *entry->info));
   if (const DepthModelEntry* entry = find_depth_model(name)) add(describe_model("depth model", *entry->info));
   if (const ModelInfo* stage = find_stage(name)) add(describe_model("stage", *stage));
   if (const IntegratorEntry* entry = find_integrator(name)) add(describe_model("integrator", entry->info));
-  if (!d.text.empty()) return d;
-  if (const Json* fields = find_in_schema(scenario_schema_once(), name)) return {fields_text(name, *fields), *fields};
+  for (Description& result : describe_results(name)) add(std::move(result));
+  if (const Json* fields = find_in_schema(scenario_schema_once(), name)) add({fields_text(name, *fields), *fields});
+  if (!meanings.empty()) return joined(meanings);
   for (const BundledScenario& bundled : bundled_scenarios()) {
     if (bundled.name == name) return describe_scenario(bundled.file);
   }
@@ -156,11 +162,13 @@ void add_describe(CommandLine& line) {
   auto options = std::make_shared<Options>();
   Command command = line.command("describe",
                                  "Explain an algorithm, a depth model, an integrator, an environment, a field, a "
-                                 "scenario, the cache or the stability maps");
+                                 "scenario, a metric, a column or file of the results, the cache or the stability "
+                                 "maps");
   command
       .add("name", options->name,
            "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
-           "\"choices_schema\", \"stability\", or \"cache\"")
+           "\"choices_schema\", \"stability\", \"cache\"; a metric or a column, \"metrics\" or \"columns\" for all of "
+           "them, or a file such as trajectory.csv")
       .required();
   add_output_options(command, options->output);
   command.runs([options] {

@@ -48,7 +48,7 @@ int run(const RunOptions& options) {
   LatencyTable latencies;
   Json summaries = Json::array();
   const ShellCache cache = shell_cache(options.no_cache || options.skips == Skips::off);
-  std::string targets, friction;
+  std::string targets, warnings;
   int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
     const RunReport report = run_scenario(scenarios[i], directories[i], !options.output.quiet, cache);
@@ -56,8 +56,8 @@ int run(const RunOptions& options) {
     cells.insert(cells.begin(), {report.summary.name, report.summary.algorithm});
     table.add(std::move(cells));
     targets += targets_text(report);
-    if (const std::string text = friction_text({&report, 1}); !text.empty()) {
-      friction += fmt::format("{}: {}", report.summary.name, text);
+    for (const std::string& text : {friction_text({&report, 1}), reduction_text({&report, 1})}) {
+      if (!text.empty()) warnings += fmt::format("{}: {}", report.summary.name, text);
     }
     print_warnings(run_warnings({&report, 1}));
     summaries.push_back(summary_json(report.summary));
@@ -73,7 +73,7 @@ int run(const RunOptions& options) {
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
   const std::string latency_text = options.latency ? "\n" + latencies.text() : "";
   print(options.output,
-        table.text() + friction + targets + latency_text + fmt::format("\nresults in {}\n", where.string()), summaries);
+        table.text() + warnings + targets + latency_text + fmt::format("\nresults in {}\n", where.string()), summaries);
   return status;
 }
 

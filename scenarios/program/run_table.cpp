@@ -1,33 +1,63 @@
 #include "scenarios/program/run_table.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "results/summary/outcome_names.hpp"
 
 namespace hapbench {
+namespace {
+
+/// As narrow as it gets: "1440" in place of "1.44e+03".
+std::string cell(std::optional<double> value, int digits = 3) {
+  if (value && std::abs(*value) >= 100.0 && std::abs(*value) < 1e6) return fmt::format("{:.0f}", *value);
+  return significant(value.value_or(std::numeric_limits<double>::quiet_NaN()), digits);
+}
+
+}  // namespace
 
 std::vector<Table::Column> run_columns() {
-  return {{"outcome", false},  {"steps"},        {"max force N"}, {"velocity TV m/s"}, {"reversals"},
-          {"vibration m2/s2"}, {"max depth mm"}, {"ratio"},       {"us/step"}};
+  return {{"outcome", false}, {"touch\n%"},  {"land.\nmax N"}, {"mean\nN"},      {"step\np99 N"},
+          {">30Hz\nrms N"},   {"rev.\n1/s"}, {"depth\nmm"},    {"ratio", false}, {"us/\nstep"}};
 }
 
 std::vector<std::string> run_cells(const RunReport& report) {
   const Metrics& m = report.summary.metrics;
-  const double none = std::numeric_limits<double>::quiet_NaN();
+  const ContactForces& contact = m.contact;
   const auto rows = static_cast<double>(report.summary.result.rows);
   return {std::string(outcome_name(report.summary.result.outcome)),
-          std::to_string(report.summary.result.rows),
-          significant(m.force_max),
-          significant(m.velocity_total_variation),
-          std::to_string(m.force_reversals),
-          significant(m.vibration_power.value_or(none), 3),
-          significant(1e3 * m.depth_max),
-          m.ratio ? fmt::format("{} ... {}", significant(m.ratio->min, 3), significant(m.ratio->max, 3)) : "-",
-          significant(1e6 * report.timing.loop / rows, 3)};
+          cell(100.0 * static_cast<double>(m.steps_in_contact) / rows),
+          cell(contact.landing_max()),
+          cell(contact.mean()),
+          cell(contact.step_p99()),
+          cell(contact.rms_above_cutoff()),
+          cell(contact.reversals_per_second()),
+          cell(1e3 * m.depth_max),
+          m.ratio ? fmt::format("{}..{}", cell(m.ratio->min, 2), cell(m.ratio->max, 2)) : "-",
+          cell(1e6 * report.timing.loop / rows)};
+}
+
+std::string reduction_text(std::span<const RunReport> reports) {
+  const RunReport* worst = nullptr;
+  std::vector<std::string> names;
+  for (const RunReport& report : reports) {
+    const auto& jumps = report.summary.metrics.reduction;
+    if (!jumps || !jumps->stand_out()) continue;
+    names.push_back(report.summary.algorithm);
+    if (worst == nullptr || jumps->step_max() > worst->summary.metrics.reduction->step_max()) worst = &report;
+  }
+  if (worst == nullptr) return "";
+  const ReductionJumps& jumps = *worst->summary.metrics.reduction;
+  return fmt::format(
+      "warning: reduction: kept points change in {} of {} steps, force steps up to {} N there and {} N elsewhere; "
+      "rendering.reduction=null keeps them all: {}\n",
+      jumps.changes, worst->summary.result.rows, cell(jumps.step_max(), 2), cell(jumps.step_max_elsewhere(), 2),
+      fmt::join(names, ", "));
 }
 
 std::vector<std::string> run_warnings(std::span<const RunReport> reports) {

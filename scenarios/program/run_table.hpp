@@ -9,8 +9,9 @@
 
 namespace hapbench {
 
-/// The figures `run` and `compare` show of a run: outcome, largest force, total variation of velocity, force direction
-/// reversals, vibration power above 30 Hz, largest depth, ratio range, time per step.
+/// The figures `run` and `compare` show of a run, those that separate algorithms: outcome, share of rows in contact,
+/// largest force of the landings, then of settled contact mean force, 99 % of the force steps, rms above 30 Hz and
+/// reversals a second, then largest depth, ratio range, time per step.
 std::vector<Table::Column> run_columns();
 std::vector<std::string> run_cells(const RunReport& report);
 
@@ -20,6 +21,11 @@ std::string targets_text(const RunReport& report);
 
 /// The warnings of runs that were made side by side, each once with the algorithms it is about.
 std::vector<std::string> run_warnings(std::span<const RunReport> reports);
+
+/// What to know of those of several runs of one scene whose force steps far more where the reduction keeps other points
+/// than elsewhere (results/observe/reduction_jumps.hpp): a line with the numbers of the worst and all their algorithms;
+/// empty when there are none.
+std::string reduction_text(std::span<const RunReport> reports);
 
 /// What to know of those of several runs of one scene whose spring force passed the limit of explicit friction
 /// (results/observe/explicit_friction.hpp), a line with their algorithms; empty when none did.

@@ -11,6 +11,7 @@
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
@@ -28,7 +29,7 @@ std::string_view case_name(StabilityCase which) {
 }
 
 void write_limits(const fs::path& file, const std::vector<StabilityLimit>& limits) {
-  CsvWriter csv(file, "case,unit,analytic,eigenvalue,simulation,damping_at_limit_N_s_per_m,lambda_max");
+  CsvWriter csv(file, kStabilityLimitColumns);
   for (const StabilityLimit& limit : limits) {
     csv.row(case_name(limit.which), std::string_view(limit.unit), limit.analytic, limit.eigenvalue, limit.simulation,
             limit.damping_at_limit, limit.lambda);
@@ -37,7 +38,7 @@ void write_limits(const fs::path& file, const std::vector<StabilityLimit>& limit
 }
 
 void write_root_locus(const fs::path& file, const std::vector<RootLocusPoint>& locus) {
-  CsvWriter csv(file, "case,value,first_real,first_imaginary,second_real,second_imaginary,spectral_radius");
+  CsvWriter csv(file, kRootLocusColumns);
   for (const RootLocusPoint& point : locus) {
     csv.row(case_name(point.which), point.value, point.first.real(), point.first.imag(), point.second.real(),
             point.second.imag(), std::max(std::abs(point.first), std::abs(point.second)));

@@ -8,6 +8,7 @@
 
 #include "results/io/csv_writer.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
 
@@ -53,7 +54,7 @@ std::string label(const MapSubject& subject) {
 
 void write_points(const fs::path& directory, const StabilityMap& map, const std::vector<MapResult>& results) {
   CsvWriter csv(directory / fmt::format("stability_map_{}.csv", map.name),
-                fmt::format("algorithm,{},{},class,lambda_max,stability_margin,integrator", map.x.name, map.y.name));
+                map_header(kStabilityMapColumns, map.x.name, map.y.name));
   for (const MapResult& result : results) {
     for (const MapPoint& p : result.points) {
       csv.row(std::string_view(result.subject.algorithm), p.x, p.y, motion_class_name(p.motion), p.lambda, p.margin,
@@ -65,8 +66,7 @@ void write_points(const fs::path& directory, const StabilityMap& map, const std:
 
 void write_boundary(const fs::path& directory, const StabilityMap& map, const std::vector<MapResult>& results) {
   CsvWriter csv(directory / fmt::format("stability_boundary_{}.csv", map.name),
-                fmt::format("algorithm,{},analytic_{},simulation_{},relative_difference,no_theory,integrator",
-                            map.x.name, map.y.name, map.y.name));
+                map_header(kStabilityBoundaryColumns, map.x.name, map.y.name));
   for (const MapResult& result : results) {
     for (const BoundaryPoint& p : result.boundary) {
       csv.row(std::string_view(result.subject.algorithm), p.x, p.analytic, p.simulation, p.difference(),

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "results/io/csv_writer.hpp"
+#include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/studies/stress/law_stress.hpp"
@@ -12,9 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void write_counts(const fs::path& file, const std::vector<StressCounts>& all) {
-  CsvWriter csv(file,
-                "algorithm,sets,in_contact,non_finite,out_of_bound,points_dropped,largest_force_per_K_d,"
-                "largest_share_of_bound");
+  CsvWriter csv(file, kStressColumns);
   for (const StressCounts& c : all) {
     csv.row(std::string_view(c.algorithm), c.sets, c.in_contact, c.non_finite, c.out_of_bound, c.points_dropped,
             c.largest_force, c.largest_share);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hapbench {
@@ -13,10 +14,22 @@ void Table::add(std::vector<std::string> cells) {
   rows_.push_back(std::move(cells));
 }
 
+namespace {
+
+/// The upper and the lower line of a title; one line is the lower.
+std::array<std::string, 2> title_lines(const std::string& title) {
+  const std::size_t end = title.find('\n');
+  return end == std::string::npos ? std::array<std::string, 2>{"", title}
+                                  : std::array<std::string, 2>{title.substr(0, end), title.substr(end + 1)};
+}
+
+}  // namespace
+
 std::string Table::text() const {
   std::vector<std::size_t> widths;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
-    std::size_t width = columns_[c].title.size();
+    const auto [upper, lower] = title_lines(columns_[c].title);
+    std::size_t width = std::max(upper.size(), lower.size());
     for (const auto& row : rows_) width = std::max(width, row[c].size());
     widths.push_back(width);
   }
@@ -29,10 +42,32 @@ std::string Table::text() const {
     text.erase(text.find_last_not_of(' ') + 1);
     return text + "\n";
   };
-  std::string text = line([&](std::size_t c) { return columns_[c].title; });
+  std::string text = line([&](std::size_t c) { return title_lines(columns_[c].title)[0]; });
+  if (text == "\n") text.clear();
+  text += line([&](std::size_t c) { return title_lines(columns_[c].title)[1]; });
   text += line([&](std::size_t c) { return std::string(widths[c], '-'); });
   for (const auto& row : rows_) text += line([&](std::size_t c) { return row[c]; });
   return text;
+}
+
+std::string wrapped(std::string_view text, std::size_t indent, std::size_t width) {
+  std::string lines;
+  std::size_t column = width;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    if (column + 1 + word.size() > width) {
+      if (!lines.empty()) lines += '\n';
+      lines.append(indent, ' ');
+      column = indent;
+    } else {
+      lines += ' ';
+      ++column;
+    }
+    lines += word;
+    column += word.size();
+  }
+  return lines + "\n";
 }
 
 std::string significant(double value, int digits) {

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hapbench {
 
 /// A table for the terminal: columns as wide as their widest cell, a rule under the header. Numbers to the right, text
-/// to the left.
+/// to the left. A title may have two lines.
 class Table {
  public:
   /// One column: its title, and whether its cells are numbers.
@@ -24,6 +25,9 @@ class Table {
   std::vector<Column> columns_;
   std::vector<std::vector<std::string>> rows_;
 };
+
+/// Prose of at most `width` columns a line, each behind `indent` spaces.
+std::string wrapped(std::string_view text, std::size_t indent = 2, std::size_t width = 100);
 
 /// A number for people: `digits` significant ones, "-" for none.
 std::string significant(double value, int digits = 4);

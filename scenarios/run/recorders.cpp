@@ -18,16 +18,9 @@ std::uint64_t every(const RecordedTrial& trial) {
   return static_cast<std::uint64_t>(trial.fields.every);
 }
 
-Made trajectory(const RecordedTrial& t, const fs::path& file) {
-  return t.fields.trajectory ? std::make_unique<TrajectoryRecorder>(file, every(t)) : nullptr;
-}
-
-Made contacts(const RecordedTrial& t, const fs::path& file) {
-  return t.fields.contacts ? std::make_unique<ContactRecorder>(file, every(t)) : nullptr;
-}
-
-Made stiffness_tensor(const RecordedTrial& t, const fs::path& file) {
-  return t.fields.stiffness_tensor ? std::make_unique<StiffnessRecorder>(file, every(t)) : nullptr;
+template <class Plain>
+Made plain(const RecordedTrial& t, const fs::path& file) {
+  return std::make_unique<Plain>(file, every(t));
 }
 
 Mat3 start_shaping(ContactBuffer& contacts) noexcept {
@@ -36,43 +29,71 @@ Mat3 start_shaping(ContactBuffer& contacts) noexcept {
 
 Made ratios(const RecordedTrial& t, const fs::path& file) {
   const auto& asked = t.fields.ratio_iterations;
-  if (asked.empty()) return nullptr;
   const std::vector<int> iterations(asked.begin(), asked.end());
   const ShapingOperations shaping{start_shaping, update_shaped_weights};
   return std::make_unique<RatioRecorder>(file, every(t), iterations, shaping, t.contact_capacity);
 }
 
 Made energy(const RecordedTrial& t, const fs::path& file) {
-  return t.ledger != nullptr ? std::make_unique<EnergyRecorder>(file, every(t), *t.ledger) : nullptr;
+  return std::make_unique<EnergyRecorder>(file, every(t), *t.ledger);
 }
 
 Made ideal_trajectory(const RecordedTrial& t, const fs::path& file) {
-  return t.ideal != nullptr ? std::make_unique<IdealTrajectoryRecorder>(file, every(t), *t.ideal) : nullptr;
+  return std::make_unique<IdealTrajectoryRecorder>(file, every(t), *t.ideal);
 }
 
 struct RecorderEntry {
-  const char* file;
-  Made (*make)(const RecordedTrial&, const fs::path& file);  ///< null unless the scenario asks for it
+  ResultTable table;
+  bool (*is_wanted)(const RecordFields& fields);
+  Made (*make)(const RecordedTrial&, const fs::path& file);
 };
 
 constexpr RecorderEntry kRecorders[] = {
-    {"trajectory.csv", trajectory}, {"contacts.csv", contacts}, {"stiffness_tensor.csv", stiffness_tensor},
-    {"ratios.csv", ratios},         {"energy.csv", energy},     {"ideal_trajectory.csv", ideal_trajectory}};
+    {{"trajectory.csv", "one line per recorded row, before the tool moves on", TrajectoryRecorder::kColumns},
+     [](const RecordFields& f) { return f.trajectory; },
+     plain<TrajectoryRecorder>},
+    {{"contacts.csv", "with record.contacts: one line per rendered contact of each recorded row",
+      ContactRecorder::kColumns},
+     [](const RecordFields& f) { return f.contacts; },
+     plain<ContactRecorder>},
+    {{"stiffness_tensor.csv", "with record.stiffness_tensor: one line per recorded row", StiffnessRecorder::kColumns},
+     [](const RecordFields& f) { return f.stiffness_tensor; },
+     plain<StiffnessRecorder>},
+    {{"ratios.csv", "with record.ratio_iterations: one line per iteration of each recorded row in contact",
+      RatioRecorder::kColumns},
+     [](const RecordFields& f) { return !f.ratio_iterations.empty(); },
+     ratios},
+    {{"energy.csv", "with record.energy: the energy balance, one line per recorded row", EnergyRecorder::kColumns},
+     [](const RecordFields& f) { return f.energy; },
+     energy},
+    {{"ideal_trajectory.csv",
+      "with record.ideal_trajectory: one line per recorded row at whose tilt the ideal trajectory exists",
+      IdealTrajectoryRecorder::kColumns},
+     [](const RecordFields& f) { return f.ideal_trajectory; },
+     ideal_trajectory}};
 
 }  // namespace
 
 std::vector<std::unique_ptr<Recorder>> make_recorders(const RecordedTrial& trial, const fs::path& directory) {
   std::vector<std::unique_ptr<Recorder>> recorders;
   for (const RecorderEntry& entry : kRecorders) {
-    if (Made recorder = entry.make(trial, directory / entry.file)) recorders.push_back(std::move(recorder));
+    if (entry.is_wanted(trial.fields)) recorders.push_back(entry.make(trial, directory / entry.table.file));
   }
   return recorders;
 }
 
-std::vector<std::string> record_files() {
-  std::vector<std::string> files;
-  for (const RecorderEntry& entry : kRecorders) files.emplace_back(entry.file);
-  return files;
+std::vector<ResultTable> record_tables() {
+  std::vector<ResultTable> tables;
+  for (const RecorderEntry& entry : kRecorders) tables.push_back(entry.table);
+  return tables;
+}
+
+std::vector<ResultTable> record_tables(const RecordFields& fields) {
+  std::vector<ResultTable> tables;
+  for (const RecorderEntry& entry : kRecorders) {
+    if (entry.is_wanted(fields)) tables.push_back(entry.table);
+  }
+  return tables;
 }
 
 }  // namespace hapbench

@@ -2,9 +2,9 @@
 
 #include <filesystem>
 #include <memory>
-#include <string>
 #include <vector>
 
+#include "results/io/columns.hpp"
 #include "results/observe/energy_ledger.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/record/recorder.hpp"
@@ -24,7 +24,9 @@ struct RecordedTrial {
 std::vector<std::unique_ptr<Recorder>> make_recorders(const RecordedTrial& trial,
                                                       const std::filesystem::path& directory);
 
-/// The names of the files of all recorders there are.
-std::vector<std::string> record_files();
+/// The tables of all recorders there are.
+std::vector<ResultTable> record_tables();
+/// Those that a run with these fields writes.
+std::vector<ResultTable> record_tables(const RecordFields& fields);
 
 }  // namespace hapbench

@@ -7,6 +7,7 @@
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "results/record/target_table.hpp"
+#include "results/summary/columns_json.hpp"
 #include "scenarios/run/environment_points.hpp"
 #include "scenarios/run/expectation.hpp"
 #include "scenarios/run/recorders.hpp"
@@ -61,8 +62,8 @@ void create_output(const fs::path& directory) {
 /// Optional files that an earlier run with other settings may have left: they would not belong to this run.
 void remove_files_of_earlier_runs(const fs::path& directory) {
   std::error_code ignored;
-  std::vector<std::string> files = record_files();
-  files.insert(files.end(), {"summary.json", "targets.csv", "timing.json"});
+  std::vector<std::string> files = {"summary.json", "columns.json", kTargetTable.file, "timing.json"};
+  for (const ResultTable& table : record_tables()) files.emplace_back(table.file);
   for (const std::string& name : files) fs::remove(directory / name, ignored);
   for (const auto& entry : fs::directory_iterator(directory, ignored)) {
     if (!entry.is_directory(ignored) || !entry.path().filename().string().starts_with(kTrialDirectory)) continue;
@@ -129,7 +130,12 @@ void write_results(const fs::path& directory, const Scenario& scenario, const Ru
     for (const auto& recorder : trial.recorders) recorder->finish();
   }
   write_file_atomically(directory / "scenario.effective.json", json_text(effective_scenario(scenario, directory)));
-  if (report.summary.targets) write_target_table(directory / "targets.csv", report.targets);
+  std::vector<ResultTable> tables = record_tables(scenario.record);
+  if (report.summary.targets) {
+    write_target_table(directory / kTargetTable.file, report.targets);
+    tables.push_back(kTargetTable);
+  }
+  write_file_atomically(directory / "columns.json", json_text(columns_json(tables, metric_list(report.summary))));
   if (scenario.record.timing) {
     write_file_atomically(directory / "timing.json", timing_text(report.timing, instruction_set(), provenance()));
   }

@@ -23,11 +23,19 @@ std::optional<double> friction_limit(const Scenario& scenario, const Motion& mot
                                  rendering.mu_f);
 }
 
+MetricsConfig metrics_config(const Scenario& scenario, const SimulationParts& parts) {
+  MetricsConfig config;
+  config.friction_limit = friction_limit(scenario, *parts.motion);
+  config.settling = scenario.metrics;
+  if (scenario.rendering.reduction) config.most_reduced = parts.source->capacity();
+  return config;
+}
+
 /// The observers of a trial: only those that the scenario asks for.
 class TrialObservers {
  public:
   TrialObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts, Trial trial)
-      : metrics_(scenario.time.step, friction_limit(scenario, *parts.motion)), passivity_(scenario.time.step) {
+      : metrics_(scenario.time.step, metrics_config(scenario, parts)), passivity_(scenario.time.step) {
     observers_.push_back(&metrics_);
     observers_.push_back(&passivity_);
     if (scenario.record.energy) {

@@ -70,7 +70,8 @@ def make_results(directory):
     hapbench("stability", "single_spring", "--quiet", "--out", directory / "stability")
     hapbench(
         *("compare", "rotate_in_hole_proxy", "--algorithms", "proxy,shaped_stiffness,exact_shaping", "--quiet"),
-        *("--set=time.duration_s=2", "--set=record.every=8", "--out", directory / "proxy"),
+        *("--set=time.duration_s=2", "--set=record.every=8", "--set=rendering.reduction={}"),
+        *("--out", directory / "proxy"),
     )
     for scene, scenario in (("peg", "tilt_sweep_shaped_stiffness"), ("wedge", "wedge_stiffness")):
         out = directory / "stiffness" / scene

@@ -47,7 +47,7 @@ TEST(ExplicitFrictionLimit, IsWhereSlidingStopsDying) {
 
 Metrics metrics_of(const std::vector<double>& spring_forces, std::optional<double> limit) {
   const ContactBuffer none(1);
-  MetricsObserver observer(0.0005, limit);
+  MetricsObserver observer(0.0005, {.friction_limit = limit});
   for (std::size_t k = 0; k < spring_forces.size(); ++k) {
     StepRecord r = test::row(k, 0.0, none);
     r.force.spring = {0.0, spring_forces[k], 0.0};

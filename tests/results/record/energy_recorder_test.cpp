@@ -30,7 +30,7 @@ TEST(EnergyRecorder, WritesTheBalanceOfTheRowsItKeeps) {
     recorder.on_step(r);
   }
   recorder.finish();
-  EXPECT_EQ(read_file(dir / "energy.csv"), std::string(EnergyRecorder::kHeader) +
+  EXPECT_EQ(read_file(dir / "energy.csv"), header_of(EnergyRecorder::kColumns) +
                                                "\n0,0,0,0.25,0,0,0,0,0,0,0,0,0,0,,"
                                                "\n2,1,4,0.25,4,0,0,0,0,0,0,0,6,-2,,\n");
 }

@@ -33,7 +33,7 @@ TEST(IdealTrajectoryRecorder, KeepsTheRowsThatHaveAnIdealPlace) {
   recorder.finish();
   const auto lines = test::lines_of(test::read_file(dir / "ideal.csv"));
   ASSERT_EQ(lines.size(), 3u) << "rows 0 and 4; 1 and 3 lie between, 2 is too steep";
-  EXPECT_EQ(lines[0], IdealTrajectoryRecorder::kHeader);
+  EXPECT_EQ(lines[0], header_of(IdealTrajectoryRecorder::kColumns));
   EXPECT_TRUE(lines[1].starts_with("0,0,0.5,-0.001,"));
   EXPECT_TRUE(lines[2].starts_with("4,"));
 }

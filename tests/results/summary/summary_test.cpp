@@ -17,23 +17,38 @@ RunSummary example() {
   run.result.rows = 400;
   run.expected = true;
   run.duration = 0.2;
-  run.metrics = {.rows = 400,
-                 .force_max = 1.5,
-                 .force_step_max = 0.75,
-                 .velocity_total_variation = 0.1,
-                 .force_reversals = 2,
-                 .vibration_power = 1e-7,
-                 .depth_max = 0.001,
-                 .ratio = RatioRange{0.75, 1.25},
-                 .colliding_mean = 20.5,
-                 .colliding_max = 40,
-                 .rendered_mean = 3.25,
-                 .rendered_max = 6,
-                 .steps_in_contact = 300,
-                 .speed_max = 0.5,
-                 .final_position = {0.5, -0.25, 0.0},
-                 .explicit_friction = ExplicitFriction{.limit = 79.5, .rows_beyond = 4, .first_step = 17},
-                 .state_hash = 0x0123456789abcdefu};
+  run.metrics = {
+      .rows = 400,
+      .force_max = 1.5,
+      .force_step_max = 0.75,
+      .velocity_total_variation = 0.1,
+      .force_reversals = 2,
+      .vibration_power = 1e-7,
+      .depth_max = 0.001,
+      .ratio = RatioRange{0.75, 1.25},
+      .colliding_mean = 20.5,
+      .colliding_max = 40,
+      .rendered_mean = 3.25,
+      .rendered_max = 6,
+      .steps_in_contact = 300,
+      .speed_max = 0.5,
+      .final_position = {0.5, -0.25, 0.0},
+      .explicit_friction = ExplicitFriction{.limit = 79.5, .rows_beyond = 4, .first_step = 17},
+      .reduction = ReductionJumps{.changes = 7, .step_max_squared = 0.0625, .step_max_squared_elsewhere = 0.01},
+      .state_hash = 0x0123456789abcdefu};
+  ContactForces& contact = run.metrics.contact;
+  contact.landings = 2;
+  contact.landing_rows = 10;
+  contact.landing_max_squared = 4.0;
+  contact.landing_step_max_squared = 9.0;
+  contact.settled_rows = 4;
+  contact.settled = 0.5;
+  contact.sum = 6.0;
+  contact.max_squared = 6.25;
+  contact.step_max_squared = 0.25;
+  for (int i = 0; i < 4; ++i) contact.steps.add_square(0.25);
+  contact.above_cutoff_squares = 1.0;
+  contact.reversals = 3;
   run.passivity = PassivityMetrics{.energy_min = -0.25, .time_of_min = 0.125, .energy_end = 0.5};
   run.work = {.search = {.queries = 401, .points_tested = 5000, .lists_rebuilt = 7},
               .steps_skipped = 8,
@@ -76,6 +91,18 @@ TEST(Summary, TextHoldsEveryField) {
     "explicit_friction_limit_N": 79.5,
     "explicit_friction_rows_beyond": 4,
     "explicit_friction_first_step": 17,
+    "landings": 2,
+    "landing_force_max_N": 2,
+    "landing_force_step_max_N": 3,
+    "settled_s": 0.5,
+    "force_mean_in_contact_N": 1.5,
+    "settled_force_max_N": 2.5,
+    "force_step_p99_N": 0.5,
+    "settled_force_step_max_N": 0.5,
+    "force_rms_above_30Hz_N": 0.5,
+    "force_reversals_per_s": 6,
+    "reduction_changes": 7,
+    "reduction_force_step_max_N": 0.25,
     "final_position_m": [0.5, -0.25, 0]
   },
   "passivity": {
@@ -139,6 +166,19 @@ TEST(Summary, HasNullForWhatDoesNotExist) {
   EXPECT_TRUE(metrics["vibration_power_above_30Hz_m2_per_s2"].is_null());
 }
 
+TEST(Summary, OfARunThatOnlyLandsHasNoNumbersOfSettledContact) {
+  RunSummary run = example();
+  run.metrics.contact.settled_rows = 0;
+  run.metrics.reduction.reset();
+  const auto metrics = summary_json(run)["metrics"];
+  EXPECT_EQ(metrics["landing_force_max_N"], 2.0);
+  for (const char* name :
+       {"force_mean_in_contact_N", "settled_force_max_N", "force_step_p99_N", "settled_force_step_max_N",
+        "force_rms_above_30Hz_N", "force_reversals_per_s", "reduction_changes", "reduction_force_step_max_N"}) {
+    EXPECT_TRUE(metrics.at(name).is_null()) << name;
+  }
+}
+
 TEST(Summary, OfNoRowsHasNeitherMeansNorAFinalPosition) {
   RunSummary run = example();
   run.metrics = {};
@@ -177,7 +217,7 @@ TEST(Summary, ListsTheNumbersOfItsSections) {
   run.targets->back().place = 7;
   const auto json = summary_json(run);
   std::size_t in_sections = 0;
-  for (const auto& [name, value] : metric_list(run)) {
+  for (const auto& [name, unit, meaning, value] : metric_list(run)) {
     if (name.starts_with("final_position_m.")) continue;
     const bool in_metrics = name.find('.') == std::string::npos;
     std::string pointer = (in_metrics ? "/metrics/" : "/") + name;

@@ -29,15 +29,13 @@ TEST_F(CompareCommand, ShowsARowForEachAlgorithm) {
   const ProgramRun run = compare({"--algorithms", "original_averaging,mean,exact_shaping"});
   EXPECT_EQ(run.status, 0) << run.err;
   const auto lines = lines_of(run.out);
-  ASSERT_EQ(lines.size(), 9u) << run.out;
+  ASSERT_EQ(lines.size(), 10u) << run.out;
   EXPECT_EQ(lines[0], "peg_in_hole_2d_shaped_stiffness");
-  for (const char* column : {"algorithm", "outcome", "max force N", "velocity TV m/s", "reversals", "vibration m2/s2",
-                             "max depth mm", "ratio", "us/step"}) {
-    EXPECT_NE(lines[2].find(column), std::string::npos) << column;
-  }
-  EXPECT_EQ(lines[4].find("original_averaging  leaves_hole"), 0u);
-  EXPECT_EQ(lines[5].find("mean                leaves_hole"), 0u);
-  EXPECT_EQ(lines[6].find("exact_shaping       leaves_hole"), 0u);
+  EXPECT_EQ(lines[3].find("algorithm           outcome"), 0u);
+  EXPECT_EQ(lines[5].find("original_averaging  leaves_hole"), 0u);
+  EXPECT_EQ(lines[6].find("mean                leaves_hole"), 0u);
+  EXPECT_EQ(lines[7].find("exact_shaping       leaves_hole"), 0u);
+  for (const std::string& line : lines) EXPECT_LE(line.size(), line.find("warning") == 0 ? line.size() : 100) << line;
 }
 
 TEST_F(CompareCommand, NamesTheAlgorithmsWhoseFrictionTheIntegratorCannotStep) {
@@ -60,7 +58,10 @@ TEST_F(CompareCommand, WritesTheFilesOfEachSideBySideAndTheTable) {
   ASSERT_EQ(lines.size(), 3u);
   EXPECT_EQ(lines[0],
             "algorithm,outcome,steps,force_max_N,velocity_total_variation_m_per_s,force_reversals,"
-            "vibration_power_above_30Hz_m2_per_s2,depth_max_m,ratio_min,ratio_max");
+            "vibration_power_above_30Hz_m2_per_s2,depth_max_m,ratio_min,ratio_max,steps_in_contact,landings,"
+            "landing_force_max_N,landing_force_step_max_N,settled_s,force_mean_in_contact_N,settled_force_max_N,"
+            "force_step_p99_N,settled_force_step_max_N,force_rms_above_30Hz_N,force_reversals_per_s,reduction_changes,"
+            "reduction_force_step_max_N");
   // The numbers are those of the summary.
   const Json summary = Json::parse(test::read_file(directory_ / "out/mean/summary.json"));
   const Json& metrics = summary["metrics"];
@@ -68,12 +69,12 @@ TEST_F(CompareCommand, WritesTheFilesOfEachSideBySideAndTheTable) {
   EXPECT_EQ(cells[0], "mean");
   EXPECT_EQ(cells[1], summary["outcome"]);
   EXPECT_EQ(cells[2], std::to_string(summary["steps"].get<int>()));
-  const char* names[] = {"force_max_N",     "velocity_total_variation_m_per_s",
-                         "force_reversals", "vibration_power_above_30Hz_m2_per_s2",
-                         "depth_max_m",     "ratio_min",
-                         "ratio_max"};
-  for (std::size_t i = 0; i < std::size(names); ++i) {
-    EXPECT_EQ(test::number_in(cells[3 + i]), metrics[names[i]].get<double>()) << names[i];
+  const auto names = cells_of(lines[0]);
+  ASSERT_EQ(cells.size(), names.size());
+  for (std::size_t i = 3; i < names.size(); ++i) {
+    const Json& metric = metrics.at(names[i]);
+    EXPECT_EQ(cells[i].empty(), metric.is_null()) << names[i];
+    if (!metric.is_null()) EXPECT_EQ(test::number_in(cells[i]), metric.get<double>()) << names[i];
   }
 }
 

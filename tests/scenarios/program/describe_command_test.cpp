@@ -89,6 +89,60 @@ TEST(DescribeCommand, ExplainsAScenarioFileOfTheCurrentDirectory) {
   EXPECT_NE(run.out.find("\"file\": \"shell.csv\""), std::string::npos) << run.out;
 }
 
+TEST(DescribeCommand, ExplainsEveryMetric) {
+  for (const auto& [name, unit, meaning, value] : metrics_without_values({.places = 1})) {
+    const ProgramRun run = hapbench({"describe", name});
+    EXPECT_EQ(run.status, 0) << name << run.err;
+    EXPECT_EQ(run.out.find("metric " + name), 0u) << run.out;
+  }
+  EXPECT_NE(hapbench({"describe", "metrics"}).out.find("force_step_p99_N [N]"), std::string::npos);
+}
+
+/// As a test of all that a run can write.
+TEST(DescribeCommand, ExplainsEveryColumnOfEveryFileOfARun) {
+  const test::TemporaryDirectory directory;
+  Json json = test::minimal_scenario("block_with_hole");
+  json["initial"]["position_m"] = {0.0, 0.0, 0.0};
+  json["record"] = {{"contacts", true},
+                    {"stiffness_tensor", true},
+                    {"energy", true},
+                    {"ideal_trajectory", true},
+                    {"ratio_iterations", {3}}};
+  test::write_plainly(directory / "a.json", json.dump());
+  const std::string out = (directory / "out").string();
+  ASSERT_EQ(hapbench({"run", (directory / "a.json").string(), "--out", out}).status, 0);
+  const Json columns = Json::parse(test::read_file(directory / "out/columns.json"));
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(out)) {
+    if (entry.path().extension() != ".csv") continue;
+    const std::string file = entry.path().filename().string();
+    std::string header;
+    for (const Json& column : columns.at(file)) {
+      header += (header.empty() ? "" : ",") + column["name"].get<std::string>();
+      const ProgramRun run = hapbench({"describe", column["name"].get<std::string>()});
+      EXPECT_NE(run.out.find(file), std::string::npos) << column << run.out << run.err;
+    }
+    EXPECT_EQ(lines_of(test::read_file(entry.path()))[0], header) << file;
+    EXPECT_EQ(hapbench({"describe", file, "--json"}).json()["columns"], columns[file]) << file;
+    ++files;
+  }
+  EXPECT_EQ(files, 6u);
+  const Json metrics = Json::parse(test::read_file(directory / "out/summary.json"))["metrics"];
+  for (const auto& [name, value] : metrics.items()) {
+    if (name == "final_position_m") continue;
+    EXPECT_NE(columns["summary.json"].dump().find("\"" + name + "\""), std::string::npos) << name;
+  }
+}
+
+TEST(DescribeCommand, SuggestsMetricsColumnsAndFiles) {
+  for (const auto& [wrong, right] : {std::pair{"force_step_p9_N", "force_step_p99_N"},
+                                     std::pair{"fmeas_x", "fmeas_x_N"}, std::pair{"trajectry.csv", "trajectory.csv"}}) {
+    const ProgramRun run = hapbench({"describe", wrong});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_NE(run.err.find("nearest valid name: \"" + std::string(right) + "\""), std::string::npos) << run.err;
+  }
+}
+
 TEST(DescribeCommand, RefusesAnUnknownNameAndSuggestsTheNearest) {
   const ProgramRun run = hapbench({"describe", "shaped_stifness"});
   EXPECT_EQ(run.status, 2);

@@ -54,7 +54,8 @@ TEST_F(KilledRun, IsCleanedUpByTheNext) {
   kill_a_run();
   const test::ProgramRun run = test::hapbench({"run", "single_spring", "--out", out_.string()});
   EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(test::names_below(out_), (Names{"scenario.effective.json", "summary.json", "trajectory.csv"}));
+  EXPECT_EQ(test::names_below(out_),
+            (Names{"columns.json", "scenario.effective.json", "summary.json", "trajectory.csv"}));
   // Nothing of the killed run is in the new one.
   test::hapbench({"run", "single_spring", "--out", (directory_ / "fresh").string()});
   test::expect_same_files(out_, directory_ / "fresh");

@@ -35,23 +35,25 @@ TEST_F(RunCommand, WritesOneScenarioIntoTheGivenDirectory) {
   const ProgramRun run = hapbench({"run", "single_spring", "--out", out()});
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "");
-  EXPECT_EQ(test::names_below(out()), (Names{"scenario.effective.json", "summary.json", "trajectory.csv"}));
+  EXPECT_EQ(test::names_below(out()),
+            (Names{"columns.json", "scenario.effective.json", "summary.json", "trajectory.csv"}));
 }
 
 TEST_F(RunCommand, WritesSeveralScenariosIntoADirectoryEach) {
   const std::string file = write_scenario("my scene.json", test::minimal_scenario("plane"));
   const ProgramRun run = hapbench({"run", "single_spring", file, "--out", out()});
   EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(test::names_below(out()), (Names{"my scene/scenario.effective.json", "my scene/summary.json",
-                                             "my scene/trajectory.csv", "single_spring/scenario.effective.json",
-                                             "single_spring/summary.json", "single_spring/trajectory.csv"}));
+  EXPECT_EQ(test::names_below(out()),
+            (Names{"my scene/columns.json", "my scene/scenario.effective.json", "my scene/summary.json",
+                   "my scene/trajectory.csv", "single_spring/columns.json", "single_spring/scenario.effective.json",
+                   "single_spring/summary.json", "single_spring/trajectory.csv"}));
 }
 
 TEST_F(RunCommand, WritesBelowResultsOutWithoutAGivenDirectory) {
   test::ProgramOptions options;
   options.directory = directory_.path();
   EXPECT_EQ(hapbench({"run", "single_spring"}, options).status, 0);
-  EXPECT_EQ(test::names_below(directory_ / "results/out/single_spring").size(), 3u);
+  EXPECT_EQ(test::names_below(directory_ / "results/out/single_spring").size(), 4u);
 }
 
 TEST_F(RunCommand, WritesWhatTheScenarioRecords) {
@@ -60,12 +62,13 @@ TEST_F(RunCommand, WritesWhatTheScenarioRecords) {
       Json::parse(R"({"trajectory": false, "contacts": true, "ratio_iterations": [0, 3], "stiffness_tensor": true,
                       "timing": true})");
   EXPECT_EQ(hapbench({"run", write_scenario("a.json", json), "--out", out()}).status, 0);
-  EXPECT_EQ(test::names_below(out()), (Names{"contacts.csv", "ratios.csv", "scenario.effective.json",
+  EXPECT_EQ(test::names_below(out()), (Names{"columns.json", "contacts.csv", "ratios.csv", "scenario.effective.json",
                                              "stiffness_tensor.csv", "summary.json", "timing.json"}));
   // Another run into the same directory leaves no file that is not its own.
   json["record"] = Json::object();
   EXPECT_EQ(hapbench({"run", write_scenario("a.json", json), "--out", out()}).status, 0);
-  EXPECT_EQ(test::names_below(out()), (Names{"scenario.effective.json", "summary.json", "trajectory.csv"}));
+  EXPECT_EQ(test::names_below(out()),
+            (Names{"columns.json", "scenario.effective.json", "summary.json", "trajectory.csv"}));
 }
 
 TEST_F(RunCommand, RecordsEachNthRow) {
@@ -81,14 +84,16 @@ TEST_F(RunCommand, RecordsEachNthRow) {
 TEST_F(RunCommand, ShowsATableRowForEachScenario) {
   const ProgramRun run = hapbench({"run", "single_spring", "single_damper", "--out", out()});
   const auto lines = lines_of(run.out);
-  ASSERT_EQ(lines.size(), 6u) << run.out;
-  for (const char* column : {"scenario", "algorithm", "outcome", "steps", "max force N", "velocity TV m/s", "reversals",
-                             "vibration m2/s2", "max depth mm", "ratio", "us/step"}) {
-    EXPECT_NE(lines[0].find(column), std::string::npos) << column;
+  ASSERT_EQ(lines.size(), 7u) << run.out;
+  for (const char* title : {"touch", "land.", "mean", "step", ">30Hz", "rev.", "depth", "us/"}) {
+    EXPECT_NE(lines[0].find(title), std::string::npos) << title;
   }
-  EXPECT_EQ(lines[2].find("single_spring  summation  completes"), 0u) << lines[2];
-  EXPECT_EQ(lines[3].find("single_damper  summation  completes"), 0u) << lines[3];
-  EXPECT_EQ(lines[5], "results in " + out());
+  for (const char* title : {"scenario", "algorithm", "outcome", "%", "max N", "p99 N", "rms N", "1/s", "mm", "ratio"}) {
+    EXPECT_NE(lines[1].find(title), std::string::npos) << title;
+  }
+  EXPECT_EQ(lines[3].find("single_spring  summation  completes"), 0u) << lines[3];
+  EXPECT_EQ(lines[4].find("single_damper  summation  completes"), 0u) << lines[4];
+  EXPECT_EQ(lines[6], "results in " + out());
 }
 
 TEST_F(RunCommand, PrintsNothingUnderQuiet) {

@@ -18,6 +18,22 @@ TEST(Table, AlignsWordsLeftAndNumbersRightUnderTheirTitles) {
             "longer  1000\n");
 }
 
+TEST(Table, TakesTitlesOfTwoLines) {
+  Table table({{"name", false}, {"force\nN"}, {"n"}});
+  table.add({"a", "1", "2"});
+  EXPECT_EQ(table.text(),
+            "      force\n"
+            "name      N  n\n"
+            "----  -----  -\n"
+            "a         1  2\n");
+}
+
+TEST(Wrapped, BreaksBetweenWordsAndNeverWithinOne) {
+  EXPECT_EQ(wrapped("aa bb cc", 1, 6), " aa bb\n cc\n");
+  EXPECT_EQ(wrapped("aaaaaaaaaa b", 2, 6), "  aaaaaaaaaa\n  b\n");
+  EXPECT_EQ(wrapped("a", 0, 6), "a\n");
+}
+
 TEST(Table, WithoutRowsIsItsHead) {
   EXPECT_EQ(Table({{"a"}, {"bc", false}}).text(), "a  bc\n-  --\n");
 }

@@ -50,6 +50,7 @@ std::vector<NamedScenario> rich_scenarios() {
         "limits": {"max_damping_N_s_per_m": 0, "max_force_N": 2.5}},
       "record": {"trajectory": true, "every": 2, "ratio_iterations": [0, 3], "contacts": true,
         "stiffness_tensor": true, "timing": true},
+      "metrics": {"from_s": 0.5, "settling_s": 0},
       "expect": {"outcome": ["completes", "diverges"], "metrics": {"force_max_N": {"min": 0, "max": 1e6},
         "ratio_max": {}}}})")},
           {"drilled_block", Json::parse(R"({

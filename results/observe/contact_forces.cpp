@@ -1,0 +1,135 @@
+#include "results/observe/contact_forces.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace hapbench {
+namespace {
+
+std::uint64_t rows_in(double time, double dt) noexcept {
+  // Beyond all rows there can be, and within the integers.
+  return static_cast<std::uint64_t>(std::min(std::round(time / dt), 0x1p62));
+}
+
+std::optional<double> if_any(std::uint64_t rows, double value) noexcept {
+  return rows > 0 ? std::optional(value) : std::nullopt;
+}
+
+}  // namespace
+
+ContactForces& ContactForces::operator+=(const ContactForces& other) noexcept {
+  landings += other.landings;
+  landing_rows += other.landing_rows;
+  landing_max_squared = std::max(landing_max_squared, other.landing_max_squared);
+  landing_step_max_squared = std::max(landing_step_max_squared, other.landing_step_max_squared);
+  settled_rows += other.settled_rows;
+  settled += other.settled;
+  sum += other.sum;
+  max_squared = std::max(max_squared, other.max_squared);
+  step_max_squared = std::max(step_max_squared, other.step_max_squared);
+  steps += other.steps;
+  if (above_cutoff_squares && other.above_cutoff_squares) {
+    *above_cutoff_squares += *other.above_cutoff_squares;
+  } else {
+    above_cutoff_squares.reset();
+  }
+  reversals += other.reversals;
+  return *this;
+}
+
+std::optional<double> ContactForces::landing_max() const noexcept {
+  return if_any(landing_rows, std::sqrt(landing_max_squared));
+}
+
+std::optional<double> ContactForces::landing_step_max() const noexcept {
+  return if_any(landing_rows, std::sqrt(landing_step_max_squared));
+}
+
+std::optional<double> ContactForces::mean() const noexcept {
+  return if_any(settled_rows, sum / static_cast<double>(settled_rows));
+}
+
+std::optional<double> ContactForces::max() const noexcept {
+  return if_any(settled_rows, std::sqrt(max_squared));
+}
+
+std::optional<double> ContactForces::step_max() const noexcept {
+  return if_any(settled_rows, std::sqrt(step_max_squared));
+}
+
+std::optional<double> ContactForces::step_p99() const noexcept {
+  if (settled_rows == 0) return std::nullopt;
+  // The middle of the highest bin may lie above all that is in it.
+  return std::min(steps.quantile(0.99), *step_max());
+}
+
+std::optional<double> ContactForces::rms_above_cutoff() const noexcept {
+  if (!above_cutoff_squares) return std::nullopt;
+  return if_any(settled_rows, std::sqrt(*above_cutoff_squares / static_cast<double>(settled_rows)));
+}
+
+std::optional<double> ContactForces::reversals_per_second() const noexcept {
+  return if_any(settled_rows, static_cast<double>(reversals) / settled);
+}
+
+ContactForceObserver::ContactForceObserver(double dt, const SettlingRule& rule)
+    : dt_(dt), settling_rows_(rows_in(rule.time, dt)), rows_away_(settling_rows_) {
+  assert(dt > 0.0);
+  if (rule.from) settled_from_ = rows_in(*rule.from, dt);
+  const double sampling_rate = 1.0 / dt;
+  if (sampling_rate <= 2.0 * kVibrationCutoff) return;
+  high_pass_.emplace(kVibrationCutoff, sampling_rate);
+  forces_.above_cutoff_squares = 0.0;
+}
+
+ContactForceObserver::Phase ContactForceObserver::phase_of_next_row(bool in_contact) noexcept {
+  if (in_contact) {
+    // Without a settling time, a row away is what makes the next touch a first one.
+    const bool first_touch = rows_away_ >= settling_rows_ && (rows_away_ > 0 || forces_.landings == 0);
+    rows_away_ = 0;
+    if (first_touch) {
+      ++forces_.landings;
+      landing_end_ = row_ + settling_rows_;
+      if (high_pass_) high_pass_->settle_at(Vec3::Zero());
+    }
+  } else {
+    ++rows_away_;
+  }
+  const bool landing = settled_from_ ? row_ < *settled_from_ : row_ < landing_end_;
+  ++row_;
+  return landing ? Phase::landing : in_contact ? Phase::settled : Phase::away;
+}
+
+ContactForceObserver::Phase ContactForceObserver::add(const Vec3& force, const ForceChange& change,
+                                                      bool in_contact) noexcept {
+  const Phase phase = phase_of_next_row(in_contact);
+  ContactForces& f = forces_;
+  const bool touched = f.landings > 0 && rows_away_ <= settling_rows_;
+  const double above_cutoff_squared = touched && high_pass_ ? high_pass_->filter(force).squaredNorm() : 0.0;
+  if (phase == Phase::away) return phase;
+
+  const double squared = force.squaredNorm();
+  if (phase == Phase::landing) {
+    ++f.landing_rows;
+    f.landing_max_squared = std::max(f.landing_max_squared, squared);
+    f.landing_step_max_squared = std::max(f.landing_step_max_squared, change.squared);
+    return phase;
+  }
+  ++f.settled_rows;
+  f.sum += std::sqrt(squared);
+  f.max_squared = std::max(f.max_squared, squared);
+  f.step_max_squared = std::max(f.step_max_squared, change.squared);
+  f.steps.add_square(change.squared);
+  if (f.above_cutoff_squares) *f.above_cutoff_squares += above_cutoff_squared;
+  if (change.reverses) ++f.reversals;
+  return phase;
+}
+
+ContactForces ContactForceObserver::forces() const noexcept {
+  ContactForces forces = forces_;
+  forces.settled = static_cast<double>(forces.settled_rows) * dt_;
+  return forces;
+}
+
+}  // namespace hapbench

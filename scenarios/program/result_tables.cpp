@@ -1,0 +1,97 @@
+#include "scenarios/program/result_tables.hpp"
+
+#include <fmt/format.h>
+
+#include "results/record/target_table.hpp"
+#include "scenarios/description/scenario.hpp"
+#include "scenarios/program/comparison_table.hpp"
+#include "scenarios/run/recorders.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Of all studies; the columns of one are those that it computes.
+constexpr Column kPrecisionColumns[] = {
+    {"setting", "", "what the row is of"},
+    {"outcome", "", "how its run ended"},
+    {"seconds_per_step", "s", "of precision_*_timing.csv: least time of a step over the repetitions"},
+    {"seconds_per_call", "s", "of precision_*_timing.csv: least time of a call over the repetitions"},
+    {"step_s", "s", "time step"},
+    {"error_final_m", "m", "distance from the reference at the end"},
+    {"error_rms_m", "m", "root mean square distance from the reference"},
+    {"error_max_m", "m", "largest distance from the reference"},
+    {"undamped_energy_gain_relative", "1", "energy at the end over that at the start, - 1, without damping"},
+    {"undamped_energy_swing_relative", "1", "spread of the energy over that at the start, without damping"},
+    {"ideal_height_error_rms_m", "m", "root mean square of tip height - height of the ideal trajectory"},
+    {"ideal_height_error_max_m", "m", "largest |tip height - height of the ideal trajectory|"},
+    {"ideal_lateral_error_rms_m", "m", "root mean square of lateral place of the tip - that of the ideal trajectory"},
+    {"interpenetration_max_m", "m", "largest true depth of the tool in the exact block"},
+    {"force_step_max_N", "N", "largest force step ||f_k - f_(k-1)||"},
+    {"tensor_error_rms", "1", "root mean square ||S - S of the exact optimum||, over the contact sets"},
+    {"tensor_error_max", "1", "largest ||S - S of the exact optimum||"},
+    {"ratio_error_max", "1", "largest |ratio of a contact - that of the exact optimum|"},
+    {"spacing_m", "m", "grid of the density field that the shell is made of"},
+    {"points", "1", "points of the shell"},
+    {"shell_bytes", "byte", "memory of the shell's points and normals"},
+    {"contacts_mean", "1", "mean number of contacts of a set"},
+    {"kept_mean", "1", "mean number of contacts behind reduction or merging"},
+    {"force_error_relative", "1", "rms difference to exact shaping of all contacts, over the rms force"},
+    {"order_spread_relative", "1", "largest change of the force with the order of the points, over the rms force"},
+    {"depth_error_max_m", "m", "largest difference of the force to exact shaping of all contacts, over K"},
+    {"half_angle_rad", "rad", "half the wedge's angle"},
+    {"ratio_min", "1", "smallest stiffness ratio u^T S u of a contact"},
+    {"ratio_max", "1", "largest stiffness ratio u^T S u of a contact"},
+    {"along_way_out", "1", "stiffness along the way out of the wedge, in units of K"},
+    {"along_formula", "1", "the same in closed form"},
+    {"across", "1", "stiffness across the wedge, in units of K"},
+    {"across_formula", "1", "the same in closed form"},
+    {"lambda_max", "1", "largest eigenvalue of S"}};
+
+constexpr Column kShellColumns[] = {
+    {"x_m", "m", "x of a point of the shell"},         {"y_m", "m", "y of a point of the shell"},
+    {"z_m", "m", "z of a point of the shell"},         {"nx", "1", "x of the outward unit normal there"},
+    {"ny", "1", "y of the outward unit normal there"}, {"nz", "1", "z of the outward unit normal there"}};
+
+/// A sweep's table has the metrics that `expect` may bound between `steps` and `state_hash`.
+std::vector<Column> sweep_columns() {
+  static const MetricList kMetrics = metrics_without_values();
+  std::vector<Column> columns = {{"index", "1", "number of the run, from 0; the varied fields follow, by their paths"},
+                                 {"outcome", "", "how the run ended; \"error\" for one that could not be computed"},
+                                 {"expected", "", "true when it ended as the scenario's expect says"},
+                                 {"steps", "1", "rows of the run"}};
+  for (const Metric& metric : kMetrics) columns.push_back({metric.name.c_str(), metric.unit, metric.meaning});
+  columns.push_back(
+      {"state_hash", "", "over the bits of position, velocity and force of every row: equal for equal runs"});
+  return columns;
+}
+
+std::vector<Column> all(std::span<const Column> columns) {
+  return {columns.begin(), columns.end()};
+}
+
+}  // namespace
+
+std::string map_header(std::span<const Column> columns, const std::string& x, const std::string& y) {
+  return fmt::format(fmt::runtime(header_of(columns)), fmt::arg("x", x), fmt::arg("y", y));
+}
+
+std::vector<DescribedTable> result_tables() {
+  std::vector<DescribedTable> tables;
+  for (const ResultTable& table : record_tables()) tables.push_back({table.file, table.holds, all(table.columns)});
+  tables.push_back({kTargetTable.file, kTargetTable.holds, all(kTargetTable.columns)});
+  tables.push_back({"comparison.csv", "of compare: one line per algorithm", comparison_columns()});
+  tables.push_back({"sweep.csv", "of sweep: one line per run", sweep_columns()});
+  tables.push_back({"limits.csv", "of stability SCENARIO: one line per limit", all(kStabilityLimitColumns)});
+  tables.push_back({"root_locus.csv", "of stability SCENARIO: eigenvalues of a step as the case's number grows",
+                    all(kRootLocusColumns)});
+  tables.push_back({"stability_map_NAME.csv", "of stability --map: one line per run", all(kStabilityMapColumns)});
+  tables.push_back(
+      {"stability_boundary_NAME.csv", "of stability --map: one line per x of the map", all(kStabilityBoundaryColumns)});
+  tables.push_back({"stability_stress.csv", "of stability --stress: one line per algorithm", all(kStressColumns)});
+  tables.push_back({"precision_STUDY.csv", "of precision: one line per setting, with the columns of its study",
+                    all(kPrecisionColumns)});
+  tables.push_back({"shell.csv", "of shell: one line per point of the environment", all(kShellColumns)});
+  return tables;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,179 @@
+#include "results/observe/contact_forces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "results/allocations/allocations.hpp"
+#include "results/observe/metrics.hpp"
+#include "sim/core/random.hpp"
+#include "tests/results/rows.hpp"
+
+namespace hapbench {
+namespace {
+
+using Phase = ContactForceObserver::Phase;
+
+/// A row: its force along x, and whether the tool is in contact.
+struct Row {
+  double force = 0.0;
+  bool in_contact = true;
+};
+
+constexpr double kDt = 0.01;  ///< [s], exact enough that 0.03 s are three rows
+
+/// The rows' phases as a text: a, l or s each.
+std::string phases(const SettlingRule& rule, const std::string& contact) {
+  ContactForceObserver observer(kDt, rule);
+  std::string text;
+  for (const char c : contact) text += "als"[static_cast<int>(observer.add(Vec3::Zero(), {}, c == '#'))];
+  return text;
+}
+
+/// Through MetricsObserver, which tells the changes from row to row.
+ContactForces forces_of(const std::vector<Row>& rows, const SettlingRule& rule, double dt = kDt) {
+  const ContactBuffer none(1);
+  MetricsObserver observer(dt, {.settling = rule});
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    StepRecord r = test::row(k, dt * static_cast<double>(k), none);
+    r.colliding = rows[k].in_contact ? 1 : 0;
+    r.force.rendered = {rows[k].force, 0.0, 0.0};
+    observer.on_step(r);
+  }
+  return observer.metrics().contact;
+}
+
+constexpr SettlingRule kThreeRows = {.from = {}, .time = 0.03};
+
+TEST(SettlingRule, ALandingIsTheSettlingTimeAfterAFirstTouch) {
+  EXPECT_EQ(phases(kThreeRows, "..#######"), "aalllssss");
+  EXPECT_EQ(phases(kThreeRows, "#####"), "lllss") << "in contact since the start";
+}
+
+TEST(SettlingRule, OnlyAsLongATimeAwayMakesTheNextTouchAFirstOne) {
+  EXPECT_EQ(phases(kThreeRows, "####..####"), "lllsaassss");
+  EXPECT_EQ(phases(kThreeRows, "####...####"), "lllsaaallls");
+  EXPECT_EQ(phases(kThreeRows, "#..#..#"), "lllsaas") << "a bounce belongs to the landing as long as that lasts";
+}
+
+TEST(SettlingRule, WithAStartTakesAllBeforeForLanding) {
+  EXPECT_EQ(phases({.from = 0.05, .time = 0.03}, "..#######"), "lllllssss");
+  EXPECT_EQ(phases({.from = 0.0, .time = 0.03}, "##....##"), "ssaaaass");
+}
+
+TEST(SettlingRule, WithoutSettlingTimeHasNoLandings) {
+  EXPECT_EQ(phases({.from = {}, .time = 0.0}, ".##.#"), "assas");
+  EXPECT_EQ(forces_of({{0, false}, {1}, {1}, {0, false}, {1}}, {.from = {}, .time = 0.0}).landings, 2u);
+}
+
+TEST(SettlingRule, RoundsTimesToRows) {
+  EXPECT_EQ(phases({.from = {}, .time = 0.0349}, "#####"), "lllss");
+  EXPECT_EQ(phases({.from = {}, .time = 0.0251}, "#####"), "lllss");
+  EXPECT_EQ(phases({.from = 0.0151, .time = 0.03}, "#####"), "llsss");
+}
+
+// All numbers are small whole ones or halves: exact.
+TEST(ContactForces, AreThoseOfLandingsAndOfSettledContactApart) {
+  const ContactForces f =
+      forces_of({{0, false}, {9}, {-3}, {1}, {1}, {3}, {-2}, {0, false}, {2}, {0, false}, {0, false}, {0, false}, {5}},
+                kThreeRows);
+  EXPECT_EQ(f.landings, 2u);
+  EXPECT_EQ(f.landing_max(), 9.0);
+  EXPECT_EQ(f.landing_step_max(), 12.0);
+  // The rows with 1, 3, -2 and 2 N.
+  EXPECT_EQ(f.settled_rows, 4u);
+  EXPECT_EQ(f.settled, 4 * kDt);
+  EXPECT_EQ(f.mean(), 8.0 / 4.0);
+  EXPECT_EQ(f.max(), 3.0);
+  EXPECT_EQ(f.step_max(), 5.0);
+  EXPECT_EQ(f.reversals, 1u);
+  EXPECT_EQ(f.reversals_per_second(), 1.0 / (4 * kDt));
+}
+
+TEST(ContactForces, HaveNoValueWithoutSuchRows) {
+  const ContactForces away = forces_of({{0, false}, {0, false}}, kThreeRows);
+  EXPECT_FALSE(away.landing_max() || away.landing_step_max());
+  const ContactForces landing = forces_of({{0, false}, {4}}, kThreeRows);
+  EXPECT_EQ(landing.landing_max(), 4.0);
+  EXPECT_EQ(landing.landing_step_max(), 4.0);
+  EXPECT_FALSE(landing.mean() || landing.max() || landing.step_max() || landing.step_p99() ||
+               landing.rms_above_cutoff() || landing.reversals_per_second());
+  EXPECT_EQ(landing.settled, 0.0);
+}
+
+/// A contact that trembles, after a landing of a thousand newtons.
+std::vector<Row> trembling(std::size_t rows, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Row> all = {{0, false}, {1000.0}};
+  for (std::size_t k = 0; k < rows; ++k) all.push_back({1.0 + random.uniform(-0.1, 0.1)});
+  return all;
+}
+
+TEST(ContactForces, TheP99OfTheStepsIsThatOfTheSortedStepsWithinTheStatedError) {
+  const std::vector<Row> rows = trembling(5000, 1);
+  const ContactForces f = forces_of(rows, kThreeRows);
+  std::vector<double> steps;
+  for (std::size_t k = 4; k < rows.size(); ++k) steps.push_back(std::abs(rows[k].force - rows[k - 1].force));
+  ASSERT_EQ(f.settled_rows, steps.size());
+  std::sort(steps.begin(), steps.end());
+  const double exact = steps[static_cast<std::size_t>(std::ceil(0.99 * static_cast<double>(steps.size()))) - 1];
+  EXPECT_NEAR(*f.step_p99(), exact, MagnitudeHistogram::kRelativeError * exact);
+  EXPECT_EQ(f.step_max(), steps.back());
+}
+
+TEST(ContactForces, TheP99IsNeverAboveTheLargestStep) {
+  for (const double step : {1.0, 1.009, 1.02, 3e7}) {
+    const ContactForces f = forces_of({{0}, {0}, {0}, {step}}, kThreeRows);
+    EXPECT_LE(*f.step_p99(), *f.step_max());
+    EXPECT_NEAR(*f.step_p99(), step, MagnitudeHistogram::kRelativeError * step);
+  }
+}
+
+// Amplitude 2 N at 100 Hz: rms sqrt(2) N behind the documented gain. The landing's blow has died out by then: the
+// filter's slowest pole decays as exp(-72 t), and 1 s is given.
+TEST(ContactForces, TheVibrationIsTheRmsOfTheForceBehindTheHighPass) {
+  constexpr double dt = 0.0005;
+  std::vector<Row> rows;
+  for (std::size_t k = 0; k < 40'000; ++k) {
+    rows.push_back({5.0 + 2.0 * std::sin(2.0 * std::numbers::pi * 100.0 * dt * static_cast<double>(k))});
+  }
+  const ContactForces f = forces_of(rows, {.from = {}, .time = 1.0}, dt);
+  const double ratio = std::tan(std::numbers::pi * 30.0 * dt) / std::tan(std::numbers::pi * 100.0 * dt);
+  // 19 s are 1900 whole periods: the mean square is that of the sine to rounding, and e^-72 of the blow.
+  EXPECT_NEAR(*f.rms_above_cutoff(), std::sqrt(2.0 / (1.0 + std::pow(ratio, 8.0))), 1e-9);
+}
+
+TEST(ContactForces, HaveNoVibrationAtSixtyHertzOrLess) {
+  EXPECT_FALSE(forces_of(trembling(10, 1), {.from = {}, .time = 0.0}, 1.0 / 60.0).rms_above_cutoff());
+  EXPECT_TRUE(forces_of(trembling(10, 1), {.from = {}, .time = 0.0}, 1.0 / 61.0).rms_above_cutoff());
+}
+
+TEST(ContactForces, OfSeveralRunsAddUp) {
+  const ContactForces first = forces_of(trembling(300, 1), kThreeRows),
+                      second = forces_of(trembling(700, 2), kThreeRows);
+  ContactForces both = first;
+  both += second;
+  EXPECT_EQ(both.landings, 2u);
+  EXPECT_EQ(both.landing_max(), 1000.0);
+  EXPECT_EQ(both.settled_rows, first.settled_rows + second.settled_rows);
+  EXPECT_EQ(both.mean(), (first.sum + second.sum) / static_cast<double>(both.settled_rows));
+  EXPECT_EQ(both.step_max(), std::max(first.step_max(), second.step_max()));
+  EXPECT_EQ(both.rms_above_cutoff(), std::sqrt((*first.above_cutoff_squares + *second.above_cutoff_squares) /
+                                               static_cast<double>(both.settled_rows)));
+  EXPECT_GT(*both.step_p99(), std::min(*first.step_p99(), *second.step_p99()) * 0.99);
+  EXPECT_LT(*both.step_p99(), std::max(*first.step_p99(), *second.step_p99()) * 1.01);
+}
+
+TEST(ContactForces, AreObservedWithoutAllocating) {
+  const std::size_t before = heap_allocations();
+  ContactForceObserver observer(kDt, kThreeRows);
+  for (int k = 0; k < 1000; ++k) observer.add({1.0, 0.0, 0.1 * k}, {0.01, false}, k % 7 != 0);
+  EXPECT_EQ(heap_allocations(), before);
+  EXPECT_GT(observer.forces().settled_rows, 0u);
+}
+
+}  // namespace
+}  // namespace hapbench
