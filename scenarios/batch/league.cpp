@@ -40,6 +40,10 @@ std::vector<double> known(const std::vector<std::optional<double>>& values) {
   return numbers;
 }
 
+bool is_same(double a, double b) {
+  return std::abs(a - b) <= kSameRank * std::max(std::abs(a), std::abs(b));
+}
+
 /// By the seeds in which both have a value; none of fewer than two.
 std::optional<bool> differ_beyond_spread(const std::vector<std::optional<double>>& a,
                                          const std::vector<std::optional<double>>& b) {
@@ -74,26 +78,39 @@ class Column {
   const std::vector<Standing>& standings() const { return standings_; }
 
  private:
-  bool is_ranked(std::size_t a) const { return failures_[a] > 0 || standings_[a].mean.has_value(); }
-  /// Failed seeds first; the mean does not count after a failure.
-  std::pair<std::size_t, double> order(std::size_t a) const {
-    return {failures_[a], failures_[a] > 0 ? 0.0 : *standings_[a].mean};
-  }
-
+  /// Those without a failure in the order of their means, those with one behind all of these, by their number. No ranks
+  /// by a metric that nobody has.
   void rank() {
+    std::vector<std::size_t> order;
+    bool anybody = false;
     for (std::size_t a = 0; a < standings_.size(); ++a) {
-      if (!is_ranked(a)) continue;
-      std::size_t better = 0;
-      for (std::size_t b = 0; b < standings_.size(); ++b) better += is_ranked(b) && order(b) < order(a) ? 1u : 0u;
-      standings_[a].rank = 1 + better;
+      anybody |= standings_[a].mean.has_value();
+      if (failures_[a] == 0 && standings_[a].mean) order.push_back(a);
+    }
+    if (!anybody) return;
+    std::stable_sort(order.begin(), order.end(),
+                     [this](std::size_t a, std::size_t b) { return *standings_[a].mean < *standings_[b].mean; });
+    std::size_t leader = 0;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      if (!is_same(*standings_[order[leader]].mean, *standings_[order[i]].mean)) leader = i;
+      standings_[order[i]].rank = 1 + leader;
+    }
+    for (std::size_t a = 0; a < standings_.size(); ++a) {
+      if (failures_[a] == 0) continue;
+      const auto better = std::count_if(failures_.begin(), failures_.end(),
+                                        [this, a](std::size_t failures) { return failures < failures_[a]; });
+      standings_[a].rank = 1 + static_cast<std::size_t>(better);
     }
   }
 
   void compare_with_best(bool seeds_matter) {
-    std::size_t best = 0;
-    while (best < standings_.size() && (standings_[best].rank != 1 || failures_[best] > 0)) ++best;
-    if (best == standings_.size()) return;  // all failed, or none has the metric
-    const double least = *standings_[best].mean;
+    std::optional<std::size_t> best;
+    for (std::size_t a = 0; a < standings_.size(); ++a) {
+      if (failures_[a] > 0 || !standings_[a].mean) continue;
+      if (!best || *standings_[a].mean < *standings_[*best].mean) best = a;
+    }
+    if (!best) return;  // all failed, or none has the metric
+    const double least = *standings_[*best].mean;
     for (std::size_t a = 0; a < standings_.size(); ++a) {
       Standing& standing = standings_[a];
       if (failures_[a] > 0 || !standing.mean) continue;
@@ -102,7 +119,7 @@ class Column {
       } else if (least > 0.0) {
         standing.ratio_to_best = *standing.mean / least;
       }
-      if (a != best && seeds_matter) standing.beyond_spread = differ_beyond_spread(values_[a], values_[best]);
+      if (a != *best && seeds_matter) standing.beyond_spread = differ_beyond_spread(values_[a], values_[*best]);
     }
   }
 

@@ -30,12 +30,17 @@ struct LeagueRuns {
   }
 };
 
+/// Means closer than this part of the larger share a rank: what a table of ratios with three digits can show. Rounding,
+/// which sets apart algorithms that do the same, is far below.
+inline constexpr double kSameRank = 1e-3;
+
 /// One algorithm in one scenario by one metric, over the seeds that did not fail.
 struct Standing {
   std::optional<double> mean;    ///< none when all failed or none has the metric
   std::optional<double> spread;  ///< sample standard deviation; none when seeds are one or change nothing
-  /// 1 + the number of algorithms that did better: that failed with fewer seeds or, of those without a failure, have a
-  /// smaller mean. Equal ones share a rank. None for an algorithm that did not fail and has no such metric.
+  /// 1 + the number of algorithms that did better: those without a failure by their means, where the ones within
+  /// kSameRank of the first of a group share its rank, then the others by the number of seeds that failed. None without
+  /// the metric, but for failures where somebody has it.
   std::optional<std::size_t> rank;
   std::optional<double> ratio_to_best;  ///< mean / best mean; none after a failure, and where the best is not > 0
   /// The difference to the best is more than the spread: |t| of the differences seed by seed beyond the two-sided 5 %

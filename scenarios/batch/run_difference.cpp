@@ -37,7 +37,7 @@ Json read_object(const fs::path& file) {
   }
 }
 
-/// The metrics under the names that `expect` and --by know.
+/// The metrics have no section in front of their names, as in `expect` and --by.
 Values results_of(const Json& summary) {
   Values values;
   for (const auto& [key, value] : summary.items()) {

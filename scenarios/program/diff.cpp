@@ -63,13 +63,15 @@ std::string columns_text(const char* name, const TableDifference& difference) {
   const std::string rows = difference.rows_a == difference.rows_b
                                ? fmt::format("{} rows", difference.rows_a)
                                : fmt::format("{} and {} rows", difference.rows_a, difference.rows_b);
-  if (!difference.first) return fmt::format("{}: {}, the same as far as both go\n", name, rows);
+  if (!difference.first)
+    return fmt::format("{}: {}, the same{}\n", name, rows,
+                       difference.rows_a == difference.rows_b ? "" : " as far as both go");
   const FirstDifference& first = *difference.first;
   Table table({{"column", false}, {"largest difference"}, {"in row"}, {"relative to the largest"}});
   for (const ColumnDifference& column : difference.columns) {
     table.add({column.column, shown_size(column.largest), std::to_string(column.row), shown_size(column.relative)});
   }
-  return fmt::format("{}: {}, first different in row {} (from 0), column {}: {} and {}\n\n{}\n", name, rows, first.row,
+  return fmt::format("{}: {}, first different in row {} (from 0), column {}: {} and {}\n\n{}", name, rows, first.row,
                      first.column, shown_value(first.a), shown_value(first.b), table.text());
 }
 
@@ -166,7 +168,7 @@ void compare_all_sweeps(const DiffOptions& options, const ResultPairs& pairs, Re
   for (const fs::path& path : pairs.sweeps) {
     const TableDifference table = compare_tables(fs::path(options.a) / path, fs::path(options.b) / path);
     report.beyond |= table.is_beyond(options.tolerance);
-    report.text += columns_text(path.c_str(), table);
+    report.text += "\n" + columns_text(path.c_str(), table);
     report.sweeps[path.generic_string()] = table_json(table);
   }
 }

@@ -142,9 +142,10 @@ std::string league_text(const League& league) {
   }
   return text + fmt::format(
                     "\nall metrics and scenarios\n\n{}\n"
-                    "ratio: to the best, of one algorithm the geometric mean of so many; wins: where no other has a "
-                    "better\nmean rank; x: a run failed and ranks behind all that did not\n{}",
-                    laws_text(league), spread_text(league));
+                    "ratio: to the best; in the last table the geometric mean of so many. wins: no other has a better "
+                    "mean\nrank there. Closer than {} % share a rank. x: a run failed; it ranks behind all that did "
+                    "not.\n{}",
+                    laws_text(league), 100.0 * kSameRank, spread_text(league));
 }
 
 }  // namespace hapbench

@@ -54,7 +54,19 @@ TEST(League, GivesEqualOnesOneRank) {
   EXPECT_EQ(ranks(league_of(1, 4, 1, {2.0, 1.0, 2.0, 5.0}), 0), (Ranks{2, 1, 2, 4}));
 }
 
-TEST(League, RanksFailuresBehindAllOthersHoweverSmallTheirNumbers) {
+TEST(League, GivesOneRankToWhatOnlyRoundingSetsApart) {
+  // 0.1 % of the larger of two is the limit, taken from the first of a group: 1.0009 is of the first, 1.0015 is not,
+  // though close to the one before.
+  EXPECT_EQ(ranks(league_of(1, 4, 1, {1.0 + 1e-15, 1.0, 1.0009, 1.0015}), 0), (Ranks{1, 1, 1, 4}));
+  EXPECT_EQ(ranks(league_of(1, 3, 1, {0.0, 1e-300, 0.0}), 0), (Ranks{1, 3, 1})) << "nothing is like zero";
+}
+
+TEST(League, RanksFailuresBehindThoseWithoutTheMetricAndNobodyByAMetricNobodyHas) {
+  EXPECT_EQ(ranks(league_of(1, 3, 1, {-1.0, std::nullopt, 2.0}), 0), (Ranks{3, 0, 1}));
+  EXPECT_EQ(ranks(league_of(1, 2, 1, {-1.0, std::nullopt}), 0), (Ranks{0, 0}));
+}
+
+TEST(League, RanksFailuresBehindAllAllOthersHoweverSmallTheirNumbers) {
   const League league = league_of(1, 4, 1, {7.0, -1.0, 3.0, -9.0});
   EXPECT_EQ(ranks(league, 0), (Ranks{2, 3, 1, 3}));
   EXPECT_FALSE(league.at(0, 1, 0).mean);
@@ -143,7 +155,7 @@ TEST(League, SumsUpEachAlgorithmOverTheScenarios) {
 
 TEST(League, HasNoWinnerWhereAllFail) {
   const League league = league_of(1, 2, 1, {-1.0, -1.0});
-  EXPECT_EQ(ranks(league, 0), (Ranks{1, 1}));
+  EXPECT_EQ(ranks(league, 0), (Ranks{0, 0})) << "nobody has a number that counts";
   for (const LawStanding& law : league.laws) EXPECT_TRUE(law.wins.empty());
 }
 
