@@ -119,7 +119,10 @@ class Column {
       } else if (least > 0.0) {
         standing.ratio_to_best = *standing.mean / least;
       }
-      if (a != *best && seeds_matter) standing.beyond_spread = differ_beyond_spread(values_[a], values_[*best]);
+      if (a == *best || !seeds_matter) continue;
+      standing.beyond_spread = differ_beyond_spread(values_[a], values_[*best]);
+      // Rounding may differ the same way with every seed.
+      if (is_same(*standing.mean, least) && standing.beyond_spread) standing.beyond_spread = false;
     }
   }
 

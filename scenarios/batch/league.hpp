@@ -45,7 +45,8 @@ struct Standing {
   std::optional<double> ratio_to_best;  ///< mean / best mean; none after a failure, and where the best is not > 0
   /// The difference to the best is more than the spread: |t| of the differences seed by seed beyond the two-sided 5 %
   /// quantile of Student's t (statistics.hpp). Each seed gives all algorithms the same start and noise, so differences
-  /// are taken in pairs. None for the best itself, after a failure, and where no spread is known.
+  /// are taken in pairs. Never true within kSameRank of the best. None for the best itself, after a failure, and where
+  /// no spread is known.
   std::optional<bool> beyond_spread;
 };
 

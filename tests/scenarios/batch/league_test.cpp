@@ -113,6 +113,13 @@ TEST(League, TakesDifferencesSeedBySeedBeyondTheirQuantile) {
   EXPECT_EQ(league.at(0, 2, 0).beyond_spread, true);
 }
 
+TEST(League, TakesNoRoundingForADifference) {
+  // The same excess of a rounding error with every seed, whose t is infinite.
+  const League league = league_of(1, 2, 2, {1.0, 2.0, 1.0 + 1e-9, 2.0 + 1e-9});
+  EXPECT_EQ(league.at(0, 1, 0).beyond_spread, false);
+  EXPECT_EQ(league.at(0, 1, 0).rank, 1u);
+}
+
 TEST(League, ComparesOnlySeedsThatBothFinished) {
   // One common seed is no spread; a failure has no comparison at all.
   Values values = {1.0, 2.0, std::nullopt, std::nullopt, 5.0, 6.0};
