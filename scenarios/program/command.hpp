@@ -33,6 +33,7 @@ void add_compare(CommandLine& line);
 void add_stability(CommandLine& line);
 void add_precision(CommandLine& line);
 void add_reproduce(CommandLine& line);
+void add_diff(CommandLine& line);
 void add_sweep(CommandLine& line);
 void add_merge(CommandLine& line);
 void add_shell(CommandLine& line);

@@ -17,7 +17,7 @@ CommandOption& CommandOption::repeatable() {
 }
 
 CommandOption& CommandOption::comma_separated() {
-  option_->delimiter(',');
+  option_->delimiter(',')->transform([](const std::string& word) { return CLI::detail::trim_copy(word); });
   return *this;
 }
 
@@ -68,6 +68,10 @@ CommandOption Command::add(const std::string& name, std::int64_t& value, const s
 }
 
 CommandOption Command::add(const std::string& name, unsigned& value, const std::string& help) {
+  return CommandOption(app_->add_option(name, value, help));
+}
+
+CommandOption Command::add(const std::string& name, double& value, const std::string& help) {
   return CommandOption(app_->add_option(name, value, help));
 }
 

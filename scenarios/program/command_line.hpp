@@ -25,7 +25,7 @@ class CommandOption {
   CommandOption& required();
   /// May be given several times, each time with one value.
   CommandOption& repeatable();
-  /// Takes several values in one word, separated by commas.
+  /// Takes several values in one word, separated by commas; white space around them does not count.
   CommandOption& comma_separated();
   /// Refuses numbers outside [least, greatest].
   CommandOption& range(int least, int greatest);
@@ -53,6 +53,7 @@ class Command {
   CommandOption add(const std::string& name, int& value, const std::string& help);
   CommandOption add(const std::string& name, std::int64_t& value, const std::string& help);
   CommandOption add(const std::string& name, unsigned& value, const std::string& help);
+  CommandOption add(const std::string& name, double& value, const std::string& help);
   CommandOption add(const std::string& name, std::uint64_t& value, const std::string& help);
   CommandOption flag(const std::string& name, bool& value, const std::string& help);
   /// Calls `when_given` if the flag is.

@@ -1,14 +1,21 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <memory>
+#include <span>
 
 #include "results/summary/outcome_names.hpp"
+#include "scenarios/batch/earlier_results.hpp"
+#include "scenarios/batch/league_files.hpp"
+#include "scenarios/batch/league_runs.hpp"
+#include "scenarios/batch/parallel_for.hpp"
+#include "scenarios/batch/run_batch.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/comparison_table.hpp"
+#include "scenarios/program/league_text.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/run/assemble.hpp"
 #include "scenarios/run/expectation.hpp"
 
 namespace hapbench {
@@ -17,76 +24,201 @@ namespace {
 namespace fs = std::filesystem;
 
 struct CompareOptions {
-  std::string scenario;
+  std::vector<std::string> scenarios;
   std::vector<std::string> algorithms;
+  std::vector<std::string> metrics;
+  unsigned seeds = 1;
+  double jitter = 0.0;
+  unsigned jobs = 0;  ///< 0: not given
   std::string out;
   std::vector<std::string> overrides;
   bool no_cache = false;
   Skips skips = Skips::taken;
   OutputOptions output;
+
+  /// Something to rank over, or by.
+  bool wants_league() const { return scenarios.size() > 1 || seeds > 1 || !metrics.empty(); }
 };
 
-int compare(const CompareOptions& options) {
-  require_algorithms(options.algorithms);
-  const std::vector<std::string> algorithms = options.algorithms.empty() ? all_algorithms() : options.algorithms;
-  const fs::path file = find_scenario(options.scenario);
-  std::vector<LoadedScenario> scenarios;
-  for (const std::string& algorithm : algorithms) {
-    std::vector<std::string> overrides = options.overrides;
-    overrides.push_back("rendering.algorithm=" + algorithm);
-    scenarios.push_back(load_scenario(file, overrides));
-    scenarios.back().scenario.rendering.skips = options.skips;
-    const std::vector<std::string> warnings = check_named_files(scenarios.back());
-    // All have the same files.
-    if (scenarios.size() == 1) print_warnings(warnings);
+BatchPlan plan_of(const CompareOptions& options) {
+  if (!options.metrics.empty()) require_names("--by: got", options.metrics, metric_names());
+  constexpr double kMostJitter = 1.0;
+  if (!(options.jitter >= 0.0 && options.jitter <= kMostJitter)) {
+    throw InputError(fmt::format("--jitter: got {}; allowed: 0 ... {} m", options.jitter, kMostJitter));
   }
-  const fs::path out =
-      options.out.empty() ? fs::path("results") / "out" / ("compare_" + file.stem().string()) : fs::path(options.out);
-  for (const std::string& algorithm : algorithms) require_writable_directory(out / algorithm);
+  BatchDefinition definition;
+  if (!options.algorithms.empty()) {
+    definition.algorithms = chosen_names("--algorithms: got", options.algorithms, all_algorithms());
+  } else {
+    definition.algorithms = all_algorithms();
+  }
+  for (const std::string& scenario : options.scenarios) definition.scenarios.push_back(find_scenario(scenario));
+  definition.overrides = options.overrides;
+  definition.seeds = options.seeds;
+  definition.jitter = options.jitter;
+  definition.skips = options.skips;
+  return plan_batch(std::move(definition));
+}
 
+fs::path directory_of(const CompareOptions& options, const BatchPlan& plan) {
+  if (!options.out.empty()) return options.out;
+  return fs::path("results") / "out" / (plan.names.size() > 1 ? "compare" : "compare_" + plan.names[0]);
+}
+
+/// Makes the directories and takes out of them what an earlier comparison left.
+void prepare(const fs::path& out, const BatchPlan& plan, bool league) {
+  ResultList results;
+  for (std::size_t i = 0; i < plan.size(); ++i) results.runs.push_back(run_directory(plan, i));
+  for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
+    results.tables.push_back(scenario_directory(plan, s) / "comparison.csv");
+  }
+  if (league) results.tables.emplace_back("league.csv");
+  for (const fs::path& run : results.runs) require_writable_directory(out / run);
+  replace_earlier_results(out, results);
+}
+
+BatchOptions batch_options(const CompareOptions& options, const fs::path& out) {
+  BatchOptions batch;
+  batch.directory = out;
+  // The table of a single comparison shows times, which runs beside each other would lengthen.
+  batch.jobs = options.jobs > 0 ? options.jobs : options.wants_league() ? available_threads() : 1;
+  batch.progress = !options.output.quiet;
+  batch.cache = shell_cache(options.no_cache || options.skips == Skips::off);
+  return batch;
+}
+
+/// The reports of one scenario.
+std::span<const RunReport> reports_of(const BatchPlan& plan, const BatchReport& report, std::size_t scenario) {
+  const std::size_t each = plan.size() / plan.scenarios.size();
+  return std::span(report.runs).subspan(scenario * each, each);
+}
+
+/// What one scenario's runs came to, for the terminal.
+std::string comparison_text(const BatchPlan& plan, std::span<const RunReport> reports) {
   std::vector<Table::Column> columns = run_columns();
   columns.insert(columns.begin(), {"algorithm", false});
   Table table(columns);
-  Json summaries = Json::array();
-  std::vector<RunReport> reports;
-  const ShellCache cache = shell_cache(options.no_cache || options.skips == Skips::off);
-  int status = kSuccess;
-  for (std::size_t i = 0; i < scenarios.size(); ++i) {
-    RunReport report = run_scenario(scenarios[i], out / algorithms[i], !options.output.quiet, cache);
+  for (const RunReport& report : reports) {
     std::vector<std::string> cells = run_cells(report);
     cells.insert(cells.begin(), report.summary.algorithm);
     table.add(std::move(cells));
-    summaries.push_back(summary_json(report.summary));
-    // The scenario's other expectations are about its own algorithm; a divergence concerns every one.
-    const Outcome outcome = report.summary.result.outcome;
-    if (outcome == Outcome::diverges && !outcome_is_expected(scenarios[i].scenario.expect, outcome)) {
-      fmt::print(stderr, "hapbench: {}: {} diverges at step {}\n", file.string(), algorithms[i],
-                 report.summary.result.divergence.step);
-      status = kUnexpectedOutcome;
-    }
-    reports.push_back(std::move(report));
   }
-  print_warnings(run_warnings(reports));
-  write_comparison(out / "comparison.csv", reports);
-  print(options.output,
-        fmt::format("{}\n\n{}{}{}\nresults in {}\n", scenarios[0].scenario.name, table.text(), friction_text(reports),
-                    reduction_text(reports), out.string()),
-        summaries);
-  return status;
+  return fmt::format("{}\n\n{}{}{}", scenario_of(plan, 0).scenario.name, table.text(), friction_text(reports),
+                     reduction_text(reports));
+}
+
+std::string batch_text(const BatchPlan& plan, const BatchReport& report, const League& league) {
+  std::string text = league_text(league);
+  for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
+    const auto reports = reports_of(plan, report, s);
+    for (const std::string& warning : {friction_text(reports), reduction_text(reports)}) {
+      if (!warning.empty()) text += fmt::format("{}: {}", plan.names[s], warning);
+    }
+  }
+  return text;
+}
+
+Json summaries_json(const BatchPlan& plan, const BatchReport& report, bool league) {
+  Json summaries = Json::array();
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    Json summary = summary_json(report.runs[i].summary);
+    if (league) {
+      const BatchRun run = plan.run(i);
+      Json named = {{"scenario", plan.names[run.scenario]}, {"seed", run.seed}};
+      named.update(summary);
+      summary = std::move(named);
+    }
+    summaries.push_back(std::move(summary));
+  }
+  return summaries;
+}
+
+/// Tells of runs that diverge although their scenario does not expect it, the only expectation that concerns every
+/// algorithm: each of a single comparison, of a batch the first. Returns the exit status.
+int verdict(const BatchPlan& plan, const BatchReport& report, bool league) {
+  std::size_t count = 0;
+  std::string first;
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    const RunSummary& summary = report.runs[i].summary;
+    const BatchRun run = plan.run(i);
+    if (summary.result.outcome != Outcome::diverges ||
+        outcome_is_expected(scenario_of(plan, i).scenario.expect, Outcome::diverges)) {
+      continue;
+    }
+    const std::string text = fmt::format("{}: {} diverges at step {}", plan.scenarios[run.scenario].file.string(),
+                                         summary.algorithm, summary.result.divergence.step);
+    if (!league) fmt::print(stderr, "hapbench: {}\n", text);
+    if (count++ == 0) first = text;
+  }
+  if (league && count > 0) {
+    fmt::print(stderr, "hapbench: {} of {} runs diverge, the first: {}\n", count, plan.size(), first);
+  }
+  return count > 0 ? kUnexpectedOutcome : kSuccess;
+}
+
+int compare(const CompareOptions& options) {
+  // All input is checked before anything runs or is written.
+  const BatchPlan plan = plan_of(options);
+  const fs::path out = directory_of(options, plan);
+  print_warnings(plan.warnings);
+  prepare(out, plan, options.wants_league());
+
+  const BatchReport report = run_batch(plan, batch_options(options, out));
+  if (report.signal != 0) {
+    fmt::print(stderr, "hapbench: stopped after {} of {} runs\n", report.done, plan.size());
+    return 128 + report.signal;  // as shells say it
+  }
+  for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
+    print_warnings(run_warnings(reports_of(plan, report, s)));
+    write_comparison(out / scenario_directory(plan, s) / "comparison.csv", reports_of(plan, report, s), options.seeds);
+  }
+  const std::string where = fmt::format("\nresults in {}\n", out.string());
+  Json json = summaries_json(plan, report, options.wants_league());
+  if (options.wants_league()) {
+    const League league = make_league(league_runs(plan, report, options.metrics));
+    write_league(out / "league.csv", league);
+    Json batch = {{"runs", std::move(json)}};
+    batch.update(league_json(league));
+    print(options.output, batch_text(plan, report, league) + where, batch);
+  } else {
+    print(options.output, comparison_text(plan, report.runs) + where, json);
+  }
+  return verdict(plan, report, options.wants_league());
 }
 
 }  // namespace
 
 void add_compare(CommandLine& line) {
   auto options = std::make_shared<CompareOptions>();
-  Command command = line.command("compare", "Run one scenario through several algorithms, side by side");
-  command.add("scenario", options->scenario, "scenario file, or name of a bundled scenario").required();
-  command.add("--algorithms", options->algorithms, "names, separated by commas (default: all)").comma_separated();
-  command.add("--out", options->out, "directory of the results (default: results/out/compare_NAME)");
+  Command command =
+      line.command("compare", "Run scenarios through several algorithms, side by side; of several, a league table");
+  command.add("scenarios", options->scenarios, "scenario files, or names of bundled scenarios").required();
+  command.add("--algorithms", options->algorithms, "names, separated by commas, or all (default: all)")
+      .comma_separated();
+  command.add("--seeds", options->seeds, "run each K times, time k with the scenario's seed + k (default: 1)")
+      .range(1, 10'000);
+  command.add("--jitter", options->jitter,
+              "shift the start by a vector of this length [m] whose direction the seed gives, the same for all "
+              "algorithms: a spread where nothing else is random");
+  command
+      .add("--by", options->metrics,
+           "metrics of the league, less is better: names of summary.json, separated by commas (default: " +
+               default_metrics_text() + ")")
+      .comma_separated();
+  command.add("--jobs", options->jobs, "runs at once (default: one per thread; 1 where the table shows times)")
+      .range(1, 1024);
+  command.add("--out", options->out,
+              "directory of the results (default: results/out/compare_NAME, of several scenarios results/out/compare)");
   command.add("--set", options->overrides, "override a field: path=value").repeatable();
   add_cache_option(command, options->no_cache);
   add_skip_option(command, options->skips);
   add_output_options(command, options->output);
+  command.footer(
+      "Files go to OUT/[SCENARIO/]ALGORITHM[/seed_K], the parts in brackets where there are several; comparison.csv "
+      "for each scenario. With several scenarios or seeds, or --by, a league: rank, ratio to the best, mean and spread "
+      "over the seeds, whether a difference is more than the spread, and where each algorithm wins and fails; all of "
+      "it in league.csv. A run fails that diverges, has no contact or loses it, or ends otherwise than its scenario "
+      "allows; it ranks behind all others. What an earlier comparison left in OUT is removed, other files are not.");
   command.runs([options] { return compare(*options); });
 }
 

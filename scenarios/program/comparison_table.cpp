@@ -18,6 +18,7 @@ constexpr const char* kMetrics[] = {"force_max_N",
                                     "ratio_min",
                                     "ratio_max",
                                     "steps_in_contact",
+                                    "contact_share",
                                     "landings",
                                     "landing_force_max_N",
                                     "landing_force_step_max_N",
@@ -44,10 +45,11 @@ std::vector<Column> comparison_columns() {
   return columns;
 }
 
-void write_comparison(const std::filesystem::path& file, std::span<const RunReport> reports) {
-  std::string text = header_of(comparison_columns()) + "\n";
-  for (const RunReport& report : reports) {
-    const RunSummary& run = report.summary;
+void write_comparison(const std::filesystem::path& file, std::span<const RunReport> reports, std::size_t seeds) {
+  std::string text = (seeds > 1 ? "seed," : "") + header_of(comparison_columns()) + "\n";
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    const RunSummary& run = reports[i].summary;
+    if (seeds > 1) text += std::to_string(i % seeds) + ",";
     text += run.algorithm + "," + std::string(outcome_name(run.result.outcome)) + "," + std::to_string(run.result.rows);
     const MetricList metrics = metric_list(run);
     for (const char* name : kMetrics) text += "," + cell_text(value_of(metrics, name));

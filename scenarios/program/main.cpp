@@ -25,6 +25,7 @@ int run_program(int argc, char** argv) {
   add_stability(line);
   add_precision(line);
   add_reproduce(line);
+  add_diff(line);
   add_sweep(line);
   add_merge(line);
   add_shell(line);

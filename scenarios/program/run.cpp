@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "results/io/io_error.hpp"
+#include "scenarios/batch/earlier_results.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/latency_table.hpp"
@@ -41,6 +42,11 @@ int run(const RunOptions& options) {
     print_warnings(warnings);
   }
   for (const fs::path& directory : directories) require_writable_directory(directory);
+  if (directories.size() > 1 && !options.out.empty()) {
+    ResultList results;
+    for (const fs::path& directory : directories) results.runs.push_back(directory.filename());
+    replace_earlier_results(options.out, results);
+  }
 
   std::vector<Table::Column> columns = run_columns();
   columns.insert(columns.begin(), {{"scenario", false}, {"algorithm", false}});

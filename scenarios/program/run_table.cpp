@@ -82,10 +82,12 @@ std::vector<std::string> run_warnings(std::span<const RunReport> reports) {
 
 std::string friction_text(std::span<const RunReport> reports) {
   std::string names;
+  std::string_view last;  // several seeds of an algorithm come one after the other; the first tells
   double limit = 0.0;
   for (const RunReport& report : reports) {
     const auto& friction = report.summary.metrics.explicit_friction;
-    if (!friction || !friction->first_step) continue;
+    if (!friction || !friction->first_step || report.summary.algorithm == last) continue;
+    last = report.summary.algorithm;
     limit = friction->limit;
     names += fmt::format("{}{} (step {})", names.empty() ? "" : ", ", report.summary.algorithm, *friction->first_step);
   }

@@ -9,6 +9,7 @@
 #include "results/io/csv_writer.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/program/result_tables.hpp"
+#include "scenarios/program/character_map.hpp"
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
 
@@ -90,26 +91,21 @@ std::size_t count_of(const MapResult& result, MotionClass motion) {
                                                 [motion](const MapPoint& p) { return p.motion == motion; }));
 }
 
-/// The map as characters, y upwards. The analytic limit is drawn where the runs confirm it: '=' is the first run
-/// beyond.
+/// The analytic limit is drawn where the runs confirm it: '=' is the first run beyond.
 std::string drawing(const MapResult& result) {
   const std::size_t n = result.size;
   const MapAxis &x = result.map->x, &y = result.map->y;
-  std::string text = fmt::format("{}: {}\n\n", label(result.subject), result.map->summary);
-  for (std::size_t row = n; row-- > 0;) {
-    text += fmt::format("  {:>9}  ", row == 0 || row == n - 1 ? significant(y.at(row, n), 3) : "");
-    for (std::size_t column = 0; column < n; ++column) {
-      const MotionClass motion = result.points[column * n + row].motion;
-      const auto beyond = [&](std::size_t j) { return y.at(j, n) > result.boundary[column].analytic.value_or(1e300); };
-      const bool limit = motion == MotionClass::diverged && beyond(row) && (row == 0 || !beyond(row - 1));
-      text += limit ? " =" : motion == MotionClass::stable ? " ." : motion == MotionClass::vibrating ? " ~" : " #";
-    }
-    text += row == n - 1 ? fmt::format("  {}\n", y.name) : "\n";
-  }
-  return text + fmt::format(
-                    "             {} ... {}  {}\n  . stable  ~ vibrating  # diverged  = diverged, first beyond the "
-                    "analytic limit\n\n",
-                    significant(x.low, 3), significant(x.high, 3), x.name);
+  const auto cell = [&](std::size_t column, std::size_t row) {
+    const MotionClass motion = result.points[column * n + row].motion;
+    const auto beyond = [&](std::size_t j) { return y.at(j, n) > result.boundary[column].analytic.value_or(1e300); };
+    const bool limit = motion == MotionClass::diverged && beyond(row) && (row == 0 || !beyond(row - 1));
+    return limit ? '=' : motion == MotionClass::stable ? '.' : motion == MotionClass::vibrating ? '~' : '#';
+  };
+  std::vector<std::string> labels(n);
+  for (const std::size_t row : {std::size_t{0}, n - 1}) labels[row] = significant(y.at(row, n), 3);
+  return fmt::format("{}: {}\n\n{}  . stable  ~ vibrating  # diverged  = diverged, first beyond the analytic limit\n\n",
+                     label(result.subject), result.map->summary,
+                     character_map({x.name, n, significant(x.low, 3), significant(x.high, 3)}, y.name, labels, cell));
 }
 
 Json result_json(const MapResult& result) {

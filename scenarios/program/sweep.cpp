@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 
+#include "scenarios/batch/league_runs.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
@@ -23,6 +24,7 @@ struct SweepCommand {
   std::vector<std::string> vary;
   std::string sample;
   std::uint64_t seed = 1;
+  std::string metric;
   std::string out;
   std::vector<std::string> overrides;
   std::int64_t jobs = 0;  ///< 0: one for each thread there is
@@ -36,7 +38,13 @@ struct SweepCommand {
 SweepPoints points_of(const SweepCommand& command) {
   const bool sampled = !command.sample.empty();
   std::vector<Axis> axes;
-  for (const std::string& text : command.vary) axes.push_back(sampled ? parse_sampled_axis(text) : parse_axis(text));
+  for (const std::string& text : command.vary) {
+    axes.push_back(sampled ? parse_sampled_axis(text) : parse_axis(text));
+    Axis& axis = axes.back();
+    if (axis.path == "rendering.algorithm" && axis.values == std::vector<std::string>{"all"}) {
+      axis.values = all_algorithms();
+    }
+  }
   if (!sampled) return SweepPoints(std::move(axes));
   return SweepPoints(std::move(axes), parse_sampling(command.sample, command.seed));
 }
@@ -96,6 +104,7 @@ int sweep(const SweepCommand& command) {
   const SweepOptions options = sweep_options(command, file);
   const SweepPlan plan =
       plan_sweep(read_scenario_text(file), command.overrides, points_of(command), options.jobs, options.progress);
+  const std::string metric = chosen_metric(plan, command.metric);
   print_some_warnings(plan.warnings);
   require_writable_directory(options.directory);
 
@@ -106,7 +115,7 @@ int sweep(const SweepCommand& command) {
     return 128 + report.signal;  // as shells say it
   }
   const SweepSummary summary = summarise(plan, report.rows);
-  print(command.output, summary_text(plan, report, summary), summary_json(plan, report, summary));
+  print(command.output, summary_text(plan, report, summary, metric), summary_json(plan, report, summary));
   return verdict(plan, report, summary);
 }
 
@@ -125,10 +134,11 @@ void add_sweep(CommandLine& line) {
       line.command("sweep", "Run one scenario over a grid or a sample of values of any fields, in parallel");
   command.add("scenario", options->scenario, "scenario file, or name of a bundled scenario").required();
   command
-      .add("--vary", options->vary,
-           "a field and its values: path=a:b:n (n numbers from a to b), path=a:b:n:log (in equal ratios) or "
-           "path=v,w,... (numbers or texts); several give all combinations, the last one varies fastest. With --sample "
-           "path=a:b, path=a:b:log or path=v,w,...")
+      .add(
+          "--vary", options->vary,
+          "a field and its values: path=a:b:n (n numbers from a to b), path=a:b:n:log (in equal ratios) or "
+          "path=v,w,... (numbers or texts; rendering.algorithm=all); several give all combinations, the last one varies fastest. With --sample "
+          "path=a:b, path=a:b:log or path=v,w,...")
       .required()
       .repeatable();
   const CommandOption sample =
@@ -136,6 +146,9 @@ void add_sweep(CommandLine& line) {
                   "runs at points of the box instead: lhs:N (Latin hypercube), sobol:N (shifted Sobol sequence, best "
                   "for powers of two) or random:N; listed values take equal shares");
   command.add("--seed", options->seed, "of the sample (default: 1)").needs(sample);
+  command.add("--metric", options->metric,
+              "what a sweep of two fields shows as table and map: a column of sweep.csv (default: " +
+                  std::string(kDefaultMetrics[0]) + ")");
   command.add("--out", options->out, "directory of sweep.csv (default: results/out/sweep_NAME)");
   command.add("--set", options->overrides, "override a field of all runs: path=value").repeatable();
   add_run_options(command, *options);

@@ -4,9 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <iterator>
 
+#include "scenarios/batch/league_runs.hpp"
 #include "scenarios/batch/sweep_row.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/sweep_grid_text.hpp"
 #include "scenarios/program/table.hpp"
 
 namespace hapbench {
@@ -14,6 +18,7 @@ namespace {
 
 /// Longer tables are not printed; other programs show them better.
 constexpr std::size_t kMostShown = 100;
+constexpr std::size_t kMostInJson = 10'000;
 
 /// A number of a cell for people, in another unit.
 std::string shown(std::string_view cell, double factor) {
@@ -50,7 +55,42 @@ std::string runs_text(const SweepPlan& plan, const std::vector<std::string>& row
   return table.text();
 }
 
+/// The rows as objects: numbers as such, null for empty cells.
+Json rows_json(const std::string& header, const std::vector<std::string>& rows) {
+  const Words names = parts_of(header, ',');
+  Json list = Json::array();
+  for (const std::string& row : rows) {
+    const Words cells = parts_of(row, ',');
+    Json object = Json::object();
+    for (std::size_t c = 0; c < names.size(); ++c) {
+      const auto count = whole_number(cells[c]);
+      const auto number = finite_number(cells[c]);
+      // A hash may look like a number.
+      const bool text = names[c] == "state_hash";
+      object[std::string(names[c])] = cells[c].empty()                            ? Json(nullptr)
+                                      : text                                      ? Json(cells[c])
+                                      : count                                     ? Json(*count)
+                                      : number                                    ? Json(*number)
+                                      : cells[c] == "true" || cells[c] == "false" ? Json(cells[c] == "true")
+                                                                                  : Json(cells[c]);
+    }
+    list.push_back(std::move(object));
+  }
+  return list;
+}
+
 }  // namespace
+
+std::string chosen_metric(const SweepPlan& plan, const std::string& asked_for) {
+  if (!asked_for.empty()) {
+    require_valid_name("--metric: got", asked_for, plan.metrics);
+    return asked_for;
+  }
+  const auto has = [&plan](std::string_view name) {
+    return std::find(plan.metrics.begin(), plan.metrics.end(), name) != plan.metrics.end();
+  };
+  return std::string(*std::find_if(std::begin(kDefaultMetrics), std::end(kDefaultMetrics) - 1, has));
+}
 
 SweepSummary summarise(const SweepPlan& plan, const std::vector<std::string>& rows) {
   SweepSummary summary;
@@ -70,8 +110,9 @@ SweepSummary summarise(const SweepPlan& plan, const std::vector<std::string>& ro
   return summary;
 }
 
-std::string summary_text(const SweepPlan& plan, const SweepReport& report, const SweepSummary& summary) {
-  std::string text;
+std::string summary_text(const SweepPlan& plan, const SweepReport& report, const SweepSummary& summary,
+                         const std::string& metric) {
+  std::string text = grid_text(plan, report.rows, metric);
   if (plan.points.axes().size() == 1 && report.rows.size() <= kMostShown) text = runs_text(plan, report.rows) + "\n";
   Table table({{"outcome", false}, {"runs"}, {"as expected"}});
   for (const auto& [outcome, count] : summary.outcomes) {
@@ -85,8 +126,10 @@ std::string summary_text(const SweepPlan& plan, const SweepReport& report, const
 Json summary_json(const SweepPlan& plan, const SweepReport& report, const SweepSummary& summary) {
   Json outcomes = Json::object();
   for (const auto& [outcome, count] : summary.outcomes) outcomes[outcome] = count.runs;
-  return {{"definition", plan.definition},    {"runs", report.rows.size()}, {"outcomes", std::move(outcomes)},
-          {"unexpected", summary.unexpected}, {"failed", summary.failed},   {"file", report.table.string()}};
+  Json json = {{"definition", plan.definition},    {"runs", report.rows.size()}, {"outcomes", std::move(outcomes)},
+               {"unexpected", summary.unexpected}, {"failed", summary.failed},   {"file", report.table.string()}};
+  if (report.rows.size() <= kMostInJson) json["rows"] = rows_json(sweep_header(plan), report.rows);
+  return json;
 }
 
 }  // namespace hapbench

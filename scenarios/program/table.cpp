@@ -25,7 +25,7 @@ std::array<std::string, 2> title_lines(const std::string& title) {
 
 }  // namespace
 
-std::string Table::text() const {
+std::vector<std::size_t> Table::widths() const {
   std::vector<std::size_t> widths;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     const auto [upper, lower] = title_lines(columns_[c].title);
@@ -33,9 +33,19 @@ std::string Table::text() const {
     for (const auto& row : rows_) width = std::max(width, row[c].size());
     widths.push_back(width);
   }
+  return widths;
+}
+
+std::size_t Table::width() const {
+  std::size_t sum = 0;
+  for (const std::size_t width : widths()) sum += width + 2;
+  return sum - 2;
+}
+
+std::string Table::block(const std::vector<std::size_t>& widths, const std::vector<std::size_t>& columns) const {
   const auto line = [&](auto cell_of) {
     std::string text;
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
+    for (const std::size_t c : columns) {
       const std::string cell = cell_of(c);
       text += columns_[c].number ? fmt::format("{:>{}}  ", cell, widths[c]) : fmt::format("{:<{}}  ", cell, widths[c]);
     }
@@ -68,6 +78,23 @@ std::string wrapped(std::string_view text, std::size_t indent, std::size_t width
     column += word.size();
   }
   return lines + "\n";
+}
+
+std::string Table::text(std::size_t most_width) const {
+  const std::vector<std::size_t> width_of = widths();
+  std::string text;
+  std::vector<std::size_t> columns = {0};
+  std::size_t width = width_of[0];
+  for (std::size_t c = 1; c < columns_.size(); ++c) {
+    if (columns.size() > 1 && width + 2 + width_of[c] > most_width) {
+      text += block(width_of, columns) + "\n";
+      columns = {0};
+      width = width_of[0];
+    }
+    columns.push_back(c);
+    width += 2 + width_of[c];
+  }
+  return text + block(width_of, columns);
 }
 
 std::string significant(double value, int digits) {

@@ -19,15 +19,25 @@ class Table {
   explicit Table(std::vector<Column> columns);
   /// Precondition: one cell per column.
   void add(std::vector<std::string> cells);
-  std::string text() const;
+  /// Columns that do not fit into `most_width` characters follow below, in blocks that each begin with the first
+  /// column.
+  std::string text(std::size_t most_width = std::string::npos) const;
+  /// Length of the longest line, blocks aside.
+  std::size_t width() const;
 
  private:
+  std::vector<std::size_t> widths() const;
+  std::string block(const std::vector<std::size_t>& widths, const std::vector<std::size_t>& columns) const;
+
   std::vector<Column> columns_;
   std::vector<std::vector<std::string>> rows_;
 };
 
 /// Prose of at most `width` columns a line, each behind `indent` spaces.
 std::string wrapped(std::string_view text, std::size_t indent = 2, std::size_t width = 100);
+
+/// Tables aim at this width [characters].
+inline constexpr std::size_t kTableWidth = 100;
 
 /// A number for people: `digits` significant ones, "-" for none.
 std::string significant(double value, int digits = 4);

@@ -144,6 +144,14 @@ void write_results(const fs::path& directory, const Scenario& scenario, const Ru
 
 }  // namespace
 
+void remove_run(const fs::path& directory) {
+  std::error_code ignored;
+  if (!fs::is_directory(directory, ignored)) return;
+  remove_stale_temporaries(directory);
+  remove_files_of_earlier_runs(directory);
+  fs::remove(directory / "scenario.effective.json", ignored);
+}
+
 RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,
                        const ShellCache& cache) {
   RunTiming timing;

@@ -36,4 +36,8 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
                          const std::optional<std::filesystem::path>& output, bool progress,
                          const RunTiming& timing = {});
 
+/// Removes the files that a run wrote into a directory, if it is there, and leaves all others. Throws IoError when the
+/// directory cannot be listed.
+void remove_run(const std::filesystem::path& directory);
+
 }  // namespace hapbench

@@ -1,5 +1,7 @@
 #include "scenarios/run/shared_shells.hpp"
 
+#include <chrono>
+
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/environment_points.hpp"
 
@@ -10,12 +12,22 @@ SharedShells::SharedShells(const std::vector<std::size_t>& uses, ShellCache cach
   for (std::size_t i = 0; i < uses.size(); ++i) entries_[i].uses = uses[i];
 }
 
-std::shared_ptr<const PointShell> SharedShells::take(std::size_t environment, const Scenario& scenario) {
+std::shared_ptr<const PointShell> SharedShells::take(std::size_t environment, const Scenario& scenario,
+                                                     RunTiming* timing) {
+  const auto start = std::chrono::steady_clock::now();
   Entry& entry = entries_[environment];
   const std::lock_guard lock(entry.mutex);
-  if (!entry.shell) entry.shell = make_shell(scenario, environment_points(scenario, cache_));
+  if (!entry.shell) {
+    EnvironmentPoints points = environment_points(scenario, cache_);
+    entry.from_cache = points.from_cache;
+    entry.shell = make_shell(scenario, std::move(points));
+  }
   auto shell = entry.shell;
   if (--entry.uses == 0) entry.shell.reset();
+  if (timing != nullptr) {
+    timing->shell = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    timing->shell_from_cache = entry.from_cache;
+  }
   return shell;
 }
 

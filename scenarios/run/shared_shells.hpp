@@ -4,27 +4,31 @@
 #include <mutex>
 #include <vector>
 
+#include "results/summary/timing.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/input/shell_cache.hpp"
 
 namespace hapbench {
 
-/// The point shells of a sweep's environments, each made once, by the first run in it, and dropped after the last one.
-/// For several threads.
+/// The point shells of the environments of many runs, each made once, by the first run in it, and dropped after the
+/// last one. For several threads.
 class SharedShells {
  public:
   /// `uses` says for each environment how many runs are in it.
   SharedShells(const std::vector<std::size_t>& uses, ShellCache cache);
 
   /// The shell of an environment, which is the scenario's; null for springs. Waits while another thread makes it. To be
-  /// called once for each run in it. Throws InputError when a named file cannot be used.
-  std::shared_ptr<const PointShell> take(std::size_t environment, const Scenario& scenario);
+  /// called once for each run in it. `timing`, if given, learns how long that took and whether the points came from the
+  /// cache. Throws InputError when a named file cannot be used.
+  std::shared_ptr<const PointShell> take(std::size_t environment, const Scenario& scenario,
+                                         RunTiming* timing = nullptr);
 
  private:
   struct Entry {
     std::mutex mutex;
     std::size_t uses = 0;  ///< still to come
     std::shared_ptr<const PointShell> shell;
+    bool from_cache = false;
   };
   std::vector<Entry> entries_;
   ShellCache cache_;

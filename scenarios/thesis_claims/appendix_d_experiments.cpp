@@ -6,8 +6,8 @@
 #include <iterator>
 #include <map>
 
+#include "scenarios/batch/statistics.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/statistics.hpp"
 #include "scenarios/thesis_claims/wording.hpp"
 
 /// Claims of appendix D: the man-machine experiments with simulated subjects.

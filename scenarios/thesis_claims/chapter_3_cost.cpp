@@ -5,9 +5,9 @@
 
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "algorithms/stages/gradient_reduction.hpp"
+#include "scenarios/batch/statistics.hpp"
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/statistics.hpp"
 #include "scenarios/thesis_claims/wording.hpp"
 #include "sim/core/random.hpp"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "scenarios/batch/statistics.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/statistics.hpp"
 #include "scenarios/thesis_claims/wording.hpp"
 
 /// Claims of 3.3: the number of points before and after the reduction.

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "algorithms/registry.hpp"
+#include "scenarios/batch/statistics.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/contacts_by_hand.hpp"
-#include "scenarios/thesis_claims/statistics.hpp"
 #include "scenarios/thesis_claims/wording.hpp"
 #include "sim/contact/shell_query.hpp"
 

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cstdio>
+
+#include "algorithms/registry.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
@@ -204,6 +207,47 @@ TEST_F(SweepCommand, ShowsTheRunsOfOneFieldAndTheOutcomes) {
   EXPECT_EQ(json["unexpected"], 1);
   quiet_words.emplace_back("--quiet");
   EXPECT_EQ(hapbench(quiet_words).out, "");
+}
+
+TEST_F(SweepCommand, ShowsTwoFieldsAsATableAndAMap) {
+  const Words words = {"sweep",  "peg_in_hole_2d_shaped_stiffness",
+                       "--set",  "expect.outcome=[\"completes\",\"leaves_hole\",\"diverges\"]",
+                       "--set",  "expect.metrics={}",
+                       "--vary", "rendering.stiffness_N_per_m=5000,20000",
+                       "--vary", "rendering.algorithm=mean,exact_shaping",
+                       "--out",  (directory_ / "out").string()};
+  Words shown = words;
+  shown.insert(shown.end(), {"--metric", "depth_max_m"});
+  const auto lines = lines_of(hapbench(shown).out);
+  ASSERT_GT(lines.size(), 10u);
+  EXPECT_EQ(lines[0], "depth_max_m");
+  EXPECT_EQ(lines[2], "rendering.algorithm \\ rendering.stiffness_N_per_m       5000      20000");
+  // The cells are those of the rows.
+  const Json json = [&] {
+    Words wanted = shown;
+    wanted.emplace_back("--json");
+    return hapbench(wanted).json();
+  }();
+  ASSERT_EQ(json["rows"].size(), 4u);
+  EXPECT_EQ(json["rows"][1]["rendering.algorithm"], "exact_shaping");
+  EXPECT_EQ(json["rows"][1]["rendering.stiffness_N_per_m"], 5000);
+  char cell[32];
+  std::snprintf(cell, sizeof cell, "%.4g", json["rows"][1]["depth_max_m"].get<double>());
+  EXPECT_EQ(lines[5].find("exact_shaping "), 0u);
+  EXPECT_NE(lines[5].find(std::string(" ") + cell + " "), std::string::npos) << lines[5];
+  EXPECT_TRUE(lines[7].ends_with("  rendering.algorithm")) << lines[7];
+  EXPECT_NE(lines[10].find("depth_max_m: . "), std::string::npos) << lines[10];
+}
+
+TEST_F(SweepCommand, VariesAllAlgorithmsByOneWordAndRefusesUnknownMetrics) {
+  const ProgramRun run = hapbench({"sweep", "single_spring", "--vary", "rendering.algorithm=all", "--out",
+                                   (directory_ / "out").string(), "--json"});
+  EXPECT_EQ(run.json()["rows"].size(), algorithms().size()) << run.err;
+  const ProgramRun refused = hapbench({"sweep", "single_spring", "--vary", "seed=1,2", "--metric", "force_mix_N",
+                                       "--out", (directory_ / "no").string()});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("nearest valid name: \"force_max_N\""), std::string::npos) << refused.err;
+  EXPECT_FALSE(fs::exists(directory_ / "no"));
 }
 
 struct BadSweep {

@@ -34,6 +34,22 @@ TEST(Wrapped, BreaksBetweenWordsAndNeverWithinOne) {
   EXPECT_EQ(wrapped("a", 0, 6), "a\n");
 }
 
+TEST(Table, BreaksIntoBlocksThatBeginWithTheFirstColumn) {
+  Table table({{"name", false}, {"one"}, {"two"}, {"three"}});
+  table.add({"a", "1", "2", "3"});
+  EXPECT_EQ(table.width(), 21u);
+  EXPECT_EQ(table.text(21), table.text());
+  EXPECT_EQ(table.text(14),
+            "name  one  two\n"
+            "----  ---  ---\n"
+            "a       1    2\n"
+            "\n"
+            "name  three\n"
+            "----  -----\n"
+            "a         3\n");
+  EXPECT_EQ(table.text(1).find("name  one\n"), 0u) << "a column at least";
+}
+
 TEST(Table, WithoutRowsIsItsHead) {
   EXPECT_EQ(Table({{"a"}, {"bc", false}}).text(), "a  bc\n-  --\n");
 }

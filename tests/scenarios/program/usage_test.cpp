@@ -23,6 +23,8 @@ TEST(Usage, ErrorsExitWith2AndSayWhatIsWrongOnStandardError) {
                                                        {"sweep"},
                                                        {"sweep", "single_spring"},
                                                        {"sweep", "single_spring", "--vary"},
+                                                       {"diff"},
+                                                       {"diff", "x"},
                                                        {"sweep", "single_spring", "--vary", "seed=1", "--jobs", "x"},
                                                        {"merge"},
                                                        {"merge", "x.csv"},
@@ -68,12 +70,12 @@ TEST(Usage, TakesEachPrecisionStudyOnce) {
 TEST(Usage, HelpExitsWith0AndNamesTheCommandsAndExitStatuses) {
   const ProgramRun run = hapbench({"--help"});
   EXPECT_EQ(run.status, 0);
-  for (const char* word :
-       {"run", "compare", "stability", "sweep", "merge", "shell", "list", "describe", "validate", "Exit status"}) {
+  for (const char* word : {"run", "compare", "stability", "sweep", "merge", "diff", "shell", "list", "describe",
+                           "validate", "Exit status"}) {
     EXPECT_NE(run.out.find(word), std::string::npos) << word;
   }
   for (const char* command :
-       {"run", "compare", "stability", "sweep", "merge", "shell", "list", "describe", "validate"}) {
+       {"run", "compare", "stability", "sweep", "merge", "diff", "shell", "list", "describe", "validate"}) {
     const ProgramRun help = hapbench({command, "--help"});
     EXPECT_EQ(help.status, 0) << command;
     EXPECT_NE(help.out.find("--quiet"), std::string::npos) << command;

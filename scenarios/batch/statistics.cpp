@@ -1,4 +1,4 @@
-#include "scenarios/thesis_claims/statistics.hpp"
+#include "scenarios/batch/statistics.hpp"
 
 #include <algorithm>
 #include <cmath>

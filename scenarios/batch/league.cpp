@@ -1,0 +1,219 @@
+#include "scenarios/batch/league.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "scenarios/batch/statistics.hpp"
+
+namespace hapbench {
+namespace {
+
+bool seeds_matter_in(const LeagueRuns& runs, std::size_t scenario) {
+  for (std::size_t a = 0; a < runs.algorithms.size(); ++a) {
+    for (std::size_t k = 1; k < runs.seeds; ++k) {
+      if (runs.run(scenario, a, k).state_hash != runs.run(scenario, a, 0).state_hash) return true;
+    }
+  }
+  return false;
+}
+
+/// The values of a metric in the runs that did not fail, seed by seed.
+std::vector<std::optional<double>> values_of(const LeagueRuns& runs, std::size_t scenario, std::size_t algorithm,
+                                             std::size_t metric) {
+  std::vector<std::optional<double>> values;
+  for (std::size_t k = 0; k < runs.seeds; ++k) {
+    const LeagueRun& run = runs.run(scenario, algorithm, k);
+    values.push_back(run.failed ? std::nullopt : run.metrics[metric]);
+  }
+  return values;
+}
+
+std::vector<double> known(const std::vector<std::optional<double>>& values) {
+  std::vector<double> numbers;
+  for (const auto& value : values) {
+    if (value) numbers.push_back(*value);
+  }
+  return numbers;
+}
+
+bool is_same(double a, double b) {
+  return std::abs(a - b) <= kSameRank * std::max(std::abs(a), std::abs(b));
+}
+
+/// By the seeds in which both have a value; none of fewer than two.
+std::optional<bool> differ_beyond_spread(const std::vector<std::optional<double>>& a,
+                                         const std::vector<std::optional<double>>& b) {
+  std::vector<double> of_a, of_b;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    if (!a[k] || !b[k]) continue;
+    of_a.push_back(*a[k]);
+    of_b.push_back(*b[k]);
+  }
+  if (of_a.size() < 2) return std::nullopt;
+  return std::abs(paired_t(of_a, of_b)) > critical_t(of_a.size() - 1);
+}
+
+/// The standings of one scenario and metric.
+class Column {
+ public:
+  Column(const League& league, std::size_t scenario, std::size_t metric) {
+    const LeagueRuns& runs = league.runs;
+    for (std::size_t a = 0; a < runs.algorithms.size(); ++a) {
+      values_.push_back(values_of(runs, scenario, a, metric));
+      failures_.push_back(league.failures(scenario, a));
+      Standing standing;
+      const std::vector<double> numbers = known(values_[a]);
+      if (!numbers.empty()) standing.mean = mean_of(numbers);
+      if (numbers.size() >= 2 && league.seeds_matter[scenario]) standing.spread = standard_deviation(numbers);
+      standings_.push_back(standing);
+    }
+    rank();
+    compare_with_best(league.seeds_matter[scenario]);
+  }
+
+  const std::vector<Standing>& standings() const { return standings_; }
+
+ private:
+  /// Those without a failure in the order of their means, those with one behind all of these, by their number. No ranks
+  /// by a metric that nobody has.
+  void rank() {
+    std::vector<std::size_t> order;
+    bool anybody = false;
+    for (std::size_t a = 0; a < standings_.size(); ++a) {
+      anybody |= standings_[a].mean.has_value();
+      if (failures_[a] == 0 && standings_[a].mean) order.push_back(a);
+    }
+    if (!anybody) return;
+    std::stable_sort(order.begin(), order.end(),
+                     [this](std::size_t a, std::size_t b) { return *standings_[a].mean < *standings_[b].mean; });
+    std::size_t leader = 0;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      if (!is_same(*standings_[order[leader]].mean, *standings_[order[i]].mean)) leader = i;
+      standings_[order[i]].rank = 1 + leader;
+    }
+    for (std::size_t a = 0; a < standings_.size(); ++a) {
+      if (failures_[a] == 0) continue;
+      const auto better = std::count_if(failures_.begin(), failures_.end(),
+                                        [this, a](std::size_t failures) { return failures < failures_[a]; });
+      standings_[a].rank = 1 + static_cast<std::size_t>(better);
+    }
+  }
+
+  void compare_with_best(bool seeds_matter) {
+    std::optional<std::size_t> best;
+    for (std::size_t a = 0; a < standings_.size(); ++a) {
+      if (failures_[a] > 0 || !standings_[a].mean) continue;
+      if (!best || *standings_[a].mean < *standings_[*best].mean) best = a;
+    }
+    if (!best) return;  // all failed, or none has the metric
+    const double least = *standings_[*best].mean;
+    for (std::size_t a = 0; a < standings_.size(); ++a) {
+      Standing& standing = standings_[a];
+      if (failures_[a] > 0 || !standing.mean) continue;
+      if (*standing.mean == least) {
+        standing.ratio_to_best = 1.0;
+      } else if (least > 0.0) {
+        standing.ratio_to_best = *standing.mean / least;
+      }
+      if (a == *best || !seeds_matter) continue;
+      standing.beyond_spread = differ_beyond_spread(values_[a], values_[*best]);
+      // Rounding may differ the same way with every seed.
+      if (is_same(*standing.mean, least) && standing.beyond_spread) standing.beyond_spread = false;
+    }
+  }
+
+  std::vector<Standing> standings_;
+  std::vector<std::vector<std::optional<double>>> values_;
+  std::vector<std::size_t> failures_;
+};
+
+std::optional<double> mean_rank(const League& league, std::size_t scenario, std::size_t algorithm) {
+  std::vector<double> ranks;
+  for (std::size_t m = 0; m < league.runs.metrics.size(); ++m) {
+    if (const auto rank = league.at(scenario, algorithm, m).rank) ranks.push_back(static_cast<double>(*rank));
+  }
+  return ranks.empty() ? std::nullopt : std::optional(mean_of(ranks));
+}
+
+bool wins(const League& league, std::size_t scenario, std::size_t algorithm) {
+  const auto own = mean_rank(league, scenario, algorithm);
+  if (!own || league.failures(scenario, algorithm) > 0) return false;
+  for (std::size_t b = 0; b < league.runs.algorithms.size(); ++b) {
+    const auto other = mean_rank(league, scenario, b);
+    if (other && *other < *own) return false;
+  }
+  return true;
+}
+
+LawStanding law_standing(const League& league, std::size_t algorithm) {
+  LawStanding law;
+  law.algorithm = algorithm;
+  std::vector<double> ranks, logarithms;
+  for (std::size_t s = 0; s < league.runs.scenarios.size(); ++s) {
+    for (std::size_t m = 0; m < league.runs.metrics.size(); ++m) {
+      const Standing& standing = league.at(s, algorithm, m);
+      if (standing.rank) ranks.push_back(static_cast<double>(*standing.rank));
+      if (standing.ratio_to_best) logarithms.push_back(std::log(*standing.ratio_to_best));
+    }
+    if (league.failures(s, algorithm) > 0) law.fails.push_back(s);
+    if (wins(league, s, algorithm)) law.wins.push_back(s);
+  }
+  if (!ranks.empty()) law.mean_rank = mean_of(ranks);
+  if (!logarithms.empty()) law.mean_ratio = std::exp(mean_of(logarithms));
+  law.ratios = logarithms.size();
+  return law;
+}
+
+}  // namespace
+
+std::size_t League::failures(std::size_t scenario, std::size_t algorithm) const {
+  std::size_t failures = 0;
+  for (std::size_t k = 0; k < runs.seeds; ++k) failures += runs.run(scenario, algorithm, k).failed ? 1u : 0u;
+  return failures;
+}
+
+std::string League::outcomes(std::size_t scenario, std::size_t algorithm) const {
+  std::vector<std::pair<std::string, std::size_t>> counts;
+  for (std::size_t k = 0; k < runs.seeds; ++k) {
+    const std::string& outcome = runs.run(scenario, algorithm, k).outcome;
+    const auto known =
+        std::find_if(counts.begin(), counts.end(), [&outcome](const auto& count) { return count.first == outcome; });
+    if (known == counts.end()) {
+      counts.emplace_back(outcome, 1);
+    } else {
+      ++known->second;
+    }
+  }
+  if (counts.size() == 1) return counts.front().first;
+  std::vector<std::string> texts;
+  for (const auto& [outcome, count] : counts) texts.push_back(fmt::format("{} {}", outcome, count));
+  return fmt::format("{}", fmt::join(texts, "; "));
+}
+
+League make_league(LeagueRuns runs) {
+  League league;
+  league.runs = std::move(runs);
+  const std::size_t scenarios = league.runs.scenarios.size(), algorithms = league.runs.algorithms.size(),
+                    metrics = league.runs.metrics.size();
+  league.standings.resize(scenarios * algorithms * metrics);
+  for (std::size_t s = 0; s < scenarios; ++s) {
+    league.seeds_matter.push_back(seeds_matter_in(league.runs, s));
+    for (std::size_t m = 0; m < metrics; ++m) {
+      const Column column(league, s, m);
+      for (std::size_t a = 0; a < algorithms; ++a) {
+        league.standings[(s * algorithms + a) * metrics + m] = column.standings()[a];
+      }
+    }
+  }
+  for (std::size_t a = 0; a < algorithms; ++a) league.laws.push_back(law_standing(league, a));
+  std::stable_sort(league.laws.begin(), league.laws.end(), [](const LawStanding& a, const LawStanding& b) {
+    return a.mean_rank && (!b.mean_rank || *a.mean_rank < *b.mean_rank);
+  });
+  return league;
+}
+
+}  // namespace hapbench

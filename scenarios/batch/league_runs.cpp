@@ -1,0 +1,44 @@
+#include "scenarios/batch/league_runs.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "results/summary/outcome_names.hpp"
+#include "scenarios/run/expectation.hpp"
+
+namespace hapbench {
+
+std::string default_metrics_text() {
+  return fmt::format("{}", fmt::join(kDefaultMetrics, ","));
+}
+
+bool is_failure(std::string_view outcome) {
+  constexpr std::string_view kFailures[] = {"diverges", "no_contact", "lost_contact"};
+  return std::find(std::begin(kFailures), std::end(kFailures), outcome) != std::end(kFailures);
+}
+
+LeagueRuns league_runs(const BatchPlan& plan, const BatchReport& report, const std::vector<std::string>& metrics) {
+  LeagueRuns league;
+  league.scenarios = plan.names;
+  league.algorithms = plan.definition.algorithms;
+  league.metrics = metrics;
+  if (metrics.empty()) league.metrics.assign(std::begin(kDefaultMetrics), std::end(kDefaultMetrics));
+  league.seeds = plan.definition.seeds;
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    const RunSummary& summary = report.runs[i].summary;
+    const MetricList list = metric_list(summary);
+    LeagueRun run;
+    run.outcome = outcome_name(summary.result.outcome);
+    run.failed =
+        is_failure(run.outcome) || !outcome_is_expected(scenario_of(plan, i).scenario.expect, summary.result.outcome);
+    run.state_hash = summary.metrics.state_hash;
+    for (const std::string& name : league.metrics) run.metrics.push_back(number_of(value_of(list, name)));
+    league.runs.push_back(std::move(run));
+  }
+  return league;
+}
+
+}  // namespace hapbench

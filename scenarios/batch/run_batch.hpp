@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "scenarios/batch/batch_plan.hpp"
+#include "scenarios/input/shell_cache.hpp"
+#include "scenarios/run/run_scenario.hpp"
+
+namespace hapbench {
+
+struct BatchOptions {
+  std::filesystem::path directory;  ///< of all files; exists
+  std::size_t jobs = 1;             ///< runs at once
+  bool progress = false;            ///< allow a progress bar
+  ShellCache cache;
+};
+
+struct BatchReport {
+  std::vector<RunReport> runs;  ///< by number; those not begun before a signal are as constructed
+  std::size_t done = 0;
+  int signal = 0;  ///< the signal that stopped it, or 0
+};
+
+/// Does the runs of a plan, `jobs` at once, runs in one environment sharing its shell, and writes the files of each
+/// into its directory. Files do not depend on `jobs`. However a run ends, the others go on; SIGINT and SIGTERM end the
+/// batch after the runs in flight. Throws IoError when something cannot be written.
+BatchReport run_batch(const BatchPlan& plan, const BatchOptions& options);
+
+}  // namespace hapbench

@@ -1,0 +1,229 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "scenarios/batch/result_folders.hpp"
+#include "scenarios/batch/run_difference.hpp"
+#include "scenarios/program/command.hpp"
+#include "scenarios/program/table.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DiffOptions {
+  std::string a;
+  std::string b;
+  double tolerance = 0.0;
+  OutputOptions output;
+};
+
+/// A value of a file, cut when it is long.
+std::string shown_value(const std::string& text) {
+  constexpr std::size_t kLongest = 24;
+  if (text.empty()) return "-";
+  return text.size() <= kLongest ? text : text.substr(0, kLongest - 3) + "...";
+}
+
+std::string shown_size(double value) {
+  return std::isinf(value) ? "no number" : significant(value, 3);
+}
+
+std::string fields_text(const RunDifference& run) {
+  if (run.fields.empty()) return "";
+  Table table({{"field", false}, {"A"}, {"B"}});
+  for (const NamedDifference& field : run.fields) {
+    table.add({field.name, shown_value(field.values.a), shown_value(field.values.b)});
+  }
+  return table.text() + "\n";
+}
+
+std::string metrics_text(const RunDifference& run, double tolerance) {
+  Table table({{"result", false}, {"A"}, {"B"}, {"relative"}});
+  std::size_t within = 0;
+  for (const NamedDifference& metric : run.metrics) {
+    const CellDifference& values = metric.values;
+    if (tolerance > 0.0 && values.relative <= tolerance) {
+      ++within;
+    } else {
+      table.add({metric.name, shown_value(values.a), shown_value(values.b), shown_size(values.relative)});
+    }
+  }
+  std::string text = run.metrics.size() > within ? table.text() : "";
+  if (within > 0) text += fmt::format("{} more within the tolerance\n", within);
+  return text.empty() ? "" : text + "\n";
+}
+
+std::string columns_text(const char* name, const TableDifference& difference) {
+  const std::string rows = difference.rows_a == difference.rows_b
+                               ? fmt::format("{} rows", difference.rows_a)
+                               : fmt::format("{} and {} rows", difference.rows_a, difference.rows_b);
+  if (!difference.first)
+    return fmt::format("{}: {}, the same{}\n", name, rows,
+                       difference.rows_a == difference.rows_b ? "" : " as far as both go");
+  const FirstDifference& first = *difference.first;
+  Table table({{"column", false}, {"largest difference"}, {"in row"}, {"relative to the largest"}});
+  for (const ColumnDifference& column : difference.columns) {
+    table.add({column.column, shown_size(column.largest), std::to_string(column.row), shown_size(column.relative)});
+  }
+  return fmt::format("{}: {}, first different in row {} (from 0), column {}: {} and {}\n\n{}", name, rows, first.row,
+                     first.column, shown_value(first.a), shown_value(first.b), table.text());
+}
+
+std::string run_text(const RunDifference& run, double tolerance) {
+  std::string text = fields_text(run) + metrics_text(run, tolerance);
+  if (!run.unshared.empty()) {
+    text += fmt::format("known to one of them alone: {}\n", fmt::join(run.unshared, ", "));
+  }
+  text += run.state_hash_a == run.state_hash_b
+              ? fmt::format("state hash: {} in both\n", run.state_hash_a)
+              : fmt::format("state hash: {} and {}\n", run.state_hash_a, run.state_hash_b);
+  if (run.trajectory) text += columns_text("trajectory.csv", *run.trajectory);
+  if (run.trajectory_missing) text += "trajectory.csv: in one of them alone\n";
+  return text;
+}
+
+/// Infinity, for which JSON has no number, is "no number" here too.
+Json size_json(double value) {
+  return std::isinf(value) ? Json("no number") : Json(value);
+}
+
+Json table_json(const TableDifference& difference) {
+  Json columns = Json::object();
+  for (const ColumnDifference& column : difference.columns) {
+    columns[column.column] = {
+        {"largest", size_json(column.largest)}, {"row", column.row}, {"relative", size_json(column.relative)}};
+  }
+  Json first = nullptr;
+  if (difference.first) {
+    first = {{"row", difference.first->row},
+             {"column", difference.first->column},
+             {"a", difference.first->a},
+             {"b", difference.first->b}};
+  }
+  return {{"rows", {difference.rows_a, difference.rows_b}},
+          {"first", std::move(first)},
+          {"columns", std::move(columns)},
+          {"only_in_a", difference.only_in_a},
+          {"only_in_b", difference.only_in_b}};
+}
+
+Json named_json(const std::vector<NamedDifference>& differences, bool sizes) {
+  Json json = Json::object();
+  for (const NamedDifference& d : differences) {
+    json[d.name] = {{"a", d.values.a}, {"b", d.values.b}};
+    if (sizes) json[d.name]["relative"] = size_json(d.values.relative);
+  }
+  return json;
+}
+
+Json run_json(const RunDifference& run) {
+  return {{"fields", named_json(run.fields, false)},
+          {"results", named_json(run.metrics, true)},
+          {"unshared", run.unshared},
+          {"state_hash", {run.state_hash_a, run.state_hash_b}},
+          {"trajectory", run.trajectory           ? table_json(*run.trajectory)
+                         : run.trajectory_missing ? Json("in one of them alone")
+                                                  : Json(nullptr)}};
+}
+
+/// The differences of a run in one line.
+std::vector<std::string> run_cells(const fs::path& path, const RunDifference& run, double tolerance) {
+  double relative = 0.0;
+  for (const NamedDifference& metric : run.metrics) relative = std::max(relative, metric.values.relative);
+  return {path.empty() ? "." : path.generic_string(),
+          run.is_beyond(tolerance) ? "differs" : "equal",
+          std::to_string(run.fields.size()),
+          std::to_string(run.metrics.size()),
+          shown_size(relative),
+          run.trajectory && run.trajectory->first ? std::to_string(run.trajectory->first->row) : "-"};
+}
+
+/// What is gathered while the pairs are compared one by one.
+struct Report {
+  bool beyond = false;
+  std::string text;
+  Json runs = Json::object();
+  Json sweeps = Json::object();
+};
+
+void compare_all_runs(const DiffOptions& options, const ResultPairs& pairs, Report& report) {
+  Table table({{"run", false}, {"is", false}, {"fields"}, {"results"}, {"largest relative"}, {"from row"}});
+  for (const fs::path& path : pairs.runs) {
+    const RunDifference run = compare_runs(fs::path(options.a) / path, fs::path(options.b) / path);
+    report.beyond |= run.is_beyond(options.tolerance);
+    if (pairs.runs.size() == 1) report.text += run_text(run, options.tolerance);
+    table.add(run_cells(path, run, options.tolerance));
+    report.runs[path.empty() ? "." : path.generic_string()] = run_json(run);
+  }
+  if (pairs.runs.size() > 1) report.text += table.text();
+}
+
+void compare_all_sweeps(const DiffOptions& options, const ResultPairs& pairs, Report& report) {
+  for (const fs::path& path : pairs.sweeps) {
+    const TableDifference table = compare_tables(fs::path(options.a) / path, fs::path(options.b) / path);
+    report.beyond |= table.is_beyond(options.tolerance);
+    report.text += "\n" + columns_text(path.c_str(), table);
+    report.sweeps[path.generic_string()] = table_json(table);
+  }
+}
+
+std::vector<std::string> texts_of(const std::vector<fs::path>& paths) {
+  std::vector<std::string> texts;
+  for (const fs::path& path : paths) texts.push_back(path.generic_string());
+  return texts;
+}
+
+int diff(const DiffOptions& options) {
+  if (!(options.tolerance >= 0.0 && std::isfinite(options.tolerance))) {
+    throw InputError(fmt::format("--tolerance: got {}; allowed: a number >= 0", options.tolerance));
+  }
+  const ResultPairs pairs = pair_results(options.a, options.b);
+  const std::vector<std::string> only_a = texts_of(pairs.only_in_a), only_b = texts_of(pairs.only_in_b);
+  Report report;
+  report.beyond = !only_a.empty() || !only_b.empty();
+  report.text = fmt::format("A {}\nB {}\n\n", options.a, options.b);
+  compare_all_runs(options, pairs, report);
+  compare_all_sweeps(options, pairs, report);
+  if (!only_a.empty()) report.text += fmt::format("in A alone: {}\n", fmt::join(only_a, ", "));
+  if (!only_b.empty()) report.text += fmt::format("in B alone: {}\n", fmt::join(only_b, ", "));
+  const std::string tolerance =
+      options.tolerance > 0.0 ? fmt::format(" within a relative tolerance of {}", options.tolerance) : "";
+  report.text += fmt::format("\nthe results are {}equal{}\n", report.beyond ? "not " : "", tolerance);
+  print(options.output, report.text,
+        {{"equal", !report.beyond},
+         {"tolerance", options.tolerance},
+         {"runs", std::move(report.runs)},
+         {"sweeps", std::move(report.sweeps)},
+         {"only_in_a", only_a},
+         {"only_in_b", only_b}});
+  return report.beyond ? kUnexpectedOutcome : kSuccess;
+}
+
+}  // namespace
+
+void add_diff(CommandLine& line) {
+  auto options = std::make_shared<DiffOptions>();
+  Command command =
+      line.command("diff", "Compare the results of two runs, or of two folders of runs: a regression test");
+  command.add("run_a", options->a, "folder of a run, or of run, compare or sweep with several").required();
+  command.add("run_b", options->b, "another; runs are paired by their paths in the folders").required();
+  command.add("--tolerance", options->tolerance,
+              "largest relative difference that counts as equal: of a metric to the larger of the two, of a column of "
+              "trajectory.csv to its largest magnitude (default: 0, the same digits)");
+  add_output_options(command, options->output);
+  command.footer(
+      "For a regression test keep the results of a good version and compare every new one with them. Results are the "
+      "outcome, the metrics of summary.json and trajectory.csv; without a tolerance the state hash, too. Fields of the "
+      "scenario are shown where they differ but do not count; provenance, times and counted work are not looked at. Of "
+      "a sweep whose runs were not kept, the rows of sweep.csv are compared.\n"
+      "Exit status: 0 equal, 2 not the results of runs, 3 not equal.");
+  command.runs([options] { return diff(*options); });
+}
+
+}  // namespace hapbench
