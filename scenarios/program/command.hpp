@@ -35,6 +35,7 @@ void add_precision(CommandLine& line);
 void add_reproduce(CommandLine& line);
 void add_sweep(CommandLine& line);
 void add_merge(CommandLine& line);
+void add_new(CommandLine& line);
 void add_shell(CommandLine& line);
 void add_list(CommandLine& line);
 void add_describe(CommandLine& line);
