@@ -14,7 +14,7 @@ Vec3 DragHand::force(double t, const HandView& view) noexcept {
   // paths that bend, where the whole way would overshoot.
   nearest_ += 0.5 * path_->direction(nearest_).dot(x - path_->at(nearest_).position);
   nearest_ = std::clamp(nearest_, 0.0, path_->length());
-  const Vec3 n = path_->at(nearest_).normal;
+  const Vec3 n = path_->normal_near(x, nearest_);
 
   const double s = drag_.speed * t;
   Vec3 pull = drag_.stiffness * (path_->at(s).position - x) - drag_.damping * v;

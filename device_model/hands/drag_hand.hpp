@@ -19,15 +19,17 @@ struct Drag {
 };
 
 /// A hand that drags the tool over a surface with a given force along the surface's normal. With q the point that moves
-/// along the path at the given speed, x the handle, v its velocity and n the outward normal where the path is nearest
-/// to the handle,
+/// along the path at the given speed, x the handle, v its velocity and n the outward normal of the surface there, read
+/// where the path is nearest to the handle,
 ///
 ///   f = -F n + (I - n n^T) (k (q - x) + b (dq/dt - v)) - b_n <v, n> n.
 ///
 /// Along the normal there is nothing but the force and a damping, so the tool presses with F whatever the stiffness of
-/// what it rests on; before the first contact the same rule lowers it. The hand knows the path and its normals, made
-/// from the shell before the run, and where the handle is: nothing of the rendered force, so it is the same hand for
-/// every algorithm. A step costs ten look-ups in the path's table and allocates nothing.
+/// what it rests on; before the first contact the same rule lowers it. Normals of the path alone would not do: pressed
+/// with F along a fixed direction, a tool slides off a ridge of radius r sideways once F / r > k. The hand knows the
+/// path and the normals about it, made from the shell before the run, and where the handle is: nothing of the rendered
+/// force, so it is the same hand for every algorithm. A step costs a dozen look-ups in the path's table and allocates
+/// nothing.
 class DragHand final : public Hand {
  public:
   DragHand(Drag drag, std::shared_ptr<const SurfacePath> path);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -7,8 +8,9 @@
 
 namespace hapbench {
 
-/// A way over a surface with the surface's normals along it, looked up by arc length. Computed before a run from the
-/// shell alone, so that a step reads a table and what it gives does not depend on how a force is rendered.
+/// A way over a surface, and the surface's normals on it and two smoothing radii to either side, looked up by arc
+/// length. Computed before a run from the shell alone, so that a step reads a table and what it gives does not depend
+/// on how a force is rendered.
 class SurfacePath {
  public:
   /// Over the surface below (or above) the straight legs between `points`, of which there are at least two [m].
@@ -17,7 +19,7 @@ class SurfacePath {
   /// surface. Ends earlier where the surface ends or turns against the direction, to within about 6 degrees.
   static SurfacePath along(const SmoothedSurface& surface, const Vec3& start, const Vec3& direction, double length);
 
-  /// Distance of the entries [m]: a tenth of the radius over which the surface is smoothed.
+  /// Largest distance of the entries [m]: a tenth of the radius over which the surface is smoothed.
   static double spacing(double radius) { return 0.1 * radius; }
 
   double length() const noexcept { return spacing_ * static_cast<double>(entries_.size() - 1); }
@@ -26,14 +28,28 @@ class SurfacePath {
   /// Unit vector along the path at s, within the surface: from one smoothing radius before to one after, so that it
   /// turns steadily around corners. Any direction within the surface where the path has none.
   Vec3 direction(double s) const noexcept;
+  /// The outward normal where x is nearest to the surface, when the path is nearest to x at s: sideways of the path the
+  /// surface may be bent, too. Held beyond two smoothing radii.
+  Vec3 normal_near(const Vec3& x, double s) const noexcept;
 
  private:
-  /// `places` are in order; the path through them gets an entry every spacing(radius).
-  SurfacePath(std::span<const SurfacePoint> places, double radius);
+  /// `places` are in order; the path through them gets entries at equal distances.
+  SurfacePath(const SmoothedSurface& surface, std::span<const SurfacePoint> places);
+
+  static constexpr std::size_t kSide = 2;  ///< columns either side of the path, a smoothing radius apart
+  using Normals = std::array<Vec3, 2 * kSide + 1>;
+
+  /// Where s lies between two entries.
+  struct Position {
+    std::size_t before, after;
+    double fraction;
+  };
+  Position position(double s) const noexcept;
 
   double radius_;
   double spacing_;
   std::vector<SurfacePoint> entries_;  ///< at least one
+  std::vector<Normals> normals_;       ///< of each entry, from right to left
 };
 
 }  // namespace hapbench

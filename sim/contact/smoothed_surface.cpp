@@ -39,7 +39,7 @@ std::size_t SmoothedSurface::nearest_point(const Vec3& at) const {
 
 SurfacePoint SmoothedSurface::nearest(const Vec3& at) const {
   const SurfacePoint start = shell_.point(nearest_point(at));
-  SurfacePoint place = start;
+  SurfacePoint before = start, place = start;
   for (int pass = 0; pass < kPasses; ++pass) {
     double weights = 0.0;
     Vec3 centre = Vec3::Zero(), normal = Vec3::Zero();
@@ -54,9 +54,10 @@ SurfacePoint SmoothedSurface::nearest(const Vec3& at) const {
         normal += weight * point.normal;
       }
     });
-    if (!(weights > 0.0)) break;
+    if (!(weights > 0.0)) return before;
     normal.normalize();
     centre /= weights;
+    before = place;
     place = {at - normal.dot(at - centre) * normal, normal};
   }
   return place;

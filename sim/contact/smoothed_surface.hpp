@@ -21,8 +21,8 @@ class SmoothedSurface {
   double radius() const { return radius_; }
   /// The place of the surface below or above `at` and the outward normal there: starts at the nearest shell point and
   /// goes to the foot of the perpendicular from `at` to the plane near the place before, three times. A place that has
-  /// no neighbours, beyond an edge, is not gone to. Costs a look at all points within about `at`'s distance from the
-  /// shell, and three at those within R.
+  /// no neighbours, as further than R beyond an edge, is not gone to. Costs a look at all points within about `at`'s
+  /// distance from the shell, and three at those within R.
   SurfacePoint nearest(const Vec3& at) const;
 
  private:

@@ -87,7 +87,7 @@ TEST_F(NewCommand, RefusesWhatItCannotStartFrom) {
     EXPECT_EQ(run.status, 2) << run.out;
     return run.err;
   };
-  EXPECT_NE(refusal({"mehs"}).find("nearest valid name: \"mesh\""), std::string::npos);
+  EXPECT_NE(refusal({"srings"}).find("nearest valid name: \"springs\""), std::string::npos);
   EXPECT_NE(refusal({"mesh"}).find("--from: missing"), std::string::npos);
   EXPECT_NE(refusal({"plane", "--from", data("cube.obj")}).find("starts from no file"), std::string::npos);
   EXPECT_NE(refusal({"mesh", "--from", data("shell.csv")}).find("allowed: .obj"), std::string::npos);

@@ -61,12 +61,12 @@ TEST(SmoothedSurface, DoesNotSeeTheFarSideOfAThinWall) {
   EXPECT_LT(std::abs(place.position.z()), 1e-18);
 }
 
-TEST(SmoothedSurface, IsAsLargeAsTheShell) {
+TEST(SmoothedSurface, EndsWithTheShell) {
   const PointShell shell(surface_points(Plane{0.004, 0.0001}), 0.0001);
-  // No neighbours beyond the edge, so what is left is the plane at the nearest point.
-  const SurfacePoint place = SmoothedSurface(shell, 0.0005).nearest({0.9, 0, 0.3});
-  EXPECT_LT((place.normal - Vec3(0, 0, 1)).norm(), 1e-15);
-  EXPECT_LT(std::abs(place.position.z()), 1e-15);
+  const SmoothedSurface surface(shell, 0.0005);
+  EXPECT_LT((surface.nearest({0.9, 0, 0.3}).position - Vec3(0.002, 0, 0)).norm(), 1e-15);
+  // Within the radius the last points are the plane's neighbours still.
+  EXPECT_LT((surface.nearest({0.0024, 0, 0.0001}).position - Vec3(0.0024, 0, 0)).norm(), 1e-15);
 }
 
 }  // namespace
