@@ -24,9 +24,9 @@ std::vector<BundledScenario> bundled_scenarios() {
   return found;
 }
 
-fs::path find_scenario(const std::string& argument) {
+fs::path find_scenario(const std::string& argument, const fs::path& directory) {
   std::error_code error;
-  if (fs::exists(argument, error)) return argument;
+  if (fs::exists(directory / argument, error)) return directory / argument;
   std::vector<std::string> names;
   for (const BundledScenario& bundled : bundled_scenarios()) {
     if (bundled.name == argument) return bundled.file;

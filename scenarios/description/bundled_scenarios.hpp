@@ -17,7 +17,8 @@ struct BundledScenario {
 /// The scenarios that come with hapbench, by group and name.
 std::vector<BundledScenario> bundled_scenarios();
 
-/// The file a scenario argument means: a path, or the name of a bundled scenario. Throws InputError.
-std::filesystem::path find_scenario(const std::string& argument);
+/// The file a scenario argument means: a path, relative ones starting from `directory`, or else the name of a bundled
+/// scenario. Throws InputError.
+std::filesystem::path find_scenario(const std::string& argument, const std::filesystem::path& directory = {});
 
 }  // namespace hapbench

@@ -37,6 +37,31 @@ static void describe(Fields& f, ImpedanceHandFields& hand) {
       Presence::required);
 }
 
+static void describe(Fields& f, DragHandFields& hand) {
+  Drag& drag = hand.drag;
+  profile(f, "force_N", drag.force, "N", "along the inward normal of the surface, over time");
+  f.if_any("path_m", hand.path, "way of the tool over the surface, straight legs between points on or near it",
+           [](Fields& path, std::vector<Vec3>& points) {
+             path.list(points, {2, 10'000}, [](Fields& p, Vec3& point) { p.vector3(point, kCoordinate); });
+           });
+  f.if_any("direction", hand.direction,
+           "instead of path_m: from initial.position on along this direction within the surface, to its edge",
+           [](Fields& d, Vec3& direction) {
+             d.vector3(direction, {-1e9, 1e9, "1"});
+           });
+  f.exactly_one_of("path_m", "direction");
+  f.number("speed_m_per_s", drag.speed, {0.0, 100.0, "m/s", true}, "along the path");
+  f.number("tilt_rad", hand.tilt, kAngle,
+           "of the axis from the normal, towards the direction of travel; null: motion.orientation turns the tool");
+  f.number("azimuth_rad", hand.azimuth, kAngle, "turns that lean from the direction of travel, about the normal");
+  f.number("stiffness_N_per_m", drag.stiffness, {0.0, 1e9, "N/m"}, "within the surface, towards the moving point");
+  f.number("damping_N_s_per_m", drag.damping, {0.0, 1e9, "N s/m"}, "within the surface, beside that spring");
+  f.number("normal_damping_N_s_per_m", drag.normal_damping, {0.0, 1e9, "N s/m"},
+           "along the normal; the tool is lowered at force_N / normal_damping_N_s_per_m");
+  f.number("smoothing_m", hand.smoothing, {0.0, 1000.0, "m", true},
+           "radius over which the hand feels place and normal of the surface");
+}
+
 static void describe(Fields& f, Gauge& gauge) {
   f.number("cutoff_Hz", gauge.cutoff, {0.0, 1e6, "Hz", true}, "of the low-pass of the spring force it shows");
   f.number("grace_s", gauge.grace, {0.0, 1000.0, "s"},
@@ -85,7 +110,7 @@ static void describe(Fields& f, TrackingHandFields& hand) {
 }
 
 void describe(Fields& f, HandFields& hand) {
-  f.variant(hand, "hand", {"none", "force", "push", "impedance", "tracking"},
+  f.variant(hand, "hand", {"none", "force", "push", "impedance", "drag", "tracking"},
             [](Fields& h, auto& fields) { describe(h, fields); });
 }
 

@@ -5,6 +5,7 @@
 #include "algorithms/registry.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/descriptions.hpp"
+#include "scenarios/description/extends.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/size_limits.hpp"
 
@@ -141,9 +142,21 @@ static void describe(Fields& f, ExpectFields& expect) {
   });
 }
 
+/// Reading a file has replaced the field by what it names.
+static void describe_extends(Fields& f) {
+  std::string other;
+  f.text(kExtends, other, 4096,
+         "another scenario, a file or a bundled name, over whose fields (but name and expect) these are merged; "
+         "null replaces; so does an object of another type",
+         Presence::left_out);
+  if (!f.reads() || !f.given(kExtends)) return;
+  throw InputError(InputError::Kind::relation, member(f.at(), kExtends), "got it in no file; allowed: in files");
+}
+
 void describe(Fields& f, Scenario& scenario) {
   double steps = 0.0;
   f.ignored("$schema", "the JSON Schema, for editors");
+  describe_extends(f);
   f.text("name", scenario.name, 200, "default: the file's name");
   f.text("description", scenario.description, 10'000, "what it shows");
   f.text("source", scenario.source, 1000, "where the numbers come from");

@@ -87,6 +87,28 @@ std::string* named_motion(Scenario& scenario) {
   return nullptr;
 }
 
+/// Returns true if a part of what the schema allows is allowed, too.
+bool allows_parts(const Json& schema) {
+  if (!schema.is_structured()) return true;
+  if (schema.is_object() && (schema.contains("required") || schema.contains("oneOf"))) return false;
+  return std::all_of(schema.begin(), schema.end(), allows_parts);
+}
+
+/// For a file that extends another and so may leave out anything: only fields that mean something without the other
+/// file are checked. `full` is found at `at`.
+Json partial_schema(const Json& full, const std::string& at) {
+  Json schema = {{"type", "object"}, {"properties", Json::object()}, {"additionalProperties", false}};
+  for (const auto& field : full["properties"].items()) {
+    Json& part = schema["properties"][field.key()];
+    if (allows_parts(field.value())) {
+      part = {{"$ref", at + "/properties/" + field.key()}};
+    } else {
+      part = {{"description", field.value()["description"]}};
+    }
+  }
+  return schema;
+}
+
 /// Puts the hash of a file's contents in place of its path.
 void name_by_content(std::string* path, NamedFile* file) {
   if (path != nullptr) *path = file->hash();
@@ -109,27 +131,52 @@ LoadedScenario read_scenario(const Json& json, const std::filesystem::path& dire
 }
 
 ScenarioText read_scenario_text(const std::filesystem::path& file) {
+  auto layers = std::make_shared<std::vector<ScenarioLayer>>();
+  ScenarioText text{file, read_extended(file, *layers)};
+  if (layers->size() > 1) text.layers = std::move(layers);
+  return text;
+}
+
+std::filesystem::path file_of(const LoadedScenario& loaded, const std::string& pointer) {
+  if (!loaded.layers || !pointer.starts_with('/')) return loaded.file;
   try {
-    return {file, parse_json(read_text_file(file, kLargestJsonFile))};
-  } catch (const InputError& error) {
-    rethrow_with_file(error, file);
+    // What no file has, a default, is the business of the object around it.
+    for (Json::json_pointer at(pointer); !at.empty(); at = at.parent_pointer()) {
+      for (const ScenarioLayer& layer : *loaded.layers) {
+        if (layer.json.contains(at)) return layer.file;
+      }
+    }
+  } catch (const Json::exception&) {
+    // A place that is no pointer, such as the path of a mesh.
   }
+  return loaded.file;
 }
 
 LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::string> overrides) {
-  const auto& file = text.file;
+  LoadedScenario loaded;
+  loaded.file = text.file;
+  loaded.layers = text.layers;
   try {
     Json json = text.json;
     const bool same_run = std::all_of(overrides.begin(), overrides.end(), leaves_run_alone);
     if (!same_run && json.is_object() && json.contains("expect")) expect_less(json["expect"]);
     for (const std::string& override : overrides) apply_override(json, override);
-    LoadedScenario loaded = read_scenario(json, file.parent_path());
-    loaded.file = file;
-    if (loaded.scenario.name.empty()) loaded.scenario.name = file.stem().string();
-    for (std::string& warning : loaded.warnings) warning = file.string() + ": " + warning;
+    if (text.layers && !overrides.empty()) {
+      auto layers = std::make_shared<std::vector<ScenarioLayer>>(*text.layers);
+      for (const std::string& override : overrides) apply_override(layers->front().json, override);
+      loaded.layers = std::move(layers);
+    }
+    LoadedScenario read = read_scenario(json, text.file.parent_path());
+    loaded.scenario = std::move(read.scenario);
+    loaded.files = std::move(read.files);
+    if (loaded.scenario.name.empty()) loaded.scenario.name = text.file.stem().string();
+    for (const std::string& warning : read.warnings) {
+      const std::string pointer = warning.substr(0, warning.find(':'));
+      loaded.warnings.push_back(file_of(loaded, pointer).string() + ": " + warning);
+    }
     return loaded;
   } catch (const InputError& error) {
-    rethrow_with_file(error, file);
+    rethrow_with_file(error, file_of(loaded, error.place()));
   }
 }
 
@@ -147,15 +194,23 @@ Json effective_scenario(const Scenario& scenario, const std::filesystem::path& d
   return written_object(effective);
 }
 
-Json scenario_schema() {
+Json full_scenario_schema() {
   Scenario defaults;
   SchemaWriter writer;
   writer.object(defaults);
-  Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"},
-                 {"title", "hapbench scenario"},
-                 {"description", "SI units; every key carries its own. A profile is a scalar function of time."}};
+  Json schema = {{"description", "SI units; every key carries its own. A profile is a scalar function of time."}};
   schema.update(writer.schema());
   return schema;
+}
+
+Json scenario_schema() {
+  Json full = full_scenario_schema();
+  Json partial = partial_schema(full, "#/else");
+  return {{"$schema", "http://json-schema.org/draft-07/schema#"},
+          {"title", "hapbench scenario"},
+          {"if", {{"required", {kExtends}}}},
+          {"then", std::move(partial)},
+          {"else", std::move(full)}};
 }
 
 Json environment_content(const Scenario& scenario, const NamedFiles& files) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,33 +13,40 @@
 
 namespace hapbench {
 
+struct ScenarioLayer;
+
 /// A checked scenario.
 struct LoadedScenario {
   Scenario scenario;
   std::filesystem::path file;
   NamedFiles files;                   ///< that the scenario names
   std::vector<std::string> warnings;  ///< given values that the algorithm's definition overrides, with file and pointer
+  /// The file and those it extends (extends.hpp), as they stand, overrides in the first; null when it extends none.
+  std::shared_ptr<const std::vector<ScenarioLayer>> layers;
 };
+
+/// The file that the value at a JSON pointer comes from: the scenario's own, or one that it extends.
+std::filesystem::path file_of(const LoadedScenario& loaded, const std::string& pointer);
 
 /// Throws the error again with the file in front.
 [[noreturn]] void rethrow_with_file(const InputError& error, const std::filesystem::path& file);
 
-/// Reads a scenario file, applies overrides `path=value` (dotted path, value as JSON or else as text; later ones win)
-/// and checks it. Expectations of the file are about the run it describes: with any field overridden that changes the
-/// run, its bounds on metrics do not count, and beside its outcomes those count that count by default. Throws
-/// InputError whose message starts with the file's name.
+/// Reads a scenario file and what it extends, applies overrides `path=value` (dotted path, value as JSON or else as
+/// text; later ones win) and checks it. Expectations of the file are about the run it describes: with any field
+/// overridden that changes the run, its bounds on metrics do not count, and beside its outcomes those count that count
+/// by default. Throws InputError whose message starts with the name of the file at fault.
 LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
-/// The same from JSON in memory; `directory` is what relative paths start from.
+/// The same from JSON in memory, which extends nothing; `directory` is what relative paths start from.
 LoadedScenario read_scenario(const Json& json, const std::filesystem::path& directory);
 
-/// Calls `work` and puts the scenario's file in front of the message of an InputError.
+/// Calls `work` and puts the scenario's file, or the one it extends, in front of the message of an InputError.
 template <class Work>
 auto with_file(const LoadedScenario& loaded, Work work) {
   try {
     return work();
   } catch (const InputError& error) {
-    rethrow_with_file(error, loaded.file);
+    rethrow_with_file(error, file_of(loaded, error.place()));
   }
 }
 
@@ -52,6 +60,8 @@ Json environment_content(const Scenario& scenario, const NamedFiles& files);
 
 /// The whole JSON Schema (draft 7) that scenarios/scenario.schema.json holds.
 Json scenario_schema();
+/// The part of it that holds for a scenario in full, with what it extends filled in.
+Json full_scenario_schema();
 
 /// Identifies what is simulated: FNV-1a over the effective scenario, with the contents of named files in place of their
 /// paths, as 16 hexadecimal digits. Throws InputError.

@@ -11,7 +11,9 @@
 namespace hapbench {
 namespace {
 
-constexpr double kMostDelaySamples = 1e6;  ///< that a simulated subject keeps in mind
+constexpr double kMostDelaySamples = 1e6;     ///< that a simulated subject keeps in mind
+constexpr double kLongestDrag = 1e6;          ///< entries of the table of a path over a surface
+constexpr double kShortestDirection = 1e-12;  ///< anything much shorter loses digits, or all, when it is squared
 
 [[noreturn]] void fail(const std::string& at, const std::string& problem) {
   throw InputError(InputError::Kind::relation, at, problem);
@@ -44,7 +46,9 @@ void check_orientation(const MotionFields& motion) {
   if (!motion.orientation) return;
   const Vec3 &up = motion.orientation->up, &lean = motion.orientation->lean;
   // 1e-9 forgives the rounding of directions that were normalised by somebody else.
-  if (up.norm() >= 1e-12 && lean.norm() >= 1e-12 && std::abs(up.dot(lean)) <= 1e-9 * up.norm() * lean.norm()) return;
+  if (up.norm() >= kShortestDirection && lean.norm() >= kShortestDirection &&
+      std::abs(up.dot(lean)) <= 1e-9 * up.norm() * lean.norm())
+    return;
   fail("/motion/orientation",
        fmt::format("got up {} and lean {}; allowed: two perpendicular directions, not zero", shown(up), shown(lean)));
 }
@@ -73,6 +77,40 @@ void check_push_hand(const Scenario& scenario) {
   fail("/hand/type", "got \"push\", which pushes along z; allowed in the plane of \"hole_2d\": \"force\"");
 }
 
+double drag_length(const DragHandFields& hand, double duration) {
+  if (!hand.path) return hand.drag.speed * duration;
+  double length = 0.0;
+  for (std::size_t i = 1; i < hand.path->size(); ++i) length += ((*hand.path)[i] - (*hand.path)[i - 1]).norm();
+  return length;
+}
+
+void check_drag_hand(const Scenario& scenario, double steps) {
+  const auto* hand = std::get_if<DragHandFields>(&scenario.hand);
+  if (hand == nullptr) return;
+  if (std::holds_alternative<SpringsEnvironment>(scenario.environment))
+    fail("/hand/type", "got \"drag\" with springs, which have no surface; allowed: environments that have one");
+  if (!std::holds_alternative<FreePosition>(scenario.motion.position)) {
+    fail("/motion/position/type",
+         "got a prescribed position; allowed: \"free\" with hand \"drag\", which moves the tool");
+  }
+  const auto is_zero = [](const Profile& profile) {
+    const auto* constant = std::get_if<Profile::Constant>(&profile.shape());
+    return constant != nullptr && constant->value == 0.0;
+  };
+  const OrientationFields& orientation = *scenario.motion.orientation;
+  if (hand->tilt && !(is_zero(orientation.tilt) && is_zero(orientation.azimuth))) {
+    fail("/motion/orientation",
+         "got tilt_rad or azimuth_rad beside hand \"drag\", which turns the tool; allowed: without, or hand.tilt_rad "
+         "null");
+  }
+  if (hand->direction && hand->direction->norm() < kShortestDirection)
+    fail("/hand/direction", fmt::format("got {}; allowed: a direction that is not zero", shown(*hand->direction)));
+  const double entries = drag_length(*hand, steps * scenario.time.step) / SurfacePath::spacing(hand->smoothing);
+  if (entries <= kLongestDrag) return;
+  fail("/hand/smoothing_m",
+       fmt::format("got a path of {:.3g} times the tenth of it; allowed: at most {:.0g}", entries, kLongestDrag));
+}
+
 void check_tracking_hand(const Scenario& scenario, double steps) {
   const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
   if (hand == nullptr) return;
@@ -99,6 +137,7 @@ void check_relations(const Scenario& scenario, double steps) {
   check_local_average(scenario);
   check_ideal_trajectory(scenario);
   check_push_hand(scenario);
+  check_drag_hand(scenario, steps);
   check_tracking_hand(scenario, steps);
 }
 

@@ -12,6 +12,7 @@
 
 #include "algorithms/rendering_config.hpp"
 #include "device_model/admittance_device.hpp"
+#include "device_model/hands/drag_hand.hpp"
 #include "device_model/hands/tracking_hand.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "results/summary/metric_list.hpp"
@@ -118,13 +119,22 @@ struct ImpedanceHandFields {
   double damping = 6.0;           ///< [N s/m]
   std::array<Profile, 3> target;  ///< [m]
 };
+struct DragHandFields {
+  Drag drag;
+  std::optional<std::vector<Vec3>> path;  ///< [m]; it or the direction
+  std::optional<Vec3> direction;
+  std::optional<double> tilt = 0.0;  ///< [rad]; none: the orientation is that of the motion
+  double azimuth = 0.0;              ///< [rad]
+  double smoothing = 0.0005;         ///< radius of SmoothedSurface [m]
+};
 /// The man-machine experiments: every subject does every trial from the initial state.
 struct TrackingHandFields {
   TargetRules task;
   std::vector<Subject> subjects = {Subject{}};
   std::int64_t trials = 1;
 };
-using HandFields = std::variant<NoHandFields, ForceHandFields, PushHandFields, ImpedanceHandFields, TrackingHandFields>;
+using HandFields = std::variant<NoHandFields, ForceHandFields, PushHandFields, ImpedanceHandFields, DragHandFields,
+                                TrackingHandFields>;
 
 struct IdealDeviceFields {
   std::optional<double> force_limit;  ///< [N]

@@ -1,15 +1,20 @@
 #pragma once
 
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <vector>
 
+#include "scenarios/description/extends.hpp"
 #include "scenarios/description/load_scenario.hpp"
 
 namespace hapbench {
 
-/// A scenario file as it stands, for loading it several times with different overrides.
+/// A scenario file with what it extends filled in, for loading it several times with different overrides.
 struct ScenarioText {
   std::filesystem::path file;
   Json json;
+  /// The file and those it extends; null when it extends none.
+  std::shared_ptr<const std::vector<ScenarioLayer>> layers = nullptr;
 };
 
 /// What `load_scenario` of a file does, in two steps. Both throw InputError; the second may be called from several

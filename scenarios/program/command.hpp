@@ -36,6 +36,7 @@ void add_reproduce(CommandLine& line);
 void add_diff(CommandLine& line);
 void add_sweep(CommandLine& line);
 void add_merge(CommandLine& line);
+void add_new(CommandLine& line);
 void add_shell(CommandLine& line);
 void add_list(CommandLine& line);
 void add_describe(CommandLine& line);

@@ -28,6 +28,7 @@ int run_program(int argc, char** argv) {
   add_diff(line);
   add_sweep(line);
   add_merge(line);
+  add_new(line);
   add_shell(line);
   add_list(line);
   add_describe(line);

@@ -92,7 +92,7 @@ void add_fields(Table& table, const std::string& prefix, const Json& schema) {
 }  // namespace
 
 const Json& scenario_schema_once() {
-  static const Json schema = scenario_schema();
+  static const Json schema = full_scenario_schema();
   return schema;
 }
 
@@ -121,6 +121,43 @@ std::string fields_text(const std::string& title, const Json& schema) {
   Table table({{"field", false}, {"default", false}, {"allowed", false}, {"meaning", false}});
   add_fields(table, "", *object);
   return text + "\n" + table.text();
+}
+
+namespace {
+
+/// The choice of the schema that is an object of the value's type; null when the value is no object with fields.
+const Json* object_of(const Json& value, const Json& schema) {
+  if (!value.is_object()) return nullptr;
+  if (schema.contains("properties")) {
+    const std::string tag = tag_of(schema);
+    return tag.empty() || value.value("type", "") == tag ? &schema : nullptr;
+  }
+  for (const char* choices : kChoices) {
+    if (!schema.contains(choices)) continue;
+    for (const Json& choice : schema[choices]) {
+      if (const Json* found = object_of(value, choice)) return found;
+    }
+  }
+  return nullptr;
+}
+
+void add_meanings(std::vector<FieldMeaning>& meanings, const std::string& prefix, const Json& value,
+                  const Json& object) {
+  for (const auto& entry : value.items()) {
+    const Json& field = object["properties"][entry.key()];
+    if (field.contains("const")) continue;
+    meanings.push_back({prefix + entry.key(), field["description"]});
+    if (const Json* nested = object_of(entry.value(), field))
+      add_meanings(meanings, prefix + entry.key() + ".", entry.value(), *nested);
+  }
+}
+
+}  // namespace
+
+std::vector<FieldMeaning> field_meanings(const Json& scenario) {
+  std::vector<FieldMeaning> meanings;
+  add_meanings(meanings, "", scenario, scenario_schema_once());
+  return meanings;
 }
 
 }  // namespace hapbench

@@ -1,13 +1,14 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "scenarios/input/json_file.hpp"
 
 /// The JSON Schema as words for the terminal.
 namespace hapbench {
 
-/// The scenario schema, built once.
+/// The schema of a scenario in full, built once.
 const Json& scenario_schema_once();
 
 /// The part of the schema that `name` means: "scenario" for all of it, a dotted field path ("rendering.limits"), or the
@@ -22,5 +23,14 @@ std::string default_text(const Json& schema);
 
 /// The fields of an object schema as a table of name, default, allowed values and meaning; one line for a plain value.
 std::string fields_text(const std::string& title, const Json& schema);
+
+/// A field of a scenario and what the schema says of it.
+struct FieldMeaning {
+  std::string path;  ///< dotted
+  std::string meaning;
+};
+
+/// The meaning of each field that a scenario's JSON has, objects before their fields.
+std::vector<FieldMeaning> field_meanings(const Json& scenario);
 
 }  // namespace hapbench

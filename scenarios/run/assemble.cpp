@@ -8,6 +8,7 @@
 #include "algorithms/registry.hpp"
 #include "algorithms/shell_source.hpp"
 #include "device_model/admittance_device.hpp"
+#include "device_model/hands/drag_hand.hpp"
 #include "device_model/hands/impedance_hand.hpp"
 #include "device_model/hands/scripted_hands.hpp"
 #include "device_model/hands/tracking_hand.hpp"
@@ -85,7 +86,22 @@ std::unique_ptr<TrackingHand> make_tracking_hand(const Scenario& scenario, const
       scenario.motion.orientation->tilt(0.0), scenario.time.step, derived_seed(scenario, trial, kMotorNoise));
 }
 
-/// The hand, and the motion, which a tracking hand may steer.
+/// Precondition: the shell is there.
+void add_drag(const Scenario& scenario, const DragHandFields& fields, const NamedFiles& files, SimulationParts& parts) {
+  const SmoothedSurface surface(*parts.shell, fields.smoothing);
+  const double length = fields.drag.speed * static_cast<double>(scenario.time.steps) * scenario.time.step;
+  const auto path = std::make_shared<const SurfacePath>(
+      fields.path ? SurfacePath::over(surface, *fields.path)
+                  : SurfacePath::along(surface, scenario.initial.position, *fields.direction, length));
+  parts.hand = std::make_unique<DragHand>(fields.drag, path);
+  if (fields.tilt) {
+    parts.motion = std::make_unique<DragOrientation>(path, fields.drag.speed, *fields.tilt, fields.azimuth);
+  } else {
+    parts.motion = make_motion(scenario, files);
+  }
+}
+
+/// The hand, and the motion, which some hands steer.
 void add_hand_and_motion(const Scenario& scenario, const NamedFiles& files, Trial trial, SimulationParts& parts) {
   if (const auto* fields = std::get_if<TrackingHandFields>(&scenario.hand)) {
     auto hand = make_tracking_hand(scenario, *fields, trial);
@@ -97,6 +113,7 @@ void add_hand_and_motion(const Scenario& scenario, const NamedFiles& files, Tria
     parts.hand = std::move(hand);
     return;
   }
+  if (const auto* drag = std::get_if<DragHandFields>(&scenario.hand)) return add_drag(scenario, *drag, files, parts);
   parts.motion = make_motion(scenario, files);
   if (const auto* force = std::get_if<ForceHandFields>(&scenario.hand)) {
     parts.hand = std::make_unique<ForceHand>(force->force);
@@ -139,7 +156,7 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
     try {
       read();
     } catch (const InputError& error) {
-      throw InputError(InputError::Kind::relation, loaded.file.string() + ": " + pointer, error.what());
+      throw InputError(InputError::Kind::relation, file_of(loaded, pointer).string() + ": " + pointer, error.what());
     }
   };
   if (std::holds_alternative<PointShellEnvironment>(scenario.environment)) {
@@ -147,17 +164,19 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
   }
   if (std::holds_alternative<MeshEnvironment>(scenario.environment)) {
     at("/environment/file", [&] { warnings = loaded.files.mesh().warnings(); });
-    for (std::string& warning : warnings) warning = loaded.file.string() + ": /environment/file: " + warning;
+    const std::string place = file_of(loaded, "/environment/file").string() + ": /environment/file: ";
+    for (std::string& warning : warnings) warning = place + warning;
   }
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
     at("/motion/position/file", [&] { loaded.files.recorded_motion(); });
     const RecordedMotion& stroke = loaded.files.recorded_motion();
+    const double start = stroke.samples().front().time, stop = stroke.samples().back().time;
     const double end = scenario.time.step * static_cast<double>(scenario.time.steps - 1);
-    if (stroke.start() > end || stroke.end() < 0.0) {
+    if (start > end || stop < 0.0) {
       warnings.push_back(fmt::format(
           "{}: /motion/position/file: the stroke's clock runs from {:.6g} to {:.6g} s and the run's from 0 to {:.6g} s: "
           "the tool stays at the {} sample; let the stroke begin at 0 or adapt time",
-          loaded.file.string(), stroke.start(), stroke.end(), end, stroke.start() > end ? "first" : "last"));
+          loaded.file.string(), start, stop, end, start > end ? "first" : "last"));
     }
   }
   return warnings;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "sim/core/profile.hpp"
@@ -61,10 +62,7 @@ class RecordedMotion final : public Motion {
   /// Throws std::invalid_argument when there is no sample or times do not increase.
   explicit RecordedMotion(std::vector<Sample> samples);
 
-  /// The clock of the samples [s].
-  double start() const { return samples_.front().time; }
-  double end() const { return samples_.back().time; }
-
+  std::span<const Sample> samples() const { return samples_; }
   Vec3 axis_at(double t) const noexcept override;
   bool position_is_free() const noexcept override { return false; }
   Vec3 position_at(double t) const noexcept override;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "results/io/json_text.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "tests/scenarios/support/mutation.hpp"
@@ -78,7 +79,25 @@ TEST(ScenarioSchema, HasAnExampleInTheTestsForEveryField) {
       known.insert(pointer.back());
     }
   }
+  seen.insert("extends");  // what is read in memory extends nothing; the tests below have it
   for (const std::string& field : known) EXPECT_TRUE(seen.contains(field)) << field;
+}
+
+TEST(ScenarioSchema, AcceptsFilesThatExtendOthersAsTheyStand) {
+  std::size_t extending = 0;
+  for (const BundledScenario& bundled : bundled_scenarios()) {
+    const Json json = parse_json(read_text_file(bundled.file, kLargestJsonFile));
+    EXPECT_EQ(schema().complaints(json), "") << bundled.name;
+    extending += json.contains("extends") ? 1 : 0;
+  }
+  EXPECT_GT(extending, 0u);
+  const auto accepts = [](const char* text) { return schema().accepts(Json::parse(text)); };
+  EXPECT_TRUE(accepts(R"({"extends": "poke_plane"})"));
+  EXPECT_TRUE(accepts(R"({"extends": "poke_plane", "environment": {"size_m": 1}, "rendering": {"reduction": null}})"));
+  EXPECT_FALSE(accepts(R"({"extends": 5})"));
+  EXPECT_FALSE(accepts(R"({"extends": "poke_plane", "rendreing": {}})"));
+  EXPECT_FALSE(accepts(R"({"extends": "poke_plane", "rendering": {"mass_kg": -1}})"));
+  EXPECT_FALSE(accepts(R"({"environment": {"type": "plane"}})"));
 }
 
 /// What one mutant must show.

@@ -1,8 +1,7 @@
 #include "tests/scenarios/support/scenarios.hpp"
 
 #include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/load_scenario.hpp"
-#include "scenarios/input/json_file.hpp"
+#include "scenarios/description/scenario_text.hpp"
 
 namespace hapbench::test {
 
@@ -108,6 +107,19 @@ std::vector<NamedScenario> rich_scenarios() {
       "hand": {"type": "impedance", "stiffness_N_per_m": 100, "damping_N_s_per_m": 1,
         "target": {"x_m": {"type": "ramp", "start": 0, "rate_per_s": 0.01}, "y_m": 0, "z_m": -0.01}},
       "device": {"type": "admittance"}})")},
+          {"dragged_plane", Json::parse(R"({
+      "time": {"step_s": 0.0005, "steps": 100},
+      "environment": {"type": "plane", "size_m": 0.004, "spacing_m": 0.0002},
+      "initial": {"position_m": [0, 0, 0.0001]},
+      "hand": {"type": "drag", "force_N": {"type": "ramp", "start": 0, "rate_per_s": 10}, "direction": [1, 0, 0],
+        "speed_m_per_s": 0.02, "tilt_rad": 0.3, "azimuth_rad": -1.5, "stiffness_N_per_m": 200, "damping_N_s_per_m": 5,
+        "normal_damping_N_s_per_m": 40, "smoothing_m": 0.0004}})")},
+          {"dragged_slot", Json::parse(R"({
+      "time": {"step_s": 0.0005, "duration_s": 0.05},
+      "environment": {"type": "slot", "gap_m": 0.002, "depth_m": 0.005, "length_m": 0.01, "spacing_m": 0.0005},
+      "initial": {"position_m": [0.0004, 0, -0.001]},
+      "motion": {"orientation": {"tilt_rad": 0.1}},
+      "hand": {"type": "drag", "path_m": [[0.001, 0, -0.001], [0.001, 0.001, -0.002]], "tilt_rad": null}})")},
           {"scanned_cube", Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 10},
       "environment": {"type": "mesh", "file": "cube.obj", "scale": 0.001, "spacing_m": 0.0003, "grid_m": 0.0005},
@@ -118,7 +130,7 @@ std::vector<NamedScenario> rich_scenarios() {
 std::vector<NamedScenario> bundled_scenario_files() {
   std::vector<NamedScenario> scenarios;
   for (const BundledScenario& bundled : bundled_scenarios()) {
-    scenarios.push_back({bundled.name, parse_json(read_text_file(bundled.file, kLargestJsonFile))});
+    scenarios.push_back({bundled.name, read_scenario_text(bundled.file).json});
   }
   return scenarios;
 }

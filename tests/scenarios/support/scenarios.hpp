@@ -24,7 +24,7 @@ Json minimal_scenario(const std::string& environment_type);
 /// They name the files cube.obj, shell.csv and stroke.csv, which tests/data holds.
 std::vector<NamedScenario> rich_scenarios();
 
-/// Every scenario that comes with the program.
+/// Every scenario that comes with the program, with what it extends filled in.
 std::vector<NamedScenario> bundled_scenario_files();
 
 /// tests/data

@@ -1,0 +1,119 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "results/io/atomic_file.hpp"
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/program/command.hpp"
+#include "scenarios/program/scenario_start.hpp"
+#include "scenarios/program/schema_text.hpp"
+#include "scenarios/program/table.hpp"
+#include "scenarios/run/assemble.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLineLength = 100;
+
+struct NewOptions {
+  std::string kind;
+  std::string from;
+  std::string out;
+  OutputOptions output;
+};
+
+std::vector<std::string> kind_names() {
+  std::vector<std::string> names;
+  for (const StartKind& kind : start_kinds()) names.emplace_back(kind.name);
+  return names;
+}
+
+const StartKind& kind_named(const std::string& name) {
+  const std::vector<std::string> names = kind_names();
+  require_valid_name("KIND: got", name, names);
+  return start_kinds()[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())];
+}
+
+void check_source(const StartKind& kind, const std::string& from) {
+  if (kind.needs_source && from.empty())
+    throw InputError(fmt::format("--from: missing; \"{}\" starts from a file", kind.name));
+  if (kind.source == StartSource::none && !from.empty())
+    throw InputError(fmt::format("--from: got \"{}\"; \"{}\" starts from no file", from, kind.name));
+}
+
+/// Each field and its meaning, on as many lines as that takes.
+std::string meanings_text(const std::vector<FieldMeaning>& meanings) {
+  std::size_t width = 0;
+  for (const FieldMeaning& field : meanings) width = std::max(width, field.path.size());
+  std::string text;
+  for (const FieldMeaning& field : meanings) {
+    std::string rest = field.meaning, name = field.path;
+    do {
+      std::size_t length = rest.size();
+      if (width + 2 + length > kLineLength) length = rest.rfind(' ', kLineLength - width - 2);
+      length = std::min(length, rest.size());  // a word longer than the line
+      text += fmt::format("{:<{}}  {}\n", name, width, rest.substr(0, length));
+      rest.erase(0, std::min(length + 1, rest.size()));
+      name.clear();
+    } while (!rest.empty());
+  }
+  return text;
+}
+
+int list_kinds(const OutputOptions& output) {
+  Table table({{"KIND", false}, {"what it starts with", false}});
+  Json json = Json::array();
+  for (const StartKind& kind : start_kinds()) {
+    table.add({kind.name, kind.summary});
+    json.push_back({{"kind", kind.name}, {"summary", kind.summary}});
+  }
+  print(output, table.text(), json);
+  return kSuccess;
+}
+
+int write_new(const NewOptions& options) {
+  if (options.kind.empty()) return list_kinds(options.output);
+  const StartKind& kind = kind_named(options.kind);
+  check_source(kind, options.from);
+  const fs::path source = options.from;
+  const fs::path out =
+      !options.out.empty() ? options.out : (source.empty() ? kind.name : source.stem().string()) + ".json";
+  std::error_code ignored;
+  if (fs::exists(out, ignored)) throw InputError(fmt::format("--out {}: is there; allowed: a new file", out.string()));
+  const fs::path directory = out.has_parent_path() ? out.parent_path() : ".";
+  const ScenarioStart start = scenario_start(kind, source.empty() ? std::nullopt : std::optional(source), directory);
+  const Json json = parse_json(start.text);
+  LoadedScenario loaded = read_scenario(json, directory);
+  loaded.file = out;
+  print_warnings(check_named_files(loaded));
+  require_writable_directory(directory);
+  write_file_atomically(out, start.text);
+
+  const std::vector<FieldMeaning> meanings = field_meanings(json);
+  std::string text = fmt::format("{}: {}\n", out.string(), kind.summary);
+  for (const std::string& note : start.notes) text += note + "\n";
+  text += "\n" + meanings_text(meanings) + "\n";
+  text += fmt::format("\"hapbench describe scenario\" shows all fields; next: hapbench run {}\n", out.string());
+  Json fields = Json::object();
+  for (const FieldMeaning& field : meanings) fields[field.path] = field.meaning;
+  print(options.output, text, {{"file", out.string()}, {"notes", start.notes}, {"fields", fields}});
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_new(CommandLine& line) {
+  auto options = std::make_shared<NewOptions>();
+  Command command = line.command("new", "Write a scenario to start from and explain its fields");
+  command.add("kind", options->kind, "what to start with; without, the kinds are listed");
+  command.add("--from", options->from, "the mesh, shell or stroke that it is about");
+  command.add("--out", options->out, "the file to write, a new one (default: NAME.json, after --from or the kind)");
+  add_output_options(command, options->output);
+  command.runs([options] { return write_new(*options); });
+}
+
+}  // namespace hapbench

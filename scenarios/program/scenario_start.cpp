@@ -1,0 +1,246 @@
+#include "scenarios/program/scenario_start.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/run/environment_points.hpp"
+#include "sim/core/box.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kPlane = R"(
+  "environment": {"type": "plane", "size_m": 0.01, "spacing_m": 0.0001},)";
+const std::string kMesh = R"(
+  "environment": {"type": "mesh", "file": @file@, "scale": @scale@, "spacing_m": @spacing@},)";
+const std::string kShell = R"(
+  "environment": {"type": "point_shell", "file": @file@},)";
+const std::string kBlock = R"(
+  "environment": {"type": "block_with_hole", "hole_diameter_m": 0.002, "hole_depth_m": 0.005, "grid_m": 0.0001},)";
+
+const std::string kAbove = R"(
+  "initial": {"position_m": [@x@, @y@, @z@]},
+  "tool": {"diameter_m": @diameter@, "length_m": @length@, "tip": "round"},)";
+const std::string kInHole = R"(
+  "initial": {"position_m": [0, 0, -0.0049]},
+  "tool": {"diameter_m": 0.001, "length_m": 0.01, "tip": "flat"},)";
+
+const std::string kPress = R"(
+  "hand": {
+    "type": "impedance", "stiffness_N_per_m": 300, "damping_N_s_per_m": 6,
+    "target": {
+      "x_m": @x@, "y_m": @y@,
+      "z_m": {"type": "waypoints", "points": [[0, @z@], [0.5, @z_pressed@]], "interpolation": "cosine"}
+    }
+  },)";
+const std::string kDrag = R"(
+  "hand": {"type": "drag", "force_N": 1, "direction": [1, 0, 0], "speed_m_per_s": 0.005, "tilt_rad": 0.3},)";
+const std::string kTurn = R"(
+  "motion": {"orientation": {"tilt_rad": {"type": "sine", "mean": 0.3, "amplitude": 0.2, "period_s": 1}}},
+  "hand": {"type": "force", "z_N": -1},)";
+const std::string kStroke = R"(
+  "motion": {"position": {"type": "file", "file": @file@}},)";
+const std::string kTrack = R"(
+  "hand": {
+    "type": "tracking",
+    "task": {"places_m": [[0, 0, -0.005], [0.0005, 0, -0.005]], "targets_per_place": 1, "tolerance_m": 0.0002},
+    "subjects": [{"reaction_delay_s": 0.2, "press_N": 1.6}],
+    "trials": 1
+  },)";
+const std::string kSprings = R"(
+  "environment": {
+    "type": "springs",
+    "groups": [{"direction": [1, 0, 0], "count": 3}, {"direction": [0, 1, 0], "count": 1}]
+  },
+  "initial": {"position_m": [0.005, -0.005, 0]},)";
+
+const std::string kRendering = R"(
+  "rendering": {"algorithm": "shaped_stiffness", "stiffness_N_per_m": 20000, "damping_ratio": 0.7, "mass_kg": 0.1}
+)";
+
+constexpr double kStep = 0.0005;          ///< [s]
+constexpr double kToothLength = 0.01;     ///< [m]
+constexpr double kClearance = 0.001;      ///< between tool and surface at the start [m]
+constexpr double kDragSpeed = 0.005;      ///< as in kDrag [m/s]
+constexpr double kPressedBelow = 0.0035;  ///< the hand's target, 1 N below the surface with kPress [m]
+
+/// What stands for @name@.
+using Values = std::map<std::string, Json>;
+
+/// Two significant digits, as people write lengths.
+double rounded(double value) {
+  return std::stod(fmt::format("{:.2g}", value));
+}
+
+Box box_of(const std::vector<SurfacePoint>& points) {
+  Box box{points.front().position, points.front().position};
+  for (const SurfacePoint& point : points) box = {box.min.cwiseMin(point.position), box.max.cwiseMax(point.position)};
+  return box;
+}
+
+/// The point nearest to the middle of those that are as high as any, to within `tolerance`.
+Vec3 middle_of_the_top(const std::vector<SurfacePoint>& points, double top, double tolerance) {
+  Vec3 middle = Vec3::Zero();
+  double count = 0.0;
+  const auto is_high = [&](const SurfacePoint& point) { return point.position.z() >= top - tolerance; };
+  for (const SurfacePoint& point : points) {
+    if (!is_high(point)) continue;
+    middle += point.position;
+    count += 1.0;
+  }
+  middle /= count;
+  const SurfacePoint* nearest = nullptr;
+  for (const SurfacePoint& point : points) {
+    if (!is_high(point)) continue;
+    const double distance = (point.position - middle).norm();
+    if (nearest == nullptr || distance < (nearest->position - middle).norm()) nearest = &point;
+  }
+  return nearest->position;
+}
+
+double guessed_scale(double longest) {
+  double best = 1.0;
+  const auto misfit = [longest](double scale) { return std::abs(std::log(longest * scale / kToothLength)); };
+  for (const double scale : {0.01, 0.001}) {
+    if (misfit(scale) < misfit(best)) best = scale;
+  }
+  return best;
+}
+
+/// To the micrometre, as people write places.
+double to_micrometres(double metres) {
+  return std::round(1e6 * metres) / 1e6;
+}
+
+/// A start that is being made: the values are found out one after the other.
+class Start {
+ public:
+  Start(const StartKind& kind, const std::optional<fs::path>& source, const fs::path& directory)
+      : description_(kind.summary), sections_(kind.sections + kRendering), directory_(directory) {
+    if (kind.name == std::string("drag") && source) sections_.replace(0, kPlane.size(), kMesh);
+    values_["steps"] = kind.steps;
+    if (source) values_["file"] = fs::proximate(*source, directory).generic_string();
+    if (has("@scale@")) choose_scale();
+    if (has("@x@")) place_tool();
+    if (has(kDrag)) choose_drag_steps();
+    if (has(kStroke)) choose_stroke_steps();
+  }
+
+  ScenarioStart result() const { return {text(), notes_}; }
+
+ private:
+  bool has(const std::string& part) const { return sections_.find(part) != std::string::npos; }
+
+  std::string text() const {
+    std::string text = fmt::format("{{\n  \"description\": {},\n  \"time\": {{\"step_s\": {}, \"steps\": @steps@}},",
+                                   Json(description_).dump(), kStep) +
+                       sections_ + "}\n";
+    for (const auto& [name, value] : values_) {
+      const std::string mark = "@" + name + "@", with = value.dump();
+      for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos; at += with.size())
+        text.replace(at, mark.size(), with);
+    }
+    return text;
+  }
+
+  LoadedScenario scenario() const { return read_scenario(parse_json(text()), directory_); }
+
+  std::vector<SurfacePoint> points() const {
+    const LoadedScenario loaded = scenario();
+    return environment_points(loaded.scenario, ShellCache(), loaded.files).points;
+  }
+
+  /// From the mesh's own vertices, taken for millimetres.
+  void choose_scale() {
+    const Box box = box_of(points());
+    const double longest = (box.max - box.min).maxCoeff() / 0.001, scale = guessed_scale(longest);
+    values_["scale"] = scale;
+    choose_tool(longest * scale);
+    values_["spacing"] = rounded(diameter_ / 10.0);
+    notes_.push_back(fmt::format(
+        "longest edge of the mesh's box: {:.4g}, with scale {} {:.4g} mm; if it is not, change environment.scale",
+        longest, scale, 1e3 * longest * scale));
+  }
+
+  void choose_tool(double longest) {
+    diameter_ = std::max(0.001, rounded(longest / 50.0));
+    values_["diameter"] = diameter_;
+    values_["length"] = 10.0 * diameter_;
+  }
+
+  void place_tool() {
+    const std::vector<SurfacePoint> shell = points();
+    const Box box = box_of(shell);
+    longest_ = (box.max - box.min).maxCoeff();
+    choose_tool(longest_);
+    const Vec3 top = middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
+    const double touching = top.z() + 0.5 * diameter_;  // centre of the round tip
+    values_["x"] = to_micrometres(top.x());
+    values_["y"] = to_micrometres(top.y());
+    values_["z"] = to_micrometres(touching + kClearance);
+    values_["z_pressed"] = to_micrometres(touching - kPressedBelow);
+    notes_.push_back(fmt::format("{} points; the tool starts 1 mm above the highest, at x = {:.4g}, y = {:.4g} mm",
+                                 shell.size(), 1e3 * top.x(), 1e3 * top.y()));
+  }
+
+  /// To land, and a quarter of the object's length.
+  void choose_drag_steps() {
+    const double seconds = rounded(0.5 + 0.25 * longest_ / kDragSpeed);
+    values_["steps"] = static_cast<std::int64_t>(std::ceil(seconds / kStep));
+  }
+
+  void choose_stroke_steps() {
+    const LoadedScenario loaded = scenario();
+    const auto samples = loaded.files.recorded_motion().samples();
+    const auto lower = [](const auto& a, const auto& b) { return a.position.z() < b.position.z(); };
+    const double lowest = std::min_element(samples.begin(), samples.end(), lower)->position.z();
+    const double last = samples.back().time;
+    values_["steps"] = static_cast<std::int64_t>(std::max(1.0, std::ceil(last / kStep) + 1.0));
+    notes_.push_back(
+        fmt::format("the stroke lasts from {:.4g} to {:.4g} s; its lowest tip is at z = {:.4g} mm, the "
+                    "plane at 0",
+                    samples.front().time, last, 1e3 * lowest));
+  }
+
+  std::string description_;
+  std::string sections_;
+  fs::path directory_;
+  double diameter_ = 0.001;  ///< [m]
+  double longest_ = 0.0;     ///< edge of the environment's box [m]
+  Values values_ = {{"x", 0.0},       {"y", 0.0},           {"z", 0.0},          {"z_pressed", 0.0},
+                    {"scale", 0.001}, {"spacing", nullptr}, {"diameter", 0.001}, {"length", 0.01}};
+  std::vector<std::string> notes_;
+};
+
+}  // namespace
+
+const std::vector<StartKind>& start_kinds() {
+  using enum StartSource;
+  static const std::vector<StartKind> kinds = {
+      {"mesh", "a drill is pressed on a surface from a file: OBJ, PLY, STL or OFF", mesh, true,
+       kMesh + kAbove + kPress},
+      {"shell", "a drill is pressed on points with normals from a file: CSV or PLY", shell, true,
+       kShell + kAbove + kPress},
+      {"drag", "a drill is dragged over a surface with 1 N along its normal", mesh, false, kPlane + kAbove + kDrag},
+      {"plane", "a drill is pressed on a plane", none, false, kPlane + kAbove + kPress},
+      {"hole", "a drill is turned to and fro in a drilled hole", none, false, kBlock + kInHole + kTurn},
+      {"springs", "a point mass between springs", none, false, kSprings},
+      {"stroke", "a recorded stroke over a plane is played back, from a CSV file", stroke, true, kPlane + kStroke},
+      {"target", "a simulated subject leads a drill to targets in a hole", none, false, kBlock + kInHole + kTrack,
+       40'000},
+  };
+  return kinds;
+}
+
+ScenarioStart scenario_start(const StartKind& kind, const std::optional<fs::path>& source, const fs::path& directory) {
+  return Start(kind, source, directory).result();
+}
+
+}  // namespace hapbench

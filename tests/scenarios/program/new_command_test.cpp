@@ -1,0 +1,99 @@
+#include <gtest/gtest.h>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/program.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+/// `hapbench new`
+namespace hapbench {
+namespace {
+
+using test::hapbench;
+using test::ProgramRun;
+
+class NewCommand : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return (directory_ / name).string(); }
+  std::string data(const std::string& name) const { return (test::data_directory() / name).string(); }
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(NewCommand, WritesScenariosOfEveryKindThatRunAtOnceAndTouch) {
+  const Json kinds = hapbench({"new", "--json"}).json();
+  ASSERT_FALSE(kinds.empty());
+  for (const Json& entry : kinds) {
+    const std::string kind = entry["kind"], file = path(kind + ".json");
+    std::vector<std::string> arguments = {"new", kind, "--out", file};
+    const std::string source = kind == "mesh" ? "cube.obj" : kind == "shell" ? "shell.csv" : "stroke.csv";
+    if (kind == "mesh" || kind == "shell" || kind == "stroke")
+      arguments.insert(arguments.end(), {"--from", data(source)});
+    const ProgramRun written = hapbench(arguments);
+    ASSERT_EQ(written.status, 0) << kind << ": " << written.err;
+    for (const std::string& line : test::lines_of(written.out)) EXPECT_LE(line.size(), 160u) << line;
+    const ProgramRun run = hapbench({"run", file, "--out", path(kind), "--json"});
+    ASSERT_EQ(run.status, 0) << kind << ": " << run.err;
+    const Json summary = run.json()[0];
+    EXPECT_EQ(summary["outcome"], "completes") << kind;
+    EXPECT_GT(summary["metrics"]["steps_in_contact"], 0) << kind;
+  }
+}
+
+TEST_F(NewCommand, GuessesTheUnitOfAMesh) {
+  const std::string cube = test::read_file(data("cube.obj"));
+  // A cube of 10, of 1 and of 0.01: millimetres, centimetres and metres.
+  const auto scale_of = [&](const std::string& corner, const std::string& name) {
+    std::string text = cube;
+    for (std::size_t at = 0; (at = text.find('5', at)) != std::string::npos && at < text.find("\nf ");
+         at += corner.size())
+      text.replace(at, 1, corner);
+    test::write_plainly(directory_ / (name + ".obj"), text);
+    EXPECT_EQ(hapbench({"new", "mesh", "--from", path(name + ".obj"), "--out", path(name + ".json")}).status, 0);
+    const Json json = Json::parse(test::read_file(directory_ / (name + ".json")));
+    EXPECT_EQ(json["environment"]["file"], name + ".obj") << "from where the scenario stands";
+    return json["environment"]["scale"].get<double>();
+  };
+  EXPECT_EQ(scale_of("5", "millimetres"), 0.001);
+  EXPECT_EQ(scale_of("0.6", "centimetres"), 0.01);
+  EXPECT_EQ(scale_of("0.006", "metres"), 1.0);
+}
+
+TEST_F(NewCommand, DragsOverAMeshToo) {
+  ASSERT_EQ(hapbench({"new", "drag", "--from", data("cube.obj"), "--out", path("drag.json")}).status, 0);
+  const Json summary = hapbench({"run", path("drag.json"), "--out", path("run"), "--json"}).json()[0];
+  EXPECT_EQ(summary["outcome"], "completes");
+  EXPECT_GT(summary["metrics"]["steps_in_contact"], summary["steps"].get<int>() / 2);
+}
+
+TEST_F(NewCommand, ExplainsEveryFieldItWrites) {
+  const Json answer = hapbench({"new", "drag", "--out", path("drag.json"), "--json"}).json();
+  const Json json = Json::parse(test::read_file(directory_ / "drag.json"));
+  for (const auto& section : json.items()) EXPECT_TRUE(answer["fields"].contains(section.key())) << section.key();
+  EXPECT_EQ(answer["fields"]["hand.speed_m_per_s"], "along the path");
+}
+
+TEST_F(NewCommand, NeverOverwrites) {
+  test::write_plainly(directory_ / "plane.json", "mine");
+  const ProgramRun run = hapbench({"new", "plane", "--out", path("plane.json")});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.err.find("plane.json: is there; allowed: a new file"), std::string::npos) << run.err;
+  EXPECT_EQ(test::read_file(directory_ / "plane.json"), "mine");
+}
+
+TEST_F(NewCommand, RefusesWhatItCannotStartFrom) {
+  const auto refusal = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "new");
+    arguments.insert(arguments.end(), {"--out", path("x.json")});
+    const ProgramRun run = hapbench(arguments);
+    EXPECT_EQ(run.status, 2) << run.out;
+    return run.err;
+  };
+  EXPECT_NE(refusal({"srings"}).find("nearest valid name: \"springs\""), std::string::npos);
+  EXPECT_NE(refusal({"mesh"}).find("--from: missing"), std::string::npos);
+  EXPECT_NE(refusal({"plane", "--from", data("cube.obj")}).find("starts from no file"), std::string::npos);
+  EXPECT_NE(refusal({"mesh", "--from", data("shell.csv")}).find("allowed: .obj"), std::string::npos);
+  EXPECT_NE(refusal({"mesh", "--from", path("none.obj")}).find("cannot be read"), std::string::npos);
+  EXPECT_EQ(directory_.entries(), std::vector<std::string>{});
+}
+
+}  // namespace
+}  // namespace hapbench
