@@ -195,7 +195,7 @@ class InBrowser(unittest.TestCase):
         self.browser.key("ArrowRight")
         self.assertNotEqual(self.js(f"{dialog}.querySelector('b').textContent"), first)
         self.browser.wait_for(f"{dialog}.querySelector('img').naturalWidth > 0")
-        self.browser.key("Escape")
+        self.click("#enlarged form button:last-child")
         self.browser.wait_for(f"!{dialog}.open")
 
     def test_commands_can_be_copied(self):
@@ -206,7 +206,7 @@ class InBrowser(unittest.TestCase):
 
     def test_a_link_to_a_run_unfolds_it(self):
         self.js("document.querySelectorAll('#ledger-table details').forEach((part) => { part.open = true; })")
-        self.click("#ledger-table .links a[href^='#run-']")
+        self.click('#ledger-table .links a[href^="#run-"]')
         self.browser.wait_for("document.querySelector('#parameters details details[open]') !== null")
 
     def test_a_telephone_shows_id_and_verdict_first_and_targets_to_hit(self):

@@ -72,6 +72,7 @@ class Page(WithResults):
         self.assertEqual(self.links_of(page, 'id="figure-f1"', "</figure>"),
                          ["claim-C1", "claim-C2", run, run, "thesis-a-3"])
         self.assertEqual(self.links_of(page, f'id="{run}"', "</details>"), ["claim-C1", "claim-C2", "figure-f1"])
+        self.assertIn("<code>not_among_these</code>", self.part(page, 'id="claim-C2"', "</tr>"))
         # What is not confirmed leads to its claim from the summary.
         self.assertEqual(self.links_of(page, "do not confirm", "</ul>"), ["claim-C2", "claim-C3"])
 

@@ -23,9 +23,10 @@ class Links:
             self._tables[part["label"]] = anchor(part["label"])
 
     def of_claim(self, claim):
-        """Figures and runs of a claim, each as links."""
-        runs = self._runs_of_claim[id(claim)]
-        return self._figure_links(self._figures_of_claim(claim)), [run_link(run) for run in runs]
+        """Figures and runs of a claim, each as links; scenarios that it runs for itself by their names."""
+        runs = [(name, find_run(self.runs, name)) for name in scenarios_of(claim)]
+        return (self._figure_links(self._figures_of_claim(claim)),
+                [run_link(run) if run else f"<code>{text(name)}</code>" for name, run in runs])
 
     def of_figure(self, figure):
         """Claims and runs of a figure."""
@@ -68,9 +69,7 @@ class Links:
         return [claim_link(claim) for claim in own]
 
     def _deciding(self, claim):
-        names = claim.get("scenarios")
-        found = [find_run(self.runs, str(name)) for name in names] if isinstance(names, list) else []
-        return [run for run in found if run]
+        return [run for run in (find_run(self.runs, name) for name in scenarios_of(claim)) if run]
 
     def _drawn_of(self, figure):
         paths = dict.fromkeys(source.rpartition("/")[0] for source in figure.sources)
@@ -87,6 +86,12 @@ class Links:
 
     def _figure_links(self, figures):
         return [f'<a href="#figure-{text(f.id)}">{text(figure_name(f))}</a>' for f in figures]
+
+
+def scenarios_of(claim):
+    """Of the thesis's scenarios, those a claim was measured with; a ledger of an older program names none."""
+    names = claim.get("scenarios")
+    return [str(name) for name in names] if isinstance(names, list) else []
 
 
 def named_figures(claim):
