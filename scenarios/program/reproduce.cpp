@@ -125,8 +125,9 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
     runs.provide(scenario);
   };
   RecentShells shells(cache);
-  const Evidence evidence{published, ResultFiles(runs.directory(), provide), cache, {}, &shells,
-                          [&](const std::string& scenario) { used.insert(scenario); }};
+  const Evidence evidence{published, ResultFiles(runs.directory(), provide),
+                          cache,     {},
+                          &shells,   [&](const std::string& scenario) { used.insert(scenario); }};
   std::vector<JudgedClaim> judged;
   for (const Claim& claim : claims) {
     used.clear();
