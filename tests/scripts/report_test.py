@@ -14,6 +14,7 @@ from report_fixture import PROGRAM, claim, make_claims, make_figures, make_resul
 from hapbench_report.markup import number, strip, typeset
 from hapbench_report.replay_pack import CONTACT_COLUMNS, Recording, packed_replays
 from hapbench_report.section_thesis import figure_labels
+from hapbench_report.units import column
 
 
 def setUpModule():
@@ -292,6 +293,15 @@ class BadInput(WithResults):
 
 
 class Names(unittest.TestCase):
+    def test_columns_name_their_units(self):
+        for name, expected in (("force_reversals_per_s", ("force reversals", "1/s", 1)), ("speed_max_m_per_s", ("speed max", "m/s", 1)),
+                               ("stiffness_N_per_m", ("stiffness", "N/m", 1)), ("steps", ("steps", "", 1)),
+                               ("power_m2_per_s2", ("power", "m²/s²", 1)), ("seconds_per_call", ("time of a call", "µs", 1e6))):
+            self.assertEqual(column(name, [1]), expected)
+        # The usual length decides: one that was thrown out does not.
+        self.assertEqual(column("depth_m", [0.001, 0.002, 18])[1:], ("mm", 1e3))
+        self.assertEqual(column("depth_m", [0, 0.02])[1:], ("m", 1))
+
     def test_figure_labels(self):
         for given, labels in (("4", {"4"}), ("Fig. 7a–c", {"7"}), ("A.4 (root locus)", {"A.4"}), ("B.4/B.5", {"B.4", "B.5"}),
                               ("F4", {"F.4"}), ("ours", set()), ("", set()), ("C.2, C.3", {"C.2", "C.3"})):
