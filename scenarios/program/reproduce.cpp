@@ -118,14 +118,22 @@ class ThesisRuns {
 /// Judges the claims by the thesis's runs, and notes in `read` what of their results that takes.
 std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const PublishedNumbers& published, ThesisRuns& runs,
                                const ShellCache& cache, ResultsRead& read) {
+  std::set<std::string> used;  // by the claim in turn
   const auto provide = [&](const std::string& scenario, const std::string& part) {
+    used.insert(scenario);
     read[scenario].insert(part);
     runs.provide(scenario);
   };
   RecentShells shells(cache);
-  const Evidence evidence{published, ResultFiles(runs.directory(), provide), cache, {}, &shells};
+  const Evidence evidence{published, ResultFiles(runs.directory(), provide),
+                          cache,     {},
+                          &shells,   [&](const std::string& scenario) { used.insert(scenario); }};
   std::vector<JudgedClaim> judged;
-  for (const Claim& claim : claims) judged.push_back({claim, claim.judge(claim.measure(evidence), published)});
+  for (const Claim& claim : claims) {
+    used.clear();
+    Finding finding = claim.judge(claim.measure(evidence), published);
+    judged.push_back({claim, std::move(finding), {used.begin(), used.end()}});
+  }
   return judged;
 }
 

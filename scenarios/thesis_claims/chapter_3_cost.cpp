@@ -89,7 +89,7 @@ Measured measure_deadline(const Evidence&) {
 
 std::string deadline_text(const MeasuredCase& m, double deadline) {
   return fmt::format(
-      "1000 contacts: n x n matrix {:.0f} µs ({:.2g} operations), reduced first {:.0f} µs, tensor without reduction "
+      "1000 contacts: n × n matrix {:.0f} µs ({:.2g} operations), reduced first {:.0f} µs, tensor without reduction "
       "{:.1f} µs ({:.2g} operations); deadline {:.0f} µs",
       1e6 * m["matrix"], dense_operations(kThousand), 1e6 * m["reduced"], 1e6 * m["tensor"],
       tensor_operations(kThousand), 1e6 * deadline);
@@ -110,7 +110,7 @@ Finding judge_tensor_deadline(const Measured& measured, const PublishedNumbers& 
   const double deadline = published["T4.step"].mean;
   const bool met = m["tensor"] < deadline;
   return {met ? Verdict::refuted : Verdict::reproduced, deadline_text(m, deadline),
-          met ? "through the 3 x 3 stiffness tensor all points are shaped in time without a reduction"
+          met ? "through the 3 × 3 stiffness tensor all points are shaped in time without a reduction"
               : "without the reduction the tensor form misses the deadline, too"};
 }
 
@@ -173,7 +173,7 @@ constexpr Claim kClaims[] = {
      .published = "0.5 ms",
      .rule =
          [](const PublishedNumbers&) {
-           return std::string("reproduced: the n x n matrix misses the deadline, the reduction before it meets it");
+           return std::string("reproduced: the n × n matrix misses the deadline, the reduction before it meets it");
          },
      .measure = measure_deadline,
      .judge = judge_dense_deadline,

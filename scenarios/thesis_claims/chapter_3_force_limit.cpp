@@ -66,7 +66,7 @@ Finding judge_force_limit(const Measured& measured, const PublishedNumbers& publ
   const bool onset = std::abs(m["onset"] - published["L1.measured"].mean) <= kOnset;
   const bool constant = m["plateau_spread"] <= kConstant;
   return {decide(proportional && onset && constant, proportional && constant),
-          fmt::format("slope x K = {:.4f}; with the limit constant to {:.2f} % from {:.2f} N on",
+          fmt::format("slope × K = {:.4f}; with the limit constant to {:.2f} % from {:.2f} N on",
                       m["slope_times_stiffness"], 100.0 * m["plateau_spread"], m["onset"]),
           fmt::format("{} without the limit; {} with it; {}", proportional ? "proportional" : "not proportional",
                       constant ? "constant" : "not constant", onset ? "onset as published" : "onset elsewhere")};

@@ -111,6 +111,7 @@ class RowObserver final : public Observer {
 }  // namespace
 
 LoadedScenario Evidence::load(const std::string& name, std::span<const std::string> more) const {
+  if (used) used(name);
   const ScenarioText text = read_scenario_text(find_scenario(name));
   std::vector<std::string> all;
   if (overrides) all = overrides(load_scenario(text, {}).scenario);

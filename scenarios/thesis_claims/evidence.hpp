@@ -75,6 +75,9 @@ struct Evidence {
   /// Environments that several runs share; null: each makes its own.
   RecentShells* shells = nullptr;
 
+  /// Told the name of every bundled scenario that a claim computes something with by itself; empty for nobody.
+  std::function<void(const std::string& scenario)> used = {};
+
   // What claims compute by themselves starts from here. All throw InputError.
 
   /// A bundled scenario, changed as those are whose results these are, and then by `more` overrides.

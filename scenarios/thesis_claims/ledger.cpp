@@ -103,6 +103,7 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
                       {"verdict", verdict_name(j.finding.verdict)},
                       {"robustness", robustness.of(j)},
                       {"why", j.finding.why},
+                      {"scenarios", j.scenarios},
                       {"timing", j.claim.timing}});
   }
   return {{"claims", std::move(claims)}};

@@ -15,6 +15,7 @@ namespace hapbench {
 struct JudgedClaim {
   Claim claim;
   Finding finding;
+  std::vector<std::string> scenarios = {};  ///< bundled ones that it was measured with, in the order of their names
 };
 
 /// robustness.json: the counts of every claim, and the hash of the choices they are about.

@@ -14,6 +14,10 @@ import xml.etree.ElementTree as xml
 from pathlib import Path
 
 PROGRAM, SOURCE = Path(sys.argv[1]), Path(sys.argv[2])
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(SOURCE / "scripts" / "python"))
+import hapbench_looks  # noqa: E402  (the path comes first)
+
 SVG = "{http://www.w3.org/2000/svg}"
 # Short runs of the same scenarios: what is tested is the drawing. They need not end as their scenarios expect.
 RUNS = (
@@ -73,6 +77,7 @@ def make_results(directory):
         *("--set=time.duration_s=2", "--set=record.every=8", "--set=rendering.reduction={}"),
         *("--out", directory / "proxy"),
     )
+    hapbench("compare", "peg_in_hole_2d_shaped_stiffness", "--quiet", "--out", directory / "compare")
     for scene, scenario in (("peg", "tilt_sweep_shaped_stiffness"), ("wedge", "wedge_stiffness")):
         out = directory / "stiffness" / scene
         hapbench("compare", scenario, "--set=record.stiffness_tensor=true", "--quiet", "--out", out)
@@ -240,6 +245,25 @@ class Figures(unittest.TestCase):
                 self.assertNotIn("Traceback", done.stderr)
                 self.assertEqual([path.name for path in out.iterdir()], ["figures.json"])
 
+    def test_a_map_of_known_and_unknown_classes_is_drawn_and_named(self):
+        maps, out = self.directory / "maps" / "stability_maps", self.directory / "drawn_maps"
+        maps.mkdir(parents=True)
+        whole = (self.results / "stability_maps" / "stability_map_mass.csv").read_text()
+        head, *rows = whole.splitlines()
+        classes = ("stable", "dying_out", "vibrating", "thrown_out", "diverged", "of_another_time")
+        column = head.split(",").index("class")
+        cells = [row.split(",") for row in rows]
+        for i, row in enumerate(cells):
+            row[column] = classes[i % len(classes)]
+        (maps / "stability_map_mass.csv").write_text("\n".join([head, *(",".join(row) for row in cells)]) + "\n")
+        boundary = "stability_boundary_mass.csv"
+        (maps / boundary).write_bytes((self.results / "stability_maps" / boundary).read_bytes())
+        done = figures(maps.parent, "--out", out, "--only", "stability-mass")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        text = " ".join(xml.parse(out / "figure_stability_mass.svg").getroot().itertext())
+        for name in classes:
+            self.assertIn(name.replace("_", " "), text)
+
     def test_usage(self):
         self.assertEqual(figures(self.results, "--out", self.directory / "x", "--only", "99").returncode, 2)
         self.assertEqual(figures(self.directory / "nowhere", "--out", self.directory / "x").returncode, 2)
@@ -254,6 +278,44 @@ class Figures(unittest.TestCase):
         (poor / "python3").symlink_to("/bin/false")
         done = figures("--list", PATH=f"{poor}:{os.environ['PATH']}")
         self.assertTrue(done.returncode == 0 or "imports numpy" in done.stderr, done.stderr)
+
+
+def luminance(colour):
+    """Relative luminance of WCAG 2.1 of "#RRGGBB"."""
+    parts = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(first, second):
+    low, high = sorted((luminance(first), luminance(second)))
+    return (high + 0.05) / (low + 0.05)
+
+
+class Looks(unittest.TestCase):
+    LEAST_CONTRAST = 4.5  # WCAG 2.1, level AA, of text
+
+    def test_every_algorithm_has_one_of_its_own(self):
+        names = {entry["name"] for entry in json.loads(listed()) if entry["kind"] == "algorithm"}
+        self.assertEqual(set(hapbench_looks.ALGORITHMS), names)
+        looks = hapbench_looks.ALGORITHMS.values()
+        for part in ("label", "colour", "dark", "marker"):
+            self.assertEqual(len({getattr(look, part) for look in looks}), len(names), part)
+
+    def test_the_published_colour_is_nobody_elses(self):
+        for look in hapbench_looks.ALGORITHMS.values():
+            self.assertNotEqual(look.colour, hapbench_looks.PUBLISHED)
+            self.assertNotEqual(look.dark, hapbench_looks.PUBLISHED_DARK)
+
+    def test_colours_can_be_read(self):
+        style = (SOURCE / "scripts/python/hapbench_report/assets/style.css").read_text(encoding="utf-8")
+        light, dark = (re.findall(rf"--{name}: (#[0-9a-f]{{6}})", style) for name in ("page", "panel"))
+        light, dark = [light[0], "#ffffff"], [light[1], dark[1]]
+        published = hapbench_looks.Look("", hapbench_looks.PUBLISHED, hapbench_looks.PUBLISHED_DARK, (), "")
+        for look in (*hapbench_looks.ALGORITHMS.values(), hapbench_looks.look("unknown"), published):
+            for colour, grounds in ((look.colour, light), (look.dark, dark)):
+                for ground in grounds:
+                    self.assertGreaterEqual(contrast(colour, ground), self.LEAST_CONTRAST, (look.label, colour, ground))
 
 
 class PublishedNumbers(unittest.TestCase):

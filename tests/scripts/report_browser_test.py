@@ -187,6 +187,38 @@ class InBrowser(unittest.TestCase):
         self.click("#runs-table tbody a")
         self.browser.wait_for("document.querySelector('#parameters details[open]') !== null")
 
+    def test_a_figure_enlarges(self):
+        self.click(".enlarge")
+        dialog = "document.getElementById('enlarged')"
+        self.assertTrue(self.js(f"{dialog}.open"))
+        first = self.js(f"{dialog}.querySelector('b').textContent")
+        self.browser.key("ArrowRight")
+        self.assertNotEqual(self.js(f"{dialog}.querySelector('b').textContent"), first)
+        self.browser.wait_for(f"{dialog}.querySelector('img').naturalWidth > 0")
+        self.click("#enlarged form button:last-child")
+        self.browser.wait_for(f"!{dialog}.open")
+
+    def test_commands_can_be_copied(self):
+        self.assertEqual(self.js("document.querySelectorAll('.copy').length"), self.js("document.querySelectorAll('pre.command').length"))
+        self.browser.call("Browser.grantPermissions", permissions=["clipboardReadWrite", "clipboardSanitizedWrite"])
+        self.click("#figures .copy")
+        self.browser.wait_for("/Copied|Selected/.test(document.querySelector('#figures .copy').textContent)")
+
+    def test_a_link_to_a_run_unfolds_it(self):
+        self.js("document.querySelectorAll('#ledger-table details').forEach((part) => { part.open = true; })")
+        self.click('#ledger-table .links a[href^="#run-"]')
+        self.browser.wait_for("document.querySelector('#parameters details details[open]') !== null")
+
+    def test_a_telephone_shows_id_and_verdict_first_and_targets_to_hit(self):
+        self.browser.size(420, 900, 2)
+        ends = self.js("[...document.querySelectorAll('#ledger-table tbody tr')].map((row) => "
+                       "row.cells[1].getBoundingClientRect().right)")
+        self.assertLessEqual(max(ends), 420)
+        low = self.js("[...document.querySelectorAll('main a, button, select, summary, input[type=search]')].filter((e) => "
+                      "e.checkVisibility()).map((e) => [e.getBoundingClientRect().height, e.textContent.slice(0, 30)])"
+                      ".filter(([height]) => height < 24)")
+        self.assertEqual(low, [])
+
     def test_light_and_dark(self):
         background = "getComputedStyle(document.body).backgroundColor"
         light, drawn = self.js(background), self.pictures()

@@ -35,7 +35,7 @@ def make_figures(directory):
                                                 ("Height", "7a–c"), ("Ours", None))):
         (directory / f"f{i}.svg").write_text(SVG, encoding="utf-8")
         entries.append({"id": f"f{i}", "title": title, "thesis_figure": thesis_figure, "caption": f"Caption {i}.",
-                        "files": [f"f{i}.svg", f"f{i}.pdf"], "sources": ["thesis/single_spring"]})
+                        "files": [f"f{i}.svg", f"f{i}.pdf"], "sources": ["thesis/single_spring/trajectory.csv", "stability/limits.csv"] if i == 1 else []})
     (directory / "figures.json").write_text(json.dumps({"figures": entries}), encoding="utf-8")
 
 
@@ -51,6 +51,8 @@ def make_claims(file):
     claims[1]["robustness"] = {"judged": 64, "holds": 31, "decided_by": {"choice": "hand.angle", "index": 0.4321}}
     claims[2]["robustness"] = {"judged": 64, "holds": 31, "decided_by": None}
     claims[3]["robustness"] = None
+    claims[1] |= {"place": "A.3, Table A.2, Fig. A.5", "measured": "-1.2e-07 N, -0.5 to 2e+06", "scenarios": ["single_spring"]}
+    claims[2] |= {"place": "A.2", "scenarios": ["single_spring", "not_among_these"]}
     file.write_text(json.dumps({"claims": claims}), encoding="utf-8")
 
 

@@ -11,9 +11,10 @@ from pathlib import Path
 
 from report_fixture import PROGRAM, claim, make_claims, make_figures, make_results, report
 
-from hapbench_report.markup import strip
+from hapbench_report.markup import number, strip, typeset
 from hapbench_report.replay_pack import CONTACT_COLUMNS, Recording, packed_replays
 from hapbench_report.section_thesis import figure_labels
+from hapbench_report.units import column
 
 
 def setUpModule():
@@ -54,6 +55,55 @@ class Page(WithResults):
         self.assertEqual(len(names), len(set(names)))
         self.assertLessEqual(set(re.findall(r'href="#([^"]+)"', page)), set(names))
 
+    def part(self, page, start, end):
+        return page[page.index(start):].split(end)[0]
+
+    def links_of(self, page, start, end):
+        return re.findall(r'href="#([^"]+)"', self.part(page, start, end))
+
+    def test_claims_figures_and_runs_lead_to_each_other(self):
+        page = self.full_page()
+        run = "run-thesis-single-spring"
+        for claim_, expected in (("C0", {"figure-f0"}), ("C1", {"figure-f1", "thesis-table-a-2-appendix-a-", run}),
+                                 ("C2", {"figure-f1", run})):
+            found = {target.rstrip("-") for target in self.links_of(page, f'id="claim-{claim_}"', "</tr>")}
+            self.assertEqual(found, {target.rstrip("-") for target in expected} | {f"claim-{claim_}"}, claim_)
+            self.assertIn(f"hapbench reproduce --only {claim_}", self.part(page, f'id="claim-{claim_}"', "</tr>"))
+        self.assertEqual(self.links_of(page, 'id="figure-f0"', "</figure>"), ["claim-C0", "claim-C3", "claim-C4"])
+        self.assertEqual(self.links_of(page, 'id="figure-f1"', "</figure>"),
+                         ["claim-C1", "claim-C2", run, run, "thesis-a-3"])
+        self.assertEqual(self.links_of(page, f'id="{run}"', "</details>"), ["claim-C1", "claim-C2", "figure-f1"])
+        self.assertIn("<code>not_among_these</code>", self.part(page, 'id="claim-C2"', "</tr>"))
+        # What is not confirmed leads to its claim from the summary.
+        self.assertEqual(self.links_of(page, "do not confirm", "</ul>"), ["claim-C2", "claim-C3"])
+
+    def test_numbers_are_typeset(self):
+        page = self.full_page()
+        self.assertIn("−1.2 × 10⁻⁷ N, −0.5 to 2 × 10⁶", page)
+        for given, shown in (("t = -0.3, K-1", "t = −0.3, K-1"), ("(-22, 10)", "(−22, 10)"), ("1e-9", "1 × 10⁻⁹"),
+                             ("a-3", "a-3"), ("3-5", "3-5"), ("<", "&lt;"), ("1.5e+12x", "1.5e+12x")):
+            self.assertEqual(typeset(given), shown)
+        for given, shown in ((2740.4, "2740"), (-0.00012, "−0.00012"), (1e-9, "1 × 10⁻⁹"), (123456.7, "123500"), (None, "–")):
+            self.assertEqual(number(given), shown)
+
+    def test_studies_are_folded_and_name_their_units(self):
+        study = self.results / "precision" / "precision_x.csv"
+        study.parent.mkdir()
+        self.addCleanup(shutil.rmtree, study.parent)
+        study.write_text("setting,error_rms_m,length_m,seconds_per_step,force_max_N,kept_mean\na,0.0002,0.5,1e-6,3,2\n")
+        page = self.page()
+        section = self.part(page, '<section id="studies"', "</section>")
+        self.assertEqual(section.count("<table"), section.count("<details"))
+        heads = [strip(head.replace("<br>", "|")) for head in re.findall(r"<th [^>]*>(.*?)</th>", section)]
+        self.assertEqual(heads, ["setting", "error rms|mm", "length|m", "time of a step|µs", "force max|N", "kept mean"])
+        self.assertEqual([strip(cell_) for cell_ in re.findall(r"<td[^>]*>(.*?)</td>", section)], ["a", "0.2", "0.5", "1", "3", "2"])
+
+    def test_cells_of_cards_carry_their_headings(self):
+        rows = self.part(self.full_page(), 'id="ledger-table"', "</table>").split("<tr")[2:]
+        for row in rows:
+            self.assertEqual(re.findall(r'data-label="([^"]+)"', row),
+                             ["Id", "Verdict", "Claim", "Published", "Measured", "Robustness"])
+
     def test_every_verdict_and_every_run_is_there(self):
         page = self.full_page()
         for text in ("✓ reproduced", "≈ reproduced in kind", "✗ not reproduced", "⊘ refuted", "– not reproducible",
@@ -82,7 +132,7 @@ class Page(WithResults):
         page = self.full_page()
         for title, target in (("Springs without limits", "figure-f1"), ("Root locus of the leapfrog step", "figure-f2"),
                               ("Task 2 against the ideal trajectory", "figure-f3")):
-            row = page[page.index(f"<td>{title}</td>"):].split("</tr>")[0]
+            row = page[re.search(rf"<td[^>]*>{title}</td>", page).start():].split("</tr>")[0]
             self.assertEqual(re.findall('href="#([^"]+)"', row), [target])
 
     def test_without_figures_claims_and_replay_says_so(self):
@@ -243,6 +293,15 @@ class BadInput(WithResults):
 
 
 class Names(unittest.TestCase):
+    def test_columns_name_their_units(self):
+        for name, expected in (("force_reversals_per_s", ("force reversals", "1/s", 1)), ("speed_max_m_per_s", ("speed max", "m/s", 1)),
+                               ("stiffness_N_per_m", ("stiffness", "N/m", 1)), ("steps", ("steps", "", 1)),
+                               ("power_m2_per_s2", ("power", "m²/s²", 1)), ("seconds_per_call", ("time of a call", "µs", 1e6))):
+            self.assertEqual(column(name, [1]), expected)
+        # The usual length decides: one that was thrown out does not.
+        self.assertEqual(column("depth_m", [0.001, 0.002, 18])[1:], ("mm", 1e3))
+        self.assertEqual(column("depth_m", [0, 0.02])[1:], ("m", 1))
+
     def test_figure_labels(self):
         for given, labels in (("4", {"4"}), ("Fig. 7a–c", {"7"}), ("A.4 (root locus)", {"A.4"}), ("B.4/B.5", {"B.4", "B.5"}),
                               ("F4", {"F.4"}), ("ours", set()), ("", set()), ("C.2, C.3", {"C.2", "C.3"})):

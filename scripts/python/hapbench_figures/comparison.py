@@ -1,43 +1,57 @@
 """Every algorithm on the planar peg-in-hole, and the cases that the thesis discusses (4.1, 4.4, 4.6)."""
 import numpy as np
+from matplotlib.ticker import LogLocator
 
 from . import published, style
 
 METRICS = (
-    ("force_max_N", "greatest\nforce [N]", 1),
-    ("velocity_total_variation_m_per_s", "total variation of\nvelocity [m/s]", 1),
-    ("depth_max_m", "greatest\ndepth [mm]", 1e3),
-    ("steps", "steps until\nit leaves", 1),
+    ("force_max_N", "force", "greatest [N]", 1),
+    ("velocity_total_variation_m_per_s", "roughness", "total variation\nof velocity [m/s]", 1),
+    ("depth_max_m", "depth", "greatest [mm]", 1e3),
+    ("steps", "way out", "steps until\nit leaves", 1),
 )
+COMPARED = "compare/comparison.csv"
+LEAST_RATIO = 1e-4  # drawn: the original algorithm's may be zero
 
 
 def algorithms(results):
-    figure, axes = style.panels(1, 5, 2.7, sharey=True)
-    names = list(style.ALGORITHMS)
-    y = np.arange(len(names))[::-1]
-    for i, name in zip(y, names):
-        summary = results.json(f"thesis/peg_in_hole_2d_{name}/summary.json")
-        metrics, look = {**summary["metrics"], "steps": summary["steps"]}, style.ALGORITHMS[name]
-        for ax, (key, _, scale) in zip(axes[0], METRICS):
-            ax.plot([scale * metrics[key]], [i], marker=look.marker, color=look.colour, ms=5.5)
-        ax = axes[0, 4]
-        ends = np.maximum([metrics["ratio_min"], metrics["ratio_max"]], 1e-4)
-        ax.plot(ends, [i, i], color=look.colour, marker="|", ms=9, lw=2.4)
-    for ax, (_, title, _) in zip(axes[0], METRICS):
-        ax.set(xscale="log", xlabel=title)
-    axes[0, 2].set(xscale="linear", xlim=(0, 3.3))
-    axes[0, 4].set(xscale="log", xlabel="stiffness\nratio")
-    axes[0, 4].axvline(1, color=style.BLACK, lw=0.7, ls="--")
-    axes[0, 4].axvline(published.entries()["C4.ratio"]["at_most"], color=style.VERMILION, lw=1, ls=(0, (1, 1.5)))
-    axes[0, 0].set_yticks(y, [style.ALGORITHMS[name].label for name in names])
-    axes[0, 0].set_ylim(-0.6, len(names) - 0.4)
+    rows = results.records(COMPARED)
+    figure, axes = style.panels(1, 5, 0.9 + 0.2 * len(rows), sharey=True)
+    for y, row in enumerate(reversed(rows)):
+        look = style.look(row["algorithm"])
+        for ax, (key, _, _, scale) in zip(axes[0], METRICS):
+            ax.plot([scale * float(row[key])], [y], marker=look.marker, color=look.colour, ms=5.5)
+        ends = np.maximum([float(row["ratio_min"]), float(row["ratio_max"])], LEAST_RATIO)
+        axes[0, 4].plot(ends, [y, y], color=look.colour, marker="|", ms=8, lw=2.4)
+    for ax, (_, title, label, _) in zip(axes[0], METRICS):
+        ax.set(xscale="log", title=title, xlabel=label)
+        ax.margins(x=0.12)
+        ax.xaxis.set_major_locator(LogLocator(numticks=4))
+    axes[0, 2].set(xscale="linear", xlim=(0, 3.4))
+    draw_ratio_axis(axes[0, 4], len(rows))
+    axes[0, 0].set_yticks(range(len(rows)), [style.look(row["algorithm"]).label for row in reversed(rows)])
+    for tick, row in zip(axes[0, 0].get_yticklabels(), reversed(rows)):
+        tick.set_color(style.look(row["algorithm"]).colour)
+    axes[0, 0].set_ylim(-0.6, len(rows) + 0.6)
     style.letter(axes[0])
     return figure, (
         "Every algorithm on the planar peg-in-hole of A.1: (a) greatest force, (b) total variation of velocity, "
         "which vibration makes large, (c) greatest depth, (d) steps until the peg leaves the hole, few when it is "
-        "thrown out, (e) range of the stiffness ratio; dotted: the published bound of 4 that the actuators set "
-        "(4.3). Ours."
+        "thrown out, (e) range of the stiffness ratio; dashed: K, dotted: the published bound of 4 K that the "
+        "actuators set (4.3). Ours."
     )
+
+
+def draw_ratio_axis(ax, lines):
+    """K and the published bound, named above the rows."""
+    ax.set(xscale="log", title="stiffness", xlabel="ratio, in units of K")
+    bound = published.entries()["C4.ratio"]["at_most"]
+    ax.axvline(1, color=style.BLACK, lw=0.7, ls="--")
+    ax.axvline(bound, **style.PUBLISHED_LINE)
+    ax.text(0.7, -0.5, "K", ha="right", fontsize=7)
+    ax.text(0.8 * bound, lines - 0.35, f"publ. {bound:g} K", color=style.RED, fontsize=7, ha="right")
+    ax.margins(x=0.12)
+    ax.xaxis.set_major_locator(LogLocator(numticks=4))
 
 
 def discussion(results):
@@ -56,8 +70,8 @@ def discussion(results):
 
 def draw_over_reduction(ax, results):
     for name, colour, line, label in (
-        ("unreduced", style.ORANGE, (0, (4, 1.2)), "all"),
-        ("reduced", style.BLUE, "-", "reduced"),
+        ("unreduced", style.AMBER, (0, (4, 1.2)), "all"),
+        ("reduced", style.PETROL, "-", "reduced"),
     ):
         rows = results.table(f"thesis/over_reduction_{name}/trajectory.csv")
         ax.plot(
@@ -75,7 +89,7 @@ def draw_pure_rotation(ax, results):
     rows = results.table("thesis/pure_rotation/energy.csv")
     ax.plot(rows["time_s"], 1e3 * rows["stored_J"], color=style.BLACK, label="stored")
     ax.plot(
-        rows["time_s"], 1e3 * np.abs(rows["damping_J"]), color=style.BLUE, ls=(0, (4, 1.2)), label="taken by damping"
+        rows["time_s"], 1e3 * np.abs(rows["damping_J"]), color=style.PETROL, ls=(0, (4, 1.2)), label="taken by damping"
     )
     ax.set(xlabel="time [s]", ylabel="energy [mJ]", title="pure rotation")
     ax.set_ylim(top=1.35 * 1e3 * rows["stored_J"].max())
@@ -89,8 +103,8 @@ def draw_parallel_faces(ax, results):
     ax.plot(tilt, 1e3 * rows["depth_max_m"], color=style.BLACK)
     ax.set(xlabel="tilt [rad]", ylabel="greatest depth [mm] (solid)", title="parallel faces", ylim=(0, 0.6))
     right = ax.twinx()
-    right.plot(tilt, force, color=style.BLUE, ls=(0, (4, 1.2)))
-    right.set_ylabel("force [N] (dashed)", color=style.BLUE)
+    right.plot(tilt, force, color=style.PETROL, ls=(0, (4, 1.2)))
+    right.set_ylabel("force [N] (dashed)", color=style.PETROL)
     right.set_ylim(0, 0.6)
     right.spines["right"].set_visible(True)
     right.grid(False)

@@ -3,25 +3,28 @@ import numpy as np
 
 from . import style
 
+# Directory, algorithm, name of its depth; the wide line shows below the one that covers it.
 STROKES = (
-    ("thesis/corner_normal_projection", style.VERMILION, "-", "normal projection"),
-    ("thesis/corner_shaped_stiffness", style.BLACK, (0, (4, 1.2)), "shortest distance"),
+    ("thesis/corner_normal_projection", "normal_projection", "normal projection", {"lw": 1.1}),
+    ("thesis/corner_shaped_stiffness", "shaped_stiffness", "shortest distance", {"lw": 3.2, "alpha": 0.35}),
 )
 # Not of the thesis, so the figure is drawn without it too.
-CONTINUOUS = ("beyond/corner_continuous_normal_projection", style.BLUE, (0, (1, 1)), "continuous (ours)")
+CONTINUOUS = (
+    "beyond/corner_continuous_normal_projection", "continuous_normal_projection", "continuous (ours)", {"lw": 1.1})
 
 
 def corner(results):
     figure, axes = style.panels(1, 3, 2.5)
     ours = results.has(f"{CONTINUOUS[0]}/trajectory.csv")
-    for directory, colour, line, label in (*STROKES, CONTINUOUS) if ours else STROKES:
+    for directory, algorithm, label, width in (*STROKES, CONTINUOUS) if ours else STROKES:
         rows = results.table(f"{directory}/trajectory.csv")
+        line = {"color": style.look(algorithm).colour, **width}
         x = 1e3 * rows["px_m"]
         force = np.stack([rows[f"f{axis}_N"] for axis in "xyz"], 1)
         change = np.linalg.norm(np.diff(force, axis=0), axis=1)
-        axes[0, 0].plot(x, np.linalg.norm(force, axis=1), color=colour, ls=line)
-        axes[0, 1].plot(x, 1e3 * rows["depth_max_m"], color=colour, ls=line, label=label)
-        axes[0, 2].plot(x[1:], change, color=colour, ls=line, lw=0.9)
+        axes[0, 0].plot(x, np.linalg.norm(force, axis=1), **line)
+        axes[0, 1].plot(x, 1e3 * rows["depth_max_m"], **line, label=label)
+        axes[0, 2].plot(x[1:], change, **line)
     axes[0, 0].set(title="force", ylabel="model force [N]")
     axes[0, 1].set(title="greatest depth", ylabel="depth [mm]")
     axes[0, 2].set(title="change in one step", ylabel="|Δ model force| [N]")
@@ -31,8 +34,8 @@ def corner(results):
     style.letter(axes[0])
     return figure, (
         "An upright drill is moved steadily against the wall of the hole, near its mouth. With normal projection "
-        "(solid) the depth of a point near the rim is at once as large as the way along its normal out of the "
-        "drill, and the force jumps in a single step; with the shortest distance (dashed) it grows from zero"
-        + (", and so it does with continuous normal projection (dotted)" if ours else "")
+        "(grey) the depth of a point near the rim is at once as large as the way along its normal out of the "
+        "drill, and the force jumps in a single step; with the shortest distance (wide) it grows from zero"
+        + (", and so it does with continuous normal projection (brown), which nearly covers it" if ours else "")
         + ". (a) Force, (b) greatest depth, (c) change from step to step. Ours."
     )

@@ -21,17 +21,17 @@ def original_forces(direction, spring, damping):
     return -damping * normal, -(FRICTION[0] + FRICTION[1] * spring) * (VELOCITY - normal)
 
 
-def draw_forces(ax, at, direction, spring, damping):
-    """Implicit plane, velocity and damping forces at the tip (scene in millimetres)."""
+def draw_forces(ax, at, direction, spring, damping, named_at):
+    """Implicit plane, its name, velocity and damping forces at the tip (scene in millimetres)."""
     along = np.array([-direction[1], direction[0]])
     ends = np.stack([at - 2 * along, at + 2 * along])
-    ax.plot(*ends.T, color="#8B0000", lw=1.6, zorder=4)
+    ax.plot(*ends.T, color=style.PLUM, lw=1.6, zorder=4)
     normal, tangential = original_forces(direction, spring, damping)
-    scene.draw_arrow(ax, at, 90 * VELOCITY, style.ORANGE, "v")
+    scene.draw_arrow(ax, at, 90 * VELOCITY, style.AMBER, "velocity", at=(-14, -9))
     scene.draw_arrow(ax, at, MM_PER_N * normal, style.BLACK, "normal")
-    scene.draw_arrow(
-        ax, at, MM_PER_N * tangential, style.BLUE, "tangential", at=(-38, -14) if abs(direction[0]) < 0.1 else (-6, 7)
-    )
+    upright = abs(direction[0]) < 0.1
+    scene.draw_arrow(ax, at, MM_PER_N * tangential, style.PETROL, "tangential", at=(-30, -18) if upright else (6, -10))
+    ax.text(*named_at, "implicit\nplane", color=style.PLUM, fontsize=7, va="bottom", zorder=7)
 
 
 def draw_flat(ax, scenario):
@@ -41,12 +41,12 @@ def draw_flat(ax, scenario):
     peg = scene.Peg(np.zeros(2), np.array([0, -1.0]), tool["diameter_m"], tool["length_m"])
     depth = 1e-4
     surface = -1e3 * (tool["diameter_m"] / 2 - depth)
-    ax.axhspan(-4, surface, color="#EFE8DC", zorder=0)
-    ax.axhline(surface, color="#A08F70", lw=0.9)
+    ax.axhspan(-4, surface, color=style.SAND, zorder=0)
+    ax.axhline(surface, color=style.SOIL, lw=0.9)
     scene.draw_peg(ax, peg)
     ax.set_aspect("equal")
     ax.grid(False)
-    draw_forces(ax, np.zeros(2), np.array([0, -1.0]), scenario["rendering"]["stiffness_N_per_m"] * depth, damping)
+    draw_forces(ax, np.zeros(2), np.array([0, -1.0]), scenario["rendering"]["stiffness_N_per_m"] * depth, damping, (-1.6, 0.08))
     scene.frame(ax, (-1.7, 1.7), (-1.9, 1.9))
     ax.set_title("one surface")
 
@@ -56,11 +56,15 @@ def draw_distributed(ax, sweep):
     peg, contacts, force = sweep.peg(step), sweep.contacts(step), sweep.force(step)
     scene.draw_hole(ax, sweep.scenario["environment"])
     scene.draw_peg(ax, peg)
-    ax.plot(*(scene.MM * contacts.point).T, ".", color=style.VERMILION, ms=3)
+    ax.plot(*(scene.MM * contacts.point).T, ".", color=style.GREY, ms=3)
     size = np.linalg.norm(force)
-    draw_forces(ax, scene.MM * peg.tip, -force / size, size, damping_coefficient(sweep.scenario))
+    draw_forces(ax, scene.MM * peg.tip, -force / size, size, damping_coefficient(sweep.scenario), (-1.9, -3.7))
     scene.frame(ax, (-1.95, 1.45), (-4.6, -1.2 + 0.4))
     ax.set_title("peg in hole")
+
+
+def line_of(algorithm):
+    return {"color": style.look(algorithm).colour, "lw": 1.1}
 
 
 def wall_damping(ax, results):
@@ -69,11 +73,11 @@ def wall_damping(ax, results):
     pick = np.arange(1, len(dp.tilt))
     forces = np.stack([dp.rows["fspring_x_N"], dp.rows["fspring_y_N"]], 1)[pick]
     along = forces[:, 0] ** 2 / np.maximum(np.einsum("ij,ij->i", forces, forces), 1e-300)
-    ax.plot(dp.tilt[pick], along, color=style.VERMILION, marker="s", markevery=7)
+    ax.plot(dp.tilt[pick], along, **line_of("original_averaging"))
     tensor = results.table("stiffness/peg/shaped_stiffness/stiffness_tensor.csv")
-    ax.plot(hs.tilt[pick], tensor["sxx"][pick], color=style.BLACK, marker="o", markevery=9)
+    ax.plot(hs.tilt[pick], tensor["sxx"][pick], **line_of("shaped_stiffness"))
     ax.text(0.6, 1.06, "stiffness shaping", ha="right")
-    ax.text(0.05, 0.3, "original", color=style.VERMILION, ha="left")
+    ax.text(0.05, 0.3, "original", color=style.look("original_averaging").colour)
     ax.set(
         xlabel="tilt [rad]", ylabel="damping across the walls / B", ylim=(-0.03, 1.25), title="damping across the walls"
     )
@@ -87,8 +91,8 @@ def implicit_plane(results):
     wall_damping(axes[0, 2], results)
     style.letter(axes[0])
     return figure, (
-        "Damping of the original algorithm. Its spring force defines one implicit plane (dark red); normal damping "
-        "(black) acts across it, tangential damping (blue) along it, against the velocity (orange). (a) On a flat "
+        "Damping of the original algorithm. Its spring force defines one implicit plane (plum); normal damping "
+        "(black) acts across it, tangential damping (petrol) along it, against the velocity (amber). (a) On a flat "
         "the plane is parallel to the surface. (b) In a hole it is parallel to neither wall. (c) What damping "
         "remains across the walls while the peg is tilted, in units of B: u_x^2 of the rendered direction for the "
         "original, S_xx for stiffness shaping, which keeps about the B that it should. Ours: (a) from the formulas "

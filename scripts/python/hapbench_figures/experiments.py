@@ -2,6 +2,7 @@
 import warnings
 
 import numpy as np
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from scipy.stats import ttest_rel
 
 from . import published, style
@@ -31,15 +32,20 @@ def significance(first, second):
     both = np.isfinite(first) & np.isfinite(second)
     difference = (first - second)[both]
     if len(difference) < 2 or np.ptp(difference) == 0:
-        return "all differences alike"
+        return "equal in all subjects" if len(difference) and not difference.any() else "same difference in all"
     t, p = ttest_rel(first[both], second[both])
-    return f"t = {t:.1f}, p {'< 0.001' if p < 0.001 else f'= {p:.3f}'}"
+    return f"t = {signed(t)}, p {'< 0.001' if p < 0.001 else f'= {p:.3f}'}"
+
+
+def signed(number):
+    """Three digits at most, with the minus of a printer."""
+    return f"{number:.3g}".replace("-", "−")
 
 
 def published_test(claim):
     entry = published.entries()[f"{claim}.p"]
     sign, bound = ("<", entry["at_most"]) if "at_most" in entry else (">", entry["at_least"])
-    return f"t = {published.value(f'{claim}.t'):.3g}, p {sign} {bound:g}"
+    return f"t = {signed(published.value(f'{claim}.t'))}, p {sign} {bound:g}"
 
 
 def draw_measure(ax, tables, place, claim, measure):
@@ -49,45 +55,44 @@ def draw_measure(ax, tables, place, claim, measure):
         values = subject_means(tables[method], place, column)
         both.append(values)
         finite = scale * values[np.isfinite(values)]
-        colour, marker = (style.BLUE, "s") if method == "original_averaging" else (style.BLACK, "o")
+        look = style.look(method)
         ax.plot(x - 0.24 + np.linspace(-0.05, 0.05, len(finite)), finite, "o", color=style.GREY, ms=2.2, mec="none")
         error = finite.std(ddof=1) / np.sqrt(len(finite)) if len(finite) > 1 else 0
         if len(finite):
             ax.errorbar(
-                [x], [finite.mean()], yerr=[error], marker=marker, color=colour, ms=5, capsize=2.5, elinewidth=1.2
+                [x], [finite.mean()], yerr=[error], marker=look.marker, color=look.colour, ms=5, capsize=2.5, elinewidth=1.2
             )
         id_ = f"{claim}.{name}.{method}"
         ax.errorbar([x + 0.24], [scale * published.value(id_)], yerr=[scale * published.spread(id_)], **style.PUBLISHED)
     ax.set_xlim(-0.5, 1.5)
     ax.set_xticks([0, 1], [short for _, short in METHODS])
     ax.grid(axis="x", visible=False)
-    ax.text(0.03, 0.985, f"ours: {significance(*both)}", transform=ax.transAxes, fontsize=6, va="top")
-    ax.text(
-        0.03,
-        0.915,
-        f"publ.: {published_test(f'{claim}.{name}')}",
-        transform=ax.transAxes,
-        fontsize=6,
-        va="top",
-        color=style.VERMILION,
-    )
+    # Above the frame: inside, marks would cover it.
+    test = {"transform": ax.transAxes, "fontsize": 7, "va": "bottom"}
+    ax.text(0, 1.09, f"ours: {significance(*both)}", **test)
+    ax.text(0, 1.01, f"publ.: {published_test(f'{claim}.{name}')}", color=style.RED, **test)
 
 
 def experiment(results, task, targets, what):
     tables = {method: results.records(f"thesis/{task}_peg_in_hole_{method}/targets.csv") for method, _ in METHODS}
-    figure, axes = style.panels(2, 4, 4.5, sharex=True, sharey="col")
+    figure, axes = style.panels(2, 4, 5.0, sharex=True, sharey="col")
     for row, (place, claim, title) in zip(axes, targets):
         for ax, measure in zip(row, MEASURES):
             draw_measure(ax, tables, place, claim, measure)
         row[0].set_ylabel(title)
     for ax, measure in zip(axes[0], MEASURES):
-        ax.set_title(measure[2])
-    for column in axes.T:
-        top = 1.3 * max(ax.dataLim.y1 for ax in column)
+        ax.set_title(f"{measure[2]}\n \n ")  # room for the tests
+    for column in axes.T[:3]:
+        top = 1.05 * max(ax.dataLim.y1 for ax in column)
         column[0].set_ylim(-0.03 * top, top)
+    # One subject who is thrown about is a hundred times as fast as the others.
+    axes[0, 3].set_yscale("log")
+    axes[0, 3].yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes[0, 3].yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes[0, 3].yaxis.set_minor_formatter(NullFormatter())
     style.letter(axes[0])
     return figure, (
-        f"{what}: success rate (a), completion time (b), model force (c) and velocity (d), original algorithm (DP) "
+        f"{what}: success rate (a), completion time (b), model force (c) and velocity (d, logarithmic), original algorithm (DP) "
         "against stiffness shaping (HS). Filled marks: ours, mean and standard error over six simulated subjects "
         "(grey dots: their means), whose parameters are ours. Hollow diamonds: "
         "published mean and standard error of six people. Paired t-tests over the subjects that have both values. A "
@@ -122,7 +127,7 @@ def questionnaires(results):
         ax.set_xticks([0, 1], [short for _, short in METHODS])
         ax.set(title=f"{task} task", ylim=(0, 100), ylabel="effort (NASA-TLX), 0 to 100")
         t, p = published.value(f"D5.effort.{task}.t"), published.entries()[f"D5.effort.{task}.p"]["at_most"]
-        style.note(ax, 0.97, 0.97, f"t = {t:g}, p < {p:g}", style.VERMILION, ha="right")
+        style.note(ax, 0.97, 0.97, f"t = {t:g}, p < {p:g}", style.RED, ha="right")
     for x, task in enumerate(("vertical", "rotational")):
         draw_published_bar(relative, x, f"D5.relative_effort.{task}")
     relative.set_xticks([0, 1], ["vertical", "rotational"])
@@ -139,5 +144,5 @@ def questionnaires(results):
 
 
 def draw_published_bar(ax, x, id_):
-    ax.bar([x], [published.value(id_)], width=0.55, color="white", edgecolor=style.VERMILION, lw=1.2)
+    ax.bar([x], [published.value(id_)], width=0.55, color="white", edgecolor=style.RED, lw=1.2)
     ax.errorbar([x], [published.value(id_)], yerr=[published.spread(id_)], **{**style.PUBLISHED, "marker": "none"})

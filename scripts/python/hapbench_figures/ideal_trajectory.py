@@ -7,8 +7,8 @@ from .results import MissingResult
 
 RUN = "task2_rotate_signed_distance"
 SIDES = (  # of the split of the hand's force
-    (False, style.GREEN, "o", "hand force below 2 N"),
-    (True, style.VERMILION, "^", "above 2 N"),
+    (False, style.PETROL, "o", "hand force below 2 N"),
+    (True, style.AMBER, "^", "above 2 N"),
 )
 MARKS = 130  # of a side at most: more could not be told from their neighbours
 
@@ -48,7 +48,7 @@ def draw_block(ax, environment):
             [-2.2, -depth - 0.6],
         ]
     )
-    ax.add_patch(Polygon(wall, closed=True, facecolor="#EFE8DC", edgecolor="#A08F70", lw=0.8))
+    ax.add_patch(Polygon(wall, closed=True, facecolor=style.SAND, edgecolor=style.SOIL, lw=0.8))
     ax.set(
         xlim=(-1.65, 1.35),
         xticks=[-1, 0, 1],
@@ -78,7 +78,7 @@ def trajectory(results):
     height.plot(tilt, y + bottom, color=style.BLACK, label="ideal")
     distance.plot(tilt, np.abs(x), color=style.BLACK)
     inside = 1e3 * published.value("J1.lateral")
-    distance.fill_between(tilt, np.abs(x), np.abs(x) + inside, color=style.VERMILION, alpha=0.13, lw=0)
+    distance.fill_between(tilt, np.abs(x), np.abs(x) + inside, color=style.RED, alpha=0.13, lw=0)
     height.set(title="height over the bottom", xlabel="tilt α [rad]", ylabel="height [mm]")
     distance.set(title="distance to the median line", xlabel="tilt α [rad]", ylabel="distance [mm]")
     section.set_title("section")
@@ -86,13 +86,13 @@ def trajectory(results):
         ax.set_xlim(published.entries()["J1.tilt"]["at_least"], published.entries()["J1.tilt"]["at_most"])
     height.legend(loc="upper left", markerscale=1.8)
     height.margins(y=0.12)
-    style.note(distance, 0.97, 0.9, "shaded: published,\nerror up to about\n0.25 mm", style.VERMILION, ha="right")
+    style.note(distance, 0.97, 0.9, "shaded: published,\nerror up to about\n0.25 mm", style.RED, ha="right")
     style.letter(axes[0])
     low, high = (rows["interpenetration_m"].max() for rows in drawn)
     return figure, (
         "The tip while the drill is rotated to and fro in the hole (task 2, the recording of figures 4 and 5) and the "
         "ideal trajectory (black), which the exact geometry of drill and hole allows; ours, rows in which the hand "
-        "presses with less (green circles) or, in three short taps, more (vermilion triangles) than 2 N, thinned. "
+        "presses with less (petrol circles) or, in three short taps, more (amber triangles) than 2 N, thinned. "
         "(a) section, (b) height, (c) distance to the median line. Shaded: the published error of about 0.25 mm "
         "(Fig. 7, 3.6). In the drawn rows the drill overlaps the exact hole by "
         f"at most {low:.2f} mm below and {high:.2f} mm above 2 N."

@@ -1,14 +1,17 @@
 """Gradients across the median line of the tool, and depths that are too small (figures 8, B.3 and C.1)."""
 import numpy as np
+from matplotlib.colors import ListedColormap
 
 from . import published, scene, style
 
 SHORTEST, NORMAL = "tilt_sweep_original_averaging", "tilt_sweep_shaped_stiffness"
 DEEP = 0.42  # tilt [rad] at which many points lie beyond the median line
 SHALLOW = 0.12
+# Without the yellow end, which white paper swallows.
+TILT_COLOURS = ListedColormap(style.plt.get_cmap("viridis")(np.linspace(0, 0.75, 256)))
 
 
-def draw_contacts(ax, sweep, tilt, colours=(style.VERMILION, style.GREEN)):
+def draw_contacts(ax, sweep, tilt, colours=(style.AMBER, style.PETROL)):
     """The peg and its depths; those with flipped gradients in the second colour."""
     step = sweep.step_at(tilt)
     contacts, peg = sweep.contacts(step), sweep.peg(step)
@@ -24,9 +27,9 @@ def shortest_distance_and_normal(results):
     for ax, name, title in ((axes[0, 0], SHORTEST, "shortest distance"), (axes[0, 1], NORMAL, "surface normal")):
         draw_contacts(ax, scene.Sweep(results, name), DEEP)
         ax.set_title(title)
-    style.note(axes[0, 0], 0.02, 0.98, "flipped gradients", "#00694D")
+    style.note(axes[0, 0], 0.02, 0.98, "flipped gradients", style.PETROL)
     style.note(axes[0, 0], 0.98, 0.04, "dashed: median line", style.GREY, ha="right", va="bottom")
-    style.note(axes[0, 1], 0.98, 0.14, "too short: the segments end\ninside the tool", style.VERMILION, ha="right")
+    style.note(axes[0, 1], 0.98, 0.14, "too short: the segments end\ninside the tool", style.AMBER, ha="right")
     style.letter(axes[0])
     return figure, (
         f"Depth and gradient of each contact of a peg tilted by {DEEP} rad, drawn from the point to where it is "
@@ -42,8 +45,8 @@ def gradient_flipping(results):
     for ax, tilt, title in ((axes[0, 0], SHALLOW, "shallow"), (axes[0, 1], DEEP, "beyond the median line")):
         step = draw_contacts(ax, sweep, tilt)
         force = sweep.force(step)
-        scene.draw_arrow(ax, scene.MM * sweep.peg(step).tip, 1.2 * force / np.linalg.norm(force), style.BLUE)
-        style.note(ax, 0.03, 0.03, f"{np.linalg.norm(force):.1f} N", style.BLUE, va="bottom")
+        scene.draw_arrow(ax, scene.MM * sweep.peg(step).tip, 1.2 * force / np.linalg.norm(force), style.BLACK)
+        style.note(ax, 0.03, 0.03, f"{np.linalg.norm(force):.1f} N", va="bottom")
         ax.set_title(title)
     axes[0, 1].set_ylabel("")
     ax = axes[0, 2]
@@ -52,8 +55,8 @@ def gradient_flipping(results):
     style.letter(axes[0])
     return figure, (
         "Gradient flipping of the original algorithm. (a) Shallow: every depth pushes the tool off the wall it "
-        "touches. (b) Deep: points beyond the median line (dashed) have flipped gradients (green). Blue: direction "
-        "and size of the spring force. (c) Over the tilt: share of flipped gradients, and the mean of each "
+        "touches. (b) Deep: points beyond the median line (dashed) have flipped gradients (petrol). Arrow: direction "
+        "of the spring force, and its size. (c) Over the tilt: share of flipped gradients, and the mean of each "
         "contact's pull towards its wall, -1 when all push off, +1 when all pull in. Ours; the pose is prescribed."
     )
 
@@ -67,26 +70,28 @@ def draw_flip_count(ax, sweep):
         # A gradient along the outward normal pulls the tool in; deep contacts count more.
         along = np.einsum("ij,ij->i", contacts.gradient, contacts.normal)
         pull.append(np.average(along, weights=np.maximum(contacts.depth, 1e-12)))
-    ax.plot(tilt, share, color="#00694D", marker="s", markevery=8)
-    ax.plot(tilt, pull, color=style.BLUE, marker="o", markevery=8)
+    ax.plot(tilt, share, color=style.PETROL, marker="s", markevery=8)
+    ax.plot(tilt, pull, color=style.PLUM, marker="o", markevery=8, ls=(0, (4, 1.2)))
     ax.axhline(0, color=style.BLACK, lw=0.7)
-    ax.set(xlabel="tilt [rad]", ylabel="share, mean pull", ylim=(-1.05, 0.75))
-    ax.text(tilt[-1], share[-1] + 0.05, "flipped", color="#00694D", ha="right", va="bottom")
-    ax.text(0.36, -0.75, "mean pull", color=style.BLUE)
+    ax.set(xlabel="tilt [rad]", ylabel="share of contacts | mean pull [1]", ylim=(-1.08, 0.75))
+    ax.text(tilt[-1], share[-1] + 0.05, "share flipped", color=style.PETROL, ha="right", va="bottom")
+    ax.text(0.36, -0.75, "mean pull", color=style.PLUM)
+    ax.text(0.03, 0.62, "+1: all pull in", fontsize=7)
+    ax.text(0.3, -1.0, "−1: all push off", fontsize=7)
 
 
 def underestimation(results):
     figure, axes = style.panels(1, 3, 3.0, gridspec_kw={"width_ratios": [0.85, 0.85, 1.3]})
     for ax, name, title in ((axes[0, 0], SHORTEST, "shortest distance"), (axes[0, 1], NORMAL, "surface normal")):
         draw_contacts(
-            ax, scene.Sweep(results, name), 0.3, (style.BLACK if name == SHORTEST else style.ORANGE, style.GREEN)
+            ax, scene.Sweep(results, name), 0.3, (style.AMBER, style.PETROL)
         )
         ax.set_title(title)
     axes[0, 1].set_ylabel("")
     draw_error(axes[0, 2], scene.Sweep(results, NORMAL))
     style.letter(axes[0])
     return figure, (
-        "(a) Shortest distance, (b) inverse surface normal (orange) at a tilt of 0.3 rad. (c) How much the depth of "
+        "(a) Shortest distance, (b) inverse surface normal at a tilt of 0.3 rad; flipped gradients in petrol. (c) How much the depth of "
         "(b) falls short of the distance to the tool's surface along the same direction, for every contact of a peg "
         "tilted from 0 to 0.6 rad; the tilt is the brightness. Dotted: the published depth of 0.25 mm, below which "
         "the error is called negligible (4.2). Points whose exit is the far end of the tool are left out. Ours."
@@ -103,9 +108,10 @@ def draw_error(ax, sweep):
         true.append(exits[near])
         tilt.append(np.full(near.sum(), sweep.tilt[step]))
     used, true, tilt = (np.concatenate(part) for part in (used, true, tilt))
-    marks = ax.scatter(1e3 * true, 1e3 * (true - used), c=tilt, cmap="cividis", s=6, linewidths=0, rasterized=True)
+    marks = ax.scatter(1e3 * true, 1e3 * (true - used), c=tilt, cmap=TILT_COLOURS, s=6, linewidths=0, rasterized=True)
     ax.figure.colorbar(marks, ax=ax, label="tilt [rad]", shrink=0.9)
-    ax.axvline(1e3 * published.entries()["G1.negligible"]["at_most"], color=style.VERMILION, ls=(0, (1, 1.5)))
+    ax.axvline(1e3 * published.entries()["G1.negligible"]["at_most"], **style.PUBLISHED_LINE)
+    style.note(ax, 0.22, 0.98, "published: negligible\nup to 0.25 mm", style.RED)
     ax.set(
         xlabel="distance along the normal [mm]",
         ylabel="depth too small by [mm]",

@@ -12,69 +12,76 @@ def simulation_view(results):
     ax = axes[0, 0]
     scene.draw_hole(ax, sweep.scenario["environment"], points=True)
     scene.draw_peg(ax, peg)
-    scene.draw_segments(ax, contacts, [style.VERMILION] * len(contacts.depth))
-    scene.draw_arrow(ax, scene.MM * peg.tip, 0.35 * force, style.SKY)
+    scene.draw_segments(ax, contacts, [style.AMBER] * len(contacts.depth))
+    scene.draw_arrow(ax, scene.MM * peg.tip, 0.35 * force, style.BLACK)
     scene.frame(ax, (-3.6, 3.6), (-5.5, 2.1))
-    ax.text(-3.4, -0.25, "point shell", color=style.BLUE, va="top")
-    ax.text(0.75, -1.1, "contacts and depths", color=style.VERMILION)
+    ax.text(-3.4, -0.25, "point shell", color=style.PETROL, va="top")
+    ax.text(0.75, -1.1, "contacts and depths", color=style.AMBER)
     head = scene.MM * peg.tip + 0.35 * force
     ax.annotate(
         f"rendered force, {np.linalg.norm(force):.1f} N",
         xy=head,
         xytext=(0.75, -1.9),
-        color="#1B6E9C",
-        arrowprops={"arrowstyle": "-", "color": style.SKY, "lw": 0.6},
+        arrowprops={"arrowstyle": "-", "color": style.BLACK, "lw": 0.6},
     )
     ax.text(1.45, 1.35, "tool")
     return figure, (
-        "The planar simulation: point shell (blue), tool (black), colliding points with their depths (vermilion) "
-        f"and the rendered force (light blue) of stiffness shaping, peg tilted by {sweep.tilt[step]:.2f} rad. Ours; "
+        "The planar simulation: point shell (petrol), tool (outline), colliding points with their depths (amber) "
+        f"and the rendered force (arrow) of stiffness shaping, peg tilted by {sweep.tilt[step]:.2f} rad. Ours; "
         "the pose is prescribed."
     )
 
 
-def draw_run(ax, results, name, colour):
-    scenario = results.json(f"thesis/{name}/scenario.effective.json")
-    rows = results.table(f"thesis/{name}/trajectory.csv")
-    scene.draw_hole(ax, scenario["environment"])
+SNAPSHOTS = 4
+RUNS = (("original_averaging", "original algorithm"), ("shaped_stiffness", "stiffness shaping"))
+
+
+def draw_snapshots(axes, scenario, rows, colour):
+    """The peg at equally spaced times, each with the way of its tip so far."""
+    steps = np.linspace(0, len(rows["px_m"]) - 1, len(axes)).astype(int)
     tool = scenario["tool"]
-    steps = np.unique(np.linspace(0, len(rows["px_m"]) - 1, 6).astype(int))
-    for i, step in enumerate(steps):
+    for ax, step in zip(axes, steps):
         tip = np.array([rows["px_m"][step], rows["py_m"][step]])
         axis = np.array([rows["axis_x"][step], rows["axis_y"][step]])
-        peg = scene.Peg(tip, axis, tool["diameter_m"], tool["length_m"])
-        shade = 0.25 + 0.75 * i / max(len(steps) - 1, 1)
-        scene.draw_peg(ax, peg, lw=0.8, alpha=shade)
-    ax.plot(1e3 * rows["px_m"], 1e3 * rows["py_m"], color=colour, lw=1.5, zorder=6)
-    return rows
+        scene.draw_hole(ax, scenario["environment"])
+        scene.draw_peg(ax, scene.Peg(tip, axis, tool["diameter_m"], tool["length_m"]))
+        ax.plot(1e3 * rows["px_m"][: step + 1], 1e3 * rows["py_m"][: step + 1], color=colour, lw=1.3, zorder=6)
+        scene.frame(ax, (-1.7, 1.7), (-5.4, 3.4))
+        ax.set_title(f"{1e3 * rows['time_s'][step]:.0f} ms", fontsize=7.5)
+        ax.set_ylabel("")
 
 
 def trajectories(results):
-    figure, axes = style.panels(2, 2, 5.0, gridspec_kw={"height_ratios": [1.75, 1]})
-    for j, (algorithm, title) in enumerate(
-        (("original_averaging", "original algorithm"), ("shaped_stiffness", "stiffness shaping"))
-    ):
-        look = style.ALGORITHMS[algorithm]
-        rows = draw_run(axes[0, j], results, f"peg_in_hole_2d_{algorithm}", style.GREEN)
-        scene.frame(axes[0, j], (-3.6, 3.6), (-5.4, 3.4))
-        axes[0, j].set_title(title)
-        summary = results.json(f"thesis/peg_in_hole_2d_{algorithm}/summary.json")
-        reversals = summary["metrics"]["force_reversals"]
-        ax = axes[1, j]
-        ax.plot(1e3 * rows["time_s"], rows["vx_m_per_s"], color=look.colour, lw=1)
-        ax.plot(1e3 * rows["time_s"], rows["vy_m_per_s"], color=style.SKY, lw=1, ls=(0, (3, 1)))
-        ax.set(
-            xlabel="time [ms]", ylabel="velocity [m/s]", title="velocity of the tip", xlim=(0, 270), ylim=(-0.13, 0.27)
-        )
-        style.note(ax, 0.98, 0.96, f"{reversals} force reversals in {summary['steps']} steps", ha="right")
-    style.note(axes[1, 1], 0.98, 0.72, "solid: x, dashed: y", ha="right", va="bottom")
-    style.letter(axes.flat)
+    figure, axes = style.panels(2, SNAPSHOTS + 1, 5.2, gridspec_kw={"width_ratios": [1] * SNAPSHOTS + [2.7]})
+    figure.get_layout_engine().set(rect=(0, 0, 1, 0.96), hspace=0.12)  # for the titles of the rows
+    for line, (algorithm, title), letters in zip(axes, RUNS, ("ab", "cd")):
+        look = style.look(algorithm)
+        name = f"peg_in_hole_2d_{algorithm}"
+        rows = results.table(f"thesis/{name}/trajectory.csv")
+        summary = results.json(f"thesis/{name}/summary.json")
+        draw_snapshots(line[:-1], results.json(f"thesis/{name}/scenario.effective.json"), rows, look.colour)
+        line[0].set_ylabel("y [mm]")
+        line[0].annotate(f"({letters[0]}) {title}", (0, 1), (0, 18), xycoords="axes fraction", textcoords="offset points",
+                         fontsize=8.5).set_in_layout(False)
+        for ax in line[1:-1]:
+            ax.set_yticklabels([])
+        draw_velocity(line[-1], rows, look.colour)
+        line[-1].set_title(f"({letters[1]}) {summary['metrics']['force_reversals']} force reversals in {summary['steps']} steps")
     return figure, (
-        "A peg as wide as its hole is tilted at constant speed; outlines at six equally spaced times and the "
-        "trajectory of the tip (green). (a) The original algorithm vibrates and throws the peg out, (b) stiffness "
-        "shaping moves it out smoothly; (c, d) the velocity of the tip. Ours, parameters of Table A.1 and the friction of "
+        "A peg as wide as its hole is tilted at constant speed: outlines at four equally spaced times with the tip's way so "
+        "far, and the velocity of the tip, on scales of their own. (a, b) The original algorithm vibrates and throws the peg "
+        "out, (c, d) stiffness shaping moves it out smoothly. Ours, parameters of Table A.1 and the friction of "
         'Table B.1; published: "an obvious vibration" and "a smooth motion" (Fig. A.2).'
     )
+
+
+def draw_velocity(ax, rows, colour):
+    for name, line in (("x", "-"), ("y", (0, (3, 1)))):
+        ax.plot(1e3 * rows["time_s"], rows[f"v{name}_m_per_s"], color=colour if name == "x" else style.GREY, lw=1, ls=line,
+                label=f"v{name}")
+    ax.set(xlabel="time [ms]", ylabel="velocity of the tip [m/s]")
+    ax.legend(loc="upper right", ncol=2, handlelength=2)
+    ax.margins(y=0.18)
 
 
 def draw_forces(ax, sweep, step, weight):
@@ -89,7 +96,7 @@ def draw_forces(ax, sweep, step, weight):
             ax,
             point,
             0.045 * force,
-            style.VERMILION if outward else style.GREY,
+            style.AMBER if outward else style.GREY,
             lw=1.3 if outward else 0.7,
             mutation_scale=6,
         )
@@ -116,17 +123,17 @@ def redistribution(results):
             ax,
             0.02,
             0.02,
-            f"total force ({total[0]:.0f}, {total[1]:.0f}) N\nelastic energy "
-            f"{energies[-1] / energies[0]:.2f} of before",
+            f"total force ({total[0]:.0f}, {total[1]:.0f}) N\nelastic energy ".replace("-", "−")
+            + f"{energies[-1] / energies[0]:.2f} of before",
             va="bottom",
         )
-    style.note(axes[0, 0], 0.02, 0.97, "pushing out", style.VERMILION)
+    style.note(axes[0, 0], 0.02, 0.97, "pushing out", style.AMBER)
     style.note(axes[0, 0], 0.02, 0.91, "pushing sideways", style.GREY)
     axes[0, 1].set_ylabel("")
     style.letter(axes[0])
     return figure, (
         "Spring forces of the contacts (a) before and (b) after tandpasta redistributes the elastic energy: forces "
-        "that fight each other (grey) lose weight, those that push the peg out (vermilion) gain it, the energy "
+        "that fight each other (grey) lose weight, those that push the peg out (amber) gain it, the energy "
         f"stays the same, and the outward force grows {outward[1] / outward[0]:.1f}-fold. Arrows to one scale. Ours; the "
         "pose is prescribed."
     )
@@ -140,7 +147,8 @@ def turned_direction(results):
     unit = rows["depth_max_m"][0]
     axes[0, 0].plot(time, rows["colliding"], drawstyle="steps-post", color=style.BLACK)
     axes[0, 0].set(ylabel="contacts", xlabel="time [ms]", title="two more of 21 contacts", ylim=(0, 26))
-    axes[0, 1].plot(time, -rows["fspring_x_N"] / (stiffness * unit), drawstyle="steps-post", color=style.VERMILION)
+    axes[0, 1].plot(time, -rows["fspring_x_N"] / (stiffness * unit), drawstyle="steps-post",
+                    color=style.look("original_averaging").colour)
     axes[0, 1].axhline(0, color=style.BLACK, lw=0.6)
     # The thesis tells the sizes, 2n + 1 and 2n + 3, and that the direction turns round.
     size = np.array([published.value("B3.depth.before"), published.value("B3.depth.after")])
@@ -156,7 +164,7 @@ def turned_direction(results):
         0.98,
         0.08,
         "◇ in (b), published: 2n + 1 = 21, then\n2n + 3 = 23, turned by 180°",
-        style.VERMILION,
+        style.RED,
         ha="right",
         va="bottom",
     )

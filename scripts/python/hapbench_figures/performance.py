@@ -1,5 +1,8 @@
 """What accuracy costs: work-precision plots and the latency of a step."""
+from textwrap import wrap
+
 import numpy as np
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from . import published, style
 from .results import MissingResult, numbers
@@ -16,12 +19,13 @@ STUDIES = (
 VARYING_STEP = ("integrators", "time_step")
 LARGEST_ERROR_MM = 10  # the block is 15 mm wide: beyond, the drill has left it
 LOOKS = (
-    (style.BLUE, "o", "-"),
-    (style.ORANGE, "s", (0, (4, 1.2))),
+    (style.PETROL, "o", "-"),
+    (style.AMBER, "s", (0, (4, 1.2))),
     (style.BLACK, "^", ":"),
-    (style.GREEN, "v", (0, (5, 1.5))),
-    (style.PURPLE, "D", (0, (3, 1, 1, 1))),
+    (style.PLUM, "v", (0, (5, 1.5))),
+    (style.GREY, "D", (0, (3, 1, 1, 1))),
 )
+QUANTILES = (("p50_s", 0.5), ("p99_s", 0.01), ("p99_9_s", 0.001))  # and the share beyond them
 
 
 def series(rows):
@@ -50,64 +54,93 @@ def finished(rows, error, largest=np.inf):
 
 def draw_study(ax, results, study, column, label, scale, time_column, title):
     rows = with_times(results, study)
-    if study == "algorithms":
-        draw_algorithms(ax, rows, column, scale, time_column)
-    else:
-        draw_curves(ax, rows, study, column, scale, time_column)
+    draw = draw_algorithms if study == "algorithms" else draw_curves
+    draw(ax, rows, study, column, scale, time_column)
     what = "step" if "step" in time_column else "call"
     time_label = "time per simulated second [ms]" if study in VARYING_STEP else f"time of a {what} [µs]"
     ax.set(xscale="log", yscale="log", title=title, ylabel=label, xlabel=time_label)
     if np.isfinite(ax.dataLim.get_points()).all():
-        ax.set(xlim=decades(ax.dataLim.x0, ax.dataLim.x1), ylim=decades(ax.dataLim.y0, ax.dataLim.y1))
-    if study == "integrators":  # room for the names
-        ax.set_ylim(bottom=ax.get_ylim()[0] / 1e6)
+        right = 300 if study == "integrators" else 1  # room for their names
+        above = 2 if ax.get_legend() else 1
+        ax.set(xlim=with_room(ax.dataLim.x0, right * ax.dataLim.x1), ylim=with_room(ax.dataLim.y0, above * ax.dataLim.y1))
+    for axis in (ax.xaxis, ax.yaxis):
+        low, high = axis.get_view_interval()
+        if high / low < 60:  # too few powers of ten: every tick has its number
+            axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_minor_formatter(NullFormatter())
+
+
+def times_of(rows, study, time_column):
+    time = numbers(rows, time_column)
+    return 1e3 * time / numbers(rows, "step_s") if study in VARYING_STEP else 1e6 * time
 
 
 def draw_curves(ax, rows, study, column, scale, time_column):
     split = series(rows)
-    many = len(split) > 3
     for i, ((name, own), (colour, marker, line)) in enumerate(zip(split.items(), LOOKS)):
-        error, time = scale * numbers(own, column), numbers(own, time_column)
-        time = 1e3 * time / numbers(own, "step_s") if study in VARYING_STEP else 1e6 * time
+        if name in style.ALGORITHMS:
+            look = style.look(name)
+            colour, marker, line = look.colour, look.marker, "-"
+        error, time = scale * numbers(own, column), times_of(own, study, time_column)
         fine = finished(own, error)
         ax.plot(time[fine], error[fine], color=colour, marker=marker, ls=line, label=name.replace("_", " "))
-        # Where the settings are the same, their names would cover one another.
-        if not many and (i == 0 or study != "spacing"):
-            name_ends(ax, study, [row for row, keep in zip(own, fine) if keep], time[fine], error[fine])
-    if len(split) > 1:
-        ax.legend(loc="lower left" if many else "upper right", handlelength=2.4, fontsize=6 if many else None)
-
-
-def draw_algorithms(ax, rows, column, scale, time_column):
-    error, time = scale * numbers(rows, column), 1e6 * numbers(rows, time_column)
-    for i in np.flatnonzero(finished(rows, error, LARGEST_ERROR_MM)):
-        if " + " in rows[i]["setting"]:  # an algorithm with an option: nearly the same place
+        if not fine.any():
             continue
-        look = style.look(rows[i]["setting"])
-        ax.plot(time[i], error[i], look.marker, color=look.colour, ms=5, label=look.label)
+        if study == "integrators":  # five curves, whose ends lie apart
+            end = np.flatnonzero(fine)[np.argmax(time[fine])]
+            ax.annotate(name.replace("_", " "), (time[end], error[end]), (4, 0), textcoords="offset points", color=colour,
+                        fontsize=6.5, va="center").set_in_layout(False)
+        # Where the settings are the same, their names would cover one another.
+        elif i == 0 or study != "spacing":
+            name_ends(ax, study, [row for row, keep in zip(own, fine) if keep], time[fine], error[fine])
+    if len(split) > 1 and study != "integrators":
+        ax.legend(loc="upper right", handlelength=2.4)
 
 
-def decades(low, high):
-    """Powers of ten around a range, with room for a label."""
-    return 10 ** np.floor(np.log10(low)), 10 ** np.ceil(np.log10(1.5 * high))
+def draw_algorithms(ax, rows, study, column, scale, time_column):
+    error, time = scale * numbers(rows, column), times_of(rows, study, time_column)
+    fine = finished(rows, error, LARGEST_ERROR_MM)
+    missing = []
+    for row, x, y, keep in zip(rows, time, error, fine):
+        look = style.look(row["setting"])
+        if " + " in row["setting"]:  # an algorithm with an option: nearly the same place
+            continue
+        if keep:
+            ax.plot(x, y, look.marker, color=look.colour, ms=5, label=look.label)
+        else:
+            missing.append(look.label)
+    if missing:
+        text = "\n".join(wrap(f"left the block: {', '.join(missing)}", 22))
+        style.note(ax, 0.03, 0.03, text, va="bottom")
+
+
+def with_room(low, high):
+    """Limits around a range on a logarithmic axis, with room for marks and names."""
+    room = max((high / low) ** 0.12, 1.3)
+    return low / room, high * room
 
 
 def name_ends(ax, study, rows, x, y):
-    """Names the first and the last setting of a curve."""
+    """Names the first and the last setting of a curve, inside the frame."""
     for i in sorted({0, len(rows) - 1}) if rows else ():
         text = rows[i]["short"]
         if study == "spacing":
             text = f"{1e3 * float(text):g} mm"
         elif text.startswith("dt="):
             text = f"Δt = {1e3 * float(text.removeprefix('dt=')):.3g} ms"
-        # The last one to the left, or it would reach into the next panel.
-        place = {"xytext": (3, 3)} if i == 0 else {"xytext": (2, 5 if study == "spacing" else -9), "ha": "right"}
-        label = ax.annotate(text, (x[i], y[i]), textcoords="offset points", fontsize=6, **place)
-        label.set_in_layout(False)
+        # Towards the middle of the panel.
+        left = x[i] ** 2 <= ax.dataLim.x0 * ax.dataLim.x1
+        place = {"xytext": (5, 2)} if left else {"xytext": (-5, -4), "ha": "right", "va": "top"}
+        if study == "spacing" and i:  # the other curve is below
+            place |= {"xytext": (6, 9), "va": "bottom"}
+        elif left and i:
+            place = {"xytext": (0, -10)}
+        ax.annotate(text, (x[i], y[i]), textcoords="offset points", fontsize=6.5, **place).set_in_layout(False)
 
 
 def work_precision(results):
-    figure, axes = style.panels(3, 3, 5.6, gridspec_kw={"height_ratios": [1, 1, 0.33]})
+    figure, axes = style.panels(3, 3, 6.0, gridspec_kw={"height_ratios": [1, 1, 0.34]})
     studies, legend = axes[:2].ravel(), axes[2]
     for ax, study in zip(studies, STUDIES):
         draw_study(ax, results, *study)
@@ -116,7 +149,7 @@ def work_precision(results):
     for ax in legend:
         ax.axis("off")
     handles, labels = studies[-1].get_legend_handles_labels()
-    names = legend[1].legend(handles, labels, loc="center", ncol=4, fontsize=6.5, handletextpad=0.2)
+    names = legend[1].legend(handles, labels, loc="center", ncol=4, fontsize=7, handletextpad=0.2, title="algorithms of (f)")
     names.set_in_layout(False)  # it is wider than the panel it stands in
     return figure, (
         "Work against precision in six studies: error over run time on one core, a mark for each setting, first and "
@@ -133,68 +166,40 @@ def latency(results):
     for path in results.glob("**/timing.json"):
         timing = results.json(path)
         if timing.get("step_latency", {}).get("histogram"):
-            runs.append((path.removesuffix("/timing.json").rpartition("/")[2], timing))
+            runs.append((path.removesuffix("/timing.json").rpartition("/")[2], timing["step_latency"]))
     if not runs:
         raise MissingResult("no timing.json with a histogram of step times (record.timing)")
-    runs = runs[:6]
-    figure, axes = style.panels(len(runs), 1, 0.9 + 1.25 * len(runs), sharex=True)
-    for ax, (name, timing) in zip(axes[:, 0], runs):
-        draw_latency(ax, name, timing["step_latency"])
-    axes[-1, 0].set_xlabel("time of a step [µs]")
+    runs = runs[: len(LOOKS)]
+    figure, axes = style.panels(1, 1, 3.3)
+    ax = axes[0, 0]
+    for (name, steps), look in zip(runs, LOOKS):
+        draw_latency(ax, name, steps, look)
+    deadline = 1e6 / published.value("T4.rate")
+    ax.axvline(deadline, color=style.RED, lw=1.4)
+    ax.set(xscale="log", yscale="log", xlabel="time of a step [µs]", ylabel="share of the steps that take longer")
+    end = max(2 * deadline, 1.5 * ax.dataLim.x1)
+    ax.set(xlim=(ax.dataLim.x0 / 1.5, end), ylim=(None, 2))
+    ax.axvspan(deadline, end, color=style.RED, alpha=0.08, lw=0)
+    ax.text(deadline / 1.06, 1.2, f"deadline {deadline:.0f} µs", color=style.RED, ha="right", fontsize=7)
+    ax.text(1.06 * deadline, 1.2, "late", color=style.RED, fontsize=7)
+    ax.legend(loc="lower left")
     return figure, (
-        "How long the steps of a run took: histogram of wall times, both axes logarithmic, with median and 99.9th "
-        "percentile (dotted). Vermilion: the deadline of a haptic loop at 2048 Hz, the published rate (3.1). Steps "
+        "How long the steps of a run took: the share of its steps that took longer, both axes logarithmic; filled marks: "
+        "bounds of the histogram, hollow ones: median, 99 %, 99.9 % and the longest step, drawn at one step of the run. "
+        "Red: the deadline of a haptic loop at 2048 Hz, the published rate (3.1). Steps "
         "beyond it were late, on a machine without a real-time system. Ours."
     )
 
 
-def draw_latency(ax, name, latency_):
-    bins = latency_["histogram"]
-    low = np.array([b["from_s"] for b in bins]) * 1e6
-    high = np.array([b["to_s"] for b in bins]) * 1e6
-    count = np.array([b["steps"] for b in bins])
-    low = np.maximum(low, high / 2)  # the first bin may begin at zero, which has no place on this axis
-    deadline = 1e6 / published.value("T4.rate")
-    late = low >= deadline
-    ax.bar(
-        low,
-        np.maximum(count - 0.5, 0),
-        width=high - low,
-        align="edge",
-        color=np.where(late, style.ORANGE, style.SKY),
-        edgecolor="white",
-        lw=0.5,
-        bottom=0.5,
-    )
-    ax.axvline(deadline, color=style.VERMILION, lw=1.4)
-    for key, text in (("p50_s", "median"), ("p99_9_s", "99.9 %")):
-        if latency_.get(key):
-            ax.axvline(1e6 * latency_[key], color=style.BLACK, lw=0.9, ls=":")
-            time = 1e6 * latency_[key]
-            ax.annotate(
-                f"{text}\n{time:.{0 if time > 100 else 1}f} µs",
-                (1e6 * latency_[key], 0.97),
-                xycoords=("data", "axes fraction"),
-                xytext=(-3 if time > deadline else 3, 0),
-                textcoords="offset points",
-                fontsize=6.5,
-                va="top",
-                ha="right" if time > deadline else "left",
-            )
-    ax.set(
-        xscale="log",
-        yscale="log",
-        ylabel="steps",
-        title=f"{name}: {latency_['steps']} steps",
-        ylim=(0.5, 20 * count.max()),
-    )
-    ax.annotate(
-        f"deadline {deadline:.0f} µs",
-        (deadline, 0.5),
-        xycoords=("data", "axes fraction"),
-        xytext=(-3, 0),
-        textcoords="offset points",
-        color=style.VERMILION,
-        fontsize=7,
-        ha="right",
-    )
+def draw_latency(ax, name, latency_, look):
+    """The histogram summed from its end: the share beyond each bound, down to one step of the run."""
+    colour, marker, line = look
+    bins, total = latency_["histogram"], latency_["steps"]
+    bounds = 1e6 * np.array([b["to_s"] for b in bins])
+    beyond = 1 - np.cumsum([b["steps"] for b in bins]) / total
+    some = beyond > 0.5 / total
+    ax.plot(bounds[some], beyond[some], color=colour, marker=marker, ls=line, label=f"{name}, {total} steps")
+    known = [(1e6 * latency_[key], share) for key, share in QUANTILES if latency_.get(key)]
+    known += [(1e6 * latency_["max_s"], 1 / total)] if latency_.get("max_s") else []
+    if known:
+        ax.plot(*zip(*known), marker, color=colour, mfc="white", ms=4.5)

@@ -126,10 +126,10 @@ def draw_hole(ax, environment, points=False):
             [-half - mouth, -depth - 0.5e-3],
         ]
     )
-    ax.add_patch(Polygon(corners * MM, closed=True, facecolor="#EFE8DC", edgecolor="none", zorder=0))
-    ax.plot(*(corners[:6] * MM).T, color="#A08F70", lw=0.9, zorder=1)
+    ax.add_patch(Polygon(corners * MM, closed=True, facecolor=style.SAND, edgecolor="none", zorder=0))
+    ax.plot(*(corners[:6] * MM).T, color=style.SOIL, lw=0.9, zorder=1)
     if points:
-        ax.plot(*(shell(environment) * MM).T, ".", color=style.BLUE, ms=2.2, zorder=2)
+        ax.plot(*(shell(environment) * MM).T, ".", color=style.PETROL, ms=2.2, zorder=2)
     ax.set_aspect("equal")
     ax.grid(False)
 
@@ -164,7 +164,7 @@ def draw_arrow(ax, start, vector, colour, label=None, at=(3, 3), **keywords):
     }
     ax.annotate("", xy=head, xytext=start, arrowprops=style_, zorder=6)
     if label:
-        ax.annotate(label, xy=head, xytext=at, textcoords="offset points", color=colour, fontsize=7.5, zorder=7)
+        ax.annotate(label, xy=head, xytext=at, textcoords="offset points", color=colour, fontsize=7.5, bbox=style.PLATE, zorder=7)
 
 
 def frame(ax, x, y):

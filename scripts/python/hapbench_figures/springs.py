@@ -21,16 +21,15 @@ def settling(rows):
 
 
 def paths(results, kind, published):
-    figure, axes = style.panels(2, 4, 3.9, sharex=True, sharey=True)
+    figure, axes = style.panels(2, 4, 4.3, sharex=True, sharey=True)
     proposed = results.table(f"thesis/springs_{kind}_shaped_stiffness/trajectory.csv")
-    for ax, (name, look) in zip(axes.flat, style.ALGORITHMS.items()):
+    for ax, (name, look) in zip(axes.flat, ((name, style.look(name)) for name in style.OF_THE_THESIS)):
         rows = results.table(f"thesis/springs_{kind}_{name}/trajectory.csv")
         outcome = results.json(f"thesis/springs_{kind}_{name}/summary.json")["outcome"]
         if name != "shaped_stiffness":
-            ax.plot(1e3 * proposed["px_m"], 1e3 * proposed["py_m"], color="#9A9A9A", lw=0.9)
+            ax.plot(1e3 * proposed["px_m"], 1e3 * proposed["py_m"], color="#8A8A8A", lw=0.9)
         draw_path(ax, rows, look)
         ax.set(xlim=(-6.5, 6.5), ylim=(-6.5, 6.5), aspect="equal", xticks=[-5, 0, 5], yticks=[-5, 0, 5])
-        ax.set_title(look.label)
         time = settling(rows)
         text = (
             "diverges"
@@ -39,7 +38,9 @@ def paths(results, kind, published):
             if time is not None
             else "has not settled"
         )
-        style.note(ax, 0.03, 0.97, text, style.VERMILION if outcome == "diverges" or time is None else style.BLACK)
+        # Above the frame: some curves fill it.
+        ax.set_title(look.label, color=look.colour, pad=14)
+        ax.text(0, 1.03, text, transform=ax.transAxes, fontsize=7)
     for ax in axes[-1]:
         ax.set_xlabel("x [mm]")
     for ax in axes[:, 0]:

@@ -1,6 +1,10 @@
 """Stability: the root locus of A.3, and our maps of stable, vibrating and diverged runs."""
+from textwrap import wrap
+
 import numpy as np
-from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.colors import ListedColormap
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from . import published, style
 from .results import MissingResult, numbers
@@ -12,6 +16,11 @@ CASES = (
 )
 
 
+def spaced(number):
+    """With spaces between thousands, and decimals where there are few digits before them."""
+    return f"{number:,.{0 if number >= 1000 or number == round(number) else 3}f}".replace(",", " ")
+
+
 def root_locus(results):
     locus = results.records("stability/root_locus.csv")
     limits = {row["case"]: row for row in results.records("stability/limits.csv")}
@@ -20,39 +29,42 @@ def root_locus(results):
     for ax, (case, id_, title, symbol, unit) in zip(axes[0], CASES):
         rows = [row for row in locus if row["case"] == case]
         ax.plot(np.cos(turn), np.sin(turn), color=style.BLACK, lw=0.8)
-        for which, colour, line in (("first", style.BLUE, "-"), ("second", style.ORANGE, (0, (4, 1.2)))):
+        for which, colour, line in (("first", style.PETROL, "-"), ("second", style.AMBER, (0, (4, 1.2)))):
             ax.plot(numbers(rows, f"{which}_real"), numbers(rows, f"{which}_imaginary"), color=colour, ls=line, lw=1.5)
         value = published.value(id_)
         nearest = rows[int(np.argmin(np.abs(numbers(rows, "value") - value)))]
-        for which in ("first", "second"):
-            ax.plot(
-                float(nearest[f"{which}_real"]),
-                float(nearest[f"{which}_imaginary"]),
-                marker="D",
-                mfc="white",
-                mec=style.VERMILION,
-                ms=5,
-                zorder=5,
-            )
+        poles = [complex(float(nearest[f"{which}_real"]), float(nearest[f"{which}_imaginary"])) for which in ("first", "second")]
+        leaving = min(poles, key=lambda pole: pole.real)  # at -1; the other one stays inside or at 1
+        ax.plot(leaving.real, leaving.imag, marker="D", mfc="white", mec=style.RED, ms=5, zorder=5)
         ours = float(limits[case]["simulation"])
-        style.note(
-            ax, 0.5, 0.98, f"published {symbol} = {value:,.0f} {unit}".replace(",", " "), style.VERMILION, ha="center"
-        )
-        style.note(ax, 0.5, 0.02, f"ours {ours:,.0f} {unit}".replace(",", " "), style.BLUE, ha="center", va="bottom")
+        style.note(ax, 0.5, 0.98, f"published {symbol} = {spaced(value)} {unit}", style.RED, ha="center")
+        style.note(ax, 0.5, 0.02, f"ours {spaced(ours)} {unit}", ha="center", va="bottom")
         ax.set(title=title, xlabel="real part", xlim=(-1.75, 1.4), ylim=(-1.6, 1.6), aspect="equal")
     axes[0, 0].set_ylabel("imaginary part")
     style.letter(axes[0])
     return figure, (
-        "Root locus of the integrator on one spring and damper: both eigenvalues (blue, orange dashed) as stiffness "
-        "or damping grows, and the unit circle, outside of which it is unstable. Diamonds: the eigenvalues at the "
-        "published limit. Ours, below: the limit at which bisection over simulated runs finds divergence. M = 0.1 "
+        "Root locus of the integrator on one spring and damper: both eigenvalues (petrol, amber dashed) as stiffness "
+        "or damping grows, and the unit circle, outside of which it is unstable. Diamonds: the eigenvalue that leaves "
+        "it, at the published limit. Ours, below: the limit at which bisection over simulated runs finds divergence. M = 0.1 "
         "kg, time step 0.5 ms (A.3)."
     )
 
 
-CLASSES = ("stable", "vibrating", "diverged")
-# Light to dark, so that the classes can be told apart in grey.
-CLASS_COLOURS = ("#CFE6F5", style.ORANGE, "#7A2E00")
+# Class -> its name, colour and hatching; light to dark, so that they can be told apart in grey.
+CLASSES = {
+    "stable": ("stable", style.PALE, ""),
+    "dying_out": ("dying out", "#E9F3FA", "/////"),
+    "vibrating": ("vibrating", "#E0A030", ""),
+    "thrown_out": ("thrown out", "#B05A1E", ""),
+    "diverged": ("diverged", "#7A2E00", ""),
+}
+
+
+def look_of_class(name):
+    return CLASSES.get(name) or (name.replace("_", " "), "#C8C8C8", "xxx")
+
+
+AXES = {"contacts": "contacts [1]", "delay_samples": "delay [samples]", "damping_ratio": "damping ratio ζ [1]"}
 
 
 def axis_label(name):
@@ -60,7 +72,7 @@ def axis_label(name):
     for ending, unit in (("_N_per_m", "N/m"), ("_rad", "rad"), ("_kg", "kg"), ("_s", "s")):
         if name.endswith(ending):
             return f"{name.removesuffix(ending).replace('_', ' ')} [{unit}]"
-    return name.replace("_", " ")
+    return AXES.get(name, name.replace("_", " "))
 
 
 def is_geometric(values):
@@ -78,16 +90,15 @@ def edges(values):
 def draw_map(ax, rows, x_name, y_name):
     x, y = numbers(rows, x_name), numbers(rows, y_name)
     columns, lines = np.unique(x), np.unique(y)
-    grid = np.full((len(lines), len(columns)), np.nan)
-    grid[np.searchsorted(lines, y), np.searchsorted(columns, x)] = [CLASSES.index(row["class"]) for row in rows]
-    ax.pcolormesh(
-        edges(columns),
-        edges(lines),
-        grid,
-        cmap=ListedColormap(CLASS_COLOURS),
-        norm=BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3),
-        rasterized=True,
-    )
+    classes = np.full((len(lines), len(columns)), "", dtype=object)
+    classes[np.searchsorted(lines, y), np.searchsorted(columns, x)] = [row["class"] for row in rows]
+    for name in sorted(set(classes.ravel()) - {""}):
+        _, colour, hatch = look_of_class(name)
+        cells = np.ma.masked_where(classes != name, np.ones(classes.shape))
+        ax.pcolormesh(edges(columns), edges(lines), cells, cmap=ListedColormap([colour]), rasterized=True)
+        if hatch:  # a mesh has none
+            ax.pcolor(edges(columns), edges(lines), cells, cmap=ListedColormap(["#FFFFFF00"]), hatch=hatch,
+                      edgecolor=style.PETROL, lw=0)
     ax.grid(False)
     ax.set_xscale("log" if is_geometric(columns) else "linear")
     ax.set_yscale("log" if is_geometric(lines) else "linear")
@@ -96,9 +107,10 @@ def draw_map(ax, rows, x_name, y_name):
 
 def draw_boundary(ax, rows, x_name, y_name):
     for kind, look in (
-        ("analytic", {"color": "white", "lw": 2.4}),
-        ("analytic", {"color": style.BLUE, "lw": 1.3}),
-        ("simulation", {"color": style.BLACK, "lw": 1.0, "ls": (0, (2, 2))}),
+        ("analytic", {"color": "white", "lw": 3.6}),
+        ("analytic", {"color": style.PETROL, "lw": 2.6}),
+        # Narrower, so that both show where they agree.
+        ("simulation", {"color": style.BLACK, "lw": 0.9, "ls": (0, (2, 2))}),
     ):
         column = f"{kind}_{y_name}"
         if column in rows[0]:
@@ -114,6 +126,10 @@ class MapFile:
         self.x_name, self.y_name = list(self.rows[0])[1:3]
         boundary = path.replace("stability_map_", "stability_boundary_")
         self.boundary = results.records(boundary) if results.has(boundary) else []
+
+    @property
+    def has_theory(self):
+        return any(np.isfinite(numbers(self.boundary, f"analytic_{self.y_name}"))) if self.boundary else False
 
     @property
     def integrators(self):
@@ -140,14 +156,74 @@ def map_file(results, name, of_integrators):
     raise MissingResult(f"no stability_map_{name}.csv{' of several integrators' if of_integrators else ''}")
 
 
-def legend_above(figure):
-    handles = [style.plt.Rectangle((0, 0), 1, 1, color=c) for c in CLASS_COLOURS]
-    handles += [
-        style.plt.Line2D([], [], color=style.BLUE, lw=1.3),
-        style.plt.Line2D([], [], color="black", lw=1, ls=(0, (2, 2))),
-    ]
-    figure.get_layout_engine().set(rect=(0, 0, 1, 0.93))
-    figure.legend(handles, [*CLASSES, "limit, theory", "limit, bisection"], loc="upper center", ncol=5)
+def class_legend(figure, maps, top):
+    """What the cells and lines of the maps mean, above them; `top`: the share of the height that is left for them."""
+    present = {row["class"] for found in maps for row in found.rows}
+    looks = [look_of_class(name) for name in sorted(present, key=lambda name: ([*CLASSES, name].index(name), name))]
+    handles = [Patch(facecolor=colour, hatch=hatch, edgecolor=style.PETROL, lw=0) for _, colour, hatch in looks]
+    names = [name for name, _, _ in looks]
+    for column, label, look in (("analytic", "limit, theory", {"color": style.PETROL, "lw": 2.6}),
+                                ("simulation", "limit, bisection", {"color": style.BLACK, "lw": 1, "ls": (0, (2, 2))})):
+        if any(np.isfinite(numbers(found.boundary, f"{column}_{found.y_name}")).any() for found in maps if found.boundary):
+            handles.append(Line2D([], [], **look))
+            names.append(label)
+    figure.legend(handles, names, loc="upper center", bbox_to_anchor=(0.5, top), ncol=6, handlelength=1.6)
+
+
+def alike(found, algorithms):
+    """The algorithms whose maps are the same, cell by cell, together; the largest group last."""
+    groups = {}
+    for algorithm in algorithms:
+        cells = tuple((row[found.x_name], row[found.y_name], row["class"]) for row in found.rows
+                      if row["algorithm"] == algorithm)
+        groups.setdefault(cells, []).append(algorithm)
+    return sorted(groups.values(), key=len)
+
+
+def draw_limits(axes, found, algorithms):
+    """A line for each algorithm: the limit found by bisection, and its ratio to the analytic one where there is one. Where
+    lines coincide, marks at different places tell whose they are."""
+    limit, *ratio, legend = axes
+    for i, algorithm in enumerate(algorithms):
+        rows = [row for row in found.boundary if row["algorithm"] == algorithm]
+        x, y = numbers(rows, found.x_name), numbers(rows, f"simulation_{found.y_name}")
+        y = np.where(np.isfinite(y) & (y > 0), y, np.nan)
+        theory = numbers(rows, f"analytic_{found.y_name}")
+        look = style.look(algorithm)
+        line = {"color": look.colour, "ls": look.line, "marker": look.marker, "lw": 0.9, "ms": 4.5,
+                "markevery": (i % max(len(x), 1), len(algorithms))}
+        limit.plot(x, y, **line)
+        for ax in ratio:
+            ax.plot(x, y / theory, **line)
+        legend.plot([], [], color=look.colour, ls=look.line, marker=look.marker, lw=0.9, ms=4.5, label=look.label)
+    low, high = limit.dataLim.intervaly
+    limit.set(title="limit, by bisection", ylabel=axis_label(found.y_name), yscale="log" if high > 3 * low else "linear")
+    for ax in ratio:
+        low, high = ax.dataLim.intervaly
+        ax.set(title="its ratio to theory", ylabel="bisection / theory", ylim=(min(low, 0.998), max(high, 1.002)))
+        ax.ticklabel_format(axis="y", useOffset=False)
+    for ax in (limit, *ratio):
+        x = np.unique(numbers(found.rows, found.x_name))
+        ax.set(xlabel=axis_label(found.x_name), xscale="log" if is_geometric(x) else "linear")
+    legend.axis("off")
+    legend.legend(loc="center left", borderaxespad=0, handlelength=3.2, labelspacing=0.35)
+
+
+def draw_groups(part, found, groups, lines):
+    axes = part.subplots(lines, 4, sharex=True, sharey=True, squeeze=False)
+    for ax in axes.flat[len(groups):]:
+        ax.set_visible(False)
+    for i, (ax, group) in enumerate(zip(axes.flat, groups)):
+        found.draw(ax, algorithm=group[0])
+        names = ", ".join(style.look(name).label.removesuffix(" (ours)") for name in group)
+        if i == len(groups) - 1 and len(group) > 3:
+            names = f"{'all others' if i else 'all'} ({len(group)})"
+        ax.set_title("\n".join(wrap(names, 30)), fontsize=6.5)
+        ax.tick_params(labelbottom=i + 4 >= len(groups), labelsize=7)
+        if i + 4 >= len(groups):
+            ax.set_xlabel(axis_label(found.x_name))
+    for ax in axes[:, 0]:
+        ax.set_ylabel(axis_label(found.y_name))
 
 
 def stability_map(name):
@@ -155,23 +231,23 @@ def stability_map(name):
 
     def draw(results):
         found = map_file(results, name, of_integrators=False)
-        present = [a for a in style.EVERY_ALGORITHM if any(row["algorithm"] == a for row in found.rows)]
-        lines = max(2, -(-len(present) // 4))
-        figure, axes = style.panels(lines, 4, 1.85 * lines, sharex=True, sharey=True)
-        for ax in axes.flat:
-            ax.set_visible(False)
-        for ax, algorithm in zip(axes.flat, present):
-            ax.set_visible(True)
-            found.draw(ax, algorithm=algorithm)
-            ax.set_title(style.EVERY_ALGORITHM[algorithm].label)
+        present = list(dict.fromkeys(row["algorithm"] for row in found.rows))
+        groups = alike(found, present)
+        lines = -(-len(groups) // 4)
+        heights = (2.5, 0.75 + 1.65 * lines)
+        figure = style.plt.figure(figsize=(style.WIDTH, sum(heights)))
+        above, below = figure.subfigures(2, 1, height_ratios=heights)
+        widths = [1, 1, 0.62] if found.has_theory else [2, 0.62]
+        draw_limits(above.subplots(1, len(widths), gridspec_kw={"width_ratios": widths}), found, present)
+        draw_groups(below, found, groups, lines)
+        figure.get_layout_engine().set(hspace=0.08)
+        class_legend(figure, [found], heights[1] / sum(heights) + 0.02)
         x_label, y_label = axis_label(found.x_name), axis_label(found.y_name)
-        figure.supxlabel(x_label, fontsize=8)
-        figure.supylabel(y_label, fontsize=8)
-        legend_above(figure)
         return figure, (
-            f"Where a run is stable, vibrates or diverges: {y_label} over {x_label}, every "
-            "algorithm. Lines: the limit from theory (blue), where there is one, and found by bisection over "
-            "simulated runs (dashed). Ours."
+            f"Where a run is stable, vibrates or diverges: {y_label} over {x_label}. Above: the limit of every algorithm, found "
+            "by bisection over simulated runs, and its ratio to the limit from theory, where there is one. Below: the class of "
+            f"single runs; algorithms whose {len(found.rows) // len(present)} runs fall into the same classes share a panel. "
+            "Single cells beyond the limit are runs that are not stable, but stay within the bounds, or leave them, by chance. Ours."
         )
 
     return draw
@@ -191,10 +267,10 @@ def integrators(results):
         line[len(names) // 2].set_xlabel(axis_label(found.x_name))
     for ax, name in zip(axes[0], names):
         ax.set_title(name.replace("_", " "))
-    legend_above(figure)
+    figure.get_layout_engine().set(rect=(0, 0, 1, 0.95))
+    class_legend(figure, maps, 1.0)
     return figure, (
         f"Where a run is stable, vibrates or diverges under each integrator, {style.look(algorithm).label}: stiffness "
         "of one spring over the time step and over zeta, stiffness of the hand over the delay of the device's servo. "
-        "Lines: the limit from theory (blue), where there is one, and found by bisection over simulated runs "
-        "(dashed). Ours."
+        "Lines: the limit from theory, where there is one, and found by bisection over simulated runs. Ours."
     )

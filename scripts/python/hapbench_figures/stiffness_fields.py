@@ -2,6 +2,8 @@
 from textwrap import wrap
 
 import numpy as np
+from matplotlib.colors import to_rgb
+from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon
 
 from . import published, scene, style
@@ -39,15 +41,15 @@ def scale(name):
     return (SUMMATION_REACH, SUMMATION_TICKS) if name == "summation" else (REACH, TICKS)
 
 
-def draw_field(ax, tensor, contacts, reach, ticks):
-    """The field and the ratio along each contact, which it returns."""
-    curve = field(tensor)
+def draw_field(ax, name, tensor, contacts, reach, ticks):
+    """The field in the algorithm's colour and the ratio along each contact, which it returns."""
+    curve, colour = field(tensor), style.look(name).colour
     limit = published.entries()["C4.ratio"]["at_most"]
-    ax.fill(*curve.T, facecolor=style.SKY, alpha=0.55, edgecolor=style.BLUE, lw=1.1)
-    ax.add_patch(Circle((0, 0), limit, fill=False, edgecolor=style.GREEN, lw=1.3, zorder=2))
+    ax.fill(*curve.T, facecolor=(*to_rgb(colour), 0.22), edgecolor=colour, lw=1.1)
+    ax.add_patch(Circle((0, 0), limit, fill=False, edgecolor=style.RED, lw=1.1, ls=(0, (1, 1)), zorder=2))
     ax.add_patch(Circle((0, 0), 1, fill=False, edgecolor=style.BLACK, lw=0.8, ls=(0, (3, 2)), zorder=2))
     ratio = np.einsum("ij,jk,ik->i", contacts.gradient, tensor, contacts.gradient)
-    ax.plot(*(-contacts.gradient * ratio[:, None]).T, ".", color=style.VERMILION, ms=3.5)
+    ax.plot(*(-contacts.gradient * ratio[:, None]).T, ".", color=style.AMBER, ms=3.5)
     ax.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xticks=ticks, yticks=ticks)
     return ratio
 
@@ -56,7 +58,7 @@ def draw_contacts(ax, sweep, step):
     contacts, peg = sweep.contacts(step), sweep.peg(step)
     scene.draw_hole(ax, sweep.scenario["environment"], points=True)
     scene.draw_peg(ax, peg)
-    scene.draw_segments(ax, contacts, [style.VERMILION] * len(contacts.depth))
+    scene.draw_segments(ax, contacts, [style.AMBER] * len(contacts.depth))
     scene.frame(ax, (-1.3, 1.3), (-4.2, 0.9))
     return contacts
 
@@ -68,18 +70,18 @@ def excessive_stiffness(results):
     contacts = draw_contacts(axes[0, 0], sweep, step)
     axes[0, 0].set_title("contacts")
     for ax, (name, tensor, _) in zip(axes[0, 1:], merged(results, step)):
-        ratio = draw_field(ax, tensor, contacts, *scale(name))
+        ratio = draw_field(ax, name, tensor, contacts, *scale(name))
         ax.set_title(TITLES[name])
         ax.set_xlabel("stiffness / K")
         text = f"{ratio.min():.2g} … {ratio.max():.3g}"
-        style.note(ax, 0.5, 0.02, text, style.VERMILION, ha="center", va="bottom")
-    style.note(axes[0, 1], 0.5, 0.985, "renderable: 4 K", "#00694D", ha="center")
+        style.note(ax, 0.5, 0.02, text, style.AMBER, ha="center", va="bottom")
+    style.note(axes[0, 1], 0.5, 0.985, "published: 4 K", style.RED, ha="center")
     style.note(axes[0, 4], 0.5, 0.985, "K", ha="center")
     style.letter(axes[0])
     return figure, (
-        "Excessive stiffness: (a) a tilted peg in a hole, its contacts (vermilion) and depths; (b-e) the stiffness "
-        "in every direction, in units of K, that four ways of merging these contacts give. Green: the published "
-        "largest renderable stiffness, 4 K = 80 000 N/m (4.3), outside the frames of (c-e); dashed: K. Vermilion "
+        "Excessive stiffness: (a) a tilted peg in a hole, its contacts (amber) and depths; (b-e) the stiffness "
+        "in every direction, in units of K, that four ways of merging these contacts give. Red: the published "
+        "largest renderable stiffness, 4 K = 80 000 N/m (4.3), outside the frames of (c-e); dashed: K. Amber "
         "dots and numbers: the ratios along the contacts. The scale of (b) is 28 times that of the others. Contacts "
         "and tensors are those that the runs recorded. Ours."
     )
@@ -94,7 +96,7 @@ def fields_over_tilt(results):
         contacts = draw_contacts(row[0], sweep, step)
         row[0].set_ylabel(f"tilt {sweep.tilt[step]:.2f} rad\ny [mm]")
         for ax, (name, tensor, force) in zip(row[1:], merged(results, step)):
-            draw_field(ax, tensor, contacts, *scale(name))
+            draw_field(ax, name, tensor, contacts, *scale(name))
             length = 0.75 * ax.get_xlim()[1]
             scene.draw_arrow(ax, (0, 0), length * force / np.linalg.norm(force), style.BLACK)
             if tilt == tilts[0]:
@@ -106,7 +108,7 @@ def fields_over_tilt(results):
     style.letter(axes[0])
     return figure, (
         "The stiffness field as the peg tilts (rows): contacts (a) and the stiffness in every direction, in units "
-        "of K, of four ways of merging them (b-e). Black arrow: direction of the spring force. Green: published "
+        "of K, of four ways of merging them (b-e). Black arrow: direction of the spring force. Red: published "
         "largest renderable stiffness, 4 K; dashed: K; the scale of (b) is 28 times that of the others. Summation "
         "and mean follow the number of points on the side walls, shaping does not. Contacts and tensors are those "
         "that the runs recorded. Ours."
@@ -127,61 +129,85 @@ def own_scale(tensor):
 
 
 def draw_wedge(ax, run):
-    """The faces, at right angles to their springs, and where the tool ends up: at the apex it touches both."""
+    """The faces, at right angles to their springs, and the tool's tip where it ends up: at the apex it touches both."""
     for group in run.scenario["environment"]["groups"]:
         x, y = np.array(group["direction"][:2])
         up = np.sign(x) * np.array([-y, x])
         corners = [(0, 0), 4 * up, (4 * x, 4 * up[1]), (4 * x, -4), (0, -4)]
-        ax.add_patch(Polygon(corners, closed=True, facecolor="#EFE8DC", edgecolor="none", zorder=0))
-        ax.plot(*np.outer((0, 4), up).T, color="#A08F70", lw=0.9)
+        ax.add_patch(Polygon(corners, closed=True, facecolor=style.SAND, edgecolor="none", zorder=0))
+        ax.plot(*np.outer((0, 4), up).T, color=style.SOIL, lw=0.9)
     tip = scene.MM * run.peg(-1).tip
     ax.plot(*tip, "o", color=style.BLACK, ms=4)
-    scene.draw_arrow(ax, tip + (0, 2), (0, -1.7), style.BLACK, "2 N", at=(5, 4))
-    scene.frame(ax, (-2.5, 2.5), (-4, 4))
+    ax.annotate("tool", tip, (7, -3), textcoords="offset points", fontsize=6.5)
+    scene.draw_arrow(ax, tip + (0, 2.2), (0, -1.9), style.BLACK)
+    ax.annotate("2 N", tip + (0, 2.2), (0, 2), textcoords="offset points", ha="center", fontsize=6.5)
+    scene.frame(ax, (-3.5, 3.5), (-4.2, 2.8))
     ax.set_aspect("equal")
     ax.grid(False)
 
 
-def draw_peg_row(axes, results, names):
-    for ax, name in zip(axes[1:], names):
-        run = scene.Sweep(results, name, PEG)
-        step = run.step_at(PEG_TILT)
-        tensor = rendered_tensor(results, f"{PEG}/{name}", step)
-        ratio = draw_field(ax, tensor, run.contacts(step), *own_scale(tensor))
-        style.note(ax, 0.5, 0.02, f"{ratio.min():.2g} … {ratio.max():.3g}", style.VERMILION, ha="center", va="bottom")
-    run = scene.Sweep(results, SHAPING, PEG)
-    draw_contacts(axes[0], run, run.step_at(PEG_TILT))
+def draw_in_peg(ax, results, name):
+    run = scene.Sweep(results, name, PEG)
+    step = run.step_at(PEG_TILT)
+    tensor = rendered_tensor(results, f"{PEG}/{name}", step)
+    ratio = draw_field(ax, name, tensor, run.contacts(step), *own_scale(tensor))
+    return f"{ratio.min():.2g} … {ratio.max():.3g}"
 
 
-def draw_wedge_row(axes, results, names):
-    for ax, name in zip(axes[1:], names):
-        run = scene.Sweep(results, name, WEDGE)
-        tensor = rendered_tensor(results, f"{WEDGE}/{name}", -1)
-        draw_field(ax, tensor, run.contacts(-1), *own_scale(tensor))
-        sunk = -scene.MM * run.rows["py_m"][-1]
-        style.note(ax, 0.5, 0.02, f"{tensor[1, 1]:.2g} K: {sunk:.2g} mm", style.VERMILION, ha="center", va="bottom")
-    draw_wedge(axes[0], scene.Sweep(results, SHAPING, WEDGE))
+def draw_in_wedge(ax, results, name):
+    run = scene.Sweep(results, name, WEDGE)
+    tensor = rendered_tensor(results, f"{WEDGE}/{name}", -1)
+    draw_field(ax, name, tensor, run.contacts(-1), *own_scale(tensor))
+    return f"{tensor[1, 1]:.2g} K\n{-scene.MM * run.rows['py_m'][-1]:.2g} mm"
+
+
+def draw_scene_of(part, title, results, names, draw):
+    """A panel for each algorithm, its numbers below; the first panel is left for the scene."""
+    columns = 7
+    axes = part.subplots(-(-(1 + len(names)) // columns), columns, squeeze=False)
+    part.suptitle(title, fontsize=8.5, x=0.01, ha="left")
+    for ax, name in zip(axes.flat[1:], names):
+        text = draw(ax, results, name)
+        ax.set_title("\n".join(wrap(name.replace("_", " "), 15)), fontsize=6.5, color=style.look(name).colour)
+        ax.set_xlabel(text, fontsize=6.5)
+        ax.tick_params(labelsize=6.5)
+    for ax in axes.flat[len(names) + 1 :]:
+        ax.axis("off")
+    axes[0, 0].set_title("the scene", fontsize=6.5)
+    axes[0, 0].tick_params(labelsize=6.5)
+    return axes[0, 0]
+
+
+def field_legend(figure):
+    figure.legend(
+        [
+            Line2D([], [], color=style.BLACK, lw=0.8, ls=(0, (3, 2))),
+            Line2D([], [], color=style.RED, lw=1.1, ls=(0, (1, 1))),
+            Line2D([], [], color=style.AMBER, marker=".", ls="none"),
+        ],
+        ["K", "published: largest renderable, 4 K", "ratio along a contact"], loc="upper right", ncol=3, handlelength=2.2,
+    )
 
 
 def of_all_algorithms(results):
     names = [row["algorithm"] for row in results.records(f"{PEG}/comparison.csv")]
-    columns = 5
-    lines = -(-(1 + len(names)) // columns)  # for each scene
-    figure, axes = style.panels(2 * lines, columns, 3.2 * lines)
-    for block, draw in ((axes[:lines].ravel(), draw_peg_row), (axes[lines:].ravel(), draw_wedge_row)):
-        draw(block, results, names)
-        block[0].set_title("contacts")
-        for ax, name in zip(block[1:], names):
-            ax.set_title("\n".join(wrap(name.replace("_", " "), 20)), fontsize=7)
-        for ax in block[len(names) + 1 :]:
-            ax.axis("off")
-    for ax in axes[-1]:
-        ax.set_xlabel("stiffness / K")
+    lines = -(-(1 + len(names)) // 7)
+    figure = style.plt.figure(figsize=(style.WIDTH, 0.3 + 3.2 * lines))
+    above, below = figure.subfigures(2, 1)
+    figure.get_layout_engine().set(rect=(0, 0, 1, 1 - 0.25 / figure.get_figheight()))
+    first = draw_scene_of(above, "(a) in the tilted peg: stiffness / K, and the least and greatest ratio along a contact",
+                          results, names, draw_in_peg)
+    run = scene.Sweep(results, SHAPING, PEG)
+    draw_contacts(first, run, run.step_at(PEG_TILT))
+    first = draw_scene_of(below, "(b) in a wedge: stiffness / K; along the way out, and how deep 2 N press the tool in", results,
+                          names, draw_in_wedge)
+    draw_wedge(first, scene.Sweep(results, SHAPING, WEDGE))
+    field_legend(figure)
     return figure, (
-        "Stiffness in every direction, in units of K, of every algorithm: in the tilted peg of Fig. 2 (above; "
-        "vermilion: ratios along the contacts, least and greatest) and in a wedge whose faces stand 10 degrees from "
-        "its middle plane (below; vermilion: stiffness along the way out and how far 2 N press the tool in within a "
-        "second). Dashed: K, green: the published largest renderable stiffness, 4 K (4.3); where a field does not "
+        "Stiffness in every direction, in units of K, of every algorithm: (a) in the tilted peg of Fig. 2, below each panel the "
+        "least and greatest ratio along the contacts (amber); (b) in a wedge whose faces stand 10 degrees from "
+        "its middle plane, below each panel the stiffness along the way out and how far 2 N press the tool in within a "
+        "second. Dashed: K, red: the published largest renderable stiffness, 4 K (4.3); where a field does not "
         "fit, its panel has a scale of its own. Stiffness shaping gives K along every contact and next to nothing "
         "along the way out, between them: 2 sin² w / (1 + cos² 2w) = 0.032 K. Tensors and contacts are those that "
         "the runs recorded. Ours."

@@ -1,10 +1,12 @@
-"""One look for every figure: sizes, colours that colour-blind readers tell apart, and how figures become files."""
+"""One look for every figure: sizes, colours (those of algorithms are in hapbench_looks), and how figures become files."""
 import io
 import os
-from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib
+
+from hapbench_looks import ALGORITHMS, look  # noqa: F401  (style.look is how figures name it)
+from hapbench_looks import PUBLISHED as PUBLISHED_COLOUR
 
 matplotlib.use("agg")
 from matplotlib import pyplot as plt  # noqa: E402  (the backend comes first)
@@ -13,56 +15,32 @@ WIDTH = 7.0  # of a page's text [inch]
 FORMATS = ("svg", "pdf", "png")
 PNG_DPI = 150
 
-# Okabe and Ito's palette. Where its luminances would not tell curves apart in grey, line styles and markers do.
-BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
-YELLOW, BLUE, VERMILION, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
-GREY, LIGHT = "#6E6E6E", "#D9D9D9"
+# Lines and texts have a contrast of at least 4.5 to white. What is no algorithm's: readings, forces, contacts. Amber beside
+# petrol is told apart by every kind of colour vision; where there is more, line styles and markers help. Red is the thesis's.
+BLACK, GREY, AMBER, PETROL, PLUM, RED = "#000000", "#5F5F5F", "#8A5600", "#00647D", "#8A3B75", PUBLISHED_COLOUR
+# For areas only.
+SAND, PALE = "#EFE8DC", "#CFE6F5"
+SOIL = "#8C7A58"  # the sand's border
 
-
-@dataclass(frozen=True)
-class Look:
-    """How one series is drawn wherever it appears."""
-
-    label: str
-    colour: str
-    line: object = "-"
-    marker: str = "o"
-
-
-ALGORITHMS = {
-    "original_averaging": Look("original averaging (DP)", VERMILION, "-", "s"),
-    "summation": Look("summation", ORANGE, (0, (5, 1.5)), "^"),
-    "mean": Look("mean", SKY, (0, (3, 1, 1, 1)), "v"),
-    "virtual_coupling": Look("virtual coupling", PURPLE, (0, (1, 1)), "D"),
-    "shaped_stiffness": Look("stiffness shaping (HS)", BLACK, "-", "o"),
-    "tandpasta": Look("tandpasta", GREEN, (0, (7, 2, 1, 2)), "P"),
-    "normal_projection": Look("normal projection", GREY, (0, (2, 1)), "X"),
-    "exact_shaping": Look("exact shaping (ours)", BLUE, (0, (4, 1, 1, 1, 1, 1)), "h"),
-}
-
-# Those that the thesis's scenes are not run with, only the studies of every algorithm.
-BEYOND = {
-    "continuous_normal_projection": Look("contin. projection (ours)", GREY, (0, (3, 1)), "*"),
-    "least_squares": Look("least squares (ours)", GREEN, (0, (1, 1.5)), "d"),
-    "highest_depth": Look("highest depth", SKY, (0, (6, 2)), "<"),
-    "merged_shaping": Look("merged shaping (ours)", PURPLE, (0, (4, 1, 1, 1)), "p"),
-    "proxy": Look("proxy (ours)", VERMILION, "-", ">"),
-}
-EVERY_ALGORITHM = {**ALGORITHMS, **BEYOND}
-
-
-def look(algorithm):
-    """Of any algorithm; those that have none of their own share one."""
-    return EVERY_ALGORITHM.get(algorithm) or Look(algorithm.replace("_", " "), GREY, "-", "*")
-
+# Those that the thesis's scenes are run with.
+OF_THE_THESIS = (
+    "original_averaging",
+    "summation",
+    "mean",
+    "virtual_coupling",
+    "shaped_stiffness",
+    "tandpasta",
+    "normal_projection",
+    "exact_shaping",
+)
 
 # Numbers of the thesis are hollow diamonds everywhere.
 PUBLISHED = {
     "marker": "D",
     "mfc": "white",
-    "mec": VERMILION,
-    "ecolor": VERMILION,
-    "color": VERMILION,
+    "mec": RED,
+    "ecolor": RED,
+    "color": RED,
     "ms": 4.5,
     "mew": 1.2,
     "elinewidth": 1.2,
@@ -70,6 +48,10 @@ PUBLISHED = {
     "ls": "none",
     "zorder": 5,
 }
+PUBLISHED_LINE = {"color": RED, "lw": 1, "ls": (0, (1, 1.5))}
+
+# Behind a label that may stand on a line.
+PLATE = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8}
 
 SETTINGS = {
     "font.family": "sans-serif",
@@ -116,8 +98,7 @@ def note(ax, x, y, text, colour=BLACK, **keywords):
     """A label inside the axes, at fractions of their sides, legible over lines."""
     keywords.setdefault("ha", "left")
     keywords.setdefault("va", "top")
-    box = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8}
-    return ax.text(x, y, text, transform=ax.transAxes, color=colour, fontsize=7, bbox=box, **keywords)
+    return ax.text(x, y, text, transform=ax.transAxes, color=colour, fontsize=7, bbox=PLATE, **keywords)
 
 
 def save(figure, stem, directory):

@@ -35,14 +35,12 @@ def thin(*columns, count=220):
     return [column[pick] for column in columns]
 
 
-def published_count(ax, x, task, what, colour):
+def published_count(ax, x, task, what):
     """Mean and standard deviation at the right edge of a time axis."""
     id_ = f"{task}.{what}"
     entry = published.entries()[id_]
     error = [[entry["std"]], [entry["std"]]] if "std" in entry else None
-    ax.errorbar(
-        [x], [published.value(id_)], yerr=error, **{**style.PUBLISHED, "mec": colour, "ecolor": colour}, clip_on=False
-    )
+    ax.errorbar([x], [published.value(id_)], yerr=error, **style.PUBLISHED, clip_on=False)
 
 
 PERIOD = 1 / 2048  # of the trainer's loop [s]
@@ -75,11 +73,11 @@ def point_counts(results):
             rows = trajectory(results, task, density)
             time, raw, kept = thin(rows["time_s"], rows["colliding"], rows["rendered"])
             touching = raw > 0
-            ax.plot(time[touching], raw[touching], ".", color=style.ORANGE, ms=2.5)
-            ax.plot(time[touching], kept[touching], "s", color=style.BLUE, ms=1.5)
+            ax.plot(time[touching], raw[touching], ".", color=style.AMBER, ms=2.5)
+            ax.plot(time[touching], kept[touching], "s", color=style.PETROL, ms=1.5)
             end = rows["time_s"][-1]
-            published_count(ax, 1.045 * end, id_, "raw", style.VERMILION)
-            published_count(ax, 1.045 * end, id_, "reduced", style.BLACK)
+            published_count(ax, 1.045 * end, id_, "raw")
+            published_count(ax, 1.045 * end, id_, "reduced")
             ax.set_xlim(0, 1.08 * end)
             ax.set(yscale="log", ylim=(0.7, 3000))
             if density == DENSITIES[0][0]:
@@ -93,12 +91,12 @@ def point_counts(results):
             load.set_yticklabels([])
     if loads[-1]:
         loads[-1].set_ylabel("loop load [%]")
-    style.note(axes[1, 1], 0.03, 0.98, "before the reduction", "#9C6A00")
-    style.note(axes[1, 1], 0.03, 0.06, "after", style.BLUE, va="bottom")
+    style.note(axes[1, 1], 0.03, 0.98, "before the reduction", style.AMBER)
+    style.note(axes[1, 1], 0.03, 0.06, "after", style.PETROL, va="bottom")
     style.note(axes[0, 0], 0.03, 0.98, "loop load: black dots, right axis")
-    style.note(axes[1, 2], 0.97, 0.06, "published mean ± SD ◇", style.VERMILION, ha="right", va="bottom")
+    style.note(axes[1, 0], 0.97, 0.98, "published mean ± SD ◇", style.RED, ha="right")
     return figure, (
-        "Colliding points before (orange dots) and after (blue squares) the gradient-based reduction in the three "
+        "Colliding points before (amber dots) and after (petrol squares) the gradient-based reduction in the three "
         "tasks of 3.2, for both densities of the block, and the loop load (black dots, right axis, medians of spans): "
         "the share of the 0.49 ms of a step that this machine takes. Ours, thinned; hollow diamonds at the right edge: "
         f"published mean and standard deviation (3.3). {HAND}"
@@ -132,8 +130,9 @@ def count_distribution(results):
         ax.set_xlim((1, 1000) if what == "raw" else (0.8, 100))
         ax.set_ylim(0.5, 3.5)
     axes[0, 0].set_yticks([3, 2, 1], [title.replace(": ", ":\n") for _, _, title in TASKS])
-    axes[0, 0].legend(loc="lower left")
-    style.note(axes[0, 1], 0.98, 0.9, "◇ published, 3.3 and C.3\n(mean ± SD)", style.VERMILION, ha="right")
+    axes[0, 1].legend(*axes[0, 0].get_legend_handles_labels(), loc="upper right", bbox_to_anchor=(1, 0.93))
+    style.note(axes[0, 1], 0.98, 0.68, "thick: ± SD\nthin: 5 to 95 %", style.PETROL, ha="right")
+    style.note(axes[0, 1], 0.98, 0.44, "◇ published, 3.3 and C.3\n(mean ± SD)", style.RED, ha="right")
     style.letter(axes[0])
     return figure, (
         "Distribution of the number of points in contact before (a) and after (b) the gradient-based reduction. "
@@ -145,9 +144,9 @@ def count_distribution(results):
 
 def draw_distribution(ax, y, values, marker, label):
     mean, spread = values.mean(), values.std()
-    ax.plot(np.percentile(values, [5, 95]), [y, y], color=style.BLUE, lw=0.8)
-    ax.plot([max(mean - spread, 0.1), mean + spread], [y, y], color=style.BLUE, lw=2.4, solid_capstyle="butt")
-    ax.plot([mean], [y], marker, color=style.BLUE, mec="white", ms=5, mew=0.6, label=label, ls="none")
+    ax.plot(np.percentile(values, [5, 95]), [y, y], color=style.PETROL, lw=0.8)
+    ax.plot([max(mean - spread, 0.1), mean + spread], [y, y], color=style.PETROL, lw=2.4, solid_capstyle="butt")
+    ax.plot([mean], [y], marker, color=style.PETROL, mec="white", ms=5, mew=0.6, label=label, ls="none")
 
 
 def quantiles(results, density="signed_distance", tasks=TASKS):
@@ -172,10 +171,10 @@ def convergence_by_task(results):
     once = published.entries()["R1.once"]
     for ax, task in zip(axes[0], TASKS):
         greatest, least = quantiles(results, tasks=(task,))
-        draw_quantiles(ax, greatest, style.BLUE, "o", 4)
-        draw_quantiles(ax, least, style.ORANGE, "s", 0)
+        draw_quantiles(ax, greatest, style.PETROL, "o", 4)
+        draw_quantiles(ax, least, style.AMBER, "s", 0)
         ax.axhline(bound[0], color=style.BLACK, ls="--", lw=0.8)
-        ax.axhline(bound[1], color=style.VERMILION, ls=(0, (1, 1.5)), lw=1)
+        ax.axhline(bound[1], **style.PUBLISHED_LINE)
         ax.errorbar(
             [0.8], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"}
         )
@@ -183,13 +182,14 @@ def convergence_by_task(results):
         ax.set_xticks([1, 3, 10, 40, 160], ["1", "3", "10", "40", "160"])
         ax.minorticks_off()
     axes[0, 0].set_ylabel("stiffness ratio")
-    style.note(axes[0, 0], 0.97, 0.92, "published bound 1.5", style.VERMILION, ha="right")
-    style.note(axes[0, 1], 0.97, 0.86, "greatest", style.BLUE, ha="right")
-    style.note(axes[0, 1], 0.97, 0.3, "least", "#9C6A00", ha="right")
+    style.note(axes[0, 0], 0.5, 0.36, "one contact: greatest and\nleast are 1 throughout", ha="center")
+    style.note(axes[0, 0], 0.97, 0.92, "published bound 1.5", style.RED, ha="right")
+    style.note(axes[0, 1], 0.97, 0.86, "greatest", style.PETROL, ha="right")
+    style.note(axes[0, 1], 0.97, 0.3, "least", style.AMBER, ha="right")
     return figure, (
-        "Greatest (blue circles) and least (orange squares) stiffness ratio of the contacts of a step after so many "
+        "Greatest (petrol circles) and least (amber squares) stiffness ratio of the contacts of a step after so many "
         "shaping iterations: median, 5th to 95th percentile (shaded) and extreme (dotted) over all steps in "
-        "contact, ours, signed-distance block. Published (vermilion): 0.8 to 1.3 after one iteration (bar at the "
+        "contact, ours, signed-distance block. Published (red): 0.8 to 1.3 after one iteration (bar at the "
         f"left edge, C.4.2), never above 1.5 (4.3). {HAND}"
     )
 
@@ -199,8 +199,8 @@ def convergence(results):
     once = published.entries()["R1.once"]
     for ax, (density, name) in zip(axes[0], DENSITIES):
         greatest, least = quantiles(results, density, TASKS[1:])
-        draw_quantiles(ax, greatest, style.BLUE, "o", 4)
-        draw_quantiles(ax, least, style.ORANGE, "s", 0)
+        draw_quantiles(ax, greatest, style.PETROL, "o", 4)
+        draw_quantiles(ax, least, style.AMBER, "s", 0)
         ax.axhline(1, color=style.BLACK, ls="--", lw=0.8)
         ax.errorbar(
             [0.85], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"}
@@ -219,14 +219,14 @@ def convergence(results):
         ax.minorticks_off()
     axes[0, 0].set_ylabel("stiffness ratio")
     style.note(
-        axes[0, 0], 0.97, 0.95, "greatest: stays above 1 where\na contact's weight vanishes", style.BLUE, ha="right"
+        axes[0, 0], 0.97, 0.95, "greatest: stays above 1 where\na contact's weight vanishes", style.PETROL, ha="right"
     )
-    style.note(axes[0, 0], 0.97, 0.06, "least: tends to 1", "#9C6A00", ha="right", va="bottom")
+    style.note(axes[0, 0], 0.97, 0.06, "least: tends to 1", style.AMBER, ha="right", va="bottom")
     style.letter(axes[0])
     return figure, (
         "Convergence of the stiffness ratios over tasks 2 and 3 (in task 1 they are 1), both axes logarithmic: "
         "median (marks), 5th to 95th percentile (shaded), extreme (dotted); ours. Published: 0.8 to 1.3 after one "
-        "iteration (vermilion bar), and that the ratio converges to 1 (dashed). The least ratio does; the greatest "
+        "iteration (red bar), and that the ratio converges to 1 (dashed). The least ratio does; the greatest "
         "does not where a contact's weight tends to zero."
     )
 
@@ -246,8 +246,8 @@ def over_time(results, draw, label, height=2.6, rows=1, **keywords):
 
 def positions(results):
     coordinates = (
-        ("px_m", "x", style.BLUE, "-"),
-        ("py_m", "y", style.ORANGE, (0, (4, 1.5))),
+        ("px_m", "x", style.PETROL, "-"),
+        ("py_m", "y", style.AMBER, (0, (4, 1.5))),
         ("pz_m", "z", style.BLACK, "-"),
     )
 
@@ -259,7 +259,8 @@ def positions(results):
             ax.fill_between(time, low, high, color=colour, alpha=0.3, lw=0)
 
     figure, axes = over_time(results, draw, ["position of the tip [mm]"])
-    axes[0, 2].legend(loc="center", bbox_to_anchor=(0.5, 0.28), ncol=3, handlelength=2, columnspacing=1)
+    figure.get_layout_engine().set(rect=(0, 0, 1, 0.92))
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="upper center", ncol=3, handlelength=2)
     return figure, (
         "Position of the tip over time in the three tasks, ours (signed-distance block). x and y span the top face "
         f"of the block, whose height is z = 0; the bottom of the hole is at z = -5 mm. {HAND}"
@@ -271,34 +272,44 @@ def model_force(results):
         rows = trajectory(results, task)
         size = np.sqrt(sum(rows[f"f{axis}_N"] ** 2 for axis in "xyz"))
         time, low, high = envelope(rows["time_s"], size, BINS)
-        ax.fill_between(time, low, high, color=style.BLUE, alpha=0.45, lw=0)
-        ax.plot(time, (low + high) / 2, color=style.BLUE, lw=0.9)
-        ax.axhline(published.value("L1.threshold"), color=style.VERMILION, ls="--", lw=0.9)
+        ax.fill_between(time, low, high, color=style.PETROL, alpha=0.45, lw=0)
+        ax.plot(time, (low + high) / 2, color=style.PETROL, lw=0.9)
+        ax.axhline(published.value("L1.threshold"), color=style.RED, ls="--", lw=0.9)
 
     figure, axes = over_time(results, draw, ["model force [N]"])
-    axes[0, 0].set_ylim(bottom=0)
+    # The taps of task 2 are ten times as strong as all else.
+    axes[0, 0].set_yscale("symlog", linthresh=0.5, linscale=1.2)
+    axes[0, 0].set_ylim(0, 1.15 * max(ax.dataLim.y1 for ax in axes[0]))
+    axes[0, 0].set_yticks((0, 0.1, 0.2, 0.3, 0.4, 0.5, 1, 2), ("0", "0.1", "0.2", "0.3", "0.4", "0.5", "1", "2"))
+    axes[0, 0].axhline(0.5, color=style.GREY, lw=0.5)
+    axes[0, 0].minorticks_off()
+    style.note(axes[0, 0], 0.98, 0.8, "logarithmic above 0.5 N", style.GREY, ha="right")
     limit = published.value("L1.threshold")
-    axes[0, 0].text(0, 1.03 * limit, "published limit of the input force", color=style.VERMILION, fontsize=7)
+    axes[0, 0].text(0, 0.95 * limit, "published limit of the input force", color=style.RED, fontsize=7, va="top")
     return figure, (
         "Size of the model force (spring, damping and friction) over time in the three tasks, ours: range in each "
-        f"of {BINS} spans of time. Dashed: the limit of the input force, 2 N (3.5). {HAND}"
+        f"of {BINS} spans of time; the axis is linear up to 0.5 N. Dashed: the limit of the input force, 2 N (3.5). {HAND}"
     )
 
 
 def _ratio_over_time(results, column, colour, word):
+    above = column == "ratio_max"
+
     def draw(ax, i, task):
         rows = ratios(results, task, ITERATIONS[i])
         time, low, high = envelope(rows["time_s"], rows[column], BINS)
         ax.fill_between(time, low, high, color=colour, alpha=0.75, lw=0.4, edgecolor=colour)
         ax.axhline(1, color=style.BLACK, lw=0.7, ls="--")
         once = published.entries()["R1.once"]["at_most" if column == "ratio_max" else "at_least"]
+        # Where the curve is on the dashed line, its number still tells.
+        extreme = rows[column].max() if above else rows[column].min()
+        style.note(ax, 0.5, 0.8 if above else 0.15, f"{'≤' if above else '≥'} {extreme:.4g}", colour, ha="center", va="center")
         if ITERATIONS[i] == 1:
-            ax.axhline(once, color=style.VERMILION, lw=1, ls=(0, (1, 1.5)))
+            ax.axhline(once, **style.PUBLISHED_LINE)
 
     labels = [f"{n}" for n in ITERATIONS]
     figure, axes = over_time(results, draw, labels, height=7.6, rows=len(ITERATIONS))
     figure.supylabel("stiffness ratio after so many iterations", fontsize=8)
-    above = column == "ratio_max"
     for ax in axes.flat:
         ax.set_ylim((0.95, 1.4) if above else (0.4, 1.05))
     style.note(
@@ -306,20 +317,21 @@ def _ratio_over_time(results, column, colour, word):
         0.98,
         0.3 if above else 0.1,
         f"published: {'1.3' if above else '0.8'}",
-        style.VERMILION,
+        style.RED,
         ha="right",
         va="bottom",
     )
     return figure, (
         f"The {word} stiffness ratio of a step's contacts over time, after {', '.join(labels[:-1])} and {labels[-1]} "
-        f"shaping iterations (rows), ours (signed-distance block): range in each of {BINS} spans of time. Dotted: "
+        f"shaping iterations (rows), ours (signed-distance block): range in each of {BINS} spans of time; numbers: the "
+        f"{word} of all. Dotted: "
         f"published {'upper' if above else 'lower'} end after one iteration (C.4.2). {HAND}"
     )
 
 
 def greatest_ratio(results):
-    return _ratio_over_time(results, "ratio_max", style.BLUE, "greatest")
+    return _ratio_over_time(results, "ratio_max", style.PETROL, "greatest")
 
 
 def least_ratio(results):
-    return _ratio_over_time(results, "ratio_min", style.ORANGE, "least")
+    return _ratio_over_time(results, "ratio_min", style.AMBER, "least")

@@ -1,6 +1,8 @@
 """HTML from values. Every text from outside goes through `text`."""
 import html
 import json
+import re
+from decimal import Decimal
 
 from .json_input import number_or_none
 
@@ -11,6 +13,18 @@ def text(value):
     return html.escape(str(value), quote=True)
 
 
+# A number's exponent, or the minus before a number that begins a word.
+EXPONENT = re.compile(r"(?<=\d)e([+-]?)0*(\d+)\b")
+MINUS = re.compile(r"(?<![\w.)])-(?=\d)")
+SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def typeset(value):
+    """Text whose numbers are set as printers do: "-1.2e-07" as "−1.2 × 10⁻⁷"."""
+    shown = EXPONENT.sub(lambda found: " × 10" + (found[1].replace("+", "") + found[2]).translate(SUPERSCRIPT), str(value))
+    return text(MINUS.sub("−", shown))
+
+
 def number(value, digits=4):
     """A number with so many significant digits, or a dash."""
     value = number_or_none(value)
@@ -18,8 +32,13 @@ def number(value, digits=4):
         return ABSENT
     if isinstance(value, int) and abs(value) < 10 ** 7:
         return str(value)
-    # The Unicode minus is as wide as a plus and does not break the line.
-    return f"{value:.{digits}g}".replace("-", "−")
+    short = f"{value:.{digits}g}"
+    # Powers of ten only where the zeros would have to be counted.
+    return typeset(format(Decimal(short), "f") if 1e-4 <= abs(value) < 1e7 else short)
+
+
+def counted(number_, what):
+    return f"{number_} {what}{'' if number_ == 1 else 's'}"
 
 
 def cell(value, sort_key=None, classes=""):
@@ -35,18 +54,36 @@ def number_cell(value, digits=4):
     return cell(number(value, digits), "" if value is None else repr(value), "number")
 
 
-def heading_cell(title, numeric=False):
-    return f'<th scope="col"{" class=number" if numeric else ""}>{title}</th>'
+def heading_cell(title, numeric=False, unit=""):
+    """The unit stands below the title."""
+    below = f"<br><span class=unit>{text(unit)}</span>" if unit else ""
+    return f'<th scope="col"{" class=number" if numeric else ""}>{title}{below}</th>'
 
 
 def table(headings, rows, caption="", classes="", element_id=""):
-    """Rows are lists of cells (ready HTML). The wrapper scrolls where the page is narrower than the table."""
+    """Rows are lists of cells (ready HTML). The wrapper scrolls where the page is narrower than the table; with the class
+    "stack" each row becomes a card there instead, its cells named by their headings."""
     identity = f' id="{element_id}"' if element_id else ""
     shown_caption = f"<caption>{caption}</caption>" if caption else ""
-    body = "\n".join(f"<tr>{''.join(row)}</tr>" for row in rows)
+    shown_headings, shown_rows, role = "".join(headings), ["".join(row) for row in rows], ""
+    if "stack" in classes.split():
+        # A table that is laid out otherwise stays one to those who hear it.
+        role = ' role="table"'
+        names = [text(" ".join(strip(heading.replace("<br>", " ")).split())) for heading in headings]
+        shown_headings = shown_headings.replace("<th ", '<th role="columnheader" ')
+        shown_rows = ["".join(one.replace("<td", f'<td role="cell" data-label="{name}"', 1) for one, name in zip(row, names, strict=True))
+                      for row in rows]
+    row_role = ' role="row"' if role else ""
+    body = "\n".join(f"<tr{row_role}>{row}</tr>" for row in shown_rows)
     return (f'<div class="wide" tabindex="0" role="region" aria-label="{text(strip(caption) or "table")}">'
-            f'<table class="{classes}"{identity}>{shown_caption}<thead><tr>{"".join(headings)}</tr></thead>\n'
+            f'<table class="{classes}"{identity}{role}>{shown_caption}<thead><tr{row_role}>{shown_headings}</tr></thead>\n'
             f"<tbody>\n{body}\n</tbody></table></div>")
+
+
+def folded(summary, content, element_id="", classes=""):
+    """Ready HTML that opens at a click, and when a link leads into it."""
+    attributes = (f' id="{element_id}"' if element_id else "") + (f' class="{classes}"' if classes else "")
+    return f"<details{attributes}><summary>{summary}</summary>{content}</details>"
 
 
 def strip(markup):

@@ -1,41 +1,44 @@
 """The page: its sections in order, with style and scripts inlined."""
 from pathlib import Path
 
+from .colours import colour_rules
+from .links import Links
 from .markup import command, text
 from .section_figures import figures_section
 from .section_ledger import choices_section, ledger_section, summary_section
 from .section_replay import replay_section
-from .section_runs import (parameters_section, provenance_of, provenance_section, runs_section, studies_section,
-                           timing_section)
+from .section_runs import parameters_section, provenance_of, provenance_section, runs_section
+from .section_studies import studies_section, timing_section
 from .section_thesis import index_section, limits_table, load_tables, parameter_tables, target_tables
 from .template import fill
 
 ASSETS = Path(__file__).parent / "assets"
-SCRIPTS = ("theme.js", "tables.js", "replay_data.js", "replay_camera.js", "replay_scene.js", "replay_field.js",
+SCRIPTS = ("theme.js", "tables.js", "page.js", "replay_data.js", "replay_camera.js", "replay_scene.js", "replay_field.js",
            "replay_chart.js", "replay_player.js")
 
 
 def report(runs, studies, claims, choices, figures, scenes):
     """The HTML of the report. Depends on nothing but its arguments."""
     tables, provenance = load_tables(), provenance_of(runs)
+    links = Links(runs, figures, claims, studies)
     sections = (
         ("summary", "Summary", "Summary", summary_section(runs, claims, figures, provenance)),
-        ("ledger", "Ledger", "Ledger", ledger_section(claims)),
+        ("ledger", "Ledger", "Ledger", ledger_section(claims, links)),
         ("choices", "Choices", "Choices on record", choices_section(choices)),
         ("replay", "Replay", "Replay", replay_section(scenes)),
-        ("thesis", "Index", "Figures and tables of the thesis", index_section(figures, tables)),
-        ("figures", "Figures", "Figures", figures_section(figures)),
+        ("thesis", "Index", "Figures and tables of the thesis", index_section(figures, tables, links)),
+        ("figures", "Figures", "Figures", figures_section(figures, links)),
         ("subjects", "Subjects", "Simulated subjects", target_tables(runs, tables)),
         ("tables", "Tables", "Parameters and limits of the thesis", parameter_tables(runs, tables) + limits_table(studies, tables)),
         ("runs", "Runs", "Runs", runs_section(runs)),
         ("studies", "Studies", "Precision and other studies", studies_section(studies)),
         ("timing", "Timing", "Timing", timing_section(runs, studies)),
         ("rerun", "Rerun", "Run it again", rerun_section()),
-        ("parameters", "Scenarios", "Scenario of every run", parameters_section(runs)),
+        ("parameters", "Scenarios", "Scenario of every run", parameters_section(runs, links)),
         ("provenance", "Provenance", "Provenance", provenance_section(provenance)),
     )
     return fill(ASSETS / "page.html", {
-        "style": (ASSETS / "style.css").read_text(encoding="utf-8"),
+        "style": colour_rules() + (ASSETS / "style.css").read_text(encoding="utf-8"),
         "navigation": "".join(f'<a href="#{key}">{text(title)}</a>' for key, title, _, _ in sections),
         "sections": "\n".join(section(*entry) for entry in sections),
         "script": "\n".join((ASSETS / name).read_text(encoding="utf-8") for name in SCRIPTS),

@@ -1,6 +1,7 @@
 """Summary and ledger."""
 from .claims import VERDICTS, robustness_text, verdict_counts
-from .markup import cell, heading_cell, table, text
+from .links import claim_link, listed
+from .markup import cell, command, counted, folded, heading_cell, table, text, typeset
 
 
 def verdict_mark(verdict):
@@ -10,11 +11,11 @@ def verdict_mark(verdict):
 
 def summary_section(runs, claims, figures, provenance):
     met = sum(run.expected for run in runs)
-    cards = [(len(runs), "runs"), (f"{met}/{len(runs)}", "ended as their scenario expects")]
-    cards += [(count, verdict_mark(verdict)) for verdict, count in verdict_counts(claims).items() if count]
+    tiles = [(len(runs), "run" if len(runs) == 1 else "runs"), (f"{met}/{len(runs)}", "ended as their scenario expects")]
+    tiles += [(count, verdict_mark(verdict)) for verdict, count in verdict_counts(claims).items() if count]
     if figures:
-        cards.append((len(figures), "figures"))
-    items = "".join(f"<li><b>{text(value)}</b><span>{label}</span></li>" for value, label in cards)
+        tiles.append((len(figures), '<a href="#figures">figures</a>'))
+    items = "".join(f"<li><b>{text(value)}</b><span>{label}</span></li>" for value, label in tiles)
     commits = ", ".join(sorted({str(p.get("commit", "unknown")) for p, _ in provenance})) or "unknown"
     return (
         "<h1>hapbench: haptic rendering of object-to-object contact</h1>"
@@ -33,39 +34,50 @@ def warnings(runs):
 
 def refusals(claims):
     """What the bench does not confirm, in the summary rather than somewhere below."""
-    items = "".join(f"<li>{verdict_mark(c['verdict'])} {text(c.get('id', ''))} ({text(c.get('place', ''))}): "
-                    f"{text(c.get('claim', ''))}</li>" for c in claims if VERDICTS[c["verdict"]][1] == "bad")
+    items = "".join(f"<li>{verdict_mark(c['verdict'])} {claim_link(c)} ({text(c.get('place', ''))}): "
+                    f"{typeset(c.get('claim', ''))}</li>" for c in claims if VERDICTS[c["verdict"]][1] == "bad")
     return f"<p>What these runs do not confirm:</p><ul>{items}</ul>" if items else ""
 
 
-def ledger_section(claims):
+def ledger_section(claims, links):
     if not claims:
         return '<p class="note">No ledger was given (<code>--claims</code>).</p>'
-    rows = [[cell(f'<span id="claim-{text(c.get("id", ""))}">{text(c.get("id", ""))}</span>'), cell(text(c.get("place", ""))),
-             cell(text(c.get("claim", "")), classes="prose"), cell(text(c.get("published", ""))),
-             cell(text(c.get("measured", "")), classes="ours"), cell(verdict_mark(c["verdict"])),
-             cell(text(robustness_text(c)), classes="prose"), cell(text(c.get("rule", "")), classes="prose"), cell(text(c.get("why", "")), classes="prose")] for c in claims]
-    headings = [heading_cell(t) for t in ("Id", "Place", "Claim", "Published", "Measured", "Verdict", "Robustness", "Rule",
-                                           "Why")]
-    return ("<p>Each claim of the thesis, what it publishes, what the runs below give, and a verdict by the rule beside it. "
+    rows = [claim_row(claim, links) for claim in claims]
+    headings = [heading_cell(title) for title in ("Id", "Verdict", "Claim", "Published", "Measured", "Robustness")]
+    return ("<p>Each claim of the thesis, what it publishes, what the runs below give, and a verdict by a rule, which unfolds "
+            "with the figures and runs behind it. "
             "Hands are calibrated to mean and standard deviation of the raw colliding points; all else is a prediction. "
             "Robustness: how often the verdict is the same at points spread over the plausible ranges of everything the "
             'thesis leaves open (<a href="#choices">choices on record</a>), and the choice that decides it, if one does.</p>'
-            + filters("ledger-table", [("Verdict", 5)])
-            + table(headings, rows, "<b>The ledger</b>", "sortable", "ledger-table"))
+            + filters("ledger-table", [("Verdict", 1)])
+            + table(headings, rows, "<b>The ledger</b>", "sortable stack", "ledger-table"))
+
+
+def claim_row(claim, links):
+    id_ = text(claim.get("id", ""))
+    figures, runs = links.of_claim(claim)
+    more = (f"<p><b>Rule</b> {typeset(claim.get('rule', ''))}</p>" + listed("Figures", figures) + listed("Runs", runs)
+            + command(f"hapbench reproduce --only {claim.get('id', '')}"))
+    return [cell(f'<a id="claim-{id_}" href="#claim-{id_}">{id_}</a>', classes="id"), cell(verdict_mark(claim["verdict"])),
+            cell(f"{typeset(claim.get('claim', ''))}<p class=note>{links.place(str(claim.get('place', '')))}</p>"
+                 + folded("Rule, figures, runs", more, classes="printed"), classes="prose"),
+            cell(typeset(claim.get("published", ""))),
+            cell(f"{typeset(claim.get('measured', ''))}<p class=note>{typeset(claim.get('why', ''))}</p>", classes="prose"),
+            cell(text(robustness_text(claim)))]
 
 
 def choices_section(choices):
     if not choices:
         return '<p class="note">None were given (<code>--choices</code>).</p>'
-    rows = [[cell(text(c.get("id", ""))), cell(text(c.get("what", "")), classes="prose"),
+    rows = [[cell(text(c.get("id", ""))), cell(typeset(c.get("what", "")), classes="prose"),
              cell(text(c.get("thesis", "")), classes="prose"), cell(text(f"{c.get('value', '')} {c.get('unit', '')}".strip())),
              cell(text(plausible(c))), cell(text(c.get("chosen", ""))), cell(text(c.get("why", "")), classes="prose")]
             for c in choices]
     headings = [heading_cell(t) for t in ("Choice", "Of what", "The thesis", "Value", "Plausible", "Results seen", "Why")]
     return ("<p>Everything the thesis leaves open and a scenario had to choose. A value without a unit that stands beside a "
             "range around 1 multiplies what the scenarios have. “after” means that results had been seen when it was "
-            "chosen.</p>" + table(headings, rows, "<b>Choices on record</b>", "sortable", "choices-table"))
+            "chosen.</p>" + folded(f"All {counted(len(rows), 'choice')}", table(
+                headings, rows, "<b>Choices on record</b>", "sortable stack", "choices-table")))
 
 
 def plausible(choice):

@@ -36,20 +36,24 @@ def drawn(entry, figures):
     return [f for f in found if not keyword or re.search(keyword[0], f"{f.thesis_figure} {f.title} {f.id}", re.IGNORECASE)]
 
 
-def index_section(figures, tables):
-    entries = json.loads((HERE / "thesis_index.json").read_text(encoding="utf-8"))["figures"]
+def thesis_figures():
+    return json.loads((HERE / "thesis_index.json").read_text(encoding="utf-8"))["figures"]
+
+
+def index_section(figures, tables, links):
     rows = []
-    for entry in entries:
+    for entry in thesis_figures():
         label, title, why_not = entry[:3]
-        links = ", ".join(f'<a href="#figure-{text(f.id)}">{text(f.title or f.id)}</a>' for f in drawn(entry, figures))
+        shown = ", ".join(f'<a href="#figure-{text(f.id)}">{text(f.title or f.id)}</a>' for f in drawn(entry, figures))
         rows.append([cell(f"Fig. {text(label)}"), cell(text(title)),
-                     cell(links or f'<span class="note">{text(why_not or "not among the given figures")}</span>')])
+                     cell(shown or f'<span class="note">{text(why_not or "not among the given figures")}</span>'),
+                     cell(", ".join(links.claims_at(entry)))])
     for part in (*tables["parameters"], tables["limits"], *tables["targets"]):
         rows.append([cell(text(part["label"])), cell(text(part["title"])),
-                     cell(f'<a href="#{anchor(part["label"])}">beside ours</a>')])
-    headings = [heading_cell(title) for title in ("Thesis", "Shows", "In this report")]
+                     cell(f'<a href="#{anchor(part["label"])}">beside ours</a>'), cell("")])
+    headings = [heading_cell(title) for title in ("Thesis", "Shows", "In this report", "Claims")]
     return ("<p>For a reader with the thesis in hand. Appendices A and D both number their tables A.1 to A.4.</p>"
-            + table(headings, rows, "<b>Figures and tables of the thesis</b>"))
+            + table(headings, rows, "<b>Figures and tables of the thesis</b>", "stack"))
 
 
 def target_tables(runs, tables):

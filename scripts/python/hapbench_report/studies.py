@@ -21,6 +21,10 @@ class Study:
     def title(self):
         return Path(self.path).stem.replace("_", " ")
 
+    @property
+    def anchor(self):
+        return "study-" + "".join(c if c.isalnum() else "-" for c in self.path)
+
 
 def load_study(file: Path, results: Path):
     try:

@@ -28,7 +28,8 @@ TEST(Ledger, InTheTreeIsTheOneTheProgramMakes) {
   const test::ProgramRun run = hapbench({"reproduce", "--out", (directory / "out").string(), "--quiet"}, options);
   ASSERT_EQ(run.status, 0) << run.err;
   const auto made = repeatable_claims(Json::parse(test::read_file(directory / "out/claims.json")));
-  const auto kept = repeatable_claims(Json::parse(test::read_file(HAPBENCH_SCENARIOS "/../results/reference/claims.json")));
+  const auto kept =
+      repeatable_claims(Json::parse(test::read_file(HAPBENCH_SCENARIOS "/../results/reference/claims.json")));
   ASSERT_EQ(made.size(), kept.size());
   EXPECT_GE(made.size(), 25u);
   for (const auto& [id, claim] : kept) {
@@ -40,12 +41,15 @@ TEST(Ledger, InTheTreeIsTheOneTheProgramMakes) {
 TEST(Ledger, JudgesSingleClaims) {
   const test::TemporaryDirectory directory;
   const test::ProgramRun run =
-      hapbench({"reproduce", "--only", "B3,C4", "--out", (directory / "out").string(), "--json"});
+      hapbench({"reproduce", "--only", "A4,B3,C4", "--out", (directory / "out").string(), "--json"});
   ASSERT_EQ(run.status, 0) << run.err;
   const Json claims = run.json()["claims"];
-  ASSERT_EQ(claims.size(), 2u);
-  EXPECT_EQ(claims[0]["verdict"], "reproduced");
-  EXPECT_EQ(claims[1]["verdict"], "not reproducible");
+  ASSERT_EQ(claims.size(), 3u);
+  EXPECT_EQ(claims[1]["verdict"], "reproduced");
+  EXPECT_EQ(claims[2]["verdict"], "not reproducible");
+  // A4 loads one scenario, B3 lays its contacts by hand.
+  EXPECT_EQ(claims[0]["scenarios"], Json::array({"single_spring"}));
+  EXPECT_EQ(claims[1]["scenarios"], Json::array());
 }
 
 TEST(Ledger, RefusesClaimsThatAreNotThere) {
