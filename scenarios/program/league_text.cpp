@@ -30,12 +30,10 @@ std::string number(const std::optional<double>& value, int digits) {
 /// How much of a standing a table shows.
 enum class Detail { rank, ratio, spread };
 
+/// The rank and a sign: failed, beyond the spread, within it, or nothing known.
 std::string rank_cell(const Standing& standing, bool failed) {
-  return standing.rank ? fmt::format("{}{}", *standing.rank, failed ? "x" : " ") : "- ";
-}
-
-std::string ratio_cell(const Standing& standing) {
-  return number(standing.ratio_to_best, 3) + (!standing.beyond_spread ? " " : *standing.beyond_spread ? "*" : "~");
+  const char sign = failed ? 'x' : !standing.beyond_spread ? ' ' : *standing.beyond_spread ? '*' : '~';
+  return standing.rank ? fmt::format("{}{}", *standing.rank, sign) : "- ";
 }
 
 std::vector<Table::Column> standing_columns(const League& league, Detail detail) {
@@ -44,7 +42,7 @@ std::vector<Table::Column> standing_columns(const League& league, Detail detail)
   for (std::size_t s = 0; s < scenarios; ++s) {
     columns.push_back({scenarios > 1 ? letter(s) + " " : "rank "});
     if (detail == Detail::rank) continue;
-    columns.push_back({"ratio "});
+    columns.push_back({"ratio"});
     if (detail == Detail::spread) columns.insert(columns.end(), {{"mean"}, {"spread"}});
   }
   return columns;
@@ -58,7 +56,7 @@ Table standings(const League& league, std::size_t metric, Detail detail) {
       const Standing& standing = league.at(s, a, metric);
       cells.push_back(rank_cell(standing, league.failures(s, a) > 0));
       if (detail == Detail::rank) continue;
-      cells.push_back(ratio_cell(standing));
+      cells.push_back(number(standing.ratio_to_best, 3));
       if (detail == Detail::spread) {
         cells.insert(cells.end(), {number(standing.mean, 4), number(standing.spread, 2)});
       }
@@ -140,12 +138,12 @@ std::string league_text(const League& league) {
   for (std::size_t m = 0; m < league.runs.metrics.size(); ++m) {
     text += fmt::format("\n{}, less is better\n\n{}", league.runs.metrics[m], standings_text(league, m));
   }
-  return text + fmt::format(
-                    "\nall metrics and scenarios\n\n{}\n"
-                    "ratio: to the best; in the last table the geometric mean of so many. wins: no other has a better "
-                    "mean\nrank there. Closer than {} % share a rank. x: a run failed; it ranks behind all that did "
-                    "not.\n{}",
-                    laws_text(league), 100.0 * kSameRank, spread_text(league));
+  return text +
+         fmt::format(
+             "\nall metrics and scenarios\n\n{}\n"
+             "ratio: to the best; in the last table the geometric mean of so many. wins: no other has a better\nmean rank "
+             "there. Closer than {} % share a rank. x: a run failed; it ranks behind all that did not.\n{}",
+             laws_text(league), 100.0 * kSameRank, spread_text(league));
 }
 
 }  // namespace hapbench

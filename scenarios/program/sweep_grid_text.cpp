@@ -67,7 +67,7 @@ class Grid {
 
 std::string shown_value(const std::string& text) {
   const auto number = finite_number(text);
-  return number ? significant(*number) : text;
+  return number ? significant(*number, 6) : text;
 }
 
 std::string cell_text(const Cell& cell) {

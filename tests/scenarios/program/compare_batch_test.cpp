@@ -46,7 +46,8 @@ TEST_F(CompareBatch, ShowsALeagueWithinAHundredColumns) {
     EXPECT_NE(run.out.find(text), std::string::npos) << text << run.out;
   }
   for (const std::string& line : lines_of(run.out)) {
-    if (line.find("results in") == std::string::npos) EXPECT_LE(line.size(), 100u) << line;
+    if (line.starts_with("results in")) continue;  // the path is the test's
+    EXPECT_LE(line.size(), 100u) << line;
   }
 }
 

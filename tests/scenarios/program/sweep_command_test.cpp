@@ -221,7 +221,8 @@ TEST_F(SweepCommand, ShowsTwoFieldsAsATableAndAMap) {
   const auto lines = lines_of(hapbench(shown).out);
   ASSERT_GT(lines.size(), 10u);
   EXPECT_EQ(lines[0], "depth_max_m");
-  EXPECT_EQ(lines[2], "rendering.algorithm \\ rendering.stiffness_N_per_m       5000      20000");
+  EXPECT_EQ(lines[2].find("rendering.algorithm \\ rendering.stiffness_N_per_m  "), 0u) << lines[2];
+  EXPECT_TRUE(lines[2].ends_with(" 20000")) << lines[2];
   // The cells are those of the rows.
   const Json json = [&] {
     Words wanted = shown;
