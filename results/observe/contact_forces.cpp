@@ -91,7 +91,6 @@ ContactForceObserver::Phase ContactForceObserver::phase_of_next_row(bool in_cont
     if (first_touch) {
       ++forces_.landings;
       landing_end_ = row_ + settling_rows_;
-      if (high_pass_) high_pass_->settle_at(Vec3::Zero());
     }
   } else {
     ++rows_away_;
@@ -101,12 +100,24 @@ ContactForceObserver::Phase ContactForceObserver::phase_of_next_row(bool in_cont
   return landing ? Phase::landing : in_contact ? Phase::settled : Phase::away;
 }
 
+Vec3 ContactForceObserver::filtered(const Vec3& force, Phase phase) noexcept {
+  if (phase == Phase::landing) filtering_ = false;
+  if (phase == Phase::settled && !filtering_) {
+    high_pass_->settle_at(force);
+    filtering_ = true;
+  }
+  if (!filtering_) return Vec3::Zero();
+  if (rows_away_ <= settling_rows_) return high_pass_->filter(force);
+  // Long away: its output has died out, and numbers too small for full precision would be slow.
+  if (rows_away_ == settling_rows_ + 1) high_pass_->settle_at(Vec3::Zero());
+  return Vec3::Zero();
+}
+
 ContactForceObserver::Phase ContactForceObserver::add(const Vec3& force, const ForceChange& change,
                                                       bool in_contact) noexcept {
   const Phase phase = phase_of_next_row(in_contact);
   ContactForces& f = forces_;
-  const bool touched = f.landings > 0 && rows_away_ <= settling_rows_;
-  const double above_cutoff_squared = touched && high_pass_ ? high_pass_->filter(force).squaredNorm() : 0.0;
+  const double above_cutoff_squared = high_pass_ ? filtered(force, phase).squaredNorm() : 0.0;
   if (phase == Phase::away) return phase;
 
   const double squared = force.squaredNorm();

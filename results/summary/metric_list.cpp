@@ -73,11 +73,12 @@ MetricList metric_list(const ContactForces& c) {
              c.step_p99()),
       number("settled_force_step_max_N", "N", "largest force step ||f_k - f_(k-1)|| of the rows in settled contact",
              c.step_max()),
-      number("force_rms_above_30Hz_N", "N",
-             "vibration of the force, which the hand feels: root mean square of f behind a high-pass (Butterworth, "
-             "fourth order, 30 Hz, at rest before each first touch) over the rows in settled contact; none at "
-             "sampling rates of 60 Hz or less",
-             c.rms_above_cutoff()),
+      number(
+          "force_rms_above_30Hz_N", "N",
+          "vibration of the force, which the hand feels: root mean square of f behind a high-pass (Butterworth, "
+          "fourth order, 30 Hz, started at rest at the end of each landing) over the rows in settled contact; none at "
+          "sampling rates of 60 Hz or less",
+          c.rms_above_cutoff()),
       number("force_reversals_per_s", "1/s",
              "rows in settled contact whose f has a negative inner product with that of the row before, per settled_s",
              settled ? c.reversals_per_second() : std::nullopt)};

@@ -16,7 +16,7 @@ namespace {
 /// As narrow as it gets: "1440" in place of "1.44e+03".
 std::string cell(std::optional<double> value, int digits = 3) {
   if (value && std::abs(*value) >= 100.0 && std::abs(*value) < 1e6) return fmt::format("{:.0f}", *value);
-  return significant(value.value_or(std::numeric_limits<double>::quiet_NaN()), digits);
+  return significant(value.value_or(std::numeric_limits<double>::quiet_NaN()) + 0.0, digits);  // no "-0"
 }
 
 }  // namespace
@@ -44,20 +44,23 @@ std::vector<std::string> run_cells(const RunReport& report) {
 
 std::string reduction_text(std::span<const RunReport> reports) {
   const RunReport* worst = nullptr;
-  std::vector<std::string> names;
+  const auto step_max = [](const RunReport& report) { return report.summary.metrics.reduction->step_max(); };
+  std::vector<std::string> others;
   for (const RunReport& report : reports) {
     const auto& jumps = report.summary.metrics.reduction;
     if (!jumps || !jumps->stand_out()) continue;
-    names.push_back(report.summary.algorithm);
-    if (worst == nullptr || jumps->step_max() > worst->summary.metrics.reduction->step_max()) worst = &report;
+    const bool is_worst = worst == nullptr || step_max(report) > step_max(*worst);
+    if (is_worst && worst != nullptr) others.push_back(worst->summary.algorithm);
+    if (!is_worst) others.push_back(report.summary.algorithm);
+    if (is_worst) worst = &report;
   }
   if (worst == nullptr) return "";
   const ReductionJumps& jumps = *worst->summary.metrics.reduction;
   return fmt::format(
-      "warning: reduction: kept points change in {} of {} steps, force steps up to {} N there and {} N elsewhere; "
-      "rendering.reduction=null keeps them all: {}\n",
+      "warning: reduction: kept points change in {} of {} steps, force steps up to {} N there and {} N elsewhere ({}{}{}); "
+      "rendering.reduction=null keeps them all\n",
       jumps.changes, worst->summary.result.rows, cell(jumps.step_max(), 2), cell(jumps.step_max_elsewhere(), 2),
-      fmt::join(names, ", "));
+      worst->summary.algorithm, others.empty() ? "" : "; also ", fmt::join(others, ", "));
 }
 
 std::vector<std::string> run_warnings(std::span<const RunReport> reports) {
