@@ -55,8 +55,7 @@ TEST_F(EncounterWithBlock, NoContactAsksForTheScaleWhereSizesAreOutOfProportion)
   EXPECT_EQ(outcome(), Outcome::no_contact);
   EXPECT_EQ(warning().find("scale"), std::string::npos);
   for (const double factor : {1e-3, 1e3}) {
-    const EncounterWithBlock& block = *this;
-    const Box other{factor * block.box.min, factor * block.box.max};
+    const Box other{factor * box.min, factor * box.max};
     const auto text = warning_about(scenario, Outcome::no_contact, {metrics, approach, other});
     EXPECT_NE(text.value_or("").find("; is environment.scale right?"), std::string::npos) << factor;
   }
