@@ -59,9 +59,9 @@ struct ForceChange {
   bool reverses = false;  ///< their inner product is negative
 };
 
-/// Sorts the rows of a run into landing, settled contact and the rest, and adds up their forces. Constant memory; about
-/// 15 ns for a row in contact, 1 ns for others. The high-pass starts at the first settled row after each landing, at
-/// rest at its force, so that the blow does not ring on in it.
+/// Sorts the rows of a run into landing, settled contact and the rest, and adds up their forces. Constant memory; a few
+/// nanoseconds a row. The high-pass starts at the first settled row after each landing, at rest at its force, so that
+/// the blow does not ring on in it.
 class ContactForceObserver {
  public:
   enum class Phase { away, landing, settled };
