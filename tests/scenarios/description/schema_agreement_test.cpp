@@ -88,7 +88,7 @@ TEST(ScenarioSchema, AcceptsFilesThatExtendOthersAsTheyStand) {
   for (const BundledScenario& bundled : bundled_scenarios()) {
     const Json json = parse_json(read_text_file(bundled.file, kLargestJsonFile));
     EXPECT_EQ(schema().complaints(json), "") << bundled.name;
-    extending += json.contains("extends") ? 1 : 0;
+    extending += json.contains("extends") ? 1u : 0u;
   }
   EXPECT_GT(extending, 0u);
   const auto accepts = [](const char* text) { return schema().accepts(Json::parse(text)); };
