@@ -6,6 +6,8 @@ from pathlib import Path
 from hapbench_report.json_input import InputError
 from hapbench_report.runs import load_run, load_runs
 
+from .names import nearest
+
 SUMMARY, SWEEP = "summary.json", "sweep.csv"
 
 
@@ -27,8 +29,8 @@ def given_runs(words):
             if folder.is_file() and (folder.parent / SUMMARY).is_file():
                 folder = folder.parent
             else:
-                raise InputError(f"{folder}: no such folder{similar(folder)}; allowed: a folder that "
-                                 "\"hapbench run\", \"compare\" or \"sweep\" wrote")
+                raise InputError(f"{folder}: no such folder; allowed: a folder that \"hapbench run\", "
+                                 f"\"compare\" or \"sweep\" wrote{similar(folder)}")
         runs = [load_run(folder, folder.name)] if (folder / SUMMARY).is_file() else compared(folder)
         if not runs:
             raise InputError(f"{folder}: holds neither {SUMMARY} nor folders with one nor {SWEEP}; allowed: a folder that "
@@ -52,7 +54,6 @@ def compared(folder):
 
 def similar(folder):
     """A hint at a folder of nearly that name beside it."""
-    from .names import nearest
     try:
         names = [entry.name for entry in folder.parent.iterdir() if entry.is_dir()]
     except OSError:

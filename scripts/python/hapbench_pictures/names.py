@@ -3,7 +3,7 @@ import difflib
 
 
 def nearest(name, names):
-    """ "; did you mean "x"" when one of the names is near, else nothing."""
+    """What ends a message about a name that is none, in the words of the program; nothing when none is near."""
     lower = {candidate.lower(): candidate for candidate in names}
     close = difflib.get_close_matches(name.lower(), lower, 1) or [n for n in lower if name.lower() in n][:1]
-    return f"; did you mean \"{lower[close[0]]}\"" if close else ""
+    return f"; nearest valid name: \"{lower[close[0]]}\"" if close else ""

@@ -89,8 +89,8 @@ def quantity(name, runs):
                 known.setdefault(column, file)
     found = SHORT.get(name) or (by_column(name, known[name]) if name in known else None)
     if not found:
-        raise InputError(f"--y: got \"{name}\"{nearest(name, [*SHORT, PATH, *known])}; allowed: {', '.join([*SHORT, PATH])}, "
-                         f"or a column of {' or '.join(sorted(set(known.values())) or [TRAJECTORY])}")
+        raise InputError(f"--y: got \"{name}\"; allowed: {', '.join([*SHORT, PATH])}, or a column of "
+                         f"{' or '.join(sorted(set(known.values())) or [TRAJECTORY])}{nearest(name, [*SHORT, PATH, *known])}")
     missing = [run for run in runs if found.file not in tables_of(run)]
     if len(missing) == len(runs):
         raise InputError(f"--y {name}: {runs[0].directory}: has no {found.file}; run it with --set {SWITCH[found.file]}=true")

@@ -36,7 +36,7 @@ class Sweep:
         metrics = [name for name in names[names.index("outcome") + 1:] if any(is_number(row[name]) for row in self.rows)]
         self.metric = metric or next((name for name in USUAL if name in metrics), metrics[0])
         if self.metric not in metrics:
-            raise InputError(f"--metric: got \"{self.metric}\"{nearest(self.metric, metrics)}; allowed: {', '.join(metrics)}")
+            raise InputError(f"--metric: got \"{self.metric}\"; allowed: {', '.join(metrics)}{nearest(self.metric, metrics)}")
         self.name = folder.name
 
     def column(self, field):
