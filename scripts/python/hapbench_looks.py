@@ -1,0 +1,45 @@
+"""How each algorithm is drawn, in figures and on pages: one colour, line and marker of its own everywhere.
+
+Every colour has a contrast of at least 4.5 to the ground it is drawn on (WCAG 2.1, AA), so that names can be written in
+it: `colour` on white, `dark` on the dark page. The hues were spread for readers with and without deuteranopia and
+protanopia; dashes and markers tell apart what colours cannot.
+"""
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Look:
+    label: str
+    colour: str
+    dark: str
+    dash: tuple  # lengths drawn and left out in turn, in widths of the line; empty: a solid line
+    marker: str  # of matplotlib
+
+    @property
+    def line(self):
+        """The line's style as matplotlib has it."""
+        return (0, self.dash) if self.dash else "-"
+
+
+ALGORITHMS = {
+    "original_averaging": Look("original averaging (DP)", "#0B6BC4", "#6CB4F5", (), "s"),
+    "summation": Look("summation", "#6D122C", "#E98AA0", (5, 1.5), "^"),
+    "mean": Look("mean", "#027A7D", "#4FC9CC", (3, 1, 1, 1), "v"),
+    "virtual_coupling": Look("virtual coupling", "#5A34A9", "#B79BF5", (1, 1), "D"),
+    "shaped_stiffness": Look("stiffness shaping (HS)", "#000000", "#F2F2F2", (), "o"),
+    "tandpasta": Look("tandpasta", "#123C04", "#A5C98A", (7, 2, 1, 2), "P"),
+    "normal_projection": Look("normal projection", "#515454", "#B5B9B9", (2, 1), "X"),
+    "exact_shaping": Look("exact shaping (ours)", "#BD1BC3", "#F08CF3", (4, 1, 1, 1, 1, 1), "h"),
+    "continuous_normal_projection": Look("contin. projection (ours)", "#775543", "#D3AE97", (3, 1), "*"),
+    "least_squares": Look("least squares (ours)", "#1B06E8", "#8F9BFF", (1, 1.5), "d"),
+    "highest_depth": Look("highest depth", "#09335D", "#C3D3EA", (6, 2), "<"),
+    "merged_shaping": Look("merged shaping (ours)", "#9F0375", "#F07CC8", (4, 1, 1, 1), "p"),
+    "proxy": Look("proxy (ours)", "#1D6A01", "#7EDB5A", (8, 1), ">"),
+}
+# Numbers of the thesis, in a colour that no algorithm has; hollow diamonds and dotted lines in figures.
+PUBLISHED, PUBLISHED_DARK = "#C2261C", "#FF8A75"
+
+
+def look(algorithm):
+    """Of any algorithm; those that have none of their own share one."""
+    return ALGORITHMS.get(algorithm) or Look(algorithm.replace("_", " "), "#6A6A6A", "#A8ADB3", (2, 2), ".")
