@@ -35,6 +35,8 @@ void add_precision(CommandLine& line);
 void add_reproduce(CommandLine& line);
 void add_sweep(CommandLine& line);
 void add_merge(CommandLine& line);
+void add_plot(CommandLine& line);
+void add_report(CommandLine& line);
 void add_shell(CommandLine& line);
 void add_list(CommandLine& line);
 void add_describe(CommandLine& line);

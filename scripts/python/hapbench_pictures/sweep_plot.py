@@ -4,10 +4,10 @@ import csv
 import matplotlib
 import numpy as np
 
-from hapbench_figures.style import SETTINGS, look
+from hapbench_figures.style import SETTINGS
+from hapbench_looks import look
 from hapbench_report.json_input import InputError, at, load_object
 
-from .looks import on_paper
 from .names import nearest
 
 matplotlib.use("agg")
@@ -86,7 +86,7 @@ def draw_curves(ax, sweep, columns, texts):
         order = np.arange(len(x)) if over in texts else np.argsort(x)
         label = str(name).replace("_", " ")
         ax.plot(np.array(x)[order], sweep.metric_values[rows][order], marker="o", label=label,
-                color=on_paper(look(str(name)), False))
+                color=look(str(name)).colour)
     if others:
         ax.legend()
     if over not in texts and spread_logarithmically(columns[over]):
