@@ -74,3 +74,8 @@ def labels(runs):
         if all(names) and len(set(names)) == len(names):
             return names
     return [run.directory.as_posix() for run in runs]
+
+
+def common_folder(words):
+    """The folder that holds all of the runs: of a single one, its own."""
+    return Path(os.path.commonpath([os.path.abspath(word) for word in words])) if len(words) > 1 else Path(words[0])

@@ -1,13 +1,12 @@
 """`hapbench plot`: a sketch in the terminal and a file."""
 import argparse
 import io
-import os
 from pathlib import Path
 
 from hapbench_report.json_input import InputError
 
 from .files import write
-from .given import given_runs, given_sweep, labels
+from .given import common_folder, given_runs, given_sweep, labels
 from .terminal import this_terminal
 
 KINDS = (".svg", ".png", ".pdf")
@@ -74,8 +73,3 @@ def of_sweep(folder, options):
         raise InputError(f"--y: {folder} is a sweep; allowed for it: --metric")
     sweep = Sweep(folder, options.metric)
     return draw_sweep(sweep), [] if options.no_sketch or options.quiet else sketch_sweep(sweep, this_terminal())
-
-
-def common_folder(words):
-    """The folder that holds all of the runs: of a single one, its own."""
-    return Path(os.path.commonpath([os.path.abspath(word) for word in words])) if len(words) > 1 else Path(words[0])

@@ -38,10 +38,11 @@ def report(runs, studies, claims, choices, figures, scenes):
     return whole_page(sections)
 
 
-def whole_page(sections):
+def whole_page(sections, title="hapbench report", further_style=""):
     """The page of sections, each a key, a short title for the navigation, a title and its HTML."""
     return fill(ASSETS / "page.html", {
-        "style": "\n".join((ASSETS / name).read_text(encoding="utf-8") for name in STYLES),
+        "style": "\n".join((ASSETS / name).read_text(encoding="utf-8") for name in STYLES) + further_style,
+        "title": text(title),
         "navigation": "".join(f'<a href="#{key}">{text(title)}</a>' for key, title, _, _ in sections),
         "sections": "\n".join(section(*entry) for entry in sections),
         "script": "\n".join((ASSETS / name).read_text(encoding="utf-8") for name in SCRIPTS),

@@ -105,7 +105,7 @@ function listenToSound(player) {
   });
   player.find("#replay-sound-of").addEventListener("change", (e) => hear(player, Number(e.target.value)));
   player.find("#replay-sound-next").addEventListener("click", () => hearNext(player));
-  player.find("#replay-volume").addEventListener("input", (e) => player.sound.setVolume(Number(e.target.value) ** 2 * 6));
+  player.find("#replay-volume").addEventListener("input", (e) => player.sound.setVolume(Number(e.target.value)));
 }
 
 // Moments.
