@@ -15,7 +15,7 @@ from .quantities import SHORT, USUAL, Samples, tables_of
 matplotlib.use("agg")
 from matplotlib import pyplot as plt  # noqa: E402  (the backend comes first)
 
-SIZE, PATH_SIZE = (4.8, 2.1), (4.8, 3.2)  # [inch]: on a phone as legible as the text around it
+SIZE, PATH_SIZE = (4.0, 2.0), (4.0, 2.9)  # [inch]: on a phone as legible as the text around it
 
 
 def curves_section(runs, labels):

@@ -15,8 +15,8 @@ from hapbench_report.replay_tool import tool_profile
 
 from .columns import read_columns
 
-# Points drawn: near the contacts, and of the rest.
-NEAR, FAR = 5000, 2500
+# Points drawn: near the contacts, and with the rest.
+NEAR, ALL = 5000, 8000
 SPEEDS = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 10)  # as in the player's menu
 WATCHED_S = 10.0  # how long a replay should take at first
 PATIENCE_S = 120
@@ -67,7 +67,8 @@ def points_of(run, recordings):
 def thinned(points, box, margin):
     low, high = (np.array(corner) for corner in box)
     near = ((points[:, :3] >= low - margin) & (points[:, :3] <= high + margin)).all(axis=1)
-    return np.concatenate([some(points[near], NEAR), some(points[~near], FAR)])
+    kept = some(points[near], NEAR)
+    return np.concatenate([kept, some(points[~near], ALL - len(kept))])
 
 
 def some(points, most):

@@ -6,6 +6,7 @@ from hapbench_report.json_input import at, number_or_none
 from hapbench_report.markup import cell, command, heading_cell, number, number_cell, table, text
 from hapbench_report.section_runs import provenance_of, provenance_section
 
+MOST_CARDS = 6
 # Metric of summary.json -> heading, factor; shown where any run has it. What separates algorithms comes first.
 METRICS = (
     ("landings", "Landings", 1),
@@ -24,15 +25,31 @@ METRICS = (
 
 
 def summary_section(runs, labels):
-    cards = "".join(
-        f"<li><b class={'good' if run.expected else 'bad'}>{text(run.outcome.replace('_', ' ') or '–')}</b>"
-        f"<span>{text(label)}{'' if run.expected else ', not as its scenario expects'}; in contact "
-        f"{percent(contact_share(run))} of {number(at(run.summary, '/duration_s'), 4)} s</span></li>"
-        for run, label in zip(runs, labels))
+    cards = run_cards(runs, labels) if len(runs) <= MOST_CARDS else outcome_cards(runs, labels)
     names = list(dict.fromkeys(run.name for run in runs))
     descriptions = list(dict.fromkeys(str(run.scenario.get("description") or "") for run in runs))
     about = "".join(f"<p class=lead>{text(words)}</p>" for words in descriptions[:3] if words)
     return f"<h1>{text(', '.join(names))}</h1>{about}<ul class=cards>{cards}</ul>"
+
+
+def run_cards(runs, labels):
+    return "".join(
+        card(run.outcome, run.expected, f"{label}{'' if run.expected else ', not as its scenario expects'}; in contact "
+             f"{percent(contact_share(run))} of {number(at(run.summary, '/duration_s'), 4)} s") for run, label in zip(runs, labels))
+
+
+def outcome_cards(runs, labels):
+    """One for each way that runs ended."""
+    ways = {}
+    for run, label in zip(runs, labels):
+        ways.setdefault((run.outcome, run.expected), []).append(label)
+    return "".join(card(outcome, expected, f"{len(names)} of {len(runs)} runs{'' if expected else ', not as expected'}: "
+                        f"{', '.join(names)}") for (outcome, expected), names in ways.items())
+
+
+def card(outcome, expected, words):
+    return (f"<li><b class={'good' if expected else 'bad'}>{text(outcome.replace('_', ' ') or '–')}</b>"
+            f"<span>{text(words)}</span></li>")
 
 
 def contact_share(run):

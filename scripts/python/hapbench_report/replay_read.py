@@ -19,17 +19,20 @@ def numbers(file, columns, steps=None):
     """The named columns of a CSV file, each a list; with `steps`, of those rows whose step is among them."""
     try:
         with file.open(newline="", encoding="utf-8") as text:
-            reader = csv.DictReader(text)
-            missing = [name for name in columns if name not in (reader.fieldnames or ())]
+            reader = csv.reader(text)
+            header = next(reader, [])
+            missing = [name for name in columns if name not in header]
             if missing:
                 raise InputError(f"{file}: line 1: no column {missing[0]}")
-            found = {name: [] for name in columns}
+            places = [header.index(name) for name in columns]
+            step = header.index("step") if steps is not None else None
+            rows = []
             for row in reader:
-                if steps is not None and finite(row["step"], file, reader.line_num, "step") not in steps:
-                    continue
-                for name, values in found.items():
-                    values.append(finite(row[name], file, reader.line_num, name))
-            return found
+                if len(row) != len(header):
+                    raise InputError(f"{file}: line {reader.line_num}: got {len(row)} fields; allowed: {len(header)}")
+                if step is None or finite(row[step], file, reader.line_num, "step") in steps:
+                    rows.append([finite(row[i], file, reader.line_num, header[i]) for i in places])
+            return dict(zip(columns, zip(*rows))) if rows else {name: () for name in columns}
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{file}: cannot be read: {error}") from error
 

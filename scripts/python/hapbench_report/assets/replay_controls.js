@@ -112,15 +112,18 @@ function listenToSound(player) {
 
 /** For each kind of worst moment, a button for the shown run in which it is worst. */
 function showWorstMoments(player) {
-  const kinds = new Map();
-  for (const recording of player.shown) for (const moment of recording.worst) {
+  const kinds = new Map(), moments = player.shown.flatMap((recording) => recording.worst.map((moment) => ({...moment, recording})));
+  const isSettled = (moment) => moment.title.startsWith("settled");
+  for (const moment of moments) {
+    // Landings count where no run has anything else.
     const kind = moment.title.replace("settled ", ""), known = kinds.get(kind);
-    if (moment.value > 0 && !(known && known.value >= moment.value)) kinds.set(kind, {...moment, recording});
+    const worse = !known || (isSettled(known) === isSettled(moment) ? moment.value > known.value : isSettled(moment));
+    if (moment.value > 0 && worse) kinds.set(kind, moment);
   }
   player.find("#replay-worst").replaceChildren(...[...kinds.values()].map((moment) => {
     const whose = player.shown.length > 1 ? `, ${moment.recording.label}` : "";
     const button = Object.assign(document.createElement("button"), {type: "button",
-      textContent: `Largest ${moment.title}: ${show(moment.value)} ${moment.unit} at ${show(moment.time, 4)} s${whose}`});
+      textContent: `Largest ${moment.title}: ${show(moment.value)} ${moment.unit} at ${+moment.time.toPrecision(4)} s${whose}`});
     button.addEventListener("click", () => { player.pause(); player.seek(moment.time); });
     return button;
   }));

@@ -119,7 +119,11 @@ function drawForce(context, project, tip, force, colours) {
   context.lineWidth = 3;
   drawArrow(context, from, to, 11);
   context.font = "600 13px system-ui, sans-serif";
-  context.fillText(`${show(size)} N`, to[0] + 7, to[1] + (to[1] > from[1] ? 14 : -6));
+  const label = [`${show(size)} N`, to[0] + 7, to[1] + (to[1] > from[1] ? 14 : -6)];
+  // Legible over points, too.
+  context.strokeStyle = colours.panel;
+  context.strokeText(...label);
+  context.fillText(...label);
 }
 
 /** A bar of a round length in the lower left corner. */

@@ -18,19 +18,20 @@ const tickText = (value, step) =>
   (Math.abs(value) >= 1e5 || (step < 1e-4 && value) ? value.toExponential(0) : value.toFixed(Math.max(0, -Math.floor(Math.log10(step) + 1e-9))))
     .replace("-", "−");
 
-function linearAxis(low, high) {
-  const top = high > low ? high : low + 1, step = roundStep(top - low, 4), ticks = [];
+function linearAxis(low, high, count = 4) {
+  const top = high > low ? high : low + 1, step = roundStep(top - low, count), ticks = [];
   for (let i = Math.ceil(low / step); i * step <= top * (1 + 1e-9); ++i) ticks.push([i * step, tickText(i * step, step)]);
   return {at: (value) => (value - low) / (top - low), ticks};
 }
 
-/** From the decade below all but the smallest hundredth of the sizes, five decades at most. */
+/** From the decade below all but the smallest hundredth of the sizes, eight decades at most. */
 function logarithmicAxis(values) {
   const sizes = values.filter((value) => value > 0).sort((a, b) => a - b);
   if (!sizes.length) return linearAxis(0, 1);
   const top = Math.ceil(Math.log10(sizes[sizes.length - 1]) + 1e-9);
-  const low = Math.min(top - 1, Math.max(top - 5, Math.floor(Math.log10(sizes[Math.floor(sizes.length / 100)]))));
-  const ticks = Array.from({length: top - low + 1}, (_, i) => [10 ** (low + i), show10(low + i)]);
+  const low = Math.min(top - 1, Math.max(top - 8, Math.floor(Math.log10(sizes[Math.floor(sizes.length / 100)]))));
+  const every = Math.ceil((top - low) / 4), ticks = [];
+  for (let e = top; e >= low; e -= every) ticks.push([10 ** e, show10(e)]);
   return {at: (value) => Math.max(0, (Math.log10(Math.max(value, 1e-30)) - low) / (top - low)), ticks};
 }
 
@@ -68,7 +69,7 @@ function paintTracks(context, width, height, recordings, duration, logarithmic, 
   const high = (height - TRACK_TOP - TRACK_BOTTOM - (TRACKS.length - 1) * TRACK_GAP) / TRACKS.length;
   const x = (t) => TRACK_LEFT + (t / duration) * (width - TRACK_LEFT - TRACK_RIGHT);
   context.font = "12px system-ui, sans-serif";
-  const times = linearAxis(0, duration);
+  const times = linearAxis(0, duration, Math.max(2, Math.round(width / 80)));
   TRACKS.forEach((track, i) => {
     const box = {left: TRACK_LEFT, right: width - TRACK_RIGHT, top: TRACK_TOP + i * (high + TRACK_GAP), high};
     const values = recordings.map((r) => Array.from({length: r.length}, (_, k) => track.of(r, k)));
