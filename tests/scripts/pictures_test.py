@@ -270,8 +270,8 @@ class Page(Given):
         for name in ("mesh", "springs", "peg"):
             page = self.page(self.root / name)
             # A bundled scenario names its source itself.
-            page = re.sub(r"<details>.*?</details>|<p class=lead>.*?</p>", "", page, flags=re.S)
-            self.assertNotRegex(page, r"(?i)thesis|ledger|T\. C\. Lee|not reproduced")
+            page = re.sub(r"<(style|script|details)\b.*?</\1>|<p class=lead>.*?</p>", "", page, flags=re.S)
+            self.assertEqual(re.findall(r"(?i)thesis|ledger|T\. C\. Lee|not reproduced", page), [])
 
     def test_sections_are_there_when_they_have_content(self):
         page = self.page(self.root / "mesh")
@@ -285,7 +285,7 @@ class Page(Given):
         page = self.page(run)
         self.assertEqual(re.findall(r'<section id="(\w+)"', page), ["summary", "warnings", "metrics", "scenario", "rerun", "provenance"])
         for text in ("in contact 4.9 % of the run &lt;b&gt;", "Landing max, N", "7.25", "Force above 30 Hz rms, N", "0.125"):
-            self.assertIn(text, page)
+            self.assertTrue(text in page, text)
 
     def test_the_commands_repeat_the_run(self):
         page = self.page(self.root / "springs")
@@ -319,8 +319,7 @@ class Page(Given):
         summary |= {"name": hostile, "algorithm": hostile, "outcome": hostile, "warnings": [hostile]}
         (run / "summary.json").write_text(json.dumps(summary))
         page = self.page(run)
-        self.assertNotIn("<script>alert", page)
-        self.assertNotIn('<img src="https', page)
+        self.assertFalse("<script>alert" in page or '<img src="https' in page)
 
     def test_bad_input(self):
         for words, said in (((self.root / "sweep",), "is a sweep"), ((self.root / "mesh", "--out", "x.pdf"), "allowed: .html"),
