@@ -37,6 +37,8 @@ void add_diff(CommandLine& line);
 void add_sweep(CommandLine& line);
 void add_merge(CommandLine& line);
 void add_new(CommandLine& line);
+void add_plot(CommandLine& line);
+void add_report(CommandLine& line);
 void add_shell(CommandLine& line);
 void add_list(CommandLine& line);
 void add_describe(CommandLine& line);

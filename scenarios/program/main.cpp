@@ -29,6 +29,8 @@ int run_program(int argc, char** argv) {
   add_sweep(line);
   add_merge(line);
   add_new(line);
+  add_plot(line);
+  add_report(line);
   add_shell(line);
   add_list(line);
   add_describe(line);

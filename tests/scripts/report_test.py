@@ -12,7 +12,8 @@ from pathlib import Path
 from report_fixture import PROGRAM, claim, make_claims, make_figures, make_results, report
 
 from hapbench_report.markup import number, strip, typeset
-from hapbench_report.replay_pack import CONTACT_COLUMNS, Recording, packed_replays
+from hapbench_report.replay_pack import packed_replays
+from hapbench_report.replay_read import CONTACT_COLUMNS, MEASURED_COLUMNS, Recording
 from hapbench_report.section_thesis import figure_labels
 from hapbench_report.units import column
 
@@ -186,12 +187,12 @@ class Replay(WithResults):
     def test_tensors_give_the_recorded_ratios(self):
         for trajectory in self.results.glob("replay/*/*/trajectory.csv"):
             recording = Recording(trajectory.parent)
-            for row, contacts in zip(recording.rows, recording.contacts):
+            self.assertIsNotNone(recording.tensors)
+            for packed, tensor, contacts in zip(recording.rows(), recording.tensors, recording.contacts):
                 if not contacts:
                     continue
-                s = {name: row[name] for name in row if re.fullmatch("s[xyz]{2}", name)}
-                ratios = [s["sxx"] * x * x + s["syy"] * y * y + s["szz"] * z * z
-                          + 2 * (s["sxy"] * x * y + s["sxz"] * x * z + s["syz"] * y * z)
+                row, (sxx, sxy, sxz, syy, syz, szz) = dict(zip(MEASURED_COLUMNS, packed)), tensor
+                ratios = [sxx * x * x + syy * y * y + szz * z * z + 2 * (sxy * x * y + sxz * x * z + syz * y * z)
                           for x, y, z in (contact[4:7] for contact in contacts)]
                 # Two sums of n products of factors up to one, in different orders: n roundings each, of sums below the
                 # largest ratio.
@@ -203,7 +204,7 @@ class Replay(WithResults):
         for scene in packed_replays(self.results / "replay"):
             for packed in scene["recordings"]:
                 recording = Recording(self.results / "replay" / scene["id"] / packed["algorithm"])
-                flat = [value for contacts in recording.contacts for contact in contacts for value in contact]
+                flat = [value for contacts in recording.contacts for contact in contacts for value in contact[:len(CONTACT_COLUMNS)]]
                 steps = array("h", base64.b64decode(packed["contacts"]))
                 scales = packed["contactScales"]
                 self.assertEqual(len(steps), len(flat))

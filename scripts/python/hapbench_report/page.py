@@ -13,8 +13,9 @@ from .section_thesis import index_section, limits_table, load_tables, parameter_
 from .template import fill
 
 ASSETS = Path(__file__).parent / "assets"
-SCRIPTS = ("theme.js", "tables.js", "page.js", "replay_data.js", "replay_camera.js", "replay_scene.js", "replay_field.js",
-           "replay_chart.js", "replay_player.js")
+STYLES = ("style.css", "replay.css")
+SCRIPTS = ("theme.js", "tables.js", "page.js", "replay_data.js", "replay_camera.js", "replay_scene.js", "replay_tool.js", "replay_field.js",
+           "replay_tracks.js", "replay_sound.js", "replay_export.js", "replay_player.js", "replay_controls.js")
 
 
 def report(runs, studies, claims, choices, figures, scenes):
@@ -37,8 +38,14 @@ def report(runs, studies, claims, choices, figures, scenes):
         ("parameters", "Scenarios", "Scenario of every run", parameters_section(runs, links)),
         ("provenance", "Provenance", "Provenance", provenance_section(provenance)),
     )
+    return whole_page(sections)
+
+
+def whole_page(sections, title="hapbench report", further_style=""):
+    """The page of sections, each a key, a short title for the navigation, a title and its HTML."""
     return fill(ASSETS / "page.html", {
-        "style": colour_rules() + (ASSETS / "style.css").read_text(encoding="utf-8"),
+        "style": "\n".join([colour_rules(), *((ASSETS / name).read_text(encoding="utf-8") for name in STYLES)]) + further_style,
+        "title": text(title),
         "navigation": "".join(f'<a href="#{key}">{text(title)}</a>' for key, title, _, _ in sections),
         "sections": "\n".join(section(*entry) for entry in sections),
         "script": "\n".join((ASSETS / name).read_text(encoding="utf-8") for name in SCRIPTS),

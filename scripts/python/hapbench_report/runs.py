@@ -15,6 +15,7 @@ class Run:
     scenario: dict = field(default_factory=dict)  # every field, defaults filled in; empty when not kept
     timing: dict = field(default_factory=dict)
     compared: bool = False  # one of several algorithms; the scenario's expectations are about its own one
+    directory: Path = Path()
 
     @property
     def name(self):
@@ -41,6 +42,12 @@ class Run:
     def anchor(self):
         return "run-" + "".join(c if c.isalnum() else "-" for c in self.path)
 
+    @property
+    def warnings(self):
+        """What the program warned of when it ran this."""
+        said = self.summary.get("warnings")
+        return [str(warning) for warning in said] if isinstance(said, list) else []
+
     def metric(self, key):
         metrics = self.summary.get("metrics")
         return number_or_none(metrics.get(key)) if isinstance(metrics, dict) else None
@@ -52,13 +59,18 @@ def load_runs(results: Path):
         path = file.parent.relative_to(results).as_posix()
         if path.split("/")[0] == REPLAY_DIRECTORY:
             continue
-        summary = load_object(file)
-        for key in ("metrics", "provenance", "targets"):
-            member(summary, key, dict, file, "")
-        runs.append(Run(path, summary, optional_object(file.with_name("scenario.effective.json")),
-                        optional_object(file.with_name("timing.json")),
-                        file.parent.with_name("comparison.csv").exists()))
+        runs.append(load_run(file.parent, path))
     return runs
+
+
+def load_run(directory, path):
+    """The run of one directory, which is known as `path`."""
+    file = directory / "summary.json"
+    summary = load_object(file)
+    for key in ("metrics", "provenance", "targets"):
+        member(summary, key, dict, file, "")
+    return Run(path, summary, optional_object(file.with_name("scenario.effective.json")),
+               optional_object(file.with_name("timing.json")), (directory.resolve().parent / "comparison.csv").exists(), directory)
 
 
 def optional_object(file):

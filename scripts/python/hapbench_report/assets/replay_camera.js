@@ -4,24 +4,32 @@ class Camera {
   constructor(scene) {
     this.planar = scene.planar;
     this.home = {yaw: -1.25, pitch: 0.28, zoom: 1};
-    const box = (i, bound) => bound(...scene.points.map((p) => p.at[i]));
-    this.centre = [0, 1, 2].map((i) => (box(i, Math.min) + box(i, Math.max)) / 2);
-    this.extent = Math.max(...[0, 1, 2].map((i) => box(i, Math.max) - box(i, Math.min)), 4 * scene.radius);
+    this.frames = {contact: contactFrame(scene), whole: wholeFrame(scene)};
+    this.show("contact");
+  }
+
+  /** Looks at where the tool touches, or at everything. */
+  show(frame) {
+    this.frame = frame;
+    Object.assign(this, this.frames[frame]);
     this.reset();
   }
 
   reset() { Object.assign(this, this.home, {pan: [0, 0]}); }
-  zoomBy(factor) { this.zoom = Math.min(12, Math.max(0.3, this.zoom * factor)); }
+  zoomBy(factor) { this.zoom = Math.min(40, Math.max(0.2, this.zoom * factor)); }
 
   /** A drag by so many pixels turns a 3-D view and shifts a planar one. */
   drag(dx, dy) {
-    if (this.planar) {
-      this.pan[0] += dx;
-      this.pan[1] += dy;
-    } else {
+    if (this.planar) this.shift(dx, dy);
+    else {
       this.yaw -= dx * 0.01;
       this.pitch = Math.min(1.55, Math.max(-1.55, this.pitch + dy * 0.01));
     }
+  }
+
+  shift(dx, dy) {
+    this.pan[0] += dx;
+    this.pan[1] += dy;
   }
 
   /** Unit vectors to the right, up and towards the viewer, in the world. */
@@ -37,9 +45,26 @@ class Camera {
     const scale = this.scale(width, height);
     const x0 = width / 2 + this.pan[0], y0 = height / 2 + this.pan[1];
     const along = (p, e) => (p[0] - c[0]) * e[0] + (p[1] - c[1]) * e[1] + (p[2] - c[2]) * e[2];
-    return (p) => [x0 + scale * along(p, right), y0 - scale * along(p, up), along(p, toward)];
+    const project = (p) => [x0 + scale * along(p, right), y0 - scale * along(p, up), along(p, toward)];
+    return Object.assign(project, {scale});
   }
 
   /** Pixels per metre. */
   scale(width, height) { return 0.82 * this.zoom * Math.min(width, height) / this.extent; }
+}
+
+/** The places that were touched, with as much of the tool as is wide. */
+function contactFrame(scene) {
+  const [low, high] = scene.focus, wide = scene.tool ? 2 * scene.tool.radius : 0;
+  const size = Math.max(...low.map((x, i) => high[i] - x));
+  return {centre: low.map((x, i) => (x + high[i]) / 2), extent: Math.max(size + 1.5 * wide, 3 * wide, 1e-5)};
+}
+
+/** All points, and the tool where it starts. */
+function wholeFrame(scene) {
+  const places = [...scene.points.map((p) => p.at), ...scene.focus], first = scene.recordings[0];
+  if (scene.tool) places.push(first.tip(0), add(first.tip(0), first.axis(0), scene.tool.far));
+  const bound = (pick) => [0, 1, 2].map((i) => places.reduce((found, p) => pick(found, p[i]), places[0][i]));
+  const low = bound(Math.min), high = bound(Math.max);
+  return {centre: low.map((x, i) => (x + high[i]) / 2), extent: Math.max(1e-5, ...low.map((x, i) => high[i] - x))};
 }

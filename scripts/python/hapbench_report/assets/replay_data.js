@@ -2,12 +2,12 @@
 
 const bytesOf = (base64) => Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)).buffer;
 
-/** One algorithm's run: rows of numbers, and per row its contacts. */
+/** One run: rows of numbers, and per row its contacts. Of a long run the rows that hold its peaks. */
 class Recording {
-  constructor(packed, scene) {
-    this.algorithm = packed.algorithm;
-    this.outcome = packed.outcome;
-    this.columns = scene.rowColumns;
+  constructor(packed) {
+    Object.assign(this, {algorithm: packed.algorithm, outcome: packed.outcome, worst: packed.worst, sound: packed.sound,
+      colours: {light: packed.colour, dark: packed.dark}, dash: packed.dash, columns: packed.rowColumns});
+    this.label = packed.label || packed.algorithm.replaceAll("_", " ");
     this.rows = new Float32Array(bytesOf(packed.rows));
     this.length = this.rows.length / this.columns.length;
     this.column = Object.fromEntries(this.columns.map((name, i) => [name, i]));
@@ -24,33 +24,28 @@ class Recording {
 
   value(row, name) { return this.rows[row * this.columns.length + this.column[name]]; }
   vector(row, names) { return names.map((name) => this.value(row, name)); }
+  time(row) { return this.value(row, "time_s"); }
   tip(row) { return this.vector(row, ["px_m", "py_m", "pz_m"]); }
   axis(row) { return this.vector(row, ["axis_x", "axis_y", "axis_z"]); }
   force(row) { return this.vector(row, ["fx_N", "fy_N", "fz_N"]); }
   tensor(row) { return this.vector(row, ["sxx", "sxy", "sxz", "syy", "syz", "szz"]); }
-  get endTime() { return this.value(this.length - 1, "time_s"); }
+  get hasTensor() { return "sxx" in this.column; }
+  get hasContacts() { return this.contacts.length > 0; }
+  get endTime() { return this.time(this.length - 1); }
+  get deepest() { return Math.max(0, ...Array.from({length: this.length}, (_, k) => this.value(k, "depth_max_m") || 0)); }
+  /** Row of the first contact; -1 without one. */
+  get firstTouch() { return this.colliding.findIndex((n) => n > 0); }
 
   /** The last row that is not later than t; the first when all are. */
   rowAt(t) {
     let low = 0, high = this.length - 1;
+    // Times are kept in single precision.
+    const late = t * (1 + 1e-7) + 1e-9;
     while (low < high) {
       const middle = (low + high + 1) >> 1;
-      if (this.value(middle, "time_s") <= t + 1e-9) low = middle; else high = middle - 1;
+      if (this.time(middle) <= late) low = middle; else high = middle - 1;
     }
     return low;
-  }
-
-  /** The largest force in each of so many equal spans of time [N]: no peak of a vibration falls between two samples. */
-  peaks(duration, columns) {
-    const key = `${duration} ${columns}`;
-    if (this.peaksKey === key) return this.peaksFound;
-    this.peaksKey = key;
-    this.peaksFound = new Float32Array(columns);
-    for (let k = 0; k < this.length; ++k) {
-      const i = Math.min(columns - 1, Math.floor((this.value(k, "time_s") / duration) * columns));
-      this.peaksFound[i] = Math.max(this.peaksFound[i], Math.hypot(...this.force(k)));
-    }
-    return this.peaksFound;
   }
 
   /** The rendered contacts of a row: point, depth [m], gradient, weight. */
@@ -68,28 +63,20 @@ class Recording {
 class Scene {
   constructor(packed) {
     Object.assign(this, {id: packed.id, title: packed.title, note: packed.note, speed: packed.speed, planar: packed.planar,
-      scenario: packed.scenario, up: packed.up, lean: packed.lean, stiffness: packed.stiffness});
-    this.radius = packed.tool.diameter_m / 2;
-    this.length = packed.tool.length_m;
-    this.round = packed.tool.tip === "round";
+      scenario: packed.scenario, up: packed.up, lean: packed.lean, focus: packed.focus, springs: packed.springs});
+    this.tool = packed.tool ? new Tool(packed.tool) : null;
     const shell = new Int16Array(bytesOf(packed.shell)), normals = new Int8Array(bytesOf(packed.normals));
     this.points = [];
     for (let i = 0; i < shell.length; i += 3) {
       const triple = (from, scale) => [from[i] * scale, from[i + 1] * scale, from[i + 2] * scale];
       this.points.push({at: triple(shell, packed.shellScale), normal: triple(normals, 1 / 127)});
     }
-    this.recordings = packed.recordings.map((recording) => new Recording(recording, packed));
+    this.recordings = packed.recordings.map((recording) => new Recording(recording));
     // Colours span the depths of the gentlest recording: the deepest of one that was thrown about would flatten them.
-    this.deepest = Math.min(...this.recordings.map((r) => r.contactScales[3] * 32767));
+    const depths = this.recordings.map((r) => r.deepest).filter((depth) => depth > 0);
+    this.deepest = depths.length ? Math.min(...depths) : 1e-4;
   }
 
   /** Depth of a point in the tool, by the shortest distance to its surface [m]; negative outside. */
-  depthIn(point, tip, axis) {
-    const q = [point[0] - tip[0], point[1] - tip[1], point[2] - tip[2]];
-    const s = q[0] * axis[0] + q[1] * axis[1] + q[2] * axis[2];
-    const distance2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
-    if (this.round && s > 0) return this.radius - Math.sqrt(distance2);
-    const wall = this.radius - Math.sqrt(Math.max(0, distance2 - s * s));
-    return Math.min(wall, s + this.length, this.round ? Infinity : -s);
-  }
+  depthIn(point, tip, axis) { return this.tool ? this.tool.depthOf(point, tip, axis) : -1; }
 }

@@ -1,4 +1,4 @@
-// The replay: one clock, two sides, and the controls.
+// The replay: one clock, up to four views, and the controls.
 
 const NOT_A_NUMBER = "–";
 const show = (value, digits = 3) => {
@@ -15,40 +15,71 @@ class Player {
     this.unpacked = new Map();
     this.sides = [...root.querySelectorAll(".side")];
     this.slider = this.find("#replay-time");
+    this.tracks = this.find("#replay-chart");
+    this.sound = new Sound();
     this.fillScenes();
-    this.listen();
     this.openScene(0);
+    listenToPlayer(this);
+    openMoment(this);
   }
 
   fillScenes() {
     const menu = this.find("#replay-scene");
     this.packed.forEach((scene, i) => menu.add(new Option(scene.title, i)));
+    if (this.packed.length === 1) this.find("[data-single]").dataset.hidden = "";
   }
 
   openScene(index) {
     this.pause();
     if (!this.unpacked.has(index)) this.unpacked.set(index, new Scene(this.packed[index]));
     this.scene = this.unpacked.get(index);
+    this.find("#replay-scene").selectedIndex = index;
     this.camera = new Camera(this.scene);
+    this.find("#replay-frame").value = this.camera.frame;
+    const recordings = this.scene.recordings, most = Math.min(this.sides.length, recordings.length);
     this.sides.forEach((side, i) => {
       const menu = side.querySelector("select");
-      menu.replaceChildren(...this.scene.recordings.map((r, k) => new Option(r.algorithm.replaceAll("_", " "), k)));
-      menu.selectedIndex = Math.min(i, this.scene.recordings.length - 1);
+      menu.replaceChildren(...recordings.map((r, k) => new Option(r.label, k)));
+      menu.selectedIndex = Math.min(i, recordings.length - 1);
     });
+    const views = this.find("#replay-views");
+    views.replaceChildren(...Array.from({length: most}, (_, i) => new Option(i + 1, i + 1)));
+    views.value = String(Math.min(2, most));
     this.find("#replay-note").textContent = this.scene.note;
     this.find("#replay-deepest").textContent = `${show(this.scene.deepest * 1e3, 2)} mm`;
     this.find("#replay-speed").value = String(this.scene.speed);
     this.time = 0;
-    this.chooseSides();
+    this.chooseViews();
   }
 
-  chooseSides() {
-    this.shown = this.sides.map((side) => this.scene.recordings[side.querySelector("select").selectedIndex]);
+  get visibleSides() { return this.sides.slice(0, Number(this.find("#replay-views").value)); }
+
+  /** After another run, or another number of views, was chosen. */
+  chooseViews() {
+    const visible = this.visibleSides;
+    this.sides.forEach((side) => { side.hidden = !visible.includes(side); });
+    const sides = this.find(".sides");
+    sides.dataset.views = visible.length;
+    sides.style.setProperty("--views", visible.length);
+    this.shown = visible.map((side) => this.scene.recordings[side.querySelector("select").selectedIndex]);
     this.duration = Math.max(...this.shown.map((r) => r.endTime), 1e-6);
-    const longest = this.shown.reduce((a, b) => (a.length > b.length ? a : b));
-    this.step = longest.length > 1 ? longest.endTime / (longest.length - 1) : this.duration;
+    // The one with most rows gives the steps of the clock.
+    this.finest = this.shown.reduce((a, b) => (a.length >= b.length ? a : b));
+    this.step = this.finest.length > 1 ? this.finest.endTime / (this.finest.length - 1) : this.duration;
     this.slider.max = String(Math.round(this.duration / this.step));
+    this.find("#replay-log").checked = needsLogarithm(this.shown);
+    this.hideWhatIsMissing();
+    showWorstMoments(this);
+    showSoundChoice(this);
     this.seek(Math.min(this.time, this.duration));
+  }
+
+  hideWhatIsMissing() {
+    const has = {contacts: this.shown.some((r) => r.hasContacts), tensor: this.shown.some((r) => r.hasTensor)};
+    for (const part of this.root.querySelectorAll("[data-needs]")) part.toggleAttribute("data-hidden", !has[part.dataset.needs]);
+    this.sides.forEach((side, i) => {
+      side.querySelector(".field").toggleAttribute("data-hidden", !(this.shown[i] && this.shown[i].hasTensor));
+    });
   }
 
   seek(time) {
@@ -59,18 +90,42 @@ class Player {
     this.draw();
   }
 
+  /** So many recorded rows on, of the run that has most. */
+  stepRows(count) {
+    this.pause();
+    const row = this.finest.rowAt(this.time) + count;
+    this.seek(this.finest.time(Math.min(this.finest.length - 1, Math.max(0, row))));
+  }
+
   draw() {
     this.shown.forEach((recording, i) => this.drawSide(this.sides[i], recording));
-    drawChart(this.find("#replay-chart"), this.shown, this.duration, this.time);
+    drawTracks(this.tracks, this.shown, this.duration, this.time, this.find("#replay-log").checked);
+    this.showKey();
+    if (this.clip) this.clip.draw();
     // What is shown, for programs.
     this.root.dataset.time = String(this.time);
     this.root.dataset.scene = this.scene.id;
   }
 
+  showKey() {
+    const theme = palette().theme, key = `${theme} ${this.shown.map((r) => r.label)} ${this.camera.zoom} ${this.camera.frame}`;
+    if (this.keyShown === key) return;
+    this.keyShown = key;
+    this.find("#replay-key").replaceChildren(...this.shown.map((r) => {
+      const name = Object.assign(document.createElement("b"), {textContent: r.label});
+      name.style.color = r.colours[theme];
+      return name;
+    }));
+    this.shown.forEach((r, i) => { this.sides[i].querySelector(".swatch").style.background = r.colours[theme]; });
+    const view = this.sides[0].querySelector(".view");
+    const longer = depthScale(this.scene, this.camera.scale(view.clientWidth, view.clientHeight));
+    this.find("#replay-longer").textContent = longer === 1 ? "true length" : `${longer} times as long`;
+  }
+
   drawSide(side, recording) {
     const row = recording.rowAt(this.time);
     drawScene(side.querySelector(".view"), this.scene, this.camera, recording, row);
-    drawField(side.querySelector(".field"), this.scene, recording, row);
+    if (recording.hasTensor) drawField(side.querySelector(".field"), this.scene, recording, row);
     const value = (name) => recording.value(row, name);
     const inContact = recording.colliding[row] > 0;
     const ended = this.time > recording.endTime + this.step;
@@ -93,9 +148,10 @@ class Player {
     let before = null;
     const frame = (now) => {
       // A page that was hidden must not jump.
-      const passed = before === null ? 0 : Math.min(0.1, (now - before) / 1000);
+      const passed = before === null ? 0 : Math.min(0.1, (now - before) / 1000), speed = Number(this.find("#replay-speed").value);
       before = now;
-      this.seek(this.time + passed * Number(this.find("#replay-speed").value));
+      this.seek(this.time + passed * speed);
+      this.sound.follow(this.shown[this.heard], this.shown, this.time, speed);
       if (this.time >= this.duration) this.pause();
       else this.playing = requestAnimationFrame(frame);
     };
@@ -106,6 +162,7 @@ class Player {
   pause() {
     cancelAnimationFrame(this.playing);
     this.playing = null;
+    if (this.clip) stopClip(this);
     this.showPlaying();
   }
 
@@ -117,56 +174,4 @@ class Player {
     button.setAttribute("aria-pressed", String(Boolean(this.playing)));
     this.root.dataset.playing = String(Boolean(this.playing));
   }
-
-  listen() {
-    this.find("#replay-play").addEventListener("click", () => this.toggle());
-    this.find("#replay-scene").addEventListener("change", (e) => this.openScene(Number(e.target.value)));
-    this.slider.addEventListener("input", () => { this.pause(); this.seek(Number(this.slider.value) * this.step); });
-    for (const side of this.sides) {
-      side.querySelector("select").addEventListener("change", () => this.chooseSides());
-      this.listenToView(side.querySelector(".view"));
-    }
-    const chart = this.find("#replay-chart");
-    chart.addEventListener("pointerdown", (e) => { this.pause(); this.seek(chartTime(chart, e, this.duration)); });
-    this.root.addEventListener("keydown", (event) => this.onKey(event));
-    new ResizeObserver(() => this.draw()).observe(this.root);
-    document.addEventListener("themechange", () => this.draw());
-  }
-
-  listenToView(view) {
-    view.addEventListener("pointerdown", (e) => view.setPointerCapture(e.pointerId));
-    view.addEventListener("pointermove", (e) => {
-      if (!view.hasPointerCapture(e.pointerId)) return;
-      this.camera.drag(e.movementX, e.movementY);
-      this.draw();
-    });
-    view.addEventListener("wheel", (e) => {
-      // Only a view that was chosen takes the wheel; otherwise the page scrolls on.
-      if (document.activeElement !== view) return;
-      e.preventDefault();
-      this.camera.zoomBy(Math.exp(-0.0015 * e.deltaY));
-      this.draw();
-    }, {passive: false});
-  }
-
-  /** Space plays; arrows step, or turn a chosen view with shift; plus, minus and zero zoom. */
-  onKey(event) {
-    const tag = event.target.tagName;
-    if (tag === "SELECT" || (tag === "BUTTON" && event.key === " ") || event.ctrlKey || event.metaKey || event.altKey) return;
-    const turn = {ArrowLeft: [-12, 0], ArrowRight: [12, 0], ArrowUp: [0, -12], ArrowDown: [0, 12]}[event.key];
-    const jump = {ArrowLeft: -1, ArrowRight: 1, PageDown: -50, PageUp: 50}[event.key];
-    const zoom = {"+": 1.2, "=": 1.2, "-": 1 / 1.2}[event.key];
-    if (event.key === " ") this.toggle();
-    else if (event.shiftKey && turn) this.camera.drag(...turn);
-    else if (zoom) this.camera.zoomBy(zoom);
-    else if (event.key === "0") this.camera.reset();
-    else if (event.key === "Home" || event.key === "End") this.seek(event.key === "Home" ? 0 : this.duration);
-    else if (jump) { this.pause(); this.seek(this.time + jump * this.step); }
-    else return;
-    event.preventDefault();
-    this.draw();
-  }
 }
-
-const replayRoot = document.getElementById("replay-player");
-if (replayRoot) window.player = new Player(replayRoot, JSON.parse(document.getElementById("replay-data").textContent));

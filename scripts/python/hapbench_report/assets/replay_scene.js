@@ -1,4 +1,4 @@
-// Draws one moment of a recording: shell, tool, colliding points, depths, force.
+// Draws one moment of a recording: shell, tool, colliding points, depths, force, and the tip's way.
 
 const DEPTH_STOPS = [[253, 231, 117], [247, 160, 72], [222, 84, 92], [150, 40, 120]];
 const depthColour = (fraction) => {
@@ -14,7 +14,8 @@ const norm = (v) => Math.hypot(...v);
 function palette() {
   const style = getComputedStyle(document.documentElement);
   const names = ["ink", "muted", "panel", "line", "shell", "tool", "force", "field"];
-  return Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+  const colours = Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+  return Object.assign(colours, {theme: style.colorScheme === "dark" ? "dark" : "light"});
 }
 
 /** The canvas's context in CSS pixels, cleared; its own pixels follow the screen's. */
@@ -65,88 +66,43 @@ function drawArrow(context, from, to, head) {
   context.fill();
 }
 
-/** Two unit vectors that span the plane across the axis. */
-function across(axis) {
-  const e = Math.abs(axis[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0];
-  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-  const first = cross(axis, e), length = norm(first);
-  const a = first.map((x) => x / length);
-  return [a, cross(axis, a)];
-}
-
-function ring(centre, axis, radius) {
-  const [a, b] = across(axis), points = [];
-  for (let i = 0; i < 48; ++i) {
-    const turn = (2 * Math.PI * i) / 48;
-    points.push(add(add(centre, a, radius * Math.cos(turn)), b, radius * Math.sin(turn)));
-  }
-  return points;
-}
-
-function drawTool(context, scene, project, pixels, tip, axis, colours) {
-  const top = add(tip, axis, -scene.length);
-  const ends = [...ring(tip, axis, scene.radius), ...ring(top, axis, scene.radius)].map(project);
-  const centre = project(tip);
-  for (let i = 0; scene.round && i < 48; ++i) {
-    const turn = (2 * Math.PI * i) / 48, r = scene.radius * pixels;
-    const p = [centre[0] + r * Math.cos(turn), centre[1] + r * Math.sin(turn)];
-    // A planar tool is rounded beyond its tip only; its other end is flat.
-    if (!scene.planar || (p[0] - centre[0]) * axis[0] - (p[1] - centre[1]) * axis[1] >= 0) ends.push(p);
-  }
-  context.fillStyle = context.strokeStyle = colours.tool;
-  tracePath(context, hull(ends));
-  context.closePath();
-  context.globalAlpha = 0.2;
-  context.fill();
-  context.globalAlpha = 0.9;
-  context.lineWidth = 1.5;
-  context.stroke();
-  if (!scene.planar) {
-    tracePath(context, ring(tip, axis, scene.radius).map(project));
-    context.closePath();
-    context.lineWidth = 1;
-    context.stroke();
-  }
-  context.setLineDash([6, 4]);
-  tracePath(context, [centre, project(top)]);
-  context.globalAlpha = 0.45;
-  context.stroke();
-  context.setLineDash([]);
-  context.globalAlpha = 1;
-  drawDot(context, centre, 3);
-}
-
 /** Shell points, those that face away fainter; returns the colliding ones. */
-function drawShell(context, scene, project, toward, tip, axis, colours) {
-  const colliding = [];
+function drawShell(context, scene, project, toward, tip, axis, view, colours) {
+  const colliding = [], size = scene.planar ? 3.4 : 2;
   context.fillStyle = colours.shell;
   for (const point of scene.points) {
     const depth = scene.depthIn(point.at, tip, axis);
     if (depth >= 0) colliding.push({at: point.at, depth});
     const [x, y] = project(point.at), n = point.normal;
+    if (!(x > -size && y > -size && x < view.width + size && y < view.height + size)) continue;
     const facing = scene.planar ? 1 : n[0] * toward[0] + n[1] * toward[1] + n[2] * toward[2];
     context.globalAlpha = scene.planar ? 0.9 : facing > 0 ? 0.35 + 0.55 * facing : 0.2;
-    const size = scene.planar ? 3.4 : 2;
     context.fillRect(x - size / 2, y - size / 2, size, size);
   }
   context.globalAlpha = 1;
   return colliding;
 }
 
+/** How many times longer than they are depths are drawn: a round number that makes the deepest one visible. */
+function depthScale(scene, pixelsPerMetre) {
+  const wanted = 18 / (scene.deepest * pixelsPerMetre);
+  return [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].find((factor) => factor >= wanted) || 1000;
+}
+
 function drawContacts(context, scene, project, colliding, contacts, colours) {
   for (const {at, depth} of colliding) {
     context.fillStyle = depthColour(depth / scene.deepest);
-    drawDot(context, project(at), 2.6);
+    drawDot(context, project(at), 3.2);
   }
-  context.lineWidth = 1.4;
+  const longer = depthScale(scene, project.scale);
   for (const {point, depth, gradient} of contacts) {
     const p = project(point);
-    context.strokeStyle = colours.ink;
-    context.fillStyle = colours.ink;
-    drawArrow(context, p, project(add(point, gradient, depth)), 4);
+    context.strokeStyle = context.fillStyle = colours.ink;
+    context.lineWidth = 1.4;
+    drawArrow(context, p, project(add(point, gradient, longer * depth)), 5);
     context.fillStyle = depthColour(depth / scene.deepest);
     context.lineWidth = 1;
-    drawDot(context, p, 4.2);
+    drawDot(context, p, 4.8);
     context.stroke();
   }
 }
@@ -158,36 +114,69 @@ function drawForce(context, project, tip, force, colours) {
   const pixels = 26 * Math.log10(1 + size / 0.1), from = project(tip);
   const end = project(add(tip, force, 1 / size)), direction = [end[0] - from[0], end[1] - from[1]];
   // Seen from the side, the arrow keeps its length; seen along it, it shrinks.
-  const unit = Math.abs(project.unit), to = [from[0] + direction[0] / unit * pixels, from[1] + direction[1] / unit * pixels];
+  const to = [0, 1].map((i) => from[i] + direction[i] / project.scale * pixels);
   context.strokeStyle = context.fillStyle = colours.force;
   context.lineWidth = 3;
   drawArrow(context, from, to, 11);
   context.font = "600 13px system-ui, sans-serif";
-  context.fillText(`${show(size)} N`, to[0] + 7, to[1] + (to[1] > from[1] ? 14 : -6));
+  const label = [`${show(size)} N`, to[0] + 7, to[1] + (to[1] > from[1] ? 14 : -6)];
+  // Legible over points, too.
+  context.strokeStyle = colours.panel;
+  context.strokeText(...label);
+  context.fillText(...label);
 }
 
 /** A bar of a round length in the lower left corner. */
 function drawScaleBar(context, height, pixels, colours) {
-  const lengths = [0.1, 0.2, 0.5, 1, 2, 5], mm = lengths.find((l) => l * 1e-3 * pixels > 40) || 5;
-  const y = height - 14;
+  const decade = 10 ** Math.floor(Math.log10(40 / pixels));
+  const length = [1, 2, 5, 10].map((m) => m * decade).find((l) => l * pixels >= 40), y = height - 14;
   context.strokeStyle = context.fillStyle = colours.muted;
   context.lineWidth = 2;
-  tracePath(context, [[14, y], [14 + mm * 1e-3 * pixels, y]]);
+  tracePath(context, [[14, y], [14 + length * pixels, y]]);
   context.stroke();
   context.font = "12px system-ui, sans-serif";
-  context.fillText(`${mm} mm`, 14, y - 6);
+  context.fillText(length < 1e-3 ? `${+(length * 1e6).toPrecision(2)} µm` : `${+(length * 1e3).toPrecision(2)} mm`, 14, y - 6);
+}
+
+/** The tip's way so far, and faintly what follows. */
+function drawWay(context, project, recording, row, colours) {
+  context.strokeStyle = recording.colours[colours.theme];
+  context.lineWidth = 1.2;
+  const tips = Array.from({length: recording.length}, (_, k) => project(recording.tip(k)));
+  for (const [part, alpha] of [[tips.slice(row), 0.25], [tips.slice(0, row + 1), 0.7]]) {
+    context.globalAlpha = alpha;
+    tracePath(context, part);
+    context.stroke();
+  }
+  context.globalAlpha = 1;
+}
+
+/** Springs have no surface: a ray for each group, from where its springs are at rest, with their number. */
+function drawSprings(context, scene, project, colours) {
+  context.strokeStyle = colours.shell;
+  context.fillStyle = colours.muted;
+  context.font = "12px system-ui, sans-serif";
+  context.lineWidth = 2;
+  for (const [x, y, z, count] of scene.springs) {
+    const from = project([0, 0, 0]), unit = project([x, y, z]);
+    const to = [0, 1].map((i) => from[i] + 60 * (unit[i] - from[i]) / project.scale);
+    tracePath(context, [from, to]);
+    context.stroke();
+    context.fillText(`${count} springs`, to[0] + 4, to[1] - 4);
+  }
 }
 
 function drawScene(canvas, scene, camera, recording, row) {
-  const {context, width, height} = prepared(canvas), colours = palette();
-  const project = camera.projection(width, height), pixels = camera.scale(width, height);
-  project.unit = pixels;
+  const view = prepared(canvas), {context, width, height} = view, colours = palette();
+  const project = camera.projection(width, height);
   const tip = recording.tip(row), axis = recording.axis(row);
-  const colliding = drawShell(context, scene, project, camera.basis()[2], tip, axis, colours);
-  drawTool(context, scene, project, pixels, tip, axis, colours);
+  drawSprings(context, scene, project, colours);
+  const colliding = drawShell(context, scene, project, camera.basis()[2], tip, axis, view, colours);
+  drawWay(context, project, recording, row, colours);
+  drawTool(context, scene, project, tip, axis, colours);
   drawContacts(context, scene, project, colliding, recording.contactsAt(row), colours);
   drawForce(context, project, tip, recording.force(row), colours);
-  drawScaleBar(context, height, pixels, colours);
+  drawScaleBar(context, height, project.scale, colours);
   drawWayOut(context, project(tip), width, height, colours);
 }
 

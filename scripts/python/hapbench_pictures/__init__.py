@@ -1,0 +1,1 @@
+"""Pictures of a user's own runs: `hapbench plot` and `hapbench report`."""

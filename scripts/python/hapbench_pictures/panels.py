@@ -1,0 +1,85 @@
+"""One quantity over time, and the tip's way in space, of several runs, into matplotlib's axes."""
+import numpy as np
+
+from .reduced import curve, reduced
+
+SPANS = 900  # of a curve: more than a page has pixels
+# Runs whose peaks are further apart than this share no linear axis.
+LARGEST_RATIO = 30
+PATH_COLUMNS = ("px_m", "py_m", "pz_m")
+
+
+def draw_over_time(ax, quantity, samples, looks):
+    drawn = [(s, one, s.of(quantity)) for s, one in zip(samples, looks)]
+    drawn = [(s, one, of) for s, one, of in drawn if of is not None]
+    share_an_axis(ax, [of[2] for _, _, of in drawn])
+    for s, one, (time, low, high) in drawn:
+        if low is high:
+            ax.plot(*curve(time, low, high, SPANS), color=one.colour, ls=one.line, label=one.label)
+        else:
+            time, low, high = reduced(time, low, high, SPANS)
+            ax.fill_between(time, low, high, color=one.colour, alpha=0.2, lw=0)
+            for edge in (low, high):
+                ax.plot(time, edge, color=one.colour, ls=one.line, lw=0.8, label=one.label if edge is low else None)
+        mark_first_touch(ax, s, one)
+    ax.set_ylabel(quantity.axis)
+    ax.margins(x=0.01)
+
+
+def share_an_axis(ax, heights):
+    """A linear axis; where a run is thrown about, linear up to the calmest run's peak and logarithmic beyond."""
+    peaks = [peak for peak in (float(np.nanmax(np.abs(h), initial=0.0)) for h in heights) if peak > 0]
+    if peaks and max(peaks) > LARGEST_RATIO * min(peaks):
+        ax.set_yscale("symlog", linthresh=min(peaks))
+
+
+def mark_first_touch(ax, samples, look):
+    at = samples.first_touch_s
+    if at is not None:
+        ax.axvline(at, color=look.colour, ls=(0, (1, 2)), lw=0.8)
+        ax.plot(at, 0, marker="v", ms=5, color=look.colour, transform=ax.get_xaxis_transform(), clip_on=False)
+
+
+def projections(samples):
+    """Pairs of axes to look along: one for a planar scene, else two sides and the top."""
+    planar = all(np.all(s.trajectory["pz_m"] == 0) for s in samples)
+    return (("x", "y"),) if planar else (("x", "z"), ("y", "z"), ("x", "y"))
+
+
+def draw_path(ax, plane, samples, looks):
+    """The tip's way, framed by where it starts and is in contact, so that a tool thrown away leaves the picture."""
+    names = [f"p{axis}_m" for axis in plane]
+    lowest, highest, left = np.full(2, np.inf), np.full(2, -np.inf), False
+    for s, one in zip(samples, looks):
+        rows = corners(s.trajectory)
+        way = np.column_stack([s.trajectory[name] for name in names]) * 1e3
+        ax.plot(*way[rows].T, color=one.colour, ls=one.line, lw=1)
+        ax.plot(*way[0], marker="o", ms=3.5, mfc="none", color=one.colour)
+        touching = np.flatnonzero(s.trajectory["colliding"] > 0)
+        if touching.size:
+            ax.plot(*way[touching[0]], marker="v", ms=5, color=one.colour)
+        framed = way[np.append(touching, 0)] if touching.size else way
+        lowest, highest = np.fmin(lowest, framed.min(0)), np.fmax(highest, framed.max(0))
+    # A way shorter than 10 µm is numerical noise; it should not fill the picture.
+    half = 0.6 * max(float((highest - lowest).max()), 0.01)
+    middle = (lowest + highest) / 2
+    ax.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half), aspect="equal",
+           xlabel=f"tip {plane[0]} [mm]", ylabel=f"tip {plane[1]} [mm]")
+    for s in samples:
+        way = np.column_stack([s.trajectory[name] for name in names]) * 1e3
+        left = left or bool((np.abs(way - middle) > half).any())
+    if left:
+        ax.set_title("goes on outside", loc="right")
+
+
+def corners(trajectory, spans=1000):
+    """Rows that keep the shape of a way: the extremes along each axis in so many equal spans of rows."""
+    n = len(trajectory["px_m"])
+    if n <= 6 * spans:
+        return np.arange(n)
+    kept = [np.array([0, n - 1])]
+    for rows in np.array_split(np.arange(n), spans):
+        for name in PATH_COLUMNS:
+            part = trajectory[name][rows]
+            kept.append(rows[[part.argmin(), part.argmax()]])
+    return np.unique(np.concatenate(kept))

@@ -1,0 +1,75 @@
+"""`hapbench plot`: a sketch in the terminal and a file."""
+import argparse
+import io
+from pathlib import Path
+
+from hapbench_report.json_input import InputError
+
+from .files import write
+from .given import common_folder, given_runs, given_sweep, labels
+from .terminal import this_terminal
+
+KINDS = (".svg", ".png", ".pdf")
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(prog="hapbench plot", description="Draws runs over time, or a sweep.")
+    parser.add_argument("runs", nargs="+", metavar="RUN")
+    parser.add_argument("--y", type=lambda text: [name.strip() for name in text.split(",") if name.strip()], default=[])
+    parser.add_argument("--metric")
+    parser.add_argument("--out", type=Path)
+    parser.add_argument("--no-sketch", action="store_true")
+    parser.add_argument("--quiet", action="store_true")
+    return parser.parse_args(words)
+
+
+def plot(words):
+    options = arguments(words)
+    sweep = given_sweep(options.runs)
+    file = options.out or common_folder(options.runs) / "plot.svg"
+    if file.suffix not in KINDS:
+        raise InputError(f"--out {file}: got \"{file.suffix}\"; allowed: {', '.join(KINDS)}")
+    if sweep:
+        figure, lines = of_sweep(sweep, options)
+    elif options.metric:
+        raise InputError("--metric: is for a sweep's folder; allowed for runs: --y")
+    else:
+        figure, lines = of_runs(options)
+    for line in lines:
+        print(line)
+    picture = io.BytesIO()
+    # Same runs, same bytes.
+    import matplotlib
+    with matplotlib.rc_context({"svg.hashsalt": "hapbench", "svg.fonttype": "none"}):
+        figure.savefig(picture, format=file.suffix[1:], dpi=150, metadata=undated(file.suffix))
+    write(file, picture.getvalue())
+    if not options.quiet:
+        print(f"picture in {file}")
+
+
+def undated(suffix):
+    return {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {"Software": None}}[suffix]
+
+
+def of_runs(options):
+    from .looks import looks
+    from .plot import draw, samples_of
+    from .quantities import chosen
+    from .sketch import sketch
+
+    runs = given_runs(options.runs)
+    quantities, with_path = chosen(options.y, runs)
+    names, samples = labels(runs), samples_of(runs, quantities, with_path)
+    figure = draw(runs, names, quantities, with_path, samples)
+    if options.no_sketch or options.quiet:
+        return figure, []
+    return figure, sketch(quantities, samples, looks(runs, names), this_terminal())
+
+
+def of_sweep(folder, options):
+    from .sweep_plot import Sweep, draw_sweep, sketch_sweep
+
+    if options.y:
+        raise InputError(f"--y: {folder} is a sweep; allowed for it: --metric")
+    sweep = Sweep(folder, options.metric)
+    return draw_sweep(sweep), [] if options.no_sketch or options.quiet else sketch_sweep(sweep, this_terminal())

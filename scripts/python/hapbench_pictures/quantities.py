@@ -1,0 +1,131 @@
+"""What can be drawn over time: short names, and every column of a run's tables by its own name."""
+from dataclasses import dataclass
+
+import numpy as np
+
+from hapbench_report.json_input import InputError
+
+from .columns import header, read_columns
+from .names import nearest
+
+TRAJECTORY = "trajectory.csv"
+# Tables of a row per recorded step, in which a column is looked for.
+TABLES = (TRAJECTORY, "energy.csv", "ideal_trajectory.csv", "stiffness_tensor.csv")
+# The field that makes a run write a table.
+SWITCH = {"energy.csv": "record.energy", "ideal_trajectory.csv": "record.ideal_trajectory", TRAJECTORY: "record.trajectory",
+          "stiffness_tensor.csv": "record.stiffness_tensor"}
+# Unit by the end of a column's name -> shown unit, factor.
+UNITS = (("_m_per_s", "m/s", 1.0), ("_J", "mJ", 1e3), ("_N", "N", 1.0), ("_m", "mm", 1e3), ("_s", "s", 1.0))
+
+
+@dataclass(frozen=True)
+class Quantity:
+    name: str  # as typed
+    title: str
+    unit: str  # shown; empty for plain numbers
+    factor: float
+    file: str
+    columns: tuple
+    kind: str = "value"  # or "norm" of a vector, or "band" from the first column to the second
+
+    @property
+    def axis(self):
+        return f"{self.title} [{self.unit}]" if self.unit else self.title
+
+    def of(self, table):
+        """Lower and upper edge at every row; the same array twice for a curve."""
+        parts = [table[name] * self.factor for name in self.columns]
+        if self.kind == "norm":
+            parts = [np.sqrt(sum(part * part for part in parts))]
+        return parts[0], parts[-1]
+
+
+def vector(prefix, unit):
+    return tuple(f"{prefix}{axis}_{unit}" for axis in "xyz")
+
+
+SHORT = {q.name: q for q in (
+    Quantity("force", "rendered force", "N", 1, TRAJECTORY, vector("f", "N"), "norm"),
+    Quantity("spring", "spring force", "N", 1, TRAJECTORY, vector("fspring_", "N"), "norm"),
+    Quantity("measured", "measured force", "N", 1, TRAJECTORY, vector("fmeas_", "N"), "norm"),
+    Quantity("input", "input force", "N", 1, TRAJECTORY, vector("fin_", "N"), "norm"),
+    Quantity("depth", "largest depth", "mm", 1e3, TRAJECTORY, ("depth_max_m",)),
+    Quantity("ratio", "stiffness ratio", "K", 1, TRAJECTORY, ("ratio_min", "ratio_max"), "band"),
+    Quantity("contacts", "colliding points", "", 1, TRAJECTORY, ("colliding",)),
+    Quantity("rendered", "rendered points", "", 1, TRAJECTORY, ("rendered",)),
+    Quantity("speed", "speed of the tip", "m/s", 1, TRAJECTORY,
+             ("vx_m_per_s", "vy_m_per_s", "vz_m_per_s"), "norm"),
+    Quantity("x", "tip x", "mm", 1e3, TRAJECTORY, ("px_m",)),
+    Quantity("y", "tip y", "mm", 1e3, TRAJECTORY, ("py_m",)),
+    Quantity("z", "tip z", "mm", 1e3, TRAJECTORY, ("pz_m",)),
+    Quantity("energy", "energy created by the rendering", "mJ", 1e3, "energy.csv", ("created_J",)),
+    Quantity("input_energy", "energy put in by the hand", "mJ", 1e3, "energy.csv", ("input_J",)),
+)}
+PATH = "path"  # the tip's way in space, which is no function of time
+# What is drawn when nothing is chosen; those that no run recorded are left out.
+USUAL = ("force", "depth", "ratio", "contacts", "energy", PATH)
+
+
+def by_column(name, file):
+    for end, unit, factor in UNITS:
+        if name.endswith(end):
+            return Quantity(name, name.removesuffix(end).replace("_", " "), unit, factor, file, (name,))
+    return Quantity(name, name.replace("_", " "), "", 1.0, file, (name,))
+
+
+def chosen(names, runs):
+    """The quantities of these names and whether the path is among them; those not chosen by name may be missing."""
+    if not names:
+        usual = [SHORT[name] for name in USUAL if name != PATH]
+        return [q for q in usual if any(q.file in tables_of(run) for run in runs)], True
+    return [quantity(name, runs) for name in names if name != PATH], PATH in names
+
+
+def quantity(name, runs):
+    known = {}
+    for run in runs:
+        for file in tables_of(run):
+            for column in header(run.directory / file):
+                known.setdefault(column, file)
+    found = SHORT.get(name) or (by_column(name, known[name]) if name in known else None)
+    if not found:
+        raise InputError(f"--y: got \"{name}\"; allowed: {', '.join([*SHORT, PATH])}, or a column of "
+                         f"{' or '.join(sorted(set(known.values())) or [TRAJECTORY])}{nearest(name, [*SHORT, PATH, *known])}")
+    missing = [run for run in runs if found.file not in tables_of(run)]
+    if len(missing) == len(runs):
+        raise InputError(f"--y {name}: {runs[0].directory}: has no {found.file}; run it with --set {SWITCH[found.file]}=true")
+    return found
+
+
+def tables_of(run):
+    return [file for file in TABLES if (run.directory / file).is_file()]
+
+
+class Samples:
+    """What is drawn of one run: the tables' columns, each table read once."""
+
+    def __init__(self, run, quantities, further=()):
+        """`further`: columns of trajectory.csv beside those of the quantities."""
+        wanted = {TRAJECTORY: {"time_s", "colliding", *further}}
+        for q in quantities:
+            wanted.setdefault(q.file, {"time_s"}).update(q.columns)
+        present = tables_of(run)
+        if TRAJECTORY not in present:
+            raise InputError(f"{run.directory}: has no {TRAJECTORY}; run it with --set {SWITCH[TRAJECTORY]}=true")
+        self.tables = {file: read_columns(run.directory / file, sorted(columns))
+                       for file, columns in wanted.items() if file in present}
+
+    @property
+    def trajectory(self):
+        return self.tables[TRAJECTORY]
+
+    def of(self, q):
+        """Time, lower and upper edge; None when this run did not record it."""
+        table = self.tables.get(q.file)
+        return None if table is None else (table["time_s"], *q.of(table))
+
+    @property
+    def first_touch_s(self):
+        """Time of the first recorded row in contact; None without one."""
+        touching = np.flatnonzero(self.trajectory["colliding"] > 0)
+        return float(self.trajectory["time_s"][touching[0]]) if touching.size else None

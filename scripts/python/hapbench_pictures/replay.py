@@ -1,0 +1,99 @@
+"""The replay of a user's own runs: whatever scene they have, with as many points as a browser draws in a frame."""
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from hapbench_report.json_input import InputError, at
+from hapbench_report.replay_pack import SHELL_COLUMNS, MARGIN, packed_scene, radius_of, touched_box
+from hapbench_report.replay_read import Recording
+from hapbench_report.replay_tool import tool_profile
+
+from .columns import read_columns
+
+# Points drawn: near the contacts, and with the rest.
+NEAR, ALL = 5000, 8000
+SPEEDS = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 10)  # as in the player's menu
+WATCHED_S = 10.0  # how long a replay should take at first
+PATIENCE_S = 120
+
+
+def replays(runs, labels):
+    """A packed scene for each environment and tool among the runs."""
+    scenes = {}
+    for run, label in zip(runs, labels):
+        key = json.dumps([run.scenario.get(part) for part in ("environment", "tool")], sort_keys=True)
+        scenes.setdefault(key, []).append((run, label))
+    return [scene(i, members) for i, members in enumerate(scenes.values())]
+
+
+def scene(i, members):
+    runs, labels = zip(*members)
+    recordings = [Recording(run.directory, read) for run in runs]
+    shell, said = points_of(runs[0], recordings)
+    longest = max(recording.columns["time_s"][-1] for recording in recordings)
+    speed = min(SPEEDS, key=lambda speed: abs(np.log(speed / max(longest / WATCHED_S, 1e-9))))
+    names = list(dict.fromkeys(run.name for run in runs))
+    return packed_scene(recordings, shell, labels, id=f"{names[0]}" if i == 0 else f"{names[0]}-{i + 1}",
+                        title=", ".join(names), speed=speed, scenario=names[0], note=said)
+
+
+def read(file, names, steps=None):
+    """As hapbench_report.replay_read.numbers, for files of a million rows."""
+    columns = read_columns(file, [*names, *({"step"} - set(names) if steps is not None else ())])
+    bad = next((name for name, values in columns.items() if (np.abs(values) >= 1e38).any()), None)
+    if bad:
+        raise InputError(f"{file}: {bad}: holds numbers beyond 1e38; allowed: finite numbers")
+    kept = slice(None) if steps is None else np.isin(columns["step"], np.fromiter(steps, float))
+    return {name: columns[name][kept].tolist() for name in names}
+
+
+def points_of(run, recordings):
+    """The surface: from the program, or else the points that were in contact; and what to say about it."""
+    every, failure = shell(run)
+    if every is None:
+        touched = {tuple(contact[:3]): contact[8:] for r in recordings for of_row in r.contacts for contact in of_row}
+        every = np.array([[*place, *normal] for place, normal in touched.items()]).reshape(-1, 6)
+    drawn = thinned(every, touched_box(recordings), MARGIN * radius_of(tool_profile(run.scenario)))
+    count = f"{len(drawn)} of {len(every)} points of the surface are drawn, all around the contacts first."
+    said = [failure] if failure else []
+    return drawn.tolist(), " ".join(said + ([count] if len(drawn) < len(every) else []))
+
+
+def thinned(points, box, margin):
+    low, high = (np.array(corner) for corner in box)
+    near = ((points[:, :3] >= low - margin) & (points[:, :3] <= high + margin)).all(axis=1)
+    kept = some(points[near], NEAR)
+    return np.concatenate([kept, some(points[~near], ALL - len(kept))])
+
+
+def some(points, most):
+    """At most so many, spread over all of them. Drawn by lot, as every nth of a grid's points makes stripes."""
+    if len(points) <= most:
+        return points
+    return points[np.sort(np.random.default_rng(1).choice(len(points), most, replace=False))]
+
+
+def shell(run):
+    """Points and normals, None with the reason where there are none to be had."""
+    if at(run.scenario, "/environment/type") == "springs":
+        return None, ""
+    program = os.environ.get("HAPBENCH_PROGRAM") or shutil.which("hapbench")
+    if not program:
+        return None, "Without the program hapbench in the path only points that were in contact are drawn."
+    with tempfile.TemporaryDirectory(prefix="hapbench-report-") as scratch:
+        file = Path(scratch) / "shell.csv"
+        line = [program, "shell", str(run.directory / "scenario.effective.json"), "--out", str(file), "--quiet"]
+        try:
+            done = subprocess.run(line, capture_output=True, text=True, timeout=PATIENCE_S, stdin=subprocess.DEVNULL)
+        except (OSError, subprocess.TimeoutExpired) as error:
+            return None, f"The surface is not drawn: {error}."
+        if done.returncode:
+            said = (done.stderr.strip().splitlines() or ["no message"])[-1]
+            return None, f"Only points that were in contact are drawn: {said}."
+        columns = read_columns(file, SHELL_COLUMNS)
+        return np.column_stack([columns[name] for name in SHELL_COLUMNS]), ""

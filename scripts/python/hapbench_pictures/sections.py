@@ -1,0 +1,143 @@
+"""The sections of a page of runs that are text and tables."""
+import json
+import shlex
+
+from hapbench_report.json_input import at, number_or_none
+from hapbench_report.markup import cell, command, heading_cell, number, number_cell, table, text
+from hapbench_report.section_runs import provenance_of, provenance_section
+
+MOST_CARDS = 6
+# Metric of summary.json -> heading, factor; shown where any run has it. What separates algorithms comes first.
+METRICS = (
+    ("landings", "Landings", 1),
+    ("landing_force_max_N", "Landing max, N", 1),
+    ("force_mean_in_contact_N", "Mean force, N", 1),
+    ("force_step_p99_N", "Force step p99, N", 1),
+    ("settled_force_step_max_N", "Force step max, N", 1),
+    ("force_rms_above_30Hz_N", "Force above 30 Hz rms, N", 1),
+    ("force_reversals_per_s", "Reversals per s", 1),
+    ("force_max_N", "Max force, N", 1),
+    ("velocity_total_variation_m_per_s", "Velocity TV, m/s", 1),
+    ("depth_max_m", "Max depth, mm", 1000),
+    ("ratio_min", "Ratio min", 1),
+    ("ratio_max", "Ratio max", 1),
+)
+
+
+def summary_section(runs, labels):
+    cards = run_cards(runs, labels) if len(runs) <= MOST_CARDS else outcome_cards(runs, labels)
+    names = list(dict.fromkeys(run.name for run in runs))
+    descriptions = list(dict.fromkeys(str(run.scenario.get("description") or "") for run in runs))
+    about = "".join(f"<p class=lead>{text(words)}</p>" for words in descriptions[:3] if words)
+    return f"<h1>{text(', '.join(names))}</h1>{about}<ul class=cards>{cards}</ul>"
+
+
+def run_cards(runs, labels):
+    return "".join(
+        card(run.outcome, run.expected, f"{label}{'' if run.expected else ', not as its scenario expects'}; in contact "
+             f"{percent(contact_share(run))} of {number(at(run.summary, '/duration_s'), 4)} s") for run, label in zip(runs, labels))
+
+
+def outcome_cards(runs, labels):
+    """One for each way that runs ended."""
+    ways = {}
+    for run, label in zip(runs, labels):
+        ways.setdefault((run.outcome, run.expected), []).append(label)
+    return "".join(card(outcome, expected, f"{len(names)} of {len(runs)} runs{'' if expected else ', not as expected'}: "
+                        f"{', '.join(names)}") for (outcome, expected), names in ways.items())
+
+
+def card(outcome, expected, words):
+    return (f"<li><b class={'good' if expected else 'bad'}>{text(outcome.replace('_', ' ') or '–')}</b>"
+            f"<span>{text(words)}</span></li>")
+
+
+def contact_share(run):
+    """Of the run's steps; those of earlier versions have no metric of their own for it."""
+    share = run.metric("contact_share")
+    if share is not None:
+        return share
+    touching, steps = run.metric("steps_in_contact"), number_or_none(run.summary.get("steps"))
+    return touching / steps if steps and touching is not None else None
+
+
+def percent(share):
+    return "–" if share is None else f"{number(100 * share, 3)} %"
+
+
+def warnings_section(runs, labels):
+    said = [(label, warning) for run, label in zip(runs, labels) for warning in run.warnings]
+    return said and "<ul>" + "".join(f"<li><b>{text(label)}:</b> {text(warning)}</li>" for label, warning in said) + "</ul>"
+
+
+def metrics_section(runs, labels):
+    shown = [entry for entry in METRICS if any(run.metric(entry[0]) is not None for run in runs)]
+    rows = [[cell(text(label), classes="name"), cell(text(run.outcome.replace("_", " "))), number_cell(at(run.summary, "/steps")),
+             cell(percent(contact_share(run)), contact_share(run) or 0, "number"),
+             *(number_cell(scaled(run.metric(key), factor), 3) for key, _, factor in shown)] for run, label in zip(runs, labels)]
+    headings = [heading_cell("Run"), heading_cell("Outcome"), heading_cell("Steps", True), heading_cell("Contact", True),
+                *(heading_cell(title, True) for _, title, _ in shown)]
+    return (table(headings, rows, "<b>What separates the runs</b> Click a heading to sort; <code>hapbench describe</code> and a "
+                  "metric's name explain it", "sortable", "runs-table")
+            + f"<details><summary>All metrics</summary>{every_metric(runs, labels)}</details>")
+
+
+def scaled(value, factor):
+    return None if value is None else value * factor
+
+
+def every_metric(runs, labels):
+    names = list(dict.fromkeys(name for run in runs for name in run.summary.get("metrics") or {}))
+    rows = [[cell(f"<code>{text(name)}</code>"), *(metric_cell((run.summary.get("metrics") or {}).get(name)) for run in runs)]
+            for name in names]
+    return table([heading_cell("Metric"), *(heading_cell(text(label), True) for label in labels)], rows, "All metrics")
+
+
+def metric_cell(value):
+    return number_cell(value, 5) if not isinstance(value, (list, dict, str)) else cell(text(json.dumps(value)), classes="number")
+
+
+def scenario_section(runs, labels):
+    known = [(run, label) for run, label in zip(runs, labels) if run.scenario]
+    if not known:
+        return ""
+    return differences(known) + "".join(
+        f"<details><summary>Scenario of {text(label)}</summary><pre>{text(json.dumps(run.scenario, indent=2, ensure_ascii=False))}</pre>"
+        f"<p class=note>State hash {text(run.summary.get('state_hash', '–'))}.</p></details>" for run, label in known)
+
+
+def differences(known):
+    """The fields in which the scenarios differ."""
+    flat = [dict(leaves(run.scenario)) for run, _ in known]
+    paths = [path for path in dict.fromkeys(path for fields in flat for path in fields)
+             if len({json.dumps(fields.get(path), sort_keys=True) for fields in flat}) > 1
+             and not path.startswith(("expect", "description", "name", "source"))]
+    if not paths:
+        return ""
+    rows = [[cell(f"<code>{text(path)}</code>"), *(cell(text(json.dumps(fields.get(path)))) for fields in flat)] for path in paths]
+    return table([heading_cell("Field"), *(heading_cell(text(label)) for _, label in known)], rows, "<b>In what they differ</b>")
+
+
+def leaves(value, path=""):
+    if not isinstance(value, dict):
+        yield path, value
+        return
+    for key, part in value.items():
+        yield from leaves(part, f"{path}.{key}" if path else key)
+
+
+def commands_section(runs, words):
+    lines = [f"hapbench run {quoted(run.directory / 'scenario.effective.json')} --out {quoted(run.directory.name + '_again')}"
+             for run in runs if run.scenario]
+    given = " ".join(quoted(word) for word in words)
+    return ((f"<p>Each run again, the same bytes:</p>{command(chr(10).join(lines))}" if lines else "")
+            + f"<p>Pictures and this page:</p>{command(f'hapbench plot {given}{chr(10)}hapbench report {given}')}"
+            + "<p class=note>The paths are those of the machine that wrote this page. Elsewhere, save a scenario from above as a file.</p>")
+
+
+def quoted(path):
+    return shlex.quote(str(path))
+
+
+def provenance(runs):
+    return provenance_section(provenance_of(runs))

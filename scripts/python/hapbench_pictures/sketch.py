@@ -1,0 +1,150 @@
+"""Curves in a terminal: dots of braille where it knows them, else a letter for each run."""
+import numpy as np
+
+from .panels import LARGEST_RATIO
+from .reduced import reduced
+from .terminal import coloured
+
+HEIGHT, MARGIN = 6, 10  # characters of a panel, and of the numbers left of it
+BRAILLE = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))  # bits of the dots, by row and column
+LETTERS = "abcdefghijklmnopqrstuvwxyz"
+
+
+class Canvas:
+    """Characters of which each holds 2 x 4 dots, or one letter."""
+
+    def __init__(self, width, height, terminal, letters):
+        # Without colour a dot does not tell whose it is.
+        self.terminal, self.letters = terminal, letters or not terminal.unicode
+        self.across, self.down = (1, 1) if self.letters else (2, 4)
+        self.width, self.height = width, height
+        self.dots = np.zeros((height, width), int)
+        self.owner = np.full((height, width), -1)
+
+    @property
+    def columns(self):
+        return self.width * self.across
+
+    @property
+    def rows(self):
+        return self.height * self.down
+
+    def column(self, i, low, high, owner):
+        """Dots from one row to another, counted from below, in column i."""
+        for row in range(min(low, high), max(low, high) + 1):
+            y, x = self.height - 1 - row // self.down, i // self.across
+            self.owner[y, x] = owner
+            self.dots[y, x] |= 1 if self.letters else BRAILLE[self.down - 1 - row % self.down][i % self.across]
+
+    def line(self, y, looks):
+        return "".join(self.character(y, x, looks) for x in range(self.width)).rstrip()
+
+    def character(self, y, x, looks):
+        owner = self.owner[y, x]
+        if owner < 0:
+            return " "
+        one = LETTERS[owner % 26] if self.letters and len(looks) > 1 else "*" if self.letters else chr(0x2800 + self.dots[y, x])
+        return coloured(one, looks[owner].colour) if self.terminal.colour else one
+
+
+def sketch(quantities, samples, looks, terminal):
+    """The lines to print."""
+    several = len(looks) > 1
+    letters = several and not terminal.colour
+    lines = [legend(looks, terminal, letters or not terminal.unicode), ""] if several else []
+    end = max(float(s.trajectory["time_s"][-1]) for s in samples)
+    for quantity in quantities:
+        canvas = Canvas(terminal.width - MARGIN, HEIGHT, terminal, letters)
+        series = [(i, of) for i, of in enumerate(s.of(quantity) for s in samples) if of is not None]
+        scale = Scale([of for _, of in series])
+        for i, (time, low, high) in series:
+            draw(canvas, i, time, scale(low), scale(high), end)
+        lines += panel(quantity, canvas, scale, looks, series)
+    return lines + time_axis(end, terminal.width, [s.first_touch_s for s in samples])
+
+
+class Scale:
+    """From numbers to 0 ... 1; beyond the calmest run's peak logarithmic where another run is thrown about."""
+
+    def __init__(self, series):
+        peaks = [peak for peak in (float(np.nanmax(np.abs(of[2]), initial=0.0)) for of in series) if peak > 0]
+        self.unit = min(peaks) if peaks and max(peaks) > LARGEST_RATIO * min(peaks) else None
+        # A column of nothing but NaN has no bounds.
+        self.low = float(np.nanmin([np.nanmin(of[1], initial=np.inf) for of in series]))
+        self.high = float(np.nanmax([np.nanmax(of[2], initial=-np.inf) for of in series]))
+        if not self.low <= self.high:
+            self.low = self.high = 0.0
+
+    def bent(self, values):
+        return values if self.unit is None else np.arcsinh(np.asarray(values) / self.unit)
+
+    def __call__(self, values):
+        low, high = self.bent(self.low), self.bent(self.high)
+        return (self.bent(values) - low) / (high - low) if high > low else np.where(np.isnan(values), np.nan, 0.5)
+
+
+def draw(canvas, owner, time, low, high, end):
+    start, columns, last = float(time[0]), canvas.columns, canvas.rows - 1
+    mine = max(1, int(round(columns * (time[-1] - start) / (end - start)))) if end > start else 1
+    if len(time) <= 2 * mine:
+        # Fewer rows than columns: each column takes the row before it.
+        rows = np.searchsorted(time, np.linspace(start, time[-1], mine), side="right") - 1
+        low, high, at = low[rows], high[rows], np.arange(mine)
+    else:
+        t, low, high = reduced(time, low, high, mine)
+        at = np.minimum((columns * (t - start) / max(end - start, 1e-300)).round().astype(int), columns - 1)
+    before = None
+    for i, least, most in zip(at, low, high):
+        if np.isnan(least):
+            before = None
+            continue
+        bottom, top = int(round(least * last)), int(round(most * last))
+        # A curve that jumps between two columns stays one curve.
+        if before is not None and low is not high and (bottom > before[1] or top < before[0]):
+            canvas.column(i, before[1] if bottom > before[1] else before[0], bottom, owner)
+        canvas.column(i, bottom, top, owner)
+        before = bottom, top
+
+
+def panel(quantity, canvas, scale, looks, series):
+    title = quantity.axis + (" (logarithmic above)" if scale.unit else "")
+    peak = max(series, key=lambda entry: np.nanmax(entry[1][2], initial=-np.inf))
+    time, values = peak[1][0], peak[1][2]
+    if np.isfinite(values).any():
+        whose = f" by {looks[peak[0]].label}" if len(looks) > 1 else ""
+        title += f", most {scale.high:.4g} at {time[np.nanargmax(values)]:.4g} s{whose}"
+    labels = {0: f"{scale.high:.4g}", canvas.height - 1: f"{scale.low:.4g}"}
+    return [title, *(f"{labels.get(y, ''):>{MARGIN - 2}} |{canvas.line(y, looks)}" for y in range(canvas.height)), ""]
+
+
+def legend(looks, terminal, letters):
+    entries = []
+    for i, one in enumerate(looks):
+        mark = LETTERS[i % 26] if letters else "\u2588\u2588"
+        entries.append(f"{coloured(mark, one.colour) if terminal.colour else mark} {one.label}")
+    return "\n".join(wrapped(entries, [len(one.label) + 5 for one in looks], terminal.width))
+
+
+def wrapped(entries, widths, width):
+    lines, used = [[]], 0
+    for entry, wide in zip(entries, widths):
+        if used + wide > width and lines[-1]:
+            lines.append([])
+            used = 0
+        lines[-1].append(entry)
+        used += wide
+    return ["   ".join(line) for line in lines]
+
+
+def time_axis(end, width, touches):
+    """Zero, the end, and below them where runs first touched."""
+    axis = " " * (MARGIN - 1) + "0" + f"{end:.4g} s".rjust(width - MARGIN)
+    at = sorted({touch for touch in touches if touch is not None})
+    if not at:
+        return [axis, f"{'':{MARGIN}}no contact"]
+    room = width - MARGIN
+    marks = [" "] * room
+    for touch in at:
+        marks[min(room - 1, int(touch / end * room) if end > 0 else 0)] = "^"
+    first = f"first touch at {at[0]:.4g} s" + (f" ... {at[-1]:.4g} s" if len(at) > 1 else "")
+    return [axis, " " * MARGIN + "".join(marks).rstrip(), " " * MARGIN + first]

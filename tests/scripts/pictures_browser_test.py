@@ -1,0 +1,189 @@
+"""A page of own runs in a real headless Chromium: what report_browser_test.py does not try of the replay.
+
+HAPBENCH_PROGRAM names the built program, HAPBENCH_CHROMIUM the browser.
+"""
+import os
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+from headless_chromium import Chromium
+
+PROGRAM, CHROMIUM = os.environ["HAPBENCH_PROGRAM"], os.environ["HAPBENCH_CHROMIUM"]
+# Text against the ground it stands on; inherited grounds are looked up. Returns what falls below 4.5 to 1.
+POOR_CONTRAST = """(() => {
+  const parse = (text) => (text.match(/[\\d.]+/g) || []).map(Number);
+  const linear = (c) => (c /= 255) <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
+  const luminance = ([r, g, b]) => 0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b);
+  const ground = (e) => { for (; e; e = e.parentElement) { const c = parse(getComputedStyle(e).backgroundColor); if (c.length === 3) return c; } };
+  const poor = [];
+  for (const e of document.querySelectorAll("main *")) {
+    if (![...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim()) || !e.checkVisibility() || e.disabled) continue;
+    const [a, b] = [luminance(parse(getComputedStyle(e).color)), luminance(ground(e))];
+    if ((Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05) < 4.5) poor.push(e.outerHTML.slice(0, 90));
+  }
+  return poor;
+})()"""
+
+
+def hapbench(*words):
+    subprocess.run([PROGRAM, *map(str, words), "--quiet"], check=True, stdin=subprocess.DEVNULL)
+
+
+def setUpModule():
+    scratch = tempfile.TemporaryDirectory(prefix="hapbench-pictures-")
+    unittest.addModuleCleanup(scratch.cleanup)
+    OwnPage.root = root = Path(scratch.name)
+    hapbench("compare", "mesh_molar", "--algorithms", "original_averaging,shaped_stiffness,proxy", "--set", "time.duration_s=0.5",
+             "--set", "record.contacts=true", "--out", root / "molar")
+    hapbench("run", "springs_limited_mean", "--out", root / "springs")
+    hapbench("report", root / "molar", root / "springs", "--out", root / "page.html")
+    OwnPage.url = (root / "page.html").as_uri()
+    OwnPage.browser = Chromium(CHROMIUM)
+    unittest.addModuleCleanup(OwnPage.browser.__exit__)
+    OwnPage.browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=str(root))
+
+
+class OwnPage(unittest.TestCase):
+    def setUp(self):
+        self.browser.messages.clear()
+        self.browser.size(1280, 900)
+        self.browser.dark(False)
+        self.open("")
+
+    def tearDown(self):
+        self.assertEqual(self.browser.complaints(), [])
+
+    def open(self, hash_):
+        self.browser.open("about:blank")
+        self.browser.open(self.url + hash_)
+        self.js("document.documentElement.style.scrollBehavior = 'auto'")
+
+    def js(self, expression):
+        return self.browser.evaluate(expression)
+
+    def click(self, selector):
+        """By the mouse: browsers allow sound after nothing less."""
+        x, y = self.js(f"(() => {{ const e = document.querySelector('{selector}'); e.scrollIntoView({{block: 'center'}});"
+                       "const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; })()")
+        for kind in ("mousePressed", "mouseReleased"):
+            self.browser.mouse(kind, x, y, button="left", clickCount=1)
+
+    def choose(self, selector, value):
+        self.js(f"(() => {{ const menu = document.querySelector('{selector}'); menu.value = '{value}';"
+                "menu.dispatchEvent(new Event('change')); })()")
+
+    def time(self):
+        return float(self.js("document.getElementById('replay-player').dataset.time"))
+
+    def test_three_views(self):
+        self.choose("#replay-views", "3")
+        shown = self.js("[...document.querySelectorAll('.side:not([hidden])')].map((side) => side.dataset.algorithm)")
+        self.assertEqual(shown, ["original_averaging", "shaped_stiffness", "proxy"])
+        self.assertEqual(self.js("document.getElementById('replay-key').children.length"), 3)
+
+    def test_sound_follows_the_picture(self):
+        grains = "player.sound.grains"
+        self.choose("#replay-speed", "0.05")
+        self.click("#replay-sound")
+        self.browser.wait_for(f"{grains} > 5")
+        self.assertEqual(self.js("player.sound.context.state"), "running")
+        self.click("#replay-play")
+        self.browser.wait_for("document.getElementById('replay-player').dataset.playing === 'false'")
+        stopped = self.js(grains)
+        time.sleep(0.3)
+        self.assertEqual(self.js(grains), stopped)
+
+    def test_sound_switches_between_runs(self):
+        heard = "document.getElementById('replay-player').dataset.heard"
+        self.assertEqual(self.js(heard), "0")
+        self.click("#replay-sound-next")
+        self.assertEqual(self.js(heard), "1")
+        self.js("document.querySelector('.view').focus()")
+        self.browser.key("a")
+        self.assertEqual(self.js(heard), "0")
+
+    def test_resampling_keeps_the_samples_and_the_tone(self):
+        """At the given samples the same values; between them a sine far below the rate, to the sinc's error."""
+        worst = self.js("""(() => {
+          const n = 400, f = 0.05, given = Float32Array.from({length: n}, (_, i) => Math.sin(2 * Math.PI * f * i));
+          const fine = resampled(given, 8);
+          let at = 0, between = 0;
+          for (let i = 8 * 20; i < 8 * (n - 20); ++i) {
+            const off = Math.abs(fine[i] - Math.sin(2 * Math.PI * f * i / 8));
+            if (i % 8) between = Math.max(between, off); else at = Math.max(at, off);
+          }
+          return [at, between];
+        })()""")
+        self.assertLess(worst[0], 1e-6)
+        # A Hann-windowed sinc of eight samples to a side: its ripple is below 0.5 % in the pass band.
+        self.assertLess(worst[1], 5e-3)
+
+    def test_a_link_leads_back(self):
+        self.choose("#replay-views", "1")
+        self.choose(".side select", "2")
+        self.js("player.seek(0.125)")
+        self.click("#replay-link")
+        hash_ = self.js("location.hash")
+        self.assertEqual(hash_, "#replay=mesh_molar,t=0.125,runs=2")
+        self.open(hash_)
+        self.assertEqual(self.time(), 0.125)
+        self.assertEqual(self.js("player.shown.map((r) => r.algorithm)"), ["proxy"])
+        self.open("#replay=nothing,t=x")
+        self.assertEqual(self.time(), 0)
+
+    def test_the_worst_moment(self):
+        self.click("#replay-worst button")
+        row = self.js("Math.max(...player.shown.map((r) => r.worst[0].value))")
+        at = self.js(f"player.shown.map((r) => r.worst[0]).find((m) => m.value === {row}).time")
+        self.assertAlmostEqual(self.time(), at, places=9)
+
+    def test_a_click_on_the_tracks_goes_there(self):
+        self.click("#replay-chart")
+        self.assertAlmostEqual(self.time() / self.js("player.duration"), 0.47, delta=0.03)
+
+    def test_saves_a_picture(self):
+        self.click("#replay-picture")
+        self.assertTrue(self.saved("*.png").startswith(b"\x89PNG"))
+
+    def test_saves_a_clip(self):
+        self.choose("#replay-speed", "2")
+        self.click("#replay-clip")
+        # The start of an EBML file, which WebM is.
+        self.assertTrue(self.saved("*.webm").startswith(b"\x1a\x45\xdf\xa3"))
+
+    def saved(self, pattern):
+        deadline = time.monotonic() + 60
+        while not (found := list(self.root.glob(pattern))):
+            self.assertLess(time.monotonic(), deadline, pattern)
+            time.sleep(0.1)
+        return found[0].read_bytes()
+
+    def test_springs_have_a_replay_too(self):
+        self.js("player.openScene(1)")
+        drawn = self.js("document.querySelector('.view').toDataURL()")
+        self.js("player.seek(0.1)")
+        self.assertNotEqual(drawn, self.js("document.querySelector('.view').toDataURL()"))
+
+    def test_text_is_legible(self):
+        for dark in (False, True):
+            self.browser.dark(dark)
+            self.assertEqual(self.js(POOR_CONTRAST), [])
+
+    def test_fits_a_telephone(self):
+        self.browser.size(360, 740, 2)
+        self.assertLessEqual(self.js("document.documentElement.scrollWidth"), 360)
+        low = "[...document.querySelectorAll('#replay-player button, #replay-player select')].filter((e) => e.checkVisibility() && e.clientHeight < 24).length"
+        self.assertEqual(self.js(low), 0)
+
+    def test_every_control_has_a_name(self):
+        unnamed = """[...document.querySelectorAll('button, select, input, canvas, img')].filter((e) =>
+            !(e.getAttribute('aria-label') || e.getAttribute('alt') || e.textContent.trim() && e.tagName === 'BUTTON' ||
+              [...(e.labels || [])].some((label) => label.textContent.trim()))).map((e) => e.outerHTML.slice(0, 80))"""
+        self.assertEqual(self.js(unnamed), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
