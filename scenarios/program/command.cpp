@@ -10,7 +10,9 @@
 
 #include "algorithms/registry.hpp"
 #include "results/io/json_text.hpp"
+#include "results/io/new_directories.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/run/expected_output.hpp"
 
 namespace hapbench {
 
@@ -43,6 +45,16 @@ void print(const OutputOptions& options, const std::string& text, const Json& js
 
 void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) fmt::print(stderr, "hapbench: warning: {}\n", warning);
+}
+
+void announce_large_output(std::span<const LoadedScenario> scenarios) {
+  constexpr double kLarge = 1e8;
+  double bytes = 0.0;
+  for (const LoadedScenario& loaded : scenarios) bytes += expected_output_bytes(loaded.scenario);
+  if (bytes <= kLarge) return;
+  const std::string size =
+      bytes < 1e9 ? fmt::format("{:.0f} MB", 1e-6 * bytes) : fmt::format("{:.1f} GB", 1e-9 * bytes);
+  fmt::print(stderr, "hapbench: about {} will be written; \"--set record.every=10\" makes it a tenth\n", size);
 }
 
 std::vector<std::string> all_algorithms() {
@@ -92,8 +104,9 @@ std::vector<fs::path> output_directories(const std::string& out, const std::vect
 }
 
 void require_writable_directory(const fs::path& directory) {
+  static NewDirectories directories;  // until the program ends, with or without results
   std::error_code error;
-  fs::create_directories(directory, error);
+  directories.create(directory, error);
   if (error) throw InputError(fmt::format("--out {}: cannot be created: {}", directory.string(), error.message()));
   if (!fs::is_directory(directory)) throw InputError(fmt::format("--out {}: is not a directory", directory.string()));
   if (access(directory.c_str(), W_OK | X_OK) != 0) {

@@ -60,6 +60,7 @@ int compare(const CompareOptions& options) {
   const fs::path out =
       options.out.empty() ? fs::path("results") / "out" / ("compare_" + file.stem().string()) : fs::path(options.out);
   for (const std::string& algorithm : algorithms) require_writable_directory(out / algorithm);
+  announce_large_output(scenarios);
 
   std::vector<Table::Column> columns = run_columns();
   columns.insert(columns.begin(), {"algorithm", false});
@@ -103,7 +104,8 @@ void add_compare(CommandLine& line) {
   add_cache_option(command, options->no_cache);
   add_skip_option(command, options->skips);
   add_output_options(command, options->output);
-  command.runs([options] { return compare(*options); });
+  command.runs([options] { return compare(*options); },
+               "nothing of the unfinished run is written, finished ones are kept");
 }
 
 }  // namespace hapbench

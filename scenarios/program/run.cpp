@@ -41,6 +41,7 @@ int run(const RunOptions& options) {
     print_warnings(warnings);
   }
   for (const fs::path& directory : directories) require_writable_directory(directory);
+  announce_large_output(scenarios);
 
   std::vector<Table::Column> columns = run_columns();
   columns.insert(columns.begin(), {{"scenario", false}, {"algorithm", false}});
@@ -90,7 +91,7 @@ void add_run(CommandLine& line) {
   add_cache_option(command, options->no_cache);
   add_skip_option(command, options->skips);
   add_output_options(command, options->output);
-  command.runs([options] { return run(*options); });
+  command.runs([options] { return run(*options); }, "nothing of the unfinished run is written, finished ones are kept");
 }
 
 }  // namespace hapbench

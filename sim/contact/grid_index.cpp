@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "sim/geometry/shell_bounds.hpp"
+
 namespace hapbench {
 namespace {
 
@@ -48,18 +50,12 @@ GridIndex::GridIndex(const PointShell& shell)
 }
 
 void GridIndex::choose_cells(const PointShell& shell) {
-  Vec3 low = Vec3::Zero(), high = Vec3::Zero();
-  for (std::size_t i = 0; i < shell.size(); ++i) {
-    const Vec3 p(shell.x()[i], shell.y()[i], shell.z()[i]);
-    low = i == 0 ? p : Vec3(low.cwiseMin(p));
-    high = i == 0 ? p : Vec3(high.cwiseMax(p));
-  }
-  const Vec3 extent = high - low;
+  bounds_ = bounds_of(shell);
+  const Vec3 extent = bounds_.max - bounds_.min;
   const double points = std::max(1.0, static_cast<double>(shell.size()));
   const double spacing = shell.cell_size() > 0.0 ? shell.cell_size() : even_spacing(extent, points);
   cell_ = spacing > 0.0 ? kSpacingsPerCell * spacing : 1.0;
-  origin_ = low;
-  bounds_ = {low, high};
+  origin_ = bounds_.min;
   const auto cells = [&](int axis) { return std::floor(extent[axis] / cell_) + 1.0; };
   while (cells(0) * cells(1) * cells(2) > std::max(kFewestCells, kCellsPerPoint * points)) cell_ *= 1.25;
   for (int axis = 0; axis < 3; ++axis) count_[axis] = static_cast<std::size_t>(cells(axis));

@@ -1,4 +1,4 @@
-"""Stability: the root locus of A.3, and our maps of stable, vibrating and diverged runs."""
+"""Stability: the root locus of A.3, and our maps of stable, dying, vibrating and diverged runs."""
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
@@ -50,9 +50,11 @@ def root_locus(results):
     )
 
 
-CLASSES = ("stable", "vibrating", "diverged")
-# Light to dark, so that the classes can be told apart in grey.
-CLASS_COLOURS = ("#CFE6F5", style.ORANGE, "#7A2E00")
+# Light to dark, so that the classes can be told apart in grey. What is dying out comes to rest: stable, but hatched.
+STABLE = "#CFE6F5"
+CLASS_COLOURS = {"stable": STABLE, "dying_out": STABLE, "vibrating": style.ORANGE, "diverged": "#7A2E00"}
+CLASSES = tuple(CLASS_COLOURS)
+HATCH = {"hatch": "/////", "edgecolor": style.ORANGE, "lw": 0}
 
 
 def axis_label(name):
@@ -75,6 +77,14 @@ def edges(values):
     return np.concatenate([[2 * values[0] - middle[0]], middle, [2 * values[-1] - middle[-1]]])
 
 
+def hatch(ax, x, y, cells):
+    """Hatches those cells between the edges x and y."""
+    for line, column in np.argwhere(cells):
+        corner = (x[column], y[line])
+        size = (x[column + 1] - x[column], y[line + 1] - y[line])
+        ax.add_patch(style.plt.Rectangle(corner, *size, fill=False, **HATCH))
+
+
 def draw_map(ax, rows, x_name, y_name):
     x, y = numbers(rows, x_name), numbers(rows, y_name)
     columns, lines = np.unique(x), np.unique(y)
@@ -84,10 +94,11 @@ def draw_map(ax, rows, x_name, y_name):
         edges(columns),
         edges(lines),
         grid,
-        cmap=ListedColormap(CLASS_COLOURS),
-        norm=BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3),
+        cmap=ListedColormap(list(CLASS_COLOURS.values())),
+        norm=BoundaryNorm(np.arange(len(CLASSES) + 1) - 0.5, len(CLASSES)),
         rasterized=True,
     )
+    hatch(ax, edges(columns), edges(lines), grid == CLASSES.index("dying_out"))
     ax.grid(False)
     ax.set_xscale("log" if is_geometric(columns) else "linear")
     ax.set_yscale("log" if is_geometric(lines) else "linear")
@@ -141,13 +152,17 @@ def map_file(results, name, of_integrators):
 
 
 def legend_above(figure):
-    handles = [style.plt.Rectangle((0, 0), 1, 1, color=c) for c in CLASS_COLOURS]
+    handles = [
+        style.plt.Rectangle((0, 0), 1, 1, facecolor=colour, **(HATCH if name == "dying_out" else {}))
+        for name, colour in CLASS_COLOURS.items()
+    ]
     handles += [
         style.plt.Line2D([], [], color=style.BLUE, lw=1.3),
         style.plt.Line2D([], [], color="black", lw=1, ls=(0, (2, 2))),
     ]
     figure.get_layout_engine().set(rect=(0, 0, 1, 0.93))
-    figure.legend(handles, [*CLASSES, "limit, theory", "limit, bisection"], loc="upper center", ncol=5)
+    names = [name.replace("_", " ") for name in CLASSES]
+    figure.legend(handles, [*names, "limit, theory", "limit, bisection"], loc="upper center", ncol=6)
 
 
 def stability_map(name):
@@ -169,7 +184,7 @@ def stability_map(name):
         figure.supylabel(y_label, fontsize=8)
         legend_above(figure)
         return figure, (
-            f"Where a run is stable, vibrates or diverges: {y_label} over {x_label}, every "
+            f"Where a run is stable, still dies out, vibrates or diverges: {y_label} over {x_label}, every "
             "algorithm. Lines: the limit from theory (blue), where there is one, and found by bisection over "
             "simulated runs (dashed). Ours."
         )
@@ -193,7 +208,7 @@ def integrators(results):
         ax.set_title(name.replace("_", " "))
     legend_above(figure)
     return figure, (
-        f"Where a run is stable, vibrates or diverges under each integrator, {style.look(algorithm).label}: stiffness "
+        f"Where a run is stable, still dies out, vibrates or diverges under each integrator, {style.look(algorithm).label}: stiffness "
         "of one spring over the time step and over zeta, stiffness of the hand over the delay of the device's servo. "
         "Lines: the limit from theory (blue), where there is one, and found by bisection over simulated runs "
         "(dashed). Ours."
