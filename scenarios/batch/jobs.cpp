@@ -8,6 +8,7 @@
 
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/run/progress_bar.hpp"
+#include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 namespace {
@@ -51,8 +52,10 @@ void for_each_job(std::size_t count, const JobOptions& options, const std::funct
     }
     return [&] { bar.show(++done); };
   };
-  parallel_for(jobs, std::max<std::size_t>(1, options.threads), work, [&failure] { return failure.is_there(); });
+  const auto stop = [&failure] { return failure.is_there() || StopSignal::received() != 0; };
+  parallel_for(jobs, std::max<std::size_t>(1, options.threads), work, stop);
   failure.rethrow();
+  if (done < count) throw_if_stopped();
 }
 
 }  // namespace hapbench

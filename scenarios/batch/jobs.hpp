@@ -14,7 +14,8 @@ struct JobOptions {
 
 /// Calls job(0) … job(count - 1), each once, in any order and on several threads. Jobs must be independent: each writes
 /// to its own place, so that the result does not depend on the number of threads. Once a job throws no further one is
-/// begun, and of the exceptions that of the lowest job is thrown again.
+/// begun, and of the exceptions that of the lowest job is thrown again. A signal (stop_signal.hpp) ends it the same
+/// way.
 void for_each_job(std::size_t count, const JobOptions& options, const std::function<void(std::size_t)>& job);
 
 }  // namespace hapbench

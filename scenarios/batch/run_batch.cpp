@@ -1,9 +1,6 @@
 #include "scenarios/batch/run_batch.hpp"
 
-#include <atomic>
-
 #include "scenarios/batch/jobs.hpp"
-#include "scenarios/batch/stop_signal.hpp"
 #include "scenarios/run/shared_shells.hpp"
 
 namespace hapbench {
@@ -30,16 +27,8 @@ BatchReport run_batch(const BatchPlan& plan, const BatchOptions& options) {
   BatchReport report;
   report.runs.resize(plan.size());
   SharedShells shells(uses_of_environments(plan), options.cache);
-  std::atomic<std::size_t> done = 0;
-  const StopSignal stop;
   for_each_job(plan.size(), {static_cast<unsigned>(options.jobs), options.progress ? "compare" : ""},
-               [&](std::size_t number) {
-                 if (stop.received() != 0) return;
-                 report.runs[number] = run_one(plan, options, shells, number);
-                 ++done;
-               });
-  report.done = done;
-  if (report.done < plan.size()) report.signal = stop.received();
+               [&](std::size_t number) { report.runs[number] = run_one(plan, options, shells, number); });
   return report;
 }
 

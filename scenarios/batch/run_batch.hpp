@@ -17,9 +17,7 @@ struct BatchOptions {
 };
 
 struct BatchReport {
-  std::vector<RunReport> runs;  ///< by number; those not begun before a signal are as constructed
-  std::size_t done = 0;
-  int signal = 0;  ///< the signal that stopped it, or 0
+  std::vector<RunReport> runs;  ///< by number
 };
 
 /// Does the runs of a plan, `jobs` at once, runs in one environment sharing its shell, and writes the files of each

@@ -9,12 +9,12 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/parallel_for.hpp"
-#include "scenarios/batch/stop_signal.hpp"
 #include "scenarios/batch/sweep_row.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/shared_shells.hpp"
+#include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 namespace {
@@ -77,7 +77,6 @@ void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& j
   SharedShells shells(uses_of_environments(plan, runs), options.cache);
   ProgressBar bar("sweep", rows.size() + runs.size(), options.progress);
   bar.start_at(rows.size());
-  const StopSignal stop;
   const auto deliver = [&](std::size_t run, const std::string& row) {
     journal.add(row);
     rows[run] = row;
@@ -90,12 +89,14 @@ void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& j
   const auto work = [&](std::size_t run) -> Delivery {
     try {
       return [&deliver, run, row = computed_row(plan, options, shells, run)] { deliver(run, row); };
+    } catch (const Stopped&) {
+      return {};  // --resume computes it
     } catch (const std::exception& error) {
       return [&deliver_failure, run, problem = std::string(error.what())] { deliver_failure(run, problem); };
     }
   };
-  parallel_for(runs, options.jobs, work, [&stop] { return stop.received() != 0; });
-  if (rows.size() < options.part().size(plan.points.size())) report.signal = stop.received();
+  parallel_for(runs, options.jobs, work, [] { return StopSignal::received() != 0; });
+  if (rows.size() < options.part().size(plan.points.size())) report.signal = StopSignal::received();
 }
 
 }  // namespace

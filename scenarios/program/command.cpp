@@ -10,7 +10,9 @@
 
 #include "algorithms/registry.hpp"
 #include "results/io/json_text.hpp"
+#include "results/io/new_directories.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/run/quantity_text.hpp"
 
 namespace hapbench {
 
@@ -43,6 +45,13 @@ void print(const OutputOptions& options, const std::string& text, const Json& js
 
 void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) fmt::print(stderr, "hapbench: warning: {}\n", warning);
+}
+
+void announce_large_output(double bytes) {
+  constexpr double kLarge = 1e8;
+  if (bytes <= kLarge) return;
+  fmt::print(stderr, "hapbench: about {} will be written; \"--set record.every=10\" makes it a tenth\n",
+             bytes_text(bytes));
 }
 
 std::vector<std::string> all_algorithms() {
@@ -92,8 +101,9 @@ std::vector<fs::path> output_directories(const std::string& out, const std::vect
 }
 
 void require_writable_directory(const fs::path& directory) {
+  static NewDirectories directories;  // until the program ends, with or without results
   std::error_code error;
-  fs::create_directories(directory, error);
+  directories.create(directory, error);
   if (error) throw InputError(fmt::format("--out {}: cannot be created: {}", directory.string(), error.message()));
   if (!fs::is_directory(directory)) throw InputError(fmt::format("--out {}: is not a directory", directory.string()));
   if (access(directory.c_str(), W_OK | X_OK) != 0) {

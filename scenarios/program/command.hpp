@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,7 @@ enum ExitStatus : int {
   kInternalFault = 1,
   kBadInput = 2,
   kUnexpectedOutcome = 3,  ///< a simulation diverged, or missed another expectation of its scenario
+  kStopped = 128,          ///< plus the number of the signal, as shells say it: 130 for Ctrl-C, 143 for SIGTERM
 };
 
 /// Options every command understands.
@@ -31,6 +33,7 @@ struct OutputOptions {
 void add_run(CommandLine& line);
 void add_compare(CommandLine& line);
 void add_stability(CommandLine& line);
+void add_limit(CommandLine& line);
 void add_precision(CommandLine& line);
 void add_reproduce(CommandLine& line);
 void add_diff(CommandLine& line);
@@ -60,6 +63,9 @@ void print(const OutputOptions& options, const std::string& text, const Json& js
 /// Prints warnings, one line each, on standard error.
 void print_warnings(const std::vector<std::string>& warnings);
 
+/// Says on standard error when results are going to be large: more than 100 MB.
+void announce_large_output(double bytes);
+
 /// The names of all registered algorithms.
 std::vector<std::string> all_algorithms();
 
@@ -79,7 +85,8 @@ std::vector<std::filesystem::path> output_directories(const std::string& out,
                                                       const std::vector<LoadedScenario>& scenarios,
                                                       const std::string& prefix, const std::string& allowed);
 
-/// Makes sure results can be written to `directory`; throws InputError otherwise. Creates it.
+/// Makes sure results can be written to `directory`; throws InputError otherwise. Creates it; if it is still empty when
+/// the program ends, it is removed again.
 void require_writable_directory(const std::filesystem::path& directory);
 
 }  // namespace hapbench

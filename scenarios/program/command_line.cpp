@@ -91,8 +91,9 @@ void Command::footer(const std::string& text) {
   app_->footer(text);
 }
 
-void Command::runs(Action action) {
-  app_->callback([&chosen = chosen_, action = std::move(action)] { chosen = action; });
+void Command::runs(Action action, std::string when_stopped) {
+  ChosenCommand command{std::move(action), std::move(when_stopped)};
+  app_->callback([&chosen = chosen_, command = std::move(command)] { chosen = command; });
 }
 
 CommandLine::CommandLine(const std::string& version)
@@ -100,7 +101,8 @@ CommandLine::CommandLine(const std::string& version)
   app_->set_version_flag("--version", version);
   app_->require_subcommand(1);
   app_->footer(
-      "Exit status: 0 success, 1 internal fault, 2 bad input or usage, 3 a run did not end as its scenario expects.");
+      "Exit status: 0 success, 1 internal fault, 2 bad input or usage, 3 a run did not end as its scenario expects, "
+      "130 stopped by Ctrl-C.");
 }
 
 CommandLine::~CommandLine() = default;
@@ -115,7 +117,7 @@ int CommandLine::run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app_->exit(error) == 0 ? kSuccess : kBadInput;
   }
-  return chosen_();
+  return chosen_.action();
 }
 
 }  // namespace hapbench

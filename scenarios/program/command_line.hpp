@@ -17,6 +17,12 @@ namespace hapbench {
 /// What the chosen command does; returns the exit status.
 using Action = std::function<int()>;
 
+/// The command that the words of the command line name.
+struct ChosenCommand {
+  Action action;
+  std::string when_stopped;  ///< what becomes of its results when a signal stops it
+};
+
 /// An option or an argument of a command. All functions return the option itself, for chaining.
 class CommandOption {
  public:
@@ -45,7 +51,7 @@ class CommandOption {
 /// live until then.
 class Command {
  public:
-  Command(CLI::App* app, Action& chosen) : app_(app), chosen_(chosen) {}
+  Command(CLI::App* app, ChosenCommand& chosen) : app_(app), chosen_(chosen) {}
 
   /// A name that begins with "--" is an option, another one an argument known by its place.
   CommandOption add(const std::string& name, std::string& value, const std::string& help);
@@ -60,12 +66,12 @@ class Command {
   CommandOption flag(const std::string& name, std::function<void()> when_given, const std::string& help);
   /// Text below the list of options.
   void footer(const std::string& text);
-  /// What the command does when it is chosen.
-  void runs(Action action);
+  /// What the command does when it is chosen, and what becomes of its results when Ctrl-C stops it.
+  void runs(Action action, std::string when_stopped = "what was not complete is removed");
 
  private:
   CLI::App* app_;
-  Action& chosen_;
+  ChosenCommand& chosen_;
 };
 
 /// The program's command line: every command adds itself, then `run` parses and runs the one that was chosen.
@@ -77,10 +83,12 @@ class CommandLine {
   Command command(const std::string& name, const std::string& summary);
   /// Returns the command's exit status, or kBadInput after a wrong usage, with a message on standard error.
   int run(int argc, char** argv);
+  /// What the chosen command says of its results when it is stopped.
+  const std::string& when_stopped() const { return chosen_.when_stopped; }
 
  private:
   std::unique_ptr<CLI::App> app_;
-  Action chosen_;
+  ChosenCommand chosen_;
 };
 
 }  // namespace hapbench

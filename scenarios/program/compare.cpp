@@ -17,6 +17,7 @@
 #include "scenarios/program/league_text.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/expectation.hpp"
+#include "scenarios/run/expected_output.hpp"
 
 namespace hapbench {
 namespace {
@@ -75,6 +76,14 @@ void prepare(const fs::path& out, const BatchPlan& plan, bool league) {
   if (league) results.tables.emplace_back("league.csv");
   for (const fs::path& run : results.runs) require_writable_directory(out / run);
   replace_earlier_results(out, results);
+}
+
+double expected_bytes(const BatchPlan& plan) {
+  const std::size_t each = plan.size() / plan.scenarios.size();
+  double bytes = 0.0;
+  for (std::size_t i = 0; i < plan.size(); i += each)
+    bytes += static_cast<double>(each) * expected_output_bytes(scenario_of(plan, i).scenario);
+  return bytes;
 }
 
 BatchOptions batch_options(const CompareOptions& options, const fs::path& out) {
@@ -162,12 +171,9 @@ int compare(const CompareOptions& options) {
   const fs::path out = directory_of(options, plan);
   print_warnings(plan.warnings);
   prepare(out, plan, options.wants_league());
+  announce_large_output(expected_bytes(plan));
 
   const BatchReport report = run_batch(plan, batch_options(options, out));
-  if (report.signal != 0) {
-    fmt::print(stderr, "hapbench: stopped after {} of {} runs\n", report.done, plan.size());
-    return 128 + report.signal;  // as shells say it
-  }
   for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
     print_warnings(run_warnings(reports_of(plan, report, s)));
     write_comparison(out / scenario_directory(plan, s) / "comparison.csv", reports_of(plan, report, s), options.seeds);
@@ -219,7 +225,7 @@ void add_compare(CommandLine& line) {
       "over the seeds, whether a difference is more than the spread, and where each algorithm wins and fails; all of "
       "it in league.csv. A run fails that diverges, has no contact or loses it, or ends otherwise than its scenario "
       "allows; it ranks behind all others. What an earlier comparison left in OUT is removed, other files are not.");
-  command.runs([options] { return compare(*options); });
+  command.runs([options] { return compare(*options); }, "the folders of finished runs are kept, no table is written");
 }
 
 }  // namespace hapbench

@@ -90,15 +90,18 @@ Description describe_stability() {
       "stability maps\n"
       "  A run of {} steps is judged by its motion alone, quarter by quarter; the amplitude is the largest speed.\n\n"
       "  diverged   left its bounds, or oscillates with an amplitude that grows by 1 % from each quarter to the next\n"
-      "  vibrating  oscillates in the last quarter with at least 1 % of the first quarter's amplitude\n"
-      "  stable     all else: at rest, dying out, creeping\n\n"
+      "  vibrating  does not decay: oscillates in the last quarter with at least 90 % of the third quarter's\n"
+      "             amplitude and 1 % of the first quarter's\n"
+      "  dying_out  still has 1 % of the first quarter's amplitude, but less than 90 % of the third quarter's\n"
+      "  stable     all else: at rest, died out, creeping\n\n"
+      "  Limits count what is stable or dying out as stable: it comes to rest if the run goes on.\n\n"
       "  The analytic limit, under leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = "
       "lambda_max(S),\n"
       "  is given where the tool is alone with springs that stay in contact and the force is -K S p. Under "
       "velocity_verlet\n"
       "  and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. The edge by bisection "
       "is\n"
-      "  that of \"diverged\", in the map of the device that of \"stable\".\n\n{}",
+      "  that of \"diverged\", in the map of the device that of runs that come to rest.\n\n{}",
       kMapSteps, table.text());
   return d;
 }

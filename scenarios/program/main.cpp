@@ -8,6 +8,7 @@
 #include "results/summary/provenance.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 namespace {
@@ -23,6 +24,7 @@ int run_program(int argc, char** argv) {
   add_run(line);
   add_compare(line);
   add_stability(line);
+  add_limit(line);
   add_precision(line);
   add_reproduce(line);
   add_diff(line);
@@ -35,7 +37,13 @@ int run_program(int argc, char** argv) {
   add_list(line);
   add_describe(line);
   add_validate(line);
-  return line.run(argc, argv);
+  const StopSignal signals;
+  try {
+    return line.run(argc, argv);
+  } catch (const Stopped& stop) {
+    fmt::print(stderr, "hapbench: stopped; {}\n", line.when_stopped());
+    return kStopped + stop.signal;
+  }
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 struct PrecisionCommandOptions {
   std::vector<std::string> studies;
   std::string scenario;
-  std::string out = (fs::path("results") / "out" / "precision").string();
+  std::string out;
   std::vector<std::string> overrides;
   int repetitions = PrecisionOptions{}.repetitions;
   bool no_cache = false;
@@ -101,7 +101,11 @@ int precision(const PrecisionCommandOptions& options) {
     scenarios.push_back(load_scenario(find_scenario(given.empty() ? study->scenario : given), options.overrides));
     print_warnings(check_named_files(scenarios.back()));
   }
-  require_writable_directory(options.out);
+  const fs::path out = !options.out.empty() ? fs::path(options.out)
+                       : options.scenario.empty()
+                           ? fs::path("results") / "out" / "precision"
+                           : fs::path("results") / "out" / ("precision_" + scenarios.front().file.stem().string());
+  require_writable_directory(out);
 
   const bool bar = !options.output.quiet && isatty(STDERR_FILENO) == 1;
   std::string text;
@@ -118,11 +122,11 @@ int precision(const PrecisionCommandOptions& options) {
     }
     const PrecisionResult result =
         with_file(scenarios[i], [&] { return studies[i]->run(scenarios[i].scenario, settings); });
-    write_study(options.out, *studies[i], result);
+    write_study(out, *studies[i], result);
     text += study_text(*studies[i], result);
     json.push_back(study_json(*studies[i], result));
   }
-  print(options.output, text + fmt::format("results in {}\n", options.out), json);
+  print(options.output, text + fmt::format("results in {}\n", out.string()), json);
   return kSuccess;
 }
 
@@ -134,14 +138,16 @@ void add_precision(CommandLine& line) {
   std::string names = "all";
   for (const PrecisionStudy* study : kPrecisionStudies) names += fmt::format(", {} ({})", study->name, study->summary);
   command.add("studies", options->studies, names).required();
-  command.add("--scenario", options->scenario, "scenario to start from, instead of the study's own");
-  command.add("--out", options->out, "directory of the results (default: results/out/precision)");
+  command.add("--scenario", options->scenario,
+              "scenario to start from, instead of the study's own: any with time_step");
+  command.add("--out", options->out,
+              "directory of the results (default: results/out/precision, with --scenario results/out/precision_NAME)");
   command.add("--set", options->overrides, "override a field: path=value").repeatable();
   command.add("--repetitions", options->repetitions, "of every timing, of which the least counts (default: 5)")
       .range(1, 1000);
   add_cache_option(command, options->no_cache);
   add_output_options(command, options->output);
-  command.runs([options] { return precision(*options); });
+  command.runs([options] { return precision(*options); }, "studies that were complete are kept");
 }
 
 }  // namespace hapbench

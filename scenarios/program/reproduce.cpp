@@ -195,7 +195,7 @@ int reproduce(const ReproduceOptions& options) {
     const RobustnessPlan plan =
         plan_robustness(choices, published, sampled, read, cache, static_cast<std::size_t>(options.samples));
     const int signal = write_robustness(options, plan, again, ledger.parent_path());
-    if (signal != 0) return 128 + signal;  // as shells say it
+    if (signal != 0) return kStopped + signal;
     record = ledger.parent_path() / "robustness.json";
   }
 
@@ -236,7 +236,8 @@ void add_reproduce(CommandLine& line) {
       "choices.md beside the ledger lists what the thesis leaves open (results/reference/choices.json). Ctrl-C stops "
       "--robustness after the samples in flight; the same command goes on from there.\n"
       "Exit status: 0 success, 2 bad input or usage, 3 a run did not end as its scenario expects, 130 stopped by Ctrl-C.");
-  command.runs([options] { return reproduce(*options); });
+  command.runs([options] { return reproduce(*options); },
+               "finished runs are kept, and the same command goes on from there");
 }
 
 }  // namespace hapbench

@@ -10,6 +10,7 @@
 #include "scenarios/program/latency_table.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/expected_output.hpp"
 
 namespace hapbench {
 namespace {
@@ -47,6 +48,9 @@ int run(const RunOptions& options) {
     for (const fs::path& directory : directories) results.runs.push_back(directory.filename());
     replace_earlier_results(options.out, results);
   }
+  double bytes = 0.0;
+  for (const LoadedScenario& loaded : scenarios) bytes += expected_output_bytes(loaded.scenario);
+  announce_large_output(bytes);
 
   std::vector<Table::Column> columns = run_columns();
   columns.insert(columns.begin(), {{"scenario", false}, {"algorithm", false}});
@@ -97,7 +101,7 @@ void add_run(CommandLine& line) {
   add_cache_option(command, options->no_cache);
   add_skip_option(command, options->skips);
   add_output_options(command, options->output);
-  command.runs([options] { return run(*options); });
+  command.runs([options] { return run(*options); }, "nothing of the unfinished run is written, finished ones are kept");
 }
 
 }  // namespace hapbench

@@ -148,7 +148,7 @@ void add_experiments(Command& command, StabilityOptions& options) {
       command.add("scenarios", options.scenarios,
                   "springs scenarios, for their limits; with --search the scene: files, or names of bundled ones");
   CommandOption map = command.add("--map", options.maps,
-                                  "maps of stable, vibrating and diverged runs: names separated by commas, or "
+                                  "maps of stable, dying, vibrating and diverged runs: names separated by commas, or "
                                   "all (see \"hapbench describe stability\")");
   map.comma_separated();
   CommandOption stress = command.flag("--stress", options.stress, "random contact sets through every algorithm");
@@ -203,7 +203,7 @@ void add_stability(CommandLine& line) {
   command.add("--out", options->out, "directory of the results (default: results/out/stability_NAME)");
   command.add("--set", options->overrides, "override a field: path=value").repeatable();
   add_output_options(command, options->output);
-  command.runs([options] { return stability(*options); });
+  command.runs([options] { return stability(*options); }, "maps and searches that were complete are kept");
 }
 
 }  // namespace hapbench

@@ -4,12 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "results/io/csv_writer.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/character_map.hpp"
+#include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
 
@@ -93,19 +94,22 @@ std::size_t count_of(const MapResult& result, MotionClass motion) {
 
 /// The analytic limit is drawn where the runs confirm it: '=' is the first run beyond.
 std::string drawing(const MapResult& result) {
+  // In the order of the enumeration.
+  constexpr std::array<char, 4> kMarks = {'.', ':', '~', '#'};
   const std::size_t n = result.size;
   const MapAxis &x = result.map->x, &y = result.map->y;
   const auto cell = [&](std::size_t column, std::size_t row) {
     const MotionClass motion = result.points[column * n + row].motion;
     const auto beyond = [&](std::size_t j) { return y.at(j, n) > result.boundary[column].analytic.value_or(1e300); };
     const bool limit = motion == MotionClass::diverged && beyond(row) && (row == 0 || !beyond(row - 1));
-    return limit ? '=' : motion == MotionClass::stable ? '.' : motion == MotionClass::vibrating ? '~' : '#';
+    return limit ? '=' : kMarks[static_cast<std::size_t>(motion)];
   };
   std::vector<std::string> labels(n);
   for (const std::size_t row : {std::size_t{0}, n - 1}) labels[row] = significant(y.at(row, n), 3);
-  return fmt::format("{}: {}\n\n{}  . stable  ~ vibrating  # diverged  = diverged, first beyond the analytic limit\n\n",
-                     label(result.subject), result.map->summary,
-                     character_map({x.name, n, significant(x.low, 3), significant(x.high, 3)}, y.name, labels, cell));
+  return fmt::format(
+      "{}: {}\n\n{}  . stable  : dying out  ~ vibrating  # diverged  = diverged, first beyond the analytic limit\n\n",
+      label(result.subject), result.map->summary,
+      character_map({x.name, n, significant(x.low, 3), significant(x.high, 3)}, y.name, labels, cell));
 }
 
 Json result_json(const MapResult& result) {
@@ -122,7 +126,7 @@ Json result_json(const MapResult& result) {
                {"algorithm", result.subject.algorithm},
                {"integrator", result.subject.integrator->info.name},
                {"boundary", std::move(rows)}};
-  for (const MotionClass motion : {MotionClass::stable, MotionClass::vibrating, MotionClass::diverged}) {
+  for (const MotionClass motion : kMotionClasses) {
     json[std::string(motion_class_name(motion))] = count_of(result, motion);
   }
   return json;
@@ -133,7 +137,7 @@ std::vector<std::string> cells_of(const MapResult& result) {
   const auto without =
       std::count_if(result.boundary.begin(), result.boundary.end(), [](const BoundaryPoint& p) { return !p.analytic; });
   std::vector<std::string> cells = {result.map->name, result.subject.algorithm, result.subject.integrator->info.name};
-  for (const MotionClass motion : {MotionClass::stable, MotionClass::vibrating, MotionClass::diverged}) {
+  for (const MotionClass motion : kMotionClasses) {
     cells.push_back(std::to_string(count_of(result, motion)));
   }
   cells.push_back(difference ? significant(100.0 * *difference, 2) : "-");
@@ -153,10 +157,11 @@ int stability_maps_command(const StabilityOptions& options) {
                {"algorithm", false},
                {"integrator", false},
                {"stable"},
+               {"dying out"},
                {"vibrating"},
                {"diverged"},
-               {"largest difference %"},
-               {"without theory"}});
+               {"off theory %"},
+               {"no theory"}});
   std::string drawings;
   Json json = Json::array();
   for (const StabilityMap* map : maps) {

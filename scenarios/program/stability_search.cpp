@@ -9,6 +9,7 @@
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/studies/worst_motion/adversary.hpp"
+#include "scenarios/studies/worst_motion/search_scene.hpp"
 
 namespace hapbench {
 namespace {
@@ -28,7 +29,7 @@ std::vector<LoadedScenario> scenes_of(const StabilityOptions& options) {
     overrides.push_back("rendering.algorithm=" + algorithm);
     scenes.push_back(load_scenario(file, overrides));
   }
-  for (const LoadedScenario& scene : scenes) with_file(scene, [&] { check_adversary_scene(scene.scenario); });
+  for (const LoadedScenario& scene : scenes) with_file(scene, [&] { check_search_scene(scene.scenario); });
   return scenes;
 }
 

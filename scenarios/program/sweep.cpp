@@ -112,7 +112,7 @@ int sweep(const SweepCommand& command) {
   if (report.signal != 0) {
     fmt::print(stderr, "hapbench: stopped after {} of {} runs; the same command with --resume goes on from there\n",
                report.rows.size(), options.part().size(plan.points.size()));
-    return 128 + report.signal;  // as shells say it
+    return kStopped + report.signal;
   }
   const SweepSummary summary = summarise(plan, report.rows);
   print(command.output, summary_text(plan, report, summary, metric), summary_json(plan, report, summary));

@@ -8,7 +8,8 @@
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/lengths.hpp"
+#include "scenarios/run/expected_output.hpp"
+#include "scenarios/run/quantity_text.hpp"
 #include "scenarios/run/scene_facts.hpp"
 
 namespace hapbench {
@@ -35,7 +36,7 @@ std::string facts_text(const Scenario& scenario, const SceneFacts& facts) {
   text += fmt::format("  run          {} steps of {:.4g} ms = {:.4g} s", scenario.time.steps, 1e3 * scenario.time.step,
                       duration);
   if (facts.trials > 1) text += fmt::format(", {} trials", facts.trials);
-  return text + "\n";
+  return text + fmt::format("\n  writes       about {}\n", bytes_text(expected_output_bytes(scenario)));
 }
 
 Json box_json(const Box& box) {
@@ -45,7 +46,8 @@ Json box_json(const Box& box) {
 Json facts_json(const Scenario& scenario, const SceneFacts& facts) {
   Json json = {{"steps", scenario.time.steps},
                {"duration_s", scenario.time.step * static_cast<double>(scenario.time.steps)},
-               {"trials", facts.trials}};
+               {"trials", facts.trials},
+               {"expected_output_bytes", expected_output_bytes(scenario)}};
   if (!facts.surface) return json;
   json["environment"] = {{"box_m", box_json(facts.surface->box)}, {"points", facts.surface->points}};
   if (facts.is_closed) json["environment"]["closed"] = *facts.is_closed;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scenarios/run/lengths.hpp"
+#include "scenarios/run/quantity_text.hpp"
 
 namespace hapbench {
 namespace {

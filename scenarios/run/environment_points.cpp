@@ -4,6 +4,7 @@
 
 #include "results/io/json_text.hpp"
 #include "scenarios/input/loaded_code.hpp"
+#include "scenarios/run/stop_signal.hpp"
 #include "sim/contact/grid_index.hpp"
 #include "sim/mesh/block_field.hpp"
 #include "sim/mesh/points_by_cell.hpp"
@@ -52,7 +53,11 @@ std::string shell_definition(const Scenario& scenario, const NamedFiles& files) 
 }
 
 EnvironmentPoints environment_points(const Scenario& scenario, const ShellCache& cache, const NamedFiles& files) {
-  const auto build = [&] { return std::visit(Build{files}, scenario.environment); };
+  const auto build = [&] {
+    ShellPoints points = std::visit(Build{files}, scenario.environment);
+    throw_if_stopped();  // it may have taken seconds
+    return points;
+  };
   if (!cache.is_on() || !is_worth_keeping(scenario.environment)) return {build()};
   const std::string definition = shell_definition(scenario, files);
   if (definition.empty()) return {build()};

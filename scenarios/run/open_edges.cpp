@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "scenarios/run/lengths.hpp"
+#include "scenarios/run/quantity_text.hpp"
 #include "sim/contact/grid_index.hpp"
 
 namespace hapbench {

@@ -6,6 +6,7 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
+#include "results/io/new_directories.hpp"
 #include "results/record/target_table.hpp"
 #include "results/summary/columns_json.hpp"
 #include "scenarios/run/environment_points.hpp"
@@ -52,9 +53,9 @@ fs::path trial_directory(const fs::path& directory, Trial trial, std::size_t tri
   return directory / fmt::format("{}{}_trial_{}", kTrialDirectory, trial.subject, trial.number);
 }
 
-void create_output(const fs::path& directory) {
+void create_output(NewDirectories& directories, const fs::path& directory) {
   std::error_code error;
-  fs::create_directories(directory, error);
+  directories.create(directory, error);
   if (error) throw IoError("create", directory, error);
   remove_stale_temporaries(directory);
 }
@@ -165,7 +166,8 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
   RunReport report;
   report.timing = timing;
   const std::vector<Trial> trials = trials_of(scenario);
-  if (output) create_output(*output);
+  NewDirectories directories;
+  if (output) create_output(directories, *output);
 
   std::optional<StepTimes> times;
   if (scenario.record.timing) times.emplace(static_cast<std::size_t>(scenario.time.steps) * trials.size());
@@ -174,7 +176,7 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
     TrialOptions options;
     options.files = loaded.files;
     if (output && records_rows(scenario.record)) options.directory = trial_directory(*output, trial, trials.size());
-    if (options.directory) create_output(*options.directory);
+    if (options.directory) create_output(directories, *options.directory);
     if (progress) options.label = scenario.name;
     if (progress && trials.size() > 1) options.label += fmt::format(" {}/{}", results.size() + 1, trials.size());
     if (times) options.times = &*times;

@@ -26,7 +26,7 @@ struct RunReport {
 /// at all, the summary last; without it, the summary has no provenance and no scenario hash. `progress` allows a
 /// progress bar. The environment's shell may come from `cache`. With skips off (RenderingConfig), the results are the
 /// same but for the counted work. Throws InputError for files it cannot use (before anything is written), IoError when
-/// writing fails.
+/// writing fails, Stopped when a signal ends the run: then nothing of it is left.
 RunReport run_scenario(const LoadedScenario& loaded, const std::optional<std::filesystem::path>& output, bool progress,
                        const ShellCache& cache);
 

@@ -9,6 +9,8 @@
 #include "scenarios/run/open_edges.hpp"
 #include "scenarios/run/progress.hpp"
 #include "scenarios/run/recorders.hpp"
+#include "scenarios/run/run_to_end.hpp"
+#include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 namespace {
@@ -99,9 +101,13 @@ class TrialObservers {
   std::vector<Observer*> observers_;
 };
 
-SimulationResult run_timed(Simulation& simulation, StepTimes& times) noexcept {
+/// As run_to_end, every step timed.
+SimulationResult run_timed(Simulation& simulation, StepTimes& times) {
   times.start();
-  while (simulation.step()) times.lap();
+  for (bool more = true; more;) {
+    throw_if_stopped();
+    for (std::uint64_t i = 0; i < kAskEvery && (more = simulation.step()); ++i) times.lap();
+  }
   return simulation.result();
 }
 
@@ -129,7 +135,7 @@ TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell
   const std::uint64_t allocations_before = heap_allocations();
   const std::uint64_t preemptions_before = involuntary_context_switches();
   const auto start = std::chrono::steady_clock::now();
-  out.result = options.times != nullptr ? run_timed(simulation, *options.times) : simulation.run();
+  out.result = options.times != nullptr ? run_timed(simulation, *options.times) : run_to_end(simulation);
   out.loop_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   out.preemptions = involuntary_context_switches() - preemptions_before;
   out.work.allocations = heap_allocations() - allocations_before;

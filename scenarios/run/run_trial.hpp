@@ -38,7 +38,7 @@ struct TrialOptions {
 };
 
 /// Runs one trial. `shell` is make_shell of the scenario. Throws InputError for files it cannot use and IoError when a
-/// record cannot be written.
+/// record cannot be written, Stopped when a signal ends it (run_to_end.hpp).
 TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial,
                       const TrialOptions& options);
 

@@ -15,6 +15,7 @@
 #include "scenarios/input/number_table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/environment_points.hpp"
+#include "scenarios/run/run_to_end.hpp"
 
 namespace hapbench {
 namespace {
@@ -132,7 +133,8 @@ std::shared_ptr<const PointShell> Evidence::shell(const LoadedScenario& loaded) 
 void Evidence::for_each_row(const LoadedScenario& loaded, const std::function<void(const StepRecord&)>& row) const {
   const Scenario& scenario = loaded.scenario;
   RowObserver observer(row);
-  Simulation(simulation_config(scenario), assemble(scenario, loaded.files, shell(loaded), {}), {&observer}).run();
+  Simulation simulation(simulation_config(scenario), assemble(scenario, loaded.files, shell(loaded), {}), {&observer});
+  run_to_end(simulation);
 }
 
 }  // namespace hapbench

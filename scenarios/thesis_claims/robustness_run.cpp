@@ -10,11 +10,11 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/parallel_for.hpp"
-#include "scenarios/batch/stop_signal.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/loaded_code.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/progress_bar.hpp"
+#include "scenarios/run/stop_signal.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
@@ -87,9 +87,8 @@ RobustnessReport run_robustness(const RobustnessPlan& plan, const RobustnessOpti
   RecentShells shells(plan.cache);
   ProgressBar bar("robustness", plan.samples(), options.progress);
   bar.start_at(report.resumed);
-  const StopSignal stop;
   std::map<std::size_t, std::vector<std::string>> problems;
-  const auto work = [&](std::size_t sample) -> Delivery {
+  const auto judge = [&](std::size_t sample) -> Delivery {
     return [&, sample, judged = judge_sample(plan, shells, sample, scratch / std::to_string(sample))] {
       journal.add(robustness_row(plan, sample, judged.verdicts));
       report.verdicts[sample] = judged.verdicts;
@@ -97,12 +96,19 @@ RobustnessReport run_robustness(const RobustnessPlan& plan, const RobustnessOpti
       bar.show(++report.done, true);
     };
   };
-  parallel_for(left, options.jobs, work, [&stop] { return stop.received() != 0; });
+  const auto work = [&](std::size_t sample) -> Delivery {
+    try {
+      return judge(sample);
+    } catch (const Stopped&) {
+      return {};  // the same command judges it
+    }
+  };
+  parallel_for(left, options.jobs, work, [] { return StopSignal::received() != 0; });
   std::error_code ignored;
   fs::remove_all(scratch, ignored);
   for (const auto& [sample, texts] : problems)
     report.problems.insert(report.problems.end(), texts.begin(), texts.end());
-  if (report.done < plan.samples()) report.signal = stop.received();
+  if (report.done < plan.samples()) report.signal = StopSignal::received();
   return report;
 }
 

@@ -126,6 +126,11 @@ bool Simulation::step() noexcept {
   return true;
 }
 
+bool Simulation::advance(std::uint64_t steps) noexcept {
+  while (steps > 0 && step()) --steps;
+  return !ended_;
+}
+
 SimulationResult Simulation::run() noexcept {
   while (step()) {
   }

@@ -93,6 +93,8 @@ class Simulation {
   /// Evaluates row k, shows it to the observers and moves on to row k + 1. Returns false, and does nothing, once the
   /// run has ended. Allocates nothing.
   bool step() noexcept;
+  /// Takes up to so many steps; returns false once the run has ended.
+  bool advance(std::uint64_t steps) noexcept;
   /// Steps to the end.
   SimulationResult run() noexcept;
 

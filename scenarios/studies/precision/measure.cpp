@@ -7,17 +7,24 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/environment_points.hpp"
+#include "scenarios/run/run_to_end.hpp"
 
 namespace hapbench {
 namespace {
 
-class PositionSampler final : public Observer {
+class RowSampler final : public Observer {
  public:
-  PositionSampler(std::uint64_t stride, std::uint64_t rows) : stride_(stride) { positions.reserve(rows / stride + 1); }
-  void on_step(const StepRecord& record) noexcept override {
-    if (record.step % stride_ == 0) positions.push_back(record.tool.pose.position);
+  RowSampler(std::uint64_t stride, std::uint64_t rows) : stride_(stride) {
+    run.positions.reserve(rows / stride + 1);
+    run.forces.reserve(rows / stride + 1);
   }
-  std::vector<Vec3> positions;
+  void on_step(const StepRecord& record) noexcept override {
+    run.in_contact = run.in_contact || record.colliding > 0;
+    if (record.step % stride_ != 0) return;
+    run.positions.push_back(record.tool.pose.position);
+    run.forces.push_back(record.force.rendered);
+  }
+  SampledRun run;
 
  private:
   std::uint64_t stride_;
@@ -49,12 +56,11 @@ std::shared_ptr<const PointShell> shell_of(const Scenario& scenario, const Preci
 SampledRun sampled_run(const Scenario& scenario, std::shared_ptr<const PointShell> shell, std::uint64_t stride,
                        std::vector<Observer*> observers) {
   const SimulationConfig config = simulation_config(scenario);
-  PositionSampler sampler(stride, config.steps);
+  RowSampler sampler(stride, config.steps);
   observers.push_back(&sampler);
-  SampledRun run;
-  run.result = Simulation(config, assemble(scenario, std::move(shell), {}), std::move(observers)).run();
-  run.positions = std::move(sampler.positions);
-  return run;
+  Simulation simulation(config, assemble(scenario, std::move(shell), {}), std::move(observers));
+  sampler.run.result = run_to_end(simulation);
+  return std::move(sampler.run);
 }
 
 TrajectoryDistance distance(std::span<const Vec3> a, std::span<const Vec3> b) {
@@ -95,26 +101,30 @@ double fitted_order(std::span<const double> x, std::span<const double> error) {
 
 double seconds_per_step(const Scenario& scenario, std::shared_ptr<const PointShell> shell, int repetitions) {
   Simulation simulation(simulation_config(scenario), assemble(scenario, std::move(shell), {}), {});
-  const SimulationResult warm_up = simulation.run();
+  const SimulationResult warm_up = run_to_end(simulation);
   if (warm_up.rows == 0) return 0.0;
   return seconds_per_call(warm_up.rows, repetitions, [&simulation] {
     simulation.reset();
-    simulation.run();
+    run_to_end(simulation);
   });
+}
+
+IdealDeviceFields with_ideal_device(const DeviceFields& device) {
+  return {std::visit([](const auto& fields) { return fields.force_limit; }, device)};
 }
 
 Scenario drill_in_hole(Scenario scenario) {
   if (!std::holds_alternative<BlockEnvironment>(scenario.environment)) {
-    throw InputError(InputError::Kind::relation, "/environment/type",
-                     "got another environment; allowed for this study: block_with_hole");
+    throw InputError(
+        InputError::Kind::relation, "/environment/type",
+        "got another environment; allowed for this study: block_with_hole, the hole its drill is measured in "
+        "(the study time_step takes any scene)");
   }
   if (!has_ideal_trajectory(scenario)) {
     throw InputError(InputError::Kind::relation, "/tool/tip",
                      "got \"round\"; allowed for this study: \"flat\", whose ideal trajectory is known");
   }
-  if (const auto* device = std::get_if<AdmittanceDeviceConfig>(&scenario.device)) {
-    scenario.device = IdealDeviceFields{device->force_limit};
-  }
+  scenario.device = with_ideal_device(scenario.device);
   const auto rows = static_cast<std::int64_t>(std::llround(kPeriod / scenario.time.step));
   scenario.time.steps = std::min(scenario.time.steps, rows);
   scenario.record = {};
@@ -131,7 +141,8 @@ std::vector<ContactBuffer> rendered_contact_sets(const Scenario& scenario, const
                                                  std::uint64_t stride) {
   std::vector<ContactBuffer> sets;
   ContactSampler sampler(stride, sets);
-  Simulation(simulation_config(scenario), assemble(scenario, shell_of(scenario, options), {}), {&sampler}).run();
+  Simulation simulation(simulation_config(scenario), assemble(scenario, shell_of(scenario, options), {}), {&sampler});
+  run_to_end(simulation);
   return sets;
 }
 

@@ -12,10 +12,12 @@
 /// What the studies have in common: sampled runs, distances, fits and times.
 namespace hapbench {
 
-/// Positions of every `stride`-th row of a run, and how it ended.
+/// Positions and rendered forces of every `stride`-th row of a run, and how it ended.
 struct SampledRun {
   SimulationResult result;
-  std::vector<Vec3> positions;
+  std::vector<Vec3> positions;  ///< [m]
+  std::vector<Vec3> forces;     ///< [N]
+  bool in_contact = false;      ///< in any row
 };
 
 /// The shell of a scenario as make_shell makes it; may come from the cache.
@@ -24,11 +26,11 @@ std::shared_ptr<const PointShell> shell_of(const Scenario& scenario, const Preci
 SampledRun sampled_run(const Scenario& scenario, std::shared_ptr<const PointShell> shell, std::uint64_t stride,
                        std::vector<Observer*> observers = {});
 
-/// Distance between two trajectories at their common samples.
+/// Distance between two trajectories, or two series of forces, at their common samples, in their unit.
 struct TrajectoryDistance {
-  double final = 0.0;  ///< at the last common sample [m]
-  double rms = 0.0;    ///< root of the mean square, the discrete l2 norm [m]
-  double max = 0.0;    ///< [m]
+  double final = 0.0;  ///< at the last common sample
+  double rms = 0.0;    ///< root of the mean square, the discrete l2 norm
+  double max = 0.0;
 };
 TrajectoryDistance distance(std::span<const Vec3> a, std::span<const Vec3> b);
 
@@ -56,6 +58,9 @@ double seconds_per_call(std::size_t calls, int repetitions, Work work) {
   }
   return least / static_cast<double>(calls);
 }
+
+/// An ideal device with the same limit of the force, which adds no dynamics, delay or noise of its own.
+IdealDeviceFields with_ideal_device(const DeviceFields& device);
 
 /// Prepares a scenario in which a hand presses a drill into the block's hole for the studies: its device becomes an
 /// ideal one with the same force limit, so that the device adds no dynamics of its own; it ends after one period of the

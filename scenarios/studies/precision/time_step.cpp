@@ -4,6 +4,7 @@
 
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/summary/outcome_names.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/studies/precision/study.hpp"
@@ -22,47 +23,95 @@ Scenario with_step(const Scenario& scenario, double factor) {
   return run;
 }
 
+/// All runs are compared at the samples of the coarsest one.
+std::uint64_t stride(double factor) {
+  return static_cast<std::uint64_t>(std::llround(kFactors[0] / factor));
+}
+
+bool moves_freely(const Scenario& scenario) {
+  return std::holds_alternative<FreePosition>(scenario.motion.position);
+}
+
+bool has_ideal(const Scenario& scenario) {
+  return has_ideal_trajectory(scenario) && moves_freely(scenario);
+}
+
+/// Any other scene, without what has no limit as the step gets finer.
+Scenario any_scene(Scenario scenario) {
+  if (std::holds_alternative<TrackingHandFields>(scenario.hand)) {
+    throw InputError(InputError::Kind::relation, "/hand/type",
+                     "got \"tracking\", whose noise is drawn anew in every step; allowed for this study: other hands");
+  }
+  if (scenario.time.steps < 2 * std::llround(kFactors[0])) {
+    throw InputError(
+        InputError::Kind::relation, "/time/steps",
+        fmt::format("got {}; allowed for this study: at least {}", scenario.time.steps, 2 * std::llround(kFactors[0])));
+  }
+  scenario.time.steps -= scenario.time.steps % std::llround(kFactors[0]);  // so that all end at the same time
+  scenario.device = with_ideal_device(scenario.device);
+  scenario.record = {};
+  return scenario;
+}
+
+/// The run that the others are measured against.
+SampledRun reference_run(const Scenario& scenario, const std::shared_ptr<const PointShell>& shell) {
+  SampledRun run = sampled_run(with_step(scenario, 1.0 / kReference), shell, stride(1.0 / kReference));
+  if (run.result.outcome == Outcome::diverges) {
+    throw InputError(
+        InputError::Kind::relation, "/time/step_s",
+        fmt::format("even with a step {} times finer the run diverges, at {:.4g} s: nothing to compare with",
+                    kReference, run.result.divergence.time));
+  }
+  if (!run.in_contact) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
+  return run;
+}
+
+PrecisionRow row_of(const Scenario& run, const SampledRun& sampled, const TrajectoryDistance& error, double seconds) {
+  return {fmt::format("dt={}", run.time.step),
+          std::string(outcome_name(sampled.result.outcome)),
+          {run.time.step, error.final, error.rms, error.max},
+          seconds};
+}
+
 }  // namespace
 
 static PrecisionResult study_time_step(const Scenario& given, const PrecisionOptions& options) {
-  const Scenario scenario = drill_in_hole(given);
-  const BlockWithHole& block = std::get<BlockEnvironment>(scenario.environment).block;
+  const bool ideal = has_ideal(given), free = moves_freely(given);
+  const Scenario scenario = ideal ? drill_in_hole(given) : any_scene(given);
   const Cylinder tool = make_cylinder(scenario.tool);
   const auto shell = shell_of(scenario, options);
-  // All are compared at the samples of the coarsest one.
-  const double sampling = kFactors[0];
-  const auto stride = [sampling](double factor) { return static_cast<std::uint64_t>(std::llround(sampling / factor)); };
-  const SampledRun reference = sampled_run(with_step(scenario, 1.0 / kReference), shell, stride(1.0 / kReference));
+  const SampledRun reference = reference_run(scenario, shell);
 
   PrecisionResult result;
-  result.columns = {"step_s", "error_final_m", "error_rms_m", "error_max_m", "ideal_height_error_rms_m"};
+  const std::string unit = free ? "m" : "N";
+  result.columns = {"step_s", "error_final_" + unit, "error_rms_" + unit, "error_max_" + unit};
+  if (ideal) result.columns.emplace_back("ideal_height_error_rms_m");
   result.timed = "step";
   std::vector<double> steps, errors;
   for (const double factor : kFactors) {
     const Scenario run = with_step(scenario, factor);
-    IdealTrajectoryObserver ideal(block, tool);
-    const SampledRun sampled = sampled_run(run, shell, stride(factor), {&ideal});
-    const TrajectoryDistance d = distance(sampled.positions, reference.positions);
-    result.rows.push_back({fmt::format("dt={}", run.time.step),
-                           std::string(outcome_name(sampled.result.outcome)),
-                           {run.time.step, d.final, d.rms, d.max, ideal.metrics().gentle.height_rms},
-                           seconds_per_step(run, shell, options.repetitions)});
+    std::optional<IdealTrajectoryObserver> beside;
+    if (ideal) beside.emplace(std::get<BlockEnvironment>(scenario.environment).block, tool);
+    const SampledRun sampled =
+        sampled_run(run, shell, stride(factor), beside ? std::vector<Observer*>{&*beside} : std::vector<Observer*>());
+    const TrajectoryDistance d =
+        free ? distance(sampled.positions, reference.positions) : distance(sampled.forces, reference.forces);
+    result.rows.push_back(row_of(run, sampled, d, seconds_per_step(run, shell, options.repetitions)));
+    if (beside) result.rows.back().values.emplace_back(beside->metrics().gentle.height_rms);
+    options.progress(result.rows.size(), std::size(kFactors));
     // A drill that was thrown out may be anywhere: its distance from the reference does not converge.
-    if (sampled.positions.size() != reference.positions.size() || !(d.max <= tool.half_width())) {
-      options.progress(result.rows.size(), std::size(kFactors));
-      continue;
-    }
+    const bool thrown_out = free && !(d.max <= tool.half_width());
+    if (sampled.positions.size() != reference.positions.size() || thrown_out) continue;
     steps.push_back(run.time.step);
     errors.push_back(d.rms);
-    options.progress(result.rows.size(), std::size(kFactors));
   }
-  result.orders.push_back({fmt::format("{} with contact switching", scenario.integrator.type->info.name), "error_rms_m",
-                           fitted_order(steps, errors)});
+  result.orders.push_back({fmt::format("{} with contact switching", scenario.integrator.type->info.name),
+                           "error_rms_" + unit, fitted_order(steps, errors)});
   return result;
 }
 
 const PrecisionStudy kTimeStepStudy = {
-    "time_step", "a drill turned in a hole against a time step 64 times finer, over the time step",
-    "rotate_in_hole", study_time_step};
+    "time_step", "any scene against itself at a 64 times finer step: position if free, else force", "rotate_in_hole",
+    study_time_step};
 
 }  // namespace hapbench

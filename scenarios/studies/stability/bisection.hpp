@@ -8,6 +8,16 @@ namespace hapbench {
 /// Values beyond this are taken for "never unstable".
 inline constexpr double kLargestProbe = 1e15;
 
+/// Moves `low` and `high` together, `low` where `stable` holds of the middle and `high` where it does not, while
+/// `apart(low, high)`; `middle(low, high)` lies between them. Precondition: it holds at `low` and not at `high`.
+template <class Stable, class Middle, class Apart>
+void bisect(double& low, double& high, Stable stable, Middle middle, Apart apart) {
+  while (apart(low, high)) {
+    const double value = middle(low, high);
+    (stable(value) ? low : high) = value;
+  }
+}
+
 /// The largest value below which `stable` holds, by powers of two from `start` and bisection of the logarithm down to
 /// the relative width `precision`. Where the stable values are not one interval (velocity Verlet with damping is stable
 /// again beyond its first edge) it is the first edge, unless that is the beginning of a gap narrower than a factor of
@@ -26,10 +36,9 @@ double largest_stable(double start, double precision, Stable stable, double larg
     high *= 2.0;
     if (high > largest) return std::numeric_limits<double>::infinity();
   }
-  while (high / low > 1.0 + precision) {
-    const double middle = std::sqrt(low * high);
-    (stable(middle) ? low : high) = middle;
-  }
+  bisect(
+      low, high, stable, [](double a, double b) { return std::sqrt(a * b); },
+      [precision](double a, double b) { return b / a > 1.0 + precision; });
   return low;
 }
 

@@ -3,25 +3,39 @@
 #include <algorithm>
 #include <array>
 
+#include "results/observe/metrics.hpp"
+#include "scenarios/run/run_to_end.hpp"
+#include "scenarios/run/stop_signal.hpp"
+
 namespace hapbench {
 namespace {
 
 constexpr double kGrowth = 1.01;
-constexpr double kSustained = 0.01;
+constexpr double kLeft = 0.01;
+constexpr double kSustained = 0.9;
 constexpr std::uint64_t kTurns = 2;
 constexpr double kRest = 1e-12;
+constexpr double kFelt = 1e-3;  // [m/s]
 
 }  // namespace
 
 std::string_view motion_class_name(MotionClass motion) noexcept {
   // In the order of the enumeration.
-  constexpr std::array<std::string_view, 3> kNames = {"stable", "vibrating", "diverged"};
+  constexpr std::array<std::string_view, 4> kNames = {"stable", "dying_out", "vibrating", "diverged"};
   return kNames[static_cast<std::size_t>(motion)];
+}
+
+MotionClassifier MotionClassifier::of_moved_tool(std::uint64_t steps, double time_step) {
+  MotionClassifier classifier(steps);
+  classifier.is_moved_ = true;
+  if (kVibrationCutoff * time_step < 0.5) classifier.high_pass_.emplace(kVibrationCutoff, 1.0 / time_step);
+  return classifier;
 }
 
 void MotionClassifier::on_step(const StepRecord& record) noexcept {
   Quarter& quarter = quarters_[std::min<std::uint64_t>(3, record.step * 4 / steps_)];
-  const Vec3& v = record.tool.velocity;
+  if (high_pass_ && record.step == 0) high_pass_->settle_at(record.tool.velocity);
+  const Vec3 v = high_pass_ ? high_pass_->filter(record.tool.velocity) : record.tool.velocity;
   const double speed = v.norm();
   quarter.amplitude = std::max(quarter.amplitude, speed);
   largest_speed_ = std::max(largest_speed_, speed);
@@ -38,14 +52,18 @@ MotionClass MotionClassifier::motion_class(Outcome outcome) const noexcept {
   if (outcome == Outcome::diverges) return MotionClass::diverged;
   const auto& q = quarters_;
   if (at_rest() || !oscillates_in(q[3])) return MotionClass::stable;
+  if (is_moved_ && q[3].amplitude < kFelt) return MotionClass::stable;
   bool grows = true;
   for (std::size_t i = 1; i < q.size(); ++i) grows = grows && q[i].amplitude > kGrowth * q[i - 1].amplitude;
   if (grows) return MotionClass::diverged;
-  return q[3].amplitude >= kSustained * q[0].amplitude ? MotionClass::vibrating : MotionClass::stable;
+  if (q[3].amplitude < kLeft * q[0].amplitude) return MotionClass::stable;
+  return q[3].amplitude >= kSustained * q[2].amplitude ? MotionClass::vibrating : MotionClass::dying_out;
 }
 
-MotionClass classify(Simulation& simulation, const MotionClassifier& classifier) noexcept {
-  while (!classifier.at_rest() && simulation.step()) {
+MotionClass classify(Simulation& simulation, const MotionClassifier& classifier) {
+  for (bool more = true; more;) {
+    throw_if_stopped();
+    for (std::uint64_t i = 0; i < kAskEvery && more; ++i) more = !classifier.at_rest() && simulation.step();
   }
   return classifier.motion_class(simulation.result().outcome);
 }

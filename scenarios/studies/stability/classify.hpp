@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
+#include "results/observe/high_pass.hpp"
 #include "sim/loop/observer.hpp"
 #include "sim/loop/simulation.hpp"
 
@@ -14,31 +16,45 @@
 ///
 ///   diverged   the run left its bounds, or it oscillates and its amplitude has grown by more than 1 % from each
 ///              quarter to the next
-///   vibrating  not diverged, and in the last quarter it oscillates (two turns or more of one component) with at least
-///              1 % of the first quarter's amplitude, that is 1e-4 of its energy
-///   stable     all else: at rest, dying out, creeping without a turn
+///   vibrating  not diverged, and it does not decay: in the last quarter it oscillates (two turns or more of one
+///              component) with at least 90 % of the third quarter's amplitude and 1 % of the first quarter's
+///   dying_out  oscillates in the last quarter with at least 1 % of the first quarter's amplitude, that is 1e-4 of its
+///              energy, but loses more than a tenth of its amplitude from the third quarter to the last
+///   stable     all else: at rest, died out, creeping without a turn
 ///
-/// A damped oscillation dies out to 1 % within three quarters of n steps when it loses more than 6.1 / n of its
-/// amplitude in a step, so "vibrating" is a thin strip below the limit of a damped linear system, all that is stable of
-/// an undamped one, and the limit cycles of a nonlinear one.
+/// Both stable and dying_out come to rest if the run goes on long enough, so both count as stable where a limit is
+/// looked for. A damped oscillation dies out to 1 % within three quarters of n steps when it loses more than 6.1 / n of
+/// its amplitude in a step, and vibrates when it loses less than 0.42 / n: "vibrating" is a thin strip below the limit
+/// of a damped linear system, all that is stable of an undamped one, and the limit cycles of a nonlinear one.
 namespace hapbench {
 
-enum class MotionClass { stable, vibrating, diverged };
+enum class MotionClass { stable, dying_out, vibrating, diverged };
+inline constexpr std::array kMotionClasses = {MotionClass::stable, MotionClass::dying_out, MotionClass::vibrating,
+                                              MotionClass::diverged};
 
-/// "stable", "vibrating", "diverged"
+/// "stable", "dying_out", "vibrating", "diverged"
 std::string_view motion_class_name(MotionClass motion) noexcept;
+
+/// True of motion that comes to rest: stable, dying_out.
+inline bool comes_to_rest(MotionClass motion) noexcept {
+  return motion == MotionClass::stable || motion == MotionClass::dying_out;
+}
 
 /// Watches a run and classifies it. Constant memory.
 class MotionClassifier final : public Observer {
  public:
   /// `steps`: rows the run will have. Precondition: steps >= 4.
   explicit MotionClassifier(std::uint64_t steps) : steps_(steps) {}
+  /// Of a tool that a script moves: only what its velocity has above 30 Hz counts (all of it when steps are longer than
+  /// a 60th of a second), and in the last quarter only beyond 1 mm/s, about what a hand can feel there. Such a tool is
+  /// never at rest.
+  static MotionClassifier of_moved_tool(std::uint64_t steps, double time_step);
 
   void on_step(const StepRecord& record) noexcept override;
 
   /// True once the tool has come to rest to 1e-12 of its largest speed for 200 rows: what is left is rounding, and the
   /// run may be cut short.
-  bool at_rest() const noexcept { return rows_at_rest_ >= kRowsAtRest; }
+  bool at_rest() const noexcept { return !is_moved_ && rows_at_rest_ >= kRowsAtRest; }
   /// Class of a complete run, or of one that was cut short because it came to rest.
   MotionClass motion_class(Outcome outcome) const noexcept;
 
@@ -52,13 +68,15 @@ class MotionClassifier final : public Observer {
   bool oscillates_in(const Quarter& quarter) const noexcept;
 
   std::uint64_t steps_;
+  bool is_moved_ = false;
+  std::optional<HighPass> high_pass_;
   std::array<Quarter, 4> quarters_{};
   Vec3 last_velocity_ = Vec3::Zero();
   double largest_speed_ = 0.0;
   int rows_at_rest_ = 0;
 };
 
-/// Steps the simulation, which `classifier` observes, until it ends or comes to rest.
-MotionClass classify(Simulation& simulation, const MotionClassifier& classifier) noexcept;
+/// Steps the simulation, which `classifier` observes, until it ends or comes to rest. Throws Stopped (run_to_end.hpp).
+MotionClass classify(Simulation& simulation, const MotionClassifier& classifier);
 
 }  // namespace hapbench

@@ -7,6 +7,7 @@
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/run_to_end.hpp"
 #include "scenarios/studies/stability/bisection.hpp"
 
 namespace hapbench {
@@ -76,15 +77,6 @@ class LateEnergy final : public Observer {
   double third_ = 0.0, fourth_ = 0.0;
 };
 
-Mat3 stiffness_tensor_of(Scenario scenario) {
-  scenario.time.steps = 1;
-  scenario.bounds = {};
-  scenario.initial.position = Vec3(1e-3, 1e-3, 1e-3);
-  FirstTensor tensor;
-  Simulation(simulation_config(scenario), assemble(scenario), {&tensor}).run();
-  return tensor.S;
-}
-
 /// Runs the scenario's own simulation with the case's numbers, from a small displacement and velocity along
 /// `direction`, and sees whether it blows up.
 bool simulation_stays_bounded(Scenario scenario, const SpringDamper& system, const Vec3& direction) {
@@ -102,10 +94,21 @@ bool simulation_stays_bounded(Scenario scenario, const SpringDamper& system, con
   scenario.bounds.force = kNever;
   LateEnergy energy(system);
   Simulation simulation(simulation_config(scenario), assemble(scenario), {&energy});
-  return simulation.run().outcome != Outcome::diverges && !energy.grows();
+  return run_to_end(simulation).outcome != Outcome::diverges && !energy.grows();
 }
 
-void check_scene(const Scenario& scenario) {
+}  // namespace
+
+Mat3 stiffness_tensor_of(Scenario scenario) {
+  scenario.time.steps = 1;
+  scenario.bounds = {};
+  scenario.initial.position = Vec3(1e-3, 1e-3, 1e-3);
+  FirstTensor tensor;
+  Simulation(simulation_config(scenario), assemble(scenario), {&tensor}).run();
+  return tensor.S;
+}
+
+void require_lasting_springs(const Scenario& scenario) {
   const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment);
   const auto fail = [](const char* place, const char* problem) {
     throw InputError(InputError::Kind::relation, place, problem);
@@ -125,8 +128,6 @@ void check_scene(const Scenario& scenario) {
     fail("/rendering/passivity_controller", "got true; allowed for stability: false");
 }
 
-}  // namespace
-
 std::optional<double> analytic_limit(StabilityCase which, const Scenario& scenario, double lambda) {
   const auto limit = scenario.integrator.type->stability_limit;
   return limit == nullptr ? std::nullopt : limit(problem_of(which, scenario, lambda));
@@ -139,7 +140,7 @@ double eigenvalue_limit(StabilityCase which, const Scenario& scenario, double la
 }
 
 std::vector<StabilityLimit> stability_limits(const Scenario& scenario) {
-  check_scene(scenario);
+  require_lasting_springs(scenario);
   const Eigen::SelfAdjointEigenSolver<Mat3> S(stiffness_tensor_of(scenario));
   const double lambda = S.eigenvalues()[2];
   const Vec3 stiffest = S.eigenvectors().col(2);

@@ -44,6 +44,12 @@ std::optional<double> analytic_limit(StabilityCase which, const Scenario& scenar
 /// up to 1e15, or 1e6 s, is unstable.
 double eigenvalue_limit(StabilityCase which, const Scenario& scenario, double lambda, double start);
 
+/// Throws InputError, with the place, unless the scenario is bilateral springs without friction and limits.
+void require_lasting_springs(const Scenario& scenario);
+
+/// The stiffness tensor S of such a scenario under its algorithm, in units of K.
+Mat3 stiffness_tensor_of(Scenario scenario);
+
 /// All four limits. A limit that does not exist (no spring, no damping) is infinite. Throws InputError unless the
 /// scenario is bilateral springs without friction and limits: elsewhere contacts come and go and no such limit exists.
 std::vector<StabilityLimit> stability_limits(const Scenario& scenario);

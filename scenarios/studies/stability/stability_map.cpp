@@ -85,7 +85,7 @@ BoundaryPoint boundary_point(const StabilityMap& map, const MapSubject& subject,
   point.x = x;
   const auto holds = [&](double y) {
     const MotionClass motion = probe(scene(map, subject, x, y)).motion;
-    return map.no_theory == nullptr ? motion != MotionClass::diverged : motion == MotionClass::stable;
+    return map.no_theory == nullptr ? motion != MotionClass::diverged : comes_to_rest(motion);
   };
   point.simulation = largest_stable(map.y.low, kPrecision, holds, kBeyondTheMap * map.y.high);
   if (map.no_theory != nullptr) {

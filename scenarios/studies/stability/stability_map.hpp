@@ -8,7 +8,7 @@
 #include "scenarios/studies/stability/classify.hpp"
 #include "scenarios/studies/stability/map_scenes.hpp"
 
-/// Maps of stable, vibrating and diverged runs (classify.hpp), with the analytic limit where there is one.
+/// Maps of stable, dying, vibrating and diverged runs (classify.hpp), with the analytic limit where there is one.
 namespace hapbench {
 
 /// One run of a map.

@@ -1,14 +1,11 @@
 #include "scenarios/studies/worst_motion/adversary.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "results/summary/outcome_names.hpp"
-#include "scenarios/input/input_error.hpp"
-#include "scenarios/run/environment_points.hpp"
 #include "scenarios/run/run_trial.hpp"
+#include "scenarios/studies/worst_motion/search_scene.hpp"
 #include "scenarios/studies/worst_motion/trajectory_draws.hpp"
 
 namespace hapbench {
@@ -18,22 +15,18 @@ constexpr double kKept = 0.9;          ///< of the badness, that minimising must
 constexpr std::size_t kChildren = 16;  ///< of a generation; fixed, so that the search does not depend on the machine
 constexpr std::uint64_t kRound = 400;  ///< evaluations of a round
 constexpr std::uint64_t kRandomOfARound = 100;  ///< of which are random trajectories
-constexpr double kMostSteps = 1e5;              ///< of one run, or a search would take days
 constexpr double kLeastWork = 1e-3;  ///< [J], added to the energy put in, so that doing nothing is not infinitely bad
 
 /// Runs trajectories in one scene.
 class Bench {
  public:
-  Bench(const Scenario& scenario, Badness badness)
-      : scenario_(scenario),
-        badness_(badness),
-        shell_(make_shell(scenario, environment_points(scenario, ShellCache()))) {}
+  Bench(const SearchScene& scene, Badness badness) : scene_(scene), badness_(badness) {}
 
   RunSummary run(const Trajectory& trajectory) const {
-    TrialResult trial = run_trial(with_trajectory(scenario_, trajectory), shell_, {}, {});
+    const TrialResult trial = run_trial(with_trajectory(scene_, trajectory), scene_.shell, {}, {});
     RunSummary summary;
     summary.result = trial.result;
-    summary.duration = static_cast<double>(trial.result.rows) * scenario_.time.step;
+    summary.duration = static_cast<double>(trial.result.rows) * scene_.scenario.time.step;
     summary.metrics = trial.metrics;
     summary.passivity = trial.passivity;
     summary.energy = trial.energy;
@@ -53,9 +46,8 @@ class Bench {
   }
 
  private:
-  const Scenario& scenario_;
+  const SearchScene& scene_;
   Badness badness_;
-  std::shared_ptr<const PointShell> shell_;
 };
 
 /// The best trajectory so far.
@@ -147,32 +139,7 @@ ExpectFields expectation(Badness badness, const RunSummary& run) {
   return expect;
 }
 
-Profile profile_of(const Trajectory& trajectory, double (*value)(const Waypoint&)) {
-  Profile::Waypoints waypoints{{}, Profile::Interpolation::cosine};
-  for (const Waypoint& w : trajectory) waypoints.points.emplace_back(w.time, value(w));
-  const double first = value(trajectory.front());
-  const bool constant =
-      std::all_of(trajectory.begin(), trajectory.end(), [&](const Waypoint& w) { return value(w) == first; });
-  return constant ? Profile(first) : Profile(Profile::Shape(std::move(waypoints)));
-}
-
 }  // namespace
-
-Scenario with_trajectory(Scenario scenario, const Trajectory& trajectory) {
-  scenario.time.steps =
-      std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(trajectory.back().time / scenario.time.step)));
-  scenario.motion.orientation->tilt = profile_of(trajectory, [](const Waypoint& w) { return w.tilt; });
-  scenario.motion.orientation->azimuth = profile_of(trajectory, [](const Waypoint& w) { return w.azimuth; });
-  scenario.hand = ForceHandFields{{profile_of(trajectory, [](const Waypoint& w) { return w.force.x(); }),
-                                   profile_of(trajectory, [](const Waypoint& w) { return w.force.y(); }),
-                                   profile_of(trajectory, [](const Waypoint& w) { return w.force.z(); })}};
-  scenario.device = IdealDeviceFields{};
-  scenario.record = {};
-  scenario.record.trajectory = false;
-  scenario.record.energy = true;
-  scenario.expect = {};
-  return scenario;
-}
 
 double badness_of(Badness badness, const RunSummary& run) {
   if (badness == Badness::vibration) return run.duration * run.metrics.vibration_power.value_or(0.0);
@@ -181,29 +148,11 @@ double badness_of(Badness badness, const RunSummary& run) {
   return run.energy->created_sum / put_in;
 }
 
-void check_adversary_scene(const Scenario& scenario) {
-  const bool hole = std::holds_alternative<Hole2d>(scenario.environment) ||
-                    std::holds_alternative<BlockEnvironment>(scenario.environment);
-  if (!hole) {
-    throw InputError(InputError::Kind::relation, "/environment/type",
-                     "allowed for --search: \"hole_2d\", \"block_with_hole\"");
-  }
-  const double least = TrajectoryBounds{}.duration / kMostSteps;
-  if (scenario.time.step < least) {
-    throw InputError(InputError::Kind::relation, "/time/step_s",
-                     fmt::format("got {}; allowed for --search: at least {}", scenario.time.step, least));
-  }
-  if (!std::holds_alternative<FreePosition>(scenario.motion.position)) {
-    throw InputError(InputError::Kind::relation, "/motion/position/type", "allowed for --search: \"free\"");
-  }
-}
-
 SearchResult search_adversary(const Scenario& scenario, const SearchOptions& options) {
-  check_adversary_scene(scenario);
-  const bool planar = std::holds_alternative<Hole2d>(scenario.environment);
+  const SearchScene scene = search_scene(scenario);
   const OrientationFields& orientation = *scenario.motion.orientation;
-  const TrajectoryDraws draws(options.bounds, planar, orientation.tilt(0.0), orientation.azimuth(0.0));
-  const Bench bench(scenario, options.badness);
+  const TrajectoryDraws draws(options.bounds, scene.planar, orientation.tilt(0.0), orientation.azimuth(0.0));
+  const Bench bench(scene, options.badness);
 
   SearchResult result;
   result.at_rest = bench.badness(draws.at_rest());
@@ -215,7 +164,7 @@ SearchResult search_adversary(const Scenario& scenario, const SearchOptions& opt
   result.badness = best.badness;
   result.trajectory = best.trajectory;
   result.run = bench.run(best.trajectory);
-  result.scenario = with_trajectory(scenario, best.trajectory);
+  result.scenario = with_trajectory(scene, best.trajectory);
   result.scenario.expect = expectation(options.badness, result.run);
   return result;
 }

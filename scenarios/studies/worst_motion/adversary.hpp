@@ -1,13 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
-#include <vector>
 
 #include "results/summary/summary.hpp"
 #include "scenarios/batch/jobs.hpp"
 #include "scenarios/description/scenario.hpp"
-#include "sim/geometry/point_shell.hpp"
+#include "scenarios/studies/worst_motion/trajectory.hpp"
 
 /// Looks for the motion of the hand that an algorithm renders worst: a seeded random search; then an evolution
 /// (1 + lambda), in which the best of several slightly changed copies replaces the motion if it is worse rendered; then
@@ -18,24 +16,6 @@ namespace hapbench {
 enum class Badness {
   created,   ///< energy that the rendering created, per energy that hand and rotation put in (and 1 mJ)
   vibration  ///< vibration power above 30 Hz times the run's duration [m^2/s]: a run gains nothing by ending early
-};
-
-/// Where the hand turns the tool and pushes it at a time; between two of them by cosines, at rest in each.
-struct Waypoint {
-  double time = 0.0;          ///< [s]
-  double tilt = 0.0;          ///< [rad]
-  double azimuth = 0.0;       ///< [rad]; 0 in planar scenes
-  Vec3 force = Vec3::Zero();  ///< [N]; in the plane in planar scenes
-};
-using Trajectory = std::vector<Waypoint>;
-
-/// What a hand may do. Every motion lies within, however it was found.
-struct TrajectoryBounds {
-  double duration = 0.5;  ///< [s]
-  std::size_t waypoints = 6;
-  double tilt = 0.6;   ///< largest [rad]
-  double rate = 2.0;   ///< largest mean rate of tilt and azimuth from one waypoint to the next [rad/s]
-  double force = 5.0;  ///< largest norm [N]
 };
 
 struct SearchOptions {
@@ -56,18 +36,11 @@ struct SearchResult {
   std::uint64_t evaluations = 0;  ///< runs, all in all
 };
 
-/// `scenario` with its orientation and hand replaced by the trajectory, on an ideal device, with energy recorded.
-Scenario with_trajectory(Scenario scenario, const Trajectory& trajectory);
-
 /// The badness of a finished run; needs its energy for `created`.
 double badness_of(Badness badness, const RunSummary& run);
 
-/// Throws InputError unless the scene is a hole_2d or block_with_hole with a free position.
-void check_adversary_scene(const Scenario& scenario);
-
-/// Searches in a scene, from its initial position and orientation on. The same for the same seed, whatever the number
-/// of threads. Throws as check_adversary_scene does. Each evaluation costs a run of the scene, at most bounds.duration
-/// long.
+/// Searches in a scene, from where search_scene.hpp puts its tool. The same for the same seed, whatever the number of
+/// threads. Throws as search_scene does. Each evaluation costs a run of the scene, at most bounds.duration long.
 SearchResult search_adversary(const Scenario& scenario, const SearchOptions& options);
 
 }  // namespace hapbench

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "scenarios/studies/worst_motion/adversary.hpp"
+#include "scenarios/studies/worst_motion/trajectory.hpp"
 #include "sim/core/random.hpp"
 
 namespace hapbench {

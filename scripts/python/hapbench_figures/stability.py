@@ -87,6 +87,14 @@ def edges(values):
     return np.concatenate([[2 * values[0] - middle[0]], middle, [2 * values[-1] - middle[-1]]])
 
 
+def hatch(ax, x, y, cells):
+    """Hatches those cells between the edges x and y."""
+    for line, column in np.argwhere(cells):
+        corner = (x[column], y[line])
+        size = (x[column + 1] - x[column], y[line + 1] - y[line])
+        ax.add_patch(style.plt.Rectangle(corner, *size, fill=False, **HATCH))
+
+
 def draw_map(ax, rows, x_name, y_name):
     x, y = numbers(rows, x_name), numbers(rows, y_name)
     columns, lines = np.unique(x), np.unique(y)
@@ -270,7 +278,7 @@ def integrators(results):
     figure.get_layout_engine().set(rect=(0, 0, 1, 0.95))
     class_legend(figure, maps, 1.0)
     return figure, (
-        f"Where a run is stable, vibrates or diverges under each integrator, {style.look(algorithm).label}: stiffness "
+        f"Where a run is stable, still dies out, vibrates or diverges under each integrator, {style.look(algorithm).label}: stiffness "
         "of one spring over the time step and over zeta, stiffness of the hand over the delay of the device's servo. "
         "Lines: the limit from theory, where there is one, and found by bisection over simulated runs. Ours."
     )

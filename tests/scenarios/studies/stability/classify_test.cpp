@@ -26,6 +26,7 @@ MotionClass class_of(const std::function<double(double)>& velocity, Outcome outc
 
 TEST(MotionClassifier, NamesItsClasses) {
   EXPECT_EQ(motion_class_name(MotionClass::stable), "stable");
+  EXPECT_EQ(motion_class_name(MotionClass::dying_out), "dying_out");
   EXPECT_EQ(motion_class_name(MotionClass::vibrating), "vibrating");
   EXPECT_EQ(motion_class_name(MotionClass::diverged), "diverged");
 }
@@ -56,10 +57,45 @@ MotionClass class_of_oscillation(double per_step) {
   return class_of([&](double k) { return std::pow(per_step, k) * std::cos(0.2 * std::numbers::pi * k); });
 }
 
-TEST(MotionClassifier, SeparatesDyingFromVibratingAtAHundredthInThreeQuarters) {
+TEST(MotionClassifier, SeparatesDyingFromDeadAtAHundredthInThreeQuarters) {
   const double at_limit = std::pow(0.01, 1.0 / (0.75 * kSteps));
-  EXPECT_EQ(class_of_oscillation(1.0 - 0.9 * (1.0 - at_limit)), MotionClass::vibrating);
+  EXPECT_EQ(class_of_oscillation(1.0 - 0.9 * (1.0 - at_limit)), MotionClass::dying_out);
   EXPECT_EQ(class_of_oscillation(1.0 - 1.1 * (1.0 - at_limit)), MotionClass::stable);
+}
+
+TEST(MotionClassifier, SeparatesVibratingFromDyingAtATenthInAQuarter) {
+  const double at_limit = std::pow(0.9, 4.0 / kSteps);
+  EXPECT_EQ(class_of_oscillation(1.0 - 0.9 * (1.0 - at_limit)), MotionClass::vibrating);
+  EXPECT_EQ(class_of_oscillation(1.0 - 1.1 * (1.0 - at_limit)), MotionClass::dying_out);
+}
+
+TEST(MotionClassifier, WhatDiesOutComesToRest) {
+  EXPECT_TRUE(comes_to_rest(MotionClass::stable));
+  EXPECT_TRUE(comes_to_rest(MotionClass::dying_out));
+  EXPECT_FALSE(comes_to_rest(MotionClass::vibrating));
+  EXPECT_FALSE(comes_to_rest(MotionClass::diverged));
+}
+
+/// The class of a tool that a hand moves to and fro, 20 mm/s at 1 Hz, and that vibrates besides.
+MotionClass class_of_moved_tool(double amplitude, double frequency) {
+  constexpr double kStep = 0.0005;
+  MotionClassifier classifier = MotionClassifier::of_moved_tool(kSteps, kStep);
+  StepRecord record;
+  for (record.step = 0; record.step < kSteps; ++record.step) {
+    const double t = kStep * static_cast<double>(record.step);
+    record.tool.velocity = Vec3(0.02 * std::cos(2.0 * std::numbers::pi * t),
+                                amplitude * std::cos(2.0 * std::numbers::pi * frequency * t), 0.0);
+    classifier.on_step(record);
+  }
+  EXPECT_FALSE(classifier.at_rest());
+  return classifier.motion_class(Outcome::completes);
+}
+
+TEST(MotionClassifier, OfAMovedToolSeesWhatNoHandDoesAndWhatOneFeels) {
+  EXPECT_EQ(class_of_moved_tool(0.0, 0.0), MotionClass::stable) << "the hand alone";
+  EXPECT_EQ(class_of_moved_tool(0.01, 200.0), MotionClass::vibrating);
+  EXPECT_EQ(class_of_moved_tool(0.0005, 200.0), MotionClass::stable) << "half a millimetre a second is not felt";
+  EXPECT_EQ(class_of_moved_tool(0.01, 3.0), MotionClass::stable) << "a hand does that, too";
 }
 
 TEST(MotionClassifier, SeparatesVibratingFromGrowingAtAPercentInAQuarter) {

@@ -7,6 +7,7 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/studies/worst_motion/search_scene.hpp"
 #include "scenarios/studies/worst_motion/trajectory_draws.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
@@ -95,16 +96,54 @@ TEST(Adversary, SearchesTheBlockInSpace) {
   EXPECT_GE(found.badness, 0.0);
 }
 
-TEST(Adversary, IsRefusedWhereNoHandMovesAToolInAHole) {
-  const struct {
-    const char *scenario, *place;
-  } kCases[] = {{"single_spring", "/environment/type"}, {"poke_plane", "/environment/type"}};
-  for (const auto& c : kCases) {
-    const Scenario where = load_scenario(find_scenario(c.scenario)).scenario;
-    const auto error = test::input_error_of([&] { search_adversary(where, options(1)); });
-    ASSERT_TRUE(error) << c.scenario;
-    EXPECT_EQ(error->place(), c.place);
+TEST(Adversary, SearchesAnySurfaceAndShowsWhatWasFound) {
+  for (const char* name : {"poke_plane", "mesh_molar"}) {
+    SCOPED_TRACE(name);
+    const Scenario where = load_scenario(find_scenario(name), std::vector<std::string>{}).scenario;
+    SearchOptions search = options(20);
+    search.bounds.duration = 0.1;
+    const SearchResult found = search_adversary(where, search);
+    EXPECT_GT(found.run.metrics.steps_in_contact, 0u);
+    EXPECT_GT(found.badness, 0.0);
+    const test::TemporaryDirectory directory;
+    test::write_plainly(directory / "found.json", json_text(effective_scenario(found.scenario, directory.path())));
+    const RunReport report = run_scenario(load_scenario(directory / "found.json"), std::nullopt, false, ShellCache());
+    EXPECT_EQ(report.unmet, std::vector<std::string>{});
+    EXPECT_EQ(report.summary.metrics.state_hash, found.run.metrics.state_hash);
   }
+}
+
+TEST(SearchScene, SetsTheToolAgainstTheSurfaceAndAimsAroundIt) {
+  const Scenario where =
+      load_scenario(find_scenario("poke_plane"), std::vector<std::string>{"initial.position_m=[0.001,0,0.02]"})
+          .scenario;
+  const SearchScene scene = search_scene(where);
+  // A flat tip above a plane touches at its height, to the 40 halvings.
+  EXPECT_NEAR(scene.scenario.initial.position.z(), 0.0, 1e-12);
+  EXPECT_NEAR(scene.scenario.initial.position.x(), 0.001, 1e-12);
+  ASSERT_TRUE(scene.reach);
+  EXPECT_NEAR(scene.reach->max.x(), 0.003, 1e-12);  // half of 4 mm, and the drill's diameter
+  EXPECT_NEAR(scene.reach->min.z(), -0.001, 1e-12);
+  const Trajectory far = {{0.0, 0.0, 0.0, Vec3(5.0, 0.0, -0.06)}, {0.1, 0.0, 0.0, Vec3(-5.0, 0.0, 0.0)}};
+  const auto& hand = std::get<ImpedanceHandFields>(with_trajectory(scene, far).hand);
+  EXPECT_EQ(hand.target[0](0.0), 0.003) << "within reach, not 17 mm away";
+  EXPECT_EQ(hand.target[0](0.1), -0.003);
+  EXPECT_NEAR(hand.target[2](0.0), -0.0002, 1e-12) << "0.06 N of 300 N/m";
+}
+
+TEST(SearchScene, LeavesAToolInAHoleWhereItIs) {
+  const Scenario hole = scene("mean");
+  const SearchScene search = search_scene(hole);
+  EXPECT_EQ(search.scenario.initial.position, hole.initial.position);
+  EXPECT_FALSE(search.reach);
+  EXPECT_TRUE(search.planar);
+}
+
+TEST(Adversary, IsRefusedWhereThereIsNoSurface) {
+  const Scenario springs = load_scenario(find_scenario("single_spring")).scenario;
+  const auto no_surface = test::input_error_of([&] { search_adversary(springs, options(1)); });
+  ASSERT_TRUE(no_surface);
+  EXPECT_EQ(no_surface->place(), "/environment/type");
   const auto too_fine =
       test::input_error_of([&] { search_adversary(scene("mean", {"time.step_s=1e-9"}), options(1)); });
   ASSERT_TRUE(too_fine);

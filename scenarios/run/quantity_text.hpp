@@ -14,4 +14,7 @@ std::string size_text(const Box& box);
 /// Where it lies in that unit, as in "x -6.74 ... 6.76, y -7.3 ... 9.4, z -3.3 ... 3.3 mm".
 std::string place_text(const Box& box);
 
+/// An amount of data, as in "271 MB".
+std::string bytes_text(double bytes);
+
 }  // namespace hapbench

@@ -1,4 +1,4 @@
-#include "scenarios/run/lengths.hpp"
+#include "scenarios/run/quantity_text.hpp"
 
 #include <fmt/format.h>
 
@@ -37,6 +37,11 @@ std::string place_text(const Box& box) {
   const Vec3 a = box.min * unit.per_metre, b = box.max * unit.per_metre;
   return fmt::format("x {:.3g} ... {:.3g}, y {:.3g} ... {:.3g}, z {:.3g} ... {:.3g} {}", a.x(), b.x(), a.y(), b.y(),
                      a.z(), b.z(), unit.name);
+}
+
+std::string bytes_text(double bytes) {
+  if (bytes < 1e6) return fmt::format("{:.0f} kB", std::ceil(1e-3 * bytes));
+  return bytes < 1e9 ? fmt::format("{:.3g} MB", 1e-6 * bytes) : fmt::format("{:.3g} GB", 1e-9 * bytes);
 }
 
 }  // namespace hapbench

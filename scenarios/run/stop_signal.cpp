@@ -1,4 +1,4 @@
-#include "scenarios/batch/stop_signal.hpp"
+#include "scenarios/run/stop_signal.hpp"
 
 #include <atomic>
 
@@ -29,10 +29,15 @@ StopSignal::StopSignal() {
 
 StopSignal::~StopSignal() {
   for (int i = 0; i < 2; ++i) ::sigaction(kSignals[i], &before_[i], nullptr);
+  received_signal = 0;
 }
 
-int StopSignal::received() const noexcept {
+int StopSignal::received() noexcept {
   return received_signal;
+}
+
+void throw_if_stopped() {
+  if (const int signal = StopSignal::received(); signal != 0) throw Stopped{signal};
 }
 
 }  // namespace hapbench

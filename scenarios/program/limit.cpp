@@ -1,0 +1,219 @@
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <memory>
+
+#include "results/io/csv_writer.hpp"
+#include "scenarios/batch/parallel_for.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/scenario_text.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/command.hpp"
+#include "scenarios/program/table.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/studies/stability/field_limit.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct LimitOptions {
+  std::string scenario;
+  std::string field;
+  std::string between;
+  std::string resolution;
+  bool smallest = false;
+  std::vector<std::string> algorithms;
+  unsigned jobs = 0;  ///< 0: as many as the machine has
+  std::string out;
+  std::vector<std::string> overrides;
+  bool no_cache = false;
+  OutputOptions output;
+};
+
+std::optional<Range> range_of(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const Words ends = parts_of(text, ':');
+  const auto from = finite_number(ends.front()), to = finite_number(ends.back());
+  if (ends.size() != 2 || !from || !to || !(*from < *to)) {
+    throw InputError(fmt::format("--between: got \"{}\"; allowed: a:b with numbers a < b", text));
+  }
+  return Range{*from, *to};
+}
+
+LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scenario) {
+  if (options.field.find('=') != std::string::npos) {
+    throw InputError(
+        fmt::format("--vary: got \"{}\"; allowed: a field alone, and its range as --between a:b", options.field));
+  }
+  LimitQuestion question = limit_question(scenario, options.overrides, options.field, range_of(options.between));
+  question.smallest = options.smallest;
+  if (options.resolution.empty()) return question;
+  const auto resolution = finite_number(options.resolution);
+  if (!resolution || *resolution < 1e-6 || *resolution > 0.5) {
+    throw InputError(fmt::format("--resolution: got \"{}\"; allowed: 1e-6 ... 0.5", options.resolution));
+  }
+  question.resolution = *resolution;
+  return question;
+}
+
+const char* side(const LimitQuestion& question) {
+  return question.smallest ? "smallest" : "largest";
+}
+
+/// What is asked, and what "stable" means here.
+std::string question_text(const LimitQuestion& question, const Scenario& scenario) {
+  const std::string width = question.whole ? "1"
+                            : question.range.logarithmic
+                                ? fmt::format("{} %", 100.0 * question.resolution)
+                                : fmt::format("{} % of the range", 100.0 * question.resolution);
+  std::string text = fmt::format("{}: {} stable {} between {} and {}, to {}; {} steps a run\n", scenario.name,
+                                 side(question), question.path, significant(question.range.from),
+                                 significant(question.range.to), width, scenario.time.steps);
+  text += "stable: comes to rest or dies out; not: vibrating, diverged, thrown_out, no_contact\n";
+  if (is_moved(scenario)) text += "a script moves the tool: only what is above 30 Hz and 1 mm/s counts as motion\n";
+  return text + "\n";
+}
+
+std::string value_text(const std::optional<double>& value) {
+  return !value ? "-" : std::isinf(*value) || *value == 0.0 ? "none" : significant(*value, 6);
+}
+
+/// What lies beyond the limit, in words.
+std::string beyond_text(const FieldLimit& limit) {
+  if (limit.beyond) return std::string(run_verdict_name(limit.beyond->verdict));
+  return limit.value ? "end of the range" : std::string(run_verdict_name(limit.runs.front().verdict));
+}
+
+Table table_of(const std::vector<FieldLimit>& limits, const LimitQuestion& question) {
+  Table table({{"algorithm", false},
+               {fmt::format("{} stable", side(question))},
+               {"beyond it", false},
+               {"theory"},
+               {"off theory %"},
+               {"runs"},
+               {"astray"}});
+  for (const FieldLimit& limit : limits) {
+    const auto difference = limit.difference();
+    table.add({limit.algorithm, limit.value ? significant(*limit.value, 6) : "none", beyond_text(limit),
+               value_text(limit.theory), difference ? significant(100.0 * *difference, 2) : "-",
+               std::to_string(limit.runs.size()), std::to_string(limit.astray.size())});
+  }
+  return table;
+}
+
+/// A line for each algorithm whose stable values are not all on one side of the limit.
+std::string astray_text(const std::vector<FieldLimit>& limits) {
+  constexpr std::size_t kMost = 4;
+  std::string text;
+  for (const FieldLimit& limit : limits) {
+    if (limit.astray.empty()) continue;
+    text += fmt::format("{}: not one edge:", limit.algorithm);
+    for (std::size_t i = 0; i < std::min(kMost, limit.astray.size()); ++i) {
+      const JudgedValue& run = limit.astray[i];
+      text += fmt::format("{} {} at {}", i == 0 ? "" : ",", run_verdict_name(run.verdict), significant(run.value));
+    }
+    text += limit.astray.size() > kMost ? fmt::format(" and at {} more\n", limit.astray.size() - kMost) : "\n";
+  }
+  return text;
+}
+
+void write_limits(const fs::path& directory, const std::vector<FieldLimit>& limits, const LimitQuestion& question) {
+  CsvWriter csv(directory / "limit.csv", "algorithm,field,side,limit,beyond,class_beyond,theory,runs,astray");
+  CsvWriter runs(directory / "limit_runs.csv", fmt::format("algorithm,{},class", question.path));
+  for (const FieldLimit& limit : limits) {
+    const auto beyond = limit.beyond ? std::optional(limit.beyond->value) : std::nullopt;
+    csv.row(std::string_view(limit.algorithm), std::string_view(question.path), std::string_view(side(question)),
+            limit.value, beyond, std::string_view(beyond_text(limit)), limit.theory, std::uint64_t{limit.runs.size()},
+            std::uint64_t{limit.astray.size()});
+    for (const JudgedValue& run : limit.runs) {
+      runs.row(std::string_view(limit.algorithm), run.value, run_verdict_name(run.verdict));
+    }
+  }
+  csv.finish();
+  runs.finish();
+}
+
+Json limits_json(const std::vector<FieldLimit>& limits, const LimitQuestion& question) {
+  const auto or_null = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
+  Json rows = Json::array();
+  for (const FieldLimit& limit : limits) {
+    Json astray = Json::array();
+    for (const JudgedValue& run : limit.astray)
+      astray.push_back({{"value", run.value}, {"class", run_verdict_name(run.verdict)}});
+    rows.push_back({{"algorithm", limit.algorithm},
+                    {"limit", or_null(limit.value)},
+                    {"beyond", limit.beyond ? Json(limit.beyond->value) : Json(nullptr)},
+                    {"class_beyond", beyond_text(limit)},
+                    {"theory", or_null(limit.theory)},
+                    {"runs", limit.runs.size()},
+                    {"astray", std::move(astray)}});
+  }
+  return {{"field", question.path},
+          {"side", side(question)},
+          {"from", question.range.from},
+          {"to", question.range.to},
+          {"resolution", question.resolution},
+          {"limits", std::move(rows)}};
+}
+
+int limit(const LimitOptions& options) {
+  const fs::path file = find_scenario(options.scenario);
+  const ScenarioText scenario = read_scenario_text(file);
+  const LoadedScenario loaded = load_scenario(scenario, options.overrides);
+  const std::vector<std::string> algorithms =
+      options.algorithms.empty() ? std::vector<std::string>{loaded.scenario.rendering.algorithm}
+                                 : chosen_names("--algorithms: got", options.algorithms, all_algorithms());
+  const LimitQuestion question = question_of(options, scenario);
+  print_warnings(loaded.warnings);
+  print_warnings(check_named_files(loaded));
+  const fs::path out =
+      options.out.empty() ? fs::path("results") / "out" / ("limit_" + file.stem().string()) : fs::path(options.out);
+  require_writable_directory(out);
+
+  const JobOptions jobs{options.jobs == 0 ? static_cast<unsigned>(available_threads()) : options.jobs,
+                        options.output.quiet ? "" : "limit"};
+  const std::vector<FieldLimit> limits =
+      field_limits(scenario, options.overrides, algorithms, question, shell_cache(options.no_cache), jobs);
+  write_limits(out, limits, question);
+  print(options.output,
+        question_text(question, loaded.scenario) + table_of(limits, question).text() + astray_text(limits) +
+            fmt::format("\nresults in {}\n", out.string()),
+        limits_json(limits, question));
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_limit(CommandLine& line) {
+  auto options = std::make_shared<LimitOptions>();
+  Command command = line.command("limit", "The largest stable value of any field, by bisection on runs of any scene");
+  command.add("scenario", options->scenario, "scenario file, or name of a bundled scenario").required();
+  command.add("--vary", options->field, "the field, as in rendering.stiffness_N_per_m").required();
+  command.add("--between", options->between,
+              "a:b, where to look (default: a thousandth to a thousandfold of the scenario's value)");
+  command.flag("--smallest", options->smallest, "the smallest stable value instead, as of a mass");
+  command.add("--algorithms", options->algorithms, "names separated by commas, or all (default: the scenario's own)")
+      .comma_separated();
+  command.add("--resolution", options->resolution,
+              "relative width of the answer (default: 0.001; of the range when it reaches 0 or below)");
+  command.add("--jobs", options->jobs, "algorithms at once (default: as many as the machine has threads)")
+      .range(1, 1024);
+  command.add("--out", options->out, "directory of the results (default: results/out/limit_NAME)");
+  command.add("--set", options->overrides, "override a field of all runs: path=value").repeatable();
+  add_cache_option(command, options->no_cache);
+  add_output_options(command, options->output);
+  command.footer(
+      "A run is stable when it comes to rest or dies out, the classes of \"hapbench describe stability\"; it is not when "
+      "it vibrates, diverges, is thrown out (leaves the hole, or ends without contact beyond the shell's box by more "
+      "than the tool reaches) or touches nothing. The range is tried at 17 values, the first edge behind stable ones "
+      "bisected, and three values tried on either side, which may show an earlier edge; where unstable ones are left on "
+      "the stable side, or stable ones beyond, the table counts them as astray and says where. Where the springs stay in contact, the limit in theory "
+      "stands beside it. limit_runs.csv has every run.");
+  command.runs([options] { return limit(*options); }, "a limit is lost with the runs it needs");
+}
+
+}  // namespace hapbench

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <csignal>
+
+/// Ctrl-C and SIGTERM: the program notes them, work asks for them between steps and ends itself by an exception, and
+/// destructors remove what is unfinished.
+namespace hapbench {
+
+/// While an object of this class exists, the first SIGINT or SIGTERM is only recorded, so that work can end cleanly;
+/// the second one terminates the process as usual. Signals that were ignored stay ignored. The program has one; at most
+/// one object may exist at a time. Without one no signal is ever received.
+class StopSignal {
+ public:
+  StopSignal();
+  ~StopSignal();
+  StopSignal(const StopSignal&) = delete;
+  StopSignal& operator=(const StopSignal&) = delete;
+
+  /// Returns the signal received, or 0. May be called from any thread; costs as much as reading a variable.
+  static int received() noexcept;
+
+ private:
+  struct sigaction before_[2];
+};
+
+/// Thrown by work that a signal has ended. No std::exception: who makes a result of a failure must let it pass.
+struct Stopped {
+  int signal = 0;
+};
+
+/// Throws Stopped if a signal has been received.
+void throw_if_stopped();
+
+}  // namespace hapbench

@@ -1,0 +1,258 @@
+#include "scenarios/studies/stability/field_limit.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/description/scenario_text.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/studies/stability/bisection.hpp"
+#include "scenarios/studies/stability/stability_limits.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr int kIntervals = 16;  // of the range, before bisection
+constexpr int kBeside = 3;      // values tried on either side of the edge, up to an interval away
+constexpr int kRounds = 6;      // of bisection, each towards an edge that values beside the last one showed
+constexpr int kDoublings = 10;  // from the scenario's value to either end of a range that nobody gave
+
+std::string override_text(const std::string& path, double value, bool whole) {
+  return whole ? fmt::format("{}={:.0f}", path, value) : fmt::format("{}={}", path, value);
+}
+
+/// A range as its part of the way from the end that is stable to begin with: 0 there, 1 at the other end.
+class Way {
+ public:
+  explicit Way(const LimitQuestion& question) : question_(question) {}
+
+  double value(double part) const {
+    const double value = question_.range.value_at(question_.smallest ? 1.0 - part : part);
+    return question_.whole ? std::round(value) : value;
+  }
+  /// True while bisection has to go on between two parts.
+  bool apart(double a, double b) const {
+    const double low = std::min(value(a), value(b)), high = std::max(value(a), value(b));
+    if (question_.whole) return high - low > 1.0;
+    if (question_.range.logarithmic) return high > (1.0 + question_.resolution) * low;
+    return high - low > question_.resolution * (question_.range.to - question_.range.from);
+  }
+
+ private:
+  const LimitQuestion& question_;
+};
+
+/// What is known after a search: parts of the way, and whether they are stable.
+struct Edge {
+  std::optional<double> stable;  ///< the last part that is
+  std::optional<double> beyond;  ///< the first one beyond that is not
+};
+
+/// The edge behind the first stable values that the way has among those tried. With `beside`, tries values on either
+/// side of it, too, and goes on where one of them shows an edge before it.
+Edge find_edge(const Way& way, const std::function<bool(double)>& stable, bool beside) {
+  std::map<double, bool> tried;
+  const auto holds = [&](double part) { return tried[part] = stable(part); };
+  for (int i = 0; i <= kIntervals; ++i) holds(static_cast<double>(i) / kIntervals);
+  Edge edge;
+  for (int round = 0; round < kRounds; ++round) {
+    const auto is = [](bool wanted) { return [wanted](const auto& value) { return value.second == wanted; }; };
+    const auto first = std::find_if(tried.begin(), tried.end(), is(true));
+    if (first == tried.end()) return {};
+    const auto end = std::find_if(first, tried.end(), is(false));
+    if (end == tried.end()) return {tried.rbegin()->first, {}};
+    double low = std::prev(end)->first, high = end->first;
+    if (edge.stable == low) return edge;
+    bisect(
+        low, high, holds, [](double a, double b) { return 0.5 * (a + b); },
+        [&way](double a, double b) { return way.apart(a, b); });
+    edge = {low, high};
+    if (!beside) return edge;
+    const double before = std::max(first->first, low - 1.0 / kIntervals),
+                 behind = std::min(1.0, high + 1.0 / kIntervals);
+    for (int i = 1; i <= kBeside; ++i) {
+      const double share = static_cast<double>(i) / (kBeside + 1);
+      holds(before + share * (low - before));
+      holds(high + share * (behind - high));
+    }
+  }
+  return edge;
+}
+
+/// Finds the limits of one scenario's algorithms.
+class Search {
+ public:
+  Search(const ScenarioText& scenario, const std::vector<std::string>& overrides, const LimitQuestion& question,
+         const ShellCache& cache)
+      : scenario_(scenario), overrides_(overrides), question_(question), way_(question), shells_(cache) {}
+
+  FieldLimit limit(const std::string& algorithm) {
+    FieldLimit limit;
+    limit.algorithm = algorithm;
+    std::map<double, RunVerdict> runs;  // by value
+    const auto judge = [&](double part) {
+      const double value = way_.value(part);
+      const auto known = runs.find(value);
+      return is_stable(known == runs.end() ? runs.emplace(value, verdict(algorithm, value)).first->second
+                                           : known->second);
+    };
+    const Edge edge = find_edge(way_, judge, true);
+    if (edge.stable) limit.value = way_.value(*edge.stable);
+    if (edge.beyond) limit.beyond = {way_.value(*edge.beyond), runs.at(way_.value(*edge.beyond))};
+    for (const auto& [value, verdict] : runs) {
+      limit.runs.push_back({value, verdict});
+      if (limit.value && is_stable(verdict) != on_stable_side(value, limit)) limit.astray.push_back({value, verdict});
+    }
+    limit.theory = theory(algorithm);
+    return limit;
+  }
+
+ private:
+  bool on_stable_side(double value, const FieldLimit& limit) const {
+    if (!limit.beyond) return true;
+    return question_.smallest ? value > limit.beyond->value : value < limit.beyond->value;
+  }
+
+  RunVerdict verdict(const std::string& algorithm, double value) {
+    const LoadedScenario loaded = at(algorithm, value);
+    return with_file(loaded, [&] { return judged_run(loaded, shells_.of(loaded)); });
+  }
+
+  LoadedScenario at(const std::string& algorithm, double value) const {
+    std::vector<std::string> overrides = overrides_;
+    overrides.push_back("rendering.algorithm=" + algorithm);
+    overrides.push_back(override_text(question_.path, value, question_.whole));
+    return load_scenario(scenario_, overrides);
+  }
+
+  std::optional<double> theory(const std::string& algorithm) const {
+    const auto stable = [&](double part) { return step_is_stable(at(algorithm, way_.value(part)).scenario); };
+    try {
+      require_lasting_springs(at(algorithm, way_.value(0.0)).scenario);
+    } catch (const InputError&) {
+      return std::nullopt;
+    }
+    const Edge edge = find_edge(way_, stable, false);
+    if (!edge.stable) return std::nullopt;
+    if (edge.beyond) return way_.value(*edge.stable);
+    return question_.smallest ? 0.0 : std::numeric_limits<double>::infinity();
+  }
+
+  /// True when no mode of the springs leaves the unit circle.
+  static bool step_is_stable(const Scenario& scenario) {
+    const RenderingConfig& r = scenario.rendering;
+    const double B = r.damping.value_or(2.0 * r.damping_ratio * std::sqrt(r.stiffness * r.mass));
+    const Eigen::SelfAdjointEigenSolver<Mat3> S(stiffness_tensor_of(scenario), Eigen::EigenvaluesOnly);
+    return std::all_of(S.eigenvalues().begin(), S.eigenvalues().end(), [&](double lambda) {
+      return SpringDamper{r.stiffness, B, r.mass, scenario.time.step, lambda, scenario.integrator.type}.is_stable();
+    });
+  }
+
+  const ScenarioText& scenario_;
+  const std::vector<std::string>& overrides_;
+  const LimitQuestion& question_;
+  Way way_;
+  RecentShells shells_;
+};
+
+/// The scenario's own number at a path, or null.
+Json own_value(const Scenario& scenario, const std::string& path) {
+  const Json effective = effective_scenario(scenario, scenario.directory);
+  const Json* node = &effective;
+  for (const std::string_view key : parts_of(path, '.')) {
+    const auto index = whole_number(key);
+    if (node->is_array() && index && *index < node->size()) {
+      node = &(*node)[*index];
+    } else if (node->is_object() && node->contains(std::string(key))) {
+      node = &(*node)[std::string(key)];
+    } else {
+      return nullptr;
+    }
+  }
+  return *node;
+}
+
+/// The end nearest to 2^10 or 2^-10 times the value that the field allows.
+double allowed_end(double value, int sign, const std::function<bool(double)>& allowed) {
+  for (int doublings = kDoublings; doublings > 0; --doublings) {
+    const double end = std::ldexp(value, sign * doublings);
+    if (allowed(end)) return end;
+  }
+  return value;
+}
+
+void check_scene(const LoadedScenario& loaded) {
+  const Scenario& scenario = loaded.scenario;
+  const auto fail = [&loaded](const char* place, const std::string& problem) {
+    throw InputError(InputError::Kind::relation, loaded.file.string() + ": " + place, problem);
+  };
+  if (!std::holds_alternative<FreePosition>(scenario.motion.position)) {
+    fail("/motion/position/type", "a prescribed tool cannot become unstable; allowed for limit: \"free\"");
+  }
+  if (scenario.time.steps < 4)
+    fail("/time/steps", fmt::format("got {}; allowed for limit: at least 4", scenario.time.steps));
+}
+
+}  // namespace
+
+std::optional<double> FieldLimit::difference() const {
+  if (!value || !theory || !std::isfinite(*theory) || *theory == 0.0) return std::nullopt;
+  return *value / *theory - 1.0;
+}
+
+LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std::string>& overrides,
+                             const std::string& path, std::optional<Range> range) {
+  const LoadedScenario loaded = load_scenario(scenario, overrides);
+  check_scene(loaded);
+  const Json own = own_value(loaded.scenario, path);
+  const auto load = [&](double value) {
+    std::vector<std::string> more = overrides;
+    more.push_back(override_text(path, value, own.is_number_integer()));
+    return load_scenario(scenario, more);
+  };
+  const auto allowed = [&](double value) {
+    try {
+      load(value);
+      return true;
+    } catch (const InputError&) {
+      return false;
+    }
+  };
+  if (!range) {
+    // A field that does not exist, or takes no number, says so itself.
+    if (!own.is_number()) load(1.0);
+    if (!own.is_number() || !(own.get<double>() > 0.0)) {
+      throw InputError(fmt::format("--vary {}: {} in the scenario; allowed without --between: a number > 0", path,
+                                   own.is_null() ? "not given" : own.dump()));
+    }
+    const double value = own.get<double>();
+    range = Range{allowed_end(value, -1, allowed), allowed_end(value, 1, allowed)};
+  }
+  load(range->from);
+  load(range->to);
+  range->logarithmic = range->from > 0.0;
+  LimitQuestion question;
+  question.path = path;
+  question.range = *range;
+  question.whole = own.is_number_integer();
+  return question;
+}
+
+std::vector<FieldLimit> field_limits(const ScenarioText& scenario, const std::vector<std::string>& overrides,
+                                     const std::vector<std::string>& algorithms, const LimitQuestion& question,
+                                     const ShellCache& cache, const JobOptions& jobs) {
+  Search search(scenario, overrides, question, cache);
+  std::vector<FieldLimit> limits(algorithms.size());
+  for_each_job(algorithms.size(), jobs, [&](std::size_t i) { limits[i] = search.limit(algorithms[i]); });
+  return limits;
+}
+
+}  // namespace hapbench

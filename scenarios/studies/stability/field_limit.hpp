@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/batch/axis.hpp"
+#include "scenarios/batch/jobs.hpp"
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/run/recent_shells.hpp"
+#include "scenarios/studies/stability/judged_run.hpp"
+
+/// The largest or smallest value of a scenario's field at which its run is stable (judged_run.hpp), found on runs.
+namespace hapbench {
+
+struct ScenarioText;
+
+/// What is looked for.
+struct LimitQuestion {
+  std::string path;    ///< of the field, dotted as in --set
+  Range range;         ///< where it may lie, from < to; both ends are tried
+  bool whole = false;  ///< the field takes integers
+  bool smallest = false;
+  /// Width at which bisection stops: relative to the value in a logarithmic range, to the range in a linear one.
+  double resolution = 1e-3;
+};
+
+/// A value and what a run with it came to.
+struct JudgedValue {
+  double value = 0.0;
+  RunVerdict verdict = RunVerdict::stable;
+};
+
+/// The answer for one algorithm.
+struct FieldLimit {
+  std::string algorithm;
+  std::optional<double> value;        ///< the last stable one; none when no run is stable
+  std::optional<JudgedValue> beyond;  ///< the first one beyond it that is not; none when the range ends stable
+  /// The same by the eigenvalues of a step, where the springs stay in contact; infinite (smallest: 0) when the whole
+  /// range is stable, none where there is no theory or nothing is stable.
+  std::optional<double> theory;
+  std::vector<JudgedValue> runs;    ///< all, by value
+  std::vector<JudgedValue> astray;  ///< of them, unstable on the stable side of the limit, or stable beyond it
+
+  /// value / theory - 1; none without either.
+  std::optional<double> difference() const;
+};
+
+/// The question about a field in a range, or by default between a thousandth and a thousandfold (2^10) of the
+/// scenario's own value, as far as the field allows. The range is logarithmic when both ends are above 0. Throws
+/// InputError when the field is no number, when the ends are none of its values, and, without a range, when its value
+/// is not above 0.
+LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std::string>& overrides,
+                             const std::string& path, std::optional<Range> range);
+
+/// Answers the question for each algorithm. The range is tried at 17 values; where, from the low end (smallest: from
+/// the high one), stable runs are followed by an unstable one, bisection narrows the edge down, and three values on
+/// either side of it are tried besides; if they show an earlier edge, that is narrowed down instead, up to five times.
+/// Some 35 to 120 runs for each algorithm; the same whatever the number of threads.
+/// Throws InputError, with the file, for a scene without a free position or with fewer than 4 steps.
+std::vector<FieldLimit> field_limits(const ScenarioText& scenario, const std::vector<std::string>& overrides,
+                                     const std::vector<std::string>& algorithms, const LimitQuestion& question,
+                                     const ShellCache& cache, const JobOptions& jobs);
+
+}  // namespace hapbench

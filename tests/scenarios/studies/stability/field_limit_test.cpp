@@ -1,0 +1,113 @@
+#include "scenarios/studies/stability/field_limit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/scenario_text.hpp"
+#include "scenarios/input/input_error.hpp"
+
+namespace hapbench {
+namespace {
+
+using Words = std::vector<std::string>;
+
+struct Asked {
+  const char* scenario;
+  const char* field;
+  Words overrides = {};
+  std::optional<Range> range = {};
+  bool smallest = false;
+};
+
+std::vector<FieldLimit> ask(const Asked& asked, const Words& algorithms = {"summation"}, unsigned threads = 1) {
+  const ScenarioText scenario = read_scenario_text(find_scenario(asked.scenario));
+  LimitQuestion question = limit_question(scenario, asked.overrides, asked.field, asked.range);
+  question.smallest = asked.smallest;
+  return field_limits(scenario, asked.overrides, algorithms, question, ShellCache(), {threads, ""});
+}
+
+/// 2000 steps, within which a decay of a tenth in a quarter tells stable from vibrating 0.1 % below the limit.
+const Words kLong = {"time.steps=2000"};
+
+TEST(FieldLimit, OfOneSpringIsThatOfTheory) {
+  const FieldLimit limit = ask({"single_spring", "rendering.stiffness_N_per_m", kLong}).front();
+  ASSERT_TRUE(limit.value && limit.beyond && limit.theory);
+  EXPECT_NEAR(*limit.theory, 433731.0, 0.002 * 433731.0);  // A.3; bisection stops at 0.1 %
+  EXPECT_NEAR(*limit.value, 433731.0, 0.01 * 433731.0);
+  EXPECT_LE(limit.beyond->value, *limit.value * 1.001 * (1.0 + 1e-12));
+  EXPECT_TRUE(limit.astray.empty());
+  EXPECT_NEAR(*limit.difference(), *limit.value / *limit.theory - 1.0, 1e-15);
+}
+
+TEST(FieldLimit, OfAnyFieldHasATheoryWhereSpringsStay) {
+  // 4 = 2 B dt / M + K dt^2 / M for the smallest mass, B from zeta: the mass at which 433 731 N/m becomes 20 000 N/m.
+  const FieldLimit mass = ask({"single_spring", "rendering.mass_kg", kLong, {}, true}).front();
+  ASSERT_TRUE(mass.value && mass.theory);
+  EXPECT_NEAR(*mass.theory, 0.1 * 20000.0 / 433731.0, 0.002 * *mass.theory);
+  EXPECT_NEAR(*mass.value, *mass.theory, 0.01 * *mass.theory);
+  EXPECT_LT(mass.beyond->value, *mass.value);
+  const FieldLimit step = ask({"single_spring", "time.step_s", kLong}).front();
+  EXPECT_NEAR(*step.theory, 0.0023284, 0.002 * 0.0023284);
+}
+
+TEST(FieldLimit, OfAFieldOfIntegersIsOne) {
+  // n K = 433 731 N/m at K = 20 000 N/m: 21 springs.
+  const FieldLimit limit =
+      ask({"single_spring", "environment.groups.0.count", kLong, Range{1.0, 100.0, false}}).front();
+  EXPECT_EQ(*limit.value, 21.0);
+  EXPECT_EQ(limit.beyond->value, 22.0);
+  EXPECT_EQ(*limit.theory, 21.0);
+}
+
+TEST(FieldLimit, SaysWhenThereIsNone) {
+  const FieldLimit stable =
+      ask({"single_spring", "rendering.stiffness_N_per_m", kLong, Range{1e4, 1e5, false}}).front();
+  EXPECT_EQ(*stable.value, 1e5);
+  EXPECT_FALSE(stable.beyond);
+  EXPECT_TRUE(std::isinf(*stable.theory));
+  const FieldLimit undamped =
+      ask({"single_spring", "rendering.stiffness_N_per_m", {"time.steps=2000", "rendering.damping_ratio=0"}}).front();
+  EXPECT_FALSE(undamped.value);
+  EXPECT_EQ(undamped.runs.front().verdict, RunVerdict::vibrating);
+}
+
+TEST(FieldLimit, OfAPlaneHasNoTheory) {
+  const Words pressed = {R"(hand={"type":"force","z_N":-1})", "time.duration_s=0.5"};
+  const std::vector<FieldLimit> limits =
+      ask({"poke_plane", "rendering.stiffness_N_per_m", pressed}, {"summation", "shaped_stiffness"}, 2);
+  ASSERT_EQ(limits.size(), 2u);
+  EXPECT_EQ(limits[1].algorithm, "shaped_stiffness");
+  for (const FieldLimit& limit : limits) {
+    EXPECT_FALSE(limit.theory);
+    ASSERT_TRUE(limit.value) << limit.algorithm;
+    EXPECT_GE(limit.runs.size(), 17u);
+  }
+  // The tip touches 81 points at once: as many springs.
+  EXPECT_GT(*limits[1].value, 20.0 * *limits[0].value);
+}
+
+TEST(FieldLimit, TellsAToolThatFallsThrough) {
+  const FieldLimit limit = ask({"poke_plane",
+                                "rendering.stiffness_N_per_m",
+                                {R"(hand={"type":"force","z_N":-1})", "time.duration_s=1"},
+                                Range{0.001, 0.01, false}},
+                               {"mean"})
+                               .front();
+  EXPECT_FALSE(limit.value);
+  for (const JudgedValue& run : limit.runs) EXPECT_EQ(run.verdict, RunVerdict::thrown_out) << run.value;
+  const FieldLimit missed = ask({"poke_plane", "rendering.stiffness_N_per_m", {"initial.position_m=[0,0,5]"}}).front();
+  for (const JudgedValue& run : missed.runs) EXPECT_EQ(run.verdict, RunVerdict::no_contact) << run.value;
+}
+
+TEST(FieldLimit, RefusesWhatHasNone) {
+  EXPECT_THROW(ask({"single_spring", "rendering.stifness_N_per_m"}), InputError);
+  EXPECT_THROW(ask({"single_spring", "rendering.algorithm"}), InputError);
+  EXPECT_THROW(ask({"single_spring", "rendering.friction.mu_f_s_per_m"}), InputError) << "0: where to begin?";
+  EXPECT_THROW(ask({"single_spring", "rendering.mass_kg", {}, Range{-1.0, 1.0, false}}), InputError);
+  EXPECT_THROW(ask({"pure_rotation", "rendering.stiffness_N_per_m"}), InputError) << "prescribed";
+}
+
+}  // namespace
+}  // namespace hapbench
