@@ -78,8 +78,8 @@ class Column {
   const std::vector<Standing>& standings() const { return standings_; }
 
  private:
-  /// Those without a failure in the order of their means, those with one behind all of these, by their number. No ranks
-  /// by a metric that nobody has.
+  /// Those without a failure in the order of their means, without a mean behind them, then those with failures by their
+  /// number. No ranks by a metric that nobody has.
   void rank() {
     std::vector<std::size_t> order;
     bool anybody = false;
@@ -96,6 +96,7 @@ class Column {
       standings_[order[i]].rank = 1 + leader;
     }
     for (std::size_t a = 0; a < standings_.size(); ++a) {
+      if (failures_[a] == 0 && !standings_[a].mean) standings_[a].rank = 1 + order.size();
       if (failures_[a] == 0) continue;
       const auto better = std::count_if(failures_.begin(), failures_.end(),
                                         [this, a](std::size_t failures) { return failures < failures_[a]; });

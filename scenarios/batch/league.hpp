@@ -39,8 +39,8 @@ struct Standing {
   std::optional<double> mean;    ///< none when all failed or none has the metric
   std::optional<double> spread;  ///< sample standard deviation; none when seeds are one or change nothing
   /// 1 + the number of algorithms that did better: those without a failure by their means, where the ones within
-  /// kSameRank of the first of a group share its rank, then the others by the number of seeds that failed. None without
-  /// the metric, but for failures where somebody has it.
+  /// kSameRank of the first of a group share its rank, and those that have none behind (a tool that is thrown out at
+  /// once has no settled force); then those with failures, by the number of seeds. None where nobody has the metric.
   std::optional<std::size_t> rank;
   std::optional<double> ratio_to_best;  ///< mean / best mean; none after a failure, and where the best is not > 0
   /// The difference to the best is more than the spread: |t| of the differences seed by seed beyond the two-sided 5 %

@@ -142,7 +142,8 @@ std::string league_text(const League& league) {
          fmt::format(
              "\nall metrics and scenarios\n\n{}\n"
              "ratio: to the best; in the last table the geometric mean of so many. wins: no other has a better\nmean rank "
-             "there. Closer than {} % share a rank. x: a run failed; it ranks behind all that did not.\n{}",
+             "there. Closer than {} % share a rank. x: a run failed; it ranks behind all that did not,\nand of "
+             "those the ones without such a number last.\n{}",
              laws_text(league), 100.0 * kSameRank, spread_text(league));
 }
 

@@ -61,8 +61,8 @@ TEST(League, GivesOneRankToWhatOnlyRoundingSetsApart) {
   EXPECT_EQ(ranks(league_of(1, 3, 1, {0.0, 1e-300, 0.0}), 0), (Ranks{1, 3, 1})) << "nothing is like zero";
 }
 
-TEST(League, RanksFailuresBehindThoseWithoutTheMetricAndNobodyByAMetricNobodyHas) {
-  EXPECT_EQ(ranks(league_of(1, 3, 1, {-1.0, std::nullopt, 2.0}), 0), (Ranks{3, 0, 1}));
+TEST(League, RanksFailuresBehindThoseWithoutTheMetricAndNobodyByAMetricThatNobodyHas) {
+  EXPECT_EQ(ranks(league_of(1, 3, 1, {-1.0, std::nullopt, 2.0}), 0), (Ranks{3, 2, 1}));
   EXPECT_EQ(ranks(league_of(1, 2, 1, {-1.0, std::nullopt}), 0), (Ranks{0, 0}));
 }
 
@@ -84,11 +84,11 @@ TEST(League, RanksByFailedSeedsAndThenNoFurther) {
   EXPECT_EQ(league.at(0, 2, 0).ratio_to_best, 1.0);
 }
 
-TEST(League, HasNoRankWithoutTheMetric) {
-  const League league = league_of(1, 3, 1, {std::nullopt, 2.0, 1.0});
-  EXPECT_EQ(ranks(league, 0), (Ranks{0, 2, 1}));
-  EXPECT_FALSE(league.laws[2].mean_rank);
-  EXPECT_EQ(league.laws[2].algorithm, 0u) << "who has no rank comes last";
+TEST(League, RanksThoseWithoutTheMetricBehindThoseWithIt) {
+  const League league = league_of(1, 4, 1, {std::nullopt, 2.0, 1.0, std::nullopt});
+  EXPECT_EQ(ranks(league, 0), (Ranks{3, 2, 1, 3}));
+  EXPECT_FALSE(league.at(0, 0, 0).ratio_to_best);
+  EXPECT_EQ(league.laws[0].wins, Ranks{0});
 }
 
 TEST(League, HasNoRatioToABestOfZeroOrLess) {
