@@ -46,7 +46,7 @@ int compare(const CompareOptions& options) {
 
   std::vector<Table::Column> columns = run_columns();
   columns.insert(columns.begin(), {"algorithm", false});
-  Table table(columns);
+  Table table(columns, kRunGap);
   Json summaries = Json::array();
   std::vector<RunReport> reports;
   const ShellCache cache = shell_cache(options.no_cache || options.skips == Skips::off);

@@ -8,7 +8,7 @@
 
 namespace hapbench {
 
-Table::Table(std::vector<Column> columns) : columns_(std::move(columns)) {}
+Table::Table(std::vector<Column> columns, std::size_t gap) : columns_(std::move(columns)), gap_(gap) {}
 
 void Table::add(std::vector<std::string> cells) {
   rows_.push_back(std::move(cells));
@@ -37,7 +37,8 @@ std::string Table::text() const {
     std::string text;
     for (std::size_t c = 0; c < columns_.size(); ++c) {
       const std::string cell = cell_of(c);
-      text += columns_[c].number ? fmt::format("{:>{}}  ", cell, widths[c]) : fmt::format("{:<{}}  ", cell, widths[c]);
+      text += columns_[c].number ? fmt::format("{:>{}}", cell, widths[c]) : fmt::format("{:<{}}", cell, widths[c]);
+      text.append(gap_, ' ');
     }
     text.erase(text.find_last_not_of(' ') + 1);
     return text + "\n";

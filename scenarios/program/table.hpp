@@ -16,13 +16,15 @@ class Table {
     bool number = true;
   };
 
-  explicit Table(std::vector<Column> columns);
+  /// `gap`: blanks between columns.
+  explicit Table(std::vector<Column> columns, std::size_t gap = 2);
   /// Precondition: one cell per column.
   void add(std::vector<std::string> cells);
   std::string text() const;
 
  private:
   std::vector<Column> columns_;
+  std::size_t gap_;
   std::vector<std::vector<std::string>> rows_;
 };
 
