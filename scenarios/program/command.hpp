@@ -63,6 +63,10 @@ void print(const OutputOptions& options, const std::string& text, const Json& js
 /// Prints warnings, one line each, on standard error.
 void print_warnings(const std::vector<std::string>& warnings);
 
+/// The page that `report` writes of the runs in a folder. Throws IoError when it cannot be made; what is missing has
+/// then been said on standard error.
+void write_report(const std::filesystem::path& folder, bool quiet);
+
 /// Says on standard error when results are going to be large: more than 100 MB.
 void announce_large_output(double bytes);
 

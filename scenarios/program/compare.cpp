@@ -33,6 +33,7 @@ struct CompareOptions {
   unsigned jobs = 0;  ///< 0: not given
   std::string out;
   std::vector<std::string> overrides;
+  bool html = false;
   bool no_cache = false;
   Skips skips = Skips::taken;
   OutputOptions output;
@@ -106,8 +107,18 @@ std::span<const RunReport> reports_of(const BatchPlan& plan, const BatchReport& 
 std::string comparison_text(const BatchPlan& plan, std::span<const RunReport> reports) {
   std::vector<Table::Column> columns = run_columns();
   columns.insert(columns.begin(), {"algorithm", false});
+<<<<<<< HEAD
   Table table(columns);
   for (const RunReport& report : reports) {
+=======
+  Table table(columns, kRunGap);
+  Json summaries = Json::array();
+  std::vector<RunReport> reports;
+  const ShellCache cache = shell_cache(options.no_cache || options.skips == Skips::off);
+  int status = kSuccess;
+  for (std::size_t i = 0; i < scenarios.size(); ++i) {
+    RunReport report = run_scenario(scenarios[i], out / algorithms[i], !options.output.quiet, cache);
+>>>>>>> metrics
     std::vector<std::string> cells = run_cells(report);
     cells.insert(cells.begin(), report.summary.algorithm);
     table.add(std::move(cells));
@@ -189,6 +200,7 @@ int compare(const CompareOptions& options) {
   } else {
     print(options.output, comparison_text(plan, report.runs) + where, json);
   }
+  if (options.html) write_report(out, options.output.quiet || options.output.json);
   return verdict(plan, report, options.wants_league());
 }
 
@@ -216,6 +228,7 @@ void add_compare(CommandLine& line) {
   command.add("--out", options->out,
               "directory of the results (default: results/out/compare_NAME, of several scenarios results/out/compare)");
   command.add("--set", options->overrides, "override a field: path=value").repeatable();
+  command.flag("--html", options->html, "write OUT/report.html as well: curves, replay, metrics, commands");
   add_cache_option(command, options->no_cache);
   add_skip_option(command, options->skips);
   add_output_options(command, options->output);

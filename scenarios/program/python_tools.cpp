@@ -1,7 +1,10 @@
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -9,6 +12,7 @@
 
 #include "results/io/io_error.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/run/stop_signal.hpp"
 
 /// Commands that draw: they hand their words to Python, which reads the result files. Nothing of a run passes through
 /// here.
@@ -24,10 +28,31 @@ struct PictureOptions {
   bool quiet = false;
 };
 
+/// A command line of the tool; `words` go on from its name.
+std::vector<std::string> tool_words(std::vector<std::string> words) {
+  const auto launcher = std::filesystem::path(HAPBENCH_SCRIPTS_DIR) / "python" / "launch";
+  words.insert(words.begin(), {launcher.string(), "hapbench_pictures"});
+  // The tools ask this very program for the points of a scene.
+  std::error_code ignored;
+  setenv("HAPBENCH_PROGRAM", std::filesystem::read_symlink("/proc/self/exe", ignored).c_str(), 1);
+  return words;
+}
+
+std::vector<char*> pointers_to(std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+[[noreturn]] void fail_to_run(const std::string& launcher, int number) {
+  throw IoError("run the drawing tool of hapbench's source tree,", launcher,
+                std::error_code(number, std::generic_category()));
+}
+
 /// Becomes the Python tool; returns only by an exception.
 int become(const std::string& tool, const PictureOptions& options) {
-  const std::filesystem::path launcher = std::filesystem::path(HAPBENCH_SCRIPTS_DIR) / "python" / "launch";
-  std::vector<std::string> words{launcher.string(), "hapbench_pictures", tool};
+  std::vector<std::string> words{tool};
   const auto add = [&words](const char* name, const std::string& value) {
     // In one word, so that a value that begins with "-" stays a value.
     if (!value.empty()) words.push_back(fmt::format("{}={}", name, value));
@@ -39,16 +64,9 @@ int become(const std::string& tool, const PictureOptions& options) {
   if (options.quiet) words.emplace_back("--quiet");
   words.emplace_back("--");
   words.insert(words.end(), options.runs.begin(), options.runs.end());
-
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  // The tools ask this very program for the points of a scene.
-  std::error_code ignored;
-  setenv("HAPBENCH_PROGRAM", std::filesystem::read_symlink("/proc/self/exe", ignored).c_str(), 1);
-  execv(launcher.c_str(), arguments.data());
-  const std::error_code reason(errno, std::generic_category());
-  throw IoError("run the drawing tool of hapbench's source tree,", launcher, reason);
+  words = tool_words(std::move(words));
+  execv(words[0].c_str(), pointers_to(words).data());
+  fail_to_run(words[0], errno);
 }
 
 void add_common(Command& command, PictureOptions& options, const std::string& out) {
@@ -58,6 +76,22 @@ void add_common(Command& command, PictureOptions& options, const std::string& ou
 }
 
 }  // namespace
+
+void write_report(const std::filesystem::path& folder, bool quiet) {
+  std::vector<std::string> words{"report"};
+  if (quiet) words.emplace_back("--quiet");
+  words.insert(words.end(), {"--", folder.string()});
+  words = tool_words(std::move(words));
+  std::fflush(stdout);
+  pid_t tool = 0;
+  if (const int error = posix_spawn(&tool, words[0].c_str(), nullptr, nullptr, pointers_to(words).data(), environ))
+    fail_to_run(words[0], error);
+  int status = 0;
+  while (waitpid(tool, &status, 0) < 0 && errno == EINTR) {
+  }
+  throw_if_stopped();
+  if (status != 0) throw IoError("write the report of", folder, std::make_error_code(std::errc::io_error));
+}
 
 void add_plot(CommandLine& line) {
   auto options = std::make_shared<PictureOptions>();

@@ -54,7 +54,7 @@ int run(const RunOptions& options) {
 
   std::vector<Table::Column> columns = run_columns();
   columns.insert(columns.begin(), {{"scenario", false}, {"algorithm", false}});
-  Table table(columns);
+  Table table(columns, kRunGap);
   LatencyTable latencies;
   Json summaries = Json::array();
   const ShellCache cache = shell_cache(options.no_cache || options.skips == Skips::off);

@@ -22,7 +22,7 @@ std::string cell(std::optional<double> value, int digits = 3) {
 }  // namespace
 
 std::vector<Table::Column> run_columns() {
-  return {{"outcome", false}, {"touch\n%"},  {"land.\nmax N"}, {"mean\nN"},      {"step\np99 N"},
+  return {{"outcome", false}, {"cont\n%"},   {"land.\nmax N"}, {"mean\nN"},      {"step\np99 N"},
           {">30Hz\nrms N"},   {"rev.\n1/s"}, {"depth\nmm"},    {"ratio", false}, {"us/\nstep"}};
 }
 

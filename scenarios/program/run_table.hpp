@@ -13,6 +13,8 @@ namespace hapbench {
 /// largest force of the landings, then of settled contact mean force, 99 % of the force steps, rms above 30 Hz and
 /// reversals a second, then largest depth, ratio range, time per step.
 std::vector<Table::Column> run_columns();
+/// Between the columns, so that the names of all algorithms fit in 100 columns.
+inline constexpr std::size_t kRunGap = 1;
 std::vector<std::string> run_cells(const RunReport& report);
 
 /// The tables of thesis D.4 for a report with targets: mean and standard error over subjects, a line for each place.

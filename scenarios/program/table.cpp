@@ -8,7 +8,7 @@
 
 namespace hapbench {
 
-Table::Table(std::vector<Column> columns) : columns_(std::move(columns)) {}
+Table::Table(std::vector<Column> columns, std::size_t gap) : columns_(std::move(columns)), gap_(gap) {}
 
 void Table::add(std::vector<std::string> cells) {
   rows_.push_back(std::move(cells));
@@ -47,7 +47,8 @@ std::string Table::block(const std::vector<std::size_t>& widths, const std::vect
     std::string text;
     for (const std::size_t c : columns) {
       const std::string cell = cell_of(c);
-      text += columns_[c].number ? fmt::format("{:>{}}  ", cell, widths[c]) : fmt::format("{:<{}}  ", cell, widths[c]);
+      text += columns_[c].number ? fmt::format("{:>{}}", cell, widths[c]) : fmt::format("{:<{}}", cell, widths[c]);
+      text.append(gap_, ' ');
     }
     text.erase(text.find_last_not_of(' ') + 1);
     return text + "\n";

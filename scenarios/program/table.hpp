@@ -16,7 +16,8 @@ class Table {
     bool number = true;
   };
 
-  explicit Table(std::vector<Column> columns);
+  /// `gap`: blanks between columns.
+  explicit Table(std::vector<Column> columns, std::size_t gap = 2);
   /// Precondition: one cell per column.
   void add(std::vector<std::string> cells);
   /// Columns that do not fit into `most_width` characters follow below, in blocks that each begin with the first
@@ -30,6 +31,7 @@ class Table {
   std::string block(const std::vector<std::size_t>& widths, const std::vector<std::size_t>& columns) const;
 
   std::vector<Column> columns_;
+  std::size_t gap_;
   std::vector<std::vector<std::string>> rows_;
 };
 

@@ -18,14 +18,14 @@ TEST(Table, AlignsWordsLeftAndNumbersRightUnderTheirTitles) {
             "longer  1000\n");
 }
 
-TEST(Table, TakesTitlesOfTwoLines) {
-  Table table({{"name", false}, {"force\nN"}, {"n"}});
+TEST(Table, TakesTitlesOfTwoLinesAndANarrowGap) {
+  Table table({{"name", false}, {"force\nN"}, {"n"}}, 1);
   table.add({"a", "1", "2"});
   EXPECT_EQ(table.text(),
-            "      force\n"
-            "name      N  n\n"
-            "----  -----  -\n"
-            "a         1  2\n");
+            "     force\n"
+            "name     N n\n"
+            "---- ----- -\n"
+            "a        1 2\n");
 }
 
 TEST(Wrapped, BreaksBetweenWordsAndNeverWithinOne) {
