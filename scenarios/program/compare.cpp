@@ -107,18 +107,8 @@ std::span<const RunReport> reports_of(const BatchPlan& plan, const BatchReport& 
 std::string comparison_text(const BatchPlan& plan, std::span<const RunReport> reports) {
   std::vector<Table::Column> columns = run_columns();
   columns.insert(columns.begin(), {"algorithm", false});
-<<<<<<< HEAD
-  Table table(columns);
-  for (const RunReport& report : reports) {
-=======
   Table table(columns, kRunGap);
-  Json summaries = Json::array();
-  std::vector<RunReport> reports;
-  const ShellCache cache = shell_cache(options.no_cache || options.skips == Skips::off);
-  int status = kSuccess;
-  for (std::size_t i = 0; i < scenarios.size(); ++i) {
-    RunReport report = run_scenario(scenarios[i], out / algorithms[i], !options.output.quiet, cache);
->>>>>>> metrics
+  for (const RunReport& report : reports) {
     std::vector<std::string> cells = run_cells(report);
     cells.insert(cells.begin(), report.summary.algorithm);
     table.add(std::move(cells));
