@@ -1,15 +1,9 @@
 #include "scenarios/run/expected_output.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <string_view>
 
-#include "results/record/contact_recorder.hpp"
-#include "results/record/energy_recorder.hpp"
-#include "results/record/ideal_trajectory_recorder.hpp"
-#include "results/record/ratio_recorder.hpp"
-#include "results/record/stiffness_recorder.hpp"
-#include "results/record/trajectory_recorder.hpp"
+#include "scenarios/run/recorders.hpp"
 
 namespace hapbench {
 namespace {
@@ -17,8 +11,10 @@ namespace {
 constexpr double kBytesOfANumber = 12.0;  // between a zero and seventeen digits
 constexpr double kContactsOfARow = 30.0;
 
-double line_bytes(std::string_view header) {
-  return kBytesOfANumber * static_cast<double>(1 + std::count(header.begin(), header.end(), ','));
+double lines_a_row(const ResultTable& table, const RecordFields& record) {
+  const std::string_view file = table.file;
+  if (file == "contacts.csv") return kContactsOfARow;
+  return file == "ratios.csv" ? static_cast<double>(record.ratio_iterations.size()) : 1.0;
 }
 
 double trials_of(const Scenario& scenario) {
@@ -31,12 +27,8 @@ double trials_of(const Scenario& scenario) {
 double expected_output_bytes(const Scenario& scenario) {
   const RecordFields& record = scenario.record;
   double row = 0.0;
-  if (record.trajectory) row += line_bytes(TrajectoryRecorder::kHeader);
-  if (record.contacts) row += kContactsOfARow * line_bytes(ContactRecorder::kHeader);
-  if (record.stiffness_tensor) row += line_bytes(StiffnessRecorder::kHeader);
-  row += static_cast<double>(record.ratio_iterations.size()) * line_bytes(RatioRecorder::kHeader);
-  if (record.energy) row += line_bytes(EnergyRecorder::kHeader);
-  if (record.ideal_trajectory) row += line_bytes(IdealTrajectoryRecorder::kHeader);
+  for (const ResultTable& table : record_tables(record))
+    row += lines_a_row(table, record) * kBytesOfANumber * static_cast<double>(table.columns.size());
   const double rows = std::ceil(static_cast<double>(scenario.time.steps) / static_cast<double>(record.every));
   return trials_of(scenario) * rows * row;
 }
