@@ -141,7 +141,7 @@ std::vector<BadInput> wrong_values() {
 }
 
 std::vector<BadInput> wrong_structures() {
-  const std::string top = "allowed: an object with the fields \"$schema\", \"name\"";
+  const std::string top = "allowed: an object with the fields \"$schema\", \"extends\"";
   const auto plane = [](const char* pointer, const char* value) { return with_value("plane", pointer, value); };
   return {
       {"ListAtTheTop", "[1]", "", "got [1]; " + top},
@@ -167,7 +167,7 @@ std::vector<BadInput> wrong_structures() {
        "missing field \"start\""},
       {"NoPrescribedZ", plane("/motion", R"({"position": {"type": "prescribed", "x_m": 0, "y_m": 0}})"),
        "/motion/position", "missing field \"z_m\""},
-      {"UnknownField", plane("/gravity", "9.81"), "/gravity", "unknown field; allowed here: \"$schema\", \"name\""},
+      {"UnknownField", plane("/gravity", "9.81"), "/gravity", "unknown field; allowed here: \"$schema\", \"extends\""},
       {"MisspeltField", plane("/renderin", "{}"), "/renderin", "nearest valid name: \"rendering\""},
       {"MisspeltNestedField", plane("/rendering", R"({"stiffness": 1})"), "/rendering/stiffness",
        "nearest valid name: \"stiffness_N_per_m\""},
