@@ -238,5 +238,28 @@ TEST_F(RunCommand, WarnsOfFrictionThatTheIntegratorCannotStep) {
   EXPECT_EQ(summary("gentle")["metrics"]["explicit_friction_rows_beyond"], 0);
 }
 
+TEST_F(RunCommand, WarnsOfAReductionThatMakesTheForceJump) {
+  const std::string shown = hapbench({"run", "corner_shaped_stiffness", "--out", out()}).out;
+  EXPECT_NE(shown.find("\ncorner_shaped_stiffness: warning: reduction: kept points change in "), std::string::npos);
+  EXPECT_NE(shown.find(" elsewhere (shaped_stiffness); rendering.reduction=null keeps them all\n"), std::string::npos)
+      << shown;
+  EXPECT_GT(summary()["metrics"]["reduction_changes"], 0);
+  const ProgramRun all =
+      hapbench({"run", "corner_shaped_stiffness", "--out", out("all"), "--set", "rendering.reduction=null"});
+  EXPECT_EQ(all.out.find("warning"), std::string::npos) << all.out;
+  EXPECT_TRUE(summary("all")["metrics"]["reduction_changes"].is_null());
+}
+
+TEST_F(RunCommand, TakesTheBeginningOfSettledContactFromTheScenario) {
+  hapbench({"run", "single_spring", "--out", out()});
+  const auto settled = [this](const char* run) { return summary(run)["metrics"]["settled_s"].get<double>(); };
+  EXPECT_DOUBLE_EQ(settled("out"), 0.15) << "0.2 s in contact, of which 0.05 s are the landing";
+  hapbench({"run", "single_spring", "--out", out("all"), "--set", "metrics.from_s=0"});
+  EXPECT_DOUBLE_EQ(settled("all"), 0.2);
+  EXPECT_TRUE(summary("all")["metrics"]["landing_force_max_N"].is_null());
+  hapbench({"run", "single_spring", "--out", out("late"), "--set", "metrics.settling_s=0.125"});
+  EXPECT_DOUBLE_EQ(settled("late"), 0.075);
+}
+
 }  // namespace
 }  // namespace hapbench
