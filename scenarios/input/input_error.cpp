@@ -70,7 +70,11 @@ void require_valid_name(std::string_view got, const std::string& name, std::span
 }
 
 std::string quoted_list(std::span<const std::string> names) {
-  return names.empty() ? "nothing" : fmt::format("\"{}\"", fmt::join(names, "\", \""));
+  constexpr std::size_t kMostNames = 50;  // more than that nobody reads
+  if (names.empty()) return "nothing";
+  const std::size_t more = names.size() - std::min(names.size(), kMostNames);
+  return fmt::format("\"{}\"{}", fmt::join(names.first(names.size() - more), "\", \""),
+                     more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
 }  // namespace hapbench

@@ -53,7 +53,7 @@ std::string nearest_name_hint(std::string_view given, std::span<const std::strin
 /// Throws an InputError, `got` before the name, when the name is not among the valid ones.
 void require_valid_name(std::string_view got, const std::string& name, std::span<const std::string> valid);
 
-/// "a", "b", "c"
+/// "a", "b", "c"; of very many names the first ones and how many more there are.
 std::string quoted_list(std::span<const std::string> names);
 
 }  // namespace hapbench

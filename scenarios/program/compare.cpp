@@ -113,19 +113,7 @@ std::string comparison_text(const BatchPlan& plan, std::span<const RunReport> re
     cells.insert(cells.begin(), report.summary.algorithm);
     table.add(std::move(cells));
   }
-  return fmt::format("{}\n\n{}{}{}", scenario_of(plan, 0).scenario.name, table.text(), friction_text(reports),
-                     reduction_text(reports));
-}
-
-std::string batch_text(const BatchPlan& plan, const BatchReport& report, const League& league) {
-  std::string text = league_text(league);
-  for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
-    const auto reports = reports_of(plan, report, s);
-    for (const std::string& warning : {friction_text(reports), reduction_text(reports)}) {
-      if (!warning.empty()) text += fmt::format("{}: {}", plan.names[s], warning);
-    }
-  }
-  return text;
+  return fmt::format("{}\n\n{}", scenario_of(plan, 0).scenario.name, table.text());
 }
 
 Json summaries_json(const BatchPlan& plan, const BatchReport& report, bool league) {
@@ -186,7 +174,7 @@ int compare(const CompareOptions& options) {
     write_league(out / "league.csv", league);
     Json batch = {{"runs", std::move(json)}};
     batch.update(league_json(league));
-    print(options.output, batch_text(plan, report, league) + where, batch);
+    print(options.output, league_text(league) + where, batch);
   } else {
     print(options.output, comparison_text(plan, report.runs) + where, json);
   }

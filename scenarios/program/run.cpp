@@ -58,7 +58,7 @@ int run(const RunOptions& options) {
   LatencyTable latencies;
   Json summaries = Json::array();
   const ShellCache cache = shell_cache(options.no_cache || options.skips == Skips::off);
-  std::string targets, warnings;
+  std::string targets;
   int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
     const RunReport report = run_scenario(scenarios[i], directories[i], !options.output.quiet, cache);
@@ -66,9 +66,6 @@ int run(const RunOptions& options) {
     cells.insert(cells.begin(), {report.summary.name, report.summary.algorithm});
     table.add(std::move(cells));
     targets += targets_text(report);
-    for (const std::string& text : {friction_text({&report, 1}), reduction_text({&report, 1})}) {
-      if (!text.empty()) warnings += fmt::format("{}: {}", report.summary.name, text);
-    }
     print_warnings(run_warnings({&report, 1}));
     summaries.push_back(summary_json(report.summary));
     if (options.latency) {
@@ -82,8 +79,8 @@ int run(const RunOptions& options) {
   }
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
   const std::string latency_text = options.latency ? "\n" + latencies.text() : "";
-  print(options.output,
-        table.text() + warnings + targets + latency_text + fmt::format("\nresults in {}\n", where.string()), summaries);
+  print(options.output, table.text() + targets + latency_text + fmt::format("\nresults in {}\n", where.string()),
+        summaries);
   return status;
 }
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
+#include <string_view>
 
 #include "results/summary/outcome_names.hpp"
 
@@ -17,6 +17,12 @@ namespace {
 std::string cell(std::optional<double> value, int digits = 3) {
   if (value && std::abs(*value) >= 100.0 && std::abs(*value) < 1e6) return fmt::format("{:.0f}", *value);
   return significant(value.value_or(std::numeric_limits<double>::quiet_NaN()) + 0.0, digits);  // no "-0"
+}
+
+/// Equal for warnings that say the same of different runs.
+std::string without_numbers(std::string text) {
+  std::erase_if(text, [](char c) { return std::string_view("0123456789.+-e").find(c) != std::string_view::npos; });
+  return text;
 }
 
 }  // namespace
@@ -42,63 +48,34 @@ std::vector<std::string> run_cells(const RunReport& report) {
           cell(1e6 * report.timing.loop / rows)};
 }
 
-std::string reduction_text(std::span<const RunReport> reports) {
-  const RunReport* worst = nullptr;
-  const auto step_max = [](const RunReport& report) { return report.summary.metrics.reduction->step_max(); };
-  std::vector<std::string> others;
-  for (const RunReport& report : reports) {
-    const auto& jumps = report.summary.metrics.reduction;
-    if (!jumps || !jumps->stand_out()) continue;
-    const bool is_worst = worst == nullptr || step_max(report) > step_max(*worst);
-    if (is_worst && worst != nullptr) others.push_back(worst->summary.algorithm);
-    if (!is_worst) others.push_back(report.summary.algorithm);
-    if (is_worst) worst = &report;
-  }
-  if (worst == nullptr) return "";
-  const ReductionJumps& jumps = *worst->summary.metrics.reduction;
-  return fmt::format(
-      "warning: reduction: kept points change in {} of {} steps, force steps up to {} N there and {} N elsewhere ({}{}{}); "
-      "rendering.reduction=null keeps them all\n",
-      jumps.changes, worst->summary.result.rows, cell(jumps.step_max(), 2), cell(jumps.step_max_elsewhere(), 2),
-      worst->summary.algorithm, others.empty() ? "" : "; also ", fmt::join(others, ", "));
-}
-
 std::vector<std::string> run_warnings(std::span<const RunReport> reports) {
-  std::vector<std::pair<std::string, std::string>> algorithms_by_text;  // in the order of their first appearance
+  struct Warning {
+    std::string kind, text;
+    std::vector<std::string> algorithms;
+  };
+  std::vector<Warning> warnings;  // in the order of their first appearance
   for (const RunReport& report : reports) {
-    for (const std::string& warning : report.summary.warnings) {
-      const std::string text = report.summary.name + ": " + warning;
-      const auto known = std::find_if(algorithms_by_text.begin(), algorithms_by_text.end(),
-                                      [&text](const auto& entry) { return entry.first == text; });
-      if (known == algorithms_by_text.end()) {
-        algorithms_by_text.emplace_back(text, report.summary.algorithm);
-      } else {
-        known->second += ", " + report.summary.algorithm;
-      }
+    for (const std::string& text : report.summary.warnings) {
+      const std::string kind = without_numbers(text);
+      auto known = std::find_if(warnings.begin(), warnings.end(), [&](const Warning& w) { return w.kind == kind; });
+      if (known == warnings.end()) known = warnings.insert(known, {kind, report.summary.name + ": " + text, {}});
+      auto& algorithms = known->algorithms;
+      // Several seeds of an algorithm come one after the other; the first tells.
+      if (algorithms.empty() || algorithms.back() != report.summary.algorithm)
+        algorithms.push_back(report.summary.algorithm);
     }
   }
-  std::vector<std::string> warnings;
-  for (const auto& [text, algorithms] : algorithms_by_text)
-    warnings.push_back(reports.size() == 1 ? text : fmt::format("{} ({})", text, algorithms));
-  return warnings;
-}
-
-std::string friction_text(std::span<const RunReport> reports) {
-  std::string names;
-  std::string_view last;  // several seeds of an algorithm come one after the other; the first tells
-  double limit = 0.0;
-  for (const RunReport& report : reports) {
-    const auto& friction = report.summary.metrics.explicit_friction;
-    if (!friction || !friction->first_step || report.summary.algorithm == last) continue;
-    last = report.summary.algorithm;
-    limit = friction->limit;
-    names += fmt::format("{}{} (step {})", names.empty() ? "" : ", ", report.summary.algorithm, *friction->first_step);
+  std::vector<std::string> texts;
+  for (const auto& [kind, text, algorithms] : warnings) {
+    if (reports.size() == 1) {
+      texts.push_back(text);
+    } else {
+      const auto others = std::span(algorithms).subspan(1);
+      texts.push_back(fmt::format("{} ({}{}{})", text, algorithms[0], others.empty() ? "" : "; likewise ",
+                                  fmt::join(others, ", ")));
+    }
   }
-  if (names.empty()) return "";
-  return fmt::format(
-      "warning: beyond {} N of spring force the explicit step of friction is unstable; what follows is the "
-      "integrator's doing, not the law's: {}\n",
-      significant(limit, 3), names);
+  return texts;
 }
 
 std::string targets_text(const RunReport& report) {

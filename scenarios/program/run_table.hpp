@@ -21,16 +21,8 @@ std::vector<std::string> run_cells(const RunReport& report);
 /// Empty for other reports.
 std::string targets_text(const RunReport& report);
 
-/// The warnings of runs that were made side by side, each once with the algorithms it is about.
+/// The warnings of runs that were made side by side. Those that differ in their numbers alone stand once, with the
+/// numbers of the first and the names of the other algorithms.
 std::vector<std::string> run_warnings(std::span<const RunReport> reports);
-
-/// What to know of those of several runs of one scene whose force steps far more where the reduction keeps other points
-/// than elsewhere (results/observe/reduction_jumps.hpp): a line with the numbers of the worst and all their algorithms;
-/// empty when there are none.
-std::string reduction_text(std::span<const RunReport> reports);
-
-/// What to know of those of several runs of one scene whose spring force passed the limit of explicit friction
-/// (results/observe/explicit_friction.hpp), a line with their algorithms; empty when none did.
-std::string friction_text(std::span<const RunReport> reports);
 
 }  // namespace hapbench

@@ -11,6 +11,7 @@
 #include "results/summary/columns_json.hpp"
 #include "scenarios/run/environment_points.hpp"
 #include "scenarios/run/expectation.hpp"
+#include "scenarios/run/force_warnings.hpp"
 #include "scenarios/run/recorders.hpp"
 #include "scenarios/run/run_trial.hpp"
 
@@ -121,6 +122,8 @@ RunSummary summarise(const Scenario& scenario, const std::vector<TrialResult>& t
   if (std::holds_alternative<TrackingHandFields>(scenario.hand)) summary.targets = place_metrics(targets);
   for (const TrialResult& trial : trials) summary.work += trial.work;
   summary.warnings = merged_warnings(trials);
+  const std::vector<std::string> about_forces = force_warnings(summary.metrics);
+  summary.warnings.insert(summary.warnings.end(), about_forces.begin(), about_forces.end());
   return summary;
 }
 

@@ -13,7 +13,7 @@ TEST(OutcomeNames, AreThoseOfTheScenarioFormat) {
 }
 
 TEST(OutcomeNames, LeadBackToTheirOutcomes) {
-  ASSERT_EQ(outcome_names().size(), 4u);
+  ASSERT_EQ(outcome_names().size(), 6u);
   for (const std::string_view name : outcome_names()) {
     const auto outcome = outcome_named(name);
     ASSERT_TRUE(outcome) << name;

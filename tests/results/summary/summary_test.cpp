@@ -16,6 +16,7 @@ RunSummary example() {
   run.result.outcome = Outcome::leaves_hole;
   run.result.rows = 400;
   run.expected = true;
+  run.warnings = {"touched the mesh near an edge"};
   run.duration = 0.2;
   run.metrics = {
       .rows = 400,
@@ -31,6 +32,7 @@ RunSummary example() {
       .rendered_mean = 3.25,
       .rendered_max = 6,
       .steps_in_contact = 300,
+      .last_contact = 0.1875,
       .speed_max = 0.5,
       .final_position = {0.5, -0.25, 0.0},
       .explicit_friction = ExplicitFriction{.limit = 79.5, .rows_beyond = 4, .first_step = 17},
@@ -73,6 +75,7 @@ TEST(Summary, TextHoldsEveryField) {
   "steps": 400,
   "duration_s": 0.2,
   "divergence": null,
+  "warnings": ["touched the mesh near an edge"],
   "metrics": {
     "force_max_N": 1.5,
     "force_step_max_N": 0.75,
@@ -87,6 +90,8 @@ TEST(Summary, TextHoldsEveryField) {
     "rendered_mean": 3.25,
     "rendered_max": 6,
     "steps_in_contact": 300,
+    "contact_share": 0.75,
+    "last_contact_s": 0.1875,
     "speed_max_m_per_s": 0.5,
     "explicit_friction_limit_N": 79.5,
     "explicit_friction_rows_beyond": 4,

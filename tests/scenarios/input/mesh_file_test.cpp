@@ -194,7 +194,10 @@ TEST_F(MeshFile, WarnsOnceAboutWhatIsOdd) {
   const TriangleSoup cube = test::cube();
   TriangleSoup odd = cube;
   odd.triangles.pop_back();
-  EXPECT_EQ(warning_of("open.obj", test::obj_text(odd)), ": the mesh is open: 3 boundary edges");
+  EXPECT_EQ(
+      warning_of("open.obj", test::obj_text(odd)),
+      ": the mesh is open: 3 boundary edges, within x 1e+03 ... 1e+03, y -1e+03 ... 0, z 0 ... 1e+03 mm; beyond them "
+      "there is nothing to touch");
   odd = cube;
   std::swap(odd.triangles[4][0], odd.triangles[4][1]);
   EXPECT_EQ(warning_of("wound.off", test::off_text(odd)),

@@ -83,13 +83,13 @@ TEST_F(CompareBatch, GoesOnAfterADivergence) {
   const ProgramRun run = hapbench({"compare", file("press.json"), "springs_unlimited_shaped_stiffness", "--out",
                                    file("out"), "--algorithms", "summation,shaped_stiffness", "--json"});
   EXPECT_EQ(run.status, 3);
-  EXPECT_EQ(lines_of(run.err).size(), 1u) << run.err;
-  EXPECT_NE(run.err.find("1 of 4 runs diverge, the first: "), std::string::npos) << run.err;
+  EXPECT_NE(lines_of(run.err).back().find("1 of 4 runs diverge, the first: "), std::string::npos) << run.err;
   const Json json = run.json();
   EXPECT_EQ(json["runs"].size(), 4u);
   const auto summation = std::find_if(json["laws"].begin(), json["laws"].end(),
                                       [](const Json& law) { return law["algorithm"] == "summation"; });
-  EXPECT_EQ((*summation)["fails"], Json({"springs_unlimited_shaped_stiffness"}));
+  // The press throws its tool out with the sum of all springs.
+  EXPECT_EQ((*summation)["fails"], Json({"press", "springs_unlimited_shaped_stiffness"}));
 }
 
 TEST_F(CompareBatch, LeavesNothingOfAnEarlierOne) {

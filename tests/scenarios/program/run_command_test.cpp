@@ -228,25 +228,26 @@ TEST_F(RunCommand, StopsADivergenceOfTheFirstRow) {
 }
 
 TEST_F(RunCommand, WarnsOfFrictionThatTheIntegratorCannotStep) {
-  const std::string shown = hapbench({"run", "peg_in_hole_2d_summation", "--out", out()}).out;
-  EXPECT_NE(shown.find("\npeg_in_hole_2d_summation: warning: beyond 79.5 N of spring force "), std::string::npos)
+  const std::string shown = hapbench({"run", "peg_in_hole_2d_summation", "--out", out()}).err;
+  EXPECT_NE(shown.find("warning: peg_in_hole_2d_summation: beyond 79.5 N of spring force, first in step 0, "),
+            std::string::npos)
       << shown;
+  EXPECT_EQ(summary()["warnings"].size(), 1u);
   EXPECT_EQ(summary()["metrics"]["explicit_friction_limit_N"], 79.5);
   EXPECT_EQ(summary()["metrics"]["explicit_friction_first_step"], 0);
   const ProgramRun gentle = hapbench({"run", "peg_in_hole_2d_mean", "--out", out("gentle")});
-  EXPECT_EQ(gentle.out.find("warning"), std::string::npos);
+  EXPECT_EQ(gentle.err, "");
   EXPECT_EQ(summary("gentle")["metrics"]["explicit_friction_rows_beyond"], 0);
 }
 
 TEST_F(RunCommand, WarnsOfAReductionThatMakesTheForceJump) {
-  const std::string shown = hapbench({"run", "corner_shaped_stiffness", "--out", out()}).out;
-  EXPECT_NE(shown.find("\ncorner_shaped_stiffness: warning: reduction: kept points change in "), std::string::npos);
-  EXPECT_NE(shown.find(" elsewhere (shaped_stiffness); rendering.reduction=null keeps them all\n"), std::string::npos)
-      << shown;
+  const std::string shown = hapbench({"run", "corner_shaped_stiffness", "--out", out()}).err;
+  EXPECT_NE(shown.find("warning: corner_shaped_stiffness: reduction: kept points change in "), std::string::npos);
+  EXPECT_NE(shown.find(" N elsewhere; rendering.reduction=null keeps them all\n"), std::string::npos) << shown;
   EXPECT_GT(summary()["metrics"]["reduction_changes"], 0);
   const ProgramRun all =
       hapbench({"run", "corner_shaped_stiffness", "--out", out("all"), "--set", "rendering.reduction=null"});
-  EXPECT_EQ(all.out.find("warning"), std::string::npos) << all.out;
+  EXPECT_EQ(all.err, "");
   EXPECT_TRUE(summary("all")["metrics"]["reduction_changes"].is_null());
 }
 

@@ -4,6 +4,7 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/scenario_text.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "tests/results/files.hpp"
@@ -64,7 +65,7 @@ class WithAndWithoutSkips : public testing::Test {
 TEST_F(WithAndWithoutSkips, BundledScenariosGiveTheSameBytes) {
   for (const BundledScenario& bundled : bundled_scenarios()) {
     SCOPED_TRACE(bundled.name);
-    expect_same_results(parse_json(read_text_file(bundled.file, kLargestJsonFile)), bundled.file.parent_path());
+    expect_same_results(read_scenario_text(bundled.file).json, bundled.file.parent_path());
   }
   // There was something to skip.
   EXPECT_LT(100 * tested_taken_, tested_off_);

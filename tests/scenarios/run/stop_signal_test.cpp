@@ -10,7 +10,17 @@
 namespace hapbench {
 namespace {
 
-TEST(StopSignal, IsRecordedAndForgotten) {
+/// With SIGINT as a shell in the foreground leaves it; behind "&" it is ignored, and stays so.
+class StopSignals : public testing::Test {
+ protected:
+  StopSignals() : before_(std::signal(SIGINT, SIG_DFL)) {}
+  ~StopSignals() override { std::signal(SIGINT, before_); }
+
+ private:
+  void (*before_)(int);
+};
+
+TEST_F(StopSignals, AreRecordedAndForgotten) {
   {
     const StopSignal signals;
     EXPECT_EQ(StopSignal::received(), 0);
@@ -27,7 +37,7 @@ TEST(StopSignal, IsRecordedAndForgotten) {
   EXPECT_EQ(StopSignal::received(), 0);
 }
 
-TEST(StopSignal, EndsARunOfWhichNothingIsLeft) {
+TEST_F(StopSignals, EndARunOfWhichNothingIsLeft) {
   const test::TemporaryDirectory directory;
   LoadedScenario loaded = read_scenario(test::minimal_scenario("springs"), ".");
   for (const bool timed : {false, true}) {
@@ -41,7 +51,7 @@ TEST(StopSignal, EndsARunOfWhichNothingIsLeft) {
   EXPECT_TRUE(std::filesystem::exists(directory / "out/below/summary.json"));
 }
 
-TEST(StopSignal, EndsJobsThatDoNotAskForIt) {
+TEST_F(StopSignals, EndJobsThatDoNotAskForIt) {
   const StopSignal signals;
   std::size_t begun = 0;
   EXPECT_THROW(for_each_job(1000, {1, ""},

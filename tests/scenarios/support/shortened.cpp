@@ -12,8 +12,9 @@ std::vector<std::string> shortened(const BundledScenario& bundled) {
   const bool tracking = std::holds_alternative<TrackingHandFields>(scenario.hand);
   if (scenario.time.steps <= 10'000) return {};
   std::vector<std::string> arguments = {
-      "--set", R"(expect={"outcome": ["completes", "leaves_hole", "tool_horizontal", "diverges"]})", "--set",
-      fmt::format("time={{\"step_s\": {}, \"steps\": 2000}}", scenario.time.step)};
+      "--set",
+      R"(expect={"outcome": ["completes", "leaves_hole", "tool_horizontal", "no_contact", "lost_contact", "diverges"]})",
+      "--set", fmt::format("time={{\"step_s\": {}, \"steps\": 2000}}", scenario.time.step)};
   if (tracking) arguments.insert(arguments.end(), {"--set", "hand.trials=1"});
   return arguments;
 }
