@@ -231,6 +231,12 @@ class Plot(Given):
         self.assertEqual(labels(runs), ["mean", "proxy", "summation"])
         runs = given_runs([self.root / "peg" / "mean", self.root / "springs"])
         self.assertEqual(labels(runs), ["peg_in_hole_2d_shaped_stiffness", "springs_limited_mean"])
+        for seed in ("seed_0", "seed_1"):
+            shutil.copytree(self.root / "springs", self.root / "seeds" / "springs_limited_mean" / "mean" / seed)
+            shutil.copytree(self.root / "peg" / "mean", self.root / "seeds" / "peg" / "mean" / seed)
+        self.assertEqual(labels(given_runs([self.root / "seeds"])), [
+            "peg_in_hole_2d_shaped_stiffness, mean, seed_0", "peg_in_hole_2d_shaped_stiffness, mean, seed_1",
+            "springs_limited_mean, mean, seed_0", "springs_limited_mean, mean, seed_1"])
 
     def test_a_sweep_over_two_fields_is_a_map(self):
         said = hapbench("plot", self.root / "sweep", "--metric", "speed_max_m_per_s")
