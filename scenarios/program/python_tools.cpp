@@ -97,15 +97,16 @@ void add_plot(CommandLine& line) {
   auto options = std::make_shared<PictureOptions>();
   Command command = line.command("plot", "Draw runs over time and in space, or a sweep: a sketch here and a picture");
   add_common(command, *options, "FILE.svg, .png or .pdf; default: plot.svg in the folder of the runs");
-  command.add("--y", options->quantities,
-              "what to draw, separated by commas: force, spring, measured, input, depth, ratio, contacts, rendered, "
-              "speed, x, y, z, path, energy, input_energy, or any column of the runs' tables; default: force, depth, "
-              "ratio, contacts, path, and energy where recorded");
+  command.add("--y", options->quantities, "what to draw, separated by commas (below)");
   command.add("--metric", options->metric, "of a sweep: the column of sweep.csv to draw");
   command.flag("--no-sketch", options->no_sketch, "the picture alone");
   command.footer(
-      "A comparison's folder stands for all its runs. Every run has the colour of its algorithm; triangles mark the "
-      "first touch. Of long runs the least and the greatest value for each pixel are drawn, so that no spike is lost.\n"
+      "--y takes force, spring, measured, input, depth, ratio, contacts, rendered, speed, x, y, z, path,\n"
+      "energy, input_energy, or any column of the runs' tables; by default force, depth, ratio, contacts,\n"
+      "path, and energy where it was recorded.\n"
+      "A comparison's folder stands for all its runs. Every run has the colour of its algorithm; triangles\n"
+      "mark the first touch. Of long runs the least and the greatest value for each pixel are drawn, so\n"
+      "that no spike is lost.\n"
       "  hapbench plot results/out/compare_drag --y force,depth --out drag.png");
   command.runs([options] { return become("plot", *options); });
 }
@@ -116,8 +117,9 @@ void add_report(CommandLine& line) {
       line.command("report", "Write a page of runs: curves, replay with sound, metrics, scenario, commands");
   add_common(command, *options, "FILE.html; default: report.html in the folder of the runs");
   command.footer(
-      "One HTML file that needs no server and no network. The replay shows up to four runs side by side; it is best of "
-      "runs with --set record.contacts=true.\n  hapbench report results/out/compare_drag");
+      "One HTML file that needs no server and no network. The replay shows up to four runs side by side,\n"
+      "with their depths where they were run with --set record.contacts=true.\n"
+      "  hapbench report results/out/compare_drag");
   command.runs([options] { return become("report", *options); });
 }
 

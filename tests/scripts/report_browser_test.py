@@ -172,7 +172,7 @@ class InBrowser(unittest.TestCase):
 
     def test_field_of_the_original_algorithm_is_one_direction(self):
         """u_r u_r^T has eigenvalues 1, 0, 0, in single precision."""
-        trace = self.js("(() => { const r = player.scene.recordings[0], s = r.tensor(0); return s[0] + s[3] + s[5]; })()")
+        trace = self.js("(() => { const r = player.scene.recordings[0], s = r.tensor(r.firstTouch); return s[0] + s[3] + s[5]; })()")
         self.assertAlmostEqual(trace, 1, delta=4 * 2.0 ** -24)
 
     def test_runs_sort_and_filter(self):

@@ -68,7 +68,8 @@ def labels(runs):
 
     ways = ((lambda run: plain(run.algorithm)) if len(runs) > 1 else (lambda run: f"{run.name}, {plain(run.algorithm)}"),
             lambda run: run.name, lambda run: f"{run.name}, {plain(run.algorithm)}", lambda run: run.directory.name,
-            lambda run: run.directory.as_posix())
+            # Seeds of a comparison.
+            lambda run: f"{run.name}, {plain(run.algorithm)}, {run.directory.name}")
     for way in ways:
         names = [way(run) for run in runs]
         if all(names) and len(set(names)) == len(names):

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from hapbench_report.json_input import InputError, at
-from hapbench_report.replay_pack import SHELL_COLUMNS, MARGIN, packed_scene, radius_of, touched_box
+from hapbench_report.replay_pack import MARGIN, SHELL_COLUMNS, packed_scene, radius_of, touched_box
 from hapbench_report.replay_read import Recording
+from hapbench_report.replay_sound import LONGEST
 from hapbench_report.replay_tool import tool_profile
 
 from .columns import read_columns
@@ -37,8 +38,10 @@ def scene(i, members):
     shell, said = points_of(runs[0], recordings)
     longest = max(recording.columns["time_s"][-1] for recording in recordings)
     speed = min(SPEEDS, key=lambda speed: abs(np.log(speed / max(longest / WATCHED_S, 1e-9))))
+    if any(len(recording.columns["time_s"]) > LONGEST for recording in recordings):
+        said = f"{said} Sound: the first {LONGEST} recorded rows of each run.".strip()
     names = list(dict.fromkeys(run.name for run in runs))
-    return packed_scene(recordings, shell, labels, id=f"{names[0]}" if i == 0 else f"{names[0]}-{i + 1}",
+    return packed_scene(recordings, shell, labels, id=names[0] if i == 0 else f"{names[0]}-{i + 1}",
                         title=", ".join(names), speed=speed, scenario=names[0], note=said)
 
 

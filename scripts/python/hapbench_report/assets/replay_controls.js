@@ -77,6 +77,7 @@ function showSoundChoice(player) {
     return option;
   }));
   player.find("#replay-sound-bar").toggleAttribute("data-hidden", !possible);
+  player.find("#replay-sound-next").toggleAttribute("data-hidden", player.shown.length === 1);
   hear(player, Math.max(0, player.shown.findIndex((r) => r.sound)));
 }
 

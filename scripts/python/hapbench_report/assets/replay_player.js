@@ -107,16 +107,19 @@ class Player {
     this.root.dataset.scene = this.scene.id;
   }
 
+  /** The names of the shown runs in their colours, and how much longer depths are drawn at this zoom. */
   showKey() {
-    const theme = palette().theme, key = `${theme} ${this.shown.map((r) => r.label)} ${this.camera.zoom} ${this.camera.frame}`;
+    const key = `${this.shown.map((r) => r.label)} ${this.camera.zoom} ${this.camera.frame}`;
     if (this.keyShown === key) return;
     this.keyShown = key;
-    this.find("#replay-key").replaceChildren(...this.shown.map((r) => {
-      const name = Object.assign(document.createElement("b"), {textContent: r.label});
-      name.style.color = r.colours[theme];
-      return name;
-    }));
-    this.shown.forEach((r, i) => { this.sides[i].querySelector(".swatch").style.background = r.colours[theme]; });
+    const inColour = (part, recording) => {
+      part.style.setProperty("--light", recording.colours.light);
+      part.style.setProperty("--dark", recording.colours.dark);
+      return part;
+    };
+    this.find("#replay-key").replaceChildren(...this.shown.map((r) =>
+      inColour(Object.assign(document.createElement("b"), {textContent: r.label, className: "run-name"}), r)));
+    this.shown.forEach((r, i) => inColour(this.sides[i].querySelector(".swatch"), r));
     const view = this.sides[0].querySelector(".view");
     const longer = depthScale(this.scene, this.camera.scale(view.clientWidth, view.clientHeight));
     this.find("#replay-longer").textContent = longer === 1 ? "true length" : `${longer} times as long`;
