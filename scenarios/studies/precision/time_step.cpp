@@ -36,12 +36,15 @@ bool has_ideal(const Scenario& scenario) {
   return has_ideal_trajectory(scenario) && moves_freely(scenario);
 }
 
-/// Any other scene, without what has no limit as the step gets finer.
-Scenario any_scene(Scenario scenario) {
+void require_a_limit(const Scenario& scenario) {
   if (std::holds_alternative<TrackingHandFields>(scenario.hand)) {
     throw InputError(InputError::Kind::relation, "/hand/type",
                      "got \"tracking\", whose noise is drawn anew in every step; allowed for this study: other hands");
   }
+}
+
+/// Any other scene, without what has no limit as the step gets finer.
+Scenario any_scene(Scenario scenario) {
   if (scenario.time.steps < 2 * std::llround(kFactors[0])) {
     throw InputError(
         InputError::Kind::relation, "/time/steps",
@@ -76,6 +79,7 @@ PrecisionRow row_of(const Scenario& run, const SampledRun& sampled, const Trajec
 }  // namespace
 
 static PrecisionResult study_time_step(const Scenario& given, const PrecisionOptions& options) {
+  require_a_limit(given);
   const bool ideal = has_ideal(given), free = moves_freely(given);
   const Scenario scenario = ideal ? drill_in_hole(given) : any_scene(given);
   const Cylinder tool = make_cylinder(scenario.tool);

@@ -125,7 +125,7 @@ TEST(SearchScene, SetsTheToolAgainstTheSurfaceAndAimsAroundIt) {
   EXPECT_NEAR(scene.reach->max.x(), 0.003, 1e-12);  // half of 4 mm, and the drill's diameter
   EXPECT_NEAR(scene.reach->min.z(), -0.001, 1e-12);
   const Trajectory far = {{0.0, 0.0, 0.0, Vec3(5.0, 0.0, -0.06)}, {0.1, 0.0, 0.0, Vec3(-5.0, 0.0, 0.0)}};
-  const auto& hand = std::get<ImpedanceHandFields>(with_trajectory(scene, far).hand);
+  const auto hand = std::get<ImpedanceHandFields>(with_trajectory(scene, far).hand);
   EXPECT_EQ(hand.target[0](0.0), 0.003) << "within reach, not 17 mm away";
   EXPECT_EQ(hand.target[0](0.1), -0.003);
   EXPECT_NEAR(hand.target[2](0.0), -0.0002, 1e-12) << "0.06 N of 300 N/m";
