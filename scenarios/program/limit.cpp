@@ -106,10 +106,16 @@ Table table_of(const std::vector<FieldLimit>& limits, const LimitQuestion& quest
 }
 
 /// A line for each algorithm whose stable values are not all on one side of the limit.
-std::string astray_text(const std::vector<FieldLimit>& limits) {
+std::string astray_text(const std::vector<FieldLimit>& limits, bool smallest) {
   constexpr std::size_t kMost = 4;
   std::string text;
   for (const FieldLimit& limit : limits) {
+    if (limit.value && limit.own && !is_stable(limit.own->verdict)) {
+      text +=
+          fmt::format("{}: {} at the scenario's own {}: the edge is that of the first stable values from the {} end\n",
+                      limit.algorithm, run_verdict_name(limit.own->verdict), significant(limit.own->value),
+                      smallest ? "high" : "low");
+    }
     if (limit.astray.empty()) continue;
     text += fmt::format("{}: not one edge:", limit.algorithm);
     for (std::size_t i = 0; i < std::min(kMost, limit.astray.size()); ++i) {
@@ -180,8 +186,8 @@ int limit(const LimitOptions& options) {
       field_limits(scenario, options.overrides, algorithms, question, shell_cache(options.no_cache), jobs);
   write_limits(out, limits, question);
   print(options.output,
-        question_text(question, loaded.scenario) + table_of(limits, question).text() + astray_text(limits) +
-            fmt::format("\nresults in {}\n", out.string()),
+        question_text(question, loaded.scenario) + table_of(limits, question).text() +
+            astray_text(limits, question.smallest) + fmt::format("\nresults in {}\n", out.string()),
         limits_json(limits, question));
   return kSuccess;
 }
@@ -209,10 +215,12 @@ void add_limit(CommandLine& line) {
   command.footer(
       "A run is stable when it comes to rest or dies out, the classes of \"hapbench describe stability\"; it is not when "
       "it vibrates, diverges, is thrown out (leaves the hole, or ends without contact beyond the shell's box by more "
-      "than the tool reaches) or touches nothing. The range is tried at 17 values, the first edge behind stable ones "
-      "bisected, and three values tried on either side, which may show an earlier edge; where unstable ones are left on "
-      "the stable side, or stable ones beyond, the table counts them as astray and says where. Where the springs stay in contact, the limit in theory "
-      "stands beside it. limit_runs.csv has every run.");
+      "than the tool reaches) or touches nothing. Oscillations slower than a quarter of the run are not seen. The range "
+      "is tried at 17 values; the first edge from the scenario's own value on (if that is not stable, from the first "
+      "stable one of the low end; with --smallest downwards, from the high end) is bisected, and three values tried on "
+      "either side, which may show an earlier edge. Unstable values on the stable side and stable ones beyond are "
+      "counted as astray. Where the springs stay in contact, the limit in theory stands beside it. limit_runs.csv has "
+      "every run.");
   command.runs([options] { return limit(*options); }, "a limit is lost with the runs it needs");
 }
 

@@ -38,6 +38,14 @@ class Way {
     const double value = question_.range.value_at(question_.smallest ? 1.0 - part : part);
     return question_.whole ? std::round(value) : value;
   }
+  /// The part of the scenario's own value.
+  std::optional<double> own() const {
+    if (!question_.own) return std::nullopt;
+    const auto [from, to, logarithmic] = question_.range;
+    const double part =
+        logarithmic ? std::log(*question_.own / from) / std::log(to / from) : (*question_.own - from) / (to - from);
+    return question_.smallest ? 1.0 - part : part;
+  }
   /// True while bisection has to go on between two parts.
   bool apart(double a, double b) const {
     const double low = std::min(value(a), value(b)), high = std::max(value(a), value(b));
@@ -56,16 +64,18 @@ struct Edge {
   std::optional<double> beyond;  ///< the first one beyond that is not
 };
 
-/// The edge behind the first stable values that the way has among those tried. With `beside`, tries values on either
-/// side of it, too, and goes on where one of them shows an edge before it.
+/// The edge behind the scenario's own value, or if that is not stable behind the first stable values of the way. With
+/// `beside`, tries values on either side of it, too, and goes on where one of them shows an edge before it.
 Edge find_edge(const Way& way, const std::function<bool(double)>& stable, bool beside) {
   std::map<double, bool> tried;
   const auto holds = [&](double part) { return tried[part] = stable(part); };
   for (int i = 0; i <= kIntervals; ++i) holds(static_cast<double>(i) / kIntervals);
+  const std::optional<double> own = way.own();
+  const double start = own && holds(*own) ? *own : 0.0;
   Edge edge;
   for (int round = 0; round < kRounds; ++round) {
     const auto is = [](bool wanted) { return [wanted](const auto& value) { return value.second == wanted; }; };
-    const auto first = std::find_if(tried.begin(), tried.end(), is(true));
+    const auto first = std::find_if(tried.lower_bound(start), tried.end(), is(true));
     if (first == tried.end()) return {};
     const auto end = std::find_if(first, tried.end(), is(false));
     if (end == tried.end()) return {tried.rbegin()->first, {}};
@@ -107,6 +117,7 @@ class Search {
     const Edge edge = find_edge(way_, judge, true);
     if (edge.stable) limit.value = way_.value(*edge.stable);
     if (edge.beyond) limit.beyond = {way_.value(*edge.beyond), runs.at(way_.value(*edge.beyond))};
+    if (way_.own()) limit.own = {way_.value(*way_.own()), runs.at(way_.value(*way_.own()))};
     for (const auto& [value, verdict] : runs) {
       limit.runs.push_back({value, verdict});
       if (limit.value && is_stable(verdict) != on_stable_side(value, limit)) limit.astray.push_back({value, verdict});
@@ -242,6 +253,9 @@ LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std
   LimitQuestion question;
   question.path = path;
   question.range = *range;
+  if (own.is_number() && own.get<double>() >= range->from && own.get<double>() <= range->to) {
+    question.own = own.get<double>();
+  }
   question.whole = own.is_number_integer();
   return question;
 }

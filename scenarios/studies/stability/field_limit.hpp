@@ -17,9 +17,10 @@ struct ScenarioText;
 
 /// What is looked for.
 struct LimitQuestion {
-  std::string path;    ///< of the field, dotted as in --set
-  Range range;         ///< where it may lie, from < to; both ends are tried
-  bool whole = false;  ///< the field takes integers
+  std::string path;                ///< of the field, dotted as in --set
+  Range range;                     ///< where it may lie, from < to; both ends are tried
+  std::optional<double> own = {};  ///< the scenario's value, if it lies in the range
+  bool whole = false;              ///< the field takes integers
   bool smallest = false;
   /// Width at which bisection stops: relative to the value in a logarithmic range, to the range in a linear one.
   double resolution = 1e-3;
@@ -39,6 +40,7 @@ struct FieldLimit {
   /// The same by the eigenvalues of a step, where the springs stay in contact; infinite (smallest: 0) when the whole
   /// range is stable, none where there is no theory or nothing is stable.
   std::optional<double> theory;
+  std::optional<JudgedValue> own;   ///< the run at the scenario's value, if that was in the range
   std::vector<JudgedValue> runs;    ///< all, by value
   std::vector<JudgedValue> astray;  ///< of them, unstable on the stable side of the limit, or stable beyond it
 
@@ -53,9 +55,10 @@ struct FieldLimit {
 LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std::string>& overrides,
                              const std::string& path, std::optional<Range> range);
 
-/// Answers the question for each algorithm. The range is tried at 17 values; where, from the low end (smallest: from
-/// the high one), stable runs are followed by an unstable one, bisection narrows the edge down, and three values on
-/// either side of it are tried besides; if they show an earlier edge, that is narrowed down instead, up to five times.
+/// Answers the question for each algorithm. The range is tried at 17 values and the scenario's own. From the own value
+/// on, or if that is not stable from the first stable one of the low end (smallest: the high end) on, the first edge is
+/// narrowed down by bisection, and three values on either side of it are tried besides; if they show an earlier edge,
+/// that is narrowed down instead, up to five times.
 /// Some 35 to 120 runs for each algorithm; the same whatever the number of threads.
 /// Throws InputError, with the file, for a scene without a free position or with fewer than 4 steps.
 std::vector<FieldLimit> field_limits(const ScenarioText& scenario, const std::vector<std::string>& overrides,
