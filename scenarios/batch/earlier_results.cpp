@@ -87,4 +87,15 @@ void replace_earlier_results(const fs::path& directory, const ResultList& now) {
   write_list(file, now);
 }
 
+void forget_results_if_none(const fs::path& directory) {
+  const ResultList list = read_list(directory / kResultListFile);
+  std::error_code ignored;
+  const auto is_there = [&](const fs::path& path) {
+    return fs::exists(directory / path, ignored) && !fs::is_empty(directory / path, ignored);
+  };
+  if (std::any_of(list.runs.begin(), list.runs.end(), is_there)) return;
+  if (std::any_of(list.tables.begin(), list.tables.end(), is_there)) return;
+  fs::remove(directory / kResultListFile, ignored);
+}
+
 }  // namespace hapbench

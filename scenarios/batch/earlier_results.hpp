@@ -22,4 +22,7 @@ inline constexpr const char* kResultListFile = "hapbench_results.json";
 /// the new list cannot be written.
 void replace_earlier_results(const std::filesystem::path& directory, const ResultList& now);
 
+/// Removes the list when nothing of what it names is there, as after a command that was stopped in its first run.
+void forget_results_if_none(const std::filesystem::path& directory);
+
 }  // namespace hapbench

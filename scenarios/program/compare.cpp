@@ -18,6 +18,7 @@
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/expectation.hpp"
 #include "scenarios/run/expected_output.hpp"
+#include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 namespace {
@@ -162,7 +163,14 @@ int compare(const CompareOptions& options) {
   prepare(out, plan, options.wants_league());
   announce_large_output(expected_bytes(plan));
 
-  const BatchReport report = run_batch(plan, batch_options(options, out));
+  const BatchReport report = [&] {
+    try {
+      return run_batch(plan, batch_options(options, out));
+    } catch (const Stopped&) {
+      forget_results_if_none(out);
+      throw;
+    }
+  }();
   for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
     print_warnings(run_warnings(reports_of(plan, report, s)));
     write_comparison(out / scenario_directory(plan, s) / "comparison.csv", reports_of(plan, report, s), options.seeds);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -24,7 +25,7 @@ struct ValidateOptions {
 std::string surface_text(const SceneFacts::Surface& surface, std::optional<bool> is_closed) {
   const std::string closed = is_closed ? (*is_closed ? ", closed" : ", open") : "";
   const std::string start = surface.touching > 0 ? fmt::format("starts in contact: {} points in it, the deepest by {}",
-                                                               surface.touching, length_text(-surface.gap))
+                                                               surface.touching, length_text(std::abs(surface.gap)))
                                                  : fmt::format("starts {} from the surface", length_text(surface.gap));
   return fmt::format("  environment  {} ({}), {} points{}\n  tool         {}\n", size_text(surface.box),
                      place_text(surface.box), surface.points, closed, start);

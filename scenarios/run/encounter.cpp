@@ -43,6 +43,9 @@ std::string likely_cause(const Scenario& scenario, Outcome outcome, const Encoun
   const double size = diagonal(e.environment);
   if (size < kTooSmall * scenario.tool.diameter || size > kTooLarge * scenario.tool.length)
     return "; " + scale_question(scenario);
+  const auto* mesh = std::get_if<MeshEnvironment>(&scenario.environment);
+  if (outcome == Outcome::no_contact && mesh != nullptr && !mesh->spacing && e.approach.closest == 0.0)
+    return "; only the mesh's vertices can be touched: is environment.spacing_m missing?";
   const bool recorded = std::holds_alternative<RecordedPosition>(scenario.motion.position);
   if (recorded && e.approach.closest > kTooLarge * size)
     return "; are the positions of motion.position.file in metres?";

@@ -49,7 +49,8 @@ TEST_F(CompareCommand, NamesTheAlgorithmsWhoseFrictionTheIntegratorCannotStep) {
             "explicit step of friction is unstable; what follows is the integrator's doing, not the law's (summation; "
             "likewise tandpasta)\n");
   EXPECT_EQ(compare({"--algorithms", "mean"}).err, "");
-  EXPECT_EQ(compare({"--algorithms", "summation", "--set", "integrator.type=implicit_euler"}).err, "");
+  const std::string implicit = compare({"--algorithms", "summation", "--set", "integrator.type=implicit_euler"}).err;
+  EXPECT_EQ(implicit.find("friction"), std::string::npos) << implicit;
 }
 
 TEST_F(CompareCommand, WritesTheFilesOfEachSideBySideAndTheTable) {

@@ -18,14 +18,19 @@ class MeshWarnings : public testing::Test {
     TriangleSoup open = test::cube(5.0);
     open.triangles.pop_back();
     test::write_plainly(directory_ / "cube.obj", test::obj_text(open));
-    test::write_plainly(directory_ / "scene.json", test::minimal_scenario("mesh").dump());
+    Json scene = test::minimal_scenario("mesh");
+    scene["initial"]["position_m"] = {-0.005, 0.005, 0.005};  // on a corner away from the hole
+    scene["tool"]["diameter_m"] = 0.002;
+    test::write_plainly(directory_ / "scene.json", scene.dump());
   }
   void expect_warning(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin() + 1, path("scene.json"));
     const test::ProgramRun run = hapbench(arguments);
     EXPECT_EQ(run.status, 0);
-    EXPECT_EQ(run.err, "hapbench: warning: " + path("scene.json") + ": /environment/file: " + path("cube.obj") +
-                           ": the mesh is open: 3 boundary edges, within x -2.5e+03 ... 2.5e+03, y -2.5e+03 ... 2.5e+03, z -2.5e+03 ... 2.5e+03 mm; beyond them there is nothing to touch\n")
+    EXPECT_EQ(run.err,
+              "hapbench: warning: " + path("scene.json") + ": /environment/file: " + path("cube.obj") +
+                  ": the mesh is open: 3 boundary edges, within x 5 ... 5, y -5 ... 0, z 0 ... 5 mm; beyond them "
+                  "there is nothing to touch\n")
         << arguments[0];
   }
   std::string path(const std::string& name) const { return (directory_ / name).string(); }

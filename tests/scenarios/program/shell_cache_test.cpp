@@ -162,7 +162,7 @@ TEST_F(CachedShell, MayBeAFileThatCannotBeRead) {
 
 TEST_F(CachedShell, IsLeftOutWhereFilesMayNotBeSoLarge) {
   test::ProgramOptions limited;
-  limited.file_limit = 50'000;  // more than the results take, less than the shell
+  limited.file_limit = 250'000;  // more than the results take, less than the shell
   const ProgramRun run = run_into("limited", {}, limited);
   EXPECT_EQ(run.signal, 0);
   EXPECT_EQ(run.status, 0) << run.err;

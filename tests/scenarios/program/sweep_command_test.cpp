@@ -25,7 +25,7 @@ class SweepCommand : public testing::Test {
   ProgramRun sweep(const std::string& out, const Words& more = {}) const {
     Words words = {"sweep",  "peg_in_hole_2d_shaped_stiffness",
                    "--out",  (directory_ / out).string(),
-                   "--set",  "expect.outcome=[\"completes\",\"leaves_hole\",\"diverges\"]",
+                   "--set",  "expect.outcome=[\"completes\",\"leaves_hole\",\"lost_contact\",\"diverges\"]",
                    "--set",  "expect.metrics={}",
                    "--vary", "rendering.stiffness_N_per_m=5000:20000:2",
                    "--vary", "environment.spacing_m=2e-5:5e-5:4:log",
@@ -158,7 +158,7 @@ TEST_F(SweepCommand, KeepsTheRunsAsRunWritesThem) {
   EXPECT_EQ(sweep("a", {"--keep-runs", "--jobs", "4"}).status, 0);
   Words words = {"run", "peg_in_hole_2d_shaped_stiffness", "--out", (directory_ / "a/run").string()};
   for (const char* set :
-       {"expect.outcome=[\"completes\",\"leaves_hole\",\"diverges\"]", "expect.metrics={}",
+       {"expect.outcome=[\"completes\",\"leaves_hole\",\"lost_contact\",\"diverges\"]", "expect.metrics={}",
         "rendering.stiffness_N_per_m=20000", "environment.spacing_m=2e-05", "rendering.algorithm=exact_shaping"}) {
     words.insert(words.end(), {"--set", set});
   }
@@ -172,7 +172,7 @@ TEST_F(SweepCommand, KeepsTheRunsAsRunWritesThem) {
 TEST_F(SweepCommand, ReadsMeshesOnSeveralThreads) {
   test::write_plainly(directory_ / "cube.obj", read_file(fs::path(HAPBENCH_TEST_DATA) / "cube.obj"));
   test::write_plainly(directory_ / "cube.json",
-                      R"({"time": {"step_s": 0.0005, "steps": 20},
+                      R"({"time": {"step_s": 0.0005, "steps": 20}, "expect": {"outcome": "no_contact"},
                           "environment": {"type": "mesh", "file": "cube.obj", "scale": 0.001}})");
   const auto sweep_cube = [&](const char* out, const char* jobs) {
     return hapbench({"sweep", (directory_ / "cube.json").string(), "--vary", "environment.scale=0.001:0.002:12",
@@ -185,10 +185,12 @@ TEST_F(SweepCommand, ReadsMeshesOnSeveralThreads) {
 }
 
 TEST_F(SweepCommand, ShowsTheRunsOfOneFieldAndTheOutcomes) {
-  const Words words = {"sweep", "single_spring_unstable",     "--vary", "rendering.stiffness_N_per_m=1e4,1e8",
-                       "--out", (directory_ / "out").string()};
+  const Words words = {"sweep",  "single_spring_unstable",
+                       "--set",  "expect.outcome=diverges",
+                       "--vary", "rendering.stiffness_N_per_m=1e4,1e8",
+                       "--out",  (directory_ / "out").string()};
   const ProgramRun run = hapbench(words);
-  EXPECT_EQ(run.status, 3);  // one of them does not diverge, which the scenario expects
+  EXPECT_EQ(run.status, 3);  // one of them does not diverge, which is expected
   EXPECT_NE(run.err.find("1 of 2 runs did not end as expected, the first: run 0 (rendering.stiffness_N_per_m=10000)\n"),
             std::string::npos)
       << run.err;
@@ -211,7 +213,7 @@ TEST_F(SweepCommand, ShowsTheRunsOfOneFieldAndTheOutcomes) {
 
 TEST_F(SweepCommand, ShowsTwoFieldsAsATableAndAMap) {
   const Words words = {"sweep",  "peg_in_hole_2d_shaped_stiffness",
-                       "--set",  "expect.outcome=[\"completes\",\"leaves_hole\",\"diverges\"]",
+                       "--set",  "expect.outcome=[\"completes\",\"leaves_hole\",\"lost_contact\",\"diverges\"]",
                        "--set",  "expect.metrics={}",
                        "--vary", "rendering.stiffness_N_per_m=5000,20000",
                        "--vary", "rendering.algorithm=mean,exact_shaping",
