@@ -23,7 +23,8 @@ class CachedShell : public testing::Test {
   CachedShell() {
     const Json json = Json::parse(R"({"name": "drilled", "time": {"step_s": 0.0005, "steps": 20},
       "environment": {"type": "block_with_hole", "size_m": [0.006, 0.006, 0.004], "hole_depth_m": 0.002},
-      "initial": {"position_m": [0.0006, 0, -0.001]}, "record": {"contacts": true, "timing": true}})");
+      "initial": {"position_m": [0.0006, 0, -0.001]}, "rendering": {"reduction": {}},
+      "record": {"contacts": true, "timing": true}})");
     test::write_plainly(scenario_, json.dump());
     EXPECT_EQ(run_into("reference", {"--no-cache"}).status, 0);
   }
