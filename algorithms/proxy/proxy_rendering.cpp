@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <limits>
 
 #include "algorithms/laws/force_law.hpp"
 #include "algorithms/proxy/nearest_allowed.hpp"
@@ -34,6 +35,10 @@ namespace {
 constexpr double kNoSpan = 1e-6;
 /// A pass that moves the proxy less than this part of the margin is the last one.
 constexpr double kSettled = 1e-3;
+/// Passes on end that bring the proxy no nearer to the tool than it was before they count as a cycle, ...
+constexpr int kPatience = 4;
+/// ... nearer by less than this part of the distance being no nearer.
+constexpr double kNearer = 1e-3;
 
 }  // namespace
 
@@ -106,6 +111,8 @@ void ProxyRendering::place(const Vec3& position) noexcept {
 
 bool ProxyRendering::follow(const ToolPose& tool) noexcept {
   const double margin = constraints_->margin();
+  double nearest = std::numeric_limits<double>::infinity();
+  int no_nearer = 0;
   for (int pass = 0; pass < kProxyPasses; ++pass) {
     const ToolPose proxy{proxy_, tool.axis, tool.roll};
     const Vec3 wanted = tool.position - proxy_;
@@ -125,6 +132,15 @@ bool ProxyRendering::follow(const ToolPose& tool) noexcept {
       proxy_ += allowed.move;
       // A compromise of walls that leave no room is not worth more than one pass a step.
       if (length <= kSettled * margin || !allowed.feasible) return true;
+      // Patches of surface come into force and lapse as the proxy moves, so passes may go round in a circle of two or
+      // four places, each as allowed as the others: the nearest of them is taken when it comes again.
+      const double distance = (tool.position - proxy_).norm();
+      if (distance < (1.0 - kNearer) * nearest) {
+        nearest = distance;
+        no_nearer = 0;
+      } else if (++no_nearer >= kPatience && distance <= (1.0 + kNearer) * nearest) {
+        return true;
+      }
     }
   }
   return false;
