@@ -57,7 +57,8 @@ MotionClass MotionClassifier::motion_class(Outcome outcome) const noexcept {
   for (std::size_t i = 1; i < q.size(); ++i) grows = grows && q[i].amplitude > kGrowth * q[i - 1].amplitude;
   if (grows) return MotionClass::diverged;
   if (q[3].amplitude < kLeft * q[0].amplitude) return MotionClass::stable;
-  return q[3].amplitude >= kSustained * q[2].amplitude ? MotionClass::vibrating : MotionClass::dying_out;
+  const bool decays = q[2].amplitude < kSustained * q[1].amplitude && q[3].amplitude < kSustained * q[2].amplitude;
+  return decays ? MotionClass::dying_out : MotionClass::vibrating;
 }
 
 MotionClass classify(Simulation& simulation, const MotionClassifier& classifier) {

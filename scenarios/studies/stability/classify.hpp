@@ -17,9 +17,9 @@
 ///   diverged   the run left its bounds, or it oscillates and its amplitude has grown by more than 1 % from each
 ///              quarter to the next
 ///   vibrating  not diverged, and it does not decay: in the last quarter it oscillates (two turns or more of one
-///              component) with at least 90 % of the third quarter's amplitude and 1 % of the first quarter's
-///   dying_out  oscillates in the last quarter with at least 1 % of the first quarter's amplitude, that is 1e-4 of its
-///              energy, but loses more than a tenth of its amplitude from the third quarter to the last
+///              component) with at least 1 % of the first quarter's amplitude, that is 1e-4 of its energy
+///   dying_out  oscillates so, but loses more than a tenth of its amplitude from the second quarter to the third and
+///              from the third to the last; an irregular vibration may lose it once, by chance
 ///   stable     all else: at rest, died out, creeping without a turn
 ///
 /// Both stable and dying_out come to rest if the run goes on long enough, so both count as stable where a limit is

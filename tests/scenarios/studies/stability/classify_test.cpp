@@ -69,6 +69,15 @@ TEST(MotionClassifier, SeparatesVibratingFromDyingAtATenthInAQuarter) {
   EXPECT_EQ(class_of_oscillation(1.0 - 1.1 * (1.0 - at_limit)), MotionClass::dying_out);
 }
 
+TEST(MotionClassifier, OfABeatThatEndsInATroughIsVibrating) {
+  // The last quarter has 70 % of the third's amplitude, which is the second's.
+  EXPECT_EQ(class_of([](double k) {
+              const double quarter = 4.0 * k / kSteps;
+              return (quarter < 3.0 ? 1.0 : 0.7) * std::cos(0.2 * std::numbers::pi * k);
+            }),
+            MotionClass::vibrating);
+}
+
 TEST(MotionClassifier, WhatDiesOutComesToRest) {
   EXPECT_TRUE(comes_to_rest(MotionClass::stable));
   EXPECT_TRUE(comes_to_rest(MotionClass::dying_out));
