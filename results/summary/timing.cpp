@@ -16,6 +16,8 @@ ordered_json timing_json(const RunTiming& timing, const InstructionSet& instruct
           {"loop_s", timing.loop},
           {"steps", timing.steps},
           {"step_mean_s", mean},
+          {"step_p50_s", timing.step_p50 ? ordered_json(*timing.step_p50) : ordered_json(nullptr)},
+          {"step_p99_s", timing.step_p99 ? ordered_json(*timing.step_p99) : ordered_json(nullptr)},
           {"step_latency", timing.latency ? step_latency_json(*timing.latency) : ordered_json(nullptr)},
           {"preemptions", timing.preemptions},
           {"build",

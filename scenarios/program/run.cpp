@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "results/io/io_error.hpp"
-#include "scenarios/batch/earlier_results.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/latency_table.hpp"
@@ -43,11 +42,6 @@ int run(const RunOptions& options) {
     print_warnings(warnings);
   }
   for (const fs::path& directory : directories) require_writable_directory(directory);
-  if (directories.size() > 1 && !options.out.empty()) {
-    ResultList results;
-    for (const fs::path& directory : directories) results.runs.push_back(directory.filename());
-    replace_earlier_results(options.out, results);
-  }
   double bytes = 0.0;
   for (const LoadedScenario& loaded : scenarios) bytes += expected_output_bytes(loaded.scenario);
   announce_large_output(bytes);

@@ -127,6 +127,17 @@ RunSummary summarise(const Scenario& scenario, const std::vector<TrialResult>& t
   return summary;
 }
 
+void add_step_times(const std::vector<TrialResult>& trials, RunTiming& timing) {
+  std::vector<std::uint32_t> all;
+  for (const TrialResult& trial : trials) {
+    all.insert(all.end(), trial.step_nanoseconds.begin(), trial.step_nanoseconds.end());
+  }
+  if (all.empty()) return;
+  const StepLatency latency = step_latency(all, 0);
+  timing.step_p50 = 1e-9 * latency.p50;
+  timing.step_p99 = 1e-9 * latency.p99;
+}
+
 void write_results(const fs::path& directory, const Scenario& scenario, const RunReport& report,
                    std::vector<TrialResult>& trials) {
   remove_files_of_earlier_runs(directory);
@@ -192,6 +203,7 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
     report.timing.steps += result.result.rows;
     report.timing.preemptions += result.preemptions;
   }
+  add_step_times(results, report.timing);
   if (times) report.timing.latency = step_latency(times->nanoseconds(), times->overhead());
   report.summary = summarise(scenario, results, report.targets);
   if (output) {

@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "results/allocations/allocations.hpp"
+#include "results/observe/step_sampler.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/open_edges.hpp"
 #include "scenarios/run/progress.hpp"
@@ -129,7 +130,11 @@ TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell
   if (options.directory) observers.record(scenario.record, *options.directory, parts.source->capacity());
   Progress bar(options.label, static_cast<std::uint64_t>(scenario.time.steps), !options.label.empty());
   observers.add(bar);
-  Simulation simulation(simulation_config(scenario), std::move(parts), observers.all());
+  StepSampler sampler(static_cast<std::uint64_t>(scenario.time.steps));
+  std::vector<Observer*> all = observers.all();
+  all.insert(all.begin(), &sampler.first());
+  all.push_back(&sampler.last());
+  Simulation simulation(simulation_config(scenario), std::move(parts), std::move(all));
 
   TrialResult out;
   const std::uint64_t allocations_before = heap_allocations();
@@ -137,6 +142,7 @@ TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell
   const auto start = std::chrono::steady_clock::now();
   out.result = options.times != nullptr ? run_timed(simulation, *options.times) : run_to_end(simulation);
   out.loop_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  out.step_nanoseconds.assign(sampler.nanoseconds().begin(), sampler.nanoseconds().end());
   out.preemptions = involuntary_context_switches() - preemptions_before;
   out.work.allocations = heap_allocations() - allocations_before;
   out.work.search = simulation.source().work();

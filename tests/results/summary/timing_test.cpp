@@ -13,15 +13,23 @@ const Provenance kProvenance = {.version = "1.2.3",
                                 .cpu = "Some CPU"};
 
 TEST(Timing, TextHoldsMeanTimeInstructionSetAndCpu) {
-  EXPECT_EQ(timing_text(
-                {.shell = 0.25, .shell_from_cache = true, .loop = 0.5, .steps = 2000, .latency = {}, .preemptions = 3},
-                {.march = "native", .widest = "avx2", .simd = true}, kProvenance),
+  EXPECT_EQ(timing_text({.shell = 0.25,
+                         .shell_from_cache = true,
+                         .loop = 0.5,
+                         .steps = 2000,
+                         .latency = {},
+                         .step_p50 = 0.5e-6,
+                         .step_p99 = 2e-6,
+                         .preemptions = 3},
+                        {.march = "native", .widest = "avx2", .simd = true}, kProvenance),
             R"({
   "shell_s": 0.25,
   "shell_from_cache": true,
   "loop_s": 0.5,
   "steps": 2000,
   "step_mean_s": 0.00025,
+  "step_p50_s": 5e-07,
+  "step_p99_s": 2e-06,
   "step_latency": null,
   "preemptions": 3,
   "build": {

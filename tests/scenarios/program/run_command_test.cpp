@@ -43,11 +43,10 @@ TEST_F(RunCommand, WritesSeveralScenariosIntoADirectoryEach) {
   const std::string file = write_scenario("my scene.json", test::minimal_scenario("plane"));
   const ProgramRun run = hapbench({"run", "single_spring", file, "--out", out()});
   EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(
-      test::names_below(out()),
-      (Names{"hapbench_results.json", "my scene/columns.json", "my scene/scenario.effective.json",
-             "my scene/summary.json", "my scene/trajectory.csv", "single_spring/columns.json",
-             "single_spring/scenario.effective.json", "single_spring/summary.json", "single_spring/trajectory.csv"}));
+  EXPECT_EQ(test::names_below(out()),
+            (Names{"my scene/columns.json", "my scene/scenario.effective.json", "my scene/summary.json",
+                   "my scene/trajectory.csv", "single_spring/columns.json", "single_spring/scenario.effective.json",
+                   "single_spring/summary.json", "single_spring/trajectory.csv"}));
 }
 
 TEST_F(RunCommand, WritesBelowResultsOutWithoutAGivenDirectory) {
