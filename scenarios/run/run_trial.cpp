@@ -142,13 +142,13 @@ TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell
   const auto start = std::chrono::steady_clock::now();
   out.result = options.times != nullptr ? run_timed(simulation, *options.times) : run_to_end(simulation);
   out.loop_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  out.step_nanoseconds.assign(sampler.nanoseconds().begin(), sampler.nanoseconds().end());
   out.preemptions = involuntary_context_switches() - preemptions_before;
   out.work.allocations = heap_allocations() - allocations_before;
   out.work.search = simulation.source().work();
   out.work.steps_skipped = out.work.search.skipped;
   out.work.algorithm = simulation.algorithm().work();
   out.work.search += out.work.algorithm.search;
+  out.step_nanoseconds.assign(sampler.nanoseconds().begin(), sampler.nanoseconds().end());
   observers.give(scenario, environment, out);
   return out;
 }
