@@ -23,7 +23,7 @@ constexpr std::size_t kMostInJson = 10'000;
 /// A number of a cell for people, in another unit.
 std::string shown(std::string_view cell, double factor) {
   const auto number = finite_number(cell);
-  return number ? significant(factor * *number) : "-";
+  return number ? significant(factor * *number, 3) : "-";
 }
 
 /// The runs of a single axis.
@@ -33,11 +33,14 @@ std::string runs_text(const SweepPlan& plan, const std::vector<std::string>& row
     const char* title;
     double factor;
   };
-  static constexpr Metric kMetrics[] = {{"steps", "steps", 1.0},
-                                        {"force_max_N", "max force N", 1.0},
-                                        {"velocity_total_variation_m_per_s", "velocity TV m/s", 1.0},
-                                        {"force_reversals", "reversals", 1.0},
-                                        {"depth_max_m", "max depth mm", 1e3}};
+  // As the tables of run and compare have them (run_table.cpp).
+  static constexpr Metric kMetrics[] = {{"contact_share", "cont\n%", 100.0},
+                                        {"landing_force_max_N", "land.\nmax N", 1.0},
+                                        {"force_mean_in_contact_N", "mean\nN", 1.0},
+                                        {"force_step_p99_N", "step\np99 N", 1.0},
+                                        {"force_rms_above_30Hz_N", ">30Hz\nrms N", 1.0},
+                                        {"force_reversals_per_s", "rev.\n1/s", 1.0},
+                                        {"depth_max_m", "depth\nmm", 1e3}};
   std::vector<Table::Column> columns = {{plan.points.axes()[0].path}, {"outcome", false}};
   for (const Metric& metric : kMetrics) columns.push_back({metric.title});
   Table table(columns);

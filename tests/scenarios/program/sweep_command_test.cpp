@@ -195,12 +195,12 @@ TEST_F(SweepCommand, ShowsTheRunsOfOneFieldAndTheOutcomes) {
             std::string::npos)
       << run.err;
   const auto lines = lines_of(run.out);
-  ASSERT_EQ(lines.size(), 11u) << run.out;
-  EXPECT_EQ(lines[0].find("rendering.stiffness_N_per_m  outcome"), 0u);
-  EXPECT_NE(lines[2].find("10000  completes"), std::string::npos);
-  EXPECT_NE(lines[3].find("1e+08  diverges"), std::string::npos);
-  EXPECT_EQ(lines[7], "completes     1            0");
-  EXPECT_EQ(lines[8], "diverges      1            1");
+  ASSERT_EQ(lines.size(), 12u) << run.out;
+  EXPECT_EQ(lines[1].find("rendering.stiffness_N_per_m  outcome"), 0u);
+  EXPECT_NE(lines[3].find("10000  completes"), std::string::npos);
+  EXPECT_NE(lines[4].find("1e+08  diverges"), std::string::npos);
+  EXPECT_EQ(lines[8], "completes     1            0");
+  EXPECT_EQ(lines[9], "diverges      1            1");
   Words json_words = words, quiet_words = words;
   json_words.emplace_back("--json");
   const Json json = hapbench(json_words).json();
