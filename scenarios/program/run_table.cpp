@@ -45,7 +45,7 @@ std::vector<std::string> run_cells(const RunReport& report) {
           cell(contact.reversals_per_second()),
           cell(1e3 * m.depth_max),
           m.ratio ? fmt::format("{}..{}", cell(m.ratio->min, 2), cell(m.ratio->max, 2)) : "-",
-          report.timing.step_p50 ? cell(1e6 * *report.timing.step_p50) : "-"};
+          report.timing.step_p50 ? cell(1e6 * *report.timing.step_p50, 2) : "-"};
 }
 
 std::vector<std::string> run_warnings(std::span<const RunReport> reports) {

@@ -105,12 +105,10 @@ TEST_F(CompareBatch, LeavesNothingOfAnEarlierOne) {
   EXPECT_TRUE(fs::exists(directory_ / "out/mine.txt"));
 }
 
-TEST_F(CompareBatch, LeavesNothingOfEarlierRunsOfOneCommand) {
+TEST_F(CompareBatch, IsAloneInTakingAwayEarlierResults) {
   hapbench({"run", file("press.json"), file("poke.json"), "--out", file("out"), "--quiet"});
-  EXPECT_TRUE(fs::exists(directory_ / "out/press/summary.json"));
   hapbench({"run", file("poke.json"), "single_spring", "--out", file("out"), "--quiet"});
-  EXPECT_FALSE(fs::exists(directory_ / "out/press"));
-  EXPECT_TRUE(fs::exists(directory_ / "out/poke/summary.json"));
+  EXPECT_TRUE(fs::exists(directory_ / "out/press/summary.json")) << "one folder may gather the runs of many commands";
 }
 
 TEST_F(CompareBatch, TellsWhatIsWrongBeforeAnythingRuns) {
