@@ -21,6 +21,7 @@ class ApproachObserver final : public Observer {
 
   void on_step(const StepRecord& record) noexcept override;
   const Approach& approach() const { return approach_; }
+  const Box& environment() const { return environment_; }
 
  private:
   Box environment_;

@@ -105,7 +105,7 @@ std::span<const RunReport> reports_of(const BatchPlan& plan, const BatchReport& 
 }
 
 /// What one scenario's runs came to, for the terminal.
-std::string comparison_text(const BatchPlan& plan, std::span<const RunReport> reports) {
+std::string comparison_text(std::span<const RunReport> reports) {
   std::vector<Table::Column> columns = run_columns();
   columns.insert(columns.begin(), {"algorithm", false});
   Table table(columns, kRunGap);
@@ -114,7 +114,7 @@ std::string comparison_text(const BatchPlan& plan, std::span<const RunReport> re
     cells.insert(cells.begin(), report.summary.algorithm);
     table.add(std::move(cells));
   }
-  return fmt::format("{}\n\n{}", scenario_of(plan, 0).scenario.name, table.text());
+  return fmt::format("{}\n\n{}", reports.front().summary.name, table.text());
 }
 
 Json summaries_json(const BatchPlan& plan, const BatchReport& report, bool league) {
@@ -184,7 +184,7 @@ int compare(const CompareOptions& options) {
     batch.update(league_json(league));
     print(options.output, league_text(league) + where, batch);
   } else {
-    print(options.output, comparison_text(plan, report.runs) + where, json);
+    print(options.output, comparison_text(report.runs) + where, json);
   }
   if (options.html) write_report(out, options.output.quiet || options.output.json);
   return verdict(plan, report, options.wants_league());

@@ -38,7 +38,7 @@ double closest_target(const ImpedanceHandFields& hand, const TimeFields& time, c
   return closest;
 }
 
-/// The likely cause as the end of a sentence; empty when none suggests itself.
+/// The likely cause as the end of a sentence, or where to look when none suggests itself.
 std::string likely_cause(const Scenario& scenario, Outcome outcome, const Encounter& e) {
   const double size = diagonal(e.environment);
   if (size < kTooSmall * scenario.tool.diameter || size > kTooLarge * scenario.tool.length)

@@ -75,10 +75,10 @@ class TrialObservers {
   const std::vector<Observer*>& all() const { return observers_; }
 
   /// Hands over what was observed.
-  void give(const Scenario& scenario, const Box& environment, TrialResult& out) {
+  void give(const Scenario& scenario, TrialResult& out) {
     out.metrics = metrics_.metrics();
     if (approach_ && out.result.outcome == Outcome::completes) {
-      const Encounter encounter{out.metrics, approach_->approach(), environment};
+      const Encounter encounter{out.metrics, approach_->approach(), approach_->environment()};
       out.result.outcome = outcome_of(scenario, encounter);
       if (auto warning = warning_about(scenario, out.result.outcome, encounter)) out.warnings.push_back(*warning);
     }
@@ -125,7 +125,6 @@ TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell
                       const TrialOptions& options) {
   const NamedFiles files = options.files ? *options.files : NamedFiles(scenario);
   SimulationParts parts = assemble(scenario, files, std::move(shell), trial);
-  const Box environment = parts.shell ? parts.shell->bounds() : Box();
   TrialObservers observers(scenario, files, parts, trial);
   if (options.directory) observers.record(scenario.record, *options.directory, parts.source->capacity());
   Progress bar(options.label, static_cast<std::uint64_t>(scenario.time.steps), !options.label.empty());
@@ -149,7 +148,7 @@ TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell
   out.work.algorithm = simulation.algorithm().work();
   out.work.search += out.work.algorithm.search;
   out.step_nanoseconds.assign(sampler.nanoseconds().begin(), sampler.nanoseconds().end());
-  observers.give(scenario, environment, out);
+  observers.give(scenario, out);
   return out;
 }
 
