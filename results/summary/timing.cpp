@@ -12,7 +12,6 @@ ordered_json timing_json(const RunTiming& timing, const InstructionSet& instruct
   ordered_json mean = nullptr;
   if (timing.steps > 0) mean = timing.loop / static_cast<double>(timing.steps);
   return {{"shell_s", timing.shell},
-          {"shell_from_cache", timing.shell_from_cache},
           {"loop_s", timing.loop},
           {"steps", timing.steps},
           {"step_mean_s", mean},

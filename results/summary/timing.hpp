@@ -13,14 +13,13 @@ namespace hapbench {
 /// Wall times of a run.
 struct RunTiming {
   double shell = 0.0;                  ///< to come by the environment's points [s]
-  bool shell_from_cache = false;       ///< they were read from the cache
   double loop = 0.0;                   ///< of the step loop, observers included [s]
   std::uint64_t steps = 0;             ///< rows computed in that time
   std::optional<StepLatency> latency;  ///< of single steps, observers included, when they were timed
   /// Median and 99th percentile of what a step takes by itself, without observers and recorders [s]; none for runs too
   /// short to sample (StepSampler).
   std::optional<double> step_p50 = {}, step_p99 = {};
-  std::uint64_t preemptions = 0;       ///< involuntary context switches during the step loop
+  std::uint64_t preemptions = 0;  ///< involuntary context switches during the step loop
 };
 
 /// timing.json: apart from summary.json because no two runs take the same time. Names the build's instruction set and

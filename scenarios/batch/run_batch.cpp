@@ -26,7 +26,7 @@ RunReport run_one(const BatchPlan& plan, const BatchOptions& options, SharedShel
 BatchReport run_batch(const BatchPlan& plan, const BatchOptions& options) {
   BatchReport report;
   report.runs.resize(plan.size());
-  SharedShells shells(uses_of_environments(plan), options.cache);
+  SharedShells shells(uses_of_environments(plan));
   for_each_job(plan.size(), {static_cast<unsigned>(options.jobs), options.progress ? "compare" : ""},
                [&](std::size_t number) { report.runs[number] = run_one(plan, options, shells, number); });
   return report;

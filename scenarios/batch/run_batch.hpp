@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "scenarios/batch/batch_plan.hpp"
-#include "scenarios/input/shell_cache.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
 namespace hapbench {
@@ -13,7 +12,6 @@ struct BatchOptions {
   std::filesystem::path directory;  ///< of all files; exists
   std::size_t jobs = 1;             ///< runs at once
   bool progress = false;            ///< allow a progress bar
-  ShellCache cache;
 };
 
 struct BatchReport {

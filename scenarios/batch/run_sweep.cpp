@@ -74,7 +74,7 @@ std::string computed_row(const SweepPlan& plan, const SweepOptions& options, Sha
 void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& journal, Rows& rows,
                   SweepReport& report) {
   const std::vector<std::size_t> runs = runs_to_do(plan, options.part(), rows);
-  SharedShells shells(uses_of_environments(plan, runs), options.cache);
+  SharedShells shells(uses_of_environments(plan, runs));
   ProgressBar bar("sweep", rows.size() + runs.size(), options.progress);
   bar.start_at(rows.size());
   const auto deliver = [&](std::size_t run, const std::string& row) {

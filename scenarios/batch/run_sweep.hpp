@@ -7,7 +7,6 @@
 
 #include "scenarios/batch/shard.hpp"
 #include "scenarios/batch/sweep_plan.hpp"
-#include "scenarios/input/shell_cache.hpp"
 
 namespace hapbench {
 
@@ -18,7 +17,6 @@ struct SweepOptions {
   bool resume = false;              ///< take the rows of an interrupted sweep from its journal
   bool keep_runs = false;           ///< write the files of each run into runs/NUMBER
   bool progress = false;            ///< allow a progress bar
-  ShellCache cache;
 
   Shard part() const { return shard.value_or(Shard{}); }
 };

@@ -23,18 +23,10 @@ void add_output_options(Command& command, OutputOptions& options) {
   command.flag("--json", options.json, "JSON on standard output instead of a table");
 }
 
-void add_cache_option(Command& command, bool& no_cache) {
-  command.flag("--no-cache", no_cache, "build the shell anew and keep none (see \"hapbench describe cache\")");
-}
-
 void add_skip_option(Command& command, Skips& skips) {
   command.flag(
       "--no-skip", [&skips] { skips = Skips::off; },
-      "compute everything, also what cannot change the results, by brute force; no cache");
-}
-
-ShellCache shell_cache(bool no_cache) {
-  return no_cache ? ShellCache() : ShellCache(shell_cache_directory());
+      "compute everything, also what cannot change the results, by brute force");
 }
 
 void print(const OutputOptions& options, const std::string& text, const Json& json) {

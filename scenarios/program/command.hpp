@@ -8,7 +8,6 @@
 
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/input/shell_cache.hpp"
 #include "scenarios/program/command_line.hpp"
 #include "sim/core/skips.hpp"
 
@@ -50,12 +49,8 @@ void add_validate(CommandLine& line);
 /// Adds --quiet and --json.
 void add_output_options(Command& command, OutputOptions& options);
 
-/// Adds --no-cache.
-void add_cache_option(Command& command, bool& no_cache);
 /// Adds --no-skip.
 void add_skip_option(Command& command, Skips& skips);
-/// The user's cache of point shells; none with --no-cache.
-ShellCache shell_cache(bool no_cache);
 
 /// Prints `text`, or `json` under --json, or nothing under --quiet.
 void print(const OutputOptions& options, const std::string& text, const Json& json);

@@ -35,7 +35,6 @@ struct CompareOptions {
   std::string out;
   std::vector<std::string> overrides;
   bool html = false;
-  bool no_cache = false;
   Skips skips = Skips::taken;
   OutputOptions output;
 
@@ -94,7 +93,6 @@ BatchOptions batch_options(const CompareOptions& options, const fs::path& out) {
   // The table of a single comparison shows times, which runs beside each other would lengthen.
   batch.jobs = options.jobs > 0 ? options.jobs : options.wants_league() ? available_threads() : 1;
   batch.progress = !options.output.quiet;
-  batch.cache = shell_cache(options.no_cache || options.skips == Skips::off);
   return batch;
 }
 
@@ -215,7 +213,6 @@ void add_compare(CommandLine& line) {
               "directory of the results (default: results/out/compare_NAME, of several scenarios results/out/compare)");
   command.add("--set", options->overrides, "override a field: path=value").repeatable();
   command.flag("--html", options->html, "write OUT/report.html as well: curves, replay, metrics, commands");
-  add_cache_option(command, options->no_cache);
   add_skip_option(command, options->skips);
   add_output_options(command, options->output);
   command.footer(

@@ -58,25 +58,6 @@ Description describe_scenario(const std::filesystem::path& file) {
           effective};
 }
 
-/// Location and size of the shell cache, and how to delete it.
-Description describe_cache() {
-  const ShellCache cache(shell_cache_directory());
-  const auto [shells, bytes] = cache.contents();
-  const std::string directory = cache.is_on() ? cache.directory().string() : "none: nothing is kept";
-  Description d;
-  d.text = fmt::format(
-      "shell cache\n"
-      "  Point shells that take long to build are kept on disk and read back bit for bit. Files that are damaged or\n"
-      "  of another build of hapbench are not used. The directory may be deleted at any time.\n\n"
-      "  directory  {}\n"
-      "             ($HAPBENCH_CACHE_DIR, else $XDG_CACHE_HOME/hapbench, else $HOME/.cache/hapbench)\n"
-      "  holds      {} shells, {:.1f} MB; beyond {} GiB those used longest ago go\n"
-      "  off        --no-cache, or HAPBENCH_CACHE_DIR set to nothing\n",
-      directory, shells, 1e-6 * static_cast<double>(bytes), ShellCache::kLargest >> 30);
-  d.json = {{"kind", "cache"}, {"directory", cache.directory().string()}, {"shells", shells}, {"bytes", bytes}};
-  return d;
-}
-
 /// The maps of "hapbench stability --map" and how their runs are judged.
 Description describe_stability() {
   Table table({{"map", false}, {"x", false}, {"y", false}, {"what it shows", false}});
@@ -108,7 +89,7 @@ Description describe_stability() {
 }
 
 std::vector<std::string> all_names() {
-  std::vector<std::string> names = {"cache", "choices_schema", "scenario", "schema", "stability"};
+  std::vector<std::string> names = {"choices_schema", "scenario", "schema", "stability"};
   for (const AlgorithmEntry& entry : algorithms()) names.emplace_back(entry.info->name);
   for (const DepthModelEntry& entry : depth_models()) names.emplace_back(entry.info->name);
   for (const ModelInfo* stage : stages()) names.emplace_back(stage->name);
@@ -131,7 +112,6 @@ Description joined(const std::vector<Description>& meanings) {
 }
 
 Description describe_name(const std::string& name) {
-  if (name == "cache") return describe_cache();
   if (name == "stability") return describe_stability();
   if (name == "choices_schema") return {json_text(choices_schema()), choices_schema()};
   if (name == "schema") return {json_text(scenario_schema()), scenario_schema()};
@@ -166,12 +146,12 @@ void add_describe(CommandLine& line) {
   auto options = std::make_shared<Options>();
   Command command = line.command("describe",
                                  "Explain an algorithm, a depth model, an integrator, an environment, a field, a "
-                                 "scenario, a metric, a column or file of the results, the cache or the stability "
+                                 "scenario, a metric, a column or file of the results or the stability "
                                  "maps");
   command
       .add("name", options->name,
            "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
-           "\"choices_schema\", \"stability\", \"cache\"; a metric or a column, \"metrics\" or \"columns\" for all of "
+           "\"choices_schema\", \"stability\"; a metric or a column, \"metrics\" or \"columns\" for all of "
            "them, or a file such as trajectory.csv")
       .required();
   add_output_options(command, options->output);

@@ -30,7 +30,6 @@ struct LimitOptions {
   unsigned jobs = 0;  ///< 0: as many as the machine has
   std::string out;
   std::vector<std::string> overrides;
-  bool no_cache = false;
   OutputOptions output;
 };
 
@@ -182,8 +181,7 @@ int limit(const LimitOptions& options) {
 
   const JobOptions jobs{options.jobs == 0 ? static_cast<unsigned>(available_threads()) : options.jobs,
                         options.output.quiet ? "" : "limit"};
-  const std::vector<FieldLimit> limits =
-      field_limits(scenario, options.overrides, algorithms, question, shell_cache(options.no_cache), jobs);
+  const std::vector<FieldLimit> limits = field_limits(scenario, options.overrides, algorithms, question, jobs);
   write_limits(out, limits, question);
   print(options.output,
         question_text(question, loaded.scenario) + table_of(limits, question).text() +
@@ -210,7 +208,6 @@ void add_limit(CommandLine& line) {
       .range(1, 1024);
   command.add("--out", options->out, "directory of the results (default: results/out/limit_NAME)");
   command.add("--set", options->overrides, "override a field of all runs: path=value").repeatable();
-  add_cache_option(command, options->no_cache);
   add_output_options(command, options->output);
   command.footer(
       "A run is stable when it comes to rest or dies out, the classes of \"hapbench describe stability\"; it is not when "

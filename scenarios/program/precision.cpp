@@ -28,7 +28,6 @@ struct PrecisionCommandOptions {
   std::string out;
   std::vector<std::string> overrides;
   int repetitions = PrecisionOptions{}.repetitions;
-  bool no_cache = false;
   OutputOptions output;
 };
 
@@ -113,7 +112,6 @@ int precision(const PrecisionCommandOptions& options) {
   for (std::size_t i = 0; i < studies.size(); ++i) {
     PrecisionOptions settings;
     settings.repetitions = options.repetitions;
-    settings.cache = shell_cache(options.no_cache);
     if (bar) {
       settings.progress = [&](std::size_t done, std::size_t all) {
         std::fprintf(stderr, "\r\033[K%s %zu/%zu", studies[i]->name, done, all);
@@ -145,7 +143,6 @@ void add_precision(CommandLine& line) {
   command.add("--set", options->overrides, "override a field: path=value").repeatable();
   command.add("--repetitions", options->repetitions, "of every timing, of which the least counts (default: 5)")
       .range(1, 1000);
-  add_cache_option(command, options->no_cache);
   add_output_options(command, options->output);
   command.runs([options] { return precision(*options); }, "studies that were complete are kept");
 }

@@ -29,7 +29,6 @@ struct ReproduceOptions {
   std::vector<std::string> only;
   std::string out = (fs::path("results") / "out" / "reproduce").string();
   std::string ledger;
-  bool no_cache = false;
   bool anew = false;
   std::int64_t samples = 0;  ///< of the choices; 0 for none
   std::size_t jobs = available_threads();
@@ -61,8 +60,7 @@ bool is_current(const fs::path& directory, const LoadedScenario& loaded) {
 /// Runs the thesis's scenarios into subdirectories, those apart whose results are current.
 class ThesisRuns {
  public:
-  ThesisRuns(const ReproduceOptions& options, const ShellCache& cache)
-      : directory_(fs::path(options.out) / "thesis"), anew_(options.anew), cache_(cache) {
+  ThesisRuns(const ReproduceOptions& options) : directory_(fs::path(options.out) / "thesis"), anew_(options.anew) {
     for (const BundledScenario& bundled : bundled_scenarios()) {
       if (bundled.group == "thesis") scenarios_.push_back(bundled);
     }
@@ -99,7 +97,7 @@ class ThesisRuns {
   std::vector<std::string> run(const BundledScenario& bundled) const {
     const LoadedScenario loaded = load_scenario(bundled.file);
     if (!anew_ && is_current(directory_ / bundled.name, loaded)) return {};
-    return run_scenario(loaded, directory_ / bundled.name, false, cache_).unmet;
+    return run_scenario(loaded, directory_ / bundled.name, false).unmet;
   }
   void tell(const BundledScenario& bundled, const std::vector<std::string>& problems) {
     done_.insert(bundled.name);
@@ -109,7 +107,6 @@ class ThesisRuns {
 
   fs::path directory_;
   bool anew_;
-  const ShellCache& cache_;
   std::vector<BundledScenario> scenarios_;
   std::set<std::string> done_;
   bool as_expected_ = true;
@@ -117,17 +114,18 @@ class ThesisRuns {
 
 /// Judges the claims by the thesis's runs, and notes in `read` what of their results that takes.
 std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const PublishedNumbers& published, ThesisRuns& runs,
-                               const ShellCache& cache, ResultsRead& read) {
+                               ResultsRead& read) {
   std::set<std::string> used;  // by the claim in turn
   const auto provide = [&](const std::string& scenario, const std::string& part) {
     used.insert(scenario);
     read[scenario].insert(part);
     runs.provide(scenario);
   };
-  RecentShells shells(cache);
-  const Evidence evidence{published, ResultFiles(runs.directory(), provide),
-                          cache,     {},
-                          &shells,   [&](const std::string& scenario) { used.insert(scenario); }};
+  RecentShells shells;
+  const Evidence evidence{
+      published, ResultFiles(runs.directory(), provide), {}, &shells, [&](const std::string& scenario) {
+        used.insert(scenario);
+      }};
   std::vector<JudgedClaim> judged;
   for (const Claim& claim : claims) {
     used.clear();
@@ -179,13 +177,12 @@ int reproduce(const ReproduceOptions& options) {
   const PublishedNumbers published(reference / "published");
   const Choices choices(reference / "choices.json");
   require_writable_directory(options.out);
-  const ShellCache cache = shell_cache(options.no_cache);
-  ThesisRuns runs(options, cache);
+  ThesisRuns runs(options);
   // Single claims run what they ask for.
   if (options.only.empty()) runs.run_all(options.jobs, !options.output.quiet);
 
   ResultsRead read;
-  const std::vector<JudgedClaim> judged = judge(claims, published, runs, cache, read);
+  const std::vector<JudgedClaim> judged = judge(claims, published, runs, read);
   const fs::path ledger = options.ledger.empty() ? fs::path(options.out) / "claims.json" : fs::path(options.ledger);
   fs::path record = reference / "robustness.json";
   if (options.samples > 0) {
@@ -193,7 +190,7 @@ int reproduce(const ReproduceOptions& options) {
     std::vector<Claim> sampled;
     for (const JudgedClaim& j : again) sampled.push_back(j.claim);
     const RobustnessPlan plan =
-        plan_robustness(choices, published, sampled, read, cache, static_cast<std::size_t>(options.samples));
+        plan_robustness(choices, published, sampled, read, static_cast<std::size_t>(options.samples));
     const int signal = write_robustness(options, plan, again, ledger.parent_path());
     if (signal != 0) return kStopped + signal;
     record = ledger.parent_path() / "robustness.json";
@@ -230,7 +227,6 @@ void add_reproduce(CommandLine& line) {
           "of them; writes robustness.csv, .json and .md beside the ledger")
       .value_if_none("256")
       .range(4, 100'000);
-  add_cache_option(command, options->no_cache);
   add_output_options(command, options->output);
   command.footer(
       "choices.md beside the ledger lists what the thesis leaves open (results/reference/choices.json). Ctrl-C stops "

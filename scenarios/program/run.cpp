@@ -20,7 +20,6 @@ struct RunOptions {
   std::vector<std::string> scenarios;
   std::string out;
   std::vector<std::string> overrides;
-  bool no_cache = false;
   Skips skips = Skips::taken;
   bool latency = false;
   OutputOptions output;
@@ -51,11 +50,10 @@ int run(const RunOptions& options) {
   Table table(columns, kRunGap);
   LatencyTable latencies;
   Json summaries = Json::array();
-  const ShellCache cache = shell_cache(options.no_cache || options.skips == Skips::off);
   std::string targets;
   int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
-    const RunReport report = run_scenario(scenarios[i], directories[i], !options.output.quiet, cache);
+    const RunReport report = run_scenario(scenarios[i], directories[i], !options.output.quiet);
     std::vector<std::string> cells = run_cells(report);
     cells.insert(cells.begin(), {report.summary.name, report.summary.algorithm});
     table.add(std::move(cells));
@@ -89,7 +87,6 @@ void add_run(CommandLine& line) {
   command.add("--set", options->overrides, "override a field: path=value, as in time.steps=100").repeatable();
   command.flag("--latency", options->latency,
                "time every step (as record.timing does) and print percentiles and deadline misses");
-  add_cache_option(command, options->no_cache);
   add_skip_option(command, options->skips);
   add_output_options(command, options->output);
   command.runs([options] { return run(*options); }, "nothing of the unfinished run is written, finished ones are kept");

@@ -154,7 +154,7 @@ class Start {
 
   std::vector<SurfacePoint> points() const {
     const LoadedScenario loaded = scenario();
-    return environment_points(loaded.scenario, ShellCache(), loaded.files).points;
+    return environment_points(loaded.scenario, loaded.files).points;
   }
 
   /// From the mesh's own vertices, taken for millimetres.

@@ -18,7 +18,6 @@ struct ShellOptions {
   std::string scenario;
   std::string out;
   std::vector<std::string> overrides;
-  bool no_cache = false;
   OutputOptions output;
 };
 
@@ -28,8 +27,7 @@ int shell(const ShellOptions& options) {
     throw InputError(loaded.file.string() + ": /environment/type: got \"springs\", which have no point shell");
   }
   print_warnings(check_named_files(loaded));
-  const std::vector<SurfacePoint> points =
-      environment_points(loaded.scenario, shell_cache(options.no_cache), loaded.files).points;
+  const std::vector<SurfacePoint> points = environment_points(loaded.scenario, loaded.files).points;
   const std::filesystem::path file = options.out;
   const std::string text = point_shell_text(points, file);
   std::error_code ignored;
@@ -51,7 +49,6 @@ void add_shell(CommandLine& line) {
   command.add("scenario", options->scenario, "scenario file, or name of a bundled scenario").required();
   command.add("--out", options->out, "FILE.csv (exact) or FILE.ply (single precision, for viewers)").required();
   command.add("--set", options->overrides, "override a field: path=value").repeatable();
-  add_cache_option(command, options->no_cache);
   add_output_options(command, options->output);
   command.runs([options] { return shell(*options); });
 }

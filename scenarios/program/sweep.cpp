@@ -31,7 +31,6 @@ struct SweepCommand {
   std::string shard;
   bool resume = false;
   bool keep_runs = false;
-  bool no_cache = false;
   OutputOptions output;
 };
 
@@ -62,7 +61,6 @@ SweepOptions sweep_options(const SweepCommand& command, const fs::path& scenario
   options.resume = command.resume;
   options.keep_runs = command.keep_runs;
   options.progress = !command.output.quiet;
-  options.cache = shell_cache(command.no_cache);
   return options;
 }
 
@@ -152,7 +150,6 @@ void add_sweep(CommandLine& line) {
   command.add("--out", options->out, "directory of sweep.csv (default: results/out/sweep_NAME)");
   command.add("--set", options->overrides, "override a field of all runs: path=value").repeatable();
   add_run_options(command, *options);
-  add_cache_option(command, options->no_cache);
   add_output_options(command, options->output);
   command.footer(
       "sweep.csv has a row for each run: index, the varied fields, outcome (\"error\" when it could not be computed), "

@@ -18,7 +18,6 @@ namespace {
 
 struct ValidateOptions {
   std::vector<std::string> files;
-  bool no_cache = false;
   OutputOptions output;
 };
 
@@ -57,7 +56,6 @@ Json facts_json(const Scenario& scenario, const SceneFacts& facts) {
 }
 
 int validate(const ValidateOptions& options) {
-  const ShellCache cache = shell_cache(options.no_cache);
   std::string text;
   Json verdicts = Json::array();
   int status = kSuccess;
@@ -67,7 +65,7 @@ int validate(const ValidateOptions& options) {
       const std::vector<std::string> warnings = check_named_files(loaded);
       print_warnings(loaded.warnings);
       print_warnings(warnings);
-      const SceneFacts facts = scene_facts(loaded, cache);
+      const SceneFacts facts = scene_facts(loaded);
       text += fmt::format("{}: valid\n{}", argument, facts_text(loaded.scenario, facts));
       verdicts.push_back({{"file", argument}, {"valid", true}});
       verdicts.back().update(facts_json(loaded.scenario, facts));
@@ -88,7 +86,6 @@ void add_validate(CommandLine& line) {
   Command command = line.command(
       "validate", "Check scenario files and the files they name, without running them, and say what is in them");
   command.add("files", options->files, "scenario files").required();
-  add_cache_option(command, options->no_cache);
   add_output_options(command, options->output);
   command.runs([options] { return validate(*options); });
 }

@@ -205,6 +205,10 @@ std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, ShellPoin
   return std::make_shared<const PointShell>(points.points, cell_size(scenario.environment), std::move(points.cells));
 }
 
+std::shared_ptr<const PointShell> make_shell(const Scenario& scenario) {
+  return make_shell(scenario, environment_points(scenario));
+}
+
 SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std::shared_ptr<const PointShell> shell,
                          Trial trial) {
   SimulationParts parts;
@@ -232,7 +236,7 @@ SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointSh
 
 SimulationParts assemble(const Scenario& scenario) {
   const NamedFiles files(scenario);
-  return assemble(scenario, files, make_shell(scenario, environment_points(scenario, ShellCache(), files)), {});
+  return assemble(scenario, files, make_shell(scenario, environment_points(scenario, files)), {});
 }
 
 }  // namespace hapbench

@@ -1,9 +1,5 @@
 #include "scenarios/run/environment_points.hpp"
 
-#include <nlohmann/json.hpp>
-
-#include "results/io/json_text.hpp"
-#include "scenarios/input/loaded_code.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/contact/grid_index.hpp"
 #include "sim/mesh/block_field.hpp"
@@ -15,12 +11,11 @@ namespace {
 /// The vertices of the surface of the density field, in the order that the contact search likes best.
 ShellPoints block_points(const BlockEnvironment& environment) {
   const DensityField field = density_field(environment.block, environment.grid, environment.density);
-  if (environment.vertices == BlockVertices::shared) {
-    return {in_grid_order(vertices_with_normals(marching_cubes(field)), environment.grid), {}};
-  }
-  CutCells cells;
-  const HalfEdgeMesh mesh = marching_cubes(field, &cells);
-  return points_by_cell(mesh, cells, environment.grid);
+  if (environment.vertices == BlockVertices::per_cell)
+    return points_by_cell(marching_cubes(field, {.cells = true}), environment.grid);
+  std::vector<SurfacePoint> vertices = marching_cubes(field).vertices;
+  std::erase_if(vertices, [](const SurfacePoint& vertex) { return vertex.normal.isZero(0.0); });
+  return {in_grid_order(vertices, environment.grid), {}};
 }
 
 /// Builds the points of each type of environment.
@@ -39,36 +34,16 @@ struct Build {
   }
 };
 
-/// Returns true if building the shell takes longer than reading it from the cache.
-bool is_worth_keeping(const Environment& environment) {
-  return std::holds_alternative<BlockEnvironment>(environment) || std::holds_alternative<MeshEnvironment>(environment);
-}
-
 }  // namespace
 
-std::string shell_definition(const Scenario& scenario, const NamedFiles& files) {
-  const std::string code = loaded_code_id();
-  if (code.empty()) return "";
-  return json_text({{"environment", environment_content(scenario, files)}, {"code", code}});
+ShellPoints environment_points(const Scenario& scenario, const NamedFiles& files) {
+  ShellPoints points = std::visit(Build{files}, scenario.environment);
+  throw_if_stopped();  // it may have taken seconds
+  return points;
 }
 
-EnvironmentPoints environment_points(const Scenario& scenario, const ShellCache& cache, const NamedFiles& files) {
-  const auto build = [&] {
-    ShellPoints points = std::visit(Build{files}, scenario.environment);
-    throw_if_stopped();  // it may have taken seconds
-    return points;
-  };
-  if (!cache.is_on() || !is_worth_keeping(scenario.environment)) return {build()};
-  const std::string definition = shell_definition(scenario, files);
-  if (definition.empty()) return {build()};
-  if (auto points = cache.find(definition)) return {std::move(*points), true};
-  EnvironmentPoints built{build()};
-  cache.keep(definition, built);
-  return built;
-}
-
-EnvironmentPoints environment_points(const Scenario& scenario, const ShellCache& cache) {
-  return environment_points(scenario, cache, NamedFiles(scenario));
+ShellPoints environment_points(const Scenario& scenario) {
+  return environment_points(scenario, NamedFiles(scenario));
 }
 
 }  // namespace hapbench

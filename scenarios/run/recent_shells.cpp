@@ -12,7 +12,7 @@ std::shared_ptr<const PointShell> RecentShells::of(const LoadedScenario& loaded)
   const auto entry = entry_of(environment_content(loaded.scenario, loaded.files).dump());
   const std::lock_guard lock(entry->mutex);
   if (!entry->made) {
-    entry->shell = make_shell(loaded.scenario, environment_points(loaded.scenario, cache_, loaded.files));
+    entry->shell = make_shell(loaded.scenario, environment_points(loaded.scenario, loaded.files));
     entry->made = true;
   }
   return entry->shell;

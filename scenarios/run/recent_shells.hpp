@@ -7,7 +7,6 @@
 #include <string>
 
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/input/shell_cache.hpp"
 
 namespace hapbench {
 
@@ -16,7 +15,7 @@ namespace hapbench {
 class RecentShells {
  public:
   /// Keeps up to `most` shells; the one used longest ago goes first. Runs may hold more.
-  explicit RecentShells(ShellCache cache, std::size_t most = 12) : cache_(std::move(cache)), most_(most) {}
+  explicit RecentShells(std::size_t most = 12) : most_(most) {}
 
   /// The shell of the scenario's environment; null for springs. Waits while another thread makes it. Throws InputError
   /// when a named file cannot be used.
@@ -32,8 +31,6 @@ class RecentShells {
     std::shared_ptr<const PointShell> shell;
   };
   std::shared_ptr<Entry> entry_of(const std::string& environment);
-
-  ShellCache cache_;
   std::size_t most_;
   std::mutex mutex_;
   std::list<std::shared_ptr<Entry>> entries_;  ///< the one used last first

@@ -25,11 +25,10 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-ShellPoints timed_environment_points(const LoadedScenario& loaded, const ShellCache& cache, RunTiming& timing) {
+ShellPoints timed_environment_points(const LoadedScenario& loaded, RunTiming& timing) {
   const auto start = Clock::now();
-  EnvironmentPoints shell = environment_points(loaded.scenario, cache, loaded.files);
+  ShellPoints shell = environment_points(loaded.scenario, loaded.files);
   timing.shell = seconds_since(start);
-  timing.shell_from_cache = shell.from_cache;
   return shell;
 }
 
@@ -167,10 +166,9 @@ void remove_run(const fs::path& directory) {
   fs::remove(directory / "scenario.effective.json", ignored);
 }
 
-RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,
-                       const ShellCache& cache) {
+RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress) {
   RunTiming timing;
-  const auto shell = make_shell(loaded.scenario, timed_environment_points(loaded, cache, timing));
+  const auto shell = make_shell(loaded.scenario, timed_environment_points(loaded, timing));
   return run_with_shell(loaded, shell, output, progress, timing);
 }
 

@@ -9,7 +9,6 @@
 #include "results/summary/summary.hpp"
 #include "results/summary/timing.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/input/shell_cache.hpp"
 
 namespace hapbench {
 
@@ -24,11 +23,10 @@ struct RunReport {
 /// Runs a scenario. With `output`, writes summary.json, scenario.effective.json and what the scenario records into that
 /// directory, which is created, records of several trials into a subdirectory each; each file appears complete or not
 /// at all, the summary last; without it, the summary has no provenance and no scenario hash. `progress` allows a
-/// progress bar. The environment's shell may come from `cache`. With skips off (RenderingConfig), the results are the
+/// progress bar. With skips off (RenderingConfig), the results are the
 /// same but for the counted work. Throws InputError for files it cannot use (before anything is written), IoError when
 /// writing fails, Stopped when a signal ends the run: then nothing of it is left.
-RunReport run_scenario(const LoadedScenario& loaded, const std::optional<std::filesystem::path>& output, bool progress,
-                       const ShellCache& cache);
+RunReport run_scenario(const LoadedScenario& loaded, const std::optional<std::filesystem::path>& output, bool progress);
 
 /// The same in a shell that is there already and that several runs, also at once, may share: make_shell of the
 /// scenario. `timing` says what is known of the shell's making.

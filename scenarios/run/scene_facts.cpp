@@ -36,12 +36,12 @@ void place_tool(const ToolShape& tool, const ToolPose& pose, const PointShell& s
 
 }  // namespace
 
-SceneFacts scene_facts(const LoadedScenario& loaded, const ShellCache& cache) {
+SceneFacts scene_facts(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
   SceneFacts facts;
   if (const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand))
     facts.trials = hand->subjects.size() * static_cast<std::size_t>(hand->trials);
-  const auto shell = make_shell(scenario, environment_points(scenario, cache, loaded.files));
+  const auto shell = make_shell(scenario, environment_points(scenario, loaded.files));
   if (!shell || shell->size() == 0) return facts;
   if (std::holds_alternative<MeshEnvironment>(scenario.environment))
     facts.is_closed = loaded.files.mesh().open_edges().empty();

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/input/shell_cache.hpp"
 #include "sim/core/box.hpp"
 
 namespace hapbench {
@@ -27,6 +26,6 @@ struct SceneFacts {
 };
 
 /// Builds the environment and places the tool. Throws InputError when a named file cannot be used.
-SceneFacts scene_facts(const LoadedScenario& loaded, const ShellCache& cache);
+SceneFacts scene_facts(const LoadedScenario& loaded);
 
 }  // namespace hapbench

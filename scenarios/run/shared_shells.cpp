@@ -7,8 +7,7 @@
 
 namespace hapbench {
 
-SharedShells::SharedShells(const std::vector<std::size_t>& uses, ShellCache cache)
-    : entries_(uses.size()), cache_(std::move(cache)) {
+SharedShells::SharedShells(const std::vector<std::size_t>& uses) : entries_(uses.size()) {
   for (std::size_t i = 0; i < uses.size(); ++i) entries_[i].uses = uses[i];
 }
 
@@ -18,15 +17,12 @@ std::shared_ptr<const PointShell> SharedShells::take(std::size_t environment, co
   Entry& entry = entries_[environment];
   const std::lock_guard lock(entry.mutex);
   if (!entry.shell) {
-    EnvironmentPoints points = environment_points(scenario, cache_);
-    entry.from_cache = points.from_cache;
-    entry.shell = make_shell(scenario, std::move(points));
+    entry.shell = make_shell(scenario);
   }
   auto shell = entry.shell;
   if (--entry.uses == 0) entry.shell.reset();
   if (timing != nullptr) {
     timing->shell = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    timing->shell_from_cache = entry.from_cache;
   }
   return shell;
 }

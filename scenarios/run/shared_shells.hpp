@@ -6,7 +6,6 @@
 
 #include "results/summary/timing.hpp"
 #include "scenarios/description/scenario.hpp"
-#include "scenarios/input/shell_cache.hpp"
 
 namespace hapbench {
 
@@ -15,11 +14,11 @@ namespace hapbench {
 class SharedShells {
  public:
   /// `uses` says for each environment how many runs are in it.
-  SharedShells(const std::vector<std::size_t>& uses, ShellCache cache);
+  SharedShells(const std::vector<std::size_t>& uses);
 
   /// The shell of an environment, which is the scenario's; null for springs. Waits while another thread makes it. To be
-  /// called once for each run in it. `timing`, if given, learns how long that took and whether the points came from the
-  /// cache. Throws InputError when a named file cannot be used.
+  /// called once for each run in it. `timing`, if given, learns how long that took. Throws InputError when a named file
+  /// cannot be used.
   std::shared_ptr<const PointShell> take(std::size_t environment, const Scenario& scenario,
                                          RunTiming* timing = nullptr);
 
@@ -28,10 +27,8 @@ class SharedShells {
     std::mutex mutex;
     std::size_t uses = 0;  ///< still to come
     std::shared_ptr<const PointShell> shell;
-    bool from_cache = false;
   };
   std::vector<Entry> entries_;
-  ShellCache cache_;
 };
 
 }  // namespace hapbench

@@ -98,13 +98,11 @@ constexpr double kUnnecessary = 0.05;
 
 Measured measure_local_average(const Evidence& e) {
   const LoadedScenario loaded = e.load("task2_rotate_signed_distance");
-  PrecisionOptions options;
-  options.cache = e.cache;
   const auto shell = e.shell(loaded);
   Scene scene;
   scene.capacity = shell->size();
   scene.shell = shell.get();
-  const std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(loaded.scenario), options, 128);
+  const std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(loaded.scenario), 128);
   Measured measured;
   for (const char* law : kLaws) {
     RenderingConfig config = with_algorithm(loaded.scenario, law).rendering;

@@ -52,12 +52,10 @@ constexpr double kTilts[] = {0.08, 0.12, 0.2, 0.4};
 
 /// The ratio farthest from 1 of all contact sets that give a force at all.
 double tandpasta_energy_ratio(const Evidence& e) {
-  PrecisionOptions options;
-  options.cache = e.cache;
   const Scenario scenario = drill_in_hole(e.load("task2_rotate_signed_distance").scenario);
   const auto law = make_tandpasta({});
   double ratio = 1.0;
-  for (ContactBuffer& set : contact_sets(scenario, options, 64)) {
+  for (ContactBuffer& set : contact_sets(scenario, 64)) {
     law->prepare(set.capacity());
     law->evaluate(set);
     double weighed = 0.0, unweighed = 0.0;

@@ -94,11 +94,9 @@ constexpr double kConverged = 0.01;
 Measured measure_convergence(const Evidence& e) {
   RatioRows ratios;
   double limit_max = 1.0;
-  PrecisionOptions options;
-  options.cache = e.cache;
   for (const char* task : {"task2_rotate_signed_distance", "task3_spin_signed_distance"}) {
     add_ratios(e, task, ratios);
-    for (ContactBuffer& set : rendered_contact_sets(drill_in_hole(e.load(task).scenario), options, 64)) {
+    for (ContactBuffer& set : rendered_contact_sets(drill_in_hole(e.load(task).scenario), 64)) {
       solve_exact_shaping(set);
       limit_max = std::max(limit_max, ratio_range(set, stiffness_tensor(set)).max);
     }

@@ -127,7 +127,7 @@ RunReport Evidence::run(const std::string& name, std::span<const std::string> mo
 
 std::shared_ptr<const PointShell> Evidence::shell(const LoadedScenario& loaded) const {
   if (shells != nullptr) return shells->of(loaded);
-  return make_shell(loaded.scenario, environment_points(loaded.scenario, cache, loaded.files));
+  return make_shell(loaded.scenario, environment_points(loaded.scenario, loaded.files));
 }
 
 void Evidence::for_each_row(const LoadedScenario& loaded, const std::function<void(const StepRecord&)>& row) const {

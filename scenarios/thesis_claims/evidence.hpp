@@ -11,7 +11,6 @@
 
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/input/shell_cache.hpp"
 #include "scenarios/run/recent_shells.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/thesis_claims/finding.hpp"
@@ -68,7 +67,6 @@ class ResultFiles {
 struct Evidence {
   PublishedNumbers published;
   ResultFiles results;
-  ShellCache cache;
   /// What to change in a bundled scenario, as for load_scenario; empty for nothing.
   std::function<std::vector<std::string>(const Scenario&)> overrides = {};
 

@@ -58,7 +58,6 @@ class SampleRuns {
         evidence_{
             plan.published,
             ResultFiles(directory, [this](const auto& scenario, const auto& part) { provide(scenario, part); }),
-            plan.cache,
             [&plan, sample](const Scenario& scenario) { return plan.choices.overrides(scenario, plan.values[sample]); },
             &shells} {}
   SampleRuns(const SampleRuns&) = delete;
@@ -141,10 +140,9 @@ std::optional<ClaimRobustness::DecidingChoice> deciding_choice(const RobustnessP
 }  // namespace
 
 RobustnessPlan plan_robustness(Choices choices, PublishedNumbers published, std::vector<Claim> claims, ResultsRead read,
-                               ShellCache cache, std::size_t samples) {
+                               std::size_t samples) {
   std::erase_if(claims, [](const Claim& claim) { return claim.timing; });
-  RobustnessPlan plan{std::move(choices), std::move(published), std::move(claims),
-                      std::move(read),    std::move(cache),     {}};
+  RobustnessPlan plan{std::move(choices), std::move(published), std::move(claims), std::move(read), {}};
   const Sampling sampling{SamplingMethod::latin_hypercube, samples, kRobustnessSeed};
   for (const UnitPoint& point : sample_unit_cube(sampling, plan.choices.all().size())) {
     plan.values.push_back(plan.choices.values_at(point));

@@ -25,7 +25,6 @@ struct RobustnessPlan {
   PublishedNumbers published;
   std::vector<Claim> claims;
   ResultsRead read;  ///< by them; what else a scenario records is left out until a claim asks for it all the same
-  ShellCache cache;
   std::vector<std::vector<std::string>> values;  ///< for each sample one of each choice
 
   std::size_t samples() const { return values.size(); }
@@ -37,7 +36,7 @@ inline constexpr std::uint64_t kRobustnessSeed = 1;
 
 /// The plan for so many samples. Of the claims those about time are left out.
 RobustnessPlan plan_robustness(Choices choices, PublishedNumbers published, std::vector<Claim> claims, ResultsRead read,
-                               ShellCache cache, std::size_t samples);
+                               std::size_t samples);
 
 /// Cells of claims without a verdict: one that could not be measured (a run diverged where its scenario does not expect
 /// it, a field refuses the value), and a costly one beyond the samples for those.

@@ -8,10 +8,10 @@
 #include <optional>
 
 #include "results/io/json_text.hpp"
+#include "results/summary/provenance.hpp"
 #include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/input/loaded_code.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
@@ -30,12 +30,19 @@ std::string header(const RobustnessPlan& plan) {
   return fmt::format("{}", fmt::join(columns, ","));
 }
 
+/// The source and the build that compute the verdicts; empty when the commit does not tell the source.
+std::string program_identity() {
+  const Provenance p = provenance();
+  if (p.commit == "unknown" || p.commit.ends_with("-dirty")) return "";
+  return fmt::format("{} {} {} {}", p.commit, p.compiler, p.build_type, p.flags);
+}
+
 /// Names all that the verdicts depend on.
 std::string definition(const RobustnessPlan& plan) {
   Json content = {{"table", header(plan)},
                   {"choices", plan.choices.hash()},
                   {"samples", plan.samples()},
-                  {"program", loaded_code_id()}};
+                  {"program", program_identity()}};
   for (const BundledScenario& bundled : bundled_scenarios()) {
     const LoadedScenario loaded = load_scenario(bundled.file);
     content["scenarios"].push_back(scenario_hash(loaded.scenario, loaded.files));
@@ -78,13 +85,13 @@ RobustnessReport run_robustness(const RobustnessPlan& plan, const RobustnessOpti
   const fs::path file = options.directory / "robustness.journal", scratch = options.directory / "robustness";
   const std::string title = definition(plan);
   // What a program without an identity computed is computed again.
-  const bool resume = !options.anew && !loaded_code_id().empty() && Journal::is_of(file, title);
+  const bool resume = !options.anew && !program_identity().empty() && Journal::is_of(file, title);
   Journal journal(file, title, resume);
   RobustnessReport report;
   report.verdicts.resize(plan.samples());
   const std::vector<std::size_t> left = samples_to_do(plan, journal, report);
   fs::remove_all(scratch);  // of a process that was killed
-  RecentShells shells(plan.cache);
+  RecentShells shells;
   ProgressBar bar("robustness", plan.samples(), options.progress);
   bar.start_at(report.resumed);
   std::map<std::size_t, std::vector<std::string>> problems;

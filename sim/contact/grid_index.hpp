@@ -9,24 +9,57 @@
 
 namespace hapbench {
 
+/// Cells of a uniform grid around points, a few points wide: for shells spaced by 0.1 mm, 0.25 mm was the fastest size
+/// measured. Their number is bounded by a few times the number of points, whatever the extent.
+class GridCells {
+ public:
+  /// `spacing` of neighbouring points [m]; 0 when it is not known.
+  GridCells(const Box& bounds, std::size_t points, double spacing);
+  /// Cells of this edge [m] or, where they would be too many, larger ones.
+  static GridCells of_edge(const Box& bounds, std::size_t points, double edge);
+
+  struct Range {
+    std::size_t first = 1, last = 0;
+    bool empty() const { return first > last; }
+  };
+  /// The cells between two coordinates along an axis.
+  Range range(double low, double high, int axis) const;
+  /// Cell (i, j, k) has the number (i * count(1) + j) * count(2) + k. Points out of bounds are in the nearest cell.
+  std::uint32_t cell_of(const Vec3& point) const;
+  std::size_t count(std::size_t axis) const { return count_[axis]; }
+  std::size_t count() const { return count_[0] * count_[1] * count_[2]; }
+  /// Edge of a cell [m].
+  double size() const { return size_; }
+
+ private:
+  struct Edge {
+    double edge;
+  };
+  GridCells(const Box& bounds, std::size_t points, Edge edge);
+
+  double size_;
+  Vec3 origin_;
+  std::size_t count_[3];
+};
+
 /// The points of a shell sorted by the cells of a uniform grid, in compressed sparse rows: the points of the cells
 /// (i, j, k0 … k1) are one contiguous range of a copy of the shell, so that a search in a box reads one run of memory
-/// per column. Cells are a few points wide: for shells spaced by 0.1 mm, 0.25 mm was the fastest size measured.
+/// per column.
 class GridIndex {
  public:
-  /// O(n). The number of cells is bounded by a few times the number of points, whatever the extent of the shell.
+  /// O(n).
   explicit GridIndex(const PointShell& shell);
 
   /// Calls `visit(first, last)` for each column of cells that meets the box, with the range of its points in the sorted
   /// arrays. Ranges ascend.
   template <class Visit>
   void for_each_run(const Box& box, Visit visit) const {
-    const Range x = range(box.min.x(), box.max.x(), 0), y = range(box.min.y(), box.max.y(), 1);
-    const Range z = range(box.min.z(), box.max.z(), 2);
+    const GridCells::Range x = cells_.range(box.min.x(), box.max.x(), 0), y = cells_.range(box.min.y(), box.max.y(), 1);
+    const GridCells::Range z = cells_.range(box.min.z(), box.max.z(), 2);
     if (x.empty() || y.empty() || z.empty()) return;
     for (std::size_t i = x.first; i <= x.last; ++i) {
       for (std::size_t j = y.first; j <= y.last; ++j) {
-        const std::size_t column = (i * count_[1] + j) * count_[2];
+        const std::size_t column = (i * cells_.count(1) + j) * cells_.count(2);
         const std::uint32_t first = start_[column + z.first], last = start_[column + z.last + 1];
         if (first != last) visit(first, last);
       }
@@ -41,26 +74,16 @@ class GridIndex {
   const std::uint32_t* shell_indices() const { return shell_index_.data(); }
   /// True when sorting changed nothing, so that runs come in ascending shell index.
   bool keeps_order() const { return keeps_order_; }
-  double cell_size() const { return cell_; }
+  double cell_size() const { return cells_.size(); }
   std::size_t size() const { return shell_size_; }
   /// The most runs that for_each_run visits.
-  std::size_t columns() const { return count_[0] * count_[1]; }
+  std::size_t columns() const { return cells_.count(0) * cells_.count(1); }
   /// The box of all points.
   const Box& bounds() const { return bounds_; }
 
  private:
-  struct Range {
-    std::size_t first = 1, last = 0;
-    bool empty() const { return first > last; }
-  };
-  Range range(double low, double high, int axis) const;
-  void choose_cells(const PointShell& shell);
-  std::uint32_t cell_of(const Vec3& point) const;
-
-  double cell_ = 1.0;
-  Vec3 origin_ = Vec3::Zero();
   Box bounds_;
-  std::size_t count_[3] = {0, 0, 0};
+  GridCells cells_;
   std::vector<std::uint32_t> start_;  ///< first point of each cell, one more at the end
   AlignedDoubles x_, y_, z_;
   std::vector<std::uint32_t> shell_index_;
@@ -68,7 +91,7 @@ class GridIndex {
   bool keeps_order_ = true;
 };
 
-/// The numbers of the points in the order of the grid a shell of them would have. `cell_size` as for PointShell.
+/// The numbers of the points in the order of the grid a shell of them would have. `cell_size` as for PointShell. O(n).
 std::vector<std::uint32_t> grid_order(const std::vector<SurfacePoint>& points, double cell_size);
 /// The points in the order of the grid a shell of them would have, so that the grid keeps it and no search has to sort.
 /// `cell_size` as for PointShell.

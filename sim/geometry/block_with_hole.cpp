@@ -6,32 +6,28 @@
 namespace hapbench {
 namespace {
 
-/// Distance to a rectangle in the plane where `across` is zero: the other two coordinates beyond half extents a and b.
-double to_rectangle(double across, double u, double a, double v, double b) {
-  return std::hypot(across, std::max(0.0, std::abs(u) - a), std::max(0.0, std::abs(v) - b));
+double length(double a, double b) {
+  return std::sqrt(a * a + b * b);
 }
 
 }  // namespace
 
 double signed_distance(const BlockWithHole& block, const Vec3& q) {
-  const double a = block.size.x() / 2, b = block.size.y() / 2, c = block.size.z() / 2;
-  const double R = block.hole_diameter / 2, H = block.hole_depth;
-  const double x = q.x(), y = q.y(), z = q.z(), middle = z + c;
-  const double rho = std::hypot(x, y);
+  const double R = block.hole_diameter / 2, H = block.hole_depth, z = q.z();
+  // Beyond the faces; negative between them.
+  const double x = std::abs(q.x()) - block.size.x() / 2, y = std::abs(q.y()) - block.size.y() / 2;
+  const double below = -z - block.size.z();
+  const double rho = length(q.x(), q.y());
 
-  // The surface in pieces, each an exact distance: four sides, bottom, top without the mouth, wall and bottom of the
-  // hole.
-  double d = std::min({to_rectangle(x - a, y, b, middle, c), to_rectangle(x + a, y, b, middle, c),
-                       to_rectangle(y - b, x, a, middle, c), to_rectangle(y + b, x, a, middle, c),
-                       to_rectangle(z + 2 * c, x, a, y, b)});
-  // Above or below the mouth the nearest point of the top face is on the rim.
-  d = std::min(d, rho < R ? std::hypot(z, R - rho) : to_rectangle(z, x, a, y, b));
-  d = std::min(d, std::hypot(rho - R, std::max(0.0, z), std::max(0.0, -H - z)));
-  d = std::min(d, std::hypot(z + H, std::max(0.0, rho - R)));
-
-  const bool in_box = std::abs(x) <= a && std::abs(y) <= b && std::abs(middle) <= c;
-  const bool in_hole = rho < R && z > -H;
-  return in_box && !in_hole ? -d : d;
+  if (std::max({x, y, z, below}) > 0.0) {
+    // Above the mouth the nearest point of the top face is on the rim.
+    if (rho < R && z > 0.0) return length(z, R - rho);
+    const double beyond_sides = length(std::max(x, 0.0), std::max(y, 0.0));
+    return length(beyond_sides, std::max({z, below, 0.0}));
+  }
+  if (rho < R && z > -H) return std::min(R - rho, z + H);  // in the hole: to its wall or bottom
+  const double to_hole = length(std::max(rho - R, 0.0), std::max(-H - z, 0.0));
+  return -std::min({-x, -y, -z, -below, to_hole});
 }
 
 }  // namespace hapbench

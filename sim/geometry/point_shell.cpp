@@ -9,15 +9,22 @@
 
 namespace hapbench {
 
+Box bounds_of(const std::vector<SurfacePoint>& points) {
+  if (points.empty()) return {};
+  Box box{points[0].position, points[0].position};
+  for (const SurfacePoint& point : points) {
+    box.min = box.min.cwiseMin(point.position);
+    box.max = box.max.cwiseMax(point.position);
+  }
+  return box;
+}
+
 PointShell::PointShell(const std::vector<SurfacePoint>& points, double cell_size, std::vector<std::uint32_t> cells)
-    : size_(points.size()), cell_size_(cell_size), cells_(std::move(cells)) {
+    : size_(points.size()), cell_size_(cell_size), bounds_(bounds_of(points)), cells_(std::move(cells)) {
   const std::size_t padded = simd::padded(points.size());
   for (AlignedDoubles* column : {&x_, &y_, &z_}) column->assign(padded, kFarAway);
   for (AlignedDoubles* column : {&nx_, &ny_, &nz_}) column->assign(padded, 0.0);
-  if (!points.empty()) bounds_ = {points[0].position, points[0].position};
   for (std::size_t i = 0; i < points.size(); ++i) {
-    bounds_.min = bounds_.min.cwiseMin(points[i].position);
-    bounds_.max = bounds_.max.cwiseMax(points[i].position);
     x_[i] = points[i].position.x();
     y_[i] = points[i].position.y();
     z_[i] = points[i].position.z();

@@ -15,6 +15,9 @@ struct SurfacePoint {
   Vec3 normal = {0.0, 0.0, 1.0};
 };
 
+/// The box of all points; at the origin when there are none.
+Box bounds_of(const std::vector<SurfacePoint>& points);
+
 /// The points of a shell, and the grid cells they were listed by.
 struct ShellPoints {
   std::vector<SurfacePoint> points;

@@ -1,6 +1,6 @@
 #include "sim/mesh/half_edge_mesh.hpp"
 
-#include <Eigen/Geometry>
+#include "sim/mesh/triangle_normal.hpp"
 
 namespace hapbench {
 namespace {
@@ -14,9 +14,7 @@ Vec3 position(const HalfEdgeMesh& mesh, OpenMesh::VertexHandle vertex) {
 Vec3 unit_normal(const HalfEdgeMesh& mesh, OpenMesh::FaceHandle face) {
   auto corner = mesh.cfv_begin(face);
   const Vec3 a = position(mesh, *corner++), b = position(mesh, *corner++), c = position(mesh, *corner);
-  const Vec3 normal = (b - a).cross(c - a);
-  const double length = normal.norm();
-  return length > 0.0 ? Vec3(normal / length) : Vec3::Zero();
+  return triangle_normal(a, b, c);
 }
 
 }  // namespace

@@ -1,137 +1,185 @@
 #include "sim/mesh/marching_cubes.hpp"
 
-#include <array>
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <stdexcept>
-#include <unordered_map>
 
 #include "sim/mesh/cube_cases.hpp"
+#include "sim/mesh/grid_layer.hpp"
+#include "sim/mesh/triangle_normal.hpp"
 
 namespace hapbench {
 namespace {
 
-using Index = std::array<std::int64_t, 3>;
-/// The vertex on each edge of a cell, numbered as in cube_cases.hpp; invalid where the surface does not cross it.
-using EdgeVertices = std::array<OpenMesh::VertexHandle, 24>;
+/// Layers are shared out in so many slabs at most, whatever the number of threads, because a normal that is summed in
+/// two slabs depends in its last digits on where they meet.
+constexpr std::size_t kMostSlabs = 16;
 
-/// Cell (i, j, k) spans the nodes (i - 1/2, j - 1/2, k - 1/2) … (i + 1/2, …) in units of the spacing; node (i, j, k) is
-/// its lowest corner.
-class Builder {
+/// Two neighbouring layers of nodes, which a thread uses for slab after slab.
+struct LayerPair {
+  GridLayer low, high;
+  explicit LayerPair(const NodeGrid& grid) : low(grid), high(grid) {}
+};
+
+/// The part of the surface in some layers of cells, both layers of nodes at its ends included: the vertices in them are
+/// the neighbours', too. Normals are sums yet.
+class Slab {
  public:
-  Builder(const DensityField& field, CutCells* cells) : field_(field), cells_(cells) {}
-
-  HalfEdgeMesh build() {
-    Index first, last;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<Eigen::Index>(axis);
-      first[axis] = static_cast<std::int64_t>(std::floor(field_.min[a] / field_.spacing)) - 1;
-      last[axis] = static_cast<std::int64_t>(std::ceil(field_.max[a] / field_.spacing)) + 1;
+  /// Cells between the layers of nodes first < last.
+  void build(const DensityField& field, const NodeGrid& grid, KeptOfSurface kept, LayerPair& layers, std::size_t first,
+             std::size_t last) {
+    grid_ = &grid;
+    kept_ = kept;
+    low_ = &layers.low;
+    high_ = &layers.high;
+    low_->evaluate(field, grid, first);
+    add_vertices_in(*low_, first);
+    in_first_layer_ = surface_.vertices.size();
+    for (std::size_t k = first; k < last; ++k) {
+      high_->evaluate(field, grid, k + 1);
+      add_vertices_between(k);
+      const std::size_t before = surface_.vertices.size();
+      add_vertices_in(*high_, k + 1);
+      in_last_layer_ = surface_.vertices.size() - before;
+      for (const std::uint32_t node : low_->near()) add_cell(node, k);
+      std::swap(low_, high_);
     }
-    visit(first, last);
-    return std::move(mesh_);
   }
+
+  IsoSurface& surface() { return surface_; }
+  std::size_t in_first_layer() const { return in_first_layer_; }
+  std::size_t in_last_layer() const { return in_last_layer_; }
+  /// How many of the vertices are not left to the next slab.
+  std::size_t own() const { return surface_.vertices.size() - in_last_layer_; }
 
  private:
-  Vec3 node(const Index& n) const {
-    return field_.spacing *
-           Vec3(static_cast<double>(n[0]) - 0.5, static_cast<double>(n[1]) - 0.5, static_cast<double>(n[2]) - 0.5);
+  Vec3 position(std::size_t node, std::size_t k) const {
+    return grid_->node(node % grid_->count(0), node / grid_->count(0), k);
   }
 
-  /// Cells first … last, both included: halved along the longest side until one is left or the surface is too far away.
-  void visit(const Index& first, const Index& last) {
-    const Vec3 low = node(first), high = node({last[0] + 1, last[1] + 1, last[2] + 1});
-    // 1e-9 of slack for the rounding of the distance.
-    if (std::abs(field_.signed_distance(0.5 * (low + high))) > 0.5 * (high - low).norm() * (1.0 + 1e-9)) return;
-    std::size_t axis = 0;
-    for (std::size_t a = 1; a < 3; ++a) {
-      if (last[a] - first[a] > last[axis] - first[axis]) axis = a;
+  /// Adds the vertex between two nodes of densities a and b if the surface runs between them.
+  void add_vertex(std::size_t node, std::size_t axis, std::size_t k, GridLayer& layer, double a, double b) {
+    if (std::isnan(b) || (a > 0.0) == (b > 0.0)) return;
+    layer.on_edge(node, axis) = static_cast<std::uint32_t>(surface_.vertices.size());
+    const std::size_t i = node % grid_->count(0), j = node / grid_->count(0);
+    const Vec3 p = grid_->node(i, j, k), q = grid_->node(i + (axis == 0), j + (axis == 1), k + (axis == 2));
+    surface_.vertices.push_back({p + (q - p) * (a / (a - b)), Vec3::Zero()});
+  }
+
+  void add_vertices_in(GridLayer& layer, std::size_t k) {
+    const std::size_t row = grid_->count(0), nodes = grid_->nodes_in_layer();
+    for (const std::uint32_t node : layer.near()) {
+      const double a = layer.density(node);
+      if (node % row + 1 < row) add_vertex(node, 0, k, layer, a, layer.density(node + 1));
+      if (node + row < nodes) add_vertex(node, 1, k, layer, a, layer.density(node + row));
     }
-    if (last[axis] == first[axis]) return add_cell(first);
-    Index middle = last, after = first;
-    middle[axis] = first[axis] + (last[axis] - first[axis]) / 2;
-    after[axis] = middle[axis] + 1;
-    visit(first, middle);
-    visit(after, last);
   }
 
-  /// Positive inside.
-  double density(const Index& n) const {
-    const double d = field_.signed_distance(node(n));
-    return field_.density == Density::signed_distance ? -d : (d < 0.0 ? 0.5 : -0.5);
+  void add_vertices_between(std::size_t k) {
+    for (const std::uint32_t node : low_->near())
+      add_vertex(node, 2, k, *low_, low_->density(node), high_->density(node));
   }
 
-  void add_cell(const Index& cell) {
-    std::array<double, 8> values;
+  /// The triangles in the cell whose lowest corner is the node.
+  void add_cell(std::size_t node, std::size_t k) {
+    const std::size_t row = grid_->count(0);
+    if (node % row + 1 >= row || node + row >= grid_->nodes_in_layer()) return;
+    const std::array<std::size_t, 4> corners{node, node + 1, node + row, node + row + 1};
     unsigned inside = 0;
-    for (std::size_t c = 0; c < 8; ++c) {
-      values[c] = density(corner(cell, static_cast<int>(c)));
-      if (values[c] > 0.0) inside |= 1u << c;
+    for (unsigned c = 0; c < 8; ++c) {
+      const double density = (c < 4 ? low_ : high_)->density(corners[c & 3u]);
+      if (std::isnan(density)) return;
+      if (density > 0.0) inside |= 1u << c;
     }
-    EdgeVertices on_edge;
-    for (const CubeTriangle& triangle : cube_triangles(inside)) {
-      std::array<OpenMesh::VertexHandle, 3> v;
+    if (inside == 0 || inside == 0xff) return;
+    std::array<std::uint32_t, 24> on_edge;  // numbered as in cube_cases.hpp
+    std::uint32_t crossed = 0;
+    for (const CubeTriangle& edges : cube_triangles(inside)) {
+      std::array<std::uint32_t, 3> triangle;
       for (std::size_t i = 0; i < 3; ++i) {
-        v[i] = on_edge[static_cast<std::size_t>(triangle[i])];
-        if (!v[i].is_valid()) {
-          v[i] = on_edge[static_cast<std::size_t>(triangle[i])] = vertex(cell, triangle[i], values);
-        }
+        const auto edge = static_cast<std::size_t>(edges[i]), corner = edge / 3;
+        triangle[i] = on_edge[edge] = (corner < 4 ? low_ : high_)->on_edge(corners[corner & 3u], edge % 3);
+        crossed |= 1u << edge;
       }
-      if (!mesh_.add_face(v[0], v[1], v[2]).is_valid())
-        throw std::runtime_error("marching cubes: the surface is not manifold");
+      add_triangle(triangle);
     }
-    if (cells_ != nullptr && inside != 0 && inside != 0xff) list(cell, on_edge);
+    if (kept_.cells) add_cut_cell(position(node, k), on_edge, crossed);
   }
 
-  void list(const Index& cell, const EdgeVertices& on_edge) {
-    cells_->centres.push_back(node(cell) + Vec3::Constant(0.5 * field_.spacing));
-    for (const OpenMesh::VertexHandle vertex : on_edge) {
-      if (vertex.is_valid()) cells_->vertices.push_back(static_cast<std::uint32_t>(vertex.idx()));
+  void add_triangle(const std::array<std::uint32_t, 3>& triangle) {
+    std::vector<SurfacePoint>& v = surface_.vertices;
+    const Vec3 normal = triangle_normal(v[triangle[0]].position, v[triangle[1]].position, v[triangle[2]].position);
+    for (const std::uint32_t corner : triangle) v[corner].normal += normal;
+    if (kept_.triangles) surface_.triangles.push_back(triangle);
+  }
+
+  void add_cut_cell(const Vec3& lowest, const std::array<std::uint32_t, 24>& on_edge, std::uint32_t crossed) {
+    CutCells& cells = surface_.cells;
+    cells.centres.push_back(lowest + Vec3::Constant(0.5 * grid_->spacing()));
+    for (std::size_t edge = 0; edge < on_edge.size(); ++edge) {
+      if ((crossed >> edge & 1u) != 0) cells.vertices.push_back(on_edge[edge]);
     }
-    cells_->starts.push_back(static_cast<std::uint32_t>(cells_->vertices.size()));
+    cells.starts.push_back(static_cast<std::uint32_t>(cells.vertices.size()));
   }
 
-  static Index corner(const Index& cell, int c) {
-    return {cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2 & 1)};
-  }
-
-  /// The vertex on an edge of the cell, made once for the up to four cells around the edge.
-  OpenMesh::VertexHandle vertex(const Index& cell, int edge, const std::array<double, 8>& values) {
-    const int from = edge / 3, to = from | 1 << edge % 3;
-    const Index start = corner(cell, from);
-    const auto [entry, is_new] = vertices_.try_emplace(key(start, edge % 3));
-    if (is_new) {
-      const double a = values[static_cast<std::size_t>(from)], b = values[static_cast<std::size_t>(to)];
-      const Vec3 p = node(start), q = node(corner(cell, to));
-      const Vec3 crossing = p + (q - p) * (a / (a - b));
-      entry->second = mesh_.add_vertex({crossing.x(), crossing.y(), crossing.z()});
-    }
-    return entry->second;
-  }
-
-  /// 20 bits per coordinate: cell_count bounds the grid far below.
-  static std::uint64_t key(const Index& n, int axis) {
-    constexpr std::int64_t kOffset = 1 << 19;
-    std::uint64_t key = static_cast<std::uint64_t>(axis);
-    for (const std::int64_t i : n) key = key << 20 | static_cast<std::uint64_t>(i + kOffset);
-    return key;
-  }
-
-  const DensityField& field_;
-  CutCells* cells_;
-  HalfEdgeMesh mesh_;
-  std::unordered_map<std::uint64_t, OpenMesh::VertexHandle> vertices_;
+  const NodeGrid* grid_ = nullptr;
+  KeptOfSurface kept_;
+  GridLayer* low_ = nullptr;
+  GridLayer* high_ = nullptr;
+  IsoSurface surface_;
+  std::size_t in_first_layer_ = 0, in_last_layer_ = 0;
 };
+
+/// The vertices of all slabs, each once, their normals of length one.
+std::vector<SurfacePoint> joined_vertices(std::vector<Slab>& slabs, const std::vector<std::size_t>& offsets) {
+  std::vector<SurfacePoint> all(offsets.back() + slabs.back().surface().vertices.size());
+  tbb::parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
+    std::vector<SurfacePoint>& own = slabs[s].surface().vertices;
+    for (std::size_t i = 0; s > 0 && i < slabs[s].in_first_layer(); ++i)
+      own[i].normal += slabs[s - 1].surface().vertices[slabs[s - 1].own() + i].normal;
+    const std::size_t count = s + 1 < slabs.size() ? slabs[s].own() : own.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const double length = own[i].normal.norm();
+      if (length > 0.0) own[i].normal /= length;
+      all[offsets[s] + i] = own[i];
+    }
+  });
+  return all;
+}
+
+/// Appends what the slab has beside its vertices, whose numbers are offset.
+void append(const IsoSurface& slab, std::uint32_t offset, IsoSurface& all) {
+  for (const auto& [a, b, c] : slab.triangles) all.triangles.push_back({a + offset, b + offset, c + offset});
+  const auto listed = static_cast<std::uint32_t>(all.cells.vertices.size());
+  all.cells.centres.insert(all.cells.centres.end(), slab.cells.centres.begin(), slab.cells.centres.end());
+  for (const std::uint32_t vertex : slab.cells.vertices) all.cells.vertices.push_back(vertex + offset);
+  for (std::size_t i = 1; i < slab.cells.starts.size(); ++i) all.cells.starts.push_back(listed + slab.cells.starts[i]);
+}
 
 }  // namespace
 
-double cell_count(const DensityField& field) {
-  const Vec3 cells = (field.max - field.min) / field.spacing + Vec3::Constant(3.0);
-  return cells.x() * cells.y() * cells.z();
-}
+IsoSurface marching_cubes(const DensityField& field, KeptOfSurface kept) {
+  const NodeGrid grid(field);
+  const std::size_t layers = grid.count(2) - 1, thickness = (layers + kMostSlabs - 1) / kMostSlabs;
+  std::vector<Slab> slabs((layers + thickness - 1) / thickness);
+  tbb::enumerable_thread_specific<LayerPair> workspaces(grid);
+  tbb::parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
+    slabs[s].build(field, grid, kept, workspaces.local(), s * thickness, std::min((s + 1) * thickness, layers));
+  });
+  workspaces.clear();
 
-HalfEdgeMesh marching_cubes(const DensityField& field, CutCells* cells) {
-  return Builder(field, cells).build();
+  // The vertices in the layer where two slabs meet have the next one's numbers.
+  std::vector<std::size_t> offsets{0};
+  for (std::size_t s = 0; s + 1 < slabs.size(); ++s) offsets.push_back(offsets[s] + slabs[s].own());
+  IsoSurface surface;
+  surface.vertices = joined_vertices(slabs, offsets);
+  for (std::size_t s = 0; s < slabs.size(); ++s) {
+    append(slabs[s].surface(), static_cast<std::uint32_t>(offsets[s]), surface);
+    slabs[s] = {};
+  }
+  return surface;
 }
 
 }  // namespace hapbench

@@ -4,8 +4,8 @@
 
 namespace hapbench {
 
-ShellPoints points_by_cell(const HalfEdgeMesh& mesh, const CutCells& cells, double spacing) {
-  const std::vector<SurfacePoint> vertices = all_vertices(mesh);
+ShellPoints points_by_cell(const IsoSurface& surface, double spacing) {
+  const CutCells& cells = surface.cells;
   std::vector<SurfacePoint> centres;
   centres.reserve(cells.centres.size());
   for (const Vec3& centre : cells.centres) centres.push_back({centre});
@@ -16,7 +16,7 @@ ShellPoints points_by_cell(const HalfEdgeMesh& mesh, const CutCells& cells, doub
   std::uint32_t number = 0;
   for (const std::uint32_t cell : grid_order(centres, spacing)) {
     for (std::uint32_t i = cells.starts[cell]; i < cells.starts[cell + 1]; ++i) {
-      const SurfacePoint& vertex = vertices[cells.vertices[i]];
+      const SurfacePoint& vertex = surface.vertices[cells.vertices[i]];
       if (vertex.normal.isZero(0.0)) continue;
       shell.points.push_back(vertex);
       shell.cells.push_back(number);

@@ -14,7 +14,7 @@ void register_reduction();  ///< reduction/{50,250,1000}
 void register_laws();       ///< law/<algorithm>/{50,250,1000}
 void register_proxy();      ///< proxy/solve/T2
 void register_steps();      ///< step/{T1,T2,T2_proxy,T3,unreduced_1000,free_air}
-void register_shells();     ///< shell/{build,cache}
+void register_shells();     ///< shell/build
 void register_skips();      ///< skip/<what>/{taken,off}
 
 /// Every benchmark proves its answer before it is timed. One that cannot is ended by this, and the program with it by

@@ -4,7 +4,6 @@
 #include "scenarios/run/environment_points.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
-#include "tests/results/files.hpp"
 
 namespace hapbench::bench {
 namespace {
@@ -17,7 +16,7 @@ bool same_bytes(const Points& a, const Points& b) {
 
 void build(benchmark::State& state) {
   const Scenario& scenario = step_scenario("T1").scenario;
-  const auto built = [&scenario] { return environment_points(scenario, ShellCache()).points; };
+  const auto built = [&scenario] { return environment_points(scenario).points; };
   const Points points = built();
   // Marching cubes has its own proof (against scikit-image). A vertex lies on an edge that crosses the surface, so it
   // is no further from it than the edge is long.
@@ -30,22 +29,10 @@ void build(benchmark::State& state) {
   state.counters["points"] = static_cast<double>(points.size());
 }
 
-void cache(benchmark::State& state) {
-  const Scenario& scenario = step_scenario("T1").scenario;
-  const test::TemporaryDirectory directory;
-  const ShellCache kept(directory.path());
-  const Points points = environment_points(scenario, kept).points;
-  const EnvironmentPoints read = environment_points(scenario, kept);
-  if (!read.from_cache || !same_bytes(points, read.points)) return refute(state, "not what was kept");
-  for (auto _ : state) benchmark::DoNotOptimize(environment_points(scenario, kept));
-  state.counters["points"] = static_cast<double>(points.size());
-}
-
 }  // namespace
 
 void register_shells() {
   benchmark::RegisterBenchmark("shell/build", build)->Unit(benchmark::kMillisecond);
-  benchmark::RegisterBenchmark("shell/cache", cache)->Unit(benchmark::kMillisecond);
 }
 
 }  // namespace hapbench::bench

@@ -151,17 +151,13 @@ void add_free_air(Targets& targets) {
 
 void add_shells(Targets& targets) {
   const Scenario& scenario = step_scenario("T1").scenario;
-  const test::TemporaryDirectory directory;
-  const ShellCache cache(directory.path());
-  targets.push_back(at_most("`shell/build`, block at 0.1 mm",
-                            median_ms([&] { environment_points(scenario, ShellCache()); }), 500.0, "ms"));
-  environment_points(scenario, cache);
-  targets.push_back(at_most("`shell/cache`", median_ms([&] { environment_points(scenario, cache); }), 50.0, "ms"));
+  targets.push_back(
+      at_most("`shell/build`, block at 0.1 mm", median_ms([&] { environment_points(scenario); }), 500.0, "ms"));
 }
 
 test::ProgramRun run_quietly(std::vector<std::string> arguments, const std::vector<std::string>& overrides) {
   const test::TemporaryDirectory directory;
-  arguments.insert(arguments.begin(), {"run", "--quiet", "--out", directory.path().string(), "--no-cache"});
+  arguments.insert(arguments.begin(), {"run", "--quiet", "--out", directory.path().string()});
   for (const std::string& value : overrides) arguments.insert(arguments.end(), {"--set", value});
   test::ProgramRun run = test::hapbench(arguments);
   if (run.status != 0) throw std::runtime_error("hapbench " + arguments.back() + ": " + run.err);

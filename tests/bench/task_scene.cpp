@@ -83,7 +83,7 @@ const TaskScene& task_scene(const std::string& task) {
 std::shared_ptr<const PointShell> block_shell() {
   static const auto shell = [] {
     const Scenario& scenario = step_scenario("T1").scenario;
-    return make_shell(scenario, environment_points(scenario, ShellCache()));
+    return make_shell(scenario);
   }();
   return shell;
 }

@@ -25,7 +25,7 @@ from hapbench_report.replay_rows import rows_to_show, settled, sizes, steps, wor
 from hapbench_report.replay_sound import high_passed, sound, strongest  # noqa: E402
 from hapbench_report.replay_tool import tool_profile  # noqa: E402
 
-ENVIRONMENT = {**os.environ, "HAPBENCH_CACHE_DIR": "", "HAPBENCH_PYTHON": sys.executable, "COLUMNS": "80"}
+ENVIRONMENT = {**os.environ, "HAPBENCH_PYTHON": sys.executable, "COLUMNS": "80"}
 
 
 def hapbench(*words, locale="C", expected=0):

@@ -1,5 +1,7 @@
 #include "tests/support/meshes.hpp"
 
+#include <gtest/gtest.h>
+
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -121,6 +123,16 @@ DensityField noise(std::uint64_t seed) {
   field.spacing = 1.0;
   field.signed_distance = [value](const Vec3& p) { return p.cwiseAbs().maxCoeff() > 3.2 ? 1e-9 : value(p); };
   return field;
+}
+
+HalfEdgeMesh half_edge_mesh(const IsoSurface& surface) {
+  HalfEdgeMesh mesh;
+  std::vector<OpenMesh::VertexHandle> vertices;
+  for (const SurfacePoint& v : surface.vertices)
+    vertices.push_back(mesh.add_vertex({v.position.x(), v.position.y(), v.position.z()}));
+  for (const auto& [a, b, c] : surface.triangles)
+    EXPECT_TRUE(mesh.add_face(vertices[a], vertices[b], vertices[c]).is_valid());
+  return mesh;
 }
 
 double enclosed_volume(const HalfEdgeMesh& mesh) {

@@ -31,6 +31,10 @@ TriangleSoup reversed(TriangleSoup soup);
 /// touching corners.
 DensityField noise(std::uint64_t seed);
 
+/// The surface with its neighbours, which OpenMesh only builds of manifolds: fails the test if a triangle does not fit.
+/// Precondition: the surface has its triangles.
+HalfEdgeMesh half_edge_mesh(const IsoSurface& surface);
+
 /// By the divergence theorem; positive for closed surfaces with outward winding.
 double enclosed_volume(const HalfEdgeMesh& mesh);
 double surface_area(const HalfEdgeMesh& mesh);

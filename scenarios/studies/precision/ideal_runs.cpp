@@ -58,7 +58,7 @@ static PrecisionResult study_spacing(const Scenario& given, const PrecisionOptio
       auto& environment = std::get<BlockEnvironment>(scenario.environment);
       environment.density = density;
       environment.grid = spacing;
-      const auto shell = shell_of(scenario, options);
+      const auto shell = make_shell(scenario);
       PrecisionRow row = ideal_row(fmt::format("{} {}", name, spacing), scenario, shell, options.repetitions);
       const double points = static_cast<double>(shell->size());
       const double bytes = static_cast<double>(shell->padded_size() * 6 * sizeof(double));
@@ -72,7 +72,7 @@ static PrecisionResult study_spacing(const Scenario& given, const PrecisionOptio
 
 static PrecisionResult study_algorithms(const Scenario& given, const PrecisionOptions& options) {
   const Scenario scenario = drill_in_hole(given);
-  const auto shell = shell_of(scenario, options);
+  const auto shell = make_shell(scenario);
   PrecisionResult result;
   result.columns = kIdealColumns;
   result.timed = "step";
@@ -110,7 +110,7 @@ static PrecisionResult study_algorithms(const Scenario& given, const PrecisionOp
 const PrecisionStudy kSpacingStudy = {"spacing", "shell spacing and density against the ideal trajectory",
                                       "rotate_in_hole", study_spacing};
 
-const PrecisionStudy kAlgorithmsStudy = {"algorithms", "every algorithm against the ideal trajectory",
-                                         "rotate_in_hole", study_algorithms};
+const PrecisionStudy kAlgorithmsStudy = {"algorithms", "every algorithm against the ideal trajectory", "rotate_in_hole",
+                                         study_algorithms};
 
 }  // namespace hapbench

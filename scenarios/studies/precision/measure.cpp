@@ -49,10 +49,6 @@ constexpr double kPeriod = 6.0;  // of the tilt of task 2 [s]
 
 }  // namespace
 
-std::shared_ptr<const PointShell> shell_of(const Scenario& scenario, const PrecisionOptions& options) {
-  return make_shell(scenario, environment_points(scenario, options.cache));
-}
-
 SampledRun sampled_run(const Scenario& scenario, std::shared_ptr<const PointShell> shell, std::uint64_t stride,
                        std::vector<Observer*> observers) {
   const SimulationConfig config = simulation_config(scenario);
@@ -131,17 +127,16 @@ Scenario drill_in_hole(Scenario scenario) {
   return scenario;
 }
 
-std::vector<ContactBuffer> contact_sets(Scenario scenario, const PrecisionOptions& options, std::uint64_t stride) {
+std::vector<ContactBuffer> contact_sets(Scenario scenario, std::uint64_t stride) {
   scenario.rendering.reduction.reset();
   scenario.rendering.local_average = false;
-  return rendered_contact_sets(scenario, options, stride);
+  return rendered_contact_sets(scenario, stride);
 }
 
-std::vector<ContactBuffer> rendered_contact_sets(const Scenario& scenario, const PrecisionOptions& options,
-                                                 std::uint64_t stride) {
+std::vector<ContactBuffer> rendered_contact_sets(const Scenario& scenario, std::uint64_t stride) {
   std::vector<ContactBuffer> sets;
   ContactSampler sampler(stride, sets);
-  Simulation simulation(simulation_config(scenario), assemble(scenario, shell_of(scenario, options), {}), {&sampler});
+  Simulation simulation(simulation_config(scenario), assemble(scenario, make_shell(scenario), {}), {&sampler});
   run_to_end(simulation);
   return sets;
 }

@@ -20,9 +20,6 @@ struct SampledRun {
   bool in_contact = false;      ///< in any row
 };
 
-/// The shell of a scenario as make_shell makes it; may come from the cache.
-std::shared_ptr<const PointShell> shell_of(const Scenario& scenario, const PrecisionOptions& options);
-
 SampledRun sampled_run(const Scenario& scenario, std::shared_ptr<const PointShell> shell, std::uint64_t stride,
                        std::vector<Observer*> observers = {});
 
@@ -70,10 +67,9 @@ Scenario drill_in_hole(Scenario scenario);
 
 /// The colliding points of every `stride`-th row of a scenario, with depth and gradient, before any point stage. Rows
 /// without contact are left out.
-std::vector<ContactBuffer> contact_sets(Scenario scenario, const PrecisionOptions& options, std::uint64_t stride);
+std::vector<ContactBuffer> contact_sets(Scenario scenario, std::uint64_t stride);
 
 /// The same after the point stages of the scenario.
-std::vector<ContactBuffer> rendered_contact_sets(const Scenario& scenario, const PrecisionOptions& options,
-                                                 std::uint64_t stride);
+std::vector<ContactBuffer> rendered_contact_sets(const Scenario& scenario, std::uint64_t stride);
 
 }  // namespace hapbench

@@ -128,7 +128,7 @@ static PrecisionResult study_merging(const Scenario& given, const PrecisionOptio
   for (const double spacing : kSpacings) {
     Scenario scenario = drill_in_hole(given);
     std::get<BlockEnvironment>(scenario.environment).grid = spacing;
-    const std::vector<ContactBuffer> sets = contact_sets(scenario, options, kStride);
+    const std::vector<ContactBuffer> sets = contact_sets(scenario, kStride);
     if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
     const std::vector<Vec3> reference = exact_forces(sets, scenario.rendering);
     for (const Way& way : kWays) {

@@ -88,7 +88,7 @@ class Measurement {
 }  // namespace
 
 static PrecisionResult study_reduction(const Scenario& scenario, const PrecisionOptions& options) {
-  const std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(scenario), options, kStride);
+  const std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(scenario), kStride);
   if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
   Measurement measurement(sets, scenario.rendering.iterations);
   std::vector<Way> ways;

@@ -45,7 +45,7 @@ PrecisionRow measure(int iterations, std::vector<ContactBuffer>& sets, const std
 }  // namespace
 
 static PrecisionResult study_shaping(const Scenario& scenario, const PrecisionOptions& options) {
-  std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(scenario), options, kStride);
+  std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(scenario), kStride);
   if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
   std::vector<Mat3> optimum;
   for (ContactBuffer& set : sets) optimum.push_back(shape(set, kExact));

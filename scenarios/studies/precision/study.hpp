@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "scenarios/description/scenario.hpp"
-#include "scenarios/input/shell_cache.hpp"
 
 /// Run time against error: one row per setting of one thing (a time step, a number of iterations, an algorithm), with
 /// its error against a reference and the time it takes.
@@ -37,7 +36,6 @@ struct PrecisionResult {
 
 struct PrecisionOptions {
   int repetitions = 5;
-  ShellCache cache;
   std::function<void(std::size_t done, std::size_t all)> progress = [](std::size_t, std::size_t) {};
 };
 

@@ -82,7 +82,7 @@ static PrecisionResult study_time_step(const Scenario& given, const PrecisionOpt
   const bool ideal = has_ideal(given), free = moves_freely(given);
   const Scenario scenario = ideal ? drill_in_hole(given) : any_scene(given);
   const Cylinder tool = make_cylinder(scenario.tool);
-  const auto shell = shell_of(scenario, options);
+  const auto shell = make_shell(scenario);
   const SampledRun reference = reference_run(scenario, shell);
 
   PrecisionResult result;

@@ -100,9 +100,8 @@ Edge find_edge(const Way& way, const std::function<bool(double)>& stable, bool b
 /// Finds the limits of one scenario's algorithms.
 class Search {
  public:
-  Search(const ScenarioText& scenario, const std::vector<std::string>& overrides, const LimitQuestion& question,
-         const ShellCache& cache)
-      : scenario_(scenario), overrides_(overrides), question_(question), way_(question), shells_(cache) {}
+  Search(const ScenarioText& scenario, const std::vector<std::string>& overrides, const LimitQuestion& question)
+      : scenario_(scenario), overrides_(overrides), question_(question), way_(question) {}
 
   FieldLimit limit(const std::string& algorithm) {
     FieldLimit limit;
@@ -262,8 +261,8 @@ LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std
 
 std::vector<FieldLimit> field_limits(const ScenarioText& scenario, const std::vector<std::string>& overrides,
                                      const std::vector<std::string>& algorithms, const LimitQuestion& question,
-                                     const ShellCache& cache, const JobOptions& jobs) {
-  Search search(scenario, overrides, question, cache);
+                                     const JobOptions& jobs) {
+  Search search(scenario, overrides, question);
   std::vector<FieldLimit> limits(algorithms.size());
   for_each_job(algorithms.size(), jobs, [&](std::size_t i) { limits[i] = search.limit(algorithms[i]); });
   return limits;

@@ -63,6 +63,6 @@ LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std
 /// Throws InputError, with the file, for a scene without a free position or with fewer than 4 steps.
 std::vector<FieldLimit> field_limits(const ScenarioText& scenario, const std::vector<std::string>& overrides,
                                      const std::vector<std::string>& algorithms, const LimitQuestion& question,
-                                     const ShellCache& cache, const JobOptions& jobs);
+                                     const JobOptions& jobs);
 
 }  // namespace hapbench

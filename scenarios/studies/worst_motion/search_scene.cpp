@@ -113,7 +113,7 @@ void check_search_scene(const Scenario& scenario) {
 
 SearchScene search_scene(const Scenario& scenario) {
   check_search_scene(scenario);
-  SearchScene scene{scenario, make_shell(scenario, environment_points(scenario, ShellCache())), false, {}};
+  SearchScene scene{scenario, make_shell(scenario), false, {}};
   if (scene.shell->size() == 0) {
     throw InputError(InputError::Kind::relation, "/environment", "has no points; allowed for --search: a surface");
   }

@@ -54,7 +54,7 @@ def rerun_commands(scene):
 
 
 def call(program, *arguments):
-    line = [str(program), *map(str, arguments), "--quiet", "--no-cache"]
+    line = [str(program), *map(str, arguments), "--quiet"]
     try:
         done = subprocess.run(line, capture_output=True, text=True, timeout=600, stdin=subprocess.DEVNULL)
     except (OSError, subprocess.TimeoutExpired) as error:

@@ -14,7 +14,6 @@ const Provenance kProvenance = {.version = "1.2.3",
 
 TEST(Timing, TextHoldsMeanTimeInstructionSetAndCpu) {
   EXPECT_EQ(timing_text({.shell = 0.25,
-                         .shell_from_cache = true,
                          .loop = 0.5,
                          .steps = 2000,
                          .latency = {},
@@ -24,7 +23,6 @@ TEST(Timing, TextHoldsMeanTimeInstructionSetAndCpu) {
                         {.march = "native", .widest = "avx2", .simd = true}, kProvenance),
             R"({
   "shell_s": 0.25,
-  "shell_from_cache": true,
   "loop_s": 0.5,
   "steps": 2000,
   "step_mean_s": 0.00025,

@@ -132,7 +132,7 @@ TEST_F(BatchPlanOf, RunsWritesTheSameFilesWhateverTheJobs) {
   const BatchReport report = run("one", 1);
   run("four", 4);
   test::expect_same_files(directory_ / "one", directory_ / "four");
-  const RunReport alone = run_scenario(scenario_of(plan, 10), directory_ / "alone", false, ShellCache());
+  const RunReport alone = run_scenario(scenario_of(plan, 10), directory_ / "alone", false);
   test::expect_same_files(directory_ / "one/springs/summation/seed_1", directory_ / "alone");
   EXPECT_EQ(report.runs[10].summary.metrics.state_hash, alone.summary.metrics.state_hash);
   EXPECT_NE(report.runs[9].summary.metrics.state_hash, alone.summary.metrics.state_hash) << "other springs";

@@ -20,7 +20,7 @@ using test::read_file;
 
 TEST(SharedShells, MakesEachOnceAndDropsItAfterItsLastRun) {
   const SweepPlan plan = plan_of(minimal_scenario("plane"), {"environment.spacing_m=0.0005,0.0004"});
-  SharedShells shells({2, 1}, ShellCache());
+  SharedShells shells({2, 1});
   auto first = shells.take(0, scenario_of(plan, 0).scenario);
   const auto other = shells.take(1, scenario_of(plan, 1).scenario);
   EXPECT_NE(first, other);
@@ -52,7 +52,7 @@ TEST_F(RunSweep, HasForEachRunWhatTheRunAloneHas) {
   const SweepReport report = run(plan, directory_.path());
   ASSERT_EQ(report.rows.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {
-    const RunReport alone = run_scenario(scenario_of(plan, i), std::nullopt, false, ShellCache());
+    const RunReport alone = run_scenario(scenario_of(plan, i), std::nullopt, false);
     EXPECT_EQ(report.rows[i], sweep_row(plan, i, alone.summary));
     EXPECT_GT(alone.summary.metrics.force_max, 0.0);
   }

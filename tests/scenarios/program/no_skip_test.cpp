@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/results/files.hpp"
-#include "tests/scenarios/support/environment_variable.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
 
@@ -44,20 +43,6 @@ TEST(NoSkip, ComparesTheSame) {
   EXPECT_EQ(hapbench(skipping).status, 0);
   EXPECT_EQ(hapbench(computing).status, 0);
   test::expect_same_files(with, without, {"summary.json"});
-}
-
-TEST(NoSkip, BuildsTheShellAnew) {
-  const test::TemporaryDirectory directory;
-  const std::string environment = R"(environment={"type":"block_with_hole","size_m":[0.006,0.006,0.004],)"
-                                  R"("hole_diameter_m":0.002,"hole_depth_m":0.002,"grid_m":0.0002})";
-  const test::EnvironmentVariable cache("HAPBENCH_CACHE_DIR", (directory / "cache").string());
-  for (const char* name : {"first", "second"}) {
-    hapbench({"run", "poke_plane", "--set", environment, "--set", "time.duration_s=0.001", "--set",
-              "record.timing=true", "--out", (directory / name).string(), "--no-skip"});
-    EXPECT_EQ(Json::parse(test::read_file(directory / (std::string(name) + "/timing.json")))["shell_from_cache"],
-              false);
-  }
-  EXPECT_FALSE(fs::exists(directory / "cache"));
 }
 
 }  // namespace

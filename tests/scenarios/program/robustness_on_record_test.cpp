@@ -33,10 +33,10 @@ TEST(RobustnessOnRecord, IsWhatTheProgramMakesOfAFewSamples) {
   const auto rows = test::lines_of(test::read_file(kReference / "robustness.csv"));
   const std::vector<Claim> claims = claims_of(parts_of(rows.at(0), ','), 1 + choices.all().size());
   const RobustnessPlan plan =
-      plan_robustness(choices, PublishedNumbers(kReference / "published"), claims, {}, ShellCache(), rows.size() - 1);
+      plan_robustness(choices, PublishedNumbers(kReference / "published"), claims, {}, rows.size() - 1);
   ASSERT_EQ(robustness_table(plan, std::vector<std::vector<std::string>>(plan.samples())).find(rows[0] + "\n"), 0u);
   const test::TemporaryDirectory directory;
-  RecentShells shells((ShellCache()));
+  RecentShells shells;
   for (const std::size_t sample : {std::size_t{0}, plan.costly_samples(), plan.samples() - 1}) {
     const SampleVerdicts judged = judge_sample(plan, shells, sample, directory / "sample");
     EXPECT_EQ(robustness_row(plan, sample, judged.verdicts), rows[1 + sample])
@@ -56,11 +56,11 @@ TEST(RobustnessOnRecord, OfTheChoicesOnRecordIsTheLedger) {
       verdicts.push_back(entry.at("verdict"));
     }
   }
-  RobustnessPlan plan = plan_robustness(Choices(kReference / "choices.json"),
-                                        PublishedNumbers(kReference / "published"), claims, {}, ShellCache(), 1);
+  RobustnessPlan plan =
+      plan_robustness(Choices(kReference / "choices.json"), PublishedNumbers(kReference / "published"), claims, {}, 1);
   plan.values = {plan.choices.values_on_record()};
   const test::TemporaryDirectory directory;
-  RecentShells shells((ShellCache()));
+  RecentShells shells;
   const SampleVerdicts judged = judge_sample(plan, shells, 0, directory / "sample");
   EXPECT_EQ(judged.verdicts, verdicts);
   EXPECT_TRUE(judged.problems.empty());

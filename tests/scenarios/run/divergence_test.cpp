@@ -21,7 +21,7 @@ TEST(Divergence, OfTheHandleEndsTheRun) {
     "hand": {"type": "impedance", "stiffness_N_per_m": 500, "damping_N_s_per_m": 50,
              "target": {"x_m": 0, "y_m": 0, "z_m": -0.001}}
   })");
-  const RunReport run = run_scenario(read_scenario(scenario, "."), std::nullopt, false, ShellCache());
+  const RunReport run = run_scenario(read_scenario(scenario, "."), std::nullopt, false);
   EXPECT_EQ(run.summary.result.outcome, Outcome::diverges);
   const std::string quantity = run.summary.result.divergence.quantity;
   EXPECT_TRUE(quantity == "handle position" || quantity == "handle velocity" || quantity == "measured force")

@@ -75,7 +75,7 @@ TEST(Drag, OverAMeshKeepsContactAndAllocatesNothing) {
   json["initial"]["position_m"] = {-0.002, 0, 0.0057};
   json["tool"] = {{"diameter_m", 0.001}, {"tip", "round"}};
   json["hand"]["tilt_rad"] = 0.3;
-  const RunReport report = run_scenario(read_scenario(json, HAPBENCH_TEST_DATA), std::nullopt, false, ShellCache());
+  const RunReport report = run_scenario(read_scenario(json, HAPBENCH_TEST_DATA), std::nullopt, false);
   EXPECT_EQ(report.summary.work.allocations, 0u);
   EXPECT_EQ(report.summary.result.outcome, Outcome::completes);
   // Lowered at 20 mm/s it is on the cube after a tenth of a second.

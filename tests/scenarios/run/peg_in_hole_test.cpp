@@ -10,7 +10,7 @@ namespace hapbench {
 namespace {
 
 RunReport report_of(const std::string& scenario) {
-  return run_scenario(load_scenario(find_scenario(scenario)), std::nullopt, false, ShellCache());
+  return run_scenario(load_scenario(find_scenario(scenario)), std::nullopt, false);
 }
 
 TEST(PegInHole, VibratesFiveTimesLessWithShapedStiffness) {

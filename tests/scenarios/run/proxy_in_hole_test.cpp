@@ -45,7 +45,7 @@ class PointsInProxy final : public Observer {
 TEST(ProxyInHole, NeitherEntersTheShellNorGetsStifferThanOneSpring) {
   Scenario scenario = rotate_in_hole("proxy").scenario;
   scenario.time.steps = 10'240;  // one period of the tilt
-  const auto shell = make_shell(scenario, environment_points(scenario, ShellCache()));
+  const auto shell = make_shell(scenario);
   SimulationParts parts = assemble(scenario, shell, {});
   PointsInProxy points(*shell, *parts.tool, scenario.rendering.stiffness);
   Simulation simulation(simulation_config(scenario), std::move(parts), {&points});
@@ -56,7 +56,7 @@ TEST(ProxyInHole, NeitherEntersTheShellNorGetsStifferThanOneSpring) {
 
 TEST(ProxyInHole, IsFiveTimesNearerToTheIdealTrajectoryThanShapingAndVibratesLess) {
   const auto summary = [](const char* algorithm) {
-    return run_scenario(rotate_in_hole(algorithm), std::nullopt, false, ShellCache()).summary;
+    return run_scenario(rotate_in_hole(algorithm), std::nullopt, false).summary;
   };
   const RunSummary proxy = summary("proxy"), shaped = summary("shaped_stiffness");
   EXPECT_LE(proxy.ideal_trajectory->firm.height_rms, 0.00015);

@@ -43,9 +43,9 @@ class WithAndWithoutSkips : public testing::Test {
     LoadedScenario loaded = read_scenario(shortened(scenario), from);
     const fs::path taken = directory_ / "taken", off = directory_ / "off";
     for (const fs::path& old : {taken, off}) fs::remove_all(old);
-    run_scenario(loaded, taken, false, ShellCache(directory_ / "cache"));
+    run_scenario(loaded, taken, false);
     loaded.scenario.rendering.skips = Skips::off;
-    run_scenario(loaded, off, false, ShellCache());
+    run_scenario(loaded, off, false);
     test::expect_same_files(taken, off, {"summary.json", "timing.json"});
     Json work_taken, work_off;
     EXPECT_EQ(summary_without_work(taken / "summary.json", work_taken),

@@ -23,7 +23,7 @@ double steady_response(double K, double B, double M, double dt, const Profile::S
 TEST(TenMinutesInContact, EndWhereTheClosedFormSaysAndMakeNoEnergy) {
   const LoadedScenario loaded = load_scenario(find_scenario("ten_minutes_in_contact"));
   const Scenario& scenario = loaded.scenario;
-  const RunReport report = run_scenario(loaded, std::nullopt, false, ShellCache());
+  const RunReport report = run_scenario(loaded, std::nullopt, false);
   EXPECT_EQ(report.unmet, std::vector<std::string>{});
   EXPECT_EQ(report.summary.result.rows, 1'200'000u);
 

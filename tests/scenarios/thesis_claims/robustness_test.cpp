@@ -88,7 +88,7 @@ class Robustness : public testing::Test {
   RobustnessPlan plan(std::size_t samples) const {
     return plan_robustness(Choices(directory_ / "choices.json"),
                            PublishedNumbers(HAPBENCH_SCENARIOS "/../results/reference/published"), claims(),
-                           {{"springs_unlimited_mean", {"metrics"}}}, ShellCache(), samples);
+                           {{"springs_unlimited_mean", {"metrics"}}}, samples);
   }
   RobustnessReport run(const RobustnessPlan& plan, std::size_t jobs) const {
     return run_robustness(plan, {directory_.path(), jobs, false, false});

@@ -12,13 +12,10 @@ int main(int count, char** arguments) {
   const auto number = [arguments](int i) { return std::strtod(arguments[i], nullptr); };
   const BlockWithHole block{{number(1), number(2), number(3)}, number(4), number(5)};
   const Density density = arguments[7] == std::string("binary") ? Density::binary : Density::signed_distance;
-  const HalfEdgeMesh mesh = marching_cubes(density_field(block, number(6), density));
-  std::printf("%zu %zu\n", mesh.n_vertices(), mesh.n_faces());
-  for (const auto v : mesh.vertices())
-    std::printf("%.17g %.17g %.17g\n", mesh.point(v)[0], mesh.point(v)[1], mesh.point(v)[2]);
-  for (const auto f : mesh.faces()) {
-    for (auto v = mesh.cfv_iter(f); v.is_valid(); ++v) std::printf("%d ", v->idx());
-    std::printf("\n");
-  }
+  const IsoSurface surface = marching_cubes(density_field(block, number(6), density), {.triangles = true});
+  std::printf("%zu %zu\n", surface.vertices.size(), surface.triangles.size());
+  for (const SurfacePoint& v : surface.vertices)
+    std::printf("%.17g %.17g %.17g\n", v.position.x(), v.position.y(), v.position.z());
+  for (const auto& [i, j, k] : surface.triangles) std::printf("%u %u %u\n", i, j, k);
   return 0;
 }

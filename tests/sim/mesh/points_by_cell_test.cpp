@@ -19,12 +19,12 @@ Coordinates coordinates(const Vec3& p) {
   return {p.x(), p.y(), p.z()};
 }
 
-struct Surface {
-  explicit Surface(const DensityField& field) : mesh(marching_cubes(field, &cells)), spacing(field.spacing) {}
-  ShellPoints shell() const { return points_by_cell(mesh, cells, spacing); }
+/// A surface with its cells, and what is made of it.
+struct Surface : IsoSurface {
+  explicit Surface(const DensityField& field)
+      : IsoSurface(marching_cubes(field, {.cells = true})), spacing(field.spacing) {}
+  ShellPoints shell() const { return points_by_cell(*this, spacing); }
 
-  CutCells cells;
-  HalfEdgeMesh mesh;
   double spacing;
 };
 
@@ -49,7 +49,7 @@ std::map<std::size_t, std::size_t> histogram(const ShellPoints& shell) {
 TEST(PointsByCell, OfTheThesisBlockAreAtMostFiveInACellAndFourForEachVertex) {
   const Surface surface(density_field(BlockWithHole(), 0.0001, Density::signed_distance));
   const ShellPoints shell = surface.shell();
-  EXPECT_EQ(surface.mesh.n_vertices(), 109'000u);
+  EXPECT_EQ(surface.vertices.size(), 109'000u);
   EXPECT_EQ(shell.points.size(), 436'000u);
   // Thesis C.2: "at least one and at most 5".
   EXPECT_EQ(histogram(shell), (std::map<std::size_t, std::size_t>{{3, 52}, {4, 108'906}, {5, 44}}));
@@ -62,7 +62,9 @@ TEST(PointsByCell, ListEachVertexOnceForEachCellAroundItsEdge) {
     const Surface surface(test::noise(seed));
     const ShellPoints shell = surface.shell();
     std::map<Coordinates, std::size_t> vertices;
-    for (const SurfacePoint& vertex : vertices_with_normals(surface.mesh)) ++vertices[coordinates(vertex.position)];
+    for (const SurfacePoint& vertex : surface.vertices) {
+      if (!vertex.normal.isZero(0.0)) ++vertices[coordinates(vertex.position)];
+    }
     const auto cells = cells_of_positions(shell);
     ASSERT_EQ(cells.size(), vertices.size()) << seed;
     for (const auto& [position, times] : vertices) {
@@ -84,8 +86,7 @@ TEST(PointsByCell, CutCellsHoldTheVerticesOfTheirTriangles) {
       ASSERT_GE(starts[cell + 1] - starts[cell], 3u);
       ASSERT_LE(starts[cell + 1] - starts[cell], 12u);
       for (std::uint32_t i = starts[cell]; i < starts[cell + 1]; ++i) {
-        const auto& p = surface.mesh.point(OpenMesh::VertexHandle(static_cast<int>(vertices[i])));
-        ASSERT_LE((Vec3(p[0], p[1], p[2]) - centres[cell]).cwiseAbs().maxCoeff(), half);
+        ASSERT_LE((surface.vertices[vertices[i]].position - centres[cell]).cwiseAbs().maxCoeff(), half);
       }
     }
   }
@@ -95,7 +96,7 @@ TEST(PointsByCell, AreTheMeshsVerticesCellAfterCell) {
   const Surface surface(density_field({{0.004, 0.005, 0.004}, 0.002, 0.002}, 0.0002, Density::binary));
   const ShellPoints shell = surface.shell();
   std::map<Coordinates, Vec3> normals;
-  for (const SurfacePoint& v : vertices_with_normals(surface.mesh)) normals[coordinates(v.position)] = v.normal;
+  for (const SurfacePoint& v : surface.vertices) normals[coordinates(v.position)] = v.normal;
   std::uint32_t next = 0;
   ASSERT_EQ(shell.points.size(), shell.cells.size());
   for (std::size_t i = 0; i < shell.points.size(); ++i) {
@@ -106,15 +107,6 @@ TEST(PointsByCell, AreTheMeshsVerticesCellAfterCell) {
   }
   EXPECT_EQ(next, surface.cells.centres.size());
   EXPECT_EQ(PointShell(shell.points, 0.0002, shell.cells).cell_of_points(), shell.cells);
-}
-
-TEST(PointsByCell, LeaveTheMeshAlone) {
-  const DensityField field = density_field({{0.004, 0.005, 0.004}, 0.002, 0.002}, 0.0002, Density::signed_distance);
-  const Surface surface(field);
-  const HalfEdgeMesh alone = marching_cubes(field);
-  ASSERT_EQ(alone.n_vertices(), surface.mesh.n_vertices());
-  ASSERT_EQ(alone.n_faces(), surface.mesh.n_faces());
-  for (const auto v : alone.vertices()) ASSERT_EQ(alone.point(v), surface.mesh.point(v));
 }
 
 }  // namespace

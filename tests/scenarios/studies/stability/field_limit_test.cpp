@@ -25,7 +25,7 @@ std::vector<FieldLimit> ask(const Asked& asked, const Words& algorithms = {"summ
   const ScenarioText scenario = read_scenario_text(find_scenario(asked.scenario));
   LimitQuestion question = limit_question(scenario, asked.overrides, asked.field, asked.range);
   question.smallest = asked.smallest;
-  return field_limits(scenario, asked.overrides, algorithms, question, ShellCache(), {threads, ""});
+  return field_limits(scenario, asked.overrides, algorithms, question, {threads, ""});
 }
 
 /// 2000 steps, within which a decay of a tenth in a quarter tells stable from vibrating 0.1 % below the limit.

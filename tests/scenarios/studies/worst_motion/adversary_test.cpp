@@ -57,14 +57,14 @@ TEST(Adversary, WritesAScenarioThatShowsWhatWasFound) {
   const SearchResult found = search_adversary(scene("original_averaging"), options(100));
   const test::TemporaryDirectory directory;
   test::write_plainly(directory / "found.json", text_of(found));
-  const RunReport report = run_scenario(load_scenario(directory / "found.json"), std::nullopt, false, ShellCache());
+  const RunReport report = run_scenario(load_scenario(directory / "found.json"), std::nullopt, false);
   EXPECT_EQ(report.unmet, std::vector<std::string>{});
   EXPECT_EQ(report.summary.metrics.state_hash, found.run.metrics.state_hash);
   EXPECT_EQ(badness_of(Badness::created, report.summary), found.badness);
   // Its expectation is one that a tame algorithm fails.
   const LoadedScenario tame =
       load_scenario(directory / "found.json", std::vector<std::string>{"rendering.algorithm=mean"});
-  EXPECT_FALSE(run_scenario(tame, std::nullopt, false, ShellCache()).unmet.empty());
+  EXPECT_FALSE(run_scenario(tame, std::nullopt, false).unmet.empty());
 }
 
 TEST(Adversary, IsTheSameForASeedWhateverTheNumberOfThreads) {
@@ -107,7 +107,7 @@ TEST(Adversary, SearchesAnySurfaceAndShowsWhatWasFound) {
     EXPECT_GT(found.badness, 0.0);
     const test::TemporaryDirectory directory;
     test::write_plainly(directory / "found.json", json_text(effective_scenario(found.scenario, directory.path())));
-    const RunReport report = run_scenario(load_scenario(directory / "found.json"), std::nullopt, false, ShellCache());
+    const RunReport report = run_scenario(load_scenario(directory / "found.json"), std::nullopt, false);
     EXPECT_EQ(report.unmet, std::vector<std::string>{});
     EXPECT_EQ(report.summary.metrics.state_hash, found.run.metrics.state_hash);
   }
