@@ -1,5 +1,7 @@
 #include "sim/contact/grid_scan.hpp"
 
+#include <algorithm>
+
 namespace hapbench {
 
 /// A run of n points meets at most n / 8 + 2 packs.
@@ -17,6 +19,13 @@ std::size_t GridScan::select(const Box& box) noexcept {
     points += last - first;
   });
   return points;
+}
+
+bool GridScan::any_hit() const {
+  std::size_t packs = 0;
+  for (const PackRange& run : this->packs()) packs += run.last - run.first;
+  return std::any_of(marks_.begin(), marks_.begin() + static_cast<std::ptrdiff_t>(packs),
+                     [](std::uint8_t hits) { return hits != 0; });
 }
 
 }  // namespace hapbench

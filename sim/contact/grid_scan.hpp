@@ -25,6 +25,8 @@ class GridScan {
   std::span<const PackRange> packs() const noexcept { return {packs_.data(), runs_}; }
   std::uint8_t* marks() noexcept { return marks_.data(); }
 
+  /// True if some point is marked.
+  bool any_hit() const;
   /// Calls `take(hits, i)` where some of the eight points from i on are marked, in ascending order of the grid.
   template <class Take>
   void for_each_hit(Take take) const {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "sim/contact/most_points.hpp"
+
 namespace hapbench {
 namespace {
 
@@ -13,21 +15,29 @@ constexpr int kMostDoublings = 12;
 /// Relative slack for the rounding of how far the tool has moved and of the search itself, far above both.
 constexpr double kSlack = 1e-9;
 
+/// The largest coordinate of a tool that has points of the shell within twice its reach; one further away has none to
+/// list.
+double largest_scale(const PointShell& shell, const ToolShape& tool) {
+  const Box& box = shell.bounds();
+  return std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()) + 4.0 * tool.reach();
+}
+
 }  // namespace
 
 NeighbourListQuery::NeighbourListQuery(const PointShell& shell, const ToolShape& tool)
     : shell_(&shell),
       tool_(&tool),
       skin_wanted_(kSkinPerHalfWidth * tool.half_width()),
+      capacity_(most_points_in(shell, tool.cover(margin_of(skin_wanted_, largest_scale(shell, tool))))),
       grid_(shell),
       scan_(grid_),
-      index_(shell.padded_size()),
-      x_(shell.padded_size()),
-      y_(shell.padded_size()),
-      z_(shell.padded_size()),
-      nx_(shell.padded_size()),
-      ny_(shell.padded_size()),
-      nz_(shell.padded_size()) {}
+      index_(simd::padded(capacity_)),
+      x_(simd::padded(capacity_)),
+      y_(simd::padded(capacity_)),
+      z_(simd::padded(capacity_)),
+      nx_(simd::padded(capacity_)),
+      ny_(simd::padded(capacity_)),
+      nz_(simd::padded(capacity_)) {}
 
 void NeighbourListQuery::reset() noexcept {
   work_ = {};
@@ -53,21 +63,30 @@ void NeighbourListQuery::rebuild(const ToolPose& pose) noexcept {
   list_pose_ = pose;
   skin_ = skin_wanted_;
   collect(pose, skin_);
-  for (int i = 0; i < kMostDoublings && list_size_ == 0; ++i) {
-    collect(pose, 2.0 * skin_);
-    if (list_size_ == 0) skin_ *= 2.0;
-  }
-  // The last search looked twice as far and found points; within the skin there is none.
-  if (skin_ > skin_wanted_) list_size_ = 0;
+  if (list_size_ > 0) return;
+  for (int i = 0; i < kMostDoublings && is_empty(pose, 2.0 * skin_); ++i) skin_ *= 2.0;
+}
+
+/// How far a search must look so that rounding loses no point within the skin; `scale` is the largest coordinate.
+double NeighbourListQuery::margin_of(double skin, double scale) const noexcept {
+  return skin + kSlack * (skin + tool_->reach()) + 1e-12 * scale;
+}
+
+/// Marks the points within `skin` of the tool (and some just beyond).
+void NeighbourListQuery::mark_near(const ToolPose& pose, double skin) noexcept {
+  const double margin = margin_of(skin, pose.position.cwiseAbs().maxCoeff() + tool_->reach());
+  work_.points_tested += scan_.select(tool_->box_near(pose, margin, grid_.bounds()));
+  tool_->mark_near(pose, margin, scan_.points(), scan_.packs(), scan_.marks());
+}
+
+bool NeighbourListQuery::is_empty(const ToolPose& pose, double skin) noexcept {
+  mark_near(pose, skin);
+  return !scan_.any_hit();
 }
 
 /// Fills the list with the points within `skin` of the tool (and some just beyond).
 void NeighbourListQuery::collect(const ToolPose& pose, double skin) noexcept {
-  const double reach = tool_->reach();
-  const double scale = pose.position.cwiseAbs().maxCoeff() + reach;
-  const double margin = skin + kSlack * (skin + reach) + 1e-12 * scale;
-  work_.points_tested += scan_.select(tool_->box_near(pose, margin, grid_.bounds()));
-  tool_->mark_near(pose, margin, scan_.points(), scan_.packs(), scan_.marks());
+  mark_near(pose, skin);
   list_size_ = 0;
   scan_.for_each_hit([&](std::uint8_t hits, std::size_t i) {
     for (; hits != 0; hits &= static_cast<std::uint8_t>(hits - 1)) {

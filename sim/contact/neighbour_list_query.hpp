@@ -22,17 +22,21 @@ class NeighbourListQuery final : public ContactQuery {
   NeighbourListQuery(const PointShell& shell, const ToolShape& tool);
 
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
-  std::size_t capacity() const noexcept override { return shell_->size(); }
+  std::size_t capacity() const noexcept override { return capacity_; }
   void reset() noexcept override;
 
  private:
   void rebuild(const ToolPose& pose) noexcept;
+  double margin_of(double skin, double scale) const noexcept;
+  void mark_near(const ToolPose& pose, double skin) noexcept;
+  bool is_empty(const ToolPose& pose, double skin) noexcept;
   void collect(const ToolPose& pose, double skin) noexcept;
   void test_list(const ToolPose& pose, ContactBuffer& contacts) noexcept;
 
   const PointShell* shell_;
   const ToolShape* tool_;
   double skin_wanted_;  ///< [m]
+  std::size_t capacity_;
   GridIndex grid_;
   GridScan scan_;
 

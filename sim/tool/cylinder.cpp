@@ -117,6 +117,14 @@ Box Cylinder::box_near(const ToolPose& pose, double margin, const Box& bounds) c
   return {tip.cwiseMin(bottom) - disc, tip.cwiseMax(bottom) + disc};
 }
 
+ToolShape::Cover Cylinder::cover(double margin) const {
+  const double radius = radius_ + margin;
+  const double length = length_ + margin + (tip_ == Tip::round ? radius : margin);
+  const double balls = std::ceil(length / (2.0 * radius));
+  // Each holds a slice of the cylinder.
+  return {static_cast<std::size_t>(balls), (1.0 + 1e-9) * std::hypot(radius, length / balls / 2.0)};
+}
+
 /// The smallest rotation that takes one axis to the other moves a point of the tool by at most |a' - a| times its
 /// distance from the tip centre; a turn about the axis moves no point of the body out of it.
 double Cylinder::moved_at_most(const ToolPose& from, const ToolPose& to) const noexcept {

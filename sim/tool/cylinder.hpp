@@ -35,6 +35,8 @@ class Cylinder final : public ToolShape {
   void mark_near(const ToolPose& pose, double margin, const PointArrays& points, std::span<const PackRange> ranges,
                  std::uint8_t* marks) const noexcept override;
   Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept override;
+  /// In a row along the axis, as far apart as they are wide.
+  Cover cover(double margin) const override;
   double moved_at_most(const ToolPose& from, const ToolPose& to) const noexcept override;
   /// d = min(r - |rho|, -s, L + s), u = rho / |rho|, axis, -axis (B.1); with a round tip, for s > 0, d = r - |x| and
   /// u = x / |x|.

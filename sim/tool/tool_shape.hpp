@@ -39,8 +39,8 @@ struct PackRange {
 /// centre. A shape that is no solid of revolution reads the pose's rotation().
 ///
 /// Cost. Each call answers for many points, so that its virtual dispatch is paid once for a query or a step and never
-/// for a point. All of them but `grown` are called in the step loop and allocate nothing. Shapes are immutable, and may
-/// be shared between runs and threads.
+/// for a point. All of them but `grown` and `cover` are called in the step loop and allocate nothing. Shapes are
+/// immutable, and may be shared between runs and threads.
 ///
 /// Rounding. Search and depths must agree about points on the surface: a point that `mark_inside` marks has a depth >=
 /// 0 up to rounding, so both should compute with the same operations in the same order.
@@ -69,6 +69,14 @@ class ToolShape {
   /// A box that holds every point of `bounds` that lies within `margin` of the body: best the box around the part of it
   /// that is near `bounds`, since most of a tool sticks out of what it works on. Empty when no part is near.
   virtual Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept = 0;
+  /// Balls that together hold the body and what `mark_near` marks with this margin: how many, of which radius [m]. Many
+  /// small ones bound the number of points that the body can touch (sim/contact/most_points.hpp) tighter than the
+  /// one given here, which suits a `mark_near` that reaches no further than twice the margin.
+  struct Cover {
+    std::size_t balls;
+    double radius;
+  };
+  virtual Cover cover(double margin) const { return {1, (1.0 + 1e-9) * (reach_ + 2.0 * margin)}; }
   /// No point of the body has moved further than this when the tool has gone from one pose to the other.
   virtual double moved_at_most(const ToolPose& from, const ToolPose& to) const noexcept = 0;
 

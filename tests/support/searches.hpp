@@ -25,14 +25,14 @@ class SearchPair {
         shell_(points, cell_size),
         search_(shell_, tool_),
         brute_(shell_, tool_),
-        found_(points.size()),
+        found_(search_.capacity()),
         all_(points.size()) {}
 
   bool agree_at(const ToolPose& pose) {
     search_.contacts_at(pose, found_);
     brute_.contacts_at(pose, all_);
     contacts_ += all_.size();
-    return same_contacts(found_, all_);
+    return all_.size() <= search_.capacity() && same_contacts(found_, all_);
   }
   void reset() { search_.reset(); }
   std::uint64_t contacts() const { return contacts_; }
