@@ -34,14 +34,11 @@ SortedByCell sorted_by_cell(const GridCells& cells, std::size_t n, Position posi
   SortedByCell sorted;
   sorted.start.assign(cells.count() + 1, 0);
   sorted.order.resize(n);
-  std::vector<std::uint32_t> cell(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    cell[i] = cells.cell_of(position(i));
-    ++sorted.start[cell[i]];
-  }
+  for (std::size_t i = 0; i < n; ++i) ++sorted.start[cells.cell_of(position(i))];
   // Each cell's end; taking places from the back leaves its start.
   std::partial_sum(sorted.start.begin(), sorted.start.end(), sorted.start.begin());
-  for (std::size_t i = n; i-- > 0;) sorted.order[--sorted.start[cell[i]]] = static_cast<std::uint32_t>(i);
+  for (std::size_t i = n; i-- > 0;)
+    sorted.order[--sorted.start[cells.cell_of(position(i))]] = static_cast<std::uint32_t>(i);
   return sorted;
 }
 

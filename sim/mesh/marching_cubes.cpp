@@ -132,9 +132,8 @@ class Slab {
   std::size_t in_first_layer_ = 0, in_last_layer_ = 0;
 };
 
-/// The vertices of all slabs, each once, their normals of length one.
-std::vector<SurfacePoint> joined_vertices(std::vector<Slab>& slabs, const std::vector<std::size_t>& offsets) {
-  std::vector<SurfacePoint> all(offsets.back() + slabs.back().surface().vertices.size());
+/// Completes the sums of normals where slabs meet, and gives all of them length one.
+void normalise(std::vector<Slab>& slabs) {
   tbb::parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
     std::vector<SurfacePoint>& own = slabs[s].surface().vertices;
     for (std::size_t i = 0; s > 0 && i < slabs[s].in_first_layer(); ++i)
@@ -143,14 +142,15 @@ std::vector<SurfacePoint> joined_vertices(std::vector<Slab>& slabs, const std::v
     for (std::size_t i = 0; i < count; ++i) {
       const double length = own[i].normal.norm();
       if (length > 0.0) own[i].normal /= length;
-      all[offsets[s] + i] = own[i];
     }
   });
-  return all;
 }
 
-/// Appends what the slab has beside its vertices, whose numbers are offset.
-void append(const IsoSurface& slab, std::uint32_t offset, IsoSurface& all) {
+/// Appends the slab without the last `left` vertices, which the next one has, too.
+void append(const IsoSurface& slab, std::size_t left, IsoSurface& all) {
+  const auto offset = static_cast<std::uint32_t>(all.vertices.size());
+  all.vertices.insert(all.vertices.end(), slab.vertices.begin(),
+                      slab.vertices.end() - static_cast<std::ptrdiff_t>(left));
   for (const auto& [a, b, c] : slab.triangles) all.triangles.push_back({a + offset, b + offset, c + offset});
   const auto listed = static_cast<std::uint32_t>(all.cells.vertices.size());
   all.cells.centres.insert(all.cells.centres.end(), slab.cells.centres.begin(), slab.cells.centres.end());
@@ -170,14 +170,14 @@ IsoSurface marching_cubes(const DensityField& field, KeptOfSurface kept) {
   });
   workspaces.clear();
 
-  // The vertices in the layer where two slabs meet have the next one's numbers.
-  std::vector<std::size_t> offsets{0};
-  for (std::size_t s = 0; s + 1 < slabs.size(); ++s) offsets.push_back(offsets[s] + slabs[s].own());
+  normalise(slabs);
+  std::size_t vertices = slabs.back().in_last_layer();
+  for (const Slab& slab : slabs) vertices += slab.own();
   IsoSurface surface;
-  surface.vertices = joined_vertices(slabs, offsets);
-  for (std::size_t s = 0; s < slabs.size(); ++s) {
-    append(slabs[s].surface(), static_cast<std::uint32_t>(offsets[s]), surface);
-    slabs[s] = {};
+  surface.vertices.reserve(vertices);
+  for (Slab& slab : slabs) {
+    append(slab.surface(), &slab == &slabs.back() ? 0 : slab.in_last_layer(), surface);
+    slab = {};  // or memory would hold all vertices twice
   }
   return surface;
 }
