@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "sim/contact/most_points.hpp"
+#include "sim/core/simd.hpp"
 
 namespace hapbench {
 namespace {
@@ -31,13 +32,13 @@ NeighbourListQuery::NeighbourListQuery(const PointShell& shell, const ToolShape&
       capacity_(most_points_in(shell, tool.cover(margin_of(skin_wanted_, largest_scale(shell, tool))))),
       grid_(shell),
       scan_(grid_),
-      index_(simd::padded(capacity_)),
-      x_(simd::padded(capacity_)),
-      y_(simd::padded(capacity_)),
-      z_(simd::padded(capacity_)),
-      nx_(simd::padded(capacity_)),
-      ny_(simd::padded(capacity_)),
-      nz_(simd::padded(capacity_)) {}
+      index_(room()),
+      x_(room()),
+      y_(room()),
+      z_(room()),
+      nx_(room()),
+      ny_(room()),
+      nz_(room()) {}
 
 void NeighbourListQuery::reset() noexcept {
   work_ = {};
@@ -87,13 +88,37 @@ bool NeighbourListQuery::is_empty(const ToolPose& pose, double skin) noexcept {
 /// Fills the list with the points within `skin` of the tool (and some just beyond).
 void NeighbourListQuery::collect(const ToolPose& pose, double skin) noexcept {
   mark_near(pose, skin);
+  if (grid_.keeps_order()) {
+    take_marked();
+  } else {
+    take_marked_sorted();
+  }
+  for (std::size_t k = list_size_; k < simd::padded(list_size_); ++k) x_[k] = y_[k] = z_[k] = PointShell::kFarAway;
+}
+
+/// The grid's order is the shell's: whole packs at a time.
+void NeighbourListQuery::take_marked() noexcept {
   list_size_ = 0;
-  scan_.for_each_hit([&](std::uint8_t hits, std::size_t i) {
+  scan_.for_each_hit([this](std::uint8_t hits, std::size_t i) {
+    simd::store_selected(hits, grid_.shell_indices() + i, &index_[list_size_]);
+    simd::store_selected(hits, shell_->x() + i, &x_[list_size_]);
+    simd::store_selected(hits, shell_->y() + i, &y_[list_size_]);
+    simd::store_selected(hits, shell_->z() + i, &z_[list_size_]);
+    simd::store_selected(hits, shell_->nx() + i, &nx_[list_size_]);
+    simd::store_selected(hits, shell_->ny() + i, &ny_[list_size_]);
+    simd::store_selected(hits, shell_->nz() + i, &nz_[list_size_]);
+    list_size_ += static_cast<std::size_t>(std::popcount(hits));
+  });
+}
+
+void NeighbourListQuery::take_marked_sorted() noexcept {
+  list_size_ = 0;
+  scan_.for_each_hit([this](std::uint8_t hits, std::size_t i) {
     for (; hits != 0; hits &= static_cast<std::uint8_t>(hits - 1)) {
       index_[list_size_++] = grid_.shell_index(i + static_cast<std::size_t>(std::countr_zero(hits)));
     }
   });
-  if (!grid_.keeps_order()) std::sort(index_.begin(), index_.begin() + static_cast<std::ptrdiff_t>(list_size_));
+  std::sort(index_.begin(), index_.begin() + static_cast<std::ptrdiff_t>(list_size_));
   for (std::size_t k = 0; k < list_size_; ++k) {
     x_[k] = shell_->x()[index_[k]];
     y_[k] = shell_->y()[index_[k]];
@@ -102,7 +127,6 @@ void NeighbourListQuery::collect(const ToolPose& pose, double skin) noexcept {
     ny_[k] = shell_->ny()[index_[k]];
     nz_[k] = shell_->nz()[index_[k]];
   }
-  for (std::size_t k = list_size_; k < simd::padded(list_size_); ++k) x_[k] = y_[k] = z_[k] = PointShell::kFarAway;
 }
 
 void NeighbourListQuery::test_list(const ToolPose& pose, ContactBuffer& contacts) noexcept {

@@ -31,6 +31,10 @@ class NeighbourListQuery final : public ContactQuery {
   void mark_near(const ToolPose& pose, double skin) noexcept;
   bool is_empty(const ToolPose& pose, double skin) noexcept;
   void collect(const ToolPose& pose, double skin) noexcept;
+  void take_marked() noexcept;
+  void take_marked_sorted() noexcept;
+  /// Points are written by whole packs wherever the last one ended.
+  std::size_t room() const noexcept { return simd::padded(capacity_) + simd::lanes; }
   void test_list(const ToolPose& pose, ContactBuffer& contacts) noexcept;
 
   const PointShell* shell_;
