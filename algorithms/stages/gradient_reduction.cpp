@@ -42,12 +42,12 @@ class GradientReduction final : public PointStage {
 
   void prepare(const Scene& scene) override {
     if (!config_.shuffle_seed) return;
-    // rank_[i] is the place of shell point i in the visiting order.
-    rank_.resize(scene.capacity);
+    // rank_[i] is the place of shell point, or spring, i in the visiting order.
+    rank_.resize(scene.shell != nullptr ? scene.shell->size() : scene.capacity);
     std::iota(rank_.begin(), rank_.end(), 0u);
     Random(*config_.shuffle_seed).shuffle(rank_);
-    order_.resize(rank_.size());
-    shuffled_ = std::make_unique<ContactBuffer>(rank_.size());
+    order_.resize(scene.capacity);
+    shuffled_ = std::make_unique<ContactBuffer>(scene.capacity);
   }
 
   void process(ContactBuffer& contacts) noexcept override {

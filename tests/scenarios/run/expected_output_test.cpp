@@ -24,7 +24,7 @@ TEST(ExpectedOutput, IsWithinAFactorOfTwoOfWhatIsWritten) {
         R"({"trajectory": false, "ratio_iterations": [0, 1, 3]})"}) {
     const test::TemporaryDirectory directory;
     const LoadedScenario loaded = springs(record);
-    run_scenario(loaded, directory.path(), false, {});
+    run_scenario(loaded, directory.path(), false);
     double written = 0.0;
     for (const auto& entry : std::filesystem::directory_iterator(directory.path())) {
       if (entry.path().extension() == ".csv") written += static_cast<double>(entry.file_size());

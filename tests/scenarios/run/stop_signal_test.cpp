@@ -44,10 +44,10 @@ TEST_F(StopSignals, EndARunOfWhichNothingIsLeft) {
     loaded.scenario.record.timing = timed;
     const StopSignal signals;
     std::raise(SIGINT);
-    EXPECT_THROW(run_scenario(loaded, directory / "out/below", false, {}), Stopped);
+    EXPECT_THROW(run_scenario(loaded, directory / "out/below", false), Stopped);
     EXPECT_EQ(directory.entries(), std::vector<std::string>{});
   }
-  run_scenario(loaded, directory / "out/below", false, {});
+  run_scenario(loaded, directory / "out/below", false);
   EXPECT_TRUE(std::filesystem::exists(directory / "out/below/summary.json"));
 }
 

@@ -25,7 +25,7 @@ LoadedScenario study(const char* record = R"({"trajectory": false})") {
 }
 
 TEST(Trials, EverySubjectDoesEveryTrialOnce) {
-  const RunReport report = run_scenario(study(), std::nullopt, false, {});
+  const RunReport report = run_scenario(study(), std::nullopt, false);
   ASSERT_EQ(report.targets.size(), 8u);
   std::set<std::pair<std::size_t, std::size_t>> trials;
   for (const TargetRow& row : report.targets) trials.insert({row.subject, row.trial});
@@ -37,15 +37,15 @@ TEST(Trials, EverySubjectDoesEveryTrialOnce) {
 }
 
 TEST(Trials, EveryStepOfEveryTrialIsTimed) {
-  const RunReport report = run_scenario(study(R"({"trajectory": false, "timing": true})"), std::nullopt, false, {});
+  const RunReport report = run_scenario(study(R"({"trajectory": false, "timing": true})"), std::nullopt, false);
   ASSERT_TRUE(report.timing.latency);
   EXPECT_EQ(report.timing.latency->steps, report.summary.result.rows);
-  EXPECT_FALSE(run_scenario(study(), std::nullopt, false, {}).timing.latency);
+  EXPECT_FALSE(run_scenario(study(), std::nullopt, false).timing.latency);
 }
 
 TEST(Trials, TrialsDifferAndAnotherRunRepeatsThem) {
-  const RunReport first = run_scenario(study(), std::nullopt, false, {}),
-                  again = run_scenario(study(), std::nullopt, false, {});
+  const RunReport first = run_scenario(study(), std::nullopt, false),
+                  again = run_scenario(study(), std::nullopt, false);
   EXPECT_EQ(first.summary.metrics.state_hash, again.summary.metrics.state_hash);
   std::set<double> forces;
   for (const TargetRow& row : first.targets) forces.insert(row.model_force);
@@ -54,13 +54,13 @@ TEST(Trials, TrialsDifferAndAnotherRunRepeatsThem) {
 
 TEST(Trials, AStepAllocatesNothing) {
   EXPECT_EQ(
-      run_scenario(study(R"({"trajectory": false, "energy": true})"), std::nullopt, false, {}).summary.work.allocations,
+      run_scenario(study(R"({"trajectory": false, "energy": true})"), std::nullopt, false).summary.work.allocations,
       0u);
 }
 
 TEST(Trials, RecordsOfSeveralTrialsLieInDirectoriesOfTheirOwn) {
   const TemporaryDirectory dir;
-  run_scenario(study(R"({"trajectory": true, "energy": true})"), dir / "out", false, {});
+  run_scenario(study(R"({"trajectory": true, "energy": true})"), dir / "out", false);
   for (const char* trial : {"subject_0_trial_0", "subject_0_trial_1", "subject_1_trial_0", "subject_1_trial_1"}) {
     EXPECT_TRUE(fs::exists(dir / "out" / trial / "trajectory.csv")) << trial;
     EXPECT_TRUE(fs::exists(dir / "out" / trial / "energy.csv")) << trial;
@@ -69,7 +69,7 @@ TEST(Trials, RecordsOfSeveralTrialsLieInDirectoriesOfTheirOwn) {
   EXPECT_FALSE(fs::exists(dir / "out" / "trajectory.csv"));
   EXPECT_EQ(test::lines_of(test::read_file(dir / "out" / "targets.csv")).size(), 9u);
 
-  run_scenario(study(), dir / "out", false, {});
+  run_scenario(study(), dir / "out", false);
   EXPECT_FALSE(fs::exists(dir / "out" / "subject_0_trial_0")) << "of the earlier run";
   EXPECT_TRUE(fs::exists(dir / "out" / "targets.csv"));
 }
