@@ -4,7 +4,9 @@ import json
 import os
 import re
 import signal
+import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 from . import against, commit
@@ -25,7 +27,7 @@ def arguments(words):
                                      "scripts/bench --benchmark_filter='search/.*'")
     parser.add_argument("--full", action="store_true", help="also shells of up to 7 million points (minutes, gigabytes)")
     parser.add_argument("--record", action="store_true",
-                        help="as --full, and renews results/reference/performance.json and the README's table")
+                        help="as --full, and renews results/reference/performance.json and the README's table and figure")
     parser.add_argument("--out", type=Path, default=ROOT / "results" / "out", metavar="DIR",
                         help="gets performance.json; in a folder of results figures and report take it from there; "
                         "default: results/out")
@@ -73,8 +75,20 @@ def measure(chosen):
         files |= {RECORD: text, readme: spliced(readme.read_text(encoding="utf-8"), markdown(found))}
     for file, content in files.items():
         replace(file, content)
+    if chosen.record:
+        redraw()
     print(aligned(markdown(found)), end="")
     return SUCCESS
+
+
+def redraw():
+    """The README's figure, of what has just been recorded."""
+    name = "figure_growth.svg"
+    with tempfile.TemporaryDirectory(prefix="hapbench-bench-") as scratch:
+        words = [ROOT / "scripts" / "figures", RECORD.parent, "--out", scratch, "--only", "growth"]
+        if subprocess.run(words, stdout=subprocess.DEVNULL).returncode:
+            raise BenchError(f"{name}: not drawn")
+        replace(RECORD.parent / "figures" / name, (Path(scratch) / name).read_text(encoding="utf-8"))
 
 
 def compare(chosen):

@@ -7,10 +7,10 @@ FILE = "performance.json"
 FITTED = 3  # the largest sizes, which a slope is fitted to
 PARTS_OF_CONTACTS = (("step", "whole step", style.BLACK, "o"), ("reduction", "reduction", style.AMBER, "s"))
 PARTS_OF_POINTS = (
-    ("search/brute_force", "search, brute force", style.GREY, "D"),
-    ("list_rebuild", "new list", style.PLUM, "^"),
-    ("search/grid", "search by grid", style.AMBER, "s"),
-    ("search/neighbour_list", "search by list", style.PETROL, "o"),
+    ("search/brute_force", "seconds", "brute force", style.GREY, "D"),
+    ("list_rebuild", "longest_s", "longest new list", style.PLUM, "^"),
+    ("search/grid", "seconds", "by grid", style.AMBER, "s"),
+    ("search/neighbour_list", "seconds", "by list", style.PETROL, "o"),
 )
 
 
@@ -53,8 +53,8 @@ def growth(results):
         sizes, seconds = series(points, part)
         draw(parts, sizes, 1e6 * seconds, label, colour, marker)
     finish(parts, "step and reduction", "contacts", "time [µs]")
-    for part, label, colour, marker in PARTS_OF_POINTS:
-        sizes, seconds = series(points, part, "points")
+    for part, value, label, colour, marker in PARTS_OF_POINTS:
+        sizes, seconds = series(points, part, "points", value)
         draw(search, sizes, 1e6 * seconds, label, colour, marker)
     deadline = 1e6 / 2048
     search.axhline(deadline, color=style.RED, lw=1)
@@ -71,7 +71,7 @@ def growth(results):
     return figure, (
         f"How cost grows, both axes logarithmic, with the power of the size that the {FITTED} largest follow (1: linear). (a) Force laws "
         "over contacts, (b) a step of a drill that fills its hole, all contacts rendered by stiffness shaping, and the reduction. Over the points of the block's shell, whose "
-        "grid gets finer: (c) searches along task 2, whose contacts grow with the points, and searches that make a new "
-        f"neighbour list; (d) building the shell. Ours, measured by scripts/bench on {measured['date']} with one core of: "
+        "grid gets finer: (c) mean searches along task 2, whose contacts grow with the points, and the longest search of all "
+        f"tasks that makes a new neighbour list; (d) building the shell. Ours, measured by scripts/bench on {measured['date']} with one core of: "
         f"{measured['machine']['cpu']}, {measured['machine']['instruction_set']}; commit {measured['commit']}."
     )
