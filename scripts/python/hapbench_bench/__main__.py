@@ -9,7 +9,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from . import against, commit
+from . import commit
 from .measure import performance
 from .program import ROOT, BenchError, build, listed
 from .table import aligned, markdown, spliced
@@ -92,6 +92,9 @@ def redraw():
 
 
 def compare(chosen):
+    # Only here: numpy and scipy would count as memory of the programs that `measure` starts.
+    from . import against
+
     with commit.built(chosen.against) as old:
         new = build(ROOT, ROOT / "build" / "release", "bin/hapbench_bench") / "hapbench_bench"
         by_group, only_old, only_new = against.groups(old, new, chosen.filter.search)
