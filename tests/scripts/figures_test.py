@@ -211,7 +211,7 @@ class Figures(unittest.TestCase):
 
     def test_growth_names_its_slopes(self):
         text = " ".join(xml.parse(self.drawn / "figure_growth.svg").getroot().itertext())
-        self.assertIn("whole step, 1.00", text)
+        self.assertIn("whole step, n^1.00", text)
         self.assertNotIn("nan", text)
 
     def test_axes_name_their_units(self):

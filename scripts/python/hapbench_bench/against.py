@@ -63,8 +63,8 @@ def report(found, only_old, only_new, rounds):
         interval = f"{c.ratio:.3f} ({c.low:.3f}..{c.high:.3f})"
         lines.append(f"{name:{width}}  {quantity(c.old_s, 's'):>8}  {quantity(c.new_s, 's'):>8}  {interval:22}  {c.p:<7.1g}  {c.verdict}")
     counts = ", ".join(f"{sum(c.verdict == v for c in found.values())} {v}" for v in ("faster", "slower", "same"))
-    lines += ["", f"{counts} in {rounds} rounds; verdicts by a t test of the rounds' log ratios: one false one has",
-              f"p < {ERROR:g} among all benchmarks (Bonferroni), and what differs by less than {SMALLEST:.0%} is the same"]
+    lines += ["", f"{counts} in {rounds} rounds. Judged by a t test of the rounds' log ratios: p < {ERROR:g} of",
+              f"any false verdict (Bonferroni); what differs by less than {SMALLEST:.0%} is the same."]
     for which, names in (("before", only_old), ("now", only_new)):
         if names:
             lines.append(f"only {which}: {', '.join(names)}")

@@ -34,8 +34,8 @@ def markdown(performance):
     lines = [
         f"{machine['cpu']}, {machine['processors']} processors, {machine['instruction_set']}; {machine['compiler']},",
         f"{machine['flags']};",
-        f"commit {performance['commit']}, {performance['date']}. Medians of {performance['repetitions']} interleaved "
-        "repetitions, half their quartile range after ±.",
+        f"commit {performance['commit']}, {performance['date']}.",
+        f"Medians of {performance['repetitions']} interleaved repetitions, half their quartile range after ±.",
         "",
         "| what | over | ratio | target | met | takes |",
         "|---|---|---|---|---|---|",

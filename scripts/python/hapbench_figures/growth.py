@@ -27,7 +27,7 @@ def slope(sizes, values):
 
 def draw(ax, sizes, values, label, colour, marker):
     if len(sizes) >= 2:
-        label = f"{label}, {slope(sizes, values):.2f}"
+        label = f"{label}, n^{slope(sizes, values):.2f}"
     ax.plot(sizes, values, color=colour, marker=marker, label=label)
 
 
@@ -48,7 +48,8 @@ def growth(results):
         look = style.look(name)
         sizes, seconds = series(points, f"law/{name}")
         draw(laws, sizes, 1e6 * seconds, look.label, look.colour, look.marker)
-    finish(laws, "force laws", "contacts", "time of a call [µs]", fontsize=5.8, labelspacing=0.25)
+    finish(laws, "force laws", "contacts", "time of a call [µs]", fontsize=5.5, labelspacing=0.25, ncol=2, columnspacing=1)
+    laws.set_ylim(top=300 * laws.get_ylim()[1])  # room for the names
     for part, label, colour, marker in PARTS_OF_CONTACTS:
         sizes, seconds = series(points, part)
         draw(parts, sizes, 1e6 * seconds, label, colour, marker)
@@ -58,8 +59,8 @@ def growth(results):
         draw(search, sizes, 1e6 * seconds, label, colour, marker)
     deadline = 1e6 / 2048
     search.axhline(deadline, color=style.RED, lw=1)
-    search.annotate(f"deadline {deadline:.0f} µs", (0.98, deadline), (0, 2), xycoords=("axes fraction", "data"),
-                    textcoords="offset points", color=style.RED, fontsize=7, ha="right")
+    search.annotate(f"deadline {deadline:.0f} µs", (0.02, deadline), (0, 2), xycoords=("axes fraction", "data"),
+                    textcoords="offset points", color=style.RED, fontsize=7)
     finish(search, "contact search", "points of the shell", "time of a search [µs]", loc="lower right")
     search.set_ylim(bottom=search.get_ylim()[0] / 5)  # room for the names
     sizes, seconds = series(points, "shell", "points")
@@ -69,7 +70,7 @@ def growth(results):
     finish(shell, "building the shell", "points of the shell", "time [s], memory [GB]")
     style.letter(axes.ravel())
     return figure, (
-        f"How cost grows, both axes logarithmic, with the power of the size that the {FITTED} largest follow (1: linear). (a) Force laws "
+        f"How cost grows, both axes logarithmic, with the power of the size n that the {FITTED} largest follow. (a) Force laws "
         "over contacts, (b) a step of a drill that fills its hole, all contacts rendered by stiffness shaping, and the reduction. Over the points of the block's shell, whose "
         "grid gets finer: (c) mean searches along task 2, whose contacts grow with the points, and the longest search of all "
         f"tasks that makes a new neighbour list; (d) building the shell. Ours, measured by scripts/bench on {measured['date']} with one core of: "
