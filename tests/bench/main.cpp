@@ -1,22 +1,48 @@
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <map>
 #include <string_view>
 
+#include "results/summary/provenance.hpp"
 #include "tests/bench/bench.hpp"
-#include "tests/bench/table.hpp"
 
 namespace hapbench::bench {
 namespace {
 
 bool refuted = false;
 
+/// What times mean nothing without; --benchmark_format=json has it under "context".
+void add_context() {
+  const Provenance program = provenance();
+  const InstructionSet instructions = instruction_set();
+  benchmark::AddCustomContext("commit", program.commit);
+  benchmark::AddCustomContext("cpu", program.cpu);
+  benchmark::AddCustomContext("compiler", program.compiler);
+  benchmark::AddCustomContext("flags", program.build_type + " " + program.flags);
+  benchmark::AddCustomContext("instruction_set", instructions.widest);
+}
+
+/// Removes our own option.
+bool take_full(int& argc, char** argv) {
+  char** const end =
+      std::remove_if(argv + 1, argv + argc, [](const char* a) { return std::string_view(a) == "--full"; });
+  const bool full = end != argv + argc;
+  argc = static_cast<int>(end - argv);
+  return full;
+}
+
 int run_benchmarks(int argc, char** argv) {
+  const bool full = take_full(argc, argv);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  add_context();
   for (const auto register_group : {register_search, register_shaping, register_reduction, register_laws,
-                                    register_proxy, register_steps, register_shells, register_skips}) {
+                                    register_proxy, register_steps, register_latencies, register_ideal_trajectory,
+                                    register_shells, register_skips, register_growth_over_contacts}) {
     register_group();
   }
+  register_growth_over_points(full);
   // No benchmark of a given filter is a mistake in the filter.
   if (benchmark::RunSpecifiedBenchmarks() == 0) return 2;
   return refuted ? 1 : 0;
@@ -29,12 +55,19 @@ void refute(benchmark::State& state, const std::string& what) {
   state.SkipWithError(what.c_str());
 }
 
+bool proved(benchmark::State& state, const std::string& benchmark, const std::function<std::string()>& wrong) {
+  static std::map<std::string, std::string> known;
+  auto found = known.find(benchmark);
+  if (found == known.end()) found = known.emplace(benchmark, wrong()).first;
+  if (!found->second.empty()) refute(state, found->second);
+  return found->second.empty();
+}
+
 }  // namespace hapbench::bench
 
-/// `hapbench_bench [--benchmark_…]` runs the benchmarks, `hapbench_bench --table` measures the targets.
+/// `hapbench_bench [--full] [--benchmark_…]` runs the benchmarks; scripts/bench makes a table of them.
 int main(int argc, char** argv) {
   try {
-    if (argc == 2 && std::string_view(argv[1]) == "--table") return hapbench::bench::print_table();
     return hapbench::bench::run_benchmarks(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "hapbench_bench: %s\n", error.what());

@@ -37,8 +37,8 @@ std::string wrong_by_definition(const TaskScene& scene) {
 
 void search_benchmark(benchmark::State& state, const std::string& search, const std::string& task) {
   const TaskScene& scene = task_scene(task);
-  if (const std::string wrong = wrong_answers(search, scene); !wrong.empty()) return refute(state, wrong);
-  const auto query = make_search(search, scene);
+  if (!proved(state, search + task, [&] { return wrong_answers(search, scene); })) return;
+  const auto query = make_search(search, *scene.shell, *scene.tool);
   ContactBuffer contacts(query->capacity());
   const std::size_t every = search == "brute_force" ? kBruteForceEvery : 1;
   const auto batch = static_cast<benchmark::IterationCount>((scene.poses.size() - 1) / every);
@@ -62,15 +62,15 @@ void search_benchmark(benchmark::State& state, const std::string& search, const 
 
 }  // namespace
 
-std::unique_ptr<ContactQuery> make_search(const std::string& search, const TaskScene& scene) {
-  if (search == "brute_force") return std::make_unique<ShellQuery>(*scene.shell, *scene.tool);
-  if (search == "grid") return std::make_unique<GridQuery>(*scene.shell, *scene.tool);
-  return std::make_unique<NeighbourListQuery>(*scene.shell, *scene.tool);
+std::unique_ptr<ContactQuery> make_search(const std::string& search, const PointShell& shell, const ToolShape& tool) {
+  if (search == "brute_force") return std::make_unique<ShellQuery>(shell, tool);
+  if (search == "grid") return std::make_unique<GridQuery>(shell, tool);
+  return std::make_unique<NeighbourListQuery>(shell, tool);
 }
 
 std::string wrong_answers(const std::string& search, const TaskScene& scene) {
   if (search == "brute_force") return wrong_by_definition(scene);
-  const auto query = make_search(search, scene);
+  const auto query = make_search(search, *scene.shell, *scene.tool);
   ShellQuery brute(*scene.shell, *scene.tool);
   ContactBuffer found(query->capacity()), all(brute.capacity());
   for (std::size_t k = 0; k < scene.poses.size(); ++k) {

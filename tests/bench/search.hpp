@@ -11,7 +11,8 @@ namespace hapbench::bench {
 /// The searches that are compared.
 inline constexpr const char* kSearches[] = {"brute_force", "grid", "neighbour_list"};
 
-std::unique_ptr<ContactQuery> make_search(const std::string& search, const TaskScene& scene);
+/// Shell and tool must outlive the search.
+std::unique_ptr<ContactQuery> make_search(const std::string& search, const PointShell& shell, const ToolShape& tool);
 
 /// Brute force takes 30 us a pose, so it is asked at each 16th pose only; the others, whose answer at a pose may depend
 /// on the poses before, are asked at all and compared at each 16th.

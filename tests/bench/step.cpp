@@ -65,7 +65,7 @@ std::string wrong_run(const std::string& name) {
 namespace {
 
 void step_benchmark(benchmark::State& state, const std::string& name) {
-  if (const std::string wrong = wrong_run(name); !wrong.empty()) return refute(state, wrong);
+  if (!proved(state, "step/" + name, [&name] { return wrong_run(name); })) return;
   TimedRun run(name);
   while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(run.steps_left()))) {
     state.PauseTiming();
@@ -73,6 +73,7 @@ void step_benchmark(benchmark::State& state, const std::string& name) {
     state.ResumeTiming();
     while (run.simulation().step()) {
     }
+    if (!run.at_end()) return refute(state, "ended early");
   }
   const Metrics metrics = run.metrics().metrics();
   const SearchWork& work = run.simulation().source().work();

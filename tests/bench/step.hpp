@@ -10,7 +10,8 @@
 namespace hapbench::bench {
 
 /// The runs whose steps are timed.
-inline constexpr const char* kSteps[] = {"T1", "T2", "T2_proxy", "T3", "unreduced_1000", "free_air"};
+inline constexpr const char* kSteps[] = {"T1",       "T2",      "T2_proxy",     "T3", "unreduced_1000",
+                                         "free_air", "upright", "upright_proxy"};
 
 /// Steps before the first that is timed: by then T1 has touched the block and every buffer has been used.
 inline constexpr std::uint64_t kWarmUp = 1024;
@@ -26,6 +27,8 @@ class TimedRun {
   void rewind() noexcept;
   /// The rest of the run after rewinding.
   std::uint64_t steps_left() const { return steps_ - kWarmUp; }
+  /// Whether every step has been taken.
+  bool at_end() const { return simulation_->next_row() == steps_; }
   Simulation& simulation() { return *simulation_; }
   const MetricsObserver& metrics() const { return *metrics_; }
 

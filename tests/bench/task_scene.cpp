@@ -8,8 +8,6 @@
 namespace hapbench::bench {
 namespace {
 
-using Overrides = std::vector<std::string>;
-
 /// Where the poses start and how many there are [steps]: T1 from its start, the others one period of 6 s later on.
 struct Window {
   std::uint64_t first, count;
@@ -18,25 +16,23 @@ Window window_of(const std::string& task) {
   return task == "T1" ? Window{0, 10'240} : Window{12'288, 12'288};
 }
 
-LoadedScenario load(const char* bundled, Overrides overrides) {
-  // What is recorded costs what is recorded: the summary alone.
-  for (const char* off : {"record.trajectory=false", "record.ratio_iterations=[]", "record.ideal_trajectory=false"}) {
-    overrides.emplace_back(off);
-  }
-  return load_scenario(find_scenario(bundled), overrides);
-}
-
 LoadedScenario load_step_scenario(const std::string& name) {
-  if (name == "T1") return load("poke_on_flat", {});
-  if (name == "T2") return load("rotate_in_hole", {});
-  if (name == "T2_proxy") return load("rotate_in_hole", {"rendering.algorithm=proxy"});
-  if (name == "T3") return load("round_the_wall", {});
+  if (name == "T1") return load_unrecorded("poke_on_flat", {});
+  if (name == "T2") return load_unrecorded("rotate_in_hole", {});
+  if (name == "T2_proxy") return load_unrecorded("rotate_in_hole", {"rendering.algorithm=proxy"});
+  if (name == "T3") return load_unrecorded("round_the_wall", {});
   if (name == "unreduced_1000") {
-    return load("round_the_wall",
-                {"tool.diameter_m=0.00184", "initial.position_m=[0.00002,0,-0.0049]", "rendering.reduction=null"});
+    return load_unrecorded("round_the_wall", {"tool.diameter_m=0.00184", "initial.position_m=[0.00002,0,-0.0049]",
+                                              "rendering.reduction=null"});
   }
-  return load("round_the_wall",
-              {"hand={\"type\":\"none\"}", "device={\"type\":\"ideal\"}", "initial.position_m=[0,0,0.05]"});
+  if (name == "upright" || name == "upright_proxy") {
+    // The first 10 s of the first trial, with points shared by cells: there the proxy's passes go round most.
+    std::vector<std::string> overrides = {"environment.vertices=shared", "time.duration_s=10"};
+    if (name == "upright_proxy") overrides.emplace_back("rendering.algorithm=proxy");
+    return load_unrecorded("vertical_peg_in_hole_shaped_stiffness", std::move(overrides));
+  }
+  return load_unrecorded("round_the_wall",
+                         {"hand={\"type\":\"none\"}", "device={\"type\":\"ideal\"}", "initial.position_m=[0,0,0.05]"});
 }
 
 class PoseRecorder final : public Observer {
@@ -68,6 +64,14 @@ TaskScene make_task_scene(const std::string& task) {
 
 }  // namespace
 
+LoadedScenario load_unrecorded(const char* bundled, std::vector<std::string> overrides) {
+  // What is recorded costs what is recorded: the summary alone.
+  for (const char* off : {"record.trajectory=false", "record.ratio_iterations=[]", "record.ideal_trajectory=false"}) {
+    overrides.emplace_back(off);
+  }
+  return load_scenario(find_scenario(bundled), overrides);
+}
+
 const LoadedScenario& step_scenario(const std::string& name) {
   static std::map<std::string, LoadedScenario> loaded;
   const auto found = loaded.find(name);
@@ -80,11 +84,12 @@ const TaskScene& task_scene(const std::string& task) {
   return found != scenes.end() ? found->second : scenes.emplace(task, make_task_scene(task)).first->second;
 }
 
+std::shared_ptr<const PointShell> built_shell(const Scenario& scenario) {
+  return make_shell(scenario);
+}
+
 std::shared_ptr<const PointShell> block_shell() {
-  static const auto shell = [] {
-    const Scenario& scenario = step_scenario("T1").scenario;
-    return make_shell(scenario);
-  }();
+  static const auto shell = built_shell(step_scenario("T1").scenario);
   return shell;
 }
 

@@ -90,6 +90,7 @@ def make_results(directory):
         *("stability", "--map", "time_step,damping_ratio,device", "--algorithms", "shaped_stiffness", "--size", "3"),
         *("--integrators", "all", "--quiet", "--out", directory / "stability_integrators"),
     )
+    (directory / "performance.json").write_text(json.dumps(performance()))
     timing = {
         "step_latency": {
             "steps": 10,
@@ -104,6 +105,17 @@ def make_results(directory):
     loop = directory / "latency" / "task2_rotate_signed_distance"
     loop.mkdir(parents=True)
     (loop / "timing.json").write_text(json.dumps(timing))
+
+
+def performance():
+    """As scripts/bench writes it, as far as it is drawn: one size of a part is no line, and has no slope."""
+    sizes = {"step": (10, 100, 1000, 10000), "reduction": (10, 100, 1000), "law/mean": (10, 100), "law/proxy": (10,)}
+    growth = [{"part": part, "size": n, "seconds": 1e-9 * n} for part, of in sizes.items() for n in of]
+    for part in ("shell", "list_rebuild", "search/grid", "search/neighbour_list", "search/brute_force"):
+        growth += [{"part": part, "size": n, "points": n + 7, "seconds": 1e-8 * n, "longest_s": 1e-7 * n, "bytes_per_point": 90.0}
+                   for n in (10000, 30000, 100000)]
+    machine = {"cpu": "a processor", "instruction_set": "avx2", "compiler": "a compiler", "flags": "-O3"}
+    return {"commit": "abc", "date": "2026-01-01", "machine": machine, "growth": growth}
 
 
 def make_studies(directory):
@@ -196,6 +208,11 @@ class Figures(unittest.TestCase):
         for name in names:
             # Long names take two lines, and some names end like others.
             self.assertGreaterEqual(" ".join(" ".join(text).split()).count(name.replace("_", " ")), 2, name)
+
+    def test_growth_names_its_slopes(self):
+        text = " ".join(xml.parse(self.drawn / "figure_growth.svg").getroot().itertext())
+        self.assertIn("whole step, n^1.00", text)
+        self.assertNotIn("nan", text)
 
     def test_axes_name_their_units(self):
         for entry in self.index():

@@ -9,7 +9,7 @@ import unittest
 from array import array
 from pathlib import Path
 
-from report_fixture import PROGRAM, claim, make_claims, make_figures, make_results, report
+from report_fixture import PROGRAM, SCRIPTS, claim, make_claims, make_figures, make_results, report
 
 from hapbench_report.markup import number, strip, typeset
 from hapbench_report.replay_pack import packed_replays
@@ -98,6 +98,24 @@ class Page(WithResults):
         heads = [strip(head.replace("<br>", "|")) for head in re.findall(r"<th [^>]*>(.*?)</th>", section)]
         self.assertEqual(heads, ["setting", "error rms|mm", "length|m", "time of a step|µs", "force max|N", "kept mean"])
         self.assertEqual([strip(cell_) for cell_ in re.findall(r"<td[^>]*>(.*?)</td>", section)], ["a", "0.2", "0.5", "1", "3", "2"])
+
+    def test_performance_is_shown_where_it_was_measured(self):
+        self.assertIn("No performance.json among these results", self.page())
+        file = self.results / "performance.json"
+        shutil.copy(SCRIPTS.parent / "results" / "reference" / "performance.json", file)
+        self.addCleanup(file.unlink)
+        value = json.loads(file.read_text(encoding="utf-8"))
+        section = self.part(self.page(), '<section id="performance"', "</section>")
+        self.assertEqual(section.count("<tr>"), 2 + len(value["ratios"]) + len(value["limits"]))
+        self.assertIn("<code>step/T1</code>", section)
+        self.assertEqual(section.count("✗ no"), sum(row["at_most"] is not None and row["at_most"] < row.get("ratio", row.get("value"))
+                                                     for row in value["ratios"] + value["limits"]))
+        for place, damaged in (("/commit", {**value, "commit": 3}), ("/ratios/0/ratio", {**value, "ratios": [{"what": "a", "over": "b"}]}),
+                               ("/limits", {**value, "limits": 3}), ("/machine/cpu", {**value, "machine": {}})):
+            file.write_text(json.dumps(damaged), encoding="utf-8")
+            done = report(self.results, "--out", self.root / "page.html")
+            self.assertEqual(done.returncode, 2, place)
+            self.assertIn(f"{file}: {place}: got", done.stderr)
 
     def test_cells_of_cards_carry_their_headings(self):
         rows = self.part(self.full_page(), 'id="ledger-table"', "</table>").split("<tr")[2:]

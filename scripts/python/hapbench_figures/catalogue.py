@@ -8,6 +8,7 @@ from . import (
     damping,
     experiments,
     force_limit,
+    growth,
     ideal_trajectory,
     median_line,
     peg_in_hole,
@@ -70,6 +71,7 @@ FIGURES = (
     Figure("proxy", None, "The drill turned in the hole, with a proxy and with shaping", proxy.rotated),
     Figure("precision", None, "Work against precision", performance.work_precision),
     Figure("latency", None, "Latency of a step", performance.latency),
+    Figure("growth", None, "How cost grows", growth.growth),
     *(
         Figure(f"stability-{name}", None, f"Stability over {name.replace('_', ' ')}", stability.stability_map(name))
         for name in STABILITY_MAPS

@@ -9,6 +9,7 @@ from .claims import load_choices, load_claims
 from .figures import load_figures
 from .json_input import InputError
 from .page import report
+from .performance import load_performance
 from .replay_pack import packed_replays
 from .replay_record import record_replays
 from .runs import REPLAY_DIRECTORY, load_runs
@@ -67,7 +68,8 @@ def run(options):
     if not runs:
         raise InputError(f"{options.results}: holds no summary.json; allowed: a directory that scripts/reproduce wrote")
     page = report(runs, load_studies(options.results), load_claims(options.claims) if options.claims else [],
-                  load_choices(options.choices), load_figures(options.figures) if options.figures else [], scenes(options))
+                  load_choices(options.choices), load_figures(options.figures) if options.figures else [], scenes(options),
+                  load_performance(options.results))
     out = options.out or options.results / "report.html"
     write(out, page)
     print(f"{out}: {len(page.encode()) / 1e6:.1f} MB, {len(runs)} runs")

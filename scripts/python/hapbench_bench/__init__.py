@@ -1,0 +1,1 @@
+"""scripts/bench: measures ratios, tells what is met, and compares two commits."""

@@ -1,0 +1,53 @@
+"""Speed: what the program promises, as ratios, whether it keeps it, and how cost grows."""
+import re
+
+from hapbench_bench.table import met, number, quantity, spread
+
+from .markup import cell, command, heading_cell, table, text
+from .performance import FILE
+from .section_figures import figure_markup
+
+FIGURE = "growth"  # which stands here instead of among the others
+
+
+def performance_section(performance, figures, links):
+    shown = "".join(figure_markup(figure, links) for figure in figures)
+    figures_ = f"<div class=figures>{shown}</div>" if shown else ""
+    if performance is None:
+        return f'<p class="note">No {FILE} among these results (<code>scripts/bench --out</code>).</p>{figures_}'
+    machine = performance["machine"]
+    return ("<p>What a part of the program takes over what another takes that ran in the same minutes, brute force wherever that "
+            "makes sense: such ratios differ little between machines, and a target can be one. Below them what has a limit "
+            "of its own. Machine: "
+            f"{text(machine['cpu'])}, {text(machine['instruction_set'])}, {text(machine['compiler'])}; commit "
+            f"<code>{text(performance['commit'])}</code>, {text(performance['date'])}.</p>" + command("scripts/bench")
+            + ratios_table(performance.get("ratios", [])) + limits_table(performance.get("limits", [])) + figures_)
+
+
+def coded(words):
+    return re.sub(r"`([^`]*)`", r"<code>\1</code>", text(words))
+
+
+def verdict(value, at_most):
+    said = met(value, at_most).strip("*")
+    tone = {"yes": "good", "no": "bad"}.get(said)
+    return cell(f'<span class="verdict {tone}">{"✓" if said == "yes" else "✗"} {said}</span>' if tone else "")
+
+
+def ratios_table(rows):
+    cells = [[cell(coded(row["what"])), cell(coded(row["over"])),
+              cell(f"{number(row['ratio'])} {spread(row)}", row["ratio"], "number"),
+              cell("" if row.get("at_most") is None else f"≤ {number(row['at_most'])}", classes="number"),
+              verdict(row["ratio"], row.get("at_most")), cell(quantity(row["seconds"], "s"), row["seconds"], "number")]
+             for row in rows]
+    headings = [heading_cell("What"), heading_cell("Over"), heading_cell("Ratio", True), heading_cell("Target", True),
+                heading_cell("Met"), heading_cell("Takes", True)]
+    return table(headings, cells, "<b>Ratios</b>", "sortable")
+
+
+def limits_table(rows):
+    cells = [[cell(coded(row["what"])), cell(quantity(row["value"], row["unit"]), row["value"], "number"),
+              cell(f"≤ {quantity(row['at_most'], row['unit'])}", classes="number"), verdict(row["value"], row["at_most"])]
+             for row in rows]
+    headings = [heading_cell("What"), heading_cell("Measured", True), heading_cell("Limit", True), heading_cell("Met")]
+    return table(headings, cells, "<b>Limits</b>", "sortable")

@@ -1,0 +1,64 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "results/observe/ideal_trajectory.hpp"
+#include "results/observe/interpenetration.hpp"
+#include "tests/bench/bench.hpp"
+#include "tests/bench/task_scene.hpp"
+
+/// What a row of ideal_trajectory.csv costs: the ideal place of the tip, and how deep the tool truly is in the block.
+namespace hapbench::bench {
+namespace {
+
+constexpr std::size_t kEvery = 16;  ///< poses of T2
+
+struct Scene {
+  const TaskScene& task = task_scene("T2");
+  const BlockWithHole block = std::get<BlockEnvironment>(task.loaded.scenario.environment).block;
+  const Cylinder tool = make_cylinder(task.loaded.scenario.tool);
+};
+
+/// The deepest of places spread over the tool's tip and side: no deeper than the truth, and short of it by no more than
+/// the way from the deepest place to the nearest of them.
+bool is_deepest(const Scene& scene, const ToolPose& pose, double depth) {
+  constexpr int kRound = 512, kAlong = 256;
+  const Vec3 across = pose.axis.unitOrthogonal(), other = pose.axis.cross(across);
+  const double along = scene.tool.length() / kAlong, round = 2.0 * std::numbers::pi / kRound;
+  double deepest = 0.0;
+  for (int i = 0; i < kRound; ++i) {
+    const Vec3 out = std::cos(i * round) * across + std::sin(i * round) * other;
+    for (int k = 0; k <= kAlong; ++k) {
+      const Vec3 place = pose.position + scene.tool.radius() * out - k * along * pose.axis;
+      deepest = std::max(deepest, -signed_distance(scene.block, place));
+    }
+  }
+  // The depth itself is known to 1e-11 m (interpenetration.hpp).
+  return deepest <= depth + 1e-11 && depth <= deepest + (along + scene.tool.radius() * round) / 2 + 1e-11;
+}
+
+void row(benchmark::State& state) {
+  const Scene scene;
+  const auto& poses = scene.task.poses;
+  const auto wrong = [&]() -> std::string {
+    for (std::size_t k = 0; k < poses.size(); k += 1024) {
+      if (!is_deepest(scene, poses[k], interpenetration(scene.block, scene.tool, poses[k]))) return "not the deepest";
+    }
+    return "";
+  };
+  if (!proved(state, "ideal_trajectory", wrong)) return;
+  while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(poses.size() / kEvery))) {
+    for (std::size_t k = 0; k < poses.size(); k += kEvery) {
+      benchmark::DoNotOptimize(ideal_place(scene.block, scene.tool.radius(), std::acos(-poses[k].axis.z())));
+      benchmark::DoNotOptimize(interpenetration(scene.block, scene.tool, poses[k]));
+    }
+  }
+}
+
+}  // namespace
+
+void register_ideal_trajectory() {
+  benchmark::RegisterBenchmark("ideal_trajectory/row", row);
+}
+
+}  // namespace hapbench::bench
