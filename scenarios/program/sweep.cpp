@@ -82,17 +82,16 @@ std::string run_text(const SweepPlan& plan, std::size_t run) {
 }
 
 /// Says what is wrong with the runs and returns the exit status.
-int verdict(const SweepPlan& plan, const SweepReport& report, const SweepSummary& summary) {
+int verdict(const SweepPlan& plan, const SweepReport& report) {
+  const SweepCounts& counts = report.counts;
   if (report.failed) {
     fmt::print(stderr, "hapbench: error: {}: {} of {} runs failed, the first: {}: {}\n", plan.scenario.file.string(),
-               summary.failed, report.rows.size(), run_text(plan, report.failed->run),
-               one_line(report.failed->problem));
+               counts.failed, counts.runs, run_text(plan, report.failed->run), one_line(report.failed->problem));
     return kInternalFault;
   }
-  if (summary.unexpected > 0) {
+  if (counts.unexpected > 0) {
     fmt::print(stderr, "hapbench: {}: {} of {} runs did not end as expected, the first: {}\n",
-               plan.scenario.file.string(), summary.unexpected, report.rows.size(),
-               run_text(plan, *summary.first_unexpected));
+               plan.scenario.file.string(), counts.unexpected, counts.runs, run_text(plan, *counts.first_unexpected));
     return kUnexpectedOutcome;
   }
   return kSuccess;
@@ -111,12 +110,15 @@ int sweep(const SweepCommand& command) {
   const SweepReport report = run_sweep(plan, options);
   if (report.signal != 0) {
     fmt::print(stderr, "hapbench: stopped after {} of {} runs; the same command with --resume goes on from there\n",
-               report.rows.size(), options.part().size(plan.points.size()));
+               report.done, options.part().size(plan.points.size()));
     return kStopped + report.signal;
   }
-  const SweepSummary summary = summarise(plan, report.rows);
-  print(command.output, summary_text(plan, report, summary, metric), summary_json(plan, report, summary));
-  return verdict(plan, report, summary);
+  if (command.output.json) {
+    print(command.output, "", summary_json(plan, report));
+  } else {
+    print(command.output, summary_text(plan, report, metric), {});
+  }
+  return verdict(plan, report);
 }
 
 void add_run_options(Command& command, SweepCommand& options) {
