@@ -80,17 +80,12 @@ RangeText read_range(const std::string& text, std::string_view words, bool sampl
   return read;
 }
 
-std::vector<std::string> range_values(const std::string& text, std::string_view words) {
-  const RangeText read = read_range(text, words, false);
-  const auto n = whole_number(read.count);
+std::size_t steps_of(const std::string& text, std::string_view word) {
+  const auto n = whole_number(word);
   if (!n || *n < 2 || *n > kMostRuns) {
-    refuse_axis(text, fmt::format("got \"{}\" values", read.count), fmt::format("an integer 2 ... {}", kMostRuns));
+    refuse_axis(text, fmt::format("got \"{}\" values", word), fmt::format("an integer 2 ... {}", kMostRuns));
   }
-  std::vector<std::string> values;
-  for (std::size_t i = 0; i < *n; ++i) {
-    values.push_back(number_text(value_between(read.range, static_cast<double>(i), static_cast<double>(*n - 1))));
-  }
-  return values;
+  return *n;
 }
 
 std::vector<std::string> listed_values(const std::string& text, std::string_view list) {
@@ -109,7 +104,7 @@ std::vector<std::string> listed_values(const std::string& text, std::string_view
 
 Axis read_axis(const std::string& text, bool sampled) {
   const std::size_t equals = text.find('=');
-  Axis axis{text.substr(0, equals), {}, {}};
+  Axis axis{text.substr(0, equals)};
   constexpr const char* kPathCharacters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.$";
   if (equals == std::string::npos || axis.path.empty() ||
       axis.path.find_first_not_of(kPathCharacters) != std::string::npos) {
@@ -125,11 +120,11 @@ Axis read_axis(const std::string& text, bool sampled) {
   const bool is_range = values.find(',') == std::string_view::npos && values.find(':') != std::string_view::npos;
   if (!is_range) {
     axis.values = listed_values(text, values);
-  } else if (sampled) {
-    axis.range = read_range(text, values, true).range;
-  } else {
-    axis.values = range_values(text, values);
+    return axis;
   }
+  const RangeText read = read_range(text, values, sampled);
+  axis.range = read.range;
+  if (!sampled) axis.steps = steps_of(text, read.count);
   return axis;
 }
 
@@ -147,10 +142,18 @@ Axis parse_sampled_axis(const std::string& text) {
   return read_axis(text, true);
 }
 
-std::string value_at(const Axis& axis, double coordinate) {
-  if (axis.range) return number_text(axis.range->value_at(coordinate));
+std::string Axis::value(std::size_t i) const {
+  if (!range) return values[i];
+  return number_text(value_between(*range, static_cast<double>(i), static_cast<double>(steps - 1)));
+}
+
+std::size_t place_at(const Axis& axis, double coordinate) {
   const auto count = static_cast<double>(axis.values.size());
-  return axis.values[std::min(static_cast<std::size_t>(coordinate * count), axis.values.size() - 1)];
+  return std::min(static_cast<std::size_t>(coordinate * count), axis.values.size() - 1);
+}
+
+std::string value_at(const Axis& axis, double coordinate) {
+  return axis.range ? number_text(axis.range->value_at(coordinate)) : axis.values[place_at(axis, coordinate)];
 }
 
 }  // namespace hapbench

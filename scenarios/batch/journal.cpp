@@ -5,11 +5,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
+#include <iterator>
+#include <utility>
 
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/number_table.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
@@ -29,7 +31,7 @@ std::string line_of(std::string_view row) {
   return hash_text(hash_of(row)) + " " + std::string(row) + "\n";
 }
 
-/// The row of a line without its end, or nothing.
+/// The row of a line without its end, or nothing when it is damaged.
 std::string_view row_in(std::string_view line) {
   if (line.size() <= kSumLength || line[kSumLength] != ' ') return {};
   const std::string_view row = line.substr(kSumLength + 1);
@@ -38,7 +40,8 @@ std::string_view row_in(std::string_view line) {
 
 }  // namespace
 
-Journal::Journal(std::filesystem::path file, const std::string& sweep, bool resume) : file_(std::move(file)) {
+Journal::Journal(std::filesystem::path file, const std::string& sweep, bool resume, const Found& found)
+    : file_(std::move(file)) {
   // Non-blocking, or a pipe would wait for its other end.
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
   if (descriptor_ < 0) throw IoError("create", file_, last_error());
@@ -49,10 +52,11 @@ Journal::Journal(std::filesystem::path file, const std::string& sweep, bool resu
       fail_in_file(file_, "another sweep is writing to this directory; allowed: one at a time");
     }
     const std::string first_line = title_line(sweep);
-    if (resume) read(first_line);
-    if (rows_.empty()) {
-      if (::ftruncate(descriptor_, 0) != 0) throw IoError("write", file_, last_error());
-      write(first_line);
+    if (resume) read(first_line, found);
+    if (::ftruncate(descriptor_, static_cast<off_t>(end_)) != 0) throw IoError("write", file_, last_error());
+    if (end_ == 0) {
+      unwritten_ = first_line;
+      flush();
     }
   } catch (...) {
     ::close(descriptor_);
@@ -61,6 +65,11 @@ Journal::Journal(std::filesystem::path file, const std::string& sweep, bool resu
 }
 
 Journal::~Journal() {
+  try {
+    flush();
+  } catch (const IoError&) {
+    // The runs can be done again.
+  }
   ::close(descriptor_);
 }
 
@@ -71,37 +80,72 @@ bool Journal::is_of(const std::filesystem::path& file, const std::string& sweep)
   return in.read(found.data(), static_cast<std::streamsize>(found.size())) && found == expected;
 }
 
-void Journal::read(const std::string& first_line) {
-  const std::string text = read_named_file(file_);
-  std::size_t whole = text.find('\n') + 1;  // 0 when there is not even one line
-  if (whole == 0) return;
-  if (text.substr(0, whole) != first_line) {
+bool Journal::is_being_written(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) return false;
+  const bool locked = ::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(descriptor);
+  return locked;
+}
+
+std::size_t Journal::count_rows(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  const auto lines = std::count(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>(), '\n');
+  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(lines - 1, 0));
+}
+
+/// Sets the end behind what is whole.
+void Journal::read(const std::string& first_line, const Found& found) {
+  std::ifstream in(file_, std::ios::binary);
+  std::string line;
+  // A line that the end of the file cuts short does not count.
+  if (!std::getline(in, line) || in.eof()) return;
+  if (line + "\n" != first_line) {
     fail_in_file(
         file_,
         "is not the journal of this sweep; --resume needs the same scenario, --set, --vary, --shard, --keep-runs, "
         "named files and program; without --resume the sweep begins anew");
   }
-  for (std::size_t end; (end = text.find('\n', whole)) != std::string::npos; whole = end + 1) {
-    const std::string_view row = row_in(std::string_view(text).substr(whole, end - whole));
-    if (row.empty()) break;
-    rows_.emplace_back(row);
+  end_ = first_line.size();
+  for (; std::getline(in, line) && !in.eof(); end_ += line.size() + 1) {
+    const std::string_view row = row_in(line);
+    if (row.empty()) return;
+    if (found) found(end_, row);
   }
-  if (::ftruncate(descriptor_, static_cast<off_t>(whole)) != 0) throw IoError("write", file_, last_error());
 }
 
-void Journal::add(std::string_view row) {
-  write(line_of(row));
+Journal::Place Journal::add(std::string_view row) {
+  const Place place = end_ + unwritten_.size();
+  unwritten_ += line_of(row);
+  return place;
 }
 
-void Journal::write(std::string_view text) {
-  while (!text.empty()) {
+void Journal::flush() {
+  const std::string lines = std::exchange(unwritten_, {});  // which are written once, whatever comes of it
+  for (std::string_view text = lines; !text.empty();) {
     const ::ssize_t written = ::write(descriptor_, text.data(), text.size());
     if (written < 0 && errno != EINTR) throw IoError("write", file_, last_error());
     if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
   }
+  end_ += lines.size();
+}
+
+std::string Journal::row_at(Place place) const {
+  // As long as most lines are, so that one reading does.
+  for (std::string text(2048, '\0');; text.resize(2 * text.size())) {
+    const ::ssize_t length = ::pread(descriptor_, text.data(), text.size(), static_cast<off_t>(place));
+    if (length < 0 && errno == EINTR) continue;
+    if (length < 0) throw IoError("read", file_, last_error());
+    const std::size_t end = std::string_view(text.data(), static_cast<std::size_t>(length)).find('\n');
+    if (end != std::string_view::npos) return text.substr(kSumLength + 1, end - kSumLength - 1);
+    if (static_cast<std::size_t>(length) < text.size()) {
+      throw IoError("read", file_, std::make_error_code(std::errc::io_error));
+    }
+  }
 }
 
 void Journal::remove() noexcept {
+  unwritten_.clear();
   ::unlink(file_.c_str());
 }
 

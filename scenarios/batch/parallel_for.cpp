@@ -7,11 +7,9 @@
 
 namespace hapbench {
 
-void parallel_for(std::span<const std::size_t> runs, std::size_t jobs, const std::function<Delivery(std::size_t)>& work,
-                  const std::function<bool()>& stop) {
-  auto next = runs.begin();
+void parallel_for(const NextRun& next, std::size_t jobs, const std::function<Delivery(std::size_t)>& work) {
   const auto start = [&](tbb::flow_control& control) -> std::size_t {
-    if (next != runs.end() && !stop()) return *next++;
+    if (const auto run = next()) return *run;
     control.stop();
     return 0;
   };
@@ -26,6 +24,16 @@ void parallel_for(std::span<const std::size_t> runs, std::size_t jobs, const std
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, jobs);
   tbb::task_arena arena(static_cast<int>(jobs));
   arena.execute([&] { tbb::parallel_pipeline(jobs, pipeline); });
+}
+
+void parallel_for(std::span<const std::size_t> runs, std::size_t jobs, const std::function<Delivery(std::size_t)>& work,
+                  const std::function<bool()>& stop) {
+  auto at = runs.begin();
+  const auto next = [&]() -> std::optional<std::size_t> {
+    if (at == runs.end() || stop()) return std::nullopt;
+    return *at++;
+  };
+  parallel_for(next, jobs, work);
 }
 
 std::size_t available_threads() {

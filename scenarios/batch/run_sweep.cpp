@@ -3,117 +3,159 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <chrono>
+#include <cstdint>
+#include <nlohmann/json.hpp>
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/parallel_for.hpp"
+#include "scenarios/batch/runs_to_do.hpp"
 #include "scenarios/batch/sweep_row.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/run/progress_bar.hpp"
+#include "scenarios/run/recent_shells.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/shared_shells.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
-using Rows = std::map<std::size_t, std::string>;
 
-/// "sweep", or "sweep_shard_0_of_4": sweeps of one directory do not get into each other's way.
-std::string stem_of(const std::optional<Shard>& shard) {
-  return shard ? fmt::format("sweep_shard_{}_of_{}", shard->index, shard->count) : "sweep";
-}
+/// The rows of the shard's runs: which there are, and where.
+class Rows {
+ public:
+  Rows(const SweepPlan& plan, const Shard& shard)
+      : plan_(plan), shard_(shard), places_(shard.size(plan.points.size()), kNone) {}
 
-std::string journal_title(const SweepPlan& plan, const SweepOptions& options) {
-  return fmt::format("definition {}, shard {}, {}", plan.definition, shard_text(options.part()),
-                     options.keep_runs ? "runs are kept" : "runs are not kept");
-}
-
-/// What the journal holds. Its first line is right, but somebody may have written to it.
-Rows journal_rows(const SweepPlan& plan, const SweepOptions& options, const Journal& journal) {
-  Rows rows;
-  for (const std::string& row : journal.rows()) {
-    const auto run = run_of_row(plan, row);
-    if (!run || !options.part().has(*run)) {
-      fail_in_file(journal.file(), fmt::format("got the row \"{}\"; allowed: rows of this sweep", row.substr(0, 60)));
-    }
-    rows[*run] = row;
+  std::size_t count() const { return count_; }
+  std::size_t size() const { return places_.size(); }
+  bool has(std::size_t run) const { return places_[run / shard_.count] != kNone; }
+  void set(std::size_t run, Journal::Place place) {
+    if (!has(run)) ++count_;
+    places_[run / shard_.count] = place;
   }
-  return rows;
-}
-
-/// The runs that are to be done, those of one environment after each other, so that few shells are needed at a time.
-std::vector<std::size_t> runs_to_do(const SweepPlan& plan, const Shard& shard, const Rows& done) {
-  std::vector<std::size_t> runs;
-  for (std::size_t run = shard.index; run < plan.points.size(); run += shard.count) {
-    if (!done.contains(run)) runs.push_back(run);
+  void set_failed(std::size_t run) { set(run, kFailed); }
+  /// Precondition: there is one, and the journal is written.
+  std::string row(std::size_t run, const Journal& journal) const {
+    const Journal::Place place = places_[run / shard_.count];
+    return place == kFailed ? error_row(plan_, run) : journal.row_at(place);
   }
-  std::stable_sort(runs.begin(), runs.end(),
-                   [&plan](std::size_t a, std::size_t b) { return plan.environments[a] < plan.environments[b]; });
-  return runs;
+
+ private:
+  static constexpr Journal::Place kNone = 0;
+  static constexpr Journal::Place kFailed = ~Journal::Place{0};
+
+  const SweepPlan& plan_;
+  Shard shard_;
+  std::vector<Journal::Place> places_;
+  std::size_t count_ = 0;
+};
+
+/// Notes a row that the journal holds. Its first line is right, but somebody may have written to it.
+void note(Rows& rows, const SweepPlan& plan, const Shard& shard, const fs::path& file, Journal::Place place,
+          std::string_view row) {
+  const auto run = run_of_row(plan, row);
+  if (!run || !shard.has(*run)) {
+    fail_in_file(file, fmt::format("got the row \"{}\"; allowed: rows of this sweep", row.substr(0, 60)));
+  }
+  rows.set(*run, place);
 }
 
-std::vector<std::size_t> uses_of_environments(const SweepPlan& plan, const std::vector<std::size_t>& runs) {
-  std::vector<std::size_t> uses(plan.environment_count);
-  for (const std::size_t run : runs) ++uses[plan.environments[run]];
-  return uses;
-}
+/// A run on its way from the threads to the journal.
+struct FinishedRun {
+  std::string row;
+  std::chrono::steady_clock::duration time;
+};
 
-std::string computed_row(const SweepPlan& plan, const SweepOptions& options, SharedShells& shells, std::size_t run) {
+FinishedRun compute(const SweepPlan& plan, const SweepOptions& options, RecentShells& shells, std::size_t run) {
+  const auto start = std::chrono::steady_clock::now();
   const LoadedScenario loaded = scenario_of(plan, run);
-  const auto shell = shells.take(plan.environments[run], loaded.scenario);
+  const auto shell = shells.of(loaded, environment_of(plan.points, run));
   std::optional<fs::path> output;
   if (options.keep_runs) output = options.directory / "runs" / fmt::format("{:06}", run);
-  return sweep_row(plan, run, run_with_shell(loaded, shell, output, false).summary);
+  std::string row = sweep_row(plan, run, run_with_shell(loaded, shell, output, false).summary);
+  return {std::move(row), std::chrono::steady_clock::now() - start};
 }
 
 /// Does the runs that have no row yet.
 void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& journal, Rows& rows,
                   SweepReport& report) {
-  const std::vector<std::size_t> runs = runs_to_do(plan, options.part(), rows);
-  SharedShells shells(uses_of_environments(plan, runs));
-  ProgressBar bar("sweep", rows.size() + runs.size(), options.progress);
-  bar.start_at(rows.size());
-  const auto deliver = [&](std::size_t run, const std::string& row) {
-    journal.add(row);
-    rows[run] = row;
-    bar.show(rows.size(), true);
+  // A file is written to after so much work, not after each run: that would take 1 % of a short one.
+  constexpr std::chrono::milliseconds kMostUnwritten(10);
+  std::chrono::steady_clock::duration unwritten{};
+  RunsToDo runs(plan.points, options.part());
+  RecentShells shells(options.jobs);
+  ProgressBar bar("sweep", rows.size(), options.progress);
+  bar.start_at(rows.count());
+  const auto deliver = [&](std::size_t run, const FinishedRun& finished) {
+    rows.set(run, journal.add(finished.row));
+    unwritten += finished.time;
+    if (unwritten >= kMostUnwritten) {
+      journal.flush();
+      unwritten = {};
+    }
+    bar.show(rows.count(), true);
   };
   const auto deliver_failure = [&](std::size_t run, const std::string& problem) {
-    rows[run] = error_row(plan, run);
+    rows.set_failed(run);
     if (!report.failed || run < report.failed->run) report.failed = FailedRun{run, problem};
+  };
+  const auto next = [&]() -> std::optional<std::size_t> {
+    while (StopSignal::received() == 0) {
+      const auto run = runs.next();
+      if (!run || !rows.has(*run)) return run;
+    }
+    return std::nullopt;
   };
   const auto work = [&](std::size_t run) -> Delivery {
     try {
-      return [&deliver, run, row = computed_row(plan, options, shells, run)] { deliver(run, row); };
+      return [&deliver, run, finished = compute(plan, options, shells, run)] { deliver(run, finished); };
     } catch (const Stopped&) {
       return {};  // --resume computes it
     } catch (const std::exception& error) {
       return [&deliver_failure, run, problem = std::string(error.what())] { deliver_failure(run, problem); };
     }
   };
-  parallel_for(runs, options.jobs, work, [] { return StopSignal::received() != 0; });
-  if (rows.size() < options.part().size(plan.points.size())) report.signal = StopSignal::received();
+  parallel_for(next, options.jobs, work);
+  journal.flush();
+  report.done = rows.count();
+  if (report.done < rows.size()) report.signal = StopSignal::received();
 }
 
 }  // namespace
 
+std::string stem_of(const std::optional<Shard>& shard) {
+  return shard ? fmt::format("sweep_shard_{}_of_{}", shard->index, shard->count) : "sweep";
+}
+
+std::string journal_title(const SweepPlan& plan, const Shard& shard, bool keep_runs) {
+  return fmt::format("definition {}, shard {}, {}", plan.definition, shard_text(shard),
+                     keep_runs ? "runs are kept" : "runs are not kept");
+}
+
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
   const std::string stem = stem_of(options.shard);
-  Journal journal(options.directory / (stem + ".journal"), journal_title(plan, options), options.resume);
+  const fs::path file = options.directory / (stem + ".journal");
+  Rows rows(plan, options.part());
+  Journal journal(
+      file, journal_title(plan, options.part(), options.keep_runs), options.resume,
+      [&](Journal::Place place, std::string_view row) { note(rows, plan, options.part(), file, place, row); });
   remove_stale_temporaries(options.directory);
-  Rows rows = journal_rows(plan, options, journal);
   SweepReport report;
-  report.resumed = rows.size();
+  report.resumed = rows.count();
   compute_rows(plan, options, journal, rows, report);
-  for (auto& [run, row] : rows) report.rows.push_back(std::move(row));
   if (report.signal != 0) return report;
   report.table = options.directory / (stem + ".csv");
   write_file_atomically(options.directory / (stem + ".json"), json_text(sweep_description(plan, options.part())));
-  write_sweep_table(report.table, plan, options.shard, report.rows);
+  write_sweep_table(report.table, plan, options.shard, [&](std::size_t run) {
+    std::string row = rows.row(run, journal);
+    report.counts.add(plan, run, row);
+    if (rows.size() <= SweepReport::kMostRows) report.rows.push_back(row);
+    return row;
+  });
   journal.remove();
   return report;
 }

@@ -6,7 +6,6 @@
 #include <iterator>
 #include <numeric>
 
-#include "scenarios/batch/sobol.hpp"
 #include "scenarios/batch/sweep_points.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
@@ -25,20 +24,21 @@ constexpr NamedMethod kMethods[] = {
 /// Below 1, whatever rounding makes of a point in the last stratum.
 constexpr double kLast = 1.0 - 0x1.0p-53;
 
-void fill_latin_hypercube(Random& random, std::size_t axis, std::vector<UnitPoint>& points) {
-  std::vector<std::size_t> strata(points.size());
+std::vector<double> latin_hypercube(Random& random, std::size_t count) {
+  std::vector<std::size_t> strata(count);
   std::iota(strata.begin(), strata.end(), std::size_t{0});
   random.shuffle(strata);
-  const auto count = static_cast<double>(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    points[i][axis] = std::min((static_cast<double>(strata[i]) + random.uniform()) / count, kLast);
+  std::vector<double> points(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    points[i] = std::min((static_cast<double>(strata[i]) + random.uniform()) / static_cast<double>(count), kLast);
   }
+  return points;
 }
 
-void fill_sobol(Random& random, std::size_t axis, std::vector<UnitPoint>& points) {
-  SobolAxis sequence(axis);
-  const auto shift = static_cast<std::uint32_t>(random.below(std::uint64_t{1} << 32));
-  for (UnitPoint& point : points) point[axis] = static_cast<double>(sequence.next() ^ shift) * 0x1.0p-32;
+std::vector<double> independent(Random& random, std::size_t count) {
+  std::vector<double> points(count);
+  for (double& point : points) point = random.uniform();
+  return points;
 }
 
 }  // namespace
@@ -62,27 +62,37 @@ Sampling parse_sampling(const std::string& text, std::uint64_t seed) {
   return {found->method, *count, seed};
 }
 
-std::vector<UnitPoint> sample_unit_cube(const Sampling& sampling, std::size_t axes) {
+UnitSample::UnitSample(const Sampling& sampling, std::size_t axes) {
   if (sampling.method == SamplingMethod::sobol && axes > kSobolAxes) {
     throw InputError(fmt::format("--sample: got a Sobol sample of {} fields; allowed: at most {}", axes, kSobolAxes));
   }
-  std::vector<UnitPoint> points(sampling.count, UnitPoint(axes));
   for (std::size_t axis = 0; axis < axes; ++axis) {
     // A stream for each axis: one more axis does not change the others.
     Random random(Random::derive(sampling.seed, axis));
     switch (sampling.method) {
       case SamplingMethod::latin_hypercube:
-        fill_latin_hypercube(random, axis, points);
+        points_.push_back(latin_hypercube(random, sampling.count));
         break;
       case SamplingMethod::sobol:
-        fill_sobol(random, axis, points);
+        sobol_.push_back({SobolAxis(axis), static_cast<std::uint32_t>(random.below(std::uint64_t{1} << 32))});
         break;
       case SamplingMethod::random:
-        for (UnitPoint& point : points) point[axis] = random.uniform();
+        points_.push_back(independent(random, sampling.count));
         break;
     }
   }
-  return points;
+}
+
+double UnitSample::at(std::size_t point, std::size_t axis) const {
+  if (sobol_.empty()) return points_[axis][point];
+  const ShiftedSobol& sobol = sobol_[axis];
+  return static_cast<double>(sobol.sequence.at(static_cast<std::uint32_t>(point)) ^ sobol.shift) * 0x1.0p-32;
+}
+
+UnitPoint UnitSample::point(std::size_t number) const {
+  UnitPoint point(std::max(sobol_.size(), points_.size()));
+  for (std::size_t axis = 0; axis < point.size(); ++axis) point[axis] = at(number, axis);
+  return point;
 }
 
 }  // namespace hapbench

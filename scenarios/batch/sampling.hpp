@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "scenarios/batch/sobol.hpp"
+
 namespace hapbench {
 
 /// How points are strewn over the unit cube.
@@ -33,8 +35,25 @@ using UnitPoint = std::vector<double>;
 
 /// The points of a sample. A Sobol sequence is shifted digitally (each coordinate's bits are combined with the same
 /// random bits by exclusive or; Cranley-Patterson in base two, Owen 2003), which keeps its balance and gives the seed a
-/// meaning. O(count * axes) time and memory. Throws InputError for a Sobol sample of more axes than there are direction
-/// numbers.
-std::vector<UnitPoint> sample_unit_cube(const Sampling& sampling, std::size_t axes);
+/// meaning; its points are computed when they are asked for. The others come from one stream of random numbers for each
+/// axis and are kept, in 8 bytes a point and axis.
+class UnitSample {
+ public:
+  /// Throws InputError for a Sobol sample of more axes than there are direction numbers.
+  UnitSample(const Sampling& sampling, std::size_t axes);
+
+  /// A coordinate in [0, 1). Precondition: point and axis are in the sample.
+  double at(std::size_t point, std::size_t axis) const;
+  /// All of a point. Precondition: it is in the sample.
+  UnitPoint point(std::size_t number) const;
+
+ private:
+  struct ShiftedSobol {
+    SobolAxis sequence;
+    std::uint32_t shift;
+  };
+  std::vector<ShiftedSobol> sobol_;          ///< by axis, or none
+  std::vector<std::vector<double>> points_;  ///< by axis, or none
+};
 
 }  // namespace hapbench

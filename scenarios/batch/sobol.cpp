@@ -92,11 +92,11 @@ SobolAxis::SobolAxis(std::size_t axis) {
   }
 }
 
-std::uint32_t SobolAxis::next() {
-  const std::uint32_t value = value_;
-  // From point to point of a Gray code one bit changes: the lowest that is 0 in the index.
-  const auto bit = static_cast<std::size_t>(std::countr_one(index_++));
-  if (bit < kBits) value_ ^= directions_[bit];
+std::uint32_t SobolAxis::at(std::uint32_t point) const {
+  std::uint32_t value = 0;
+  for (std::uint32_t bits = point ^ (point >> 1); bits != 0; bits &= bits - 1) {  // those of the Gray code
+    value ^= directions_[static_cast<std::size_t>(std::countr_zero(bits))];
+  }
   return value;
 }
 

@@ -20,13 +20,11 @@ class SobolAxis {
   /// Precondition: axis < kSobolAxes.
   explicit SobolAxis(std::size_t axis);
 
-  /// The next coordinate, in units of 2^-32. The sequence has 2^32 points.
-  std::uint32_t next();
+  /// The coordinate of a point, in units of 2^-32.
+  std::uint32_t at(std::uint32_t point) const;
 
  private:
   std::array<std::uint32_t, 32> directions_;  ///< in units of 2^-32
-  std::uint32_t value_ = 0;
-  std::uint32_t index_ = 0;  ///< of the next point
 };
 
 }  // namespace hapbench

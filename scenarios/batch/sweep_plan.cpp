@@ -5,6 +5,7 @@
 #include <exception>
 #include <map>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "results/io/json_text.hpp"
@@ -23,8 +24,7 @@ namespace {
 struct Point {
   std::vector<std::string> warnings;
   MetricSections sections;
-  std::string environment;  ///< with all defaults
-  std::string files;        ///< the parts that name files
+  std::string files;  ///< the parts that name files
 };
 
 MetricSections sections_of(const Scenario& scenario) {
@@ -35,10 +35,10 @@ MetricSections sections_of(const Scenario& scenario) {
 Point examine(const SweepPlan& plan, std::size_t run) {
   const LoadedScenario loaded = scenario_of(plan, run);
   const Scenario& scenario = loaded.scenario;
-  Point point{loaded.warnings, sections_of(scenario), written(scenario.environment).dump(), ""};
+  Point point{loaded.warnings, sections_of(scenario), ""};
   if (std::holds_alternative<PointShellEnvironment>(scenario.environment) ||
       std::holds_alternative<MeshEnvironment>(scenario.environment)) {
-    point.files = point.environment;
+    point.files = written(scenario.environment).dump();
   }
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
     point.files += written_object(scenario.motion).dump();
@@ -49,13 +49,12 @@ Point examine(const SweepPlan& plan, std::size_t run) {
 /// Collects the points of a plan, one by one in whatever order; the outcome does not depend on it.
 class Collector {
  public:
-  explicit Collector(SweepPlan& plan) : plan_(plan), environments_of_runs_(plan.points.size()) {}
+  explicit Collector(SweepPlan& plan) : plan_(plan) {}
 
   void add(std::size_t run, const Point& point) {
     sections_.energy |= point.sections.energy;
     sections_.ideal_trajectory |= point.sections.ideal_trajectory;
     sections_.places = std::max(sections_.places, point.sections.places);
-    environments_of_runs_[run] = &*environments_.emplace(point.environment, 0).first;
     if (!point.files.empty()) keep_first(files_, point.files, {run, 0});
     for (std::size_t i = 0; i < point.warnings.size(); ++i) keep_first(warnings_, point.warnings[i], {run, i});
   }
@@ -63,10 +62,6 @@ class Collector {
   /// When all have been added.
   void finish() {
     plan_.metrics = metric_names(sections_);
-    for (Environments::value_type* environment : environments_of_runs_) {
-      if (environment->second == 0) environment->second = ++plan_.environment_count;
-      plan_.environments.push_back(environment->second - 1);
-    }
     for (const auto& [place, warning] : in_order(warnings_)) plan_.warnings.push_back(warning);
   }
 
@@ -89,7 +84,6 @@ class Collector {
   /// Where something first occurs: run, and number within the run.
   using Place = std::pair<std::size_t, std::size_t>;
   using FirstPlaces = std::map<std::string, Place>;
-  using Environments = std::map<std::string, std::size_t>;
 
   static void keep_first(FirstPlaces& places, const std::string& text, Place place) {
     Place& first = places.emplace(text, place).first->second;
@@ -103,15 +97,12 @@ class Collector {
 
   SweepPlan& plan_;
   MetricSections sections_{false, false, 0};
-  Environments environments_;  ///< numbered from 1 in the order of runs, at the end
-  std::vector<Environments::value_type*> environments_of_runs_;
   FirstPlaces files_, warnings_;
 };
 
 /// Fills the collector; throws the error of the lowest run that has one.
 void examine_all(const SweepPlan& plan, std::size_t jobs, bool progress, Collector& collector) {
-  std::vector<std::size_t> runs(plan.points.size());
-  std::iota(runs.begin(), runs.end(), std::size_t{0});
+  const std::vector<std::size_t> runs = runs_to_check(plan.points);
   ProgressBar bar("checking", runs.size(), progress);
   std::size_t done = 0;
   std::map<std::size_t, std::exception_ptr> errors;
@@ -132,11 +123,19 @@ void examine_all(const SweepPlan& plan, std::size_t jobs, bool progress, Collect
   if (!errors.empty()) std::rethrow_exception(errors.begin()->second);
 }
 
+/// A grid's values one by one, but for ranges of very many.
 Json axis_content(const Axis& axis) {
-  if (!axis.range) return {{"path", axis.path}, {"values", axis.values}};
-  return {{"path", axis.path},
-          {"range", {axis.range->from, axis.range->to}},
-          {"scale", axis.range->logarithmic ? "log" : "linear"}};
+  constexpr std::size_t kMostListed = 10'000;
+  if (!axis.range || (axis.steps > 0 && axis.steps <= kMostListed)) {
+    Json values = Json::array();
+    for (std::size_t i = 0; i < axis.size(); ++i) values.push_back(axis.value(i));
+    return {{"path", axis.path}, {"values", std::move(values)}};
+  }
+  Json content = {{"path", axis.path},
+                  {"range", {axis.range->from, axis.range->to}},
+                  {"scale", axis.range->logarithmic ? "log" : "linear"}};
+  if (axis.steps > 0) content["count"] = axis.steps;
+  return content;
 }
 
 /// The CPU does not count: shards of one sweep may come from several machines.
@@ -160,9 +159,29 @@ Json content_of(const SweepPlan& plan, const Json& files) {
 
 }  // namespace
 
+std::vector<std::size_t> runs_to_check(const SweepPoints& points) {
+  if (points.size() <= kMostChecked || points.sampling()) {
+    std::vector<std::size_t> runs(std::min(points.size(), kMostChecked));
+    std::iota(runs.begin(), runs.end(), std::size_t{0});
+    return runs;
+  }
+  std::set<std::size_t> runs;
+  std::size_t stride = 1;
+  for (std::size_t a = points.axes().size(); a-- > 0;) {
+    const std::size_t size = points.axes()[a].size(), count = std::min(size, kMostChecked);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t place = count == 1 ? 0 : i * (size - 1) / (count - 1);
+      runs.insert(place * stride);
+      if (points.axes().size() > 1) runs.insert(points.size() - 1 - place * stride);
+    }
+    stride *= size;
+  }
+  return {runs.begin(), runs.end()};
+}
+
 SweepPlan plan_sweep(ScenarioText scenario, std::vector<std::string> overrides, SweepPoints points, std::size_t jobs,
                      bool progress) {
-  SweepPlan plan{std::move(scenario), std::move(overrides), std::move(points), {}, {}, {}, 0, {}, ""};
+  SweepPlan plan{std::move(scenario), std::move(overrides), std::move(points), {}, {}, {}, ""};
   Collector collector(plan);
   examine_all(plan, jobs, progress, collector);
   collector.finish();
@@ -171,10 +190,14 @@ SweepPlan plan_sweep(ScenarioText scenario, std::vector<std::string> overrides, 
   return plan;
 }
 
-LoadedScenario scenario_of(const SweepPlan& plan, std::size_t run) {
+std::vector<std::string> overrides_of(const SweepPlan& plan, std::size_t run) {
   std::vector<std::string> overrides = plan.overrides;
   for (std::string& override : plan.points.overrides(run)) overrides.push_back(std::move(override));
-  return load_scenario(plan.scenario, overrides);
+  return overrides;
+}
+
+LoadedScenario scenario_of(const SweepPlan& plan, std::size_t run) {
+  return load_scenario(plan.scenario, overrides_of(plan, run));
 }
 
 }  // namespace hapbench

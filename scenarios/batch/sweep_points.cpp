@@ -22,30 +22,31 @@ void check_paths(const std::vector<Axis>& axes) {
 SweepPoints::SweepPoints(std::vector<Axis> axes) : axes_(std::move(axes)) {
   check_paths(axes_);
   double size = 1.0;  // a product that overflows integers is told as well
-  for (const Axis& axis : axes_) size *= static_cast<double>(axis.values.size());
+  for (const Axis& axis : axes_) size *= static_cast<double>(axis.size());
   if (size > static_cast<double>(kMostRuns)) {
     throw InputError(fmt::format("--vary: got a grid of {:.7g} runs; allowed: at most {}", size, kMostRuns));
   }
-  size_ = static_cast<std::size_t>(size);
+  strides_.resize(axes_.size());
+  for (std::size_t a = axes_.size(); a-- > 0; size_ *= axes_[a].size()) strides_[a] = size_;
 }
 
 SweepPoints::SweepPoints(std::vector<Axis> axes, const Sampling& sampling)
     : axes_(std::move(axes)), sampling_(sampling), size_(sampling.count) {
   check_paths(axes_);
-  sample_ = sample_unit_cube(sampling, axes_.size());
+  sample_.emplace(sampling, axes_.size());
+}
+
+std::size_t SweepPoints::place(std::size_t run, std::size_t axis) const {
+  return sample_ ? place_at(axes_[axis], sample_->at(run, axis)) : run / strides_[axis] % axes_[axis].size();
+}
+
+std::string SweepPoints::value(std::size_t run, std::size_t axis) const {
+  return sample_ ? value_at(axes_[axis], sample_->at(run, axis)) : axes_[axis].value(place(run, axis));
 }
 
 std::vector<std::string> SweepPoints::values(std::size_t run) const {
   std::vector<std::string> values(axes_.size());
-  for (std::size_t a = axes_.size(); a-- > 0;) {
-    if (sampling_) {
-      values[a] = value_at(axes_[a], sample_[run][a]);
-    } else {
-      const std::vector<std::string>& all = axes_[a].values;
-      values[a] = all[run % all.size()];
-      run /= all.size();
-    }
-  }
+  for (std::size_t a = 0; a < axes_.size(); ++a) values[a] = value(run, a);
   return values;
 }
 

@@ -28,7 +28,11 @@ class SweepPoints {
   const std::vector<Axis>& axes() const { return axes_; }
   /// None for a grid.
   const std::optional<Sampling>& sampling() const { return sampling_; }
-  /// One value for each axis. Precondition: run < size().
+  /// The number of the value that a run has of an axis. Precondition: the axis has a number of them (Axis::size).
+  std::size_t place(std::size_t run, std::size_t axis) const;
+  /// The value itself, computed anew at each call. Precondition, here and below: run < size().
+  std::string value(std::size_t run, std::size_t axis) const;
+  /// One value for each axis.
   std::vector<std::string> values(std::size_t run) const;
   /// The same as overrides "path=value".
   std::vector<std::string> overrides(std::size_t run) const;
@@ -36,7 +40,8 @@ class SweepPoints {
  private:
   std::vector<Axis> axes_;
   std::optional<Sampling> sampling_;
-  std::vector<UnitPoint> sample_;  ///< empty for a grid
+  std::optional<UnitSample> sample_;
+  std::vector<std::size_t> strides_;  ///< of a grid: from run to run that has the next value of an axis
   std::size_t size_ = 1;
 };
 

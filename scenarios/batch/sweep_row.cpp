@@ -6,17 +6,21 @@
 #include <algorithm>
 
 #include "results/summary/outcome_names.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
 namespace {
 
-/// The cells every row begins with.
-std::vector<std::string> leading_cells(const SweepPlan& plan, std::size_t run) {
-  std::vector<std::string> cells = plan.points.values(run);
-  cells.insert(cells.begin(), std::to_string(run));
-  return cells;
+/// What every row begins with: run and varied fields.
+std::string leading_cells(const SweepPlan& plan, std::size_t run) {
+  return fmt::format("{},{}", run, fmt::join(plan.points.values(run), ","));
+}
+
+void append_cell(std::string& row, std::string_view cell) {
+  row += ',';
+  row += cell;
 }
 
 }  // namespace
@@ -31,31 +35,38 @@ std::string sweep_header(const SweepPlan& plan) {
 }
 
 std::string sweep_row(const SweepPlan& plan, std::size_t run, const RunSummary& summary) {
-  std::vector<std::string> cells = leading_cells(plan, run);
-  cells.emplace_back(outcome_name(summary.result.outcome));
-  cells.emplace_back(summary.expected ? "true" : "false");
-  cells.push_back(std::to_string(summary.result.rows));
+  std::string row = leading_cells(plan, run);
+  append_cell(row, outcome_name(summary.result.outcome));
+  append_cell(row, summary.expected ? "true" : "false");
+  append_cell(row, std::to_string(summary.result.rows));
   const MetricList metrics = metric_list(summary);
-  for (const std::string& name : plan.metrics) cells.push_back(cell_text(value_of(metrics, name)));
-  cells.push_back(hash_text(summary.metrics.state_hash));
-  return fmt::format("{}", fmt::join(cells, ","));
+  auto next = metrics.begin();  // the columns are in the same order, but some runs have more metrics than others
+  for (const std::string& name : plan.metrics) {
+    const bool is_it = next != metrics.end() && next->name == name;
+    append_cell(row, is_it ? cell_text(next->value) : "");
+    if (is_it) ++next;
+  }
+  if (next != metrics.end()) {
+    throw InputError(
+        fmt::format("has the metric {}, for which no run that was checked before the first one has a column; allowed: "
+                    "sweeps whose first runs record what the others record",
+                    next->name));
+  }
+  append_cell(row, hash_text(summary.metrics.state_hash));
+  return row;
 }
 
 std::string error_row(const SweepPlan& plan, std::size_t run) {
-  std::vector<std::string> cells = leading_cells(plan, run);
-  cells.emplace_back(kErrorOutcome);
-  cells.emplace_back("false");
-  cells.resize(cells.size() + 1 + plan.metrics.size() + 1);  // steps, metrics, state_hash
-  return fmt::format("{}", fmt::join(cells, ","));
+  const std::size_t empty = 1 + plan.metrics.size() + 1;  // steps, metrics, state_hash
+  return fmt::format("{},{},false{}", leading_cells(plan, run), kErrorOutcome, std::string(empty, ','));
 }
 
 std::optional<std::size_t> run_of_row(const SweepPlan& plan, std::string_view row) {
-  const Words cells = parts_of(row, ',');
-  const auto run = whole_number(cells[0]);
-  const std::size_t columns = parts_of(sweep_header(plan), ',').size();
-  if (!run || *run >= plan.points.size() || cells.size() != columns) return std::nullopt;
-  const std::vector<std::string> leading = leading_cells(plan, *run);
-  return std::equal(leading.begin(), leading.end(), cells.begin()) ? run : std::nullopt;
+  const auto run = whole_number(row.substr(0, row.find(',')));
+  const std::size_t columns = 1 + plan.points.axes().size() + 3 + plan.metrics.size() + 1;  // as sweep_header has them
+  const auto commas = static_cast<std::size_t>(std::count(row.begin(), row.end(), ','));
+  if (!run || *run >= plan.points.size() || commas + 1 != columns) return std::nullopt;
+  return row.starts_with(leading_cells(plan, *run) + ",") ? run : std::nullopt;
 }
 
 }  // namespace hapbench

@@ -13,7 +13,8 @@ namespace hapbench {
 /// Column names: run number, the varied fields, outcome, expected, steps, every metric, state_hash.
 std::string sweep_header(const SweepPlan& plan);
 
-/// The row of a finished run; empty cells for what it has not.
+/// The row of a finished run; empty cells for what it has not. Throws InputError for a run that has what no column
+/// holds.
 std::string sweep_row(const SweepPlan& plan, std::size_t run, const RunSummary& summary);
 
 /// Outcome of a run that an exception ended; its row has no numbers.

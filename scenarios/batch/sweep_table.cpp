@@ -3,55 +3,29 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string_view>
+#include <vector>
 
 #include "results/io/atomic_file.hpp"
+#include "results/io/json_text.hpp"
 #include "scenarios/batch/sweep_row.hpp"
-#include "scenarios/input/csv_reader.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/number_table.hpp"
-#include "scenarios/input/text_lines.hpp"
+#include "scenarios/input/json_file.hpp"
 
 namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The line in front of a shard's table.
-std::string title(const Shard& shard, std::size_t runs, std::string_view definition) {
-  return fmt::format("# hapbench sweep, shard {} of {} runs, definition {}", shard_text(shard), runs, definition);
-}
-
 void append_line(AtomicFile& file, std::string_view line) {
   file.append(line);
   file.append("\n");
 }
 
-/// Reads what `title` writes, and nothing that differs from it.
-void read_title(std::string_view line, ShardTable& table) {
-  const Words words = words_of(line);
-  if (words.size() == 10) {
-    const Words shard = parts_of(words[4], '/');
-    const auto index = whole_number(shard.front()), count = whole_number(shard.back()), runs = whole_number(words[6]);
-    if (index && count && runs && *index < *count && *count <= kMostRuns && *runs <= kMostRuns) {
-      table.shard = {*index, *count};
-      table.runs = *runs;
-      table.definition = words[9];
-      if (line == title(table.shard, table.runs, table.definition)) return;
-    }
-  }
-  fail_in_line(table.file, 1, "is not the table of a shard, as \"hapbench sweep --shard i/n\" writes it");
-}
-
-void check_row(const ShardTable& table, const CsvReader& csv, std::size_t run) {
-  if (run >= table.runs) fail_in_line(table.file, csv.line(), "got a row behind the last one");
-  const std::string_view number = csv.cells()[0];
-  if (whole_number(number) == run) return;
-  fail_in_line(table.file, csv.line(), fmt::format("got run \"{}\"; allowed: {}, the next of the shard", number, run));
-}
-
-void check_belongs(const ShardTable& table, const ShardTable& first) {
+void check_belongs(const ShardTitle& table, const ShardTitle& first) {
   const auto differs = [&](const char* what, const std::string& here, const std::string& there) {
     if (here == there) return;
     fail_in_file(table.file, fmt::format("is of another sweep than {}: {} {}, there {}; allowed: shards of one sweep",
@@ -63,47 +37,35 @@ void check_belongs(const ShardTable& table, const ShardTable& first) {
   differs("columns", table.header, first.header);
 }
 
+/// Of shards' tables those of one sweep differ in nothing but the shard.
+constexpr const char* kShardField = "shard";
+
+/// The description beside a table.
+fs::path description_of(fs::path table) {
+  return table.replace_extension(".json");
+}
+
 }  // namespace
 
 void write_sweep_table(const fs::path& file, const SweepPlan& plan, const std::optional<Shard>& shard,
-                       std::span<const std::string> rows) {
+                       const std::function<std::string(std::size_t)>& row) {
+  const Shard part = shard.value_or(Shard{});
   AtomicFile out(file);
-  if (shard) append_line(out, title(*shard, plan.points.size(), plan.definition));
+  if (shard) append_line(out, title_line(part, plan.points.size(), plan.definition));
   append_line(out, sweep_header(plan));
-  for (const std::string& row : rows) append_line(out, row);
+  for (std::size_t run = part.index; run < plan.points.size(); run += part.count) append_line(out, row(run));
   out.commit();
 }
 
 Json sweep_description(const SweepPlan& plan, const Shard& shard) {
-  Json description = {{"definition", plan.definition}, {"runs", plan.points.size()}, {"shard", shard_text(shard)}};
+  Json description = {{"definition", plan.definition}, {"runs", plan.points.size()}, {kShardField, shard_text(shard)}};
   description.update(plan.content);
   return description;
 }
 
-ShardTable read_shard_table(const fs::path& file) {
-  const std::string text = read_named_file(file);
-  ShardTable table;
-  table.file = file;
-  LineReader lines(text);
-  read_title(lines.next().value_or(""), table);
-  CsvReader csv(lines, file);
-  table.header = csv.header();
-  if (!table.header.starts_with("index,")) fail_in_line(file, 2, "is not the header of a sweep's table");
-  for (std::size_t run = table.shard.index; csv.next(); run += table.shard.count) {
-    check_row(table, csv, run);
-    table.rows.emplace_back(csv.row());
-  }
-  const std::size_t rows = table.shard.size(table.runs);
-  if (table.rows.size() < rows) {
-    fail_in_file(file, fmt::format("ends after {} of {} rows; allowed: complete tables", table.rows.size(), rows));
-  }
-  if (!text.ends_with('\n')) fail_in_file(file, "ends within a line; allowed: complete tables");
-  return table;
-}
-
-void check_complete(std::span<const ShardTable> tables) {
-  std::map<std::size_t, const ShardTable*> shards;
-  for (const ShardTable& table : tables) {
+void check_complete(std::span<const ShardTitle> tables) {
+  std::map<std::size_t, const ShardTitle*> shards;
+  for (const ShardTitle& table : tables) {
     check_belongs(table, tables.front());
     const auto [other, is_new] = shards.emplace(table.shard.index, &table);
     if (!is_new) {
@@ -122,15 +84,28 @@ void check_complete(std::span<const ShardTable> tables) {
                                count - shards.size() > kMostShown ? ", ..." : ""));
 }
 
-void merge_shard_tables(const fs::path& file, std::span<const ShardTable> tables) {
-  std::map<std::size_t, const ShardTable*> shards;
-  for (const ShardTable& table : tables) shards[table.shard.index] = &table;
+std::size_t merge_shard_tables(const fs::path& file, std::span<const fs::path> files) {
+  // 64 MB of all together, as far as a page of each allows.
+  const std::size_t piece =
+      std::clamp((std::size_t{1} << 26) / files.size(), std::size_t{1} << 12, std::size_t{1} << 16);
+  std::vector<ShardRows> shards;
+  std::vector<ShardTitle> titles;
+  for (const fs::path& shard : files) titles.push_back(shards.emplace_back(shard, piece).title());
+  check_complete(titles);
+  std::sort(shards.begin(), shards.end(),
+            [](const ShardRows& a, const ShardRows& b) { return a.title().shard.index < b.title().shard.index; });
   AtomicFile out(file);
-  append_line(out, tables.front().header);
-  for (std::size_t run = 0; run < tables.front().runs; ++run) {
-    append_line(out, shards[run % tables.size()]->rows[run / tables.size()]);
+  append_line(out, shards[0].title().header);
+  for (std::size_t run = 0; run < titles[0].runs; ++run) append_line(out, shards[run % shards.size()].next().value());
+  for (ShardRows& shard : shards) shard.next();  // which refuses what is behind the last row
+  const fs::path description = description_of(titles[0].file);
+  if (std::error_code ignored; fs::is_regular_file(description, ignored)) {
+    Json json = parse_json(read_text_file(description, kLargestJsonFile));
+    json[kShardField] = shard_text({});
+    write_file_atomically(description_of(file), json_text(json));
   }
   out.commit();
+  return titles[0].runs;
 }
 
 }  // namespace hapbench

@@ -85,7 +85,7 @@ class Fields {
   /// An object. `body` is called with this visitor, perhaps more than once, and describes the object's fields.
   virtual void fields(Body body) = 0;
 
-  // Inside `fields`: the object's fields.
+  // Inside `fields`: the object's fields. Names must live as long as the visit, as literals do.
   virtual void field(std::string_view name, const char* doc, Presence presence, Body value) = 0;
   /// A field that may hold anything and means nothing, such as "$schema".
   virtual void ignored(std::string_view name, const char* doc) = 0;

@@ -17,22 +17,27 @@ std::size_t characters(const std::string& text) {
   return text.size() - static_cast<std::size_t>(std::count_if(text.begin(), text.end(), continues));
 }
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
+bool contains(const std::vector<std::string_view>& names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 }  // namespace
 
+std::string Reader::at() const {
+  if (parent_ == nullptr) return at_;
+  return is_entry_ ? element(parent_->at(), index_) : member(parent_->at(), std::string(name_));
+}
+
 void Reader::refuse(Body what, const std::string& hint) const {
   SchemaWriter description;
   what(description);
-  throw InputError(InputError::Kind::shape, at_,
+  throw InputError(InputError::Kind::shape, at(),
                    fmt::format("got {}; allowed: {}{}{}", shown(json_), null_allowed_ ? "null or " : "",
                                description.allowed(), hint));
 }
 
 bool Reader::given(std::string_view name) const {
-  return reads() && json_.contains(std::string(name));
+  return reads() && json_.contains(name);
 }
 
 void Reader::number(double& value, NumberRange range) {
@@ -81,13 +86,13 @@ void Reader::name(std::size_t& index, const std::vector<std::string>& names, con
 void Reader::vector3(Vec3& value, NumberRange component) {
   if (!json_.is_array() || json_.size() != 3) refuse([&](Fields& f) { f.vector3(value, component); });
   for (std::size_t i = 0; i < 3; ++i) {
-    Reader(json_[i], element(at_, i)).number(value[static_cast<Eigen::Index>(i)], component);
+    Reader(json_[i], *this, i).number(value[static_cast<Eigen::Index>(i)], component);
   }
 }
 
 void Reader::pair(const char* allowed, Body first, Body second) {
   if (!json_.is_array() || json_.size() != 2) refuse([&](Fields& f) { f.pair(allowed, first, second); });
-  Reader first_reader(json_[0], element(at_, 0)), second_reader(json_[1], element(at_, 1));
+  Reader first_reader(json_[0], *this, 0), second_reader(json_[1], *this, 1);
   first(first_reader);
   second(second_reader);
 }
@@ -99,7 +104,7 @@ void Reader::entries(std::size_t length, ListSize size, FunctionRef<std::size_t>
   }
   resize(json_.size());
   for (std::size_t i = 0; i < json_.size(); ++i) {
-    Reader reader(json_[i], element(at_, i));
+    Reader reader(json_[i], *this, i);
     entry(reader, i);
   }
 }
@@ -126,11 +131,11 @@ void Reader::alternatives(const char* what, std::span<const char* const> names, 
   const std::vector<std::string> types(names.begin(), names.end());
   const auto type = json_.find(kTypeField);
   if (type == json_.end()) {
-    throw InputError(InputError::Kind::shape, at_,
+    throw InputError(InputError::Kind::shape, at(),
                      fmt::format("missing field \"{}\"; allowed: {}: one of {}", kTypeField, what, quoted_list(types)));
   }
   std::size_t index = 0;
-  Reader(*type, member(at_, kTypeField)).name(index, types, what);
+  Reader(*type, *this, kTypeField).name(index, types, what);
   read_fields([&](Fields& f) { fields(f, index); }, {kTypeField});
 }
 
@@ -140,31 +145,31 @@ void Reader::fields(Body body) {
 }
 
 /// `names` are the fields that `body` does not describe.
-void Reader::read_fields(Body body, std::vector<std::string> names) {
+void Reader::read_fields(Body body, std::vector<std::string_view> names) {
   names_ = &names;
   body(*this);
   names_ = nullptr;
   for (const auto& entry : json_.items()) {
     if (contains(names, entry.key())) continue;
-    throw InputError(InputError::Kind::shape, member(at_, entry.key()),
-                     "unknown field; allowed here: " + quoted_list(names) + nearest_name_hint(entry.key(), names));
+    const std::vector<std::string> allowed(names.begin(), names.end());
+    throw InputError(InputError::Kind::shape, member(at(), entry.key()),
+                     "unknown field; allowed here: " + quoted_list(allowed) + nearest_name_hint(entry.key(), allowed));
   }
   body(*this);
 }
 
 void Reader::field(std::string_view name, const char*, Presence presence, Body value) {
-  const std::string key(name);
-  if (!reads()) return names_->push_back(key);
-  const auto entry = json_.find(key);
+  if (!reads()) return names_->push_back(name);
+  const auto entry = json_.find(name);
   if (entry != json_.end()) {
-    Reader reader(*entry, member(at_, key));
+    Reader reader(*entry, *this, name);
     return value(reader);
   }
   if (presence != Presence::required) return;
   SchemaWriter description;
   value(description);
-  throw InputError(InputError::Kind::shape, at_,
-                   fmt::format("missing field \"{}\"; allowed: {}", key, description.allowed()));
+  throw InputError(InputError::Kind::shape, at(),
+                   fmt::format("missing field \"{}\"; allowed: {}", name, description.allowed()));
 }
 
 void Reader::ignored(std::string_view name, const char*) {
@@ -177,7 +182,7 @@ void Reader::exactly_one_of(const char* a, const char* b) {
   if (has_a != has_b) return;
   const char* problem = has_a ? "got both \"{}\" and \"{}\", which contradict; allowed: exactly one of them"
                               : "missing field; allowed: exactly one of \"{}\" and \"{}\"";
-  throw InputError(InputError::Kind::shape, at_, fmt::format(fmt::runtime(problem), a, b));
+  throw InputError(InputError::Kind::shape, at(), fmt::format(fmt::runtime(problem), a, b));
 }
 
 void Reader::warn(const std::string& text) {

@@ -36,21 +36,31 @@ class Reader final : public Fields {
   void exactly_one_of(const char* a, const char* b) override;
 
   bool reads() const override { return names_ == nullptr; }
-  std::string at() const override { return at_; }
+  std::string at() const override;
   bool given(std::string_view name) const override;
   void warn(const std::string& text) override;
 
  private:
+  /// The value of a field, or of an entry, of what another reader reads, which must outlive this one, as must the name.
+  /// Where it is, is put together when somebody asks: few do, and scenarios are read by the million.
+  Reader(const Json& json, const Reader& parent, std::string_view name) : json_(json), parent_(&parent), name_(name) {}
+  Reader(const Json& json, const Reader& parent, std::size_t index)
+      : json_(json), parent_(&parent), index_(index), is_entry_(true) {}
+
   /// Refuses the value: "got VALUE; allowed: …", in the words the schema writer has for `what`.
   [[noreturn]] void refuse(Body what, const std::string& hint = "") const;
-  void read_fields(Body body, std::vector<std::string> names);
+  void read_fields(Body body, std::vector<std::string_view> names);
 
   const Json& json_;
-  std::string at_;
-  std::vector<std::string>* warnings_;
+  std::string at_;  ///< without a parent
+  const Reader* parent_ = nullptr;
+  std::string_view name_;
+  std::size_t index_ = 0;
+  bool is_entry_ = false;
+  std::vector<std::string>* warnings_ = nullptr;
   bool null_allowed_ = false;
   /// While not null, the body of an object is called for the names of its fields alone.
-  std::vector<std::string>* names_ = nullptr;
+  std::vector<std::string_view>* names_ = nullptr;
 };
 
 }  // namespace hapbench

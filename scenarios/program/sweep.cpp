@@ -4,12 +4,16 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "scenarios/batch/league_runs.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/shell_words.hpp"
+#include "scenarios/program/sweep_slurm.hpp"
+#include "scenarios/program/sweep_status.hpp"
 #include "scenarios/program/sweep_summary.hpp"
 
 namespace hapbench {
@@ -31,6 +35,11 @@ struct SweepCommand {
   std::string shard;
   bool resume = false;
   bool keep_runs = false;
+  std::uint64_t row = 0;
+  bool print = false;
+  std::string status;  ///< a directory; empty: no look at one, but a sweep
+  SlurmOptions slurm;
+  std::uint64_t slurm_shards = 0;
   OutputOptions output;
 };
 
@@ -80,48 +89,126 @@ std::string run_text(const SweepPlan& plan, std::size_t run) {
 }
 
 /// Says what is wrong with the runs and returns the exit status.
-int verdict(const SweepPlan& plan, const SweepReport& report, const SweepSummary& summary) {
+int verdict(const SweepPlan& plan, const SweepReport& report) {
+  const SweepCounts& counts = report.counts;
   if (report.failed) {
     fmt::print(stderr, "hapbench: error: {}: {} of {} runs failed, the first: {}: {}\n", plan.scenario.file.string(),
-               summary.failed, report.rows.size(), run_text(plan, report.failed->run),
-               one_line(report.failed->problem));
+               counts.failed, counts.runs, run_text(plan, report.failed->run), one_line(report.failed->problem));
     return kInternalFault;
   }
-  if (summary.unexpected > 0) {
+  if (counts.unexpected > 0) {
     fmt::print(stderr, "hapbench: {}: {} of {} runs did not end as expected, the first: {}\n",
-               plan.scenario.file.string(), summary.unexpected, report.rows.size(),
-               run_text(plan, *summary.first_unexpected));
+               plan.scenario.file.string(), counts.unexpected, counts.runs, run_text(plan, *counts.first_unexpected));
     return kUnexpectedOutcome;
   }
   return kSuccess;
 }
 
+/// The command that does again what a row of the table tells of.
+int print_row(const SweepCommand& command, const fs::path& file) {
+  const SweepPoints points = points_of(command);
+  if (command.row >= points.size()) {
+    throw InputError(fmt::format("--row: got {}; allowed: 0 ... {}", command.row, points.size() - 1));
+  }
+  std::vector<std::string> overrides = command.overrides;
+  for (std::string& override : points.overrides(command.row)) overrides.push_back(std::move(override));
+  load_scenario(file, overrides);  // which says what is wrong
+  std::vector<std::string> words = {this_program().string(), "run", fs::absolute(file).lexically_normal().string()};
+  for (const std::string& override : overrides) words.insert(words.end(), {"--set", override});
+  print(command.output, shell_line(words) + "\n", Json{{"row", command.row}, {"command", words}});
+  return kSuccess;
+}
+
+/// The words of the command for one of its shards, up to shard, jobs and output.
+std::vector<std::string> shard_command(const SweepCommand& command, const fs::path& file) {
+  std::vector<std::string> words = {this_program().string(), "sweep", fs::absolute(file).lexically_normal().string()};
+  for (const std::string& vary : command.vary) words.insert(words.end(), {"--vary", vary});
+  for (const std::string& override : command.overrides) words.insert(words.end(), {"--set", override});
+  if (!command.sample.empty()) {
+    words.insert(words.end(), {"--sample", command.sample, "--seed", std::to_string(command.seed)});
+  }
+  if (command.keep_runs) words.emplace_back("--keep-runs");
+  return words;
+}
+
+int submit(const SweepCommand& command, const SweepPlan& plan, const SweepOptions& options) {
+  SlurmOptions slurm = command.slurm;
+  slurm.shards = command.slurm_shards;
+  slurm.keep_runs = options.keep_runs;
+  for (const std::string& value : {slurm.time, slurm.partition}) {
+    constexpr const char* kUsual = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-:.,";
+    if (value.find_first_not_of(kUsual) == std::string::npos) continue;
+    throw InputError(fmt::format("--time, --partition: got \"{}\"; allowed: letters, digits and _-:.,", value));
+  }
+  if (slurm.shards > plan.points.size()) {
+    throw InputError(fmt::format("--slurm: got {} shards of {} runs; allowed: 1 ... {}", slurm.shards,
+                                 plan.points.size(), plan.points.size()));
+  }
+  const std::string text = submit_to_slurm(plan, slurm, options.directory, shard_command(command, plan.scenario.file));
+  const auto jobs = jobs_of(options.directory);
+  print(command.output, text,
+        Json{{"array", jobs ? jobs->array : ""}, {"merge", jobs ? jobs->merge : ""}, {"shards", slurm.shards}});
+  return kSuccess;
+}
+
 int sweep(const SweepCommand& command) {
+  if (!command.status.empty()) {
+    const SweepStatus status = sweep_status(command.status);
+    print(command.output, status_text(status), status_json(status));
+    return kSuccess;
+  }
+  if (command.scenario.empty() || command.vary.empty()) {
+    throw InputError("sweep: got no scenario or no --vary; allowed: both, or --status FOLDER alone");
+  }
   // All input is checked before anything runs or is written.
   const fs::path file = find_scenario(command.scenario);
+  if (command.print) return print_row(command, file);
   const SweepOptions options = sweep_options(command, file);
   const SweepPlan plan =
       plan_sweep(read_scenario_text(file), command.overrides, points_of(command), options.jobs, options.progress);
   const std::string metric = chosen_metric(plan, command.metric);
   print_some_warnings(plan.warnings);
   require_writable_directory(options.directory);
+  if (command.slurm_shards > 0) return submit(command, plan, options);
 
   const SweepReport report = run_sweep(plan, options);
   if (report.signal != 0) {
     fmt::print(stderr, "hapbench: stopped after {} of {} runs; the same command with --resume goes on from there\n",
-               report.rows.size(), options.part().size(plan.points.size()));
+               report.done, options.part().size(plan.points.size()));
     return kStopped + report.signal;
   }
-  const SweepSummary summary = summarise(plan, report.rows);
-  print(command.output, summary_text(plan, report, summary, metric), summary_json(plan, report, summary));
-  return verdict(plan, report, summary);
+  if (command.output.json) {
+    print(command.output, "", summary_json(plan, report));
+  } else {
+    print(command.output, summary_text(plan, report, metric), {});
+  }
+  return verdict(plan, report);
 }
 
 void add_run_options(Command& command, SweepCommand& options) {
   command.add("--jobs", options.jobs, "runs at once; results do not depend on it (default: one per thread)");
-  command.add("--shard", options.shard, "i/n with 0 <= i < n: only the runs whose index leaves remainder i");
   command.flag("--resume", options.resume, "go on where an interrupted sweep of the same definition was");
   command.flag("--keep-runs", options.keep_runs, "write the files of each run into runs/INDEX, too");
+  CommandOption row = command.add("--row", options.row, "the index of a run, for --print");
+  CommandOption print =
+      command.flag("--print", options.print, "print the command that repeats the run of --row, and do nothing else");
+  row.needs(print);
+  print.needs(row);
+}
+
+void add_shard_options(Command& command, SweepCommand& options) {
+  const CommandOption shard =
+      command.add("--shard", options.shard, "i/n with 0 <= i < n: only the runs whose index leaves remainder i");
+  CommandOption slurm =
+      command.add("--slurm", options.slurm_shards,
+                  "N: submit an array of N shards to Slurm, with a merge behind it; again: what failed or is missing");
+  slurm.range(std::uint64_t{1}, std::uint64_t{kMostRuns}).excludes(shard);
+  command.add("--time", options.slurm.time, "of a task, as sbatch takes it: 30, 2:00:00, 1-0").needs(slurm);
+  command.add("--cpus", options.slurm.cpus, "of a task, as many runs at once (default: 1)").range(1, 1024).needs(slurm);
+  command.add("--partition", options.slurm.partition, "of the cluster (default: its own)").needs(slurm);
+  command.flag("--dry-run", options.slurm.dry_run, "write and print the scripts, submit nothing").needs(slurm);
+  command.add("--status", options.status,
+              "FOLDER: show which shards of the sweep in there are done, running, waiting, failed or missing");
 }
 
 }  // namespace
@@ -130,14 +217,13 @@ void add_sweep(CommandLine& line) {
   auto options = std::make_shared<SweepCommand>();
   Command command =
       line.command("sweep", "Run one scenario over a grid or a sample of values of any fields, in parallel");
-  command.add("scenario", options->scenario, "scenario file, or name of a bundled scenario").required();
+  command.add("scenario", options->scenario, "scenario file, or name of a bundled scenario");
   command
       .add(
           "--vary", options->vary,
           "a field and its values: path=a:b:n (n numbers from a to b), path=a:b:n:log (in equal ratios) or "
           "path=v,w,... (numbers or texts; rendering.algorithm=all); several give all combinations, the last one varies fastest. With --sample "
           "path=a:b, path=a:b:log or path=v,w,...")
-      .required()
       .repeatable();
   const CommandOption sample =
       command.add("--sample", options->sample,
@@ -150,6 +236,7 @@ void add_sweep(CommandLine& line) {
   command.add("--out", options->out, "directory of sweep.csv (default: results/out/sweep_NAME)");
   command.add("--set", options->overrides, "override a field of all runs: path=value").repeatable();
   add_run_options(command, *options);
+  add_shard_options(command, *options);
   add_output_options(command, options->output);
   command.footer(
       "sweep.csv has a row for each run: index, the varied fields, outcome (\"error\" when it could not be computed), "

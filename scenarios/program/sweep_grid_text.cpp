@@ -54,7 +54,7 @@ class Grid {
   /// Of the values of both fields by their places.
   const Cell& at(std::size_t i_across, std::size_t i_down) const {
     const std::size_t first = first_down_ ? i_down : i_across, second = first_down_ ? i_across : i_down;
-    return cells_[first * (first_down_ ? across_ : down_).values.size() + second];
+    return cells_[first * (first_down_ ? across_ : down_).size() + second];
   }
   const std::vector<Cell>& cells() const { return cells_; }
 
@@ -78,11 +78,11 @@ std::string cell_text(const Cell& cell) {
 std::string table_text(const Grid& grid) {
   std::vector<Table::Column> columns = {
       {fmt::format("{} \\ {}", grid.down().path, grid.across().path), !holds_texts(grid.down())}};
-  for (const std::string& value : grid.across().values) columns.push_back({shown_value(value)});
+  for (std::size_t i = 0; i < grid.across().size(); ++i) columns.push_back({shown_value(grid.across().value(i))});
   Table table(columns);
-  for (std::size_t j = 0; j < grid.down().values.size(); ++j) {
-    std::vector<std::string> cells = {shown_value(grid.down().values[j])};
-    for (std::size_t i = 0; i < grid.across().values.size(); ++i) cells.push_back(cell_text(grid.at(i, j)));
+  for (std::size_t j = 0; j < grid.down().size(); ++j) {
+    std::vector<std::string> cells = {shown_value(grid.down().value(j))};
+    for (std::size_t i = 0; i < grid.across().size(); ++i) cells.push_back(cell_text(grid.at(i, j)));
     table.add(std::move(cells));
   }
   return table.text(kTableWidth);
@@ -125,14 +125,14 @@ std::string map_text(const Grid& grid, std::string_view metric) {
     return !c.failure.empty() ? '#' : c.value ? level(*c.value, *range) : '?';
   };
   std::vector<std::string> labels;
-  for (const std::string& value : grid.down().values) labels.push_back(shown_value(value));
-  const std::vector<std::string>& across = grid.across().values;
-  return fmt::format(
-      "{}  {}: {} {} ... {} {}{}; # failed, ? no value\n",
-      character_map({grid.across().path, across.size(), shown_value(across.front()), shown_value(across.back())},
-                    grid.down().path, labels, cell),
-      metric, kLevels.front(), significant(range->first, 3), kLevels.back(), significant(range->second, 3),
-      is_logarithmic(*range) ? ", in equal ratios" : "");
+  for (std::size_t j = 0; j < grid.down().size(); ++j) labels.push_back(shown_value(grid.down().value(j)));
+  const Axis& across = grid.across();
+  return fmt::format("{}  {}: {} {} ... {} {}{}; # failed, ? no value\n",
+                     character_map({across.path, across.size(), shown_value(across.value(0)),
+                                    shown_value(across.value(across.size() - 1))},
+                                   grid.down().path, labels, cell),
+                     metric, kLevels.front(), significant(range->first, 3), kLevels.back(),
+                     significant(range->second, 3), is_logarithmic(*range) ? ", in equal ratios" : "");
 }
 
 }  // namespace
@@ -143,7 +143,7 @@ std::string grid_text(const SweepPlan& plan, const std::vector<std::string>& row
   const Grid grid(plan, rows, metric);
   std::string text = fmt::format("{}\n\n{}\n", metric, table_text(grid));
   constexpr std::size_t kMostAcross = 40;  // two characters each, beside the labels
-  if (grid.across().values.size() <= kMostAcross) text += map_text(grid, metric) + "\n";
+  if (grid.across().size() <= kMostAcross) text += map_text(grid, metric) + "\n";
   return text;
 }
 

@@ -18,7 +18,6 @@ namespace {
 
 /// Longer tables are not printed; other programs show them better.
 constexpr std::size_t kMostShown = 100;
-constexpr std::size_t kMostInJson = 10'000;
 
 /// A number of a cell for people, in another unit.
 std::string shown(std::string_view cell, double factor) {
@@ -95,30 +94,11 @@ std::string chosen_metric(const SweepPlan& plan, const std::string& asked_for) {
   return std::string(*std::find_if(std::begin(kDefaultMetrics), std::end(kDefaultMetrics) - 1, has));
 }
 
-SweepSummary summarise(const SweepPlan& plan, const std::vector<std::string>& rows) {
-  SweepSummary summary;
-  const std::size_t outcome_column = 1 + plan.points.axes().size();
-  for (const std::string& row : rows) {
-    const Words cells = parts_of(row, ',');
-    const std::string_view outcome = cells[outcome_column];
-    const bool failed = outcome == kErrorOutcome, expected = cells[outcome_column + 1] == "true";
-    SweepSummary::Count& count = summary.outcomes[std::string(outcome)];
-    ++count.runs;
-    count.expected += expected ? 1 : 0;
-    summary.failed += failed ? 1 : 0;
-    if (failed || expected) continue;
-    ++summary.unexpected;
-    if (!summary.first_unexpected) summary.first_unexpected = run_of_row(plan, row);
-  }
-  return summary;
-}
-
-std::string summary_text(const SweepPlan& plan, const SweepReport& report, const SweepSummary& summary,
-                         const std::string& metric) {
+std::string summary_text(const SweepPlan& plan, const SweepReport& report, const std::string& metric) {
   std::string text = grid_text(plan, report.rows, metric);
-  if (plan.points.axes().size() == 1 && report.rows.size() <= kMostShown) text = runs_text(plan, report.rows) + "\n";
+  if (plan.points.axes().size() == 1 && report.counts.runs <= kMostShown) text = runs_text(plan, report.rows) + "\n";
   Table table({{"outcome", false}, {"runs"}, {"as expected"}});
-  for (const auto& [outcome, count] : summary.outcomes) {
+  for (const auto& [outcome, count] : report.counts.outcomes) {
     table.add({outcome, std::to_string(count.runs), std::to_string(count.expected)});
   }
   text += table.text();
@@ -126,12 +106,13 @@ std::string summary_text(const SweepPlan& plan, const SweepReport& report, const
   return text + fmt::format("\nresults in {}\n", report.table.string());
 }
 
-Json summary_json(const SweepPlan& plan, const SweepReport& report, const SweepSummary& summary) {
+Json summary_json(const SweepPlan& plan, const SweepReport& report) {
+  const SweepCounts& counts = report.counts;
   Json outcomes = Json::object();
-  for (const auto& [outcome, count] : summary.outcomes) outcomes[outcome] = count.runs;
-  Json json = {{"definition", plan.definition},    {"runs", report.rows.size()}, {"outcomes", std::move(outcomes)},
-               {"unexpected", summary.unexpected}, {"failed", summary.failed},   {"file", report.table.string()}};
-  if (report.rows.size() <= kMostInJson) json["rows"] = rows_json(sweep_header(plan), report.rows);
+  for (const auto& [outcome, count] : counts.outcomes) outcomes[outcome] = count.runs;
+  Json json = {{"definition", plan.definition},   {"runs", counts.runs},     {"outcomes", std::move(outcomes)},
+               {"unexpected", counts.unexpected}, {"failed", counts.failed}, {"file", report.table.string()}};
+  if (counts.runs <= SweepReport::kMostRows) json["rows"] = rows_json(sweep_header(plan), report.rows);
   return json;
 }
 

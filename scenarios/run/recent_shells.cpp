@@ -9,7 +9,11 @@
 namespace hapbench {
 
 std::shared_ptr<const PointShell> RecentShells::of(const LoadedScenario& loaded) {
-  const auto entry = entry_of(environment_content(loaded.scenario, loaded.files).dump());
+  return of(loaded, environment_content(loaded.scenario, loaded.files).dump());
+}
+
+std::shared_ptr<const PointShell> RecentShells::of(const LoadedScenario& loaded, const std::string& environment) {
+  const auto entry = entry_of(environment);
   const std::lock_guard lock(entry->mutex);
   if (!entry->made) {
     entry->shell = make_shell(loaded.scenario, environment_points(loaded.scenario, loaded.files));

@@ -20,6 +20,8 @@ class RecentShells {
   /// The shell of the scenario's environment; null for springs. Waits while another thread makes it. Throws InputError
   /// when a named file cannot be used.
   std::shared_ptr<const PointShell> of(const LoadedScenario& loaded);
+  /// The same where the caller has a text that is equal for equal environments, and for those alone.
+  std::shared_ptr<const PointShell> of(const LoadedScenario& loaded, const std::string& environment);
 
  private:
   struct Entry {

@@ -144,9 +144,8 @@ RobustnessPlan plan_robustness(Choices choices, PublishedNumbers published, std:
   std::erase_if(claims, [](const Claim& claim) { return claim.timing; });
   RobustnessPlan plan{std::move(choices), std::move(published), std::move(claims), std::move(read), {}};
   const Sampling sampling{SamplingMethod::latin_hypercube, samples, kRobustnessSeed};
-  for (const UnitPoint& point : sample_unit_cube(sampling, plan.choices.all().size())) {
-    plan.values.push_back(plan.choices.values_at(point));
-  }
+  const UnitSample sample(sampling, plan.choices.all().size());
+  for (std::size_t i = 0; i < samples; ++i) plan.values.push_back(plan.choices.values_at(sample.point(i)));
   return plan;
 }
 

@@ -62,12 +62,12 @@ std::optional<std::pair<std::size_t, Verdicts>> read_row(const RobustnessPlan& p
 }
 
 /// Puts what the journal holds into the report and returns the samples that are left.
-std::vector<std::size_t> samples_to_do(const RobustnessPlan& plan, const Journal& journal, RobustnessReport& report) {
+std::vector<std::size_t> samples_to_do(const RobustnessPlan& plan, const fs::path& journal,
+                                       const std::vector<std::string>& rows, RobustnessReport& report) {
   std::vector<bool> done(plan.samples());
-  for (const std::string& row : journal.rows()) {
+  for (const std::string& row : rows) {
     auto read = read_row(plan, row);
-    if (!read)
-      fail_in_file(journal.file(), fmt::format("got the row \"{}\"; allowed: rows of this plan", row.substr(0, 60)));
+    if (!read) fail_in_file(journal, fmt::format("got the row \"{}\"; allowed: rows of this plan", row.substr(0, 60)));
     done[read->first] = true;
     report.verdicts[read->first] = std::move(read->second);
   }
@@ -86,10 +86,11 @@ RobustnessReport run_robustness(const RobustnessPlan& plan, const RobustnessOpti
   const std::string title = definition(plan);
   // What a program without an identity computed is computed again.
   const bool resume = !options.anew && !program_identity().empty() && Journal::is_of(file, title);
-  Journal journal(file, title, resume);
+  std::vector<std::string> rows;
+  Journal journal(file, title, resume, [&rows](Journal::Place, std::string_view row) { rows.emplace_back(row); });
   RobustnessReport report;
   report.verdicts.resize(plan.samples());
-  const std::vector<std::size_t> left = samples_to_do(plan, journal, report);
+  const std::vector<std::size_t> left = samples_to_do(plan, file, rows, report);
   fs::remove_all(scratch);  // of a process that was killed
   RecentShells shells;
   ProgressBar bar("robustness", plan.samples(), options.progress);
@@ -98,6 +99,7 @@ RobustnessReport run_robustness(const RobustnessPlan& plan, const RobustnessOpti
   const auto judge = [&](std::size_t sample) -> Delivery {
     return [&, sample, judged = judge_sample(plan, shells, sample, scratch / std::to_string(sample))] {
       journal.add(robustness_row(plan, sample, judged.verdicts));
+      journal.flush();
       report.verdicts[sample] = judged.verdicts;
       problems[sample] = judged.problems;
       bar.show(++report.done, true);

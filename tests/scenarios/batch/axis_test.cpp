@@ -13,23 +13,29 @@ namespace {
 
 using Values = std::vector<std::string>;
 
+Values values_of(const std::string& text) {
+  const Axis axis = parse_axis(text);
+  Values values;
+  for (std::size_t i = 0; i < axis.size(); ++i) values.push_back(axis.value(i));
+  return values;
+}
+
 std::vector<double> numbers(const std::string& text) {
   std::vector<double> numbers;
-  for (const std::string& value : parse_axis(text).values) numbers.push_back(test::number_in(value));
+  for (const std::string& value : values_of(text)) numbers.push_back(test::number_in(value));
   return numbers;
 }
 
 TEST(Axis, OfALinearRangeHasBothEndsAndDecimalsAsOneWritesThem) {
   EXPECT_EQ(parse_axis("a.b=0:1:11").path, "a.b");
-  EXPECT_EQ(parse_axis("a=0:1:11").values,
-            (Values{"0", "0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7", "0.8", "0.9", "1"}));
-  EXPECT_EQ(parse_axis("a=10:-10:3").values, (Values{"10", "0", "-10"}));
-  EXPECT_EQ(parse_axis("a=100:1000:4").values, (Values{"100", "400", "700", "1000"}));
+  EXPECT_EQ(values_of("a=0:1:11"), (Values{"0", "0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7", "0.8", "0.9", "1"}));
+  EXPECT_EQ(values_of("a=10:-10:3"), (Values{"10", "0", "-10"}));
+  EXPECT_EQ(values_of("a=100:1000:4"), (Values{"100", "400", "700", "1000"}));
 }
 
 TEST(Axis, OfALogarithmicRangeHasBothEndsAndDecades) {
-  EXPECT_EQ(parse_axis("a=0.001:1000:7:log").values, (Values{"0.001", "0.01", "0.1", "1", "10", "100", "1000"}));
-  EXPECT_EQ(parse_axis("a=1000:10:3:log").values, (Values{"1000", "100", "10"}));
+  EXPECT_EQ(values_of("a=0.001:1000:7:log"), (Values{"0.001", "0.01", "0.1", "1", "10", "100", "1000"}));
+  EXPECT_EQ(values_of("a=1000:10:3:log"), (Values{"1000", "100", "10"}));
 }
 
 TEST(Axis, EndPointsAreExactAndValuesBetweenThemInOrder) {
@@ -58,10 +64,19 @@ TEST(Axis, StepsAreEqualOrHaveEqualRatiosToRounding) {
   }
 }
 
+TEST(Axis, OfARangeKeepsNoneOfItsValues) {
+  const Axis axis = parse_axis("a=0:999999:1000000");
+  EXPECT_EQ(axis.size(), 1'000'000u);
+  EXPECT_TRUE(axis.values.empty());
+  EXPECT_EQ(axis.value(0), "0");
+  EXPECT_EQ(axis.value(123'456), "123456");
+  EXPECT_EQ(axis.value(999'999), "999999");
+}
+
 TEST(Axis, OfAListHasItsValuesInOrderAndNumbersInOneSpelling) {
-  EXPECT_EQ(parse_axis("rendering.algorithm=mean,summation").values, (Values{"mean", "summation"}));
-  EXPECT_EQ(parse_axis("a=4e4,1.50,-0,true,null,7").values, (Values{"40000", "1.5", "-0", "true", "null", "7"}));
-  EXPECT_EQ(parse_axis("a=5").values, Values{"5"});
+  EXPECT_EQ(values_of("rendering.algorithm=mean,summation"), (Values{"mean", "summation"}));
+  EXPECT_EQ(values_of("a=4e4,1.50,-0,true,null,7"), (Values{"40000", "1.5", "-0", "true", "null", "7"}));
+  EXPECT_EQ(values_of("a=5"), Values{"5"});
 }
 
 TEST(Axis, RefusesWhatItCannotRead) {

@@ -16,7 +16,15 @@ using Rows = std::vector<std::string>;
 
 class JournalFile : public testing::Test {
  protected:
-  Rows resumed(const std::string& sweep = "mine") const { return Journal(file_, sweep, true).rows(); }
+  /// The rows that a journal of the sweep finds.
+  Rows resumed(const std::string& sweep = "mine") const {
+    Rows rows;
+    const Journal journal(file_, sweep, true, added_to(rows));
+    return rows;
+  }
+  static Journal::Found added_to(Rows& rows) {
+    return [&rows](Journal::Place, std::string_view row) { rows.emplace_back(row); };
+  }
   /// A journal of these rows as a killed process leaves it; returns its bytes.
   std::string written(const Rows& rows) const {
     {
@@ -32,8 +40,9 @@ class JournalFile : public testing::Test {
 TEST_F(JournalFile, GivesItsRowsBackAndGoesOn) {
   written({"0,a", "2,b"});
   {
-    Journal journal(file_, "mine", true);
-    EXPECT_EQ(journal.rows(), (Rows{"0,a", "2,b"}));
+    Rows found;
+    Journal journal(file_, "mine", true, added_to(found));
+    EXPECT_EQ(found, (Rows{"0,a", "2,b"}));
     journal.add("1,c");
   }
   EXPECT_EQ(resumed(), (Rows{"0,a", "2,b", "1,c"}));
@@ -59,8 +68,9 @@ TEST_F(JournalFile, CutShortAnywhereKeepsTheWholeLinesAndGoesOn) {
         static_cast<std::size_t>(std::count(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size), '\n'));
     Rows expected(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(lines == 0 ? 0 : lines - 1));
     {
-      Journal journal(file_, "mine", true);
-      ASSERT_EQ(journal.rows(), expected) << size;
+      Rows found;
+      Journal journal(file_, "mine", true, added_to(found));
+      ASSERT_EQ(found, expected) << size;
       journal.add("7,next");
     }
     expected.push_back("7,next");
@@ -84,6 +94,45 @@ TEST_F(JournalFile, DamagedAnywhereGivesNoRowThatWasNotAdded) {
   }
 }
 
+TEST_F(JournalFile, HoldsWhatIsAddedBackUntilItIsFlushed) {
+  Journal journal(file_, "mine", false);
+  const std::string title = test::read_file(file_);
+  journal.add("0,a");
+  journal.add("1,b");
+  EXPECT_EQ(test::read_file(file_), title);
+  EXPECT_EQ(Journal::count_rows(file_), 0u);
+  journal.flush();
+  EXPECT_EQ(Journal::count_rows(file_), 2u);
+}
+
+TEST_F(JournalFile, FindsEachRowAtItsPlaceHoweverLong) {
+  std::vector<Journal::Place> places;
+  const Rows rows = {"0,a", "1," + std::string(100'000, 'b'), "2,", "3," + std::string(2048 - 16 - 4, 'c'), "4,e"};
+  {
+    Journal journal(file_, "mine", false);
+    for (const std::string& row : rows) {
+      places.push_back(journal.add(row));
+      if (row[0] == '2') journal.flush();
+    }
+    journal.flush();
+    for (std::size_t i = rows.size(); i-- > 0;) EXPECT_EQ(journal.row_at(places[i]), rows[i]);
+  }
+  std::vector<Journal::Place> found;
+  Journal journal(file_, "mine", true, [&](Journal::Place place, std::string_view) { found.push_back(place); });
+  EXPECT_EQ(found, places);
+  EXPECT_EQ(journal.row_at(places[1]), rows[1]);
+  EXPECT_THROW(journal.row_at(1'000'000), IoError);
+}
+
+TEST_F(JournalFile, TellsWhetherItIsBeingWritten) {
+  EXPECT_FALSE(Journal::is_being_written(file_));
+  {
+    const Journal journal(file_, "mine", false);
+    EXPECT_TRUE(Journal::is_being_written(file_));
+  }
+  EXPECT_FALSE(Journal::is_being_written(file_));
+}
+
 TEST_F(JournalFile, OfAnotherSweepIsRefusedAndLeftAlone) {
   const std::string whole = written({"0,a"});
   for (const char* text : {whole.c_str(), "\n", "something else\n", "hapbench sweep journal 2, theirs\n"}) {
@@ -102,6 +151,7 @@ TEST_F(JournalFile, InUseIsRefusedAndLeftAlone) {
   EXPECT_TRUE(test::input_error_of([&] { Journal(file_, "mine", false); }));
   EXPECT_TRUE(test::input_error_of([&] { Journal(file_, "mine", true); }));
   journal.add("1,b");
+  journal.flush();
   EXPECT_NE(test::read_file(file_).find("1,b"), std::string::npos);
 }
 
@@ -125,7 +175,10 @@ TEST_F(JournalFile, OnAFullDiskIsAnErrorThatNamesItAndKeepsWhatWasWritten) {
   const std::string row = "0," + std::string(60, 'a');
   std::size_t added = 0;
   try {
-    for (; added < 10; ++added) journal.add(row);
+    for (; added < 10; ++added) {
+      journal.add(row);
+      journal.flush();
+    }
     ADD_FAILURE() << "no error";
   } catch (const IoError& error) {
     EXPECT_EQ(error.path(), file_);

@@ -71,6 +71,15 @@ TEST_P(ForEachRun, PassesExceptionsOn) {
   EXPECT_THROW(parallel_for(numbers_to(100), GetParam(), fail_in_delivery, never), std::runtime_error);
 }
 
+TEST_P(ForEachRun, AsksForTheNextRunOneThreadAtATime) {
+  std::size_t given = 0;  // no lock
+  std::multiset<std::size_t> delivered;
+  parallel_for([&]() -> std::optional<std::size_t> { return given < 1000 ? std::optional(given++) : std::nullopt; },
+               GetParam(), [&](std::size_t run) { return [&, run] { delivered.insert(run); }; });
+  const std::vector<std::size_t> all = numbers_to(1000);
+  EXPECT_EQ(delivered, std::multiset<std::size_t>(all.begin(), all.end()));
+}
+
 TEST_P(ForEachRun, TakesNoRuns) {
   parallel_for(
       {}, GetParam(), [](std::size_t) -> Delivery { throw std::logic_error("none"); }, never);

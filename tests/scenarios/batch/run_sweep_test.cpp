@@ -51,11 +51,44 @@ TEST_F(RunSweep, HasForEachRunWhatTheRunAloneHas) {
       plan_of(scenario, {"environment.spacing_m=0.0001,0.00012", "rendering.algorithm=mean,tandpasta"});
   const SweepReport report = run(plan, directory_.path());
   ASSERT_EQ(report.rows.size(), 4u);
+  EXPECT_EQ(report.counts.runs, 4u);
   for (std::size_t i = 0; i < 4; ++i) {
     const RunReport alone = run_scenario(scenario_of(plan, i), std::nullopt, false);
     EXPECT_EQ(report.rows[i], sweep_row(plan, i, alone.summary));
     EXPECT_GT(alone.summary.metrics.force_max, 0.0);
   }
+}
+
+TEST_F(RunSweep, HasOneTableWhateverTheOrderOfTheRuns) {
+  // The environment varies fastest, so its runs are not done in the order of the table.
+  const SweepPlan plan = plan_of(minimal_scenario("plane"), {"time.steps=1:40:40", "environment.spacing_m=5e-4,4e-4"});
+  const SweepReport report = run(plan, directory_.path());
+  ASSERT_EQ(report.rows.size(), 80u);
+  for (std::size_t i = 0; i < 80; ++i) EXPECT_EQ(run_of_row(plan, report.rows[i]), i);
+}
+
+TEST_F(RunSweep, OfManyRunsKeepsNoRows) {
+  const SweepPlan plan = plan_of(minimal_scenario("springs"), {"seed=1:10001:10001"});
+  const SweepReport report = run(plan, directory_.path());
+  EXPECT_EQ(report.done, 10'001u);
+  EXPECT_EQ(report.counts.runs, 10'001u);
+  EXPECT_TRUE(report.rows.empty());
+  const auto lines = test::lines_of(read_file(report.table));
+  ASSERT_EQ(lines.size(), 10'002u);
+  for (std::size_t i = 0; i < 10'001; i += 100) EXPECT_EQ(run_of_row(plan, lines[1 + i]), i);
+}
+
+TEST_F(RunSweep, HasErrorRowsForRunsThatNobodyChecked) {
+  // Of so many values not every one is looked at before the first run; 4567 is no seed that is checked.
+  std::string seeds = "seed=0";
+  for (int i = 1; i < 6000; ++i) seeds += "," + std::to_string(i == 4567 ? -1 : i);
+  const SweepPlan plan = plan_of(minimal_scenario("springs"), {seeds});
+  const SweepReport report = run(plan, directory_.path());
+  EXPECT_EQ(report.counts.failed, 1u);
+  ASSERT_TRUE(report.failed);
+  EXPECT_EQ(report.failed->run, 4567u);
+  EXPECT_NE(report.failed->problem.find("/seed: got -1"), std::string::npos) << report.failed->problem;
+  EXPECT_EQ(report.rows[4567], error_row(plan, 4567));
 }
 
 TEST_F(RunSweep, LeavesTheTableAndItsDescriptionOnly) {

@@ -16,22 +16,29 @@ namespace {
 
 constexpr SamplingMethod kMethods[] = {SamplingMethod::latin_hypercube, SamplingMethod::sobol, SamplingMethod::random};
 
+std::vector<UnitPoint> points_of(const Sampling& sampling, std::size_t axes) {
+  const UnitSample sample(sampling, axes);
+  std::vector<UnitPoint> points;
+  for (std::size_t i = 0; i < sampling.count; ++i) points.push_back(sample.point(i));
+  return points;
+}
+
 std::size_t stratum(double coordinate, std::size_t strata) {
   return static_cast<std::size_t>(coordinate * static_cast<double>(strata));
 }
 
 TEST(Sampling, HasItsPointsInTheUnitCubeAndMeansWhatItsSeedSays) {
   for (const SamplingMethod method : kMethods) {
-    const auto points = sample_unit_cube({method, 100, 1}, 5);
+    const auto points = points_of({method, 100, 1}, 5);
     ASSERT_EQ(points.size(), 100u);
     for (const UnitPoint& point : points) {
       ASSERT_EQ(point.size(), 5u);
       for (const double x : point) EXPECT_TRUE(x >= 0.0 && x < 1.0);
     }
-    EXPECT_EQ(sample_unit_cube({method, 100, 1}, 5), points);
-    EXPECT_NE(sample_unit_cube({method, 100, 2}, 5), points) << sampling_name(method);
+    EXPECT_EQ(points_of({method, 100, 1}, 5), points);
+    EXPECT_NE(points_of({method, 100, 2}, 5), points) << sampling_name(method);
     // An axis more leaves the others as they are, and no two are alike.
-    for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(sample_unit_cube({method, 100, 1}, 2)[i][1], points[i][1]);
+    for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(points_of({method, 100, 1}, 2)[i][1], points[i][1]);
     for (std::size_t a = 0; a < 5; ++a) {
       for (std::size_t b = 0; b < a; ++b) {
         EXPECT_TRUE(std::any_of(points.begin(), points.end(), [&](const UnitPoint& p) { return p[a] != p[b]; }));
@@ -42,7 +49,7 @@ TEST(Sampling, HasItsPointsInTheUnitCubeAndMeansWhatItsSeedSays) {
 
 TEST(Sampling, OfALatinHypercubeHasOnePointInEveryStratumOfEachAxis) {
   for (const std::size_t count : {1u, 2u, 7u, 100u, 1000u}) {
-    const auto points = sample_unit_cube({SamplingMethod::latin_hypercube, count, 3}, 12);
+    const auto points = points_of({SamplingMethod::latin_hypercube, count, 3}, 12);
     for (std::size_t axis = 0; axis < 12; ++axis) {
       std::set<std::size_t> strata;
       for (const UnitPoint& point : points) strata.insert(stratum(point[axis], count));
@@ -56,7 +63,7 @@ TEST(Sampling, OfASobolSequenceIsBalancedInElementaryIntervals) {
   // Along each axis 2^k intervals of length 2^-k hold one of 2^k points each; in the plane of the first two axes, which
   // is a (0, k, 2)-net, so does every box of 2^-i x 2^(i-k).
   constexpr std::size_t k = 7, count = 1 << k;
-  const auto points = sample_unit_cube({SamplingMethod::sobol, count, 11}, kSobolAxes);
+  const auto points = points_of({SamplingMethod::sobol, count, 11}, kSobolAxes);
   for (std::size_t axis = 0; axis < kSobolAxes; ++axis) {
     std::set<std::size_t> intervals;
     for (const UnitPoint& point : points) intervals.insert(stratum(point[axis], count));
@@ -92,12 +99,11 @@ constexpr SobolPoint kScipy[] = {
 TEST(SobolAxis, IsThatOfScipy) {
   static_assert(kAxes == kSobolAxes);
   for (std::size_t axis = 0; axis < kSobolAxes; ++axis) {
-    SobolAxis sequence(axis);
-    std::vector<std::uint32_t> values(1024);
-    for (std::uint32_t& value : values) value = sequence.next();
+    const SobolAxis sequence(axis);
     for (const SobolPoint& point : kScipy) {
       // The first 1024 points lie on multiples of 2^-10.
-      EXPECT_EQ(values[point.index], point.coordinates[axis] << 22) << "axis " << axis << ", point " << point.index;
+      EXPECT_EQ(sequence.at(static_cast<std::uint32_t>(point.index)), point.coordinates[axis] << 22)
+          << "axis " << axis << ", point " << point.index;
     }
   }
 }
@@ -116,8 +122,8 @@ TEST(Sampling, IsReadFromItsText) {
 }
 
 TEST(Sampling, OfTooManyAxesForSobolIsRefused) {
-  EXPECT_TRUE(test::input_error_of([] { sample_unit_cube({SamplingMethod::sobol, 4, 1}, kSobolAxes + 1); }));
-  EXPECT_EQ(sample_unit_cube({SamplingMethod::random, 4, 1}, kSobolAxes + 1).size(), 4u);
+  EXPECT_TRUE(test::input_error_of([] { UnitSample({SamplingMethod::sobol, 4, 1}, kSobolAxes + 1); }));
+  EXPECT_EQ(points_of({SamplingMethod::random, 4, 1}, kSobolAxes + 1).size(), 4u);
 }
 
 TEST(SampledAxis, IsARangeOrAList) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "scenarios/batch/sweep_row.hpp"
@@ -16,11 +17,39 @@ using test::minimal_scenario;
 using test::plan_of;
 using Numbers = std::vector<std::size_t>;
 
-TEST(SweepPlan, NumbersEqualEnvironmentsAlikeInTheOrderOfRuns) {
-  const SweepPlan plan =
-      plan_of(minimal_scenario("plane"), {"time.steps=1,2", "environment.spacing_m=0.0005,0.0004,5e-4"});
-  EXPECT_EQ(plan.environments, (Numbers{0, 1, 0, 0, 1, 0}));
-  EXPECT_EQ(plan.environment_count, 2u);
+SweepPoints grid(const std::vector<std::string>& vary) {
+  std::vector<Axis> axes;
+  for (const std::string& text : vary) axes.push_back(parse_axis(text));
+  return SweepPoints(axes);
+}
+
+TEST(RunsToCheck, AreAllOfAFewAndTheEdgesOfMany) {
+  EXPECT_EQ(runs_to_check(grid({"a=1,2,3", "b=1,2"})), (Numbers{0, 1, 2, 3, 4, 5}));
+  const SweepPoints many = grid({"a=1:100:100", "b=1:100:100", "c=x,y,z"});
+  const Numbers checked = runs_to_check(many);
+  EXPECT_TRUE(std::is_sorted(checked.begin(), checked.end()));
+  EXPECT_LE(checked.size(), 2u * (100 + 100 + 3));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::set<std::size_t> seen;
+    for (const std::size_t run : checked) seen.insert(many.place(run, axis));
+    EXPECT_EQ(seen.size(), many.axes()[axis].size());
+  }
+}
+
+TEST(RunsToCheck, OfAMillionAreFew) {
+  const Numbers checked = runs_to_check(grid({"a=1:1e6:1000000"}));
+  EXPECT_EQ(checked.size(), kMostChecked);
+  EXPECT_EQ(checked.front(), 0u);
+  EXPECT_EQ(checked.back(), 999'999u);
+  const SweepPoints sample({parse_sampled_axis("a=1:2")}, {SamplingMethod::sobol, 1'000'000, 1});
+  EXPECT_EQ(runs_to_check(sample).size(), kMostChecked);
+}
+
+TEST(SweepPlan, OfALongRangeDescribesItByItsEnds) {
+  const auto content = [](const char* vary) { return plan_of(minimal_scenario("plane"), {vary}).content["vary"][0]; };
+  EXPECT_EQ(content("seed=1:3:3"), (Json{{"path", "seed"}, {"values", {"1", "2", "3"}}}));
+  EXPECT_EQ(content("seed=1:20000:20000"),
+            (Json{{"path", "seed"}, {"range", {1.0, 20000.0}}, {"scale", "linear"}, {"count", 20000}}));
 }
 
 TEST(SweepPlan, LoadsTheScenarioOfEachRun) {

@@ -253,6 +253,87 @@ TEST_F(SweepCommand, VariesAllAlgorithmsByOneWordAndRefusesUnknownMetrics) {
   EXPECT_FALSE(fs::exists(directory_ / "no"));
 }
 
+TEST_F(SweepCommand, PrintsTheCommandThatRepeatsARun) {
+  sweep("a");
+  const auto lines = lines_of(table("a"));
+  const ProgramRun printed = sweep("a", {"--row", "14", "--print"});
+  ASSERT_EQ(printed.status, 0) << printed.err;
+  EXPECT_EQ(lines_of(printed.out).size(), 1u);
+  // As a shell takes it apart: the quotes around the list of outcomes are its own.
+  EXPECT_NE(printed.out.find(" --set 'expect.outcome=[\"completes\","), std::string::npos) << printed.out;
+  Words words = sweep("a", {"--row", "14", "--print", "--json"}).json()["command"];
+  EXPECT_EQ(words[0], fs::canonical(test::hapbench_program()));
+  words.erase(words.begin());
+  words.insert(words.end(), {"--out", (directory_ / "run").string()});
+  ASSERT_EQ(hapbench(words).status, 0);
+  const Json summary = Json::parse(read_file(directory_ / "run/summary.json"));
+  EXPECT_EQ(summary["state_hash"], cells_of(lines[1 + 14]).back());
+
+  const ProgramRun beyond = sweep("a", {"--row", "24", "--print"});
+  EXPECT_EQ(beyond.status, 2);
+  EXPECT_NE(beyond.err.find("--row: got 24; allowed: 0 ... 23"), std::string::npos) << beyond.err;
+  EXPECT_EQ(sweep("a", {"--row", "3"}).status, 2);
+  EXPECT_EQ(sweep("a", {"--print"}).status, 2);
+}
+
+TEST_F(SweepCommand, ShowsHowFarTheShardsAre) {
+  const auto status = [&] { return hapbench({"sweep", "--status", (directory_ / "out").string(), "--json"}); };
+  EXPECT_EQ(status().status, 2) << "there is no such directory";
+  ASSERT_EQ(sweep("out", {"--shard", "1/4"}).status, 0);
+  {
+    // What a killed process leaves.
+    test::write_plainly(directory_ / "out/sweep_shard_2_of_4.journal", "title\nrow\nrow\n");
+  }
+  const Json json = status().json();
+  EXPECT_EQ(json["runs"], 24);
+  EXPECT_EQ(json["runs_done"], 8);
+  EXPECT_EQ(json["merged"], false);
+  Words states;
+  for (const Json& shard : json["shards"]) states.push_back(shard["state"]);
+  EXPECT_EQ(states, (Words{"missing", "done", "failed", "missing"}));
+  const ProgramRun shown = hapbench({"sweep", "--status", (directory_ / "out").string()});
+  EXPECT_NE(shown.out.find("4 shards: 1 done, 0 running, 0 waiting, 1 failed, 2 missing; 8 of 24 runs; not merged\n"),
+            std::string::npos)
+      << shown.out;
+  sweep("out", {"--shard", "0/3"});
+  const ProgramRun mixed = hapbench({"sweep", "--status", (directory_ / "out").string()});
+  EXPECT_EQ(mixed.status, 2);
+  EXPECT_NE(mixed.err.find("holds shards of several sweeps (of 3 and of 4)"), std::string::npos) << mixed.err;
+}
+
+TEST_F(SweepCommand, WritesTheScriptsForSlurmAndSubmitsNothing) {
+  const Words slurm = {"--slurm", "4", "--dry-run", "--time", "2:00:00", "--cpus", "2", "--partition", "short"};
+  ASSERT_EQ(sweep("it's", {"--shard", "1/4"}).status, 0);
+  const ProgramRun run = sweep("it's", slurm);
+  ASSERT_EQ(run.status, 0) << run.err;
+  const std::string script = read_file(directory_ / "it's/sweep.sbatch"),
+                    merge = read_file(directory_ / "it's/merge.sbatch");
+  EXPECT_NE(run.out.find(script), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find(merge), std::string::npos) << run.out;
+  for (const char* line : {"\n#SBATCH --array=0,2-3\n", "\n#SBATCH --time=2:00:00\n", "\n#SBATCH --cpus-per-task=2\n",
+                           "\n#SBATCH --partition=short\n", "\n#SBATCH --requeue\n"}) {
+    EXPECT_NE(script.find(line), std::string::npos) << line;
+  }
+  EXPECT_FALSE(fs::exists(directory_ / "it's/sweep_slurm.json"));
+  // They do what Slurm would have them do: each task its shard, then the merge.
+  for (const char* task : {"0", "2", "3"}) {
+    const std::string text = "SLURM_ARRAY_TASK_ID=" + std::string(task) + "\n" + script;
+    EXPECT_EQ(test::run_program("/bin/bash", {"-c", text}).status, 0);
+  }
+  EXPECT_EQ(test::run_program("/bin/bash", {"-c", merge}).status, 0);
+  sweep("whole");
+  for (const char* file : {"sweep.csv", "sweep.json"}) {
+    EXPECT_EQ(read_file(directory_ / "it's" / file), read_file(directory_ / "whole" / file)) << file;
+  }
+}
+
+TEST_F(SweepCommand, IsNotSubmittedBesideAnotherSweep) {
+  ASSERT_EQ(sweep("out", {"--shard", "1/4"}).status, 0);
+  const ProgramRun run = sweep("out", {"--slurm", "4", "--dry-run", "--set", "seed=9"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.err.find("sweep_shard_1_of_4.csv: is of another sweep"), std::string::npos) << run.err;
+}
+
 struct BadSweep {
   const char* name;
   Words words;
@@ -322,6 +403,8 @@ const BadSweep kBadSweeps[] = {
     {"ShardWithoutCount", {"--vary", "seed=1,2", "--shard", "1"}, "--shard: got \"1\""},
     {"NegativeJobs", {"--vary", "seed=1,2", "--jobs=-1"}, "--jobs: got -1"},
     {"TooManyJobs", {"--vary", "seed=1,2", "--jobs", "100000"}, "--jobs: got 100000"},
+    {"MoreShardsThanRuns", {"--vary", "seed=1,2", "--slurm", "3", "--dry-run"}, "--slurm: got 3 shards of 2 runs"},
+    {"TimeThatIsNone", {"--vary", "seed=1,2", "--slurm", "2", "--time", "1 h"}, "--time, --partition: got \"1 h\""},
     {"BadSet", {"--vary", "seed=1,2", "--set", "time.steps=0"}, "/time/steps: got 0"},
 };
 

@@ -1,0 +1,117 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/program.hpp"
+#include "tests/scenarios/support/slurm.hpp"
+
+/// Sweeps on a real Slurm.
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+using test::hapbench;
+using test::ProgramRun;
+using Words = std::vector<std::string>;
+
+class SlurmSweep : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string missing = test::SlurmCluster::missing();
+    if (!missing.empty()) GTEST_SKIP() << "no Slurm to test with, for want of " << missing;
+    slurm_ = std::make_unique<test::SlurmCluster>();
+  }
+
+  /// 120 runs of some 20 ms.
+  Words words(const std::string& out, const Words& more = {}) const {
+    Words words = {"sweep",  "single_spring",     "--set",  "record.trajectory=false",
+                   "--set",  "time.steps=100000", "--vary", "rendering.stiffness_N_per_m=1e3:1e4:40:log",
+                   "--vary", "seed=1,2,3",        "--out",  (directory_ / out).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  Json status() const { return hapbench({"sweep", "--status", (directory_ / "out").string(), "--json"}).json(); }
+  std::string state(std::size_t shard) const { return status()["shards"][shard]["state"]; }
+
+  /// Waits until `is_so` says so; false when it takes too long.
+  template <class Condition>
+  static bool wait_until(Condition is_so) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(40);
+    while (!is_so()) {
+      if (std::chrono::steady_clock::now() > deadline) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    return true;
+  }
+  bool wait_for(std::size_t shard, const std::string& wanted) const {
+    return wait_until([&] { return state(shard) == wanted; });
+  }
+  bool wait_for_rows(std::size_t shard, int rows) const {
+    return wait_until([&] { return status()["shards"][shard]["runs_done"] >= rows; });
+  }
+
+  /// The process that computes a shard into this test's directory; 0 for none.
+  pid_t process_of(const std::string& shard) const {
+    for (const fs::directory_entry& entry : fs::directory_iterator("/proc")) {
+      std::ifstream in(entry.path() / "cmdline", std::ios::binary);
+      const std::string words((std::istreambuf_iterator<char>(in)), {});
+      const bool is_it = words.starts_with(test::hapbench_program().string()) &&
+                         words.find((directory_ / "out").string()) != std::string::npos &&
+                         words.find('\0' + shard + '\0') != std::string::npos;
+      if (is_it) return std::stoi(entry.path().filename());
+    }
+    return 0;
+  }
+
+  test::TemporaryDirectory directory_;
+  std::unique_ptr<test::SlurmCluster> slurm_;
+};
+
+TEST_F(SlurmSweep, WithAShardKilledAndOnePreemptedEndsWithTheBytesOfOneMachine) {
+  const ProgramRun first = hapbench(words("out", {"--slurm", "3"}));
+  ASSERT_EQ(first.status, 0) << first.err;
+  EXPECT_NE(first.out.find("3 of 3 shards submitted as job "), std::string::npos) << first.out;
+  const std::string array = Json::parse(test::read_file(directory_ / "out/sweep_slurm.json"))["array"];
+  ASSERT_TRUE(wait_for_rows(0, 2) && wait_for_rows(1, 2)) << status().dump(2);
+
+  const pid_t process = process_of("1/3");
+  ASSERT_NE(process, 0);
+  ::kill(process, SIGKILL);
+  EXPECT_EQ((*slurm_)("scontrol", {"requeue", array + "_0"}).status, 0);  // as preemption does
+  EXPECT_TRUE(wait_for(1, "failed")) << status().dump(2);
+  EXPECT_TRUE(wait_for(0, "waiting")) << status().dump(2);
+  const ProgramRun early = hapbench(words("out", {"--slurm", "3"}));
+  EXPECT_EQ(early.status, 2);
+  EXPECT_NE(early.err.find("is still in the queue; allowed: when it has ended"), std::string::npos) << early.err;
+
+  // It would wait for two minutes.
+  EXPECT_EQ((*slurm_)("scontrol", {"update", "JobId=" + array + "_0", "StartTime=now"}).status, 0);
+  EXPECT_TRUE(wait_for(0, "done") && wait_for(2, "done")) << status().dump(2);
+  EXPECT_EQ(state(1), "failed");
+  EXPECT_FALSE(fs::exists(directory_ / "out/sweep.csv")) << "merged without shard 1";
+  ASSERT_TRUE(wait_until([&] { return (*slurm_)("squeue", {"--noheader"}).out.empty(); }));
+
+  const ProgramRun second = hapbench(words("out", {"--slurm", "3"}));
+  EXPECT_NE(second.out.find("1 of 3 shards submitted as job "), std::string::npos) << second.out << second.err;
+  ASSERT_TRUE(wait_until([&] { return status()["merged"] == true; })) << status().dump(2);
+  EXPECT_EQ(status()["done"], 3);
+  ASSERT_EQ(hapbench(words("whole")).status, 0);
+  for (const char* file : {"sweep.csv", "sweep.json"}) {
+    EXPECT_EQ(test::read_file(directory_ / "out" / file), test::read_file(directory_ / "whole" / file)) << file;
+  }
+}
+
+TEST_F(SlurmSweep, ThatSlurmRefusesSaysWhy) {
+  const ProgramRun run = hapbench(words("out", {"--slurm", "3", "--partition", "none_such"}));
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.err.find("invalid partition specified: none_such"), std::string::npos) << run.err;
+  EXPECT_EQ(test::lines_of(run.err).size(), 1u) << run.err;
+}
+
+}  // namespace
+}  // namespace hapbench
