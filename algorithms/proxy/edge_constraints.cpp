@@ -6,8 +6,12 @@
 #include <limits>
 #include <vector>
 
+#include "sim/core/simd.hpp"
+
 namespace hapbench {
 namespace {
+
+using simd::load, simd::Pack;
 
 constexpr std::size_t kSampled = 100;
 /// Radius of a patch as a share of the spacing: reaches the centre of four points of a square lattice, 0.707 away.
@@ -42,19 +46,26 @@ double typical_spacing(const PointShell& shell) {
 }
 
 void add_edge_constraints(const ToolShape& tool, const ToolPose& pose, double spacing, double margin,
-                          std::vector<Vec3>& places, ContactBuffer& contacts) noexcept {
+                          const PlaceArrays& places, ContactBuffer& contacts) noexcept {
   const std::size_t points = contacts.size();
-  const double patch2 = kPatch * spacing * kPatch * spacing;
-  tool.foremost_places(pose, contacts, places.data());
-  for (std::size_t i = 0; i < points; ++i) {
-    const Vec3 normal = contacts.normal(i);
-    const Vec3 from_point = places[i] - contacts.point(i);
-    const double height = normal.dot(from_point);
-    if (height > margin || height < -kDeepest * spacing) continue;
-    if (from_point.squaredNorm() - height * height > patch2) continue;
-    contacts.push_copy_of(contacts, i);
-    contacts.depth[contacts.size() - 1] = -height;
-    contacts.set_gradient(contacts.size() - 1, -normal);
+  const Pack highest(margin), deepest(-kDeepest * spacing), patch2(kPatch * spacing * kPatch * spacing);
+  tool.foremost_places(pose, contacts, places);
+  for (std::size_t i = 0; i < points; i += simd::lanes) {
+    const Pack nx = load(&contacts.nx[i]), ny = load(&contacts.ny[i]), nz = load(&contacts.nz[i]);
+    const Pack dx = load(&places.x[i]) - load(&contacts.x[i]), dy = load(&places.y[i]) - load(&contacts.y[i]),
+               dz = load(&places.z[i]) - load(&contacts.z[i]);
+    const Pack height = nx * dx + ny * dy + nz * dz;
+    const Pack aside2 = dx * dx + dy * dy + dz * dz - height * height;
+    const simd::Mask applies = height <= highest && height >= deepest && aside2 <= patch2;
+    if (!simd::any(applies)) continue;
+    alignas(64) double heights[simd::lanes];
+    simd::store(height, heights);
+    for (std::size_t k = 0; k < simd::lanes && i + k < points; ++k) {
+      if (!simd::lane(applies, k)) continue;
+      contacts.push_copy_of(contacts, i + k);
+      contacts.depth[contacts.size() - 1] = -heights[k];
+      contacts.set_gradient(contacts.size() - 1, -contacts.normal(i + k));
+    }
   }
   contacts.pad();
 }

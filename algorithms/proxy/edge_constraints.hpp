@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/tool/tool_shape.hpp"
@@ -22,9 +20,9 @@ double typical_spacing(const PointShell& shell);
 /// A drill's edge on a wall touches points with both of its faces, and between two rows of points 0.1 mm apart it finds
 /// up to 0.05 mm of room; a patch leaves none. Patches apply up to `margin` away, and to depths up to a tenth of the
 /// spacing: the tool never gets deeper, so a patch that lies further out faces something else (the other side of a
-/// rim). Call after ToolShape::surface_constraints. `places` is scratch memory for a place of each contact.
+/// rim). Call after ToolShape::surface_constraints. `places` is scratch memory for a place of each contact, padded.
 /// Preconditions: room for as many contacts again, and as many places. O(n).
 void add_edge_constraints(const ToolShape& tool, const ToolPose& pose, double spacing, double margin,
-                          std::vector<Vec3>& places, ContactBuffer& contacts) noexcept;
+                          const PlaceArrays& places, ContactBuffer& contacts) noexcept;
 
 }  // namespace hapbench
