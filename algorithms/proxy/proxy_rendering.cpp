@@ -2,10 +2,11 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <limits>
+#include <span>
 
 #include "algorithms/laws/force_law.hpp"
-#include "algorithms/proxy/nearest_allowed.hpp"
 
 namespace hapbench {
 namespace {
@@ -23,8 +24,8 @@ const ModelInfo kProxyInfo = {
         "flat patch about each point; f_spring = K (x - p), S = projector onto the span of the active gradients",
     .source = "ours; after Zilles and Salisbury 1995 (god-object) and Ruspini et al. 1997, which thesis 1.2 rejects",
     .known_failure =
-        "a scene that starts in deep penetration, or a hole that the turned tool does not fit into, throws the proxy "
-        "out at once; a flat face of the tool bumps on a surface whose normals are off by more than 6 degrees; no "
+        "a start in deep penetration, and a hole that the turned tool does not fit into, are left at 0.02 m/s, while "
+        "points are inside the proxy; a flat face of the tool bumps on a surface whose normals are off by more than 6 degrees; no "
         "depth model or reduction applies",
     .parameters = kParameters,
 };
@@ -51,8 +52,10 @@ ProxyRendering::ProxyRendering(const RenderingConfig& config)
 void ProxyRendering::prepare(const Scene& scene) {
   if (scene.springs != nullptr) {
     constraints_ = std::make_unique<SpringConstraints>(*scene.springs);
+    recovery_ = std::numeric_limits<double>::infinity();
   } else {
     constraints_ = std::make_unique<ShellConstraints>(*scene.shell, *scene.tool, skips_);
+    recovery_ = kRecoverySpeed * scene.dt;
   }
   near_contacts_ = std::make_unique<ContactBuffer>(constraints_->capacity());
 }
@@ -105,8 +108,33 @@ void ProxyRendering::place(const Vec3& position) noexcept {
   proxy_ = position;
   held_.setZero();
   feasible_ = true;
+  clear_ = false;
+  slowed_ = 1.0;
+  moved_.setZero();
   share_.setZero();
   near_contacts_->clear();
+}
+
+/// The move nearest to the wanted one that the constraints allow, or, with points inside the proxy, a slow one.
+AllowedMove ProxyRendering::next_move(const Vec3& wanted) noexcept {
+  slowed_ = 1.0;
+  const double deepest = near_contacts_->largest_depth();
+  if (clear_ || !(deepest > recovery_)) return nearest_allowed(wanted, *near_contacts_);
+  slow_down(recovery_ / deepest);
+  const AllowedMove allowed = nearest_allowed(wanted, *near_contacts_);
+  const double length = allowed.move.norm();
+  if (!(length > recovery_)) return allowed;
+  // Points between walls that nearly face each other leave by a long way: the move is nearly proportional to depths.
+  slow_down(recovery_ / length);
+  return nearest_allowed(wanted, *near_contacts_);
+}
+
+/// Multiplies the depths of points inside the proxy.
+void ProxyRendering::slow_down(double factor) noexcept {
+  slowed_ *= factor;
+  for (double& depth : std::span(near_contacts_->depth.data(), near_contacts_->size())) {
+    if (depth > 0.0) depth *= factor;
+  }
 }
 
 bool ProxyRendering::follow(const ToolPose& tool) noexcept {
@@ -117,21 +145,24 @@ bool ProxyRendering::follow(const ToolPose& tool) noexcept {
     const ToolPose proxy{proxy_, tool.axis, tool.roll};
     const Vec3 wanted = tool.position - proxy_;
     constraints_->constraints_at(proxy, wanted, *near_contacts_);
-    const AllowedMove allowed = nearest_allowed(wanted, *near_contacts_);
+    const AllowedMove allowed = next_move(wanted);
     work_.iterations += static_cast<std::uint64_t>(allowed.iterations);
     held_ = allowed.held;
     feasible_ = allowed.feasible;
     share_ = allowed.share;
     const double length = allowed.move.norm();
-    if (length > margin) {
-      proxy_ += margin / length * allowed.move;
-    } else if (allowed.iterations == 0) {
-      proxy_ = tool.position;
+    const bool arrives = length <= margin;
+    moved_ = arrives ? allowed.move : Vec3(margin / length * allowed.move);
+    proxy_ += moved_;
+    if (!feasible_ || slowed_ < 1.0) {
+      // What takes many steps is not worth more than one pass in each.
+      clear_ = false;
       return true;
-    } else {
-      proxy_ += allowed.move;
-      // A compromise of walls that leave no room is not worth more than one pass a step.
-      if (length <= kSettled * margin || !allowed.feasible) return true;
+    }
+    if (arrives) {
+      clear_ = true;
+      if (allowed.iterations == 0) proxy_ = tool.position;
+      if (allowed.iterations == 0 || length <= kSettled * margin) return true;
       // Patches of surface come into force and lapse as the proxy moves, so passes may go round in a circle of two or
       // four places, each as allowed as the others: the nearest of them is taken when it comes again.
       const double distance = (tool.position - proxy_).norm();
@@ -144,6 +175,13 @@ bool ProxyRendering::follow(const ToolPose& tool) noexcept {
     }
   }
   return false;
+}
+
+/// How much deeper point i is inside the proxy than the last pass was told.
+double ProxyRendering::put_off(std::size_t i) const noexcept {
+  const double told = near_contacts_->depth[i], moved = near_contacts_->gradient(i).dot(moved_);
+  if (slowed_ == 1.0 || !(told > 0.0)) return 0.0;
+  return std::max(0.0, told / slowed_ + moved) - std::max(0.0, told + moved);
 }
 
 /// lambda_i of a contact that holds the proxy back.
@@ -170,12 +208,14 @@ SpringState ProxyRendering::spring_state(const ToolState&, const ContactBuffer&)
   if (K_ == 0.0) return {};
   SpringState state{spring_.squaredNorm() / (2.0 * K_), Vec3::Zero()};
   for (std::size_t i = 0; i < near_contacts_->size(); ++i) {
-    const double weight = near_contacts_->weight[i];
-    if (!(weight > 0.0)) continue;
-    // In the compromise, what is violated is a store of its own.
-    if (!feasible_) state.energy += 0.5 * K_ * weight * weight;
+    const double weight = near_contacts_->weight[i], later = put_off(i);
+    if (!(weight > 0.0 || later > 0.0)) continue;
+    // What is violated, in a compromise or for a while, is a store of its own.
+    const double violated = later + (feasible_ ? 0.0 : weight);
+    state.energy += 0.5 * K_ * violated * violated;
     if (!constraints_->act_at_points()) continue;
-    state.moment -= (near_contacts_->point(i) - proxy_).cross(K_ * multiplier(i) * near_contacts_->gradient(i));
+    const double lambda = later + (weight > 0.0 ? multiplier(i) : 0.0);
+    state.moment -= (near_contacts_->point(i) - proxy_).cross(K_ * lambda * near_contacts_->gradient(i));
   }
   return state;
 }
