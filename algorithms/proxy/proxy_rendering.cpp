@@ -35,7 +35,7 @@ namespace {
 /// Squared length of what gradients leave of a direction below which they do not span it.
 constexpr double kNoSpan = 1e-6;
 /// A pass that moves the proxy less than this part of the margin is the last one.
-constexpr double kSettled = 1e-3;
+constexpr double kSettled = 0.03;
 /// Passes on end that bring the proxy no nearer to the tool than it was before they count as a cycle, ...
 constexpr int kPatience = 4;
 /// ... nearer by less than this part of the distance being no nearer.
