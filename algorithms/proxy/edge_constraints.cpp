@@ -19,18 +19,28 @@ constexpr double kPatch = 0.75;
 /// Largest depth at which an edge constraint applies, as a share of the spacing.
 constexpr double kDeepest = 0.1;
 
+/// Nearer to each other than this part of the shell's size, points are one: shells may list a vertex once for each cell
+/// that it belongs to.
+constexpr double kSamePlace = 1e-7;
+
 double distance_to_second(const PointShell& shell, std::size_t from) {
-  double first = std::numeric_limits<double>::infinity(), second = first;
+  const double same = kSamePlace * (shell.bounds().max - shell.bounds().min).norm(), same2 = same * same;
+  double first2 = std::numeric_limits<double>::infinity(), second2 = first2;
   const Vec3 here = shell.point(from).position;
+  Vec3 nearest = here;
   for (std::size_t i = 0; i < shell.size(); ++i) {
-    if (i == from) continue;
-    const double dx = shell.x()[i] - here.x(), dy = shell.y()[i] - here.y(), dz = shell.z()[i] - here.z();
-    const double distance2 = dx * dx + dy * dy + dz * dz;
-    if (distance2 >= second) continue;
-    second = std::max(first, distance2);
-    first = std::min(first, distance2);
+    const Vec3 place(shell.x()[i], shell.y()[i], shell.z()[i]);
+    const double distance2 = (place - here).squaredNorm();
+    if (distance2 >= second2 || distance2 <= same2 || (place - nearest).squaredNorm() <= same2) continue;
+    if (distance2 < first2) {
+      second2 = first2;
+      first2 = distance2;
+      nearest = place;
+    } else {
+      second2 = distance2;
+    }
   }
-  return std::sqrt(second);
+  return std::sqrt(second2);
 }
 
 }  // namespace

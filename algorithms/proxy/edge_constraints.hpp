@@ -7,7 +7,8 @@
 namespace hapbench {
 
 /// Typical distance from a shell point to its neighbours [m]: the median, over some of the points, of the distance to
-/// the second nearest one, so it is the spacing of a square lattice and of a line alike. 0 for fewer than three points.
+/// the second nearest one, so it is the spacing of a square lattice and of a line alike. Points at one place, as of a
+/// shell that lists a vertex for each of its cells, count as one. 0 for fewer than three points.
 /// O(size) with about a hundred distances a point; call it in preparation.
 double typical_spacing(const PointShell& shell);
 
