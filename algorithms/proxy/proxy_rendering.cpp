@@ -24,9 +24,9 @@ const ModelInfo kProxyInfo = {
         "flat patch about each point; f_spring = K (x - p), S = projector onto the span of the active gradients",
     .source = "ours; after Zilles and Salisbury 1995 (god-object) and Ruspini et al. 1997, which thesis 1.2 rejects",
     .known_failure =
-        "a start in deep penetration, and a hole that the turned tool does not fit into, are left at 0.02 m/s, while "
-        "points are inside the proxy; a flat face of the tool bumps on a surface whose normals are off by more than 6 degrees; no "
-        "depth model or reduction applies",
+        "a start in deep penetration and a hole that the turned tool does not fit into keep points inside the proxy, "
+        "which leaves them at 40 half widths of the tool a second; a flat face of the tool bumps on a surface whose "
+        "normals are off by more than 6 degrees; no depth model or reduction applies",
     .parameters = kParameters,
 };
 
@@ -55,7 +55,7 @@ void ProxyRendering::prepare(const Scene& scene) {
     recovery_ = std::numeric_limits<double>::infinity();
   } else {
     constraints_ = std::make_unique<ShellConstraints>(*scene.shell, *scene.tool, skips_);
-    recovery_ = kRecoverySpeed * scene.dt;
+    recovery_ = kRecoverySpeed * scene.tool->half_width() * scene.dt;
   }
   near_contacts_ = std::make_unique<ContactBuffer>(constraints_->capacity());
 }
@@ -157,7 +157,7 @@ bool ProxyRendering::follow(const ToolPose& tool) noexcept {
     if (!feasible_ || slowed_ < 1.0) {
       // What takes many steps is not worth more than one pass in each.
       clear_ = false;
-      return true;
+      return arrives;
     }
     if (arrives) {
       clear_ = true;

@@ -17,8 +17,9 @@ extern const AlgorithmTheory kProxyTheory;
 /// Most passes of a step: to bring the proxy near, and to make the constraints exact where it ends. Most steps take
 /// two.
 inline constexpr int kProxyPasses = 64;
-/// How fast a proxy that starts with points inside it leaves them [m/s]: as fast as a hand leads a drill.
-inline constexpr double kRecoverySpeed = 0.02;
+/// How fast a proxy that starts with points inside it leaves them, in half widths of the tool a second: a drill of 1 mm
+/// at 0.02 m/s, as fast as the simulated subjects lead it at most.
+inline constexpr double kRecoverySpeed = 40.0;
 
 /// Constraint-based rendering for a tool that cannot be turned back: a proxy of the tool that has its orientation and
 /// never enters the environment follows it, and a spring pulls the tool to the proxy (Zilles and Salisbury, 1995, for a
