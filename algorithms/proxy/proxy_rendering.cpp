@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <span>
 
@@ -36,10 +38,11 @@ namespace {
 constexpr double kNoSpan = 1e-6;
 /// A pass that moves the proxy less than this part of the margin is the last one.
 constexpr double kSettled = 0.03;
-/// Passes on end that bring the proxy no nearer to the tool than it was before they count as a cycle, ...
-constexpr int kPatience = 4;
-/// ... nearer by less than this part of the distance being no nearer.
-constexpr double kNearer = 1e-3;
+/// Passes after which a circle of places has come round.
+constexpr std::size_t kLongestCircle = 4;
+/// How often a move of a proxy with points inside is shortened, at most: then it is as short as it should be but for a
+/// few per cent, or the tool itself draws the proxy away.
+constexpr int kSlowed = 3;
 
 }  // namespace
 
@@ -121,12 +124,13 @@ AllowedMove ProxyRendering::next_move(const Vec3& wanted) noexcept {
   const double deepest = near_contacts_->largest_depth();
   if (clear_ || !(deepest > recovery_)) return nearest_allowed(wanted, *near_contacts_);
   slow_down(recovery_ / deepest);
-  const AllowedMove allowed = nearest_allowed(wanted, *near_contacts_);
-  const double length = allowed.move.norm();
-  if (!(length > recovery_)) return allowed;
-  // Points between walls that nearly face each other leave by a long way: the move is nearly proportional to depths.
-  slow_down(recovery_ / length);
-  return nearest_allowed(wanted, *near_contacts_);
+  AllowedMove allowed = nearest_allowed(wanted, *near_contacts_);
+  // Points between walls that nearly face each other leave by a long way. The move is nearly proportional to depths.
+  for (int k = 0; k < kSlowed && allowed.move.norm() > recovery_; ++k) {
+    slow_down(recovery_ / allowed.move.norm());
+    allowed = nearest_allowed(wanted, *near_contacts_);
+  }
+  return allowed;
 }
 
 /// Multiplies the depths of points inside the proxy.
@@ -139,8 +143,9 @@ void ProxyRendering::slow_down(double factor) noexcept {
 
 bool ProxyRendering::follow(const ToolPose& tool) noexcept {
   const double margin = constraints_->margin();
-  double nearest = std::numeric_limits<double>::infinity();
-  int no_nearer = 0;
+  const double settled = kSettled * margin;
+  std::array<Vec3, kLongestCircle> last;  // places
+  last.fill(Vec3::Constant(std::numeric_limits<double>::infinity()));
   for (int pass = 0; pass < kProxyPasses; ++pass) {
     const ToolPose proxy{proxy_, tool.axis, tool.roll};
     const Vec3 wanted = tool.position - proxy_;
@@ -162,16 +167,17 @@ bool ProxyRendering::follow(const ToolPose& tool) noexcept {
     if (arrives) {
       clear_ = true;
       if (allowed.iterations == 0) proxy_ = tool.position;
-      if (allowed.iterations == 0 || length <= kSettled * margin) return true;
+      if (allowed.iterations == 0 || length <= settled) return true;
       // Patches of surface come into force and lapse as the proxy moves, so passes may go round in a circle of two or
       // four places, each as allowed as the others: the nearest of them is taken when it comes again.
       const double distance = (tool.position - proxy_).norm();
-      if (distance < (1.0 - kNearer) * nearest) {
-        nearest = distance;
-        no_nearer = 0;
-      } else if (++no_nearer >= kPatience && distance <= (1.0 + kNearer) * nearest) {
-        return true;
+      bool again = false, nearest = true;
+      for (const Vec3& place : last) {
+        again |= (proxy_ - place).norm() <= settled;
+        nearest &= distance <= (tool.position - place).norm() + settled;
       }
+      if (again && nearest) return true;
+      last[static_cast<std::size_t>(pass) % last.size()] = proxy_;
     }
   }
   return false;
