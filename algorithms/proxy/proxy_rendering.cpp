@@ -2,9 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <span>
 
@@ -116,7 +114,6 @@ void ProxyRendering::place(const Vec3& position) noexcept {
   feasible_ = true;
   clear_ = false;
   slowed_ = 1.0;
-  moved_.setZero();
   share_.setZero();
   near_contacts_->clear();
 }
@@ -160,8 +157,7 @@ bool ProxyRendering::follow(const ToolPose& tool) noexcept {
     share_ = allowed.share;
     const double length = allowed.move.norm();
     const bool arrives = length <= margin;
-    moved_ = arrives ? allowed.move : Vec3(margin / length * allowed.move);
-    proxy_ += moved_;
+    proxy_ += arrives ? allowed.move : Vec3(margin / length * allowed.move);
     if (!feasible_ || slowed_ < 1.0) {
       // What takes many steps is not worth more than one pass in each.
       clear_ = false;
@@ -184,13 +180,6 @@ bool ProxyRendering::follow(const ToolPose& tool) noexcept {
     }
   }
   return false;
-}
-
-/// How much deeper point i is inside the proxy than the last pass was told.
-double ProxyRendering::put_off(std::size_t i) const noexcept {
-  const double told = near_contacts_->depth[i], moved = near_contacts_->gradient(i).dot(moved_);
-  if (slowed_ == 1.0 || !(told > 0.0)) return 0.0;
-  return std::max(0.0, told / slowed_ + moved) - std::max(0.0, told + moved);
 }
 
 /// lambda_i of a contact that holds the proxy back.
@@ -217,14 +206,12 @@ SpringState ProxyRendering::spring_state(const ToolState&, const ContactBuffer&)
   if (K_ == 0.0) return {};
   SpringState state{spring_.squaredNorm() / (2.0 * K_), Vec3::Zero()};
   for (std::size_t i = 0; i < near_contacts_->size(); ++i) {
-    const double weight = near_contacts_->weight[i], later = put_off(i);
-    if (!(weight > 0.0 || later > 0.0)) continue;
-    // What is violated, in a compromise or for a while, is a store of its own.
-    const double violated = later + (feasible_ ? 0.0 : weight);
-    state.energy += 0.5 * K_ * violated * violated;
+    const double weight = near_contacts_->weight[i];
+    if (!(weight > 0.0)) continue;
+    // In the compromise, what is violated is a store of its own.
+    if (!feasible_) state.energy += 0.5 * K_ * weight * weight;
     if (!constraints_->act_at_points()) continue;
-    const double lambda = later + (weight > 0.0 ? multiplier(i) : 0.0);
-    state.moment -= (near_contacts_->point(i) - proxy_).cross(K_ * lambda * near_contacts_->gradient(i));
+    state.moment -= (near_contacts_->point(i) - proxy_).cross(K_ * multiplier(i) * near_contacts_->gradient(i));
   }
   return state;
 }

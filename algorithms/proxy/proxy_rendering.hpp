@@ -65,7 +65,6 @@ class ProxyRendering final : public ForceAlgorithm {
   AllowedMove next_move(const Vec3& wanted) noexcept;
   void slow_down(double factor) noexcept;
   double multiplier(std::size_t i) const noexcept;
-  double put_off(std::size_t i) const noexcept;
   void hand_over_holding(ContactBuffer& contacts) const noexcept;
   ContactVelocity velocity_at(const ToolState& tool) const noexcept;
 
@@ -83,7 +82,6 @@ class ProxyRendering final : public ForceAlgorithm {
   bool clear_ = false;         ///< no points inside the proxy, since the last pass kept them all out
   double recovery_ = 0.0;      ///< how far the deepest point may leave in a step [m]
   double slowed_ = 1.0;        ///< what the depths of points inside were multiplied by in the last pass
-  Vec3 moved_ = Vec3::Zero();  ///< by the last pass [m]
   Vec3 share_ = Vec3::Zero();  ///< AllowedMove::share of the last pass [m]
   Vec3 spring_ = Vec3::Zero();
   AlgorithmWork work_;

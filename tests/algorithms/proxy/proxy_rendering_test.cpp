@@ -195,10 +195,6 @@ const double kRecovery = kRecoverySpeed * kHalfWidth * Scene{}.dt;
 /// A move is only nearly proportional to the depths: points about to be entered do not recede with them.
 constexpr double kNearly = 1.1;
 
-double stored(const Rig& rig, const ToolState& tool) {
-  return rig.proxy.spring_state(tool, rig.contacts).energy;
-}
-
 TEST(ProxyRendering, LeavesAPlaneItStartsInSlowlyAndThenForGood) {
   test::Setting setting;
   setting.points = surface_points(Plane{0.02, 0.0001});
@@ -207,19 +203,14 @@ TEST(ProxyRendering, LeavesAPlaneItStartsInSlowlyAndThenForGood) {
   const ToolState tool{{{0.0, 0.0, kHalfWidth - depth}, Vec3::UnitX()}, Vec3::Zero()};
   Rig rig(setting, proxy_config());
   Vec3 last = tool.pose.position;
-  double first_energy = 0.0;
   for (int step = 0; step < 40; ++step) {
     rig.step(tool);
     const Vec3 moved = rig.proxy.proxy() - last;
     ASSERT_GE(moved.z(), -1e-15) << step;
     ASSERT_LE(moved.norm(), kNearly * kRecovery) << step;
     last = rig.proxy.proxy();
-    if (step == 0) first_energy = stored(rig, tool);
   }
   EXPECT_LE((rig.force.spring - Vec3(0, 0, kK * depth)).norm(), kK * 1e-9);
-  // Every point in the tool was a spring; now there is one.
-  EXPECT_NEAR(stored(rig, tool), 0.5 * kK * depth * depth, 1e-9);
-  EXPECT_LT(stored(rig, tool), first_energy);
   // Out, it stays out: no turn is too fast.
   const ToolPose turned{tool.pose.position, Vec3(1.0, 0.0, 0.02).normalized()};
   rig.step({turned, Vec3::Zero()});
@@ -234,13 +225,10 @@ TEST(ProxyRendering, GoesSlowlyToTheMiddleOfASlotThatIsTooNarrow) {
   const ToolState tool{{{0.0001, 0.0, -0.001}, -Vec3::UnitZ()}, Vec3::Zero()};
   Rig rig(setting, proxy_config());
   Vec3 last = tool.pose.position;
-  double first_energy = 0.0;
   for (int step = 0; step < 200; ++step) {
     rig.step(tool);
     ASSERT_LE((rig.proxy.proxy() - last).norm(), kNearly * kRecovery) << step;
     last = rig.proxy.proxy();
-    if (step == 0) first_energy = stored(rig, tool);
-    ASSERT_LE(stored(rig, tool), first_energy) << step;
   }
   EXPECT_NEAR(rig.proxy.proxy().x(), 0.0, 1e-6);
 }
