@@ -211,7 +211,9 @@ SpringState ProxyRendering::spring_state(const ToolState&, const ContactBuffer&)
     // In the compromise, what is violated is a store of its own.
     if (!feasible_) state.energy += 0.5 * K_ * weight * weight;
     if (!constraints_->act_at_points()) continue;
-    state.moment -= (near_contacts_->point(i) - proxy_).cross(K_ * multiplier(i) * near_contacts_->gradient(i));
+    // A turn that takes a point deeper changes what is stored by as much less as the depth was scaled.
+    const double scale = near_contacts_->depth[i] > 0.0 ? slowed_ : 1.0;
+    state.moment -= (near_contacts_->point(i) - proxy_).cross(scale * K_ * multiplier(i) * near_contacts_->gradient(i));
   }
   return state;
 }
