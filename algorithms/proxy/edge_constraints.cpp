@@ -6,8 +6,12 @@
 #include <limits>
 #include <vector>
 
+#include "sim/core/simd.hpp"
+
 namespace hapbench {
 namespace {
+
+using simd::load, simd::Pack;
 
 constexpr std::size_t kSampled = 100;
 /// Radius of a patch as a share of the spacing: reaches the centre of four points of a square lattice, 0.707 away.
@@ -15,18 +19,28 @@ constexpr double kPatch = 0.75;
 /// Largest depth at which an edge constraint applies, as a share of the spacing.
 constexpr double kDeepest = 0.1;
 
+/// Nearer to each other than this part of the shell's size, points are one: shells may list a vertex once for each cell
+/// that it belongs to.
+constexpr double kSamePlace = 1e-7;
+
 double distance_to_second(const PointShell& shell, std::size_t from) {
-  double first = std::numeric_limits<double>::infinity(), second = first;
+  const double same = kSamePlace * (shell.bounds().max - shell.bounds().min).norm(), same2 = same * same;
+  double first2 = std::numeric_limits<double>::infinity(), second2 = first2;
   const Vec3 here = shell.point(from).position;
+  Vec3 nearest = here;
   for (std::size_t i = 0; i < shell.size(); ++i) {
-    if (i == from) continue;
-    const double dx = shell.x()[i] - here.x(), dy = shell.y()[i] - here.y(), dz = shell.z()[i] - here.z();
-    const double distance2 = dx * dx + dy * dy + dz * dz;
-    if (distance2 >= second) continue;
-    second = std::max(first, distance2);
-    first = std::min(first, distance2);
+    const Vec3 place(shell.x()[i], shell.y()[i], shell.z()[i]);
+    const double distance2 = (place - here).squaredNorm();
+    if (distance2 >= second2 || distance2 <= same2 || (place - nearest).squaredNorm() <= same2) continue;
+    if (distance2 < first2) {
+      second2 = first2;
+      first2 = distance2;
+      nearest = place;
+    } else {
+      second2 = distance2;
+    }
   }
-  return std::sqrt(second);
+  return std::sqrt(second2);
 }
 
 }  // namespace
@@ -42,19 +56,26 @@ double typical_spacing(const PointShell& shell) {
 }
 
 void add_edge_constraints(const ToolShape& tool, const ToolPose& pose, double spacing, double margin,
-                          std::vector<Vec3>& places, ContactBuffer& contacts) noexcept {
+                          const PlaceArrays& places, ContactBuffer& contacts) noexcept {
   const std::size_t points = contacts.size();
-  const double patch2 = kPatch * spacing * kPatch * spacing;
-  tool.foremost_places(pose, contacts, places.data());
-  for (std::size_t i = 0; i < points; ++i) {
-    const Vec3 normal = contacts.normal(i);
-    const Vec3 from_point = places[i] - contacts.point(i);
-    const double height = normal.dot(from_point);
-    if (height > margin || height < -kDeepest * spacing) continue;
-    if (from_point.squaredNorm() - height * height > patch2) continue;
-    contacts.push_copy_of(contacts, i);
-    contacts.depth[contacts.size() - 1] = -height;
-    contacts.set_gradient(contacts.size() - 1, -normal);
+  const Pack highest(margin), deepest(-kDeepest * spacing), patch2(kPatch * spacing * kPatch * spacing);
+  tool.foremost_places(pose, contacts, places);
+  for (std::size_t i = 0; i < points; i += simd::lanes) {
+    const Pack nx = load(&contacts.nx[i]), ny = load(&contacts.ny[i]), nz = load(&contacts.nz[i]);
+    const Pack dx = load(&places.x[i]) - load(&contacts.x[i]), dy = load(&places.y[i]) - load(&contacts.y[i]),
+               dz = load(&places.z[i]) - load(&contacts.z[i]);
+    const Pack height = nx * dx + ny * dy + nz * dz;
+    const Pack aside2 = dx * dx + dy * dy + dz * dz - height * height;
+    const simd::Mask applies = height <= highest && height >= deepest && aside2 <= patch2;
+    if (!simd::any(applies)) continue;
+    alignas(64) double heights[simd::lanes];
+    simd::store(height, heights);
+    for (std::size_t k = 0; k < simd::lanes && i + k < points; ++k) {
+      if (!simd::lane(applies, k)) continue;
+      contacts.push_copy_of(contacts, i + k);
+      contacts.depth[contacts.size() - 1] = -heights[k];
+      contacts.set_gradient(contacts.size() - 1, -contacts.normal(i + k));
+    }
   }
   contacts.pad();
 }

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/tool/tool_shape.hpp"
@@ -9,7 +7,8 @@
 namespace hapbench {
 
 /// Typical distance from a shell point to its neighbours [m]: the median, over some of the points, of the distance to
-/// the second nearest one, so it is the spacing of a square lattice and of a line alike. 0 for fewer than three points.
+/// the second nearest one, so it is the spacing of a square lattice and of a line alike. Points at one place, as of a
+/// shell that lists a vertex for each of its cells, count as one. 0 for fewer than three points.
 /// O(size) with about a hundred distances a point; call it in preparation.
 double typical_spacing(const PointShell& shell);
 
@@ -22,9 +21,9 @@ double typical_spacing(const PointShell& shell);
 /// A drill's edge on a wall touches points with both of its faces, and between two rows of points 0.1 mm apart it finds
 /// up to 0.05 mm of room; a patch leaves none. Patches apply up to `margin` away, and to depths up to a tenth of the
 /// spacing: the tool never gets deeper, so a patch that lies further out faces something else (the other side of a
-/// rim). Call after ToolShape::surface_constraints. `places` is scratch memory for a place of each contact.
+/// rim). Call after ToolShape::surface_constraints. `places` is scratch memory for a place of each contact, padded.
 /// Preconditions: room for as many contacts again, and as many places. O(n).
 void add_edge_constraints(const ToolShape& tool, const ToolPose& pose, double spacing, double margin,
-                          std::vector<Vec3>& places, ContactBuffer& contacts) noexcept;
+                          const PlaceArrays& places, ContactBuffer& contacts) noexcept;
 
 }  // namespace hapbench

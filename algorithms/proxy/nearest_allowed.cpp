@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <span>
 
 #include "algorithms/laws/force_law.hpp"
-#include "algorithms/proxy/small_qr.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
@@ -51,56 +49,82 @@ double largest_length(const ContactBuffer& c, const Vec3& wanted) noexcept {
   return simd::max_lane(largest);
 }
 
-/// The contacts that hold the tool back, at most three, with independent gradients.
+/// A gradient as the combination of the active ones that comes nearest to it, and what that leaves.
+struct Split {
+  Vec3 inside = Vec3::Zero();  ///< its components along the orthonormal basis of their span
+  Vec3 remainder;              ///< perpendicular to all of them
+  Vec3 along = Vec3::Zero();   ///< its coefficients of the active gradients
+};
+
+/// The contacts that hold the tool back, at most three, with independent gradients. Keeps the orthonormal basis Q that
+/// Gram and Schmidt make of them, and R with gradients = Q R: for three rows a handful of operations.
 class ActiveSet {
  public:
-  int size() const { return static_cast<int>(size_); }
+  int size() const { return size_; }
   std::size_t contact(int k) const { return contact_[static_cast<std::size_t>(k)]; }
   double& lambda(int k) { return lambda_[static_cast<std::size_t>(k)]; }
 
   bool contains(std::size_t contact) const {
-    const auto end = contact_.begin() + static_cast<std::ptrdiff_t>(size_);
-    return std::find(contact_.begin(), end, contact) != end;
+    return std::find(contact_.begin(), contact_.begin() + size_, contact) != contact_.begin() + size_;
   }
-  void add(std::size_t contact, const Vec3& gradient, double lambda) {
-    contact_[size_] = contact;
-    lambda_[size_] = lambda;
-    gradients_[size_++] = gradient;
+  Split split(const Vec3& u) const {
+    Split parts{.remainder = u};
+    // Twice: the second round takes out what rounding left of the first, which counts where the remainder is short.
+    for (int round = 0; round < 2; ++round) {
+      for (int k = 0; k < size_; ++k) {
+        const double part = Q_.col(k).dot(parts.remainder);
+        parts.inside[k] += part;
+        parts.remainder -= part * Q_.col(k);
+      }
+    }
+    for (int k = size_; k-- > 0;) {
+      double rest = parts.inside[k];
+      for (int j = k + 1; j < size_; ++j) rest -= R_(k, j) * parts.along[j];
+      parts.along[k] = rest / R_(k, k);
+    }
+    return parts;
   }
-  void drop(int k) {
-    --size_;
-    for (auto j = static_cast<std::size_t>(k); j < size_; ++j) {
-      contact_[j] = contact_[j + 1];
-      lambda_[j] = lambda_[j + 1];
-      gradients_[j] = gradients_[j + 1];
+  /// `parts` are those of the gradient; its remainder is not 0.
+  void add(std::size_t contact, const Vec3& gradient, const Split& parts, double lambda) {
+    const auto k = static_cast<std::size_t>(size_);
+    contact_[k] = contact;
+    lambda_[k] = lambda;
+    gradients_[k] = gradient;
+    const double length = parts.remainder.norm();
+    R_.col(size_) = parts.inside;
+    R_(size_, size_) = length;
+    Q_.col(size_++) = parts.remainder / length;
+  }
+  void drop(int leaves) {
+    const ActiveSet before = *this;
+    size_ = 0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(before.size_); ++k) {
+      if (static_cast<int>(k) == leaves) continue;
+      const Vec3& u = before.gradients_[k];
+      add(before.contact_[k], u, split(u), before.lambda_[k]);
     }
   }
-  /// u = sum of the active gradients times the first of these, plus a remainder perpendicular to all of them.
-  Vec3 along(const Vec3& u) const { return SmallQr(gradients()).solve(u); }
-  Vec3 combine(const Vec3& coefficients) const {
-    if (size_ == 0) return Vec3::Zero();
-    Vec3 sum = coefficients[0] * gradients_[0];
-    for (std::size_t k = 1; k < size_; ++k) sum += coefficients[static_cast<Eigen::Index>(k)] * gradients_[k];
-    return sum;
-  }
   /// The orthogonal projector onto the span of the gradients.
-  Mat3 projector() const { return SmallQr(gradients()).projector(); }
+  Mat3 projector() const {
+    Mat3 P = Mat3::Zero();
+    for (int k = 0; k < size_; ++k) P += Q_.col(k) * Q_.col(k).transpose();
+    return P;
+  }
 
  private:
-  std::span<const Vec3> gradients() const { return {gradients_.data(), size_}; }
-
-  std::size_t size_ = 0;
+  int size_ = 0;
   std::array<std::size_t, 3> contact_{};
   std::array<double, 3> lambda_{};
-  std::array<Vec3, 3> gradients_{};
+  std::array<Vec3, 3> gradients_;
+  Mat3 Q_, R_;  ///< the first size() columns
 };
 
 /// Makes contact `p` satisfied, letting go of active ones that no longer hold. False when that is impossible.
 bool satisfy(std::size_t p, double violation, const Vec3& u, Vec3& x, ActiveSet& active) noexcept {
   double lambda = 0.0;
   for (;;) {
-    const Vec3 r = active.along(u);
-    const Vec3 free = u - active.combine(r);
+    const Split parts = active.split(u);
+    const Vec3 &r = parts.along, &free = parts.remainder;
     const double free2 = active.size() == 3 ? 0.0 : free.squaredNorm();
     const double whole_step = free2 > kInSpan ? violation / free2 : kNever;
     double step = whole_step;
@@ -119,7 +143,7 @@ bool satisfy(std::size_t p, double violation, const Vec3& u, Vec3& x, ActiveSet&
       violation -= step * free2;
     }
     if (leaves < 0) {
-      active.add(p, u, lambda);
+      active.add(p, u, parts, lambda);
       return true;
     }
     active.drop(leaves);

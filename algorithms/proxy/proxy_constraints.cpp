@@ -21,12 +21,15 @@ ShellConstraints::ShellConstraints(const PointShell& shell, const ToolShape& too
       spacing_(typical_spacing(shell)),
       reach_(tool.grown(margin_ * kQueryMargin)),
       near_(make_contact_query(shell, *reach_.shape, skips)),
-      places_(near_->capacity()) {}
+      places_x_(simd::padded(near_->capacity())),
+      places_y_(places_x_.size()),
+      places_z_(places_x_.size()) {}
 
 void ShellConstraints::constraints_at(const ToolPose& proxy, const Vec3& wanted, ContactBuffer& contacts) noexcept {
   near_->contacts_at({proxy.position + reach_.forward * proxy.axis, proxy.axis, proxy.roll}, contacts);
   tool_->surface_constraints(proxy, wanted, kEdgeSlack * spacing_, contacts);
-  add_edge_constraints(*tool_, proxy, spacing_, margin_, places_, contacts);
+  add_edge_constraints(*tool_, proxy, spacing_, margin_, {places_x_.data(), places_y_.data(), places_z_.data()},
+                       contacts);
 }
 
 void SpringConstraints::constraints_at(const ToolPose& proxy, const Vec3&, ContactBuffer& contacts) noexcept {

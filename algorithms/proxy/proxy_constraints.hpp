@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "sim/contact/contact_query.hpp"
 #include "sim/geometry/springs.hpp"
@@ -51,7 +50,7 @@ class ShellConstraints final : public ProxyConstraints {
   double spacing_;          ///< of the shell [m]
   ToolShape::Grown reach_;  ///< what the tool could touch within the margin
   std::unique_ptr<ContactQuery> near_;
-  std::vector<Vec3> places_;  ///< scratch memory of add_edge_constraints
+  AlignedDoubles places_x_, places_y_, places_z_;  ///< scratch memory of add_edge_constraints
 };
 
 /// The springs that the tool could compress: planes, which hold at any distance. A bilateral spring holds the tool from

@@ -2,10 +2,11 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <array>
 #include <limits>
+#include <span>
 
 #include "algorithms/laws/force_law.hpp"
-#include "algorithms/proxy/nearest_allowed.hpp"
 
 namespace hapbench {
 namespace {
@@ -23,9 +24,9 @@ const ModelInfo kProxyInfo = {
         "flat patch about each point; f_spring = K (x - p), S = projector onto the span of the active gradients",
     .source = "ours; after Zilles and Salisbury 1995 (god-object) and Ruspini et al. 1997, which thesis 1.2 rejects",
     .known_failure =
-        "a scene that starts in deep penetration, or a hole that the turned tool does not fit into, throws the proxy "
-        "out at once; a flat face of the tool bumps on a surface whose normals are off by more than 6 degrees; no "
-        "depth model or reduction applies",
+        "a start in deep penetration and a hole that the turned tool does not fit into keep points inside the proxy, "
+        "which leaves them at 40 half widths of the tool a second; a flat face of the tool bumps on a surface whose "
+        "normals are off by more than 6 degrees; no depth model or reduction applies",
     .parameters = kParameters,
 };
 
@@ -33,12 +34,16 @@ namespace {
 
 /// Squared length of what gradients leave of a direction below which they do not span it.
 constexpr double kNoSpan = 1e-6;
-/// A pass that moves the proxy less than this part of the margin is the last one.
-constexpr double kSettled = 1e-3;
-/// Passes on end that bring the proxy no nearer to the tool than it was before they count as a cycle, ...
-constexpr int kPatience = 4;
-/// ... nearer by less than this part of the distance being no nearer.
-constexpr double kNearer = 1e-3;
+/// A pass that moves the proxy less than this part of the margin is the last one. Its constraints were exact where it
+/// began, so where it ends they are off by the square of its length over the tool's width: 9 nm for a drill of 1 mm.
+constexpr double kSettled = 0.03;
+/// Passes after which a circle of places has come round.
+constexpr std::size_t kLongestCircle = 4;
+/// Places nearer to each other than this part of the margin are the same.
+constexpr double kSame = 1e-3;
+/// How often a move of a proxy with points inside is shortened, at most: then it is as short as it should be but for a
+/// few per cent, or the tool itself draws the proxy away.
+constexpr int kSlowed = 3;
 
 }  // namespace
 
@@ -51,8 +56,10 @@ ProxyRendering::ProxyRendering(const RenderingConfig& config)
 void ProxyRendering::prepare(const Scene& scene) {
   if (scene.springs != nullptr) {
     constraints_ = std::make_unique<SpringConstraints>(*scene.springs);
+    recovery_ = std::numeric_limits<double>::infinity();
   } else {
     constraints_ = std::make_unique<ShellConstraints>(*scene.shell, *scene.tool, skips_);
+    recovery_ = kRecoverySpeed * scene.tool->half_width() * scene.dt;
   }
   near_contacts_ = std::make_unique<ContactBuffer>(constraints_->capacity());
 }
@@ -105,42 +112,71 @@ void ProxyRendering::place(const Vec3& position) noexcept {
   proxy_ = position;
   held_.setZero();
   feasible_ = true;
+  clear_ = false;
+  slowed_ = 1.0;
   share_.setZero();
   near_contacts_->clear();
 }
 
+/// The move nearest to the wanted one that the constraints allow, or, with points inside the proxy, a slow one.
+AllowedMove ProxyRendering::next_move(const Vec3& wanted) noexcept {
+  slowed_ = 1.0;
+  const double deepest = near_contacts_->largest_depth();
+  if (clear_ || !(deepest > recovery_)) return nearest_allowed(wanted, *near_contacts_);
+  slow_down(recovery_ / deepest);
+  AllowedMove allowed = nearest_allowed(wanted, *near_contacts_);
+  // Points between walls that nearly face each other leave by a long way. The move is nearly proportional to depths.
+  for (int k = 0; k < kSlowed && allowed.move.norm() > recovery_; ++k) {
+    slow_down(recovery_ / allowed.move.norm());
+    allowed = nearest_allowed(wanted, *near_contacts_);
+  }
+  return allowed;
+}
+
+/// Multiplies the depths of points inside the proxy.
+void ProxyRendering::slow_down(double factor) noexcept {
+  slowed_ *= factor;
+  for (double& depth : std::span(near_contacts_->depth.data(), near_contacts_->size())) {
+    if (depth > 0.0) depth *= factor;
+  }
+}
+
 bool ProxyRendering::follow(const ToolPose& tool) noexcept {
   const double margin = constraints_->margin();
-  double nearest = std::numeric_limits<double>::infinity();
-  int no_nearer = 0;
+  const double settled = kSettled * margin, same = kSame * margin;
+  std::array<Vec3, kLongestCircle> last;  // places
+  last.fill(Vec3::Constant(std::numeric_limits<double>::infinity()));
   for (int pass = 0; pass < kProxyPasses; ++pass) {
     const ToolPose proxy{proxy_, tool.axis, tool.roll};
     const Vec3 wanted = tool.position - proxy_;
     constraints_->constraints_at(proxy, wanted, *near_contacts_);
-    const AllowedMove allowed = nearest_allowed(wanted, *near_contacts_);
+    const AllowedMove allowed = next_move(wanted);
     work_.iterations += static_cast<std::uint64_t>(allowed.iterations);
     held_ = allowed.held;
     feasible_ = allowed.feasible;
     share_ = allowed.share;
     const double length = allowed.move.norm();
-    if (length > margin) {
-      proxy_ += margin / length * allowed.move;
-    } else if (allowed.iterations == 0) {
-      proxy_ = tool.position;
-      return true;
-    } else {
-      proxy_ += allowed.move;
-      // A compromise of walls that leave no room is not worth more than one pass a step.
-      if (length <= kSettled * margin || !allowed.feasible) return true;
+    const bool arrives = length <= margin;
+    proxy_ += arrives ? allowed.move : Vec3(margin / length * allowed.move);
+    if (!feasible_ || slowed_ < 1.0) {
+      // What takes many steps is not worth more than one pass in each.
+      clear_ = false;
+      return arrives;
+    }
+    if (arrives) {
+      clear_ = true;
+      if (allowed.iterations == 0) proxy_ = tool.position;
+      if (allowed.iterations == 0 || length <= settled) return true;
       // Patches of surface come into force and lapse as the proxy moves, so passes may go round in a circle of two or
       // four places, each as allowed as the others: the nearest of them is taken when it comes again.
       const double distance = (tool.position - proxy_).norm();
-      if (distance < (1.0 - kNearer) * nearest) {
-        nearest = distance;
-        no_nearer = 0;
-      } else if (++no_nearer >= kPatience && distance <= (1.0 + kNearer) * nearest) {
-        return true;
+      bool again = false, nearest = true;
+      for (const Vec3& place : last) {
+        again |= (proxy_ - place).norm() <= same;
+        nearest &= distance <= (tool.position - place).norm() + same;
       }
+      if (again && nearest) return true;
+      last[static_cast<std::size_t>(pass) % last.size()] = proxy_;
     }
   }
   return false;
@@ -175,7 +211,9 @@ SpringState ProxyRendering::spring_state(const ToolState&, const ContactBuffer&)
     // In the compromise, what is violated is a store of its own.
     if (!feasible_) state.energy += 0.5 * K_ * weight * weight;
     if (!constraints_->act_at_points()) continue;
-    state.moment -= (near_contacts_->point(i) - proxy_).cross(K_ * multiplier(i) * near_contacts_->gradient(i));
+    // A turn that takes a point deeper changes what is stored by as much less as the depth was scaled.
+    const double scale = near_contacts_->depth[i] > 0.0 ? slowed_ : 1.0;
+    state.moment -= (near_contacts_->point(i) - proxy_).cross(scale * K_ * multiplier(i) * near_contacts_->gradient(i));
   }
   return state;
 }

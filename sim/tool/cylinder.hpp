@@ -47,7 +47,8 @@ class Cylinder final : public ToolShape {
   /// Ties prefer the side, then the tip, then the bottom.
   void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                            ContactBuffer& contacts) const noexcept override;
-  void foremost_places(const ToolPose& pose, const ContactBuffer& contacts, Vec3* places) const noexcept override;
+  void foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
+                       const PlaceArrays& places) const noexcept override;
   /// The grown cylinder reaches further beyond a flat tip, so its tip centre lies `margin` ahead.
   Grown grown(double margin) const override;
 

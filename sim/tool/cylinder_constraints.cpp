@@ -33,18 +33,6 @@ Directions away_from_axis(const AxialPack& q, const Pack& distance, const Pack& 
           select(undefined, Pack(any.z()), q.rho_z * scale)};
 }
 
-/// The place of the tool that is foremost against `normal`; along the side, the one abreast of `point`.
-Vec3 foremost_place(const Cylinder& tool, const ToolPose& pose, const Vec3& normal, const Vec3& point) {
-  const double forward = -normal.dot(pose.axis);
-  const Vec3 outwards = -normal - forward * pose.axis;
-  const double length = outwards.norm();
-  if (tool.tip() == Tip::round && forward > kAlongSide) return pose.position - tool.radius() * normal;
-  const Vec3 on_side = length > 0.0 ? Vec3(tool.radius() / length * outwards) : Vec3(Vec3::Zero());
-  double s = forward > 0.0 ? 0.0 : -tool.length();
-  if (std::abs(forward) < kAlongSide) s = std::clamp((point - pose.position).dot(pose.axis), -tool.length(), 0.0);
-  return pose.position + s * pose.axis + on_side;
-}
-
 }  // namespace
 
 void Cylinder::surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
@@ -102,9 +90,28 @@ void Cylinder::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
   contacts.pad();
 }
 
-void Cylinder::foremost_places(const ToolPose& pose, const ContactBuffer& contacts, Vec3* places) const noexcept {
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    places[i] = foremost_place(*this, pose, contacts.normal(i), contacts.point(i));
+void Cylinder::foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
+                               const PlaceArrays& places) const noexcept {
+  const Pack radius(radius_), length(length_), zero(0.0), one(1.0), along_side(kAlongSide);
+  // forward is at most 1: a flat tip has no ball.
+  const Pack ball_from(tip_ == Tip::round ? kAlongSide : 2.0);
+  const Pack px(pose.position.x()), py(pose.position.y()), pz(pose.position.z());
+  const Pack ax(pose.axis.x()), ay(pose.axis.y()), az(pose.axis.z());
+  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    const Pack nx = simd::load(&contacts.nx[i]), ny = simd::load(&contacts.ny[i]), nz = simd::load(&contacts.nz[i]);
+    const Pack forward = -(nx * ax + ny * ay + nz * az);
+    const Pack x = -nx - forward * ax, y = -ny - forward * ay, z = -nz - forward * az;
+    const Pack outwards = simd::sqrt(x * x + y * y + z * z);
+    const Mask on_axis = outwards <= zero;
+    const Pack scale = select(on_axis, zero, radius / select(on_axis, one, outwards));
+    const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
+    const Pack abreast = simd::max(-length, simd::min(q.s, zero));
+    Pack s = select(forward > zero, zero, -length);
+    s = select(simd::abs(forward) < along_side, abreast, s);
+    const Mask at_ball = forward > ball_from;
+    simd::store(px + select(at_ball, -radius * nx, s * ax + scale * x), &places.x[i]);
+    simd::store(py + select(at_ball, -radius * ny, s * ay + scale * y), &places.y[i]);
+    simd::store(pz + select(at_ball, -radius * nz, s * az + scale * z), &places.z[i]);
   }
 }
 

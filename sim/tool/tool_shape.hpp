@@ -15,6 +15,11 @@ struct PointArrays {
   const double *x, *y, *z;
 };
 
+/// The same to write to.
+struct PlaceArrays {
+  double *x, *y, *z;
+};
+
 /// A run of points in such arrays: packs first … last - 1, of the first and the last of which it may own but some
 /// points.
 struct PackRange {
@@ -111,9 +116,11 @@ class ToolShape {
   /// place, if one is.
   virtual void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                                    ContactBuffer& contacts) const noexcept = 0;
-  /// Writes to places[i] the place of the body that is foremost against the normal of contact i, argmin <q, n_i> over
-  /// the body: its support point in direction -n_i. Where there are several, the one abreast of the contact.
-  virtual void foremost_places(const ToolPose& pose, const ContactBuffer& contacts, Vec3* places) const noexcept = 0;
+  /// Writes the place of the body that is foremost against the normal of each contact, argmin <q, n_i> over the body:
+  /// its support point in direction -n_i. Where there are several, the one abreast of the contact. May write the whole
+  /// last pack.
+  virtual void foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
+                               const PlaceArrays& places) const noexcept = 0;
 
   /// The body grown on all sides, at a pose whose position lies `forward` ahead along the axis.
   struct Grown {

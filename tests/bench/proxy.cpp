@@ -58,7 +58,8 @@ bool is_nearest(Problem& problem) {
     const double off = problem.contacts.depth[i] + problem.contacts.gradient(i).dot(allowed.move);
     const double lambda = problem.contacts.weight[i];
     if (allowed.feasible && (off > 1e-10 || lambda < 0.0 || (lambda > 0.0 && off < -1e-10))) return false;
-    held += lambda * problem.contacts.gradient(i);
+    const Vec3 u = problem.contacts.gradient(i);
+    if (lambda > 0.0) held += (lambda + allowed.share.dot(u)) * u;
   }
   return (problem.wanted - held - allowed.move).norm() <= 1e-9;
 }

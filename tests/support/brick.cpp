@@ -116,7 +116,8 @@ void Brick::surface_constraints(const ToolPose& pose, const Vec3&, double, Conta
   contacts.pad();
 }
 
-void Brick::foremost_places(const ToolPose& pose, const ContactBuffer& contacts, Vec3* places) const noexcept {
+void Brick::foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
+                            const PlaceArrays& places) const noexcept {
   const Mat3 R = pose.rotation();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Vec3 n = R.transpose() * contacts.normal(i);
@@ -124,7 +125,10 @@ void Brick::foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
     for (int k = 0; k < 3; ++k) {
       if (std::abs(n[k]) > 1e-9) q[k] = n[k] > 0.0 ? low_[k] : high_[k];
     }
-    places[i] = pose.position + R * q;
+    const Vec3 place = pose.position + R * q;
+    places.x[i] = place.x();
+    places.y[i] = place.y();
+    places.z[i] = place.z();
   }
 }
 

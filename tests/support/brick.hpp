@@ -27,7 +27,8 @@ class Brick final : public ToolShape {
   void exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept override;
   void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                            ContactBuffer& contacts) const noexcept override;
-  void foremost_places(const ToolPose& pose, const ContactBuffer& contacts, Vec3* places) const noexcept override;
+  void foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
+                       const PlaceArrays& places) const noexcept override;
   Grown grown(double margin) const override;
 
  private:

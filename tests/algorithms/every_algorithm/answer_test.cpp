@@ -14,7 +14,9 @@ HAPBENCH_FOR_EVERY_ALGORITHM(Answer, test::always);
 
 TEST_P(Answer, HasTheKnownDirectionAndIsBoundedByTheSumOfAllSprings) {
   test::Probe probe(setting, config);
-  const Vec3 force = probe.force_at(setting.pose).spring;
+  Vec3 force;
+  // A proxy that starts inside leaves slowly.
+  for (int step = 0; step < 100; ++step) force = probe.force_at(setting.pose).spring;
   ASSERT_TRUE(force.allFinite());
   const test::Answer answer = scene().answer();
   const double rounding = test::kAnyLawsRounding * magnitude;

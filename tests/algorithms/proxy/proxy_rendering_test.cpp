@@ -189,6 +189,50 @@ TEST(ProxyRendering, HoldsAToolThatIsPulledThroughAPlane) {
   EXPECT_LE((force.spring - Vec3(0, 0, kK * 0.00489)).norm(), kK * 1e-12);
 }
 
+/// How far a proxy that starts inside may go in a step of the rig, whose tools are this thick.
+constexpr double kHalfWidth = 0.0005;
+const double kRecovery = kRecoverySpeed * kHalfWidth * Scene{}.dt;
+/// A move is only nearly proportional to the depths: points about to be entered do not recede with them.
+constexpr double kNearly = 1.1;
+
+TEST(ProxyRendering, LeavesAPlaneItStartsInSlowlyAndThenForGood) {
+  test::Setting setting;
+  setting.points = surface_points(Plane{0.02, 0.0001});
+  setting.tool = {0.0005, 0.004, Tip::flat};
+  const double depth = 2e-4;
+  const ToolState tool{{{0.0, 0.0, kHalfWidth - depth}, Vec3::UnitX()}, Vec3::Zero()};
+  Rig rig(setting, proxy_config());
+  Vec3 last = tool.pose.position;
+  for (int step = 0; step < 40; ++step) {
+    rig.step(tool);
+    const Vec3 moved = rig.proxy.proxy() - last;
+    ASSERT_GE(moved.z(), -1e-15) << step;
+    ASSERT_LE(moved.norm(), kNearly * kRecovery) << step;
+    last = rig.proxy.proxy();
+  }
+  EXPECT_LE((rig.force.spring - Vec3(0, 0, kK * depth)).norm(), kK * 1e-9);
+  // Out, it stays out: no turn is too fast.
+  const ToolPose turned{tool.pose.position, Vec3(1.0, 0.0, 0.02).normalized()};
+  rig.step({turned, Vec3::Zero()});
+  EXPECT_LE(deepest_point(setting, {rig.proxy.proxy(), turned.axis}), 1e-10);
+  EXPECT_GT((rig.proxy.proxy() - last).norm(), kRecovery);
+}
+
+TEST(ProxyRendering, GoesSlowlyToTheMiddleOfASlotThatIsTooNarrow) {
+  test::Setting setting;
+  setting.points = surface_points(Slot{0.0009, 0.002, 0.004, 0.0001});
+  setting.tool = {0.0005, 0.004, Tip::flat};
+  const ToolState tool{{{0.0001, 0.0, -0.001}, -Vec3::UnitZ()}, Vec3::Zero()};
+  Rig rig(setting, proxy_config());
+  Vec3 last = tool.pose.position;
+  for (int step = 0; step < 200; ++step) {
+    rig.step(tool);
+    ASSERT_LE((rig.proxy.proxy() - last).norm(), kNearly * kRecovery) << step;
+    last = rig.proxy.proxy();
+  }
+  EXPECT_NEAR(rig.proxy.proxy().x(), 0.0, 1e-6);
+}
+
 TEST(ProxyRendering, StoresTheEnergyOfOneSpring) {
   Random random(5);
   const test::Setting setting = tilted_on_plane(0.5, 5e-5, random);
@@ -231,6 +275,15 @@ TEST(TypicalSpacing, IsThatOfALatticeAndOfALine) {
   EXPECT_NEAR(typical_spacing(PointShell(surface_points(Plane{0.004, 0.0001}), 0.0)), 1e-4, 1e-12);
   EXPECT_NEAR(typical_spacing(PointShell(surface_points(Hole2d{}), 0.0)), 1e-4, 1e-12);
   EXPECT_EQ(typical_spacing(PointShell({}, 0.0)), 0.0);
+  // Each point four times, but for rounding.
+  std::vector<SurfacePoint> copies;
+  for (const SurfacePoint& point : surface_points(Plane{0.004, 0.0001})) {
+    for (int k = 0; k < 4; ++k) {
+      copies.push_back(point);
+      copies.back().position.z() += 1e-16 * k;
+    }
+  }
+  EXPECT_NEAR(typical_spacing(PointShell(copies, 0.0)), 1e-4, 1e-12);
 }
 
 }  // namespace

@@ -87,8 +87,9 @@ TEST_P(CylinderOfTip, HasItsForemostPlaceOnTheSurfaceAndNoneBeyondIt) {
     const Vec3 normal = random.direction();
     ContactBuffer contacts(1);
     contacts.push(0, test::random_point_near(tool, pose, random), normal);
-    Vec3 place;
-    tool.foremost_places(pose, contacts, &place);
+    alignas(64) double x[simd::lanes], y[simd::lanes], z[simd::lanes];
+    tool.foremost_places(pose, contacts, {x, y, z});
+    const Vec3 place(x[0], y[0], z[0]);
     EXPECT_NEAR(static_cast<double>(test::slack(tool, pose, place.cast<long double>())), 0.0, kRounding);
     for (int k = 0; k < 20; ++k) {
       EXPECT_GE((test::random_point_on(tool, pose, random) - place).dot(normal), -kRounding);
