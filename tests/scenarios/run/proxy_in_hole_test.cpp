@@ -115,7 +115,7 @@ TEST(ProxyInATightHole, LeavesSlowly) {
 
 TEST(ProxyInHole, IsFiveTimesNearerToTheIdealTrajectoryThanShapingAndVibratesLess) {
   const auto summary = [](const char* algorithm) {
-    return run_scenario(with_algorithm("rotate_in_hole_proxy", algorithm), std::nullopt, false, ShellCache()).summary;
+    return run_scenario(with_algorithm("rotate_in_hole_proxy", algorithm), std::nullopt, false).summary;
   };
   const RunSummary proxy = summary("proxy"), shaped = summary("shaped_stiffness");
   EXPECT_LE(proxy.ideal_trajectory->firm.height_rms, 0.00015);
