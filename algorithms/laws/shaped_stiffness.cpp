@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "algorithms/parameters.hpp"
-#include "sim/contact/tensor_sum.hpp"
+#include "sim/core/simd.hpp"
 
 namespace hapbench {
 namespace {
@@ -53,16 +53,14 @@ Mat3 update_shaped_weights(ContactBuffer& contacts, const Mat3& S) noexcept {
   using simd::load, simd::Pack;
   const Pack xx(S(0, 0)), yy(S(1, 1)), zz(S(2, 2)), two_xy(2.0 * S(0, 1)), two_xz(2.0 * S(0, 2)), two_yz(2.0 * S(1, 2));
   const Pack zero(0.0);
-  TensorSum updated;
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
     const Pack x = load(&contacts.ux[i]), y = load(&contacts.uy[i]), z = load(&contacts.uz[i]);
     const Pack rho = x * (xx * x + two_xy * y + two_xz * z) + y * (yy * y + two_yz * z) + zz * z * z;
     // Zero gradients (and the padding) have ratio zero and stay without weight.
     const Pack c = simd::select(rho > zero, load(&contacts.weight[i]) / rho, zero);
     simd::store(c, &contacts.weight[i]);
-    updated.add(c, x, y, z);
   }
-  return updated.sum();
+  return stiffness_tensor(contacts);
 }
 
 Mat3 shape_weights(ContactBuffer& contacts, int iterations) noexcept {

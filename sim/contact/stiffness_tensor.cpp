@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <limits>
 
-#include "sim/contact/tensor_sum.hpp"
+#include "sim/core/simd.hpp"
 
 namespace hapbench {
 
@@ -11,10 +11,26 @@ using simd::load;
 using simd::Pack;
 
 Mat3 stiffness_tensor(const ContactBuffer& contacts) {
-  TensorSum S;
-  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes)
-    S.add(load(&contacts.weight[i]), load(&contacts.ux[i]), load(&contacts.uy[i]), load(&contacts.uz[i]));
-  return S.sum();
+  Pack xx(0.0), xy(0.0), xz(0.0), yy(0.0), yz(0.0), zz(0.0);
+  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    const Pack x = load(&contacts.ux[i]), y = load(&contacts.uy[i]), z = load(&contacts.uz[i]);
+    const Pack c = load(&contacts.weight[i]);
+    const Pack cx = c * x, cy = c * y;
+    xx += cx * x;
+    xy += cx * y;
+    xz += cx * z;
+    yy += cy * y;
+    yz += cy * z;
+    zz += c * z * z;
+  }
+  Mat3 S;
+  S(0, 0) = simd::sum(xx);
+  S(0, 1) = S(1, 0) = simd::sum(xy);
+  S(0, 2) = S(2, 0) = simd::sum(xz);
+  S(1, 1) = simd::sum(yy);
+  S(1, 2) = S(2, 1) = simd::sum(yz);
+  S(2, 2) = simd::sum(zz);
+  return S;
 }
 
 Vec3 weighted_depth(const ContactBuffer& contacts) {
