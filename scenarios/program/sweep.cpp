@@ -88,7 +88,7 @@ int verdict(const SweepPlan& plan, const SweepReport& report, const SweepSummary
     return kInternalFault;
   }
   if (summary.unexpected > 0) {
-    fmt::print(stderr, "hapbench: {}: {} of {} runs did not end as expected, the first: {}\n",
+    fmt::print(stderr, "hapbench: error: {}: {} of {} runs did not end as expected, the first: {}\n",
                plan.scenario.file.string(), summary.unexpected, report.rows.size(),
                run_text(plan, *summary.first_unexpected));
     return kUnexpectedOutcome;
