@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/installed_folder.hpp"
 
 namespace hapbench {
 
@@ -12,9 +13,12 @@ namespace fs = std::filesystem;
 
 std::vector<BundledScenario> bundled_scenarios() {
   std::vector<BundledScenario> found;
+  const fs::path folder = installed_folder("scenarios");
   for (const char* group : {"thesis", "limits", "beyond", "examples"}) {
     std::error_code error;
-    for (const auto& entry : fs::directory_iterator(fs::path(HAPBENCH_SCENARIO_DIR) / group, error)) {
+    const fs::directory_iterator entries(folder / group, error);
+    if (error) throw InputError(fmt::format("{}: {}", (folder / group).string(), error.message()));
+    for (const auto& entry : entries) {
       if (entry.path().extension() == ".json") found.push_back({entry.path().stem().string(), group, entry.path()});
     }
   }

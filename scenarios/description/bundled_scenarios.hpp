@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-/// The scenarios in the tree, known by their names.
+/// The scenarios that come with the program, known by their names.
 namespace hapbench {
 
 /// A bundled scenario.
@@ -14,7 +14,7 @@ struct BundledScenario {
   std::filesystem::path file;
 };
 
-/// The scenarios that come with hapbench, by group and name.
+/// All of them, by group and name. Throws InputError when their folders are not beside the program.
 std::vector<BundledScenario> bundled_scenarios();
 
 /// The file a scenario argument means: a path, relative ones starting from `directory`, or else the name of a bundled

@@ -109,6 +109,43 @@ Json partial_schema(const Json& full, const std::string& at) {
   return schema;
 }
 
+void add_paths(std::vector<std::string>& paths, const std::string& prefix, const Json& schema) {
+  for (const char* choices : {"anyOf", "oneOf"}) {
+    if (!schema.contains(choices) || schema.contains("properties")) continue;
+    for (const Json& choice : schema[choices]) add_paths(paths, prefix, choice);
+  }
+  if (!schema.contains("properties")) return;
+  for (const auto& field : schema["properties"].items()) {
+    const std::string path = prefix + field.key();
+    if (std::find(paths.begin(), paths.end(), path) == paths.end()) paths.push_back(path);
+    add_paths(paths, path + ".", field.value());
+  }
+}
+
+std::string last_name(const std::string& path, char separator) {
+  return path.substr(path.rfind(separator) + 1);
+}
+
+/// The hint for a field that is like none where it stands: fields elsewhere with the nearest name.
+std::string hint_elsewhere(const std::string& field) {
+  std::vector<std::string> names, found;
+  for (const std::string& path : scenario_field_paths()) names.push_back(last_name(path, '.'));
+  const std::string nearest = nearest_name(field, names);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == nearest) found.push_back(scenario_field_paths()[i]);
+  }
+  return found.empty() ? "" : "; nearest valid names: " + quoted_list(found);
+}
+
+/// The fault in its file.
+InputError in_file(const InputError& fault, const std::filesystem::path& file) {
+  std::string problem = fault.problem();
+  if (problem.starts_with("unknown field") && problem.find("nearest valid name") == std::string::npos)
+    problem += hint_elsewhere(last_name(fault.place(), '/'));
+  const std::string place = fault.place().empty() ? file.string() : file.string() + ": " + fault.place();
+  return {fault.kind(), place, problem};
+}
+
 /// Puts the hash of a file's contents in place of its path.
 void name_by_content(std::string* path, NamedFile* file) {
   if (path != nullptr) *path = file->hash();
@@ -117,8 +154,15 @@ void name_by_content(std::string* path, NamedFile* file) {
 }  // namespace
 
 void rethrow_with_file(const InputError& error, const std::filesystem::path& file) {
-  const std::string place = error.place().empty() ? file.string() : file.string() + ": " + error.place();
-  throw InputError(error.kind(), place, error.problem());
+  std::vector<InputError> faults;
+  for (const InputError& fault : error.faults()) faults.push_back(in_file(fault, file));
+  throw InputError::all(faults);
+}
+
+void rethrow_with_file(const InputError& error, const LoadedScenario& loaded) {
+  std::vector<InputError> faults;
+  for (const InputError& fault : error.faults()) faults.push_back(in_file(fault, file_of(loaded, fault.place())));
+  throw InputError::all(faults);
 }
 
 LoadedScenario read_scenario(const Json& json, const std::filesystem::path& directory) {
@@ -176,7 +220,7 @@ LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::stri
     }
     return loaded;
   } catch (const InputError& error) {
-    rethrow_with_file(error, file_of(loaded, error.place()));
+    rethrow_with_file(error, loaded);
   }
 }
 
@@ -201,6 +245,15 @@ Json full_scenario_schema() {
   Json schema = {{"description", "SI units; every key carries its own. A profile is a scalar function of time."}};
   schema.update(writer.schema());
   return schema;
+}
+
+const std::vector<std::string>& scenario_field_paths() {
+  static const std::vector<std::string> kPaths = [] {
+    std::vector<std::string> paths;
+    add_paths(paths, "", full_scenario_schema());
+    return paths;
+  }();
+  return kPaths;
 }
 
 Json scenario_schema() {

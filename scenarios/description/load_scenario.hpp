@@ -28,8 +28,10 @@ struct LoadedScenario {
 /// The file that the value at a JSON pointer comes from: the scenario's own, or one that it extends.
 std::filesystem::path file_of(const LoadedScenario& loaded, const std::string& pointer);
 
-/// Throws the error again with the file in front.
+/// Throws the error again with the file in front, of each fault.
 [[noreturn]] void rethrow_with_file(const InputError& error, const std::filesystem::path& file);
+/// The same with the scenario's file, or the one it extends, whichever has the fault.
+[[noreturn]] void rethrow_with_file(const InputError& error, const LoadedScenario& loaded);
 
 /// Reads a scenario file and what it extends, applies overrides `path=value` (dotted path, value as JSON or else as
 /// text; later ones win) and checks it. Expectations of the file are about the run it describes: with any field
@@ -46,7 +48,7 @@ auto with_file(const LoadedScenario& loaded, Work work) {
   try {
     return work();
   } catch (const InputError& error) {
-    rethrow_with_file(error, file_of(loaded, error.place()));
+    rethrow_with_file(error, loaded);
   }
 }
 
@@ -62,6 +64,9 @@ Json environment_content(const Scenario& scenario, const NamedFiles& files);
 Json scenario_schema();
 /// The part of it that holds for a scenario in full, with what it extends filled in.
 Json full_scenario_schema();
+
+/// The dotted paths of all fields of objects, as "rendering.limits.max_force_N"; those of list entries aside.
+const std::vector<std::string>& scenario_field_paths();
 
 /// Identifies what is simulated: FNV-1a over the effective scenario, with the contents of named files in place of their
 /// paths, as 16 hexadecimal digits. Throws InputError.

@@ -36,8 +36,25 @@ void Reader::refuse(Body what, const std::string& hint) const {
                                description.allowed(), hint));
 }
 
+void Reader::collect(FunctionRef<> read) {
+  try {
+    read();
+  } catch (const InputError& error) {
+    keep(error);
+  }
+}
+
+void Reader::keep(const InputError& error) {
+  errors_.push_back(error);
+  if (errors_.size() == kMostFaults) throw_errors();
+}
+
+void Reader::throw_errors() const {
+  if (!errors_.empty()) throw InputError::all(errors_);
+}
+
 bool Reader::given(std::string_view name) const {
-  return reads() && json_.contains(name);
+  return names_ == nullptr && json_.contains(name);
 }
 
 void Reader::number(double& value, NumberRange range) {
@@ -105,8 +122,9 @@ void Reader::entries(std::size_t length, ListSize size, FunctionRef<std::size_t>
   resize(json_.size());
   for (std::size_t i = 0; i < json_.size(); ++i) {
     Reader reader(json_[i], *this, i);
-    entry(reader, i);
+    collect([&] { entry(reader, i); });
   }
+  throw_errors();
 }
 
 void Reader::or_null(bool, FunctionRef<> set_null, Body value) {
@@ -152,32 +170,35 @@ void Reader::read_fields(Body body, std::vector<std::string_view> names) {
   for (const auto& entry : json_.items()) {
     if (contains(names, entry.key())) continue;
     const std::vector<std::string> allowed(names.begin(), names.end());
-    throw InputError(InputError::Kind::shape, member(at(), entry.key()),
-                     "unknown field; allowed here: " + quoted_list(allowed) + nearest_name_hint(entry.key(), allowed));
+    keep(InputError(InputError::Kind::shape, member(at(), entry.key()),
+                    "unknown field; allowed here: " + quoted_list(allowed) + nearest_name_hint(entry.key(), allowed)));
+    meant_.push_back(nearest_name(entry.key(), allowed));
   }
-  body(*this);
+  collect([&] { body(*this); });
+  throw_errors();
 }
 
 void Reader::field(std::string_view name, const char*, Presence presence, Body value) {
-  if (!reads()) return names_->push_back(name);
+  if (names_ != nullptr) return names_->push_back(name);
   const auto entry = json_.find(name);
   if (entry != json_.end()) {
     Reader reader(*entry, *this, name);
-    return value(reader);
+    return collect([&] { value(reader); });
   }
-  if (presence != Presence::required) return;
+  // A misspelt one has been reported.
+  if (presence != Presence::required || contains(meant_, name)) return;
   SchemaWriter description;
   value(description);
-  throw InputError(InputError::Kind::shape, at(),
-                   fmt::format("missing field \"{}\"; allowed: {}", name, description.allowed()));
+  keep(InputError(InputError::Kind::shape, at(),
+                  fmt::format("missing field \"{}\"; allowed: {}", name, description.allowed())));
 }
 
 void Reader::ignored(std::string_view name, const char*) {
-  if (!reads()) names_->emplace_back(name);
+  if (names_ != nullptr) names_->emplace_back(name);
 }
 
 void Reader::exactly_one_of(const char* a, const char* b) {
-  if (!reads()) return;
+  if (names_ != nullptr) return;
   const bool has_a = json_.contains(a), has_b = json_.contains(b);
   if (has_a != has_b) return;
   const char* problem = has_a ? "got both \"{}\" and \"{}\", which contradict; allowed: exactly one of them"

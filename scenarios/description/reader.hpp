@@ -7,7 +7,8 @@
 namespace hapbench {
 
 /// Reads and checks a JSON value. Fields that the file does not have leave their members as they are. Throws
-/// InputError: of kind shape for what the schema refuses too, naming the place, the value and what is allowed.
+/// InputError: of kind shape for what the schema refuses too, naming the place, the value and what is allowed. Behind a
+/// fault the other fields and entries are read, so that one error has the faults of all.
 class Reader final : public Fields {
  public:
   /// Reads `json`, found at the JSON pointer `at`; both must outlive the reader. Warnings are added to `warnings`, if
@@ -35,7 +36,7 @@ class Reader final : public Fields {
   void ignored(std::string_view name, const char* doc) override;
   void exactly_one_of(const char* a, const char* b) override;
 
-  bool reads() const override { return names_ == nullptr; }
+  bool reads() const override { return names_ == nullptr && errors_.empty(); }
   std::string at() const override;
   bool given(std::string_view name) const override;
   void warn(const std::string& text) override;
@@ -49,6 +50,11 @@ class Reader final : public Fields {
 
   /// Refuses the value: "got VALUE; allowed: …", in the words the schema writer has for `what`.
   [[noreturn]] void refuse(Body what, const std::string& hint = "") const;
+  /// Calls `read` and keeps the error it may throw.
+  void collect(FunctionRef<> read);
+  /// Keeps an error for `throw_errors`, which throws all that were kept, if any.
+  void keep(const InputError& error);
+  void throw_errors() const;
   void read_fields(Body body, std::vector<std::string_view> names);
 
   const Json& json_;
@@ -61,6 +67,8 @@ class Reader final : public Fields {
   bool null_allowed_ = false;
   /// While not null, the body of an object is called for the names of its fields alone.
   std::vector<std::string_view>* names_ = nullptr;
+  std::vector<InputError> errors_;  ///< of the fields or entries that were read
+  std::vector<std::string> meant_;  ///< valid names near to unknown fields
 };
 
 }  // namespace hapbench

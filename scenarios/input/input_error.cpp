@@ -9,20 +9,26 @@
 namespace hapbench {
 namespace {
 
-/// Levenshtein distance; names are short, so the quadratic table in one row is enough.
+/// Letters to replace, to leave out, to put in, or neighbours to swap, to make `b` of `a`; or one more than that for a
+/// part of `b` that ends before an underscore, if that is less. Names are short, so a quadratic table is enough.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+  std::vector<std::vector<std::size_t>> rows(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  std::iota(rows[0].begin(), rows[0].end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    rows[i][0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = rows[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      rows[i][j] = std::min({replaced, rows[i - 1][j] + 1, rows[i][j - 1] + 1});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        rows[i][j] = std::min(rows[i][j], rows[i - 2][j - 2] + 1);
     }
   }
-  return row.back();
+  const std::vector<std::size_t>& distances = rows.back();
+  std::size_t least = distances.back();
+  for (std::size_t j = 1; j < b.size(); ++j) {
+    if (b[j] == '_') least = std::min(least, distances[j] + 1);
+  }
+  return least;
 }
 
 }  // namespace
@@ -31,6 +37,25 @@ std::string one_line(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
   return text;
+}
+
+InputError InputError::all(const std::vector<InputError>& errors) {
+  std::vector<InputError> faults;
+  for (const InputError& error : errors) {
+    const std::vector<InputError> more = error.faults();
+    faults.insert(faults.end(), more.begin(), more.end());
+  }
+  std::stable_partition(faults.begin(), faults.end(), [](const InputError& e) { return e.kind() == Kind::shape; });
+  if (faults.size() > kMostFaults) faults.erase(faults.begin() + kMostFaults, faults.end());
+  InputError first = std::move(faults.front());
+  first.more_.assign(faults.begin() + 1, faults.end());
+  return first;
+}
+
+std::vector<InputError> InputError::faults() const {
+  std::vector<InputError> faults = {InputError(kind_, place_, problem_)};
+  faults.insert(faults.end(), more_.begin(), more_.end());
+  return faults;
 }
 
 void fail_in_file(const std::filesystem::path& file, const std::string& problem) {

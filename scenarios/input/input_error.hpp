@@ -12,8 +12,12 @@ namespace hapbench {
 /// `text` with a '?' in place of each control character (file names and values from outside may have some).
 std::string one_line(std::string text);
 
+/// Faults of one file that are reported at once; more nobody mends before trying again.
+inline constexpr std::size_t kMostFaults = 20;
+
 /// Bad input: a file, an argument or a field the program refuses. Exit status 2. The message is one line that names the
-/// place, the value given, what is allowed and, for names, the nearest valid one.
+/// place, the value given, what is allowed and, for names, the nearest valid one. It may stand for several faults, of
+/// which the message is the first.
 class InputError : public std::runtime_error {
  public:
   enum class Kind {
@@ -28,23 +32,29 @@ class InputError : public std::runtime_error {
         problem_(problem) {}
   /// A relation without a field of its own.
   explicit InputError(const std::string& problem) : InputError(Kind::relation, "", problem) {}
+  /// Several faults, at most kMostFaults of them, those of a shape first. Precondition: there is one.
+  static InputError all(const std::vector<InputError>& errors);
 
   Kind kind() const { return kind_; }
   /// JSON pointer of the field; empty for the whole file.
   const std::string& place() const { return place_; }
   const std::string& problem() const { return problem_; }
+  /// Each by itself; one, unless it was made by `all`.
+  std::vector<InputError> faults() const;
 
  private:
   Kind kind_;
   std::string place_;
   std::string problem_;
+  std::vector<InputError> more_;  ///< behind the first
 };
 
 /// Throws an InputError (a relation) about a file, or about a line of it.
 [[noreturn]] void fail_in_file(const std::filesystem::path& file, const std::string& problem);
 [[noreturn]] void fail_in_line(const std::filesystem::path& file, std::size_t line, const std::string& problem);
 
-/// The valid name nearest to `given` in edit distance, or empty when none is near enough to suggest.
+/// The valid name nearest to `given` in edit distance, or empty when none is near enough to suggest. A name may also be
+/// given without its unit or any other end behind an underscore.
 std::string nearest_name(std::string_view given, std::span<const std::string> valid);
 
 /// `; nearest valid name: "x"`, or empty.

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -27,9 +28,25 @@ std::string line_and_column(const std::string& text, std::size_t byte) {
   return fmt::format("line {}, column {}", line, std::max<std::size_t>(column, 1));
 }
 
+/// What was probably meant where the text stops being JSON, at a byte counted from 1; or empty.
+std::string syntax_hint(const std::string& text, std::size_t byte) {
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) return "; the text is UTF-16; allowed: UTF-8";
+  if (byte > text.size()) return "; the text ends too early";
+  const std::size_t at = std::max<std::size_t>(byte, 1) - 1;
+  const std::size_t before = at == 0 ? std::string::npos : text.find_last_not_of(" \t\r\n", at - 1);
+  const char c = text[at], previous = before == std::string::npos ? '\0' : text[before];
+  if ((c == '}' || c == ']') && previous == ',') return fmt::format("; a comma stands before \"{}\"", c);
+  if (c == '/' || c == '#' || previous == '/') return "; JSON has no comments";
+  if (c == '\'' || std::isalpha(static_cast<unsigned char>(c))) return "; names and texts stand in double quotes";
+  if (c == '"' && previous != '\0' && std::strchr("{[,:", previous) == nullptr)
+    return fmt::format("; a {} is missing before it", previous == '"' ? "comma or colon" : "comma");
+  return "";
+}
+
 [[noreturn]] void refuse_syntax(const std::string& text, std::size_t byte) {
-  throw InputError(InputError::Kind::shape, "",
-                   fmt::format("is not JSON: syntax error at {}", line_and_column(text, byte)));
+  throw InputError(
+      InputError::Kind::shape, "",
+      fmt::format("is not JSON: syntax error at {}{}", line_and_column(text, byte), syntax_hint(text, byte)));
 }
 
 /// The number in the parser's message "… number overflow parsing '1e999'".

@@ -19,8 +19,9 @@ inline constexpr std::uintmax_t kLargestJsonFile = 64 << 20;
 /// Reads a whole file. Throws InputError (place: none) when it cannot be read or is larger than `largest`.
 std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest);
 
-/// Parses JSON from outside, which may be hostile: refuses what is no JSON (with line and column), nesting deeper than
-/// 64, objects with more than 10 000 keys, duplicate keys and numbers beyond double. Throws InputError.
+/// Parses JSON from outside, which may be hostile: refuses what is no JSON (with line, column and a hint at comments,
+/// commas, quotes and encodings), nesting deeper than 64, objects with more than 10 000 keys, duplicate keys and
+/// numbers beyond double. Throws InputError.
 Json parse_json(const std::string& text);
 
 /// The value as an error message shows it: JSON on one line, cut when long.

@@ -12,6 +12,7 @@
 #include "results/io/json_text.hpp"
 #include "results/io/new_directories.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/program/terminal.hpp"
 #include "scenarios/run/quantity_text.hpp"
 
 namespace hapbench {
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 void add_output_options(Command& command, OutputOptions& options) {
   command.flag("--quiet", options.quiet, "nothing on standard output, no progress bar");
   command.flag("--json", options.json, "JSON on standard output instead of a table");
+  command.flag("--wide", output_in_full, "tables in full, however narrow the terminal");
 }
 
 void add_skip_option(Command& command, Skips& skips) {
@@ -31,12 +33,22 @@ void add_skip_option(Command& command, Skips& skips) {
 
 void print(const OutputOptions& options, const std::string& text, const Json& json) {
   if (options.quiet) return;
-  const std::string output = options.json ? json_text(json) : text;
+  const std::string output = options.json ? json_text(json) : fitted(text);
   std::fwrite(output.data(), 1, output.size(), stdout);
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) fmt::print(stderr, "hapbench: warning: {}\n", warning);
+}
+
+void print_error(std::string_view text) {
+  fmt::print(stderr, "{} {}\n", bold(stderr, "hapbench: error:"), text);
+}
+
+void print_errors(const InputError& error) {
+  const std::vector<InputError> faults = error.faults();
+  for (const InputError& fault : faults) print_error(fault.what());
+  if (faults.size() == kMostFaults) print_error(fmt::format("no more than {} are shown", kMostFaults));
 }
 
 void announce_large_output(double bytes) {

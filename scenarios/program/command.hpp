@@ -45,18 +45,25 @@ void add_shell(CommandLine& line);
 void add_list(CommandLine& line);
 void add_describe(CommandLine& line);
 void add_validate(CommandLine& line);
+void add_completion(CommandLine& line);
+void add_man(CommandLine& line);
 
-/// Adds --quiet and --json.
+/// Adds --quiet, --json and --wide.
 void add_output_options(Command& command, OutputOptions& options);
 
 /// Adds --no-skip.
 void add_skip_option(Command& command, Skips& skips);
 
-/// Prints `text`, or `json` under --json, or nothing under --quiet.
+/// Prints `text`, as wide as the output is, or `json` under --json, or nothing under --quiet.
 void print(const OutputOptions& options, const std::string& text, const Json& json);
 
 /// Prints warnings, one line each, on standard error.
 void print_warnings(const std::vector<std::string>& warnings);
+
+/// Prints "hapbench: error: TEXT" on standard error.
+void print_error(std::string_view text);
+/// Prints the faults of bad input so, a line each.
+void print_errors(const InputError& error);
 
 /// The page that `report` writes of the runs in a folder. Throws IoError when it cannot be made; what is missing has
 /// then been said on standard error.

@@ -1,7 +1,12 @@
 #include "scenarios/program/command_line.hpp"
 
-#include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <string_view>
+
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/program/command.hpp"
 
 namespace hapbench {
@@ -21,18 +26,37 @@ CommandOption& CommandOption::comma_separated() {
   return *this;
 }
 
+namespace {
+
+/// CLI11's own check says the same in other words, and shows in the help.
+template <class Number>
+CLI::Validator within(Number least, Number greatest) {
+  const auto problem = [least, greatest](const std::string& word) -> std::string {
+    Number number{};
+    if (CLI::detail::lexical_cast(word, number) && number >= least && number <= greatest) return "";
+    return fmt::format("got {}; allowed: {} ... {}", word, least, greatest);
+  };
+  return CLI::Validator(problem, "");
+}
+
+}  // namespace
+
 CommandOption& CommandOption::range(int least, int greatest) {
-  option_->check(CLI::Range(least, greatest));
+  option_->check(within(least, greatest));
   return *this;
 }
 
 CommandOption& CommandOption::range(std::uint64_t least, std::uint64_t greatest) {
-  option_->check(CLI::Range(least, greatest));
+  option_->check(within(least, greatest));
   return *this;
 }
 
 CommandOption& CommandOption::one_of(const std::vector<std::string>& words) {
-  option_->check(CLI::IsMember(words));
+  const auto problem = [words](const std::string& word) -> std::string {
+    if (std::find(words.begin(), words.end(), word) != words.end()) return "";
+    return fmt::format("got \"{}\"; allowed: {}{}", word, quoted_list(words), nearest_name_hint(word, words));
+  };
+  option_->check(CLI::Validator(problem, ""));
   return *this;
 }
 
@@ -96,9 +120,15 @@ void Command::runs(Action action, std::string when_stopped) {
   app_->callback([&chosen = chosen_, command = std::move(command)] { chosen = command; });
 }
 
-CommandLine::CommandLine(const std::string& version)
-    : app_(std::make_unique<CLI::App>("hapbench: an offline bench for haptic rendering", "hapbench")) {
-  app_->set_version_flag("--version", version);
+CommandLine::CommandLine(const std::string& version, std::function<std::string()> version_json)
+    : app_(std::make_unique<CLI::App>("an offline bench for haptic rendering", kProgramName)) {
+  CLI::Option* json = app_->add_flag("--json");
+  json->description("commit, compiler, instruction set and what is promised");
+  json->needs(app_->set_version_flag("--version", [=, version_json = std::move(version_json)] {
+    return json->count() > 0 ? version_json() : version;
+  }));
+  app_->get_option("--version")->description("print the version, and with --json what it is made of");
+  app_->get_option("--help")->description("print this, and with a command its help");
   app_->require_subcommand(1);
   app_->footer(
       "Exit status: 0 success, 1 internal fault, 2 bad input or usage, 3 a run did not end as its scenario expects, "
@@ -108,14 +138,104 @@ CommandLine::CommandLine(const std::string& version)
 CommandLine::~CommandLine() = default;
 
 Command CommandLine::command(const std::string& name, const std::string& summary) {
-  return Command(app_->add_subcommand(name, summary), chosen_);
+  CLI::App* app = app_->add_subcommand(name, summary);
+  app->get_option("--help")->description("print this");
+  return Command(app, chosen_);
+}
+
+namespace {
+
+OptionText text_of(const CLI::Option& option) {
+  OptionText text{.name = option.get_name(option.get_positional(), true),
+                  .value = "",
+                  .help = option.get_description(),
+                  .is_argument = option.get_positional(),
+                  .is_required = option.get_required(),
+                  .takes_a_list = option.get_delimiter() == ','};
+  if (option.get_type_size() != 0 && !option.get_type_name().empty()) {
+    text.value = option.get_type_name();
+    if (option.get_expected_min() == 0) text.value = "[" + text.value + "]";
+    if (option.get_expected_max() == CLI::detail::expected_max_vector_size)
+      text.value += text.takes_a_list ? ",..." : " ...";
+  }
+  for (const CLI::Option* other : option.get_needs()) text.help += fmt::format("; with {}", other->get_name());
+  for (const CLI::Option* other : option.get_excludes()) text.help += fmt::format("; not with {}", other->get_name());
+  return text;
+}
+
+CommandText text_of(const CLI::App& app) {
+  CommandText text{app.get_name(), app.get_description(), app.get_footer(), {}};
+  for (const CLI::Option* option : app.get_options()) text.options.push_back(text_of(*option));
+  return text;
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
+/// What is wrong with a word that nothing takes.
+std::string problem_of(const std::string& word, const CLI::App& program, const CLI::App* command) {
+  if (word.starts_with("-")) {
+    const std::string name = word.substr(0, word.find('='));
+    return fmt::format("unknown option \"{}\"{}", name,
+                       nearest_name_hint(name, option_names(command ? *command : program)));
+  }
+  if (command != nullptr) return fmt::format("unexpected argument \"{}\"", word);
+  std::vector<std::string> names = command_names(program);
+  for (const std::string& option : option_names(program)) names.push_back(option);
+  return fmt::format("unknown command \"{}\"{}", word, nearest_name_hint(word, names));
+}
+
+/// What is wrong with the command line, in one line.
+std::string problem_of(const CLI::ParseError& error, const CLI::App& program) {
+  const std::vector<CLI::App*> chosen = program.get_subcommands();
+  const CLI::App* command = chosen.empty() ? nullptr : chosen.front();
+  const std::string name = command ? command->get_name() + ": " : "", words = command ? command->get_name() + " " : "";
+  const std::string help = fmt::format("; \"{} {}--help\" explains", kProgramName, words);
+  std::vector<std::string> extra = program.remaining(true);
+  // An option that is not known leaves its value behind: the option is what is wrong.
+  std::stable_partition(extra.begin(), extra.end(), [](const std::string& word) { return word.starts_with("-"); });
+  if (!extra.empty()) return name + problem_of(extra.front(), program, command) + help;
+  if (command == nullptr && error.get_name() == "RequiredError") return "a command is missing" + help;
+  return one_line(name + error.what()) + help;
+}
+
+}  // namespace
+
+std::vector<CommandText> CommandLine::texts() const {
+  std::vector<CommandText> texts = {text_of(*app_)};
+  for (const CLI::App* command : app_->get_subcommands({})) texts.push_back(text_of(*command));
+  return texts;
 }
 
 int CommandLine::run(int argc, char** argv) {
+  // Asked by a shell at each press of the tab key; its words are no command line yet.
+  if (argc > 2 && argv[1] == std::string_view("complete")) {
+    for (const std::string& word : completions(texts(), {argv + 2, argv + argc})) fmt::print("{}\n", word);
+    return kSuccess;
+  }
   try {
     app_->parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    const std::vector<CLI::App*> chosen = app_->get_subcommands();
+    fmt::print("{}", help_text(texts(), chosen.empty() ? kProgramName : chosen.front()->get_name()));
+    return kSuccess;
+  } catch (const CLI::CallForVersion& version) {
+    fmt::print("{}\n", version.what());
+    return kSuccess;
   } catch (const CLI::ParseError& error) {
-    return app_->exit(error) == 0 ? kSuccess : kBadInput;
+    print_error(problem_of(error, *app_));
+    return kBadInput;
   }
   return chosen_.action();
 }

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/program/command_text.hpp"
+
 namespace CLI {
 class App;
 class Option;
@@ -64,7 +66,7 @@ class Command {
   CommandOption flag(const std::string& name, bool& value, const std::string& help);
   /// Calls `when_given` if the flag is.
   CommandOption flag(const std::string& name, std::function<void()> when_given, const std::string& help);
-  /// Text below the list of options.
+  /// Text below the list of options: paragraphs, which are wrapped; a line that begins with blanks keeps them.
   void footer(const std::string& text);
   /// What the command does when it is chosen, and what becomes of its results when Ctrl-C stops it.
   void runs(Action action, std::string when_stopped = "what was not complete is removed");
@@ -77,7 +79,8 @@ class Command {
 /// The program's command line: every command adds itself, then `run` parses and runs the one that was chosen.
 class CommandLine {
  public:
-  explicit CommandLine(const std::string& version);
+  /// `version` and `version_json` are what --version prints.
+  CommandLine(const std::string& version, std::function<std::string()> version_json);
   ~CommandLine();
 
   Command command(const std::string& name, const std::string& summary);
@@ -85,6 +88,8 @@ class CommandLine {
   int run(int argc, char** argv);
   /// What the chosen command says of its results when it is stopped.
   const std::string& when_stopped() const { return chosen_.when_stopped; }
+  /// The program's own options and notes, then every command with its own, in the order in which they were added.
+  std::vector<CommandText> texts() const;
 
  private:
   std::unique_ptr<CLI::App> app_;

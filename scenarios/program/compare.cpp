@@ -144,11 +144,11 @@ int verdict(const BatchPlan& plan, const BatchReport& report, bool league) {
     }
     const std::string text = fmt::format("{}: {} diverges at step {}", plan.scenarios[run.scenario].file.string(),
                                          summary.algorithm, summary.result.divergence.step);
-    if (!league) fmt::print(stderr, "hapbench: {}\n", text);
+    if (!league) print_error(text);
     if (count++ == 0) first = text;
   }
   if (league && count > 0) {
-    fmt::print(stderr, "hapbench: {} of {} runs diverge, the first: {}\n", count, plan.size(), first);
+    print_error(fmt::format("{} of {} runs diverge, the first: {}", count, plan.size(), first));
   }
   return count > 0 ? kUnexpectedOutcome : kSuccess;
 }

@@ -6,9 +6,10 @@
 #include "algorithms/registry.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/scenario_text.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/describe.hpp"
 #include "scenarios/program/describe_results.hpp"
 #include "scenarios/program/schema_text.hpp"
 #include "scenarios/program/table.hpp"
@@ -21,8 +22,10 @@ namespace {
 
 Description describe_model(const char* kind, const ModelInfo& info) {
   Description d;
-  d.text = fmt::format("{} {}\n  {}\n\n  formula        {}\n  source         {}\n  known failure  {}\n", kind,
-                       info.name, info.summary, info.formula, info.source, info.known_failure);
+  d.text = fmt::format("{} {}\n{}\n", kind, bold(stdout, info.name), wrapped(info.summary));
+  for (const auto& [title, text] : {std::pair{"formula", info.formula}, std::pair{"source", info.source},
+                                    std::pair{"known failure", info.known_failure}})
+    d.text += entry(title, text, 2, 17);
   d.json = {{"kind", kind},
             {"name", info.name},
             {"summary", info.summary},
@@ -30,18 +33,19 @@ Description describe_model(const char* kind, const ModelInfo& info) {
             {"source", info.source},
             {"known_failure", info.known_failure},
             {"parameters", Json::array()}};
-  if (info.parameters.empty()) return d;
-  Table table({{"parameter", false}, {"unit", false}, {"default", false}, {"range", false}, {"meaning", false}});
+  if (!info.parameters.empty()) d.text += "\n  parameters\n";
   for (const auto& [parameter, meaning] : info.parameters) {
     const Json& field = *find_in_schema(scenario_schema_once(), parameter.field);
     const std::string unit = parameter.range.unit, initial = default_text(field), range = allowed_text(field);
-    table.add({parameter.field, unit, initial, range, meaning});
+    d.text += card({parameter.field, unit, initial, range, meaning}, 4);
     d.json["parameters"].push_back(
         {{"name", parameter.field}, {"unit", unit}, {"default", initial}, {"range", range}, {"meaning", meaning}});
   }
-  d.text += "\n" + table.text();
   return d;
 }
+
+/// A field that is a function of time.
+constexpr const char* kSomeProfile = "motion.orientation.tilt_rad";
 
 const ModelInfo* find_stage(const std::string& name) {
   for (const ModelInfo* stage : stages()) {
@@ -50,21 +54,45 @@ const ModelInfo* find_stage(const std::string& name) {
   return nullptr;
 }
 
+/// "time.steps=2000" for each value that a scenario's text has, objects by their fields.
+void add_assignments(std::string& text, const std::string& path, const Json& value) {
+  if (!value.is_object()) {
+    text += wrapped(fmt::format("{}={}", path, shown(value)), 6).erase(4, 2);
+    return;
+  }
+  for (const auto& field : value.items()) {
+    if (field.key() == "$schema" || field.key() == "description" || field.key() == "source") continue;
+    add_assignments(text, path.empty() ? field.key() : path + "." + field.key(), field.value());
+  }
+}
+
 Description describe_scenario(const std::filesystem::path& file) {
-  const LoadedScenario loaded = load_scenario(file);
-  const Json effective = effective_scenario(loaded.scenario, loaded.scenario.directory);
-  return {fmt::format("scenario {}\n  {}\n  source: {}\n\n{}", loaded.scenario.name, loaded.scenario.description,
-                      loaded.scenario.source, json_text(effective)),
-          effective};
+  const ScenarioText given = read_scenario_text(file);
+  const LoadedScenario loaded = load_scenario(given, {});
+  const Scenario& scenario = loaded.scenario;
+  std::string text = fmt::format("scenario {}\n", bold(stdout, scenario.name));
+  if (!scenario.description.empty()) text += wrapped(scenario.description);
+  text += "\n" + entry("file", file.string(), 2, 10);
+  if (!scenario.source.empty()) text += entry("source", scenario.source, 2, 10);
+  text += "\n  set (\"hapbench describe scenario\" explains the fields, --json has all with their defaults)\n";
+  add_assignments(text, "", given.json);
+  return {text, effective_scenario(scenario, scenario.directory)};
+}
+
+Description describe_profile() {
+  Json profile = *find_in_schema(scenario_schema_once(), kSomeProfile);
+  profile["description"] = "a function of time: a number that does not change, or an object";
+  profile.erase("default");
+  return {fields_text("profile", profile), profile};
 }
 
 /// The maps of "hapbench stability --map" and how their runs are judged.
 Description describe_stability() {
-  Table table({{"map", false}, {"x", false}, {"y", false}, {"what it shows", false}});
+  std::string maps;
   Description d;
   d.json = {{"kind", "stability"}, {"maps", Json::array()}};
   for (const StabilityMap& map : stability_maps()) {
-    table.add({map.name, map.x.name, map.y.name, map.summary});
+    maps += fmt::format("  {}: {} over {}\n{}", map.name, map.y.name, map.x.name, wrapped(map.summary, 6));
     d.json["maps"].push_back({{"name", map.name}, {"x", map.x.name}, {"y", map.y.name}, {"summary", map.summary}});
   }
   d.text = fmt::format(
@@ -84,21 +112,31 @@ Description describe_stability() {
       "  and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. The edge by bisection "
       "is\n"
       "  that of \"diverged\", in the map of the device that of runs that come to rest.\n\n{}",
-      kMapSteps, table.text());
+      kMapSteps, maps);
   return d;
 }
 
-std::vector<std::string> all_names() {
-  std::vector<std::string> names = {"choices_schema", "scenario", "schema", "stability"};
+/// Names without a thing of their own.
+constexpr const char* kSections[] = {"choices_schema", "profile", "scenario", "schema", "stability"};
+
+}  // namespace
+
+std::vector<std::string> described_names() {
+  std::vector<std::string> names(std::begin(kSections), std::end(kSections));
   for (const AlgorithmEntry& entry : algorithms()) names.emplace_back(entry.info->name);
   for (const DepthModelEntry& entry : depth_models()) names.emplace_back(entry.info->name);
   for (const ModelInfo* stage : stages()) names.emplace_back(stage->name);
   for (const IntegratorEntry* entry : kIntegrators) names.emplace_back(entry->info.name);
-  for (const std::string& name : environment_names()) names.push_back(name);
+  for (const char* field : {"environment", "hand", "device", kSomeProfile}) {
+    for (const std::string& name : type_names(field)) names.push_back(name);
+  }
   for (const BundledScenario& bundled : bundled_scenarios()) names.push_back(bundled.name);
   for (const std::string& name : result_names()) names.push_back(name);
+  for (const std::string& path : scenario_field_paths()) names.push_back(path);
   return names;
 }
+
+namespace {
 
 Description joined(const std::vector<Description>& meanings) {
   if (meanings.size() == 1) return meanings.front();
@@ -124,6 +162,7 @@ Description describe_name(const std::string& name) {
   if (const IntegratorEntry* entry = find_integrator(name)) add(describe_model("integrator", entry->info));
   for (Description& result : describe_results(name)) add(std::move(result));
   if (const Json* fields = find_in_schema(scenario_schema_once(), name)) add({fields_text(name, *fields), *fields});
+  if (name == "profile") add(describe_profile());
   if (!meanings.empty()) return joined(meanings);
   for (const BundledScenario& bundled : bundled_scenarios()) {
     if (bundled.name == name) return describe_scenario(bundled.file);
@@ -133,7 +172,7 @@ Description describe_name(const std::string& name) {
   throw InputError(
       fmt::format("nothing is called \"{}\"{}; \"hapbench list\" shows the names, \"hapbench describe scenario\" "
                   "the fields of a scenario file",
-                  name, nearest_name_hint(name, all_names())));
+                  name, nearest_name_hint(name, described_names())));
 }
 
 }  // namespace

@@ -69,9 +69,9 @@ Table standings(const League& league, std::size_t metric, Detail detail) {
 std::string standings_text(const League& league, std::size_t metric) {
   for (const Detail detail : {Detail::spread, Detail::ratio}) {
     const Table table = standings(league, metric, detail);
-    if (table.width() <= kTableWidth) return table.text();
+    if (table.width() <= prose_width()) return table.text();
   }
-  return standings(league, metric, Detail::rank).text(kTableWidth);
+  return standings(league, metric, Detail::rank).text(prose_width());
 }
 
 /// "diverges B D; leaves_hole A", or without the scenarios where that is long: "diverges 12; leaves_hole 7".

@@ -1,56 +1,167 @@
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cctype>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "algorithms/registry.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/schema_text.hpp"
 #include "scenarios/program/table.hpp"
 #include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
 namespace {
 
-void add_models(Table& table, Json& json, const char* kind, const ModelInfo& info) {
-  table.add({kind, info.name, info.summary});
-  json.push_back({{"kind", kind}, {"name", info.name}, {"summary", info.summary}});
+/// A thing that has a name.
+struct Listed {
+  std::string kind;  ///< "algorithm", …
+  std::string name;
+  std::string summary;
+  std::string group = {};   ///< of a scenario
+  std::string source = {};  ///< of a scenario: where its numbers come from
+};
+
+void add_models(std::vector<Listed>& all, const char* kind, const ModelInfo& info) {
+  all.push_back({kind, info.name, info.summary});
 }
 
-int list(const OutputOptions& options) {
-  Table table({{"kind", false}, {"name", false}, {"what it is", false}});
-  Json json = Json::array();
-  for (const AlgorithmEntry& entry : algorithms()) add_models(table, json, "algorithm", *entry.info);
-  for (const DepthModelEntry& entry : depth_models()) add_models(table, json, "depth model", *entry.info);
-  for (const ModelInfo* stage : stages()) add_models(table, json, "stage", *stage);
-  for (const IntegratorEntry* entry : kIntegrators) add_models(table, json, "integrator", entry->info);
-  for (const std::string& name : environment_names()) {
-    table.add({"environment", name, ""});
-    json.push_back({{"kind", "environment"}, {"name", name}});
+Listed listed_scenario(const BundledScenario& bundled) {
+  try {
+    const Scenario scenario = load_scenario(bundled.file).scenario;
+    return {"scenario", bundled.name, scenario.description, bundled.group, scenario.source};
+  } catch (const InputError& error) {
+    return {"scenario", bundled.name, error.what(), bundled.group};
   }
-  for (const BundledScenario& bundled : bundled_scenarios()) {
-    std::string description;
-    try {
-      description = load_scenario(bundled.file).scenario.source;
-    } catch (const InputError& error) {
-      description = error.what();
+}
+
+std::vector<Listed> everything() {
+  std::vector<Listed> all;
+  for (const AlgorithmEntry& entry : algorithms()) add_models(all, "algorithm", *entry.info);
+  for (const DepthModelEntry& entry : depth_models()) add_models(all, "depth model", *entry.info);
+  for (const ModelInfo* stage : stages()) add_models(all, "stage", *stage);
+  for (const IntegratorEntry* entry : kIntegrators) add_models(all, "integrator", entry->info);
+  for (const char* field : {"environment", "hand", "device"}) {
+    for (const std::string& type : type_names(field)) all.push_back({field, type, type_summary(type)});
+  }
+  for (const BundledScenario& bundled : bundled_scenarios()) all.push_back(listed_scenario(bundled));
+  return all;
+}
+
+/// What can be asked for: kinds, and groups of scenarios.
+std::vector<std::string> sections_of(const std::vector<Listed>& all) {
+  std::vector<std::string> names;
+  for (const Listed& thing : all) {
+    for (const std::string& name : {thing.kind, thing.group}) {
+      if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
-    table.add({"scenario/" + bundled.group, bundled.name, description});
-    json.push_back({{"kind", "scenario"}, {"group", bundled.group}, {"name", bundled.name}, {"source", description}});
   }
-  print(options, table.text(), json);
+  return names;
+}
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+constexpr std::size_t kColumn = 34;  // of the summaries
+
+/// What a thing is: the first sentence, up to a semicolon or a colon that is not near its beginning; and no more than
+/// the line holds.
+std::string short_summary(const std::string& text) {
+  std::size_t end = std::min(text.find("; "), text.find(": ", 20));
+  for (std::size_t dot = text.find('.'); dot < end; dot = text.find('.', dot + 1)) {
+    const bool is_last = dot + 1 == text.size();
+    if (is_last || (text[dot + 1] == ' ' && !text.substr(0, dot).ends_with("Fig"))) end = dot;
+  }
+  const std::string sentence = text.substr(0, end);
+  const std::size_t room = std::max<std::size_t>(output_width(), kColumn + 10) - kColumn;
+  if (sentence.size() <= room) return sentence;
+  return sentence.substr(0, sentence.rfind(' ', room - 4)) + " ...";
+}
+
+/// The name without the algorithm at its end: what scenarios of one scene have in common.
+std::string scene_of(const std::string& name) {
+  std::size_t longest = 0;
+  for (const AlgorithmEntry& entry : algorithms()) {
+    const std::string end = std::string("_") + entry.info->name;
+    if (name.ends_with(end)) longest = std::max(longest, end.size());
+  }
+  return name.substr(0, name.size() - longest);
+}
+
+/// Those that are one scene under several algorithms stand together, where the first of them would.
+std::string entry_of(const std::vector<Listed>& all, const Listed& first) {
+  const std::string scene = scene_of(first.name);
+  std::vector<std::string> algorithms;
+  for (const Listed& thing : all) {
+    if (thing.kind == "scenario" && thing.group == first.group && thing.name != scene && scene_of(thing.name) == scene)
+      algorithms.push_back(thing.name.substr(scene.size() + 1));
+  }
+  if (first.kind != "scenario" || first.name == scene || algorithms.size() < 2)
+    return entry(first.name, short_summary(first.summary), 2, kColumn, output_width());
+  if (!first.name.ends_with("_" + algorithms.front())) return "";  // stands there already
+  return entry(scene + "_*", short_summary(first.summary), 2, kColumn, output_width()) +
+         wrapped(fmt::format("*: {}", fmt::join(algorithms, ", ")), kColumn);
+}
+
+std::string list_text(const std::vector<Listed>& all) {
+  std::string text, title;
+  for (const Listed& thing : all) {
+    const std::string of = thing.group.empty() ? thing.kind + "s" : "scenarios: " + thing.group;
+    if (of != title) text += (title.empty() ? "" : "\n") + bold(stdout, of) + "\n";
+    title = of;
+    text += entry_of(all, thing);
+  }
+  return text + "\n\"hapbench describe NAME\" explains each.\n";
+}
+
+struct ListOptions {
+  std::string what;
+  std::string grep;
+  OutputOptions output;
+};
+
+int list(const ListOptions& options) {
+  std::vector<Listed> all = everything();
+  if (!options.what.empty()) {
+    // "scenarios" and "depth_models" are as good as "scenario" and "depth model".
+    std::string what = options.what;
+    std::replace(what.begin(), what.end(), '_', ' ');
+    const std::vector<std::string> sections = sections_of(all);
+    if (what.ends_with("s") && std::find(sections.begin(), sections.end(), what) == sections.end()) what.pop_back();
+    require_valid_name("got", what, sections);
+    std::erase_if(all, [&what](const Listed& thing) { return thing.kind != what && thing.group != what; });
+  }
+  const std::string pattern = lower(options.grep);
+  std::erase_if(all, [&pattern](const Listed& thing) {
+    return lower(thing.name + " " + thing.summary + " " + thing.source).find(pattern) == std::string::npos;
+  });
+  if (all.empty()) throw InputError(fmt::format("--grep: nothing has \"{}\" in its name or text", options.grep));
+  Json json = Json::array();
+  for (const Listed& thing : all) {
+    Json& entry = json.emplace_back(Json{{"kind", thing.kind}, {"name", thing.name}, {"summary", thing.summary}});
+    if (!thing.group.empty()) entry.update({{"group", thing.group}, {"source", thing.source}});
+  }
+  print(options.output, list_text(all), json);
   return kSuccess;
 }
 
 }  // namespace
 
 void add_list(CommandLine& line) {
-  auto options = std::make_shared<OutputOptions>();
-  Command command =
-      line.command("list", "List algorithms, depth models, integrators, environments and bundled scenarios");
-  add_output_options(command, *options);
+  auto options = std::make_shared<ListOptions>();
+  Command command = line.command("list", "List algorithms, models, integrators, environments, hands and scenarios");
+  command.add(
+      "what", options->what,
+      "one kind alone: algorithms, depth_models, stages, integrators, environments, hands, devices, scenarios, or "
+      "a group of those: thesis, limits, beyond, examples");
+  command.add("--grep", options->grep, "only what has this text in its name, its description or its source");
+  add_output_options(command, options->output);
   command.runs([options] { return list(*options); });
 }
 

@@ -3,6 +3,8 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "results/io/io_error.hpp"
 #include "results/summary/provenance.hpp"
@@ -13,14 +15,33 @@
 namespace hapbench {
 namespace {
 
-int fail(const char* kind, const char* what, int status) {
-  fmt::print(stderr, "hapbench: {}: {}\n", kind, what);
+int fail(std::string_view what, int status) {
+  print_error(what);
   return status;
+}
+
+/// What a version stands for.
+constexpr const char* kPromise =
+    "Within a major version (before 1.0: a minor one) no field of scenarios, no file or column of results, no command, "
+    "option or exit status goes away or changes its meaning; there may be more of them. Computed numbers may change with "
+    "every version: results name the commit that made them.";
+
+std::string version_json() {
+  const Provenance program = provenance();
+  const InstructionSet set = instruction_set();
+  return Json({{"version", program.version},
+               {"commit", program.commit},
+               {"compiler", program.compiler},
+               {"build_type", program.build_type},
+               {"flags", program.flags},
+               {"instruction_set", {{"march", set.march}, {"widest", set.widest}, {"simd", set.simd}}},
+               {"promise", kPromise}})
+      .dump(2);
 }
 
 int run_program(int argc, char** argv) {
   const Provenance program = provenance();
-  CommandLine line(fmt::format("hapbench {} ({})", program.version, program.commit));
+  CommandLine line(fmt::format("hapbench {} ({})", program.version, program.commit), version_json);
   add_run(line);
   add_compare(line);
   add_stability(line);
@@ -37,6 +58,8 @@ int run_program(int argc, char** argv) {
   add_list(line);
   add_describe(line);
   add_validate(line);
+  add_completion(line);
+  add_man(line);
   const StopSignal signals;
   try {
     return line.run(argc, argv);
@@ -56,12 +79,13 @@ int main(int argc, char** argv) {
   try {
     return run_program(argc, argv);
   } catch (const InputError& error) {
-    return fail("error", error.what(), kBadInput);
+    print_errors(error);
+    return kBadInput;
   } catch (const IoError& error) {
-    return fail("error", error.what(), kInternalFault);
+    return fail(error.what(), kInternalFault);
   } catch (const std::bad_alloc&) {
-    return fail("error", "out of memory", kInternalFault);
+    return fail("out of memory", kInternalFault);
   } catch (const std::exception& error) {
-    return fail("internal fault", error.what(), kInternalFault);
+    return fail(one_line(fmt::format("internal fault: {}", error.what())), kInternalFault);
   }
 }

@@ -17,8 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLineLength = 100;
-
 struct NewOptions {
   std::string kind;
   std::string from;
@@ -43,25 +41,6 @@ void check_source(const StartKind& kind, const std::string& from) {
     throw InputError(fmt::format("--from: missing; \"{}\" starts from a file", kind.name));
   if (kind.source == StartSource::none && !from.empty())
     throw InputError(fmt::format("--from: got \"{}\"; \"{}\" starts from no file", from, kind.name));
-}
-
-/// Each field and its meaning, on as many lines as that takes.
-std::string meanings_text(const std::vector<FieldMeaning>& meanings) {
-  std::size_t width = 0;
-  for (const FieldMeaning& field : meanings) width = std::max(width, field.path.size());
-  std::string text;
-  for (const FieldMeaning& field : meanings) {
-    std::string rest = field.meaning, name = field.path;
-    do {
-      std::size_t length = rest.size();
-      if (width + 2 + length > kLineLength) length = rest.rfind(' ', kLineLength - width - 2);
-      length = std::min(length, rest.size());  // a word longer than the line
-      text += fmt::format("{:<{}}  {}\n", name, width, rest.substr(0, length));
-      rest.erase(0, std::min(length + 1, rest.size()));
-      name.clear();
-    } while (!rest.empty());
-  }
-  return text;
 }
 
 int list_kinds(const OutputOptions& output) {
@@ -96,7 +75,9 @@ int write_new(const NewOptions& options) {
   const std::vector<FieldMeaning> meanings = field_meanings(json);
   std::string text = fmt::format("{}: {}\n", out.string(), kind.summary);
   for (const std::string& note : start.notes) text += note + "\n";
-  text += "\n" + meanings_text(meanings) + "\n";
+  text += "\n";
+  for (const FieldMeaning& field : meanings) text += entry(field.path, field.meaning, 0, 34);
+  text += "\n";
   text += fmt::format("\"hapbench describe scenario\" shows all fields; next: hapbench run {}\n", out.string());
   Json fields = Json::object();
   for (const FieldMeaning& field : meanings) fields[field.path] = field.meaning;

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
-#include <unistd.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/csv_writer.hpp"
@@ -15,6 +15,7 @@
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/progress_bar.hpp"
 #include "scenarios/studies/precision/study.hpp"
 
 namespace hapbench {
@@ -106,18 +107,16 @@ int precision(const PrecisionCommandOptions& options) {
                            : fs::path("results") / "out" / ("precision_" + scenarios.front().file.stem().string());
   require_writable_directory(out);
 
-  const bool bar = !options.output.quiet && isatty(STDERR_FILENO) == 1;
   std::string text;
   Json json = Json::array();
   for (std::size_t i = 0; i < studies.size(); ++i) {
     PrecisionOptions settings;
     settings.repetitions = options.repetitions;
-    if (bar) {
-      settings.progress = [&](std::size_t done, std::size_t all) {
-        std::fprintf(stderr, "\r\033[K%s %zu/%zu", studies[i]->name, done, all);
-        if (done == all) std::fprintf(stderr, "\r\033[K");
-      };
-    }
+    std::optional<ProgressBar> bar;
+    settings.progress = [&](std::size_t done, std::size_t all) {
+      if (!bar) bar.emplace(studies[i]->name, all, !options.output.quiet);
+      bar->show(done, true);
+    };
     const PrecisionResult result =
         with_file(scenarios[i], [&] { return studies[i]->run(scenarios[i].scenario, settings); });
     write_study(out, *studies[i], result);
@@ -133,9 +132,11 @@ int precision(const PrecisionCommandOptions& options) {
 void add_precision(CommandLine& line) {
   auto options = std::make_shared<PrecisionCommandOptions>();
   Command command = line.command("precision", "Run time against error: one row per setting");
-  std::string names = "all";
-  for (const PrecisionStudy* study : kPrecisionStudies) names += fmt::format(", {} ({})", study->name, study->summary);
-  command.add("studies", options->studies, names).required();
+  std::string studies = "The studies:";
+  for (const PrecisionStudy* study : kPrecisionStudies)
+    studies += fmt::format("\n  {}: {}", study->name, study->summary);
+  command.add("studies", options->studies, "names of studies (below), or all").required();
+  command.footer(studies);
   command.add("--scenario", options->scenario,
               "scenario to start from, instead of the study's own: any with time_step");
   command.add("--out", options->out,

@@ -11,8 +11,10 @@
 #include <system_error>
 
 #include "results/io/io_error.hpp"
+#include "scenarios/input/installed_folder.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "scenarios/run/wait_notice.hpp"
 
 /// Commands that draw: they hand their words to Python, which reads the result files. Nothing of a run passes through
 /// here.
@@ -30,7 +32,7 @@ struct PictureOptions {
 
 /// A command line of the tool; `words` go on from its name.
 std::vector<std::string> tool_words(std::vector<std::string> words) {
-  const auto launcher = std::filesystem::path(HAPBENCH_SCRIPTS_DIR) / "python" / "launch";
+  const auto launcher = installed_folder("scripts/python") / "launch";
   words.insert(words.begin(), {launcher.string(), "hapbench_pictures"});
   // The tools ask this very program for the points of a scene.
   std::error_code ignored;
@@ -86,6 +88,7 @@ void write_report(const std::filesystem::path& folder, bool quiet) {
   pid_t tool = 0;
   if (const int error = posix_spawn(&tool, words[0].c_str(), nullptr, nullptr, pointers_to(words).data(), environ))
     fail_to_run(words[0], error);
+  const WaitNotice notice("writing the report", !quiet);
   int status = 0;
   while (waitpid(tool, &status, 0) < 0 && errno == EINTR) {
   }
@@ -101,12 +104,11 @@ void add_plot(CommandLine& line) {
   command.add("--metric", options->metric, "of a sweep: the column of sweep.csv to draw");
   command.flag("--no-sketch", options->no_sketch, "the picture alone");
   command.footer(
-      "--y takes force, spring, measured, input, depth, ratio, contacts, rendered, speed, x, y, z, path,\n"
-      "energy, input_energy, or any column of the runs' tables; by default force, depth, ratio, contacts,\n"
-      "path, and energy where it was recorded.\n"
-      "A comparison's folder stands for all its runs. Every run has the colour of its algorithm; triangles\n"
-      "mark the first touch. Of long runs the least and the greatest value for each pixel are drawn, so\n"
-      "that no spike is lost.\n"
+      "--y takes force, spring, measured, input, depth, ratio, contacts, rendered, speed, x, y, z, path, energy, "
+      "input_energy, or any column of the runs' tables; by default force, depth, ratio, contacts, path, and energy "
+      "where it was recorded.\n"
+      "A comparison's folder stands for all its runs. Every run has the colour of its algorithm; triangles mark the "
+      "first touch. Of long runs the least and the greatest value for each pixel are drawn, so that no spike is lost.\n"
       "  hapbench plot results/out/compare_drag --y force,depth --out drag.png");
   command.runs([options] { return become("plot", *options); });
 }
@@ -117,8 +119,8 @@ void add_report(CommandLine& line) {
       line.command("report", "Write a page of runs: curves, replay with sound, metrics, scenario, commands");
   add_common(command, *options, "FILE.html; default: report.html in the folder of the runs");
   command.footer(
-      "One HTML file that needs no server and no network. The replay shows up to four runs side by side,\n"
-      "with their depths where they were run with --set record.contacts=true.\n"
+      "One HTML file that needs no server and no network. The replay shows up to four runs side by side, with their "
+      "depths where they were run with --set record.contacts=true.\n"
       "  hapbench report results/out/compare_drag");
   command.runs([options] { return become("report", *options); });
 }

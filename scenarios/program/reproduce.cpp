@@ -11,6 +11,7 @@
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/table.hpp"
@@ -102,7 +103,7 @@ class ThesisRuns {
   void tell(const BundledScenario& bundled, const std::vector<std::string>& problems) {
     done_.insert(bundled.name);
     as_expected_ = as_expected_ && problems.empty();
-    for (const std::string& problem : problems) fmt::print(stderr, "hapbench: {}: {}\n", bundled.name, problem);
+    for (const std::string& problem : problems) print_error(fmt::format("{}: {}", bundled.name, problem));
   }
 
   fs::path directory_;
@@ -114,7 +115,7 @@ class ThesisRuns {
 
 /// Judges the claims by the thesis's runs, and notes in `read` what of their results that takes.
 std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const PublishedNumbers& published, ThesisRuns& runs,
-                               ResultsRead& read) {
+                               ResultsRead& read, bool progress) {
   std::set<std::string> used;  // by the claim in turn
   const auto provide = [&](const std::string& scenario, const std::string& part) {
     used.insert(scenario);
@@ -127,7 +128,9 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
         used.insert(scenario);
       }};
   std::vector<JudgedClaim> judged;
+  ProgressBar bar("claims", claims.size(), progress);
   for (const Claim& claim : claims) {
+    bar.show(judged.size());
     used.clear();
     Finding finding = claim.judge(claim.measure(evidence), published);
     judged.push_back({claim, std::move(finding), {used.begin(), used.end()}});
@@ -146,9 +149,9 @@ std::vector<JudgedClaim> to_judge_again(std::vector<JudgedClaim> judged) {
 void print_problems(const std::vector<std::string>& problems) {
   constexpr std::size_t kMost = 10;
   for (std::size_t i = 0; i < std::min(problems.size(), kMost); ++i) {
-    fmt::print(stderr, "hapbench: not measured: {}\n", one_line(problems[i]));
+    print_error(fmt::format("not measured: {}", one_line(problems[i])));
   }
-  if (problems.size() > kMost) fmt::print(stderr, "hapbench: {} more like these\n", problems.size() - kMost);
+  if (problems.size() > kMost) print_error(fmt::format("{} more like these", problems.size() - kMost));
 }
 
 /// Judges the claims again at samples of the choices, and writes robustness.* into `directory`. Returns the signal that
@@ -172,7 +175,7 @@ int write_robustness(const ReproduceOptions& options, const RobustnessPlan& plan
 }
 
 int reproduce(const ReproduceOptions& options) {
-  const fs::path reference = HAPBENCH_REFERENCE_DIR;
+  const fs::path reference = installed_folder("results/reference");
   const std::vector<Claim> claims = chosen_claims(options.only);
   const PublishedNumbers published(reference / "published");
   const Choices choices(reference / "choices.json");
@@ -182,7 +185,7 @@ int reproduce(const ReproduceOptions& options) {
   if (options.only.empty()) runs.run_all(options.jobs, !options.output.quiet);
 
   ResultsRead read;
-  const std::vector<JudgedClaim> judged = judge(claims, published, runs, read);
+  const std::vector<JudgedClaim> judged = judge(claims, published, runs, read, !options.output.quiet);
   const fs::path ledger = options.ledger.empty() ? fs::path(options.out) / "claims.json" : fs::path(options.ledger);
   fs::path record = reference / "robustness.json";
   if (options.samples > 0) {
@@ -197,10 +200,10 @@ int reproduce(const ReproduceOptions& options) {
   }
 
   const RobustnessOnRecord robustness(record, choices.hash());
-  Table table({{"id", false}, {"verdict", false}, {"measured", false}, {"robustness", false}});
+  Table table({{"id", false}, {"verdict", false}, {"robustness", false}, {"measured", false}});
   for (const JudgedClaim& j : judged) {
-    table.add({j.claim.id, std::string(verdict_name(j.finding.verdict)), j.finding.measured,
-               robustness_text(robustness.of(j))});
+    table.add({j.claim.id, std::string(verdict_name(j.finding.verdict)), robustness_text(robustness.of(j)),
+               j.finding.measured});
   }
   const Json json = ledger_json(judged, published, robustness);
   write_file_atomically(ledger, json_text(json));

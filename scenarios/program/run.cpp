@@ -65,7 +65,7 @@ int run(const RunOptions& options) {
       summaries.back()["step_latency"] = step_latency_json(*report.timing.latency);
     }
     for (const std::string& unmet : report.unmet) {
-      fmt::print(stderr, "hapbench: {}: {}\n", scenarios[i].file.string(), unmet);
+      print_error(fmt::format("{}: {}", scenarios[i].file.string(), unmet));
       status = kUnexpectedOutcome;
     }
   }

@@ -1,6 +1,8 @@
 #include "scenarios/program/schema_text.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/description/load_scenario.hpp"
@@ -62,9 +64,14 @@ std::string allowed_text(const Json& schema) {
   if (const std::string tag = tag_of(schema); !tag.empty()) return "type \"" + tag + "\"";
   for (const char* choices : kChoices) {
     if (!schema.contains(choices) || schema.contains("properties")) continue;
-    std::string text;
-    for (const Json& choice : schema[choices]) text += (text.empty() ? "" : " | ") + allowed_text(choice);
-    return text;
+    std::string text, types;
+    for (const Json& choice : schema[choices]) {
+      const std::string tag = tag_of(choice);
+      std::string& part = tag.empty() ? text : types;
+      part += (part.empty() ? "" : tag.empty() ? " | " : ", ") + (tag.empty() ? allowed_text(choice) : tag);
+    }
+    if (types.empty()) return text;
+    return (text.empty() ? "" : text + " | ") + "object of type " + types;
   }
   std::string text = schema.value("type", "anything");
   if (schema.contains("exclusiveMinimum")) text += fmt::format(" > {}", bound_text(schema["exclusiveMinimum"]));
@@ -78,18 +85,69 @@ std::string allowed_text(const Json& schema) {
 
 namespace {
 
-void add_fields(Table& table, const std::string& prefix, const Json& schema) {
+/// The fields of an object and of those in it, each by its path from there.
+std::string field_cards(const std::string& prefix, const Json& schema, std::size_t indent) {
+  std::string text;
   for (const auto& [name, field] : schema["properties"].items()) {
     if (field.contains("const")) continue;
     const Json* nested = plain_object(field);
-    const bool is_object = nested == &field;
     const std::string initial = field.contains("default") && nested == nullptr ? shown(field["default"]) : "";
-    table.add({prefix + name, initial, is_object ? "" : allowed_text(field), field.value("description", "")});
-    if (nested != nullptr) add_fields(table, prefix + name + ".", *nested);
+    text +=
+        card({prefix + name, "", initial, nested == &field ? "" : allowed_text(field), field.value("description", "")},
+             indent);
+    if (nested != nullptr) text += field_cards(prefix + name + ".", *nested, indent);
   }
+  return text;
 }
 
+/// The tagged objects among which a value chooses.
+std::vector<const Json*> types_in(const Json& schema) {
+  if (!tag_of(schema).empty()) return {&schema};
+  std::vector<const Json*> types;
+  for (const char* choices : kChoices) {
+    if (!schema.contains(choices) || schema.contains("properties")) continue;
+    for (const Json& choice : schema[choices]) {
+      const std::vector<const Json*> more = types_in(choice);
+      types.insert(types.end(), more.begin(), more.end());
+    }
+  }
+  return types;
+}
+
+constexpr std::pair<const char*, const char*> kTypeSummaries[] = {
+    {"springs", "springs on the tool's tip, without a surface"},
+    {"hole_2d", "a hole in the plane, with its mouth"},
+    {"plane", "a flat square"},
+    {"slot", "two parallel faces"},
+    {"block_with_hole", "a block with a round blind hole, its shell by marching cubes"},
+    {"point_shell", "points with normals from a CSV or PLY file"},
+    {"mesh", "a surface from an OBJ, PLY, STL or OFF file"},
+    {"none", "nobody: the tool moves by the rendered force alone"},
+    {"force", "a force over time"},
+    {"push", "a force over time along a direction that leans from straight down"},
+    {"impedance", "a spring and damper towards a moving target"},
+    {"drag", "leads the tool over the surface, pressing along its normal"},
+    {"tracking", "a simulated subject who follows targets on a display"},
+    {"ideal", "measures and pushes without error"},
+    {"admittance", "the thesis's device: force sensor, limiter and servo"},
+    {"ramp", "a value that grows at a constant rate"},
+    {"sine", "an oscillation about a value"},
+    {"waypoints", "values at times, joined by straight lines or cosines"},
+};
+
 }  // namespace
+
+const char* type_summary(std::string_view type) {
+  const auto* found = std::find_if(std::begin(kTypeSummaries), std::end(kTypeSummaries),
+                                   [type](const auto& known) { return known.first == type; });
+  return found == std::end(kTypeSummaries) ? nullptr : found->second;
+}
+
+std::vector<std::string> type_names(const std::string& field) {
+  std::vector<std::string> names;
+  for (const Json* type : types_in(*find_in_schema(scenario_schema_once(), field))) names.push_back(tag_of(*type));
+  return names;
+}
 
 const Json& scenario_schema_once() {
   static const Json schema = full_scenario_schema();
@@ -109,18 +167,33 @@ const Json* find_in_schema(const Json& schema, const std::string& name) {
   return node != nullptr || name.empty() ? node : find_type(schema, name);
 }
 
+std::string card(const FieldCard& field, std::size_t indent) {
+  std::string facts = field.allowed;
+  if (!field.unit.empty()) facts += fmt::format(" [{}]", field.unit);
+  if (!field.initial.empty()) facts += (facts.empty() ? "default " : "; default ") + field.initial;
+  std::string text = std::string(indent, ' ') + bold(stdout, field.name) + "\n";
+  if (!facts.empty()) text += wrapped(facts, indent + 4);
+  return field.meaning.empty() ? text : text + wrapped(field.meaning, indent + 4);
+}
+
 std::string fields_text(const std::string& title, const Json& schema) {
-  std::string text = title + "\n";
-  if (schema.contains("description")) text += "  " + schema["description"].get<std::string>() + "\n";
+  std::string text = bold(stdout, title) + "\n";
+  if (const char* summary = type_summary(title)) text += wrapped(summary);
+  if (schema.contains("description")) text += wrapped(schema["description"].get<std::string>());
   const Json* object = plain_object(schema);
-  if (object != &schema) text += "  allowed: " + allowed_text(schema) + "\n";
-  if (object == nullptr) {
-    if (schema.contains("default")) text += "  default: " + shown(schema["default"]) + "\n";
-    return text;
+  if (object != &schema) text += wrapped("allowed: " + allowed_text(schema));
+  if (object != nullptr) {
+    const std::string cards = field_cards("", *object, 2);
+    return cards.empty() ? text + "  no fields\n" : text + "\n" + cards;
   }
-  Table table({{"field", false}, {"default", false}, {"allowed", false}, {"meaning", false}});
-  add_fields(table, "", *object);
-  return text + "\n" + table.text();
+  if (schema.contains("default")) text += wrapped("default: " + shown(schema["default"]));
+  for (const Json* type : types_in(schema)) {
+    const std::string tag = tag_of(*type);
+    const char* summary = type_summary(tag);
+    text += fmt::format("\n  type \"{}\"{}{}\n{}", bold(stdout, tag), summary != nullptr ? ": " : "",
+                        summary != nullptr ? summary : "", field_cards("", *type, 6));
+  }
+  return text;
 }
 
 namespace {

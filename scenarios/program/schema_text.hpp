@@ -21,7 +21,27 @@ std::string allowed_text(const Json& schema);
 /// The default of a field; "by scene" for one whose default depends on other fields.
 std::string default_text(const Json& schema);
 
-/// The fields of an object schema as a table of name, default, allowed values and meaning; one line for a plain value.
+/// What there is to say of a field; empty where there is nothing.
+struct FieldCard {
+  std::string name;
+  std::string unit;
+  std::string initial;  ///< its default
+  std::string allowed;
+  std::string meaning;
+};
+
+/// The card of a field: its name, and below it the facts and the meaning, as wide as prose is.
+std::string card(const FieldCard& field, std::size_t indent = 2);
+
+/// What a tagged object of that "type" is, in a few words; null for names that are no type of environment, hand, device
+/// or profile.
+const char* type_summary(std::string_view type);
+
+/// The types among which the object of a field chooses, as those of "environment".
+std::vector<std::string> type_names(const std::string& field);
+
+/// The fields of an object schema as cards; of a choice among tagged objects those of each; a few lines for a plain
+/// value.
 std::string fields_text(const std::string& title, const Json& schema);
 
 /// A field of a scenario and what the schema says of it.

@@ -10,6 +10,7 @@
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/environment_points.hpp"
+#include "scenarios/run/wait_notice.hpp"
 
 namespace hapbench {
 namespace {
@@ -26,8 +27,11 @@ int shell(const ShellOptions& options) {
   if (std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment)) {
     throw InputError(loaded.file.string() + ": /environment/type: got \"springs\", which have no point shell");
   }
-  print_warnings(check_named_files(loaded));
-  const std::vector<SurfacePoint> points = environment_points(loaded.scenario, loaded.files).points;
+  const std::vector<SurfacePoint> points = [&] {
+    const WaitNotice notice("building the shell", !options.output.quiet);
+    print_warnings(check_named_files(loaded));
+    return environment_points(loaded.scenario, loaded.files).points;
+  }();
   const std::filesystem::path file = options.out;
   const std::string text = point_shell_text(points, file);
   std::error_code ignored;

@@ -14,6 +14,7 @@
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
+#include "scenarios/run/wait_notice.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
 
 namespace hapbench {
@@ -102,6 +103,7 @@ int limits(const StabilityOptions& options) {
   // All of it is found before anything is written.
   std::vector<std::vector<StabilityLimit>> all_limits;
   for (const LoadedScenario& loaded : scenarios) {
+    const WaitNotice notice(loaded.scenario.name + ": limits", !options.output.quiet);
     all_limits.push_back(with_file(loaded, [&] { return stability_limits(loaded.scenario); }));
   }
   const std::vector<fs::path> directories =

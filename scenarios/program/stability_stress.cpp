@@ -62,9 +62,8 @@ int stability_stress_command(const StabilityOptions& options) {
                c.largest_share ? significant(*c.largest_share, 3) : "none"});
     json.push_back(counts_json(c));
     if (!is_bad(c)) continue;
-    fmt::print(stderr,
-               "hapbench: {}: {} of {} forces are not finite, {} out of bound; the first in set {} of seed {}\n",
-               c.algorithm, c.non_finite, c.sets, c.out_of_bound, c.first_bad, options.seed);
+    print_error(fmt::format("{}: {} of {} forces are not finite, {} out of bound; the first in set {} of seed {}",
+                            c.algorithm, c.non_finite, c.sets, c.out_of_bound, c.first_bad, options.seed));
     status = kUnexpectedOutcome;
   }
   print(options.output, table.text(), json);

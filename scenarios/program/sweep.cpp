@@ -97,7 +97,7 @@ int verdict(const SweepPlan& plan, const SweepReport& report) {
     return kInternalFault;
   }
   if (counts.unexpected > 0) {
-    fmt::print(stderr, "hapbench: {}: {} of {} runs did not end as expected, the first: {}\n",
+    fmt::print(stderr, "hapbench: error: {}: {} of {} runs did not end as expected, the first: {}\n",
                plan.scenario.file.string(), counts.unexpected, counts.runs, run_text(plan, *counts.first_unexpected));
     return kUnexpectedOutcome;
   }

@@ -85,7 +85,7 @@ std::string table_text(const Grid& grid) {
     for (std::size_t i = 0; i < grid.across().size(); ++i) cells.push_back(cell_text(grid.at(i, j)));
     table.add(std::move(cells));
   }
-  return table.text(kTableWidth);
+  return table.text(prose_width());
 }
 
 /// Least and greatest value; none when there is none.

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "scenarios/program/terminal.hpp"
+
 namespace hapbench {
 
 /// A table for the terminal: columns as wide as their widest cell, a rule under the header. Numbers to the right, text
@@ -20,10 +22,10 @@ class Table {
   explicit Table(std::vector<Column> columns, std::size_t gap = 2);
   /// Precondition: one cell per column.
   void add(std::vector<std::string> cells);
-  /// Columns that do not fit into `most_width` characters follow below, in blocks that each begin with the first
-  /// column.
-  std::string text(std::size_t most_width = std::string::npos) const;
-  /// Length of the longest line, blocks aside.
+  /// The table in at most `most_width` characters: a last column of text is wrapped; other columns that do not fit
+  /// follow below, in blocks that each begin with the first column.
+  std::string text(std::size_t most_width = output_width()) const;
+  /// Length of the longest line, in full.
   std::size_t width() const;
 
  private:
@@ -35,11 +37,12 @@ class Table {
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// Prose of at most `width` columns a line, each behind `indent` spaces.
-std::string wrapped(std::string_view text, std::size_t indent = 2, std::size_t width = 100);
+/// Prose of at most `width` characters a line, each behind `indent` blanks; line breaks stay.
+std::string wrapped(std::string_view text, std::size_t indent = 2, std::size_t width = prose_width());
 
-/// Tables aim at this width [characters].
-inline constexpr std::size_t kTableWidth = 100;
+/// A name behind `indent` blanks and what it means beside it, from `column` on; below it where the name is too long.
+std::string entry(std::string_view name, std::string_view meaning, std::size_t indent = 2, std::size_t column = 26,
+                  std::size_t width = prose_width());
 
 /// A number for people: `digits` significant ones, "-" for none.
 std::string significant(double value, int digits = 4);

@@ -12,6 +12,7 @@
 #include "scenarios/run/expected_output.hpp"
 #include "scenarios/run/quantity_text.hpp"
 #include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/wait_notice.hpp"
 
 namespace hapbench {
 namespace {
@@ -55,12 +56,19 @@ Json facts_json(const Scenario& scenario, const SceneFacts& facts) {
   return json;
 }
 
+Json messages(const InputError& error) {
+  Json texts = Json::array();
+  for (const InputError& fault : error.faults()) texts.push_back(fault.what());
+  return texts;
+}
+
 int validate(const ValidateOptions& options) {
   std::string text;
   Json verdicts = Json::array();
   int status = kSuccess;
   for (const std::string& argument : options.files) {
     try {
+      const WaitNotice notice(argument, !options.output.quiet);
       const LoadedScenario loaded = load_scenario(find_scenario(argument));
       const std::vector<std::string> warnings = check_named_files(loaded);
       print_warnings(loaded.warnings);
@@ -70,8 +78,8 @@ int validate(const ValidateOptions& options) {
       verdicts.push_back({{"file", argument}, {"valid", true}});
       verdicts.back().update(facts_json(loaded.scenario, facts));
     } catch (const InputError& error) {
-      fmt::print(stderr, "hapbench: error: {}\n", error.what());
-      verdicts.push_back({{"file", argument}, {"valid", false}, {"error", error.what()}});
+      print_errors(error);
+      verdicts.push_back({{"file", argument}, {"valid", false}, {"error", error.what()}, {"errors", messages(error)}});
       status = kBadInput;
     }
   }

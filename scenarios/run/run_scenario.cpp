@@ -14,6 +14,7 @@
 #include "scenarios/run/force_warnings.hpp"
 #include "scenarios/run/recorders.hpp"
 #include "scenarios/run/run_trial.hpp"
+#include "scenarios/run/wait_notice.hpp"
 
 namespace hapbench {
 namespace {
@@ -168,7 +169,10 @@ void remove_run(const fs::path& directory) {
 
 RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress) {
   RunTiming timing;
-  const auto shell = make_shell(loaded.scenario, timed_environment_points(loaded, timing));
+  const auto shell = [&] {
+    const WaitNotice notice(loaded.scenario.name + ": building the shell", progress);
+    return make_shell(loaded.scenario, timed_environment_points(loaded, timing));
+  }();
   return run_with_shell(loaded, shell, output, progress, timing);
 }
 

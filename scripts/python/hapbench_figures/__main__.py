@@ -5,6 +5,8 @@ import sys
 import time
 from pathlib import Path
 
+from hapbench_notice import Notice
+
 from . import catalogue, style
 from .results import BadResult, MissingResult, Results
 
@@ -93,16 +95,19 @@ def main(argv=None):
     results = Results(chosen.results)
     try:
         directory.mkdir(parents=True, exist_ok=True)
-        for figure in figures:
-            try:
-                entries.append(draw(figure, results, directory))
-            except MissingResult as missing:
-                skipped.append(f"{figure.id} ({missing})")
-            except BadResult as error:
-                bad.append(str(error))
-            except (KeyError, IndexError, TypeError, ValueError) as error:
-                # A file that can be read but has not the columns, rows or members of hapbench's.
-                bad.append(f"figure {figure.id}: {', '.join(sorted(results.sources))}: {type(error).__name__}: {error}")
+        with Notice("figures") as notice:
+            for number, figure in enumerate(figures, 1):
+                notice.say(f"figure {number}/{len(figures)}, {figure.id}")
+                try:
+                    entries.append(draw(figure, results, directory))
+                except MissingResult as missing:
+                    skipped.append(f"{figure.id} ({missing})")
+                except BadResult as error:
+                    bad.append(str(error))
+                except (KeyError, IndexError, TypeError, ValueError) as error:
+                    # A file that can be read but has not the columns, rows or members of hapbench's.
+                    sources = ", ".join(sorted(results.sources))
+                    bad.append(f"figure {figure.id}: {sources}: {type(error).__name__}: {error}")
         write_index(directory, entries)
     except OSError as error:
         print(f"figures: {error.filename}: {error.strerror}", file=sys.stderr)

@@ -1,6 +1,7 @@
 """python -m hapbench_pictures plot|report WORDS…; the program `hapbench` calls it."""
 import sys
 
+from hapbench_notice import Notice
 from hapbench_report.json_input import InputError
 
 SUCCESS, BAD_INPUT, INTERRUPTED = 0, 2, 130
@@ -9,12 +10,12 @@ SUCCESS, BAD_INPUT, INTERRUPTED = 0, 2, 130
 def main(words):
     command, *rest = words
     try:
-        if command == "plot":
-            from .plot_command import plot
-            plot(rest)
-        else:
-            from .report_command import report
-            report(rest)
+        with Notice("drawing" if command == "plot" else "writing the report"):
+            if command == "plot":
+                from .plot_command import plot as run
+            else:
+                from .report_command import report as run
+            run(rest)
         sys.stdout.flush()
     except InputError as error:
         print(f"hapbench: error: {error}", file=sys.stderr)

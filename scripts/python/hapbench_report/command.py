@@ -5,6 +5,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from hapbench_notice import Notice
+
 from .claims import load_choices, load_claims
 from .figures import load_figures
 from .json_input import InputError
@@ -76,8 +78,10 @@ def run(options):
 
 
 def main(words=None):
+    options = arguments(words)
     try:
-        run(arguments(words))
+        with Notice("writing the report"):
+            run(options)
     except InputError as error:
         print(f"report: error: {error}", file=sys.stderr)
         return BAD_INPUT

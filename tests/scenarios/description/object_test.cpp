@@ -81,6 +81,28 @@ TEST(Object, NamesAnUnknownFieldBeforeAnyOtherFault) {
   EXPECT_EQ(refusal_of(R"({"mass_kg": -3, "steps": 2, "nme": 1})").find("/v/nme: unknown field"), 0u);
 }
 
+TEST(Object, HasAllItsFaultsReportedAtOnce) {
+  Outer outer;
+  const auto error = test::input_error_of([&] {
+    test::read_json(Json::parse(R"({"mas_kg": 3, "scale": 2, "inner": {"width_m": "x", "depth_m": 1}})"), "/v", outer,
+                    describe_outer);
+  });
+  ASSERT_TRUE(error);
+  std::vector<std::string> places;
+  for (const InputError& fault : error->faults()) places.push_back(fault.place());
+  EXPECT_EQ(places, (std::vector<std::string>{"/v/mas_kg", "/v/inner/depth_m", "/v/inner/width_m", "/v/scale", "/v"}))
+      << "mass_kg is misspelt rather than missing; the last is that of steps and duration_s";
+}
+
+TEST(Object, HasNoMoreFaultsReportedThanAnybodyReads) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < 10 * kMostFaults; ++i) json["key" + std::to_string(i)] = 0;
+  Outer outer;
+  const auto error = test::input_error_of([&] { test::read_json(json, "/v", outer, describe_outer); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->faults().size(), kMostFaults);
+}
+
 TEST(Object, RefusesTheEmptyKeyAndKeysOfOtherCase) {
   EXPECT_NE(refusal_of(R"({"mass_kg": 3, "steps": 2, "": 1})"), "");
   EXPECT_NE(refusal_of(R"({"mass_kg": 3, "steps": 2, "Name": "x"})"), "");

@@ -33,13 +33,19 @@ TEST(NearestName, ForgivesOneSlipOfTheFingers) {
   for (const char* slip : {"stiffnes_N_per_m", "stiffness_N_per_mm", "stiffness_n_per_m", "stifness_N_per_m"}) {
     EXPECT_EQ(nearest_name(slip, kNames), "stiffness_N_per_m") << slip;
   }
-  EXPECT_EQ(nearest_name("maen", kNames), "");  // two letters of four: could mean anything
+  EXPECT_EQ(nearest_name("maen", kNames), "mean") << "neighbours swapped";
+  EXPECT_EQ(nearest_name("moon", kNames), "") << "two letters of four: could mean anything";
   EXPECT_EQ(nearest_name("mesn", kNames), "mean");
 }
 
 TEST(NearestName, KnowsANameByItsBeginningOrAPart) {
   EXPECT_EQ(nearest_name("stiffness", kNames), "stiffness_N_per_m");
   EXPECT_EQ(nearest_name("ratio", kNames), "damping_ratio");
+}
+
+TEST(NearestName, KnowsAMisspeltNameWithoutItsUnit) {
+  EXPECT_EQ(nearest_name("stifness", kNames), "stiffness_N_per_m");
+  EXPECT_EQ(nearest_name("dampin", kNames), "damping_ratio");
 }
 
 TEST(NearestName, SuggestsNothingForSomethingElse) {

@@ -26,7 +26,17 @@ TEST(ListCommand, NamesAllThereIs) {
   std::set<std::string> names;
   for (const Json& entry : hapbench({"list", "--json"}).json()) {
     names.insert(entry["name"]);
-    EXPECT_NE(run.out.find(entry["name"].get<std::string>()), std::string::npos) << entry;
+    const std::string name = entry["name"];
+    // Scenarios that differ in their algorithm share a line: "springs_limited_*", and the algorithms.
+    const bool stands_there =
+        run.out.find("  " + name + " ") != std::string::npos || run.out.find("  " + name + "\n") != std::string::npos;
+    bool is_shared = false;
+    for (const AlgorithmEntry& algorithm : algorithms()) {
+      const std::string end = std::string("_") + algorithm.info->name;
+      is_shared |= name.ends_with(end) &&
+                   run.out.find("  " + name.substr(0, name.size() - end.size()) + "_*") != std::string::npos;
+    }
+    EXPECT_TRUE(stands_there || is_shared) << entry;
   }
   for (const AlgorithmEntry& entry : algorithms()) EXPECT_TRUE(names.contains(entry.info->name)) << entry.info->name;
   for (const DepthModelEntry& entry : depth_models()) EXPECT_TRUE(names.contains(entry.info->name)) << entry.info->name;
@@ -51,7 +61,7 @@ TEST(DescribeCommand, ExplainsEveryListedName) {
 
 TEST(DescribeCommand, GivesTheFormulaTheSourceAndTheParametersOfAnAlgorithm) {
   const ProgramRun run = hapbench({"describe", "shaped_stiffness"});
-  for (const char* part : {"formula", "source", "known failure", "rendering.iterations", "default", "range", "unit"}) {
+  for (const char* part : {"formula", "source", "known failure", "rendering.iterations", "default", ">= 0"}) {
     EXPECT_NE(run.out.find(part), std::string::npos) << part;
   }
 }
@@ -86,7 +96,7 @@ TEST(DescribeCommand, ExplainsAScenarioFileOfTheCurrentDirectory) {
   const ProgramRun run = hapbench({"describe", "mine.json"}, options);
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_NE(run.out.find("scenario mine"), std::string::npos) << run.out;
-  EXPECT_NE(run.out.find("\"file\": \"shell.csv\""), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("environment.file=\"shell.csv\""), std::string::npos) << run.out;
 }
 
 TEST(DescribeCommand, ExplainsEveryMetric) {

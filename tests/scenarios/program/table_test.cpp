@@ -32,6 +32,7 @@ TEST(Wrapped, BreaksBetweenWordsAndNeverWithinOne) {
   EXPECT_EQ(wrapped("aa bb cc", 1, 6), " aa bb\n cc\n");
   EXPECT_EQ(wrapped("aaaaaaaaaa b", 2, 6), "  aaaaaaaaaa\n  b\n");
   EXPECT_EQ(wrapped("a", 0, 6), "a\n");
+  EXPECT_EQ(wrapped("a\nb\n\nc", 1, 6), " a\n b\n\n c\n");
 }
 
 TEST(Table, BreaksIntoBlocksThatBeginWithTheFirstColumn) {
@@ -48,6 +49,30 @@ TEST(Table, BreaksIntoBlocksThatBeginWithTheFirstColumn) {
             "----  -----\n"
             "a         3\n");
   EXPECT_EQ(table.text(1).find("name  one\n"), 0u) << "a column at least";
+}
+
+TEST(Table, WrapsALastColumnOfText) {
+  Table table({{"name", false}, {"n"}, {"meaning", false}});
+  table.add({"a", "1", "one two three four five six seven"});
+  table.add({"b", "2", "short"});
+  EXPECT_EQ(table.text(34),
+            "name  n  meaning\n"
+            "----  -  -------------------------\n"
+            "a     1  one two three four five\n"
+            "         six seven\n"
+            "b     2  short\n");
+}
+
+TEST(Fitted, BreaksWideLinesAtBlanksAndKeepsTheirIndent) {
+  EXPECT_EQ(fitted("  aa bb cc dd\nshort\n", 9), "  aa bb\n    cc dd\nshort\n");
+  EXPECT_EQ(fitted("aaaaaaaaaaaa\n", 5), "aaaaaaaaaaaa\n");
+  EXPECT_EQ(fitted("a  b\n\n", 80), "a  b\n\n");
+}
+
+TEST(Entry, HasTheMeaningBesideOrBelowTheName) {
+  EXPECT_EQ(entry("a", "b", 2, 6), "  a   b\n");
+  EXPECT_EQ(entry("longer", "b", 2, 6), "  longer\n      b\n");
+  EXPECT_EQ(entry("a", "", 2, 6), "  a\n");
 }
 
 TEST(Table, WithoutRowsIsItsHead) {

@@ -15,6 +15,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "tests/scenarios/support/environment_variable.hpp"
 #include "tests/support/scale.hpp"
 
 namespace hapbench::test {
@@ -87,6 +88,9 @@ Json ProgramRun::json() const {
 
 ProgramRun run_program(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                        const ProgramOptions& options) {
+  const std::optional<std::string> columns =
+      options.columns == 0 ? std::nullopt : std::optional(std::to_string(options.columns));
+  const EnvironmentVariable width("COLUMNS", columns);
   const File out = nameless_file(), err = nameless_file();
   const pid_t child = start(program, arguments, options, ::fileno(out.get()), ::fileno(err.get()));
   const auto started = Clock::now();

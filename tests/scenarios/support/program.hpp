@@ -29,6 +29,7 @@ struct ProgramOptions {
   double patience_s = 60.0;              ///< a process that takes longer is killed and counts as ended by SIGKILL
   bool as_root_may = true;       ///< false: root has no privileges either; status 126 when they cannot be dropped
   std::size_t file_limit = 0;    ///< of each file it writes [bytes]; 0: none
+  std::size_t columns = 0;       ///< of the terminal it is told to have; 0: none
   std::size_t memory_limit = 0;  ///< of address space [bytes]; 0: none. Not with sanitizers, which reserve a lot
 };
 
