@@ -17,7 +17,8 @@ std::size_t characters(const std::string& text) {
   return text.size() - static_cast<std::size_t>(std::count_if(text.begin(), text.end(), continues));
 }
 
-bool contains(const std::vector<std::string_view>& names, std::string_view name) {
+template <class Name>
+bool contains(const std::vector<Name>& names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
