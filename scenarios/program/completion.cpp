@@ -101,7 +101,8 @@ Words beginning_with(const std::string& typed, const std::string& before, const 
     const std::size_t equals = word.find('=');
     const bool is_value = equals != std::string::npos && equals + 1 < word.size();
     if (!word.starts_with(typed) || is_value != (has_value && equals != std::string::npos)) continue;
-    found.push_back(before + word);
+    // Some names mean two things.
+    if (std::find(found.begin(), found.end(), before + word) == found.end()) found.push_back(before + word);
   }
   return found;
 }
