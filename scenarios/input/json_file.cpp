@@ -28,17 +28,25 @@ std::string line_and_column(const std::string& text, std::size_t byte) {
   return fmt::format("line {}, column {}", line, std::max<std::size_t>(column, 1));
 }
 
-/// What was probably meant where the text stops being JSON, at a byte counted from 1; or empty.
+/// What was probably meant where the text stops being JSON, at a byte counted from 1, the last that the parser has read
+/// of what it does not take; or empty.
 std::string syntax_hint(const std::string& text, std::size_t byte) {
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) return "; the text is UTF-16; allowed: UTF-8";
   if (byte > text.size()) return "; the text ends too early";
-  const std::size_t at = std::max<std::size_t>(byte, 1) - 1;
+  std::size_t at = std::max<std::size_t>(byte, 1) - 1;
+  const char last = text[at];
+  // Back to where the word or the text begins.
+  const auto is_letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+  while (at > 0 && is_letter(last) && is_letter(text[at - 1])) --at;
+  if (const std::size_t quote = last == '"' ? text.rfind('"', byte - 2) : std::string::npos; quote < at) at = quote;
   const std::size_t before = at == 0 ? std::string::npos : text.find_last_not_of(" \t\r\n", at - 1);
-  const char c = text[at], previous = before == std::string::npos ? '\0' : text[before];
-  if ((c == '}' || c == ']') && previous == ',') return fmt::format("; a comma stands before \"{}\"", c);
-  if (c == '/' || c == '#' || previous == '/') return "; JSON has no comments";
-  if (c == '\'' || std::isalpha(static_cast<unsigned char>(c))) return "; names and texts stand in double quotes";
-  if (c == '"' && previous != '\0' && std::strchr("{[,:", previous) == nullptr)
+  const char first = text[at], previous = before == std::string::npos ? '\0' : text[before];
+  const bool may_begin = previous == '\0' || std::strchr("{[,:", previous) != nullptr;
+  if ((last == '}' || last == ']') && previous == ',') return fmt::format("; a comma stands before \"{}\"", last);
+  if (last == '/' || last == '#' || previous == '/') return "; JSON has no comments";
+  if (may_begin && (last == '\'' || (std::isalpha(static_cast<unsigned char>(first)) && is_letter(last))))
+    return "; names and texts stand in double quotes";
+  if (last == '"' && !may_begin)
     return fmt::format("; a {} is missing before it", previous == '"' ? "comma or colon" : "comma");
   return "";
 }

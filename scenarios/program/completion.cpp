@@ -63,7 +63,7 @@ Words values_of(const std::string& name) {
   if (name == "what")
     return {"algorithms", "depth_models", "stages", "integrators", "environments", "hands",
             "devices",    "scenarios",    "thesis", "limits",      "beyond",       "examples"};
-  if (name == "shell") return {"bash", "fish"};
+  if (name == "shell") return {"bash", "zsh", "fish"};
   Words words;
   if (name == "kind")
     for (const StartKind& kind : start_kinds()) words.emplace_back(kind.name);
@@ -101,7 +101,8 @@ Words beginning_with(const std::string& typed, const std::string& before, const 
     const std::size_t equals = word.find('=');
     const bool is_value = equals != std::string::npos && equals + 1 < word.size();
     if (!word.starts_with(typed) || is_value != (has_value && equals != std::string::npos)) continue;
-    found.push_back(before + word);
+    // Some names mean two things.
+    if (std::find(found.begin(), found.end(), before + word) == found.end()) found.push_back(before + word);
   }
   return found;
 }
@@ -162,7 +163,6 @@ Words candidates(const CommandText& command, const Words& words) {
   return beginning_with(typed, before, values_of(option->name));
 }
 
-/// For zsh: autoload -U bashcompinit && bashcompinit, then the same.
 constexpr const char* kBash = R"(_hapbench() {
   local IFS=$'\n'
   COMPREPLY=($("${1/#\~/$HOME}" complete "${COMP_WORDS[@]:1:$COMP_CWORD}" 2>/dev/null))
@@ -170,6 +170,9 @@ constexpr const char* kBash = R"(_hapbench() {
 }
 complete -o default -F _hapbench hapbench
 )";
+
+/// Lets zsh take what is written for bash.
+constexpr const char* kZsh = "autoload -U +X bashcompinit && bashcompinit\n";
 
 constexpr const char* kFish = R"(complete -c hapbench -a '(hapbench complete (commandline -opc)[2..] (commandline -ct))'
 )";
@@ -198,16 +201,17 @@ Words completions(const std::vector<CommandText>& texts, const Words& words) {
 void add_completion(CommandLine& line) {
   auto shell = std::make_shared<std::string>();
   Command command = line.command("completion", "Print what lets a shell complete commands, options, names and fields");
-  command.add("shell", *shell, "bash (zsh takes it, too) or fish").required().one_of({"bash", "fish"});
+  command.add("shell", *shell, "bash, zsh or fish").required().one_of({"bash", "zsh", "fish"});
   command.footer(
       "In ~/.bashrc:\n"
       "  source <(hapbench completion bash)\n"
-      "In ~/.zshrc:\n"
-      "  autoload -U compinit bashcompinit && compinit && bashcompinit && source <(hapbench completion bash)\n"
+      "In ~/.zshrc, behind compinit:\n"
+      "  source <(hapbench completion zsh)\n"
       "For fish:\n"
       "  hapbench completion fish >~/.config/fish/completions/hapbench.fish");
   command.runs([shell] {
-    std::fputs(*shell == "bash" ? kBash : kFish, stdout);
+    if (*shell == "zsh") std::fputs(kZsh, stdout);
+    std::fputs(*shell == "fish" ? kFish : kBash, stdout);
     return kSuccess;
   });
 }

@@ -133,7 +133,9 @@ int list(const ListOptions& options) {
     std::string what = options.what;
     std::replace(what.begin(), what.end(), '_', ' ');
     const std::vector<std::string> sections = sections_of(all);
-    if (what.ends_with("s") && std::find(sections.begin(), sections.end(), what) == sections.end()) what.pop_back();
+    for (const std::string& section : sections) {
+      if (what == section + "s") what = section;
+    }
     require_valid_name("got", what, sections);
     std::erase_if(all, [&what](const Listed& thing) { return thing.kind != what && thing.group != what; });
   }

@@ -53,6 +53,13 @@ std::string bound_text(const Json& bound) {
   return bound.is_number_float() ? fmt::format("{:g}", bound.get<double>()) : bound.dump();
 }
 
+/// A value as JSON with blanks where a line may end.
+std::string spaced(const Json& value) {
+  std::string text;
+  for (const char c : shown(value)) text += c == ',' ? ", " : std::string(1, c);
+  return text;
+}
+
 }  // namespace
 
 std::string default_text(const Json& schema) {
@@ -60,7 +67,11 @@ std::string default_text(const Json& schema) {
 }
 
 std::string allowed_text(const Json& schema) {
-  if (schema.contains("enum")) return shown(schema["enum"]);
+  if (schema.contains("enum")) {
+    std::string text;
+    for (const Json& word : schema["enum"]) text += (text.empty() ? "" : " | ") + word.get<std::string>();
+    return text;
+  }
   if (const std::string tag = tag_of(schema); !tag.empty()) return "type \"" + tag + "\"";
   for (const char* choices : kChoices) {
     if (!schema.contains(choices) || schema.contains("properties")) continue;
@@ -91,7 +102,7 @@ std::string field_cards(const std::string& prefix, const Json& schema, std::size
   for (const auto& [name, field] : schema["properties"].items()) {
     if (field.contains("const")) continue;
     const Json* nested = plain_object(field);
-    const std::string initial = field.contains("default") && nested == nullptr ? shown(field["default"]) : "";
+    const std::string initial = field.contains("default") && nested == nullptr ? spaced(field["default"]) : "";
     text +=
         card({prefix + name, "", initial, nested == &field ? "" : allowed_text(field), field.value("description", "")},
              indent);
@@ -186,7 +197,7 @@ std::string fields_text(const std::string& title, const Json& schema) {
     const std::string cards = field_cards("", *object, 2);
     return cards.empty() ? text + "  no fields\n" : text + "\n" + cards;
   }
-  if (schema.contains("default")) text += wrapped("default: " + shown(schema["default"]));
+  if (schema.contains("default")) text += wrapped("default: " + spaced(schema["default"]));
   for (const Json* type : types_in(schema)) {
     const std::string tag = tag_of(*type);
     const char* summary = type_summary(tag);

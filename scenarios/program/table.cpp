@@ -101,26 +101,23 @@ std::string Table::text(std::size_t most_width) const {
 
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t width) {
   std::string lines;
-  std::size_t column = width;
+  std::size_t column = 0;
+  bool begins_line = true;
   while (!text.empty()) {
     const std::string_view word = text.substr(0, text.find_first_of(" \n"));
     const bool ends_line = word.size() < text.size() && text[word.size()] == '\n';
     text.remove_prefix(std::min(text.size(), word.size() + 1));
-    if (word.empty() && ends_line) {
-      lines += '\n';
-      column = width;
-      continue;
-    }
-    if (column + 1 + word.size() > width) {
+    if (begins_line || column + 1 + word.size() > width) {
       if (!lines.empty()) lines += '\n';
-      lines.append(indent, ' ');
+      if (!word.empty()) lines.append(indent, ' ');
       column = indent;
     } else {
       lines += ' ';
       ++column;
     }
     lines += word;
-    column = ends_line ? width : column + word.size();
+    column += word.size();
+    begins_line = ends_line;
   }
   return lines + "\n";
 }

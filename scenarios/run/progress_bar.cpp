@@ -1,7 +1,11 @@
 #include "scenarios/run/progress_bar.hpp"
 
+#include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 
 namespace hapbench {
@@ -9,21 +13,46 @@ namespace {
 
 constexpr auto kSilence = std::chrono::seconds(2);
 constexpr auto kRedraw = std::chrono::milliseconds(200);
-constexpr int kWidth = 40;
+constexpr std::size_t kWidth = 40;
 
-/// "95 s", "12 min", "30 h"
-void print_time(double seconds) {
-  const bool minutes = seconds >= 120.0, hours = seconds >= 7200.0;
-  std::fprintf(stderr, "%.0f %s",
-               hours     ? seconds / 3600.0
-               : minutes ? seconds / 60.0
-                         : seconds,
-               hours     ? "h"
-               : minutes ? "min"
-                         : "s");
+/// A line being made, without the heap: the bar is drawn within steps, which allocate nothing.
+class Line {
+ public:
+  template <class... Arguments>
+  void add(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+    const auto end =
+        fmt::format_to_n(text_.data() + size_, text_.size() - size_, format, std::forward<Arguments>(arguments)...);
+    size_ = std::min(size_ + end.size, text_.size());
+  }
+  /// "95 s", "12 min", "30 h"
+  void add_time(double seconds) {
+    const bool minutes = seconds >= 120.0, hours = seconds >= 7200.0;
+    add("{:.0f} {}", seconds / (hours ? 3600.0 : minutes ? 60.0 : 1.0), hours ? "h" : minutes ? "min" : "s");
+  }
+  std::string_view text() const { return {text_.data(), size_}; }
+
+ private:
+  std::array<char, 512> text_;
+  std::size_t size_ = 0;
+};
+
+/// Columns of the terminal behind standard error; 80 when it does not say.
+std::size_t columns() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
 }  // namespace
+
+void show_status(std::string_view line) {
+  const auto length = static_cast<int>(std::min(line.size(), columns() - 1));
+  std::fprintf(stderr, "\r%.*s\033[K", length, line.data());
+  std::fflush(stderr);
+}
+
+void hide_status() {
+  std::fprintf(stderr, "\r\033[K");
+}
 
 ProgressBar::ProgressBar(std::string label, std::uint64_t total, bool enabled)
     : label_(std::move(label)),
@@ -33,7 +62,7 @@ ProgressBar::ProgressBar(std::string label, std::uint64_t total, bool enabled)
       next_(start_ + kSilence) {}
 
 ProgressBar::~ProgressBar() {
-  if (drawn_) std::fprintf(stderr, "\r\033[K");
+  if (drawn_) hide_status();
 }
 
 void ProgressBar::show(std::uint64_t done, bool counts) noexcept {
@@ -43,21 +72,26 @@ void ProgressBar::show(std::uint64_t done, bool counts) noexcept {
   next_ = now + kRedraw;
   drawn_ = true;
   const double part = static_cast<double>(done) / static_cast<double>(total_);
-  const int filled = static_cast<int>(part * kWidth);
-  char bar[kWidth + 1] = {};
-  for (int i = 0; i < kWidth; ++i) bar[i] = i < filled ? '#' : '.';
-  std::fprintf(stderr, "\r%s [%s] %3.0f %%", label_.c_str(), bar, 100.0 * part);
+  Line numbers;
+  numbers.add("{:3.0f} %", 100.0 * part);
   if (counts) {
-    std::fprintf(stderr, ", %llu/%llu", static_cast<unsigned long long>(done), static_cast<unsigned long long>(total_));
+    numbers.add(", {}/{}", done, total_);
     if (done > first_) {
       const double each = std::chrono::duration<double>(now - start_).count() / static_cast<double>(done - first_);
-      std::fprintf(stderr, ", ");
-      print_time(each * static_cast<double>(total_ - done));
-      std::fprintf(stderr, " left");
+      numbers.add(", ");
+      numbers.add_time(each * static_cast<double>(total_ - done));
+      numbers.add(" left");
     }
   }
-  std::fprintf(stderr, "\033[K");
-  std::fflush(stderr);
+  // The bar is what gives way to a narrow terminal.
+  const std::size_t others = label_.size() + numbers.text().size() + 5;
+  const std::size_t width = std::clamp<std::size_t>(columns() - std::min(columns(), others), 10, kWidth);
+  Line line;
+  line.add("{} [", std::string_view(label_));
+  for (std::size_t i = 0; i < width; ++i)
+    line.add("{}", static_cast<double>(i) < part * static_cast<double>(width) ? '#' : '.');
+  line.add("] {}", numbers.text());
+  show_status(line.text());
 }
 
 }  // namespace hapbench

@@ -3,8 +3,15 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace hapbench {
+
+/// Shows a line on standard error in place of the one shown before, cut to the terminal's width: a broken line could
+/// not be taken back. Precondition: standard error is a terminal.
+void show_status(std::string_view line);
+/// Takes the line back.
+void hide_status();
 
 /// A progress bar on standard error for work that takes longer than two seconds; silent otherwise, and when standard
 /// error is no terminal.

@@ -1,10 +1,12 @@
 #include "scenarios/run/wait_notice.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <csignal>
-#include <cstdio>
+
+#include "scenarios/run/progress_bar.hpp"
 
 namespace hapbench {
 
@@ -34,11 +36,10 @@ void WaitNotice::show() {
   bool shown = false;
   for (int seconds = 1; !ended_.wait_for(lock, std::chrono::seconds(1), [this] { return done_; }); ++seconds) {
     if (seconds < kSilence) continue;
-    std::fprintf(stderr, "\r%s ... %d s\033[K", what_.c_str(), seconds);
-    std::fflush(stderr);
+    show_status(fmt::format("{} ... {} s", what_, seconds));
     shown = true;
   }
-  if (shown) std::fprintf(stderr, "\r\033[K");
+  if (shown) hide_status();
 }
 
 }  // namespace hapbench

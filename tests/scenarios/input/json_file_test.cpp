@@ -52,7 +52,10 @@ TEST(ParseJson, GuessesWhatWasMeant) {
       {"{\"a\": \"x\" \"b\": 2}", "; a comma or colon is missing before it"},
       {"{\"a\": [1", "; the text ends too early"},
       {std::string("\xff\xfe{\0}\0", 6), "; the text is UTF-16; allowed: UTF-8"},
-      {"{\"a\": 01}", ""}};
+      {"[\"a\", \"b\" \"c\"]", "; a comma or colon is missing before it"},
+      {"[0x10]", "column 3"},
+      {"\"\\x\"", "column 3"},
+      {"{\"a\": 01}", "column 8"}};
   for (const auto& [text, hint] : cases) EXPECT_TRUE(refusal_of(text).ends_with(hint)) << refusal_of(text);
 }
 

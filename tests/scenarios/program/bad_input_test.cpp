@@ -29,18 +29,21 @@ constexpr std::size_t kMostMemory = HAPBENCH_TEST_SANITIZED ? 0 : std::size_t{3}
 
 class BadInputs : public testing::TestWithParam<BadInput> {};
 
-/// One line that says all it must.
+/// A line for each fault, the first of which says all it must.
 void expect_message(const std::string& err, const std::string& file, const BadInput& input) {
   ASSERT_FALSE(err.empty());
-  EXPECT_EQ(std::count(err.begin(), err.end(), '\n'), 1) << err;
   EXPECT_EQ(err.back(), '\n');
-  for (const char c : err.substr(0, err.size() - 1))
-    ASSERT_FALSE(static_cast<unsigned char>(c) < 0x20) << "control character";
   EXPECT_LT(err.size(), 10'000u);
+  const std::vector<std::string> lines = test::lines_of(err);
+  ASSERT_EQ(lines.size(), input.faults) << err;
+  for (const std::string& line : lines) {
+    for (const char c : line) ASSERT_FALSE(static_cast<unsigned char>(c) < 0x20) << "control character";
+    EXPECT_EQ(line.find("hapbench: error: " + file + ": "), 0u) << line;
+  }
   // hapbench: error: FILE: PLACE…: PROBLEM, or without a place for the whole file.
   const std::string begin = "hapbench: error: " + file + ": " + input.place;
   ASSERT_EQ(err.substr(0, begin.size()), begin) << err;
-  EXPECT_NE(err.find(input.says, begin.size()), std::string::npos) << "no \"" << input.says << "\" in " << err;
+  EXPECT_NE(lines[0].find(input.says, begin.size()), std::string::npos) << "no \"" << input.says << "\" in " << err;
 }
 
 TEST_P(BadInputs, IsRefusedInOneLineAndNothingIsWritten) {

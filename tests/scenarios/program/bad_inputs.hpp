@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-/// Inputs the program must refuse, and what its one line of message must hold.
+/// Inputs the program must refuse, and what the line of its message must hold.
 namespace hapbench::test {
 
 struct BadInput {
@@ -15,6 +15,7 @@ struct BadInput {
   std::string says;                               ///< in the message behind the place
   std::map<std::string, std::string> files = {};  ///< others beside the scenario
   std::string (*make)() = nullptr;                ///< makes the scenario's text when it is too large to keep
+  std::size_t faults = 1;                         ///< lines of message; the first is the one meant
 };
 
 /// So that test listings show the name.

@@ -190,9 +190,10 @@ TEST_F(ValidateCommand, JudgesEachFileAndGoesOnAfterABadOne) {
   EXPECT_EQ(run.status, 2);
   EXPECT_EQ(run.out.find(good + ": valid\n  environment  10 x 10 x 0 mm "), 0u) << run.out;
   const auto errors = lines_of(run.err);
-  ASSERT_EQ(errors.size(), 2u);
+  ASSERT_EQ(errors.size(), 3u);
   EXPECT_EQ(errors[0].find("hapbench: error: " + bad + ": missing field \"time\""), 0u);
-  EXPECT_EQ(errors[1].find("hapbench: error: no_such_scenario: "), 0u);
+  EXPECT_EQ(errors[1].find("hapbench: error: " + bad + ": missing field \"environment\""), 0u);
+  EXPECT_EQ(errors[2].find("hapbench: error: no_such_scenario: "), 0u);
 }
 
 TEST_F(ValidateCommand, ReadsTheFilesAScenarioNames) {

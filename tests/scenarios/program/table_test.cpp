@@ -32,6 +32,7 @@ TEST(Wrapped, BreaksBetweenWordsAndNeverWithinOne) {
   EXPECT_EQ(wrapped("aa bb cc", 1, 6), " aa bb\n cc\n");
   EXPECT_EQ(wrapped("aaaaaaaaaa b", 2, 6), "  aaaaaaaaaa\n  b\n");
   EXPECT_EQ(wrapped("a", 0, 6), "a\n");
+  EXPECT_EQ(wrapped("aa bb", 2, std::string::npos), "  aa bb\n") << "a width without bound";
   EXPECT_EQ(wrapped("a\nb\n\nc", 1, 6), " a\n b\n\n c\n");
 }
 

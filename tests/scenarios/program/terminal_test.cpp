@@ -197,6 +197,7 @@ TEST(Completion, WorksInBash) {
   EXPECT_EQ(lines_of(run.out),
             (std::vector<std::string>{"complete -o default -F _hapbench hapbench", "peg_in_hole_2d_summation"}));
   EXPECT_EQ(run.err, "");
+  EXPECT_TRUE(hapbench({"completion", "zsh"}).out.ends_with(hapbench({"completion", "bash"}).out));
   EXPECT_EQ(hapbench({"completion", "tcsh"}).status, 2);
 }
 
