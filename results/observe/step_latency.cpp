@@ -9,25 +9,25 @@ namespace hapbench {
 namespace {
 
 using nlohmann::ordered_json;
-using Times = std::vector<std::uint32_t>;
+using Times = std::vector<std::uint64_t>;
 
 /// Nearest rank, in tenths of a percent so that the rank is computed exactly. Precondition: sorted and not empty.
-std::uint32_t percentile(const Times& sorted, std::size_t per_mille) {
+std::uint64_t percentile(const Times& sorted, std::size_t per_mille) {
   const std::size_t rank = (sorted.size() * per_mille + 999) / 1000;
   return sorted[std::max<std::size_t>(rank, 1) - 1];
 }
 
 std::uint64_t longer_than(const Times& sorted, double seconds) {
-  const auto ns = [](std::uint32_t time) { return static_cast<double>(time); };
+  const auto ns = [](std::uint64_t time) { return static_cast<double>(time); };
   const auto first =
-      std::partition_point(sorted.begin(), sorted.end(), [&](std::uint32_t time) { return ns(time) <= seconds * 1e9; });
+      std::partition_point(sorted.begin(), sorted.end(), [&](std::uint64_t time) { return ns(time) <= seconds * 1e9; });
   return static_cast<std::uint64_t>(sorted.end() - first);
 }
 
-/// Bin k holds the times of k binary digits: 0, 1, 2 … 3, 4 … 7 and so on.
+/// Bin k holds the times of k binary digits: 0, 1, 2 … 3, 4 … 7 and so on. The clock counts up to 63 of them.
 std::vector<StepLatency::Bin> histogram(const Times& sorted) {
-  std::array<std::uint64_t, std::numeric_limits<std::uint32_t>::digits + 1> count = {};
-  for (const std::uint32_t time : sorted) ++count[static_cast<std::size_t>(std::bit_width(time))];
+  std::array<std::uint64_t, std::numeric_limits<std::int64_t>::digits + 1> count = {};
+  for (const std::uint64_t time : sorted) ++count[static_cast<std::size_t>(std::bit_width(time))];
   std::vector<StepLatency::Bin> bins;
   const auto last = static_cast<std::size_t>(std::bit_width(sorted.back()));
   for (auto k = static_cast<std::size_t>(std::bit_width(sorted.front())); k <= last; ++k) {
@@ -37,9 +37,9 @@ std::vector<StepLatency::Bin> histogram(const Times& sorted) {
   return bins;
 }
 
-std::vector<std::uint32_t> medians_over_time(std::span<const std::uint32_t> times) {
+Times medians_over_time(std::span<const std::uint64_t> times) {
   const std::size_t spans = std::min(times.size(), StepLatency::kSpans);
-  std::vector<std::uint32_t> medians;
+  Times medians;
   for (std::size_t i = 0; i < spans; ++i) {
     const std::size_t first = i * times.size() / spans, last = (i + 1) * times.size() / spans;
     Times span(times.begin() + static_cast<std::ptrdiff_t>(first), times.begin() + static_cast<std::ptrdiff_t>(last));
@@ -55,7 +55,7 @@ double seconds(double nanoseconds) {
 
 }  // namespace
 
-StepLatency step_latency(std::span<const std::uint32_t> nanoseconds, std::uint32_t overhead) {
+StepLatency step_latency(std::span<const std::uint64_t> nanoseconds, std::uint64_t overhead) {
   StepLatency latency;
   latency.overhead = overhead;
   latency.steps = nanoseconds.size();
@@ -74,11 +74,11 @@ StepLatency step_latency(std::span<const std::uint32_t> nanoseconds, std::uint32
 }
 
 ordered_json step_latency_json(const StepLatency& latency) {
-  const auto if_any = [&latency](std::uint32_t ns) {
-    return latency.steps > 0 ? ordered_json(seconds(ns)) : ordered_json(nullptr);
+  const auto if_any = [&latency](std::uint64_t ns) {
+    return latency.steps > 0 ? ordered_json(seconds(static_cast<double>(ns))) : ordered_json(nullptr);
   };
   ordered_json json = {{"steps", latency.steps},
-                       {"clock_overhead_s", seconds(latency.overhead)},
+                       {"clock_overhead_s", seconds(static_cast<double>(latency.overhead))},
                        {"p50_s", if_any(latency.p50)},
                        {"p95_s", if_any(latency.p95)},
                        {"p99_s", if_any(latency.p99)},
@@ -95,7 +95,9 @@ ordered_json step_latency_json(const StepLatency& latency) {
                                  {"to_s", seconds(static_cast<double>(bin.to))},
                                  {"steps", bin.steps}});
   }
-  for (const std::uint32_t median : latency.over_time) json["over_time_s"].push_back(seconds(median));
+  for (const std::uint64_t median : latency.over_time) {
+    json["over_time_s"].push_back(seconds(static_cast<double>(median)));
+  }
   return json;
 }
 

@@ -1,14 +1,13 @@
 #include "results/observe/step_times.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace hapbench {
 namespace {
 
 /// Steps that do nothing, timed to learn what timing costs: enough that the first ones, with cold caches, do not
 /// matter.
-constexpr std::size_t kEmptySteps = 4001;
+constexpr std::size_t kEmptySteps = 501;
 
 }  // namespace
 
@@ -24,10 +23,10 @@ StepTimes::StepTimes(std::size_t capacity) : times_(std::max(capacity, kEmptySte
 
 void StepTimes::lap() noexcept {
   const Clock::time_point now = Clock::now();
-  const std::int64_t ns = std::chrono::duration_cast<std::chrono::nanoseconds>(now - last_).count() - overhead_;
+  const std::int64_t ns =
+      std::chrono::duration_cast<std::chrono::nanoseconds>(now - last_).count() - static_cast<std::int64_t>(overhead_);
   last_ = now;
-  times_[size_++] =
-      static_cast<std::uint32_t>(std::clamp<std::int64_t>(ns, 0, std::numeric_limits<std::uint32_t>::max()));
+  times_[size_++] = static_cast<std::uint64_t>(std::max<std::int64_t>(ns, 0));
 }
 
 }  // namespace hapbench

@@ -16,8 +16,8 @@ struct RunTiming {
   double loop = 0.0;                   ///< of the step loop, observers included [s]
   std::uint64_t steps = 0;             ///< rows computed in that time
   std::optional<StepLatency> latency;  ///< of single steps, observers included, when they were timed
-  /// Median and 99th percentile of what a step takes by itself, without observers and recorders [s]; none for runs too
-  /// short to sample (StepSampler).
+  /// Median and 99th percentile of what a step takes by itself, without observers and recorders [s] (StepSampler); none
+  /// without steps, and no percentile of fewer than a hundred.
   std::optional<double> step_p50 = {}, step_p99 = {};
   std::uint64_t preemptions = 0;  ///< involuntary context switches during the step loop
 };

@@ -112,7 +112,7 @@ std::string comparison_text(std::span<const RunReport> reports) {
     cells.insert(cells.begin(), report.summary.algorithm);
     table.add(std::move(cells));
   }
-  return fmt::format("{}\n\n{}", reports.front().summary.name, table.text());
+  return fmt::format("{}\n\n{}{}", reports.front().summary.name, table.text(), step_time_text(reports));
 }
 
 Json summaries_json(const BatchPlan& plan, const BatchReport& report, bool league) {

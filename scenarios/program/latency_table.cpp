@@ -18,7 +18,9 @@ std::vector<Table::Column> columns() {
 LatencyTable::LatencyTable() : table_(columns()) {}
 
 void LatencyTable::add(const std::string& name, const StepLatency& latency) {
-  const auto us = [&latency](std::uint32_t ns) { return latency.steps > 0 ? fmt::format("{:.3f}", ns / 1e3) : "-"; };
+  const auto us = [&latency](std::uint64_t ns) {
+    return latency.steps > 0 ? fmt::format("{:.3f}", static_cast<double>(ns) / 1e3) : "-";
+  };
   std::vector<std::string> cells = {name,
                                     std::to_string(latency.steps),
                                     us(latency.p50),

@@ -49,11 +49,12 @@ int run(const RunOptions& options) {
   columns.insert(columns.begin(), {{"scenario", false}, {"algorithm", false}});
   Table table(columns, kRunGap);
   LatencyTable latencies;
+  std::vector<RunReport> reports;
   Json summaries = Json::array();
   std::string targets;
   int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
-    const RunReport report = run_scenario(scenarios[i], directories[i], !options.output.quiet);
+    const RunReport& report = reports.emplace_back(run_scenario(scenarios[i], directories[i], !options.output.quiet));
     std::vector<std::string> cells = run_cells(report);
     cells.insert(cells.begin(), {report.summary.name, report.summary.algorithm});
     table.add(std::move(cells));
@@ -71,7 +72,9 @@ int run(const RunOptions& options) {
   }
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
   const std::string latency_text = options.latency ? "\n" + latencies.text() : "";
-  print(options.output, table.text() + targets + latency_text + fmt::format("\nresults in {}\n", where.string()),
+  print(options.output,
+        table.text() + step_time_text(reports) + targets + latency_text +
+            fmt::format("\nresults in {}\n", where.string()),
         summaries);
   return status;
 }

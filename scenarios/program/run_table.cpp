@@ -78,6 +78,24 @@ std::vector<std::string> run_warnings(std::span<const RunReport> reports) {
   return texts;
 }
 
+std::string step_time_text(std::span<const RunReport> reports) {
+  const auto p99_or = [](double none) {
+    return [none](const RunReport& report) { return report.timing.step_p99.value_or(none); };
+  };
+  const RunReport& quickest = *std::ranges::min_element(reports, {}, p99_or(std::numeric_limits<double>::infinity()));
+  const RunReport& slowest = *std::ranges::max_element(reports, {}, p99_or(0.0));
+  if (!slowest.timing.step_p99) return "";
+  const auto us = [](const RunReport& report) { return cell(1e6 * *report.timing.step_p99, 2); };
+  if (reports.size() == 1) return fmt::format("\n99 % of the steps take at most {} us\n", us(slowest));
+  // Runs of one scenario are told apart by their algorithms.
+  const bool one_scenario = reports.front().summary.name == reports.back().summary.name;
+  const auto name = [&](const RunReport& report) {
+    return one_scenario ? report.summary.algorithm : report.summary.name;
+  };
+  return fmt::format("\n99 % of the steps take at most {} us ({}) to {} us ({})\n", us(quickest), name(quickest),
+                     us(slowest), name(slowest));
+}
+
 std::string targets_text(const RunReport& report) {
   if (!report.summary.targets) return "";
   const auto cell = [](const SubjectMean& m, int digits) {

@@ -17,6 +17,10 @@ std::vector<Table::Column> run_columns();
 inline constexpr std::size_t kRunGap = 1;
 std::vector<std::string> run_cells(const RunReport& report);
 
+/// A line that says what 99 % of the steps take by themselves at most, in the quickest and the slowest of the runs; a
+/// column more would make the table too wide. Empty when no run was long enough to sample. Precondition: not empty.
+std::string step_time_text(std::span<const RunReport> reports);
+
 /// The tables of thesis D.4 for a report with targets: mean and standard error over subjects, a line for each place.
 /// Empty for other reports.
 std::string targets_text(const RunReport& report);

@@ -128,14 +128,14 @@ RunSummary summarise(const Scenario& scenario, const std::vector<TrialResult>& t
 }
 
 void add_step_times(const std::vector<TrialResult>& trials, RunTiming& timing) {
-  std::vector<std::uint32_t> all;
+  std::vector<std::uint64_t> all;
   for (const TrialResult& trial : trials) {
     all.insert(all.end(), trial.step_nanoseconds.begin(), trial.step_nanoseconds.end());
   }
   if (all.empty()) return;
   const StepLatency latency = step_latency(all, 0);
-  timing.step_p50 = 1e-9 * latency.p50;
-  timing.step_p99 = 1e-9 * latency.p99;
+  timing.step_p50 = 1e-9 * static_cast<double>(latency.p50);
+  if (all.size() >= 100) timing.step_p99 = 1e-9 * static_cast<double>(latency.p99);
 }
 
 void write_results(const fs::path& directory, const Scenario& scenario, const RunReport& report,

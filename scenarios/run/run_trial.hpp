@@ -24,7 +24,7 @@ struct TrialResult {
   std::vector<std::string> warnings;  ///< what may make the numbers mislead
   RunWork work;
   double loop_seconds = 0.0;                    ///< wall time of the step loop
-  std::vector<std::uint32_t> step_nanoseconds;  ///< samples of what steps take by themselves (StepSampler)
+  std::vector<std::uint64_t> step_nanoseconds;  ///< samples of what steps take by themselves (StepSampler)
   std::uint64_t preemptions = 0;                ///< involuntary context switches in the loop
   /// Files of what was recorded, complete but under temporary names until `finish`.
   std::vector<std::unique_ptr<Recorder>> recorders;

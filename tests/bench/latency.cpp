@@ -17,7 +17,7 @@ constexpr benchmark::IterationCount kRuns = 5;
 void latency(benchmark::State& state, const std::string& name) {
   if (!proved(state, "step/" + name, [&name] { return wrong_run(name); })) return;
   TimedRun run(name);
-  std::vector<std::uint32_t> all, best;
+  std::vector<std::uint64_t> all, best;
   for (auto _ : state) {
     StepTimes times(run.steps_left());
     run.rewind();
@@ -29,9 +29,9 @@ void latency(benchmark::State& state, const std::string& name) {
     for (std::size_t k = 0; k < ns.size(); ++k) best[k] = std::min(best[k], ns[k]);
   }
   const StepLatency single = step_latency(all, 0), repeatable = step_latency(best, 0);
-  state.counters["p50_s"] = 1e-9 * single.p50;
-  state.counters["p99_9_s"] = 1e-9 * repeatable.p99_9;
-  state.counters["longest_s"] = 1e-9 * repeatable.max;
+  state.counters["p50_s"] = 1e-9 * static_cast<double>(single.p50);
+  state.counters["p99_9_s"] = 1e-9 * static_cast<double>(repeatable.p99_9);
+  state.counters["longest_s"] = 1e-9 * static_cast<double>(repeatable.max);
   state.counters["steps"] = static_cast<double>(repeatable.steps);
   state.counters["late"] = static_cast<double>(repeatable.misses[1]);
 }

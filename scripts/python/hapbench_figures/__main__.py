@@ -1,14 +1,15 @@
 """Command line of scripts/figures."""
 import argparse
 import json
+import os
 import sys
 import time
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
-from hapbench_notice import Notice
-
 from . import catalogue, style
-from .results import BadResult, MissingResult, Results
+from .drawing import attempts
+from .results import Results
 
 
 def arguments(argv):
@@ -22,10 +23,15 @@ def arguments(argv):
     parser.add_argument(
         "--only", metavar="ID,…", help="draw these; an id stands for those that begin with it and a hyphen, too"
     )
+    parser.add_argument(
+        "--jobs", type=int, metavar="N", default=len(os.sched_getaffinity(0)), help="figures at once (default: one per thread)"
+    )
     parser.add_argument("--list", action="store_true", help="list the figures")
     chosen = parser.parse_args(argv)
     if not chosen.list and not (chosen.results and chosen.out):
         parser.error("needed are RESULTS_DIR and --out DIR, or --list")
+    if chosen.jobs < 1:
+        parser.error(f"--jobs: got {chosen.jobs}; allowed: 1 or more")
     return chosen
 
 
@@ -42,21 +48,6 @@ def selection(only):
     return chosen
 
 
-def draw(figure, results, directory):
-    """Draws and saves one figure; returns its entry in figures.json."""
-    results.start()
-    drawing, caption = figure.draw(results)
-    files = style.save(drawing, figure.stem, directory)
-    return {
-        "id": figure.id,
-        "title": figure.title,
-        "thesis_figure": figure.thesis,
-        "caption": caption,
-        "files": files,
-        "sources": sorted(results.sources),
-    }
-
-
 def write_index(directory, entries):
     """figures.json: entries of earlier runs stay for figures that were not drawn anew and still are there."""
     file = directory / "figures.json"
@@ -69,6 +60,12 @@ def write_index(directory, entries):
     merged.update({entry["id"]: entry for entry in entries})
     known = [merged[f.id] for f in catalogue.FIGURES if f.id in merged and (directory / f"{f.stem}.svg").is_file()]
     style.write(file, (json.dumps({"figures": known}, indent=2, ensure_ascii=False) + "\n").encode())
+
+
+def show_progress(done, total):
+    """A line that is written over, on a terminal."""
+    if sys.stderr.isatty():
+        print(f"\r{done} of {total} figures", end="\r\033[K" if done == total else "", file=sys.stderr, flush=True)
 
 
 def main(argv=None):
@@ -90,34 +87,32 @@ def main(argv=None):
         return 2
     directory = Path(chosen.out)
     started = time.monotonic()
-    entries, skipped, bad = [], [], []
+    outcomes = []
     style.plt.rcParams.update(style.SETTINGS)
     results = Results(chosen.results)
     try:
         directory.mkdir(parents=True, exist_ok=True)
-        with Notice("figures") as notice:
-            for number, figure in enumerate(figures, 1):
-                notice.say(f"figure {number}/{len(figures)}, {figure.id}")
-                try:
-                    entries.append(draw(figure, results, directory))
-                except MissingResult as missing:
-                    skipped.append(f"{figure.id} ({missing})")
-                except BadResult as error:
-                    bad.append(str(error))
-                except (KeyError, IndexError, TypeError, ValueError) as error:
-                    # A file that can be read but has not the columns, rows or members of hapbench's.
-                    sources = ", ".join(sorted(results.sources))
-                    bad.append(f"figure {figure.id}: {sources}: {type(error).__name__}: {error}")
+        for outcome in attempts(figures, results, directory, chosen.jobs):
+            outcomes.append(outcome)
+            show_progress(len(outcomes), len(figures))
+        _, drawn, skipped, bad = zip(*sorted(outcomes, key=lambda outcome: outcome[0]))
+        entries = [entry for entry in drawn if entry]
         write_index(directory, entries)
     except OSError as error:
         print(f"figures: {error.filename}: {error.strerror}", file=sys.stderr)
         return 2
-    for line in skipped:
+    except BrokenProcessPool:
+        print("figures: one of its processes was killed, perhaps for memory, of which --jobs 1 needs less", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("figures: stopped", file=sys.stderr)
+        return 130
+    for line in filter(None, skipped):
         print(f"figures: skipped {line}", file=sys.stderr)
-    for line in dict.fromkeys(bad):
+    for line in filter(None, dict.fromkeys(bad)):
         print(f"figures: {line}", file=sys.stderr)
     print(f"{len(entries)} figures in {directory}, {time.monotonic() - started:.0f} s")
-    return 2 if bad else 0 if entries else 1
+    return 2 if any(bad) else 0 if entries else 1
 
 
 if __name__ == "__main__":

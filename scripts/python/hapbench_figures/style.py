@@ -10,6 +10,7 @@ from hapbench_looks import PUBLISHED as PUBLISHED_COLOUR
 
 matplotlib.use("agg")
 from matplotlib import pyplot as plt  # noqa: E402  (the backend comes first)
+from matplotlib.transforms import Bbox  # noqa: E402
 
 WIDTH = 7.0  # of a page's text [inch]
 FORMATS = ("svg", "pdf", "png")
@@ -104,17 +105,20 @@ def note(ax, x, y, text, colour=BLACK, **keywords):
 def save(figure, stem, directory):
     """Writes the figure in every format, each file complete or not at all; returns the names. Same figure, same bytes:
     no dates, and identifiers in the SVG that follow from the figure's name."""
-    # Once for all formats: finding the layout takes longer than drawing.
-    figure.draw_without_rendering()
-    figure.set_layout_engine("none")
+    # Once for all formats: finding the layout takes longer than drawing. And then no engine at all, or matplotlib would go
+    # through every figure once more before it draws.
+    figure.get_layout_engine().execute(figure)
+    for axes in figure.axes:  # the layout's last digits differ from run to run, with what lies where in memory
+        axes.set_position(Bbox(axes.get_position(original=True).get_points().round(12)))
     names = []
-    for kind in FORMATS:
-        metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {"Software": None}}[kind]
-        bytes_ = io.BytesIO()
-        with matplotlib.rc_context({"svg.hashsalt": stem}):
+    with matplotlib.rc_context({"svg.hashsalt": stem, "figure.constrained_layout.use": False}):
+        figure.set_layout_engine(None)
+        for kind in FORMATS:
+            metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {"Software": None}}[kind]
+            bytes_ = io.BytesIO()
             figure.savefig(bytes_, format=kind, dpi=PNG_DPI, metadata=metadata)
-        write(Path(directory) / f"{stem}.{kind}", bytes_.getvalue())
-        names.append(f"{stem}.{kind}")
+            write(Path(directory) / f"{stem}.{kind}", bytes_.getvalue())
+            names.append(f"{stem}.{kind}")
     plt.close(figure)
     return names
 

@@ -3,18 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 namespace hapbench {
 namespace {
 
-using Times = std::vector<std::uint32_t>;
+using Times = std::vector<std::uint64_t>;
 
 /// 1 … n in a scrambled order: 7919 is a prime that divides no n below.
-Times scrambled(std::uint32_t n) {
+Times scrambled(std::uint64_t n) {
   Times times(n);
-  for (std::uint32_t i = 0; i < n; ++i) times[i] = 1 + static_cast<std::uint32_t>(std::uint64_t{i} * 7919 % n);
+  for (std::uint64_t i = 0; i < n; ++i) times[i] = 1 + i * 7919 % n;
   return times;
 }
 
@@ -37,17 +36,17 @@ TEST(StepLatency, PercentilesAreThoseOfNearestRank) {
 
 // By definition: at least p percent of the steps are as short as the percentile, and fewer are shorter.
 TEST(StepLatency, PercentilesSplitTheStepsAsDefined) {
-  for (std::uint32_t n = 1; n < 300; ++n) {
+  for (std::uint64_t n = 1; n < 300; ++n) {
     Times times = scrambled(n);
-    for (std::uint32_t& time : times) time = time * time / 7;  // with repetitions
+    for (std::uint64_t& time : times) time = time * time / 7;  // with repetitions
     const StepLatency latency = step_latency(times, 0);
-    const std::pair<double, std::uint32_t> percentiles[] = {
+    const std::pair<double, std::uint64_t> percentiles[] = {
         {0.5, latency.p50}, {0.95, latency.p95}, {0.99, latency.p99}, {0.999, latency.p99_9}};
     for (const auto& [p, value] : percentiles) {
       const auto up_to = std::count_if(times.begin(), times.end(), [v = value](auto time) { return time <= v; });
       const auto below = std::count_if(times.begin(), times.end(), [v = value](auto time) { return time < v; });
-      EXPECT_GE(static_cast<double>(up_to), p * n - 1e-9) << n;
-      EXPECT_LT(static_cast<double>(below), p * n + 1e-9) << n;
+      EXPECT_GE(static_cast<double>(up_to), p * static_cast<double>(n) - 1e-9) << n;
+      EXPECT_LT(static_cast<double>(below), p * static_cast<double>(n) + 1e-9) << n;
     }
   }
 }
@@ -61,7 +60,7 @@ TEST(StepLatency, AStepThatTakesExactlyTheDeadlineDoesNotMissIt) {
 
 TEST(StepLatency, HistogramHoldsEveryStepOnceBetweenPowersOfTwo) {
   Times times = scrambled(5000);
-  times.push_back(std::numeric_limits<std::uint32_t>::max());
+  times.push_back(5'000'000'000);  // more than 32 bits hold
   const StepLatency latency = step_latency(times, 0);
   std::uint64_t steps = 0;
   for (std::size_t i = 0; i < latency.histogram.size(); ++i) {
@@ -87,6 +86,7 @@ TEST(StepLatency, WithoutStepsThereAreNoPercentiles) {
 
 TEST(StepLatency, JsonIsInSeconds) {
   const auto json = step_latency_json(step_latency(Times{3, 600'000}, 0));
+  EXPECT_EQ(step_latency_json(step_latency(Times{5'000'000'000}, 0))["max_s"], 5.0);
   EXPECT_EQ(json["p50_s"], 3e-9);
   EXPECT_EQ(json["max_s"], 600e-6);
   EXPECT_EQ(json["deadline_misses"][0]["deadline_s"], 0.0005);
@@ -97,10 +97,10 @@ TEST(StepLatency, JsonIsInSeconds) {
 
 TEST(StepLatency, GivesMediansOverTheRun) {
   Times times;
-  for (std::uint32_t i = 0; i < 10 * StepLatency::kSpans; ++i) times.push_back(100 * (i / 10) + i % 10);
-  const std::vector<std::uint32_t> medians = step_latency(times, 0).over_time;
+  for (std::uint64_t i = 0; i < 10 * StepLatency::kSpans; ++i) times.push_back(100 * (i / 10) + i % 10);
+  const std::vector<std::uint64_t> medians = step_latency(times, 0).over_time;
   ASSERT_EQ(medians.size(), StepLatency::kSpans);
-  for (std::uint32_t span = 0; span < medians.size(); ++span) EXPECT_EQ(medians[span], 100 * span + 4);
+  for (std::uint64_t span = 0; span < medians.size(); ++span) EXPECT_EQ(medians[span], 100 * span + 4);
   EXPECT_EQ(step_latency(Times{5, 3, 4}, 0).over_time, (Times{5, 3, 4})) << "no more spans than steps";
   EXPECT_TRUE(step_latency({}, 0).over_time.empty());
 }

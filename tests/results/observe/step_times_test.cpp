@@ -33,6 +33,14 @@ TEST(StepTimes, TimesEachStep) {
   EXPECT_GE(ns[2] + times.overhead(), 100'000u);
 }
 
+// 4.29 s is 2^32 ns. A step that began 5 s ago need not be waited for.
+TEST(StepTimes, TimesAStepOfManySeconds) {
+  StepTimes times(1);
+  times.start(Clock::now() - std::chrono::seconds(5));
+  times.lap();
+  EXPECT_GE(times.nanoseconds()[0] + times.overhead(), 5'000'000'000u);
+}
+
 TEST(StepTimes, AddUpToTheTimeThatPassed) {
   constexpr std::uint64_t kSteps = 1000;
   StepTimes times(kSteps);
@@ -53,7 +61,7 @@ TEST(StepTimes, AnEmptyStepTakesAboutNothing) {
   StepTimes times(10'001);
   times.start();
   for (int i = 0; i < 10'001; ++i) times.lap();
-  std::vector<std::uint32_t> ns(times.nanoseconds().begin(), times.nanoseconds().end());
+  std::vector<std::uint64_t> ns(times.nanoseconds().begin(), times.nanoseconds().end());
   std::nth_element(ns.begin(), ns.begin() + 5000, ns.end());
   EXPECT_LE(ns[5000], times.overhead());
   EXPECT_GT(times.overhead(), 0u);

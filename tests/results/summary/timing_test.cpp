@@ -46,7 +46,7 @@ TEST(Timing, TextHoldsMeanTimeInstructionSetAndCpu) {
 
 TEST(Timing, HoldsTheLatencyOfTimedSteps) {
   RunTiming timing;
-  timing.latency = step_latency(std::vector<std::uint32_t>{1000, 2000}, 20);
+  timing.latency = step_latency(std::vector<std::uint64_t>{1000, 2000}, 20);
   EXPECT_EQ(timing_json(timing, {}, kProvenance)["step_latency"], step_latency_json(*timing.latency));
 }
 

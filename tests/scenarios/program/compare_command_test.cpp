@@ -29,12 +29,13 @@ TEST_F(CompareCommand, ShowsARowForEachAlgorithm) {
   const ProgramRun run = compare({"--algorithms", "original_averaging,mean,exact_shaping"});
   EXPECT_EQ(run.status, 0) << run.err;
   const auto lines = lines_of(run.out);
-  ASSERT_EQ(lines.size(), 10u) << run.out;
+  ASSERT_EQ(lines.size(), 12u) << run.out;
   EXPECT_EQ(lines[0], "peg_in_hole_2d_shaped_stiffness");
   EXPECT_EQ(lines[3].find("algorithm          outcome"), 0u);
   EXPECT_EQ(lines[5].find("original_averaging leaves_hole"), 0u);
   EXPECT_EQ(lines[6].find("mean               leaves_hole"), 0u);
   EXPECT_EQ(lines[7].find("exact_shaping      leaves_hole"), 0u);
+  EXPECT_EQ(lines[9].find("99 % of the steps take at most "), 0u) << lines[9];
 }
 
 TEST_F(CompareCommand, ShowsAllAlgorithmsIn100Columns) {
