@@ -1,6 +1,6 @@
 """Tests scripts/bench: the table on record, its statistics, and the comparison of two commits of a small project.
 
-bench_test.py SOURCE_DIRECTORY: the tree with scripts and README.
+bench_test.py SOURCE_DIRECTORY: the tree with scripts and manuals.
 """
 import copy
 import json
@@ -26,9 +26,9 @@ RECORD = json.loads((SOURCE / "results" / "reference" / "performance.json").read
 
 
 class Table(unittest.TestCase):
-    def test_the_readme_shows_what_is_on_record(self):
-        readme = (SOURCE / "README.md").read_text(encoding="utf-8")
-        self.assertEqual(table.spliced(readme, table.markdown(RECORD)), readme, "renew it with scripts/bench --record")
+    def test_the_manual_shows_what_is_on_record(self):
+        manual = (SOURCE / "tests" / "README.md").read_text(encoding="utf-8")
+        self.assertEqual(table.spliced(manual, table.markdown(RECORD)), manual, "renew it with scripts/docs --tables")
 
     def test_every_target_is_on_record(self):
         rows = {row["what"]: row for row in RECORD["ratios"]}
@@ -54,7 +54,7 @@ class Table(unittest.TestCase):
                                    (57.5e6, "B", "57.5 MB"), (98, "B", "98 B"), (73.21, "", "73.2"), (6e-4, "", "0.0006")):
             self.assertEqual(table.quantity(value, unit), shown)
 
-    def test_a_readme_without_the_marks_is_refused(self):
+    def test_a_manual_without_the_marks_is_refused(self):
         with self.assertRaisesRegex(BenchError, "performance"):
             table.spliced("# hapbench\n", "x")
 

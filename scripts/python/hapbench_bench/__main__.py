@@ -12,12 +12,11 @@ from pathlib import Path
 from . import commit
 from .measure import performance
 from .program import ROOT, BenchError, build, listed
-from .table import aligned, markdown, spliced
+from .table import MANUAL, RECORD, aligned, markdown, spliced
 
 DESCRIPTION = """Builds the program and its benchmarks and prints what they take as ratios, each to a benchmark that ran in the
 same process, its repetitions interleaved with theirs, beside its target (about two minutes). With --against compares every
 benchmark with that of another commit. Times mean something on a quiet machine only; ratios drift less."""
-RECORD = ROOT / "results" / "reference" / "performance.json"
 SUCCESS, TOO_SLOW, BAD_INPUT = 0, 1, 2
 
 
@@ -27,7 +26,7 @@ def arguments(words):
                                      "scripts/bench --benchmark_filter='search/.*'")
     parser.add_argument("--full", action="store_true", help="also shells of up to 7 million points (minutes, gigabytes)")
     parser.add_argument("--record", action="store_true",
-                        help="as --full, and renews results/reference/performance.json and the README's table and figure")
+                        help="as --full, and renews results/reference/performance.json, its table in tests/README.md and its figure")
     parser.add_argument("--out", type=Path, default=ROOT / "results" / "out", metavar="DIR",
                         help="gets performance.json; in a folder of results figures and report take it from there; "
                         "default: results/out")
@@ -71,8 +70,7 @@ def measure(chosen):
     text = json.dumps(found, indent=1, ensure_ascii=False) + "\n"
     files = {chosen.out / "performance.json": text}
     if chosen.record:
-        readme = ROOT / "README.md"
-        files |= {RECORD: text, readme: spliced(readme.read_text(encoding="utf-8"), markdown(found))}
+        files |= {RECORD: text, MANUAL: spliced(MANUAL.read_text(encoding="utf-8"), markdown(found))}
     for file, content in files.items():
         replace(file, content)
     if chosen.record:
@@ -82,7 +80,7 @@ def measure(chosen):
 
 
 def redraw():
-    """The README's figure, of what has just been recorded."""
+    """The figure of what has just been recorded."""
     name = "figure_growth.svg"
     with tempfile.TemporaryDirectory(prefix="hapbench-bench-") as scratch:
         words = [ROOT / "scripts" / "figures", RECORD.parent, "--out", scratch, "--only", "growth"]

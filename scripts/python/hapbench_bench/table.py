@@ -1,9 +1,19 @@
-"""The tables of targets as Markdown, and their place in the README."""
-from .program import BenchError
+"""The tables of targets as Markdown, and their place in the manual of the tests."""
+import json
+
+from .program import ROOT, BenchError
+
+RECORD = ROOT / "results" / "reference" / "performance.json"
+MANUAL = ROOT / "tests" / "README.md"
 
 BEGIN = "<!-- performance: scripts/bench --record writes what follows, from results/reference/performance.json -->"
 END = "<!-- /performance -->"
 SCALES = {"s": ((1, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns")), "B": ((1e6, "MB"), (1, "B")), "": ((1, ""),)}
+
+
+def record():
+    """What scripts/bench --record has measured."""
+    return json.loads(RECORD.read_text(encoding="utf-8"))
 
 
 def quantity(value, unit):
@@ -71,5 +81,5 @@ def spliced(document, text):
     head, found, rest = document.partition(BEGIN)
     _, ended, tail = rest.partition(END)
     if not (found and ended):
-        raise BenchError(f"README.md: no place for the table; needed are the lines {BEGIN} and {END}")
+        raise BenchError(f"tests/README.md: no place for the table; needed are the lines {BEGIN} and {END}")
     return f"{head}{BEGIN}\n\n{text}\n{END}{tail}"

@@ -1,0 +1,1 @@
+"""What is generated in the manuals, and what the manuals promise."""

@@ -1,0 +1,59 @@
+"""The command line of scripts/docs."""
+import argparse
+import sys
+import tempfile
+from pathlib import Path
+
+from hapbench_bench import table
+from hapbench_pictures.files import write
+from hapbench_report.json_input import InputError
+
+from . import blocks, ledger, sessions
+from .manuals import ROOT, Manual, manuals
+from .program import Program, ProgramError
+
+DESCRIPTION = """Renews what is generated in the manuals: sessions (commands with their output), the tables of the ledger,
+of its robustness and of speed, from results/reference, and, with --gallery, the pictures of scenes. Needs the built program."""
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(prog="scripts/docs", description=DESCRIPTION)
+    parser.add_argument("--program", type=Path, default=ROOT / "build" / "release" / "bin" / "hapbench", metavar="FILE",
+                        help="default: build/release/bin/hapbench")
+    parser.add_argument("--tables", action="store_true", help="the tables from results/reference only, which need no program")
+    parser.add_argument("--gallery", action="store_true", help="the gallery of scenes, too: results/reference/gallery")
+    return parser.parse_args(words)
+
+
+def renewed(manual, scratch, program):
+    """The manual's text with its blocks made anew."""
+    makers = dict(ledger.MAKERS)
+    if program:
+        makers["session"] = lambda old: sessions.renewed(old, program, scratch)
+    text = blocks.renewed(manual.text, makers)
+    return table.spliced(text, table.markdown(table.record())) if manual.file == table.MANUAL else text
+
+
+def main(words=None):
+    chosen = arguments(words)
+    try:
+        program = None if chosen.tables else Program(chosen.program)
+        with tempfile.TemporaryDirectory(prefix="hapbench-docs-") as scratch:
+            if chosen.gallery and program:
+                from . import gallery  # only here: matplotlib takes a second
+                gallery.draw_all(program, Path(scratch))
+            for manual in map(Manual, manuals()):
+                text = renewed(manual, Path(scratch), program)
+                if text != manual.text:
+                    write(manual.file, text.encode())
+                    print(f"renewed {manual.file.relative_to(ROOT)}")
+    except (ProgramError, InputError, blocks.BlockError, OSError) as error:
+        print(f"docs: error: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        return 130
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,41 @@
+"""The built program, and on which machine it runs."""
+import datetime
+import os
+import re
+import subprocess
+from pathlib import Path
+
+COLUMNS = 100  # of a session in a manual
+
+
+class ProgramError(Exception):
+    """The program could not do what a manual says."""
+
+
+class Program:
+    def __init__(self, file):
+        if not file.is_file():
+            raise ProgramError(f"{file}: no such file; build it, or name another with --program")
+        self.file = file.resolve()
+
+    def run(self, words, directory):
+        """Standard output. A run that ends other than expected (3) has output, too."""
+        done = subprocess.run([self.file, *words], cwd=directory, capture_output=True, text=True, encoding="utf-8",
+                              env={**os.environ, "COLUMNS": str(COLUMNS), "LC_ALL": "C.UTF-8"}, stdin=subprocess.DEVNULL)
+        if done.returncode not in (0, 3):
+            raise ProgramError(f"hapbench {' '.join(words)}: exit status {done.returncode}: {done.stderr.strip()}")
+        return done.stdout
+
+    def provenance(self):
+        """As in "commit 5e60010bc2c9, 2026-11-21, AMD EPYC"."""
+        commit = re.search(r"\(([^)]+)\)", self.run(["--version"], "."))
+        return f"commit {commit[1] if commit else 'unknown'}, {datetime.date.today()}, {processor()}"
+
+
+def processor():
+    """The processor's name without what it says of its cores."""
+    try:
+        found = re.search(r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.M)
+    except OSError:
+        found = None
+    return re.sub(r"\s+\d+-Core.*|\s*@.*|\(R\)|\(TM\)", "", found[1]).strip() if found else "unknown processor"

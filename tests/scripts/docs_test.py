@@ -1,0 +1,195 @@
+"""The manuals keep what they promise: documented commands work, links lead somewhere, generated tables are those on
+record, and the first page keeps its size. Arguments: the built program, the source tree. Needs numpy and matplotlib."""
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(SOURCE / "scripts" / "python"))
+
+from hapbench_docs import blocks, ledger  # noqa: E402  (the path comes first)
+from hapbench_docs.manuals import Manual, anchor, broken_links, manuals  # noqa: E402
+
+MANUALS = [Manual(file) for file in manuals()]
+COMMANDS = [command for manual in MANUALS for command in manual.commands()]
+# No option of the program is like it, so that no other is named as the one that may have been meant.
+UNKNOWN = "--zzzz"
+# Minutes long: parsed, not run.
+LONG = {"precision", "reproduce", "--map", "--stress", "--search"}
+FEW_STEPS = ["--set", 'time={"step_s": 0.0005, "steps": 40}']
+SHORTER = {"run": FEW_STEPS, "compare": FEW_STEPS, "sweep": FEW_STEPS, "limit": [*FEW_STEPS, "--resolution", "0.5"]}
+ENVIRONMENT = {**os.environ, "HAPBENCH_PYTHON": sys.executable, "LC_ALL": "C.UTF-8", "PYTHONDONTWRITEBYTECODE": "1"}
+CORNERS = ((0, 0, 0), (20, 0, 0), (20, 20, 0), (0, 20, 0), (0, 0, 5), (20, 0, 5), (20, 20, 5), (0, 20, 5))
+FACES = ((0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4), (1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6),
+         (3, 0, 4), (3, 4, 7))
+
+
+def started(words, directory="."):
+    return subprocess.run([*map(str, words)], cwd=directory, env=ENVIRONMENT, capture_output=True, text=True, encoding="utf-8",
+                          stdin=subprocess.DEVNULL)
+
+
+def of_program(command):
+    return not command.words[0].startswith("scripts/")
+
+
+def is_long(command):
+    return bool(LONG & set(command.words)) or len(command.words) < 2
+
+
+def write_stl(file):
+    """A block of 20 x 20 x 5 mm."""
+    facets = "".join("facet normal 0 0 0\nouter loop\n" + "".join("vertex {} {} {}\n".format(*CORNERS[i]) for i in face)
+                     + "endloop\nendfacet\n" for face in FACES)
+    file.write_text(f"solid block\n{facets}endsolid block\n", encoding="ascii")
+
+
+class Bench:
+    """A folder with the files that manuals call their reader's own."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        write_stl(folder / "my.stl")
+        assert started([PROGRAM, "new", "mesh", "--from", "my.stl", "--quiet"], folder).returncode == 0
+        for name in "abc":
+            shutil.copy(folder / "my.json", folder / f"{name}.json")
+        for shard in range(2):
+            self.sweep(["--shard", f"{shard}/2", "--out", "."])
+        self.sweep(["--shard", "0/2", "--out", "shared/s"])
+        peg = ["peg_in_hole_2d_shaped_stiffness", *SHORTER["run"], "--quiet", "--out"]
+        for out in ("results/good/peg", "results/out/peg"):
+            assert started([PROGRAM, "run", *peg, out], folder).returncode == 0
+
+    def sweep(self, words):
+        vary = ["--vary", "rendering.stiffness_N_per_m=1e3:2e3:2", *SHORTER["sweep"], "--quiet"]
+        assert started([PROGRAM, "sweep", "my.json", *vary, *words], self.folder).returncode in (0, 3)
+
+    def words(self, command):
+        """The command's, shorter, and with patterns replaced by the files that they match."""
+        given = list(command.words[1:])
+        if given[0] == "new" and "--out" not in given:
+            (self.folder / "my.json").unlink(missing_ok=True)
+        if given[0] == "sweep" and "--slurm" in given:
+            given.append("--dry-run")
+        shorter = [] if given[0] == "sweep" and {"--row", "--status"} & set(given) else SHORTER.get(given[0], [])
+        found = []
+        for word in given:
+            found += sorted(map(str, self.matches(word))) if "*" in word and "=" not in word else [word]
+        return [*found, *shorter]
+
+    def matches(self, pattern):
+        root = SOURCE if pattern.startswith("scenarios/") else self.folder
+        return [path if root == SOURCE else path.relative_to(root) for path in root.glob(pattern)]
+
+    def run(self, command):
+        return started([PROGRAM, *self.words(command)], self.folder)
+
+
+class Commands(unittest.TestCase):
+    def test_there_are_some(self):
+        self.assertGreater(len([c for c in COMMANDS if of_program(c)]), 50)
+        self.assertGreater(len([c for c in COMMANDS if not of_program(c)]), 8)
+
+    def test_the_program_knows_their_options(self):
+        for command in filter(of_program, COMMANDS):
+            with self.subTest(str(command)):
+                done = started([PROGRAM, *command.words[1:], UNKNOWN])
+                self.assertEqual(done.returncode, 2, done.stderr)
+                unknown = set(re.findall(r"(?<!\S)--[a-z-]+", done.stderr)) - {"--help"}
+                self.assertEqual(unknown, {UNKNOWN}, done.stderr)
+
+    def test_short_ones_run(self):
+        for manual in MANUALS:
+            own = [c for c in manual.commands() if of_program(c) and not is_long(c)]
+            if not own or manual.file.name == "GALLERY.md" or manual.file.is_relative_to(SOURCE / "results" / "reference"):
+                continue
+            with tempfile.TemporaryDirectory(prefix="hapbench-docs-") as scratch:
+                bench = Bench(Path(scratch))
+                for command in own:
+                    with self.subTest(str(command)):
+                        done = bench.run(command)
+                        self.assertIn(done.returncode, (0, 3), done.stderr)
+
+    def test_scripts_know_their_options(self):
+        for command in COMMANDS:
+            if of_program(command):
+                continue
+            script = SOURCE / command.words[0]
+            with self.subTest(str(command)):
+                self.assertTrue(os.access(script, os.X_OK))
+                # setup has no --help, and would install
+                says = script.read_text(encoding="utf-8") if script.name == "setup" else started([script, "--help"]).stdout
+                for option in (word.split("=")[0] for word in command.words[1:] if word.startswith("--")):
+                    self.assertRegex(says, rf"{option}\b")
+
+    def test_commands_in_sentences_exist(self):
+        known = set(re.findall(r"^  ([a-z]+) +[A-Z]", started([PROGRAM, "--help"]).stdout, re.M))
+        self.assertIn("run", known)
+        for manual in MANUALS:
+            for name in re.findall(r"`hapbench\s+([a-z]+)", manual.text):
+                with self.subTest(manual=str(manual.file), command=name):
+                    self.assertIn(name, known)
+
+    def test_a_wrong_option_is_found(self):
+        done = started([PROGRAM, "run", "single_spring", "--outt", "x", UNKNOWN])
+        self.assertIn("--outt", done.stderr)
+
+    def test_comments_continued_lines_and_redirections(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            file = Path(scratch) / "x.md"
+            file.write_text("a\n\n    hapbench run x \\\n      --out y   # why\n\n```\n$ hapbench list >z\nscripts/test --fast | cat\n```\n"
+                            "hapbench is prose\n", encoding="utf-8")
+            self.assertEqual([c.words for c in Manual(file).commands()],
+                             [("hapbench", "run", "x", "--out", "y"), ("hapbench", "list"), ("scripts/test", "--fast")])
+
+
+class Pages(unittest.TestCase):
+    def test_links_lead_somewhere(self):
+        for manual in MANUALS:
+            with self.subTest(str(manual.file)):
+                self.assertEqual(list(broken_links(manual)), [])
+
+    def test_anchors(self):
+        self.assertEqual(anchor("Merged shaping, or no reduction"), "merged-shaping-or-no-reduction")
+        self.assertEqual(anchor("K_vc of `x`"), "k_vc-of-x")
+
+    def test_the_first_page_keeps_its_size(self):
+        lines = (SOURCE / "README.md").read_text(encoding="utf-8").splitlines()
+        self.assertLessEqual(len(lines), 150)
+        self.assertEqual([line for line in lines if len(line) > 110], [])
+
+    def test_every_folder_of_the_first_page_has_its_manual(self):
+        for folder in ("algorithms", "device_model", "results", "scenarios", "sim", "tests"):
+            self.assertTrue((SOURCE / folder / "README.md").is_file(), folder)
+
+    def test_the_version_is_the_same_everywhere(self):
+        version = re.search(r"project\(hapbench VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
+        self.assertIn(f"\nversion: {version}\n", (SOURCE / "CITATION.cff").read_text(encoding="utf-8"))
+        self.assertIn(f"\n## {version}", (SOURCE / "CHANGELOG.md").read_text(encoding="utf-8").replace("[", "").replace("]", ""))
+        self.assertIn(version, started([PROGRAM, "--version"]).stdout)
+
+
+class Generated(unittest.TestCase):
+    def test_tables_are_those_on_record(self):
+        for manual in MANUALS:
+            with self.subTest(str(manual.file)):
+                self.assertEqual(blocks.renewed(manual.text, ledger.MAKERS), manual.text, "renew it with scripts/docs --tables")
+
+    def test_a_block_without_end_is_refused(self):
+        with self.assertRaises(blocks.BlockError):
+            blocks.renewed("<!-- generated: verdicts -->\n| a |\n", ledger.MAKERS)
+
+    def test_sessions_say_where_they_come_from(self):
+        for manual in MANUALS:
+            for session in re.findall(r"<!-- generated: session.*?<!-- /generated -->", manual.text, re.S):
+                self.assertRegex(session, r"Printed by commit \S+, \d{4}-\d\d-\d\d, \S", str(manual.file))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
