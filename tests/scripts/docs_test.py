@@ -13,8 +13,9 @@ PROGRAM, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(SOURCE / "scripts" / "python"))
 
-from hapbench_docs import blocks, ledger  # noqa: E402  (the path comes first)
+from hapbench_docs import blocks, ledger, sessions  # noqa: E402  (the path comes first)
 from hapbench_docs.manuals import Manual, anchor, broken_links, manuals  # noqa: E402
+from hapbench_docs.program import Program, ProgramError  # noqa: E402
 
 GALLERY, RECORD = SOURCE / "scenarios" / "GALLERY.md", SOURCE / "results" / "reference"
 MANUALS = [Manual(file) for file in manuals()]
@@ -193,6 +194,16 @@ class Generated(unittest.TestCase):
     def test_a_block_without_end_is_refused(self):
         with self.assertRaises(blocks.BlockError):
             blocks.renewed("<!-- generated: verdicts -->\n| a |\n", ledger.MAKERS)
+
+    def test_a_session_holds_what_the_command_prints(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            new = sessions.renewed("    $ hapbench describe mean\n\n    old\n", Program(PROGRAM), scratch)
+            self.assertIn("c_i = 1/n", new)
+            self.assertNotIn("old", new)
+            dated = new.replace("Printed by ", "Printed by an older ")
+            self.assertEqual(sessions.renewed(dated, Program(PROGRAM), scratch), dated)
+            with self.assertRaisesRegex(ProgramError, "nosuch"):
+                sessions.renewed("    $ hapbench describe nosuch\n", Program(PROGRAM), scratch)
 
     def test_sessions_say_where_they_come_from(self):
         for manual in MANUALS:

@@ -30,7 +30,7 @@ def renewed(manual, scratch, program):
     makers = dict(ledger.MAKERS)
     if program:
         makers["session"] = lambda old: sessions.renewed(old, program, scratch)
-        makers["ideal_trajectory"] = lambda old: studies.ideal_trajectory(program, scratch)
+        makers["ideal_trajectory"] = lambda old: studies.ideal_trajectory(old, program, scratch)
     text = blocks.renewed(manual.text, makers)
     return table.spliced(text, table.markdown(table.record())) if manual.file == table.MANUAL else text
 
