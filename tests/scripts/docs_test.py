@@ -105,6 +105,8 @@ class Commands(unittest.TestCase):
 
     def test_the_program_knows_their_options(self):
         for command in filter(of_program, COMMANDS):
+            if command.words[1:2] == ("--version",):
+                continue  # whatever follows
             with self.subTest(str(command)):
                 done = started([PROGRAM, *command.words[1:], UNKNOWN])
                 self.assertEqual(done.returncode, 2, done.stderr)
