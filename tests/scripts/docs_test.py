@@ -1,5 +1,6 @@
 """The manuals keep what they promise: documented commands work, links lead somewhere, generated tables are those on
 record, and the first page keeps its size. Arguments: the built program, the source tree. Needs numpy and matplotlib."""
+import json
 import os
 import re
 import shutil
@@ -179,6 +180,14 @@ class Pages(unittest.TestCase):
     def test_every_folder_of_the_first_page_has_its_manual(self):
         for folder in ("algorithms", "device_model", "results", "scenarios", "sim", "tests"):
             self.assertTrue((SOURCE / folder / "README.md").is_file(), folder)
+
+    def test_every_algorithm_is_in_both_tables(self):
+        schema = json.dumps(json.loads((SOURCE / "scenarios" / "scenario.schema.json").read_text(encoding="utf-8")))
+        names = json.loads(re.search(r'\["original_averaging", [^]]*\]', schema)[0])
+        self.assertGreater(len(names), 12)
+        for page in ("README.md", "algorithms/README.md"):
+            rows = re.findall(r"^\| `(\w+)` \|", (SOURCE / page).read_text(encoding="utf-8"), re.M)
+            self.assertEqual(set(names) - set(rows), set(), page)
 
     def test_the_version_is_the_same_everywhere(self):
         version = re.search(r"project\(hapbench VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
