@@ -8,7 +8,7 @@ from hapbench_bench import table
 from hapbench_pictures.files import write
 from hapbench_report.json_input import InputError
 
-from . import blocks, ledger, sessions
+from . import blocks, ledger, sessions, studies
 from .manuals import ROOT, Manual, manuals
 from .program import Program, ProgramError
 
@@ -30,6 +30,7 @@ def renewed(manual, scratch, program):
     makers = dict(ledger.MAKERS)
     if program:
         makers["session"] = lambda old: sessions.renewed(old, program, scratch)
+        makers["ideal_trajectory"] = lambda old: studies.ideal_trajectory(old, program, scratch)
     text = blocks.renewed(manual.text, makers)
     return table.spliced(text, table.markdown(table.record())) if manual.file == table.MANUAL else text
 

@@ -26,6 +26,11 @@ class Program:
             raise ProgramError(f"hapbench {' '.join(words)}: exit status {done.returncode}: {done.stderr.strip()}")
         return done.stdout
 
+    def stamped(self, text, old):
+        """The text and where it comes from; the old block where the text is the same, since a date alone is no news."""
+        head = f"{text}\n\nPrinted by "
+        return old if head in old else f"{head}{self.provenance()}."
+
     def provenance(self):
         """As in "commit 5e60010bc2c9, 2026-11-21, AMD EPYC"."""
         commit = re.search(r"\(([^)]+)\)", self.run(["--version"], "."))

@@ -11,5 +11,4 @@ def renewed(old, program, directory):
         raise ProgramError("a session begins with an indented line: $ hapbench …")
     output = program.run(shlex.split(line)[2:], directory)
     shown = "\n".join(f"    {text}".rstrip() for text in [line, "", *output.strip("\n").splitlines()])
-    # The date alone is no reason for another version.
-    return old if f"{shown}\n\nPrinted by" in old else f"{shown}\n\nPrinted by {program.provenance()}."
+    return program.stamped(shown, old)
