@@ -16,9 +16,7 @@ std::shared_ptr<const PointShell> SharedShells::take(std::size_t environment, co
   const auto start = std::chrono::steady_clock::now();
   Entry& entry = entries_[environment];
   const std::lock_guard lock(entry.mutex);
-  if (!entry.shell) {
-    entry.shell = make_shell(scenario);
-  }
+  if (!entry.shell) entry.shell = make_shell(scenario);
   auto shell = entry.shell;
   if (--entry.uses == 0) entry.shell.reset();
   if (timing != nullptr) {

@@ -14,7 +14,7 @@ namespace hapbench {
 class SharedShells {
  public:
   /// `uses` says for each environment how many runs are in it.
-  SharedShells(const std::vector<std::size_t>& uses);
+  explicit SharedShells(const std::vector<std::size_t>& uses);
 
   /// The shell of an environment, which is the scenario's; null for springs. Waits while another thread makes it. To be
   /// called once for each run in it. `timing`, if given, learns how long that took. Throws InputError when a named file

@@ -34,6 +34,7 @@ SortedByCell sorted_by_cell(const GridCells& cells, std::size_t n, Position posi
   SortedByCell sorted;
   sorted.start.assign(cells.count() + 1, 0);
   sorted.order.resize(n);
+  // Cells are found twice instead of kept: millions of points have no memory to spare.
   for (std::size_t i = 0; i < n; ++i) ++sorted.start[cells.cell_of(position(i))];
   // Each cell's end; taking places from the back leaves its start.
   std::partial_sum(sorted.start.begin(), sorted.start.end(), sorted.start.begin());

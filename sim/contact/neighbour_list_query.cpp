@@ -4,7 +4,7 @@
 #include <bit>
 
 #include "sim/contact/most_points.hpp"
-#include "sim/core/simd.hpp"
+#include "sim/contact/push_hits.hpp"
 
 namespace hapbench {
 namespace {
@@ -32,13 +32,10 @@ NeighbourListQuery::NeighbourListQuery(const PointShell& shell, const ToolShape&
       capacity_(most_points_in(shell, tool.cover(margin_of(skin_wanted_, largest_scale(shell, tool))))),
       grid_(shell),
       scan_(grid_),
-      index_(room()),
-      x_(room()),
-      y_(room()),
-      z_(room()),
-      nx_(room()),
-      ny_(room()),
-      nz_(room()) {}
+      list_(simd::padded(capacity_) + simd::lanes) {}
+
+NeighbourListQuery::List::List(std::size_t room)
+    : index(room), x(room), y(room), z(room), nx(room), ny(room), nz(room) {}
 
 void NeighbourListQuery::reset() noexcept {
   work_ = {};
@@ -93,44 +90,41 @@ void NeighbourListQuery::collect(const ToolPose& pose, double skin) noexcept {
   } else {
     take_marked_sorted();
   }
-  for (std::size_t k = list_size_; k < simd::padded(list_size_); ++k) x_[k] = y_[k] = z_[k] = PointShell::kFarAway;
+  for (std::size_t k = list_size_; k < simd::padded(list_size_); ++k)
+    list_.x[k] = list_.y[k] = list_.z[k] = PointShell::kFarAway;
 }
 
 /// The grid's order is the shell's: whole packs at a time.
 void NeighbourListQuery::take_marked() noexcept {
+  const PointColumns points{grid_.shell_indices(), shell_->x(),  shell_->y(), shell_->z(),
+                            shell_->nx(),          shell_->ny(), shell_->nz()};
   list_size_ = 0;
-  scan_.for_each_hit([this](std::uint8_t hits, std::size_t i) {
-    simd::store_selected(hits, grid_.shell_indices() + i, &index_[list_size_]);
-    simd::store_selected(hits, shell_->x() + i, &x_[list_size_]);
-    simd::store_selected(hits, shell_->y() + i, &y_[list_size_]);
-    simd::store_selected(hits, shell_->z() + i, &z_[list_size_]);
-    simd::store_selected(hits, shell_->nx() + i, &nx_[list_size_]);
-    simd::store_selected(hits, shell_->ny() + i, &ny_[list_size_]);
-    simd::store_selected(hits, shell_->nz() + i, &nz_[list_size_]);
-    list_size_ += static_cast<std::size_t>(std::popcount(hits));
-  });
+  scan_.for_each_hit(
+      [&, this](std::uint8_t hits, std::size_t i) { list_size_ += copy_hits(hits, points, i, list_, list_size_); });
 }
 
 void NeighbourListQuery::take_marked_sorted() noexcept {
   list_size_ = 0;
   scan_.for_each_hit([this](std::uint8_t hits, std::size_t i) {
     for (; hits != 0; hits &= static_cast<std::uint8_t>(hits - 1)) {
-      index_[list_size_++] = grid_.shell_index(i + static_cast<std::size_t>(std::countr_zero(hits)));
+      list_.index[list_size_++] = grid_.shell_index(i + static_cast<std::size_t>(std::countr_zero(hits)));
     }
   });
-  std::sort(index_.begin(), index_.begin() + static_cast<std::ptrdiff_t>(list_size_));
+  std::sort(list_.index.begin(), list_.index.begin() + static_cast<std::ptrdiff_t>(list_size_));
   for (std::size_t k = 0; k < list_size_; ++k) {
-    x_[k] = shell_->x()[index_[k]];
-    y_[k] = shell_->y()[index_[k]];
-    z_[k] = shell_->z()[index_[k]];
-    nx_[k] = shell_->nx()[index_[k]];
-    ny_[k] = shell_->ny()[index_[k]];
-    nz_[k] = shell_->nz()[index_[k]];
+    const std::uint32_t i = list_.index[k];
+    list_.x[k] = shell_->x()[i];
+    list_.y[k] = shell_->y()[i];
+    list_.z[k] = shell_->z()[i];
+    list_.nx[k] = shell_->nx()[i];
+    list_.ny[k] = shell_->ny()[i];
+    list_.nz[k] = shell_->nz()[i];
   }
 }
 
 void NeighbourListQuery::test_list(const ToolPose& pose, ContactBuffer& contacts) noexcept {
-  const PointColumns points{index_.data(), x_.data(), y_.data(), z_.data(), nx_.data(), ny_.data(), nz_.data()};
+  const PointColumns points{list_.index.data(), list_.x.data(),  list_.y.data(), list_.z.data(),
+                            list_.nx.data(),    list_.ny.data(), list_.nz.data()};
   const PackRange all{0, simd::padded(list_size_) / simd::lanes};
   tool_->push_inside(pose, points, {&all, 1}, contacts);
   work_.points_tested += list_size_;

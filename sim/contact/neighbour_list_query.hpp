@@ -33,8 +33,6 @@ class NeighbourListQuery final : public ContactQuery {
   void collect(const ToolPose& pose, double skin) noexcept;
   void take_marked() noexcept;
   void take_marked_sorted() noexcept;
-  /// Points are written by whole packs wherever the last one ended.
-  std::size_t room() const noexcept { return simd::padded(capacity_) + simd::lanes; }
   void test_list(const ToolPose& pose, ContactBuffer& contacts) noexcept;
 
   const PointShell* shell_;
@@ -49,8 +47,13 @@ class NeighbourListQuery final : public ContactQuery {
   ToolPose list_pose_;
   double skin_ = 0.0;
   std::size_t list_size_ = 0;
-  std::vector<std::uint32_t> index_;
-  AlignedDoubles x_, y_, z_, nx_, ny_, nz_;
+  /// Has room for whole packs and one more: points are written by packs wherever the last one ended.
+  struct List {
+    explicit List(std::size_t room);
+    std::vector<std::uint32_t> index;
+    AlignedDoubles x, y, z, nx, ny, nz;
+  };
+  List list_;
 };
 
 }  // namespace hapbench

@@ -63,8 +63,8 @@ class Slab {
   void add_vertex(std::size_t node, std::size_t axis, std::size_t k, GridLayer& layer, double a, double b) {
     if (std::isnan(b) || (a > 0.0) == (b > 0.0)) return;
     layer.on_edge(node, axis) = static_cast<std::uint32_t>(surface_.vertices.size());
-    const std::size_t i = node % grid_->count(0), j = node / grid_->count(0);
-    const Vec3 p = grid_->node(i, j, k), q = grid_->node(i + (axis == 0), j + (axis == 1), k + (axis == 2));
+    const std::array<std::size_t, 3> next{1, grid_->count(0), 0};
+    const Vec3 p = position(node, k), q = position(node + next[axis], k + (axis == 2));
     surface_.vertices.push_back({p + (q - p) * (a / (a - b)), Vec3::Zero()});
   }
 
