@@ -3,107 +3,134 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace hapbench {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr int kSamples = 64;
-constexpr double kAngleTolerance = 1e-8;
+constexpr std::size_t kSamples = 64;
+constexpr double kStep = 2.0 * std::numbers::pi / kSamples;  // [rad]
+constexpr double kAngleTolerance = 1e-8;                     // [rad]
 
-/// Largest value of f in [low, high] by golden section, if it has one hill there.
+struct Turn {
+  double cosine, sine;
+};
+
+const std::array<Turn, kSamples> kTurns = [] {
+  std::array<Turn, kSamples> turns{};
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const double angle = static_cast<double>(i) * kStep;
+    turns[i] = {std::cos(angle), std::sin(angle)};
+  }
+  return turns;
+}();
+
+/// The tool's side, one straight line for each angle about its axis.
+class Side {
+ public:
+  Side(const BlockWithHole& block, const Cylinder& tool, const ToolPose& pose)
+      : tip_(pose.position),
+        up_(-pose.axis),
+        e1_(tool.radius() * pose.axis.unitOrthogonal()),
+        e2_(pose.axis.cross(e1_)),
+        steepness_(up_.head<2>().squaredNorm() - up_.z() * up_.z()),
+        length_(tool.length()),
+        radius_(block.hole_diameter / 2),
+        block_(block) {}
+
+  /// Depth of the deepest point of a line [m], negative when all of it is outside.
+  double deepest(const Turn& turn) const {
+    const Vec3 end = tip_ + turn.cosine * e1_ + turn.sine * e2_;
+    const double deep = depth(end), up_to_cone = to_cone(end);
+    return up_to_cone > 0.0 ? std::max(deep, depth(end + std::min(up_to_cone, length_) * up_)) : deep;
+  }
+  double deepest(double angle) const { return deepest({std::cos(angle), std::sin(angle)}); }
+
+ private:
+  /// Depth below the block's surface, negative outside [m]. In the block it is the exact distance.
+  double depth(const Vec3& q) const {
+    const double out = std::sqrt(q.x() * q.x() + q.y() * q.y()) - radius_, below = -block_.hole_depth - q.z();
+    const double hole = out > 0.0 && below > 0.0 ? std::sqrt(out * out + below * below) : std::max(out, below);
+    return std::min({hole, -q.z(), q.z() + block_.size.z(), block_.size.x() / 2 - std::abs(q.x()),
+                     block_.size.y() / 2 - std::abs(q.y())});
+  }
+
+  /// How far up the line from its end in the tip the cone rho - R = -z is [m]; 0 when the end is not within the cone.
+  double to_cone(const Vec3& end) const {
+    // Squared, rho = R - z is steepness s^2 + 2 b s + c = 0; its smallest positive root is the one where R - z > 0.
+    const double height = radius_ - end.z();
+    const double c = end.head<2>().squaredNorm() - height * height;
+    if (height <= 0.0 || c >= 0.0) return 0.0;
+    const double b = end.head<2>().dot(up_.head<2>()) + height * up_.z();
+    const double root = std::sqrt(b * b - steepness_ * c);
+    return b < 0.0 ? (root - b) / steepness_ : -c / (b + root);  // no difference of near numbers
+  }
+
+  Vec3 tip_, up_, e1_, e2_;
+  double steepness_, length_, radius_;
+  const BlockWithHole& block_;
+};
+
+/// Largest value of f in [low, high], if it has one hill there, by Brent's method (R. P. Brent, Algorithms for
+/// Minimization without Derivatives, 1973, chapter 5): the vertex of the parabola through the three best points so far,
+/// or a golden section where that does not lie well inside. `best`: a point between, with its value `top`.
 template <class Function>
-double top_of_hill(const Function& f, double low, double high) {
-  constexpr double kGolden = std::numbers::phi - 1.0;
-  double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
-  double f_a = f(a), f_b = f(b);
-  while (high - low > kAngleTolerance) {
-    if (f_a > f_b) {
-      high = b;
-      b = a;
-      f_b = f_a;
-      a = high - kGolden * (high - low);
-      f_a = f(a);
+double top_of_hill(const Function& f, double low, double high, double best, double top) {
+  constexpr double kGolden = 2.0 - std::numbers::phi;
+  double second = best, third = best, f_second = top, f_third = top;
+  double step = 0.0, last_step = 0.0;
+  for (;;) {
+    const double middle = 0.5 * (low + high);
+    if (std::abs(best - middle) + 0.5 * (high - low) <= 2.0 * kAngleTolerance) return top;
+    // The vertex lies p / q from the best point.
+    const double r = (best - second) * (top - f_third), s = (best - third) * (top - f_second);
+    const double p = std::copysign(1.0, r - s) * ((best - third) * s - (best - second) * r);
+    const double q = 2.0 * std::abs(s - r);
+    const bool parabola = std::abs(p) < std::abs(0.5 * q * last_step) && p > q * (low - best) && p < q * (high - best);
+    last_step = parabola ? step : (best < middle ? high : low) - best;
+    step = parabola ? p / q : kGolden * last_step;
+    if (parabola && std::min(best + step - low, high - best - step) < 2.0 * kAngleTolerance)
+      step = std::copysign(kAngleTolerance, middle - best);
+    if (std::abs(step) < kAngleTolerance) step = std::copysign(kAngleTolerance, step);
+    const double x = best + step, f_x = f(x);
+    if (f_x >= top) {
+      (x < best ? high : low) = best;
+      third = second, f_third = f_second;
+      second = best, f_second = top;
+      best = x, top = f_x;
     } else {
-      low = a;
-      a = b;
-      f_a = f_b;
-      b = low + kGolden * (high - low);
-      f_b = f(b);
+      (x < best ? low : high) = x;
+      if (f_x >= f_second || second == best) {
+        third = second, f_third = f_second;
+        second = x, f_second = f_x;
+      } else if (f_x >= f_third || third == best || third == second) {
+        third = x, f_third = f_x;
+      }
     }
   }
-  return std::max(f_a, f_b);
-}
-
-/// Largest value of f over the circle, and at least 0: every hill of the samples is climbed that may be the highest, as
-/// f changes by at most `slope` per radian.
-template <class Function>
-double largest_on_circle(const Function& f, double slope) {
-  std::array<double, kSamples> value{};
-  const double step = kTwoPi / kSamples;
-  for (int i = 0; i < kSamples; ++i) value[static_cast<std::size_t>(i)] = f(i * step);
-  const auto at = [&value](int i) { return value[static_cast<std::size_t>((i + kSamples) % kSamples)]; };
-  double largest = 0.0;
-  for (int i = 0; i < kSamples; ++i) {
-    const bool hill = at(i) >= at(i - 1) && at(i) >= at(i + 1);
-    if (hill && at(i) + slope * step > largest)
-      largest = std::max(largest, top_of_hill(f, (i - 1) * step, (i + 1) * step));
-  }
-  return largest;
-}
-
-/// The largest t >= 0 with start + t * along in the tool. When there is none, minus the distance by which the line
-/// misses the cylinder, so that the search finds narrow hits between its samples.
-double last_in_tool(const Cylinder& tool, const ToolPose& pose, const Vec3& start, const Vec3& along) {
-  const Vec3 x = start - pose.position;
-  const double s = x.dot(pose.axis), ds = along.dot(pose.axis);
-  const Vec3 rho = x - s * pose.axis, drho = along - ds * pose.axis;
-  double low = 0.0, high = std::numeric_limits<double>::infinity();
-
-  // In the cylinder: |rho + t drho|^2 <= r^2.
-  const double a = drho.squaredNorm(), b = rho.dot(drho);
-  const double middle = a > 0.0 ? -b / a : 0.0;
-  const double miss2 = (rho + middle * drho).squaredNorm(), r2 = tool.radius() * tool.radius();
-  if (miss2 > r2) return tool.radius() - std::sqrt(miss2);
-  if (a > 0.0) {
-    const double half = std::sqrt((r2 - miss2) / a);
-    low = std::max(low, middle - half);
-    high = middle + half;
-  }
-  // Between the planes: -length <= s + t ds <= 0.
-  if (ds != 0.0) {
-    const double t_tip = -s / ds, t_bottom = (-tool.length() - s) / ds;
-    low = std::max(low, std::min(t_tip, t_bottom));
-    high = std::min(high, std::max(t_tip, t_bottom));
-  } else if (s > 0.0 || s < -tool.length()) {
-    return -tool.length();
-  }
-  return low <= high ? high : -tool.length();
 }
 
 }  // namespace
 
 double interpenetration(const BlockWithHole& block, const Cylinder& tool, const ToolPose& pose) {
-  const double sine = std::hypot(pose.axis.x(), pose.axis.y());
-  if (pose.position.z() - tool.radius() * sine >= 0.0) return 0.0;  // all above the top face
-  const Vec3 e1 = pose.axis.unitOrthogonal(), e2 = pose.axis.cross(e1);
-  const double on_edge = largest_on_circle(
-      [&](double angle) {
-        const Vec3 edge = pose.position + tool.radius() * (std::cos(angle) * e1 + std::sin(angle) * e2);
-        return -signed_distance(block, edge);
-      },
-      tool.radius());
-  const double R = block.hole_diameter / 2;
-  const double on_cone = largest_on_circle(
-      [&](double angle) {
-        const Vec3 out{std::cos(angle), std::sin(angle), 0.0};
-        return last_in_tool(tool, pose, R * out, out - Vec3::UnitZ());
-      },
-      std::numeric_limits<double>::infinity());
-  return std::max(on_edge, on_cone);
+  assert(pose.axis.z() <= 0.0);
+  const Side side(block, tool, pose);
+  std::array<double, kSamples> depth{};
+  for (std::size_t i = 0; i < kSamples; ++i) depth[i] = side.deepest(kTurns[i]);
+  double largest = std::max(0.0, *std::max_element(depth.begin(), depth.end()));
+  // Neighbouring lines are at most radius * step apart, so their depths differ by no more.
+  const double reach = tool.radius() * kStep;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const double before = depth[(i + kSamples - 1) % kSamples], after = depth[(i + 1) % kSamples];
+    if (!(depth[i] > before && depth[i] >= after) || 0.5 * (depth[i] + std::max(before, after) + reach) <= largest)
+      continue;
+    const double angle = static_cast<double>(i) * kStep;
+    const auto at = [&side](double x) { return side.deepest(x); };
+    largest = std::max(largest, top_of_hill(at, angle - kStep, angle + kStep, angle, depth[i]));
+  }
+  return largest;
 }
 
 }  // namespace hapbench

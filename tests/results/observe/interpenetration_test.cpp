@@ -63,30 +63,80 @@ TEST(Interpenetration, OnTheIdealTrajectoryIsZeroAndBelowItGrows) {
   }
 }
 
-/// The deepest of very many points of the tool: never deeper than the answer, and close to it.
-TEST(Interpenetration, EqualsADenseSearchOverTheWholeTool) {
+/// Depth at a place on the tool's side: an angle about its axis and a height above its tip.
+double depth_at(const ToolPose& pose, double angle, double height) {
+  const Vec3 e1 = pose.axis.unitOrthogonal(), e2 = pose.axis.cross(e1);
+  const Vec3 side = kTool.radius() * (std::cos(angle) * e1 + std::sin(angle) * e2);
+  return -signed_distance(kBlock, pose.position + side - height * pose.axis);
+}
+
+/// The deepest place at an angle: of many heights, and then by ternary search round the deepest of them.
+double deepest_at(const ToolPose& pose, double angle) {
+  constexpr int kHeights = 400;
+  constexpr double kApart = 0.006 / kHeights;  // the rest of the tool is in the air
+  double best = 0.0;
+  for (int h = 0; h < kHeights; ++h) {
+    if (depth_at(pose, angle, h * kApart) > depth_at(pose, angle, best)) best = h * kApart;
+  }
+  double low = std::max(0.0, best - kApart), high = best + kApart;
+  while (high - low > 1e-13) {
+    const double a = low + (high - low) / 3, b = high - (high - low) / 3;
+    if (depth_at(pose, angle, a) > depth_at(pose, angle, b)) {
+      high = b;
+    } else {
+      low = a;
+    }
+  }
+  return std::max(depth_at(pose, angle, best), depth_at(pose, angle, low));
+}
+
+/// The deepest place of the tool: of many angles, and then of ever smaller neighbourhoods of the deepest of them.
+double searched(const ToolPose& pose) {
+  double deepest = 0.0, angle = 0.0;
+  const auto look = [&](double from, double apart, int angles) {
+    for (int i = 0; i <= angles; ++i) {
+      const double depth = deepest_at(pose, from + i * apart);
+      if (depth <= deepest) continue;
+      deepest = depth;
+      angle = from + i * apart;
+    }
+  };
+  constexpr double kApart = std::numbers::pi / 45;
+  look(0.0, kApart, 90);
+  for (double around = kApart; around > 1e-8; around *= 0.5) look(angle - around, around / 4, 8);
+  return deepest;
+}
+
+TEST(Interpenetration, EqualsASearchOverTheWholeTool) {
   Random random(9);
-  for (int run = 0; run < 60; ++run) {
+  for (int run = 0; run < 40; ++run) {
     const double tilt = random.uniform(0.05, 1.2), azimuth = random.uniform(0, 6.3);
     const ToolPose pose =
-        tilted({random.uniform(-7e-4, 7e-4), random.uniform(-7e-4, 7e-4), random.uniform(-4e-3, -2e-4)}, tilt, azimuth);
-    const double answer = interpenetration(kBlock, kTool, pose);
-    const Vec3 e1 = pose.axis.unitOrthogonal(), e2 = pose.axis.cross(e1);
-    double deepest = 0.0;
-    constexpr int kAngles = 360, kHeights = 400;
-    const double along = 0.006;  // the rest of the tool is in the air
-    for (int a = 0; a < kAngles; ++a) {
-      const double angle = 2.0 * std::numbers::pi * a / kAngles;
-      const Vec3 side = kTool.radius() * (std::cos(angle) * e1 + std::sin(angle) * e2);
-      for (int h = 0; h < kHeights; ++h) {
-        const Vec3 q = pose.position + side - (along * h / kHeights) * pose.axis;
-        deepest = std::max(deepest, -signed_distance(kBlock, q));
-      }
+        tilted({random.uniform(-7e-4, 7e-4), random.uniform(-7e-4, 7e-4), random.uniform(-4e-3, 3e-4)}, tilt, azimuth);
+    EXPECT_NEAR(interpenetration(kBlock, kTool, pose), searched(pose), 2.0 * kRounding) << run;
+  }
+}
+
+/// The tip's edge just below the rim: what is deepest is the edge's point on the cone, a kink of the depth.
+TEST(Interpenetration, OfATipOnTheRimIsThatOfItsEdge) {
+  for (const double d : {1e-7, 1e-5, 1e-4}) {
+    for (const double tilt : {0.05, 0.3, 0.7}) {
+      const double s = std::sin(tilt), c = std::cos(tilt);
+      // The lowest point of the tip's edge, d below the top and outside the rim.
+      const Vec3 low{0.001 + d, 0.0, -d}, place = low - kTool.radius() * Vec3(c, 0.0, -s);
+      EXPECT_NEAR(interpenetration(kBlock, kTool, tilted(place, tilt)), d, kRounding) << tilt;
     }
-    EXPECT_LE(deepest, answer + kRounding);
-    // The samples lie at most half a height and half an arc from the deepest point.
-    const double spacing = 0.5 * std::hypot(along / kHeights, kTool.radius() * 2.0 * std::numbers::pi / kAngles);
-    EXPECT_GE(deepest, answer - spacing);
+  }
+}
+
+/// Shorter than the hole is deep, and wholly in the wall: the upper end may be the deepest.
+TEST(Interpenetration, KnowsTheUpperEndOfAShortTool) {
+  const Cylinder tool(kTool.radius(), 0.001);
+  for (const double reach : {0.0006, 0.0008}) {
+    // Leaning outwards, so that the upper end is further out; far below the top.
+    const double tilt = 0.3, s = std::sin(tilt), c = std::cos(tilt);
+    const ToolPose pose = tilted({reach, 0.0, -0.003}, tilt);
+    EXPECT_NEAR(interpenetration(kBlock, tool, pose), reach + 0.001 * s + 0.0005 * c - 0.001, kRounding);
   }
 }
 
