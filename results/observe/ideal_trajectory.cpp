@@ -1,6 +1,7 @@
 #include "results/observe/ideal_trajectory.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -18,11 +19,14 @@ std::optional<TipPlace> ideal_place(const BlockWithHole& block, double tool_radi
   return place;
 }
 
-IdealTrajectoryObserver::IdealTrajectoryObserver(const BlockWithHole& block, const Cylinder& tool)
-    : block_(block), tool_(tool) {}
+IdealTrajectoryObserver::IdealTrajectoryObserver(const BlockWithHole& block, const Cylinder& tool, std::uint64_t every)
+    : block_(block), tool_(tool), every_(every) {
+  assert(every > 0);
+}
 
 void IdealTrajectoryObserver::on_step(const StepRecord& record) noexcept {
   error_.reset();
+  if (record.step % every_ != 0) return;
   const ToolPose& pose = record.tool.pose;
   const Vec3 lean{-pose.axis.x(), -pose.axis.y(), 0.0};
   const double sine = lean.norm(), tilt = std::atan2(sine, -pose.axis.z());

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 
 #include "results/io/csv_writer.hpp"
@@ -9,7 +8,7 @@
 
 namespace hapbench {
 
-/// ideal_trajectory.csv: the recorded rows at whose tilt the ideal trajectory exists, beside it (thesis Fig. 7).
+/// ideal_trajectory.csv: the compared rows at whose tilt the ideal trajectory exists, beside it (thesis Fig. 7).
 /// Lateral distances count towards where the tool leans, heights from the hole's mouth.
 class IdealTrajectoryRecorder final : public Recorder {
  public:
@@ -24,16 +23,14 @@ class IdealTrajectoryRecorder final : public Recorder {
       {"interpenetration_m", "m", "true depth of the tool in the exact block"},
       {"hand_force_N", "N", "norm of the hand's force"}};
 
-  /// Keeps rows 0, every, 2 every, … Must observe after `observer`, which it reads. Precondition: every > 0. Throws
-  /// IoError.
-  IdealTrajectoryRecorder(std::filesystem::path file, std::uint64_t every, const IdealTrajectoryObserver& observer);
+  /// Keeps the rows that `observer` compares; must observe after it. Throws IoError.
+  IdealTrajectoryRecorder(std::filesystem::path file, const IdealTrajectoryObserver& observer);
 
   void on_step(const StepRecord& record) noexcept override;
   void finish() override { csv_.finish(); }
 
  private:
   CsvWriter csv_;
-  std::uint64_t every_;
   const IdealTrajectoryObserver* observer_;
 };
 

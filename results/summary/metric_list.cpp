@@ -29,9 +29,10 @@ Metric count(const char* name, const char* meaning, std::uint64_t value) {
 MetricList metric_list(const TrajectoryErrors& e) {
   const bool any = e.rows > 0;
   return {
-      count("rows",
-            "rows at whose tilt the ideal trajectory exists, of a hand below 2 N (gentle) or from 2 N on (firm)",
-            e.rows),
+      count(
+          "rows",
+          "recorded rows at whose tilt the ideal trajectory exists, of a hand below 2 N (gentle) or from 2 N on (firm)",
+          e.rows),
       number_if(any, "height_error_mean_m", "m", "mean of tip height - ideal height; negative: sunk in", e.height_mean),
       number_if(any, "height_error_rms_m", "m", "root mean square of tip height - ideal height", e.height_rms),
       number_if(any, "height_error_min_m", "m", "least tip height - ideal height", e.height_min),
@@ -210,8 +211,8 @@ MetricList metric_list(const IdealTrajectoryMetrics& m) {
   MetricList list;
   append(list, "gentle", metric_list(m.gentle));
   append(list, "firm", metric_list(m.firm));
-  list.push_back(
-      count("rows_without_ideal", "rows at whose tilt the ideal trajectory does not exist", m.rows_without_ideal));
+  list.push_back(count("rows_without_ideal", "recorded rows at whose tilt the ideal trajectory does not exist",
+                       m.rows_without_ideal));
   return list;
 }
 

@@ -107,7 +107,7 @@ static void describe(Fields& f, RecordFields& record) {
   f.boolean("timing", record.timing, "time every step and write timing.json");
   f.boolean("energy", record.energy, "keep the energy ledger and write energy.csv");
   f.boolean("ideal_trajectory", record.ideal_trajectory,
-            "block_with_hole only: compare with the ideal trajectory and write ideal_trajectory.csv");
+            "block_with_hole only: compare the recorded rows with the ideal trajectory and write ideal_trajectory.csv");
 }
 
 static void describe(Fields& f, SettlingRule& metrics) {

@@ -39,7 +39,7 @@ Made energy(const RecordedTrial& t, const fs::path& file) {
 }
 
 Made ideal_trajectory(const RecordedTrial& t, const fs::path& file) {
-  return std::make_unique<IdealTrajectoryRecorder>(file, every(t), *t.ideal);
+  return std::make_unique<IdealTrajectoryRecorder>(file, *t.ideal);
 }
 
 struct RecorderEntry {

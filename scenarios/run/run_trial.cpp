@@ -47,7 +47,8 @@ class TrialObservers {
       observers_.push_back(&*ledger_);
     }
     if (scenario.record.ideal_trajectory) {
-      ideal_.emplace(std::get<BlockEnvironment>(scenario.environment).block, make_cylinder(scenario.tool));
+      ideal_.emplace(std::get<BlockEnvironment>(scenario.environment).block, make_cylinder(scenario.tool),
+                     static_cast<std::uint64_t>(scenario.record.every));
       observers_.push_back(&*ideal_);
     }
     if (parts.shell && parts.shell->size() > 0) {

@@ -75,6 +75,19 @@ TEST(IdealTrajectory, SplitsAtTwoNewtonsOfTheHand) {
   EXPECT_EQ(observer.metrics().firm.rows, 2u);
 }
 
+TEST(IdealTrajectory, ComparesEachSoManyRows) {
+  IdealTrajectoryObserver observer(kBlock, {}, 3);
+  for (std::uint64_t step = 0; step < 8; ++step) {
+    StepRecord r = row({0, 0, -0.001}, step == 3 ? 1.2 : 0.6, 0.0, static_cast<double>(step));
+    r.step = step;
+    observer.on_step(r);
+    EXPECT_EQ(observer.error().has_value(), step == 0 || step == 6) << step;
+  }
+  EXPECT_EQ(observer.metrics().gentle.rows, 1u) << "row 0";
+  EXPECT_EQ(observer.metrics().firm.rows, 1u) << "row 6";
+  EXPECT_EQ(observer.metrics().rows_without_ideal, 1u) << "row 3";
+}
+
 TEST(IdealTrajectory, LeavesOutTiltsWithoutContact) {
   IdealTrajectoryObserver observer(kBlock, {});
   observer.on_step(row({0, 0, -0.001}, 1.2, 0.0, 1.0));

@@ -22,8 +22,8 @@ StepRecord tilted_row(std::uint64_t step, double tilt, const ContactBuffer& cont
 TEST(IdealTrajectoryRecorder, KeepsTheRowsThatHaveAnIdealPlace) {
   const TemporaryDirectory dir;
   const ContactBuffer none(1);
-  IdealTrajectoryObserver observer({}, {});
-  IdealTrajectoryRecorder recorder(dir / "ideal.csv", 2, observer);
+  IdealTrajectoryObserver observer({}, {}, 2);
+  IdealTrajectoryRecorder recorder(dir / "ideal.csv", observer);
   const double tilts[] = {0.5, 0.6, 1.3, 0.7, 0.8};
   for (std::uint64_t k = 0; k < 5; ++k) {
     const StepRecord r = tilted_row(k, tilts[k], none);
@@ -42,7 +42,7 @@ TEST(IdealTrajectoryRecorder, AllocatesNothingInAStep) {
   const TemporaryDirectory dir;
   const ContactBuffer none(1);
   IdealTrajectoryObserver observer({}, {});
-  IdealTrajectoryRecorder recorder(dir / "ideal.csv", 1, observer);
+  IdealTrajectoryRecorder recorder(dir / "ideal.csv", observer);
   const StepRecord r = tilted_row(0, 0.5, none);
   const std::size_t before = heap_allocations();
   for (int k = 0; k < 100; ++k) {
