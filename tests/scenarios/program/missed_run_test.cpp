@@ -62,6 +62,16 @@ TEST_F(MissedRun, ExpectationsDoNotJudgeARunTheyWereNotWrittenFor) {
   EXPECT_EQ(run({"single_spring", "--set", "expect.metrics.force_max_N.max=1e-9"}).status, 3);
 }
 
+TEST_F(MissedRun, ExpectationsOfTheIdealTrajectoryAreOverTheRecordedRows) {
+  test::write_plainly(directory_ / "tenth.json", R"({
+    "extends": "rotate_in_hole",
+    "time": {"step_s": 0.0005, "steps": 50},
+    "record": {"every": 5, "ideal_trajectory": true},
+    "expect": {"outcome": "completes", "metrics": {"ideal_trajectory.gentle.rows": {"min": 10, "max": 10}}}})");
+  EXPECT_EQ(run({path("tenth.json")}).status, 0);
+  EXPECT_EQ(run({path("tenth.json"), "--set", "record.every=10"}).status, 0) << "half the rows: another run";
+}
+
 TEST_F(MissedRun, ValidateSaysWhatItSees) {
   const test::ProgramRun seen = hapbench({"validate", "mesh_molar"});
   EXPECT_EQ(seen.status, 0);
