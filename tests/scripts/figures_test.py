@@ -282,11 +282,13 @@ class Figures(unittest.TestCase):
             self.assertIn(name.replace("_", " "), text)
 
     def test_usage(self):
-        self.assertEqual(figures(self.results, "--out", self.directory / "x", "--only", "99").returncode, 2)
-        self.assertEqual(figures(self.directory / "nowhere", "--out", self.directory / "x").returncode, 2)
-        self.assertEqual(figures().returncode, 2)
-        # A file where the directory should be.
-        self.assertEqual(figures(self.results, "--out", self.drawn / "figures.json", "--only", "6").returncode, 2)
+        x = self.directory / "x"
+        occupied = self.drawn / "figures.json"
+        for words in ([self.results, "--out", x, "--only", "99"], [self.directory / "nowhere", "--out", x], [], ["--no-such"],
+                      [self.results, "--out", occupied, "--only", "6"]):
+            done = figures(*words)
+            self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+            self.assertTrue(done.stderr.startswith("hapbench: error: "), done.stderr)
 
     def test_without_an_interpreter_that_serves(self):
         # A PATH with a python3 that can do nothing; the launcher may still find Debian's by its full name.
@@ -294,7 +296,7 @@ class Figures(unittest.TestCase):
         poor.mkdir()
         (poor / "python3").symlink_to("/bin/false")
         done = figures("--list", PATH=f"{poor}:{os.environ['PATH']}")
-        self.assertTrue(done.returncode == 0 or "imports numpy" in done.stderr, done.stderr)
+        self.assertTrue(done.returncode == 0 or "needs a python3 with numpy" in done.stderr, done.stderr)
 
 
 def luminance(colour):

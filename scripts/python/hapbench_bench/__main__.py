@@ -1,5 +1,4 @@
 """The command line of scripts/bench."""
-import argparse
 import json
 import os
 import re
@@ -9,6 +8,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Arguments, say_error
+
 from . import commit
 from .measure import performance
 from .program import ROOT, BenchError, build, listed
@@ -17,11 +18,11 @@ from .table import MANUAL, RECORD, aligned, markdown, spliced
 DESCRIPTION = """Builds the program and its benchmarks and prints what they take as ratios, each to a benchmark that ran in the
 same process, its repetitions interleaved with theirs, beside its target (about two minutes). With --against compares every
 benchmark with that of another commit. Times mean something on a quiet machine only; ratios drift less."""
-SUCCESS, TOO_SLOW, BAD_INPUT = 0, 1, 2
+TOO_SLOW = 1
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(prog="scripts/bench", description=DESCRIPTION,
+    parser = Arguments(prog="scripts/bench", description=DESCRIPTION,
                                      epilog="Options of Google Benchmark run the benchmarks themselves, for example "
                                      "scripts/bench --benchmark_filter='search/.*'")
     parser.add_argument("--full", action="store_true", help="also shells of up to 7 million points (minutes, gigabytes)")
@@ -112,10 +113,10 @@ def main(words=None):
     try:
         return compare(chosen) if chosen.against else measure(chosen)
     except (BenchError, OSError) as error:
-        print(f"bench: error: {error}", file=sys.stderr)
+        say_error(error)
         return BAD_INPUT
     except KeyboardInterrupt:
-        return 128 + signal.SIGINT
+        return INTERRUPTED
 
 
 if __name__ == "__main__":

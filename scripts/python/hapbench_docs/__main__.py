@@ -1,10 +1,10 @@
 """The command line of scripts/docs."""
-import argparse
 import sys
 import tempfile
 from pathlib import Path
 
 from hapbench_bench import table
+from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Arguments, say_error
 from hapbench_pictures.files import write
 from hapbench_report.json_input import InputError
 
@@ -17,7 +17,7 @@ of its robustness and of speed, from results/reference, and, with --gallery, the
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(prog="scripts/docs", description=DESCRIPTION)
+    parser = Arguments(prog="scripts/docs", description=DESCRIPTION)
     parser.add_argument("--program", type=Path, default=ROOT / "build" / "release" / "bin" / "hapbench", metavar="FILE",
                         help="default: build/release/bin/hapbench")
     parser.add_argument("--tables", action="store_true", help="the tables from results/reference only, which need no program")
@@ -49,11 +49,11 @@ def main(words=None):
                     write(manual.file, text.encode())
                     print(f"renewed {manual.file.relative_to(ROOT)}")
     except (ProgramError, InputError, blocks.BlockError, OSError) as error:
-        print(f"docs: error: {error}", file=sys.stderr)
-        return 2
+        say_error(error)
+        return BAD_INPUT
     except KeyboardInterrupt:
-        return 130
-    return 0
+        return INTERRUPTED
+    return SUCCESS
 
 
 if __name__ == "__main__":

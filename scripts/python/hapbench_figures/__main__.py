@@ -1,5 +1,4 @@
 """Command line of scripts/figures."""
-import argparse
 import json
 import os
 import sys
@@ -7,14 +6,18 @@ import time
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
+from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Arguments, say_error
+
 from . import catalogue, style
 from .drawing import attempts
 from .results import Results
 
+NOTHING_DRAWN = KILLED = 1
+
 
 def arguments(argv):
-    parser = argparse.ArgumentParser(
-        prog="figures",
+    parser = Arguments(
+        prog="scripts/figures",
         description="Draws the figures of the thesis with our data, and ours, as "
         "SVG, PDF and PNG. A figure whose data is missing is skipped, and said so.",
     )
@@ -73,18 +76,15 @@ def main(argv=None):
     try:
         figures = selection(chosen.only)
     except KeyError as error:
-        print(
-            f"figures: --only: no figure {error}; there are {', '.join(f.id for f in catalogue.FIGURES)}",
-            file=sys.stderr,
-        )
-        return 2
+        say_error(f"--only: no figure {error}; there are {', '.join(f.id for f in catalogue.FIGURES)}")
+        return BAD_INPUT
     if chosen.list:
         for figure in figures:
             print(f"{figure.id:24} {figure.title}")
-        return 0
+        return SUCCESS
     if not Path(chosen.results).is_dir():
-        print(f"figures: {chosen.results}: no such directory", file=sys.stderr)
-        return 2
+        say_error(f"{chosen.results}: no such directory")
+        return BAD_INPUT
     directory = Path(chosen.out)
     started = time.monotonic()
     outcomes = []
@@ -99,20 +99,20 @@ def main(argv=None):
         entries = [entry for entry in drawn if entry]
         write_index(directory, entries)
     except OSError as error:
-        print(f"figures: {error.filename}: {error.strerror}", file=sys.stderr)
-        return 2
+        say_error(f"{error.filename}: {error.strerror}")
+        return BAD_INPUT
     except BrokenProcessPool:
-        print("figures: one of its processes was killed, perhaps for memory, of which --jobs 1 needs less", file=sys.stderr)
-        return 1
+        say_error("a drawing process was killed, perhaps for memory, of which --jobs 1 needs less")
+        return KILLED
     except KeyboardInterrupt:
         print("figures: stopped", file=sys.stderr)
-        return 130
+        return INTERRUPTED
     for line in filter(None, skipped):
         print(f"figures: skipped {line}", file=sys.stderr)
     for line in filter(None, dict.fromkeys(bad)):
-        print(f"figures: {line}", file=sys.stderr)
+        say_error(line)
     print(f"{len(entries)} figures in {directory}, {time.monotonic() - started:.0f} s")
-    return 2 if any(bad) else 0 if entries else 1
+    return BAD_INPUT if any(bad) else SUCCESS if entries else NOTHING_DRAWN
 
 
 if __name__ == "__main__":

@@ -1,10 +1,9 @@
 """python -m hapbench_pictures plot|report WORDS…; the program `hapbench` calls it."""
 import sys
 
+from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, say_error
 from hapbench_notice import Notice
 from hapbench_report.json_input import InputError
-
-SUCCESS, BAD_INPUT, INTERRUPTED = 0, 2, 130
 
 
 def main(words):
@@ -18,7 +17,7 @@ def main(words):
             run(rest)
         sys.stdout.flush()
     except InputError as error:
-        print(f"hapbench: error: {error}", file=sys.stderr)
+        say_error(error)
         return BAD_INPUT
     except BrokenPipeError:
         # The reader of a pipe, such as `head`, has seen enough.

@@ -1,8 +1,8 @@
 """`hapbench plot`: a sketch in the terminal and a file."""
-import argparse
 import io
 from pathlib import Path
 
+from hapbench_command import Arguments
 from hapbench_report.json_input import InputError
 
 from .files import write
@@ -13,7 +13,7 @@ KINDS = (".svg", ".png", ".pdf")
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(prog="hapbench plot", description="Draws runs over time, or a sweep.")
+    parser = Arguments(prog="hapbench plot", description="Draws runs over time, or a sweep.")
     parser.add_argument("runs", nargs="+", metavar="RUN")
     parser.add_argument("--y", type=lambda text: [name.strip() for name in text.split(",") if name.strip()], default=[])
     parser.add_argument("--metric")

@@ -1,7 +1,7 @@
 """`hapbench report`: one page of the runs given, and nothing else."""
-import argparse
 from pathlib import Path
 
+from hapbench_command import Arguments
 from hapbench_report.json_input import InputError
 from hapbench_report.page import whole_page
 from hapbench_report.section_replay import player
@@ -18,7 +18,7 @@ STYLE = Path(__file__).parent / "page.css"
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(prog="hapbench report", description="Writes a page of runs.")
+    parser = Arguments(prog="hapbench report", description="Writes a page of runs.")
     parser.add_argument("runs", nargs="+", metavar="RUN")
     parser.add_argument("--out", type=Path)
     parser.add_argument("--quiet", action="store_true")

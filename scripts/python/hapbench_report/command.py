@@ -1,10 +1,10 @@
 """The command line of scripts/report."""
-import argparse
 import os
 import sys
 import tempfile
 from pathlib import Path
 
+from hapbench_command import BAD_INPUT, SUCCESS, Arguments, say_error
 from hapbench_notice import Notice
 
 from .claims import load_choices, load_claims
@@ -17,13 +17,12 @@ from .replay_record import record_replays
 from .runs import REPLAY_DIRECTORY, load_runs
 from .studies import load_studies
 
-SUCCESS, BAD_INPUT = 0, 2
 CHOICES = Path(__file__).resolve().parents[3] / "results" / "reference" / "choices.json"
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(
-        prog="report", description="Writes one self-contained HTML file: ledger, figures, tables, all runs, and a replay.")
+    parser = Arguments(
+        prog="scripts/report", description="Writes one self-contained HTML file: ledger, figures, tables, all runs, and a replay.")
     parser.add_argument("results", type=Path, metavar="RESULTS_DIR", help="what scripts/reproduce wrote")
     parser.add_argument("--figures", type=Path, metavar="DIR", help="what scripts/figures wrote; default: no figures")
     parser.add_argument("--claims", type=Path, metavar="FILE", help="the ledger, claims.json; default: no ledger")
@@ -83,6 +82,6 @@ def main(words=None):
         with Notice("writing the report"):
             run(options)
     except InputError as error:
-        print(f"report: error: {error}", file=sys.stderr)
+        say_error(error)
         return BAD_INPUT
     return SUCCESS
