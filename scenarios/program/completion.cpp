@@ -63,6 +63,7 @@ Words values_of(const std::string& name) {
   if (name == "what")
     return {"algorithms", "depth_models", "stages", "integrators", "environments", "hands",
             "devices",    "scenarios",    "thesis", "limits",      "beyond",       "examples"};
+  if (name == "--objective") return {"created", "vibration"};
   if (name == "shell") return {"bash", "zsh", "fish"};
   Words words;
   if (name == "kind")

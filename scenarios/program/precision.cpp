@@ -16,6 +16,7 @@
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
+#include "scenarios/run/wait_notice.hpp"
 #include "scenarios/studies/precision/study.hpp"
 
 namespace hapbench {
@@ -112,8 +113,11 @@ int precision(const PrecisionCommandOptions& options) {
   for (std::size_t i = 0; i < studies.size(); ++i) {
     PrecisionOptions settings;
     settings.repetitions = options.repetitions;
+    // Most of a study's time can pass before its first row: in the ideal to which the rows are compared.
+    std::optional<WaitNotice> notice(std::in_place, studies[i]->name, !options.output.quiet);
     std::optional<ProgressBar> bar;
     settings.progress = [&](std::size_t done, std::size_t all) {
+      notice.reset();
       if (!bar) bar.emplace(studies[i]->name, all, !options.output.quiet);
       bar->show(done, true);
     };
