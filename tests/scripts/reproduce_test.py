@@ -1,0 +1,72 @@
+"""Tests what scripts/reproduce makes of its parts, with a program that does nothing in place of hapbench.
+
+reproduce_test.py SOURCE_DIRECTORY: the tree with scripts.
+"""
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+SOURCE = Path(sys.argv[1])
+NOTHING = "#!/bin/sh\nexit 0\n"
+
+
+class Reproduce(unittest.TestCase):
+    def setUp(self):
+        self.root = Path(tempfile.mkdtemp(prefix="hapbench-reproduce-"))
+        self.addCleanup(shutil.rmtree, self.root)
+        (self.root / "results" / "reference").mkdir(parents=True)
+        (self.root / "results" / "reference" / "performance.json").write_text("{}")
+        self.put("scripts/reproduce", (SOURCE / "scripts" / "reproduce").read_text(encoding="utf-8"))
+        for name in ("scripts/setup", "scripts/figures", "scripts/report", "bin/cmake"):
+            self.put(name, NOTHING)
+
+    def put(self, name, text):
+        file = self.root / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+        file.chmod(0o755)
+
+    def start(self, program, *words):
+        self.put("build/release/bin/hapbench", program)
+        return subprocess.Popen([self.root / "scripts" / "reproduce", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                text=True, env={**os.environ, "PATH": f"{self.root / 'bin'}:{os.environ['PATH']}"})
+
+    def run_with(self, program, *words):
+        process = self.start(program, *words)
+        out, err = process.communicate(timeout=60)
+        return process.returncode, out, err
+
+    def test_all_went_well(self):
+        status, out, err = self.run_with(NOTHING)
+        self.assertEqual(status, 0, err)
+        self.assertIn("Report: ", out)
+
+    def test_one_part_failed(self):
+        status, out, _ = self.run_with('#!/bin/sh\n[ "$1" != precision ] || exit 7\n')
+        self.assertEqual(status, 1)
+        self.assertIn("FAILED: Run time against error (exit status 7)", out)
+        self.assertIn("== Report", out)  # the others were done
+
+    def test_an_unknown_argument(self):
+        status, _, err = self.run_with(NOTHING, "--no-such")
+        self.assertEqual((status, err.count("\n")), (2, 1))
+        self.assertTrue(err.startswith("hapbench: error: "), err)
+
+    def test_a_signal_ends_its_parts(self):
+        process = self.start(f"#!/bin/sh\ntouch {self.root}/began\nexec sleep 50\n")
+        while not (self.root / "began").exists():
+            time.sleep(0.02)
+        process.send_signal(signal.SIGTERM)
+        # Its pipes are closed when the parts are gone, too.
+        process.communicate(timeout=20)
+        self.assertEqual(process.returncode, 143)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
