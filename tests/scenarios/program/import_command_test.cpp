@@ -20,7 +20,8 @@ class ImportCommand : public testing::Test {
 };
 
 TEST_F(ImportCommand, MakesAStrokeThatRunsAtOnceAndIsComparedWithItsForce) {
-  const ProgramRun imported = hapbench({"import", wipe(), "--preset", "hapi", "--out", path("stroke.csv"), "--json"});
+  const ProgramRun imported =
+      hapbench({"import", wipe(), "--preset", "hapi", "--shift", "0,0,-0.001", "--out", path("stroke.csv"), "--json"});
   ASSERT_EQ(imported.status, 0) << imported.err;
   const Json report = imported.json();
   EXPECT_EQ(report["rate_Hz"], 99.0);
