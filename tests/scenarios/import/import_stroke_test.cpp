@@ -380,5 +380,24 @@ TEST(ImportFuzz, LogsAreReadOrRefused) {
   }
 }
 
+TEST(ImportFuzz, StrokesWithForcesAreReadOrRefused) {
+  const std::string text = test::read_file(kScenarios / "examples/data/wipe.csv").substr(0, 3000);
+  Random random(5);
+  std::size_t accepted = 0;
+  for (std::size_t i = 0; i < test::cases(4000) && !testing::Test::HasFailure(); ++i) {
+    const std::string mutant = test::mutated_text(text.substr(0, text.rfind('\n') + 1), random);
+    try {
+      motion_in(mutant, "stroke.csv");
+      if (const auto force = recorded_force_in(mutant, "stroke.csv")) {
+        EXPECT_TRUE(!force->at(0.01) || force->at(0.01)->allFinite());
+        ++accepted;
+      }
+    } catch (const InputError& error) {
+      EXPECT_LT(std::string(error.what()).size(), 3000u);
+    }
+  }
+  EXPECT_GT(accepted, test::cases(4000) / 50);
+}
+
 }  // namespace
 }  // namespace hapbench
