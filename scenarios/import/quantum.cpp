@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 namespace hapbench {
@@ -11,9 +10,10 @@ std::optional<double> quantum_of(std::span<const double> values) {
   std::vector<double> sorted(values.begin(), values.end());
   std::sort(sorted.begin(), sorted.end());
   if (sorted.empty()) return std::nullopt;
-  // Differences of rounded numbers are multiples up to the rounding of the numbers themselves.
+  // Differences are multiples up to the rounding of doubles, which Euclid's algorithm magnifies: below 1e-9 of the
+  // largest value nothing can be told.
   const double largest = std::max(std::abs(sorted.front()), std::abs(sorted.back()));
-  const double rounding = std::max(1e-10, 16.0 * std::numeric_limits<double>::epsilon() * largest);
+  const double rounding = std::max(1e-10, 1e-9 * largest);
   double quantum = 0.0;
   for (std::size_t i = 1; i < sorted.size(); ++i) {
     // Euclid's algorithm for the greatest common divisor; a remainder is zero, or nearly the whole divisor, by
@@ -26,6 +26,9 @@ std::optional<double> quantum_of(std::span<const double> values) {
       rest = remainder;
     }
     if (quantum <= 2.0 * rounding) return std::nullopt;
+    // What is magnified is taken back: the whole span so far is a multiple too, and known best.
+    const double span = sorted[i] - sorted.front();
+    quantum = span / std::round(span / quantum);
   }
   return quantum > 0.0 ? std::optional(quantum) : std::nullopt;
 }

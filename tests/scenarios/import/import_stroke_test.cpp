@@ -290,7 +290,7 @@ TEST(ImportHapi, ButtonsAreFourBytes) {
   for (const double t : {1.0, 1.25}) {
     const std::int32_t button = 3;
     bytes.append(reinterpret_cast<const char*>(&button), sizeof button);
-    bytes += hapi_binary<double>({}, {{t, 0.001, 0.002, 0.003}}).substr(1);
+    bytes += hapi_binary<double>({}, {{t, 0.001 * t, 0.002, 0.003}}).substr(1);
   }
   const auto [stroke, report] = imported(bytes, options);
   EXPECT_EQ(stroke.time[1], 0.25);
