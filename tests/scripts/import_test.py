@@ -1,5 +1,6 @@
 """`hapbench import` and the metrics of fidelity against numpy and scipy. Arguments: the built program, the source tree."""
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -17,7 +18,8 @@ Y_UP = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]], float)  # x, -z, y
 
 
 def hapbench(*words):
-    done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, stdin=subprocess.DEVNULL,
+                          env={**os.environ, "HAPBENCH_PYTHON": sys.executable})
     assert done.returncode == 0, (words, done.stderr)
     return done.stdout
 
@@ -120,6 +122,21 @@ class Fidelity(Given):
                     ["force_lag_s"] for file in (DATA / "wipe.csv", self.root / "late.csv")]
             # Noise of 1 % of the force moves the top of a correlation over 4 s by less than a recorded sample.
             self.assertAlmostEqual(lags[1] - lags[0], delay, delta=0.01)
+
+
+class Pictures(Given):
+    def test_a_page_and_a_picture_show_both_forces(self):
+        run = self.root / "run"
+        hapbench("run", "recorded_wipe", "--out", run, "--quiet")
+        hapbench("report", run, "--quiet")
+        page = (run / "report.html").read_text(encoding="utf-8")
+        for words in ("Against the measured force", "Tangential, N", "Rendered and measured force [N] over time"):
+            self.assertIn(words, page)
+        hapbench("plot", run, "--y", "reference,force_error", "--quiet")
+        self.assertIn("force of the stroke", (run / "plot.svg").read_text(encoding="utf-8"))
+        hapbench("run", "recorded_wipe", "--set", "record.force_reference=false", "--out", run, "--quiet")
+        hapbench("report", run, "--quiet")
+        self.assertIn("record.force_reference=true", (run / "report.html").read_text(encoding="utf-8"))
 
 
 def lag(early, late, dt, most=0.1):
