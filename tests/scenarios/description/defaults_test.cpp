@@ -63,7 +63,8 @@ TEST(Defaults, ThatHoldEverywhere) {
                    {"/rendering/regularisation", "0.01"},
                    {"/integrator", R"({"type": "leapfrog"})"},
                    {"/record", R"({"trajectory": true, "every": 1, "ratio_iterations": [], "contacts": false,
-                                   "stiffness_tensor": false, "timing": false, "energy": false, "ideal_trajectory": false})"},
+                                   "stiffness_tensor": false, "timing": false, "energy": false, "ideal_trajectory": false,
+                                   "force_reference": false})"},
                    {"/rendering/reduction", "null"},
                    {"/metrics", R"({"from_s": null, "settling_s": 0.05})"},
                    {"/expect/outcome", R"(["completes", "leaves_hole", "tool_horizontal"])"}});
