@@ -91,6 +91,7 @@ struct OrientationFields {
   Vec3 lean = {1.0, 0.0, 0.0};
   Profile tilt;
   Profile azimuth;
+  Profile roll;
 };
 struct FreePosition {};
 struct PrescribedPosition {
