@@ -26,7 +26,8 @@ static void describe(Fields& f, PrescribedPosition& position) {
 
 static void describe(Fields& f, RecordedPosition& position) {
   f.text("file", position.file, 4096,
-         "CSV with header time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z; relative to the scenario file",
+         "CSV with header time_s,px_m,py_m,pz_m and axis_x,axis_y,axis_z or qw,qx,qy,qz, a quaternion that turns the "
+         "tool's frame, its axis along -z, into the world's; relative to the scenario file",
          Presence::required);
 }
 
@@ -40,9 +41,8 @@ void describe(Fields& f, MotionFields& motion) {
   f.value("position", motion.position, "free: integrated; prescribed or file: forces are computed, not integrated");
   if (!f.reads() || !std::holds_alternative<RecordedPosition>(motion.position)) return;
   if (f.given("orientation")) {
-    throw InputError(
-        InputError::Kind::relation, f.at() + "/orientation",
-        "contradicts position type \"file\", whose axis columns give the orientation; allowed: one of the two");
+    throw InputError(InputError::Kind::relation, f.at() + "/orientation",
+                     "contradicts position type \"file\", whose columns give the orientation; allowed: one of the two");
   }
   motion.orientation.reset();
 }

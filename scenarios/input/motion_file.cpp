@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/number_table.hpp"
 
@@ -9,30 +11,49 @@ namespace hapbench {
 namespace {
 
 constexpr std::size_t kMostSamples = 10'000'000;
+constexpr double kLargestNormError = 1e-3;  ///< of a quaternion: three decimals are enough
+constexpr std::string_view kHeaders[] = {"time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z",
+                                         "time_s,px_m,py_m,pz_m,qw,qx,qy,qz"};
 
 [[noreturn]] void fail(const std::filesystem::path& file, std::size_t row, const std::string& problem) {
   throw InputError(InputError::Kind::relation, fmt::format("{}, sample {}", file.string(), row + 1), problem);
 }
 
+Vec3 axis_of(std::span<const double> cells, const std::filesystem::path& file, std::size_t row) {
+  const Vec3 axis(cells[0], cells[1], cells[2]);
+  const double length = axis.norm();
+  if (length > 1e-12 && length < 1e12) return axis / length;
+  fail(file, row, fmt::format("got an axis of length {}; allowed: 1e-12 ... 1e12", length));
+}
+
+Eigen::Quaterniond orientation_of(std::span<const double> cells, const std::filesystem::path& file, std::size_t row) {
+  const Eigen::Quaterniond q(cells[0], cells[1], cells[2], cells[3]);
+  const double norm = q.norm();
+  if (std::abs(norm - 1.0) <= kLargestNormError) return q.normalized();
+  fail(file, row,
+       fmt::format("got a quaternion qw,qx,qy,qz of norm {}; allowed: 1 within {}", norm, kLargestNormError));
+}
+
 }  // namespace
 
 RecordedMotion motion_in(std::string_view text, const std::filesystem::path& file) {
-  const NumberTable table = number_table_in(text, file, "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z", kMostSamples);
+  const NumberTable table = number_table_in(text, file, kHeaders, kMostSamples);
   if (table.rows() == 0) fail(file, 0, "no samples; allowed: at least one");
   std::vector<RecordedMotion::Sample> samples;
   samples.reserve(table.rows());
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const auto row = table.row(i);
-    const Vec3 axis(row[4], row[5], row[6]);
-    const double length = axis.norm();
-    if (!(length > 1e-12 && length < 1e12)) {
-      fail(file, i, fmt::format("got an axis of length {}; allowed: 1e-12 ... 1e12", length));
+    RecordedMotion::Sample sample{row[0], {row[1], row[2], row[3]}};
+    if (row.size() == 7) {
+      sample.axis = axis_of(row.subspan(4), file, i);
+    } else {
+      sample.orientation = orientation_of(row.subspan(4), file, i);
     }
     if (i > 0 && !(samples.back().time < row[0])) {
       fail(file, i,
            fmt::format("got time {} after {}; allowed: strictly increasing times", row[0], samples.back().time));
     }
-    samples.push_back({row[0], {row[1], row[2], row[3]}, axis / length});
+    samples.push_back(sample);
   }
   return RecordedMotion(std::move(samples));
 }
