@@ -108,6 +108,10 @@ static void describe(Fields& f, RecordFields& record) {
   f.boolean("energy", record.energy, "keep the energy ledger and write energy.csv");
   f.boolean("ideal_trajectory", record.ideal_trajectory,
             "block_with_hole only: compare the recorded rows with the ideal trajectory and write ideal_trajectory.csv");
+  f.boolean("pose", record.pose, "add the tool's orientation to trajectory.csv, as a quaternion qw,qx,qy,qz");
+  f.boolean("torque", record.torque,
+            "add the torque that is lost to trajectory.csv, tx_Nm,ty_Nm,tz_Nm, and its metrics: what the rendered "
+            "contacts would exert about the tip centre and the device cannot render");
 }
 
 static void describe(Fields& f, SettlingRule& metrics) {

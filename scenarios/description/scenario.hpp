@@ -155,6 +155,8 @@ struct RecordFields {
   bool timing = false;
   bool energy = false;
   bool ideal_trajectory = false;
+  bool pose = false;
+  bool torque = false;
 };
 
 /// True when a run writes rows of its steps.
@@ -207,6 +209,7 @@ Scenario with_algorithm(Scenario scenario, std::string_view algorithm);
 struct MetricSections {
   bool energy = true;
   bool ideal_trajectory = true;
+  bool torque = true;
   std::size_t places = 2;  ///< target places; the thesis's tasks have two
 };
 

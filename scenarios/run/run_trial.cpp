@@ -51,6 +51,7 @@ class TrialObservers {
                      static_cast<std::uint64_t>(scenario.record.every));
       observers_.push_back(&*ideal_);
     }
+    if (scenario.record.torque) observers_.push_back(&torque_.emplace());
     if (parts.shell && parts.shell->size() > 0) {
       approach_.emplace(parts.shell->bounds());
       observers_.push_back(&*approach_);
@@ -87,6 +88,7 @@ class TrialObservers {
     out.passivity = passivity_.metrics();
     if (ledger_) out.energy = ledger_->metrics();
     if (ideal_) out.ideal_trajectory = ideal_->metrics();
+    if (torque_) out.torque = torque_->metrics();
     if (targets_) out.targets = targets_->rows();
     out.recorders = std::move(recorders_);
   }
@@ -96,6 +98,7 @@ class TrialObservers {
   PassivityObserver passivity_;
   std::optional<EnergyLedger> ledger_;
   std::optional<IdealTrajectoryObserver> ideal_;
+  std::optional<LostTorqueObserver> torque_;
   std::optional<ApproachObserver> approach_;
   std::optional<OpenEdgeObserver> open_edges_;
   std::optional<TargetMetricsObserver> targets_;
