@@ -59,11 +59,11 @@ class TrajectoryRecorder final : public Recorder {
       {"qy", "1", "y of this quaternion"},
       {"qz", "1", "z of this quaternion"}};
   static constexpr Column kTorqueColumns[] = {
-      {"tx_Nm", "N m",
+      {"tx_Nm", "Nm",
        "x of the lost torque: what the rendered contacts would exert on the tool about its tip's centre and the device "
        "cannot render, sum r_i x f_i, f_i contact i's share of f_spring"},
-      {"ty_Nm", "N m", "y of the lost torque"},
-      {"tz_Nm", "N m", "z of the lost torque"}};
+      {"ty_Nm", "Nm", "y of the lost torque"},
+      {"tz_Nm", "Nm", "z of the lost torque"}};
 
   /// The columns of a file with these extras, in order.
   static std::span<const Column> columns(const TrajectoryExtras& extras);

@@ -218,11 +218,11 @@ MetricList metric_list(const IdealTrajectoryMetrics& m) {
 
 MetricList metric_list(const LostTorqueMetrics& m) {
   return {
-      number_if(m.rows_in_contact > 0, "lost_mean_Nm", "N m",
+      number_if(m.rows_in_contact > 0, "lost_mean_Nm", "Nm",
                 "mean ||tau|| of the rows in contact; tau = sum r_i x f_i about the tip's centre is the torque that "
                 "the rendered contacts would exert by their shares f_i of f_spring, and that is lost",
                 m.mean),
-      number_if(m.rows_in_contact > 0, "lost_max_Nm", "N m", "largest ||tau|| of a row", m.max)};
+      number_if(m.rows_in_contact > 0, "lost_max_Nm", "Nm", "largest ||tau|| of a row", m.max)};
 }
 
 MetricList metric_list(const std::vector<PlaceMetrics>& places) {

@@ -40,8 +40,16 @@ class Table {
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// A drill that leans and is pushed into an environment by script.
-Json pressed_drill(const std::string& environment, std::string_view algorithm) {
+struct Place {
+  const char* environment;
+  double height;  ///< of the tip at first [m]
+};
+constexpr Place kPlane = {R"({"type": "plane", "size_m": 0.004, "spacing_m": 0.0002})", 0.0001};
+constexpr Place kSlot = {
+    R"({"type": "slot", "gap_m": 0.0011, "depth_m": 0.005, "length_m": 0.004, "spacing_m": 0.0002})", -0.0006};
+
+/// A drill that leans and is pushed into its environment by script.
+Json pressed_drill(const Place& place, std::string_view algorithm) {
   Json json = Json::parse(R"({
     "time": {"step_s": 0.0005, "steps": 40},
     "motion": {
@@ -50,14 +58,11 @@ Json pressed_drill(const std::string& environment, std::string_view algorithm) {
       "position": {"type": "prescribed", "x_m": 0, "y_m": 0,
         "z_m": {"type": "ramp", "start": 0.0001, "rate_per_s": -0.02}}},
     "record": {"contacts": true, "torque": true, "energy": true}})");
-  json["environment"] = Json::parse(environment);
+  json["environment"] = Json::parse(place.environment);
+  json["motion"]["position"]["z_m"]["start"] = place.height;
   json["rendering"] = {{"algorithm", algorithm}};
   return json;
 }
-
-const char* const kPlane = R"({"type": "plane", "size_m": 0.004, "spacing_m": 0.0002})";
-const char* const kSlot = R"({"type": "slot", "gap_m": 0.0011, "depth_m": 0.005, "length_m": 0.004,
-                              "spacing_m": 0.0002})";
 
 struct Contact {
   Vec3 place, gradient;  ///< from the tip centre; u_i
@@ -78,9 +83,9 @@ Vec3 share(std::string_view algorithm, const RenderingConfig& r, const Vec3& spr
   return -K * c.weight * c.depth * c.gradient;
 }
 
-void expect_torques(std::string_view algorithm, const std::string& environment) {
+void expect_torques(std::string_view algorithm, const Place& place) {
   const TemporaryDirectory dir;
-  const LoadedScenario loaded = read_scenario(pressed_drill(environment, algorithm), ".");
+  const LoadedScenario loaded = read_scenario(pressed_drill(place, algorithm), ".");
   const RenderingConfig& rendering = loaded.scenario.rendering;
   const RunReport report = run_scenario(loaded, dir.path(), false);
   const Table rows(dir / "trajectory.csv"), contacts(dir / "contacts.csv");
