@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "sim/tool/turn.hpp"
+#include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
 
@@ -36,7 +36,7 @@ class ContinuousNormalProjectionDepth final : public DepthModel {
   void evaluate(const ToolShape& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept override {
     ++step_;
     tool.shortest_depths(pose, contacts);
-    const Vec3 moved = pose.position - last_.position, turned = turn(last_.axis, pose.axis);
+    const Vec3 moved = pose.position - last_.position, turned = turn(last_, pose);
     for (std::size_t i = 0; i < contacts.size(); ++i) contacts.set_gradient(i, -contacts.normal(i));
     tool.exit_distances(pose, contacts, exit_.data());
     for (std::size_t i = 0; i < contacts.size(); ++i) {

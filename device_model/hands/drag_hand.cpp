@@ -25,9 +25,17 @@ Vec3 DragHand::force(double t, const HandView& view) noexcept {
 DragOrientation::DragOrientation(std::shared_ptr<const SurfacePath> path, double speed, double tilt, double azimuth)
     : path_(std::move(path)), speed_(speed), tilt_(tilt), azimuth_(azimuth) {}
 
-Vec3 DragOrientation::axis_at(double t) const noexcept {
+Orientation DragOrientation::frame_at(double t) const noexcept {
   const double s = speed_ * t;
-  return tool_axis({path_->at(s).normal, path_->direction(s), {}, {}}, tilt_, azimuth_);
+  return {path_->at(s).normal, path_->direction(s), {}, {}};
+}
+
+Vec3 DragOrientation::axis_at(double t) const noexcept {
+  return tool_axis(frame_at(t), tilt_, azimuth_);
+}
+
+double DragOrientation::roll_at(double t) const noexcept {
+  return tool_roll(frame_at(t), tilt_, azimuth_, 0.0);
 }
 
 }  // namespace hapbench

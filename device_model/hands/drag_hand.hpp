@@ -52,10 +52,13 @@ class DragOrientation final : public Motion {
   DragOrientation(std::shared_ptr<const SurfacePath> path, double speed, double tilt, double azimuth);
 
   Vec3 axis_at(double t) const noexcept override;
+  double roll_at(double t) const noexcept override;
   bool position_is_free() const noexcept override { return true; }
   Vec3 position_at(double) const noexcept override { return Vec3::Zero(); }
 
  private:
+  Orientation frame_at(double t) const noexcept;
+
   std::shared_ptr<const SurfacePath> path_;
   double speed_;
   double tilt_;

@@ -93,4 +93,8 @@ Vec3 HeldOrientation::axis_at(double t) const noexcept {
   return tool_axis(orientation_, hand_->tilt(), orientation_.azimuth(t));
 }
 
+double HeldOrientation::roll_at(double t) const noexcept {
+  return tool_roll(orientation_, hand_->tilt(), orientation_.azimuth(t), orientation_.roll(t));
+}
+
 }  // namespace hapbench

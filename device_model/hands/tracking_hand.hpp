@@ -89,6 +89,8 @@ class HeldOrientation final : public Motion {
   HeldOrientation(Orientation orientation, const TrackingHand& hand);
 
   Vec3 axis_at(double t) const noexcept override;
+  double roll_at(double t) const noexcept override;
+  bool scripts_roll() const noexcept override { return !orientation_.roll.is_constant(); }
   bool position_is_free() const noexcept override { return true; }
   Vec3 position_at(double) const noexcept override { return Vec3::Zero(); }
 

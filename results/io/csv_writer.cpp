@@ -30,6 +30,10 @@ void CsvWriter::put(const Vec3& value) noexcept {
   put(value.z());
 }
 
+void CsvWriter::put(std::span<const double> values) noexcept {
+  for (const double value : values) put(value);
+}
+
 void CsvWriter::put(const std::optional<double>& value) noexcept {
   if (value) {
     put(*value);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/tool/turn.hpp"
-
 namespace hapbench {
 namespace {
 
@@ -93,7 +91,7 @@ void EnergyLedger::add_step(const StepRecord& now) noexcept {
 /// Also adds up what translation and rotation did to the springs.
 double EnergyLedger::created_in_step(const StepRecord& now, double spring_work) noexcept {
   const Vec3 moved = now.tool.pose.position - last_.tool.pose.position;
-  const Vec3 turned = turn(last_.tool.pose.axis, now.tool.pose.axis);
+  const Vec3 turned = turn(last_.tool.pose, now.tool.pose);
   const double translation = -0.5 * (last_.force.spring + now.force.spring).dot(moved);
   const double rotation = -0.5 * (last_.springs.moment + now.springs.moment).dot(turned);
   balance_.rotation += rotation;

@@ -8,10 +8,17 @@
 
 namespace hapbench {
 
+/// What trajectory.csv has beyond its usual columns.
+struct TrajectoryExtras {
+  bool pose = false;    ///< record.pose
+  bool torque = false;  ///< record.torque
+};
+
 /// trajectory.csv: one line per recorded row with pose, velocity, forces, handle and contact counts, everything before
 /// the integrator moves the tool. f_spring and f_render (columns fspring, f) act on the tool; fmeas is what the sensor
 /// read, fin what the input-force limiter made of it; h is the handle. depth_max_m is over the colliding points before
-/// any point stage, 0 without contact; ratio_* are over the rendered points and empty when there is none.
+/// any point stage, 0 without contact; ratio_* are over the rendered points and empty when there is none. The torque is
+/// SpringState::moment.
 class TrajectoryRecorder final : public Recorder {
  public:
   static constexpr Column kColumns[] = {
@@ -46,17 +53,34 @@ class TrajectoryRecorder final : public Recorder {
       {"depth_max_m", "m", "largest penetration depth of a colliding point; 0 without contact"},
       {"ratio_min", "1", "smallest stiffness ratio u^T S u of a rendered contact; empty without contact"},
       {"ratio_max", "1", "largest stiffness ratio u^T S u of a rendered contact; empty without contact"}};
+  static constexpr Column kPoseColumns[] = {
+      {"qw", "1", "w of the unit quaternion that turns the tool's frame, its axis along -z, into the world's; >= 0"},
+      {"qx", "1", "x of this quaternion"},
+      {"qy", "1", "y of this quaternion"},
+      {"qz", "1", "z of this quaternion"}};
+  static constexpr Column kTorqueColumns[] = {
+      {"tx_Nm", "Nm",
+       "x of the lost torque: what the rendered contacts would exert on the tool about its tip's centre and the device "
+       "cannot render, sum r_i x f_i, f_i contact i's share of f_spring"},
+      {"ty_Nm", "Nm", "y of the lost torque"},
+      {"tz_Nm", "Nm", "z of the lost torque"}};
+
+  /// The columns of a file with these extras, in order.
+  static std::span<const Column> columns(const TrajectoryExtras& extras);
 
   /// Keeps rows 0, every, 2 every, … Precondition: every > 0. Throws IoError.
-  explicit TrajectoryRecorder(std::filesystem::path file, std::uint64_t every = 1);
+  explicit TrajectoryRecorder(std::filesystem::path file, std::uint64_t every = 1, const TrajectoryExtras& extras = {});
 
   bool wants_ratio() const noexcept override { return true; }
+  bool wants_roll() const noexcept override { return extras_.pose; }
+  bool wants_springs() const noexcept override { return extras_.torque; }
   void on_step(const StepRecord& record) noexcept override;
   void finish() override { csv_.finish(); }
 
  private:
   CsvWriter csv_;
   std::uint64_t every_;
+  TrajectoryExtras extras_;
 };
 
 }  // namespace hapbench

@@ -236,6 +236,13 @@ MetricList metric_list(const ForceFidelity& f) {
                  "time by which f follows f_m: where their correlation (Pearson's, all components) is greatest, within "
                  "0.1 s; none where it is not or where a force does not vary",
                  f.lag)};
+MetricList metric_list(const LostTorqueMetrics& m) {
+  return {
+      number_if(m.rows_in_contact > 0, "lost_mean_Nm", "Nm",
+                "mean ||tau|| of the rows in contact; tau = sum r_i x f_i about the tip's centre is the torque that "
+                "the rendered contacts would exert by their shares f_i of f_spring, and that is lost",
+                m.mean),
+      number_if(m.rows_in_contact > 0, "lost_max_Nm", "Nm", "largest ||tau|| of a row", m.max)};
 }
 
 MetricList metric_list(const std::vector<PlaceMetrics>& places) {

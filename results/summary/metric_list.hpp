@@ -10,6 +10,7 @@
 #include "results/observe/energy_ledger.hpp"
 #include "results/observe/force_fidelity.hpp"
 #include "results/observe/ideal_trajectory.hpp"
+#include "results/observe/lost_torque.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/observe/passivity_observer.hpp"
 #include "results/observe/target_metrics.hpp"
@@ -37,6 +38,7 @@ MetricList metric_list(const std::optional<PassivityMetrics>& passivity);
 MetricList metric_list(const EnergyMetrics& energy);
 MetricList metric_list(const IdealTrajectoryMetrics& ideal_trajectory);
 MetricList metric_list(const ForceFidelity& fidelity);
+MetricList metric_list(const LostTorqueMetrics& torque);
 MetricList metric_list(const std::vector<PlaceMetrics>& targets);
 
 /// The value of that name; none when there is no such metric.

@@ -30,7 +30,7 @@ struct Point {
 MetricSections sections_of(const Scenario& scenario) {
   const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
   return {scenario.record.energy, scenario.record.ideal_trajectory,
-          std::holds_alternative<RecordedPosition>(scenario.motion.position),
+          std::holds_alternative<RecordedPosition>(scenario.motion.position), scenario.record.torque,
           hand == nullptr ? 0 : hand->task.places.size()};
 }
 
@@ -57,6 +57,7 @@ class Collector {
     sections_.energy |= point.sections.energy;
     sections_.ideal_trajectory |= point.sections.ideal_trajectory;
     sections_.fidelity |= point.sections.fidelity;
+    sections_.torque |= point.sections.torque;
     sections_.places = std::max(sections_.places, point.sections.places);
     if (!point.files.empty()) keep_first(files_, point.files, {run, 0});
     for (std::size_t i = 0; i < point.warnings.size(); ++i) keep_first(warnings_, point.warnings[i], {run, i});

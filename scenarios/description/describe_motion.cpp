@@ -10,6 +10,9 @@ static void describe(Fields& f, OrientationFields& orientation) {
   f.vector3("lean", orientation.lean, kDirection, "where the tool leans at azimuth 0; perpendicular to up");
   profile(f, "tilt_rad", orientation.tilt, "rad", "alpha: axis = -(cos alpha up + sin alpha lean')");
   profile(f, "azimuth_rad", orientation.azimuth, "rad", "lean' is lean turned by this about up, right-handed");
+  profile(f, "roll_rad", orientation.roll, "rad",
+          "turn about the tool's axis, right-handed; where all three angles are 0 its x points along lean, its z along "
+          "up");
 }
 
 static void describe(Fields&, FreePosition&) {}
@@ -39,9 +42,8 @@ void describe(Fields& f, MotionFields& motion) {
   f.value("position", motion.position, "free: integrated; prescribed or file: forces are computed, not integrated");
   if (!f.reads() || !std::holds_alternative<RecordedPosition>(motion.position)) return;
   if (f.given("orientation")) {
-    throw InputError(
-        InputError::Kind::relation, f.at() + "/orientation",
-        "contradicts position type \"file\", whose axis columns give the orientation; allowed: one of the two");
+    throw InputError(InputError::Kind::relation, f.at() + "/orientation",
+                     "contradicts position type \"file\", whose columns give the orientation; allowed: one of the two");
   }
   motion.orientation.reset();
 }

@@ -98,15 +98,13 @@ void check_drag_hand(const Scenario& scenario, double steps) {
     fail("/motion/position/type",
          "got a prescribed position; allowed: \"free\" with hand \"drag\", which moves the tool");
   }
-  const auto is_zero = [](const Profile& profile) {
-    const auto* constant = std::get_if<Profile::Constant>(&profile.shape());
-    return constant != nullptr && constant->value == 0.0;
-  };
+  const auto is_zero = [](const Profile& profile) { return profile.is_constant() && profile(0.0) == 0.0; };
   const OrientationFields& orientation = *scenario.motion.orientation;
-  if (hand->tilt && !(is_zero(orientation.tilt) && is_zero(orientation.azimuth))) {
-    fail("/motion/orientation",
-         "got tilt_rad or azimuth_rad beside hand \"drag\", which turns the tool; allowed: without, or hand.tilt_rad "
-         "null");
+  if (hand->tilt && !(is_zero(orientation.tilt) && is_zero(orientation.azimuth) && is_zero(orientation.roll))) {
+    fail(
+        "/motion/orientation",
+        "got tilt_rad, azimuth_rad or roll_rad beside hand \"drag\", which turns the tool; allowed: without, or hand.tilt_rad "
+        "null");
   }
   if (hand->direction && hand->direction->norm() < kShortestDirection)
     fail("/hand/direction", fmt::format("got {}; allowed: a direction that is not zero", shown(*hand->direction)));

@@ -91,6 +91,7 @@ struct OrientationFields {
   Vec3 lean = {1.0, 0.0, 0.0};
   Profile tilt;
   Profile azimuth;
+  Profile roll;
 };
 struct FreePosition {};
 struct PrescribedPosition {
@@ -155,6 +156,8 @@ struct RecordFields {
   bool energy = false;
   bool ideal_trajectory = false;
   bool force_reference = false;
+  bool pose = false;
+  bool torque = false;
 };
 
 /// True when a run writes rows of its steps.
@@ -208,6 +211,7 @@ struct MetricSections {
   bool energy = true;
   bool ideal_trajectory = true;
   bool fidelity = true;
+  bool torque = true;
   std::size_t places = 2;  ///< target places; the thesis's tasks have two
 };
 

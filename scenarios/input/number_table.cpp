@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "scenarios/input/csv_reader.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
@@ -24,12 +26,13 @@ std::string read_named_file(const std::filesystem::path& file) {
   }
 }
 
-NumberTable number_table_in(std::string_view text, const std::filesystem::path& file, const std::string& header,
-                            std::size_t most_rows) {
-  if (text.empty()) fail_in_line(file, 1, fmt::format("the file is empty; allowed: header \"{}\" and rows", header));
+NumberTable number_table_in(std::string_view text, const std::filesystem::path& file,
+                            std::span<const std::string_view> headers, std::size_t most_rows) {
+  const auto allowed = [headers] { return fmt::format("\"{}\"", fmt::join(headers, "\" or \"")); };
+  if (text.empty()) fail_in_line(file, 1, fmt::format("the file is empty; allowed: header {} and rows", allowed()));
   CsvReader csv{LineReader(text), file};
-  if (csv.header() != header)
-    fail_in_line(file, 1, fmt::format("got header {}; allowed: \"{}\"", quoted(csv.header()), header));
+  if (std::find(headers.begin(), headers.end(), csv.header()) == headers.end())
+    fail_in_line(file, 1, fmt::format("got header {}; allowed: {}", quoted(csv.header()), allowed()));
   NumberTable table;
   table.columns = csv.columns().size();
   while (csv.next_not_blank()) {
@@ -44,6 +47,11 @@ NumberTable number_table_in(std::string_view text, const std::filesystem::path& 
     if (table.rows() > most_rows) fail_in_line(file, csv.line(), fmt::format("more than {} rows", most_rows));
   }
   return table;
+}
+
+NumberTable number_table_in(std::string_view text, const std::filesystem::path& file, std::string_view header,
+                            std::size_t most_rows) {
+  return number_table_in(text, file, std::span(&header, 1), most_rows);
 }
 
 }  // namespace hapbench

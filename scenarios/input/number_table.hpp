@@ -15,7 +15,7 @@ inline constexpr std::uintmax_t kLargestTable = std::uintmax_t{4} << 30;
 /// The bytes of a file that a scenario names. Throws InputError that names the file.
 std::string read_named_file(const std::filesystem::path& file);
 
-/// A CSV file of numbers with a fixed header.
+/// A CSV file of numbers with one of a few headers.
 struct NumberTable {
   std::size_t columns = 0;
   std::vector<double> values;  ///< row by row
@@ -24,10 +24,13 @@ struct NumberTable {
   std::span<const double> row(std::size_t i) const { return {values.data() + i * columns, columns}; }
 };
 
-/// The table in the contents of a CSV file, whose first line is exactly `header`; blank lines are skipped, line ends
-/// may be CR LF. Throws InputError that names file, line and column for a wrong header, a wrong number of cells, a cell
-/// that is no finite number, or more than `most_rows` rows.
-NumberTable number_table_in(std::string_view text, const std::filesystem::path& file, const std::string& header,
+/// The table in the contents of a CSV file, whose first line is exactly one of `headers`; blank lines are skipped, line
+/// ends may be CR LF. Throws InputError that names file, line and column for another header, a wrong number of cells, a
+/// cell that is no finite number, or more than `most_rows` rows.
+NumberTable number_table_in(std::string_view text, const std::filesystem::path& file,
+                            std::span<const std::string_view> headers, std::size_t most_rows);
+/// The same with one header.
+NumberTable number_table_in(std::string_view text, const std::filesystem::path& file, std::string_view header,
                             std::size_t most_rows);
 
 }  // namespace hapbench

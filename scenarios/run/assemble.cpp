@@ -54,7 +54,7 @@ double cell_size(const Environment& environment) {
 }
 
 Orientation make_orientation(const OrientationFields& fields) {
-  return {fields.up.normalized(), fields.lean.normalized(), fields.tilt, fields.azimuth};
+  return {fields.up.normalized(), fields.lean.normalized(), fields.tilt, fields.azimuth, fields.roll};
 }
 
 std::unique_ptr<Motion> make_motion(const Scenario& scenario, const NamedFiles& files) {

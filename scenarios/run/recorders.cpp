@@ -24,6 +24,14 @@ Made plain(const RecordedTrial& t, const fs::path& file) {
   return std::make_unique<Plain>(file, every(t));
 }
 
+TrajectoryExtras extras(const RecordFields& fields) {
+  return {fields.pose, fields.torque};
+}
+
+Made trajectory(const RecordedTrial& t, const fs::path& file) {
+  return std::make_unique<TrajectoryRecorder>(file, every(t), extras(t.fields));
+}
+
 Mat3 start_shaping(ContactBuffer& contacts) noexcept {
   return shape_weights(contacts, 0);
 }
@@ -54,10 +62,13 @@ struct RecorderEntry {
   Made (*make)(const RecordedTrial&, const fs::path& file);
 };
 
-constexpr RecorderEntry kRecorders[] = {
-    {{"trajectory.csv", "one line per recorded row, before the tool moves on", TrajectoryRecorder::kColumns},
+const RecorderEntry kRecorders[] = {
+    {{"trajectory.csv",
+      "one line per recorded row, before the tool moves on; qw to qz with record.pose, tx_Nm to tz_Nm with "
+      "record.torque",
+      TrajectoryRecorder::columns({true, true})},
      [](const RecordFields& f) { return f.trajectory; },
-     plain<TrajectoryRecorder>},
+     trajectory},
     {{"contacts.csv", "with record.contacts: one line per rendered contact of each recorded row",
       ContactRecorder::kColumns},
      [](const RecordFields& f) { return f.contacts; },
@@ -103,6 +114,7 @@ std::vector<ResultTable> record_tables(const RecordFields& fields) {
   for (const RecorderEntry& entry : kRecorders) {
     if (entry.is_wanted(fields)) tables.push_back(entry.table);
   }
+  if (fields.trajectory) tables.front().columns = TrajectoryRecorder::columns(extras(fields));
   return tables;
 }
 

@@ -61,6 +61,7 @@ class TrialObservers {
         observers_.push_back(&*fidelity_);
       }
     }
+    if (scenario.record.torque) observers_.push_back(&torque_.emplace());
     if (parts.shell && parts.shell->size() > 0) {
       approach_.emplace(parts.shell->bounds());
       observers_.push_back(&*approach_);
@@ -99,6 +100,7 @@ class TrialObservers {
     if (ledger_) out.energy = ledger_->metrics();
     if (ideal_) out.ideal_trajectory = ideal_->metrics();
     if (fidelity_) out.fidelity = fidelity_->metrics();
+    if (torque_) out.torque = torque_->metrics();
     if (targets_) out.targets = targets_->rows();
     out.recorders = std::move(recorders_);
   }
@@ -110,6 +112,7 @@ class TrialObservers {
   std::optional<IdealTrajectoryObserver> ideal_;
   std::shared_ptr<const RecordedForce> force_;
   std::optional<ForceFidelityObserver> fidelity_;
+  std::optional<LostTorqueObserver> torque_;
   std::optional<ApproachObserver> approach_;
   std::optional<OpenEdgeObserver> open_edges_;
   std::optional<TargetMetricsObserver> targets_;

@@ -13,7 +13,8 @@ namespace {
 ToolPose first_pose(const Scenario& scenario, const SimulationParts& parts) {
   parts.hand->reset();  // it may steer the orientation
   const bool is_free = parts.motion->position_is_free();
-  return {is_free ? scenario.initial.position : parts.motion->position_at(0.0), parts.motion->axis_at(0.0)};
+  return {is_free ? scenario.initial.position : parts.motion->position_at(0.0), parts.motion->axis_at(0.0),
+          parts.motion->roll_at(0.0)};
 }
 
 void place_tool(const ToolShape& tool, const ToolPose& pose, const PointShell& shell, SceneFacts::Surface& surface) {

@@ -40,6 +40,7 @@ class Profile {
   /// Time derivative at t [unit of the value / s]; at a corner of waypoints that of the leg that begins there.
   double rate(double t) const noexcept;
   const Shape& shape() const { return shape_; }
+  bool is_constant() const { return std::holds_alternative<Constant>(shape_); }
 
  private:
   Shape shape_{Constant{}};

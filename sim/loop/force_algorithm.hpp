@@ -28,10 +28,23 @@ struct RenderedForce {
   double depth_max = 0.0;        ///< largest penetration depth of the colliding points [m], before any point stage
 };
 
-/// The penalty springs of one step as a store of energy.
+/// The penalty springs of one step as a store of energy, and the torque that they would exert.
+///
+/// moment = sum r_i x f_i about the tip centre, over the rendered contacts, whose shares f_i make up f_spring:
+///   - laws with weights: f_i = -K c_i d_i u_i;
+///   - virtual_coupling, least_squares: the penalty springs as far as the coupling relieves them,
+///     f_i = -K_p (d_i + <u_i, s>) u_i, s the stretch of the coupling, K_p = K or K / eps. They push and pull against
+///     each other, so that the moment may be far larger than force and arms suggest;
+///   - original_averaging, highest_depth: their one spring names no place; each of n contacts has f_spring / n;
+///   - proxy: f_i = -K lambda_i m_i of the points that hold the proxy, r_i from the proxy's tip centre; less, as its
+///     motion is, of points that are inside the proxy and that it leaves slowly. Of points that hold it equally well it
+///     takes any, so that its force is unique and its moment need not be;
+///   - a passivity controller scales all shares by what it leaves of the springs.
+/// Damping, friction and force limits act on the tool as a whole and have no shares. Springs without a place (the
+/// environment springs) act at the tip centre.
 struct SpringState {
   double energy = 0.0;         ///< elastic energy [J]
-  Vec3 moment = Vec3::Zero();  ///< of the spring forces on the tool about its tip centre [N m]; the device renders none
+  Vec3 moment = Vec3::Zero();  ///< on the tool about its tip centre [N m]; the device renders none
 };
 
 /// False when an algorithm's answer leaves nothing that could store energy: `spring_state` is zero then.

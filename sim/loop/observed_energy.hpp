@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sim/loop/force_algorithm.hpp"
-#include "sim/tool/turn.hpp"
+#include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
 
@@ -10,7 +10,7 @@ namespace hapbench {
 ///
 ///   E_0 = E_spring(0),  E_(k+1) = E_k - f_render_k . (v_k + v_(k+1))/2 dt - (m_k + m_(k+1))/2 . turn_k
 ///
-/// m: moment of the springs, turn_k: rotation vector from axis_k to axis_(k+1). The works are those of the energy
+/// m: moment of the springs, turn_k: rotation vector from pose k to pose k + 1. The works are those of the energy
 /// ledger. A rendering that stores in springs and dissipates never has E_k < 0; max(0, -min E_k) is energy from
 /// nothing. Dissipation counts as taken in, so it can hide what is created later.
 ///
@@ -28,8 +28,7 @@ class ObservedEnergy {
     first_ = !begun_;
     begun_ = true;
     now_ = !now_;
-    axis_[now_] = tool.pose.axis;
-    turn_is_known_ = false;
+    note(tool.pose);
     if (force_acts_) energy_ -= force_.dot(0.5 * (velocity_ + tool.velocity) * dt_);
     if (moment_acts_) energy_ -= 0.5 * moment_.dot(turned());
   }
@@ -56,8 +55,7 @@ class ObservedEnergy {
   void rest(const ToolState& tool) noexcept {
     first_ = false;
     now_ = !now_;
-    axis_[now_] = tool.pose.axis;
-    turn_is_known_ = false;
+    note(tool.pose);
   }
 
   /// E [J]. After `move` but before `answer` it does not yet include the work of this row's moment.
@@ -66,7 +64,7 @@ class ObservedEnergy {
   bool first() const { return first_; }
   /// The turn from the row before to this one [rad].
   const Vec3& turned() noexcept {
-    if (!turn_is_known_) turn_ = first_ ? Vec3(Vec3::Zero()) : turn(axis_[!now_], axis_[now_]);
+    if (!turn_is_known_) turn_ = first_ ? Vec3(Vec3::Zero()) : turn(orientation(!now_), orientation(now_));
     turn_is_known_ = true;
     return turn_;
   }
@@ -75,6 +73,13 @@ class ObservedEnergy {
   /// Branch-free, unlike Eigen's isZero.
   static bool is_zero(const Vec3& v) noexcept { return (v.x() == 0.0) & (v.y() == 0.0) & (v.z() == 0.0); }
 
+  void note(const ToolPose& pose) noexcept {
+    axis_[now_] = pose.axis;
+    roll_[now_] = pose.roll;
+    turn_is_known_ = false;
+  }
+  ToolPose orientation(bool which) const noexcept { return {Vec3::Zero(), axis_[which], roll_[which]}; }
+
   double dt_;
   double energy_ = 0.0;
   bool begun_ = false;
@@ -82,9 +87,10 @@ class ObservedEnergy {
   bool force_acts_ = false;
   bool moment_acts_ = false;
   bool turn_is_known_ = false;
-  bool now_ = false;                             ///< which of the two axes is that of this row
+  bool now_ = false;                             ///< which of the two orientations is that of this row
   Vec3 axis_[2] = {Vec3::Zero(), Vec3::Zero()};  ///< this row's and the one before
-  Vec3 velocity_ = Vec3::Zero();                 ///< of the last row with force
+  double roll_[2] = {0.0, 0.0};
+  Vec3 velocity_ = Vec3::Zero();  ///< of the last row with force
   Vec3 turn_ = Vec3::Zero();
   Vec3 force_ = Vec3::Zero();
   Vec3 moment_ = Vec3::Zero();

@@ -13,6 +13,7 @@ struct StepRecord {
   std::uint64_t step = 0;
   double time = 0.0;  ///< t_k = k dt [s]
   ToolState tool;
+  double roll = 0.0;  ///< the tool's, also of a solid of revolution, whose pose leaves it out; filled only if wanted
   RenderedForce force;
   Vec3 hand_force = Vec3::Zero();  ///< what the hand pushes with [N]
   MeasuredForce hand;              ///< what the device makes of it
@@ -31,6 +32,8 @@ class Observer {
   virtual ~Observer() = default;
   /// True when on_step reads `ratio`; otherwise nobody computes it.
   virtual bool wants_ratio() const noexcept { return false; }
+  /// True when on_step reads `roll`; otherwise nobody computes it.
+  virtual bool wants_roll() const noexcept { return false; }
   /// True when on_step reads `springs` and `device`; otherwise nobody computes them.
   virtual bool wants_energy() const noexcept { return false; }
   /// True when on_step reads `springs`.

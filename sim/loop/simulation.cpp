@@ -4,9 +4,15 @@
 #include <numbers>
 #include <utility>
 
-#include "sim/tool/turn.hpp"
-
 namespace hapbench {
+namespace {
+
+/// True of a solid of revolution.
+bool is_round(const ToolShape& tool) {
+  return tool.moved_at_most(ToolPose{}, ToolPose{.roll = 1.0}) == 0.0;
+}
+
+}  // namespace
 
 /// What an integrator may ask about the step from row k to row k + 1. Reuses the contact buffer, which nobody reads
 /// any more after the observers.
@@ -15,9 +21,11 @@ class Simulation::Surroundings final : public ForceField {
   explicit Surroundings(Simulation& simulation) : s_(simulation) {}
 
   Vec3 force_at(double part, const Vec3& position, const Vec3& velocity) noexcept override {
-    const Vec3 axis = s_.parts_.motion->axis_at((static_cast<double>(s_.row_) + part) * s_.config_.dt);
-    ToolState tool{{position, axis}, velocity};
-    if (s_.angular_velocity_cutoff_) tool.angular_velocity = s_.angular_velocity_after(part, axis);
+    const double t = (static_cast<double>(s_.row_) + part) * s_.config_.dt;
+    const Vec3 axis = s_.parts_.motion->axis_at(t);
+    const double roll = s_.roll_at(t);
+    ToolState tool{s_.pose(position, axis, roll), velocity};
+    if (s_.angular_velocity_cutoff_) tool.angular_velocity = s_.angular_velocity_after(part, axis, roll);
     s_.parts_.source->contacts_at(tool.pose, s_.contacts_);
     s_.parts_.algorithm->compute(tool, s_.contacts_, s_.within_step_);
     return s_.record_.hand.input + s_.within_step_.rendered;
@@ -39,11 +47,15 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
     ratio_wanted_ |= observer->wants_ratio();
     springs_wanted_ |= observer->wants_springs();
     energy_wanted_ |= observer->wants_energy();
+    roll_wanted_ |= observer->wants_roll();
   }
   position_is_free_ = parts_.motion->position_is_free();
   input_wanted_ = parts_.algorithm->wants_input();
   handle_is_apart_ = parts_.device->energy().has_value();
   angular_velocity_cutoff_ = parts_.algorithm->angular_velocity_cutoff();
+  tool_rolls_ = parts_.tool && !is_round(*parts_.tool);
+  turn_rolls_ = tool_rolls_ || parts_.motion->scripts_roll();
+  roll_wanted_ |= tool_rolls_ || (turn_rolls_ && angular_velocity_cutoff_);
   parts_.algorithm->prepare(
       {parts_.source->capacity(), parts_.tool.get(), parts_.shell.get(), parts_.springs.get(), config_.dt});
   reset();
@@ -63,12 +75,23 @@ void Simulation::reset() noexcept {
   integrator_->reset();
 }
 
-/// The turn from the row's axis to `axis`, a part of a step later, as an angular velocity through a first-order
-/// low-pass: 1 - e^(-2 pi f t) of what is new.
-Vec3 Simulation::angular_velocity_after(double part, const Vec3& axis) const noexcept {
+double Simulation::roll_at(double t) const noexcept {
+  return roll_wanted_ ? parts_.motion->roll_at(t) : 0.0;
+}
+
+/// Without roll for a solid of revolution, so that nothing that is computed for it can depend on it.
+ToolPose Simulation::pose(const Vec3& position, const Vec3& axis, double roll) const noexcept {
+  return {position, axis, tool_rolls_ ? roll : 0.0};
+}
+
+/// The turn from the row's orientation to this one, a part of a step later, as an angular velocity through a
+/// first-order low-pass: 1 - e^(-2 pi f t) of what is new.
+Vec3 Simulation::angular_velocity_after(double part, const Vec3& axis, double roll) const noexcept {
   const double time = part * config_.dt;
   const double taken = -std::expm1(-2.0 * std::numbers::pi * *angular_velocity_cutoff_ * time);
-  return (1.0 - taken) * tool_.angular_velocity + taken * turn(tool_.pose.axis, axis) / time;
+  const ToolPose from{Vec3::Zero(), tool_.pose.axis, turn_rolls_ ? roll_ : 0.0};
+  const ToolPose to{Vec3::Zero(), axis, turn_rolls_ ? roll : 0.0};
+  return (1.0 - taken) * tool_.angular_velocity + taken * turn(from, to) / time;
 }
 
 /// Orientation always follows the script, omega_k from the turn of the last step, omega_0 = 0; a prescribed position
@@ -76,8 +99,10 @@ Vec3 Simulation::angular_velocity_after(double part, const Vec3& axis) const noe
 void Simulation::move_tool_by_script() noexcept {
   const double t = static_cast<double>(row_) * config_.dt;
   const Vec3 axis = parts_.motion->axis_at(t);
-  if (angular_velocity_cutoff_ && row_ > 0) tool_.angular_velocity = angular_velocity_after(1.0, axis);
-  tool_.pose.axis = axis;
+  const double roll = roll_at(t);
+  if (angular_velocity_cutoff_ && row_ > 0) tool_.angular_velocity = angular_velocity_after(1.0, axis, roll);
+  tool_.pose = pose(tool_.pose.position, axis, roll);
+  roll_ = roll;
   if (position_is_free_) return;
   const Vec3 position = parts_.motion->position_at(t);
   tool_.velocity = row_ == 0 ? Vec3::Zero() : Vec3((position - tool_.pose.position) / config_.dt);
@@ -96,6 +121,7 @@ bool Simulation::step() noexcept {
   r.step = row_;
   r.time = static_cast<double>(row_) * config_.dt;
   r.tool = tool_;
+  r.roll = roll_;
   r.handle = parts_.device->handle();
   r.hand_force = parts_.hand->force(r.time, {r.handle, tool_.pose, r.force.rendered, r.force.spring});
   r.task = parts_.hand->task();

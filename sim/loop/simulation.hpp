@@ -109,7 +109,9 @@ class Simulation {
 
   void move_tool_by_force() noexcept;
   void move_tool_by_script() noexcept;
-  Vec3 angular_velocity_after(double part, const Vec3& axis) const noexcept;
+  double roll_at(double t) const noexcept;
+  ToolPose pose(const Vec3& position, const Vec3& axis, double roll) const noexcept;
+  Vec3 angular_velocity_after(double part, const Vec3& axis, double roll) const noexcept;
   void note_springs() noexcept;
   bool check_bounds() noexcept;
   bool check_stop_rules() noexcept;
@@ -123,6 +125,9 @@ class Simulation {
   bool springs_wanted_ = false;
   bool energy_wanted_ = false;
   bool position_is_free_ = false;
+  bool tool_rolls_ = false;   ///< it is no solid of revolution
+  bool turn_rolls_ = false;   ///< the turn about its axis belongs to its angular velocity
+  bool roll_wanted_ = false;  ///< somebody reads it
   bool input_wanted_ = false;
   bool handle_is_apart_ = false;                   ///< the handle is a body of its own
   std::optional<double> angular_velocity_cutoff_;  ///< none: nobody wants it
@@ -131,6 +136,7 @@ class Simulation {
   std::uint64_t row_ = 0;
   bool ended_ = false;
   ToolState tool_;
+  double roll_ = 0.0;  ///< of the row; 0 unless wanted
   StepRecord record_;
   RenderedForce within_step_;   ///< of the last state an integrator asked about
   bool springs_noted_ = false;  ///< record_.springs are not zero

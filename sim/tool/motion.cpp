@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim/tool/tool_state.hpp"
+
 namespace hapbench {
 
 Vec3 tool_axis(const Orientation& orientation, double tilt, double azimuth) noexcept {
@@ -14,12 +16,20 @@ Vec3 tool_axis(const Orientation& orientation, double tilt, double azimuth) noex
   return -(std::cos(tilt) * orientation.up + std::sin(tilt) * lean);
 }
 
+double tool_roll(const Orientation& orientation, double tilt, double azimuth, double roll) noexcept {
+  const Vec3 sideways = orientation.up.cross(orientation.lean);
+  const Vec3 lean = std::cos(azimuth) * orientation.lean + std::sin(azimuth) * sideways;
+  const Vec3 side = std::cos(tilt) * lean - std::sin(tilt) * orientation.up;  // turned with up -> -axis
+  return roll_towards(tool_axis(orientation, tilt, azimuth), side) + roll;
+}
+
+static Vec3 axis_of(const Eigen::Quaterniond& orientation) noexcept {
+  return (orientation * -Vec3::UnitZ()).normalized();
+}
+
 ScriptedMotion::ScriptedMotion(Orientation orientation, std::optional<std::array<Profile, 3>> position)
     : orientation_(std::move(orientation)), position_(std::move(position)) {
-  const auto is_constant = [](const Profile& profile) {
-    return std::holds_alternative<Profile::Constant>(profile.shape());
-  };
-  if (is_constant(orientation_.tilt) && is_constant(orientation_.azimuth)) {
+  if (orientation_.tilt.is_constant() && orientation_.azimuth.is_constant()) {
     held_axis_ = tool_axis(orientation_, orientation_.tilt(0.0), orientation_.azimuth(0.0));
   }
 }
@@ -29,6 +39,10 @@ Vec3 ScriptedMotion::axis_at(double t) const noexcept {
   return tool_axis(orientation_, orientation_.tilt(t), orientation_.azimuth(t));
 }
 
+double ScriptedMotion::roll_at(double t) const noexcept {
+  return tool_roll(orientation_, orientation_.tilt(t), orientation_.azimuth(t), orientation_.roll(t));
+}
+
 Vec3 ScriptedMotion::position_at(double t) const noexcept {
   const auto& profiles = *position_;
   return {profiles[0](t), profiles[1](t), profiles[2](t)};
@@ -36,9 +50,15 @@ Vec3 ScriptedMotion::position_at(double t) const noexcept {
 
 RecordedMotion::RecordedMotion(std::vector<Sample> samples) : samples_(std::move(samples)) {
   if (samples_.empty()) throw std::invalid_argument("a recorded motion needs at least one sample");
+  for (Sample& sample : samples_) {
+    if (sample.orientation) sample.axis = axis_of(*sample.orientation);
+  }
   for (std::size_t i = 1; i < samples_.size(); ++i) {
     if (!(samples_[i - 1].time < samples_[i].time)) {
       throw std::invalid_argument("the times of a recorded motion must increase strictly");
+    }
+    if (samples_[i].orientation.has_value() != samples_[0].orientation.has_value()) {
+      throw std::invalid_argument("either all samples of a recorded motion have an orientation or none has");
     }
   }
 }
@@ -52,12 +72,24 @@ RecordedMotion::Leg RecordedMotion::leg_at(double t) const noexcept {
   return {&from, &*next, (t - from.time) / (next->time - from.time)};
 }
 
+Eigen::Quaterniond RecordedMotion::orientation_in(const Leg& leg) noexcept {
+  return leg.from->orientation->slerp(leg.fraction, *leg.to->orientation);
+}
+
 Vec3 RecordedMotion::axis_at(double t) const noexcept {
   const Leg leg = leg_at(t);
+  if (leg.from->orientation) return axis_of(orientation_in(leg));
   const Vec3 axis = leg.from->axis + leg.fraction * (leg.to->axis - leg.from->axis);
   const double norm = axis.norm();
   // Opposite neighbours pass through zero half-way: keep the last direction there.
   return norm > 0.0 ? Vec3(axis / norm) : leg.from->axis;
+}
+
+double RecordedMotion::roll_at(double t) const noexcept {
+  const Leg leg = leg_at(t);
+  if (!leg.from->orientation) return 0.0;
+  const Eigen::Quaterniond q = orientation_in(leg);
+  return roll_towards(axis_of(q), q * Vec3::UnitX());
 }
 
 Vec3 RecordedMotion::position_at(double t) const noexcept {

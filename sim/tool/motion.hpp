@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <optional>
 #include <span>
@@ -16,6 +17,14 @@ class Motion {
   virtual ~Motion() = default;
   /// Unit vector out of the tip at time t [s].
   virtual Vec3 axis_at(double t) const noexcept = 0;
+  /// ToolPose::roll at time t [rad]; asked only where somebody reads it.
+  virtual double roll_at(double t) const noexcept {
+    static_cast<void>(t);
+    return 0.0;
+  }
+  /// True when the script turns the tool about its axis, so that this turn belongs to the angular velocity of a solid
+  /// of revolution too; that of any other tool always has it.
+  virtual bool scripts_roll() const noexcept { return false; }
   /// True when the tip centre is integrated, false when position_at prescribes it.
   virtual bool position_is_free() const noexcept = 0;
   /// Tip centre at time t [m]; called only when the position is not free.
@@ -23,16 +32,20 @@ class Motion {
 };
 
 /// The tool leans by `tilt` from `up` towards `lean` turned by `azimuth` about `up`:
-/// axis = -(cos(tilt) up + sin(tilt) lean'), so at tilt 0 the tip points down.
+/// axis = -(cos(tilt) up + sin(tilt) lean'), so at tilt 0 the tip points down. Where all three angles are 0, the tool's
+/// own x points along lean and its z along up; the roll turns it about its axis.
 struct Orientation {
   Vec3 up = {0.0, 0.0, 1.0};    ///< unit
   Vec3 lean = {1.0, 0.0, 0.0};  ///< unit, perpendicular to up
   Profile tilt;                 ///< [rad]
   Profile azimuth;              ///< [rad], right-handed about up
+  Profile roll = {};            ///< [rad], right-handed about the axis
 };
 
 /// The tool's axis at a tilt and an azimuth [rad] of its own, whatever the profiles say.
 Vec3 tool_axis(const Orientation& orientation, double tilt, double azimuth) noexcept;
+/// The same of the pose's roll, with a roll of its own.
+double tool_roll(const Orientation& orientation, double tilt, double azimuth, double roll) noexcept;
 
 /// Orientation from profiles; position free, or three profiles [m].
 class ScriptedMotion final : public Motion {
@@ -40,6 +53,8 @@ class ScriptedMotion final : public Motion {
   ScriptedMotion(Orientation orientation, std::optional<std::array<Profile, 3>> position);
 
   Vec3 axis_at(double t) const noexcept override;
+  double roll_at(double t) const noexcept override;
+  bool scripts_roll() const noexcept override { return !orientation_.roll.is_constant(); }
   bool position_is_free() const noexcept override { return !position_; }
   Vec3 position_at(double t) const noexcept override;
 
@@ -49,21 +64,27 @@ class ScriptedMotion final : public Motion {
   std::optional<std::array<Profile, 3>> position_;
 };
 
-/// A recorded stroke played back: linear interpolation between the samples, held constant outside, the axis normalised
-/// after interpolation.
+/// A recorded stroke played back: linear interpolation between the samples, held constant outside. Orientations are
+/// interpolated at constant angular velocity the short way round (slerp); axes alone linearly and normalised, with a
+/// roll of 0.
 class RecordedMotion final : public Motion {
  public:
   struct Sample {
     double time = 0.0;  ///< [s], strictly increasing from sample to sample
     Vec3 position = Vec3::Zero();
     Vec3 axis = {0.0, 0.0, -1.0};
+    /// From the tool's frame to the world's, unit; the axis becomes that of it. All samples have one, or none has.
+    std::optional<Eigen::Quaterniond> orientation = {};
   };
 
-  /// Throws std::invalid_argument when there is no sample or times do not increase.
+  /// Throws std::invalid_argument when there is no sample, times do not increase or only some samples have an
+  /// orientation.
   explicit RecordedMotion(std::vector<Sample> samples);
 
   std::span<const Sample> samples() const { return samples_; }
   Vec3 axis_at(double t) const noexcept override;
+  double roll_at(double t) const noexcept override;
+  bool scripts_roll() const noexcept override { return samples_.front().orientation.has_value(); }
   bool position_is_free() const noexcept override { return false; }
   Vec3 position_at(double t) const noexcept override;
 
@@ -74,6 +95,7 @@ class RecordedMotion final : public Motion {
     double fraction;
   };
   Leg leg_at(double t) const noexcept;
+  static Eigen::Quaterniond orientation_in(const Leg& leg) noexcept;
 
   std::vector<Sample> samples_;
 };

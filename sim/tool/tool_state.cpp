@@ -1,6 +1,9 @@
 #include "sim/tool/tool_state.hpp"
 
 #include <Eigen/Geometry>
+#include <cmath>
+
+#include "sim/tool/turn.hpp"
 
 namespace hapbench {
 namespace {
@@ -20,6 +23,17 @@ Mat3 shortest_turn(const Vec3& axis) noexcept {
 
 Mat3 ToolPose::rotation() const noexcept {
   return Eigen::AngleAxisd(roll, axis).toRotationMatrix() * shortest_turn(axis);
+}
+
+double roll_towards(const Vec3& axis, const Vec3& side) noexcept {
+  const Vec3 x = shortest_turn(axis).col(0);
+  return std::atan2(axis.cross(x).dot(side), x.dot(side));
+}
+
+Vec3 turn(const ToolPose& from, const ToolPose& to) noexcept {
+  if (from.roll == 0.0 && to.roll == 0.0) return turn(from.axis, to.axis);
+  const Eigen::AngleAxisd whole(Mat3(to.rotation() * from.rotation().transpose()));
+  return whole.angle() * whole.axis();
 }
 
 }  // namespace hapbench

@@ -19,12 +19,20 @@ struct ToolPose {
   Mat3 rotation() const noexcept;
 };
 
-/// Pose and velocity. The orientation is scripted, so the angular velocity is known and not integrated; it lacks the
-/// turn about the tool's own axis.
+/// The roll of a pose with this axis whose own x axis lies along `side`, in (-pi, pi]. Unit vectors, perpendicular.
+double roll_towards(const Vec3& axis, const Vec3& side) noexcept;
+
+/// The rotation vector that turns one pose to the other [rad]. Where neither rolls, the axis turns the short way: a
+/// solid of revolution, whose pose leaves its roll out, feels no other turn.
+Vec3 turn(const ToolPose& from, const ToolPose& to) noexcept;
+
+/// Pose and velocity. The orientation is scripted, so the angular velocity is known and not integrated.
 struct ToolState {
   ToolPose pose;
-  Vec3 velocity = Vec3::Zero();          ///< of the tip centre [m/s]
-  Vec3 angular_velocity = Vec3::Zero();  ///< over the step before, perhaps low-passed [rad/s]; zero unless wanted
+  Vec3 velocity = Vec3::Zero();  ///< of the tip centre [m/s]
+  /// Over the step before, perhaps low-passed [rad/s]; zero unless wanted. With the turn about the axis where the pose
+  /// or the script (Motion::scripts_roll) has one.
+  Vec3 angular_velocity = Vec3::Zero();
 };
 
 }  // namespace hapbench

@@ -77,6 +77,10 @@ def make_results(directory):
         *("--set=time.duration_s=2", "--set=record.every=8", "--set=rendering.reduction={}"),
         *("--out", directory / "proxy"),
     )
+    hapbench(
+        *("compare", "lost_torque", "--algorithms", "original_averaging,shaped_stiffness", "--quiet"),
+        *("--out", directory / "torque"),
+    )
     hapbench("compare", "peg_in_hole_2d_shaped_stiffness", "--quiet", "--out", directory / "compare")
     for scene, scenario in (("peg", "tilt_sweep_shaped_stiffness"), ("wedge", "wedge_stiffness")):
         out = directory / "stiffness" / scene

@@ -251,7 +251,8 @@ class Plot(Given):
         (bare / "trajectory.csv").unlink()
         for words, said in (
                 ((mesh, "--y", "forse"), 'nearest valid name: "force"'), ((mesh, "--y", "fz"), 'nearest valid name: "fz_N"'),
-                ((mesh, "--y", "energy"), "run it with --set record.energy=true"), ((mesh, "--out", "x.gif"), "allowed: .svg, .png, .pdf"),
+                ((mesh, "--y", "energy"), "run it with --set record.energy=true"),
+                ((mesh, "--y", "torque"), "has no tx_Nm; run it with --set record.torque=true"), ((mesh, "--out", "x.gif"), "allowed: .svg, .png, .pdf"),
                 ((self.root / "mseh",), 'nearest valid name: "mesh"'), ((self.root / "nothing" / "here",), "no such folder"),
                 ((sweep, "--metric", "speed_max"), 'nearest valid name: "speed_max_m_per_s"'), ((sweep, "--y", "force"), "allowed for it: --metric"),
                 ((sweep, mesh), "one sweep alone"), ((mesh, "--metric", "x"), "is for a sweep"), ((bare,), "record.trajectory=true")):

@@ -10,7 +10,7 @@ namespace hapbench {
 namespace {
 
 bool changes(const Profile& profile) {
-  return !std::holds_alternative<Profile::Constant>(profile.shape());
+  return !profile.is_constant();
 }
 
 bool any_changes(const std::array<Profile, 3>& profiles) {

@@ -18,6 +18,7 @@ from . import (
     stability,
     stiffness_fields,
     tasks,
+    torque,
 )
 
 
@@ -69,6 +70,7 @@ FIGURES = (
     Figure("discussion", None, "Cases of the thesis's discussion", comparison.discussion),
     Figure("stiffness", None, "Stiffness in every direction, all algorithms", stiffness_fields.of_all_algorithms),
     Figure("proxy", None, "The drill turned in the hole, with a proxy and with shaping", proxy.rotated),
+    Figure("torque", None, "The torque that is lost as the drill is turned", torque.lost),
     Figure("precision", None, "Work against precision", performance.work_precision),
     Figure("latency", None, "Latency of a step", performance.latency),
     Figure("growth", None, "How cost grows", growth.growth),

@@ -12,11 +12,11 @@ TRAJECTORY = "trajectory.csv"
 REFERENCE = "force_reference.csv"
 # Tables of a row per recorded step, in which a column is looked for.
 TABLES = (TRAJECTORY, "energy.csv", "ideal_trajectory.csv", "stiffness_tensor.csv", REFERENCE)
-# The field that makes a run write a table.
+# The field that makes a run write a table, or a column that not every table has.
 SWITCH = {"energy.csv": "record.energy", "ideal_trajectory.csv": "record.ideal_trajectory", TRAJECTORY: "record.trajectory",
-          "stiffness_tensor.csv": "record.stiffness_tensor", REFERENCE: "record.force_reference"}
+          "stiffness_tensor.csv": "record.stiffness_tensor", REFERENCE: "record.force_reference", "tx_Nm": "record.torque"}
 # Unit by the end of a column's name -> shown unit, factor.
-UNITS = (("_m_per_s", "m/s", 1.0), ("_J", "mJ", 1e3), ("_N", "N", 1.0), ("_m", "mm", 1e3), ("_s", "s", 1.0))
+UNITS = (("_Nm", "mN m", 1e3), ("_m_per_s", "m/s", 1.0), ("_J", "mJ", 1e3), ("_N", "N", 1.0), ("_m", "mm", 1e3), ("_s", "s", 1.0))
 
 
 @dataclass(frozen=True)
@@ -52,6 +52,7 @@ SHORT = {q.name: q for q in (
     Quantity("input", "input force", "N", 1, TRAJECTORY, vector("fin_", "N"), "norm"),
     Quantity("reference", "force of the stroke", "N", 1, REFERENCE, vector("mf", "N"), "norm"),
     Quantity("force_error", "force error", "N", 1, REFERENCE, vector("force_error_", "N"), "norm"),
+    Quantity("torque", "torque that is lost", "mN m", 1e3, TRAJECTORY, vector("t", "Nm"), "norm"),
     Quantity("depth", "largest depth", "mm", 1e3, TRAJECTORY, ("depth_max_m",)),
     Quantity("ratio", "stiffness ratio", "K", 1, TRAJECTORY, ("ratio_min", "ratio_max"), "band"),
     Quantity("contacts", "colliding points", "", 1, TRAJECTORY, ("colliding",)),
@@ -80,7 +81,7 @@ def chosen(names, runs):
     """The quantities of these names and whether the path is among them; those not chosen by name may be missing."""
     if not names:
         usual = [SHORT[name] for name in USUAL if name != PATH]
-        return [q for q in usual if any(q.file in tables_of(run) for run in runs)], True
+        return [q for q in usual if any(has(run, q) for run in runs)], True
     return [quantity(name, runs) for name in names if name != PATH], PATH in names
 
 
@@ -94,10 +95,14 @@ def quantity(name, runs):
     if not found:
         raise InputError(f"--y: got \"{name}\"; allowed: {', '.join([*SHORT, PATH])}, or a column of "
                          f"{' or '.join(sorted(set(known.values())) or [TRAJECTORY])}{nearest(name, [*SHORT, PATH, *known])}")
-    missing = [run for run in runs if found.file not in tables_of(run)]
-    if len(missing) == len(runs):
-        raise InputError(f"--y {name}: {runs[0].directory}: has no {found.file}; run it with --set {SWITCH[found.file]}=true")
+    if not any(has(run, found) for run in runs):
+        lacks = found.columns[0] if found.columns[0] in SWITCH else found.file
+        raise InputError(f"--y {name}: {runs[0].directory}: has no {lacks}; run it with --set {SWITCH[lacks]}=true")
     return found
+
+
+def has(run, quantity):
+    return quantity.file in tables_of(run) and set(quantity.columns) <= set(header(run.directory / quantity.file))
 
 
 def tables_of(run):
@@ -110,7 +115,7 @@ class Samples:
     def __init__(self, run, quantities, further=()):
         """`further`: columns of trajectory.csv beside those of the quantities."""
         wanted = {TRAJECTORY: {"time_s", "colliding", *further}}
-        for q in quantities:
+        for q in (q for q in quantities if has(run, q)):
             wanted.setdefault(q.file, {"time_s"}).update(q.columns)
         present = tables_of(run)
         if TRAJECTORY not in present:
@@ -124,8 +129,8 @@ class Samples:
 
     def of(self, q):
         """Time, lower and upper edge; None when this run did not record it."""
-        table = self.tables.get(q.file)
-        return None if table is None else (table["time_s"], *q.of(table))
+        table = self.tables.get(q.file, {})
+        return (table["time_s"], *q.of(table)) if set(q.columns) <= set(table) else None
 
     @property
     def first_touch_s(self):

@@ -48,15 +48,25 @@ class FarPoints : public Invariance {};
 HAPBENCH_FOR_EVERY_ALGORITHM(FarPoints,
                              [](const test::AlgorithmOnScene& instance) { return !instance.scene->setting().springs; });
 
-TEST_P(RigidMotion, OfTheWholeSceneTurnsTheForce) {
-  const RenderedForce original = test::Probe(setting, config).force_at(setting.pose, velocity);
+TEST_P(RigidMotion, OfTheWholeSceneTurnsForceAndTorque) {
+  const auto torque_of = [](test::Probe& probe, const ToolPose& pose) {
+    return probe.algorithm().spring_state({pose, Vec3::Zero()}, probe.contacts()).moment;
+  };
+  test::Probe here(setting, config);
+  const RenderedForce original = here.force_at(setting.pose, velocity);
+  const Vec3 torque = torque_of(here, setting.pose);
   Random random(1);
   for (int i = 0; i < 10; ++i) {
     const Mat3 R = test::random_rotation(random);
     // Springs are attached to the origin and can only be turned with it.
     const Vec3 t = setting.springs ? Vec3(0, 0, 0) : Vec3(0.1 * random.direction());
     const test::Setting there = test::moved(setting, R, t);
-    const RenderedForce force = test::Probe(there, config).force_at(there.pose, R * velocity);
+    test::Probe probe(there, config);
+    const RenderedForce force = probe.force_at(there.pose, R * velocity);
+    // Of points that hold a proxy equally well, as those of a flat, rounding decides which do.
+    if (!is_proxy()) {
+      ASSERT_LE((torque_of(probe, there.pose) - R * torque).norm(), rounding() * there.tool.reach());
+    }
     ASSERT_LE((force.spring - R * original.spring).norm(), rounding());
     ASSERT_LE((force.rendered - R * original.rendered).norm(), rounding_in_motion(original));
     ASSERT_LE((force.S - R * original.S * R.transpose()).norm(), rounding_of_S() * (1.0 + original.S.norm()));

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
 #include "results/allocations/allocations.hpp"
 #include "tests/results/files.hpp"
 #include "tests/results/rows.hpp"
@@ -88,6 +92,51 @@ TEST(TrajectoryRecorder, ThatIsNeverFinishedLeavesNoFile) {
     recorder.on_step(test::row(0, 0.0, none));
   }
   EXPECT_TRUE(dir.entries().empty());
+}
+
+TEST(TrajectoryRecorder, AddsPoseAndTorqueAfterTheUsualColumns) {
+  const ContactBuffer contacts = test::contacts_along({Vec3::UnitX(), Vec3::UnitY()});
+  StepRecord r = full_row(contacts);
+  r.tool.pose.axis = {0, 0, -1};
+  r.roll = std::numbers::pi / 3;
+  r.springs.moment = {0.5, -0.25, 0.125};
+  const auto written = [&r](const TrajectoryExtras& extras) {
+    const TemporaryDirectory dir;
+    TrajectoryRecorder recorder(dir / "trajectory.csv", 1, extras);
+    EXPECT_EQ(recorder.wants_roll(), extras.pose);
+    EXPECT_EQ(recorder.wants_springs(), extras.torque);
+    recorder.on_step(r);
+    recorder.finish();
+    return lines_of(read_file(dir / "trajectory.csv"));
+  };
+  const auto usual = written({}), pose = written({true, false}), torque = written({false, true}),
+             both = written({true, true});
+  EXPECT_EQ(usual.at(0), kColumns);
+  EXPECT_EQ(pose.at(0), kColumns + ",qw,qx,qy,qz");
+  EXPECT_EQ(torque.at(0), kColumns + ",tx_Nm,ty_Nm,tz_Nm");
+  EXPECT_EQ(torque.at(1), usual.at(1) + ",0.5,-0.25,0.125");
+  EXPECT_EQ(both.at(0), kColumns + ",qw,qx,qy,qz,tx_Nm,ty_Nm,tz_Nm");
+  EXPECT_EQ(both.at(1), pose.at(1) + ",0.5,-0.25,0.125");
+  // Right-handed about -z by 60 degrees.
+  double q[4] = {};
+  ASSERT_EQ(std::sscanf(pose.at(1).c_str() + usual.at(1).size(), ",%lf,%lf,%lf,%lf", q, q + 1, q + 2, q + 3), 4);
+  const double expected[] = {std::sqrt(0.75), 0.0, 0.0, -0.5};
+  for (int i = 0; i < 4; ++i) EXPECT_NEAR(q[i], expected[i], 1e-15) << i;
+}
+
+TEST(TrajectoryRecorder, WritesTheQuaternionWhoseFirstNumberIsNotNegative) {
+  const ContactBuffer none(1);
+  const TemporaryDirectory dir;
+  TrajectoryRecorder recorder(dir / "trajectory.csv", 1, {true, false});
+  std::uint64_t step = 0;
+  for (const double roll : {-3.5, -2.0, 2.0, 3.5, 5.0}) {
+    StepRecord r = test::row(step++, 0.0, none);
+    r.roll = roll;
+    recorder.on_step(r);
+  }
+  recorder.finish();
+  const auto lines = lines_of(read_file(dir / "trajectory.csv"));
+  for (std::size_t i = 1; i < lines.size(); ++i) EXPECT_NE(lines[i].find(",,,0."), std::string::npos) << lines[i];
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ void expect_documented(const Entries& entries, const std::string& where) {
 }
 
 TEST(Columns, AreDocumentedWithTheUnitTheyAreNamedAfter) {
-  expect_documented(TrajectoryRecorder::kColumns, "trajectory.csv");
+  expect_documented(TrajectoryRecorder::columns({true, true}), "trajectory.csv");
   expect_documented(ContactRecorder::kColumns, "contacts.csv");
   expect_documented(StiffnessRecorder::kColumns, "stiffness_tensor.csv");
   expect_documented(RatioRecorder::kColumns, "ratios.csv");
@@ -68,6 +68,7 @@ TEST(Metrics, AreDocumentedWithTheUnitTheyAreNamedAfter) {
   expect_documented(metric_list(std::optional<PassivityMetrics>()), "passivity");
   expect_documented(metric_list(EnergyMetrics{}), "energy");
   expect_documented(metric_list(IdealTrajectoryMetrics{}), "ideal trajectory");
+  expect_documented(metric_list(LostTorqueMetrics{}), "torque");
   expect_documented(metric_list(std::vector<PlaceMetrics>(1)), "targets");
 }
 

@@ -9,6 +9,8 @@ namespace {
 
 const std::string kHeader = "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n";
 
+const std::string kQuaternions = "time_s,px_m,py_m,pz_m,qw,qx,qy,qz\n";
+
 constexpr const char* kFile = "stroke.csv";
 
 class MotionFile : public testing::Test {
@@ -51,6 +53,35 @@ TEST_F(MotionFile, NeedsAxesThatAreDirections) {
     EXPECT_EQ(
         refusal_of(std::string("0,0,0,0,0,0,1\n1,0,0,0,") + axis + "\n").find(", sample 2: got an axis of length"), 0u);
   }
+}
+
+/// A quarter of a turn about x takes the axis from -z to y.
+TEST(MotionFileOfQuaternions, TurnsTheToolsFrameIntoTheWorlds) {
+  const RecordedMotion motion = motion_in(kQuaternions + "0,1,2,3,1,0,0,0\n1,1,2,3,0.7072,0.7072,0,0\n", kFile);
+  EXPECT_EQ(motion.axis_at(0.0), Vec3(0, 0, -1));
+  EXPECT_LE((motion.axis_at(1.0) - Vec3(0, 1, 0)).norm(), 4e-16) << "normalised";
+  EXPECT_EQ(motion.position_at(0.5), Vec3(1, 2, 3));
+  EXPECT_TRUE(motion.scripts_roll());
+}
+
+TEST(MotionFileOfQuaternions, MustBeOfNormOneWithinAThousandth) {
+  const auto refusal = [](const std::string& row) {
+    const auto error = test::input_error_of([&] { motion_in(kQuaternions + "0,0,0,0,1,0,0,0\n" + row, kFile); });
+    return error ? std::string(error->what()) : "";
+  };
+  EXPECT_NO_THROW(motion_in(kQuaternions + "1,0,0,0,0,1.0009,0,0\n", kFile));
+  EXPECT_EQ(refusal("1,0,0,0,0,1.125,0,0\n"),
+            "stroke.csv, sample 2: got a quaternion qw,qx,qy,qz of norm 1.125; allowed: 1 within 0.001");
+  EXPECT_EQ(refusal("1,0,0,0,0,0,0,0\n").find("stroke.csv, sample 2: got a quaternion qw,qx,qy,qz of norm 0"), 0u);
+}
+
+TEST(MotionFileOfQuaternions, TheHeaderSaysWhatMayComeAfterThePosition) {
+  const auto error = test::input_error_of([] { motion_in("time_s,px_m,py_m,pz_m,qx,qy,qz,qw\n", kFile); });
+  ASSERT_TRUE(error);
+  EXPECT_NE(std::string(error->what())
+                .find("allowed: \"time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\" or "
+                      "\"time_s,px_m,py_m,pz_m,qw,qx,qy,qz\""),
+            std::string::npos);
 }
 
 }  // namespace

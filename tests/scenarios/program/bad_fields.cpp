@@ -254,7 +254,7 @@ std::vector<BadInput> contradictions() {
        "allowed: two perpendicular directions"},
       {"OrientationAndRecordedMotion",
        plane("/motion", R"({"orientation": {}, "position": {"type": "file", "file": "m.csv"}})"), "/motion/orientation",
-       "contradicts position type \"file\", whose axis columns give the orientation; allowed: one of the two"},
+       "contradicts position type \"file\", whose columns give the orientation; allowed: one of the two"},
       {"SpringsUnsignedButUnilateral",
        with_value("springs", "/environment", R"({"type": "springs", "bilateral": false, "signed": false})"),
        "/environment/signed", "got false; allowed: true with \"bilateral\": false"},

@@ -128,6 +128,8 @@ std::vector<BadInput> bad_motion_files() {
              "sample 2: got time 0.5 after 1; allowed: strictly increasing times"),
       motion("MotionWithoutAxis", kMotion + "0,0,0,0,0,0,0\n", "sample 1: got an axis of length 0; allowed:"),
       motion("MotionAxisOverflows", kMotion + "0,0,0,0,1e300,0,0\n", "sample 1: got an axis of length inf; allowed:"),
+      motion("MotionQuaternionNotOfNormOne", "time_s,px_m,py_m,pz_m,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,0,0,0,0.5,0,0,0\n",
+             "sample 2: got a quaternion qw,qx,qy,qz of norm 0.5; allowed: 1 within 0.001"),
   };
   BadInput missing = motion("MotionMissing", "", "m.csv: cannot be read: No such file or directory");
   missing.files.clear();

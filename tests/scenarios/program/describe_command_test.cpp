@@ -117,6 +117,8 @@ TEST(DescribeCommand, ExplainsEveryColumnOfEveryFileOfARun) {
                     {"stiffness_tensor", true},
                     {"energy", true},
                     {"ideal_trajectory", true},
+                    {"pose", true},
+                    {"torque", true},
                     {"ratio_iterations", {3}}};
   test::write_plainly(directory / "a.json", json.dump());
   const std::string out = (directory / "out").string();

@@ -39,7 +39,8 @@ std::vector<NamedScenario> rich_scenarios() {
       "tool": {"diameter_m": 0.0012, "length_m": 0.02, "tip": "round"},
       "motion": {
         "orientation": {"up": [0, 0, 2], "lean": [0, 3, 0], "tilt_rad": 0.1,
-          "azimuth_rad": {"type": "sine", "mean": 0, "amplitude": 1, "period_s": 2, "phase_rad": 0.5}},
+          "azimuth_rad": {"type": "sine", "mean": 0, "amplitude": 1, "period_s": 2, "phase_rad": 0.5},
+          "roll_rad": {"type": "ramp", "start": 0.1, "rate_per_s": -2}},
         "position": {"type": "prescribed", "x_m": {"type": "ramp", "start": 0, "rate_per_s": 1e-4}, "y_m": 0,
           "z_m": {"type": "waypoints", "points": [[0, 0.001], [1.5, -0.001], [2, 0]], "interpolation": "cosine"}}},
       "rendering": {"algorithm": "virtual_coupling", "depth_model": "shortest_distance", "local_average": true,
@@ -48,7 +49,7 @@ std::vector<NamedScenario> rich_scenarios() {
         "angular_velocity_cutoff_Hz": 30,
         "limits": {"max_damping_N_s_per_m": 0, "max_force_N": 2.5}},
       "record": {"trajectory": true, "every": 2, "ratio_iterations": [0, 3], "contacts": true,
-        "stiffness_tensor": true, "timing": true},
+        "stiffness_tensor": true, "timing": true, "pose": true, "torque": true},
       "metrics": {"from_s": 0.5, "settling_s": 0},
       "expect": {"outcome": ["completes", "diverges"], "metrics": {"force_max_N": {"min": 0, "max": 1e6},
         "ratio_max": {}}}})")},

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "sim/tool/motion.hpp"
+#include "sim/tool/tool_state.hpp"
 #include "tests/support/contact_sets.hpp"
 
 namespace hapbench {
@@ -83,6 +84,42 @@ TEST(ScriptedMotion, PositionIsFreeUnlessPrescribed) {
   const ScriptedMotion prescribed({}, std::array<Profile, 3>{1.0, Profile::Shape(Profile::Ramp{0.0, 2.0}), -1.0});
   EXPECT_FALSE(prescribed.position_is_free());
   EXPECT_EQ(prescribed.position_at(3.0), Vec3(1.0, 6.0, -1.0));
+}
+
+Mat3 rotation(const Orientation& orientation, double t = 0.0) {
+  const ScriptedMotion m = motion(orientation);
+  return ToolPose{Vec3::Zero(), m.axis_at(t), m.roll_at(t)}.rotation();
+}
+
+TEST(ScriptedMotion, AtAnglesOfZeroTheToolsFrameIsLeanSidewaysAndUp) {
+  EXPECT_LE((rotation({{0, 0, 1}, {1, 0, 0}, {}, {}}) - Mat3::Identity()).norm(), kRounding);
+  Mat3 planar;
+  planar << Vec3::UnitX(), -Vec3::UnitZ(), Vec3::UnitY();
+  EXPECT_LE((rotation({{0, 1, 0}, {1, 0, 0}, {}, {}}) - planar).norm(), kRounding);
+}
+
+TEST(ScriptedMotion, AnglesAreThoseOfEuler) {
+  const double tilt = 0.7, azimuth = -1.3, roll = 2.1;
+  const Mat3 expected = (Eigen::AngleAxisd(azimuth, Vec3::UnitZ()) * Eigen::AngleAxisd(tilt, Vec3::UnitY()) *
+                         Eigen::AngleAxisd(roll, -Vec3::UnitZ()))
+                            .toRotationMatrix();
+  EXPECT_LE((rotation({{0, 0, 1}, {1, 0, 0}, tilt, azimuth, roll}) - expected).norm(), 4 * kRounding);
+}
+
+TEST(ScriptedMotion, UpAndLeanTurnTheWholeFrame) {
+  Random random(3);
+  for (int i = 0; i < 100; ++i) {
+    const Mat3 R = test::random_rotation(random);
+    const double tilt = random.uniform(-3.0, 3.0), azimuth = random.uniform(-3.0, 3.0),
+                 roll = random.uniform(-3.0, 3.0);
+    const Mat3 without = rotation({Vec3::UnitZ(), Vec3::UnitX(), tilt, azimuth, roll});
+    EXPECT_LE((rotation({R.col(2), R.col(0), tilt, azimuth, roll}) - R * without).norm(), 8 * kRounding);
+  }
+}
+
+TEST(ScriptedMotion, ScriptsItsRollWhenThatMoves) {
+  EXPECT_FALSE(motion({{0, 0, 1}, {1, 0, 0}, {}, Profile::Shape(Profile::Ramp{0.0, 1.0}), 0.3}).scripts_roll());
+  EXPECT_TRUE(motion({{0, 0, 1}, {1, 0, 0}, {}, {}, Profile::Shape(Profile::Ramp{0.0, 1.0})}).scripts_roll());
 }
 
 }  // namespace

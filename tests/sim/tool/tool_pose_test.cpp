@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <numbers>
 
 #include "sim/core/random.hpp"
 #include "sim/tool/tool_state.hpp"
+#include "sim/tool/turn.hpp"
+#include "tests/support/contact_sets.hpp"
 
 namespace hapbench {
 namespace {
@@ -43,6 +46,36 @@ TEST(ToolPose, StaysARotationWhereTheAxisIsAlmostPlusZ) {
     const Mat3 R = ToolPose{Vec3::Zero(), axis}.rotation();
     EXPECT_LE((R.transpose() * R - Mat3::Identity()).norm(), 8 * kRounding) << tilt;
     EXPECT_LE((R * -Vec3::UnitZ() - axis).norm(), 8 * kRounding) << tilt;
+  }
+}
+
+TEST(ToolPose, AxisAndRollAreAnyRotation) {
+  Random random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const Mat3 R = test::random_rotation(random);
+    const Vec3 axis = -R.col(2);
+    const ToolPose pose{Vec3::Zero(), axis, roll_towards(axis, R.col(0))};
+    EXPECT_LE((pose.rotation() - R).norm(), 16 * kRounding);
+  }
+}
+
+TEST(ToolPose, TurnsByTheRotationVectorFromOneToTheOther) {
+  Random random(4);
+  for (int i = 0; i < 1000; ++i) {
+    const ToolPose from{Vec3::Zero(), random.direction(), random.uniform(-3.0, 3.0)};
+    const Vec3 vector = random.uniform(0.0, 0.9 * std::numbers::pi) * random.direction();
+    const Mat3 R = Eigen::AngleAxisd(vector.norm(), vector.normalized()) * from.rotation();
+    const Vec3 axis = -R.col(2);
+    const ToolPose to{Vec3::Zero(), axis, roll_towards(axis, R.col(0))};
+    EXPECT_LE((turn(from, to) - vector).norm(), 100 * kRounding);
+  }
+}
+
+TEST(ToolPose, WithoutRollTurnsAsItsAxisDoes) {
+  Random random(5);
+  for (int i = 0; i < 100; ++i) {
+    const ToolPose from{Vec3::Zero(), random.direction()}, to{Vec3::Zero(), random.direction()};
+    EXPECT_EQ(turn(from, to), turn(from.axis, to.axis));
   }
 }
 
