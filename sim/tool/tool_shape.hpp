@@ -57,6 +57,9 @@ class ToolShape {
   double half_width() const noexcept { return half_width_; }
   /// Distance of the body's furthest point from the tip centre.
   double reach() const noexcept { return reach_; }
+  /// Whether the body holds the straight line between any two of its points. A proxy keeps every point out of a convex
+  /// body only.
+  virtual bool convex() const noexcept = 0;
 
   // Contact search.
 
@@ -91,13 +94,13 @@ class ToolShape {
   /// write the whole last pack.
   virtual void shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept = 0;
   /// Writes the unit vector to that nearest place as each contact's gradient; the contact's inverse normal where no
-  /// place is nearest, as on a cylinder's axis.
+  /// place is nearest, as on a cylinder's axis. May write the whole last pack.
   virtual void shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept = 0;
   /// Writes to exits[i] how far contact i lies from where the ray along its gradient leaves the body, for i < size().
   /// Finite and >= 0, for points on the surface too.
   virtual void exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept = 0;
 
-  // The proxy. For a convex body only.
+  // The proxy. Its guarantee is for a convex body; a shape that is not says what it answers instead.
 
   /// What keeps the body out of points near it: for each contact the signed distance g_i of the point to the body's
   /// surface, negative inside, as depth d_i = -g_i, and the outward normal at the nearest place of the surface as
