@@ -41,7 +41,7 @@ double closest_target(const ImpedanceHandFields& hand, const TimeFields& time, c
 /// The likely cause as the end of a sentence, or where to look when none suggests itself.
 std::string likely_cause(const Scenario& scenario, Outcome outcome, const Encounter& e) {
   const double size = diagonal(e.environment);
-  if (size < kTooSmall * scenario.tool.diameter || size > kTooLarge * scenario.tool.length)
+  if (size < kTooSmall * 2.0 * e.tool.half_width() || size > kTooLarge * e.tool.reach())
     return "; " + scale_question(scenario);
   const auto* mesh = std::get_if<MeshEnvironment>(&scenario.environment);
   if (outcome == Outcome::no_contact && mesh != nullptr && !mesh->spacing && e.approach.closest == 0.0)
@@ -73,7 +73,7 @@ std::string size_and_place(const Box& box) {
 Outcome outcome_of(const Scenario& scenario, const Encounter& e) {
   if (e.metrics.steps_in_contact == 0) return Outcome::no_contact;
   const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
-  const bool left = e.approach.last > diagonal(e.environment) + scenario.tool.length;
+  const bool left = e.approach.last > diagonal(e.environment) + e.tool.reach();
   return is_free && left ? Outcome::lost_contact : Outcome::completes;
 }
 

@@ -38,7 +38,9 @@ MetricsConfig metrics_config(const Scenario& scenario, const SimulationParts& pa
 class TrialObservers {
  public:
   TrialObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts, Trial trial)
-      : metrics_(scenario.time.step, metrics_config(scenario, parts)), passivity_(scenario.time.step) {
+      : tool_(parts.tool),
+        metrics_(scenario.time.step, metrics_config(scenario, parts)),
+        passivity_(scenario.time.step) {
     observers_.push_back(&metrics_);
     observers_.push_back(&passivity_);
     if (scenario.record.energy) {
@@ -77,9 +79,10 @@ class TrialObservers {
 
   /// Hands over what was observed.
   void give(const Scenario& scenario, TrialResult& out) {
+    out.tool = tool_;
     out.metrics = metrics_.metrics();
     if (approach_ && out.result.outcome == Outcome::completes) {
-      const Encounter encounter{out.metrics, approach_->approach(), approach_->environment()};
+      const Encounter encounter{out.metrics, approach_->approach(), approach_->environment(), *tool_};
       out.result.outcome = outcome_of(scenario, encounter);
       if (auto warning = warning_about(scenario, out.result.outcome, encounter)) out.warnings.push_back(*warning);
     }
@@ -92,6 +95,7 @@ class TrialObservers {
   }
 
  private:
+  std::shared_ptr<const ToolShape> tool_;
   MetricsObserver metrics_;
   PassivityObserver passivity_;
   std::optional<EnergyLedger> ledger_;

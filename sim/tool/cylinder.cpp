@@ -22,6 +22,16 @@ Cylinder::Cylinder(double radius, double length, Tip tip)
       tip_(tip),
       radius2_(largest_square_within(radius)) {}
 
+std::vector<ProfilePoint> Cylinder::outline() const {
+  std::vector<ProfilePoint> outline = {{-length_, 0.0}, {-length_, radius_}, {0.0, radius_}};
+  if (tip_ == Tip::flat) {
+    outline.push_back({0.0, 0.0});
+  } else {
+    add_round_tip(radius_, outline);
+  }
+  return outline;
+}
+
 /// Calls `use` with the test of a pack of points for the body.
 template <class Use>
 void Cylinder::with_test(const Use& use) const {

@@ -26,6 +26,7 @@ class Cylinder final : public ToolShape {
   double longest_exit() const noexcept { return length_ + 3.0 * radius_; }
 
   bool convex() const noexcept override { return true; }
+  std::vector<ProfilePoint> outline() const override;
   void mark_inside(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges,
                    std::uint8_t* marks) const noexcept override;
   void push_inside(const ToolPose& pose, const PointColumns& points, std::span<const PackRange> ranges,

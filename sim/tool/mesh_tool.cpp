@@ -139,6 +139,27 @@ double MeshTool::moved_at_most(const ToolPose& from, const ToolPose& to) const n
   return moved + (to.rotation() - from.rotation()).norm() / std::numbers::sqrt2 * reach();
 }
 
+std::vector<ProfilePoint> MeshTool::outline() const {
+  const GridNodes& nodes = grid_->nodes();
+  std::vector<double> widest(nodes.count[2], -1.0);
+  for (std::size_t i = 0; i < nodes.count[0]; ++i) {
+    for (std::size_t j = 0; j < nodes.count[1]; ++j) {
+      for (std::size_t k = 0; k < nodes.count[2]; ++k) {
+        const double depth = -grid_->values()[nodes.index(i, j, k)];
+        if (depth < 0.0) continue;
+        widest[k] = std::max(widest[k], std::hypot(nodes.coordinate(0, i), nodes.coordinate(1, j)) + depth);
+      }
+    }
+  }
+  // From the far end, which is the body's highest place, to the tip.
+  std::vector<ProfilePoint> outline = {{-grid_->high().z(), 0.0}};
+  for (std::size_t k = nodes.count[2]; k-- > 0;) {
+    if (widest[k] >= 0.0) outline.push_back({-nodes.coordinate(2, k), widest[k]});
+  }
+  outline.push_back({-grid_->low().z(), 0.0});
+  return outline;
+}
+
 ToolShape::Grown MeshTool::grown(double margin) const {
   const double e = grid_->error_bound();
   double radius2 = 0.0;

@@ -23,7 +23,9 @@ class MeshTool final : public ToolShape {
   explicit MeshTool(std::shared_ptr<const SignedDistanceGrid> grid);
 
   const SignedDistanceGrid& grid() const noexcept { return *grid_; }
-  bool convex() const noexcept { return grid_->convex(); }
+  bool convex() const noexcept override { return grid_->convex(); }
+  /// Of the nodes in the body, each with the way that it still is from the surface: at most a spacing too narrow.
+  std::vector<ProfilePoint> outline() const override;
 
   void mark_inside(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges,
                    std::uint8_t* marks) const noexcept override;

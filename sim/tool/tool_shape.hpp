@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/core/box.hpp"
+#include "sim/tool/profile_point.hpp"
 #include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
@@ -44,8 +46,8 @@ struct PackRange {
 /// centre. A shape that is no solid of revolution reads the pose's rotation().
 ///
 /// Cost. Each call answers for many points, so that its virtual dispatch is paid once for a query or a step and never
-/// for a point. All of them but `grown` and `cover` are called in the step loop and allocate nothing. Shapes are
-/// immutable, and may be shared between runs and threads.
+/// for a point. All of them but `outline`, `grown` and `cover` are called in the step loop and allocate nothing. Shapes
+/// are immutable, and may be shared between runs and threads.
 ///
 /// Rounding. Search and depths must agree about points on the surface: a point that `mark_inside` marks has a depth >=
 /// 0 up to rounding, so both should compute with the same operations in the same order.
@@ -60,6 +62,10 @@ class ToolShape {
   /// Whether the body holds the straight line between any two of its points. A proxy keeps every point out of a convex
   /// body only.
   virtual bool convex() const noexcept = 0;
+  /// What drawings show of the body: its outline in the axial half plane, from the far end on the axis to the foremost
+  /// point on the axis, curves as polylines. Of a body that is no solid of revolution the silhouette: the largest rho
+  /// over s. Allocates.
+  virtual std::vector<ProfilePoint> outline() const = 0;
 
   // Contact search.
 
