@@ -44,6 +44,7 @@ class SignedDistanceGrid {
   /// The spacing that gives the bounding box of a mesh about 128^3 nodes, margins and all: 20 MB, some seconds at most.
   static double suggested_spacing(std::span<const Vec3> vertices);
 
+  double spacing() const noexcept { return nodes_.spacing; }  ///< [m]
   /// sqrt(3)/2 spacing [m].
   double error_bound() const noexcept;
   /// Everything of the body lies between these corners, in the tool's frame [m].
