@@ -20,6 +20,7 @@ double diagonal(const Box& box) {
 }
 
 std::string scale_question(const Scenario& scenario) {
+  if (std::holds_alternative<MeshToolFields>(scenario.tool)) return "are tool.scale and the environment's size right?";
   if (std::holds_alternative<MeshEnvironment>(scenario.environment)) return "is environment.scale right?";
   if (std::holds_alternative<PointShellEnvironment>(scenario.environment))
     return "are the points of environment.file in metres?";

@@ -64,7 +64,8 @@ def points_of(run, recordings):
     count = f"{len(drawn)} of {len(every)} points of the surface are drawn, all around the contacts first."
     said = [failure] if failure else []
     if at(run.scenario, "/tool/type") == "mesh":
-        said.append("Of the tool, a mesh, the silhouette is drawn, turned about its axis.")
+        said.append("Of the tool, a mesh, the silhouette is drawn, turned about its axis; points in the tool are marked "
+                    "where contacts were recorded.")
     return drawn.tolist(), " ".join(said + ([count] if len(drawn) < len(every) else []))
 
 

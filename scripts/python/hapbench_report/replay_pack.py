@@ -63,7 +63,7 @@ def packed_scene(recordings, shell, labels=None, **about):
         **about,
         "planar": is_planar(recordings, shell),
         "up": orientation.get("up", [0, 0, 1]), "lean": orientation.get("lean", [1, 0, 0]),
-        "tool": None if springs else recordings[0].tool, "focus": touched_box(recordings),
+        "tool": None if springs else recordings[0].tool, "silhouette": at(scenario, "/tool/type") == "mesh", "focus": touched_box(recordings),
         "springs": [[*group["direction"], group["count"]] for group in at(scenario, "/environment/groups") or ()] if springs else [],
         "contactColumns": CONTACT_COLUMNS,
         "shellScale": scale, "shell": base64_of("h", (round(x / scale) for x in places)),
