@@ -31,6 +31,9 @@ SCENES = (
     ("turned_into_wall", 4.2),
     ("mesh_molar", 4.5),
     ("drag_molar", 5.5),
+    ("bur_fissure", 4.5),
+    ("pear_in_cavity", 2.6),
+    ("cone_in_undercut", 2.4),
 )
 SNAPSHOTS = 4
 SPANS = 250  # of a curve
