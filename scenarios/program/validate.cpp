@@ -10,7 +10,6 @@
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/expected_output.hpp"
-#include "scenarios/run/force_warnings.hpp"
 #include "scenarios/run/quantity_text.hpp"
 #include "scenarios/run/scene_facts.hpp"
 #include "scenarios/run/wait_notice.hpp"
@@ -98,7 +97,7 @@ int validate(const ValidateOptions& options) {
       print_warnings(loaded.warnings);
       print_warnings(warnings);
       const SceneFacts facts = scene_facts(loaded);
-      print_warnings(tool_warnings(loaded.scenario.rendering, *make_tool(loaded.scenario, loaded.files)));
+      print_warnings(facts.warnings);
       text += fmt::format("{}: valid\n{}", argument, facts_text(loaded.scenario, facts));
       verdicts.push_back({{"file", argument}, {"valid", true}});
       verdicts.back().update(facts_json(loaded.scenario, facts));

@@ -23,6 +23,9 @@ struct Encounter {
 /// and the tool reaches together, as one does that was thrown out or pushed past; else `completes`.
 Outcome outcome_of(const Scenario& scenario, const Encounter& encounter);
 
+/// For a tool from a mesh whose size is out of proportion with the environment's, a question about its scale.
+std::optional<std::string> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment);
+
 /// For those two outcomes, what happened and what the likely cause is; none for others.
 std::optional<std::string> warning_about(const Scenario& scenario, Outcome outcome, const Encounter& encounter);
 

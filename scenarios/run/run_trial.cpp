@@ -86,6 +86,9 @@ class TrialObservers {
       out.result.outcome = outcome_of(scenario, encounter);
       if (auto warning = warning_about(scenario, out.result.outcome, encounter)) out.warnings.push_back(*warning);
     }
+    if (approach_) {
+      if (auto warning = scale_warning(scenario, *tool_, approach_->environment())) out.warnings.push_back(*warning);
+    }
     if (open_edges_ && open_edges_->warning()) out.warnings.push_back(*open_edges_->warning());
     out.passivity = passivity_.metrics();
     if (ledger_) out.energy = ledger_->metrics();

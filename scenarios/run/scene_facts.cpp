@@ -5,7 +5,9 @@
 
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/encounter.hpp"
 #include "scenarios/run/environment_points.hpp"
+#include "scenarios/run/force_warnings.hpp"
 #include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
@@ -57,6 +59,7 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
     facts.trials = hand->subjects.size() * static_cast<std::size_t>(hand->trials);
   const auto tool = make_tool(scenario, loaded.files);
   facts.tool = tool_facts(scenario, loaded.files, *tool);
+  facts.warnings = tool_warnings(scenario.rendering, *tool);
   const auto shell = make_shell(scenario, environment_points(scenario, loaded.files));
   if (!shell || shell->size() == 0) return facts;
   if (std::holds_alternative<MeshEnvironment>(scenario.environment))
@@ -65,6 +68,7 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   SceneFacts::Surface& surface = facts.surface.emplace();
   surface.box = shell->bounds();
   surface.points = shell->size();
+  if (auto warning = scale_warning(scenario, *tool, surface.box)) facts.warnings.push_back(*warning);
   place_tool(*tool, first_pose(scenario, parts), *shell, surface);
   return facts;
 }

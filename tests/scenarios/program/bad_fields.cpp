@@ -98,7 +98,7 @@ std::vector<BadInput> wrong_values() {
        "\"revolved\""},
       {"ToolFieldOfAnotherType", plane("/tool", R"({"family": "ball"})"), "/tool/family",
        "unknown field; allowed here: \"type\", \"diameter_m\", \"length_m\", \"tip\""},
-      {"BurFamilyMisspelt", plane("/tool", R"({"type": "bur", "family": "pair", "diameter_m": 0.001})"), "/tool/family",
+      {"BurFamilyMisspelt", plane("/tool", R"({"type": "bur", "family": "pera", "diameter_m": 0.001})"), "/tool/family",
        "nearest valid name: \"pear\""},
       {"BurWithoutDiameter", plane("/tool", R"({"type": "bur", "family": "ball"})"), "/tool",
        "missing field \"diameter_m\""},

@@ -99,7 +99,22 @@ TEST(ScenarioTool, WarnsThatTheProxyHasNoGuaranteeWhereItIsNotConvex) {
        {std::tuple{kHourglass, "proxy", 1u}, std::tuple{kHourglass, "mean", 0u}, std::tuple{kCube, "proxy", 0u}}) {
     const RunReport report = run_scenario(loaded(scene(fields, algorithm)), std::nullopt, false);
     EXPECT_EQ(report.summary.warnings.size(), warnings) << fields << " " << algorithm;
-    if (warnings > 0) EXPECT_NE(report.summary.warnings.front().find("the tool is not convex"), std::string::npos);
+    for (const std::string& warning : report.summary.warnings) {
+      EXPECT_NE(warning.find("the tool is not convex"), std::string::npos) << warning;
+    }
+  }
+}
+
+TEST(ScenarioTool, OfAMeshAsksForItsScaleWhereItIsOutOfProportion) {
+  for (const auto& [scale, warnings] : {std::pair{"0.001", 0u}, {"1", 1u}}) {
+    Json json = scene(kCube);
+    json["tool"]["scale"] = Json::parse(scale);
+    json["tool"]["grid_m"] = nullptr;
+    const RunReport report = run_scenario(loaded(json), std::nullopt, false);
+    ASSERT_EQ(report.summary.warnings.size(), warnings) << scale;
+    for (const std::string& warning : report.summary.warnings) {
+      EXPECT_NE(warning.find("are tool.scale and the environment's size right?"), std::string::npos) << warning;
+    }
   }
 }
 
