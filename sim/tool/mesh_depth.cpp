@@ -17,7 +17,7 @@ using simd::Pack;
 constexpr double kUndefinedBelow = 1e-9;
 /// The shortest way along a ray, in spacings.
 constexpr double kShortestWay = 0.125;
-/// A bracket of an eighth of a spacing shrinks to rounding in less than ten rounds of regula falsi.
+/// A bracket of some spacings shrinks to rounding in less than ten rounds of regula falsi.
 constexpr int kMostRounds = 40;
 /// Cosine of the angle up to which a face of the tool counts as flush with a surface (see cylinder_constraints.cpp).
 constexpr double kFlush = 0.9945;
@@ -48,66 +48,66 @@ class FieldPack {
   GridSpline spline_;
 };
 
-/// The field along one ray, in the frame of the nodes.
-class FieldAlongRay {
+/// The search of where a ray leaves the body, one value of the field after the other.
+class ExitSearch {
  public:
-  FieldAlongRay(const SignedDistanceGrid& grid, const GridFrame& frame, const Vec3& point, const Vec3& direction)
-      : grid_(grid), frame_(frame), point_(point), direction_(direction) {}
+  ExitSearch() = default;
+  explicit ExitSearch(const SignedDistanceGrid& grid)
+      : shortest_(kShortestWay * grid.spacing()), bound_(grid.error_bound()), furthest_(2.0 * grid.reach()) {}
 
-  double operator()(double distance) const {
-    const Vec3 place = point_ + distance * direction_;
-    alignas(64) double x[simd::lanes], y[simd::lanes], z[simd::lanes];
-    std::fill_n(x, simd::lanes, place.x());
-    std::fill_n(y, simd::lanes, place.y());
-    std::fill_n(z, simd::lanes, place.z());
-    return FieldPack(grid_, frame_, x, y, z).value(0);
+  bool done() const { return done_; }
+  /// The last place in the body.
+  double exit() const { return inside_; }
+
+  /// Where along the ray the field is wanted next.
+  double next() const {
+    if (bracketed_) return std::clamp(inside_ + (outside_ - inside_) * (below_ / (below_ - above_)), inside_, outside_);
+    return inside_ + std::max({shortest_, -below_ / std::numbers::sqrt3, -below_ - 2.0 * bound_});
+  }
+
+  /// Its value there.
+  void take(double place, double value) {
+    if (!bracketed_) return walk(place, value);
+    // The Illinois rule: an end that stays counts for half.
+    if (value <= 0.0) {
+      inside_ = place;
+      below_ = value;
+      if (last_ < 0) above_ *= 0.5;
+      last_ = -1;
+    } else {
+      outside_ = place;
+      above_ = value;
+      if (last_ > 0) below_ *= 0.5;
+      last_ = 1;
+    }
+    done_ = value == 0.0 || ++rounds_ == kMostRounds || outside_ - inside_ <= 1e-12 * shortest_;
   }
 
  private:
-  const SignedDistanceGrid& grid_;
-  const GridFrame& frame_;
-  Vec3 point_, direction_;
-};
-
-/// Where the field changes its sign between `inside`, of value below <= 0, and `outside`, of value above > 0 (Illinois
-/// rule: an end that stays counts for half).
-double root(const FieldAlongRay& field, double inside, double below, double outside, double above) {
-  const double enough = 1e-12 * (outside - inside);
-  int side = 0;
-  for (int k = 0; k < kMostRounds && outside - inside > enough; ++k) {
-    const double middle = std::clamp(inside + (outside - inside) * (below / (below - above)), inside, outside);
-    const double value = field(middle);
-    if (value == 0.0) return middle;
-    if (value < 0.0) {
-      inside = middle;
-      below = value;
-      if (side == -1) above *= 0.5;
-      side = -1;
+  void walk(double place, double value) {
+    bracketed_ = value > 0.0;
+    if (bracketed_) {
+      outside_ = place;
+      above_ = value;
+      // On the surface.
+      done_ = below_ == 0.0;
     } else {
-      outside = middle;
-      above = value;
-      if (side == 1) below *= 0.5;
-      side = 1;
+      inside_ = place;
+      below_ = value;
+      if (!(place <= furthest_)) fail();
     }
   }
-  return inside;
-}
-
-double exit_distance(const SignedDistanceGrid& grid, const GridFrame& frame, const Vec3& point, const Vec3& direction) {
-  const FieldAlongRay field(grid, frame, point, direction);
-  const double shortest = kShortestWay * frame.spacing, furthest = 2.0 * grid.reach();
-  double inside = 0.0, value = field(0.0);
-  // Up to rounding, contacts lie in the body; those on its surface may start outwards.
-  if (value > 0.0) value = 0.0;
-  while (inside <= furthest) {
-    const double next = inside + std::max({shortest, -value / std::numbers::sqrt3, -value - 2.0 * grid.error_bound()});
-    const double there = field(next);
-    if (there > 0.0) return root(field, inside, value, next, there);
-    inside = next;
-    value = there;
+  /// The direction is none.
+  void fail() {
+    inside_ = 0.0;
+    done_ = true;
   }
-  return 0.0;  // the direction is none
-}
+
+  double shortest_ = 0.0, bound_ = 0.0, furthest_ = 0.0;
+  double inside_ = 0.0, below_ = 0.0, outside_ = 0.0, above_ = 0.0;
+  int last_ = 0, rounds_ = 0;
+  bool bracketed_ = false, done_ = false;
+};
 
 /// The gradient as a unit vector of the world.
 Vec3 outwards(const GridFrame& frame, const Vec3& by_nodes, const Vec3& otherwise) {
@@ -137,10 +137,36 @@ void MeshTool::shortest_gradients(const ToolPose& pose, ContactBuffer& contacts)
   }
 }
 
+/// Eight rays side by side, which share the weights' arithmetic.
 void MeshTool::exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept {
   const GridFrame frame(*grid_, pose);
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    exits[i] = exit_distance(*grid_, frame, contacts.point(i), contacts.gradient(i));
+  for (std::size_t i = 0; i < contacts.size(); i += simd::lanes) {
+    const std::size_t rays = std::min(contacts.size() - i, simd::lanes);
+    std::array<ExitSearch, simd::lanes> searches;
+    searches.fill(ExitSearch(*grid_));
+    std::array<double, simd::lanes> places{};
+    // From the contacts themselves on.
+    for (bool first = true, busy = true; busy; first = false) {
+      alignas(64) double x[simd::lanes] = {}, y[simd::lanes] = {}, z[simd::lanes] = {};
+      busy = false;
+      for (std::size_t k = 0; k < rays; ++k) {
+        if (searches[k].done()) continue;
+        busy = true;
+        places[k] = first ? 0.0 : searches[k].next();
+        x[k] = contacts.x[i + k] + places[k] * contacts.ux[i + k];
+        y[k] = contacts.y[i + k] + places[k] * contacts.uy[i + k];
+        z[k] = contacts.z[i + k] + places[k] * contacts.uz[i + k];
+      }
+      if (!busy) break;
+      const FieldPack field(*grid_, frame, x, y, z);
+      for (std::size_t k = 0; k < rays; ++k) {
+        if (searches[k].done()) continue;
+        // Contacts lie in the body, if only up to rounding.
+        const double value = field.value(k);
+        searches[k].take(places[k], first && value > 0.0 ? 0.0 : value);
+      }
+    }
+    for (std::size_t k = 0; k < rays; ++k) exits[i + k] = searches[k].exit();
   }
 }
 

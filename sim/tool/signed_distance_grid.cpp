@@ -10,6 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "sim/core/lanes.hpp"
 #include "sim/tool/triangle_tree.hpp"
 #include "sim/tool/winding_number.hpp"
 
@@ -187,14 +188,24 @@ void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& 
   // Rows of three nodes are read as four.
   values_.assign(nodes_.size() + 1, 0.0);
   tbb::parallel_for(std::size_t{0}, nodes_.count[0] * nodes_.count[1], [&](std::size_t column) {
-    // The next node is at most a spacing further away than this one.
-    double known = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < nodes_.count[2]; ++k) {
-      const std::size_t i = column * nodes_.count[2] + k;
-      const double distance =
-          std::sqrt(tree.squared_distance(nodes_.place(column / nodes_.count[1], column % nodes_.count[1], k), known));
-      values_[i] = numbers[i] == 0 ? distance : -distance;
-      known = (1.0 + 1e-9) * (distance + nodes_.spacing) * (distance + nodes_.spacing);
+    alignas(64) std::array<double, simd::lanes> x, y, z, distances2;
+    x.fill(nodes_.coordinate(0, column / nodes_.count[1]));
+    y.fill(nodes_.coordinate(1, column % nodes_.count[1]));
+    double last = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < nodes_.count[2]; k += simd::lanes) {
+      for (std::size_t n = 0; n < simd::lanes; ++n) {
+        z[n] = nodes_.coordinate(2, k + n);
+        // A node is at most as much further away than the last one of before as it is from that.
+        const double at_most = last + static_cast<double>(n + 1) * nodes_.spacing;
+        distances2[n] = (1.0 + 1e-9) * at_most * at_most;
+      }
+      tree.lower_to_squared_distances(x.data(), y.data(), z.data(), distances2.data());
+      last = std::sqrt(distances2.back());
+      for (std::size_t n = 0; n < std::min(simd::lanes, nodes_.count[2] - k); ++n) {
+        const std::size_t i = column * nodes_.count[2] + k + n;
+        const double distance = std::sqrt(distances2[n]);
+        values_[i] = numbers[i] == 0 ? distance : -distance;
+      }
     }
   });
   half_width_ = -*std::min_element(values_.begin(), values_.end());

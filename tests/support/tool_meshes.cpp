@@ -43,6 +43,10 @@ TriangleSoup swept(const std::vector<std::pair<double, double>>& polygon, int si
     const double a = 2.0 * std::numbers::pi * (j % sides) / sides;
     return Vec3(rho == 0.0 ? 0.0 : rho * std::cos(a), rho == 0.0 ? 0.0 : rho * std::sin(a), z);
   });
+  // What the axis sweeps is no surface.
+  std::erase_if(soup.triangles, [&v = soup.vertices](const auto& t) {
+    return v[t[0]] == v[t[1]] || v[t[1]] == v[t[2]] || v[t[2]] == v[t[0]];
+  });
   return volume(soup) < 0.0 ? reversed(std::move(soup)) : soup;
 }
 
