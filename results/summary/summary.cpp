@@ -72,6 +72,15 @@ ordered_json energy_json(const EnergyMetrics& m) {
   return json;
 }
 
+ordered_json tool_json(const ToolSummary& tool) {
+  ordered_json outline = ordered_json::array();
+  for (const auto& [s, rho] : tool.outline) outline.push_back({s, rho});
+  return {{"half_width_m", tool.half_width},
+          {"reach_m", tool.reach},
+          {"convex", tool.convex},
+          {"outline_m", std::move(outline)}};
+}
+
 ordered_json work_json(const RunWork& work) {
   return {{"queries", work.search.queries},
           {"points_tested", work.search.points_tested},
@@ -102,6 +111,7 @@ ordered_json summary_json(const RunSummary& run) {
                        {"warnings", run.warnings},
                        {"metrics", metrics_json(run.metrics)},
                        {"passivity", metrics_json(metric_list(run.passivity))}};
+  if (run.tool) json["tool"] = tool_json(*run.tool);
   if (run.energy) json["energy"] = energy_json(*run.energy);
   if (run.ideal_trajectory) json["ideal_trajectory"] = metrics_json(metric_list(*run.ideal_trajectory));
   if (run.fidelity) json["fidelity"] = metrics_json(metric_list(*run.fidelity));

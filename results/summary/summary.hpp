@@ -9,6 +9,7 @@
 #include "results/summary/metric_list.hpp"
 #include "results/summary/provenance.hpp"
 #include "sim/loop/simulation.hpp"
+#include "sim/tool/profile_point.hpp"
 
 namespace hapbench {
 
@@ -28,6 +29,14 @@ struct RunWork {
   }
 };
 
+/// What drawings and readers need of a tool whose shape the scenario's fields do not show.
+struct ToolSummary {
+  double half_width = 0.0;  ///< [m]
+  double reach = 0.0;       ///< of its furthest point from the tip centre [m]
+  bool convex = true;
+  std::vector<ProfilePoint> outline;  ///< ToolShape::outline
+};
+
 /// Everything summary.json says about one run.
 struct RunSummary {
   std::string name;       ///< of the scenario
@@ -42,6 +51,7 @@ struct RunSummary {
   std::optional<ForceFidelity> fidelity;                   ///< of a stroke with a measured force
   std::optional<LostTorqueMetrics> torque;                 ///< when the scenario asks for it
   std::optional<std::vector<PlaceMetrics>> targets;        ///< of a tracking hand
+  std::optional<ToolSummary> tool;                         ///< of a tool that is no cylinder
   std::vector<std::string> warnings;                       ///< what may make the numbers mislead, a sentence each
   RunWork work;
   Provenance provenance;

@@ -16,7 +16,6 @@ constexpr auto kMostStepsOrRows = static_cast<std::int64_t>(kMostSteps);
 
 constexpr Choice<StopCondition> kStopConditions[] = {{"leaves_hole", StopCondition::leaves_hole},
                                                      {"tool_horizontal", StopCondition::tool_horizontal}};
-constexpr Choice<Tip> kTips[] = {{"flat", Tip::flat}, {"round", Tip::round}};
 
 /// Returns the number of steps, which may be more than a scenario can hold.
 double describe_time(Fields& f, TimeFields& time) {
@@ -70,15 +69,6 @@ static void describe(Fields& f, InitialFields& initial) {
   f.vector3("position_m", initial.position, {-1000.0, 1000.0, "m"},
             "tip centre at t = 0; ignored when the motion prescribes it");
   f.vector3("velocity_m_per_s", initial.velocity, {-1e6, 1e6, "m/s"}, "velocity at t = 0");
-}
-
-static void describe(Fields& f, ToolFields& tool) {
-  f.number("diameter_m", tool.diameter, {0.0, 1000.0, "m", true}, "diameter of the cylinder; default 0.001",
-           Presence::no_default);
-  f.number("length_m", tool.length, {0.0, 1000.0, "m", true},
-           "from the tip plane to the bottom; default 0.005 in hole_2d, else 0.01", Presence::no_default);
-  f.choice("tip", tool.tip, kTips, "tip", "round adds a half ball; default round in hole_2d, else flat",
-           Presence::no_default);
 }
 
 static void describe(Fields& f, IntegratorFields& integrator) {
@@ -172,7 +162,7 @@ void describe(Fields& f, Scenario& scenario) {
   f.value("environment", scenario.environment, "what the tool touches", Presence::required);
   if (f.reads()) set_scene_defaults(scenario);
   f.object("initial", scenario.initial, "state at t = 0");
-  f.object("tool", scenario.tool, "the tool");
+  f.value("tool", scenario.tool, "the tool; without a type it is a cylinder");
   f.object("motion", scenario.motion, "scripted motion");
   f.value("hand", scenario.hand, "who holds the handle");
   f.value("device", scenario.device, "the haptic device");

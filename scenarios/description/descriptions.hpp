@@ -16,6 +16,7 @@ void describe(Fields& f, Environment& environment);
 void describe(Fields& f, PositionFields& position);
 void describe(Fields& f, HandFields& hand);
 void describe(Fields& f, DeviceFields& device);
+void describe(Fields& f, ToolFields& tool);
 
 /// A field that holds a function of time with values in `unit`.
 void profile(Fields& f, std::string_view name, Profile& profile, const char* unit, const char* doc,
@@ -23,6 +24,9 @@ void profile(Fields& f, std::string_view name, Profile& profile, const char* uni
 
 /// The types of environments.
 std::vector<std::string> environment_names();
+
+/// The types of tools, in the variant's order.
+std::vector<std::string> tool_names();
 
 /// Puts the thesis's parameters of the scene (Tables A.1, A.2, B.1) in place of those of springs.
 void set_scene_defaults(Scenario& scenario);

@@ -41,6 +41,12 @@ enum class Presence {
   left_out      ///< as no_default, and the object has no value to write
 };
 
+/// What an object without a "type" is, where types choose the fields.
+enum class Untyped {
+  refused,
+  first  ///< one of the first type, which is written without
+};
+
 /// A name of a value of an enumeration.
 template <class Enum>
 struct Choice {
@@ -80,7 +86,7 @@ class Fields {
   virtual void one_or_list(bool is_list, Body one, Body list) = 0;
   /// An object whose field "type" is one of `names` and chooses the other fields; `what` says of what kind. `held` is
   /// the index of the alternative to write. `fields` describes those of an alternative.
-  virtual void alternatives(const char* what, std::span<const char* const> names, std::size_t held,
+  virtual void alternatives(const char* what, std::span<const char* const> names, Untyped untyped, std::size_t held,
                             FunctionRef<Fields&, std::size_t> fields) = 0;
   /// An object. `body` is called with this visitor, perhaps more than once, and describes the object's fields.
   virtual void fields(Body body) = 0;
@@ -157,8 +163,8 @@ class Fields {
   /// The types of a variant, named in the variant's order; `each(Fields&, T&)` describes the fields of one.
   template <class... Ts, class Each>
   void variant(std::variant<Ts...>& value, const char* what, const std::array<const char*, sizeof...(Ts)>& names,
-               Each each) {
-    alternatives(what, names, value.index(), [&value, &each](Fields& f, std::size_t i) {
+               Each each, Untyped untyped = Untyped::refused) {
+    alternatives(what, names, untyped, value.index(), [&value, &each](Fields& f, std::size_t i) {
       if (f.reads()) emplace(value, i, std::index_sequence_for<Ts...>{});
       std::variant<Ts...> example;
       if (i != value.index()) emplace(example, i, std::index_sequence_for<Ts...>{});

@@ -89,6 +89,11 @@ std::string* named_motion(Scenario& scenario) {
   return nullptr;
 }
 
+std::string* named_tool(Scenario& scenario) {
+  if (auto* mesh = std::get_if<MeshToolFields>(&scenario.tool)) return &mesh->file;
+  return nullptr;
+}
+
 /// Returns true if a part of what the schema allows is allowed, too.
 bool allows_parts(const Json& schema) {
   if (!schema.is_structured()) return true;
@@ -232,7 +237,7 @@ LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const 
 
 Json effective_scenario(const Scenario& scenario, const std::filesystem::path& directory) {
   Scenario effective = scenario;
-  for (std::string* file : {named_file(effective), named_motion(effective)}) {
+  for (std::string* file : {named_file(effective), named_tool(effective), named_motion(effective)}) {
     if (file == nullptr) continue;
     const auto target = without_links(resolve_path(scenario, *file));
     *file = target.lexically_proximate(without_links(directory)).generic_string();
@@ -277,6 +282,7 @@ Json environment_content(const Scenario& scenario, const NamedFiles& files) {
 std::string scenario_hash(const Scenario& scenario, const NamedFiles& files) {
   Scenario content = scenario;
   name_by_content(named_file(content), files.environment());
+  name_by_content(named_tool(content), files.tool());
   name_by_content(named_motion(content), files.motion());
   return hash_text(hash_of(json_text(written_object(content))));
 }

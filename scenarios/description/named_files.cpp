@@ -30,6 +30,8 @@ NamedFiles::NamedFiles(const Scenario& scenario) {
     environment_ = std::make_shared<EnvironmentFile>(
         EnvironmentFile{NamedFile(resolve_path(scenario, mesh->file)), {mesh->scale, mesh->spacing}});
   }
+  if (const auto* tool = std::get_if<MeshToolFields>(&scenario.tool))
+    tool_ = std::make_shared<ToolFile>(ToolFile{NamedFile(resolve_path(scenario, tool->file)), tool->scale});
   if (const auto* recorded = std::get_if<RecordedPosition>(&scenario.motion.position))
     motion_ = std::make_shared<MotionFile>(MotionFile{NamedFile(resolve_path(scenario, recorded->file))});
 }
@@ -49,6 +51,16 @@ const MeshFile& NamedFiles::mesh() const {
   if (!mesh) {
     mesh_extension(file.path());  // refused unread if it is another
     mesh.emplace(file.bytes(), file.path(), sampling);
+    file.drop_bytes();
+  }
+  return *mesh;
+}
+
+const MeshFile& NamedFiles::tool_mesh() const {
+  auto& [file, scale, mesh] = *tool_;
+  if (!mesh) {
+    mesh_extension(file.path());  // refused unread if it is another
+    mesh.emplace(file.bytes(), file.path(), MeshSampling{scale, {}});
     file.drop_bytes();
   }
   return *mesh;

@@ -45,11 +45,14 @@ class NamedFiles {
   /// The files; null when the scenario names none.
   NamedFile* environment() const { return environment_ ? &environment_->file : nullptr; }
   NamedFile* motion() const { return motion_ ? &motion_->file : nullptr; }
+  NamedFile* tool() const { return tool_ ? &tool_->file : nullptr; }
 
   /// The points of an environment that is a point shell. Precondition: it is one.
   const std::vector<SurfacePoint>& shell_points() const;
   /// The surface of an environment that is a mesh. Precondition: it is one.
   const MeshFile& mesh() const;
+  /// The surface of a tool that is a mesh. Precondition: it is one.
+  const MeshFile& tool_mesh() const;
   /// Precondition: the motion is a recorded one.
   const RecordedMotion& recorded_motion() const;
   /// The force that was measured with it; null without one. Precondition: the motion is a recorded one.
@@ -62,6 +65,11 @@ class NamedFiles {
     std::optional<std::vector<SurfacePoint>> points = {};
     std::optional<MeshFile> mesh = {};
   };
+  struct ToolFile {
+    NamedFile file;
+    double scale;
+    std::optional<MeshFile> mesh = {};
+  };
   struct MotionFile {
     NamedFile file;
     std::optional<RecordedMotion> motion = {};
@@ -69,6 +77,7 @@ class NamedFiles {
   };
 
   std::shared_ptr<EnvironmentFile> environment_;
+  std::shared_ptr<ToolFile> tool_;
   std::shared_ptr<MotionFile> motion_;
 };
 

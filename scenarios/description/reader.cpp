@@ -144,17 +144,17 @@ void Reader::one_or_list(bool, Body one, Body list) {
   (json_.is_array() ? list : one)(*this);
 }
 
-void Reader::alternatives(const char* what, std::span<const char* const> names, std::size_t held,
+void Reader::alternatives(const char* what, std::span<const char* const> names, Untyped untyped, std::size_t held,
                           FunctionRef<Fields&, std::size_t> fields) {
-  if (!json_.is_object()) refuse([&](Fields& f) { f.alternatives(what, names, held, fields); });
+  if (!json_.is_object()) refuse([&](Fields& f) { f.alternatives(what, names, untyped, held, fields); });
   const std::vector<std::string> types(names.begin(), names.end());
   const auto type = json_.find(kTypeField);
-  if (type == json_.end()) {
+  if (type == json_.end() && untyped == Untyped::refused) {
     throw InputError(InputError::Kind::shape, at(),
                      fmt::format("missing field \"{}\"; allowed: {}: one of {}", kTypeField, what, quoted_list(types)));
   }
   std::size_t index = 0;
-  Reader(*type, *this, kTypeField).name(index, types, what);
+  if (type != json_.end()) Reader(*type, *this, kTypeField).name(index, types, what);
   read_fields([&](Fields& f) { fields(f, index); }, {kTypeField});
 }
 

@@ -68,7 +68,7 @@ void check_local_average(const Scenario& scenario) {
 void check_ideal_trajectory(const Scenario& scenario) {
   if (!scenario.record.ideal_trajectory || has_ideal_trajectory(scenario)) return;
   fail("/record/ideal_trajectory",
-       "got true; allowed: false, unless the environment is block_with_hole and the tool's tip flat");
+       "got true; allowed: false, unless the environment is block_with_hole and the tool a cylinder with a flat tip");
 }
 
 void check_force_reference(const Scenario& scenario) {

@@ -11,7 +11,14 @@ bool records_rows(const RecordFields& record) {
 }
 
 bool has_ideal_trajectory(const Scenario& scenario) {
-  return std::holds_alternative<BlockEnvironment>(scenario.environment) && scenario.tool.tip == Tip::flat;
+  const auto* cylinder = std::get_if<CylinderFields>(&scenario.tool);
+  return std::holds_alternative<BlockEnvironment>(scenario.environment) && cylinder != nullptr &&
+         cylinder->tip == Tip::flat;
+}
+
+BurProfile profile_of(const BurFields& bur) {
+  return bur_profile(bur.family, bur.diameter, bur.length.value_or(bur.diameter),
+                     bur.shank_diameter.value_or(BurFields::kShankShare * bur.diameter));
 }
 
 std::filesystem::path resolve_path(const Scenario& scenario, const std::string& file) {
@@ -31,8 +38,7 @@ void set_scene_defaults(Scenario& scenario) {
   rendering.mu_s = 5.0;
   rendering.mu_f = 10.0;
   if (std::holds_alternative<Hole2d>(scenario.environment)) {
-    scenario.tool.length = 0.005;
-    scenario.tool.tip = Tip::round;
+    scenario.tool = CylinderFields{.length = 0.005, .tip = Tip::round};
   } else {
     scenario.motion.orientation->up = {0.0, 0.0, 1.0};
     rendering.mass = 0.1;

@@ -22,7 +22,9 @@
 #include "sim/geometry/block_with_hole.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/mesh/density.hpp"
-#include "sim/tool/cylinder.hpp"
+#include "sim/tool/bur.hpp"
+#include "sim/tool/profile_point.hpp"
+#include "sim/tool/tip.hpp"
 
 /// A scenario file as plain structs, with every default in place: a default-constructed scenario is that of springs.
 /// Names, units and ranges of the file's fields: the functions `describe` of this folder.
@@ -80,11 +82,30 @@ struct InitialFields {
   Vec3 velocity = Vec3::Zero();
 };
 
-struct ToolFields {
+struct CylinderFields {
   double diameter = 0.001;  ///< [m]
   double length = 0.01;     ///< [m]
   Tip tip = Tip::flat;
 };
+struct RevolvedFields {
+  std::vector<ProfilePoint> profile;
+  Tip tip = Tip::flat;
+};
+struct BurFields {
+  BurFamily family = BurFamily::ball;
+  double diameter = 0.001;               ///< of the head, where it is widest [m]
+  std::optional<double> length;          ///< of the head [m]; none: as long as it is wide
+  std::optional<double> shank_diameter;  ///< [m]; none: kShankShare of the head's
+  static constexpr double kShankShare = 0.6;
+};
+/// The profile that the fields mean. Throws std::invalid_argument when there is none.
+BurProfile profile_of(const BurFields& bur);
+struct MeshToolFields {
+  std::string file;            ///< OBJ, PLY, STL or OFF, relative to the scenario file
+  double scale = 1.0;          ///< [m] for each unit of the file
+  std::optional<double> grid;  ///< spacing of the signed distances [m]
+};
+using ToolFields = std::variant<CylinderFields, RevolvedFields, BurFields, MeshToolFields>;
 
 struct OrientationFields {
   Vec3 up = {0.0, 1.0, 0.0};

@@ -83,14 +83,14 @@ void SchemaWriter::one_or_list(bool, Body one, Body list) {
   any_of(one, ", or ", list);
 }
 
-void SchemaWriter::alternatives(const char* what, std::span<const char* const> names, std::size_t,
+void SchemaWriter::alternatives(const char* what, std::span<const char* const> names, Untyped untyped, std::size_t,
                                 FunctionRef<Fields&, std::size_t> fields) {
   Json choices = Json::array();
   for (std::size_t i = 0; i < names.size(); ++i) {
     SchemaWriter choice;
     choice.fields([&](Fields& f) {
       choice.schema_["properties"][kTypeField] = {{"const", names[i]}};
-      choice.schema_["required"].push_back(kTypeField);
+      if (untyped == Untyped::refused || i > 0) choice.schema_["required"].push_back(kTypeField);
       fields(f, i);
     });
     choices.push_back(std::move(choice.schema_));

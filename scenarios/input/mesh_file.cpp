@@ -124,6 +124,23 @@ const std::vector<Vec3>& MeshFile::open_edges() const {
   return surface_->findings.open_edges;
 }
 
+TriangleSoup MeshFile::triangles() const {
+  const HalfEdgeMesh& mesh = surface_->mesh;
+  TriangleSoup soup;
+  soup.vertices.reserve(mesh.n_vertices());
+  soup.triangles.reserve(mesh.n_faces());
+  for (const auto vertex : mesh.vertices()) {
+    const auto& p = mesh.point(vertex);
+    soup.vertices.emplace_back(p[0], p[1], p[2]);
+  }
+  for (const auto face : mesh.faces()) {
+    auto& corners = soup.triangles.emplace_back();
+    auto corner = corners.begin();
+    for (const auto vertex : face.vertices()) *corner++ = static_cast<std::uint32_t>(vertex.idx());
+  }
+  return soup;
+}
+
 std::vector<SurfacePoint> MeshFile::points() const {
   if (!sampling_.spacing) return vertices_with_normals(surface_->mesh);
   HalfEdgeMesh mesh = surface_->mesh;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/geometry/point_shell.hpp"
+#include "sim/mesh/triangle_soup.hpp"
 
 namespace hapbench {
 
@@ -33,6 +34,9 @@ class MeshFile {
   const std::vector<std::string>& warnings() const { return warnings_; }
   /// Middles of the edges where the surface ends [m]; none when it is closed.
   const std::vector<Vec3>& open_edges() const;
+
+  /// Its triangles, all wound alike and outwards where the surface is closed [m].
+  TriangleSoup triangles() const;
 
   /// Points with normals: the mesh's vertices, or with a spacing those of the same surface refined until no edge is
   /// longer, thinned where there are more than one point in a cube of that size.

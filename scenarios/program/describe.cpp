@@ -127,7 +127,7 @@ std::vector<std::string> described_names() {
   for (const DepthModelEntry& entry : depth_models()) names.emplace_back(entry.info->name);
   for (const ModelInfo* stage : stages()) names.emplace_back(stage->name);
   for (const IntegratorEntry* entry : kIntegrators) names.emplace_back(entry->info.name);
-  for (const char* field : {"environment", "hand", "device", kSomeProfile}) {
+  for (const char* field : {"environment", "tool", "hand", "device", kSomeProfile}) {
     for (const std::string& name : type_names(field)) names.push_back(name);
   }
   for (const BundledScenario& bundled : bundled_scenarios()) names.push_back(bundled.name);

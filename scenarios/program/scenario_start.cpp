@@ -28,6 +28,12 @@ const std::string kBlock = R"(
 const std::string kAbove = R"(
   "initial": {"position_m": [@x@, @y@, @z@]},
   "tool": {"diameter_m": @diameter@, "length_m": @length@, "tip": "round"},)";
+const std::string kBurAbove = R"(
+  "initial": {"position_m": [@x@, @y@, @z@]},
+  "tool": {"type": "bur", "family": "ball", "diameter_m": @diameter@},)";
+const std::string kMeshToolAbove = R"(
+  "initial": {"position_m": [@x@, @y@, @z@]},
+  "tool": {"type": "mesh", "file": @file@, "scale": @tool_scale@, "grid_m": null},)";
 const std::string kInHole = R"(
   "initial": {"position_m": [0, 0, -0.0049]},
   "tool": {"diameter_m": 0.001, "length_m": 0.01, "tip": "flat"},)";
@@ -79,10 +85,16 @@ double rounded(double value) {
   return std::stod(fmt::format("{:.2g}", value));
 }
 
-Box box_of(const std::vector<SurfacePoint>& points) {
-  Box box{points.front().position, points.front().position};
-  for (const SurfacePoint& point : points) box = {box.min.cwiseMin(point.position), box.max.cwiseMax(point.position)};
+Box box_of(const std::vector<Vec3>& places) {
+  Box box{places.front(), places.front()};
+  for (const Vec3& place : places) box = {box.min.cwiseMin(place), box.max.cwiseMax(place)};
   return box;
+}
+
+Box box_of(const std::vector<SurfacePoint>& points) {
+  std::vector<Vec3> places;
+  for (const SurfacePoint& point : points) places.push_back(point.position);
+  return box_of(places);
 }
 
 /// The point nearest to the middle of those that are as high as any, to within `tolerance`.
@@ -124,11 +136,15 @@ class Start {
  public:
   Start(const StartKind& kind, const std::optional<fs::path>& source, const fs::path& directory)
       : description_(kind.summary), sections_(kind.sections + kRendering), directory_(directory) {
-    if (kind.name == std::string("drag") && source) sections_.replace(0, kPlane.size(), kMesh);
+    if (kind.source == StartSource::mesh && !kind.needs_source && source) sections_.replace(0, kPlane.size(), kMesh);
     values_["steps"] = kind.steps;
     if (source) values_["file"] = fs::proximate(*source, directory).generic_string();
     if (has("@scale@")) choose_scale();
-    if (has("@x@")) place_tool();
+    if (has("@tool_scale@")) {
+      place_mesh_tool();
+    } else if (has("@x@")) {
+      place_tool();
+    }
     if (has(kDrag)) choose_drag_steps();
     if (has(kStroke)) choose_stroke_steps();
   }
@@ -190,6 +206,24 @@ class Start {
                                  shell.size(), 1e3 * top.x(), 1e3 * top.y()));
   }
 
+  /// Above the plane's middle. Tools are about as long as the teeth they work on.
+  void place_mesh_tool() {
+    const auto box_of_tool = [this] {
+      const LoadedScenario loaded = scenario();
+      return box_of(loaded.files.tool_mesh().triangles().vertices);
+    };
+    const Box given = box_of_tool();
+    const double longest = (given.max - given.min).maxCoeff() / 0.001, scale = guessed_scale(longest);
+    values_["tool_scale"] = scale;
+    const double touching = -given.min.z() / 0.001 * scale;
+    values_["z"] = to_micrometres(touching + kClearance);
+    values_["z_pressed"] = to_micrometres(touching - kPressedBelow);
+    notes_.push_back(fmt::format(
+        "longest edge of the tool's box: {:.4g}, with scale {} {:.4g} mm; if it is not, change tool.scale; its origin is "
+        "the tip centre, its axis -z",
+        longest, scale, 1e3 * longest * scale));
+  }
+
   /// To land, and a quarter of the object's length.
   void choose_drag_steps() {
     const double seconds = rounded(0.5 + 0.25 * longest_ / kDragSpeed);
@@ -214,8 +248,9 @@ class Start {
   fs::path directory_;
   double diameter_ = 0.001;  ///< [m]
   double longest_ = 0.0;     ///< edge of the environment's box [m]
-  Values values_ = {{"x", 0.0},       {"y", 0.0},           {"z", 0.0},          {"z_pressed", 0.0},
-                    {"scale", 0.001}, {"spacing", nullptr}, {"diameter", 0.001}, {"length", 0.01}};
+  Values values_ = {{"x", 0.0},           {"y", 0.0},          {"z", 0.0},
+                    {"z_pressed", 0.0},   {"scale", 0.001},    {"tool_scale", 0.001},
+                    {"spacing", nullptr}, {"diameter", 0.001}, {"length", 0.01}};
   std::vector<std::string> notes_;
 };
 
@@ -229,6 +264,10 @@ const std::vector<StartKind>& start_kinds() {
       {"shell", "a drill is pressed on points with normals from a file: CSV or PLY", shell, true,
        kShell + kAbove + kPress},
       {"drag", "a drill is dragged over a surface with 1 N along its normal", mesh, false, kPlane + kAbove + kDrag},
+      {"bur", "a ball bur is dragged over a surface with 1 N along its normal", mesh, false,
+       kPlane + kBurAbove + kDrag},
+      {"tool", "a tool from a mesh file is pressed on a plane: OBJ, PLY, STL or OFF, closed", mesh, true,
+       kPlane + kMeshToolAbove + kPress},
       {"plane", "a drill is pressed on a plane", none, false, kPlane + kAbove + kPress},
       {"hole", "a drill is turned to and fro in a drilled hole", none, false, kBlock + kInHole + kTurn},
       {"springs", "a point mass between springs", none, false, kSprings},

@@ -18,13 +18,16 @@ std::string tag_of(const Json& schema) {
   return schema.contains(pointer) ? schema.at(pointer).get<std::string>() : "";
 }
 
-/// An object with fields, or the choice within an anyOf/oneOf that has some.
-const Json* with_properties(const Json& schema) {
-  if (schema.contains("properties")) return &schema;
+/// The field of that name, of an object or of the first choice within an anyOf/oneOf that has it.
+const Json* field_in(const Json& schema, const std::string& name) {
+  if (schema.contains("properties")) {
+    const Json& fields = schema["properties"];
+    return fields.contains(name) ? &fields[name] : nullptr;
+  }
   for (const char* choices : kChoices) {
     if (!schema.contains(choices)) continue;
     for (const Json& choice : schema[choices]) {
-      if (const Json* found = with_properties(choice)) return found;
+      if (const Json* found = field_in(choice, name)) return found;
     }
   }
   return nullptr;
@@ -133,6 +136,9 @@ constexpr std::pair<const char*, const char*> kTypeSummaries[] = {
     {"block_with_hole", "a block with a round blind hole, its shell by marching cubes"},
     {"point_shell", "points with normals from a CSV or PLY file"},
     {"mesh", "a surface from an OBJ, PLY, STL or OFF file"},
+    {"cylinder", "a drill's stylus with a flat or a round tip"},
+    {"revolved", "a solid of revolution, given by its profile"},
+    {"bur", "a dental or bone bur by the name of its shape, with its shank"},
     {"none", "nobody: the tool moves by the rendered force alone"},
     {"force", "a force over time"},
     {"push", "a force over time along a direction that leans from straight down"},
@@ -172,8 +178,7 @@ const Json* find_in_schema(const Json& schema, const std::string& name) {
     const std::size_t dot = name.find('.', start);
     const std::string key = name.substr(start, dot == std::string::npos ? dot : dot - start);
     start = dot == std::string::npos ? dot : dot + 1;
-    const Json* object = with_properties(*node);
-    node = object != nullptr && (*object)["properties"].contains(key) ? &(*object)["properties"][key] : nullptr;
+    node = field_in(*node, key);
   }
   return node != nullptr || name.empty() ? node : find_type(schema, name);
 }
@@ -209,12 +214,19 @@ std::string fields_text(const std::string& title, const Json& schema) {
 
 namespace {
 
+/// What the object's "type" says; the type itself where it need not be said.
+std::string type_of(const Json& value, const Json& schema) {
+  const Json required = schema.value("required", Json::array());
+  const bool said = std::find(required.begin(), required.end(), "type") != required.end();
+  return value.value("type", said ? "" : tag_of(schema));
+}
+
 /// The choice of the schema that is an object of the value's type; null when the value is no object with fields.
 const Json* object_of(const Json& value, const Json& schema) {
   if (!value.is_object()) return nullptr;
   if (schema.contains("properties")) {
     const std::string tag = tag_of(schema);
-    return tag.empty() || value.value("type", "") == tag ? &schema : nullptr;
+    return tag.empty() || type_of(value, schema) == tag ? &schema : nullptr;
   }
   for (const char* choices : kChoices) {
     if (!schema.contains(choices)) continue;

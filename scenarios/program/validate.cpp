@@ -27,12 +27,24 @@ std::string surface_text(const SceneFacts::Surface& surface, std::optional<bool>
   const std::string start = surface.touching > 0 ? fmt::format("starts in contact: {} points in it, the deepest by {}",
                                                                surface.touching, length_text(std::abs(surface.gap)))
                                                  : fmt::format("starts {} from the surface", length_text(surface.gap));
-  return fmt::format("  environment  {} ({}), {} points{}\n  tool         {}\n", size_text(surface.box),
+  return fmt::format("  environment  {} ({}), {} points{}\n  start        {}\n", size_text(surface.box),
                      place_text(surface.box), surface.points, closed, start);
+}
+
+std::string tool_text(const ToolFacts& tool) {
+  std::string text = fmt::format("  tool         {}: half width {}, reaches {} from the tip centre", tool.type,
+                                 length_text(tool.half_width), length_text(tool.reach));
+  if (!tool.convex) text += ", not convex";
+  if (tool.mesh) {
+    text += fmt::format("\n               {} triangles, closed, {}; grid {}, depths within {}", tool.mesh->triangles,
+                        size_text(tool.mesh->box), length_text(tool.mesh->grid), length_text(tool.mesh->error_bound));
+  }
+  return text + "\n";
 }
 
 std::string facts_text(const Scenario& scenario, const SceneFacts& facts) {
   std::string text = facts.surface ? surface_text(*facts.surface, facts.is_closed) : "  environment  springs\n";
+  text += tool_text(facts.tool);
   const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);
   text += fmt::format("  run          {} steps of {:.4g} ms = {:.4g} s", scenario.time.steps, 1e3 * scenario.time.step,
                       duration);
@@ -49,6 +61,17 @@ Json facts_json(const Scenario& scenario, const SceneFacts& facts) {
                {"duration_s", scenario.time.step * static_cast<double>(scenario.time.steps)},
                {"trials", facts.trials},
                {"expected_output_bytes", expected_output_bytes(scenario)}};
+  json["tool"] = {{"type", facts.tool.type},
+                  {"half_width_m", facts.tool.half_width},
+                  {"reach_m", facts.tool.reach},
+                  {"convex", facts.tool.convex}};
+  if (const auto& mesh = facts.tool.mesh) {
+    json["tool"]["triangles"] = mesh->triangles;
+    json["tool"]["closed"] = true;  // others are refused
+    json["tool"]["box_m"] = box_json(mesh->box);
+    json["tool"]["grid_m"] = mesh->grid;
+    json["tool"]["error_bound_m"] = mesh->error_bound;
+  }
   if (!facts.surface) return json;
   json["environment"] = {{"box_m", box_json(facts.surface->box)}, {"points", facts.surface->points}};
   if (facts.is_closed) json["environment"]["closed"] = *facts.is_closed;
@@ -74,6 +97,7 @@ int validate(const ValidateOptions& options) {
       print_warnings(loaded.warnings);
       print_warnings(warnings);
       const SceneFacts facts = scene_facts(loaded);
+      print_warnings(facts.warnings);
       text += fmt::format("{}: valid\n{}", argument, facts_text(loaded.scenario, facts));
       verdicts.push_back({{"file", argument}, {"valid", true}});
       verdicts.back().update(facts_json(loaded.scenario, facts));

@@ -167,6 +167,11 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
     const std::string place = file_of(loaded, "/environment/file").string() + ": /environment/file: ";
     for (std::string& warning : warnings) warning = place + warning;
   }
+  if (std::holds_alternative<MeshToolFields>(scenario.tool)) {
+    at("/tool/file", [&] { make_tool(scenario, loaded.files); });
+    const std::string place = file_of(loaded, "/tool/file").string() + ": /tool/file: ";
+    for (const std::string& warning : loaded.files.tool_mesh().warnings()) warnings.push_back(place + warning);
+  }
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
     at("/motion/position/file", [&] { loaded.files.recorded_motion(); });
     if (scenario.record.force_reference && !loaded.files.recorded_force())
@@ -185,10 +190,6 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
     }
   }
   return warnings;
-}
-
-Cylinder make_cylinder(const ToolFields& fields) {
-  return {fields.diameter / 2.0, fields.length, fields.tip};
 }
 
 SimulationConfig simulation_config(const Scenario& scenario) {
@@ -217,7 +218,7 @@ std::shared_ptr<const PointShell> make_shell(const Scenario& scenario) {
 SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std::shared_ptr<const PointShell> shell,
                          Trial trial) {
   SimulationParts parts;
-  parts.tool = std::make_shared<Cylinder>(make_cylinder(scenario.tool));
+  parts.tool = make_tool(scenario, files);
   parts.shell = std::move(shell);
   const RenderingConfig& rendering = scenario.rendering;
   if (const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment)) {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/run/make_tool.hpp"
 #include "sim/loop/simulation.hpp"
-#include "sim/tool/cylinder.hpp"
 
 namespace hapbench {
 
@@ -12,9 +12,6 @@ namespace hapbench {
 /// `loaded.files` keeps them for the run. Returns warnings about what is odd, each with file and pointer. Throws
 /// InputError.
 std::vector<std::string> check_named_files(const LoadedScenario& loaded);
-
-/// The tool, for those who need to know that it is a cylinder.
-Cylinder make_cylinder(const ToolFields& fields);
 
 /// Numbers of the run.
 SimulationConfig simulation_config(const Scenario& scenario);

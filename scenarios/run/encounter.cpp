@@ -19,7 +19,13 @@ double diagonal(const Box& box) {
   return (box.max - box.min).norm();
 }
 
+bool out_of_proportion(const ToolShape& tool, const Box& environment) {
+  const double size = diagonal(environment);
+  return size < kTooSmall * 2.0 * tool.half_width() || size > kTooLarge * tool.reach();
+}
+
 std::string scale_question(const Scenario& scenario) {
+  if (std::holds_alternative<MeshToolFields>(scenario.tool)) return "are tool.scale and the environment's size right?";
   if (std::holds_alternative<MeshEnvironment>(scenario.environment)) return "is environment.scale right?";
   if (std::holds_alternative<PointShellEnvironment>(scenario.environment))
     return "are the points of environment.file in metres?";
@@ -41,8 +47,7 @@ double closest_target(const ImpedanceHandFields& hand, const TimeFields& time, c
 /// The likely cause as the end of a sentence, or where to look when none suggests itself.
 std::string likely_cause(const Scenario& scenario, Outcome outcome, const Encounter& e) {
   const double size = diagonal(e.environment);
-  if (size < kTooSmall * scenario.tool.diameter || size > kTooLarge * scenario.tool.length)
-    return "; " + scale_question(scenario);
+  if (out_of_proportion(e.tool, e.environment)) return "; " + scale_question(scenario);
   const auto* mesh = std::get_if<MeshEnvironment>(&scenario.environment);
   if (outcome == Outcome::no_contact && mesh != nullptr && !mesh->spacing && e.approach.closest == 0.0)
     return "; only the mesh's vertices can be touched: is environment.spacing_m missing?";
@@ -73,8 +78,16 @@ std::string size_and_place(const Box& box) {
 Outcome outcome_of(const Scenario& scenario, const Encounter& e) {
   if (e.metrics.steps_in_contact == 0) return Outcome::no_contact;
   const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
-  const bool left = e.approach.last > diagonal(e.environment) + scenario.tool.length;
+  const bool left = e.approach.last > diagonal(e.environment) + e.tool.reach();
   return is_free && left ? Outcome::lost_contact : Outcome::completes;
+}
+
+std::optional<std::string> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
+  if (!std::holds_alternative<MeshToolFields>(scenario.tool) || !out_of_proportion(tool, environment))
+    return std::nullopt;
+  return fmt::format("the tool is {} thick and reaches {}, the environment is {}: {}",
+                     length_text(2.0 * tool.half_width()), length_text(tool.reach()), size_text(environment),
+                     scale_question(scenario));
 }
 
 std::optional<std::string> warning_about(const Scenario& scenario, Outcome outcome, const Encounter& e) {

@@ -124,8 +124,12 @@ RunSummary summarise(const Scenario& scenario, const std::vector<TrialResult>& t
   if (std::holds_alternative<TrackingHandFields>(scenario.hand)) summary.targets = place_metrics(targets);
   for (const TrialResult& trial : trials) summary.work += trial.work;
   summary.warnings = merged_warnings(trials);
-  const std::vector<std::string> about_forces = force_warnings(summary.metrics);
-  summary.warnings.insert(summary.warnings.end(), about_forces.begin(), about_forces.end());
+  const ToolShape& tool = *trials.front().tool;
+  for (const auto& more : {force_warnings(summary.metrics), tool_warnings(scenario.rendering, tool)})
+    summary.warnings.insert(summary.warnings.end(), more.begin(), more.end());
+  // A cylinder's fields say all.
+  if (!std::holds_alternative<CylinderFields>(scenario.tool))
+    summary.tool = ToolSummary{tool.half_width(), tool.reach(), tool.convex(), tool.outline()};
   return summary;
 }
 

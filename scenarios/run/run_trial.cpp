@@ -39,7 +39,9 @@ MetricsConfig metrics_config(const Scenario& scenario, const SimulationParts& pa
 class TrialObservers {
  public:
   TrialObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts, Trial trial)
-      : metrics_(scenario.time.step, metrics_config(scenario, parts)), passivity_(scenario.time.step) {
+      : tool_(parts.tool),
+        metrics_(scenario.time.step, metrics_config(scenario, parts)),
+        passivity_(scenario.time.step) {
     observers_.push_back(&metrics_);
     observers_.push_back(&passivity_);
     if (scenario.record.energy) {
@@ -89,11 +91,15 @@ class TrialObservers {
 
   /// Hands over what was observed.
   void give(const Scenario& scenario, TrialResult& out) {
+    out.tool = tool_;
     out.metrics = metrics_.metrics();
     if (approach_ && out.result.outcome == Outcome::completes) {
-      const Encounter encounter{out.metrics, approach_->approach(), approach_->environment()};
+      const Encounter encounter{out.metrics, approach_->approach(), approach_->environment(), *tool_};
       out.result.outcome = outcome_of(scenario, encounter);
       if (auto warning = warning_about(scenario, out.result.outcome, encounter)) out.warnings.push_back(*warning);
+    }
+    if (approach_) {
+      if (auto warning = scale_warning(scenario, *tool_, approach_->environment())) out.warnings.push_back(*warning);
     }
     if (open_edges_ && open_edges_->warning()) out.warnings.push_back(*open_edges_->warning());
     out.passivity = passivity_.metrics();
@@ -106,6 +112,7 @@ class TrialObservers {
   }
 
  private:
+  std::shared_ptr<const ToolShape> tool_;
   MetricsObserver metrics_;
   PassivityObserver passivity_;
   std::optional<EnergyLedger> ledger_;

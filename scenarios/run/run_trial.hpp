@@ -16,6 +16,7 @@ namespace hapbench {
 /// What one trial of a scenario came to; most scenarios have one.
 struct TrialResult {
   SimulationResult result;
+  std::shared_ptr<const ToolShape> tool;
   Metrics metrics;
   std::optional<PassivityMetrics> passivity;
   std::optional<EnergyMetrics> energy;

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "scenarios/description/descriptions.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/encounter.hpp"
 #include "scenarios/run/environment_points.hpp"
+#include "scenarios/run/force_warnings.hpp"
+#include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
 namespace {
@@ -35,6 +39,18 @@ void place_tool(const ToolShape& tool, const ToolPose& pose, const PointShell& s
   }
 }
 
+ToolFacts tool_facts(const Scenario& scenario, const NamedFiles& files, const ToolShape& tool) {
+  ToolFacts facts{tool_names()[scenario.tool.index()], tool.half_width(), tool.reach(), tool.convex(), {}};
+  const auto* mesh = dynamic_cast<const MeshTool*>(&tool);
+  if (mesh == nullptr) return facts;
+  const SignedDistanceGrid& grid = mesh->grid();
+  facts.mesh = {files.tool_mesh().triangles().triangles.size(),
+                {grid.low(), grid.high()},
+                grid.nodes().spacing,
+                grid.error_bound()};
+  return facts;
+}
+
 }  // namespace
 
 SceneFacts scene_facts(const LoadedScenario& loaded) {
@@ -42,6 +58,9 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   SceneFacts facts;
   if (const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand))
     facts.trials = hand->subjects.size() * static_cast<std::size_t>(hand->trials);
+  const auto tool = make_tool(scenario, loaded.files);
+  facts.tool = tool_facts(scenario, loaded.files, *tool);
+  facts.warnings = tool_warnings(scenario.rendering, *tool);
   const auto shell = make_shell(scenario, environment_points(scenario, loaded.files));
   if (!shell || shell->size() == 0) return facts;
   if (std::holds_alternative<MeshEnvironment>(scenario.environment))
@@ -50,7 +69,8 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   SceneFacts::Surface& surface = facts.surface.emplace();
   surface.box = shell->bounds();
   surface.points = shell->size();
-  place_tool(*parts.tool, first_pose(scenario, parts), *shell, surface);
+  if (auto warning = scale_warning(scenario, *tool, surface.box)) facts.warnings.push_back(*warning);
+  place_tool(*tool, first_pose(scenario, parts), *shell, surface);
   return facts;
 }
 

@@ -2,12 +2,29 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "scenarios/description/load_scenario.hpp"
 #include "sim/core/box.hpp"
 
 namespace hapbench {
+
+/// What there is to know of its tool.
+struct ToolFacts {
+  std::string type;         ///< as the scenario's field
+  double half_width = 0.0;  ///< [m]
+  double reach = 0.0;       ///< of its furthest point from the tip centre [m]
+  bool convex = true;
+  /// Of a mesh.
+  struct Mesh {
+    std::size_t triangles;
+    Box box;             ///< in the tool's frame [m]
+    double grid;         ///< spacing of the signed distances [m]
+    double error_bound;  ///< of a depth [m]
+  };
+  std::optional<Mesh> mesh;
+};
 
 /// What there is to know of a scenario before it runs.
 struct SceneFacts {
@@ -21,8 +38,10 @@ struct SceneFacts {
     std::size_t touching = 0;  ///< points in the tool where it starts
   };
   std::optional<Surface> surface;
+  ToolFacts tool;
   std::optional<bool> is_closed;  ///< of a mesh
   std::size_t trials = 1;
+  std::vector<std::string> warnings;  ///< about the tool, in this scene
 };
 
 /// Builds the environment and places the tool. Throws InputError when a named file cannot be used.

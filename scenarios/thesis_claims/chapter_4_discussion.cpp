@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "scenarios/run/make_tool.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/vibration.hpp"
 #include "scenarios/thesis_claims/wording.hpp"
@@ -98,7 +99,7 @@ Measured measure_parallel_faces(const Evidence& e) {
   const double depth = e.results.number("parallel_faces", "metrics.depth_max_m");
   return {{"",
            {{"depth", {depth}},
-            {"radius", {scenario.tool.diameter / 2.0}},
+            {"radius", {make_cylinder(scenario.tool).radius()}},
             {"force", {e.results.number("parallel_faces", "metrics.force_max_N")}},
             {"one_wall_force", {scenario.rendering.stiffness * depth}}}}};
 }

@@ -1,11 +1,9 @@
 #pragma once
 
+#include "sim/tool/tip.hpp"
 #include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {
-
-/// How a cylinder ends: in a plane, or in half a ball of the same radius about the tip centre, beyond that plane.
-enum class Tip { flat, round };
 
 /// A drill's stylus: a cylinder with a flat or a round tip (thesis A.1.1, B.1).
 ///
@@ -27,6 +25,8 @@ class Cylinder final : public ToolShape {
   /// No exit distance is larger: an upper bound of the longest way through the body.
   double longest_exit() const noexcept { return length_ + 3.0 * radius_; }
 
+  bool convex() const noexcept override { return true; }
+  std::vector<ProfilePoint> outline() const override;
   void mark_inside(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges,
                    std::uint8_t* marks) const noexcept override;
   void push_inside(const ToolPose& pose, const PointColumns& points, std::span<const PackRange> ranges,

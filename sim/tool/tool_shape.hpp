@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/core/box.hpp"
+#include "sim/tool/profile_point.hpp"
 #include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
@@ -44,8 +46,8 @@ struct PackRange {
 /// centre. A shape that is no solid of revolution reads the pose's rotation().
 ///
 /// Cost. Each call answers for many points, so that its virtual dispatch is paid once for a query or a step and never
-/// for a point. All of them but `grown` and `cover` are called in the step loop and allocate nothing. Shapes are
-/// immutable, and may be shared between runs and threads.
+/// for a point. All of them but `outline`, `grown` and `cover` are called in the step loop and allocate nothing. Shapes
+/// are immutable, and may be shared between runs and threads.
 ///
 /// Rounding. Search and depths must agree about points on the surface: a point that `mark_inside` marks has a depth >=
 /// 0 up to rounding, so both should compute with the same operations in the same order.
@@ -57,6 +59,13 @@ class ToolShape {
   double half_width() const noexcept { return half_width_; }
   /// Distance of the body's furthest point from the tip centre.
   double reach() const noexcept { return reach_; }
+  /// Whether the body holds the straight line between any two of its points. A proxy keeps every point out of a convex
+  /// body only.
+  virtual bool convex() const noexcept = 0;
+  /// What drawings show of the body: its outline in the axial half plane, from the far end on the axis to the foremost
+  /// point on the axis, curves as polylines. Of a body that is no solid of revolution the silhouette: the largest rho
+  /// over s. Allocates.
+  virtual std::vector<ProfilePoint> outline() const = 0;
 
   // Contact search.
 
@@ -91,13 +100,13 @@ class ToolShape {
   /// write the whole last pack.
   virtual void shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept = 0;
   /// Writes the unit vector to that nearest place as each contact's gradient; the contact's inverse normal where no
-  /// place is nearest, as on a cylinder's axis.
+  /// place is nearest, as on a cylinder's axis. May write the whole last pack.
   virtual void shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept = 0;
   /// Writes to exits[i] how far contact i lies from where the ray along its gradient leaves the body, for i < size().
   /// Finite and >= 0, for points on the surface too.
   virtual void exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept = 0;
 
-  // The proxy. For a convex body only.
+  // The proxy. Its guarantee is for a convex body; a shape that is not says what it answers instead.
 
   /// What keeps the body out of points near it: for each contact the signed distance g_i of the point to the body's
   /// surface, negative inside, as depth d_i = -g_i, and the outward normal at the nearest place of the surface as

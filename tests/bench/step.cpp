@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 
+#include "algorithms/registry.hpp"
+#include "algorithms/shell_source.hpp"
+#include "sim/contact/contact_query.hpp"
+#include "sim/tool/cylinder.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
+#include "tests/support/tool_meshes.hpp"
 
 namespace hapbench::bench {
 
@@ -33,6 +38,27 @@ class TimedRun::MemoryRecorder final : public Observer {
   std::vector<Row> rows_;
 };
 
+namespace {
+
+/// The mesh of the cylinder of all tasks, 128 sides and some 128^3 nodes.
+std::shared_ptr<const SignedDistanceGrid> drill_grid(const Cylinder& drill) {
+  static const auto grid = [&drill] {
+    const TriangleSoup soup = test::cylinder_mesh(drill.radius(), drill.length(), 128);
+    return test::grid_of(soup, SignedDistanceGrid::suggested_spacing(soup.vertices));
+  }();
+  return grid;
+}
+
+/// The same run with a mesh of its drill.
+void take_mesh(const RenderingConfig& rendering, SimulationParts& parts) {
+  parts.tool = std::make_shared<MeshTool>(drill_grid(dynamic_cast<const Cylinder&>(*parts.tool)));
+  parts.source = std::make_unique<ShellSource>(*parts.shell, *parts.tool,
+                                               make_contact_query(*parts.shell, *parts.tool, rendering.skips),
+                                               make_depth_model(rendering), rendering.skips);
+}
+
+}  // namespace
+
 TimedRun::TimedRun(const std::string& name, Skips skips) {
   Scenario scenario = step_scenario(name).scenario;
   scenario.rendering.skips = skips;
@@ -41,7 +67,9 @@ TimedRun::TimedRun(const std::string& name, Skips skips) {
   metrics_ = std::make_unique<MetricsObserver>(config.dt);
   passivity_ = std::make_unique<PassivityObserver>(config.dt);
   recorder_ = std::make_unique<MemoryRecorder>(steps_);
-  simulation_ = std::make_unique<Simulation>(config, assemble(scenario, block_shell(), {}),
+  SimulationParts parts = assemble(scenario, block_shell(), {});
+  if (name.ends_with("_mesh")) take_mesh(scenario.rendering, parts);
+  simulation_ = std::make_unique<Simulation>(config, std::move(parts),
                                              std::vector<Observer*>{metrics_.get(), passivity_.get(), recorder_.get()});
 }
 

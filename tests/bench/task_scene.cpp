@@ -17,6 +17,7 @@ Window window_of(const std::string& task) {
 }
 
 LoadedScenario load_step_scenario(const std::string& name) {
+  if (name.ends_with("_mesh")) return step_scenario(name.substr(0, 2));
   if (name == "T1") return load_unrecorded("poke_on_flat", {});
   if (name == "T2") return load_unrecorded("rotate_in_hole", {});
   if (name == "T2_proxy") return load_unrecorded("rotate_in_hole", {"rendering.algorithm=proxy"});

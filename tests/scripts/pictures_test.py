@@ -164,12 +164,18 @@ class Hearing(unittest.TestCase):
 
 class Tool(unittest.TestCase):
     def test_a_round_tip_is_a_hemisphere(self):
-        flat = tool_profile({"tool": {"diameter_m": 2, "length_m": 5, "tip": "flat"}})
+        flat = tool_profile({"tool": {"diameter_m": 2, "length_m": 5, "tip": "flat"}}, {})
         self.assertEqual(flat, [[-5, 0], [-5, 1], [0, 1], [0, 0]])
-        round_ = tool_profile({"tool": {"diameter_m": 2, "length_m": 5, "tip": "round"}})
+        round_ = tool_profile({"tool": {"diameter_m": 2, "length_m": 5, "tip": "round"}}, {})
         for s, r in round_[2:]:
             self.assertAlmostEqual(s * s + r * r, 1)
-        self.assertIsNone(tool_profile({"tool": {}}))
+        self.assertIsNone(tool_profile({"tool": {}}, {}))
+
+    def test_the_summary_has_the_outline_of_a_tool_that_is_no_cylinder(self):
+        outline = [[-5, 0], [-5, 1], [0, 2.5], [0, 0]]
+        self.assertEqual(tool_profile({"tool": {"type": "bur"}}, {"tool": {"outline_m": outline}}), outline)
+        for wrong in ([], [[0, 1]], [[0, 1], [2]], [[0, 1], [1, None]], "outline", [[0, 1], 5]):
+            self.assertIsNone(tool_profile({"tool": {"type": "bur"}}, {"tool": {"outline_m": wrong}}), wrong)
 
 
 class Plot(Given):

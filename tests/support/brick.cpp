@@ -48,6 +48,11 @@ Brick::Brick(double half_x, double half_y, double length)
       low_(-half_x, -half_y, 0.0),
       high_(half_x, half_y, length) {}
 
+std::vector<ProfilePoint> Brick::outline() const {
+  const double widest = std::hypot(high_.x(), high_.y());
+  return {{-high_.z(), 0.0}, {-high_.z(), widest}, {0.0, widest}, {0.0, 0.0}};
+}
+
 double Brick::slack(const ToolPose& pose, const Vec3& point) const {
   return nearest_face(local(pose, point), low_, high_).depth;
 }

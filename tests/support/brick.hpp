@@ -14,6 +14,8 @@ class Brick final : public ToolShape {
   /// How far the point lies inside, by the nearest of the six faces [m]; negative outside.
   double slack(const ToolPose& pose, const Vec3& point) const;
 
+  bool convex() const noexcept override { return true; }
+  std::vector<ProfilePoint> outline() const override;
   void push_inside(const ToolPose& pose, const PointColumns& points, std::span<const PackRange> ranges,
                    ContactBuffer& contacts) const noexcept override;
   void mark_inside(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges,

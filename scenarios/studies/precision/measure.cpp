@@ -116,6 +116,7 @@ Scenario drill_in_hole(Scenario scenario) {
         "got another environment; allowed for this study: block_with_hole, the hole its drill is measured in "
         "(the study time_step takes any scene)");
   }
+  make_cylinder(scenario.tool);  // refuses any other
   if (!has_ideal_trajectory(scenario)) {
     throw InputError(InputError::Kind::relation, "/tool/tip",
                      "got \"round\"; allowed for this study: \"flat\", whose ideal trajectory is known");

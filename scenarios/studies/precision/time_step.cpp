@@ -81,7 +81,7 @@ static PrecisionResult study_time_step(const Scenario& given, const PrecisionOpt
   refuse_noise(given);
   const bool ideal = has_ideal(given), free = moves_freely(given);
   const Scenario scenario = ideal ? drill_in_hole(given) : any_scene(given);
-  const Cylinder tool = make_cylinder(scenario.tool);
+  const double half_width = make_tool(scenario)->half_width();
   const auto shell = make_shell(scenario);
   const SampledRun reference = reference_run(scenario, shell);
 
@@ -94,7 +94,7 @@ static PrecisionResult study_time_step(const Scenario& given, const PrecisionOpt
   for (const double factor : kFactors) {
     const Scenario run = with_step(scenario, factor);
     std::optional<IdealTrajectoryObserver> beside;
-    if (ideal) beside.emplace(std::get<BlockEnvironment>(scenario.environment).block, tool);
+    if (ideal) beside.emplace(std::get<BlockEnvironment>(scenario.environment).block, make_cylinder(scenario.tool));
     const SampledRun sampled =
         sampled_run(run, shell, stride(factor), beside ? std::vector<Observer*>{&*beside} : std::vector<Observer*>());
     const TrajectoryDistance d =
@@ -103,7 +103,7 @@ static PrecisionResult study_time_step(const Scenario& given, const PrecisionOpt
     if (beside) result.rows.back().values.emplace_back(beside->metrics().gentle.height_rms);
     options.progress(result.rows.size(), std::size(kFactors));
     // A drill that was thrown out may be anywhere: its distance from the reference does not converge.
-    const bool thrown_out = free && !(d.max <= tool.half_width());
+    const bool thrown_out = free && !(d.max <= half_width);
     if (sampled.positions.size() != reference.positions.size() || thrown_out) continue;
     steps.push_back(run.time.step);
     errors.push_back(d.rms);

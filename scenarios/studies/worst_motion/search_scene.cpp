@@ -122,8 +122,9 @@ SearchScene search_scene(const Scenario& scenario) {
   if (is_hole(scenario)) return scene;
   scene.scenario.initial.position = place_at_surface(scenario, scene.shell);
   scene.scenario.initial.velocity = Vec3::Zero();
-  bounds.min.array() -= scenario.tool.diameter;
-  bounds.max.array() += scenario.tool.diameter;
+  const double width = 2.0 * make_tool(scenario)->half_width();
+  bounds.min.array() -= width;
+  bounds.max.array() += width;
   scene.reach = bounds;
   return scene;
 }

@@ -5,12 +5,12 @@ import textwrap
 
 import matplotlib
 import numpy as np
-from hapbench_figures.scene import Peg
 from hapbench_figures.style import AMBER, BLACK, GREY, PETROL, SETTINGS
 from hapbench_looks import look
 from hapbench_pictures.columns import read_columns
 from hapbench_pictures.files import write
 from hapbench_pictures.reduced import reduced
+from hapbench_report.replay_tool import tool_profile
 from matplotlib import pyplot as plt
 from matplotlib.patches import Polygon
 
@@ -31,6 +31,9 @@ SCENES = (
     ("turned_into_wall", 4.2),
     ("mesh_molar", 4.5),
     ("drag_molar", 5.5),
+    ("bur_fissure", 4.5),
+    ("pear_in_cavity", 2.6),
+    ("cone_in_undercut", 2.4),
 )
 SNAPSHOTS = 4
 SPANS = 250  # of a curve
@@ -68,6 +71,8 @@ class Scene:
     def __init__(self, folder, name):
         self.name = name
         self.scenario = json.loads((folder / name / "scenario.effective.json").read_text(encoding="utf-8"))
+        summary = json.loads((folder / name / "summary.json").read_text(encoding="utf-8"))
+        self.profile = np.array(tool_profile(self.scenario, summary))
         names = [f"{n}{a}{u}" for n, u in (("p", "_m"), ("axis_", ""), ("f", "_N")) for a in "xyz"]
         rows = read_columns(folder / name / "trajectory.csv", ["time_s", *names])
         self.time = rows["time_s"]
@@ -89,11 +94,12 @@ class Scene:
 
     def tool(self, row):
         """Outline of the tool's projection; right where the axis lies in the plane, and near it elsewhere."""
-        fields = self.scenario["tool"]
         axis = self.plane(self.axis[row:row + 1])[0]
-        peg = Peg(self.plane(self.tip[row:row + 1])[0], axis / np.linalg.norm(axis), fields["diameter_m"], fields["length_m"])
-        outline = peg.outline()
-        return outline if fields["tip"] == "round" else outline[[0, 24, 25, 26]]
+        axis /= np.linalg.norm(axis)
+        side = np.array([-axis[1], axis[0]])
+        s, radius = self.profile.T[:, :, None]
+        half = self.plane(self.tip[row:row + 1]) + s * axis
+        return np.vstack([half + radius * side, (half - radius * side)[::-1]])
 
 
 def picture(scene, half):

@@ -12,7 +12,6 @@ from hapbench_report.json_input import InputError, at
 from hapbench_report.replay_pack import MARGIN, SHELL_COLUMNS, packed_scene, radius_of, touched_box
 from hapbench_report.replay_read import Recording
 from hapbench_report.replay_sound import LONGEST
-from hapbench_report.replay_tool import tool_profile
 
 from .columns import read_columns
 
@@ -61,9 +60,12 @@ def points_of(run, recordings):
     if every is None:
         touched = {tuple(contact[:3]): contact[8:] for r in recordings for of_row in r.contacts for contact in of_row}
         every = np.array([[*place, *normal] for place, normal in touched.items()]).reshape(-1, 6)
-    drawn = thinned(every, touched_box(recordings), MARGIN * radius_of(tool_profile(run.scenario)))
+    drawn = thinned(every, touched_box(recordings), MARGIN * radius_of(recordings[0].tool))
     count = f"{len(drawn)} of {len(every)} points of the surface are drawn, all around the contacts first."
     said = [failure] if failure else []
+    if at(run.scenario, "/tool/type") == "mesh":
+        said.append("Of the tool, a mesh, the silhouette is drawn, turned about its axis; points in the tool are marked "
+                    "where contacts were recorded.")
     return drawn.tolist(), " ".join(said + ([count] if len(drawn) < len(every) else []))
 
 

@@ -9,7 +9,6 @@ from .replay_read import CONTACT_COLUMNS, MEASURED_COLUMNS, NORMAL_COLUMNS, TENS
 from .replay_record import SCENES
 from .replay_rows import worst_moments
 from .replay_sound import sound
-from .replay_tool import tool_profile
 
 # The shell is shown this far around the contacts and the tool's way along them, in units of the tool's radius.
 MARGIN = 1.8
@@ -64,7 +63,7 @@ def packed_scene(recordings, shell, labels=None, **about):
         **about,
         "planar": is_planar(recordings, shell),
         "up": orientation.get("up", [0, 0, 1]), "lean": orientation.get("lean", [1, 0, 0]),
-        "tool": None if springs else tool_profile(scenario), "focus": touched_box(recordings),
+        "tool": None if springs else recordings[0].tool, "silhouette": at(scenario, "/tool/type") == "mesh", "focus": touched_box(recordings),
         "springs": [[*group["direction"], group["count"]] for group in at(scenario, "/environment/groups") or ()] if springs else [],
         "contactColumns": CONTACT_COLUMNS,
         "shellScale": scale, "shell": base64_of("h", (round(x / scale) for x in places)),
@@ -83,11 +82,10 @@ def recorded_scene(scene, directory: Path):
     if not recordings:
         raise InputError(f"{directory}: holds no recording of {', '.join(scene.algorithms)}")
     for recording in recordings:
-        if not tool_profile(recording.scenario):
+        if not recording.tool:
             raise InputError(f"{directory / recording.algorithm / 'scenario.effective.json'}: /tool/diameter_m: missing, or "
                              "length_m; allowed: numbers")
-    profile = tool_profile(recordings[0].scenario)
-    box, margin = touched_box(recordings), MARGIN * radius_of(profile)
+    box, margin = touched_box(recordings), MARGIN * radius_of(recordings[0].tool)
     shell = zip(*numbers(directory / "shell.csv", SHELL_COLUMNS).values())
     return packed_scene(recordings, [p for p in shell if within(p, box, margin)], id=scene.id, title=scene.title,
                         speed=scene.speed, scenario=scene.scenario,

@@ -6,6 +6,7 @@ from pathlib import Path
 from .json_input import InputError, at, load_object
 from .markup import number
 from .replay_rows import rows_to_show
+from .replay_tool import tool_profile
 
 TENSOR_COLUMNS = ("sxx", "sxy", "sxz", "syy", "syz", "szz")
 # Per row: time, tip, axis, rendered force, ratio range, deepest point; with the tensor S where it was recorded.
@@ -57,6 +58,7 @@ class Recording:
     def __init__(self, directory: Path, read=numbers):
         self.summary = load_object(directory / "summary.json")
         self.scenario = load_object(directory / "scenario.effective.json")
+        self.tool = tool_profile(self.scenario, self.summary)
         self.algorithm = str(self.summary.get("algorithm", directory.name))
         # All rows, for the sound and the worst moments.
         self.columns = read(directory / "trajectory.csv", ("step", *MEASURED_COLUMNS, "colliding"))

@@ -9,12 +9,14 @@
 #include "algorithms/laws/exact_shaping.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "device_model/hands/scripted_hands.hpp"
+#include "sim/contact/neighbour_list_query.hpp"
 #include "sim/contact/shell_query.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/setting.hpp"
 #include "tests/support/tool_geometry.hpp"
+#include "tests/support/tool_meshes.hpp"
 
 namespace hapbench::test {
 namespace {
@@ -145,6 +147,34 @@ void print_depths(const DepthModelEntry& model) {
   }
 }
 
+/// All that a mesh tool answers, among points in and around a cup.
+void print_mesh_tool() {
+  const MeshTool tool(grid_of(cup(20), 0.1));
+  Random random(4);
+  std::vector<SurfacePoint> points;
+  for (int i = 0; i < 2000; ++i) points.push_back({random.uniform(0.0, 2.0) * random.direction(), random.direction()});
+  const PointShell shell(points, 0.1);
+  NeighbourListQuery search(shell, tool);
+  ContactBuffer contacts(search.capacity());
+  std::vector<double> exits(search.capacity());
+  AlignedDoubles x(simd::padded(search.capacity())), y(x.size()), z(x.size());
+  Hash hash;
+  for (int i = 0; i < 200; ++i) {
+    const ToolPose pose{0.3 * random.direction(), random.direction(), random.uniform(-3.0, 3.0)};
+    search.contacts_at(pose, contacts);
+    tool.shortest_depths(pose, contacts);
+    tool.shortest_gradients(pose, contacts);
+    hash.add(contacts);
+    tool.exit_distances(pose, contacts, exits.data());
+    for (std::size_t k = 0; k < contacts.size(); ++k) hash.add(exits[k]);
+    tool.surface_constraints(pose, random.direction(), 0.0, contacts);
+    hash.add(contacts);
+    tool.foremost_places(pose, contacts, {x.data(), y.data(), z.data()});
+    for (std::size_t k = 0; k < contacts.size(); ++k) hash.add(Vec3(x[k], y[k], z[k]));
+  }
+  print("mesh tool", hash.value());
+}
+
 /// The two iterations that could amplify a difference in the last bit, on the sets that stress them.
 void print_shaping(const GradientFamily& family) {
   Random random(3);
@@ -168,6 +198,7 @@ int main() {
   using namespace hapbench::test;
   for (const GradientFamily& family : gradient_families()) print_shaping(family);
   for (const DepthModelEntry& model : depth_models()) print_depths(model);
+  print_mesh_tool();
   for (const AlgorithmEntry& algorithm : algorithms()) {
     print_springs(algorithm);
     print_integrators(algorithm);

@@ -77,7 +77,7 @@ TEST(TaggedObject, IsWrittenAsTypeAndFields) {
 TEST(TaggedObject, IsNotWrittenWithoutAnAlternative) {
   Writer writer;
   const char* const names[] = {"ball"};
-  EXPECT_THROW(writer.alternatives("solid", names, 1, [](Fields&, std::size_t) {}), std::logic_error);
+  EXPECT_THROW(writer.alternatives("solid", names, Untyped::refused, 1, [](Fields&, std::size_t) {}), std::logic_error);
 }
 
 TEST(TaggedObject, HasAnAlternativeForEachTagInItsSchema) {

@@ -16,6 +16,16 @@ BadInput mesh(const std::string& test, const std::string& name, const std::strin
       {{name, contents}}};
 }
 
+/// The same whose tool is the mesh.
+BadInput mesh_tool(const std::string& test, const std::string& contents, const std::string& says,
+                   const std::string& more = "") {
+  return {test,
+          with_value("plane", "/tool", R"({"type": "mesh", "scale": 0.001, "file": "tool.obj")" + more + "}"),
+          "/tool/file",
+          says,
+          {{"tool.obj", contents}}};
+}
+
 const std::string kTriangle = "0 0 0\n1 0 0\n0 1 0\n";
 const std::string kObj = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
@@ -37,6 +47,8 @@ std::vector<BadInput> bad_surfaces() {
       mesh("MeshWithFacesOfTwoCorners", "m.off", off_text({block.vertices, {{0, 1, 1}}}), "has no faces; allowed"),
       mesh("MeshWithFacesWithoutArea", "m.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n",
            "has no faces with an area; allowed: at least one"),
+      mesh_tool("ToolMeshOpen", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "open"),
+      mesh_tool("ToolMeshThinnerThanItsGrid", obj_text(block), "thin", R"(, "grid_m": 0.01)"),
       mesh("MeshTooFar", "m.obj", "v 0 0 0\nv 2e6 0 0\nv 0 1 0\nf 1 2 3\n",
            "vertex 1: got coordinate 2000 after scaling; allowed: at most 1000 m (is \"scale\" right?)"),
       mesh("MeshNeedsTooManyPoints", "m.obj", obj_text(block),

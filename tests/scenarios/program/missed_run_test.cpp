@@ -76,7 +76,7 @@ TEST_F(MissedRun, ValidateSaysWhatItSees) {
   const test::ProgramRun seen = hapbench({"validate", "mesh_molar"});
   EXPECT_EQ(seen.status, 0);
   for (const char* part :
-       {"mm (x ", " points, closed\n", "  tool         starts ", "steps of 0.4883 ms", "  writes       about "}) {
+       {"mm (x ", " points, closed\n", "  start        starts ", "steps of 0.4883 ms", "  writes       about "}) {
     EXPECT_NE(seen.out.find(part), std::string::npos) << part << "\n" << seen.out;
   }
   const Json facts = hapbench({"validate", "mesh_molar", "--json"}).json()[0];

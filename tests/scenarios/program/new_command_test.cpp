@@ -24,8 +24,10 @@ TEST_F(NewCommand, WritesScenariosOfEveryKindThatRunAtOnceAndTouch) {
   for (const Json& entry : kinds) {
     const std::string kind = entry["kind"], file = path(kind + ".json");
     std::vector<std::string> arguments = {"new", kind, "--out", file};
-    const std::string source = kind == "mesh" ? "cube.obj" : kind == "shell" ? "shell.csv" : "stroke.csv";
-    if (kind == "mesh" || kind == "shell" || kind == "stroke")
+    const std::string source = kind == "mesh" || kind == "tool" ? "cube.obj"
+                               : kind == "shell"                ? "shell.csv"
+                                                                : "stroke.csv";
+    if (kind == "mesh" || kind == "tool" || kind == "shell" || kind == "stroke")
       arguments.insert(arguments.end(), {"--from", data(source)});
     const ProgramRun written = hapbench(arguments);
     ASSERT_EQ(written.status, 0) << kind << ": " << written.err;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/tool/cylinder.hpp"
+
 namespace hapbench {
 namespace {
 
@@ -17,14 +19,15 @@ class EncounterWithBlock : public testing::Test {
     scenario.hand = ForceHandFields{};
     scenario.time = {0.0005, 1000, {}};
   }
-  Outcome outcome() const { return outcome_of(scenario, {metrics, approach, box}); }
+  Outcome outcome() const { return outcome_of(scenario, {metrics, approach, box, tool}); }
   std::string warning() const {
-    return warning_about(scenario, outcome(), {metrics, approach, box}).value_or("no warning");
+    return warning_about(scenario, outcome(), {metrics, approach, box, tool}).value_or("no warning");
   }
 
   Scenario scenario;
   Metrics metrics;
   Approach approach;
+  Cylinder tool;
   Box box{Vec3(0, 0, -0.007), Vec3(0.006, 0.006, 0)};
 };
 
@@ -56,7 +59,7 @@ TEST_F(EncounterWithBlock, NoContactAsksForTheScaleWhereSizesAreOutOfProportion)
   EXPECT_EQ(warning().find("scale"), std::string::npos);
   for (const double factor : {1e-3, 1e3}) {
     const Box other{factor * box.min, factor * box.max};
-    const auto text = warning_about(scenario, Outcome::no_contact, {metrics, approach, other});
+    const auto text = warning_about(scenario, Outcome::no_contact, {metrics, approach, other, tool});
     EXPECT_NE(text.value_or("").find("; is environment.scale right?"), std::string::npos) << factor;
   }
 }

@@ -121,6 +121,23 @@ std::vector<NamedScenario> rich_scenarios() {
       "initial": {"position_m": [0.0004, 0, -0.001]},
       "motion": {"orientation": {"tilt_rad": 0.1}},
       "hand": {"type": "drag", "path_m": [[0.001, 0, -0.001], [0.001, 0.001, -0.002]], "tilt_rad": null}})")},
+          {"bur_on_plane", Json::parse(R"({
+      "time": {"step_s": 0.0005, "steps": 100},
+      "environment": {"type": "plane", "size_m": 0.004, "spacing_m": 0.0002},
+      "initial": {"position_m": [0, 0, 0.0005]},
+      "tool": {"type": "bur", "family": "pear", "diameter_m": 0.0012, "length_m": 0.002, "shank_diameter_m": 0.0006},
+      "hand": {"type": "force", "z_N": -1}})")},
+          {"turned_tool_on_plane", Json::parse(R"({
+      "time": {"step_s": 0.0005, "steps": 100},
+      "environment": {"type": "plane", "size_m": 0.004, "spacing_m": 0.0002},
+      "tool": {"type": "revolved", "profile_m": [[-0.01, 0.0004], [-0.002, 0.0004], [0, 0.0008]], "tip": "flat"},
+      "hand": {"type": "force", "z_N": -1}})")},
+          {"cube_on_plane", Json::parse(R"({
+      "time": {"step_s": 0.0005, "steps": 100},
+      "environment": {"type": "plane", "size_m": 0.02, "spacing_m": 0.001},
+      "initial": {"position_m": [0, 0, 0.005]},
+      "tool": {"type": "mesh", "file": "cube.obj", "scale": 0.001, "grid_m": 0.0005},
+      "hand": {"type": "force", "z_N": -1}})")},
           {"scanned_cube", Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 10},
       "environment": {"type": "mesh", "file": "cube.obj", "scale": 0.001, "spacing_m": 0.0003, "grid_m": 0.0005},

@@ -63,7 +63,8 @@ class Recording {
 class Scene {
   constructor(packed) {
     Object.assign(this, {id: packed.id, title: packed.title, note: packed.note, speed: packed.speed, planar: packed.planar,
-      scenario: packed.scenario, up: packed.up, lean: packed.lean, focus: packed.focus, springs: packed.springs});
+      scenario: packed.scenario, up: packed.up, lean: packed.lean, focus: packed.focus, springs: packed.springs,
+      silhouette: packed.silhouette});
     this.tool = packed.tool ? new Tool(packed.tool) : null;
     const shell = new Int16Array(bytesOf(packed.shell)), normals = new Int8Array(bytesOf(packed.normals));
     this.points = [];
@@ -77,6 +78,7 @@ class Scene {
     this.deepest = depths.length ? Math.min(...depths) : 1e-4;
   }
 
-  /** Depth of a point in the tool, by the shortest distance to its surface [m]; negative outside. */
-  depthIn(point, tip, axis) { return this.tool ? this.tool.depthOf(point, tip, axis) : -1; }
+  /** Depth of a point in the tool, by the shortest distance to its surface [m]; negative outside, and wherever all that
+   *  is known of the tool is its silhouette. */
+  depthIn(point, tip, axis) { return this.tool && !this.silhouette ? this.tool.depthOf(point, tip, axis) : -1; }
 }

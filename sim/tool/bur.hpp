@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/tool/meridian.hpp"
+
+namespace hapbench {
+
+/// The shapes of rotary instruments that ISO 6360-2 numbers and dentists know by these names.
+enum class BurFamily { ball, cylinder, round_cylinder, tapered, inverted_cone, pear, flame };
+
+/// What a Revolved is made of.
+struct BurProfile {
+  std::vector<ProfilePoint> profile;
+  Tip tip;
+};
+
+/// The profile of a bur with its shank. Lengths in metres, all > 0:
+///
+/// - diameter: the head's largest, ISO 6360's nominal size (a "012" has 1.2 mm);
+/// - length: that of the head along the axis, from the foremost place to where the shank begins, half a ball at the tip
+///   included. Of a ball bur it is the diameter, from which its neck cuts a little off at the rear;
+/// - shank_diameter: of the cylinder behind the head, called neck where it is thin; it goes on for ten times that.
+///
+/// | family | head, from the shank to the tip | tip centre |
+/// |---|---|---|
+/// | ball | a ball | the ball's centre |
+/// | cylinder | a cylinder with a flat end | the end's centre |
+/// | round_cylinder | a cylinder with half a ball at its end | the ball's centre |
+/// | tapered | a cone frustum that narrows to 0.6 of the diameter, flat end | the end's centre |
+/// | inverted_cone | a cone frustum that widens from 0.6 of the diameter, flat end | the end's centre |
+/// | pear | widens from the shank along a cone that touches the ball at its end | the ball's centre |
+/// | flame | two arcs: from the shank to the diameter in the rear third, and from there to a point | the point |
+///
+/// Arcs are polylines with their corners on the arc and a sagitta of at most a thousandth of the diameter, 1 µm of 1
+/// mm. Throws std::invalid_argument that says which length does not suit the family.
+BurProfile bur_profile(BurFamily family, double diameter, double length, double shank_diameter);
+
+}  // namespace hapbench

@@ -1,0 +1,167 @@
+#pragma once
+
+#include <cstring>
+
+#include "sim/core/simd.hpp"
+#include "sim/tool/signed_distance_grid.hpp"
+#include "sim/tool/tool_state.hpp"
+
+/// The field of a SignedDistanceGrid at points of the world. For source files only (see simd.hpp).
+namespace hapbench {
+
+/// Weights of the three nodes along an axis at t in [-1/2, 1/2] from the middle one, never negative, and their slopes.
+template <class T>
+struct QuadraticWeights {
+  T below, here, above;
+  explicit QuadraticWeights(const T& t)
+      : below(T(0.5) * (T(0.5) - t) * (T(0.5) - t)),
+        here(T(0.75) - t * t),
+        above(T(0.5) * (T(0.5) + t) * (T(0.5) + t)) {}
+};
+
+/// From the world to the coordinates of a grid's nodes, at one pose: u = turn (x - position) + shift.
+struct GridFrame {
+  Mat3 turn;
+  Vec3 position, shift;
+  Vec3 last;  ///< of the coordinates at which 27 nodes are around the nearest one; the first are 1
+  double spacing;
+  double row, layer;  ///< from one node to the next along y and x
+
+  GridFrame(const SignedDistanceGrid& grid, const ToolPose& pose)
+      : turn(pose.rotation().transpose() / grid.nodes().spacing),
+        position(pose.position),
+        shift(-grid.nodes().origin / grid.nodes().spacing),
+        spacing(grid.nodes().spacing),
+        row(static_cast<double>(grid.nodes().count[2])),
+        layer(static_cast<double>(grid.nodes().count[1] * grid.nodes().count[2])) {
+    for (int k = 0; k < 3; ++k) last[k] = static_cast<double>(grid.nodes().count[static_cast<std::size_t>(k)]) - 2.0;
+  }
+};
+
+/// Eight points in the coordinates of the nodes.
+struct GridPack {
+  simd::Pack u, v, w;
+  simd::Mask within;  ///< in the grid; never true of what is not finite
+
+  GridPack(const GridFrame& f, const double* px, const double* py, const double* pz) {
+    using simd::Pack;
+    const Pack x = simd::load(px) - Pack(f.position.x()), y = simd::load(py) - Pack(f.position.y()),
+               z = simd::load(pz) - Pack(f.position.z());
+    const auto along = [&](int k) {
+      return Pack(f.turn(k, 0)) * x + Pack(f.turn(k, 1)) * y + Pack(f.turn(k, 2)) * z + Pack(f.shift[k]);
+    };
+    u = along(0);
+    v = along(1);
+    w = along(2);
+    const Pack one(1.0);
+    within =
+        u >= one && u <= Pack(f.last.x()) && v >= one && v <= Pack(f.last.y()) && w >= one && w <= Pack(f.last.z());
+  }
+
+  /// Moves the points to the nearest places in the grid, what is not a number to its first corner; the squares of the
+  /// ways [spacings].
+  simd::Pack clamp(const GridFrame& f) {
+    using simd::Pack;
+    Pack out2(0.0);
+    const auto clamp_one = [&out2](Pack& coordinate, double last) {
+      const Pack to = simd::select(coordinate > Pack(1.0), simd::min(coordinate, Pack(last)), Pack(1.0));
+      out2 = out2 + (coordinate - to) * (coordinate - to);
+      coordinate = to;
+    };
+    clamp_one(u, f.last.x());
+    clamp_one(v, f.last.y());
+    clamp_one(w, f.last.z());
+    return out2;
+  }
+};
+
+/// The number nearest to each of eight in [0, 2^51], even ones of two: adding 1.5 * 2^52 leaves no bit for a fraction.
+inline simd::Pack nearest_whole(const simd::Pack& a) {
+  const simd::Pack big(0x1.8p52);
+  return (a + big) - big;
+}
+
+/// Which nodes eight points within the grid are nearest to.
+struct NearestNodes {
+  simd::Pack i, j, k;
+  alignas(64) double number[simd::lanes];  ///< in the arrays of the grid
+
+  NearestNodes(const GridFrame& f, const GridPack& q)
+      : i(nearest_whole(q.u)), j(nearest_whole(q.v)), k(nearest_whole(q.w)) {
+    simd::store(i * simd::Pack(f.layer) + j * simd::Pack(f.row) + k, number);
+  }
+  std::size_t operator[](std::size_t lane) const { return static_cast<std::size_t>(number[lane]); }
+};
+
+struct FieldValue {
+  double value;   ///< phi_h [m]
+  Vec3 gradient;  ///< by the coordinates of the nodes [m]
+};
+
+/// phi_h at eight points within the grid, one at a time from weights of all: the numbers of a row of three nodes lie
+/// side by side, so that nine loads of four do for a point, where gathering 27 nodes for eight points would take 216.
+class GridSpline {
+ public:
+  GridSpline(const SignedDistanceGrid& grid, const GridPack& q, const NearestNodes& nearest)
+      : values_(grid.values()), row_(grid.nodes().count[2]), layer_(grid.nodes().count[1] * row_) {
+    const simd::Pack t[] = {q.u - nearest.i, q.v - nearest.j, q.w - nearest.k};
+    const QuadraticWeights<simd::Pack> x(t[0]), y(t[1]), z(t[2]);
+    const simd::Pack* const wx[] = {&x.below, &x.here, &x.above};
+    const simd::Pack* const wy[] = {&y.below, &y.here, &y.above};
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t b = 0; b < 3; ++b) simd::store(*wx[a] * *wy[b], rows_[3 * a + b]);
+    }
+    simd::store(z.below, along_[0]);
+    simd::store(z.here, along_[1]);
+    simd::store(z.above, along_[2]);
+    for (std::size_t a = 0; a < 3; ++a) simd::store(t[a], t_[a]);
+  }
+
+  /// `node` is the one nearest to the point.
+  double value(std::size_t lane, std::size_t node) const {
+    const double* const corner = values_ + node - layer_ - row_ - 1;
+    Four sum = {};
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t b = 0; b < 3; ++b) {
+        Four row;
+        std::memcpy(&row, corner + a * layer_ + b * row_, sizeof(row));
+        sum += rows_[3 * a + b][lane] * row;
+      }
+    }
+    return sum[0] * along_[0][lane] + sum[1] * along_[1][lane] + sum[2] * along_[2][lane];
+  }
+
+  FieldValue value_and_gradient(std::size_t lane, std::size_t node) const {
+    const double x = t_[0][lane], y = t_[1][lane], z = t_[2][lane];
+    const QuadraticWeights<double> wx(x), wy(y);
+    const double weights_x[] = {wx.below, wx.here, wx.above}, weights_y[] = {wy.below, wy.here, wy.above};
+    const double slopes_x[] = {x - 0.5, -2.0 * x, x + 0.5}, slopes_y[] = {y - 0.5, -2.0 * y, y + 0.5};
+    const double* const corner = values_ + node - layer_ - row_ - 1;
+    Four along_x = {}, along_y = {}, sum = {};
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t b = 0; b < 3; ++b) {
+        Four row;
+        std::memcpy(&row, corner + a * layer_ + b * row_, sizeof(row));
+        sum += rows_[3 * a + b][lane] * row;
+        along_x += slopes_x[a] * weights_y[b] * row;
+        along_y += weights_x[a] * slopes_y[b] * row;
+      }
+    }
+    const auto with = [this, lane](const Four& f) {
+      return f[0] * along_[0][lane] + f[1] * along_[1][lane] + f[2] * along_[2][lane];
+    };
+    return {with(sum), {with(along_x), with(along_y), sum[0] * (z - 0.5) - sum[1] * 2.0 * z + sum[2] * (z + 0.5)}};
+  }
+
+ private:
+  /// Four numbers side by side, added and multiplied one by one in every build.
+  using Four [[gnu::vector_size(4 * sizeof(double))]] = double;
+
+  const double* values_;
+  std::size_t row_, layer_;
+  alignas(64) double rows_[9][simd::lanes];
+  alignas(64) double along_[3][simd::lanes];
+  alignas(64) double t_[3][simd::lanes];
+};
+
+}  // namespace hapbench

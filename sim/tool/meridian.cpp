@@ -1,0 +1,251 @@
+#include "sim/tool/meridian.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+namespace hapbench {
+namespace {
+
+/// Sine of the angle by which a corner may turn inwards and still count as straight.
+constexpr double kStraight = 1e-12;
+
+double cross(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c) {
+  return (b.s - a.s) * (c.rho - a.rho) - (b.rho - a.rho) * (c.s - a.s);
+}
+
+double dot(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c) {
+  return (b.s - a.s) * (c.s - b.s) + (b.rho - a.rho) * (c.rho - b.rho);
+}
+
+/// Whether c, in line with a and b, lies between them.
+bool between(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c) {
+  return std::min(a.s, b.s) <= c.s && c.s <= std::max(a.s, b.s) && std::min(a.rho, b.rho) <= c.rho &&
+         c.rho <= std::max(a.rho, b.rho);
+}
+
+/// Whether the lines a b and c d have a place in common.
+bool meet(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c, const ProfilePoint& d) {
+  const double abc = cross(a, b, c), abd = cross(a, b, d), cda = cross(c, d, a), cdb = cross(c, d, b);
+  const auto apart = [](double x, double y) { return (x > 0.0 && y < 0.0) || (x < 0.0 && y > 0.0); };
+  if (apart(abc, abd) && apart(cda, cdb)) return true;
+  return (abc == 0.0 && between(a, b, c)) || (abd == 0.0 && between(a, b, d)) || (cda == 0.0 && between(c, d, a)) ||
+         (cdb == 0.0 && between(c, d, b));
+}
+
+/// Looks at a profile as a user wrote it.
+class Checker {
+ public:
+  Checker(const std::vector<ProfilePoint>& points, Tip tip) : points_(points), tip_(tip) {}
+
+  void check() const {
+    if (points_.size() < 2) {
+      throw std::invalid_argument("a profile needs at least two points, from the shank's end to the tip");
+    }
+    for (std::size_t i = 0; i < points_.size(); ++i) check_point(i);
+    const std::size_t last = points_.size() - 1;
+    if (tip_ == Tip::round && (points_[last].s != 0.0 || points_[last].rho == 0.0)) {
+      refuse(last,
+             "a round tip is half a ball about the tip centre, so the profile has to end beside it: s = 0, rho > 0");
+    }
+    if (!(points_[0].s < points_[last].s)) {
+      refuse(last, "a profile runs from the shank's end to the tip, so its last s has to be larger than its first");
+    }
+    check_corners();
+    check_crossings();
+  }
+
+ private:
+  /// A line of the closed outline between two corners; the corners on the axis are numbered -1 and size().
+  struct Edge {
+    std::ptrdiff_t from, to;
+  };
+
+  void check_point(std::size_t i) const {
+    const ProfilePoint& p = points_[i];
+    if (!std::isfinite(p.s) || !std::isfinite(p.rho)) refuse(i, "both numbers have to be finite");
+    if (p.s > 0.0) refuse(i, "s has to be <= 0: the tip centre has s = 0, and the shank lies behind it");
+    if (p.rho < 0.0) refuse(i, "rho, the distance from the axis, has to be >= 0");
+    const bool inner = i > 0 && i + 1 < points_.size();
+    if (inner && p.rho == 0.0) refuse(i, "only the first and the last point may lie on the axis");
+    if (i > 0 && p == points_[i - 1]) refuse(i, "the same as the point before");
+  }
+
+  std::vector<Edge> edges() const {
+    const auto n = static_cast<std::ptrdiff_t>(points_.size());
+    std::vector<Edge> all;
+    if (points_.front().rho > 0.0) all.push_back({-1, 0});
+    for (std::ptrdiff_t i = 0; i + 1 < n; ++i) all.push_back({i, i + 1});
+    // The half ball of a round tip may be wider than what it sits on.
+    const bool overhangs = tip_ == Tip::round && points_[points_.size() - 2].s == 0.0 &&
+                           points_[points_.size() - 2].rho < points_.back().rho;
+    if (points_.back().rho > 0.0) all.push_back({overhangs ? n - 2 : n - 1, n});
+    return all;
+  }
+
+  ProfilePoint corner(std::ptrdiff_t i) const {
+    if (i < 0) return {points_.front().s, 0.0};
+    if (i == static_cast<std::ptrdiff_t>(points_.size())) return {points_.back().s, 0.0};
+    return points_[static_cast<std::size_t>(i)];
+  }
+
+  void check_corners() const {
+    const std::vector<Edge> all = edges();
+    for (std::size_t k = 0; k + 1 < all.size(); ++k) {
+      if (all[k].to != all[k + 1].from) continue;
+      const ProfilePoint a = corner(all[k].from), b = corner(all[k].to), c = corner(all[k + 1].to);
+      const double forwards = dot(a, b, c);
+      if (forwards < 0.0 && std::abs(cross(a, b, c)) <= -kStraight * forwards) {
+        refuse(static_cast<std::size_t>(all[k].to), "here the profile goes back on itself");
+      }
+    }
+  }
+
+  void check_crossings() const {
+    const std::vector<Edge> all = edges();
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      for (std::size_t j = 0; j < k; ++j) {
+        const Edge a = all[j], b = all[k];
+        if (a.to == b.from || a.from == b.from) continue;
+        if (!meet(corner(a.from), corner(a.to), corner(b.from), corner(b.to))) continue;
+        std::ostringstream what;
+        what << "the " << name(b) << " meets the " << name(a) << ", so that the profile crosses or touches itself";
+        refuse(static_cast<std::size_t>(std::max<std::ptrdiff_t>(b.from, 0)), what.str());
+      }
+    }
+  }
+
+  std::string name(const Edge& edge) const {
+    if (edge.from < 0) return "disc that closes the shank's end";
+    if (edge.to == static_cast<std::ptrdiff_t>(points_.size())) return "disc that closes the tip";
+    std::ostringstream out;
+    out << "line from profile[" << edge.from << "] to profile[" << edge.to << "]";
+    return out.str();
+  }
+
+  [[noreturn]] void refuse(std::size_t i, const std::string& why) const {
+    std::ostringstream out;
+    out << "profile[" << i << "] = [" << points_[i].s << ", " << points_[i].rho << "] m: " << why;
+    throw std::invalid_argument(out.str());
+  }
+
+  const std::vector<ProfilePoint>& points_;
+  Tip tip_;
+};
+
+Meridian::Line line_between(const ProfilePoint& a, const ProfilePoint& b) {
+  const double length = std::hypot(b.s - a.s, b.rho - a.rho);
+  const double ns = -(b.rho - a.rho) / length, nr = (b.s - a.s) / length;
+  return {{ns, nr, ns * a.s + nr * a.rho}, nr * a.s - ns * a.rho, length};
+}
+
+}  // namespace
+
+Meridian::Meridian(std::vector<ProfilePoint> points, Tip end)
+    : profile(std::move(points)), tip(end), convex(false), low(0.0), high(0.0), widest(0.0), reach(0.0), ball(0.0) {
+  Checker(profile, tip).check();
+  low = high = profile.front().s;
+  for (const ProfilePoint& p : profile) {
+    low = std::min(low, p.s);
+    high = std::max(high, p.s);
+    widest = std::max(widest, p.rho);
+    reach = std::max(reach, std::hypot(p.s, p.rho));
+  }
+  if (tip == Tip::round) ball = profile.back().rho;
+  add_lines();
+  add_parts();
+}
+
+void Meridian::add_lines() {
+  for (std::size_t i = 0; i + 1 < profile.size(); ++i) lines.push_back(line_between(profile[i], profile[i + 1]));
+  const ProfilePoint first = profile.front(), last = profile.back();
+  if (tip == Tip::flat && last.rho > 0.0) lines.push_back(line_between(last, {last.s, 0.0}));
+  if (first.rho > 0.0) lines.push_back(line_between({first.s, 0.0}, first));
+}
+
+/// Cuts the section into the trapezoids between neighbouring corners and joins those that are convex together: a
+/// trapezoid that goes on where a part ends, below a line that goes on where the part's last one ends or below the
+/// same.
+void Meridian::add_parts() {
+  struct Built {
+    double low, high;
+    std::optional<std::size_t> below;  ///< the line that it lies above, if it does not lie on the axis
+    std::vector<std::size_t> above;    ///< the lines that it lies below
+  };
+  std::vector<double> levels;
+  for (const ProfilePoint& p : profile) levels.push_back(p.s);
+  std::sort(levels.begin(), levels.end());
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+
+  const std::size_t of_profile = profile.size() - 1;
+  const auto height = [this](std::size_t i, double s) { return (lines[i].offset - lines[i].ns * s) / lines[i].nr; };
+  const auto goes_on = [this](std::size_t from, std::size_t to) {
+    return from == to || (to == from + 1 && lines[from].ns * lines[to].nr - lines[from].nr * lines[to].ns <= kStraight);
+  };
+  std::vector<Built> built;
+  for (std::size_t k = 0; k + 1 < levels.size(); ++k) {
+    const double from = levels[k], to = levels[k + 1], middle = 0.5 * (from + to);
+    std::vector<std::size_t> across;
+    for (std::size_t i = 0; i < of_profile; ++i) {
+      const auto [least, most] = std::minmax(profile[i].s, profile[i + 1].s);
+      if (least <= from && most >= to) across.push_back(i);
+    }
+    std::sort(across.begin(), across.end(),
+              [&](std::size_t a, std::size_t b) { return height(a, middle) < height(b, middle); });
+    std::optional<std::size_t> below;
+    for (const std::size_t i : across) {
+      if (lines[i].nr < 0.0) {
+        below = i;
+        continue;
+      }
+      const auto part = std::find_if(built.begin(), built.end(), [&](const Built& p) {
+        return p.high == from && p.below == below && goes_on(p.above.back(), i);
+      });
+      if (part == built.end()) {
+        built.push_back({from, to, below, {i}});
+      } else {
+        part->high = to;
+        if (part->above.back() != i) part->above.push_back(i);
+      }
+      below.reset();
+    }
+  }
+  for (const Built& part : built) {
+    const std::size_t first = planes.size();
+    for (const std::size_t i : part.above) planes.push_back(lines[i]);
+    if (part.below) planes.push_back(lines[*part.below]);
+    parts.push_back({part.low, part.high, first, planes.size()});
+  }
+  const Line& last = lines[of_profile - 1];
+  convex = built.size() == 1 && !built[0].below && (tip == Tip::flat || (last.nr > 0.0 && last.ns <= kStraight));
+}
+
+GrownProfile grown_profile(const Meridian& meridian, double margin) {
+  const bool round = meridian.tip == Tip::round && meridian.widest <= meridian.ball;
+  std::vector<ProfilePoint> corners;
+  const auto add_square = [&](double s, double rho) {
+    corners.push_back({s - margin, rho + margin});
+    if (!round) corners.push_back({s + margin, rho + margin});
+  };
+  for (const ProfilePoint& p : meridian.profile) add_square(p.s, p.rho);
+  // Nothing is wider than the ball, so everything behind its centre lies below the squares' rear corners.
+  if (round) corners.push_back({0.0, meridian.ball + margin});
+  if (!round && meridian.tip == Tip::round) add_square(meridian.ball, meridian.ball);
+
+  std::sort(corners.begin(), corners.end(),
+            [](const ProfilePoint& a, const ProfilePoint& b) { return a.s < b.s || (a.s == b.s && a.rho < b.rho); });
+  GrownProfile grown{{}, round ? Tip::round : Tip::flat};
+  std::vector<ProfilePoint>& hull = grown.points;
+  for (const ProfilePoint& p : corners) {
+    // Of several at one s the widest; a round tip's last point is beside the centre whatever lies there.
+    while (!hull.empty() && hull.back().s == p.s) hull.pop_back();
+    while (hull.size() >= 2 && cross(hull[hull.size() - 2], hull.back(), p) >= 0.0) hull.pop_back();
+    hull.push_back(p);
+  }
+  return grown;
+}
+
+}  // namespace hapbench

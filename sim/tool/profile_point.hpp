@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace hapbench {
+
+/// A point of a solid of revolution's profile in the axial half plane [m].
+struct ProfilePoint {
+  double s;    ///< along the axis from the tip centre, <= 0 towards the shank
+  double rho;  ///< distance from the axis, >= 0
+
+  bool operator==(const ProfilePoint&) const = default;
+};
+
+/// Continues an outline that has come to {0, radius} with a quarter of a circle about the tip centre, as a polyline
+/// that is off the circle by 0.013 % of its radius at most.
+inline void add_round_tip(double radius, std::vector<ProfilePoint>& outline) {
+  constexpr int kLegs = 48;
+  for (int i = 1; i < kLegs; ++i) {
+    const double angle = std::numbers::pi / 2.0 * i / kLegs;
+    outline.push_back({radius * std::sin(angle), radius * std::cos(angle)});
+  }
+  outline.push_back({radius, 0.0});
+}
+
+}  // namespace hapbench

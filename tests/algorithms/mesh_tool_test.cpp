@@ -1,0 +1,101 @@
+#include "sim/tool/mesh_tool.hpp"
+
+#include <gtest/gtest.h>
+
+#include "algorithms/registry.hpp"
+#include "algorithms/shell_source.hpp"
+#include "results/allocations/allocations.hpp"
+#include "sim/core/random.hpp"
+#include "sim/geometry/analytic_shells.hpp"
+#include "tests/support/meshes.hpp"
+#include "tests/support/scale.hpp"
+#include "tests/support/tool_meshes.hpp"
+
+/// Tools of a mesh under every algorithm and depth model.
+namespace hapbench {
+namespace {
+
+using test::cases;
+
+constexpr double kSpacing = 0.0001;
+
+/// A drill of 32 sides, a sphere and, concave, a cup, 1 mm wide.
+const std::vector<std::shared_ptr<const MeshTool>>& tools() {
+  static const auto all = [] {
+    std::vector<std::shared_ptr<const MeshTool>> made;
+    for (const TriangleSoup& soup :
+         {test::cylinder_mesh(0.0005, 0.003, 32), test::scaled(test::sphere(1.0, 3), 0.0005, {0, 0, 0.0005}),
+          test::scaled(test::cup(24), 0.0005)}) {
+      made.push_back(std::make_shared<MeshTool>(test::grid_of(soup, 0.00004)));
+    }
+    return made;
+  }();
+  return all;
+}
+
+class MeshToolInEveryAlgorithm : public testing::TestWithParam<AlgorithmEntry> {};
+INSTANTIATE_TEST_SUITE_P(Registered, MeshToolInEveryAlgorithm,
+                         testing::ValuesIn(algorithms().begin(), algorithms().end()),
+                         [](const auto& entry) { return std::string(entry.param.info->name); });
+
+TEST_P(MeshToolInEveryAlgorithm, IsPushedOutOfAPlaneWithoutAllocating) {
+  const PointShell shell(surface_points(Plane{0.004, kSpacing}), kSpacing);
+  for (const auto& tool : tools()) {
+    for (const DepthModelEntry& model : depth_models()) {
+      RenderingConfig config;
+      config.algorithm = GetParam().info->name;
+      if (GetParam().fixed_depth_model.empty()) config.depth_model = model.info->name;
+      ShellSource source(shell, *tool, make_contact_query(shell, *tool, Skips::taken), make_depth_model(config));
+      ContactBuffer contacts(source.capacity());
+      const auto algorithm = make_algorithm(config);
+      algorithm->prepare({source.capacity(), tool.get(), &shell});
+      algorithm->reset();
+      RenderedForce force;
+      const AllocationCount allocations;
+      for (int k = 0; k < 20; ++k) {
+        const ToolPose pose{{0.00002, -0.00001, 0.0001 - 0.00001 * k}, Vec3(0.05, 0.02, -1.0).normalized(), 0.1 * k};
+        source.contacts_at(pose, contacts);
+        algorithm->compute({pose, Vec3::Zero()}, contacts, force);
+        ASSERT_TRUE(force.spring.allFinite());
+      }
+      EXPECT_EQ(allocations.value(), 0u);
+      // The drill leans by 3 degrees and the cup's rim is round: some springs lead aside, the sum leads up.
+      EXPECT_GT(force.spring.z(), 0.0) << model.info->name;
+      EXPECT_GT(force.spring.z(), 2.0 * std::hypot(force.spring.x(), force.spring.y())) << model.info->name;
+    }
+  }
+}
+
+TEST(Proxy, KeepsEveryPointOutOfAConvexMesh) {
+  Random random(3);
+  const PointShell shell(surface_points(Plane{0.004, kSpacing}), kSpacing);
+  RenderingConfig config;
+  config.algorithm = "proxy";
+  for (const auto& tool : tools()) {
+    if (!tool->convex()) continue;
+    ShellSource source(shell, *tool, make_contact_query(shell, *tool, Skips::taken), make_depth_model(config));
+    ContactBuffer contacts(source.capacity()), all(shell.size());
+    for (std::size_t i = 0; i < shell.size(); ++i) {
+      all.push(static_cast<std::uint32_t>(i), shell.point(i).position, shell.point(i).normal);
+    }
+    for (std::size_t run = 0; run < cases(20); ++run) {
+      const auto proxy = make_algorithm(config);
+      proxy->prepare({source.capacity(), tool.get(), &shell});
+      proxy->reset();
+      RenderedForce force;
+      const Vec3 axis = (Vec3(0, 0, -1) + 0.5 * random.direction()).normalized();
+      const double roll = random.uniform(-3.0, 3.0);
+      for (int k = 0; k < 40; ++k) {
+        const ToolPose pose{{0.0, 0.0, 0.001 - 0.00005 * k}, axis, roll};
+        source.contacts_at(pose, contacts);
+        proxy->compute({pose, Vec3::Zero()}, contacts, force);
+        tool->shortest_depths({pose.position + force.spring / config.stiffness, axis, roll}, all);
+        for (std::size_t i = 0; i < all.size(); ++i) ASSERT_LE(all.depth[i], 1e-9);
+      }
+      EXPECT_GT(force.spring.z(), 0.0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hapbench

@@ -1,0 +1,130 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/run/force_warnings.hpp"
+#include "scenarios/run/make_tool.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "sim/tool/mesh_tool.hpp"
+#include "tests/scenarios/support/errors.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+/// Tools of every type, from the fields of a scenario.
+namespace hapbench {
+namespace {
+
+/// A plane that the tool is pressed on.
+Json scene(const std::string& tool, const std::string& algorithm = "shaped_stiffness") {
+  Json json = test::minimal_scenario("plane");
+  json["time"]["steps"] = 200;
+  json["tool"] = Json::parse(tool);
+  json["hand"] = {{"type", "force"}, {"z_N", -1}};
+  json["rendering"]["algorithm"] = algorithm;
+  return json;
+}
+
+LoadedScenario loaded(const Json& json) {
+  return read_scenario(json, test::data_directory());
+}
+
+std::shared_ptr<const ToolShape> tool_of(const std::string& fields) {
+  const LoadedScenario scenario = loaded(scene(fields));
+  return make_tool(scenario.scenario, scenario.files);
+}
+
+const std::string kCube = R"({"type": "mesh", "file": "cube.obj", "scale": 0.0001, "grid_m": 0.00005})";
+const std::string kHourglass =
+    R"({"type": "revolved", "profile_m": [[-0.01, 0.002], [-0.002, 0.0003], [0, 0.001]], "tip": "flat"})";
+
+TEST(ScenarioTool, WithoutATypeIsTheCylinderOfThatType) {
+  for (const char* fields :
+       {R"({"diameter_m": 0.002, "tip": "round"})", R"({"type": "cylinder", "diameter_m": 0.002, "tip": "round"})"}) {
+    const Json json = scene(fields);
+    EXPECT_EQ(effective_scenario(loaded(json).scenario, "")["tool"],
+              Json::parse(R"({"diameter_m": 0.002, "length_m": 0.01, "tip": "round"})"));
+    EXPECT_EQ(tool_of(fields)->half_width(), 0.001);
+  }
+}
+
+TEST(ScenarioTool, OfEveryTypeKeepsItsFields) {
+  for (const std::string& fields :
+       {kCube, kHourglass, std::string(R"({"type": "bur", "family": "flame", "diameter_m": 0.001, "length_m": 0.004,
+                        "shank_diameter_m": 0.0005})")}) {
+    Json effective = effective_scenario(loaded(scene(fields)).scenario, test::data_directory());
+    EXPECT_EQ(effective["tool"], Json::parse(fields));
+  }
+}
+
+TEST(ScenarioTool, HasTheSizeItsFieldsSay) {
+  EXPECT_DOUBLE_EQ(tool_of(R"({"type": "bur", "family": "ball", "diameter_m": 0.001})")->half_width(), 0.0005);
+  EXPECT_DOUBLE_EQ(tool_of(kHourglass)->reach(), std::hypot(0.01, 0.002));
+  // A cube of 1 mm about the tip centre; the grid rounds its corners by no more than a spacing.
+  EXPECT_NEAR(tool_of(kCube)->half_width(), 0.0005, 0.00005);
+  EXPECT_TRUE(tool_of(kCube)->convex());
+  EXPECT_FALSE(tool_of(kHourglass)->convex());
+}
+
+TEST(ScenarioTool, HasAnOutlineFromTheFarEndToTheTipThatIsAsLargeAsItIs) {
+  for (const std::string& fields : {std::string(R"({"tip": "round"})"), std::string("{}"), kCube, kHourglass,
+                                    std::string(R"({"type": "bur", "family": "pear", "diameter_m": 0.001})")}) {
+    const auto tool = tool_of(fields);
+    const std::vector<ProfilePoint> outline = tool->outline();
+    ASSERT_GE(outline.size(), 4u) << fields;
+    EXPECT_EQ(outline.front().rho, 0.0) << fields;
+    EXPECT_EQ(outline.back().rho, 0.0) << fields;
+    EXPECT_LT(outline.front().s, outline.back().s) << fields;
+    double reach = 0.0;
+    for (const ProfilePoint& point : outline) reach = std::max(reach, std::hypot(point.s, point.rho));
+    EXPECT_NEAR(reach, tool->reach(), fields == kCube ? 0.00005 : 1e-12) << fields;
+  }
+}
+
+TEST(ScenarioTool, OfAMeshSharesItsGridBetweenRuns) {
+  const LoadedScenario first = loaded(scene(kCube)), second = loaded(scene(kCube));
+  const auto a = make_tool(first.scenario, first.files), b = make_tool(second.scenario, second.files);
+  EXPECT_EQ(&dynamic_cast<const MeshTool&>(*a).grid(), &dynamic_cast<const MeshTool&>(*b).grid());
+}
+
+TEST(ScenarioTool, RefusesToBeTakenForACylinder) {
+  const Scenario scenario = loaded(scene(kHourglass)).scenario;
+  const auto error = test::input_error_of([&] { make_cylinder(scenario.tool); });
+  ASSERT_TRUE(error);
+  EXPECT_STREQ(error->what(), R"(/tool/type: got "revolved"; allowed here: "cylinder")");
+}
+
+TEST(ScenarioTool, WarnsThatTheProxyHasNoGuaranteeWhereItIsNotConvex) {
+  for (const auto& [fields, algorithm, warnings] :
+       {std::tuple{kHourglass, "proxy", 1u}, std::tuple{kHourglass, "mean", 0u}, std::tuple{kCube, "proxy", 0u}}) {
+    const RunReport report = run_scenario(loaded(scene(fields, algorithm)), std::nullopt, false);
+    EXPECT_EQ(report.summary.warnings.size(), warnings) << fields << " " << algorithm;
+    for (const std::string& warning : report.summary.warnings) {
+      EXPECT_NE(warning.find("the tool is not convex"), std::string::npos) << warning;
+    }
+  }
+}
+
+TEST(ScenarioTool, OfAMeshAsksForItsScaleWhereItIsOutOfProportion) {
+  for (const auto& [scale, warnings] : {std::pair{"0.001", 0u}, {"1", 1u}}) {
+    Json json = scene(kCube);
+    json["tool"]["scale"] = Json::parse(scale);
+    json["tool"]["grid_m"] = nullptr;
+    const RunReport report = run_scenario(loaded(json), std::nullopt, false);
+    ASSERT_EQ(report.summary.warnings.size(), warnings) << scale;
+    for (const std::string& warning : report.summary.warnings) {
+      EXPECT_NE(warning.find("are tool.scale and the environment's size right?"), std::string::npos) << warning;
+    }
+  }
+}
+
+TEST(ScenarioTool, IsInTheSummaryUnlessItIsACylinder) {
+  EXPECT_FALSE(run_scenario(loaded(scene("{}")), std::nullopt, false).summary.tool);
+  const auto tool = run_scenario(loaded(scene(kHourglass)), std::nullopt, false).summary.tool;
+  ASSERT_TRUE(tool);
+  EXPECT_EQ(tool->outline, tool_of(kHourglass)->outline());
+  EXPECT_EQ(tool->reach, tool_of(kHourglass)->reach());
+}
+
+}  // namespace
+}  // namespace hapbench
