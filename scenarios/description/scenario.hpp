@@ -73,7 +73,8 @@ struct MeshEnvironment {
   std::optional<double> grid;     ///< cell of the local average [m]
 };
 using Environment =
-    std::variant<SpringsEnvironment, Hole2d, Plane, Slot, BlockEnvironment, PointShellEnvironment, MeshEnvironment>;
+    std::variant<SpringsEnvironment, Hole2d, Plane, Slot, BlockEnvironment, PointShellEnvironment, MeshEnvironment,
+                 ConicalHole>;
 
 struct InitialFields {
   Vec3 position = Vec3::Zero();

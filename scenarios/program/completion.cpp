@@ -62,7 +62,7 @@ Words values_of(const std::string& name) {
   if (name == "name") return described_names();
   if (name == "what")
     return {"algorithms", "depth_models", "stages", "integrators", "environments", "hands",
-            "devices",    "scenarios",    "thesis", "limits",      "beyond",       "examples"};
+            "devices",    "scenarios",    "thesis", "limits",      "beyond",       "quality",    "examples"};
   if (name == "--objective") return {"created", "vibration"};
   if (name == "shell") return {"bash", "zsh", "fish"};
   Words words;
