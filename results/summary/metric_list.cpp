@@ -216,6 +216,28 @@ MetricList metric_list(const IdealTrajectoryMetrics& m) {
   return list;
 }
 
+MetricList metric_list(const ForceFidelity& f) {
+  const bool any = f.rows > 0;
+  return {count("rows", "rows in which the stroke has a measured force f_m", f.rows),
+          number_if(any, "measured_force_rms_N", "N", "root mean square of ||f_m||", f.measured_rms),
+          number_if(any, "force_error_rms_N", "N", "root mean square of ||f - f_m||", f.error_rms),
+          number("force_error_relative", "1", "force_error_rms_N / measured_force_rms_N", f.relative()),
+          number_if(
+              any, "force_error_normal_rms_N", "N",
+              "root mean square of n n^T (f - f_m); n is f_spring / ||f_spring||, what is rendered before damping and "
+              "friction, or where nothing is rendered f_m / ||f_m||",
+              f.normal_rms),
+          number_if(any, "force_error_tangential_rms_N", "N",
+                    "root mean square of (I - n n^T) (f - f_m), with the same n", f.tangential_rms),
+          count("direction_rows", "rows in which ||f|| and ||f_m|| are both above 0.1 N", f.direction_rows),
+          number_if(f.direction_rows > 0, "force_direction_error_rad", "rad",
+                    "mean angle between f and f_m of those rows", f.direction_error),
+          number("force_lag_s", "s",
+                 "time by which f follows f_m: where their correlation (Pearson's, all components) is greatest, within "
+                 "0.1 s; none where it is not or where a force does not vary",
+                 f.lag)};
+}
+
 MetricList metric_list(const std::vector<PlaceMetrics>& places) {
   MetricList list;
   for (const PlaceMetrics& place : places) {

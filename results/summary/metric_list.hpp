@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "results/observe/energy_ledger.hpp"
+#include "results/observe/force_fidelity.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/observe/passivity_observer.hpp"
@@ -35,6 +36,7 @@ MetricList final_position_list(const Metrics& metrics);
 MetricList metric_list(const std::optional<PassivityMetrics>& passivity);
 MetricList metric_list(const EnergyMetrics& energy);
 MetricList metric_list(const IdealTrajectoryMetrics& ideal_trajectory);
+MetricList metric_list(const ForceFidelity& fidelity);
 MetricList metric_list(const std::vector<PlaceMetrics>& targets);
 
 /// The value of that name; none when there is no such metric.

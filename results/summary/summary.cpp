@@ -104,6 +104,7 @@ ordered_json summary_json(const RunSummary& run) {
                        {"passivity", metrics_json(metric_list(run.passivity))}};
   if (run.energy) json["energy"] = energy_json(*run.energy);
   if (run.ideal_trajectory) json["ideal_trajectory"] = metrics_json(metric_list(*run.ideal_trajectory));
+  if (run.fidelity) json["fidelity"] = metrics_json(metric_list(*run.fidelity));
   if (run.targets) json["targets"] = metrics_json(metric_list(*run.targets));
   json["state_hash"] = hash_text(run.metrics.state_hash);
   json["work"] = work_json(run.work);
@@ -117,6 +118,7 @@ MetricList metric_list(const RunSummary& run) {
   append(list, "passivity", metric_list(run.passivity));
   if (run.energy) append(list, "energy", metric_list(*run.energy));
   if (run.ideal_trajectory) append(list, "ideal_trajectory", metric_list(*run.ideal_trajectory));
+  if (run.fidelity) append(list, "fidelity", metric_list(*run.fidelity));
   if (run.targets) append(list, "targets", metric_list(*run.targets));
   return list;
 }

@@ -29,7 +29,9 @@ struct Point {
 
 MetricSections sections_of(const Scenario& scenario) {
   const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
-  return {scenario.record.energy, scenario.record.ideal_trajectory, hand == nullptr ? 0 : hand->task.places.size()};
+  return {scenario.record.energy, scenario.record.ideal_trajectory,
+          std::holds_alternative<RecordedPosition>(scenario.motion.position),
+          hand == nullptr ? 0 : hand->task.places.size()};
 }
 
 Point examine(const SweepPlan& plan, std::size_t run) {
@@ -54,6 +56,7 @@ class Collector {
   void add(std::size_t run, const Point& point) {
     sections_.energy |= point.sections.energy;
     sections_.ideal_trajectory |= point.sections.ideal_trajectory;
+    sections_.fidelity |= point.sections.fidelity;
     sections_.places = std::max(sections_.places, point.sections.places);
     if (!point.files.empty()) keep_first(files_, point.files, {run, 0});
     for (std::size_t i = 0; i < point.warnings.size(); ++i) keep_first(warnings_, point.warnings[i], {run, i});
@@ -96,7 +99,7 @@ class Collector {
   }
 
   SweepPlan& plan_;
-  MetricSections sections_{false, false, 0};
+  MetricSections sections_{false, false, false, 0};
   FirstPlaces files_, warnings_;
 };
 

@@ -108,6 +108,8 @@ static void describe(Fields& f, RecordFields& record) {
   f.boolean("energy", record.energy, "keep the energy ledger and write energy.csv");
   f.boolean("ideal_trajectory", record.ideal_trajectory,
             "block_with_hole only: compare the recorded rows with the ideal trajectory and write ideal_trajectory.csv");
+  f.boolean("force_reference", record.force_reference,
+            "of a stroke with a measured force: write it beside the rendered one into force_reference.csv");
 }
 
 static void describe(Fields& f, SettlingRule& metrics) {

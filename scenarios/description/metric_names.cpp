@@ -7,6 +7,7 @@ MetricList metrics_without_values(const MetricSections& sections) {
   RunSummary run;
   if (sections.energy) run.energy.emplace();
   if (sections.ideal_trajectory) run.ideal_trajectory.emplace();
+  if (sections.fidelity) run.fidelity.emplace();
   if (sections.places > 0) run.targets.emplace();
   for (std::size_t place = 0; place < sections.places; ++place) run.targets->emplace_back().place = place;
   MetricList metrics = metric_list(run);

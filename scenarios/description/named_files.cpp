@@ -55,12 +55,19 @@ const MeshFile& NamedFiles::mesh() const {
 }
 
 const RecordedMotion& NamedFiles::recorded_motion() const {
-  auto& [file, motion] = *motion_;
+  auto& [file, motion, force] = *motion_;
   if (!motion) {
     motion = motion_in(file.bytes(), file.path());
+    if (auto measured = recorded_force_in(file.bytes(), file.path()))
+      force = std::make_shared<const RecordedForce>(std::move(*measured));
     file.drop_bytes();
   }
   return *motion;
+}
+
+std::shared_ptr<const RecordedForce> NamedFiles::recorded_force() const {
+  recorded_motion();
+  return motion_->force;
 }
 
 }  // namespace hapbench

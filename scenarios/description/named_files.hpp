@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "results/observe/recorded_force.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "sim/geometry/point_shell.hpp"
@@ -51,6 +52,8 @@ class NamedFiles {
   const MeshFile& mesh() const;
   /// Precondition: the motion is a recorded one.
   const RecordedMotion& recorded_motion() const;
+  /// The force that was measured with it; null without one. Precondition: the motion is a recorded one.
+  std::shared_ptr<const RecordedForce> recorded_force() const;
 
  private:
   struct EnvironmentFile {
@@ -62,6 +65,7 @@ class NamedFiles {
   struct MotionFile {
     NamedFile file;
     std::optional<RecordedMotion> motion = {};
+    std::shared_ptr<const RecordedForce> force = {};
   };
 
   std::shared_ptr<EnvironmentFile> environment_;

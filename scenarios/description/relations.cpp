@@ -71,6 +71,11 @@ void check_ideal_trajectory(const Scenario& scenario) {
        "got true; allowed: false, unless the environment is block_with_hole and the tool's tip flat");
 }
 
+void check_force_reference(const Scenario& scenario) {
+  if (!scenario.record.force_reference || std::holds_alternative<RecordedPosition>(scenario.motion.position)) return;
+  fail("/record/force_reference", "got true; allowed: false, unless motion.position is of type \"file\"");
+}
+
 void check_push_hand(const Scenario& scenario) {
   if (!std::holds_alternative<PushHandFields>(scenario.hand)) return;
   if (!std::holds_alternative<Hole2d>(scenario.environment)) return;
@@ -136,6 +141,7 @@ void check_relations(const Scenario& scenario, double steps) {
   check_orientation(scenario.motion);
   check_local_average(scenario);
   check_ideal_trajectory(scenario);
+  check_force_reference(scenario);
   check_push_hand(scenario);
   check_drag_hand(scenario, steps);
   check_tracking_hand(scenario, steps);

@@ -7,7 +7,7 @@ namespace hapbench {
 
 bool records_rows(const RecordFields& record) {
   return record.trajectory || !record.ratio_iterations.empty() || record.contacts || record.stiffness_tensor ||
-         record.energy || record.ideal_trajectory;
+         record.energy || record.ideal_trajectory || record.force_reference;
 }
 
 bool has_ideal_trajectory(const Scenario& scenario) {

@@ -155,6 +155,7 @@ struct RecordFields {
   bool timing = false;
   bool energy = false;
   bool ideal_trajectory = false;
+  bool force_reference = false;
 };
 
 /// True when a run writes rows of its steps.
@@ -207,6 +208,7 @@ Scenario with_algorithm(Scenario scenario, std::string_view algorithm);
 struct MetricSections {
   bool energy = true;
   bool ideal_trajectory = true;
+  bool fidelity = true;
   std::size_t places = 2;  ///< target places; the thesis's tasks have two
 };
 

@@ -39,6 +39,7 @@ void add_diff(CommandLine& line);
 void add_sweep(CommandLine& line);
 void add_merge(CommandLine& line);
 void add_new(CommandLine& line);
+void add_import(CommandLine& line);
 void add_plot(CommandLine& line);
 void add_report(CommandLine& line);
 void add_shell(CommandLine& line);

@@ -52,6 +52,7 @@ int run_program(int argc, char** argv) {
   add_sweep(line);
   add_merge(line);
   add_new(line);
+  add_import(line);
   add_plot(line);
   add_report(line);
   add_shell(line);

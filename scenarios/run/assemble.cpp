@@ -169,6 +169,11 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
   }
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
     at("/motion/position/file", [&] { loaded.files.recorded_motion(); });
+    if (scenario.record.force_reference && !loaded.files.recorded_force())
+      throw InputError(InputError::Kind::relation,
+                       file_of(loaded, "/record/force_reference").string() + ": /record/force_reference",
+                       fmt::format("got true; allowed: false, because {} has no columns mfx_N,mfy_N,mfz_N",
+                                   loaded.files.motion()->path().string()));
     const RecordedMotion& stroke = loaded.files.recorded_motion();
     const double start = stroke.samples().front().time, stop = stroke.samples().back().time;
     const double end = scenario.time.step * static_cast<double>(scenario.time.steps - 1);

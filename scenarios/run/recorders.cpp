@@ -3,6 +3,7 @@
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "results/record/contact_recorder.hpp"
 #include "results/record/energy_recorder.hpp"
+#include "results/record/force_reference_recorder.hpp"
 #include "results/record/ideal_trajectory_recorder.hpp"
 #include "results/record/ratio_recorder.hpp"
 #include "results/record/stiffness_recorder.hpp"
@@ -42,6 +43,11 @@ Made ideal_trajectory(const RecordedTrial& t, const fs::path& file) {
   return std::make_unique<IdealTrajectoryRecorder>(file, *t.ideal);
 }
 
+/// check_named_files has seen to it that there is a measured force.
+Made force_reference(const RecordedTrial& t, const fs::path& file) {
+  return std::make_unique<ForceReferenceRecorder>(file, every(t), *t.fidelity);
+}
+
 struct RecorderEntry {
   ResultTable table;
   bool (*is_wanted)(const RecordFields& fields);
@@ -70,7 +76,11 @@ constexpr RecorderEntry kRecorders[] = {
       "with record.ideal_trajectory: one line per recorded row at whose tilt the ideal trajectory exists",
       IdealTrajectoryRecorder::kColumns},
      [](const RecordFields& f) { return f.ideal_trajectory; },
-     ideal_trajectory}};
+     ideal_trajectory},
+    {{"force_reference.csv", "with record.force_reference: the measured force of a stroke, one line per recorded row",
+      ForceReferenceRecorder::kColumns},
+     [](const RecordFields& f) { return f.force_reference; },
+     force_reference}};
 
 }  // namespace
 

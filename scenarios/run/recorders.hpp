@@ -6,6 +6,7 @@
 
 #include "results/io/columns.hpp"
 #include "results/observe/energy_ledger.hpp"
+#include "results/observe/force_fidelity.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/record/recorder.hpp"
 #include "scenarios/description/scenario.hpp"
@@ -15,9 +16,10 @@ namespace hapbench {
 /// What the recorders of a trial are made from.
 struct RecordedTrial {
   const RecordFields& fields;
-  std::size_t contact_capacity;          ///< the most contacts a row can have
-  const EnergyLedger* ledger;            ///< null unless the scenario asks for energy
-  const IdealTrajectoryObserver* ideal;  ///< null unless it asks for the ideal trajectory
+  std::size_t contact_capacity;           ///< the most contacts a row can have
+  const EnergyLedger* ledger;             ///< null unless the scenario asks for energy
+  const IdealTrajectoryObserver* ideal;   ///< null unless it asks for the ideal trajectory
+  const ForceFidelityObserver* fidelity;  ///< null without a measured force
 };
 
 /// Recorders for what the scenario asks for, which write into the directory. Throws IoError.

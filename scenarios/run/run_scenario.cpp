@@ -118,6 +118,7 @@ RunSummary summarise(const Scenario& scenario, const std::vector<TrialResult>& t
   if (trials.size() == 1) {
     summary.energy = trials.front().energy;
     summary.ideal_trajectory = trials.front().ideal_trajectory;
+    summary.fidelity = trials.front().fidelity;
   }
   if (std::holds_alternative<TrackingHandFields>(scenario.hand)) summary.targets = place_metrics(targets);
   for (const TrialResult& trial : trials) summary.work += trial.work;

@@ -6,6 +6,7 @@
 
 #include "results/allocations/allocations.hpp"
 #include "results/observe/step_sampler.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/open_edges.hpp"
 #include "scenarios/run/progress.hpp"
@@ -51,6 +52,15 @@ class TrialObservers {
                      static_cast<std::uint64_t>(scenario.record.every));
       observers_.push_back(&*ideal_);
     }
+    if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
+      force_ = files.recorded_force();
+      if (!force_ && scenario.record.force_reference)
+        throw InputError("/record/force_reference: got true; allowed: false, because the stroke has no measured force");
+      if (force_) {
+        fidelity_.emplace(*force_, scenario.time.step, static_cast<std::uint64_t>(scenario.time.steps));
+        observers_.push_back(&*fidelity_);
+      }
+    }
     if (parts.shell && parts.shell->size() > 0) {
       approach_.emplace(parts.shell->bounds());
       observers_.push_back(&*approach_);
@@ -67,7 +77,8 @@ class TrialObservers {
 
   /// Adds recorders for what the scenario asks for. Throws IoError.
   void record(const RecordFields& fields, const fs::path& directory, std::size_t contact_capacity) {
-    recorders_ = make_recorders({fields, contact_capacity, ledger_ ? &*ledger_ : nullptr, ideal_ ? &*ideal_ : nullptr},
+    recorders_ = make_recorders({fields, contact_capacity, ledger_ ? &*ledger_ : nullptr, ideal_ ? &*ideal_ : nullptr,
+                                 fidelity_ ? &*fidelity_ : nullptr},
                                 directory);
     for (const auto& recorder : recorders_) observers_.push_back(recorder.get());
   }
@@ -87,6 +98,7 @@ class TrialObservers {
     out.passivity = passivity_.metrics();
     if (ledger_) out.energy = ledger_->metrics();
     if (ideal_) out.ideal_trajectory = ideal_->metrics();
+    if (fidelity_) out.fidelity = fidelity_->metrics();
     if (targets_) out.targets = targets_->rows();
     out.recorders = std::move(recorders_);
   }
@@ -96,6 +108,8 @@ class TrialObservers {
   PassivityObserver passivity_;
   std::optional<EnergyLedger> ledger_;
   std::optional<IdealTrajectoryObserver> ideal_;
+  std::shared_ptr<const RecordedForce> force_;
+  std::optional<ForceFidelityObserver> fidelity_;
   std::optional<ApproachObserver> approach_;
   std::optional<OpenEdgeObserver> open_edges_;
   std::optional<TargetMetricsObserver> targets_;

@@ -20,6 +20,7 @@ struct TrialResult {
   std::optional<PassivityMetrics> passivity;
   std::optional<EnergyMetrics> energy;
   std::optional<IdealTrajectoryMetrics> ideal_trajectory;
+  std::optional<ForceFidelity> fidelity;
   std::vector<TargetRow> targets;     ///< of a tracking hand
   std::vector<std::string> warnings;  ///< what may make the numbers mislead
   RunWork work;

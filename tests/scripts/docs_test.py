@@ -53,6 +53,12 @@ def write_stl(file):
     file.write_text(f"solid block\n{facets}endsolid block\n", encoding="ascii")
 
 
+def write_recording(file):
+    """A straight stroke of 20 samples in microseconds and millimetres, with a force and quaternions."""
+    rows = "".join(f"{10000 * i},1,0,0,{i / 20},0,0,0,0,0,1\n" for i in range(20))
+    file.write_text(f"t,fx,fy,fz,x,y,z,qx,qy,qz,qw\n{rows}", encoding="ascii")
+
+
 class Bench:
     """A folder with the files that manuals call their reader's own."""
 
@@ -62,6 +68,8 @@ class Bench:
     def prepare(self):
         folder = self.folder
         write_stl(folder / "my.stl")
+        shutil.copy(SOURCE / "scenarios/examples/data/wipe.hapi.txt", folder / "log.txt")
+        write_recording(folder / "rec.csv")
         self.must("new", "mesh", "--from", "my.stl")
         for name in "abc":
             shutil.copy(folder / "my.json", folder / f"{name}.json")

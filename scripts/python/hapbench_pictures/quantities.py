@@ -9,11 +9,12 @@ from .columns import header, read_columns
 from .names import nearest
 
 TRAJECTORY = "trajectory.csv"
+REFERENCE = "force_reference.csv"
 # Tables of a row per recorded step, in which a column is looked for.
-TABLES = (TRAJECTORY, "energy.csv", "ideal_trajectory.csv", "stiffness_tensor.csv")
+TABLES = (TRAJECTORY, "energy.csv", "ideal_trajectory.csv", "stiffness_tensor.csv", REFERENCE)
 # The field that makes a run write a table.
 SWITCH = {"energy.csv": "record.energy", "ideal_trajectory.csv": "record.ideal_trajectory", TRAJECTORY: "record.trajectory",
-          "stiffness_tensor.csv": "record.stiffness_tensor"}
+          "stiffness_tensor.csv": "record.stiffness_tensor", REFERENCE: "record.force_reference"}
 # Unit by the end of a column's name -> shown unit, factor.
 UNITS = (("_m_per_s", "m/s", 1.0), ("_J", "mJ", 1e3), ("_N", "N", 1.0), ("_m", "mm", 1e3), ("_s", "s", 1.0))
 
@@ -49,6 +50,8 @@ SHORT = {q.name: q for q in (
     Quantity("spring", "spring force", "N", 1, TRAJECTORY, vector("fspring_", "N"), "norm"),
     Quantity("measured", "measured force", "N", 1, TRAJECTORY, vector("fmeas_", "N"), "norm"),
     Quantity("input", "input force", "N", 1, TRAJECTORY, vector("fin_", "N"), "norm"),
+    Quantity("reference", "force measured with the stroke", "N", 1, REFERENCE, vector("mf", "N"), "norm"),
+    Quantity("force_error", "rendered - measured force", "N", 1, REFERENCE, vector("force_error_", "N"), "norm"),
     Quantity("depth", "largest depth", "mm", 1e3, TRAJECTORY, ("depth_max_m",)),
     Quantity("ratio", "stiffness ratio", "K", 1, TRAJECTORY, ("ratio_min", "ratio_max"), "band"),
     Quantity("contacts", "colliding points", "", 1, TRAJECTORY, ("colliding",)),
@@ -63,7 +66,7 @@ SHORT = {q.name: q for q in (
 )}
 PATH = "path"  # the tip's way in space, which is no function of time
 # What is drawn when nothing is chosen; those that no run recorded are left out.
-USUAL = ("force", "depth", "ratio", "contacts", "energy", PATH)
+USUAL = ("force", "reference", "force_error", "depth", "ratio", "contacts", "energy", PATH)
 
 
 def by_column(name, file):

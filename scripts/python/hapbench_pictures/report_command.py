@@ -7,6 +7,7 @@ from hapbench_report.page import whole_page
 from hapbench_report.section_replay import player
 
 from .curves import curves_section
+from .fidelity import fidelity_section
 from .files import write
 from .given import common_folder, given_runs, given_sweep, labels
 from .quantities import TRAJECTORY, tables_of
@@ -49,6 +50,7 @@ def sections(runs, names, words):
         ("warnings", "Warnings", "Warnings", warnings_section(runs, names)),
         ("replay", "Replay", "Replay", drawn and player(replays(*zip(*drawn)))),
         ("curves", "Curves", "Curves", drawn and curves_section(*zip(*drawn))),
+        ("fidelity", "Fidelity", "Against the measured force", fidelity_section(runs, names)),
         ("metrics", "Metrics", "Metrics", metrics_section(runs, names)),
         ("scenario", "Scenario", "Scenario", scenario_section(runs, names)),
         ("rerun", "Rerun", "Run it again", commands_section(runs, words)),

@@ -1,0 +1,114 @@
+#include "results/observe/force_fidelity.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hapbench {
+namespace {
+
+/// More samples or finer lags would make the correlation, some 1e8 products as it is, take longer than the run.
+constexpr std::uint64_t kMostKept = 1u << 17;
+constexpr double kFinestLag = 5e-4;  // [s]
+
+/// Without the samples that the other one, shifted, has no partner for.
+struct Overlap {
+  const Vec3* early;
+  const Vec3* late;
+  std::size_t size;
+};
+
+/// Pearson's coefficient over all components; none when either does not vary.
+std::optional<double> correlation(const Overlap& o) {
+  const double n = static_cast<double>(o.size);
+  Vec3 early_sum = Vec3::Zero(), late_sum = Vec3::Zero();
+  for (std::size_t i = 0; i < o.size; ++i) {
+    early_sum += o.early[i];
+    late_sum += o.late[i];
+  }
+  const Vec3 early_mean = early_sum / n, late_mean = late_sum / n;
+  double both = 0.0, early_square = 0.0, late_square = 0.0;
+  for (std::size_t i = 0; i < o.size; ++i) {
+    const Vec3 a = o.early[i] - early_mean, b = o.late[i] - late_mean;
+    both += a.dot(b);
+    early_square += a.squaredNorm();
+    late_square += b.squaredNorm();
+  }
+  // Rounding alone is no variation.
+  const double least = 1e-24 * n * (early_mean.squaredNorm() + late_mean.squaredNorm());
+  if (!(early_square > least && late_square > least)) return std::nullopt;
+  return both / std::sqrt(early_square * late_square);
+}
+
+}  // namespace
+
+std::optional<double> ForceFidelity::relative() const noexcept {
+  return measured_rms > 0.0 ? std::optional(error_rms / measured_rms) : std::nullopt;
+}
+
+std::optional<double> lag_between(const std::vector<Vec3>& early, const std::vector<Vec3>& late, double dt,
+                                  double most) {
+  const std::size_t n = std::min(early.size(), late.size());
+  // Half of the samples overlap at least: less says little of the whole.
+  const auto reach = static_cast<std::ptrdiff_t>(std::min(std::round(most / dt), static_cast<double>(n / 2)));
+  std::vector<double> found;
+  for (std::ptrdiff_t shift = -reach; shift <= reach; ++shift) {
+    const auto by = static_cast<std::size_t>(std::abs(shift));
+    if (n < by + 3) return std::nullopt;
+    const Overlap overlap{early.data() + (shift < 0 ? by : 0), late.data() + (shift > 0 ? by : 0), n - by};
+    const auto coefficient = correlation(overlap);
+    if (!coefficient) return std::nullopt;
+    found.push_back(*coefficient);
+  }
+  const auto top = std::max_element(found.begin(), found.end());
+  if (top == found.begin() || top == found.end() - 1) return std::nullopt;
+  const double below = *(top - 1), above = *(top + 1), curvature = below - 2.0 * *top + above;
+  const double part = curvature < 0.0 ? 0.5 * (below - above) / curvature : 0.0;
+  return (static_cast<double>(top - found.begin() - reach) + part) * dt;
+}
+
+ForceFidelityObserver::ForceFidelityObserver(const RecordedForce& reference, double dt, std::uint64_t steps)
+    : reference_(&reference), dt_(dt) {
+  every_ = std::max<std::uint64_t>(
+      {1, (steps + kMostKept - 1) / kMostKept, static_cast<std::uint64_t>(std::floor(kFinestLag / dt))});
+  const auto kept = static_cast<std::size_t>(steps / every_ + 1);
+  kept_measured_.reserve(kept);
+  kept_rendered_.reserve(kept);
+}
+
+void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
+  measured_ = reference_->at(record.time);
+  if (!measured_) return;
+  const Vec3 &measured = *measured_, &rendered = record.force.rendered;
+  const Vec3 error = rendered - measured;
+  const double spring = record.force.spring.norm(), norm = measured.norm(), rendered_norm = rendered.norm();
+  const Vec3 normal = spring > 0.0 ? Vec3(record.force.spring / spring)
+                      : norm > 0.0 ? Vec3(measured / norm)
+                                   : Vec3::Zero();
+  const double along = normal.dot(error);
+  ++sums_.rows;
+  sums_.measured_rms += norm * norm;
+  sums_.error_rms += error.squaredNorm();
+  sums_.normal_rms += along * along;
+  sums_.tangential_rms += (error - along * normal).squaredNorm();
+  if (norm > kLeastForce && rendered_norm > kLeastForce) {
+    ++sums_.direction_rows;
+    // Of the cross product too: the cosine alone loses half its digits near 0.
+    sums_.direction_error += std::atan2(measured.cross(rendered).norm(), measured.dot(rendered));
+  }
+  if (record.step % every_ == 0 && kept_measured_.size() < kept_measured_.capacity()) {
+    kept_measured_.push_back(measured);
+    kept_rendered_.push_back(rendered);
+  }
+}
+
+ForceFidelity ForceFidelityObserver::metrics() const {
+  ForceFidelity found = sums_;
+  const double rows = static_cast<double>(std::max<std::uint64_t>(1, found.rows));
+  for (double* sum : {&found.measured_rms, &found.error_rms, &found.normal_rms, &found.tangential_rms})
+    *sum = std::sqrt(*sum / rows);
+  found.direction_error /= static_cast<double>(std::max<std::uint64_t>(1, found.direction_rows));
+  found.lag = lag_between(kept_measured_, kept_rendered_, dt_ * static_cast<double>(every_), kMostLag);
+  return found;
+}
+
+}  // namespace hapbench

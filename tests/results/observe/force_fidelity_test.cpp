@@ -1,0 +1,138 @@
+#include "results/observe/force_fidelity.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "results/allocations/allocations.hpp"
+#include "sim/core/random.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr double kDt = 0.001;
+
+StepRecord row(std::uint64_t step, const Vec3& rendered, const Vec3& spring) {
+  StepRecord record;
+  record.step = step;
+  record.time = kDt * static_cast<double>(step);
+  record.force.rendered = rendered;
+  record.force.spring = spring;
+  return record;
+}
+
+RecordedForce constant(const Vec3& force, double last = 10.0) {
+  return RecordedForce({{0.0, force}, {last, force}});
+}
+
+TEST(ForceFidelity, OfEqualForcesIsPerfect) {
+  const RecordedForce measured = constant({0, 1, 2});
+  ForceFidelityObserver observer(measured, kDt, 10);
+  for (std::uint64_t k = 0; k < 10; ++k) observer.on_step(row(k, {0, 1, 2}, {0, 1, 2}));
+  const ForceFidelity found = observer.metrics();
+  EXPECT_EQ(found.rows, 10u);
+  EXPECT_EQ(found.error_rms, 0.0);
+  EXPECT_EQ(*found.relative(), 0.0);
+  EXPECT_NEAR(found.measured_rms, std::sqrt(5.0), 1e-15);
+  EXPECT_EQ(found.direction_error, 0.0);
+  EXPECT_FALSE(found.lag) << "nothing varies";
+}
+
+TEST(ForceFidelity, SplitsTheErrorAlongWhatIsRendered) {
+  const RecordedForce measured = constant({0.3, 0, 2});
+  ForceFidelityObserver observer(measured, kDt, 1);
+  observer.on_step(row(0, {0, 0, 1.6}, {0, 0, 1}));
+  const ForceFidelity found = observer.metrics();
+  EXPECT_NEAR(found.normal_rms, 0.4, 1e-15);
+  EXPECT_NEAR(found.tangential_rms, 0.3, 1e-15);
+  EXPECT_NEAR(found.error_rms, 0.5, 1e-15);
+  EXPECT_NEAR(found.direction_error, std::atan2(0.3, 2.0), 1e-15);
+}
+
+TEST(ForceFidelity, WhereNothingIsRenderedTheNormalIsTheMeasuredForces) {
+  const RecordedForce measured = constant({0.3, 0, 2});
+  ForceFidelityObserver observer(measured, kDt, 1);
+  observer.on_step(row(0, Vec3::Zero(), Vec3::Zero()));
+  EXPECT_NEAR(observer.metrics().normal_rms, observer.metrics().measured_rms, 1e-15);
+  EXPECT_NEAR(observer.metrics().tangential_rms, 0.0, 1e-15);
+  EXPECT_EQ(observer.metrics().direction_rows, 0u);
+}
+
+TEST(ForceFidelity, PartsAddUpAndTurnWithTheWorld) {
+  Random random(1);
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, random.direction()).toRotationMatrix();
+  std::vector<RecordedForce::Sample> samples, turned;
+  for (int i = 0; i < 50; ++i) {
+    samples.push_back({0.002 * i, random.uniform() * random.direction()});
+    turned.push_back({0.002 * i, turn * samples.back().force});
+  }
+  const RecordedForce measured(samples), measured_turned(turned);
+  ForceFidelityObserver one(measured, kDt, 90), other(measured_turned, kDt, 90);
+  for (std::uint64_t k = 0; k < 90; ++k) {
+    const Vec3 spring = k % 3 == 0 ? Vec3::Zero() : Vec3(random.direction()),
+               rendered = spring + 0.15 * random.direction();
+    one.on_step(row(k, rendered, spring));
+    other.on_step(row(k, turn * rendered, turn * spring));
+  }
+  const ForceFidelity a = one.metrics(), b = other.metrics();
+  EXPECT_NEAR(std::hypot(a.normal_rms, a.tangential_rms), a.error_rms, 1e-14);
+  for (const auto part : {&ForceFidelity::error_rms, &ForceFidelity::normal_rms, &ForceFidelity::tangential_rms,
+                          &ForceFidelity::direction_error, &ForceFidelity::measured_rms})
+    EXPECT_NEAR(a.*part, b.*part, 1e-13);
+}
+
+TEST(ForceFidelity, LeavesOutRowsThatWereNotMeasured) {
+  const RecordedForce measured({{0.002, {0, 0, 1}}, {0.004, {0, 0, 3}}});
+  ForceFidelityObserver observer(measured, kDt, 10);
+  for (std::uint64_t k = 0; k < 10; ++k) {
+    observer.on_step(row(k, Vec3::Zero(), Vec3::Zero()));
+    EXPECT_EQ(observer.measured().has_value(), k >= 2 && k <= 4) << k;
+  }
+  EXPECT_EQ(observer.metrics().rows, 3u);
+  EXPECT_NEAR(observer.metrics().measured_rms, std::sqrt((1.0 + 4.0 + 9.0) / 3.0), 1e-15);
+}
+
+/// A force that wanders like a hand's, with what is below 5 Hz alone.
+Vec3 wandering(double t) {
+  const double w = 2.0 * std::numbers::pi;
+  return {std::sin(1.3 * w * t), std::sin(2.9 * w * t + 1.0), 2.0 + std::cos(4.7 * w * t)};
+}
+
+TEST(ForceFidelity, FindsTheLag) {
+  for (const double lag : {0.0, 0.0123, -0.031, 0.08}) {
+    std::vector<Vec3> early, late;
+    for (int k = 0; k < 3000; ++k) {
+      early.push_back(wandering(kDt * k));
+      late.push_back(0.5 * wandering(kDt * k - lag) + Vec3(0, 0, 1));
+    }
+    const auto found = lag_between(early, late, kDt, kMostLag);
+    ASSERT_TRUE(found);
+    // The parabola is off by its third-order term, far below a sample.
+    EXPECT_NEAR(*found, lag, 0.05 * kDt);
+    EXPECT_NEAR(*lag_between(late, early, kDt, kMostLag), -lag, 0.05 * kDt);
+  }
+}
+
+TEST(ForceFidelity, FindsNoLagBeyondItsReach) {
+  std::vector<Vec3> early, late;
+  for (int k = 0; k < 3000; ++k) {
+    early.push_back({0, 0, kDt * k});
+    late.push_back({0, 0, std::max(0.0, kDt * (k - 500))});
+  }
+  EXPECT_FALSE(lag_between(early, std::vector<Vec3>(3000, Vec3(0, 0, 1)), kDt, kMostLag));
+  EXPECT_FALSE(lag_between({}, {}, kDt, kMostLag));
+  EXPECT_FALSE(lag_between(early, late, kDt, kMostLag)) << "0.5 s late";
+}
+
+TEST(ForceFidelity, AllocatesNothingInARow) {
+  const RecordedForce measured = constant({0, 0, 1});
+  ForceFidelityObserver observer(measured, kDt, 1000);
+  const std::uint64_t before = heap_allocations();
+  for (std::uint64_t k = 0; k < 1000; ++k) observer.on_step(row(k, {0, 0, 1}, {0, 0, 1}));
+  EXPECT_EQ(heap_allocations(), before);
+}
+
+}  // namespace
+}  // namespace hapbench
