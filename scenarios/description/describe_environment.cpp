@@ -15,7 +15,8 @@ constexpr IntegerRange kSpringCount = {0, 20'000'000};
 constexpr double kShortestDirection = 1e-12;
 
 /// In the order of the variant.
-constexpr std::array kTypes = {"springs", "hole_2d", "plane", "slot", "block_with_hole", "point_shell", "mesh", "conical_hole"};
+constexpr std::array kTypes = {"springs",         "hole_2d",     "plane", "slot",
+                               "block_with_hole", "point_shell", "mesh",  "conical_hole"};
 
 constexpr Choice<BlockVertices> kVertices[] = {{"shared", BlockVertices::shared},
                                                {"per_cell", BlockVertices::per_cell}};
