@@ -42,7 +42,11 @@ std::optional<double> correlation(const Overlap& o) {
 }  // namespace
 
 std::optional<double> ForceFidelity::relative() const noexcept {
-  return measured_rms > 0.0 ? std::optional(error_rms / measured_rms) : std::nullopt;
+  return reference_rms > 0.0 ? std::optional(error_rms / reference_rms) : std::nullopt;
+}
+
+std::optional<double> ForceFidelity::artefact_share() const noexcept {
+  return rendered_rms > 0.0 ? std::optional(across_rms / rendered_rms) : std::nullopt;
 }
 
 std::optional<double> lag_between(const std::vector<Vec3>& early, const std::vector<Vec3>& late, double dt,
@@ -66,37 +70,40 @@ std::optional<double> lag_between(const std::vector<Vec3>& early, const std::vec
   return (static_cast<double>(top - found.begin() - reach) + part) * dt;
 }
 
-ForceFidelityObserver::ForceFidelityObserver(const RecordedForce& reference, double dt, std::uint64_t steps)
+ForceFidelityObserver::ForceFidelityObserver(const ReferenceForce& reference, double dt, std::uint64_t steps)
     : reference_(&reference), dt_(dt) {
   every_ = std::max<std::uint64_t>(
       {1, (steps + kMostKept - 1) / kMostKept, static_cast<std::uint64_t>(std::floor(kFinestLag / dt))});
   const auto kept = static_cast<std::size_t>(steps / every_ + 1);
-  kept_measured_.reserve(kept);
+  kept_reference_.reserve(kept);
   kept_rendered_.reserve(kept);
 }
 
 void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
-  measured_ = reference_->at(record.time);
-  if (!measured_) return;
-  const Vec3 &measured = *measured_, &rendered = record.force.rendered;
-  const Vec3 error = rendered - measured;
-  const double spring = record.force.spring.norm(), norm = measured.norm(), rendered_norm = rendered.norm();
+  at_row_ = reference_->at(record.time);
+  if (!at_row_) return;
+  const Vec3 &wanted = *at_row_, &rendered = record.force.rendered;
+  const Vec3 error = rendered - wanted;
+  const double spring = record.force.spring.norm(), norm = wanted.norm(), rendered_norm = rendered.norm();
   const Vec3 normal = spring > 0.0 ? Vec3(record.force.spring / spring)
-                      : norm > 0.0 ? Vec3(measured / norm)
+                      : norm > 0.0 ? Vec3(wanted / norm)
                                    : Vec3::Zero();
   const double along = normal.dot(error);
   ++sums_.rows;
-  sums_.measured_rms += norm * norm;
+  sums_.reference_rms += norm * norm;
   sums_.error_rms += error.squaredNorm();
   sums_.normal_rms += along * along;
   sums_.tangential_rms += (error - along * normal).squaredNorm();
+  const Vec3 line = norm > 0.0 ? Vec3(wanted / norm) : Vec3::Zero();
+  sums_.across_rms += (rendered - line.dot(rendered) * line).squaredNorm();
+  sums_.rendered_rms += rendered_norm * rendered_norm;
   if (norm > kLeastForce && rendered_norm > kLeastForce) {
     ++sums_.direction_rows;
     // Of the cross product too: the cosine alone loses half its digits near 0.
-    sums_.direction_error += std::atan2(measured.cross(rendered).norm(), measured.dot(rendered));
+    sums_.direction_error += std::atan2(wanted.cross(rendered).norm(), wanted.dot(rendered));
   }
-  if (record.step % every_ == 0 && kept_measured_.size() < kept_measured_.capacity()) {
-    kept_measured_.push_back(measured);
+  if (record.step % every_ == 0 && kept_reference_.size() < kept_reference_.capacity()) {
+    kept_reference_.push_back(wanted);
     kept_rendered_.push_back(rendered);
   }
 }
@@ -104,10 +111,11 @@ void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
 ForceFidelity ForceFidelityObserver::metrics() const {
   ForceFidelity found = sums_;
   const double rows = static_cast<double>(std::max<std::uint64_t>(1, found.rows));
-  for (double* sum : {&found.measured_rms, &found.error_rms, &found.normal_rms, &found.tangential_rms})
+  for (double* sum : {&found.reference_rms, &found.error_rms, &found.normal_rms, &found.tangential_rms,
+                      &found.across_rms, &found.rendered_rms})
     *sum = std::sqrt(*sum / rows);
   found.direction_error /= static_cast<double>(std::max<std::uint64_t>(1, found.direction_rows));
-  found.lag = lag_between(kept_measured_, kept_rendered_, dt_ * static_cast<double>(every_), kMostLag);
+  found.lag = lag_between(kept_reference_, kept_rendered_, dt_ * static_cast<double>(every_), kMostLag);
   return found;
 }
 

@@ -4,27 +4,31 @@
 #include <optional>
 #include <vector>
 
-#include "results/observe/recorded_force.hpp"
+#include "results/observe/reference_force.hpp"
 #include "sim/loop/observer.hpp"
 
 namespace hapbench {
 
-/// How near the rendered force f comes to the measured force f_m over the rows in which there is one (the evaluation of
-/// Ruffaldi et al. 2006). The normal n of a row is that of what is rendered, f_spring / ||f_spring||, before damping
-/// and friction; where nothing is rendered, that of the measured force. So the squares of both parts sum up to that of
+/// How near the rendered force f comes to the reference force f_m over the rows in which there is one (the evaluation
+/// of Ruffaldi et al. 2006). The normal n of a row is that of what is rendered, f_spring / ||f_spring||, before damping
+/// and friction; where nothing is rendered, that of f_m. So the squares of both parts sum up to that of
 /// the whole.
 struct ForceFidelity {
   std::uint64_t rows = 0;            ///< compared
-  double measured_rms = 0.0;         ///< rms ||f_m|| [N]
+  double reference_rms = 0.0;        ///< rms ||f_m|| [N]
   double error_rms = 0.0;            ///< rms ||f - f_m|| [N]
   double normal_rms = 0.0;           ///< the same of n n^T (f - f_m)
   double tangential_rms = 0.0;       ///< the same of (I - n n^T) (f - f_m)
+  double across_rms = 0.0;           ///< rms of the part of f across f_m, of all of f where f_m is zero [N]
+  double rendered_rms = 0.0;         ///< rms ||f|| [N]
   std::uint64_t direction_rows = 0;  ///< rows in which f and f_m both exceed kLeastForce
   double direction_error = 0.0;      ///< mean angle between them in those rows [rad]
   std::optional<double> lag;         ///< how long f comes after f_m [s]; none where either does not vary
 
-  /// rms error in units of the measured force's; none where no force was measured.
+  /// rms error in units of that of f_m; none where f_m is zero throughout.
   std::optional<double> relative() const noexcept;
+  /// Share of the rendered force that an ideal one would not have: across_rms / rendered_rms; none without force.
+  std::optional<double> artefact_share() const noexcept;
 };
 
 /// Forces below have no direction worth comparing [N].
@@ -43,21 +47,21 @@ std::optional<double> lag_between(const std::vector<Vec3>& early, const std::vec
 class ForceFidelityObserver final : public Observer {
  public:
   /// `reference` must outlive it. `dt`: time from row to row [s]; `steps`: the most rows.
-  ForceFidelityObserver(const RecordedForce& reference, double dt, std::uint64_t steps);
+  ForceFidelityObserver(const ReferenceForce& reference, double dt, std::uint64_t steps);
 
   void on_step(const StepRecord& record) noexcept override;
 
-  /// The measured force at the last row; none where nothing was measured.
-  const std::optional<Vec3>& measured() const noexcept { return measured_; }
+  /// f_m at the last row; none where nothing was measured.
+  const std::optional<Vec3>& reference() const noexcept { return at_row_; }
   ForceFidelity metrics() const;
 
  private:
-  const RecordedForce* reference_;
+  const ReferenceForce* reference_;
   double dt_;
   std::uint64_t every_;  ///< rows from one that is kept for the lag to the next
-  std::optional<Vec3> measured_;
+  std::optional<Vec3> at_row_;
   ForceFidelity sums_;  ///< of squares and angles, where the metrics have roots and means
-  std::vector<Vec3> kept_measured_, kept_rendered_;
+  std::vector<Vec3> kept_reference_, kept_rendered_;
 };
 
 }  // namespace hapbench

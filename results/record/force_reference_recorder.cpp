@@ -11,7 +11,7 @@ ForceReferenceRecorder::ForceReferenceRecorder(std::filesystem::path file, std::
 
 void ForceReferenceRecorder::on_step(const StepRecord& record) noexcept {
   if (!is_recorded(record, every_)) return;
-  const std::optional<Vec3>& measured = observer_->measured();
+  const std::optional<Vec3>& measured = observer_->reference();
   const auto part = [](const std::optional<Vec3>& v, int i) { return v ? std::optional((*v)[i]) : std::nullopt; };
   const auto error = measured ? std::optional<Vec3>(record.force.rendered - *measured) : std::nullopt;
   csv_.row(record.step, record.time, part(measured, 0), part(measured, 1), part(measured, 2), part(error, 0),

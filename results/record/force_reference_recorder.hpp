@@ -8,13 +8,13 @@
 
 namespace hapbench {
 
-/// force_reference.csv: the force that was measured with the stroke, beside what is rendered at the same place.
+/// force_reference.csv: the reference force, measured with the stroke or ideal, beside what is rendered at the same place.
 class ForceReferenceRecorder final : public Recorder {
  public:
   static constexpr Column kColumns[] = {
       kStepColumn,
       kTimeColumn,
-      {"mfx_N", "N", "x of the measured force f_m on the tool; empty outside of the recording"},
+      {"mfx_N", "N", "x of the reference force f_m on the tool; empty where none was measured"},
       {"mfy_N", "N", "y of f_m"},
       {"mfz_N", "N", "z of f_m"},
       {"force_error_x_N", "N", "x of f - f_m"},

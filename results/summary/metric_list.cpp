@@ -218,10 +218,10 @@ MetricList metric_list(const IdealTrajectoryMetrics& m) {
 
 MetricList metric_list(const ForceFidelity& f) {
   const bool any = f.rows > 0;
-  return {count("rows", "rows in which the stroke has a measured force f_m", f.rows),
-          number_if(any, "measured_force_rms_N", "N", "root mean square of ||f_m||", f.measured_rms),
+  return {count("rows", "rows that have a reference force f_m: measured with the stroke, or ideal", f.rows),
+          number_if(any, "reference_force_rms_N", "N", "root mean square of ||f_m||", f.reference_rms),
           number_if(any, "force_error_rms_N", "N", "root mean square of ||f - f_m||", f.error_rms),
-          number("force_error_relative", "1", "force_error_rms_N / measured_force_rms_N", f.relative()),
+          number("force_error_relative", "1", "force_error_rms_N / reference_force_rms_N", f.relative()),
           number_if(
               any, "force_error_normal_rms_N", "N",
               "root mean square of n n^T (f - f_m); n is f_spring / ||f_spring||, what is rendered before damping and "
@@ -229,6 +229,9 @@ MetricList metric_list(const ForceFidelity& f) {
               f.normal_rms),
           number_if(any, "force_error_tangential_rms_N", "N",
                     "root mean square of (I - n n^T) (f - f_m), with the same n", f.tangential_rms),
+          number("force_artefact_share", "1",
+                 "root mean square of the part of f across f_m, all of it where f_m is zero, over that of ||f||",
+                 f.artefact_share()),
           count("direction_rows", "rows in which ||f|| and ||f_m|| are both above 0.1 N", f.direction_rows),
           number_if(f.direction_rows > 0, "force_direction_error_rad", "rad",
                     "mean angle between f and f_m of those rows", f.direction_error),

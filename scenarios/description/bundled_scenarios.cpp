@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 std::vector<BundledScenario> bundled_scenarios() {
   std::vector<BundledScenario> found;
   const fs::path folder = installed_folder("scenarios");
-  for (const char* group : {"thesis", "limits", "beyond", "examples"}) {
+  for (const char* group : {"thesis", "limits", "beyond", "quality", "examples"}) {
     std::error_code error;
     const fs::directory_iterator entries(folder / group, error);
     if (error) throw InputError(fmt::format("{}: {}", (folder / group).string(), error.message()));
@@ -39,6 +39,22 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
   const std::string stem = fs::path(argument).stem().string();
   throw InputError(fmt::format("{}: no such file and no bundled scenario{}; \"hapbench list\" shows them", argument,
                                nearest_name_hint(stem, names)));
+}
+
+std::vector<fs::path> find_scenarios(const std::vector<std::string>& arguments) {
+  const std::vector<BundledScenario> bundled = bundled_scenarios();
+  std::vector<fs::path> files;
+  for (const std::string& argument : arguments) {
+    std::error_code error;
+    const std::size_t before = files.size();
+    if (!fs::exists(argument, error)) {
+      for (const BundledScenario& scenario : bundled) {
+        if (scenario.group == argument) files.push_back(scenario.file);
+      }
+    }
+    if (files.size() == before) files.push_back(find_scenario(argument));
+  }
+  return files;
 }
 
 }  // namespace hapbench

@@ -10,7 +10,7 @@ namespace hapbench {
 /// A bundled scenario.
 struct BundledScenario {
   std::string name;   ///< file name without extension
-  std::string group;  ///< thesis, limits, beyond, examples
+  std::string group;  ///< thesis, limits, beyond, quality, examples
   std::filesystem::path file;
 };
 
@@ -20,5 +20,9 @@ std::vector<BundledScenario> bundled_scenarios();
 /// The file a scenario argument means: a path, relative ones starting from `directory`, or else the name of a bundled
 /// scenario. Throws InputError.
 std::filesystem::path find_scenario(const std::string& argument, const std::filesystem::path& directory = {});
+
+/// The files that several arguments mean: what find_scenario finds, and for the name of a group all that is in it, by
+/// name. A file or a scenario of that name goes before the group. Throws InputError.
+std::vector<std::filesystem::path> find_scenarios(const std::vector<std::string>& arguments);
 
 }  // namespace hapbench

@@ -15,7 +15,8 @@ constexpr IntegerRange kSpringCount = {0, 20'000'000};
 constexpr double kShortestDirection = 1e-12;
 
 /// In the order of the variant.
-constexpr std::array kTypes = {"springs", "hole_2d", "plane", "slot", "block_with_hole", "point_shell", "mesh"};
+constexpr std::array kTypes = {"springs",         "hole_2d",     "plane", "slot",
+                               "block_with_hole", "point_shell", "mesh",  "conical_hole"};
 
 constexpr Choice<BlockVertices> kVertices[] = {{"shared", BlockVertices::shared},
                                                {"per_cell", BlockVertices::per_cell}};
@@ -115,6 +116,13 @@ static void describe(Fields& f, Slot& slot) {
   f.number("length_m", slot.length, kLength, "width of the faces along y", Presence::required);
   f.number("spacing_m", slot.spacing, kLength, "largest distance of neighbours", Presence::required);
   check_point_count(f, slot);
+}
+
+static void describe(Fields& f, ConicalHole& cone) {
+  f.number("half_angle_rad", cone.half_angle, {0.01, 1.56, "rad"}, "between the axis z and the wall");
+  f.number("depth_m", cone.depth, kLength, "of the apex below the mouth, which is at z = 0");
+  f.number("spacing_m", cone.spacing, kLength, "largest distance of neighbours in a ring, and of rings");
+  check_point_count(f, cone);
 }
 
 static void describe(Fields& f, BlockEnvironment& environment) {

@@ -99,7 +99,7 @@ static void describe(Fields& f, RecordFields& record) {
   f.boolean("ideal_trajectory", record.ideal_trajectory,
             "block_with_hole only: compare the recorded rows with the ideal trajectory and write ideal_trajectory.csv");
   f.boolean("force_reference", record.force_reference,
-            "of a stroke with a measured force: write it beside the rendered one into force_reference.csv");
+            "with reference_force, or a stroke with a measured force: write it and the error into force_reference.csv");
   f.boolean("pose", record.pose, "add the tool's orientation to trajectory.csv, as a quaternion qw,qx,qy,qz");
   f.boolean("torque", record.torque,
             "add the torque that is lost to trajectory.csv, tx_Nm,ty_Nm,tz_Nm, and its metrics: what the rendered "
@@ -121,6 +121,11 @@ static void describe(Fields& f, MetricBound& bound) {
   if (!f.reads() || !bound.min || !bound.max || !(*bound.min > *bound.max)) return;
   throw InputError(InputError::Kind::relation, f.at(),
                    fmt::format("got min {} above max {}; allowed: min <= max", *bound.min, *bound.max));
+}
+
+static void describe(Fields& f, ReferenceForceFields& reference) {
+  constexpr const char* kNames[] = {"x_N", "y_N", "z_N"};
+  for (std::size_t i = 0; i < 3; ++i) profile(f, kNames[i], reference.force[i], "N", "force on the tool over time");
 }
 
 static void describe(Fields& f, ExpectFields& expect) {
@@ -169,6 +174,9 @@ void describe(Fields& f, Scenario& scenario) {
   f.object("rendering", scenario.rendering, "how contacts become a force");
   f.object("integrator", scenario.integrator, "how forces become motion");
   f.object("bounds", scenario.bounds, "where a run counts as diverged");
+  f.if_any("reference_force", scenario.reference_force,
+           "the force an ideal rendering would give on a prescribed way; the metrics of fidelity are taken against it",
+           [](Fields& o, ReferenceForceFields& reference) { o.object(reference); });
   f.object("record", scenario.record, "what is written beside the summary");
   f.object("metrics", scenario.metrics, "where metrics of settled contact begin");
   f.object("expect", scenario.expect, "what the run must show; each scenario is its own regression test");

@@ -71,13 +71,13 @@ const RecordedMotion& NamedFiles::recorded_motion() const {
   if (!motion) {
     motion = motion_in(file.bytes(), file.path());
     if (auto measured = recorded_force_in(file.bytes(), file.path()))
-      force = std::make_shared<const RecordedForce>(std::move(*measured));
+      force = std::make_shared<const ReferenceForce>(std::move(*measured));
     file.drop_bytes();
   }
   return *motion;
 }
 
-std::shared_ptr<const RecordedForce> NamedFiles::recorded_force() const {
+std::shared_ptr<const ReferenceForce> NamedFiles::recorded_force() const {
   recorded_motion();
   return motion_->force;
 }

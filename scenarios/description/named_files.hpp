@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "results/observe/recorded_force.hpp"
+#include "results/observe/reference_force.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "sim/geometry/point_shell.hpp"
@@ -56,7 +56,7 @@ class NamedFiles {
   /// Precondition: the motion is a recorded one.
   const RecordedMotion& recorded_motion() const;
   /// The force that was measured with it; null without one. Precondition: the motion is a recorded one.
-  std::shared_ptr<const RecordedForce> recorded_force() const;
+  std::shared_ptr<const ReferenceForce> recorded_force() const;
 
  private:
   struct EnvironmentFile {
@@ -73,7 +73,7 @@ class NamedFiles {
   struct MotionFile {
     NamedFile file;
     std::optional<RecordedMotion> motion = {};
-    std::shared_ptr<const RecordedForce> force = {};
+    std::shared_ptr<const ReferenceForce> force = {};
   };
 
   std::shared_ptr<EnvironmentFile> environment_;

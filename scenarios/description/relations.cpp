@@ -72,8 +72,15 @@ void check_ideal_trajectory(const Scenario& scenario) {
 }
 
 void check_force_reference(const Scenario& scenario) {
-  if (!scenario.record.force_reference || std::holds_alternative<RecordedPosition>(scenario.motion.position)) return;
-  fail("/record/force_reference", "got true; allowed: false, unless motion.position is of type \"file\"");
+  const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
+  if (scenario.reference_force && is_free)
+    fail("/reference_force",
+         "contradicts motion.position of type \"free\"; allowed with a way that is known beforehand");
+  if (!scenario.record.force_reference || scenario.reference_force ||
+      std::holds_alternative<RecordedPosition>(scenario.motion.position))
+    return;
+  fail("/record/force_reference",
+       "got true; allowed: false, unless there is a reference_force or motion.position is of type \"file\"");
 }
 
 void check_push_hand(const Scenario& scenario) {

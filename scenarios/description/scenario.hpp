@@ -74,8 +74,8 @@ struct MeshEnvironment {
   std::optional<double> spacing;  ///< resampled to this [m]
   std::optional<double> grid;     ///< cell of the local average [m]
 };
-using Environment =
-    std::variant<SpringsEnvironment, Hole2d, Plane, Slot, BlockEnvironment, PointShellEnvironment, MeshEnvironment>;
+using Environment = std::variant<SpringsEnvironment, Hole2d, Plane, Slot, BlockEnvironment, PointShellEnvironment,
+                                 MeshEnvironment, ConicalHole>;
 
 struct InitialFields {
   Vec3 position = Vec3::Zero();
@@ -184,6 +184,11 @@ struct RecordFields {
 /// True when a run writes rows of its steps.
 bool records_rows(const RecordFields& record);
 
+/// What an ideal rendering would give on a prescribed way.
+struct ReferenceForceFields {
+  std::array<Profile, 3> force;  ///< [N]
+};
+
 struct MetricBound {
   std::optional<double> min;
   std::optional<double> max;
@@ -209,6 +214,7 @@ struct Scenario {
   RenderingConfig rendering;
   IntegratorFields integrator;
   DivergenceBounds bounds;
+  std::optional<ReferenceForceFields> reference_force;
   RecordFields record;
   SettlingRule metrics;
   ExpectFields expect;

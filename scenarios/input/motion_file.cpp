@@ -68,16 +68,16 @@ RecordedMotion motion_in(std::string_view text, const std::filesystem::path& fil
   return RecordedMotion(std::move(samples));
 }
 
-std::optional<RecordedForce> recorded_force_in(std::string_view text, const std::filesystem::path& file) {
+std::optional<ReferenceForce> recorded_force_in(std::string_view text, const std::filesystem::path& file) {
   if (!has_force(text)) return std::nullopt;
   const NumberTable table = number_table_in(text, file, kHeaders, kMostSamples);
-  std::vector<RecordedForce::Sample> samples;
+  std::vector<ReferenceForce::Sample> samples;
   samples.reserve(table.rows());
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const auto row = table.row(i), force = row.last(kForceColumns);
     samples.push_back({row[0], {force[0], force[1], force[2]}});
   }
-  return RecordedForce(std::move(samples));
+  return ReferenceForce(std::move(samples));
 }
 
 }  // namespace hapbench

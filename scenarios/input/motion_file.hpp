@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "results/observe/recorded_force.hpp"
+#include "results/observe/reference_force.hpp"
 #include "sim/tool/motion.hpp"
 
 namespace hapbench {
@@ -17,6 +17,6 @@ RecordedMotion motion_in(std::string_view text, const std::filesystem::path& fil
 
 /// The force on the tool that was measured with the stroke, in the last columns mfx_N,mfy_N,mfz_N; none without them.
 /// Precondition: motion_in reads the text.
-std::optional<RecordedForce> recorded_force_in(std::string_view text, const std::filesystem::path& file);
+std::optional<ReferenceForce> recorded_force_in(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace hapbench

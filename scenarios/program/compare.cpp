@@ -54,7 +54,7 @@ BatchPlan plan_of(const CompareOptions& options) {
   } else {
     definition.algorithms = all_algorithms();
   }
-  for (const std::string& scenario : options.scenarios) definition.scenarios.push_back(find_scenario(scenario));
+  definition.scenarios = find_scenarios(options.scenarios);
   definition.overrides = options.overrides;
   definition.seeds = options.seeds;
   definition.jitter = options.jitter;
@@ -194,7 +194,7 @@ void add_compare(CommandLine& line) {
   auto options = std::make_shared<CompareOptions>();
   Command command =
       line.command("compare", "Run scenarios through several algorithms, side by side; of several, a league table");
-  command.add("scenarios", options->scenarios, "scenario files, or names of bundled scenarios").required();
+  command.add("scenarios", options->scenarios, "scenario files, names of bundled scenarios, or of groups of them").required();
   command.add("--algorithms", options->algorithms, "names, separated by commas, or all (default: all)")
       .comma_separated();
   command.add("--seeds", options->seeds, "run each K times, time k with the scenario's seed + k (default: 1)")

@@ -30,8 +30,8 @@ int run(const RunOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (options.latency) overrides.emplace_back("record.timing=true");
   std::vector<LoadedScenario> scenarios;
-  for (const std::string& argument : options.scenarios) {
-    scenarios.push_back(load_scenario(find_scenario(argument), overrides));
+  for (const fs::path& file : find_scenarios(options.scenarios)) {
+    scenarios.push_back(load_scenario(file, overrides));
     scenarios.back().scenario.rendering.skips = options.skips;
   }
   const std::vector<fs::path> directories = output_directories(options.out, scenarios, "", "one of each name in a run");
@@ -84,7 +84,7 @@ int run(const RunOptions& options) {
 void add_run(CommandLine& line) {
   auto options = std::make_shared<RunOptions>();
   Command command = line.command("run", "Run scenarios and write their results");
-  command.add("scenarios", options->scenarios, "scenario files, or names of bundled scenarios").required();
+  command.add("scenarios", options->scenarios, "scenario files, names of bundled scenarios, or of groups of them").required();
   command.add("--out", options->out,
               "directory of the results; several scenarios get a subdirectory each (default: results/out/NAME)");
   command.add("--set", options->overrides, "override a field: path=value, as in time.steps=100").repeatable();

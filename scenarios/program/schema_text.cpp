@@ -133,6 +133,7 @@ constexpr std::pair<const char*, const char*> kTypeSummaries[] = {
     {"hole_2d", "a hole in the plane, with its mouth"},
     {"plane", "a flat square"},
     {"slot", "two parallel faces"},
+    {"conical_hole", "a hole that tapers to a point"},
     {"block_with_hole", "a block with a round blind hole, its shell by marching cubes"},
     {"point_shell", "points with normals from a CSV or PLY file"},
     {"mesh", "a surface from an OBJ, PLY, STL or OFF file"},

@@ -174,7 +174,7 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
   }
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
     at("/motion/position/file", [&] { loaded.files.recorded_motion(); });
-    if (scenario.record.force_reference && !loaded.files.recorded_force())
+    if (scenario.record.force_reference && !scenario.reference_force && !loaded.files.recorded_force())
       throw InputError(InputError::Kind::relation,
                        file_of(loaded, "/record/force_reference").string() + ": /record/force_reference",
                        fmt::format("got true; allowed: false, because {} has no columns mfx_N,mfy_N,mfz_N",

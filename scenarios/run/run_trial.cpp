@@ -54,14 +54,16 @@ class TrialObservers {
                      static_cast<std::uint64_t>(scenario.record.every));
       observers_.push_back(&*ideal_);
     }
-    if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
+    if (scenario.reference_force) {
+      force_ = std::make_shared<const ReferenceForce>(scenario.reference_force->force);
+    } else if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
       force_ = files.recorded_force();
       if (!force_ && scenario.record.force_reference)
         throw InputError("/record/force_reference: got true; allowed: false, because the stroke has no measured force");
-      if (force_) {
-        fidelity_.emplace(*force_, scenario.time.step, static_cast<std::uint64_t>(scenario.time.steps));
-        observers_.push_back(&*fidelity_);
-      }
+    }
+    if (force_) {
+      fidelity_.emplace(*force_, scenario.time.step, static_cast<std::uint64_t>(scenario.time.steps));
+      observers_.push_back(&*fidelity_);
     }
     if (scenario.record.torque) observers_.push_back(&torque_.emplace());
     if (parts.shell && parts.shell->size() > 0) {
@@ -117,7 +119,7 @@ class TrialObservers {
   PassivityObserver passivity_;
   std::optional<EnergyLedger> ledger_;
   std::optional<IdealTrajectoryObserver> ideal_;
-  std::shared_ptr<const RecordedForce> force_;
+  std::shared_ptr<const ReferenceForce> force_;
   std::optional<ForceFidelityObserver> fidelity_;
   std::optional<LostTorqueObserver> torque_;
   std::optional<ApproachObserver> approach_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace hapbench {
 namespace {
@@ -22,6 +23,11 @@ void add_face(std::vector<SurfacePoint>& points, const Vec3& a, const Vec3& b, c
   for (double k = 1; k < n; ++k) {
     points.push_back({{between(a.x(), b.x(), k, n), between(a.y(), b.y(), k, n), 0.0}, normal});
   }
+}
+
+/// A cone's wall from apex to mouth.
+double slant(const ConicalHole& cone) {
+  return cone.depth / std::cos(cone.half_angle);
 }
 
 }  // namespace
@@ -80,6 +86,33 @@ std::vector<SurfacePoint> surface_points(const Slot& slot) {
       for (double k = 0; k <= nz; ++k) {
         const double y = between(-slot.length / 2, slot.length / 2, j, ny);
         points.push_back({{side * slot.gap / 2, y, between(-slot.depth, 0.0, k, nz)}, {-side, 0, 0}});
+      }
+    }
+  }
+  return points;
+}
+
+/// The sum over the rings of their circumference over the spacing, and four for the rounding of each.
+double point_count(const ConicalHole& cone) {
+  const double rings = intervals(slant(cone), cone.spacing);
+  const double mouth = std::sin(cone.half_angle) * slant(cone);
+  return 1.0 + rings * (4.0 + std::numbers::pi * mouth * (1.0 + 1.0 / rings) / cone.spacing);
+}
+
+std::vector<SurfacePoint> surface_points(const ConicalHole& cone) {
+  const double sine = std::sin(cone.half_angle), cosine = std::cos(cone.half_angle);
+  const double length = slant(cone), rings = intervals(length, cone.spacing);
+  std::vector<SurfacePoint> points = {{{0, 0, -cone.depth}, {0, 0, 1}}};
+  for (double k = 1; k <= rings; ++k) {
+    const double along = between(0.0, length, k, rings);
+    const double radius = along * sine, z = k == rings ? 0.0 : along * cosine - cone.depth;
+    const double quarter = intervals(std::numbers::pi / 2 * radius, cone.spacing);
+    for (double i = 0; i < quarter; ++i) {
+      // Turned by swapping coordinates and not computed anew, so that images agree to the bit.
+      const double angle = (i + 0.5) / quarter * std::numbers::pi / 2;
+      const double c = std::cos(angle), s = std::sin(angle);
+      for (const auto& [x, y] : {std::pair(c, s), std::pair(-s, c), std::pair(-c, -s), std::pair(s, -c)}) {
+        points.push_back({{radius * x, radius * y, z}, {-cosine * x, -cosine * y, sine}});
       }
     }
   }

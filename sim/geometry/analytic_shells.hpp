@@ -35,12 +35,23 @@ struct Slot {
   double spacing = 0.0001;
 };
 
+/// A conical hole about z, its apex downwards at z = -depth and its mouth at z = 0; normals point into the hole, +z at
+/// the apex. Point order: ring by ring from the apex; the points of a ring at equal angles, a multiple of four of them,
+/// so that a quarter turn about z maps the shell to itself to the bit. Its `point_count` is an upper bound.
+struct ConicalHole {
+  double half_angle = 0.5;  ///< between axis and wall [rad], in (0, pi/2)
+  double depth = 0.003;     ///< [m]
+  double spacing = 0.0001;  ///< [m]
+};
+
 double point_count(const Hole2d& hole);
 double point_count(const Plane& plane);
 double point_count(const Slot& slot);
+double point_count(const ConicalHole& cone);
 
 std::vector<SurfacePoint> surface_points(const Hole2d& hole);
 std::vector<SurfacePoint> surface_points(const Plane& plane);
 std::vector<SurfacePoint> surface_points(const Slot& slot);
+std::vector<SurfacePoint> surface_points(const ConicalHole& cone);
 
 }  // namespace hapbench

@@ -104,7 +104,7 @@ class Fidelity(Given):
         along = np.sum(error * normal, axis=1, keepdims=True) * normal
         both = (norms(f)[:, 0] > 0.1) & (norms(measured)[:, 0] > 0.1)
         cosine = np.sum(f * measured, axis=1)[both] / (norms(f) * norms(measured))[both, 0]
-        for name, expected in (("rows", len(f)), ("measured_force_rms_N", rms(measured)), ("force_error_rms_N", rms(error)),
+        for name, expected in (("rows", len(f)), ("reference_force_rms_N", rms(measured)), ("force_error_rms_N", rms(error)),
                                ("force_error_relative", rms(error) / rms(measured)), ("force_error_normal_rms_N", rms(along)),
                                ("force_error_tangential_rms_N", rms(error - along)), ("direction_rows", both.sum()),
                                ("force_direction_error_rad", np.arccos(np.clip(cosine, -1, 1)).mean())):

@@ -13,7 +13,7 @@ from .reduced import curve
 SIZE = (4.0, 2.0)  # [inch], as the other curves of the page
 # Name in section "fidelity" of summary.json -> heading, factor.
 METRICS = (
-    ("measured_force_rms_N", "Measured rms, N", 1),
+    ("reference_force_rms_N", "Reference rms, N", 1),
     ("force_error_rms_N", "Error rms, N", 1),
     ("force_error_relative", "Error, %", 100),
     ("force_error_normal_rms_N", "Normal, N", 1),

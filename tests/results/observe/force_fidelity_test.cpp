@@ -23,25 +23,25 @@ StepRecord row(std::uint64_t step, const Vec3& rendered, const Vec3& spring) {
   return record;
 }
 
-RecordedForce constant(const Vec3& force, double last = 10.0) {
-  return RecordedForce({{0.0, force}, {last, force}});
+ReferenceForce constant(const Vec3& force, double last = 10.0) {
+  return ReferenceForce({{0.0, force}, {last, force}});
 }
 
 TEST(ForceFidelity, OfEqualForcesIsPerfect) {
-  const RecordedForce measured = constant({0, 1, 2});
+  const ReferenceForce measured = constant({0, 1, 2});
   ForceFidelityObserver observer(measured, kDt, 10);
   for (std::uint64_t k = 0; k < 10; ++k) observer.on_step(row(k, {0, 1, 2}, {0, 1, 2}));
   const ForceFidelity found = observer.metrics();
   EXPECT_EQ(found.rows, 10u);
   EXPECT_EQ(found.error_rms, 0.0);
   EXPECT_EQ(*found.relative(), 0.0);
-  EXPECT_NEAR(found.measured_rms, std::sqrt(5.0), 1e-15);
+  EXPECT_NEAR(found.reference_rms, std::sqrt(5.0), 1e-15);
   EXPECT_EQ(found.direction_error, 0.0);
   EXPECT_FALSE(found.lag) << "nothing varies";
 }
 
 TEST(ForceFidelity, SplitsTheErrorAlongWhatIsRendered) {
-  const RecordedForce measured = constant({0.3, 0, 2});
+  const ReferenceForce measured = constant({0.3, 0, 2});
   ForceFidelityObserver observer(measured, kDt, 1);
   observer.on_step(row(0, {0, 0, 1.6}, {0, 0, 1}));
   const ForceFidelity found = observer.metrics();
@@ -52,10 +52,10 @@ TEST(ForceFidelity, SplitsTheErrorAlongWhatIsRendered) {
 }
 
 TEST(ForceFidelity, WhereNothingIsRenderedTheNormalIsTheMeasuredForces) {
-  const RecordedForce measured = constant({0.3, 0, 2});
+  const ReferenceForce measured = constant({0.3, 0, 2});
   ForceFidelityObserver observer(measured, kDt, 1);
   observer.on_step(row(0, Vec3::Zero(), Vec3::Zero()));
-  EXPECT_NEAR(observer.metrics().normal_rms, observer.metrics().measured_rms, 1e-15);
+  EXPECT_NEAR(observer.metrics().normal_rms, observer.metrics().reference_rms, 1e-15);
   EXPECT_NEAR(observer.metrics().tangential_rms, 0.0, 1e-15);
   EXPECT_EQ(observer.metrics().direction_rows, 0u);
 }
@@ -63,12 +63,12 @@ TEST(ForceFidelity, WhereNothingIsRenderedTheNormalIsTheMeasuredForces) {
 TEST(ForceFidelity, PartsAddUpAndTurnWithTheWorld) {
   Random random(1);
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, random.direction()).toRotationMatrix();
-  std::vector<RecordedForce::Sample> samples, turned;
+  std::vector<ReferenceForce::Sample> samples, turned;
   for (int i = 0; i < 50; ++i) {
     samples.push_back({0.002 * i, random.uniform() * random.direction()});
     turned.push_back({0.002 * i, turn * samples.back().force});
   }
-  const RecordedForce measured(samples), measured_turned(turned);
+  const ReferenceForce measured(samples), measured_turned(turned);
   ForceFidelityObserver one(measured, kDt, 90), other(measured_turned, kDt, 90);
   for (std::uint64_t k = 0; k < 90; ++k) {
     const Vec3 spring = k % 3 == 0 ? Vec3::Zero() : Vec3(random.direction()),
@@ -79,19 +79,19 @@ TEST(ForceFidelity, PartsAddUpAndTurnWithTheWorld) {
   const ForceFidelity a = one.metrics(), b = other.metrics();
   EXPECT_NEAR(std::hypot(a.normal_rms, a.tangential_rms), a.error_rms, 1e-14);
   for (const auto part : {&ForceFidelity::error_rms, &ForceFidelity::normal_rms, &ForceFidelity::tangential_rms,
-                          &ForceFidelity::direction_error, &ForceFidelity::measured_rms})
+                          &ForceFidelity::direction_error, &ForceFidelity::reference_rms})
     EXPECT_NEAR(a.*part, b.*part, 1e-13);
 }
 
 TEST(ForceFidelity, LeavesOutRowsThatWereNotMeasured) {
-  const RecordedForce measured({{0.002, {0, 0, 1}}, {0.004, {0, 0, 3}}});
+  const ReferenceForce measured({{0.002, {0, 0, 1}}, {0.004, {0, 0, 3}}});
   ForceFidelityObserver observer(measured, kDt, 10);
   for (std::uint64_t k = 0; k < 10; ++k) {
     observer.on_step(row(k, Vec3::Zero(), Vec3::Zero()));
-    EXPECT_EQ(observer.measured().has_value(), k >= 2 && k <= 4) << k;
+    EXPECT_EQ(observer.reference().has_value(), k >= 2 && k <= 4) << k;
   }
   EXPECT_EQ(observer.metrics().rows, 3u);
-  EXPECT_NEAR(observer.metrics().measured_rms, std::sqrt((1.0 + 4.0 + 9.0) / 3.0), 1e-15);
+  EXPECT_NEAR(observer.metrics().reference_rms, std::sqrt((1.0 + 4.0 + 9.0) / 3.0), 1e-15);
 }
 
 /// A force that wanders like a hand's, with what is below 5 Hz alone.
@@ -127,7 +127,7 @@ TEST(ForceFidelity, FindsNoLagBeyondItsReach) {
 }
 
 TEST(ForceFidelity, AllocatesNothingInARow) {
-  const RecordedForce measured = constant({0, 0, 1});
+  const ReferenceForce measured = constant({0, 0, 1});
   ForceFidelityObserver observer(measured, kDt, 1000);
   const std::uint64_t before = heap_allocations();
   for (std::uint64_t k = 0; k < 1000; ++k) observer.on_step(row(k, {0, 0, 1}, {0, 0, 1}));

@@ -160,6 +160,46 @@ TEST(PlaneShell, IsASquareGridWithYFastestAndUpwardNormals) {
   }
 }
 
+TEST(ConicalHoleShell, LiesOnTheConeAndIsItsOwnQuarterTurn) {
+  Random random(7);
+  for (int i = 0; i < 20; ++i) {
+    const ConicalHole cone{random.uniform(0.1, 1.4), random.uniform(1e-4, 4e-3), random.uniform(2e-5, 5e-4)};
+    const auto points = surface_points(cone);
+    EXPECT_LE(static_cast<double>(points.size()), point_count(cone));
+    EXPECT_EQ(points.front().position, Vec3(0, 0, -cone.depth));
+    const double sine = std::sin(cone.half_angle), cosine = std::cos(cone.half_angle);
+    for (std::size_t k = 1; k < points.size(); ++k) {
+      const Vec3& p = points[k].position;
+      const double radius = std::hypot(p.x(), p.y());
+      // Distance from the wall; a few roundings of lengths up to the depth over the cosine.
+      EXPECT_NEAR(radius * cosine - (p.z() + cone.depth) * sine, 0.0, 8 * kEps * cone.depth / cosine);
+      const Vec3 normal(-cosine * p.x() / radius, -cosine * p.y() / radius, sine);
+      EXPECT_LE((points[k].normal - normal).norm(), 4 * kEps);
+    }
+    for (std::size_t k = 1; k + 1 < points.size(); k += 4) {
+      for (std::size_t turned = k; turned < k + 3; ++turned) {
+        const Vec3 &p = points[turned].position, &q = points[turned + 1].position;
+        EXPECT_EQ(q, Vec3(-p.y(), p.x(), p.z()));
+      }
+    }
+  }
+}
+
+TEST(ConicalHoleShell, NeighboursOfARingAreNoFartherApartThanTheSpacing) {
+  const ConicalHole cone;
+  const auto points = surface_points(cone);
+  const double wall = cone.depth / std::cos(cone.half_angle);
+  EXPECT_EQ(points.back().position.z(), 0.0);
+  // Each point has one on its own ring and one on the ring below within the spacing: none is further than its diagonal.
+  for (const SurfacePoint& point : points) {
+    double nearest = wall;
+    for (const SurfacePoint& other : points) {
+      if (&other != &point) nearest = std::min(nearest, (other.position - point.position).norm());
+    }
+    EXPECT_LE(nearest, longest(cone.spacing));
+  }
+}
+
 TEST(SlotShell, IsTwoFacesThatLookAtEachOther) {
   Random random(5);
   for (int i = 0; i < 20; ++i) {
