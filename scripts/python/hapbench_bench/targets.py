@@ -44,6 +44,9 @@ GROUPS = (
         *searches("T2"),
         Row("step/T2", "search/brute_force/T2", 0.014),
         Row("step/T2_proxy", "step/T2", 2.0),
+        Row("step/T1_mesh", "step/T1", 4.0),
+        Row("step/T2_mesh", "step/T2", 4.0),
+        Row("step/T3_mesh", "step/T3", 4.0),
         Row("ideal_trajectory/row", "step/T2", 3.0),
     ],
     [
