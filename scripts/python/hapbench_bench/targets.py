@@ -44,9 +44,6 @@ GROUPS = (
         *searches("T2"),
         Row("step/T2", "search/brute_force/T2", 0.014),
         Row("step/T2_proxy", "step/T2", 2.0),
-        Row("step/T1_mesh", "step/T1", 4.0),
-        Row("step/T2_mesh", "step/T2", 4.0),
-        Row("step/T3_mesh", "step/T3", 4.0),
         Row("ideal_trajectory/row", "step/T2", 3.0),
     ],
     [
@@ -58,6 +55,7 @@ GROUPS = (
         Row("step/free_air", "search/brute_force/T3", 6e-4),
     ],
     [Row("step/upright_proxy", "step/upright", 4.0)],
+    [Row(f"step/{task}_mesh", f"step/{task}", 4.0) for task in ("T1", "T2", "T3")],
     [Row("shell/build", "search/brute_force/T1", 0.35, times=1000, wall=True)],
     [contacts_grow("step"), contacts_grow("law/shaped_stiffness")],
     [
