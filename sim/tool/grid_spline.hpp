@@ -1,5 +1,7 @@
 #pragma once
 
+#include <bit>
+#include <cstdint>
 #include <cstring>
 
 #include "sim/core/simd.hpp"
@@ -9,14 +11,13 @@
 /// The field of a SignedDistanceGrid at points of the world. For source files only (see simd.hpp).
 namespace hapbench {
 
-/// Weights of the three nodes along an axis at t in [-1/2, 1/2] from the middle one, never negative, and their slopes.
-template <class T>
+/// Weights of the three nodes along an axis at t in [-1/2, 1/2] from the middle one, never negative.
 struct QuadraticWeights {
-  T below, here, above;
-  explicit QuadraticWeights(const T& t)
-      : below(T(0.5) * (T(0.5) - t) * (T(0.5) - t)),
-        here(T(0.75) - t * t),
-        above(T(0.5) * (T(0.5) + t) * (T(0.5) + t)) {}
+  simd::Pack below, here, above;
+  explicit QuadraticWeights(const simd::Pack& t)
+      : below(simd::Pack(0.5) * (simd::Pack(0.5) - t) * (simd::Pack(0.5) - t)),
+        here(simd::Pack(0.75) - t * t),
+        above(simd::Pack(0.5) * (simd::Pack(0.5) + t) * (simd::Pack(0.5) + t)) {}
 };
 
 /// From the world to the coordinates of a grid's nodes, at one pose: u = turn (x - position) + shift.
@@ -71,6 +72,7 @@ struct GridPack {
     clamp_one(u, f.last.x());
     clamp_one(v, f.last.y());
     clamp_one(w, f.last.z());
+    within = u >= Pack(1.0);
     return out2;
   }
 };
@@ -81,16 +83,22 @@ inline simd::Pack nearest_whole(const simd::Pack& a) {
   return (a + big) - big;
 }
 
-/// Which nodes eight points within the grid are nearest to.
+/// Which nodes eight points are nearest to; those of points that are not `within` the grid are its first.
 struct NearestNodes {
   simd::Pack i, j, k;
-  alignas(64) double number[simd::lanes];  ///< in the arrays of the grid
 
   NearestNodes(const GridFrame& f, const GridPack& q)
       : i(nearest_whole(q.u)), j(nearest_whole(q.v)), k(nearest_whole(q.w)) {
-    simd::store(i * simd::Pack(f.layer) + j * simd::Pack(f.row) + k, number);
+    const simd::Pack number = i * simd::Pack(f.layer) + j * simd::Pack(f.row) + k;
+    // Above 2^52 the low bits of a double are a whole number: no conversion.
+    simd::store(simd::select(q.within, number, simd::Pack(0.0)) + simd::Pack(0x1p52), numbers_);
   }
-  std::size_t operator[](std::size_t lane) const { return static_cast<std::size_t>(number[lane]); }
+  std::size_t operator[](std::size_t lane) const {
+    return static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(numbers_[lane]));
+  }
+
+ private:
+  alignas(64) double numbers_[simd::lanes];
 };
 
 struct FieldValue {
@@ -105,16 +113,13 @@ class GridSpline {
   GridSpline(const SignedDistanceGrid& grid, const GridPack& q, const NearestNodes& nearest)
       : values_(grid.values()), row_(grid.nodes().count[2]), layer_(grid.nodes().count[1] * row_) {
     const simd::Pack t[] = {q.u - nearest.i, q.v - nearest.j, q.w - nearest.k};
-    const QuadraticWeights<simd::Pack> x(t[0]), y(t[1]), z(t[2]);
-    const simd::Pack* const wx[] = {&x.below, &x.here, &x.above};
-    const simd::Pack* const wy[] = {&y.below, &y.here, &y.above};
-    for (std::size_t a = 0; a < 3; ++a) {
-      for (std::size_t b = 0; b < 3; ++b) simd::store(*wx[a] * *wy[b], rows_[3 * a + b]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const QuadraticWeights weights(t[axis]);
+      simd::store(weights.below, weights_[axis][0]);
+      simd::store(weights.here, weights_[axis][1]);
+      simd::store(weights.above, weights_[axis][2]);
+      simd::store(t[axis], t_[axis]);
     }
-    simd::store(z.below, along_[0]);
-    simd::store(z.here, along_[1]);
-    simd::store(z.above, along_[2]);
-    for (std::size_t a = 0; a < 3; ++a) simd::store(t[a], t_[a]);
   }
 
   /// `node` is the one nearest to the point.
@@ -122,45 +127,49 @@ class GridSpline {
     const double* const corner = values_ + node - layer_ - row_ - 1;
     Four sum = {};
     for (std::size_t a = 0; a < 3; ++a) {
+      Four layer = {};
       for (std::size_t b = 0; b < 3; ++b) {
         Four row;
         std::memcpy(&row, corner + a * layer_ + b * row_, sizeof(row));
-        sum += rows_[3 * a + b][lane] * row;
+        layer += weights_[1][b][lane] * row;
       }
+      sum += weights_[0][a][lane] * layer;
     }
-    return sum[0] * along_[0][lane] + sum[1] * along_[1][lane] + sum[2] * along_[2][lane];
+    return along_row(lane, sum);
   }
 
   FieldValue value_and_gradient(std::size_t lane, std::size_t node) const {
     const double x = t_[0][lane], y = t_[1][lane], z = t_[2][lane];
-    const QuadraticWeights<double> wx(x), wy(y);
-    const double weights_x[] = {wx.below, wx.here, wx.above}, weights_y[] = {wy.below, wy.here, wy.above};
     const double slopes_x[] = {x - 0.5, -2.0 * x, x + 0.5}, slopes_y[] = {y - 0.5, -2.0 * y, y + 0.5};
     const double* const corner = values_ + node - layer_ - row_ - 1;
-    Four along_x = {}, along_y = {}, sum = {};
+    Four sum = {}, by_x = {}, by_y = {};
     for (std::size_t a = 0; a < 3; ++a) {
+      Four layer = {}, slope = {};
       for (std::size_t b = 0; b < 3; ++b) {
         Four row;
         std::memcpy(&row, corner + a * layer_ + b * row_, sizeof(row));
-        sum += rows_[3 * a + b][lane] * row;
-        along_x += slopes_x[a] * weights_y[b] * row;
-        along_y += weights_x[a] * slopes_y[b] * row;
+        layer += weights_[1][b][lane] * row;
+        slope += slopes_y[b] * row;
       }
+      sum += weights_[0][a][lane] * layer;
+      by_x += slopes_x[a] * layer;
+      by_y += weights_[0][a][lane] * slope;
     }
-    const auto with = [this, lane](const Four& f) {
-      return f[0] * along_[0][lane] + f[1] * along_[1][lane] + f[2] * along_[2][lane];
-    };
-    return {with(sum), {with(along_x), with(along_y), sum[0] * (z - 0.5) - sum[1] * 2.0 * z + sum[2] * (z + 0.5)}};
+    const double by_z = (z - 0.5) * sum[0] - 2.0 * z * sum[1] + (z + 0.5) * sum[2];
+    return {along_row(lane, sum), {along_row(lane, by_x), along_row(lane, by_y), by_z}};
   }
 
  private:
   /// Four numbers side by side, added and multiplied one by one in every build.
   using Four [[gnu::vector_size(4 * sizeof(double))]] = double;
 
+  double along_row(std::size_t lane, const Four& row) const {
+    return weights_[2][0][lane] * row[0] + weights_[2][1][lane] * row[1] + weights_[2][2][lane] * row[2];
+  }
+
   const double* values_;
   std::size_t row_, layer_;
-  alignas(64) double rows_[9][simd::lanes];
-  alignas(64) double along_[3][simd::lanes];
+  alignas(64) double weights_[3][3][simd::lanes];  ///< by axis, node and point
   alignas(64) double t_[3][simd::lanes];
 };
 

@@ -39,6 +39,7 @@ class FieldPack {
   FieldPack(const SignedDistanceGrid& grid, const GridFrame& frame, GridPack q)
       : out2_(q.clamp(frame)), nearest_(frame, q), spline_(grid, q, nearest_) {
     simd::store(out2_, out_);
+    if (!simd::any(out2_ > Pack(0.0))) return;
     for (double& out : out_) out = frame.spacing * std::sqrt(out);
   }
 

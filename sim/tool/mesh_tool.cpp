@@ -28,15 +28,14 @@ void for_each_bit(std::uint8_t bits, const Use& use) {
 std::uint8_t inside_bits(const SignedDistanceGrid& grid, const GridFrame& frame, const double* x, const double* y,
                          const double* z) {
   const GridPack q(frame, x, y, z);
-  const std::uint8_t within = simd::bits(q.within);
-  if (within == 0) return 0;
+  if (!simd::any(q.within)) return 0;
   const NearestNodes nearest(frame, q);
   unsigned inside = 0, mixed = 0;
-  for_each_bit(within, [&](std::size_t k) {
-    const unsigned kind = grid.kinds()[nearest[k]];
+  for (std::size_t k = 0; k < simd::lanes; ++k) {
+    const unsigned kind = grid.kinds()[nearest[k]];  // the first node is outside
     inside |= (kind & 1u) << k;
     mixed |= (kind >> 1) << k;
-  });
+  }
   if (mixed == 0) return static_cast<std::uint8_t>(inside);
   const GridSpline spline(grid, q, nearest);
   for_each_bit(static_cast<std::uint8_t>(mixed),
