@@ -2,6 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
+#include "algorithms/registry.hpp"
+#include "algorithms/shell_source.hpp"
+#include "sim/tool/revolved.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
 
@@ -33,15 +38,45 @@ class TimedRun::MemoryRecorder final : public Observer {
   std::vector<Row> rows_;
 };
 
+namespace {
+
+/// The drill with a side of eight lines: bulged, or else with grooves.
+std::shared_ptr<const ToolShape> as_revolved(const Cylinder& drill, bool bulged) {
+  constexpr double kOff = 1e-7;
+  std::vector<ProfilePoint> profile;
+  for (int k = 0; k <= 8; ++k) {
+    const double off = bulged ? kOff * (k - 4) * (k - 4) / 16.0 : kOff * (k % 2);
+    profile.push_back({drill.length() * (k - 8) / 8.0, drill.radius() - off});
+  }
+  auto revolved = std::make_shared<Revolved>(std::move(profile), drill.tip());
+  if (revolved->convex() != bulged) throw std::logic_error("the benchmark's tool is not what it is for");
+  return revolved;
+}
+
+/// The parts of a run whose name ends as kSteps says.
+SimulationParts parts_of(const Scenario& scenario, const std::string& name) {
+  SimulationParts parts = assemble(scenario, block_shell(), {});
+  const bool bulged = name.ends_with("_revolved");
+  if (!bulged && !name.ends_with("_grooved")) return parts;
+  const RenderingConfig& rendering = scenario.rendering;
+  parts.tool = as_revolved(make_cylinder(scenario.tool), bulged);
+  parts.source = std::make_unique<ShellSource>(*parts.shell, *parts.tool,
+                                               make_contact_query(*parts.shell, *parts.tool, rendering.skips),
+                                               make_depth_model(rendering), rendering.skips);
+  return parts;
+}
+
+}  // namespace
+
 TimedRun::TimedRun(const std::string& name, Skips skips) {
-  Scenario scenario = step_scenario(name).scenario;
+  Scenario scenario = step_scenario(name.substr(0, name.find("_revolved")).substr(0, name.find("_grooved"))).scenario;
   scenario.rendering.skips = skips;
   const SimulationConfig config = simulation_config(scenario);
   steps_ = config.steps;
   metrics_ = std::make_unique<MetricsObserver>(config.dt);
   passivity_ = std::make_unique<PassivityObserver>(config.dt);
   recorder_ = std::make_unique<MemoryRecorder>(steps_);
-  simulation_ = std::make_unique<Simulation>(config, assemble(scenario, block_shell(), {}),
+  simulation_ = std::make_unique<Simulation>(config, parts_of(scenario, name),
                                              std::vector<Observer*>{metrics_.get(), passivity_.get(), recorder_.get()});
 }
 
