@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "algorithms/registry.hpp"
 #include "algorithms/shell_source.hpp"
 #include "sim/contact/contact_query.hpp"
 #include "sim/tool/cylinder.hpp"
+#include "sim/tool/mesh_tool.hpp"
+#include "sim/tool/revolved.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
 #include "tests/support/tool_meshes.hpp"
@@ -40,7 +44,7 @@ class TimedRun::MemoryRecorder final : public Observer {
 
 namespace {
 
-/// The mesh of the cylinder of all tasks, 128 sides and some 128^3 nodes.
+/// The mesh of the drill of all tasks, 128 sides and some 128^3 nodes.
 std::shared_ptr<const SignedDistanceGrid> drill_grid(const Cylinder& drill) {
   static const auto grid = [&drill] {
     const TriangleSoup soup = test::cylinder_mesh(drill.radius(), drill.length(), 128);
@@ -49,27 +53,50 @@ std::shared_ptr<const SignedDistanceGrid> drill_grid(const Cylinder& drill) {
   return grid;
 }
 
-/// The same run with a mesh of its drill.
-void take_mesh(const RenderingConfig& rendering, SimulationParts& parts) {
-  parts.tool = std::make_shared<MeshTool>(drill_grid(dynamic_cast<const Cylinder&>(*parts.tool)));
+/// The drill with a side of eight lines: bulged, or else with grooves.
+std::shared_ptr<const ToolShape> as_revolved(const Cylinder& drill, bool bulged) {
+  constexpr double kOff = 1e-7;
+  std::vector<ProfilePoint> profile;
+  for (int k = 0; k <= 8; ++k) {
+    const double off = bulged ? kOff * (k - 4) * (k - 4) / 16.0 : kOff * (k % 2);
+    profile.push_back({drill.length() * (k - 8) / 8.0, drill.radius() - off});
+  }
+  auto revolved = std::make_shared<Revolved>(std::move(profile), drill.tip());
+  if (revolved->convex() != bulged) throw std::logic_error("the benchmark's tool is not what it is for");
+  return revolved;
+}
+
+/// The drill in the shape that the end of a name in kSteps says; null for the drill as it is.
+std::shared_ptr<const ToolShape> other_shape(const Cylinder& drill, const std::string& name) {
+  if (name.ends_with("_mesh")) return std::make_shared<MeshTool>(drill_grid(drill));
+  if (name.ends_with("_revolved")) return as_revolved(drill, true);
+  if (name.ends_with("_grooved")) return as_revolved(drill, false);
+  return nullptr;
+}
+
+SimulationParts parts_of(const Scenario& scenario, const std::string& name) {
+  SimulationParts parts = assemble(scenario, block_shell(), {});
+  const auto shape = other_shape(dynamic_cast<const Cylinder&>(*parts.tool), name);
+  if (!shape) return parts;
+  const RenderingConfig& rendering = scenario.rendering;
+  parts.tool = shape;
   parts.source = std::make_unique<ShellSource>(*parts.shell, *parts.tool,
                                                make_contact_query(*parts.shell, *parts.tool, rendering.skips),
                                                make_depth_model(rendering), rendering.skips);
+  return parts;
 }
 
 }  // namespace
 
 TimedRun::TimedRun(const std::string& name, Skips skips) {
-  Scenario scenario = step_scenario(name).scenario;
+  Scenario scenario = step_scenario(name.substr(0, name.find("_revolved")).substr(0, name.find("_grooved"))).scenario;
   scenario.rendering.skips = skips;
   const SimulationConfig config = simulation_config(scenario);
   steps_ = config.steps;
   metrics_ = std::make_unique<MetricsObserver>(config.dt);
   passivity_ = std::make_unique<PassivityObserver>(config.dt);
   recorder_ = std::make_unique<MemoryRecorder>(steps_);
-  SimulationParts parts = assemble(scenario, block_shell(), {});
-  if (name.ends_with("_mesh")) take_mesh(scenario.rendering, parts);
-  simulation_ = std::make_unique<Simulation>(config, std::move(parts),
+  simulation_ = std::make_unique<Simulation>(config, parts_of(scenario, name),
                                              std::vector<Observer*>{metrics_.get(), passivity_.get(), recorder_.get()});
 }
 

@@ -10,15 +10,16 @@
 namespace hapbench::bench {
 
 /// The runs whose steps are timed.
-inline constexpr const char* kSteps[] = {"T1",       "T2",      "T2_proxy",      "T3",      "unreduced_1000",
-                                         "free_air", "upright", "upright_proxy", "T1_mesh", "T2_mesh",
-                                         "T3_mesh"};
+inline constexpr const char* kSteps[] = {
+    "T1",         "T2",      "T2_proxy", "T3",      "T1_revolved",    "T2_revolved", "T3_revolved",
+    "T3_grooved", "T1_mesh", "T2_mesh",  "T3_mesh", "unreduced_1000", "free_air",    "upright",     "upright_proxy"};
 
 /// Steps before the first that is timed: by then T1 has touched the block and every buffer has been used.
 inline constexpr std::uint64_t kWarmUp = 1024;
 
-/// A run of one of kSteps as `hapbench run` makes it, with its metrics, and a recorder that keeps in memory what
-/// trajectory.csv would say.
+/// A run of one of kSteps as `hapbench run` makes it (`_revolved` and `_grooved` with the drill as a solid of
+/// revolution whose profile has eight lines within 0.1 um of its side, convex or not, so that it meets the same
+/// points), with its metrics, and a recorder that keeps in memory what trajectory.csv would say.
 class TimedRun {
  public:
   explicit TimedRun(const std::string& name, Skips skips = Skips::taken);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "sim/contact/shell_query.hpp"
 #include "sim/core/random.hpp"
 #include "sim/tool/cylinder.hpp"
@@ -21,10 +23,12 @@ template <class Query>
 class SearchPair {
  public:
   SearchPair(const std::vector<SurfacePoint>& points, double cell_size, const Cylinder& tool)
-      : tool_(tool),
+      : SearchPair(points, cell_size, std::make_shared<Cylinder>(tool)) {}
+  SearchPair(const std::vector<SurfacePoint>& points, double cell_size, std::shared_ptr<const ToolShape> tool)
+      : tool_(std::move(tool)),
         shell_(points, cell_size),
-        search_(shell_, tool_),
-        brute_(shell_, tool_),
+        search_(shell_, *tool_),
+        brute_(shell_, *tool_),
         found_(search_.capacity()),
         all_(points.size()) {}
 
@@ -39,7 +43,7 @@ class SearchPair {
   const SearchWork& work() const { return search_.work(); }
 
  private:
-  Cylinder tool_;
+  std::shared_ptr<const ToolShape> tool_;
   PointShell shell_;
   Query search_;
   ShellQuery brute_;

@@ -8,10 +8,12 @@
 #include <ostream>
 #include <tuple>
 
+#include "algorithms/shell_source.hpp"
 #include "results/allocations/allocations.hpp"
 #include "sim/core/aligned.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/setting.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace hapbench {
 namespace {
@@ -226,6 +228,39 @@ TEST_P(NoAllocationOf, AnIntegrator) {
     simulation.run();
     EXPECT_EQ(count.value(), 0u);
     EXPECT_GT(observer.rows_with_contact, 0);
+  }
+}
+
+// ---- And with every kind of tool.
+
+class NoAllocationWith : public testing::TestWithParam<test::ToolKind> {};
+INSTANTIATE_TEST_SUITE_P(Every, NoAllocationWith,
+                         testing::ValuesIn(test::tool_kinds().begin(), test::tool_kinds().end()),
+                         [](const auto& kind) { return kind.param.name; });
+
+TEST_P(NoAllocationWith, ATool) {
+  for (const char* algorithm : {"summation", "proxy", "normal_projection"}) {
+    for (const DepthModelEntry& model : depth_models()) {
+      RenderingConfig config;
+      config.algorithm = algorithm;
+      config.depth_model = model.info->name;
+      if (algorithm == std::string_view("normal_projection") && config.depth_model != algorithm) continue;
+      const Instance instance{algorithm, config.depth_model, &kStages[0], false};
+      Random random(1);
+      SimulationParts parts = parts_of(instance, config);
+      parts.tool = GetParam().make(random, 0.001).shape;
+      parts.source = std::make_unique<ShellSource>(*parts.shell, *parts.tool,
+                                                   make_contact_query(*parts.shell, *parts.tool, Skips::taken),
+                                                   make_depth_model(config));
+      ContactCounter observer;
+      Simulation simulation(test::free_run_config(setting_of(instance), config, 300), std::move(parts), {&observer});
+      const AllocationCount count;
+      simulation.run();
+      simulation.reset();
+      simulation.run();
+      EXPECT_EQ(count.value(), 0u);
+      EXPECT_GT(observer.rows_with_contact, 0);
+    }
   }
 }
 

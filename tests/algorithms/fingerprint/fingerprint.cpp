@@ -1,5 +1,6 @@
 // Prints a hash of every bit of what the engine and the algorithms compute, one line per case. Built once with each
 // variant of the libraries; their outputs must be the same text.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <iomanip>
@@ -17,6 +18,7 @@
 #include "tests/support/setting.hpp"
 #include "tests/support/tool_geometry.hpp"
 #include "tests/support/tool_meshes.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace hapbench::test {
 namespace {
@@ -175,6 +177,39 @@ void print_mesh_tool() {
   print("mesh tool", hash.value());
 }
 
+/// Every kind of tool on points everywhere in, on and around it: search, depths, constraints, foremost places.
+void print_tools(const ToolKind& kind) {
+  Random random(4);
+  Hash hash;
+  for (int i = 0; i < 200; ++i) {
+    const DefinedTool tool = kind.make(random, 0.001);
+    const ToolPose pose = random_pose(random);
+    std::vector<SurfacePoint> points(64);
+    for (SurfacePoint& p : points) {
+      p = {random.below(2) == 0 ? tool.near_point(pose, random) : tool.surface_point(pose, random), random.direction()};
+    }
+    const PointShell shell(points, 0.0);
+    NeighbourListQuery query(shell, *tool.shape);
+    ContactBuffer contacts(std::max<std::size_t>(query.capacity(), 1));
+    query.contacts_at(pose, contacts);
+    tool.shape->shortest_depths(pose, contacts);
+    tool.shape->shortest_gradients(pose, contacts);
+    hash.add(contacts);
+    std::vector<double> exits(contacts.size());
+    tool.shape->exit_distances(pose, contacts, exits.data());
+    for (const double exit : exits) hash.add(exit);
+
+    ContactBuffer all(points.size());
+    for (std::uint32_t k = 0; k < points.size(); ++k) all.push(k, points[k].position, points[k].normal);
+    tool.shape->surface_constraints(pose, 1e-3 * random.direction(), 1e-5, all);
+    hash.add(all);
+    AlignedDoubles x(points.size()), y(x), z(x);
+    tool.shape->foremost_places(pose, all, {x.data(), y.data(), z.data()});
+    for (std::size_t k = 0; k < points.size(); ++k) hash.add(Vec3(x[k], y[k], z[k]));
+  }
+  print(std::string("tool ") + kind.name, hash.value());
+}
+
 /// The two iterations that could amplify a difference in the last bit, on the sets that stress them.
 void print_shaping(const GradientFamily& family) {
   Random random(3);
@@ -199,6 +234,7 @@ int main() {
   for (const GradientFamily& family : gradient_families()) print_shaping(family);
   for (const DepthModelEntry& model : depth_models()) print_depths(model);
   print_mesh_tool();
+  for (const ToolKind& kind : tool_kinds()) print_tools(kind);
   for (const AlgorithmEntry& algorithm : algorithms()) {
     print_springs(algorithm);
     print_integrators(algorithm);

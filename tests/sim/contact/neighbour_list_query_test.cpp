@@ -9,6 +9,7 @@
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/searches.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 /// The contact search of a run must answer exactly as brute force does, whatever the tool did before: same points, same
 /// order, same bits.
@@ -112,6 +113,29 @@ TEST(NeighbourListQuery, SurvivesAnEmptyShellAndPosesThatAreNotFinite) {
     EXPECT_TRUE(pair.agree_at({{0, 0, bad}, {0, 0, -1}}));
     EXPECT_TRUE(pair.agree_at({{0, 0, 0}, {0, 0, -1}}));
   }
+}
+
+class NeighbourListQueryOfTool : public testing::TestWithParam<test::ToolKind> {};
+INSTANTIATE_TEST_SUITE_P(EveryKind, NeighbourListQueryOfTool,
+                         testing::ValuesIn(test::tool_kinds().begin(), test::tool_kinds().end()),
+                         [](const auto& kind) { return kind.param.name; });
+
+TEST_P(NeighbourListQueryOfTool, FindsWhatBruteForceFinds) {
+  Random random(13);
+  std::uint64_t contacts = 0;
+  const std::size_t shells = cases(2000 / test::tool_kinds().size());
+  for (std::size_t s = 0; s < shells; ++s) {
+    const double size = std::pow(10.0, random.uniform(-4.0, 0.0));
+    const test::DefinedTool tool = GetParam().make(random, 0.5 * size);
+    Pair pair(random_shell(random, size), random.below(2) == 0 ? 0.0 : size * random.uniform(0.01, 1.0), tool.shape);
+    ToolPose pose{Vec3::Zero(), random.direction()};
+    for (int k = 0; k < 500; ++k) {
+      pose = next_pose(pose, random, size, 0.2 * tool.shape->half_width());
+      ASSERT_TRUE(pair.agree_at(pose)) << "shell " << s << ", pose " << k;
+    }
+    contacts += pair.contacts();
+  }
+  EXPECT_GT(contacts, shells * 250);
 }
 
 }  // namespace
