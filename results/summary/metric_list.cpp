@@ -239,6 +239,8 @@ MetricList metric_list(const ForceFidelity& f) {
                  "time by which f follows f_m: where their correlation (Pearson's, all components) is greatest, within "
                  "0.1 s; none where it is not or where a force does not vary",
                  f.lag)};
+}
+
 MetricList metric_list(const LostTorqueMetrics& m) {
   return {
       number_if(m.rows_in_contact > 0, "lost_mean_Nm", "Nm",

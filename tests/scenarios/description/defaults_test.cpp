@@ -45,6 +45,7 @@ TEST(Defaults, ThatHoldEverywhere) {
                    {"/motion/orientation/lean", "[1.0, 0.0, 0.0]"},
                    {"/motion/orientation/tilt_rad", "0.0"},
                    {"/motion/orientation/azimuth_rad", "0.0"},
+                   {"/motion/orientation/roll_rad", "0.0"},
                    {"/motion/position", R"({"type": "free"})"},
                    {"/hand", R"({"type": "none"})"},
                    {"/device", R"({"type": "ideal", "force_limit_N": null})"},
@@ -64,7 +65,7 @@ TEST(Defaults, ThatHoldEverywhere) {
                    {"/integrator", R"({"type": "leapfrog"})"},
                    {"/record", R"({"trajectory": true, "every": 1, "ratio_iterations": [], "contacts": false,
                                    "stiffness_tensor": false, "timing": false, "energy": false, "ideal_trajectory": false,
-                                   "force_reference": false})"},
+                                   "force_reference": false, "pose": false, "torque": false})"},
                    {"/rendering/reduction", "null"},
                    {"/metrics", R"({"from_s": null, "settling_s": 0.05})"},
                    {"/expect/outcome", R"(["completes", "leaves_hole", "tool_horizontal"])"}});
