@@ -69,6 +69,8 @@ class Checker {
     if (!std::isfinite(p.s) || !std::isfinite(p.rho)) refuse(i, "both numbers have to be finite");
     if (p.s > 0.0) refuse(i, "s has to be <= 0: the tip centre has s = 0, and the shank lies behind it");
     if (p.rho < 0.0) refuse(i, "rho, the distance from the axis, has to be >= 0");
+    if (i > 0 && p.rho == 0.0 && points_[i - 1].rho == 0.0)
+      refuse(i, "on the axis as the point before: no body between");
     const bool inner = i > 0 && i + 1 < points_.size();
     if (inner && p.rho == 0.0) refuse(i, "only the first and the last point may lie on the axis");
     if (i > 0 && p == points_[i - 1]) refuse(i, "the same as the point before");

@@ -44,6 +44,14 @@ PackVector unit_or(const Mask& defined, const PackVector& v, const Pack& length,
   return chosen(defined, {v.x * scale, v.y * scale, v.z * scale}, other);
 }
 
+/// The unit vector from the axis to the points, square to the axis however near they are, and `any` where undefined.
+PackVector away_from_axis(const AxialPack& q, const PackVector& axis, const Mask& defined, const PackVector& any) {
+  const PackVector rho{q.rho_x, q.rho_y, q.rho_z};
+  // The radial vector is square to it up to a rounding of s only, which is large beside a small rho.
+  const PackVector square = combined(Pack(1.0), rho, -rho.dot(axis), axis);
+  return unit_or(defined, square, simd::sqrt(square.dot(square)), any);
+}
+
 }  // namespace
 
 void Revolved::surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack_wanted,
@@ -55,7 +63,7 @@ void Revolved::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
     const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
     const Pack rho = simd::sqrt(q.rho2);
-    const PackVector out = unit_or(rho > on_axis, {q.rho_x, q.rho_y, q.rho_z}, rho, any);
+    const PackVector out = away_from_axis(q, axis, rho > on_axis, any);
     const Pack from_centre = simd::sqrt(q.distance2());
     const Mask in_tip = q.s > zero && from_centre <= ball;
     const Mask inside = in_section(m, q.s >= low && q.s <= high, q.s, rho) || in_tip;

@@ -41,13 +41,16 @@ struct AxialRay {
 /// written so that nothing cancels near the axis or the cone.
 struct ConeCrossing {
   double k, m, a, b, c, root;
+  bool meets;  ///< a ray from within a convex cone does, whatever rounding says
 
   ConeCrossing(const HalfPlane& cone, const AxialRay& ray) : k(cone.offset - cone.ns * ray.s), m(cone.ns * ray.slope) {
     const double nr = cone.nr;
     a = (nr * ray.u_length - m) * (nr * ray.u_length + m);
     b = nr * nr * ray.rho.dot(ray.u) + k * m;
     c = (nr * ray.rho_length - k) * (nr * ray.rho_length + k);
-    root = std::abs(nr) * std::sqrt(std::max(0.0, (k * ray.u + m * ray.rho).squaredNorm() - nr * nr * ray.sine2));
+    const double discriminant = (k * ray.u + m * ray.rho).squaredNorm() - nr * nr * ray.sine2;
+    meets = discriminant >= 0.0;
+    root = std::abs(nr) * std::sqrt(std::max(0.0, discriminant));
   }
 };
 
@@ -80,6 +83,7 @@ double exit_through(const Meridian::Line& line, const AxialRay& ray, double reac
     return on_line(d, (ray.rho + d * ray.u).norm()) ? std::max(0.0, d) : kNever;
   }
   const ConeCrossing q(line, ray);
+  if (!q.meets) return kNever;
   const double sum = -(q.b + std::copysign(q.root, q.b));
   double first = kNever;
   for (const double d : {sum / q.a, q.c / sum}) {

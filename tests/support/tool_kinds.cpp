@@ -107,7 +107,7 @@ DefinedTool undercut(Random& random, double unit) {
   std::vector<ProfilePoint> points = {{-2.0 * length, shank},
                                       {-length, shank},
                                       {-length * random.uniform(1.1, 1.6), head},
-                                      {0.0, random.uniform(0.5, 1.0) * head}};
+                                      {0.0, shank + random.uniform(0.3, 1.0) * (head - shank)}};
   if (random.below(2) == 0) points.push_back({-0.5 * length, 0.5 * shank});  // hollow, to a disc
   if (random.below(2) == 0 && points.size() == 5) points.back().rho = 0.0;   // or to a point
   return defined(std::move(points), Tip::flat);

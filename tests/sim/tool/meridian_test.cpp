@@ -35,12 +35,12 @@ TEST(Meridian, SaysWhichPointIsWrongAndWhy) {
   expect_refused("profile[2] = [-1, 1]", "same as the point before", {{-2, 1}, {-1, 1}, {-1, 1}, {0, 1}});
   expect_refused("profile[1] = [-2, 1]", "from the shank's end to the tip", {{0, 1}, {-2, 1}});
   expect_refused("profile[1] = [-1, 1]", "goes back on itself", {{-2, 1}, {-1, 1}, {-1.5, 1}, {0, 2}});
-  expect_refused("profile[1] = [0, 2]", "goes back on itself", {{-2, 1}, {0, 2}, {0, 0.5}, {0, 1}});
+  expect_refused("profile[2] = [0, 0.5]", "goes back on itself", {{-2, 1}, {0, 2}, {0, 0.5}, {0, 1}});
   expect_refused("profile[2]", "line from profile[0] to profile[1]", {{-3, 1}, {-1, 2}, {-2, 3}, {-2.5, 0.5}, {0, 1}});
   expect_refused("profile[1]", "disc that closes the shank's end", {{-2, 2}, {-1, 1}, {-3, 1}, {-3, 3}, {0, 3}});
   expect_refused("profile[1] = [-1, 1]", "beside it: s = 0", {{-2, 1}, {-1, 1}}, Tip::round);
   expect_refused("profile[1] = [0, 0]", "beside it: s = 0, rho > 0", {{-2, 1}, {0, 0}}, Tip::round);
-  expect_refused("profile[0] = [-2, 0]", "touches itself", {{-2, 0}, {0, 0}});
+  expect_refused("profile[1] = [0, 0]", "no body", {{-2, 0}, {0, 0}});
 }
 
 TEST(Meridian, TakesWhateverDoesNotMeetItself) {
