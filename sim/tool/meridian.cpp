@@ -215,14 +215,21 @@ void Meridian::add_parts() {
       below.reset();
     }
   }
+  const auto add_height = [this](std::size_t i) {
+    const ProfilePoint a = profile[i], b = profile[i + 1];
+    const double slope = (b.rho - a.rho) / (b.s - a.s);
+    heights.push_back({a.rho - slope * a.s, slope});
+  };
   for (const Built& part : built) {
-    const std::size_t first = planes.size();
-    for (const std::size_t i : part.above) planes.push_back(lines[i]);
-    if (part.below) planes.push_back(lines[*part.below]);
-    parts.push_back({part.low, part.high, first, planes.size()});
+    const std::size_t first = heights.size();
+    for (const std::size_t i : part.above) add_height(i);
+    if (part.below) add_height(*part.below);
+    parts.push_back({part.low, part.high, first, heights.size(), part.below.has_value()});
   }
   const Line& last = lines[of_profile - 1];
   convex = built.size() == 1 && !built[0].below && (tip == Tip::flat || (last.nr > 0.0 && last.ns <= kStraight));
+  if (!convex) return;
+  for (const std::size_t i : built[0].above) planes.push_back(lines[i]);
 }
 
 GrownProfile grown_profile(const Meridian& meridian, double margin) {

@@ -31,10 +31,16 @@ struct Meridian {
     double start;   ///< of the line's first place, in its direction [m]
     double length;  ///< [m]
   };
-  /// The places with low <= s <= high in some of the half planes: convex.
+  /// The line rho = at_tip + slope s.
+  struct Height {
+    double at_tip;  ///< [m]
+    double slope;
+  };
+  /// The places with low <= s <= high on and below some heights, and on and above one if there is any: convex.
   struct Part {
     double low, high;
-    std::size_t first, last;  ///< of `planes`
+    std::size_t first, last;  ///< of `heights`
+    bool above_last;          ///< the last one is that to be above
   };
 
   std::vector<ProfilePoint> profile;
@@ -42,12 +48,13 @@ struct Meridian {
   std::vector<Line> lines;  ///< those of the profile, then the tip's disc, then the shank's
   /// The section with s <= 0, cut into convex parts at the profile's corners that turn inwards.
   std::vector<Part> parts;
-  std::vector<HalfPlane> planes;
-  bool convex;       ///< the body; corners that turn inwards by less than 1e-12 rad count as straight
-  double low, high;  ///< range of s; of a flat tip's body, or of the section behind a round tip
-  double widest;     ///< largest rho
-  double reach;      ///< distance of the furthest place from the tip centre
-  double ball;       ///< radius of a round tip; 0 of a flat one
+  std::vector<Height> heights;
+  std::vector<HalfPlane> planes;  ///< of a convex body: those on whose boundary the profile lies, ends excepted
+  bool convex;                    ///< the body; corners that turn inwards by less than 1e-12 rad count as straight
+  double low, high;               ///< range of s; of a flat tip's body, or of the section behind a round tip
+  double widest;                  ///< largest rho
+  double reach;                   ///< distance of the furthest place from the tip centre
+  double ball;                    ///< radius of a round tip; 0 of a flat one
 
  private:
   void add_lines();

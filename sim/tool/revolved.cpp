@@ -26,7 +26,7 @@ void Revolved::with_test(const Use& use) const {
   const Pack low(meridian_.low), high(meridian_.high), widest2(widest2_), ball2(ball2_), zero(0.0);
   const auto in_profile = [=, this](const AxialPack& q) {
     const Mask around = q.s >= low && q.s <= high && q.rho2 <= widest2;
-    return simd::any(around) ? in_section(meridian_, around, q.s, simd::sqrt(q.rho2)) : around;
+    return simd::any(around) ? in_section(meridian_, around, q.s, q.rho2) : around;
   };
   if (meridian_.tip == Tip::flat) return use(in_profile);
   use([=](const AxialPack& q) { return in_profile(q) || (q.s > zero && q.distance2() <= ball2); });
@@ -53,7 +53,7 @@ void Revolved::mark_near(const ToolPose& pose, double margin, const PointArrays&
     if (!simd::any(around)) return around;
     const Pack rho = simd::sqrt(q.rho2);
     const Mask near_profile = m.convex ? convex_depth(m, q.s, rho) >= -within
-                                       : in_section(m, around, q.s, rho) || nearest_distance(m, q.s, rho) <= within;
+                                       : in_section(m, around, q.s, q.rho2) || nearest_distance(m, q.s, rho) <= within;
     return round ? around && (near_profile || (q.s > zero && q.distance2() <= ball2)) : around && near_profile;
   });
 }

@@ -12,15 +12,23 @@ inline simd::Pack slack(const HalfPlane& plane, const simd::Pack& s, const simd:
   return simd::Pack(plane.offset) - simd::Pack(plane.ns) * s - simd::Pack(plane.nr) * rho;
 }
 
-/// Which points with axial coordinates s and rho lie in the section with s <= 0, as far as `all` are asked for.
+/// Which points with axial coordinate s and squared distance from the axis rho2 lie in the section with s <= 0, as far
+/// as `all` are asked for. Squares of heights, since a root costs as much as four lines.
 inline simd::Mask in_section(const Meridian& meridian, const simd::Mask& all, const simd::Pack& s,
-                             const simd::Pack& rho) {
+                             const simd::Pack& rho2) {
   using simd::Mask, simd::Pack;
-  const Pack zero(0.0);
+  const auto height = [&](std::size_t k) {
+    return Pack(meridian.heights[k].at_tip) + Pack(meridian.heights[k].slope) * s;
+  };
   Mask in = all && !all;
   for (const Meridian::Part& part : meridian.parts) {
     Mask here = all && s >= Pack(part.low) && s <= Pack(part.high);
-    for (std::size_t k = part.first; k < part.last; ++k) here = here && slack(meridian.planes[k], s, rho) >= zero;
+    if (!simd::any(here)) continue;
+    const std::size_t end = part.above_last ? part.last - 1 : part.last;
+    Pack below = height(part.first);
+    for (std::size_t k = part.first + 1; k < end; ++k) below = simd::min(below, height(k));
+    here = here && rho2 <= below * below;
+    if (part.above_last) here = here && rho2 >= height(end) * height(end);
     in = in || here;
   }
   return in;

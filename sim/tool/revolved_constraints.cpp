@@ -66,7 +66,7 @@ void Revolved::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
     const PackVector out = away_from_axis(q, axis, rho > on_axis, any);
     const Pack from_centre = simd::sqrt(q.distance2());
     const Mask in_tip = q.s > zero && from_centre <= ball;
-    const Mask inside = in_section(m, q.s >= low && q.s <= high, q.s, rho) || in_tip;
+    const Mask inside = in_section(m, q.s >= low && q.s <= high, q.s, q.rho2) || in_tip;
 
     const NearestPlace nearest = nearest_place(m, q.s, rho);
     // Seen from outside, a corner lies against the normal.

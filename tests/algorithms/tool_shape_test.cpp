@@ -12,6 +12,7 @@
 #include "tests/support/brick.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/searches.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 /// A shape that nothing but this test knows goes through searches, depth models and algorithms: the interface is all
 /// that they ask of a tool.
@@ -148,6 +149,38 @@ TEST(Proxy, KeepsEveryPointOutOfANewShape) {
     }
     EXPECT_GT(force.spring.z(), 0.0);
   }
+}
+
+TEST(Proxy, KeepsEveryPointOutOfConvexSolidsOfRevolution) {
+  Random random(4);
+  const PointShell shell(surface_points(Plane{0.004, kSpacing}), kSpacing);
+  RenderingConfig config;
+  config.algorithm = "proxy";
+  std::size_t runs = 0;
+  for (std::size_t i = 0; i < cases(100); ++i) {
+    const test::DefinedTool tool = test::tool_kinds()[i % test::tool_kinds().size()].make(random, 0.001);
+    if (!tool.shape->convex()) continue;
+    ShellSource source(shell, *tool.shape, make_contact_query(shell, *tool.shape, Skips::taken),
+                       make_depth_model(config));
+    ContactBuffer contacts(source.capacity());
+    const auto proxy = make_algorithm(config);
+    proxy->prepare({source.capacity(), tool.shape.get(), &shell});
+    proxy->reset();
+    RenderedForce force;
+    const Vec3 axis = (Vec3(0, 0, -1) + 0.5 * random.direction()).normalized();
+    for (int k = 0; k < 60; ++k) {
+      const ToolPose pose{{0.0, 0.0, 0.002 - 0.00005 * k}, axis};
+      source.contacts_at(pose, contacts);
+      proxy->compute({pose, Vec3::Zero()}, contacts, force);
+      const ToolPose there{pose.position + force.spring / config.stiffness, axis};
+      for (std::size_t n = 0; n < shell.size(); ++n) {
+        ASSERT_LE(tool.slack(there, shell.point(n).position.cast<long double>()), 1e-9L) << i << ' ' << k;
+      }
+    }
+    EXPECT_GT(force.spring.z(), 0.0);
+    ++runs;
+  }
+  EXPECT_GT(runs, cases(100) / 4);
 }
 
 }  // namespace

@@ -17,9 +17,9 @@ inline constexpr const char* kSteps[] = {
 /// Steps before the first that is timed: by then T1 has touched the block and every buffer has been used.
 inline constexpr std::uint64_t kWarmUp = 1024;
 
-/// A run of one of kSteps as `hapbench run` makes it (`_revolved` and `_grooved` with the drill as a solid of
-/// revolution whose profile has eight lines within 0.1 um of its side, convex or not, so that it meets the same
-/// points), with its metrics, and a recorder that keeps in memory what trajectory.csv would say.
+/// A run of one of kSteps as `hapbench run` makes it, with its metrics, and a recorder that keeps in memory what
+/// trajectory.csv would say. In `_revolved` the drill is a solid of revolution whose side is cut into eight lines, the
+/// same body; in `_grooved` it has grooves of 0.1 um, so that it is not convex but meets nearly the same points.
 class TimedRun {
  public:
   explicit TimedRun(const std::string& name, Skips skips = Skips::taken);

@@ -248,7 +248,7 @@ TEST_P(NoAllocationWith, ATool) {
       const Instance instance{algorithm, config.depth_model, &kStages[0], false};
       Random random(1);
       SimulationParts parts = parts_of(instance, config);
-      parts.tool = GetParam().make(random, 0.001).shape;
+      parts.tool = GetParam().make(random, 0.01).shape;  // wider than the hole, which is 1 mm wide
       parts.source = std::make_unique<ShellSource>(*parts.shell, *parts.tool,
                                                    make_contact_query(*parts.shell, *parts.tool, Skips::taken),
                                                    make_depth_model(config));
