@@ -12,7 +12,8 @@
 namespace hapbench {
 
 std::string default_metrics_text() {
-  return fmt::format("{}", fmt::join(kDefaultMetrics, ","));
+  return fmt::format("{}; where every scene has a reference force {}", fmt::join(kDefaultMetrics, ","),
+                     fmt::join(kFidelityMetrics, ","));
 }
 
 bool is_failure(std::string_view outcome) {
@@ -24,8 +25,11 @@ LeagueRuns league_runs(const BatchPlan& plan, const BatchReport& report, const s
   LeagueRuns league;
   league.scenarios = plan.names;
   league.algorithms = plan.definition.algorithms;
-  league.metrics = metrics;
-  if (metrics.empty()) league.metrics.assign(std::begin(kDefaultMetrics), std::end(kDefaultMetrics));
+  const bool all_have_reference = std::all_of(report.runs.begin(), report.runs.end(),
+                                              [](const RunReport& run) { return run.summary.fidelity.has_value(); });
+  const std::span<const std::string_view> usual =
+      all_have_reference ? std::span<const std::string_view>(kFidelityMetrics) : kDefaultMetrics;
+  league.metrics = metrics.empty() ? std::vector<std::string>(usual.begin(), usual.end()) : metrics;
   league.seeds = plan.definition.seeds;
   for (std::size_t i = 0; i < plan.size(); ++i) {
     const RunSummary& summary = report.runs[i].summary;

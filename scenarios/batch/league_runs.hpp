@@ -12,13 +12,18 @@ namespace hapbench {
 
 /// What leagues and maps show when nothing is asked for: what the hand feels, and how deep the tool sinks in.
 inline constexpr std::string_view kDefaultMetrics[] = {"force_rms_above_30Hz_N", "force_step_p99_N", "depth_max_m"};
-/// Their names, separated by commas.
+/// The same where every run has a reference force to be compared with: magnitude, direction, artefacts, noise.
+inline constexpr std::string_view kFidelityMetrics[] = {"fidelity.force_error_relative",
+                                                        "fidelity.force_direction_error_rad",
+                                                        "fidelity.force_artefact_share", "force_rms_above_30Hz_N"};
+/// Both, as the help text of an option shows them.
 std::string default_metrics_text();
 
 /// True for an outcome after which a run's numbers say nothing about its algorithm: diverges, no_contact, lost_contact.
 bool is_failure(std::string_view outcome);
 
-/// The runs of a finished batch by the metrics, names of metric_list (default: kDefaultMetrics). A run has failed when
+/// The runs of a finished batch by the metrics, names of metric_list (default: kFidelityMetrics if every
+/// run has a reference force, else kDefaultMetrics). A run has failed when
 /// its outcome is a failure or none that its scenario expects.
 LeagueRuns league_runs(const BatchPlan& plan, const BatchReport& report, const std::vector<std::string>& metrics);
 
