@@ -51,6 +51,27 @@ TEST(ForceFidelity, SplitsTheErrorAlongWhatIsRendered) {
   EXPECT_NEAR(found.direction_error, std::atan2(0.3, 2.0), 1e-15);
 }
 
+TEST(ForceFidelity, CountsWhatLiesAcrossAnIdealForceAsArtefact) {
+  // x rises from 0 as 2 t; the rendered force has as much along y.
+  const ReferenceForce ideal(ReferenceForce::Ideal{Profile(Profile::Ramp{0.0, 2.0}), Profile(0.0), Profile(0.0)});
+  EXPECT_EQ(*ideal.at(0.25), Vec3(0.5, 0, 0));
+  ForceFidelityObserver observer(ideal, kDt, 10);
+  for (std::uint64_t k = 0; k < 10; ++k) {
+    const double f = 2.0 * kDt * static_cast<double>(k);
+    observer.on_step(row(k, {f, f, 0}, {f, f, 0}));
+  }
+  EXPECT_NEAR(*observer.metrics().artefact_share(), std::sqrt(0.5), 1e-15);
+}
+
+TEST(ForceFidelity, IsAllArtefactWhereTheIdealForceIsZero) {
+  const ReferenceForce ideal(ReferenceForce::Ideal{});
+  ForceFidelityObserver observer(ideal, kDt, 10);
+  EXPECT_FALSE(observer.metrics().artefact_share());
+  observer.on_step(row(0, {0.1, 0, 0.2}, {0.1, 0, 0.2}));
+  EXPECT_EQ(*observer.metrics().artefact_share(), 1.0);
+  EXPECT_FALSE(observer.metrics().relative());
+}
+
 TEST(ForceFidelity, WhereNothingIsRenderedTheNormalIsTheMeasuredForces) {
   const ReferenceForce measured = constant({0.3, 0, 2});
   ForceFidelityObserver observer(measured, kDt, 1);

@@ -207,6 +207,8 @@ std::vector<BadInput> wrong_structures() {
       {"FieldWithoutUnit", plane("/time/step", "1"), "/time/step", "nearest valid name: \"step_s\""},
       {"FieldOfAnotherEnvironment", with_value("hole_2d", "/environment/size_m", "1"), "/environment/size_m",
        "unknown field; allowed here: \"type\""},
+      {"ReferenceForceOnAFreeWay", plane("/reference_force", R"({"z_N": 1})"), "/reference_force",
+       "contradicts motion.position of type \"free\""},
       {"FieldOfFreePosition", plane("/motion", R"({"position": {"type": "free", "x_m": 0}})"), "/motion/position/x_m",
        "unknown field"},
       {"EmptyKey", plane("/time", R"({"step_s": 1, "steps": 1}, "": 1)"), "/", "unknown field"},

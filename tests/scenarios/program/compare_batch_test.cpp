@@ -51,6 +51,15 @@ TEST_F(CompareBatch, ShowsALeagueWithinAHundredColumns) {
   }
 }
 
+TEST_F(CompareBatch, TakesTheNameOfAGroupAndRanksByFidelityWhereTheIdealForceIsKnown) {
+  const ProgramRun run = hapbench({"compare", "quality", "--algorithms", "mean,proxy", "--out", file("out")});
+  EXPECT_EQ(run.status, 0) << run.err;
+  for (const char* text : {"cone_in_cone\n", "two_walls\n", "\nfidelity.force_error_relative, less is better\n",
+                           "\nfidelity.force_artefact_share, less is better\n"}) {
+    EXPECT_NE(run.out.find(text), std::string::npos) << text << run.out;
+  }
+}
+
 TEST_F(CompareBatch, KeepsEachRunInAFolderOfItsOwn) {
   compare("out", {"--seeds", "2", "--quiet"});
   for (const char* name : {"league.csv", "press/comparison.csv", "poke/comparison.csv",
