@@ -18,7 +18,9 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(SOURCE / "scripts" / "python"))
 
 from hapbench_pictures.columns import header, read_columns  # noqa: E402  (the path comes first)
-from hapbench_pictures.given import given_runs, labels  # noqa: E402
+from hapbench_pictures.given import given_runs, labels, named  # noqa: E402
+from hapbench_pictures.looks import looks  # noqa: E402
+from hapbench_pictures.plot import legend_columns, legend_of  # noqa: E402
 from hapbench_pictures.reduced import curve, reduced  # noqa: E402
 from hapbench_report.json_input import InputError  # noqa: E402
 from hapbench_report.replay_rows import rows_to_show, settled, sizes, steps, worst_moments  # noqa: E402
@@ -237,12 +239,32 @@ class Plot(Given):
         self.assertEqual(labels(runs), ["mean", "proxy", "summation"])
         runs = given_runs([self.root / "peg" / "mean", self.root / "springs"])
         self.assertEqual(labels(runs), ["peg_in_hole_2d_shaped_stiffness", "springs_limited_mean"])
-        for seed in ("seed_0", "seed_1"):
-            shutil.copytree(self.root / "springs", self.root / "seeds" / "springs_limited_mean" / "mean" / seed)
-            shutil.copytree(self.root / "peg" / "mean", self.root / "seeds" / "peg" / "mean" / seed)
-        self.assertEqual(labels(given_runs([self.root / "seeds"])), [
-            "peg_in_hole_2d_shaped_stiffness, mean, seed_0", "peg_in_hole_2d_shaped_stiffness, mean, seed_1",
-            "springs_limited_mean, mean, seed_0", "springs_limited_mean, mean, seed_1"])
+        runs = self.variants({"seed": 1}, {"seed": 2})
+        self.assertEqual(named(runs), (["mean, seed 1", "mean, seed 2"], ["mean", "mean"]))
+        runs = self.variants({"rendering.stiffness_N_per_m": 10000}, {"rendering.stiffness_N_per_m": 4e4})
+        self.assertEqual(labels(runs), ["K = 10 000 N/m", "K = 40 000 N/m"])
+        runs = self.variants({"hand.mass_kg": 0.1}, {"rendering.mass_kg": 0.33})
+        self.assertIn("rendering.mass_kg=0.33", labels(runs)[1])
+        runs = self.variants({}, {})
+        self.assertEqual(labels(runs), ["mean, 0/springs", "mean, 1/springs"])
+
+    def variants(self, *changes):
+        """Copies of a run whose scenarios have other values."""
+        folder = Path(tempfile.mkdtemp(dir=self.root))
+        for i, change in enumerate(changes):
+            shutil.copytree(self.root / "springs", folder / str(i) / "springs")
+            file = folder / str(i) / "springs" / "scenario.effective.json"
+            scenario = json.loads(file.read_text())
+            for path, value in change.items():
+                section, _, name = path.rpartition(".")
+                (scenario.setdefault(section, {}) if section else scenario)[name] = value
+            file.write_text(json.dumps(scenario))
+        return given_runs([folder])
+
+    def test_the_legend_has_an_entry_for_all_seeds_and_is_not_cut(self):
+        runs = self.variants({"seed": 1}, {"seed": 2}, {"seed": 3})
+        self.assertEqual(list(legend_of(looks(runs, *named(runs)))), ["mean (3 seeds)"])
+        self.assertEqual([legend_columns(["x" * n], 7.0) for n in (5, 30, 90)], [4, 2, 1])
 
     def test_a_sweep_over_two_fields_is_a_map(self):
         said = hapbench("plot", self.root / "sweep", "--metric", "speed_max_m_per_s")

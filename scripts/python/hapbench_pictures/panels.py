@@ -15,12 +15,12 @@ def draw_over_time(ax, quantity, samples, looks):
     share_an_axis(ax, [of[2] for _, _, of in drawn])
     for s, one, (time, low, high) in drawn:
         if low is high:
-            ax.plot(*curve(time, low, high, SPANS), color=one.colour, ls=one.line, label=one.label)
+            ax.plot(*curve(time, low, high, SPANS), color=one.colour, ls=one.line, lw=one.width, label=one.label)
         else:
             time, low, high = reduced(time, low, high, SPANS)
             ax.fill_between(time, low, high, color=one.colour, alpha=0.2, lw=0)
             for edge in (low, high):
-                ax.plot(time, edge, color=one.colour, ls=one.line, lw=0.8, label=one.label if edge is low else None)
+                ax.plot(time, edge, color=one.colour, ls=one.line, lw=min(0.8, one.width), label=one.label if edge is low else None)
         mark_first_touch(ax, s, one)
     ax.set_ylabel(quantity.axis)
     ax.margins(x=0.01)
@@ -53,7 +53,7 @@ def draw_path(ax, plane, samples, looks):
     for s, one in zip(samples, looks):
         rows = corners(s.trajectory)
         way = np.column_stack([s.trajectory[name] for name in names]) * 1e3
-        ax.plot(*way[rows].T, color=one.colour, ls=one.line, lw=1)
+        ax.plot(*way[rows].T, color=one.colour, ls=one.line, lw=min(1, one.width))
         ax.plot(*way[0], marker="o", ms=3.5, mfc="none", color=one.colour)
         touching = np.flatnonzero(s.trajectory["colliding"] > 0)
         if touching.size:

@@ -6,7 +6,7 @@ from hapbench_command import Arguments
 from hapbench_report.json_input import InputError
 
 from .files import write
-from .given import common_folder, given_runs, given_sweep, labels
+from .given import common_folder, given_runs, given_sweep, named
 from .terminal import this_terminal
 
 KINDS = (".svg", ".png", ".pdf")
@@ -59,11 +59,11 @@ def of_runs(options):
 
     runs = given_runs(options.runs)
     quantities, with_path = chosen(options.y, runs)
-    names, samples = labels(runs), samples_of(runs, quantities, with_path)
-    figure = draw(runs, names, quantities, with_path, samples)
+    samples, shown = samples_of(runs, quantities, with_path), looks(runs, *named(runs))
+    figure = draw(runs, shown, quantities, with_path, samples)
     if options.no_sketch or options.quiet:
         return figure, []
-    return figure, sketch(quantities, samples, looks(runs, names), this_terminal())
+    return figure, sketch(quantities, samples, shown, this_terminal())
 
 
 def of_sweep(folder, options):
