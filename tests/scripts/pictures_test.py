@@ -22,6 +22,7 @@ from hapbench_pictures.given import given_runs, labels, named  # noqa: E402
 from hapbench_pictures.looks import looks  # noqa: E402
 from hapbench_pictures.plot import legend_columns, legend_of  # noqa: E402
 from hapbench_pictures.reduced import curve, reduced  # noqa: E402
+from hapbench_pictures.settled import settled_range, settled_rows  # noqa: E402
 from hapbench_report.json_input import InputError  # noqa: E402
 from hapbench_report.replay_rows import rows_to_show, settled, sizes, steps, worst_moments  # noqa: E402
 from hapbench_report.replay_sound import high_passed, sound, strongest  # noqa: E402
@@ -129,6 +130,23 @@ class Moments(unittest.TestCase):
         calm = [t for t, yes in zip(times, settled(columns, 0.5, 4.0)) if yes]
         self.assertEqual(calm, [t for t in times if 4 <= t < 5 or t >= 7])
 
+    def test_settled_rows_are_those_of_the_replay(self):
+        rng = np.random.default_rng(2)
+        times, touching = np.arange(500) / 10, (rng.random(500) < 0.3).astype(int)
+        columns = {"time_s": times.tolist(), "colliding": touching.tolist()}
+        for from_s in (None, 4.0):
+            for settling_s in (0.25, 0.45, 2.0):
+                np.testing.assert_array_equal(settled_rows(times, touching, settling_s, from_s), settled(columns, settling_s, from_s))
+
+    def test_a_landing_sets_no_scale(self):
+        force = np.array([0.0, 10.3, *np.linspace(0.9, 1.1, 500)])
+        calm = np.arange(502) > 1
+        low, high = settled_range([(calm, force, force)])
+        self.assertTrue(0.7 < low < 0.9 and 1.1 < high < 1.3)
+        # All is shown where the peak is not far beyond, and without settled contact.
+        self.assertIsNone(settled_range([(calm, np.minimum(force, 3), np.minimum(force, 3))]))
+        self.assertIsNone(settled_range([(calm & False, force, force)]))
+
     def test_the_worst_step_is_not_the_landing(self):
         times = [i / 100 for i in range(100)]
         force = [0.0] * 10 + [9.0] + [1.0] * 59 + [1.5] + [1.0] * 29
@@ -217,6 +235,22 @@ class Plot(Given):
             pictures.append((self.root / "same.svg").read_bytes())
         self.assertEqual(*pictures)
 
+    def test_a_span_of_time_and_a_peak_that_is_cut_off(self):
+        run = self.copy("mesh")
+        table = run / "trajectory.csv"
+        names, (first, *rows) = header(table), table.read_text().splitlines()
+        cells = [row.split(",") for row in rows]
+        touching = next(i for i, row in enumerate(cells) if int(row[names.index("colliding")]) > 0)
+        cells[touching][names.index("fz_N")] = "1234.5"
+        table.write_text("\n".join([first, *(",".join(row) for row in cells)]) + "\n")
+        said = hapbench("plot", run, "--y", "force")
+        self.assertRegex(said, r"rendered force \[N\], most 123\d.* \(cut off\)")
+        self.assertIn("peak 1.23e+03 N", (run / "plot.svg").read_text())
+        after = float(cells[touching + 1][names.index("time_s")])
+        said = hapbench("plot", run, "--y", "force", "--from", after, "--to", 0.24)
+        self.assertNotIn("cut off", said)
+        self.assertNotIn("first touch", said)
+
     def test_columns_by_their_names(self):
         said = hapbench("plot", self.root / "mesh", "--y", "fz_N,hx_m,speed", "--out", self.root / "m.svg")
         for text in ("fz [N]", "hx [mm]", "speed of the tip [m/s]"):
@@ -224,7 +258,7 @@ class Plot(Given):
 
     def test_a_comparison_is_overlaid(self):
         said = hapbench("plot", self.root / "peg", "--y", "force")
-        self.assertIn("a mean   b proxy   c summation", said)
+        self.assertIn("a mean   b proxy   c summation   + several", said)
         # One of 13 800 N beside one of 3 N.
         self.assertIn("logarithmic", said)
 
@@ -283,7 +317,8 @@ class Plot(Given):
                 ((mesh, "--y", "torque"), "has no tx_Nm; run it with --set record.torque=true"), ((mesh, "--out", "x.gif"), "allowed: .svg, .png, .pdf"),
                 ((self.root / "mseh",), 'nearest valid name: "mesh"'), ((self.root / "nothing" / "here",), "no such folder"),
                 ((sweep, "--metric", "speed_max"), 'nearest valid name: "speed_max_m_per_s"'), ((sweep, "--y", "force"), "allowed for it: --metric"),
-                ((sweep, mesh), "one sweep alone"), ((mesh, "--metric", "x"), "is for a sweep"), ((bare,), "record.trajectory=true")):
+                ((mesh, "--from", "5"), "no row of trajectory.csv between 5 and inf s; allowed: 0 to"), ((mesh, "--to", "x"), "a time in seconds"),
+                ((mesh, "--from", "0.2", "--to", "0.1"), "--from before --to"), ((sweep, mesh), "one sweep alone"), ((mesh, "--metric", "x"), "is for a sweep"), ((bare,), "record.trajectory=true")):
             error = hapbench("plot", *words, expected=2)
             self.assertTrue(error.startswith("hapbench: error: ") and said in error and error.count("\n") == 1, error)
 

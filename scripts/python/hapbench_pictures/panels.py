@@ -1,6 +1,7 @@
 """One quantity over time, and the tip's way in space, of several runs, into matplotlib's axes."""
 import numpy as np
 
+from .quantities import range_of
 from .reduced import curve, reduced
 
 SPANS = 900  # of a curve: more than a page has pixels
@@ -12,7 +13,8 @@ PATH_COLUMNS = ("px_m", "py_m", "pz_m")
 def draw_over_time(ax, quantity, samples, looks):
     drawn = [(s, one, s.of(quantity)) for s, one in zip(samples, looks)]
     drawn = [(s, one, of) for s, one, of in drawn if of is not None]
-    share_an_axis(ax, [of[2] for _, _, of in drawn])
+    if not share_an_axis(ax, [of[2] for _, _, of in drawn]):
+        cut_off_peaks(ax, quantity, drawn)
     for s, one, (time, low, high) in drawn:
         if low is high:
             ax.plot(*curve(time, low, high, SPANS), color=one.colour, ls=one.line, lw=one.width, label=one.label)
@@ -27,10 +29,29 @@ def draw_over_time(ax, quantity, samples, looks):
 
 
 def share_an_axis(ax, heights):
-    """A linear axis; where a run is thrown about, linear up to the calmest run's peak and logarithmic beyond."""
+    """A linear axis; where a run is thrown about, linear up to the calmest run's peak and logarithmic beyond.
+    Whether it is the latter."""
     peaks = [peak for peak in (float(np.nanmax(np.abs(h), initial=0.0)) for h in heights) if peak > 0]
     if peaks and max(peaks) > LARGEST_RATIO * min(peaks):
         ax.set_yscale("symlog", linthresh=min(peaks))
+        return True
+    return False
+
+
+def cut_off_peaks(ax, quantity, drawn):
+    """The range of settled contact, where it is far below a peak; the largest one is written where it leaves the picture."""
+    shown = range_of(quantity, [s for s, _, _ in drawn])
+    if shown is None:
+        return
+    ax.set_ylim(*shown)
+    at, value, colour = max(((time[row], edge[row], one.colour) for _, one, (time, *edges) in drawn for edge in edges
+                             if np.isfinite(edge).any() for row in [np.nanargmax(np.abs(edge))]), key=lambda peak: abs(peak[1]))
+    ends = [time[end] for _, _, (time, *_) in drawn for end in (0, -1)]
+    left, above = at <= (min(ends) + max(ends)) / 2, value > 0
+    ax.plot(at, float(above), marker="^" if above else "v", ms=4, color=colour, transform=ax.get_xaxis_transform(), clip_on=False)
+    ax.annotate(f"peak {value:.3g} {quantity.unit}".strip(), (at, float(above)), xycoords=ax.get_xaxis_transform(), color=colour,
+                xytext=(5 if left else -5, 1), textcoords="offset points", fontsize=7,
+                ha="left" if left else "right", va="bottom")
 
 
 def mark_first_touch(ax, samples, look):

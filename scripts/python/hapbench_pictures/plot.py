@@ -18,8 +18,8 @@ LETTER = 0.068  # width of a letter of the legend [inch]
 LONGEST_NAME = 90  # letters
 
 
-def samples_of(runs, quantities, with_path):
-    return [Samples(run, quantities, PATH_COLUMNS if with_path else ()) for run in runs]
+def samples_of(runs, quantities, with_path, window):
+    return [Samples(run, quantities, PATH_COLUMNS if with_path else (), window) for run in runs]
 
 
 def draw(runs, shown, quantities, with_path, samples):

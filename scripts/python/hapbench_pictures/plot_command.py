@@ -1,5 +1,6 @@
 """`hapbench plot`: a sketch in the terminal and a file."""
 import io
+import math
 from pathlib import Path
 
 from hapbench_command import Arguments
@@ -17,6 +18,8 @@ def arguments(words):
     parser.add_argument("runs", nargs="+", metavar="RUN")
     parser.add_argument("--y", type=lambda text: [name.strip() for name in text.split(",") if name.strip()], default=[])
     parser.add_argument("--metric")
+    parser.add_argument("--from", dest="start", metavar="T")
+    parser.add_argument("--to", dest="end", metavar="T")
     parser.add_argument("--out", type=Path)
     parser.add_argument("--no-sketch", action="store_true")
     parser.add_argument("--quiet", action="store_true")
@@ -51,6 +54,26 @@ def undated(suffix):
     return {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {"Software": None}}[suffix]
 
 
+def window_of(options):
+    """The times to draw [s]."""
+    window = (time_of("--from", options.start, -math.inf), time_of("--to", options.end, math.inf))
+    if not window[0] < window[1]:
+        raise InputError(f"--from {options.start} --to {options.end}: is no span of time; allowed: --from before --to")
+    return window
+
+
+def time_of(name, text, default):
+    if text is None:
+        return default
+    try:
+        time = float(text)
+    except ValueError:
+        time = math.nan
+    if not math.isfinite(time):
+        raise InputError(f"{name}: got \"{text}\"; allowed: a time in seconds")
+    return time
+
+
 def of_runs(options):
     from .looks import looks
     from .plot import draw, samples_of
@@ -59,7 +82,7 @@ def of_runs(options):
 
     runs = given_runs(options.runs)
     quantities, with_path = chosen(options.y, runs)
-    samples, shown = samples_of(runs, quantities, with_path), looks(runs, *named(runs))
+    samples, shown = samples_of(runs, quantities, with_path, window_of(options)), looks(runs, *named(runs))
     figure = draw(runs, shown, quantities, with_path, samples)
     if options.no_sketch or options.quiet:
         return figure, []
