@@ -307,6 +307,24 @@ class Plot(Given):
         for text in ("rendering.mass_kg", "rendering.stiffness_N_per_m", "speed_max_m_per_s"):
             self.assertIn(text, picture)
 
+    def test_maps_and_limits(self):
+        maps, limit = self.root / "maps", self.root / "limit"
+        hapbench("stability", "--map", "time_step", "--size", 3, "--algorithms", "mean,proxy", "--integrators", "leapfrog,rk4", "--out", maps,
+                 "--quiet")
+        self.assertEqual(hapbench("plot", maps), "".join(f"picture in {maps}/plot_time_step_{name}.svg\n" for name in ("leapfrog", "rk4")))
+        picture = (maps / "plot_time_step_leapfrog.svg").read_text()
+        for text in ("limit, theory", "limit, bisection", "time step [s]", "stiffness [N/m]", "diverged"):
+            self.assertIn(text, picture)
+        hapbench("limit", "springs_limited_mean", "--vary", "rendering.stiffness_N_per_m", "--set", "time.steps=300", "--set", "expect={}",
+                 "--resolution", 0.1, "--out", limit, "--quiet")
+        hapbench("plot", limit, "--quiet")
+        for text in ("limit, bisection", "K [N/m]", "mean"):
+            self.assertIn(text, (limit / "plot.svg").read_text())
+        for words, said in (((maps, limit), "one such folder alone"), ((limit, "--y", "force"), "allowed for it: --out")):
+            self.assertIn(said, hapbench("plot", *words, expected=2))
+        (limit / "limit_runs.csv").write_text("algorithm,class\nmean,stable\n")
+        self.assertIn("is not a table that hapbench wrote", hapbench("plot", limit, expected=2))
+
     def test_bad_input(self):
         mesh, sweep = self.root / "mesh", self.root / "sweep"
         bare = self.copy("springs")

@@ -8,6 +8,7 @@ from hapbench_report.json_input import InputError
 
 from .files import write
 from .given import common_folder, given_runs, given_sweep, named
+from .map_plot import given_study, study_figures
 from .terminal import this_terminal
 
 KINDS = (".svg", ".png", ".pdf")
@@ -29,9 +30,17 @@ def arguments(words):
 def plot(words):
     options = arguments(words)
     sweep = given_sweep(options.runs)
-    file = options.out or common_folder(options.runs) / "plot.svg"
+    study = given_study(options.runs)
+    if study and (unused := next((name for name, value in (("--y", options.y), ("--metric", options.metric), ("--from", options.start),
+                                                           ("--to", options.end)) if value), None)):
+        raise InputError(f"{unused}: {study} holds stability maps or a limit; allowed for it: --out")
+    folder = study.parent if study and study.is_file() else common_folder(options.runs)
+    file = options.out or folder / "plot.svg"
     if file.suffix not in KINDS:
         raise InputError(f"--out {file}: got \"{file.suffix}\"; allowed: {', '.join(KINDS)}")
+    if study:
+        write_all(study_figures(study), file, options.quiet)
+        return
     if sweep:
         figure, lines = of_sweep(sweep, options)
     elif options.metric:
@@ -40,14 +49,22 @@ def plot(words):
         figure, lines = of_runs(options)
     for line in lines:
         print(line)
-    picture = io.BytesIO()
-    # Same runs, same bytes.
+    write_all([("", figure)], file, options.quiet)
+
+
+def write_all(figures, file, quiet):
+    """Several of them beside each other, told apart by their names."""
     import matplotlib
-    with matplotlib.rc_context({"svg.hashsalt": "hapbench", "svg.fonttype": "none"}):
-        figure.savefig(picture, format=file.suffix[1:], dpi=150, metadata=undated(file.suffix))
-    write(file, picture.getvalue())
-    if not options.quiet:
-        print(f"picture in {file}")
+
+    for name, figure in figures:
+        to = file.with_stem(f"{file.stem}_{name}") if len(figures) > 1 else file
+        picture = io.BytesIO()
+        # Same runs, same bytes.
+        with matplotlib.rc_context({"svg.hashsalt": "hapbench", "svg.fonttype": "none"}):
+            figure.savefig(picture, format=to.suffix[1:], dpi=150, metadata=undated(to.suffix))
+        write(to, picture.getvalue())
+        if not quiet:
+            print(f"picture in {to}")
 
 
 def undated(suffix):
