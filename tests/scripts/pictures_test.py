@@ -302,9 +302,25 @@ class Plot(Given):
 
     def test_a_sweep_over_two_fields_is_a_map(self):
         said = hapbench("plot", self.root / "sweep", "--metric", "speed_max_m_per_s")
-        self.assertIn("rendering.mass_kg; upwards rendering.stiffness_N_per_m", said)
+        self.assertIn("mass [kg]; upwards stiffness K [N/m]", said)
         picture = (self.root / "sweep" / "plot.svg").read_text()
-        for text in ("rendering.mass_kg", "rendering.stiffness_N_per_m", "speed_max_m_per_s"):
+        for text in ("mass [kg]", "stiffness K [N/m]", "speed max [m/s]"):
+            self.assertIn(text, picture)
+
+    def test_failed_runs_of_a_sweep_have_no_value(self):
+        folder = self.copy("sweep")
+        table = (folder / "sweep.csv").read_text().splitlines()
+        names = table[0].split(",")
+        failed, empty = table[1].split(","), table[2].split(",")
+        failed[names.index("outcome")], failed[names.index("speed_max_m_per_s")] = "diverges", "1e9"
+        empty[names.index("speed_max_m_per_s")] = ""
+        (folder / "sweep.csv").write_text("\n".join([table[0], ",".join(failed), ",".join(empty), *table[3:]]) + "\n")
+        said = hapbench("plot", folder, "--metric", "speed_max_m_per_s")
+        self.assertIn("x diverges   ? no value", said)
+        self.assertIn(" |xx??", said)
+        self.assertNotIn("e+09", said)
+        picture = (folder / "plot.svg").read_text()
+        for text in ("diverges", "no value"):
             self.assertIn(text, picture)
 
     def test_maps_and_limits(self):
@@ -318,7 +334,7 @@ class Plot(Given):
         hapbench("limit", "springs_limited_mean", "--vary", "rendering.stiffness_N_per_m", "--set", "time.steps=300", "--set", "expect={}",
                  "--resolution", 0.1, "--out", limit, "--quiet")
         hapbench("plot", limit, "--quiet")
-        for text in ("limit, bisection", "K [N/m]", "mean"):
+        for text in ("limit, bisection", "stiffness K [N/m]", "mean"):
             self.assertIn(text, (limit / "plot.svg").read_text())
         for words, said in (((maps, limit), "one such folder alone"), ((limit, "--y", "force"), "allowed for it: --out")):
             self.assertIn(said, hapbench("plot", *words, expected=2))

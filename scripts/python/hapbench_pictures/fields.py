@@ -3,7 +3,8 @@ import json
 
 from hapbench_report.units import column
 
-SYMBOLS = {"rendering.stiffness_N_per_m": "K", "time.step_s": "time step", "rendering.iterations": "iterations"}
+# What a field is called where its last name says too little, and in formulas.
+TITLES, SYMBOLS = {"time.step_s": "time step"}, {"rendering.stiffness_N_per_m": "K"}
 NO_INPUT = ("expect", "description", "name", "source")
 
 
@@ -26,7 +27,7 @@ def leaves(value, path=""):
 def title_and_unit(path):
     """ "rendering.mass_kg" -> "mass", "kg"; no unit where the name has none."""
     title, unit, _ = column(path.rpartition(".")[2])
-    return SYMBOLS.get(path, title), unit
+    return TITLES.get(path, title), unit
 
 
 def axis(path, among=()):
@@ -34,6 +35,7 @@ def axis(path, among=()):
     title, unit = title_and_unit(path)
     if any(other != path and title_and_unit(other)[0] == title for other in among):
         return path
+    title = " ".join([title, SYMBOLS[path]]) if path in SYMBOLS else title
     return f"{title} [{unit}]" if unit else title
 
 
@@ -42,7 +44,7 @@ def entry(path, value, among):
     title, unit = title_and_unit(path)
     if any(other != path and title_and_unit(other)[0] == title for other in among):
         return f"{path}={shown(value)}"
-    return f"{title} = {shown(value)}{' ' if unit else ''}{unit}"
+    return f"{SYMBOLS.get(path, title)} = {shown(value)}{' ' if unit else ''}{unit}"
 
 
 def shown(value):
