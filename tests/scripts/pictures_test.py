@@ -205,7 +205,7 @@ class Plot(Given):
             self.assertIn(text, said)
         self.assertIn(f"picture in {self.root / 'mesh' / 'plot.svg'}", said)
         picture = (self.root / "mesh" / "plot.svg").read_text()
-        for text in ("rendered force [N]", "tip x [mm]", "tip z [mm]", "time [s]"):
+        for text in ("rendered force [N]", "tip x [mm]", "tip z [mm]", "(dots: surface)", "time [s]"):
             self.assertIn(text, picture)
 
     def test_the_sketch_fits_the_terminal_and_its_characters(self):

@@ -7,6 +7,8 @@ from .reduced import curve, reduced
 SPANS = 900  # of a curve: more than a page has pixels
 # Runs whose peaks are further apart than this share no linear axis.
 LARGEST_RATIO = 30
+SECTION_M = 0.15e-3  # a point of the surface no further away belongs to its section
+SURFACE = "#8A949C"  # on paper and in the dark
 PATH_COLUMNS = ("px_m", "py_m", "pz_m")
 
 
@@ -67,8 +69,27 @@ def projections(samples):
     return (("x", "y"),) if planar else (("x", "z"), ("y", "z"), ("x", "y"))
 
 
-def draw_path(ax, plane, samples, looks):
-    """The tip's way, framed by where it starts and is in contact, so that a tool thrown away leaves the picture."""
+def section(points, plane, tip):
+    """Points no further than 0.15 mm from the plane through the middle of the tip's way, along two of the axes 0 to 2."""
+    aside = 3 - sum(plane)
+    distance = np.abs(points[:, aside] - np.median(tip[:, aside]))
+    return points[distance <= max(SECTION_M, 1.01 * distance.min())][:, list(plane)]
+
+
+def draw_surface(ax, plane, samples, points):
+    """The section of the surface, as far as the axes reach."""
+    tip = np.vstack([np.column_stack([s.trajectory[name] for name in PATH_COLUMNS]) for s in samples])
+    dots = 1e3 * section(points, ["xyz".index(axis) for axis in plane], tip)
+    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    inside = (dots[:, 0] >= left) & (dots[:, 0] <= right) & (dots[:, 1] >= bottom) & (dots[:, 1] <= top)
+    # As an image: thousands of points would make the file large.
+    ax.plot(*dots[inside].T, ".", color=SURFACE, ms=1.5, zorder=0, rasterized=True)
+    ax.grid(False)
+
+
+def draw_path(ax, plane, samples, looks, surface=None):
+    """The tip's way, framed by where it starts and is in contact, so that a tool thrown away leaves the picture. `surface`:
+    its points [m]."""
     names = [f"p{axis}_m" for axis in plane]
     lowest, highest, left = np.full(2, np.inf), np.full(2, -np.inf), False
     for s, one in zip(samples, looks):
@@ -91,6 +112,8 @@ def draw_path(ax, plane, samples, looks):
         left = left or bool((np.abs(way - middle) > half).any())
     if left:
         ax.set_title("goes on outside", loc="right")
+    if surface is not None:
+        draw_surface(ax, plane, samples, surface)
 
 
 def corners(trajectory, spans=1000):

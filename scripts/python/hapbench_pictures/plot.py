@@ -22,7 +22,7 @@ def samples_of(runs, quantities, with_path, window):
     return [Samples(run, quantities, PATH_COLUMNS if with_path else (), window) for run in runs]
 
 
-def draw(runs, shown, quantities, with_path, samples):
+def draw(runs, shown, quantities, with_path, samples, surface=None):
     """The figure: a title with the runs' names, below it quantities on the left and ways on the right."""
     with matplotlib.rc_context(SETTINGS):
         ways, entries = projections(samples) if with_path else (), legend_of(shown)
@@ -42,7 +42,9 @@ def draw(runs, shown, quantities, with_path, samples):
         if ways:
             axes = parts[-1].subplots(len(ways), 1, squeeze=False)[:, 0]
             for ax, plane in zip(axes, ways):
-                draw_path(ax, plane, samples, shown)
+                draw_path(ax, plane, samples, shown, surface)
+            if surface is not None:
+                axes[-1].set_xlabel(f"{axes[-1].get_xlabel()}   (dots: surface)")
         return figure
 
 

@@ -95,12 +95,13 @@ def of_runs(options):
     from .looks import looks
     from .plot import draw, samples_of
     from .quantities import chosen
+    from .replay import surface_of
     from .sketch import sketch
 
     runs = given_runs(options.runs)
     quantities, with_path = chosen(options.y, runs)
     samples, shown = samples_of(runs, quantities, with_path, window_of(options)), looks(runs, *named(runs))
-    figure = draw(runs, shown, quantities, with_path, samples)
+    figure = draw(runs, shown, quantities, with_path, samples, surface_of(runs) if with_path else None)
     if options.no_sketch or options.quiet:
         return figure, []
     return figure, sketch(quantities, samples, shown, this_terminal())
