@@ -351,8 +351,8 @@ class Plot(Given):
                 ((mesh, "--y", "torque"), "has no tx_Nm; run it with --set record.torque=true"), ((mesh, "--out", "x.gif"), "allowed: .svg, .png, .pdf"),
                 ((self.root / "mseh",), 'nearest valid name: "mesh"'), ((self.root / "nothing" / "here",), "no such folder"),
                 ((sweep, "--metric", "speed_max"), 'nearest valid name: "speed_max_m_per_s"'), ((sweep, "--y", "force"), "allowed for it: --metric"),
-                ((mesh, "--from", "5"), "no row of trajectory.csv between 5 and inf s; allowed: 0 to"), ((mesh, "--to", "x"), "a time in seconds"),
-                ((mesh, "--from", "0.2", "--to", "0.1"), "--from before --to"), ((sweep, mesh), "one sweep alone"), ((mesh, "--metric", "x"), "is for a sweep"), ((bare,), "record.trajectory=true")):
+                ((mesh, "--from", "5"), "no row of trajectory.csv between 5 and inf s; allowed: a span with rows between 0 and"), ((mesh, "--to", "x"), "a time in seconds"),
+                ((mesh, "--from", "0.2", "--to", "0.1"), "--from before --to"), ((sweep, "--from", "1"), "--from: "), ((sweep, mesh), "one sweep alone"), ((mesh, "--metric", "x"), "is for a sweep"), ((bare,), "record.trajectory=true")):
             error = hapbench("plot", *words, expected=2)
             self.assertTrue(error.startswith("hapbench: error: ") and said in error and error.count("\n") == 1, error)
 

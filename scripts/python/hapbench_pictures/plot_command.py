@@ -31,9 +31,8 @@ def plot(words):
     options = arguments(words)
     sweep = given_sweep(options.runs)
     study = given_study(options.runs)
-    if study and (unused := next((name for name, value in (("--y", options.y), ("--metric", options.metric), ("--from", options.start),
-                                                           ("--to", options.end)) if value), None)):
-        raise InputError(f"{unused}: {study} holds stability maps or a limit; allowed for it: --out")
+    if study:
+        refuse(options, ("--y", "--metric", "--from", "--to"), f"{study} holds stability maps or a limit; allowed for it: --out")
     folder = study.parent if study and study.is_file() else common_folder(options.runs)
     file = options.out or folder / "plot.svg"
     if file.suffix not in KINDS:
@@ -50,6 +49,14 @@ def plot(words):
     for line in lines:
         print(line)
     write_all([("", figure)], file, options.quiet)
+
+
+def refuse(options, names, why):
+    """Options that what is drawn has no use for."""
+    given = {"--y": options.y, "--metric": options.metric, "--from": options.start, "--to": options.end}
+    unused = next((name for name in names if given[name]), None)
+    if unused:
+        raise InputError(f"{unused}: {why}")
 
 
 def write_all(figures, file, quiet):
@@ -110,7 +117,6 @@ def of_runs(options):
 def of_sweep(folder, options):
     from .sweep_plot import Sweep, draw_sweep, sketch_sweep
 
-    if options.y:
-        raise InputError(f"--y: {folder} is a sweep; allowed for it: --metric")
+    refuse(options, ("--y", "--from", "--to"), f"{folder} is a sweep; allowed for it: --metric")
     sweep = Sweep(folder, options.metric)
     return draw_sweep(sweep), [] if options.no_sketch or options.quiet else sketch_sweep(sweep, this_terminal())

@@ -132,7 +132,7 @@ class Samples:
             rows = (table["time_s"] >= window[0]) & (table["time_s"] <= window[1])
             if not rows.any():
                 raise InputError(f"--from, --to: {run.directory}: no row of {file} between {window[0]:g} and {window[1]:g} s; "
-                                 f"allowed: {time[0]:.4g} to {time[-1]:.4g}")
+                                 f"allowed: a span with rows between {time[0]:.4g} and {time[-1]:.4g} s")
             self.tables[file] = {name: values[rows] for name, values in table.items()}
             beside = np.minimum(np.searchsorted(time, table["time_s"][rows]), len(time) - 1)
             self.settled[file] = settled[beside]
