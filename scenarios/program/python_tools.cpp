@@ -25,6 +25,8 @@ struct PictureOptions {
   std::vector<std::string> runs;
   std::string quantities;
   std::string metric;
+  std::string from;
+  std::string to;
   std::string out;
   bool no_sketch = false;
   bool quiet = false;
@@ -61,6 +63,8 @@ int become(const std::string& tool, const PictureOptions& options) {
   };
   add("--y", options.quantities);
   add("--metric", options.metric);
+  add("--from", options.from);
+  add("--to", options.to);
   add("--out", options.out);
   if (options.no_sketch) words.emplace_back("--no-sketch");
   if (options.quiet) words.emplace_back("--quiet");
@@ -71,8 +75,8 @@ int become(const std::string& tool, const PictureOptions& options) {
   fail_to_run(words[0], errno);
 }
 
-void add_common(Command& command, PictureOptions& options, const std::string& out) {
-  command.add("RUN", options.runs, "folders that run, compare or sweep wrote").required();
+void add_common(Command& command, PictureOptions& options, const std::string& runs, const std::string& out) {
+  command.add("RUN", options.runs, runs).required();
   command.add("--out", options.out, out);
   command.flag("--quiet", options.quiet, "nothing on standard output");
 }
@@ -98,17 +102,22 @@ void write_report(const std::filesystem::path& folder, bool quiet) {
 
 void add_plot(CommandLine& line) {
   auto options = std::make_shared<PictureOptions>();
-  Command command = line.command("plot", "Draw runs over time and in space, or a sweep: a sketch here and a picture");
-  add_common(command, *options, "FILE.svg, .png or .pdf; default: plot.svg in the folder of the runs");
+  Command command =
+      line.command("plot", "Draw runs over time and in space, a sweep, a stability map: a sketch here and a picture");
+  add_common(command, *options, "folders that run, compare, sweep, stability --map or limit wrote",
+             "FILE.svg, .png or .pdf; default: plot.svg in the folder of the runs");
   command.add("--y", options->quantities, "what to draw, separated by commas (below)");
   command.add("--metric", options->metric, "of a sweep: the column of sweep.csv to draw");
+  command.add("--from", options->from, "time from which to draw [s]");
+  command.add("--to", options->to, "time up to which to draw [s]");
   command.flag("--no-sketch", options->no_sketch, "the picture alone");
   command.footer(
       "--y takes force, spring, measured, input, reference, force_error, depth, ratio, contacts, rendered, speed, x, y, z, path, energy, "
       "input_energy, or any column of the runs' tables; by default force, depth, ratio, contacts, path, and energy "
       "where it was recorded.\n"
-      "A comparison's folder stands for all its runs. Every run has the colour of its algorithm; triangles mark the "
-      "first touch. Of long runs the least and the greatest value for each pixel are drawn, so that no spike is lost.\n"
+      "A comparison's folder stands for all its runs. Every run has the colour of its algorithm, runs of one algorithm "
+      "have colours of their own; triangles mark the first touch. A peak of more than three times what settled contact "
+      "shows is cut off, and its value written there. Of long runs the least and the greatest value for each pixel are drawn, so that no spike is lost.\n"
       "  hapbench plot results/out/compare_drag --y force,depth --out drag.png");
   command.runs([options] { return become("plot", *options); });
 }
@@ -117,7 +126,8 @@ void add_report(CommandLine& line) {
   auto options = std::make_shared<PictureOptions>();
   Command command =
       line.command("report", "Write a page of runs: curves, replay with sound, metrics, scenario, commands");
-  add_common(command, *options, "FILE.html; default: report.html in the folder of the runs");
+  add_common(command, *options, "folders that run or compare wrote",
+             "FILE.html; default: report.html in the folder of the runs");
   command.footer(
       "One HTML file that needs no server and no network. The replay shows up to four runs side by side, with their "
       "depths where they were run with --set record.contacts=true.\n"

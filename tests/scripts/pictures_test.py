@@ -18,8 +18,11 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(SOURCE / "scripts" / "python"))
 
 from hapbench_pictures.columns import header, read_columns  # noqa: E402  (the path comes first)
-from hapbench_pictures.given import given_runs, labels  # noqa: E402
+from hapbench_pictures.given import given_runs, labels, named  # noqa: E402
+from hapbench_pictures.looks import looks  # noqa: E402
+from hapbench_pictures.plot import legend_columns, legend_of  # noqa: E402
 from hapbench_pictures.reduced import curve, reduced  # noqa: E402
+from hapbench_pictures.settled import settled_range, settled_rows  # noqa: E402
 from hapbench_report.json_input import InputError  # noqa: E402
 from hapbench_report.replay_rows import rows_to_show, settled, sizes, steps, worst_moments  # noqa: E402
 from hapbench_report.replay_sound import high_passed, sound, strongest  # noqa: E402
@@ -127,6 +130,23 @@ class Moments(unittest.TestCase):
         calm = [t for t, yes in zip(times, settled(columns, 0.5, 4.0)) if yes]
         self.assertEqual(calm, [t for t in times if 4 <= t < 5 or t >= 7])
 
+    def test_settled_rows_are_those_of_the_replay(self):
+        rng = np.random.default_rng(2)
+        times, touching = np.arange(500) / 10, (rng.random(500) < 0.3).astype(int)
+        columns = {"time_s": times.tolist(), "colliding": touching.tolist()}
+        for from_s in (None, 4.0):
+            for settling_s in (0.25, 0.45, 2.0):
+                np.testing.assert_array_equal(settled_rows(times, touching, settling_s, from_s), settled(columns, settling_s, from_s))
+
+    def test_a_landing_sets_no_scale(self):
+        force = np.array([0.0, 10.3, *np.linspace(0.9, 1.1, 500)])
+        calm = np.arange(502) > 1
+        low, high = settled_range([(calm, force, force)])
+        self.assertTrue(0.7 < low < 0.9 and 1.1 < high < 1.3)
+        # All is shown where the peak is not far beyond, and without settled contact.
+        self.assertIsNone(settled_range([(calm, np.minimum(force, 3), np.minimum(force, 3))]))
+        self.assertIsNone(settled_range([(calm & False, force, force)]))
+
     def test_the_worst_step_is_not_the_landing(self):
         times = [i / 100 for i in range(100)]
         force = [0.0] * 10 + [9.0] + [1.0] * 59 + [1.5] + [1.0] * 29
@@ -185,7 +205,7 @@ class Plot(Given):
             self.assertIn(text, said)
         self.assertIn(f"picture in {self.root / 'mesh' / 'plot.svg'}", said)
         picture = (self.root / "mesh" / "plot.svg").read_text()
-        for text in ("rendered force [N]", "tip x [mm]", "tip z [mm]", "time [s]"):
+        for text in ("rendered force [N]", "tip x [mm]", "tip z [mm]", "(dots: surface)", "time [s]"):
             self.assertIn(text, picture)
 
     def test_the_sketch_fits_the_terminal_and_its_characters(self):
@@ -215,6 +235,22 @@ class Plot(Given):
             pictures.append((self.root / "same.svg").read_bytes())
         self.assertEqual(*pictures)
 
+    def test_a_span_of_time_and_a_peak_that_is_cut_off(self):
+        run = self.copy("mesh")
+        table = run / "trajectory.csv"
+        names, (first, *rows) = header(table), table.read_text().splitlines()
+        cells = [row.split(",") for row in rows]
+        touching = next(i for i, row in enumerate(cells) if int(row[names.index("colliding")]) > 0)
+        cells[touching][names.index("fz_N")] = "1234.5"
+        table.write_text("\n".join([first, *(",".join(row) for row in cells)]) + "\n")
+        said = hapbench("plot", run, "--y", "force")
+        self.assertRegex(said, r"rendered force \[N\], most 123\d.* \(cut off\)")
+        self.assertIn("peak 1.23e+03 N", (run / "plot.svg").read_text())
+        after = float(cells[touching + 1][names.index("time_s")])
+        said = hapbench("plot", run, "--y", "force", "--from", after, "--to", 0.24)
+        self.assertNotIn("cut off", said)
+        self.assertNotIn("first touch", said)
+
     def test_columns_by_their_names(self):
         said = hapbench("plot", self.root / "mesh", "--y", "fz_N,hx_m,speed", "--out", self.root / "m.svg")
         for text in ("fz [N]", "hx [mm]", "speed of the tip [m/s]"):
@@ -222,7 +258,7 @@ class Plot(Given):
 
     def test_a_comparison_is_overlaid(self):
         said = hapbench("plot", self.root / "peg", "--y", "force")
-        self.assertIn("a mean   b proxy   c summation", said)
+        self.assertIn("a mean   b proxy   c summation   + several", said)
         # One of 13 800 N beside one of 3 N.
         self.assertIn("logarithmic", said)
 
@@ -237,19 +273,73 @@ class Plot(Given):
         self.assertEqual(labels(runs), ["mean", "proxy", "summation"])
         runs = given_runs([self.root / "peg" / "mean", self.root / "springs"])
         self.assertEqual(labels(runs), ["peg_in_hole_2d_shaped_stiffness", "springs_limited_mean"])
-        for seed in ("seed_0", "seed_1"):
-            shutil.copytree(self.root / "springs", self.root / "seeds" / "springs_limited_mean" / "mean" / seed)
-            shutil.copytree(self.root / "peg" / "mean", self.root / "seeds" / "peg" / "mean" / seed)
-        self.assertEqual(labels(given_runs([self.root / "seeds"])), [
-            "peg_in_hole_2d_shaped_stiffness, mean, seed_0", "peg_in_hole_2d_shaped_stiffness, mean, seed_1",
-            "springs_limited_mean, mean, seed_0", "springs_limited_mean, mean, seed_1"])
+        runs = self.variants({"seed": 1}, {"seed": 2})
+        self.assertEqual(named(runs), (["mean, seed 1", "mean, seed 2"], ["mean", "mean"]))
+        runs = self.variants({"rendering.stiffness_N_per_m": 10000}, {"rendering.stiffness_N_per_m": 4e4})
+        self.assertEqual(labels(runs), ["K = 10 000 N/m", "K = 40 000 N/m"])
+        runs = self.variants({"hand.mass_kg": 0.1}, {"rendering.mass_kg": 0.33})
+        self.assertIn("rendering.mass_kg=0.33", labels(runs)[1])
+        runs = self.variants({}, {})
+        self.assertEqual(labels(runs), ["mean, 0/springs", "mean, 1/springs"])
+
+    def variants(self, *changes):
+        """Copies of a run whose scenarios have other values."""
+        folder = Path(tempfile.mkdtemp(dir=self.root))
+        for i, change in enumerate(changes):
+            shutil.copytree(self.root / "springs", folder / str(i) / "springs")
+            file = folder / str(i) / "springs" / "scenario.effective.json"
+            scenario = json.loads(file.read_text())
+            for path, value in change.items():
+                section, _, name = path.rpartition(".")
+                (scenario.setdefault(section, {}) if section else scenario)[name] = value
+            file.write_text(json.dumps(scenario))
+        return given_runs([folder])
+
+    def test_the_legend_has_an_entry_for_all_seeds_and_is_not_cut(self):
+        runs = self.variants({"seed": 1}, {"seed": 2}, {"seed": 3})
+        self.assertEqual(list(legend_of(looks(runs, *named(runs)))), ["mean (3 seeds)"])
+        self.assertEqual([legend_columns(["x" * n], 7.0) for n in (5, 30, 90)], [4, 2, 1])
 
     def test_a_sweep_over_two_fields_is_a_map(self):
         said = hapbench("plot", self.root / "sweep", "--metric", "speed_max_m_per_s")
-        self.assertIn("rendering.mass_kg; upwards rendering.stiffness_N_per_m", said)
+        self.assertIn("mass [kg]; upwards stiffness K [N/m]", said)
         picture = (self.root / "sweep" / "plot.svg").read_text()
-        for text in ("rendering.mass_kg", "rendering.stiffness_N_per_m", "speed_max_m_per_s"):
+        for text in ("mass [kg]", "stiffness K [N/m]", "speed max [m/s]"):
             self.assertIn(text, picture)
+
+    def test_failed_runs_of_a_sweep_have_no_value(self):
+        folder = self.copy("sweep")
+        table = (folder / "sweep.csv").read_text().splitlines()
+        names = table[0].split(",")
+        failed, empty = table[1].split(","), table[2].split(",")
+        failed[names.index("outcome")], failed[names.index("speed_max_m_per_s")] = "diverges", "1e9"
+        empty[names.index("speed_max_m_per_s")] = ""
+        (folder / "sweep.csv").write_text("\n".join([table[0], ",".join(failed), ",".join(empty), *table[3:]]) + "\n")
+        said = hapbench("plot", folder, "--metric", "speed_max_m_per_s")
+        self.assertIn("x diverges   ? no value", said)
+        self.assertIn(" |xx??", said)
+        self.assertNotIn("e+09", said)
+        picture = (folder / "plot.svg").read_text()
+        for text in ("diverges", "no value"):
+            self.assertIn(text, picture)
+
+    def test_maps_and_limits(self):
+        maps, limit = self.root / "maps", self.root / "limit"
+        hapbench("stability", "--map", "time_step", "--size", 3, "--algorithms", "mean,proxy", "--integrators", "leapfrog,rk4", "--out", maps,
+                 "--quiet")
+        self.assertEqual(hapbench("plot", maps), "".join(f"picture in {maps}/plot_time_step_{name}.svg\n" for name in ("leapfrog", "rk4")))
+        picture = (maps / "plot_time_step_leapfrog.svg").read_text()
+        for text in ("limit, theory", "limit, bisection", "time step [s]", "stiffness [N/m]", "diverged"):
+            self.assertIn(text, picture)
+        hapbench("limit", "springs_limited_mean", "--vary", "rendering.stiffness_N_per_m", "--set", "time.steps=300", "--set", "expect={}",
+                 "--resolution", 0.1, "--out", limit, "--quiet")
+        hapbench("plot", limit, "--quiet")
+        for text in ("limit, bisection", "stiffness K [N/m]", "mean"):
+            self.assertIn(text, (limit / "plot.svg").read_text())
+        for words, said in (((maps, limit), "one such folder alone"), ((limit, "--y", "force"), "allowed for it: --out")):
+            self.assertIn(said, hapbench("plot", *words, expected=2))
+        (limit / "limit_runs.csv").write_text("algorithm,class\nmean,stable\n")
+        self.assertIn("is not a table that hapbench wrote", hapbench("plot", limit, expected=2))
 
     def test_bad_input(self):
         mesh, sweep = self.root / "mesh", self.root / "sweep"
@@ -261,7 +351,8 @@ class Plot(Given):
                 ((mesh, "--y", "torque"), "has no tx_Nm; run it with --set record.torque=true"), ((mesh, "--out", "x.gif"), "allowed: .svg, .png, .pdf"),
                 ((self.root / "mseh",), 'nearest valid name: "mesh"'), ((self.root / "nothing" / "here",), "no such folder"),
                 ((sweep, "--metric", "speed_max"), 'nearest valid name: "speed_max_m_per_s"'), ((sweep, "--y", "force"), "allowed for it: --metric"),
-                ((sweep, mesh), "one sweep alone"), ((mesh, "--metric", "x"), "is for a sweep"), ((bare,), "record.trajectory=true")):
+                ((mesh, "--from", "5"), "no row of trajectory.csv between 5 and inf s; allowed: a span with rows between 0 and"), ((mesh, "--to", "x"), "a time in seconds"),
+                ((mesh, "--from", "0.2", "--to", "0.1"), "--from before --to"), ((sweep, "--from", "1"), "--from: "), ((sweep, mesh), "one sweep alone"), ((mesh, "--metric", "x"), "is for a sweep"), ((bare,), "record.trajectory=true")):
             error = hapbench("plot", *words, expected=2)
             self.assertTrue(error.startswith("hapbench: error: ") and said in error and error.count("\n") == 1, error)
 

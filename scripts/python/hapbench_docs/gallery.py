@@ -9,6 +9,7 @@ from hapbench_figures.style import AMBER, BLACK, GREY, PETROL, SETTINGS
 from hapbench_looks import look
 from hapbench_pictures.columns import read_columns
 from hapbench_pictures.files import write
+from hapbench_pictures.panels import section
 from hapbench_pictures.reduced import reduced
 from hapbench_report.replay_tool import tool_profile
 from matplotlib import pyplot as plt
@@ -81,16 +82,12 @@ class Scene:
         self.points = np.column_stack(list(shell.values()))
         planar = not np.ptp(self.points[:, 2]) and not np.ptp(self.tip[:, 2])
         self.across, self.up = 0, (1 if planar else 2)
-        self.aside = 3 - self.across - self.up
 
     def plane(self, vectors):
         return vectors[:, [self.across, self.up]]
 
     def section(self):
-        """Points of the shell no further than 0.15 mm from the plane through the middle of the way."""
-        middle = np.median(self.tip[:, self.aside])
-        distance = np.abs(self.points[:, self.aside] - middle)
-        return self.plane(self.points[distance <= max(0.15e-3, 1.01 * distance.min())])
+        return section(self.points, (self.across, self.up), self.tip)
 
     def tool(self, row):
         """Outline of the tool's projection; right where the axis lies in the plane, and near it elsewhere."""

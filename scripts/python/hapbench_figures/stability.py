@@ -234,22 +234,29 @@ def draw_groups(part, found, groups, lines):
         ax.set_ylabel(axis_label(found.y_name))
 
 
+def draw_stability_map(found):
+    """Above the limit of every algorithm, where there is one; below the classes of the runs. `found`: of one integrator."""
+    present = list(dict.fromkeys(row["algorithm"] for row in found.rows))
+    groups = alike(found, present)
+    lines = -(-len(groups) // 4)
+    heights = (2.5, 0.75 + 1.65 * lines)
+    figure = style.plt.figure(figsize=(style.WIDTH, sum(heights)))
+    above, below = figure.subfigures(2, 1, height_ratios=heights)
+    widths = [1, 1, 0.62] if found.has_theory else [2, 0.62]
+    draw_limits(above.subplots(1, len(widths), gridspec_kw={"width_ratios": widths}), found, present)
+    draw_groups(below, found, groups, lines)
+    figure.get_layout_engine().set(hspace=0.08)
+    class_legend(figure, [found], heights[1] / sum(heights) + 0.02)
+    return figure
+
+
 def stability_map(name):
     """The function that draws stability_map_NAME.csv."""
 
     def draw(results):
         found = map_file(results, name, of_integrators=False)
+        figure = draw_stability_map(found)
         present = list(dict.fromkeys(row["algorithm"] for row in found.rows))
-        groups = alike(found, present)
-        lines = -(-len(groups) // 4)
-        heights = (2.5, 0.75 + 1.65 * lines)
-        figure = style.plt.figure(figsize=(style.WIDTH, sum(heights)))
-        above, below = figure.subfigures(2, 1, height_ratios=heights)
-        widths = [1, 1, 0.62] if found.has_theory else [2, 0.62]
-        draw_limits(above.subplots(1, len(widths), gridspec_kw={"width_ratios": widths}), found, present)
-        draw_groups(below, found, groups, lines)
-        figure.get_layout_engine().set(hspace=0.08)
-        class_legend(figure, [found], heights[1] / sum(heights) + 0.02)
         x_label, y_label = axis_label(found.x_name), axis_label(found.y_name)
         return figure, (
             f"Where a run is stable, vibrates or diverges: {y_label} over {x_label}. Above: the limit of every algorithm, found "

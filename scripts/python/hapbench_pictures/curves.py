@@ -11,6 +11,7 @@ from hapbench_figures.style import SETTINGS
 from .looks import DARK, LIGHT, looks, on_dark, settings
 from .panels import PATH_COLUMNS, draw_over_time, draw_path, projections
 from .quantities import SHORT, USUAL, Samples, tables_of
+from .replay import surface_of
 
 matplotlib.use("agg")
 from matplotlib import pyplot as plt  # noqa: E402  (the backend comes first)
@@ -22,12 +23,12 @@ def curves_section(runs, labels):
     quantities = [SHORT[name] for name in USUAL if name in SHORT]
     quantities = [q for q in quantities if any(q.file in tables_of(run) for run in runs)]
     samples = [Samples(run, quantities, PATH_COLUMNS) for run in runs]
-    light = looks(runs, labels)
+    light, surface = looks(runs, labels), surface_of(runs)
     figures = [drawing(SIZE, lambda ax, shown, q=q: draw_over_time(ax, q, samples, shown), light,
                        f"{q.axis} over time", spoken(q, samples, labels), xlabel="time [s]") for q in quantities]
-    figures += [drawing(PATH_SIZE, lambda ax, shown, plane=plane: draw_path(ax, plane, samples, shown), light,
-                        f"Way of the tip, {plane[0]} and {plane[1]}", "Circles: start") for plane in projections(samples)]
-    return f"<p>{key(light)} Triangles and dotted lines: first touch.</p><div class=curves>{''.join(figures)}</div>"
+    figures += [drawing(PATH_SIZE, lambda ax, shown, plane=plane: draw_path(ax, plane, samples, shown, surface), light,
+                        f"Way of the tip, {plane[0]} and {plane[1]}", "Circles: start; dots: surface") for plane in projections(samples)]
+    return f"<p>{key(light)} Triangles and dotted lines: first touch.{' Dots: section of the surface.' if surface is not None else ''}</p><div class=curves>{''.join(figures)}</div>"
 
 
 def key(light):

@@ -1,11 +1,13 @@
 """The runs that RUN… on the command line mean: folders of `run`, folders of `compare`, or one folder of `sweep`."""
 import csv
+import json
 import os
 from pathlib import Path
 
 from hapbench_report.json_input import InputError
 from hapbench_report.runs import load_run, load_runs
 
+from .fields import differing, entry, leaves
 from .names import nearest
 
 SUMMARY, SWEEP = "summary.json", "sweep.csv"
@@ -62,19 +64,58 @@ def similar(folder):
 
 
 def labels(runs):
-    """The shortest names that tell the runs apart."""
-    def plain(text):
-        return text.replace("_", " ")
+    """The shortest names that tell the runs apart: by algorithm, scene, the fields in which they differ, seed, folder."""
+    return named(runs)[0]
 
-    ways = ((lambda run: plain(run.algorithm)) if len(runs) > 1 else (lambda run: f"{run.name}, {plain(run.algorithm)}"),
-            lambda run: run.name, lambda run: f"{run.name}, {plain(run.algorithm)}", lambda run: run.directory.name,
-            # Seeds of a comparison.
-            lambda run: f"{run.name}, {plain(run.algorithm)}, {run.directory.name}")
-    for way in ways:
-        names = [way(run) for run in runs]
-        if all(names) and len(set(names)) == len(names):
-            return names
-    return [run.directory.as_posix() for run in runs]
+
+def named(runs):
+    """These names; and the same without the seed, which is one name for all runs that differ in nothing else."""
+    groups, folders = group_labels(runs), relative_folders(runs)
+    seeded = [f"{group}, seed {run.scenario.get('seed')}" for group, run in zip(groups, runs)]
+    placed = [f"{group}, {folder}" for group, folder in zip(groups, folders)]
+    for names, shared in ((groups, groups), (seeded, groups), (placed, placed)):
+        if len(set(names)) == len(names):
+            return names, shared
+    return folders, folders
+
+
+def group_labels(runs):
+    """Algorithm, scene, differing fields: as few of them as tell apart what differs in more than the seed."""
+    plain = [run.algorithm.replace("_", " ") for run in runs]
+    names = [run.name for run in runs]
+    both = [f"{name}, {algorithm}" for name, algorithm in zip(names, plain)]
+    if len(runs) == 1:
+        return both
+    kinds = len({json.dumps(kind(run), sort_keys=True) for run in runs})
+    for found in (plain, names, both):
+        if all(found) and len(set(found)) == kinds:
+            return found
+    several = [part for part in (names, plain) if len(set(part)) > 1]
+    return [", ".join([*(part[i] for part in several), *fields]) or plain[i] for i, fields in enumerate(field_entries(runs, both))]
+
+
+def kind(run):
+    """All that makes a run, but the seed."""
+    if not run.scenario:
+        return run.directory.as_posix()
+    return [run.name, {path: value for path, value in leaves(run.scenario) if path != "seed"}]
+
+
+def field_entries(runs, scenes):
+    """For each run the fields, with their values, in which it differs from others of its scene and algorithm."""
+    paths = {}
+    for scene in dict.fromkeys(scenes):
+        paths |= dict.fromkeys(differing([run.scenario for run, own in zip(runs, scenes) if own == scene and run.scenario]))
+    paths.pop("seed", None)
+    values = [dict(leaves(run.scenario)) for run in runs]
+    return [[entry(path, of[path], paths) for path in paths if path in of] for of in values]
+
+
+def relative_folders(runs):
+    """The runs' folders, without what is common to all."""
+    paths = [os.path.abspath(run.directory) for run in runs]
+    common = os.path.commonpath([os.path.dirname(path) for path in paths])
+    return [os.path.relpath(path, common) for path in paths]
 
 
 def common_folder(words):

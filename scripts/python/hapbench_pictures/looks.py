@@ -1,5 +1,5 @@
 """How runs are drawn: as their algorithm is everywhere, and with line styles where two runs share one."""
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hapbench_looks import look
 
@@ -9,12 +9,20 @@ LIGHT = ("#1d2126", "#ffffff", "#e6e6e6", "#5b636c")
 DARK = ("#e7e9ea", "#1c2024", "#383e44", "#a3abb3")
 
 
+# Colours of runs that share one algorithm, on paper and on the dark page, each with a contrast of at least 4.5.
+SHARED = (("#000000", "#F2F2F2"), ("#C2500A", "#FFA366"), ("#0B6BC4", "#6CB4F5"), ("#9F0375", "#F07CC8"), ("#1D6A01", "#7EDB5A"),
+          ("#775543", "#D3AE97"))
+THIN = 0.6  # line width of the single runs of a group [points]
+
+
 @dataclass(frozen=True)
 class RunLook:
     label: str
     colour: str
     dark: str
     dash: tuple
+    width: float = 1.3
+    group: str = ""  # the label of all runs that differ in the seed only
 
     @property
     def line(self):
@@ -22,18 +30,24 @@ class RunLook:
         return (0, self.dash) if self.dash else "-"
 
 
-def looks(runs, labels):
-    seen, found = {}, []
-    alone = len({run.algorithm for run in runs}) == len(runs)
-    for run, label in zip(runs, labels):
-        nth = seen[run.algorithm] = seen.get(run.algorithm, -1) + 1
-        own = look(run.algorithm)
-        found.append(RunLook(label, own.colour, own.dark, own.dash if alone else DASHES[nth % len(DASHES)]))
+def looks(runs, labels, groups=()):
+    """`groups`: a name for each run, the same for those that differ in the seed only; by default the labels."""
+    groups = groups or labels
+    distinct = list(dict.fromkeys(zip(groups, (run.algorithm for run in runs))))
+    algorithms = [algorithm for _, algorithm in distinct]
+    nth = {group: algorithms[:i].count(algorithm) for i, (group, algorithm) in enumerate(distinct)}
+    one_each, alike = len(set(algorithms)) == len(distinct), len(set(algorithms)) == 1
+    width = RunLook.width if len(distinct) == len(runs) else THIN
+    found = []
+    for run, label, group in zip(runs, labels, groups):
+        own, i = look(run.algorithm), nth[group]
+        colours = SHARED[i % len(SHARED)] if alike and not one_each else (own.colour, own.dark)
+        found.append(RunLook(label, *colours, own.dash if one_each else DASHES[i % len(DASHES)], width, group))
     return found
 
 
 def on_dark(shown):
-    return [RunLook(one.label, one.dark, one.dark, one.dash) for one in shown]
+    return [replace(one, colour=one.dark) for one in shown]
 
 
 def settings(paper):

@@ -1,36 +1,59 @@
 """One quantity over time, and the tip's way in space, of several runs, into matplotlib's axes."""
 import numpy as np
 
+from .quantities import range_of
 from .reduced import curve, reduced
 
 SPANS = 900  # of a curve: more than a page has pixels
 # Runs whose peaks are further apart than this share no linear axis.
 LARGEST_RATIO = 30
+SECTION_M = 0.15e-3  # a point of the surface no further away belongs to its section
+SURFACE = "#8A949C"  # on paper and in the dark
 PATH_COLUMNS = ("px_m", "py_m", "pz_m")
 
 
 def draw_over_time(ax, quantity, samples, looks):
     drawn = [(s, one, s.of(quantity)) for s, one in zip(samples, looks)]
     drawn = [(s, one, of) for s, one, of in drawn if of is not None]
-    share_an_axis(ax, [of[2] for _, _, of in drawn])
+    if not share_an_axis(ax, [of[2] for _, _, of in drawn]):
+        cut_off_peaks(ax, quantity, drawn)
     for s, one, (time, low, high) in drawn:
         if low is high:
-            ax.plot(*curve(time, low, high, SPANS), color=one.colour, ls=one.line, label=one.label)
+            ax.plot(*curve(time, low, high, SPANS), color=one.colour, ls=one.line, lw=one.width, label=one.label)
         else:
             time, low, high = reduced(time, low, high, SPANS)
             ax.fill_between(time, low, high, color=one.colour, alpha=0.2, lw=0)
             for edge in (low, high):
-                ax.plot(time, edge, color=one.colour, ls=one.line, lw=0.8, label=one.label if edge is low else None)
+                ax.plot(time, edge, color=one.colour, ls=one.line, lw=min(0.8, one.width), label=one.label if edge is low else None)
         mark_first_touch(ax, s, one)
     ax.set_ylabel(quantity.axis)
     ax.margins(x=0.01)
 
 
 def share_an_axis(ax, heights):
-    """A linear axis; where a run is thrown about, linear up to the calmest run's peak and logarithmic beyond."""
+    """A linear axis; where a run is thrown about, linear up to the calmest run's peak and logarithmic beyond.
+    Whether it is the latter."""
     peaks = [peak for peak in (float(np.nanmax(np.abs(h), initial=0.0)) for h in heights) if peak > 0]
     if peaks and max(peaks) > LARGEST_RATIO * min(peaks):
         ax.set_yscale("symlog", linthresh=min(peaks))
+        return True
+    return False
+
+
+def cut_off_peaks(ax, quantity, drawn):
+    """The range of settled contact, where it is far below a peak; the largest one is written where it leaves the picture."""
+    shown = range_of(quantity, [s for s, _, _ in drawn])
+    if shown is None:
+        return
+    ax.set_ylim(*shown)
+    at, value, colour = max(((time[row], edge[row], one.colour) for _, one, (time, *edges) in drawn for edge in edges
+                             if np.isfinite(edge).any() for row in [np.nanargmax(np.abs(edge))]), key=lambda peak: abs(peak[1]))
+    ends = [time[end] for _, _, (time, *_) in drawn for end in (0, -1)]
+    left, above = at <= (min(ends) + max(ends)) / 2, value > 0
+    ax.plot(at, float(above), marker="^" if above else "v", ms=4, color=colour, transform=ax.get_xaxis_transform(), clip_on=False)
+    ax.annotate(f"peak {value:.3g} {quantity.unit}".strip(), (at, float(above)), xycoords=ax.get_xaxis_transform(), color=colour,
+                xytext=(5 if left else -5, 1), textcoords="offset points", fontsize=7,
+                ha="left" if left else "right", va="bottom")
 
 
 def mark_first_touch(ax, samples, look):
@@ -46,14 +69,33 @@ def projections(samples):
     return (("x", "y"),) if planar else (("x", "z"), ("y", "z"), ("x", "y"))
 
 
-def draw_path(ax, plane, samples, looks):
-    """The tip's way, framed by where it starts and is in contact, so that a tool thrown away leaves the picture."""
+def section(points, plane, tip):
+    """Points no further than 0.15 mm from the plane through the middle of the tip's way, along two of the axes 0 to 2."""
+    aside = 3 - sum(plane)
+    distance = np.abs(points[:, aside] - np.median(tip[:, aside]))
+    return points[distance <= max(SECTION_M, 1.01 * distance.min())][:, list(plane)]
+
+
+def draw_surface(ax, plane, samples, points):
+    """The section of the surface, as far as the axes reach."""
+    tip = np.vstack([np.column_stack([s.trajectory[name] for name in PATH_COLUMNS]) for s in samples])
+    dots = 1e3 * section(points, ["xyz".index(axis) for axis in plane], tip)
+    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    inside = (dots[:, 0] >= left) & (dots[:, 0] <= right) & (dots[:, 1] >= bottom) & (dots[:, 1] <= top)
+    # As an image: thousands of points would make the file large.
+    ax.plot(*dots[inside].T, ".", color=SURFACE, ms=1.5, zorder=0, rasterized=True)
+    ax.grid(False)
+
+
+def draw_path(ax, plane, samples, looks, surface=None):
+    """The tip's way, framed by where it starts and is in contact, so that a tool thrown away leaves the picture. `surface`:
+    its points [m]."""
     names = [f"p{axis}_m" for axis in plane]
     lowest, highest, left = np.full(2, np.inf), np.full(2, -np.inf), False
     for s, one in zip(samples, looks):
         rows = corners(s.trajectory)
         way = np.column_stack([s.trajectory[name] for name in names]) * 1e3
-        ax.plot(*way[rows].T, color=one.colour, ls=one.line, lw=1)
+        ax.plot(*way[rows].T, color=one.colour, ls=one.line, lw=min(1, one.width))
         ax.plot(*way[0], marker="o", ms=3.5, mfc="none", color=one.colour)
         touching = np.flatnonzero(s.trajectory["colliding"] > 0)
         if touching.size:
@@ -70,6 +112,8 @@ def draw_path(ax, plane, samples, looks):
         left = left or bool((np.abs(way - middle) > half).any())
     if left:
         ax.set_title("goes on outside", loc="right")
+    if surface is not None:
+        draw_surface(ax, plane, samples, surface)
 
 
 def corners(trajectory, spans=1000):

@@ -1,11 +1,11 @@
 """The file of `hapbench plot`: quantities over time under each other, the tip's way beside them."""
 import math
+from collections import Counter
 
 import matplotlib
 
 from hapbench_figures.style import SETTINGS
 
-from .looks import looks
 from .panels import PATH_COLUMNS, draw_over_time, draw_path, projections
 from .quantities import Samples
 
@@ -14,23 +14,26 @@ from matplotlib import pyplot as plt  # noqa: E402  (the backend comes first)
 
 PANEL_HEIGHT, WIDTH, PATH_WIDTH = 1.35, 7.0, 2.6  # [inch]
 LEGEND_COLUMNS = 4
+LETTER = 0.068  # width of a letter of the legend [inch]
+LONGEST_NAME = 90  # letters
 
 
-def samples_of(runs, quantities, with_path):
-    return [Samples(run, quantities, PATH_COLUMNS if with_path else ()) for run in runs]
+def samples_of(runs, quantities, with_path, window):
+    return [Samples(run, quantities, PATH_COLUMNS if with_path else (), window) for run in runs]
 
 
-def draw(runs, labels, quantities, with_path, samples):
+def draw(runs, shown, quantities, with_path, samples, surface=None):
     """The figure: a title with the runs' names, below it quantities on the left and ways on the right."""
     with matplotlib.rc_context(SETTINGS):
-        ways, shown = projections(samples) if with_path else (), looks(runs, labels)
+        ways, entries = projections(samples) if with_path else (), legend_of(shown)
         widths = [WIDTH, PATH_WIDTH] if quantities and ways else [WIDTH]
         body = PANEL_HEIGHT * max(len(quantities), len(ways) if quantities else 2 * len(ways))
-        head = 0.3 + (0.19 * math.ceil(len(runs) / LEGEND_COLUMNS) if len(runs) > 1 else 0)
+        columns = legend_columns(entries, sum(widths))
+        head = 0.3 + (0.19 * math.ceil(len(entries) / columns) if len(runs) > 1 else 0)
         figure = plt.figure(figsize=(sum(widths), head + body + 0.3))
         top, bottom = figure.subfigures(2, 1, height_ratios=[head, body + 0.3])
         parts = bottom.subfigures(1, len(widths), width_ratios=widths, squeeze=False)[0]
-        write_title(top, runs, shown)
+        write_title(top, head, runs, entries, columns)
         if quantities:
             axes = parts[0].subplots(len(quantities), 1, sharex=True, squeeze=False)[:, 0]
             for ax, quantity in zip(axes, quantities):
@@ -39,14 +42,35 @@ def draw(runs, labels, quantities, with_path, samples):
         if ways:
             axes = parts[-1].subplots(len(ways), 1, squeeze=False)[:, 0]
             for ax, plane in zip(axes, ways):
-                draw_path(ax, plane, samples, shown)
+                draw_path(ax, plane, samples, shown, surface)
+            if surface is not None:
+                axes[-1].set_xlabel(f"{axes[-1].get_xlabel()}   (dots: surface)")
         return figure
 
 
-def write_title(top, runs, shown):
+def legend_of(shown):
+    """Label -> look: the first run of each group stands for all of it."""
+    counts = Counter(one.group or one.label for one in shown)
+    entries = {}
+    for one in shown:
+        name = one.group or one.label
+        entries.setdefault(name if counts[name] == 1 else f"{name} ({counts[name]} seeds)", one)
+    return {shortened(name): one for name, one in entries.items()} if len(set(map(shortened, entries))) == len(entries) else entries
+
+
+def shortened(name):
+    return name if len(name) <= LONGEST_NAME else f"{name[:LONGEST_NAME // 2 - 1]}…{name[-LONGEST_NAME // 2:]}"
+
+
+def legend_columns(entries, width):
+    """As many as fit beside each other in so many inches."""
+    return max(1, min(LEGEND_COLUMNS, int((width - 0.2) / (0.55 + LETTER * max(map(len, entries))))))
+
+
+def write_title(top, head, runs, entries, columns):
     names = {run.name for run in runs}
-    name = shown[0].label if len(runs) == 1 else names.pop() if len(names) == 1 else f"{len(runs)} runs"
-    top.text(0.01, 0.98, name, ha="left", va="top", fontsize=9, weight="bold")
+    name = next(iter(entries)) if len(runs) == 1 else names.pop() if len(names) == 1 else f"{len(runs)} runs"
+    top.text(0.01, 1 - 0.06 / head, name, ha="left", va="top", fontsize=9, weight="bold")
     if len(runs) > 1:
-        handles = [plt.Line2D([], [], color=one.colour, ls=one.line) for one in shown]
-        top.legend(handles, [one.label for one in shown], loc="lower left", ncol=LEGEND_COLUMNS)
+        handles = [plt.Line2D([], [], color=one.colour, ls=one.line) for one in entries.values()]
+        top.legend(handles, list(entries), loc="lower left", ncol=columns)

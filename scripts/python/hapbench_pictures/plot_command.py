@@ -1,12 +1,14 @@
 """`hapbench plot`: a sketch in the terminal and a file."""
 import io
+import math
 from pathlib import Path
 
 from hapbench_command import Arguments
 from hapbench_report.json_input import InputError
 
 from .files import write
-from .given import common_folder, given_runs, given_sweep, labels
+from .given import common_folder, given_runs, given_sweep, named
+from .map_plot import given_study, study_figures
 from .terminal import this_terminal
 
 KINDS = (".svg", ".png", ".pdf")
@@ -17,6 +19,8 @@ def arguments(words):
     parser.add_argument("runs", nargs="+", metavar="RUN")
     parser.add_argument("--y", type=lambda text: [name.strip() for name in text.split(",") if name.strip()], default=[])
     parser.add_argument("--metric")
+    parser.add_argument("--from", dest="start", metavar="T")
+    parser.add_argument("--to", dest="end", metavar="T")
     parser.add_argument("--out", type=Path)
     parser.add_argument("--no-sketch", action="store_true")
     parser.add_argument("--quiet", action="store_true")
@@ -26,9 +30,16 @@ def arguments(words):
 def plot(words):
     options = arguments(words)
     sweep = given_sweep(options.runs)
-    file = options.out or common_folder(options.runs) / "plot.svg"
+    study = given_study(options.runs)
+    if study:
+        refuse(options, ("--y", "--metric", "--from", "--to"), f"{study} holds stability maps or a limit; allowed for it: --out")
+    folder = study.parent if study and study.is_file() else common_folder(options.runs)
+    file = options.out or folder / "plot.svg"
     if file.suffix not in KINDS:
         raise InputError(f"--out {file}: got \"{file.suffix}\"; allowed: {', '.join(KINDS)}")
+    if study:
+        write_all(study_figures(study), file, options.quiet)
+        return
     if sweep:
         figure, lines = of_sweep(sweep, options)
     elif options.metric:
@@ -37,39 +48,75 @@ def plot(words):
         figure, lines = of_runs(options)
     for line in lines:
         print(line)
-    picture = io.BytesIO()
-    # Same runs, same bytes.
+    write_all([("", figure)], file, options.quiet)
+
+
+def refuse(options, names, why):
+    """Options that what is drawn has no use for."""
+    given = {"--y": options.y, "--metric": options.metric, "--from": options.start, "--to": options.end}
+    unused = next((name for name in names if given[name]), None)
+    if unused:
+        raise InputError(f"{unused}: {why}")
+
+
+def write_all(figures, file, quiet):
+    """Several of them beside each other, told apart by their names."""
     import matplotlib
-    with matplotlib.rc_context({"svg.hashsalt": "hapbench", "svg.fonttype": "none"}):
-        figure.savefig(picture, format=file.suffix[1:], dpi=150, metadata=undated(file.suffix))
-    write(file, picture.getvalue())
-    if not options.quiet:
-        print(f"picture in {file}")
+
+    for name, figure in figures:
+        to = file.with_stem(f"{file.stem}_{name}") if len(figures) > 1 else file
+        picture = io.BytesIO()
+        # Same runs, same bytes.
+        with matplotlib.rc_context({"svg.hashsalt": "hapbench", "svg.fonttype": "none"}):
+            figure.savefig(picture, format=to.suffix[1:], dpi=150, metadata=undated(to.suffix))
+        write(to, picture.getvalue())
+        if not quiet:
+            print(f"picture in {to}")
 
 
 def undated(suffix):
     return {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {"Software": None}}[suffix]
 
 
+def window_of(options):
+    """The times to draw [s]."""
+    window = (time_of("--from", options.start, -math.inf), time_of("--to", options.end, math.inf))
+    if not window[0] < window[1]:
+        raise InputError(f"--from {options.start} --to {options.end}: is no span of time; allowed: --from before --to")
+    return window
+
+
+def time_of(name, text, default):
+    if text is None:
+        return default
+    try:
+        time = float(text)
+    except ValueError:
+        time = math.nan
+    if not math.isfinite(time):
+        raise InputError(f"{name}: got \"{text}\"; allowed: a time in seconds")
+    return time
+
+
 def of_runs(options):
     from .looks import looks
     from .plot import draw, samples_of
     from .quantities import chosen
+    from .replay import surface_of
     from .sketch import sketch
 
     runs = given_runs(options.runs)
     quantities, with_path = chosen(options.y, runs)
-    names, samples = labels(runs), samples_of(runs, quantities, with_path)
-    figure = draw(runs, names, quantities, with_path, samples)
+    samples, shown = samples_of(runs, quantities, with_path, window_of(options)), looks(runs, *named(runs))
+    figure = draw(runs, shown, quantities, with_path, samples, surface_of(runs) if with_path else None)
     if options.no_sketch or options.quiet:
         return figure, []
-    return figure, sketch(quantities, samples, looks(runs, names), this_terminal())
+    return figure, sketch(quantities, samples, shown, this_terminal())
 
 
 def of_sweep(folder, options):
     from .sweep_plot import Sweep, draw_sweep, sketch_sweep
 
-    if options.y:
-        raise InputError(f"--y: {folder} is a sweep; allowed for it: --metric")
+    refuse(options, ("--y", "--from", "--to"), f"{folder} is a sweep; allowed for it: --metric")
     sweep = Sweep(folder, options.metric)
     return draw_sweep(sweep), [] if options.no_sketch or options.quiet else sketch_sweep(sweep, this_terminal())

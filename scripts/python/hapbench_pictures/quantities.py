@@ -7,6 +7,7 @@ from hapbench_report.json_input import InputError
 
 from .columns import header, read_columns
 from .names import nearest
+from .settled import settled_of, settled_range
 
 TRAJECTORY = "trajectory.csv"
 REFERENCE = "force_reference.csv"
@@ -112,16 +113,29 @@ def tables_of(run):
 class Samples:
     """What is drawn of one run: the tables' columns, each table read once."""
 
-    def __init__(self, run, quantities, further=()):
-        """`further`: columns of trajectory.csv beside those of the quantities."""
+    def __init__(self, run, quantities, further=(), window=(-np.inf, np.inf)):
+        """`further`: columns of trajectory.csv beside those of the quantities; `window`: the times to keep [s]."""
         wanted = {TRAJECTORY: {"time_s", "colliding", *further}}
         for q in (q for q in quantities if has(run, q)):
             wanted.setdefault(q.file, {"time_s"}).update(q.columns)
         present = tables_of(run)
         if TRAJECTORY not in present:
             raise InputError(f"{run.directory}: has no {TRAJECTORY}; run it with --set {SWITCH[TRAJECTORY]}=true")
-        self.tables = {file: read_columns(run.directory / file, sorted(columns))
-                       for file, columns in wanted.items() if file in present}
+        tables = {file: read_columns(run.directory / file, sorted(columns)) for file, columns in wanted.items() if file in present}
+        time = tables[TRAJECTORY]["time_s"]
+        touching = time[tables[TRAJECTORY]["colliding"] > 0]
+        # Time of the first recorded row in contact; None without one, and outside the window.
+        self.first_touch_s = float(touching[0]) if touching.size and window[0] <= touching[0] <= window[1] else None
+        settled = settled_of(run, tables[TRAJECTORY])
+        self.tables, self.settled = {}, {}
+        for file, table in tables.items():
+            rows = (table["time_s"] >= window[0]) & (table["time_s"] <= window[1])
+            if not rows.any():
+                raise InputError(f"--from, --to: {run.directory}: no row of {file} between {window[0]:g} and {window[1]:g} s; "
+                                 f"allowed: a span with rows between {time[0]:.4g} and {time[-1]:.4g} s")
+            self.tables[file] = {name: values[rows] for name, values in table.items()}
+            beside = np.minimum(np.searchsorted(time, table["time_s"][rows]), len(time) - 1)
+            self.settled[file] = settled[beside]
 
     @property
     def trajectory(self):
@@ -132,8 +146,8 @@ class Samples:
         table = self.tables.get(q.file, {})
         return (table["time_s"], *q.of(table)) if set(q.columns) <= set(table) else None
 
-    @property
-    def first_touch_s(self):
-        """Time of the first recorded row in contact; None without one."""
-        touching = np.flatnonzero(self.trajectory["colliding"] > 0)
-        return float(self.trajectory["time_s"][touching[0]]) if touching.size else None
+
+def range_of(quantity, samples):
+    """The range that settled contact takes, where its peaks are cut off; else None."""
+    drawn = [(s.settled[quantity.file], *s.of(quantity)[1:]) for s in samples if s.of(quantity) is not None]
+    return settled_range(drawn)

@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import tempfile
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -83,16 +84,30 @@ def some(points, most):
     return points[np.sort(np.random.default_rng(1).choice(len(points), most, replace=False))]
 
 
+def surface_of(runs):
+    """The points of the surface that all runs share; None where they do not, or there is none to be had."""
+    environments = [run.scenario.get("environment") for run in runs]
+    if any(environment != environments[0] for environment in environments) or not environments[0]:
+        return None
+    points, _ = shell(runs[0])
+    return None if points is None else points[:, :3]
+
+
 def shell(run):
     """Points and normals, None with the reason where there are none to be had."""
     if at(run.scenario, "/environment/type") == "springs":
         return None, ""
+    return shell_of(run.directory / "scenario.effective.json")
+
+
+@lru_cache(maxsize=1)  # curves and replay of a page ask for the same one
+def shell_of(scenario):
     program = os.environ.get("HAPBENCH_PROGRAM") or shutil.which("hapbench")
     if not program:
         return None, "Without the program hapbench in the path only points that were in contact are drawn."
     with tempfile.TemporaryDirectory(prefix="hapbench-report-") as scratch:
         file = Path(scratch) / "shell.csv"
-        line = [program, "shell", str(run.directory / "scenario.effective.json"), "--out", str(file), "--quiet"]
+        line = [program, "shell", str(scenario), "--out", str(file), "--quiet"]
         try:
             done = subprocess.run(line, capture_output=True, text=True, timeout=PATIENCE_S, stdin=subprocess.DEVNULL)
         except (OSError, subprocess.TimeoutExpired) as error:

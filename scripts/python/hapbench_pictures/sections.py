@@ -6,6 +6,8 @@ from hapbench_report.json_input import at, number_or_none
 from hapbench_report.markup import cell, command, heading_cell, number, number_cell, table, text
 from hapbench_report.section_runs import provenance_of, provenance_section
 
+from .fields import differing
+
 MOST_CARDS = 6
 # Metric of summary.json -> heading, factor; shown where any run has it. What separates algorithms comes first.
 METRICS = (
@@ -108,22 +110,11 @@ def scenario_section(runs, labels):
 
 def differences(known):
     """The fields in which the scenarios differ."""
-    flat = [dict(leaves(run.scenario)) for run, _ in known]
-    paths = [path for path in dict.fromkeys(path for fields in flat for path in fields)
-             if len({json.dumps(fields.get(path), sort_keys=True) for fields in flat}) > 1
-             and not path.startswith(("expect", "description", "name", "source"))]
-    if not paths:
+    found = differing([run.scenario for run, _ in known])
+    if not found:
         return ""
-    rows = [[cell(f"<code>{text(path)}</code>"), *(cell(text(json.dumps(fields.get(path)))) for fields in flat)] for path in paths]
+    rows = [[cell(f"<code>{text(path)}</code>"), *(cell(text(json.dumps(value))) for value in values)] for path, values in found.items()]
     return table([heading_cell("Field"), *(heading_cell(text(label)) for _, label in known)], rows, "<b>In what they differ</b>")
-
-
-def leaves(value, path=""):
-    if not isinstance(value, dict):
-        yield path, value
-        return
-    for key, part in value.items():
-        yield from leaves(part, f"{path}.{key}" if path else key)
 
 
 def commands_section(runs, words):

@@ -1,13 +1,17 @@
 """Curves in a terminal: dots of braille where it knows them, else a letter for each run."""
+from dataclasses import replace
+
 import numpy as np
 
 from .panels import LARGEST_RATIO
+from .quantities import range_of
 from .reduced import reduced
 from .terminal import coloured
 
 HEIGHT, MARGIN = 6, 10  # characters of a panel, and of the numbers left of it
 BRAILLE = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))  # bits of the dots, by row and column
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
+SEVERAL = "+"  # where letters would hide each other
 
 
 class Canvas:
@@ -20,6 +24,7 @@ class Canvas:
         self.width, self.height = width, height
         self.dots = np.zeros((height, width), int)
         self.owner = np.full((height, width), -1)
+        self.shared = np.zeros((height, width), bool)
 
     @property
     def columns(self):
@@ -33,6 +38,7 @@ class Canvas:
         """Dots from one row to another, counted from below, in column i."""
         for row in range(min(low, high), max(low, high) + 1):
             y, x = self.height - 1 - row // self.down, i // self.across
+            self.shared[y, x] |= self.owner[y, x] not in (-1, owner)
             self.owner[y, x] = owner
             self.dots[y, x] |= 1 if self.letters else BRAILLE[self.down - 1 - row % self.down][i % self.across]
 
@@ -43,30 +49,38 @@ class Canvas:
         owner = self.owner[y, x]
         if owner < 0:
             return " "
+        if self.letters and self.shared[y, x]:
+            return SEVERAL
         one = LETTERS[owner % 26] if self.letters and len(looks) > 1 else "*" if self.letters else chr(0x2800 + self.dots[y, x])
         return coloured(one, looks[owner].colour) if self.terminal.colour else one
 
 
 def sketch(quantities, samples, looks, terminal):
-    """The lines to print."""
-    several = len(looks) > 1
+    """The lines to print. Runs that differ in the seed only are drawn as one."""
+    groups = list(dict.fromkeys(one.group or one.label for one in looks))
+    owners = [groups.index(one.group or one.label) for one in looks]
+    shown = [replace(looks[owners.index(i)], label=name) for i, name in enumerate(groups)]
+    several = len(shown) > 1
     letters = several and not terminal.colour
-    lines = [legend(looks, terminal, letters or not terminal.unicode), ""] if several else []
-    end = max(float(s.trajectory["time_s"][-1]) for s in samples)
+    lines = [legend(shown, terminal, letters or not terminal.unicode), ""] if several else []
+    begin, end = (extreme(float(s.trajectory["time_s"][i]) for s in samples) for extreme, i in ((min, 0), (max, -1)))
+    if begin < 0.02 * end:
+        begin = 0.0
     for quantity in quantities:
         canvas = Canvas(terminal.width - MARGIN, HEIGHT, terminal, letters)
-        series = [(i, of) for i, of in enumerate(s.of(quantity) for s in samples) if of is not None]
-        scale = Scale([of for _, of in series])
+        series = [(i, of) for i, of in zip(owners, (s.of(quantity) for s in samples)) if of is not None]
+        scale = Scale([of for _, of in series], range_of(quantity, samples))
         for i, (time, low, high) in series:
-            draw(canvas, i, time, scale(low), scale(high), end)
-        lines += panel(quantity, canvas, scale, looks, series)
-    return lines + time_axis(end, terminal.width, [s.first_touch_s for s in samples])
+            draw(canvas, i, time, scale(low), scale(high), begin, end)
+        lines += panel(quantity, canvas, scale, shown, series)
+    return lines + time_axis(begin, end, terminal.width, [s.first_touch_s for s in samples])
 
 
 class Scale:
-    """From numbers to 0 ... 1; beyond the calmest run's peak logarithmic where another run is thrown about."""
+    """From numbers to 0 ... 1; beyond the calmest run's peak logarithmic where another run is thrown about, else cut off at
+    `shown`, where given."""
 
-    def __init__(self, series):
+    def __init__(self, series, shown=None):
         peaks = [peak for peak in (float(np.nanmax(np.abs(of[2]), initial=0.0)) for of in series) if peak > 0]
         self.unit = min(peaks) if peaks and max(peaks) > LARGEST_RATIO * min(peaks) else None
         # A column of nothing but NaN has no bounds.
@@ -74,25 +88,31 @@ class Scale:
         self.high = float(np.nanmax([np.nanmax(of[2], initial=-np.inf) for of in series]))
         if not self.low <= self.high:
             self.low = self.high = 0.0
+        self.most, self.cut_off = self.high, shown is not None and self.unit is None
+        if self.cut_off:
+            self.low, self.high = shown
 
     def bent(self, values):
         return values if self.unit is None else np.arcsinh(np.asarray(values) / self.unit)
 
     def __call__(self, values):
         low, high = self.bent(self.low), self.bent(self.high)
+        if self.cut_off:
+            values = np.clip(values, self.low, self.high)
         return (self.bent(values) - low) / (high - low) if high > low else np.where(np.isnan(values), np.nan, 0.5)
 
 
-def draw(canvas, owner, time, low, high, end):
+def draw(canvas, owner, time, low, high, begin, end):
     start, columns, last = float(time[0]), canvas.columns, canvas.rows - 1
-    mine = max(1, int(round(columns * (time[-1] - start) / (end - start)))) if end > start else 1
+    span = max(end - begin, 1e-300)
+    mine = max(1, int(round(columns * min(1.0, (time[-1] - start) / span))))
     if len(time) <= 2 * mine:
         # Fewer rows than columns: each column takes the row before it.
         rows = np.searchsorted(time, np.linspace(start, time[-1], mine), side="right") - 1
         low, high, at = low[rows], high[rows], np.arange(mine)
     else:
         t, low, high = reduced(time, low, high, mine)
-        at = np.minimum((columns * (t - start) / max(end - start, 1e-300)).round().astype(int), columns - 1)
+        at = np.minimum((columns * (t - start) / span).round().astype(int), columns - 1)
     before = None
     for i, least, most in zip(at, low, high):
         if np.isnan(least):
@@ -112,7 +132,7 @@ def panel(quantity, canvas, scale, looks, series):
     time, values = peak[1][0], peak[1][2]
     if np.isfinite(values).any():
         whose = f" by {looks[peak[0]].label}" if len(looks) > 1 else ""
-        title += f", most {scale.high:.4g} at {time[np.nanargmax(values)]:.4g} s{whose}"
+        title += f", most {scale.most:.4g} at {time[np.nanargmax(values)]:.4g} s{whose}{' (cut off)' if scale.cut_off else ''}"
     labels = {0: f"{scale.high:.4g}", canvas.height - 1: f"{scale.low:.4g}"}
     return [title, *(f"{labels.get(y, ''):>{MARGIN - 2}} |{canvas.line(y, looks)}" for y in range(canvas.height)), ""]
 
@@ -122,7 +142,11 @@ def legend(looks, terminal, letters):
     for i, one in enumerate(looks):
         mark = LETTERS[i % 26] if letters else "\u2588\u2588"
         entries.append(f"{coloured(mark, one.colour) if terminal.colour else mark} {one.label}")
-    return "\n".join(wrapped(entries, [len(one.label) + 5 for one in looks], terminal.width))
+    widths = [len(one.label) + 5 for one in looks]
+    if letters:
+        entries.append(f"{SEVERAL} several")
+        widths.append(len("several") + 5)
+    return "\n".join(wrapped(entries, widths, terminal.width))
 
 
 def wrapped(entries, widths, width):
@@ -136,15 +160,16 @@ def wrapped(entries, widths, width):
     return ["   ".join(line) for line in lines]
 
 
-def time_axis(end, width, touches):
-    """Zero, the end, and below them where runs first touched."""
-    axis = " " * (MARGIN - 1) + "0" + f"{end:.4g} s".rjust(width - MARGIN)
+def time_axis(begin, end, width, touches):
+    """Begin, end, and below them where runs first touched."""
+    first = f"{begin:.4g}"
+    axis = " " * (MARGIN - 1) + first + f"{end:.4g} s".rjust(width - MARGIN - len(first) + 1)
     at = sorted({touch for touch in touches if touch is not None})
     if not at:
-        return [axis, f"{'':{MARGIN}}no contact"]
+        return [axis, *([] if begin else [f"{'':{MARGIN}}no contact"])]
     room = width - MARGIN
     marks = [" "] * room
     for touch in at:
-        marks[min(room - 1, int(touch / end * room) if end > 0 else 0)] = "^"
+        marks[min(room - 1, int((touch - begin) / (end - begin) * room) if end > begin else 0)] = "^"
     first = f"first touch at {at[0]:.4g} s" + (f" ... {at[-1]:.4g} s" if len(at) > 1 else "")
     return [axis, " " * MARGIN + "".join(marks).rstrip(), " " * MARGIN + first]

@@ -4,7 +4,7 @@ from statistics import median
 # Ending of a name -> unit; the longest that fits.
 UNITS = {
     "N_per_m": "N/m", "N_s_per_m": "N s/m", "m_per_s": "m/s", "m_per_s2": "m/s²", "m2_per_s2": "m²/s²", "rad_per_s": "rad/s",
-    "per_s": "1/s",
+    "s_per_m": "s/m", "per_s": "1/s",
     "m": "m", "mm": "mm", "s": "s", "N": "N", "J": "J", "W": "W", "kg": "kg", "rad": "rad", "Hz": "Hz", "bytes": "bytes"}
 PER = "seconds_per_"  # time of a step or of a call
 SMALL_M = 0.01  # lengths below are shown in millimetres

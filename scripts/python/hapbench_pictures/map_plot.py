@@ -1,0 +1,79 @@
+"""The pictures of `stability --map` and `limit`: classes of runs as coloured cells or marks, with the limits found."""
+import copy
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+
+from hapbench_figures.results import BadResult, MissingResult, Results, numbers
+from hapbench_figures.stability import CLASSES, MapFile, draw_stability_map, is_geometric, look_of_class
+from hapbench_figures.style import BLACK, PETROL, SETTINGS
+from hapbench_looks import look
+from hapbench_report.json_input import InputError
+
+from .fields import axis
+
+matplotlib.use("agg")
+from matplotlib import pyplot as plt  # noqa: E402  (the backend comes first)
+
+MAP, LIMIT, LIMIT_RUNS = "stability_map_", "limit.csv", "limit_runs.csv"
+
+
+def given_study(words):
+    """The table that a folder of maps or of a limit, or one map's file, stands for; None where none was given."""
+    studies = [Path(word) for word in words if is_study(Path(word))]
+    if studies and len(words) > 1:
+        raise InputError(f"{studies[0]}: holds stability maps or a limit; allowed: one such folder alone, or any number of runs")
+    return studies[0] if studies else None
+
+
+def is_study(path):
+    return path.name.startswith(MAP) and path.is_file() or any(path.glob(f"{MAP}*.csv")) or (path / LIMIT_RUNS).is_file()
+
+
+def study_figures(path):
+    """Pairs of a name, to tell the files apart, and a figure."""
+    try:
+        with matplotlib.rc_context(SETTINGS):
+            if (path / LIMIT_RUNS).is_file():
+                return [("", draw_limit(Results(path)))]
+            results = Results(path.parent if path.is_file() else path)
+            files = [path.name] if path.is_file() else results.glob(f"{MAP}*.csv")
+            return [(name, draw_stability_map(found)) for file in files for name, found in single_maps(results, file)]
+    except (BadResult, MissingResult) as error:
+        raise InputError(str(error)) from error
+    except (KeyError, ValueError, IndexError) as error:
+        raise InputError(f"{path}: is not a table that hapbench wrote: {error}") from error
+
+
+def single_maps(results, file):
+    """The map, or one for each of its integrators."""
+    found, name = MapFile(results, file), file.removeprefix(MAP).removesuffix(".csv")
+    several = len(found.integrators) > 1
+    for integrator in found.integrators:
+        one = copy.copy(found)
+        one.rows, one.boundary = ([row for row in rows if row["integrator"] == integrator] for rows in (found.rows, found.boundary))
+        yield f"{name}_{integrator}" if several else name, one
+
+
+def draw_limit(results):
+    """A line of marks for each algorithm: the class of every run over the field; bars: the limit, and that of theory."""
+    runs, limits = results.records(LIMIT_RUNS), results.records(LIMIT)
+    algorithms, field = [row["algorithm"] for row in limits], limits[0]["field"]
+    figure, ax = plt.subplots(figsize=(6.0, 1.3 + 0.3 * len(algorithms)))
+    for name in sorted({row["class"] for row in runs}, key=lambda name: ([*CLASSES, name].index(name), name)):
+        mine = [row for row in runs if row["class"] == name]
+        title, colour, hatch = look_of_class(name)
+        ax.scatter(numbers(mine, field), [algorithms.index(row["algorithm"]) for row in mine], s=45, marker="s", color=colour,
+                   edgecolor=PETROL, lw=0.4, hatch=hatch, label=title)
+    for kind, title, style in (("theory", "limit, theory", {"color": PETROL, "lw": 2.6}), ("limit", "limit, bisection", {"color": BLACK, "lw": 1.2})):
+        at = numbers(limits, kind)
+        lines = np.flatnonzero(np.isfinite(at))
+        if lines.size:
+            ax.vlines(at[lines], lines - 0.4, lines + 0.4, label=title, zorder=3, **style)
+    values = np.unique(numbers(runs, field))
+    ax.set(xlabel=axis(field), xscale="log" if is_geometric(values) else "linear", yticks=range(len(algorithms)),
+           yticklabels=[look(name).label for name in algorithms], ylim=(len(algorithms) - 0.4, -0.6))
+    ax.grid(axis="y", visible=False)
+    ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=4)
+    return figure
