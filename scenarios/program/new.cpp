@@ -60,9 +60,9 @@ int write_new(const NewOptions& options) {
   check_source(kind, options.from);
   const fs::path source = options.from;
   const fs::path out =
-      !options.out.empty() ? options.out : (source.empty() ? kind.name : source.stem().string()) + ".json";
+      !options.out.empty() ? options.out : (source.empty() ? "" : source.stem().string() + "_") + kind.name + ".json";
   std::error_code ignored;
-  if (fs::exists(out, ignored)) throw InputError(fmt::format("--out {}: is there; allowed: a new file", out.string()));
+  if (fs::exists(out, ignored)) throw InputError(fmt::format("{} exists; choose another with --out", out.string()));
   const fs::path directory = out.has_parent_path() ? out.parent_path() : ".";
   const ScenarioStart start = scenario_start(kind, source.empty() ? std::nullopt : std::optional(source), directory);
   const Json json = parse_json(start.text);
@@ -92,7 +92,7 @@ void add_new(CommandLine& line) {
   Command command = line.command("new", "Write a scenario to start from and explain its fields");
   command.add("kind", options->kind, "what to start with; without, the kinds are listed");
   command.add("--from", options->from, "the mesh, shell or stroke that it is about");
-  command.add("--out", options->out, "the file to write, a new one (default: NAME.json, after --from or the kind)");
+  command.add("--out", options->out, "the file to write, a new one (default: KIND.json, behind the name of --from)");
   add_output_options(command, options->output);
   command.runs([options] { return write_new(*options); });
 }
