@@ -41,6 +41,8 @@ void check_source(const StartKind& kind, const std::string& from) {
     throw InputError(fmt::format("--from: missing; \"{}\" starts from a file", kind.name));
   if (kind.source == StartSource::none && !from.empty())
     throw InputError(fmt::format("--from: got \"{}\"; \"{}\" starts from no file", from, kind.name));
+  std::error_code ignored;
+  if (!from.empty() && !fs::exists(from, ignored)) throw InputError(fmt::format("--from {}: cannot be read: no such file", from));
 }
 
 int list_kinds(const OutputOptions& output) {
@@ -63,13 +65,13 @@ int write_new(const NewOptions& options) {
       !options.out.empty() ? options.out : (source.empty() ? "" : source.stem().string() + "_") + kind.name + ".json";
   std::error_code ignored;
   if (fs::exists(out, ignored)) throw InputError(fmt::format("{} exists; choose another with --out", out.string()));
-  const fs::path directory = out.has_parent_path() ? out.parent_path() : ".";
+  const fs::path directory = out.parent_path();
   const ScenarioStart start = scenario_start(kind, source.empty() ? std::nullopt : std::optional(source), directory);
   const Json json = parse_json(start.text);
   LoadedScenario loaded = read_scenario(json, directory);
   loaded.file = out;
   print_warnings(check_named_files(loaded));
-  require_writable_directory(directory);
+  require_writable_directory(directory.empty() ? "." : directory);
   write_file_atomically(out, start.text);
 
   const std::vector<FieldMeaning> meanings = field_meanings(json);
