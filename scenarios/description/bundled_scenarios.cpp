@@ -6,6 +6,7 @@
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/installed_folder.hpp"
+#include "scenarios/input/mesh_file.hpp"
 
 namespace hapbench {
 
@@ -30,12 +31,20 @@ std::vector<BundledScenario> bundled_scenarios() {
 
 fs::path find_scenario(const std::string& argument, const fs::path& directory) {
   std::error_code error;
-  if (fs::exists(directory / argument, error)) return directory / argument;
+  const fs::path file = directory / argument;
+  if (fs::exists(file, error)) {
+    if (is_mesh_name(file) && !fs::is_directory(file, error))
+      throw InputError(fmt::format("{}: is a mesh; allowed: a scenario, as \"hapbench new mesh --from {}\" writes one",
+                                   argument, argument));
+    return file;
+  }
   std::vector<std::string> names;
   for (const BundledScenario& bundled : bundled_scenarios()) {
     if (bundled.name == argument) return bundled.file;
     names.push_back(bundled.name);
   }
+  if (fs::exists(file.string() + ".json", error))
+    throw InputError(fmt::format("{}: no such file and no bundled scenario; there is {}.json", argument, argument));
   const std::string stem = fs::path(argument).stem().string();
   throw InputError(fmt::format("{}: no such file and no bundled scenario{}; \"hapbench list\" shows them", argument,
                                nearest_name_hint(stem, names)));

@@ -132,15 +132,16 @@ static void describe(Fields& f, ExpectFields& expect) {
   static const MetricList kMetrics = metrics_without_values();
   f.field("outcome", "how the run must end, or a list of ways", Presence::has_default,
           [&expect](Fields& value) { describe_outcomes(value, expect.outcomes); });
-  f.group("metrics", "bounds on the run's metrics, min and max of each", [&expect](Fields& metrics) {
-    for (const auto& [name, unit, meaning, value] : kMetrics) {
-      const auto known = expect.metrics.find(name);
-      std::optional<MetricBound> bound;
-      if (known != expect.metrics.end()) bound = known->second;
-      metrics.if_any(name, bound, meaning, [](Fields& b, MetricBound& limits) { b.object(limits); });
-      if (bound) expect.metrics[name] = *bound;
-    }
-  });
+  f.group("metrics", "bounds on the run's metrics, min and max of each; \"hapbench list metrics\" shows them",
+          [&expect](Fields& metrics) {
+            for (const auto& [name, unit, meaning, value] : kMetrics) {
+              const auto known = expect.metrics.find(name);
+              std::optional<MetricBound> bound;
+              if (known != expect.metrics.end()) bound = known->second;
+              metrics.if_any(name, bound, meaning, [](Fields& b, MetricBound& limits) { b.object(limits); });
+              if (bound) expect.metrics[name] = *bound;
+            }
+          });
 }
 
 /// Reading a file has replaced the field by what it names.

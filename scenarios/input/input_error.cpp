@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "scenarios/input/text_lines.hpp"
+
 namespace hapbench {
 namespace {
 
@@ -74,7 +76,7 @@ std::string nearest_name(std::string_view given, std::span<const std::string> va
   std::size_t best_distance = std::max<std::size_t>(given.size() > 4 ? 2 : 1, given.size() / 3) + 1;
   for (const std::string& name : valid) {
     const bool contains = given.size() >= 3 && name.find(given) != std::string::npos;
-    const std::size_t distance = contains ? 1 : edit_distance(given, name);
+    const std::size_t distance = contains ? 1 : edit_distance(lower_case(given), lower_case(name));
     if (distance < best_distance) {
       best_distance = distance;
       best = name;

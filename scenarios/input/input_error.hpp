@@ -54,7 +54,7 @@ class InputError : public std::runtime_error {
 [[noreturn]] void fail_in_line(const std::filesystem::path& file, std::size_t line, const std::string& problem);
 
 /// The valid name nearest to `given` in edit distance, or empty when none is near enough to suggest. A name may also be
-/// given without its unit or any other end behind an underscore.
+/// given without its unit or any other end behind an underscore, and its case does not matter.
 std::string nearest_name(std::string_view given, std::span<const std::string> valid);
 
 /// `; nearest valid name: "x"`, or empty.

@@ -108,11 +108,14 @@ CheckedMesh surface_in(std::string_view bytes, const fs::path& file, const MeshS
 
 }  // namespace
 
-std::string mesh_extension(const fs::path& file) {
+bool is_mesh_name(const fs::path& file) {
   const std::string extension = lower_case(file.extension().string());
-  const bool known = extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off";
-  if (!known) fail_in_file(file, "has another extension; allowed: .obj, .ply, .stl or .off");
-  return extension;
+  return extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off";
+}
+
+std::string mesh_extension(const fs::path& file) {
+  if (!is_mesh_name(file)) fail_in_file(file, "has another extension; allowed: .obj, .ply, .stl or .off");
+  return lower_case(file.extension().string());
 }
 
 MeshFile::MeshFile(std::string_view bytes, const fs::path& file, const MeshSampling& sampling)

@@ -20,6 +20,8 @@ struct MeshSampling {
   std::optional<double> spacing;  ///< [m]; none: the mesh's own vertices
 };
 
+/// Returns true for a file name with the extension of a mesh format that is read.
+bool is_mesh_name(const std::filesystem::path& file);
 /// The extension of a mesh file, in lower case. Throws InputError when it is that of no format that is read.
 std::string mesh_extension(const std::filesystem::path& file);
 

@@ -183,12 +183,21 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
+/// For an option named like a field of scenarios: how a field is given.
+std::string field_hint(const std::string& option, const std::vector<std::string>& known) {
+  if (nearest_name(option.substr(option.find_first_not_of('-')), scenario_field_paths()).empty()) return "";
+  const auto has = [&known](const char* name) { return std::find(known.begin(), known.end(), name) != known.end(); };
+  if (has("--vary")) return "; fields are varied by --vary FIELD=VALUES";
+  return has("--set") ? "; fields are set by --set FIELD=VALUE" : "";
+}
+
 /// What is wrong with a word that nothing takes.
 std::string problem_of(const std::string& word, const CLI::App& program, const CLI::App* command) {
   if (word.starts_with("-")) {
     const std::string name = word.substr(0, word.find('='));
-    return fmt::format("unknown option \"{}\"{}", name,
-                       nearest_name_hint(name, option_names(command ? *command : program)));
+    const std::vector<std::string> known = option_names(command ? *command : program);
+    const std::string hint = nearest_name_hint(name, known);
+    return fmt::format("unknown option \"{}\"{}", name, hint.empty() ? field_hint(name, known) : hint);
   }
   if (command != nullptr) return fmt::format("unexpected argument \"{}\"", word);
   std::vector<std::string> names = command_names(program);

@@ -62,8 +62,8 @@ Words values_of(const std::string& name) {
   if (name == "--metric" || name == "--by") return metric_names();
   if (name == "name") return described_names();
   if (name == "what")
-    return {"algorithms", "depth_models", "stages", "integrators", "environments", "hands",   "devices",
-            "scenarios",  "thesis",       "limits", "beyond",      "quality",      "examples"};
+    return {"algorithms", "depth_models", "stages", "integrators", "environments", "hands",   "devices", "scenarios",
+            "thesis",     "limits",       "beyond", "quality",     "examples",     "metrics", "claims"};
   if (name == "--objective") return {"created", "vibration"};
   if (name == "--format") return stroke_format_names();
   if (name == "--orientation") return orientation_names();

@@ -11,10 +11,13 @@
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/describe.hpp"
 #include "scenarios/program/describe_results.hpp"
+#include "scenarios/program/describe_thesis.hpp"
+#include "scenarios/program/describe_words.hpp"
 #include "scenarios/program/schema_text.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/studies/stability/map_scenes.hpp"
 #include "scenarios/thesis_claims/choices_file.hpp"
+#include "scenarios/thesis_claims/claims.hpp"
 #include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
@@ -132,6 +135,8 @@ std::vector<std::string> described_names() {
   }
   for (const BundledScenario& bundled : bundled_scenarios()) names.push_back(bundled.name);
   for (const std::string& name : result_names()) names.push_back(name);
+  for (const std::string& name : described_words()) names.push_back(name);
+  for (const Claim& claim : all_claims()) names.emplace_back(claim.id);
   for (const std::string& path : scenario_field_paths()) names.push_back(path);
   return names;
 }
@@ -149,6 +154,19 @@ Description joined(const std::vector<Description>& meanings) {
   return all;
 }
 
+/// The field at that path, once for each of the types that have one of their own.
+std::vector<Description> describe_field(const std::string& path) {
+  std::vector<Description> meanings;
+  for (const auto& [types, field] : typed_fields(scenario_schema_once(), path)) {
+    const std::string values = types_text(path);
+    if (!values.empty()) return {{values, {{"field", path}, {"types", type_names(path.substr(0, path.rfind('.')))}}}};
+    Json json = *field;
+    if (!types.empty()) json["of"] = types;
+    meanings.push_back({fields_text(path, *field, types), std::move(json)});
+  }
+  return meanings;
+}
+
 Description describe_name(const std::string& name) {
   if (name == "stability") return describe_stability();
   if (name == "choices_schema") return {json_text(choices_schema()), choices_schema()};
@@ -161,14 +179,20 @@ Description describe_name(const std::string& name) {
   if (const ModelInfo* stage = find_stage(name)) add(describe_model("stage", *stage));
   if (const IntegratorEntry* entry = find_integrator(name)) add(describe_model("integrator", entry->info));
   for (Description& result : describe_results(name)) add(std::move(result));
-  if (const Json* fields = find_in_schema(scenario_schema_once(), name)) add({fields_text(name, *fields), *fields});
+  const std::vector<Description> fields = describe_field(name);
+  for (const Description& field : fields) add(field);
+  const Json* type = fields.empty() ? find_in_schema(scenario_schema_once(), name) : nullptr;
+  if (type != nullptr) add({fields_text(name, *type), *type});
   if (name == "profile") add(describe_profile());
+  for (Description& word : describe_word(name)) add(std::move(word));
+  if (meanings.empty()) meanings = describe_heading(name);
+  if (meanings.empty()) meanings = describe_thesis(name);
   if (!meanings.empty()) return joined(meanings);
   for (const BundledScenario& bundled : bundled_scenarios()) {
     if (bundled.name == name) return describe_scenario(bundled.file);
   }
   std::error_code ignored;
-  if (std::filesystem::exists(name, ignored)) return describe_scenario(name);
+  if (std::filesystem::exists(name, ignored)) return describe_scenario(find_scenario(name));
   throw InputError(
       fmt::format("nothing is called \"{}\"{}; \"hapbench list\" shows the names, \"hapbench describe scenario\" "
                   "the fields of a scenario file",
@@ -185,13 +209,15 @@ void add_describe(CommandLine& line) {
   auto options = std::make_shared<Options>();
   Command command = line.command("describe",
                                  "Explain an algorithm, a depth model, an integrator, an environment, a field, a "
-                                 "scenario, a metric, a column or file of the results or the stability "
-                                 "maps");
+                                 "scenario, a metric, a column or file of the results, a word or heading "
+                                 "that the program prints, a claim or a place of the thesis");
   command
-      .add("name", options->name,
-           "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
-           "\"choices_schema\", \"stability\"; a metric or a column, \"metrics\" or \"columns\" for all of "
-           "them, or a file such as trajectory.csv")
+      .add(
+          "name", options->name,
+          "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
+          "\"choices_schema\", \"stability\"; a metric or a column, \"metrics\" or \"columns\" for all of "
+          "them, a heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5 or a place such "
+          "as \"Fig. A.2\"")
       .required();
   add_output_options(command, options->output);
   command.runs([options] {

@@ -2,14 +2,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "algorithms/registry.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/scenario.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/describe_thesis.hpp"
 #include "scenarios/program/schema_text.hpp"
 #include "scenarios/program/table.hpp"
 #include "sim/loop/integrators/table.hpp"
@@ -22,8 +24,9 @@ struct Listed {
   std::string kind;  ///< "algorithm", …
   std::string name;
   std::string summary;
-  std::string group = {};   ///< of a scenario
-  std::string source = {};  ///< of a scenario: where its numbers come from
+  std::string group = {};    ///< of a scenario
+  std::string source = {};   ///< of a scenario or a claim: where in the thesis it is, or its numbers come from
+  std::string verdict = {};  ///< of a claim
 };
 
 void add_models(std::vector<Listed>& all, const char* kind, const ModelInfo& info) {
@@ -49,6 +52,9 @@ std::vector<Listed> everything() {
     for (const std::string& type : type_names(field)) all.push_back({field, type, type_summary(type)});
   }
   for (const BundledScenario& bundled : bundled_scenarios()) all.push_back(listed_scenario(bundled));
+  for (const auto& [name, unit, meaning, value] : metrics_without_values()) all.push_back({"metric", name, meaning});
+  for (const Json& claim : claims_on_record())
+    all.push_back({"claim", claim.at("id"), claim.at("claim"), "", claim.at("place"), claim.at("verdict")});
   return all;
 }
 
@@ -61,11 +67,6 @@ std::vector<std::string> sections_of(const std::vector<Listed>& all) {
     }
   }
   return names;
-}
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
 }
 
 constexpr std::size_t kColumn = 34;  // of the summaries
@@ -96,6 +97,8 @@ std::string scene_of(const std::string& name) {
 
 /// Those that are one scene under several algorithms stand together, where the first of them would.
 std::string entry_of(const std::vector<Listed>& all, const Listed& first) {
+  if (!first.verdict.empty())
+    return entry(fmt::format("{:<5}{}", first.name, first.verdict), first.summary, 2, kColumn, output_width());
   const std::string scene = scene_of(first.name);
   std::vector<std::string> algorithms;
   for (const Listed& thing : all) {
@@ -139,17 +142,23 @@ int list(const ListOptions& options) {
     require_valid_name("got", what, sections);
     std::erase_if(all, [&what](const Listed& thing) { return thing.kind != what && thing.group != what; });
   }
-  const std::string pattern = lower(options.grep);
+  // Of these there are so many that they are shown to those who ask.
+  const bool of_everything = options.what.empty() && options.grep.empty();
+  if (of_everything)
+    std::erase_if(all, [](const Listed& thing) { return thing.kind == "metric" || thing.kind == "claim"; });
+  const std::string pattern = lower_case(options.grep);
   std::erase_if(all, [&pattern](const Listed& thing) {
-    return lower(thing.name + " " + thing.summary + " " + thing.source).find(pattern) == std::string::npos;
+    return lower_case(thing.name + " " + thing.summary + " " + thing.source).find(pattern) == std::string::npos;
   });
   if (all.empty()) throw InputError(fmt::format("--grep: nothing has \"{}\" in its name or text", options.grep));
   Json json = Json::array();
   for (const Listed& thing : all) {
     Json& entry = json.emplace_back(Json{{"kind", thing.kind}, {"name", thing.name}, {"summary", thing.summary}});
     if (!thing.group.empty()) entry.update({{"group", thing.group}, {"source", thing.source}});
+    if (!thing.verdict.empty()) entry.update({{"verdict", thing.verdict}, {"source", thing.source}});
   }
-  print(options.output, list_text(all), json);
+  print(options.output,
+        list_text(all) + (of_everything ? "\"hapbench list metrics\" and \"list claims\" show more.\n" : ""), json);
   return kSuccess;
 }
 
@@ -157,11 +166,12 @@ int list(const ListOptions& options) {
 
 void add_list(CommandLine& line) {
   auto options = std::make_shared<ListOptions>();
-  Command command = line.command("list", "List algorithms, models, integrators, environments, hands and scenarios");
+  Command command =
+      line.command("list", "List algorithms, models, integrators, environments, hands, scenarios, metrics and claims");
   command.add(
       "what", options->what,
       "one kind alone: algorithms, depth_models, stages, integrators, environments, hands, devices, scenarios, or "
-      "a group of those: thesis, limits, beyond, examples");
+      "a group of those: thesis, limits, beyond, quality, examples; or metrics, or claims");
   command.add("--grep", options->grep, "only what has this text in its name, its description or its source");
   add_output_options(command, options->output);
   command.runs([options] { return list(*options); });

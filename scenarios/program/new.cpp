@@ -41,6 +41,8 @@ void check_source(const StartKind& kind, const std::string& from) {
     throw InputError(fmt::format("--from: missing; \"{}\" starts from a file", kind.name));
   if (kind.source == StartSource::none && !from.empty())
     throw InputError(fmt::format("--from: got \"{}\"; \"{}\" starts from no file", from, kind.name));
+  std::error_code ignored;
+  if (!from.empty() && !fs::exists(from, ignored)) throw InputError(fmt::format("--from {}: cannot be read: no such file", from));
 }
 
 int list_kinds(const OutputOptions& output) {
@@ -60,16 +62,16 @@ int write_new(const NewOptions& options) {
   check_source(kind, options.from);
   const fs::path source = options.from;
   const fs::path out =
-      !options.out.empty() ? options.out : (source.empty() ? kind.name : source.stem().string()) + ".json";
+      !options.out.empty() ? options.out : (source.empty() ? "" : source.stem().string() + "_") + kind.name + ".json";
   std::error_code ignored;
-  if (fs::exists(out, ignored)) throw InputError(fmt::format("--out {}: is there; allowed: a new file", out.string()));
-  const fs::path directory = out.has_parent_path() ? out.parent_path() : ".";
+  if (fs::exists(out, ignored)) throw InputError(fmt::format("{} exists; choose another with --out", out.string()));
+  const fs::path directory = out.parent_path();
   const ScenarioStart start = scenario_start(kind, source.empty() ? std::nullopt : std::optional(source), directory);
   const Json json = parse_json(start.text);
   LoadedScenario loaded = read_scenario(json, directory);
   loaded.file = out;
   print_warnings(check_named_files(loaded));
-  require_writable_directory(directory);
+  require_writable_directory(directory.empty() ? "." : directory);
   write_file_atomically(out, start.text);
 
   const std::vector<FieldMeaning> meanings = field_meanings(json);
@@ -92,7 +94,7 @@ void add_new(CommandLine& line) {
   Command command = line.command("new", "Write a scenario to start from and explain its fields");
   command.add("kind", options->kind, "what to start with; without, the kinds are listed");
   command.add("--from", options->from, "the mesh, shell or stroke that it is about");
-  command.add("--out", options->out, "the file to write, a new one (default: NAME.json, after --from or the kind)");
+  command.add("--out", options->out, "the file to write, a new one (default: KIND.json, behind the name of --from)");
   add_output_options(command, options->output);
   command.runs([options] { return write_new(*options); });
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include "results/io/atomic_file.hpp"
@@ -13,6 +14,7 @@
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/json_file.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -41,8 +43,14 @@ std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
   if (ids.empty()) return claims;
   std::vector<std::string> valid;
   for (const Claim& claim : claims) valid.emplace_back(claim.id);
-  for (const std::string& id : ids) require_valid_name("--only: got", id, valid);
-  std::erase_if(claims, [&ids](const Claim& c) { return std::find(ids.begin(), ids.end(), c.id) == ids.end(); });
+  std::set<std::string> chosen;
+  for (const std::string& id : ids) {
+    const auto same = [&id](const std::string& other) { return lower_case(other) == lower_case(id); };
+    const auto found = std::find_if(valid.begin(), valid.end(), same);
+    if (found == valid.end()) require_valid_name("--only: got", id, valid);
+    chosen.insert(*found);
+  }
+  std::erase_if(claims, [&chosen](const Claim& claim) { return !chosen.contains(claim.id); });
   return claims;
 }
 
@@ -154,24 +162,50 @@ void print_problems(const std::vector<std::string>& problems) {
   if (problems.size() > kMost) print_error(fmt::format("{} more like these", problems.size() - kMost));
 }
 
-/// Judges the claims again at samples of the choices, and writes robustness.* into `directory`. Returns the signal that
-/// stopped it, or 0.
-int write_robustness(const ReproduceOptions& options, const RobustnessPlan& plan,
-                     const std::vector<JudgedClaim>& on_record, const fs::path& directory) {
+/// What the samples say, as robustness.json does, and the signal that stopped them before, or 0.
+struct SampledRobustness {
+  Json record;
+  int signal = 0;
+};
+
+/// Judges the claims again at samples of the choices, and writes robustness.* into `directory` if one is given.
+SampledRobustness sample_robustness(const ReproduceOptions& options, const RobustnessPlan& plan,
+                                    const std::vector<JudgedClaim>& on_record,
+                                    const std::optional<fs::path>& directory) {
   RobustnessReport report = run_robustness(plan, {options.out, options.jobs, options.anew, !options.output.quiet});
   print_problems(report.problems);
   if (report.signal != 0) {
     fmt::print(stderr, "hapbench: stopped after {} of {} samples; the same command goes on from there\n", report.done,
                plan.samples());
-    return report.signal;
+    return {{}, report.signal};
   }
   std::vector<std::string> verdicts;
   for (const JudgedClaim& j : on_record) verdicts.emplace_back(verdict_name(j.finding.verdict));
   const std::vector<ClaimRobustness> robustness = robustness_of(plan, verdicts, report.verdicts);
-  write_file_atomically(directory / "robustness.csv", robustness_table(plan, report.verdicts));
-  write_file_atomically(directory / "robustness.json", json_text(robustness_json(plan, robustness)));
-  write_file_atomically(directory / "robustness.md", robustness_markdown(plan, robustness));
-  return 0;
+  const Json record = robustness_json(plan, robustness);
+  if (directory) {
+    write_file_atomically(*directory / "robustness.csv", robustness_table(plan, report.verdicts));
+    write_file_atomically(*directory / "robustness.json", json_text(record));
+    write_file_atomically(*directory / "robustness.md", robustness_markdown(plan, robustness));
+  }
+  return {record};
+}
+
+/// Where the ledger goes. Nowhere for single claims unless it is said: they would replace the ledger of all.
+std::optional<fs::path> ledger_file(const ReproduceOptions& options) {
+  if (!options.ledger.empty()) return options.ledger;
+  if (!options.only.empty()) return {};
+  return fs::path(options.out) / "claims.json";
+}
+
+/// Each claim in words, and why it got its verdict.
+std::string claims_text(const std::vector<JudgedClaim>& judged) {
+  std::string text;
+  for (const JudgedClaim& j : judged) {
+    text += "\n" + entry(j.claim.id, j.claim.claim, 0, 5);
+    if (!j.finding.why.empty()) text += entry("", "why: " + j.finding.why, 0, 5);
+  }
+  return text;
 }
 
 int reproduce(const ReproduceOptions& options) {
@@ -186,30 +220,37 @@ int reproduce(const ReproduceOptions& options) {
 
   ResultsRead read;
   const std::vector<JudgedClaim> judged = judge(claims, published, runs, read, !options.output.quiet);
-  const fs::path ledger = options.ledger.empty() ? fs::path(options.out) / "claims.json" : fs::path(options.ledger);
-  fs::path record = reference / "robustness.json";
+  const std::optional<fs::path> ledger = ledger_file(options);
+  RobustnessOnRecord robustness(reference / "robustness.json", choices.hash());
   if (options.samples > 0) {
     const std::vector<JudgedClaim> again = to_judge_again(judged);
     std::vector<Claim> sampled;
     for (const JudgedClaim& j : again) sampled.push_back(j.claim);
     const RobustnessPlan plan =
         plan_robustness(choices, published, sampled, read, static_cast<std::size_t>(options.samples));
-    const int signal = write_robustness(options, plan, again, ledger.parent_path());
-    if (signal != 0) return kStopped + signal;
-    record = ledger.parent_path() / "robustness.json";
+    const SampledRobustness sampled_robustness =
+        sample_robustness(options, plan, again, ledger ? std::optional(ledger->parent_path()) : std::nullopt);
+    if (sampled_robustness.signal != 0) return kStopped + sampled_robustness.signal;
+    robustness = RobustnessOnRecord(sampled_robustness.record, choices.hash());
   }
 
-  const RobustnessOnRecord robustness(record, choices.hash());
   Table table({{"id", false}, {"verdict", false}, {"robustness", false}, {"measured", false}});
   for (const JudgedClaim& j : judged) {
     table.add({j.claim.id, std::string(verdict_name(j.finding.verdict)), robustness_text(robustness.of(j)),
                j.finding.measured});
   }
   const Json json = ledger_json(judged, published, robustness);
-  write_file_atomically(ledger, json_text(json));
-  write_file_atomically(fs::path(ledger).replace_extension(".md"), ledger_markdown(judged, robustness));
-  write_file_atomically(ledger.parent_path() / "choices.md", choices.markdown());
-  print(options.output, table.text() + fmt::format("\nledger in {}\n", ledger.string()), json);
+  std::string text = table.text();
+  if (!options.only.empty()) text += claims_text(judged);
+  if (ledger) {
+    write_file_atomically(*ledger, json_text(json));
+    write_file_atomically(fs::path(*ledger).replace_extension(".md"), ledger_markdown(judged, robustness));
+    write_file_atomically(ledger->parent_path() / "choices.md", choices.markdown());
+    text += fmt::format("\nledger in {}\n", ledger->string());
+  } else {
+    text += "\nno ledger is written of single claims without --ledger FILE\n";
+  }
+  print(options.output, text, json);
   return runs.all_as_expected() ? kSuccess : kUnexpectedOutcome;
 }
 
@@ -218,16 +259,18 @@ int reproduce(const ReproduceOptions& options) {
 void add_reproduce(CommandLine& line) {
   auto options = std::make_shared<ReproduceOptions>();
   Command command = line.command("reproduce", "Run the thesis's experiments and judge its claims");
-  command.add("--only", options->only, "ids of claims, separated by commas").comma_separated();
+  command.add("--only", options->only, "ids of claims, separated by commas; \"hapbench list claims\" shows them")
+      .comma_separated();
   command.add("--out", options->out, "directory of the results (default: results/out/reproduce)");
-  command.add("--ledger", options->ledger, "the ledger, JSON; a Markdown table beside it (default: OUT/claims.json)");
+  command.add("--ledger", options->ledger,
+              "the ledger, JSON; a Markdown table beside it (default: OUT/claims.json, with --only none)");
   command.flag("--anew", options->anew, "run every scenario and judge every sample, current results or not");
   command.add("--jobs", options->jobs, "runs at once (default: one for each processor)").range(1, 1024);
   command
       .add(
           "--robustness", options->samples,
           "judge every claim again at so many samples of the choices on record (default: 256), appendix D at a quarter "
-          "of them; writes robustness.csv, .json and .md beside the ledger")
+          "of them; writes robustness.csv, .json and .md beside the ledger, if there is one")
       .value_if_none("256")
       .range(4, 100'000);
   add_output_options(command, options->output);

@@ -28,8 +28,9 @@ std::string without_numbers(std::string text) {
 }  // namespace
 
 std::vector<Table::Column> run_columns() {
-  return {{"outcome", false}, {"cont\n%"},   {"land.\nmax N"}, {"mean\nN"},      {"step\np99 N"},
-          {">30Hz\nrms N"},   {"rev.\n1/s"}, {"depth\nmm"},    {"ratio", false}, {"us/\nstep"}};
+  std::vector<Table::Column> columns;
+  for (const RunHeading& heading : kRunHeadings) columns.push_back({heading.title, heading.number});
+  return columns;
 }
 
 std::vector<std::string> run_cells(const RunReport& report) {

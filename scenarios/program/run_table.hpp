@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -8,6 +9,19 @@
 #include "scenarios/run/run_scenario.hpp"
 
 namespace hapbench {
+
+/// A heading of the tables of runs.
+struct RunHeading {
+  const char* title;
+  std::array<const char*, 2> shows;  ///< names that `describe` explains; null for none
+  bool number = true;
+};
+inline constexpr RunHeading kRunHeadings[] = {
+    {"outcome", {"outcome", nullptr}, false},     {"cont\n%", {"contact_share"}},
+    {"land.\nmax N", {"landing_force_max_N"}},    {"mean\nN", {"force_mean_in_contact_N"}},
+    {"step\np99 N", {"force_step_p99_N"}},        {">30Hz\nrms N", {"force_rms_above_30Hz_N"}},
+    {"rev.\n1/s", {"force_reversals_per_s"}},     {"depth\nmm", {"depth_max_m"}},
+    {"ratio", {"ratio_min", "ratio_max"}, false}, {"us/\nstep", {"step_p50_s"}}};
 
 /// The figures `run` and `compare` show of a run, those that separate algorithms: outcome, share of rows in contact,
 /// largest force of the landings, then of settled contact mean force, 99 % of the force steps, rms above 30 Hz and

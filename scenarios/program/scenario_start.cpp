@@ -138,7 +138,7 @@ class Start {
       : description_(kind.summary), sections_(kind.sections + kRendering), directory_(directory) {
     if (kind.source == StartSource::mesh && !kind.needs_source && source) sections_.replace(0, kPlane.size(), kMesh);
     values_["steps"] = kind.steps;
-    if (source) values_["file"] = fs::proximate(*source, directory).generic_string();
+    if (source) values_["file"] = fs::proximate(*source, directory.empty() ? "." : directory).generic_string();
     if (has("@scale@")) choose_scale();
     if (has("@tool_scale@")) {
       place_mesh_tool();

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/schema_writer.hpp"
 #include "scenarios/program/table.hpp"
 
 namespace hapbench {
@@ -99,12 +100,18 @@ std::string allowed_text(const Json& schema) {
 
 namespace {
 
+/// The plain object whose fields are told one by one: not the bounds on metrics, which are more than all other fields
+/// together.
+const Json* shown_object(const Json& schema) {
+  return &schema == find_in_schema(scenario_schema_once(), "expect.metrics") ? nullptr : plain_object(schema);
+}
+
 /// The fields of an object and of those in it, each by its path from there.
 std::string field_cards(const std::string& prefix, const Json& schema, std::size_t indent) {
   std::string text;
   for (const auto& [name, field] : schema["properties"].items()) {
     if (field.contains("const")) continue;
-    const Json* nested = plain_object(field);
+    const Json* nested = shown_object(field);
     const std::string initial = field.contains("default") && nested == nullptr ? spaced(field["default"]) : "";
     text +=
         card({prefix + name, "", initial, nested == &field ? "" : allowed_text(field), field.value("description", "")},
@@ -184,6 +191,56 @@ const Json* find_in_schema(const Json& schema, const std::string& name) {
   return node != nullptr || name.empty() ? node : find_type(schema, name);
 }
 
+namespace {
+
+/// `at` is the path of the schema with a dot behind it, `types` what leads there.
+void find_fields(const Json& schema, const std::string& at, const std::string& path, const std::string& types,
+                 std::vector<TypedField>& found) {
+  if (!schema.contains("properties")) {
+    for (const char* choices : kChoices) {
+      if (!schema.contains(choices)) continue;
+      for (const Json& choice : schema[choices]) find_fields(choice, at, path, types, found);
+    }
+    return;
+  }
+  const std::size_t dot = path.find('.');
+  const std::string key = path.substr(0, dot), tag = tag_of(schema);
+  if (!schema["properties"].contains(key)) return;
+  const Json& field = schema["properties"][key];
+  const std::string type = tag.empty() ? "" : fmt::format("{}type \"{}\"", at, tag);
+  const std::string all = types + (types.empty() || type.empty() ? "" : " and ") + type;
+  if (dot != std::string::npos) return find_fields(field, at + key + ".", path.substr(dot + 1), all, found);
+  const auto same = std::find_if(found.begin(), found.end(), [&field](const auto& f) { return *f.schema == field; });
+  if (same == found.end()) {
+    found.push_back({all, &field});
+  } else {
+    same->types += (all.empty() ? "" : ", ") + all;
+  }
+}
+
+}  // namespace
+
+std::vector<TypedField> typed_fields(const Json& schema, const std::string& path) {
+  std::vector<TypedField> found;
+  find_fields(schema, "", path, "", found);
+  return found;
+}
+
+std::string types_text(const std::string& type_field) {
+  const std::string end = std::string(".") + kTypeField;
+  if (!type_field.ends_with(end)) return "";
+  const std::string field = type_field.substr(0, type_field.size() - end.size());
+  if (find_in_schema(scenario_schema_once(), field) == nullptr) return "";
+  std::string text;
+  for (const std::string& type : type_names(field)) {
+    const char* summary = type_summary(type);
+    text += entry(fmt::format("\"{}\"", type), summary != nullptr ? summary : "", 4, 24);
+  }
+  if (text.empty()) return "";
+  return fmt::format("{}\n  chooses the fields of {}; \"hapbench describe {}\" shows those of each\n\n{}",
+                     bold(stdout, type_field), field, field, text);
+}
+
 std::string card(const FieldCard& field, std::size_t indent) {
   std::string facts = field.allowed;
   if (!field.unit.empty()) facts += fmt::format(" [{}]", field.unit);
@@ -193,11 +250,12 @@ std::string card(const FieldCard& field, std::size_t indent) {
   return field.meaning.empty() ? text : text + wrapped(field.meaning, indent + 4);
 }
 
-std::string fields_text(const std::string& title, const Json& schema) {
+std::string fields_text(const std::string& title, const Json& schema, const std::string& types) {
   std::string text = bold(stdout, title) + "\n";
+  if (!types.empty()) text += wrapped("of " + types);
   if (const char* summary = type_summary(title)) text += wrapped(summary);
   if (schema.contains("description")) text += wrapped(schema["description"].get<std::string>());
-  const Json* object = plain_object(schema);
+  const Json* object = shown_object(schema);
   if (object != &schema) text += wrapped("allowed: " + allowed_text(schema));
   if (object != nullptr) {
     const std::string cards = field_cards("", *object, 2);

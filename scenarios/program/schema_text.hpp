@@ -15,6 +15,14 @@ const Json& scenario_schema_once();
 /// "type" of a tagged object ("hole_2d"). Null when there is none.
 const Json* find_in_schema(const Json& schema, const std::string& name);
 
+/// A field as some of the types have it among which an object around it chooses.
+struct TypedField {
+  std::string types;  ///< `hand.type "drag"`; empty where all have it
+  const Json* schema = nullptr;
+};
+/// The fields at a dotted path, those that are the same for several types once; none when there is no such path.
+std::vector<TypedField> typed_fields(const Json& schema, const std::string& path);
+
 /// The values a schema allows, in a few words: "number > 0 <= 1000", "null | integer >= 0 <= 5".
 std::string allowed_text(const Json& schema);
 
@@ -41,8 +49,11 @@ const char* type_summary(std::string_view type);
 std::vector<std::string> type_names(const std::string& field);
 
 /// The fields of an object schema as cards; of a choice among tagged objects those of each; a few lines for a plain
-/// value.
-std::string fields_text(const std::string& title, const Json& schema);
+/// value. `types` as of a TypedField.
+std::string fields_text(const std::string& title, const Json& schema, const std::string& types = "");
+
+/// What `type_field`, as "hand.type", may say, and what each means; empty for a field that chooses no type.
+std::string types_text(const std::string& type_field);
 
 /// A field of a scenario and what the schema says of it.
 struct FieldMeaning {

@@ -79,7 +79,7 @@ Json RobustnessOnRecord::of(const JudgedClaim& judged) const {
 std::string robustness_text(const Json& robustness) {
   if (robustness.is_null()) return "";
   const auto judged = robustness.at("judged").get<std::size_t>(), holds = robustness.at("holds").get<std::size_t>();
-  std::string text = fmt::format("holds in {} of {}", holds, judged);
+  std::string text = fmt::format("this verdict in {} of {} samples", holds, judged);
   const Json& decided_by = robustness.at("decided_by");
   if (!decided_by.is_null()) {
     text += fmt::format("; decided by {} (S = {:.2f})", decided_by.at("choice").get<std::string>(),

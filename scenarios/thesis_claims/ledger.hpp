@@ -41,7 +41,7 @@ class RobustnessOnRecord {
   std::map<std::string, Json> claims_;
 };
 
-/// The counts for people: "holds in 91 of 100; decided by task2.hand_angle (S = 0.43)"; empty for null.
+/// The counts for people: "this verdict in 91 of 100 samples; decided by task2.hand_angle (S = 0.43)"; empty for null.
 std::string robustness_text(const Json& robustness);
 
 /// claims.json

@@ -70,7 +70,7 @@ class Bench:
         write_stl(folder / "my.stl")
         shutil.copy(SOURCE / "scenarios/examples/data/wipe.hapi.txt", folder / "log.txt")
         write_recording(folder / "rec.csv")
-        self.must("new", "mesh", "--from", "my.stl")
+        self.must("new", "mesh", "--from", "my.stl", "--out", "my.json")
         for name in "abc":
             shutil.copy(folder / "my.json", folder / f"{name}.json")
         for shard in range(2):
@@ -89,8 +89,6 @@ class Bench:
     def words(self, command):
         """The command's, shorter, and with patterns replaced by the files that they match."""
         given = list(command.words[1:])
-        if given[0] == "new" and "--out" not in given:
-            (self.folder / "my.json").unlink(missing_ok=True)
         if given[0] == "sweep" and "--slurm" in given:
             given.append("--dry-run")
         shorter = [] if given[0] == "sweep" and {"--row", "--status"} & set(given) else SHORTER.get(given[0], [])

@@ -44,7 +44,7 @@ def robustness(_old=""):
     current = [claim for claim in rows if claim["on_record"] == on_record.get(claim["id"])]
     always = [claim for claim in current if claim["holds"] == claim["judged"]]
     lines = [f"Of {len(rows)} claims that were sampled, {len(current)} have the same verdict today; of these, {len(always)} hold it in "
-             "every sample. The others:", "", "| claim | verdict | holds | decided by (first-order Sobol index) |", "|---|---|---|---|"]
+             "every sample. The others:", "", "| claim | verdict | this verdict in | decided by (first-order Sobol index) |", "|---|---|---|---|"]
     for claim in current:
         if claim in always:
             continue

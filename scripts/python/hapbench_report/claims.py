@@ -28,7 +28,7 @@ def robustness_text(claim):
     if not robustness:
         return "not sampled: times of one machine" if claim.get("timing") else ""
     holds, judged, decided_by = (robustness.get(key) for key in ("holds", "judged", "decided_by"))
-    text = f"holds in {holds} of {judged}"
+    text = f"this verdict in {holds} of {judged} samples"
     if isinstance(decided_by, dict):
         return f"{text}; decided by {decided_by.get('choice')} (S = {number_or_none(decided_by.get('index')) or 0:.2f})"
     return text if holds == judged else f"{text}; no single choice decides"

@@ -4,9 +4,16 @@
 
 #include "algorithms/registry.hpp"
 #include "results/io/json_text.hpp"
+#include "results/summary/outcome_names.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/run_table.hpp"
+#include "scenarios/program/schema_text.hpp"
+#include "scenarios/studies/stability/classify.hpp"
+#include "scenarios/studies/stability/judged_run.hpp"
+#include "scenarios/thesis_claims/claims.hpp"
 #include "sim/loop/integrators/integrator.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
@@ -84,6 +91,69 @@ TEST(DescribeCommand, GivesFieldsWithDefaultRangeAndMeaning) {
   }
 }
 
+TEST(DescribeCommand, ExplainsEveryField) {
+  for (const std::string& path : scenario_field_paths()) {
+    if (path.starts_with("expect.metrics.")) continue;  // as every metric
+    const ProgramRun run = hapbench({"describe", path});
+    EXPECT_EQ(run.status, 0) << path << run.err;
+    EXPECT_NE(run.out.find(path + "\n"), std::string::npos) << path << run.out;
+  }
+}
+
+TEST(DescribeCommand, SaysOfWhichTypeAFieldIs) {
+  const std::string grid = hapbench({"describe", "environment.grid_m"}).out;
+  EXPECT_NE(grid.find("of environment.type \"block_with_hole\""), std::string::npos) << grid;
+  EXPECT_NE(grid.find("of environment.type \"point_shell\", environment.type \"mesh\""), std::string::npos) << grid;
+  const std::string delay = hapbench({"describe", "device.servo.delay_samples"}).out;
+  EXPECT_NE(delay.find("of device.type \"admittance\""), std::string::npos) << delay;
+  const std::string types = hapbench({"describe", "hand.type"}).out;
+  for (const std::string& type : type_names("hand")) EXPECT_NE(types.find("\"" + type + "\""), std::string::npos) << types;
+}
+
+TEST(DescribeCommand, LeavesBoundsOnMetricsToTheListOfMetrics) {
+  const ProgramRun run = hapbench({"describe", "expect.metrics"});
+  EXPECT_NE(run.out.find("hapbench list metrics"), std::string::npos) << run.out;
+  EXPECT_LE(lines_of(run.out).size(), 4u);
+  EXPECT_NE(hapbench({"list", "metrics"}).out.find("  force_step_p99_N "), std::string::npos);
+}
+
+TEST(DescribeCommand, ExplainsTheWordsAndHeadingsThatResultsHave) {
+  std::vector<std::string> words = {"reproduced in kind"};
+  for (const std::string_view outcome : outcome_names()) words.emplace_back(outcome);
+  for (const MotionClass motion : kMotionClasses) words.emplace_back(motion_class_name(motion));
+  for (const RunVerdict verdict : {RunVerdict::thrown_out, RunVerdict::no_contact})
+    words.emplace_back(run_verdict_name(verdict));
+  for (const std::string& word : words) EXPECT_EQ(hapbench({"describe", word}).status, 0) << word;
+  for (const RunHeading& heading : kRunHeadings)
+    EXPECT_EQ(hapbench({"describe", heading.title}).status, 0) << heading.title;
+  EXPECT_EQ(hapbench({"describe", ">30Hz rms N"}).out.find("metric force_rms_above_30Hz_N"), 0u);
+}
+
+TEST(DescribeCommand, ExplainsEveryClaim) {
+  for (const Claim& claim : all_claims()) {
+    const ProgramRun run = hapbench({"describe", lower_case(claim.id)});
+    EXPECT_EQ(run.out.find(std::string("claim ") + claim.id + ", verdict on record: "), 0u) << run.out << run.err;
+  }
+  const ProgramRun list = hapbench({"list", "claims"});
+  EXPECT_EQ(lines_of(list.out)[0], "claims");
+  EXPECT_NE(list.out.find("  C5   not reproduced"), std::string::npos) << list.out;
+}
+
+TEST(DescribeCommand, ShowsWhatNamesAPlaceOfTheThesis) {
+  for (const char* name : {"Fig. A.2", "fig a.2", "figure_A.2"}) {
+    const Json place = hapbench({"describe", name, "--json"}).json();
+    EXPECT_EQ(place["claims"], Json::array({"A1"})) << name;
+    EXPECT_NE(place["scenarios"].dump().find("peg_in_hole_2d_shaped_stiffness"), std::string::npos) << name;
+  }
+  // Section A.2 is about the springs, and Fig. 2 has the parts 2c and 2d.
+  EXPECT_EQ(hapbench({"describe", "section A.2", "--json"}).json()["claims"], Json::array({"A2", "A3"}));
+  EXPECT_EQ(hapbench({"describe", "A.2", "--json"}).json()["claims"], Json::array({"A1", "A2", "A3", "D2"}));
+  EXPECT_EQ(hapbench({"describe", "Fig. 2", "--json"}).json()["claims"], Json::array({"V1", "V2"}));
+  const ProgramRun none = hapbench({"describe", "Fig. 99"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.err.find("names Fig. 99 of the thesis"), std::string::npos) << none.err;
+}
+
 TEST(DescribeCommand, PrintsTheSchema) {
   EXPECT_EQ(hapbench({"describe", "schema"}).out, json_text(scenario_schema()));
 }
@@ -113,13 +183,9 @@ TEST(DescribeCommand, ExplainsEveryColumnOfEveryFileOfARun) {
   const test::TemporaryDirectory directory;
   Json json = test::minimal_scenario("block_with_hole");
   json["initial"]["position_m"] = {0.003, 0.0, 0.0};  // on the flat
-  json["record"] = {{"contacts", true},
-                    {"stiffness_tensor", true},
-                    {"energy", true},
-                    {"ideal_trajectory", true},
-                    {"pose", true},
-                    {"torque", true},
-                    {"ratio_iterations", {3}}};
+  json["record"] = {
+      {"contacts", true}, {"stiffness_tensor", true}, {"energy", true},         {"ideal_trajectory", true},
+      {"pose", true},     {"torque", true},           {"ratio_iterations", {3}}};
   test::write_plainly(directory / "a.json", json.dump());
   const std::string out = (directory / "out").string();
   ASSERT_EQ(hapbench({"run", (directory / "a.json").string(), "--out", out}).status, 0);

@@ -52,6 +52,22 @@ TEST(Ledger, JudgesSingleClaims) {
   EXPECT_EQ(claims[1]["scenarios"], Json::array());
 }
 
+// It would replace the ledger of all claims.
+TEST(Ledger, IsNotWrittenOfSingleClaimsUnlessItIsSaidWhere) {
+  const test::TemporaryDirectory directory;
+  const std::string out = (directory / "out").string(), ledger = (directory / "b3.json").string();
+  std::filesystem::create_directories(out);
+  test::write_plainly(directory / "out/claims.json", "mine");
+  const test::ProgramRun run = hapbench({"reproduce", "--only", "b3", "--out", out});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("\nB3   two more points"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("\n     why: "), std::string::npos) << run.out;
+  EXPECT_EQ(test::read_file(directory / "out/claims.json"), "mine");
+  EXPECT_FALSE(std::filesystem::exists(directory / "out/claims.md"));
+  ASSERT_EQ(hapbench({"reproduce", "--only", "B3", "--out", out, "--ledger", ledger}).status, 0);
+  EXPECT_EQ(Json::parse(test::read_file(ledger))["claims"][0]["id"], "B3");
+}
+
 TEST(Ledger, RefusesClaimsThatAreNotThere) {
   const test::TemporaryDirectory directory;
   const test::ProgramRun run = hapbench({"reproduce", "--only", "T11", "--out", (directory / "out").string()});

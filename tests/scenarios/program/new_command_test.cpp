@@ -77,8 +77,18 @@ TEST_F(NewCommand, NeverOverwrites) {
   test::write_plainly(directory_ / "plane.json", "mine");
   const ProgramRun run = hapbench({"new", "plane", "--out", path("plane.json")});
   EXPECT_EQ(run.status, 2);
-  EXPECT_NE(run.err.find("plane.json: is there; allowed: a new file"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("plane.json exists; choose another with --out"), std::string::npos) << run.err;
   EXPECT_EQ(test::read_file(directory_ / "plane.json"), "mine");
+}
+
+TEST_F(NewCommand, NamesFilesAfterTheSourceAndTheKind) {
+  test::ProgramOptions options;
+  options.directory = directory_.path();
+  for (const char* kind : {"mesh", "drag"})
+    EXPECT_EQ(hapbench({"new", kind, "--from", data("cube.obj"), "--quiet"}, options).status, 0) << kind;
+  EXPECT_EQ(hapbench({"new", "drag", "--quiet"}, options).status, 0);
+  for (const char* file : {"cube_mesh.json", "cube_drag.json", "drag.json"})
+    EXPECT_TRUE(std::filesystem::exists(directory_ / file)) << file;
 }
 
 TEST_F(NewCommand, RefusesWhatItCannotStartFrom) {

@@ -83,6 +83,24 @@ TEST(Usage, HelpExitsWith0AndNamesTheCommandsAndExitStatuses) {
   }
 }
 
+TEST(Usage, PointsFromFieldsAndMeshesToWhatTakesThem) {
+  const test::TemporaryDirectory directory;
+  test::write_plainly(directory / "my.stl", "solid\n");
+  test::write_plainly(directory / "mine.json", "{}");
+  test::ProgramOptions options;
+  options.directory = directory.path();
+  for (const auto& [arguments, hint] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"run", "single_spring", "--stiffness", "5"}, "fields are set by --set FIELD=VALUE"},
+           {{"sweep", "single_spring", "--grid", "5"}, "fields are varied by --vary FIELD=VALUES"},
+           {{"run", "my.stl"}, "my.stl: is a mesh; allowed: a scenario, as \"hapbench new mesh --from my.stl\""},
+           {{"compare", "mine"}, "there is mine.json"},
+           {{"reproduce", "--only", "b9"}, "nearest valid name: \"B1\""}}) {
+    const ProgramRun run = hapbench(arguments, options);
+    EXPECT_EQ(run.status, 2) << hint;
+    EXPECT_NE(run.err.find(hint), std::string::npos) << run.err;
+  }
+}
+
 TEST(Usage, VersionIsPrinted) {
   const ProgramRun run = hapbench({"--version"});
   EXPECT_EQ(run.status, 0);

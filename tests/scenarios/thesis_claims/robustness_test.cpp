@@ -157,7 +157,7 @@ TEST_F(Robustness, GoesIntoTheLedgerWhileItIsAboutTheSameChoicesAndVerdict) {
   const Json record = robustness_json(p, robustness_of(p, {"reproduced", "refuted", "reproduced"}, verdicts));
   const JudgedClaim same{p.claims[0], {Verdict::reproduced, "", ""}}, other{p.claims[0], {Verdict::refuted, "", ""}};
   const RobustnessOnRecord on_record(record, p.choices.hash());
-  EXPECT_EQ(robustness_text(on_record.of(same)), "holds in 4 of 4");
+  EXPECT_EQ(robustness_text(on_record.of(same)), "this verdict in 4 of 4 samples");
   EXPECT_TRUE(on_record.of(other).is_null()) << "the verdict has changed since";
   EXPECT_TRUE(RobustnessOnRecord(record, "another hash").of(same).is_null());
   EXPECT_TRUE(RobustnessOnRecord(directory_ / "none.json", p.choices.hash()).of(same).is_null());
@@ -168,8 +168,8 @@ TEST(RobustnessText, SaysWhatDecides) {
     return Json{{"judged", 100}, {"holds", 91}, {"decided_by", std::move(decided_by)}};
   };
   EXPECT_EQ(robustness_text(counts({{"choice", "hand"}, {"index", 0.434}})),
-            "holds in 91 of 100; decided by hand (S = 0.43)");
-  EXPECT_EQ(robustness_text(counts(nullptr)), "holds in 91 of 100; no single choice decides");
+            "this verdict in 91 of 100 samples; decided by hand (S = 0.43)");
+  EXPECT_EQ(robustness_text(counts(nullptr)), "this verdict in 91 of 100 samples; no single choice decides");
   EXPECT_EQ(robustness_text(nullptr), "");
 }
 
