@@ -45,14 +45,16 @@ std::vector<std::string> drag_warnings(const DragCourse& c) {
     warnings.push_back(
         fmt::format("the dragged tool has gone through the surface at {:.4g} s: the depth reached its half width, {}",
                     *c.through, length_text(0.5 * c.width)));
-  if (c.lost)
-    warnings.push_back(fmt::format("the dragged tool lost the surface at {:.4g} s; ended {} {} it", *c.lost,
-                                   length_text(std::abs(c.height)), c.height < 0.0 ? "below" : "above"));
-  if (c.stands_still())
+  if (c.lost) {
+    const std::string where = c.height < 0.0 ? "below it: it went through, or past an edge" : "above it";
+    warnings.push_back(fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *c.lost,
+                                   length_text(std::abs(c.height)), where));
+  } else if (c.stands_still()) {
     warnings.push_back(
         fmt::format("the dragged tool stood still since {:.4g} s, {} along the path of {} asked, at [{:.4g}, {:.4g}, "
                     "{:.4g}] m in the end",
                     c.still_since, length_text(c.way), length_text(c.asked), c.place.x(), c.place.y(), c.place.z()));
+  }
   return warnings;
 }
 

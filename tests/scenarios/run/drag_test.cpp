@@ -111,7 +111,7 @@ TEST(Drag, TellsOfAToolThatLostTheSurface) {
   const RunReport report = run_scenario(read_scenario(json, ""), std::nullopt, false);
   EXPECT_EQ(report.summary.result.outcome, Outcome::lost_contact);
   EXPECT_NE(warnings_of(report).find("the dragged tool lost the surface at"), std::string::npos) << warnings_of(report);
-  EXPECT_NE(warnings_of(report).find("below it"), std::string::npos) << warnings_of(report);
+  EXPECT_NE(warnings_of(report).find("below it: it went through"), std::string::npos) << warnings_of(report);
 }
 
 }  // namespace
