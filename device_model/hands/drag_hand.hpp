@@ -37,6 +37,11 @@ class DragHand final : public Hand {
   void reset() noexcept override { nearest_ = 0.0; }
   Vec3 force(double t, const HandView& view) noexcept override;
 
+  const Drag& drag() const noexcept { return drag_; }
+  const SurfacePath& path() const noexcept { return *path_; }
+  /// Arc length at which the path was nearest to the handle at the last force [m].
+  double nearest() const noexcept { return nearest_; }
+
  private:
   Drag drag_;
   std::shared_ptr<const SurfacePath> path_;

@@ -22,6 +22,7 @@ class SurfacePath {
   /// Largest distance of the entries [m]: a tenth of the radius over which the surface is smoothed.
   static double spacing(double radius) { return 0.1 * radius; }
 
+  double spacing() const noexcept { return spacing_; }  ///< of the entries [m]
   double length() const noexcept { return spacing_ * static_cast<double>(entries_.size() - 1); }
   /// Place and normal at arc length s [m], held beyond the ends.
   SurfacePoint at(double s) const noexcept;

@@ -16,6 +16,10 @@ std::optional<double> if_any(std::uint64_t rows, double value) noexcept {
   return rows > 0 ? std::optional(value) : std::nullopt;
 }
 
+std::optional<double> if_settled(const ContactForces& forces, double value) noexcept {
+  return forces.settled >= kLeastSettled ? std::optional(value) : std::nullopt;
+}
+
 }  // namespace
 
 ContactForces& ContactForces::operator+=(const ContactForces& other) noexcept {
@@ -47,30 +51,30 @@ std::optional<double> ContactForces::landing_step_max() const noexcept {
 }
 
 std::optional<double> ContactForces::mean() const noexcept {
-  return if_any(settled_rows, sum / static_cast<double>(settled_rows));
+  return if_settled(*this, sum / static_cast<double>(settled_rows));
 }
 
 std::optional<double> ContactForces::max() const noexcept {
-  return if_any(settled_rows, std::sqrt(max_squared));
+  return if_settled(*this, std::sqrt(max_squared));
 }
 
 std::optional<double> ContactForces::step_max() const noexcept {
-  return if_any(settled_rows, std::sqrt(step_max_squared));
+  return if_settled(*this, std::sqrt(step_max_squared));
 }
 
 std::optional<double> ContactForces::step_p99() const noexcept {
-  if (settled_rows == 0) return std::nullopt;
+  if (settled < kLeastSettled) return std::nullopt;
   // The middle of the highest bin may lie above all that is in it.
   return std::min(steps.quantile(0.99), *step_max());
 }
 
 std::optional<double> ContactForces::rms_above_cutoff() const noexcept {
   if (!above_cutoff_squares) return std::nullopt;
-  return if_any(settled_rows, std::sqrt(*above_cutoff_squares / static_cast<double>(settled_rows)));
+  return if_settled(*this, std::sqrt(*above_cutoff_squares / static_cast<double>(settled_rows)));
 }
 
 std::optional<double> ContactForces::reversals_per_second() const noexcept {
-  return if_any(settled_rows, static_cast<double>(reversals) / settled);
+  return if_settled(*this, static_cast<double>(reversals) / settled);
 }
 
 ContactForceObserver::ContactForceObserver(double dt, const SettlingRule& rule)

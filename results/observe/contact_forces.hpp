@@ -12,6 +12,10 @@ namespace hapbench {
 /// Hz, and the sense of touch is most alert to vibration well above.
 inline constexpr double kVibrationCutoff = 30.0;
 
+/// Settled contact shorter than this has no metrics [s]: one period of the cutoff, the longest that counts as
+/// vibration. Of less, no vibration is seen whole, and a run that hammers and so hardly settles would look the calmest.
+inline constexpr double kLeastSettled = 1.0 / kVibrationCutoff;
+
 /// Tells a landing from the contact that follows. The blow of a first touch is set by the speed of arrival and by the
 /// stiffness, and is much the same under every algorithm; what separates them comes after. A first touch is a row in
 /// contact after at least the settling time without, or since the start; the rows within the settling time after it are
@@ -41,7 +45,7 @@ struct ContactForces {
   /// As if the other run's rows came after these, but for the seam.
   ContactForces& operator+=(const ContactForces& other) noexcept;
 
-  // What to report; nothing without such rows.
+  // What to report; nothing without such rows, of settled contact nothing below kLeastSettled.
   std::optional<double> landing_max() const noexcept;       ///< [N]
   std::optional<double> landing_step_max() const noexcept;  ///< [N]
   std::optional<double> mean() const noexcept;              ///< [N]

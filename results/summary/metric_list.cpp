@@ -57,7 +57,6 @@ MetricList metric_list(const SubjectMean& m, const char* unit, const char* meani
 
 /// Forces of landing and of settled contact (contact_forces.hpp).
 MetricList metric_list(const ContactForces& c) {
-  const bool settled = c.settled_rows > 0;
   return {
       count("landings",
             "first touches: rows in contact after at least metrics.settling_s without contact, or since the start",
@@ -66,7 +65,9 @@ MetricList metric_list(const ContactForces& c) {
              "largest ||f|| within metrics.settling_s after a first touch, or before metrics.from_s", c.landing_max()),
       number("landing_force_step_max_N", "N", "largest ||f_k - f_(k-1)|| of those rows", c.landing_step_max()),
       number("settled_s", "s",
-             "time in settled contact: rows in contact that belong to no landing, times the time step", c.settled),
+             "time in settled contact: rows in contact that belong to no landing, times the time step; below 1/30 s, a "
+             "period of the high-pass, the metrics of settled contact have no value",
+             c.settled),
       number("force_mean_in_contact_N", "N", "mean ||f|| of the rows in settled contact", c.mean()),
       number("settled_force_max_N", "N", "largest ||f|| of the rows in settled contact", c.max()),
       number("force_step_p99_N", "N",
@@ -82,7 +83,7 @@ MetricList metric_list(const ContactForces& c) {
           c.rms_above_cutoff()),
       number("force_reversals_per_s", "1/s",
              "rows in settled contact whose f has a negative inner product with that of the row before, per settled_s",
-             settled ? c.reversals_per_second() : std::nullopt)};
+             c.reversals_per_second())};
 }
 
 MetricList metric_list(const std::optional<ReductionJumps>& given) {

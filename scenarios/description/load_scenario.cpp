@@ -158,6 +158,27 @@ void name_by_content(std::string* path, NamedFile* file) {
   if (path != nullptr) *path = file->hash();
 }
 
+/// Of an admittance device under a hand that does not feel the handle, what is without effect. None where only sensor
+/// or limiter have other values than the usual ones: they work whatever the hand.
+std::optional<std::string> idle_device_warning(const Scenario& scenario) {
+  const bool scripted = std::visit(
+      [](const auto& hand) {
+        using Hand = std::decay_t<decltype(hand)>;
+        return std::is_same_v<Hand, NoHandFields> || std::is_same_v<Hand, ForceHandFields> ||
+               std::is_same_v<Hand, PushHandFields>;
+      },
+      scenario.hand);
+  if (!scripted || !std::holds_alternative<AdmittanceDeviceConfig>(scenario.device)) return std::nullopt;
+  const Json given = written(scenario.device), usual = written(DeviceFields(AdmittanceDeviceConfig{}));
+  const auto differs = [&](const char* part) { return given.at(part) != usual.at(part); };
+  const bool gives_loop = differs("servo") || differs("mechanics");
+  if (!gives_loop && (differs("sensor") || differs("force_limit_N"))) return std::nullopt;
+  return fmt::format(
+      "/device: servo and mechanics (lag, delay, structure) move the handle alone and have no effect on the tool and its "
+      "force: hand.type {} does not feel the handle; \"impedance\", \"drag\" and \"tracking\" do",
+      written(scenario.hand).at("type").dump());
+}
+
 }  // namespace
 
 void rethrow_with_file(const InputError& error, const std::filesystem::path& file) {
@@ -177,6 +198,7 @@ LoadedScenario read_scenario(const Json& json, const std::filesystem::path& dire
   loaded.scenario.directory = directory;
   Reader reader(json, "", &loaded.warnings);
   reader.object(loaded.scenario);
+  if (auto warning = idle_device_warning(loaded.scenario)) loaded.warnings.push_back(*warning);
   loaded.files = NamedFiles(loaded.scenario);
   return loaded;
 }

@@ -20,7 +20,7 @@ struct LoadedScenario {
   Scenario scenario;
   std::filesystem::path file;
   NamedFiles files;                   ///< that the scenario names
-  std::vector<std::string> warnings;  ///< given values that the algorithm's definition overrides, with file and pointer
+  std::vector<std::string> warnings;  ///< given values without effect, with file and pointer
   /// The file and those it extends (extends.hpp), as they stand, overrides in the first; null when it extends none.
   std::shared_ptr<const std::vector<ScenarioLayer>> layers;
 };

@@ -38,10 +38,12 @@ void print(const OutputOptions& options, const std::string& text, const Json& js
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {
+  std::fflush(stdout);  // where both go to one pipe, in the order of printing
   for (const std::string& warning : warnings) fmt::print(stderr, "hapbench: warning: {}\n", warning);
 }
 
 void print_error(std::string_view text) {
+  std::fflush(stdout);
   fmt::print(stderr, "{} {}\n", bold(stderr, "hapbench: error:"), text);
 }
 

@@ -87,14 +87,9 @@ std::string beyond_text(const FieldLimit& limit) {
   return limit.value ? "end of the range" : std::string(run_verdict_name(limit.runs.front().verdict));
 }
 
-Table table_of(const std::vector<FieldLimit>& limits, const LimitQuestion& question) {
-  Table table({{"algorithm", false},
-               {fmt::format("{} stable", side(question))},
-               {"beyond it", false},
-               {"theory"},
-               {"off theory %"},
-               {"runs"},
-               {"astray"}});
+Table table_of(const std::vector<FieldLimit>& limits) {
+  Table table(
+      {{"algorithm", false}, {"first edge"}, {"beyond it", false}, {"theory"}, {"off theory %"}, {"runs"}, {"astray"}});
   for (const FieldLimit& limit : limits) {
     const auto difference = limit.difference();
     table.add({limit.algorithm, limit.value ? significant(*limit.value, 6) : "none", beyond_text(limit),
@@ -104,8 +99,9 @@ Table table_of(const std::vector<FieldLimit>& limits, const LimitQuestion& quest
   return table;
 }
 
-/// A line for each algorithm whose stable values are not all on one side of the limit.
-std::string astray_text(const std::vector<FieldLimit>& limits, bool smallest) {
+/// What a limit alone would hide: lines for algorithms whose stable values are not all on one side of it, or whose hand
+/// and device are to blame.
+std::string remarks_text(const std::vector<FieldLimit>& limits, bool smallest) {
   constexpr std::size_t kMost = 4;
   std::string text;
   for (const FieldLimit& limit : limits) {
@@ -114,6 +110,11 @@ std::string astray_text(const std::vector<FieldLimit>& limits, bool smallest) {
           fmt::format("{}: {} at the scenario's own {}: the edge is that of the first stable values from the {} end\n",
                       limit.algorithm, run_verdict_name(limit.own->verdict), significant(limit.own->value),
                       smallest ? "high" : "low");
+    }
+    if (limit.unstable_alone) {
+      text +=
+          fmt::format("{}: at {} hand and device are unstable by themselves: the tool vibrates without contact, too\n",
+                      limit.algorithm, significant((limit.beyond ? *limit.beyond : limit.runs.front()).value));
     }
     if (limit.astray.empty()) continue;
     text += fmt::format("{}: not one edge:", limit.algorithm);
@@ -154,6 +155,7 @@ Json limits_json(const std::vector<FieldLimit>& limits, const LimitQuestion& que
                     {"beyond", limit.beyond ? Json(limit.beyond->value) : Json(nullptr)},
                     {"class_beyond", beyond_text(limit)},
                     {"theory", or_null(limit.theory)},
+                    {"unstable_without_contact", limit.unstable_alone},
                     {"runs", limit.runs.size()},
                     {"astray", std::move(astray)}});
   }
@@ -173,7 +175,7 @@ int limit(const LimitOptions& options) {
       options.algorithms.empty() ? std::vector<std::string>{loaded.scenario.rendering.algorithm}
                                  : chosen_names("--algorithms: got", options.algorithms, all_algorithms());
   const LimitQuestion question = question_of(options, scenario);
-  print_warnings(loaded.warnings);
+  print_warnings(question.warnings);
   print_warnings(check_named_files(loaded));
   const fs::path out =
       options.out.empty() ? fs::path("results") / "out" / ("limit_" + file.stem().string()) : fs::path(options.out);
@@ -184,8 +186,8 @@ int limit(const LimitOptions& options) {
   const std::vector<FieldLimit> limits = field_limits(scenario, options.overrides, algorithms, question, jobs);
   write_limits(out, limits, question);
   print(options.output,
-        question_text(question, loaded.scenario) + table_of(limits, question).text() +
-            astray_text(limits, question.smallest) + fmt::format("\nresults in {}\n", out.string()),
+        question_text(question, loaded.scenario) + table_of(limits).text() + remarks_text(limits, question.smallest) +
+            fmt::format("\nresults in {}\n", out.string()),
         limits_json(limits, question));
   return kSuccess;
 }
@@ -216,7 +218,8 @@ void add_limit(CommandLine& line) {
       "is tried at 17 values; the first edge from the scenario's own value on (if that is not stable, from the first "
       "stable one of the low end; with --smallest downwards, from the high end) is bisected, and three values tried on "
       "either side, which may show an earlier edge. Unstable values on the stable side and stable ones beyond are "
-      "counted as astray. Where the springs stay in contact, the limit in theory stands beside it. limit_runs.csv has "
+      "counted as astray. Where the hand is an impedance, a run without environment tells whether hand and device alone are "
+      "unstable beyond the edge. Where the springs stay in contact, the limit in theory stands beside it. limit_runs.csv has "
       "every run.");
   command.runs([options] { return limit(*options); }, "a limit is lost with the runs it needs");
 }

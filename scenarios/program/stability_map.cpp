@@ -112,6 +112,31 @@ std::string drawing(const MapResult& result) {
       character_map({x.name, n, significant(x.low, 3), significant(x.high, 3)}, y.name, labels, cell));
 }
 
+/// More are a flood; one algorithm's are all drawn.
+constexpr std::size_t kMostDrawn = 4;
+
+bool are_alike(const MapResult& a, const MapResult& b) {
+  const auto same_motion = [](const MapPoint& p, const MapPoint& q) { return p.motion == q.motion; };
+  const auto same_edge = [](const BoundaryPoint& p, const BoundaryPoint& q) { return p.simulation == q.simulation; };
+  return std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), same_motion) &&
+         std::equal(a.boundary.begin(), a.boundary.end(), b.boundary.begin(), b.boundary.end(), same_edge);
+}
+
+/// The drawings of one map, or one alone where all are the same, which is said.
+std::string drawings_of(const std::vector<MapResult>& results, bool draw) {
+  const MapResult& first = results.front();
+  const bool alike =
+      std::all_of(results.begin(), results.end(), [&](const MapResult& r) { return are_alike(r, first); });
+  std::string text;
+  if (results.size() > 1 && alike) {
+    if (draw) text = drawing(first);
+    return text + fmt::format("{}: the same map and edge in all {} rows below\n\n", first.map->name, results.size());
+  }
+  if (!draw) return "";
+  for (const MapResult& result : results) text += drawing(result);
+  return text;
+}
+
 Json result_json(const MapResult& result) {
   Json rows = Json::array();
   const auto or_null = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
@@ -162,6 +187,7 @@ int stability_maps_command(const StabilityOptions& options) {
                {"diverged"},
                {"off theory %"},
                {"no theory"}});
+  const bool draw = options.chosen_algorithms().size() == 1 || maps.size() * subjects.size() <= kMostDrawn;
   std::string drawings;
   Json json = Json::array();
   for (const StabilityMap* map : maps) {
@@ -171,11 +197,13 @@ int stability_maps_command(const StabilityOptions& options) {
       results.push_back(stability_map(*map, subject, options.size, jobs));
       table.add(cells_of(results.back()));
       json.push_back(result_json(results.back()));
-      if (options.chosen_algorithms().size() == 1) drawings += drawing(results.back());
     }
+    drawings += drawings_of(results, draw);
     write_points(out, *map, results);
     write_boundary(out, *map, results);
   }
+  if (!draw)
+    drawings += fmt::format("more than {} maps are not drawn; --algorithms NAME draws those of one\n\n", kMostDrawn);
   print(options.output, drawings + table.text() + fmt::format("\nmaps in {}\n", out.string()), json);
   return kSuccess;
 }

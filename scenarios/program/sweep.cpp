@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -92,12 +93,13 @@ std::string run_text(const SweepPlan& plan, std::size_t run) {
 int verdict(const SweepPlan& plan, const SweepReport& report) {
   const SweepCounts& counts = report.counts;
   if (report.failed) {
-    fmt::print(stderr, "hapbench: error: {}: {} of {} runs failed, the first: {}: {}\n", plan.scenario.file.string(),
-               counts.failed, counts.runs, run_text(plan, report.failed->run), one_line(report.failed->problem));
+    print_error(fmt::format("{}: {} of {} runs failed, the first: {}: {}", plan.scenario.file.string(), counts.failed,
+                            counts.runs, run_text(plan, report.failed->run), one_line(report.failed->problem)));
     return kInternalFault;
   }
   if (counts.unexpected > 0) {
-    fmt::print(stderr, "hapbench: error: {}: {} of {} runs did not end as expected, the first: {}\n",
+    std::fflush(stdout);  // what it is about comes first, where both go to one pipe
+    fmt::print(stderr, "hapbench: {}: {} of {} runs did not end as expected, the first: {}\n",
                plan.scenario.file.string(), counts.unexpected, counts.runs, run_text(plan, *counts.first_unexpected));
     return kUnexpectedOutcome;
   }

@@ -79,7 +79,8 @@ Outcome outcome_of(const Scenario& scenario, const Encounter& e) {
   if (e.metrics.steps_in_contact == 0) return Outcome::no_contact;
   const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
   const bool left = e.approach.last > diagonal(e.environment) + e.tool.reach();
-  return is_free && left ? Outcome::lost_contact : Outcome::completes;
+  const bool lost = e.drag && e.drag->lost;
+  return (is_free && left) || lost ? Outcome::lost_contact : Outcome::completes;
 }
 
 std::optional<std::string> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
@@ -96,7 +97,7 @@ std::optional<std::string> warning_about(const Scenario& scenario, Outcome outco
                        length_text(e.approach.closest), e.approach.closest_time, size_and_place(e.environment),
                        likely_cause(scenario, outcome, e));
   }
-  if (outcome != Outcome::lost_contact) return std::nullopt;
+  if (outcome != Outcome::lost_contact || (e.drag && e.drag->lost && e.approach.last == 0.0)) return std::nullopt;
   const double share = static_cast<double>(e.metrics.steps_in_contact) / static_cast<double>(e.metrics.rows);
   return fmt::format("in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the environment ({}){}",
                      100.0 * share, e.metrics.last_contact.value_or(0.0), length_text(e.approach.last),

@@ -7,6 +7,7 @@
 #include "results/allocations/allocations.hpp"
 #include "results/observe/step_sampler.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/run/drag_course.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/open_edges.hpp"
 #include "scenarios/run/progress.hpp"
@@ -74,6 +75,10 @@ class TrialObservers {
         observers_.push_back(&*open_edges_);
       }
     }
+    if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get())) {
+      drag_.emplace(*hand, parts.tool->half_width());
+      observers_.push_back(&*drag_);
+    }
     if (const TargetTask* task = parts.hand->task()) {
       targets_.emplace(trial.subject, trial.number, task->targets());
       observers_.push_back(&*targets_);
@@ -96,9 +101,13 @@ class TrialObservers {
     out.tool = tool_;
     out.metrics = metrics_.metrics();
     if (approach_ && out.result.outcome == Outcome::completes) {
-      const Encounter encounter{out.metrics, approach_->approach(), approach_->environment(), *tool_};
+      Encounter encounter{out.metrics, approach_->approach(), approach_->environment(), *tool_};
+      if (drag_) encounter.drag = drag_->course();
       out.result.outcome = outcome_of(scenario, encounter);
       if (auto warning = warning_about(scenario, out.result.outcome, encounter)) out.warnings.push_back(*warning);
+    }
+    if (drag_) {
+      for (std::string& warning : drag_warnings(drag_->course())) out.warnings.push_back(std::move(warning));
     }
     if (approach_) {
       if (auto warning = scale_warning(scenario, *tool_, approach_->environment())) out.warnings.push_back(*warning);
@@ -124,6 +133,7 @@ class TrialObservers {
   std::optional<LostTorqueObserver> torque_;
   std::optional<ApproachObserver> approach_;
   std::optional<OpenEdgeObserver> open_edges_;
+  std::optional<DragCourseObserver> drag_;
   std::optional<TargetMetricsObserver> targets_;
   std::vector<std::unique_ptr<Recorder>> recorders_;
   std::vector<Observer*> observers_;

@@ -121,6 +121,8 @@ class Search {
       limit.runs.push_back({value, verdict});
       if (limit.value && is_stable(verdict) != on_stable_side(value, limit)) limit.astray.push_back({value, verdict});
     }
+    const JudgedValue suspect = limit.beyond ? *limit.beyond : limit.runs.front();
+    limit.unstable_alone = !is_stable(suspect.verdict) && unstable_without_contact(at(algorithm, suspect.value));
     limit.theory = theory(algorithm);
     return limit;
   }
@@ -247,10 +249,11 @@ LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std
     range = Range{allowed_end(value, -1, allowed), allowed_end(value, 1, allowed)};
   }
   load(range->from);
-  load(range->to);
+  const std::vector<std::string> warnings = load(range->to).warnings;
   range->logarithmic = range->from > 0.0;
   LimitQuestion question;
   question.path = path;
+  question.warnings = warnings;
   question.range = *range;
   if (own.is_number() && own.get<double>() >= range->from && own.get<double>() <= range->to) {
     question.own = own.get<double>();

@@ -24,6 +24,7 @@ struct LimitQuestion {
   bool smallest = false;
   /// Width at which bisection stops: relative to the value in a logarithmic range, to the range in a linear one.
   double resolution = 1e-3;
+  std::vector<std::string> warnings = {};  ///< of the scenario with the field given
 };
 
 /// A value and what a run with it came to.
@@ -40,7 +41,10 @@ struct FieldLimit {
   /// The same by the eigenvalues of a step, where the springs stay in contact; infinite (smallest: 0) when the whole
   /// range is stable, none where there is no theory or nothing is stable.
   std::optional<double> theory;
-  std::optional<JudgedValue> own;   ///< the run at the scenario's value, if that was in the range
+  std::optional<JudgedValue> own;  ///< the run at the scenario's value, if that was in the range
+  /// Hand and device are unstable even where there is nothing to touch, at the value beyond, or without a limit at the
+  /// first one. Only asked of a hand that feels the handle and needs no surface.
+  bool unstable_alone = false;
   std::vector<JudgedValue> runs;    ///< all, by value
   std::vector<JudgedValue> astray;  ///< of them, unstable on the stable side of the limit, or stable beyond it
 

@@ -47,6 +47,11 @@ bool has_left(const LastPlace& last, const PointShell& shell, double reach) {
   return !last.touches && !inside;
 }
 
+MotionClassifier classifier_of(const Scenario& scenario) {
+  const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
+  return is_moved(scenario) ? MotionClassifier::of_moved_tool(steps, scenario.time.step) : MotionClassifier(steps);
+}
+
 RunVerdict verdict_of(MotionClass motion) {
   // Of the same names.
   return static_cast<RunVerdict>(motion);
@@ -69,9 +74,7 @@ bool is_moved(const Scenario& scenario) {
 
 RunVerdict judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell) {
   const Scenario& scenario = loaded.scenario;
-  const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
-  MotionClassifier classifier =
-      is_moved(scenario) ? MotionClassifier::of_moved_tool(steps, scenario.time.step) : MotionClassifier(steps);
+  MotionClassifier classifier = classifier_of(scenario);
   LastPlace last;
   SimulationParts parts = assemble(scenario, loaded.files, shell, {});
   const double reach = parts.tool->reach();
@@ -82,6 +85,17 @@ RunVerdict judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointS
   if (simulation.result().outcome == Outcome::leaves_hole) return RunVerdict::thrown_out;
   if (shell && has_left(last, *shell, reach)) return RunVerdict::thrown_out;
   return verdict_of(motion);
+}
+
+bool unstable_without_contact(const LoadedScenario& loaded) {
+  const Scenario& scenario = loaded.scenario;
+  if (!std::holds_alternative<ImpedanceHandFields>(scenario.hand) ||
+      std::holds_alternative<SpringsEnvironment>(scenario.environment))
+    return false;
+  MotionClassifier classifier = classifier_of(scenario);
+  const auto nothing = std::make_shared<const PointShell>(std::vector<SurfacePoint>{}, 0.0);
+  Simulation simulation(simulation_config(scenario), assemble(scenario, loaded.files, nothing, {}), {&classifier});
+  return !comes_to_rest(classify(simulation, classifier));
 }
 
 }  // namespace hapbench

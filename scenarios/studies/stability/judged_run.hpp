@@ -34,4 +34,8 @@ bool is_moved(const Scenario& scenario);
 /// Stopped when a signal ends it. Precondition: the position is free, and there are 4 steps or more.
 RunVerdict judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell);
 
+/// True when the tool vibrates or diverges without any environment, so that hand and device are to blame and not the
+/// contact. False for hands that do not feel the handle, and for those that need a surface to be there.
+bool unstable_without_contact(const LoadedScenario& loaded);
+
 }  // namespace hapbench

@@ -93,6 +93,20 @@ TEST(ContactForces, AreThoseOfLandingsAndOfSettledContactApart) {
   EXPECT_EQ(f.reversals_per_second(), 1.0 / (4 * kDt));
 }
 
+TEST(ContactForces, HaveNoValueBelowAPeriodOfTheHighPass) {
+  // Three rows are 0.03 s, four 0.04 s.
+  const std::vector<Row> three = {{9}, {9}, {9}, {1}, {1}, {1}};
+  const ContactForces few = forces_of(three, kThreeRows);
+  EXPECT_EQ(few.settled_rows, 3u);
+  EXPECT_FALSE(few.mean() || few.max() || few.step_max() || few.step_p99() || few.rms_above_cutoff() ||
+               few.reversals_per_second());
+  std::vector<Row> four = three;
+  four.push_back({1});
+  const ContactForces enough = forces_of(four, kThreeRows);
+  EXPECT_TRUE(enough.mean() && enough.max() && enough.step_max() && enough.step_p99() && enough.rms_above_cutoff() &&
+              enough.reversals_per_second());
+}
+
 TEST(ContactForces, HaveNoValueWithoutSuchRows) {
   const ContactForces away = forces_of({{0, false}, {0, false}}, kThreeRows);
   EXPECT_FALSE(away.landing_max() || away.landing_step_max());
@@ -126,7 +140,7 @@ TEST(ContactForces, TheP99OfTheStepsIsThatOfTheSortedStepsWithinTheStatedError) 
 
 TEST(ContactForces, TheP99IsNeverAboveTheLargestStep) {
   for (const double step : {1.0, 1.009, 1.02, 3e7}) {
-    const ContactForces f = forces_of({{0}, {0}, {0}, {step}}, kThreeRows);
+    const ContactForces f = forces_of({{0}, {0}, {0}, {step}, {step}, {step}, {2.0 * step}}, kThreeRows);
     EXPECT_LE(*f.step_p99(), *f.step_max());
     EXPECT_NEAR(*f.step_p99(), step, MagnitudeHistogram::kRelativeError * step);
   }

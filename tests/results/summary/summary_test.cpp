@@ -174,6 +174,7 @@ TEST(Summary, HasNullForWhatDoesNotExist) {
 TEST(Summary, OfARunThatOnlyLandsHasNoNumbersOfSettledContact) {
   RunSummary run = example();
   run.metrics.contact.settled_rows = 0;
+  run.metrics.contact.settled = 0.0;
   run.metrics.reduction.reset();
   const auto metrics = summary_json(run)["metrics"];
   EXPECT_EQ(metrics["landing_force_max_N"], 2.0);

@@ -187,6 +187,25 @@ TEST(OriginalAveraging, RunsWithoutReductionAndWarnsAboutAGivenOne) {
   EXPECT_TRUE(loaded(json).warnings.empty());
 }
 
+TEST(AdmittanceDevice, WarnsUnderAHandThatDoesNotFeelTheHandle) {
+  const auto warnings = [](const char* hand, const char* device) {
+    Json json = test::minimal_scenario("plane");
+    json["hand"] = Json::parse(hand);
+    json["device"] = Json::parse(device);
+    return loaded(json).warnings;
+  };
+  constexpr const char* kDelay = R"({"type": "admittance", "servo": {"delay_samples": 20}})";
+  for (const char* device : {kDelay, R"({"type": "admittance"})"}) {
+    ASSERT_EQ(warnings(R"({"type": "none"})", device).size(), 1u) << device;
+    EXPECT_EQ(warnings(R"({"type": "none"})", device)[0].find("/device: servo and mechanics"), 0u);
+  }
+  EXPECT_EQ(warnings(R"({"type": "push", "force_N": 1})", kDelay).size(), 1u);
+  EXPECT_TRUE(warnings(R"({"type": "push", "force_N": 1})", R"({"type": "ideal"})").empty());
+  EXPECT_TRUE(warnings(R"({"type": "none"})", R"({"type": "admittance", "sensor": {"noise_N": 0.02}})").empty())
+      << "sensor and limiter work whatever the hand";
+  EXPECT_TRUE(warnings(R"({"type": "impedance", "target": {"x_m": 0, "y_m": 0, "z_m": 0}})", kDelay).empty());
+}
+
 TEST(ScenarioInCode, IsThatOfSpringsWithoutAnyField) {
   Json springs = test::minimal_scenario("springs");
   springs["time"]["steps"] = 1;

@@ -82,5 +82,37 @@ TEST(Drag, OverAMeshKeepsContactAndAllocatesNothing) {
   EXPECT_GT(report.summary.metrics.steps_in_contact, 4500u);
 }
 
+std::string warnings_of(const RunReport& report) {
+  std::string text;
+  for (const std::string& warning : report.summary.warnings) text += warning + "\n";
+  return text;
+}
+
+TEST(Drag, ThatFollowsGivesNoWarning) {
+  EXPECT_EQ(warnings_of(run_scenario(read_scenario(scene(), ""), std::nullopt, false)), "");
+}
+
+TEST(Drag, TellsOfAToolThatStandsStill) {
+  Json json = scene();
+  // Friction takes over 100 N at 1 mm/s; the spring has 0.0075 m * 300 N/m at most.
+  json["rendering"]["friction"] = {{"mu_s_N_s_per_m", 1e5}, {"mu_f_s_per_m", 0}};
+  json["integrator"] = {{"type", "implicit_euler"}};
+  json["tool"] = {{"diameter_m", 0.0005}};
+  const RunReport report = run_scenario(read_scenario(json, ""), std::nullopt, false);
+  EXPECT_EQ(report.summary.result.outcome, Outcome::completes);
+  EXPECT_NE(warnings_of(report).find("the dragged tool stood still since"), std::string::npos) << warnings_of(report);
+}
+
+TEST(Drag, TellsOfAToolThatLostTheSurface) {
+  Json json = scene();
+  json["hand"]["force_N"] = 50;
+  json["rendering"]["stiffness_N_per_m"] = 100;
+  json["tool"] = {{"diameter_m", 0.0005}};
+  const RunReport report = run_scenario(read_scenario(json, ""), std::nullopt, false);
+  EXPECT_EQ(report.summary.result.outcome, Outcome::lost_contact);
+  EXPECT_NE(warnings_of(report).find("the dragged tool lost the surface at"), std::string::npos) << warnings_of(report);
+  EXPECT_NE(warnings_of(report).find("below it: it went through"), std::string::npos) << warnings_of(report);
+}
+
 }  // namespace
 }  // namespace hapbench
