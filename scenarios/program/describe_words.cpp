@@ -19,7 +19,7 @@ struct Word {
 };
 
 constexpr const char* kOutcome = "outcome of a run";
-constexpr const char* kMotion = "motion, of limit and stability";
+constexpr const char* kMotion = "class of motion, of limit and stability";
 constexpr const char* kTime = "number of timing.json";
 constexpr const char* kVerdict = "verdict on a claim";
 
@@ -61,7 +61,7 @@ std::vector<Description> describe_word(const std::string& name) {
   std::vector<Description> found;
   for (const Word& word : kWords) {
     if (name != word.name) continue;
-    std::string text = fmt::format("{} {}\n{}", word.kind, bold(stdout, word.name), wrapped(word.meaning));
+    std::string text = fmt::format("{}: {}\n{}", bold(stdout, word.name), word.kind, wrapped(word.meaning));
     if (word.kind == kMotion) text += "  in numbers: hapbench describe stability\n";
     found.push_back({text, {{"kind", word.kind}, {"name", word.name}, {"meaning", word.meaning}}});
   }

@@ -42,7 +42,8 @@ void check_source(const StartKind& kind, const std::string& from) {
   if (kind.source == StartSource::none && !from.empty())
     throw InputError(fmt::format("--from: got \"{}\"; \"{}\" starts from no file", from, kind.name));
   std::error_code ignored;
-  if (!from.empty() && !fs::exists(from, ignored)) throw InputError(fmt::format("--from {}: cannot be read: no such file", from));
+  if (!from.empty() && !fs::exists(from, ignored))
+    throw InputError(fmt::format("--from {}: cannot be read: no such file", from));
 }
 
 int list_kinds(const OutputOptions& output) {
