@@ -10,7 +10,8 @@
 
 namespace hapbench {
 
-DragCourseObserver::DragCourseObserver(const DragHand& hand, double half_width) : hand_(hand), half_width_(half_width) {
+DragCourseObserver::DragCourseObserver(const DragHand& hand, double half_width, bool along_direction)
+    : hand_(hand), half_width_(half_width), along_direction_(along_direction) {
   course_.width = 2.0 * half_width;
 }
 
@@ -34,6 +35,9 @@ DragCourse DragCourseObserver::course() const {
   course.asked_since = course.asked - asked_at_way_;
   const SurfacePoint foot = hand_.path().at(hand_.nearest());
   course.height = foot.normal.dot(course.place - foot.position);
+  course.path = hand_.path().length();
+  // By less than the tool is wide it is the edge that ends the way.
+  course.ends_early = along_direction_ && hand_.drag().speed * time_ > course.path + course.width;
   const bool presses = hand_.drag().force(time_) > 0.0;
   if (presses && last_contact_ && time_ - *last_contact_ >= SettlingRule().time) course.lost = last_contact_;
   return course;
@@ -54,6 +58,12 @@ std::vector<std::string> drag_warnings(const DragCourse& c) {
         fmt::format("the dragged tool stood still since {:.4g} s, {} along the path of {} asked, at [{:.4g}, {:.4g}, "
                     "{:.4g}] m in the end",
                     c.still_since, length_text(c.way), length_text(c.asked), c.place.x(), c.place.y(), c.place.z()));
+  }
+  if (c.ends_early) {
+    warnings.push_back(
+        fmt::format("the path of the drag ends after {}: beyond, the surface ends or turns against hand.direction; the "
+                    "tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end",
+                    length_text(c.path), c.place.x(), c.place.y(), c.place.z()));
   }
   return warnings;
 }

@@ -12,6 +12,7 @@ namespace hapbench {
 /// How far a dragged tool came on the path it was led along.
 struct DragCourse {
   double asked = 0.0;         ///< way of the point that leads it [m]
+  double path = 0.0;          ///< length of the path [m]
   double way = 0.0;           ///< furthest place on the path that the tool came to [m]
   double still_since = 0.0;   ///< when it last came further by a spacing of the path [s]
   double asked_since = 0.0;   ///< way of the point since then [m]
@@ -24,6 +25,9 @@ struct DragCourse {
   /// pressed: after as long the next touch would be a landing.
   std::optional<double> lost;
 
+  /// The path along a direction ended before the run: the surface ends or turns there.
+  bool ends_early = false;
+
   /// The point has left it behind by more than the tool is wide. A tool that follows comes on as far as the point.
   bool stands_still() const { return asked_since > width; }
 };
@@ -32,7 +36,8 @@ struct DragCourse {
 class DragCourseObserver final : public Observer {
  public:
   /// The hand must outlive the observer. `half_width`: the tool's [m].
-  DragCourseObserver(const DragHand& hand, double half_width);
+  /// `along_direction`: the path is to go on for the whole run.
+  DragCourseObserver(const DragHand& hand, double half_width, bool along_direction);
 
   void on_step(const StepRecord& record) noexcept override;
 
@@ -41,6 +46,7 @@ class DragCourseObserver final : public Observer {
  private:
   const DragHand& hand_;
   double half_width_;
+  bool along_direction_;
   double asked_at_way_ = 0.0;  ///< way of the point when the tool last came further
   double time_ = 0.0;          ///< of the last row
   std::optional<double> last_contact_;

@@ -76,7 +76,7 @@ class TrialObservers {
       }
     }
     if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get())) {
-      drag_.emplace(*hand, parts.tool->half_width());
+      drag_.emplace(*hand, parts.tool->half_width(), std::get<DragHandFields>(scenario.hand).direction.has_value());
       observers_.push_back(&*drag_);
     }
     if (const TargetTask* task = parts.hand->task()) {
