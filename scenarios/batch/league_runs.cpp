@@ -12,8 +12,7 @@
 namespace hapbench {
 
 std::string default_metrics_text() {
-  return fmt::format("{}; where every scene has a reference force {}", fmt::join(kDefaultMetrics, ","),
-                     fmt::join(kFidelityMetrics, ","));
+  return fmt::format("{}", fmt::join(kDefaultMetrics, ","));
 }
 
 bool is_failure(std::string_view outcome) {

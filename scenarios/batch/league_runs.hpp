@@ -16,7 +16,7 @@ inline constexpr std::string_view kDefaultMetrics[] = {"force_rms_above_30Hz_N",
 inline constexpr std::string_view kFidelityMetrics[] = {"fidelity.force_error_relative",
                                                         "fidelity.force_direction_error_rad",
                                                         "fidelity.force_artefact_share", "force_rms_above_30Hz_N"};
-/// Both, as the help text of an option shows them.
+/// kDefaultMetrics, separated by commas.
 std::string default_metrics_text();
 
 /// True for an outcome after which a run's numbers say nothing about its algorithm: diverges, no_contact, lost_contact.

@@ -37,10 +37,12 @@ struct CompareOptions {
   bool html = false;
   Skips skips = Skips::taken;
   OutputOptions output;
-
-  /// Something to rank over, or by.
-  bool wants_league() const { return scenarios.size() > 1 || seeds > 1 || !metrics.empty(); }
 };
+
+/// There is something to rank over, or by.
+bool wants_league(const CompareOptions& options, const BatchPlan& plan) {
+  return plan.scenarios.size() > 1 || options.seeds > 1 || !options.metrics.empty();
+}
 
 BatchPlan plan_of(const CompareOptions& options) {
   if (!options.metrics.empty()) require_names("--by: got", options.metrics, metric_names());
@@ -87,11 +89,11 @@ double expected_bytes(const BatchPlan& plan) {
   return bytes;
 }
 
-BatchOptions batch_options(const CompareOptions& options, const fs::path& out) {
+BatchOptions batch_options(const CompareOptions& options, const BatchPlan& plan, const fs::path& out) {
   BatchOptions batch;
   batch.directory = out;
   // The table of a single comparison shows times, which runs beside each other would lengthen.
-  batch.jobs = options.jobs > 0 ? options.jobs : options.wants_league() ? available_threads() : 1;
+  batch.jobs = options.jobs > 0 ? options.jobs : wants_league(options, plan) ? available_threads() : 1;
   batch.progress = !options.output.quiet;
   return batch;
 }
@@ -158,12 +160,12 @@ int compare(const CompareOptions& options) {
   const BatchPlan plan = plan_of(options);
   const fs::path out = directory_of(options, plan);
   print_warnings(plan.warnings);
-  prepare(out, plan, options.wants_league());
+  prepare(out, plan, wants_league(options, plan));
   announce_large_output(expected_bytes(plan));
 
   const BatchReport report = [&] {
     try {
-      return run_batch(plan, batch_options(options, out));
+      return run_batch(plan, batch_options(options, plan, out));
     } catch (const Stopped&) {
       forget_results_if_none(out);
       throw;
@@ -174,8 +176,8 @@ int compare(const CompareOptions& options) {
     write_comparison(out / scenario_directory(plan, s) / "comparison.csv", reports_of(plan, report, s), options.seeds);
   }
   const std::string where = fmt::format("\nresults in {}\n", out.string());
-  Json json = summaries_json(plan, report, options.wants_league());
-  if (options.wants_league()) {
+  Json json = summaries_json(plan, report, wants_league(options, plan));
+  if (wants_league(options, plan)) {
     const League league = make_league(league_runs(plan, report, options.metrics));
     write_league(out / "league.csv", league);
     Json batch = {{"runs", std::move(json)}};
@@ -185,7 +187,7 @@ int compare(const CompareOptions& options) {
     print(options.output, comparison_text(report.runs) + where, json);
   }
   if (options.html) write_report(out, options.output.quiet || options.output.json);
-  return verdict(plan, report, options.wants_league());
+  return verdict(plan, report, wants_league(options, plan));
 }
 
 }  // namespace
@@ -194,7 +196,8 @@ void add_compare(CommandLine& line) {
   auto options = std::make_shared<CompareOptions>();
   Command command =
       line.command("compare", "Run scenarios through several algorithms, side by side; of several, a league table");
-  command.add("scenarios", options->scenarios, "scenario files, names of bundled scenarios, or of groups of them").required();
+  command.add("scenarios", options->scenarios, "scenario files, names of bundled scenarios, or of groups of them")
+      .required();
   command.add("--algorithms", options->algorithms, "names, separated by commas, or all (default: all)")
       .comma_separated();
   command.add("--seeds", options->seeds, "run each K times, time k with the scenario's seed + k (default: 1)")
@@ -205,7 +208,7 @@ void add_compare(CommandLine& line) {
   command
       .add("--by", options->metrics,
            "metrics of the league, less is better: names of summary.json, separated by commas (default: " +
-               default_metrics_text() + ")")
+               default_metrics_text() + "; fidelity where every scene has a reference force)")
       .comma_separated();
   command.add("--jobs", options->jobs, "runs at once (default: one per thread; 1 where the table shows times)")
       .range(1, 1024);
