@@ -55,6 +55,7 @@ GROUPS = (
         Row("step/free_air", "search/brute_force/T3", 6e-4),
     ],
     [Row("step/upright_proxy", "step/upright", 4.0)],
+    [Row(f"step/{task}_revolved", f"step/{task}", 1.6) for task in ("T1", "T2", "T3")],
     [Row(f"step/{task}_mesh", f"step/{task}", 4.0) for task in ("T1", "T2", "T3")],
     [Row("shell/build", "search/brute_force/T1", 0.35, times=1000, wall=True)],
     [contacts_grow("step"), contacts_grow("law/shaped_stiffness")],
