@@ -55,6 +55,10 @@ class SlurmSweep : public testing::Test {
     return wait_until([&] { return status()["shards"][shard]["runs_done"] >= rows; });
   }
 
+  std::string log_of_shard(const std::string& shard) const {
+    return test::read_file(directory_ / "out" / ("slurm_shard_" + shard + ".log"));
+  }
+
   /// The process that computes a shard into this test's directory; 0 for none.
   pid_t process_of(const std::string& shard) const {
     for (const fs::directory_entry& entry : fs::directory_iterator("/proc")) {
@@ -89,9 +93,10 @@ TEST_F(SlurmSweep, WithAShardKilledAndOnePreemptedEndsWithTheBytesOfOneMachine) 
   EXPECT_EQ(early.status, 2);
   EXPECT_NE(early.err.find("is still in the queue; allowed: when it has ended"), std::string::npos) << early.err;
 
-  // It would wait for two minutes.
-  EXPECT_EQ((*slurm_)("scontrol", {"update", "JobId=" + array + "_0", "StartTime=now"}).status, 0);
-  EXPECT_TRUE(wait_for(0, "done") && wait_for(2, "done")) << status().dump(2);
+  // It would wait for two minutes. In the second in which it was stopped, Slurm would refuse to start it again ("Job
+  // credential revoked").
+  EXPECT_EQ((*slurm_)("scontrol", {"update", "JobId=" + array + "_0", "StartTime=now+2seconds"}).status, 0);
+  EXPECT_TRUE(wait_for(0, "done") && wait_for(2, "done")) << status().dump(2) << log_of_shard("0") << slurm_->logs();
   EXPECT_EQ(state(1), "failed");
   EXPECT_FALSE(fs::exists(directory_ / "out/sweep.csv")) << "merged without shard 1";
   ASSERT_TRUE(wait_until([&] { return (*slurm_)("squeue", {"--noheader"}).out.empty(); }));

@@ -26,10 +26,12 @@ class SlurmCluster {
   /// Runs one of Slurm's commands.
   ProgramRun operator()(const std::string& command, const std::vector<std::string>& arguments) const;
 
+  /// What the daemons logged, for a test that failed.
+  std::string logs() const;
+
  private:
   void write_configuration() const;
   void start(const std::vector<std::string>& words);
-  std::string logs() const;
 
   TemporaryDirectory directory_;
   std::vector<std::unique_ptr<RunningProgram>> daemons_;
