@@ -12,10 +12,13 @@ namespace hapbench {
 
 namespace fs = std::filesystem;
 
+/// Folders of `scenarios`.
+constexpr const char* kGroups[] = {"thesis", "limits", "beyond", "quality", "examples"};
+
 std::vector<BundledScenario> bundled_scenarios() {
   std::vector<BundledScenario> found;
   const fs::path folder = installed_folder("scenarios");
-  for (const char* group : {"thesis", "limits", "beyond", "quality", "examples"}) {
+  for (const char* group : kGroups) {
     std::error_code error;
     const fs::directory_iterator entries(folder / group, error);
     if (error) throw InputError(fmt::format("{}: {}", (folder / group).string(), error.message()));
@@ -51,17 +54,17 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
 }
 
 std::vector<fs::path> find_scenarios(const std::vector<std::string>& arguments) {
-  const std::vector<BundledScenario> bundled = bundled_scenarios();
   std::vector<fs::path> files;
   for (const std::string& argument : arguments) {
+    const auto is_group = [&argument](const char* group) { return argument == group; };
     std::error_code error;
-    const std::size_t before = files.size();
-    if (!fs::exists(argument, error)) {
-      for (const BundledScenario& scenario : bundled) {
-        if (scenario.group == argument) files.push_back(scenario.file);
-      }
+    if (std::none_of(std::begin(kGroups), std::end(kGroups), is_group) || fs::exists(argument, error)) {
+      files.push_back(find_scenario(argument));
+      continue;
     }
-    if (files.size() == before) files.push_back(find_scenario(argument));
+    for (const BundledScenario& scenario : bundled_scenarios()) {
+      if (scenario.group == argument) files.push_back(scenario.file);
+    }
   }
   return files;
 }

@@ -22,7 +22,7 @@ std::vector<BundledScenario> bundled_scenarios();
 std::filesystem::path find_scenario(const std::string& argument, const std::filesystem::path& directory = {});
 
 /// The files that several arguments mean: what find_scenario finds, and for the name of a group all that is in it, by
-/// name. A file or a scenario of that name goes before the group. Throws InputError.
+/// name. A file of that name goes before the group. Throws InputError.
 std::vector<std::filesystem::path> find_scenarios(const std::vector<std::string>& arguments);
 
 }  // namespace hapbench
