@@ -24,7 +24,7 @@ class Simulation::Surroundings final : public ForceField {
     const double t = (static_cast<double>(s_.row_) + part) * s_.config_.dt;
     const Vec3 axis = s_.parts_.motion->axis_at(t);
     const double roll = s_.roll_at(t);
-    ToolState tool{s_.pose(position, axis, roll), velocity};
+    ToolState tool{{position, axis, s_.tool_rolls_ ? roll : 0.0}, velocity};
     if (s_.angular_velocity_cutoff_) tool.angular_velocity = s_.angular_velocity_after(part, axis, roll);
     s_.parts_.source->contacts_at(tool.pose, s_.contacts_);
     s_.parts_.algorithm->compute(tool, s_.contacts_, s_.within_step_);
@@ -79,11 +79,6 @@ double Simulation::roll_at(double t) const noexcept {
   return roll_wanted_ ? parts_.motion->roll_at(t) : 0.0;
 }
 
-/// Without roll for a solid of revolution, so that nothing that is computed for it can depend on it.
-ToolPose Simulation::pose(const Vec3& position, const Vec3& axis, double roll) const noexcept {
-  return {position, axis, tool_rolls_ ? roll : 0.0};
-}
-
 /// The turn from the row's orientation to this one, a part of a step later, as an angular velocity through a
 /// first-order low-pass: 1 - e^(-2 pi f t) of what is new.
 Vec3 Simulation::angular_velocity_after(double part, const Vec3& axis, double roll) const noexcept {
@@ -101,7 +96,9 @@ void Simulation::move_tool_by_script() noexcept {
   const Vec3 axis = parts_.motion->axis_at(t);
   const double roll = roll_at(t);
   if (angular_velocity_cutoff_ && row_ > 0) tool_.angular_velocity = angular_velocity_after(1.0, axis, roll);
-  tool_.pose = pose(tool_.pose.position, axis, roll);
+  tool_.pose.axis = axis;
+  // Left out of a solid of revolution's pose, so that nothing that is computed for it can depend on it.
+  if (tool_rolls_) tool_.pose.roll = roll;
   roll_ = roll;
   if (position_is_free_) return;
   const Vec3 position = parts_.motion->position_at(t);

@@ -110,7 +110,6 @@ class Simulation {
   void move_tool_by_force() noexcept;
   void move_tool_by_script() noexcept;
   double roll_at(double t) const noexcept;
-  ToolPose pose(const Vec3& position, const Vec3& axis, double roll) const noexcept;
   Vec3 angular_velocity_after(double part, const Vec3& axis, double roll) const noexcept;
   void note_springs() noexcept;
   bool check_bounds() noexcept;
