@@ -69,9 +69,9 @@ const MeshFile& NamedFiles::tool_mesh() const {
 const RecordedMotion& NamedFiles::recorded_motion() const {
   auto& [file, motion, force] = *motion_;
   if (!motion) {
-    motion = motion_in(file.bytes(), file.path());
-    if (auto measured = recorded_force_in(file.bytes(), file.path()))
-      force = std::make_shared<const ReferenceForce>(std::move(*measured));
+    Stroke stroke = stroke_in(file.bytes(), file.path());
+    motion = std::move(stroke.motion);
+    if (stroke.force) force = std::make_shared<const ReferenceForce>(*std::move(stroke.force));
     file.drop_bytes();
   }
   return *motion;

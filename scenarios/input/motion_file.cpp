@@ -38,21 +38,19 @@ Eigen::Quaterniond orientation_of(std::span<const double> cells, const std::file
        fmt::format("got a quaternion qw,qx,qy,qz of norm {}; allowed: 1 within {}", norm, kLargestNormError));
 }
 
-/// Whether the first line, which is one of the headers, ends with the columns of a force.
-bool has_force(std::string_view text) {
-  return text.substr(0, text.find('\n')).find("mfx_N") != std::string_view::npos;
-}
-
 }  // namespace
 
-RecordedMotion motion_in(std::string_view text, const std::filesystem::path& file) {
+Stroke stroke_in(std::string_view text, const std::filesystem::path& file) {
   const NumberTable table = number_table_in(text, file, kHeaders, kMostSamples);
   if (table.rows() == 0) fail(file, 0, "no samples; allowed: at least one");
-  const std::size_t pose = table.columns - (has_force(text) ? kForceColumns : 0);
+  const bool has_force = table.columns >= kAxisPose + kForceColumns;
+  const std::size_t pose = table.columns - (has_force ? kForceColumns : 0);
   std::vector<RecordedMotion::Sample> samples;
   samples.reserve(table.rows());
+  std::vector<ReferenceForce::Sample> forces;
+  if (has_force) forces.reserve(table.rows());
   for (std::size_t i = 0; i < table.rows(); ++i) {
-    const auto row = table.row(i).first(pose);
+    const auto row = table.row(i);
     RecordedMotion::Sample sample{row[0], {row[1], row[2], row[3]}};
     if (pose == kAxisPose) {
       sample.axis = axis_of(row.subspan(4), file, i);
@@ -64,20 +62,11 @@ RecordedMotion motion_in(std::string_view text, const std::filesystem::path& fil
            fmt::format("got time {} after {}; allowed: strictly increasing times", row[0], samples.back().time));
     }
     samples.push_back(sample);
+    if (has_force) forces.push_back({row[0], {row[pose], row[pose + 1], row[pose + 2]}});
   }
-  return RecordedMotion(std::move(samples));
-}
-
-std::optional<ReferenceForce> recorded_force_in(std::string_view text, const std::filesystem::path& file) {
-  if (!has_force(text)) return std::nullopt;
-  const NumberTable table = number_table_in(text, file, kHeaders, kMostSamples);
-  std::vector<ReferenceForce::Sample> samples;
-  samples.reserve(table.rows());
-  for (std::size_t i = 0; i < table.rows(); ++i) {
-    const auto row = table.row(i), force = row.last(kForceColumns);
-    samples.push_back({row[0], {force[0], force[1], force[2]}});
-  }
-  return ReferenceForce(std::move(samples));
+  Stroke stroke{RecordedMotion(std::move(samples)), {}};
+  if (has_force) stroke.force.emplace(std::move(forces));
+  return stroke;
 }
 
 }  // namespace hapbench

@@ -221,7 +221,7 @@ TEST(ImportStroke, MeasuresTheQuantum) {
   EXPECT_FALSE(report.quantum[2]);
 }
 
-/// What comes out is what motion_in takes.
+/// What comes out is what stroke_in takes.
 TEST(ImportStroke, WritesStrokesThatScenariosRead) {
   ImportOptions options = time_and_position();
   set_orientation(options, "axis");
@@ -229,10 +229,9 @@ TEST(ImportStroke, WritesStrokesThatScenariosRead) {
   set_column(options, "force", {"8"});
   const auto stroke = imported("0,0,0,0,0,0,-2,1,2,3\n0.1,0.01,0,0,0,1,-1,2,3,4\n", options).samples;
   const std::string text = stroke_text(stroke);
-  const RecordedMotion motion = motion_in(text, "stroke.csv");
+  const auto [motion, force] = stroke_in(text, "stroke.csv");
   EXPECT_NEAR((motion.axis_at(0.1) - Vec3(0, 1, -1).normalized()).norm(), 0.0, 1e-15);
   EXPECT_EQ(motion.position_at(0.1), Vec3(0.01, 0, 0));
-  const auto force = recorded_force_in(text, "stroke.csv");
   ASSERT_TRUE(force);
   EXPECT_NEAR((*force->at(0.05) - Vec3(1.5, 2.5, 3.5)).norm(), 0.0, 1e-15);
   EXPECT_FALSE(force->at(0.2)) << "nothing was measured then";
@@ -387,8 +386,7 @@ TEST(ImportFuzz, StrokesWithForcesAreReadOrRefused) {
   for (std::size_t i = 0; i < test::cases(4000) && !testing::Test::HasFailure(); ++i) {
     const std::string mutant = test::mutated_text(text.substr(0, text.rfind('\n') + 1), random);
     try {
-      motion_in(mutant, "stroke.csv");
-      if (const auto force = recorded_force_in(mutant, "stroke.csv")) {
+      if (const auto force = stroke_in(mutant, "stroke.csv").force) {
         EXPECT_TRUE(!force->at(0.01) || force->at(0.01)->allFinite());
         ++accepted;
       }

@@ -128,7 +128,7 @@ TEST_P(MeshFuzz, MeshesAreReadOrRefusedSoon) {
 TEST(Fuzz, RecordedMotionsAreReadOrRefused) {
   const std::vector<std::string> texts = {test::read_file(test::data_directory() / "stroke.csv")};
   expect_mixture(fuzz(texts, test::cases(10'000), 4, [](const std::string& text) {
-    const RecordedMotion motion = motion_in(text, "stroke.csv");
+    const RecordedMotion motion = stroke_in(text, "stroke.csv").motion;
     EXPECT_NEAR(motion.axis_at(-1.0).norm(), 1.0, 1e-12) << text;
     EXPECT_NEAR(motion.axis_at(1e9).norm(), 1.0, 1e-12) << text;
   }));
@@ -141,7 +141,7 @@ TEST(Fuzz, GarbageIsRefused) {
     for (std::uint64_t n = random.below(300); n > 0; --n) garbage += static_cast<char>(random.below(256));
     EXPECT_THROW(read_scenario(parse_json(garbage), ""), InputError);
     for (const char* name : {"g.csv", "g.ply"}) EXPECT_THROW(point_shell_in(garbage, name), InputError);
-    EXPECT_THROW(motion_in(garbage, "g.csv"), InputError);
+    EXPECT_THROW(stroke_in(garbage, "g.csv"), InputError);
     for (const char* name : {"g.obj", "g.off", "g.stl", "g.ply"}) EXPECT_THROW(MeshFile(garbage, name, {}), InputError);
   }
 }

@@ -15,7 +15,7 @@ constexpr const char* kFile = "stroke.csv";
 
 class MotionFile : public testing::Test {
  protected:
-  static RecordedMotion read(const std::string& rows) { return motion_in(kHeader + rows, kFile); }
+  static RecordedMotion read(const std::string& rows) { return stroke_in(kHeader + rows, kFile).motion; }
   std::string refusal_of(const std::string& rows) const {
     SCOPED_TRACE(rows);
     const auto error = test::input_error_of([&] { read(rows); });
@@ -57,7 +57,7 @@ TEST_F(MotionFile, NeedsAxesThatAreDirections) {
 
 /// A quarter of a turn about x takes the axis from -z to y.
 TEST(MotionFileOfQuaternions, TurnsTheToolsFrameIntoTheWorlds) {
-  const RecordedMotion motion = motion_in(kQuaternions + "0,1,2,3,1,0,0,0\n1,1,2,3,0.7072,0.7072,0,0\n", kFile);
+  const RecordedMotion motion = stroke_in(kQuaternions + "0,1,2,3,1,0,0,0\n1,1,2,3,0.7072,0.7072,0,0\n", kFile).motion;
   EXPECT_EQ(motion.axis_at(0.0), Vec3(0, 0, -1));
   EXPECT_LE((motion.axis_at(1.0) - Vec3(0, 1, 0)).norm(), 4e-16) << "normalised";
   EXPECT_EQ(motion.position_at(0.5), Vec3(1, 2, 3));
@@ -66,17 +66,17 @@ TEST(MotionFileOfQuaternions, TurnsTheToolsFrameIntoTheWorlds) {
 
 TEST(MotionFileOfQuaternions, MustBeOfNormOneWithinAThousandth) {
   const auto refusal = [](const std::string& row) {
-    const auto error = test::input_error_of([&] { motion_in(kQuaternions + "0,0,0,0,1,0,0,0\n" + row, kFile); });
+    const auto error = test::input_error_of([&] { stroke_in(kQuaternions + "0,0,0,0,1,0,0,0\n" + row, kFile); });
     return error ? std::string(error->what()) : "";
   };
-  EXPECT_NO_THROW(motion_in(kQuaternions + "1,0,0,0,0,1.0009,0,0\n", kFile));
+  EXPECT_NO_THROW(stroke_in(kQuaternions + "1,0,0,0,0,1.0009,0,0\n", kFile));
   EXPECT_EQ(refusal("1,0,0,0,0,1.125,0,0\n"),
             "stroke.csv, sample 2: got a quaternion qw,qx,qy,qz of norm 1.125; allowed: 1 within 0.001");
   EXPECT_EQ(refusal("1,0,0,0,0,0,0,0\n").find("stroke.csv, sample 2: got a quaternion qw,qx,qy,qz of norm 0"), 0u);
 }
 
 TEST(MotionFileOfQuaternions, TheHeaderSaysWhatMayComeAfterThePosition) {
-  const auto error = test::input_error_of([] { motion_in("time_s,px_m,py_m,pz_m,qx,qy,qz,qw\n", kFile); });
+  const auto error = test::input_error_of([] { stroke_in("time_s,px_m,py_m,pz_m,qx,qy,qz,qw\n", kFile); });
   ASSERT_TRUE(error);
   EXPECT_NE(std::string(error->what())
                 .find("allowed: \"time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\" or "
