@@ -24,6 +24,11 @@ double number_in(const Json& json, const std::string& field) {
   return json.get<double>();
 }
 
+bool boolean_in(const Json& json, const std::string& field) {
+  if (!json.is_boolean()) throw InputError(fmt::format("{}: got {}; allowed: true, false", field, shown(json)));
+  return json.get<bool>();
+}
+
 /// A text, a column's number or a list of them.
 std::vector<std::string> columns_in(const Json& json, const std::string& field) {
   const auto word = [&field](const Json& one) {
@@ -56,10 +61,7 @@ const PresetField kFields[] = {
     {"format",
      [](ImportOptions& o, const Json& value, const std::string& name) { set_format(o, text_in(value, name)); }},
     {"floats",
-     [](ImportOptions& o, const Json& value, const std::string& name) {
-       if (!value.is_boolean()) throw InputError(fmt::format("{}: got {}; allowed: true, false", name, shown(value)));
-       o.floats = value.get<bool>();
-     }},
+     [](ImportOptions& o, const Json& value, const std::string& name) { o.floats = boolean_in(value, name); }},
     {"columns",
      [](ImportOptions& o, const Json& value, const std::string& name) {
        for (const auto& [quantity, columns] : object_in(value, name).items()) {
@@ -81,10 +83,7 @@ const PresetField kFields[] = {
     {"frame",
      [](ImportOptions& o, const Json& value, const std::string& name) { set_frame(o, columns_in(value, name)); }},
     {"force_by_tool",
-     [](ImportOptions& o, const Json& value, const std::string& name) {
-       if (!value.is_boolean()) throw InputError(fmt::format("{}: got {}; allowed: true, false", name, shown(value)));
-       o.force_by_tool = value.get<bool>();
-     }},
+     [](ImportOptions& o, const Json& value, const std::string& name) { o.force_by_tool = boolean_in(value, name); }},
 };
 
 Json preset_in(const fs::path& file) {
