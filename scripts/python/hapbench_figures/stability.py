@@ -87,14 +87,6 @@ def edges(values):
     return np.concatenate([[2 * values[0] - middle[0]], middle, [2 * values[-1] - middle[-1]]])
 
 
-def hatch(ax, x, y, cells):
-    """Hatches those cells between the edges x and y."""
-    for line, column in np.argwhere(cells):
-        corner = (x[column], y[line])
-        size = (x[column + 1] - x[column], y[line + 1] - y[line])
-        ax.add_patch(style.plt.Rectangle(corner, *size, fill=False, **HATCH))
-
-
 def draw_map(ax, rows, x_name, y_name):
     x, y = numbers(rows, x_name), numbers(rows, y_name)
     columns, lines = np.unique(x), np.unique(y)
