@@ -136,8 +136,10 @@ def make_studies(directory):
         "reduction": ["shaped_stiffness 0.9", "exact_shaping off"],
         "spacing": ["signed_distance 0.0004", "binary 0.0002"],
         "algorithms": ["mean", "original_averaging", "one_without_a_look", "mean + angular_damping"],
+        "query_time": ["neighbour_list 0.1mm", "neighbour_list 0.2mm", "every_point 0.1mm", "every_point 0.2mm"],
     }
-    columns = ("step_s", "error_rms_m", "tensor_error_rms", "force_error_relative", "ideal_height_error_rms_m")
+    columns = ("step_s", "error_rms_m", "tensor_error_rms", "force_error_relative", "ideal_height_error_rms_m",
+               "pushed_m", "contacts_mean", "points_tested_mean")
     for study, names in settings.items():
         rows = [
             f"{name},{'diverges' if name.startswith('original') else 'completes'}"

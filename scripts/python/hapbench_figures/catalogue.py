@@ -72,6 +72,7 @@ FIGURES = (
     Figure("proxy", None, "The drill turned in the hole, with a proxy and with shaping", proxy.rotated),
     Figure("torque", None, "The torque that is lost as the drill is turned", torque.lost),
     Figure("precision", None, "Work against precision", performance.work_precision),
+    Figure("query-time", None, "Query time over penetration depth", performance.query_time),
     Figure("latency", None, "Latency of a step", performance.latency),
     Figure("growth", None, "How cost grows", growth.growth),
     *(

@@ -161,6 +161,34 @@ def work_precision(results):
     )
 
 
+def query_time(results):
+    """How long the search for contacts and their depths takes, over how deep the tool is."""
+    figure, axes = style.panels(1, 2, 2.9)
+    ways = {}
+    for row in with_times(results, "query_time"):
+        ways.setdefault(row["setting"].split()[0], []).append(row)
+    if not ways:
+        raise MissingResult("precision/precision_query_time.csv without rows")
+    time, points = axes[0]
+    for (way, rows), (colour, marker, line) in zip(ways.items(), LOOKS):
+        depth = 1e3 * numbers(rows, "pushed_m")
+        look = {"color": colour, "marker": marker, "ls": line}
+        time.plot(depth, 1e6 * numbers(rows, "seconds_per_call"), label=way.replace("_", " "), **look)
+        points.plot(depth, numbers(rows, "points_tested_mean"), label=f"tested, {way.replace('_', ' ')}", **look)
+    points.plot(depth, numbers(rows, "contacts_mean"), color=style.BLACK, ls=":", marker="^", label="touched")
+    time.set(xlabel="pushed in by [mm]", ylabel="time of a query [µs]", ylim=(0, None))
+    points.set(xlabel="pushed in by [mm]", ylabel="points", yscale="log")
+    time.legend()
+    points.legend()
+    style.letter(axes[0])
+    return figure, (
+        "Query time over penetration depth (after Weller, Sagardia et al. 2010): a round tip is pushed into a plane in "
+        "steps of less than a micrometre. (a) Time of the search for contacts and of their depths, on one core; (b) points "
+        "the tool touches and points compared with it. Both ways give the same contacts. Ours; run times are those of the "
+        "machine that measured them."
+    )
+
+
 def latency(results):
     runs = []
     for path in results.glob("**/timing.json"):

@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/studies/precision/measure.hpp"
+#include "scenarios/studies/precision/study.hpp"
+
+/// How long a step's question takes, which points the tool touches and how deep, over how deep it is: a tool that
+/// sinks in touches more and more points.
+namespace hapbench {
+namespace {
+
+constexpr double kDeeper = 5.0;  ///< than the scenario's stroke goes
+constexpr std::size_t kLevels = 10;
+constexpr std::size_t kPoses = 256;  ///< from one level to the next
+
+struct Way {
+  const char* name;
+  Skips skips;
+};
+constexpr Way kWays[] = {{"neighbour_list", Skips::taken}, {"every_point", Skips::off}};
+
+/// The straight way from the stroke's start through its farthest point.
+struct Push {
+  ToolPose start;
+  Vec3 way;  ///< whole [m]
+
+  ToolPose at(std::size_t level, std::size_t pose) const {
+    ToolPose there = start;
+    there.position += static_cast<double>(level * kPoses + pose + 1) / static_cast<double>(kLevels * kPoses) * way;
+    return there;
+  }
+};
+
+Push push_of(const Scenario& scenario, const Motion& motion) {
+  if (motion.position_is_free()) {
+    throw InputError(InputError::Kind::relation, "/motion/position/type",
+                     "got \"free\"; allowed for this study: a prescribed position, as in the scenarios quality/*");
+  }
+  const SimulationConfig config = simulation_config(scenario);
+  const Vec3 start = motion.position_at(0.0);
+  Vec3 farthest = Vec3::Zero();
+  for (std::uint64_t row = 0; row < config.steps; ++row) {
+    const Vec3 way = motion.position_at(static_cast<double>(row) * config.dt) - start;
+    if (way.squaredNorm() > farthest.squaredNorm()) farthest = way;
+  }
+  return {{start, motion.axis_at(0.0), motion.roll_at(0.0)}, kDeeper * farthest};
+}
+
+PrecisionRow row_of(const Way& way, const Push& push, std::size_t level, SimulationParts& parts, int repetitions) {
+  ContactBuffer contacts(parts.source->capacity());
+  const std::uint64_t tested_before = parts.source->work().points_tested;
+  double depth = 0.0, count = 0.0;
+  for (std::size_t pose = 0; pose < kPoses; ++pose) {
+    parts.source->contacts_at(push.at(level, pose), contacts);
+    depth += contacts.largest_depth();
+    count += static_cast<double>(contacts.size());
+  }
+  const auto tested = static_cast<double>(parts.source->work().points_tested - tested_before);
+  const double seconds = seconds_per_call(kPoses, repetitions, [&] {
+    for (std::size_t pose = 0; pose < kPoses; ++pose) parts.source->contacts_at(push.at(level, pose), contacts);
+  });
+  const double n = static_cast<double>(kPoses);
+  const double pushed = (push.at(level, kPoses / 2).position - push.start.position).norm();
+  return {fmt::format("{} {:.4g}mm", way.name, 1e3 * pushed),
+          "completes",
+          {pushed, depth / n, count / n, tested / n},
+          seconds};
+}
+
+}  // namespace
+
+static PrecisionResult study_query_time(const Scenario& given, const PrecisionOptions& options) {
+  PrecisionResult result;
+  result.columns = {"pushed_m", "depth_max_mean_m", "contacts_mean", "points_tested_mean"};
+  result.timed = "call";
+  const std::shared_ptr<const PointShell> shell = make_shell(given);
+  for (const Way& way : kWays) {
+    Scenario scenario = given;
+    scenario.rendering.skips = way.skips;
+    SimulationParts parts = assemble(scenario, shell, {});
+    const Push push = push_of(scenario, *parts.motion);
+    for (std::size_t level = 0; level < kLevels; ++level) {
+      result.rows.push_back(row_of(way, push, level, parts, options.repetitions));
+      options.progress(result.rows.size(), kLevels * std::size(kWays));
+    }
+  }
+  return result;
+}
+
+const PrecisionStudy kQueryTimeStudy = {
+    "query_time", "the search for contacts and depths over penetration depth, a stroke gone five times as far",
+    "plane_pressed_round", study_query_time};
+
+}  // namespace hapbench
