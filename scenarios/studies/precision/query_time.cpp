@@ -49,14 +49,14 @@ Push push_of(const Scenario& scenario, const Motion& motion) {
 
 PrecisionRow row_of(const Way& way, const Push& push, std::size_t level, SimulationParts& parts, int repetitions) {
   ContactBuffer contacts(parts.source->capacity());
-  const std::uint64_t tested_before = parts.source->work().points_tested;
+  parts.source->reset();
   double depth = 0.0, count = 0.0;
   for (std::size_t pose = 0; pose < kPoses; ++pose) {
     parts.source->contacts_at(push.at(level, pose), contacts);
     depth += contacts.largest_depth();
     count += static_cast<double>(contacts.size());
   }
-  const auto tested = static_cast<double>(parts.source->work().points_tested - tested_before);
+  const auto tested = static_cast<double>(parts.source->work().points_tested);
   const double seconds = seconds_per_call(kPoses, repetitions, [&] {
     for (std::size_t pose = 0; pose < kPoses; ++pose) parts.source->contacts_at(push.at(level, pose), contacts);
   });
