@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/tool/tool_state.hpp"
+#include "sim/tool/turn.hpp"
 
 namespace hapbench {
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/tool/turn.hpp"
+
 namespace hapbench {
 namespace {
 

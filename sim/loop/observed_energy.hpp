@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sim/loop/force_algorithm.hpp"
-#include "sim/tool/tool_state.hpp"
+#include "sim/tool/turn.hpp"
 
 namespace hapbench {
 
@@ -64,7 +64,7 @@ class ObservedEnergy {
   bool first() const { return first_; }
   /// The turn from the row before to this one [rad].
   const Vec3& turned() noexcept {
-    if (!turn_is_known_) turn_ = first_ ? Vec3(Vec3::Zero()) : turn(orientation(!now_), orientation(now_));
+    if (!turn_is_known_) turn_ = first_ ? Vec3(Vec3::Zero()) : turn(pose_[!now_], pose_[now_]);
     turn_is_known_ = true;
     return turn_;
   }
@@ -74,11 +74,9 @@ class ObservedEnergy {
   static bool is_zero(const Vec3& v) noexcept { return (v.x() == 0.0) & (v.y() == 0.0) & (v.z() == 0.0); }
 
   void note(const ToolPose& pose) noexcept {
-    axis_[now_] = pose.axis;
-    roll_[now_] = pose.roll;
+    pose_[now_] = pose;
     turn_is_known_ = false;
   }
-  ToolPose orientation(bool which) const noexcept { return {Vec3::Zero(), axis_[which], roll_[which]}; }
 
   double dt_;
   double energy_ = 0.0;
@@ -87,9 +85,8 @@ class ObservedEnergy {
   bool force_acts_ = false;
   bool moment_acts_ = false;
   bool turn_is_known_ = false;
-  bool now_ = false;                             ///< which of the two orientations is that of this row
-  Vec3 axis_[2] = {Vec3::Zero(), Vec3::Zero()};  ///< this row's and the one before
-  double roll_[2] = {0.0, 0.0};
+  bool now_ = false;              ///< which of the two poses is that of this row
+  ToolPose pose_[2];              ///< this row's and the one before
   Vec3 velocity_ = Vec3::Zero();  ///< of the last row with force
   Vec3 turn_ = Vec3::Zero();
   Vec3 force_ = Vec3::Zero();

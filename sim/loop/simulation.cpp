@@ -4,6 +4,8 @@
 #include <numbers>
 #include <utility>
 
+#include "sim/tool/turn.hpp"
+
 namespace hapbench {
 namespace {
 

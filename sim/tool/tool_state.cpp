@@ -30,8 +30,7 @@ double roll_towards(const Vec3& axis, const Vec3& side) noexcept {
   return std::atan2(axis.cross(x).dot(side), x.dot(side));
 }
 
-Vec3 turn(const ToolPose& from, const ToolPose& to) noexcept {
-  if (from.roll == 0.0 && to.roll == 0.0) return turn(from.axis, to.axis);
+Vec3 whole_turn(const ToolPose& from, const ToolPose& to) noexcept {
   const Eigen::AngleAxisd whole(Mat3(to.rotation() * from.rotation().transpose()));
   return whole.angle() * whole.axis();
 }

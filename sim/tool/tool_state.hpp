@@ -22,10 +22,6 @@ struct ToolPose {
 /// The roll of a pose with this axis whose own x axis lies along `side`, in (-pi, pi]. Unit vectors, perpendicular.
 double roll_towards(const Vec3& axis, const Vec3& side) noexcept;
 
-/// The rotation vector that turns one pose to the other [rad]. Where neither rolls, the axis turns the short way: a
-/// solid of revolution, whose pose leaves its roll out, feels no other turn.
-Vec3 turn(const ToolPose& from, const ToolPose& to) noexcept;
-
 /// Pose and velocity. The orientation is scripted, so the angular velocity is known and not integrated.
 struct ToolState {
   ToolPose pose;
