@@ -181,8 +181,12 @@ Description describe_name(const std::string& name) {
   for (Description& result : describe_results(name)) add(std::move(result));
   const std::vector<Description> fields = describe_field(name);
   for (const Description& field : fields) add(field);
-  const Json* type = fields.empty() ? find_in_schema(scenario_schema_once(), name) : nullptr;
-  if (type != nullptr) add({fields_text(name, *type), *type});
+  if (name == "scenario") add({fields_text(name, scenario_schema_once()), scenario_schema_once()});
+  if (fields.empty()) {
+    const std::vector<TypedField> types = types_called(scenario_schema_once(), name);
+    for (const TypedField& type : types)
+      add({fields_text(name, *type.schema, types.size() > 1 ? type.types : ""), *type.schema});
+  }
   if (name == "profile") add(describe_profile());
   for (Description& word : describe_word(name)) add(std::move(word));
   if (meanings.empty()) meanings = describe_heading(name);

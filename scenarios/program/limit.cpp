@@ -69,9 +69,10 @@ std::string question_text(const LimitQuestion& question, const Scenario& scenari
                             : question.range.logarithmic
                                 ? fmt::format("{} %", 100.0 * question.resolution)
                                 : fmt::format("{} % of the range", 100.0 * question.resolution);
-  std::string text = fmt::format("{}: {} stable {} between {} and {}, to {}; {} steps a run\n", scenario.name,
-                                 side(question), question.path, significant(question.range.from),
-                                 significant(question.range.to), width, scenario.time.steps);
+  const auto end = [&question](double value) { return significant(question.whole ? std::round(value) : value); };
+  std::string text =
+      fmt::format("{}: {} stable {} between {} and {}, to {}; {} steps a run\n", scenario.name, side(question),
+                  question.path, end(question.range.from), end(question.range.to), width, scenario.time.steps);
   text += "stable: comes to rest or dies out; not: vibrating, diverged, thrown_out, no_contact\n";
   if (is_moved(scenario)) text += "a script moves the tool: only what is above 30 Hz and 1 mm/s counts as motion\n";
   return text + "\n";

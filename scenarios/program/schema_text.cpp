@@ -34,16 +34,6 @@ const Json* field_in(const Json& schema, const std::string& name) {
   return nullptr;
 }
 
-/// The tagged object of that type, anywhere in the schema.
-const Json* find_type(const Json& schema, const std::string& type) {
-  if (!schema.is_structured()) return nullptr;
-  if (schema.is_object() && tag_of(schema) == type) return &schema;
-  for (const Json& part : schema) {
-    if (const Json* found = find_type(part, type)) return found;
-  }
-  return nullptr;
-}
-
 /// The fields themselves: of an object, or of the object in "null or an object"; null for anything else.
 const Json* plain_object(const Json& schema) {
   if (schema.contains("properties")) return &schema;
@@ -188,7 +178,36 @@ const Json* find_in_schema(const Json& schema, const std::string& name) {
     start = dot == std::string::npos ? dot : dot + 1;
     node = field_in(*node, key);
   }
-  return node != nullptr || name.empty() ? node : find_type(schema, name);
+  return node;
+}
+
+namespace {
+
+/// `at` is the path of the schema with a dot behind it.
+void find_types(const Json& schema, const std::string& at, const std::string& type, std::vector<TypedField>& found) {
+  if (!schema.is_object()) return;
+  if (schema.contains("properties")) {
+    for (const auto& [name, field] : schema["properties"].items()) {
+      for (const Json* one : types_in(field)) {
+        const auto same = [one](const TypedField& known) { return *known.schema == *one; };
+        if (tag_of(*one) == type && std::none_of(found.begin(), found.end(), same)) found.push_back({at + name, one});
+      }
+      find_types(field, at + name + ".", type, found);
+    }
+    return;
+  }
+  for (const char* choices : kChoices) {
+    if (!schema.contains(choices)) continue;
+    for (const Json& choice : schema[choices]) find_types(choice, at, type, found);
+  }
+}
+
+}  // namespace
+
+std::vector<TypedField> types_called(const Json& schema, const std::string& type) {
+  std::vector<TypedField> found;
+  find_types(schema, "", type, found);
+  return found;
 }
 
 namespace {

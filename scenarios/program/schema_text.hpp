@@ -11,8 +11,8 @@ namespace hapbench {
 /// The schema of a scenario in full, built once.
 const Json& scenario_schema_once();
 
-/// The part of the schema that `name` means: "scenario" for all of it, a dotted field path ("rendering.limits"), or the
-/// "type" of a tagged object ("hole_2d"). Null when there is none.
+/// The part of the schema that `name` means: "scenario" for all of it, or a dotted field path ("rendering.limits"). Null
+/// when there is none.
 const Json* find_in_schema(const Json& schema, const std::string& name);
 
 /// A field as some of the types have it among which an object around it chooses.
@@ -22,6 +22,10 @@ struct TypedField {
 };
 /// The fields at a dotted path, those that are the same for several types once; none when there is no such path.
 std::vector<TypedField> typed_fields(const Json& schema, const std::string& path);
+
+/// The tagged objects of that "type" ("mesh"), those that are the same in several fields once; `types` is the field
+/// ("tool").
+std::vector<TypedField> types_called(const Json& schema, const std::string& type);
 
 /// The values a schema allows, in a few words: "number > 0 <= 1000", "null | integer >= 0 <= 5".
 std::string allowed_text(const Json& schema);

@@ -80,6 +80,13 @@ TEST(DescribeCommand, GivesBothMeaningsOfAName) {
   EXPECT_EQ(hapbench({"describe", "normal_projection", "--json"}).json().size(), 2u);
 }
 
+TEST(DescribeCommand, GivesATypeOfEveryFieldThatHasIt) {
+  const ProgramRun run = hapbench({"describe", "mesh"});
+  for (const char* part : {"of environment", "spacing_m", "of tool", "closed surface"}) {
+    EXPECT_NE(run.out.find(part), std::string::npos) << part << run.out;
+  }
+}
+
 TEST(DescribeCommand, GivesFieldsWithDefaultRangeAndMeaning) {
   const ProgramRun run = hapbench({"describe", "rendering.stiffness_N_per_m"});
   EXPECT_EQ(run.status, 0);
