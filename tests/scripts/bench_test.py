@@ -17,7 +17,7 @@ from pathlib import Path
 SOURCE = Path(sys.argv[1])
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(SOURCE / "scripts" / "python"))
-from hapbench_bench import table  # noqa: E402  (the path comes first)
+from hapbench_bench import peers, table  # noqa: E402  (the path comes first)
 from hapbench_bench.program import BenchError  # noqa: E402
 from hapbench_bench.significance import compare  # noqa: E402
 from hapbench_bench.targets import GROUPS  # noqa: E402
@@ -29,6 +29,9 @@ class Table(unittest.TestCase):
     def test_the_manual_shows_what_is_on_record(self):
         manual = (SOURCE / "tests" / "README.md").read_text(encoding="utf-8")
         self.assertEqual(table.spliced(manual, table.markdown(RECORD)), manual, "renew it with scripts/docs --tables")
+
+        peers_ = table.spliced(manual, peers.markdown(peers.record()), peers.BEGIN, peers.END)
+        self.assertEqual(peers_, manual, "renew it with scripts/docs --tables")
 
     def test_every_target_is_on_record(self):
         rows = {row["what"]: row for row in RECORD["ratios"]}

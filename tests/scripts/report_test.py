@@ -17,6 +17,8 @@ from hapbench_report.replay_read import CONTACT_COLUMNS, MEASURED_COLUMNS, Recor
 from hapbench_report.section_thesis import figure_labels
 from hapbench_report.units import column
 
+PEERS = json.loads((SCRIPTS.parent / "results" / "reference" / "peers.json").read_text(encoding="utf-8"))
+
 
 def setUpModule():
     scratch = tempfile.TemporaryDirectory(prefix="hapbench-report-")
@@ -106,7 +108,7 @@ class Page(WithResults):
         self.addCleanup(file.unlink)
         value = json.loads(file.read_text(encoding="utf-8"))
         section = self.part(self.page(), '<section id="performance"', "</section>")
-        self.assertEqual(section.count("<tr>"), 2 + len(value["ratios"]) + len(value["limits"]))
+        self.assertEqual(section.count("<tr>"), 3 + len(value["ratios"]) + len(value["limits"]) + len(PEERS["rows"]))
         self.assertIn("<code>step/T1</code>", section)
         self.assertEqual(section.count("✗ no"), sum(row["at_most"] is not None and row["at_most"] < row.get("ratio", row.get("value"))
                                                      for row in value["ratios"] + value["limits"]))

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Arguments, say_error
 
-from . import commit
+from . import commit, peers
 from .measure import performance
 from .program import ROOT, BenchError, build, listed
 from .table import MANUAL, RECORD, aligned, markdown, spliced
@@ -28,6 +28,9 @@ def arguments(words):
     parser.add_argument("--full", action="store_true", help="also shells of up to 7 million points (minutes, gigabytes)")
     parser.add_argument("--record", action="store_true",
                         help="as --full, and renews results/reference/performance.json, its table in tests/README.md and its figure")
+    parser.add_argument("--peers", action="store_true",
+                        help="other collision libraries instead, at the poses of our searches, as far as they are installed "
+                        f"({peers.PACKAGES}); writes peers.json; with --record also results/reference/peers.json and its table")
     parser.add_argument("--out", type=Path, default=ROOT / "results" / "out", metavar="DIR",
                         help="gets performance.json; in a folder of results figures and report take it from there; "
                         "default: results/out")
@@ -42,6 +45,8 @@ def arguments(words):
         parser.error("--filter and --fail-above belong to --against")
     if chosen.against and (chosen.full or chosen.record):
         parser.error("--full and --record are not for --against")
+    if chosen.peers and (chosen.against or chosen.full):
+        parser.error("--peers is not for --against and --full")
     if chosen.rounds < 3:
         parser.error(f"--rounds: got {chosen.rounds}; allowed: at least 3")
     try:
@@ -80,6 +85,19 @@ def measure(chosen):
     return SUCCESS
 
 
+def measure_peers(chosen):
+    program = build(ROOT, ROOT / "build" / "release", "bin/hapbench_bench_peers") / "hapbench_bench_peers"
+    found = peers.measure(program)
+    files = {chosen.out / "peers.json": peers.text(found)}
+    if chosen.record:
+        manual = spliced(MANUAL.read_text(encoding="utf-8"), peers.markdown(found), peers.BEGIN, peers.END)
+        files |= {peers.RECORD: peers.text(found), MANUAL: manual}
+    for file, content in files.items():
+        replace(file, content)
+    print(aligned(peers.markdown(found)), end="")
+    return SUCCESS
+
+
 def redraw():
     """The figure of what has just been recorded."""
     name = "figure_growth.svg"
@@ -111,7 +129,7 @@ def main(words=None):
     # What is temporary is removed by those who made it, on SIGTERM too.
     signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))
     try:
-        return compare(chosen) if chosen.against else measure(chosen)
+        return (compare if chosen.against else measure_peers if chosen.peers else measure)(chosen)
     except (BenchError, OSError) as error:
         say_error(error)
         return BAD_INPUT

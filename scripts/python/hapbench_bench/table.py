@@ -76,10 +76,10 @@ def aligned(text):
     return "\n".join(out).rstrip() + "\n"
 
 
-def spliced(document, text):
+def spliced(document, text, begin=BEGIN, end=END):
     """The document with what stands between the marks replaced."""
-    head, found, rest = document.partition(BEGIN)
-    _, ended, tail = rest.partition(END)
+    head, found, rest = document.partition(begin)
+    _, ended, tail = rest.partition(end)
     if not (found and ended):
-        raise BenchError(f"tests/README.md: no place for the table; needed are the lines {BEGIN} and {END}")
-    return f"{head}{BEGIN}\n\n{text}\n{END}{tail}"
+        raise BenchError(f"tests/README.md: no place for the table; needed are the lines {begin} and {end}")
+    return f"{head}{begin}\n\n{text}\n{end}{tail}"

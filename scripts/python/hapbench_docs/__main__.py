@@ -3,7 +3,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from hapbench_bench import table
+from hapbench_bench import peers, table
 from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Arguments, say_error
 from hapbench_pictures.files import write
 from hapbench_report.json_input import InputError
@@ -32,7 +32,10 @@ def renewed(manual, scratch, program):
         makers["session"] = lambda old: sessions.renewed(old, program, scratch)
         makers["ideal_trajectory"] = lambda old: studies.ideal_trajectory(old, program, scratch)
     text = blocks.renewed(manual.text, makers)
-    return table.spliced(text, table.markdown(table.record())) if manual.file == table.MANUAL else text
+    if manual.file != table.MANUAL:
+        return text
+    text = table.spliced(text, table.markdown(table.record()))
+    return table.spliced(text, peers.markdown(peers.record()), peers.BEGIN, peers.END)
 
 
 def main(words=None):

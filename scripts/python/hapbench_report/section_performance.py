@@ -1,6 +1,7 @@
 """Speed: what the program promises, as ratios, whether it keeps it, and how cost grows."""
 import re
 
+from hapbench_bench import peers
 from hapbench_bench.table import met, number, quantity, spread
 
 from .markup import cell, command, heading_cell, table, text
@@ -14,14 +15,14 @@ def performance_section(performance, figures, links):
     shown = "".join(figure_markup(figure, links) for figure in figures)
     figures_ = f"<div class=figures>{shown}</div>" if shown else ""
     if performance is None:
-        return f'<p class="note">No {FILE} among these results (<code>scripts/bench --out</code>).</p>{figures_}'
+        return f'<p class="note">No {FILE} among these results (<code>scripts/bench --out</code>).</p>{figures_}{peers_table()}'
     machine = performance["machine"]
     return ("<p>What a part of the program takes over what another takes that ran in the same minutes, brute force wherever that "
             "makes sense: such ratios differ little between machines, and a target can be one. Below them what has a limit "
             "of its own. Machine: "
             f"{text(machine['cpu'])}, {text(machine['instruction_set'])}, {text(machine['compiler'])}; commit "
             f"<code>{text(performance['commit'])}</code>, {text(performance['date'])}.</p>" + command("scripts/bench")
-            + ratios_table(performance.get("ratios", [])) + limits_table(performance.get("limits", [])) + figures_)
+            + ratios_table(performance.get("ratios", [])) + limits_table(performance.get("limits", [])) + figures_ + peers_table())
 
 
 def coded(words):
@@ -51,3 +52,27 @@ def limits_table(rows):
              for row in rows]
     headings = [heading_cell("What"), heading_cell("Measured", True), heading_cell("Limit", True), heading_cell("Met")]
     return table(headings, cells, "<b>Limits</b>", "sortable")
+
+
+def peers_table():
+    """Other libraries, from the record of this tree."""
+    record = peers.record()
+    cells = []
+    for row in record["rows"]:
+        name, answers, _ = peers.LIBRARIES[row["library"]]
+        depths = f"{quantity_um(row['depth_m'])}, {quantity_um(row['our_depth_m'])}" if row["depth_m"] else ""
+        cells.append([cell(text(name)), cell(text(answers)), cell(text(row["task"])),
+                      cell(f"{number(row['ratio'])} × {spread(row)}", row["ratio"], "number"),
+                      cell(quantity(row["seconds"], "s"), row["seconds"], "number"),
+                      cell(f"{row['contacts']:.0f}, {row['our_contacts']:.0f}", classes="number"), cell(depths, classes="number")])
+    headings = [heading_cell("Library"), heading_cell("Answers"), heading_cell("Scene"), heading_cell("Over ours", True),
+                heading_cell("Takes", True), heading_cell("Contacts, ours", True), heading_cell("Depth, ours", True)]
+    return ("<p>Other collision libraries at the same poses of the same block, timed in one process with our search: CGAL is asked "
+            "our question and gives the same points, the others answer with triangles. "
+            f"{text(record['cpu'])}, {text(record['compiler'])}; commit <code>{text(record['commit'])}</code>, "
+            f"{text(record['date'])}.</p>" + command("scripts/bench --peers")
+            + table(headings, cells, "<b>Other libraries</b>", "sortable"))
+
+
+def quantity_um(metres):
+    return f"{1e6 * metres:.0f} µm"

@@ -1,0 +1,65 @@
+#include <ode/ode.h>
+
+#include <algorithm>
+
+#include "tests/bench/peers/peer.hpp"
+
+/// ODE: its triangle mesh (OPCODE) against its cylinder, in millimetres. It returns as many contacts as it is given room
+/// for.
+namespace hapbench::bench {
+namespace {
+
+constexpr double kMillimetres = 1e3;
+constexpr int kRoom = 0xffff;  // the most that it takes
+
+class Ode final : public Peer {
+ public:
+  Ode(const PeerSurface& surface, const PeerDrill& drill)
+      : vertices_(surface.vertices.begin(), surface.vertices.end()),
+        triangles_(surface.triangles.begin(), surface.triangles.end()),
+        contacts_(kRoom) {
+    dInitODE();
+    for (dReal& x : vertices_) x *= static_cast<dReal>(kMillimetres);
+    data_ = dGeomTriMeshDataCreate();
+    dGeomTriMeshDataBuildDouble(data_, vertices_.data(), 3 * sizeof(dReal), static_cast<int>(vertices_.size() / 3),
+                                triangles_.data(), static_cast<int>(triangles_.size()), 3 * sizeof(dTriIndex));
+    mesh_ = dCreateTriMesh(nullptr, data_, nullptr, nullptr, nullptr);
+    drill_ = dCreateCylinder(nullptr, kMillimetres * drill.radius, kMillimetres * drill.length);
+  }
+  ~Ode() override {
+    dGeomDestroy(drill_);
+    dGeomDestroy(mesh_);
+    dGeomTriMeshDataDestroy(data_);
+    dCloseODE();
+  }
+  Ode(const Ode&) = delete;
+  Ode& operator=(const Ode&) = delete;
+
+  PeerAnswer ask(const PeerPose& pose) override {
+    const auto& r = pose.rotation;
+    const dMatrix3 rotation = {r[0], r[1], r[2], 0.0, r[3], r[4], r[5], 0.0, r[6], r[7], r[8], 0.0};
+    dGeomSetRotation(drill_, rotation);
+    dGeomSetPosition(drill_, kMillimetres * pose.centre[0], kMillimetres * pose.centre[1],
+                     kMillimetres * pose.centre[2]);
+    const int found = dCollide(mesh_, drill_, kRoom, contacts_.data(), sizeof(dContactGeom));
+    PeerAnswer answer{static_cast<std::size_t>(found), 0.0};
+    for (int i = 0; i < found; ++i)
+      answer.depth = std::max(answer.depth, contacts_[static_cast<std::size_t>(i)].depth / kMillimetres);
+    return answer;
+  }
+
+ private:
+  std::vector<dReal> vertices_;
+  std::vector<dTriIndex> triangles_;
+  std::vector<dContactGeom> contacts_;
+  dTriMeshDataID data_;
+  dGeomID mesh_, drill_;
+};
+
+}  // namespace
+
+std::unique_ptr<Peer> make_ode(const PeerSurface& surface, const PeerDrill& drill) {
+  return std::make_unique<Ode>(surface, drill);
+}
+
+}  // namespace hapbench::bench
