@@ -6,7 +6,7 @@
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
+constexpr ParameterInfo kHighestDepthParameters[] = {kStiffnessParameter};
 
 }  // namespace
 
@@ -20,7 +20,7 @@ const ModelInfo kHighestDepthInfo = {
     .known_failure =
         "u_r turns round by 180 degrees as one of nearly opposite contacts comes or goes, and d_r jumps from contact "
         "to contact: the force jumps by up to 2 K d_r",
-    .parameters = kParameters,
+    .parameters = kHighestDepthParameters,
 };
 
 namespace {
@@ -38,13 +38,14 @@ class HighestDepth final : public AveragedDirectionLaw {
 };
 
 /// d_r is one of the depths and u_r a unit vector.
-double bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
+double highest_depth_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return std::min(1.0, static_cast<double>(n)) * depth;
 }
 
 }  // namespace
 
-const AlgorithmTheory kHighestDepthTheory = {.force_bound = bound, .wedge_stiffness = averaged_direction_wedge};
+const AlgorithmTheory kHighestDepthTheory = {.force_bound = highest_depth_bound,
+                                             .wedge_stiffness = averaged_direction_wedge};
 
 std::unique_ptr<ForceLaw> make_highest_depth(const RenderingConfig& config) {
   return std::make_unique<HighestDepth>(config.stiffness);

@@ -5,7 +5,7 @@
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
+constexpr ParameterInfo kMeanParameters[] = {kStiffnessParameter};
 
 }  // namespace
 
@@ -16,7 +16,7 @@ const ModelInfo kMeanInfo = {
     .source = "thesis Fig. 2c",
     .known_failure =
         "directions with few points get almost no stiffness: the tool sinks in where most points are parallel",
-    .parameters = kParameters,
+    .parameters = kMeanParameters,
 };
 
 namespace {
@@ -32,17 +32,17 @@ class Mean final : public ForceLaw {
 };
 
 /// |sum c d u| <= d sum c, and c = 1 / n.
-double bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
+double mean_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return std::min(1.0, static_cast<double>(n)) * depth;
 }
 
-WedgeStiffness wedge(const RenderingConfig&, double w, double) {
+WedgeStiffness mean_wedge(const RenderingConfig&, double w, double) {
   return wedge_of_weight(0.5, w);
 }
 
 }  // namespace
 
-const AlgorithmTheory kMeanTheory = {.force_bound = bound, .wedge_stiffness = wedge};
+const AlgorithmTheory kMeanTheory = {.force_bound = mean_bound, .wedge_stiffness = mean_wedge};
 
 std::unique_ptr<ForceLaw> make_mean(const RenderingConfig& config) {
   return std::make_unique<Mean>(config.stiffness);

@@ -3,7 +3,7 @@
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
+constexpr ParameterInfo kSummationParameters[] = {kStiffnessParameter};
 
 }  // namespace
 
@@ -15,7 +15,7 @@ const ModelInfo kSummationInfo = {
     .known_failure =
         "stiffness and damping grow with the number of points: unstable once lambda_max(S) K passes the "
         "integrator's limit (thesis A.3)",
-    .parameters = kParameters,
+    .parameters = kSummationParameters,
 };
 
 namespace {
@@ -31,17 +31,17 @@ class Summation final : public ForceLaw {
 };
 
 /// All springs pull in one direction.
-double bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
+double summation_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return static_cast<double>(n) * depth;
 }
 
-WedgeStiffness wedge(const RenderingConfig&, double w, double n) {
+WedgeStiffness summation_wedge(const RenderingConfig&, double w, double n) {
   return wedge_of_weight(n, w);
 }
 
 }  // namespace
 
-const AlgorithmTheory kSummationTheory = {.force_bound = bound, .wedge_stiffness = wedge};
+const AlgorithmTheory kSummationTheory = {.force_bound = summation_bound, .wedge_stiffness = summation_wedge};
 
 std::unique_ptr<ForceLaw> make_summation(const RenderingConfig& config) {
   return std::make_unique<Summation>(config.stiffness);

@@ -11,7 +11,7 @@
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
+constexpr ParameterInfo kProxyParameters[] = {kStiffnessParameter};
 
 }  // namespace
 
@@ -27,7 +27,7 @@ const ModelInfo kProxyInfo = {
         "a start in deep penetration and a hole that the turned tool does not fit into keep points inside the proxy, "
         "which leaves them at 40 half widths of the tool a second; a flat face of the tool bumps on a surface whose "
         "normals are off by more than 6 degrees; no depth model or reduction applies",
-    .parameters = kParameters,
+    .parameters = kProxyParameters,
 };
 
 namespace {

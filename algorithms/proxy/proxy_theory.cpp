@@ -4,17 +4,17 @@ namespace hapbench {
 namespace {
 
 /// Placed on the tool, the proxy moves by at most a margin a pass, however deep the contacts are.
-double bound(const RenderingConfig&, const ToolShape& tool, std::size_t, double) {
+double proxy_bound(const RenderingConfig&, const ToolShape& tool, std::size_t, double) {
   return kProxyPasses * kProxyMargin * tool.half_width();
 }
 
 /// The projector onto the plane that the two gradients span.
-WedgeStiffness wedge(const RenderingConfig&, double, double) {
+WedgeStiffness proxy_wedge(const RenderingConfig&, double, double) {
   return {1.0, 1.0};
 }
 
 }  // namespace
 
-const AlgorithmTheory kProxyTheory = {.force_bound = bound, .wedge_stiffness = wedge};
+const AlgorithmTheory kProxyTheory = {.force_bound = proxy_bound, .wedge_stiffness = proxy_wedge};
 
 }  // namespace hapbench

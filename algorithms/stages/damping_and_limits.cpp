@@ -8,7 +8,7 @@
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kParameters[] = {
+constexpr ParameterInfo kDampingParameters[] = {
     {parameter::kDampingRatio, "zeta of one spring-damper of stiffness K"},
     {parameter::kDamping, "B itself; null: from zeta"},
     {parameter::kAngularDamping,
@@ -37,7 +37,7 @@ const ModelInfo kDampingAndLimitsInfo = {
     .known_failure =
         "without angular_damping, a tool that only turns has no velocity to damp (thesis 4.4); with it, a turn pushes "
         "the tip sideways, since no torque is rendered; limits leave stiff scenes under-damped (A.2)",
-    .parameters = kParameters,
+    .parameters = kDampingParameters,
 };
 
 DampingAndLimits::DampingAndLimits(const RenderingConfig& config)

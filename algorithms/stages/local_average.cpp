@@ -8,7 +8,7 @@
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kParameters[] = {
+constexpr ParameterInfo kLocalAverageParameters[] = {
     {parameter::kLocalAverage, "switches the stage on"},
 };
 
@@ -20,7 +20,7 @@ const ModelInfo kLocalAverageInfo = {
     .formula = "D = mean of d_i u_i over the cell's colliding points; d = |D|, u = D/|D|; dropped when D = 0",
     .source = "thesis C.2 (optional step, off by default)",
     .known_failure = "opposite points in one cell cancel",
-    .parameters = kParameters,
+    .parameters = kLocalAverageParameters,
 };
 
 namespace {

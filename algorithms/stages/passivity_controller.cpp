@@ -8,7 +8,7 @@
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kParameters[] = {
+constexpr ParameterInfo kPassivityParameters[] = {
     {parameter::kPassivityController, "switches the controller on, for any algorithm"},
 };
 
@@ -24,7 +24,7 @@ const ModelInfo kPassivityControllerInfo = {
     .known_failure =
         "what damping took in is credit, behind which a vibration may hide for a while; a law that creates "
         "energy feels weak and sticky where it has none left",
-    .parameters = kParameters,
+    .parameters = kPassivityParameters,
 };
 
 namespace {

@@ -58,9 +58,9 @@ std::optional<bool> differ_beyond_spread(const std::vector<std::optional<double>
 }
 
 /// The standings of one scenario and metric.
-class Column {
+class ScenarioStandings {
  public:
-  Column(const League& league, std::size_t scenario, std::size_t metric) {
+  ScenarioStandings(const League& league, std::size_t scenario, std::size_t metric) {
     const LeagueRuns& runs = league.runs;
     for (std::size_t a = 0; a < runs.algorithms.size(); ++a) {
       values_.push_back(values_of(runs, scenario, a, metric));
@@ -204,7 +204,7 @@ League make_league(LeagueRuns runs) {
   for (std::size_t s = 0; s < scenarios; ++s) {
     league.seeds_matter.push_back(seeds_matter_in(league.runs, s));
     for (std::size_t m = 0; m < metrics; ++m) {
-      const Column column(league, s, m);
+      const ScenarioStandings column(league, s, m);
       for (std::size_t a = 0; a < algorithms; ++a) {
         league.standings[(s * algorithms + a) * metrics + m] = column.standings()[a];
       }

@@ -9,14 +9,11 @@
 namespace hapbench {
 namespace {
 
-constexpr NumberRange kLength = {0.0, 1000.0, "m", true};
 constexpr IntegerRange kSpringCount = {0, 20'000'000};
-/// Anything much shorter loses digits, or all, when it is squared.
-constexpr double kShortestDirection = 1e-12;
 
 /// In the order of the variant.
-constexpr std::array kTypes = {"springs",         "hole_2d",     "plane", "slot",
-                               "block_with_hole", "point_shell", "mesh",  "conical_hole"};
+constexpr std::array kEnvironmentTypes = {"springs",         "hole_2d",     "plane", "slot",
+                                          "block_with_hole", "point_shell", "mesh",  "conical_hole"};
 
 constexpr Choice<BlockVertices> kVertices[] = {{"shared", BlockVertices::shared},
                                                {"per_cell", BlockVertices::per_cell}};
@@ -156,11 +153,11 @@ static void describe(Fields& f, MeshEnvironment& mesh) {
 }
 
 void describe(Fields& f, Environment& environment) {
-  f.variant(environment, "environment", kTypes, [](Fields& e, auto& fields) { describe(e, fields); });
+  f.variant(environment, "environment", kEnvironmentTypes, [](Fields& e, auto& fields) { describe(e, fields); });
 }
 
 std::vector<std::string> environment_names() {
-  return {kTypes.begin(), kTypes.end()};
+  return {kEnvironmentTypes.begin(), kEnvironmentTypes.end()};
 }
 
 }  // namespace hapbench

@@ -9,11 +9,10 @@
 namespace hapbench {
 namespace {
 
-constexpr NumberRange kLength = {0.0, 1000.0, "m", true};
 constexpr std::size_t kMostCorners = 1000;  // of a profile; each costs every step
 
 /// In the order of the variant.
-constexpr std::array kTypes = {"cylinder", "revolved", "bur", "mesh"};
+constexpr std::array kToolTypes = {"cylinder", "revolved", "bur", "mesh"};
 
 constexpr Choice<Tip> kTips[] = {{"flat", Tip::flat}, {"round", Tip::round}};
 constexpr Choice<BurFamily> kFamilies[] = {
@@ -96,11 +95,11 @@ static void describe(Fields& f, MeshToolFields& tool) {
 
 void describe(Fields& f, ToolFields& tool) {
   f.variant(
-      tool, "tool", kTypes, [](Fields& t, auto& fields) { describe(t, fields); }, Untyped::first);
+      tool, "tool", kToolTypes, [](Fields& t, auto& fields) { describe(t, fields); }, Untyped::first);
 }
 
 std::vector<std::string> tool_names() {
-  return {kTypes.begin(), kTypes.end()};
+  return {kToolTypes.begin(), kToolTypes.end()};
 }
 
 }  // namespace hapbench

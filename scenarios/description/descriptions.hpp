@@ -6,6 +6,11 @@
 /// The description of a scenario file: every field with its meaning, unit, range and default.
 namespace hapbench {
 
+/// Of parts of the scene.
+inline constexpr NumberRange kLength = {0.0, 1000.0, "m", true};
+/// Anything much shorter loses digits, or all, when it is squared.
+inline constexpr double kShortestDirection = 1e-12;
+
 // Objects.
 void describe(Fields& f, Scenario& scenario);
 void describe(Fields& f, MotionFields& motion);

@@ -11,18 +11,11 @@
 namespace hapbench {
 namespace {
 
-constexpr double kMostDelaySamples = 1e6;     ///< that a simulated subject keeps in mind
-constexpr double kLongestDrag = 1e6;          ///< entries of the table of a path over a surface
-constexpr double kShortestDirection = 1e-12;  ///< anything much shorter loses digits, or all, when it is squared
+constexpr double kMostDelaySamples = 1e6;  ///< that a simulated subject keeps in mind
+constexpr double kLongestDrag = 1e6;       ///< entries of the table of a path over a surface
 
 [[noreturn]] void fail(const std::string& at, const std::string& problem) {
   throw InputError(InputError::Kind::relation, at, problem);
-}
-
-double trial_count(const HandFields& hand) {
-  const auto* tracking = std::get_if<TrackingHandFields>(&hand);
-  return tracking == nullptr ? 1.0
-                             : static_cast<double>(tracking->subjects.size()) * static_cast<double>(tracking->trials);
 }
 
 void check_sizes(const Scenario& scenario, double steps) {

@@ -16,6 +16,12 @@ bool has_ideal_trajectory(const Scenario& scenario) {
          cylinder->tip == Tip::flat;
 }
 
+double trial_count(const HandFields& hand) {
+  const auto* tracking = std::get_if<TrackingHandFields>(&hand);
+  return tracking == nullptr ? 1.0
+                             : static_cast<double>(tracking->subjects.size()) * static_cast<double>(tracking->trials);
+}
+
 BurProfile profile_of(const BurFields& bur) {
   return bur_profile(bur.family, bur.diameter, bur.length.value_or(bur.diameter),
                      bur.shank_diameter.value_or(BurFields::kShankShare * bur.diameter));

@@ -226,6 +226,10 @@ struct Scenario {
 /// a flat-tipped cylinder in a block_with_hole.
 bool has_ideal_trajectory(const Scenario& scenario);
 
+/// How often the scenario is run: once by each subject and trial of a tracking hand. A double, because what is asked
+/// for may be beyond every integer.
+double trial_count(const HandFields& hand);
+
 /// Where a file named in the scenario lies.
 std::filesystem::path resolve_path(const Scenario& scenario, const std::string& file);
 

@@ -18,7 +18,7 @@ namespace {
 constexpr std::array<std::string_view, 6> kWanted = {"x", "y", "z", "nx", "ny", "nz"};
 using Values = std::array<double, kWanted.size()>;
 
-struct Property : PlyType {
+struct VertexProperty : PlyType {
   std::optional<int> wanted;  ///< which of kWanted it is
 };
 
@@ -55,7 +55,7 @@ class Reader {
     for (const auto& declaration : header.elements[0].properties) properties_.push_back(read_property(declaration));
     for (std::size_t w = 0; w < kWanted.size(); ++w) {
       const auto count = std::count_if(properties_.begin(), properties_.end(),
-                                       [w](const Property& p) { return p.wanted == static_cast<int>(w); });
+                                       [w](const VertexProperty& p) { return p.wanted == static_cast<int>(w); });
       if (count == 1) continue;
       fail_in_line(
           file_, header.last_line,
@@ -76,7 +76,7 @@ class Reader {
     return *count;
   }
 
-  Property read_property(const PlyHeader::Declaration& declaration) const {
+  VertexProperty read_property(const PlyHeader::Declaration& declaration) const {
     const Words& words = declaration.words;
     const auto type = words.size() == 3 ? ply_type(words[1]) : std::nullopt;
     if (!type) {
@@ -92,7 +92,7 @@ class Reader {
   /// Fewest bytes the vertices take: so a count that the file cannot hold is refused before memory is asked for it.
   std::size_t fewest_bytes(std::size_t bytes_per_number) const {
     std::size_t bytes = 0;
-    for (const Property& p : properties_) bytes += bytes_per_number == 0 ? p.size : bytes_per_number;
+    for (const VertexProperty& p : properties_) bytes += bytes_per_number == 0 ? p.size : bytes_per_number;
     const std::size_t last_line_end = bytes_per_number == 0 || vertices_ == 0 ? 0 : 1;
     return vertices_ * bytes - last_line_end;
   }
@@ -117,7 +117,7 @@ class Reader {
 
   Values read_binary_vertex(std::size_t index) {
     Values values{};
-    for (const Property& property : properties_) {
+    for (const VertexProperty& property : properties_) {
       const double value = take_ply_number(rest_, property);
       if (property.wanted) values[static_cast<std::size_t>(*property.wanted)] = value;
     }
@@ -133,7 +133,7 @@ class Reader {
   ByteReader rest_{"", std::endian::little};  ///< of a binary file: what has not been read yet
   PlyFormat format_ = PlyFormat::ascii;
   std::size_t vertices_ = 0;
-  std::vector<Property> properties_;  ///< of a vertex, in their order
+  std::vector<VertexProperty> properties_;  ///< of a vertex, in their order
 };
 
 }  // namespace

@@ -12,10 +12,10 @@
 namespace hapbench {
 namespace {
 
-constexpr const char* kHeader = "x_m,y_m,z_m,nx,ny,nz";
+constexpr const char* kCsvHeader = "x_m,y_m,z_m,nx,ny,nz";
 
 std::vector<SurfacePoint> csv_points_in(std::string_view text, const std::filesystem::path& file) {
-  const NumberTable table = number_table_in(text, file, kHeader, static_cast<std::size_t>(kMostPoints));
+  const NumberTable table = number_table_in(text, file, kCsvHeader, static_cast<std::size_t>(kMostPoints));
   std::vector<SurfacePoint> points;
   points.reserve(table.rows());
   for (std::size_t i = 0; i < table.rows(); ++i) {
@@ -43,7 +43,7 @@ void check_and_normalise(std::vector<SurfacePoint>& points, const std::filesyste
 }
 
 std::string csv_text(const std::vector<SurfacePoint>& points) {
-  std::string text = fmt::format("{}\n", kHeader);
+  std::string text = fmt::format("{}\n", kCsvHeader);
   for (const SurfacePoint& p : points) {
     fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{}\n", p.position.x(), p.position.y(), p.position.z(),
                    p.normal.x(), p.normal.y(), p.normal.z());

@@ -20,28 +20,28 @@
 namespace hapbench {
 namespace {
 
-using Words = std::vector<std::string>;
+using WordList = std::vector<std::string>;
 
-Words with_all(Words words) {
+WordList with_all(WordList words) {
   words.emplace_back("all");
   return words;
 }
 
-Words scenario_names() {
-  Words names;
+WordList scenario_names() {
+  WordList names;
   for (const BundledScenario& bundled : bundled_scenarios()) names.push_back(bundled.name);
   return names;
 }
 
-Words integrator_names() {
-  Words names;
+WordList integrator_names() {
+  WordList names;
   for (const IntegratorEntry* entry : kIntegrators) names.emplace_back(entry->info.name);
   return names;
 }
 
 /// "path=" for each field and "path=value" for each value of those that have names for them.
-Words assignments() {
-  Words words;
+WordList assignments() {
+  WordList words;
   for (const std::string& path : scenario_field_paths()) {
     words.push_back(path + "=");
     const Json* field = find_in_schema(scenario_schema_once(), path);
@@ -54,7 +54,7 @@ Words assignments() {
 }
 
 /// What the value of an option, or an argument, can be, by its name, which means the same in every command.
-Words values_of(const std::string& name) {
+WordList values_of(const std::string& name) {
   if (name == "scenario" || name == "scenarios" || name == "--scenario") return scenario_names();
   if (name == "--set" || name == "--vary") return assignments();
   if (name == "--algorithms") return with_all(all_algorithms());
@@ -68,7 +68,7 @@ Words values_of(const std::string& name) {
   if (name == "--format") return stroke_format_names();
   if (name == "--orientation") return orientation_names();
   if (name == "shell") return {"bash", "zsh", "fish"};
-  Words words;
+  WordList words;
   if (name == "kind")
     for (const StartKind& kind : start_kinds()) words.emplace_back(kind.name);
   if (name == "--preset")
@@ -83,8 +83,8 @@ Words values_of(const std::string& name) {
 }
 
 /// The words as they would be if the shell broke them at blanks alone.
-Words joined_at_breaks(const Words& words) {
-  Words joined;
+WordList joined_at_breaks(const WordList& words) {
+  WordList joined;
   bool behind_break = false;
   for (const std::string& word : words) {
     const bool is_break = word == "=" || word == ":";
@@ -100,9 +100,9 @@ Words joined_at_breaks(const Words& words) {
 
 /// The words that begin with `typed`, in front of which `before` stands in the same word. Behind "=" come the values,
 /// before it the paths alone.
-Words beginning_with(const std::string& typed, const std::string& before, const Words& words) {
+WordList beginning_with(const std::string& typed, const std::string& before, const WordList& words) {
   const bool has_value = typed.find('=') != std::string::npos;
-  Words found;
+  WordList found;
   for (const std::string& word : words) {
     const std::size_t equals = word.find('=');
     const bool is_value = equals != std::string::npos && equals + 1 < word.size();
@@ -114,7 +114,7 @@ Words beginning_with(const std::string& typed, const std::string& before, const 
 }
 
 /// The argument that a word is whose `words` stand before it behind the command; null when there is none.
-const OptionText* argument_at(const CommandText& command, const Words& words) {
+const OptionText* argument_at(const CommandText& command, const WordList& words) {
   const auto find = [&](const std::string& name) {
     return std::find_if(command.options.begin(), command.options.end(),
                         [&](const OptionText& option) { return option.name == name; });
@@ -137,7 +137,7 @@ const OptionText* argument_at(const CommandText& command, const Words& words) {
   return last != nullptr && last->value.ends_with("...") ? last : nullptr;
 }
 
-Words candidates(const CommandText& command, const Words& words) {
+WordList candidates(const CommandText& command, const WordList& words) {
   std::string typed = words.back(), before;
   const OptionText* option = nullptr;
   const auto named = [&](const std::string& name) -> const OptionText* {
@@ -154,7 +154,7 @@ Words candidates(const CommandText& command, const Words& words) {
     typed.erase(0, equals + 1);
   }
   if (option == nullptr && typed.starts_with("-")) {
-    Words names;
+    WordList names;
     for (const OptionText& known : command.options) {
       if (!known.is_argument) names.push_back(known.name.substr(known.name.rfind(',') + 1));
     }
@@ -185,12 +185,12 @@ constexpr const char* kFish = R"(complete -c hapbench -a '(hapbench complete (co
 
 }  // namespace
 
-Words completions(const std::vector<CommandText>& texts, const Words& words) {
-  const Words joined = joined_at_breaks(words);
+WordList completions(const std::vector<CommandText>& texts, const WordList& words) {
+  const WordList joined = joined_at_breaks(words);
   const std::string last = words.back() == "=" || words.back() == ":" ? "" : words.back();
-  Words found;
+  WordList found;
   if (joined.size() == 1) {
-    Words names = {"--help", "--version"};
+    WordList names = {"--help", "--version"};
     for (auto command = texts.begin() + 1; command != texts.end(); ++command) names.push_back(command->name);
     found = beginning_with(joined.back(), "", names);
     if (joined.back().empty()) found.erase(found.begin(), found.begin() + 2);

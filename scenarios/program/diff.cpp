@@ -24,7 +24,7 @@ struct DiffOptions {
 };
 
 /// A value of a file, cut when it is long.
-std::string shown_value(const std::string& text) {
+std::string cut_value(const std::string& text) {
   constexpr std::size_t kLongest = 24;
   if (text.empty()) return "-";
   return text.size() <= kLongest ? text : text.substr(0, kLongest - 3) + "...";
@@ -38,7 +38,7 @@ std::string fields_text(const RunDifference& run) {
   if (run.fields.empty()) return "";
   Table table({{"field", false}, {"A"}, {"B"}});
   for (const NamedDifference& field : run.fields) {
-    table.add({field.name, shown_value(field.values.a), shown_value(field.values.b)});
+    table.add({field.name, cut_value(field.values.a), cut_value(field.values.b)});
   }
   return table.text() + "\n";
 }
@@ -51,7 +51,7 @@ std::string metrics_text(const RunDifference& run, double tolerance) {
     if (tolerance > 0.0 && values.relative <= tolerance) {
       ++within;
     } else {
-      table.add({metric.name, shown_value(values.a), shown_value(values.b), shown_size(values.relative)});
+      table.add({metric.name, cut_value(values.a), cut_value(values.b), shown_size(values.relative)});
     }
   }
   std::string text = run.metrics.size() > within ? table.text() : "";
@@ -72,7 +72,7 @@ std::string columns_text(const char* name, const TableDifference& difference) {
     table.add({column.column, shown_size(column.largest), std::to_string(column.row), shown_size(column.relative)});
   }
   return fmt::format("{}: {}, first different in row {} (from 0), column {}: {} and {}\n\n{}", name, rows, first.row,
-                     first.column, shown_value(first.a), shown_value(first.b), table.text());
+                     first.column, cut_value(first.a), cut_value(first.b), table.text());
 }
 
 std::string run_text(const RunDifference& run, double tolerance) {

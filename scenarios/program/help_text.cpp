@@ -33,7 +33,7 @@ std::string options_text(const std::vector<OptionText>& options, bool arguments)
 }
 
 /// Paragraphs, a line each; a line that begins with blanks keeps them, and what it is broken into stands further in.
-std::string paragraphs(const std::string& text) {
+std::string wrapped_paragraphs(const std::string& text) {
   std::string wrapped_text;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -56,7 +56,7 @@ std::string help_text(const std::vector<CommandText>& texts, const std::string& 
     text += "\n" + bold(stdout, "Commands:") + "\n";
     for (auto it = texts.begin() + 1; it != texts.end(); ++it) text += entry(it->name, it->summary, 2, 16);
   }
-  return found->footer.empty() ? text : text + "\n" + paragraphs(found->footer);
+  return found->footer.empty() ? text : text + "\n" + wrapped_paragraphs(found->footer);
 }
 
 }  // namespace hapbench

@@ -35,7 +35,7 @@ std::string options(const CommandText& command) {
   return text;
 }
 
-std::string paragraphs(const std::string& footer) {
+std::string roff_paragraphs(const std::string& footer) {
   std::string text;
   std::istringstream lines(footer);
   for (std::string line; std::getline(lines, line);) {
@@ -56,9 +56,9 @@ std::string manual_page(const std::vector<CommandText>& texts, const std::string
   page += ".SH OPTIONS\n" + options(program) + ".SH COMMANDS\n";
   for (auto command = texts.begin() + 1; command != texts.end(); ++command) {
     page += fmt::format(".SS {}\n{}\n", roff(command->name), roff(command->summary)) + options(*command) +
-            paragraphs(command->footer);
+            roff_paragraphs(command->footer);
   }
-  return page + ".SH EXIT STATUS\n" + paragraphs(program.footer);
+  return page + ".SH EXIT STATUS\n" + roff_paragraphs(program.footer);
 }
 
 void add_man(CommandLine& line) {

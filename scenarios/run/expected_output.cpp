@@ -17,11 +17,6 @@ double lines_a_row(const ResultTable& table, const RecordFields& record) {
   return file == "ratios.csv" ? static_cast<double>(record.ratio_iterations.size()) : 1.0;
 }
 
-double trials_of(const Scenario& scenario) {
-  const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
-  return hand == nullptr ? 1.0 : static_cast<double>(hand->subjects.size()) * static_cast<double>(hand->trials);
-}
-
 }  // namespace
 
 double expected_output_bytes(const Scenario& scenario) {
@@ -30,7 +25,7 @@ double expected_output_bytes(const Scenario& scenario) {
   for (const ResultTable& table : record_tables(record))
     row += lines_a_row(table, record) * kBytesOfANumber * static_cast<double>(table.columns.size());
   const double rows = std::ceil(static_cast<double>(scenario.time.steps) / static_cast<double>(record.every));
-  return trials_of(scenario) * rows * row;
+  return trial_count(scenario.hand) * rows * row;
 }
 
 }  // namespace hapbench

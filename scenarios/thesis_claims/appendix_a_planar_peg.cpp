@@ -55,7 +55,7 @@ Finding judge_peg_motion(const Measured& measured, const PublishedNumbers&) {
                   measured.at(2)["velocity_variation"] / measured.at(3)["velocity_variation"], pairs, much_more, more)};
 }
 
-constexpr Claim kClaims[] = {
+constexpr Claim kAppendixAPlanarPeg[] = {
     {.id = "A1",
      .place = "A.1.2, Fig. A.2",
      .claim = "the original algorithm vibrates in the planar peg-in-hole, stiffness shaping is smooth",
@@ -72,7 +72,7 @@ constexpr Claim kClaims[] = {
 }  // namespace
 
 std::span<const Claim> appendix_a_planar_peg() {
-  return kClaims;
+  return kAppendixAPlanarPeg;
 }
 
 }  // namespace hapbench

@@ -14,7 +14,6 @@ namespace {
 /// The thesis's algorithms, once each: on springs the normal projection is stiffness shaping.
 constexpr const char* kAlgorithms[] = {"original_averaging", "summation",        "mean",
                                        "virtual_coupling",   "shaped_stiffness", "tandpasta"};
-constexpr const char* kProposed = "shaped_stiffness";
 constexpr std::size_t kPairs = 100;  ///< of Table A.3
 
 /// How a mass comes to rest. Distances are shares of the distance at the start.
@@ -150,7 +149,7 @@ Measured measure_springs_limited(const Evidence& e) {
 
 Finding judge_springs_limited(const Measured& runs, const PublishedNumbers&) {
   const auto proposed =
-      std::find_if(runs.begin(), runs.end(), [](const MeasuredCase& m) { return m.name == kProposed; });
+      std::find_if(runs.begin(), runs.end(), [](const MeasuredCase& m) { return m.name == kProposedLaw; });
   const bool keeps = proposed->operator[]("arrives") == 1.0 &&
                      (*proposed)["overshoot"] <= (1.0 + kSameOvershoot) * (*proposed)["overshoot_unlimited"] &&
                      (*proposed)["swings"] <= (*proposed)["swings_unlimited"];
@@ -166,7 +165,7 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers&) {
                       fluctuate.empty() ? "no other one fluctuates" : "fluctuating: " + fluctuate)};
 }
 
-constexpr Claim kClaims[] = {
+constexpr Claim kAppendixASprings[] = {
     {.id = "A2",
      .place = "A.2, Fig. A.4",
      .claim = "without limits every algorithm brings the springs to the origin",
@@ -198,7 +197,7 @@ constexpr Claim kClaims[] = {
 }  // namespace
 
 std::span<const Claim> appendix_a_springs() {
-  return kClaims;
+  return kAppendixASprings;
 }
 
 }  // namespace hapbench

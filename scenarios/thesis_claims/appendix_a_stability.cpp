@@ -55,7 +55,7 @@ Finding judge_stability_limits(const Measured& measured, const PublishedNumbers&
           fmt::format("the largest difference to the published figures is {:.2g} %", 100.0 * worst)};
 }
 
-constexpr Claim kClaims[] = {
+constexpr Claim kAppendixAStability[] = {
     {.id = "A4",
      .place = "A.3, root locus",
      .claim = "largest stable stiffness and damping at 0.5 ms",
@@ -68,7 +68,7 @@ constexpr Claim kClaims[] = {
 }  // namespace
 
 std::span<const Claim> appendix_a_stability() {
-  return kClaims;
+  return kAppendixAStability;
 }
 
 }  // namespace hapbench

@@ -117,7 +117,7 @@ Finding judge_added_points(const Measured& measured, const PublishedNumbers&) {
           depths && turned ? "exact, as the formula says" : "another depth or direction than the formula's"};
 }
 
-constexpr Claim kClaims[] = {
+constexpr Claim kAppendixBOriginalAlgorithm[] = {
     {.id = "B1",
      .place = "B.3.1",
      .claim = "flipped gradients pull the tool into the object",
@@ -157,7 +157,7 @@ constexpr Claim kClaims[] = {
 }  // namespace
 
 std::span<const Claim> appendix_b_original_algorithm() {
-  return kClaims;
+  return kAppendixBOriginalAlgorithm;
 }
 
 }  // namespace hapbench

@@ -17,7 +17,6 @@ namespace {
 /// The laws that the claims set beside each other; ours last.
 constexpr const char* kLaws[] = {"shaped_stiffness", "original_averaging", "summation", "mean",
                                  "virtual_coupling", "least_squares"};
-constexpr const char* kProposed = "shaped_stiffness";
 
 /// What an algorithm answers to contacts with depths and gradients, under a tool at rest.
 RenderedForce answer(ForceAlgorithm& algorithm, ContactBuffer contacts) {
@@ -29,13 +28,13 @@ RenderedForce answer(ForceAlgorithm& algorithm, ContactBuffer contacts) {
 }
 
 const MeasuredCase& proposed(const Measured& measured) {
-  return *std::find_if(measured.begin(), measured.end(), [](const MeasuredCase& m) { return m.name == kProposed; });
+  return *std::find_if(measured.begin(), measured.end(), [](const MeasuredCase& m) { return m.name == kProposedLaw; });
 }
 
 // ---- P1: the stiffness across a corner, in units of K, while the wall beside it has more and more points. A case for
 // each law.
 
-constexpr std::size_t kDensities[] = {1, 2, 4, 10, 40};
+constexpr std::size_t kWallDensities[] = {1, 2, 4, 10, 40};
 constexpr double kDecoupled = 0.05;
 
 /// Points of the wall, one of the corner's edge, one of the face on top.
@@ -68,7 +67,7 @@ Measured measure_density(const Evidence&) {
   Measured measured;
   for (const char* law : kLaws) {
     MeasuredCase& m = measured.emplace_back(MeasuredCase{law, {}});
-    for (const std::size_t density : kDensities)
+    for (const std::size_t density : kWallDensities)
       m.values["stiffness"].push_back(stiffness_of(law, corner(density))(1, 1));
   }
   return measured;
@@ -87,7 +86,7 @@ Finding judge_density(const Measured& measured, const PublishedNumbers&) {
   const double shaped = change(proposed(measured));
   return {decide(shaped <= kDecoupled, false),
           fmt::format("stiffness across a corner, in units of K, for {} to {} points on the wall beside it: {}",
-                      kDensities[0], kDensities[std::size(kDensities) - 1], text),
+                      kWallDensities[0], kWallDensities[std::size(kWallDensities) - 1], text),
           fmt::format("with stiffness shaping it changes by {:.2g} %", 100.0 * shaped)};
 }
 
@@ -172,7 +171,7 @@ Finding judge_relative_damping(const Measured& measured, const PublishedNumbers&
           fmt::format("√ρ times that of one spring to {:.2g} %", 100.0 * worst)};
 }
 
-constexpr Claim kClaims[] = {
+constexpr Claim kAppendixCProposedAlgorithm[] = {
     {.id = "P1",
      .place = "abstract, 1.2, C.2, C.4, 5",
      .claim = "stiffness shaping decouples the force from the density of points",
@@ -182,7 +181,7 @@ constexpr Claim kClaims[] = {
            return fmt::format(
                "reproduced: the stiffness across a corner changes by at most {} when the wall beside it has {} times the "
                "points",
-               percent(kDecoupled), kDensities[std::size(kDensities) - 1]);
+               percent(kDecoupled), kWallDensities[std::size(kWallDensities) - 1]);
          },
      .measure = measure_density,
      .judge = judge_density},
@@ -214,7 +213,7 @@ constexpr Claim kClaims[] = {
 }  // namespace
 
 std::span<const Claim> appendix_c_proposed_algorithm() {
-  return kClaims;
+  return kAppendixCProposedAlgorithm;
 }
 
 }  // namespace hapbench

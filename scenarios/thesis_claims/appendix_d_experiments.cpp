@@ -136,7 +136,7 @@ constexpr const char *kVertical = "vertical_peg_in_hole", *kRotational = "rotati
 // mean of both algorithms.
 
 constexpr double kHardlyAny = 0.1;
-constexpr double kMost = 0.5;
+constexpr double kMostTrials = 0.5;
 constexpr double kOffsets[] = {0.4e-3, 0.46e-3, 0.52e-3, 0.58e-3, 0.64e-3, 0.7e-3};  ///< from the hole's axis [m]
 constexpr double kHeights[] = {2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3, 4.5e-3};            ///< over the hole's bottom [m]
 constexpr double kHoleDepth = 5e-3;
@@ -191,10 +191,10 @@ Threshold threshold(const std::vector<const MeasuredCase*>& places, const std::f
   for (const MeasuredCase* m : places) {
     const bool hardly_any = (*m)["original"] <= kHardlyAny;
     if (is_hard((*m)["value"]) && !hardly_any) found.as_published = false;
-    if (hardly_any && (*m)["shaped"] >= kMost) found.somewhere = true;
+    if (hardly_any && (*m)["shaped"] >= kMostTrials) found.somewhere = true;
     easiest = std::max(easiest, (*m)["original"]);
   }
-  found.as_published = found.as_published && easiest >= kMost;
+  found.as_published = found.as_published && easiest >= kMostTrials;
   return found;
 }
 
@@ -217,7 +217,7 @@ Finding judge_thresholds(const Measured& measured, const PublishedNumbers& publi
           fmt::format("offset: {}; height: {}", say(offset), say(height))};
 }
 
-constexpr Claim kClaims[] = {
+constexpr Claim kAppendixDExperiments[] = {
     {.id = "D1",
      .place = "D.4.2, Table A.1, Fig. D.7",
      .claim = "vertical task, side target: stiffness shaping does better in every measure",
@@ -274,7 +274,7 @@ constexpr Claim kClaims[] = {
                "reproduced: success of the original algorithm at most {0} beyond, and at least {1} at the easiest place, for "
                "offset and height; in kind: somewhere at most {0} where stiffness shaping has at least {1}, for offset or "
                "height",
-               percent(kHardlyAny), percent(kMost));
+               percent(kHardlyAny), percent(kMostTrials));
          },
      .measure = measure_thresholds,
      .judge = judge_thresholds,
@@ -284,7 +284,7 @@ constexpr Claim kClaims[] = {
 }  // namespace
 
 std::span<const Claim> appendix_d_experiments() {
-  return kClaims;
+  return kAppendixDExperiments;
 }
 
 }  // namespace hapbench

@@ -48,7 +48,7 @@ Finding judge_normal_projection(const Measured& measured, const PublishedNumbers
 
 constexpr double kEnergyKept = 1e-9;
 constexpr double kBoosted = 2.0;
-constexpr double kTilts[] = {0.08, 0.12, 0.2, 0.4};
+constexpr double kBoostTilts[] = {0.08, 0.12, 0.2, 0.4};
 
 /// The ratio farthest from 1 of all contact sets that give a force at all.
 double tandpasta_energy_ratio(const Evidence& e) {
@@ -74,9 +74,9 @@ std::vector<double> outward_boosts(const Evidence& e) {
   const double stiffness = loaded.scenario.rendering.stiffness;
   std::vector<double> boosts;
   e.for_each_row(loaded, [&](const StepRecord& row) {
-    if (boosts.size() == std::size(kTilts) || row.rendered->empty()) return;
+    if (boosts.size() == std::size(kBoostTilts) || row.rendered->empty()) return;
     const double tilt = std::acos(-row.tool.pose.axis.y());
-    if (tilt < kTilts[boosts.size()]) return;
+    if (tilt < kBoostTilts[boosts.size()]) return;
     Vec3 plain = Vec3::Zero();
     for (std::size_t i = 0; i < row.rendered->size(); ++i) plain -= row.rendered->depth[i] * row.rendered->gradient(i);
     boosts.push_back(row.force.spring.y() / (stiffness * plain.y()));
@@ -107,15 +107,15 @@ Finding judge_tandpasta(const Measured& measured, const PublishedNumbers&) {
       fmt::format("energy ratio {:.12g}; outward force at tilts of {} rad {:.1f} times that of the plain springs; in a "
                   "converged run the peg leaves after {:.3f} s, with summation after {:.3f}, with stiffness shaping "
                   "after {:.3f}",
-                  m["energy_ratio"], fmt::join(kTilts, ", "), fmt::join(boosts, ", "), m["tandpasta"], m["summation"],
-                  m["shaped_stiffness"]),
+                  m["energy_ratio"], fmt::join(kBoostTilts, ", "), fmt::join(boosts, ", "), m["tandpasta"],
+                  m["summation"], m["shaped_stiffness"]),
       fmt::format(
           "the weights {} the elastic energy and {} the outward force; that the peg leaves after 5 steps at the "
           "thesis's step is explicit friction blowing up, not the law",
           unchanged ? "keep" : "change", least > 1.0 ? "raise" : "do not raise")};
 }
 
-constexpr Claim kClaims[] = {
+constexpr Claim kAppendixFOptionalAlgorithms[] = {
     {.id = "F1",
      .place = "F.1, Fig. F.4",
      .claim = "the normal projection does not saturate on a flat, and jumps at a corner",
@@ -146,7 +146,7 @@ constexpr Claim kClaims[] = {
 }  // namespace
 
 std::span<const Claim> appendix_f_optional_algorithms() {
-  return kClaims;
+  return kAppendixFOptionalAlgorithms;
 }
 
 }  // namespace hapbench

@@ -11,11 +11,11 @@
 namespace hapbench {
 namespace {
 
-constexpr double kTilts[] = {0.35, 0.68, 1.0};  ///< [rad]
+constexpr double kPressedTilts[] = {0.35, 0.68, 1.0};  ///< [rad]
 /// What "easily penetrates" means beside the proposed algorithm.
 constexpr double kEasily = 2.0;
 /// Rows between looks at the depth: 4 ms.
-constexpr std::uint64_t kStride = 8;
+constexpr std::uint64_t kRowsBetweenLooks = 8;
 /// The start is not where the drill would be at every tilt [s].
 constexpr double kLanded = 0.5;
 
@@ -24,14 +24,14 @@ constexpr double kLanded = 0.5;
 std::vector<double> penetrations(const Evidence& e, std::vector<std::string> overrides) {
   std::vector<double> depths;
   overrides.emplace_back();
-  for (const double tilt : kTilts) {
+  for (const double tilt : kPressedTilts) {
     overrides.back() = fmt::format("motion.orientation.tilt_rad={}", tilt);
     const LoadedScenario loaded = e.load("press_into_hole", overrides);
     IdealTrajectoryObserver ideal(std::get<BlockEnvironment>(loaded.scenario.environment).block,
                                   make_cylinder(loaded.scenario.tool));
     double& deepest = depths.emplace_back(0.0);
     e.for_each_row(loaded, [&](const StepRecord& row) {
-      if (row.step % kStride != 0 || row.time < kLanded) return;
+      if (row.step % kRowsBetweenLooks != 0 || row.time < kLanded) return;
       ideal.on_step(row);
       if (ideal.error()) deepest = std::max(deepest, ideal.error()->interpenetration);
     });
@@ -47,15 +47,15 @@ std::string depths_text(const Measured& measured) {
   std::string text;
   for (const MeasuredCase& m : measured) {
     text += fmt::format("{}{} ", text.empty() ? "" : "; ", m.name);
-    for (std::size_t i = 0; i < std::size(kTilts); ++i)
+    for (std::size_t i = 0; i < std::size(kPressedTilts); ++i)
       text += fmt::format("{}{:.2f}", i == 0 ? "" : "/", 1e3 * m.all("depth")[i]);
   }
-  return fmt::format("inside by at most, in mm, at {} rad: {}", fmt::join(kTilts, "/"), text);
+  return fmt::format("inside by at most, in mm, at {} rad: {}", fmt::join(kPressedTilts, "/"), text);
 }
 
 /// True if at every tilt `a` is at least `factor` times as deep as `b`.
 bool deeper(const MeasuredCase& a, const MeasuredCase& b, double factor) {
-  for (std::size_t i = 0; i < std::size(kTilts); ++i) {
+  for (std::size_t i = 0; i < std::size(kPressedTilts); ++i) {
     if (!(a.all("depth")[i] >= factor * b.all("depth")[i])) return false;
   }
   return true;
@@ -126,7 +126,7 @@ Finding judge_coupling(const Measured& measured, const PublishedNumbers&) {
   return finding;
 }
 
-constexpr Claim kClaims[] = {
+constexpr Claim kChapter1Penetration[] = {
     {.id = "V1",
      .place = "1.1.2, 1.2, Fig. 2c",
      .claim = "averaging lets the drill easily penetrate in the hole",
@@ -159,7 +159,7 @@ constexpr Claim kClaims[] = {
 }  // namespace
 
 std::span<const Claim> chapter_1_penetration() {
-  return kClaims;
+  return kChapter1Penetration;
 }
 
 }  // namespace hapbench

@@ -163,7 +163,7 @@ Finding judge_loop_load(const Measured& measured, const PublishedNumbers&) {
                   m["tensor_reduced_3"] < m["tensor_unreduced_3"] ? "lowers" : "raises")};
 }
 
-constexpr Claim kClaims[] = {
+constexpr Claim kChapter3Cost[] = {
     {.id = "T4",
      .place = "2.8, 3.1",
      .claim =
@@ -206,7 +206,7 @@ constexpr Claim kClaims[] = {
 }  // namespace
 
 std::span<const Claim> chapter_3_cost() {
-  return kClaims;
+  return kChapter3Cost;
 }
 
 }  // namespace hapbench

@@ -171,7 +171,7 @@ Finding judge_shaking(const Measured& measured, const PublishedNumbers& publishe
                       kNormalShaking, normal ? "stays below the limit and nothing changes" : "reaches the limit")};
 }
 
-constexpr Claim kClaims[] = {
+constexpr Claim kChapter3ForceLimit[] = {
     {.id = "L1",
      .place = "3.5, Fig. 6",
      .claim = "displacement is proportional to the force without the limit and constant with it",
@@ -215,7 +215,7 @@ constexpr Claim kClaims[] = {
 }  // namespace
 
 std::span<const Claim> chapter_3_force_limit() {
-  return kClaims;
+  return kChapter3ForceLimit;
 }
 
 }  // namespace hapbench

@@ -107,7 +107,7 @@ Finding judge_ideal_trajectory(const Measured& measured, const PublishedNumbers&
                       directions.empty() ? "none" : directions)};
 }
 
-constexpr Claim kClaims[] = {
+constexpr Claim kChapter3IdealTrajectory[] = {
     {.id = "J1",
      .place = "3.6, Fig. 7",
      .claim =
@@ -130,7 +130,7 @@ constexpr Claim kClaims[] = {
 }  // namespace
 
 std::span<const Claim> chapter_3_ideal_trajectory() {
-  return kClaims;
+  return kChapter3IdealTrajectory;
 }
 
 }  // namespace hapbench

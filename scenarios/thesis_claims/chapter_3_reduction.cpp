@@ -97,7 +97,7 @@ Finding judge_spinning(const Measured& counts, const PublishedNumbers& p) {
                               p["T3.reduced.bound"].at_most);
 }
 
-constexpr Claim kClaims[] = {
+constexpr Claim kChapter3Reduction[] = {
     {.id = "T1",
      .place = "3.3, Fig. 4, C.2a",
      .claim = "on a flat the reduction always leaves one point",
@@ -138,7 +138,7 @@ constexpr Claim kClaims[] = {
 }  // namespace
 
 std::span<const Claim> chapter_3_reduction() {
-  return kClaims;
+  return kChapter3Reduction;
 }
 
 }  // namespace hapbench

@@ -155,7 +155,7 @@ Finding judge_guarantee(const Measured& measured, const PublishedNumbers& publis
                     largest <= proved + kSearchRounding ? "no set exceeds" : "some set exceeds", proved)};
 }
 
-constexpr Claim kClaims[] = {
+constexpr Claim kChapter3StiffnessRatios[] = {
     {.id = "R1",
      .place = "3.4, Fig. 5, C.4, E.3, E.4",
      .claim = "after one iteration the ratios are near 1 and never above 1.5",
@@ -196,7 +196,7 @@ constexpr Claim kClaims[] = {
 }  // namespace
 
 std::span<const Claim> chapter_3_stiffness_ratios() {
-  return kClaims;
+  return kChapter3StiffnessRatios;
 }
 
 }  // namespace hapbench

@@ -44,7 +44,7 @@ Finding judge_median_line(const Measured& measured, const PublishedNumbers&) {
 
 constexpr double kNegligible = 0.05;
 /// Rows between samples: about 30 a second.
-constexpr std::uint64_t kStride = 64;
+constexpr std::uint64_t kRowsBetweenSamples = 64;
 
 Measured measure_underestimation(const Evidence& e) {
   const double shallow = e.published["G1.negligible"].at_most;
@@ -57,7 +57,7 @@ Measured measure_underestimation(const Evidence& e) {
   ContactBuffer contacts(shell->size());
   std::vector<double> shortfall;
   e.for_each_row(loaded, [&](const StepRecord& row) {
-    if (row.step % kStride != 0) return;
+    if (row.step % kRowsBetweenSamples != 0) return;
     query.contacts_at(row.tool.pose, contacts);
     exact->evaluate(tool, row.tool.pose, contacts);
     const std::vector<double> truth(contacts.depth.begin(),
@@ -87,7 +87,7 @@ Finding judge_underestimation(const Measured& measured, const PublishedNumbers& 
       "where the tool leans on an edge or across a wall, the way out along the normal is longer than the shortest one"};
 }
 
-constexpr Claim kClaims[] = {
+constexpr Claim kChapter4Depths[] = {
     {.id = "G1",
      .place = "4.2, Fig. 8, C.1",
      .claim = "the gradient of the shortest distance flips across the median line, the surface normal's cannot",
@@ -114,7 +114,7 @@ constexpr Claim kClaims[] = {
 }  // namespace
 
 std::span<const Claim> chapter_4_depths() {
-  return kClaims;
+  return kChapter4Depths;
 }
 
 }  // namespace hapbench

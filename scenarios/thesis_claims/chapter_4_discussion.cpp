@@ -114,7 +114,7 @@ Finding judge_parallel_faces(const Measured& measured, const PublishedNumbers&) 
           weightless ? "the forces of the two walls cancel" : "the walls push back"};
 }
 
-constexpr Claim kClaims[] = {
+constexpr Claim kChapter4Discussion[] = {
     {.id = "B4",
      .place = "4.1",
      .claim = "taking the highest depth along the averaged direction vibrates in the hole",
@@ -175,7 +175,7 @@ constexpr Claim kClaims[] = {
 }  // namespace
 
 std::span<const Claim> chapter_4_discussion() {
-  return kClaims;
+  return kChapter4Discussion;
 }
 
 }  // namespace hapbench

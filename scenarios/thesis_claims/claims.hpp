@@ -31,6 +31,9 @@ struct Claim {
 /// All of them, in the order of the ledger.
 std::vector<Claim> all_claims();
 
+/// What the thesis proposes.
+inline constexpr const char* kProposedLaw = "shaped_stiffness";
+
 /// By chapter.
 std::span<const Claim> chapter_1_penetration();           ///< V
 std::span<const Claim> chapter_3_reduction();             ///< T1 to T3

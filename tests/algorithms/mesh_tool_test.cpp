@@ -2,17 +2,20 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "algorithms/registry.hpp"
 #include "algorithms/shell_source.hpp"
 #include "results/allocations/allocations.hpp"
 #include "sim/core/random.hpp"
 #include "sim/geometry/analytic_shells.hpp"
+#include "tests/algorithms/proxy_descent.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_meshes.hpp"
 
 /// Tools of a mesh under every algorithm and depth model.
-namespace hapbench {
+namespace hapbench::mesh_tool_test {
 namespace {
 
 using test::cases;
@@ -69,33 +72,23 @@ TEST_P(MeshToolInEveryAlgorithm, IsPushedOutOfAPlaneWithoutAllocating) {
 TEST(Proxy, KeepsEveryPointOutOfAConvexMesh) {
   Random random(3);
   const PointShell shell(surface_points(Plane{0.004, kSpacing}), kSpacing);
-  RenderingConfig config;
-  config.algorithm = "proxy";
+  ContactBuffer all(shell.size());
+  for (std::size_t i = 0; i < shell.size(); ++i) {
+    all.push(static_cast<std::uint32_t>(i), shell.point(i).position, shell.point(i).normal);
+  }
   for (const auto& tool : tools()) {
     if (!tool->convex()) continue;
-    ShellSource source(shell, *tool, make_contact_query(shell, *tool, Skips::taken), make_depth_model(config));
-    ContactBuffer contacts(source.capacity()), all(shell.size());
-    for (std::size_t i = 0; i < shell.size(); ++i) {
-      all.push(static_cast<std::uint32_t>(i), shell.point(i).position, shell.point(i).normal);
-    }
+    const auto deepest = [&](const ToolPose& pose) {
+      tool->shortest_depths(pose, all);
+      return *std::max_element(all.depth.begin(), all.depth.begin() + static_cast<std::ptrdiff_t>(all.size()));
+    };
     for (std::size_t run = 0; run < cases(20); ++run) {
-      const auto proxy = make_algorithm(config);
-      proxy->prepare({source.capacity(), tool.get(), &shell});
-      proxy->reset();
-      RenderedForce force;
-      const Vec3 axis = (Vec3(0, 0, -1) + 0.5 * random.direction()).normalized();
-      const double roll = random.uniform(-3.0, 3.0);
-      for (int k = 0; k < 40; ++k) {
-        const ToolPose pose{{0.0, 0.0, 0.001 - 0.00005 * k}, axis, roll};
-        source.contacts_at(pose, contacts);
-        proxy->compute({pose, Vec3::Zero()}, contacts, force);
-        tool->shortest_depths({pose.position + force.spring / config.stiffness, axis, roll}, all);
-        for (std::size_t i = 0; i < all.size(); ++i) ASSERT_LE(all.depth[i], 1e-9);
-      }
-      EXPECT_GT(force.spring.z(), 0.0);
+      const Vec3 axis = test::leaning_axis(random);
+      const ToolPose start{{0.0, 0.0, 0.001}, axis, random.uniform(-3.0, 3.0)};
+      test::expect_proxy_stays_out(*tool, shell, start, 40, deepest);
     }
   }
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::mesh_tool_test

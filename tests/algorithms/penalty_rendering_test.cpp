@@ -9,7 +9,7 @@
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/setting.hpp"
 
-namespace hapbench {
+namespace hapbench::penalty_rendering_test {
 namespace {
 
 /// A flat tool 0.3 mm into a plane with a point every 0.1 mm.
@@ -159,4 +159,4 @@ TEST(PenaltyRendering, LocalAverageNeedsAShellWithAGrid) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::penalty_rendering_test

@@ -12,7 +12,7 @@
 #include "tests/support/bits.hpp"
 #include "tests/support/setting.hpp"
 
-namespace hapbench {
+namespace hapbench::registry_test {
 namespace {
 
 TEST(Registry, EveryListedNameIsFoundAndBuilds) {
@@ -183,4 +183,4 @@ TEST(Registry, TheDepthModelOfTheConfigurationIsUsedWhereItIsFree) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::registry_test

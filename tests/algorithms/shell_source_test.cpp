@@ -7,7 +7,7 @@
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/tool/cylinder.hpp"
 
-namespace hapbench {
+namespace hapbench::shell_source_test {
 namespace {
 
 /// Counts how often it is asked, and in how many of these times about contacts.
@@ -90,4 +90,4 @@ TEST_F(ShellSourceTest, ForgetsInAResetThatThereWasNoContact) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::shell_source_test

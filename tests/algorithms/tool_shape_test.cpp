@@ -2,13 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "algorithms/registry.hpp"
 #include "algorithms/shell_source.hpp"
 #include "sim/contact/grid_query.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "sim/geometry/analytic_shells.hpp"
+#include "tests/algorithms/proxy_descent.hpp"
 #include "tests/support/brick.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/searches.hpp"
@@ -16,7 +19,7 @@
 
 /// A shape that nothing but this test knows goes through searches, depth models and algorithms: the interface is all
 /// that they ask of a tool.
-namespace hapbench {
+namespace hapbench::tool_shape_test {
 namespace {
 
 using test::Brick;
@@ -125,63 +128,45 @@ TEST_P(NewShapeInEveryAlgorithm, IsPushedOutOfAPlane) {
   EXPECT_LE(std::hypot(force.spring.x(), force.spring.y()), 0.05 * force.spring.z());
 }
 
+/// The largest slack of a point of the shell; positive inside.
+template <class Slack>
+double largest(const PointShell& shell, const Slack& slack) {
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < shell.size(); ++i) most = std::max(most, slack(shell.point(i).position));
+  return most;
+}
+
 TEST(Proxy, KeepsEveryPointOutOfANewShape) {
   Random random(3);
   const Brick brick(0.0003, 0.0008, 0.002);
   const PointShell shell(surface_points(Plane{0.004, kSpacing}), kSpacing);
-  RenderingConfig config;
-  config.algorithm = "proxy";
-  ShellSource source(shell, brick, make_contact_query(shell, brick, Skips::taken), make_depth_model(config));
-  ContactBuffer contacts(source.capacity());
+  const auto deepest = [&](const ToolPose& pose) {
+    return largest(shell, [&](const Vec3& point) { return brick.slack(pose, point); });
+  };
   for (std::size_t run = 0; run < cases(20); ++run) {
-    const auto proxy = make_algorithm(config);
-    proxy->prepare({source.capacity(), &brick, &shell});
-    proxy->reset();
-    RenderedForce force;
-    const Vec3 axis = (Vec3(0, 0, -1) + 0.5 * random.direction()).normalized();
-    const double roll = random.uniform(-3.0, 3.0);
-    for (int k = 0; k < 40; ++k) {
-      const ToolPose pose{{0.0, 0.0, 0.001 - 0.00005 * k}, axis, roll};
-      source.contacts_at(pose, contacts);
-      proxy->compute({pose, Vec3::Zero()}, contacts, force);
-      const ToolPose there{pose.position + force.spring / config.stiffness, axis, roll};
-      for (std::size_t i = 0; i < shell.size(); ++i) ASSERT_LE(brick.slack(there, shell.point(i).position), 1e-9);
-    }
-    EXPECT_GT(force.spring.z(), 0.0);
+    const Vec3 axis = test::leaning_axis(random);
+    const ToolPose start{{0.0, 0.0, 0.001}, axis, random.uniform(-3.0, 3.0)};
+    test::expect_proxy_stays_out(brick, shell, start, 40, deepest);
   }
 }
 
 TEST(Proxy, KeepsEveryPointOutOfConvexSolidsOfRevolution) {
   Random random(4);
   const PointShell shell(surface_points(Plane{0.004, kSpacing}), kSpacing);
-  RenderingConfig config;
-  config.algorithm = "proxy";
   std::size_t runs = 0;
   for (std::size_t i = 0; i < cases(100); ++i) {
     const test::DefinedTool tool = test::tool_kinds()[i % test::tool_kinds().size()].make(random, 0.001);
     if (!tool.shape->convex()) continue;
-    ShellSource source(shell, *tool.shape, make_contact_query(shell, *tool.shape, Skips::taken),
-                       make_depth_model(config));
-    ContactBuffer contacts(source.capacity());
-    const auto proxy = make_algorithm(config);
-    proxy->prepare({source.capacity(), tool.shape.get(), &shell});
-    proxy->reset();
-    RenderedForce force;
-    const Vec3 axis = (Vec3(0, 0, -1) + 0.5 * random.direction()).normalized();
-    for (int k = 0; k < 60; ++k) {
-      const ToolPose pose{{0.0, 0.0, 0.002 - 0.00005 * k}, axis};
-      source.contacts_at(pose, contacts);
-      proxy->compute({pose, Vec3::Zero()}, contacts, force);
-      const ToolPose there{pose.position + force.spring / config.stiffness, axis};
-      for (std::size_t n = 0; n < shell.size(); ++n) {
-        ASSERT_LE(tool.slack(there, shell.point(n).position.cast<long double>()), 1e-9L) << i << ' ' << k;
-      }
-    }
-    EXPECT_GT(force.spring.z(), 0.0);
+    SCOPED_TRACE(i);
+    const auto deepest = [&](const ToolPose& pose) {
+      return largest(
+          shell, [&](const Vec3& point) { return static_cast<double>(tool.slack(pose, point.cast<long double>())); });
+    };
+    test::expect_proxy_stays_out(*tool.shape, shell, {{0.0, 0.0, 0.002}, test::leaning_axis(random)}, 60, deepest);
     ++runs;
   }
   EXPECT_GT(runs, cases(100) / 4);
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::tool_shape_test

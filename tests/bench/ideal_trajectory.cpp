@@ -11,7 +11,7 @@
 namespace hapbench::bench {
 namespace {
 
-constexpr std::size_t kEvery = 16;  ///< poses of T2
+constexpr std::size_t kPosesApart = 16;  ///< poses of T2
 
 struct Scene {
   const TaskScene& task = task_scene("T2");
@@ -47,8 +47,8 @@ void row(benchmark::State& state) {
     return "";
   };
   if (!proved(state, "ideal_trajectory", wrong)) return;
-  while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(poses.size() / kEvery))) {
-    for (std::size_t k = 0; k < poses.size(); k += kEvery) {
+  while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(poses.size() / kPosesApart))) {
+    for (std::size_t k = 0; k < poses.size(); k += kPosesApart) {
       benchmark::DoNotOptimize(ideal_place(scene.block, scene.tool.radius(), std::acos(-poses[k].axis.z())));
       benchmark::DoNotOptimize(interpenetration(scene.block, scene.tool, poses[k]));
     }

@@ -9,7 +9,7 @@
 namespace hapbench::bench {
 namespace {
 
-constexpr std::uint64_t kEvery = 64;  ///< rows of T2_proxy
+constexpr std::uint64_t kRowsApart = 64;  ///< rows of T2_proxy
 
 /// What the proxy's solver is asked in a step.
 struct Problem {
@@ -24,7 +24,7 @@ class Problems final : public Observer {
       : constraints_(shell, tool, Skips::taken), found_(constraints_.capacity()), K_(K) {}
 
   void on_step(const StepRecord& record) noexcept override {
-    if (record.step % kEvery != 0 || record.rendered->empty()) return;
+    if (record.step % kRowsApart != 0 || record.rendered->empty()) return;
     const Vec3 to_proxy = record.force.spring / K_;
     const ToolPose proxy{record.tool.pose.position + to_proxy, record.tool.pose.axis};
     constraints_.constraints_at(proxy, -to_proxy, found_);

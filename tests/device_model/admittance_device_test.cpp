@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace hapbench {
+namespace hapbench::admittance_device_test {
 namespace {
 
 constexpr double kStep = 1.0 / 2048;
@@ -98,4 +98,4 @@ TEST(AdmittanceDevice, AResetRepeatsEverythingBitForBit) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::admittance_device_test

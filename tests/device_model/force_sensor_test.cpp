@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace hapbench {
+namespace hapbench::force_sensor_test {
 namespace {
 
 TEST(ForceSensor, ReadsTheWeightOfTheDrillAsWell) {
@@ -49,4 +49,4 @@ TEST(ForceSensor, TheSeedDecidesTheNoiseAndAResetRepeatsIt) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::force_sensor_test

@@ -7,7 +7,7 @@
 
 #include "sim/core/random.hpp"
 
-namespace hapbench {
+namespace hapbench::handle_mechanics_test {
 namespace {
 
 constexpr double kStep = 1.0 / 2048;
@@ -91,4 +91,4 @@ TEST(HandleMechanics, KeepsItsEnergyBalanceToRounding) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::handle_mechanics_test

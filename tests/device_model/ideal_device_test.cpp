@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hapbench {
+namespace hapbench::ideal_device_test {
 namespace {
 
 ToolState some_tool() {
@@ -48,4 +48,4 @@ TEST(IdealDevice, MeasuringDoesNotMoveTheHandle) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::ideal_device_test

@@ -4,7 +4,7 @@
 
 #include "sim/core/random.hpp"
 
-namespace hapbench {
+namespace hapbench::input_force_limiter_test {
 namespace {
 
 TEST(InputForceLimiter, ScalesLongerForcesToTheLimitAndKeepsTheirDirection) {
@@ -33,4 +33,4 @@ TEST(InputForceLimiter, AZeroLimitTakesTheHandAway) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::input_force_limiter_test

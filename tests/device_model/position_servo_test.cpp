@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hapbench {
+namespace hapbench::position_servo_test {
 namespace {
 
 ToolState reference(const Vec3& position, const Vec3& velocity) {
@@ -38,4 +38,4 @@ TEST(PositionServo, ACommandArrivesAfterTheDelay) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::position_servo_test

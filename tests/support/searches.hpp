@@ -1,10 +1,14 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <cmath>
 #include <memory>
 
 #include "sim/contact/shell_query.hpp"
 #include "sim/core/random.hpp"
 #include "sim/tool/cylinder.hpp"
+#include "tests/support/scale.hpp"
 
 /// What the tests of contact searches share: shells, walks of the tool, and brute force to compare with.
 namespace hapbench::test {
@@ -50,5 +54,34 @@ class SearchPair {
   ContactBuffer found_, all_;
   std::uint64_t contacts_ = 0;
 };
+
+/// What a million poses came to.
+struct WalkTotals {
+  std::uint64_t poses = 0, contacts = 0, lists_rebuilt = 0;
+};
+
+/// Walks tools, make_tool(random, size of the shell), over random shells, a million poses in all, and expects a search
+/// to find at each what brute force finds.
+template <class Query, class MakeTool>
+void expect_agreement_at_a_million_poses(Random random, const MakeTool& make_tool, WalkTotals& totals) {
+  const std::size_t shells = cases(2000);
+  for (std::size_t s = 0; s < shells; ++s) {
+    const double size = std::pow(10.0, random.uniform(-4.0, 0.0));
+    const std::shared_ptr<const ToolShape> tool = make_tool(random, size);
+    SearchPair<Query> pair(random_shell(random, size), random.below(2) == 0 ? 0.0 : size * random.uniform(0.01, 1.0),
+                           tool);
+    ToolPose pose{Vec3::Zero(), random.direction()};
+    for (int k = 0; k < 500; ++k, ++totals.poses) {
+      pose = next_pose(pose, random, size, 0.2 * tool->half_width());
+      ASSERT_TRUE(pair.agree_at(pose)) << "shell " << s << ", pose " << k;
+    }
+    totals.contacts += pair.contacts();
+    totals.lists_rebuilt += pair.work().lists_rebuilt;
+  }
+  EXPECT_GE(totals.poses, cases(2000) * 500);
+}
+
+/// Of a size that goes with a shell of `size` metres.
+std::shared_ptr<const ToolShape> random_drill(Random& random, double size);
 
 }  // namespace hapbench::test

@@ -14,7 +14,7 @@
 namespace hapbench {
 namespace {
 
-constexpr double kSpacings[] = {0.0004, 0.0002, 0.0001, 0.00005, 0.000025};
+constexpr double kShellSpacings[] = {0.0004, 0.0002, 0.0001, 0.00005, 0.000025};
 
 constexpr std::pair<const char*, Density> kDensities[] = {{"signed_distance", Density::signed_distance},
                                                           {"binary", Density::binary}};
@@ -53,7 +53,7 @@ static PrecisionResult study_spacing(const Scenario& given, const PrecisionOptio
   result.columns.insert(result.columns.end(), kIdealColumns.begin(), kIdealColumns.end());
   result.timed = "step";
   for (const auto& [name, density] : kDensities) {
-    for (const double spacing : kSpacings) {
+    for (const double spacing : kShellSpacings) {
       Scenario scenario = drill_in_hole(given);
       auto& environment = std::get<BlockEnvironment>(scenario.environment);
       environment.density = density;
@@ -64,7 +64,7 @@ static PrecisionResult study_spacing(const Scenario& given, const PrecisionOptio
       const double bytes = static_cast<double>(shell->padded_size() * 6 * sizeof(double));
       row.values.insert(row.values.begin(), {spacing, points, bytes});
       result.rows.push_back(std::move(row));
-      options.progress(result.rows.size(), 2 * std::size(kSpacings));
+      options.progress(result.rows.size(), 2 * std::size(kShellSpacings));
     }
   }
   return result;

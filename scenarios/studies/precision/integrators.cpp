@@ -7,20 +7,12 @@
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/studies/first_tensor.hpp"
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/studies/precision/study.hpp"
 
 namespace hapbench {
 namespace {
-
-/// Keeps the stiffness tensor of the first row.
-class FirstTensor final : public Observer {
- public:
-  void on_step(const StepRecord& record) noexcept override {
-    if (record.step == 0) S = record.force.S;
-  }
-  Mat3 S = Mat3::Zero();
-};
 
 /// Positions at t = 0, T, 2 T, … of M x'' = -K S x - B S x' - F (I - S) x', which is what bilateral springs whose
 /// weights are constant obey; from the matrix exponential, exact to rounding.

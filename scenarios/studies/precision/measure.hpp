@@ -65,6 +65,9 @@ IdealDeviceFields with_ideal_device(const DeviceFields& device);
 /// trajectory is not known.
 Scenario drill_in_hole(Scenario scenario);
 
+/// Rows from one contact set of a study to the next.
+inline constexpr std::uint64_t kContactSetStride = 64;
+
 /// The colliding points of every `stride`-th row of a scenario, with depth and gradient, before any point stage. Rows
 /// without contact are left out.
 std::vector<ContactBuffer> contact_sets(Scenario scenario, std::uint64_t stride);

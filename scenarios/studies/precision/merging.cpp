@@ -17,16 +17,15 @@
 namespace hapbench {
 namespace {
 
-constexpr double kSpacings[] = {0.0001, 0.00005, 0.000025};
-constexpr std::uint64_t kStride = 64;
+constexpr double kMergedSpacings[] = {0.0001, 0.00005, 0.000025};
 constexpr std::uint64_t kOrders = 4;
 
-struct Way {
+struct MergingWay {
   const char* name;
   std::unique_ptr<ForceLaw> (*make_law)(const RenderingConfig&);
   bool reduces;
 };
-constexpr Way kWays[] = {
+constexpr MergingWay kMergingWays[] = {
     {"exact_shaping of all", make_exact_shaping, false},
     {"exact_shaping reduced", make_exact_shaping, true},
     {"shaped_stiffness of all", make_shaped_stiffness, false},
@@ -39,7 +38,7 @@ using Order = std::vector<std::size_t>;
 /// One way to compute the force of a contact set.
 class Forces {
  public:
-  Forces(const Way& way, const RenderingConfig& config, std::size_t capacity)
+  Forces(const MergingWay& way, const RenderingConfig& config, std::size_t capacity)
       : reduction_(way.reduces ? make_gradient_reduction({}) : nullptr), law_(way.make_law(config)), work_(capacity) {
     if (reduction_) reduction_->prepare({});
     law_->prepare(capacity);
@@ -77,7 +76,7 @@ double spread_over_orders(Forces& forces, const ContactBuffer& set, const Vec3& 
   return largest;
 }
 
-PrecisionRow row_of(const Way& way, double spacing, const std::vector<ContactBuffer>& sets,
+PrecisionRow row_of(const MergingWay& way, double spacing, const std::vector<ContactBuffer>& sets,
                     const std::vector<Vec3>& reference, const RenderingConfig& config, int repetitions) {
   std::size_t capacity = 0;
   for (const ContactBuffer& set : sets) capacity = std::max(capacity, set.size());
@@ -112,7 +111,7 @@ PrecisionRow row_of(const Way& way, double spacing, const std::vector<ContactBuf
 std::vector<Vec3> exact_forces(const std::vector<ContactBuffer>& sets, const RenderingConfig& config) {
   std::vector<Vec3> forces;
   for (const ContactBuffer& set : sets) {
-    Forces exact(kWays[0], config, set.size());
+    Forces exact(kMergingWays[0], config, set.size());
     exact.load(set);
     forces.push_back(exact.force());
   }
@@ -125,15 +124,15 @@ static PrecisionResult study_merging(const Scenario& given, const PrecisionOptio
   PrecisionResult result;
   result.columns = {"spacing_m", "contacts_mean", "kept_mean", "force_error_relative", "order_spread_relative"};
   result.timed = "call";
-  for (const double spacing : kSpacings) {
+  for (const double spacing : kMergedSpacings) {
     Scenario scenario = drill_in_hole(given);
     std::get<BlockEnvironment>(scenario.environment).grid = spacing;
-    const std::vector<ContactBuffer> sets = contact_sets(scenario, kStride);
+    const std::vector<ContactBuffer> sets = contact_sets(scenario, kContactSetStride);
     if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
     const std::vector<Vec3> reference = exact_forces(sets, scenario.rendering);
-    for (const Way& way : kWays) {
+    for (const MergingWay& way : kMergingWays) {
       result.rows.push_back(row_of(way, spacing, sets, reference, scenario.rendering, options.repetitions));
-      options.progress(result.rows.size(), std::size(kWays) * std::size(kSpacings));
+      options.progress(result.rows.size(), std::size(kMergingWays) * std::size(kMergedSpacings));
     }
   }
   return result;

@@ -15,10 +15,9 @@ namespace {
 
 constexpr double kThresholds[] = {0.9, 0.95, 0.99, 0.995, 0.999, 0.9999};
 constexpr double kOff = 2.0;  // no inner product of unit vectors is larger
-constexpr std::uint64_t kStride = 64;
 
 /// One way to compute a force: a reduction, or none, and a law.
-struct Way {
+struct ReductionWay {
   double threshold;
   bool exact;
 };
@@ -48,7 +47,7 @@ class Measurement {
     }
   }
 
-  PrecisionRow row(const Way& way, int repetitions) {
+  PrecisionRow row(const ReductionWay& way, int repetitions) {
     const auto reduction =
         make_gradient_reduction({.threshold = std::min(way.threshold, 1.0), .max_points = 100'000, .shuffle_seed = {}});
     reduction->prepare({});
@@ -88,10 +87,10 @@ class Measurement {
 }  // namespace
 
 static PrecisionResult study_reduction(const Scenario& scenario, const PrecisionOptions& options) {
-  const std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(scenario), kStride);
+  const std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(scenario), kContactSetStride);
   if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
   Measurement measurement(sets, scenario.rendering.iterations);
-  std::vector<Way> ways;
+  std::vector<ReductionWay> ways;
   for (const bool exact : {false, true}) {
     for (const double threshold : kThresholds) ways.push_back({threshold, exact});
     ways.push_back({kOff, exact});
@@ -99,7 +98,7 @@ static PrecisionResult study_reduction(const Scenario& scenario, const Precision
   PrecisionResult result;
   result.columns = {"kept_mean", "force_error_relative", "depth_error_max_m"};
   result.timed = "call";
-  for (const Way& way : ways) {
+  for (const ReductionWay& way : ways) {
     result.rows.push_back(measurement.row(way, options.repetitions));
     options.progress(result.rows.size(), ways.size());
   }

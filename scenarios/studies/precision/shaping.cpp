@@ -14,7 +14,6 @@ namespace {
 
 constexpr int kIterations[] = {0, 1, 2, 3, 4, 5, 10, 20, 40, 80, 160};
 constexpr int kExact = -1;
-constexpr std::uint64_t kStride = 64;  // rows from one contact set to the next
 
 Mat3 shape(ContactBuffer& contacts, int iterations) {
   if (iterations != kExact) return shape_weights(contacts, iterations);
@@ -45,7 +44,7 @@ PrecisionRow measure(int iterations, std::vector<ContactBuffer>& sets, const std
 }  // namespace
 
 static PrecisionResult study_shaping(const Scenario& scenario, const PrecisionOptions& options) {
-  std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(scenario), kStride);
+  std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(scenario), kContactSetStride);
   if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
   std::vector<Mat3> optimum;
   for (ContactBuffer& set : sets) optimum.push_back(shape(set, kExact));

@@ -30,9 +30,9 @@ std::string override_text(const std::string& path, double value, bool whole) {
 }
 
 /// A range as its part of the way from the end that is stable to begin with: 0 there, 1 at the other end.
-class Way {
+class FieldWay {
  public:
-  explicit Way(const LimitQuestion& question) : question_(question) {}
+  explicit FieldWay(const LimitQuestion& question) : question_(question) {}
 
   double value(double part) const {
     const double value = question_.range.value_at(question_.smallest ? 1.0 - part : part);
@@ -66,7 +66,7 @@ struct Edge {
 
 /// The edge behind the scenario's own value, or if that is not stable behind the first stable values of the way. With
 /// `beside`, tries values on either side of it, too, and goes on where one of them shows an edge before it.
-Edge find_edge(const Way& way, const std::function<bool(double)>& stable, bool beside) {
+Edge find_edge(const FieldWay& way, const std::function<bool(double)>& stable, bool beside) {
   std::map<double, bool> tried;
   const auto holds = [&](double part) { return tried[part] = stable(part); };
   for (int i = 0; i <= kIntervals; ++i) holds(static_cast<double>(i) / kIntervals);
@@ -171,7 +171,7 @@ class Search {
   const ScenarioText& scenario_;
   const std::vector<std::string>& overrides_;
   const LimitQuestion& question_;
-  Way way_;
+  FieldWay way_;
   RecentShells shells_;
 };
 

@@ -8,6 +8,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_to_end.hpp"
+#include "scenarios/studies/first_tensor.hpp"
 #include "scenarios/studies/stability/bisection.hpp"
 
 namespace hapbench {
@@ -20,7 +21,7 @@ constexpr double kPrecision = 1e-4;
 constexpr double kEigenvaluePrecision = 1e-10;
 /// A probe is cut short as unstable when it has grown by this factor; a stable one swings to 1 / sqrt of its relative
 /// distance to the limit, at most 1e2 at kPrecision.
-constexpr double kGrowth = 1e6;
+constexpr double kBlownUp = 1e6;
 /// Steps of one probe, and how much the largest energy of the last quarter may exceed that of the quarter before. A run
 /// that is unstable by a factor 1 + e per step multiplies its energy by 1 + 10 000 e, so the limit is found where e
 /// passes 1e-6; a stable run repeats its largest energy much closer, because it beats in 1 / sqrt(kPrecision) steps or
@@ -46,15 +47,6 @@ RaisedSpringDamper problem_of(StabilityCase which, const Scenario& scenario, dou
   const SpringDamper given{config.stiffness, 0.0, config.mass, scenario.time.step, lambda, scenario.integrator.type};
   return {which, given, config.damping, config.damping_ratio};
 }
-
-/// Picks up the stiffness tensor of the first step.
-class FirstTensor final : public Observer {
- public:
-  void on_step(const StepRecord& record) noexcept override {
-    if (record.step == 0) S = record.force.S;
-  }
-  Mat3 S = Mat3::Zero();
-};
 
 /// Largest mechanical energy in the last two quarters of a probe: it follows growth whatever the frequency, where the
 /// position alone may still be on its first swing.
@@ -90,7 +82,7 @@ bool simulation_stays_bounded(Scenario scenario, const SpringDamper& system, con
   scenario.initial.velocity = kAmplitude * direction;
   // Speed tells growth from drift: a mass that no spring holds goes far without going faster.
   scenario.bounds.position = kNever;
-  scenario.bounds.speed = kGrowth * kAmplitude * std::max(1.0, 1.0 / system.dt);
+  scenario.bounds.speed = kBlownUp * kAmplitude * std::max(1.0, 1.0 / system.dt);
   scenario.bounds.force = kNever;
   LateEnergy energy(system);
   Simulation simulation(simulation_config(scenario), assemble(scenario), {&energy});

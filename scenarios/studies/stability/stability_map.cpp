@@ -13,7 +13,7 @@ namespace hapbench {
 namespace {
 
 /// A twentieth of the 2 % within which theory and runs must agree.
-constexpr double kPrecision = 1e-3;
+constexpr double kMapPrecision = 1e-3;
 
 /// How far beyond a map's range an edge is looked for. Further out, from K dt^2 / M = 6e8 on, the rounding of a step of
 /// implicit_midpoint, which damps nothing there, grows.
@@ -87,7 +87,7 @@ BoundaryPoint boundary_point(const StabilityMap& map, const MapSubject& subject,
     const MotionClass motion = probe(scene(map, subject, x, y)).motion;
     return map.no_theory == nullptr ? motion != MotionClass::diverged : comes_to_rest(motion);
   };
-  point.simulation = largest_stable(map.y.low, kPrecision, holds, kBeyondTheMap * map.y.high);
+  point.simulation = largest_stable(map.y.low, kMapPrecision, holds, kBeyondTheMap * map.y.high);
   if (map.no_theory != nullptr) {
     point.no_theory = map.no_theory;
     return point;

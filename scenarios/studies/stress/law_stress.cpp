@@ -14,7 +14,7 @@ namespace {
 
 /// Relative rounding error allowed in sums over at most kMostContacts contacts and in exact_shaping's weights, which
 /// its epsilon of 1e-6 makes sensitive.
-constexpr double kRounding = 1e-6;
+constexpr double kForceRounding = 1e-6;
 constexpr std::uint64_t kSetsOfAJob = 1000;
 
 /// One set under one algorithm.
@@ -45,14 +45,14 @@ bool finite(const RenderedForce& force) {
 }
 
 bool depth_in_bound(const Cylinder& tool, double depth) {
-  return depth >= 0.0 && depth <= (1.0 + kRounding) * tool.longest_exit();
+  return depth >= 0.0 && depth <= (1.0 + kForceRounding) * tool.longest_exit();
 }
 
 /// Damping is B S v, and friction is off: |f_render| <= |f_spring| + B lambda_max(S) |v|.
 bool damping_in_bound(const ContactSet& set, const RenderedForce& force) {
   const double B = 2.0 * set.rendering.damping_ratio * std::sqrt(set.rendering.stiffness * set.rendering.mass);
   const double bound = force.spring.norm() + B * lambda_max(force.S) * set.velocity.norm();
-  return force.rendered.norm() <= (1.0 + kRounding) * bound;
+  return force.rendered.norm() <= (1.0 + kForceRounding) * bound;
 }
 
 void count_answer(const ContactSet& set, const RenderingConfig& config, std::uint64_t number, const Answer& answer,
@@ -70,7 +70,7 @@ void count_answer(const ContactSet& set, const RenderingConfig& config, std::uin
           : std::optional(config.stiffness * bound_of(config, set.tool, answer.rendered, force.depth_max));
   if (!finite(force)) {
     ++counts.non_finite;
-  } else if ((bound && force.spring.norm() > (1.0 + kRounding) * *bound) ||
+  } else if ((bound && force.spring.norm() > (1.0 + kForceRounding) * *bound) ||
              !depth_in_bound(set.tool, force.depth_max) || !damping_in_bound(set, force)) {
     ++counts.out_of_bound;
   }

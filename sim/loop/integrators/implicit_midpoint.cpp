@@ -1,5 +1,3 @@
-#include <limits>
-
 #include "sim/loop/integrators/linearly_implicit.hpp"
 #include "sim/loop/integrators/table.hpp"
 
@@ -21,10 +19,6 @@ class ImplicitMidpoint final : public Integrator {
   }
 };
 
-std::optional<double> limit(const RaisedSpringDamper&) {
-  return std::numeric_limits<double>::infinity();
-}
-
 }  // namespace
 
 const IntegratorEntry kImplicitMidpoint = {
@@ -38,7 +32,7 @@ const IntegratorEntry kImplicitMidpoint = {
     .make = []() -> std::unique_ptr<Integrator> { return std::make_unique<ImplicitMidpoint>(); },
     .order = 2,
     .damped_order = 2,
-    .stability_limit = limit,
+    .stability_limit = no_stability_limit,
 };
 
 }  // namespace hapbench

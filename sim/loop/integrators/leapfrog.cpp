@@ -39,7 +39,7 @@ double positive_root(double a, double b) {
 }
 
 /// Where the margin is zero.
-std::optional<double> limit(const RaisedSpringDamper& problem) {
+std::optional<double> leapfrog_limit(const RaisedSpringDamper& problem) {
   const double M = problem.given.M, dt = problem.given.dt, lambda = problem.given.lambda;
   if (problem.raised == StabilityCase::time_step) {
     const SpringDamper system = problem.at(dt);
@@ -68,7 +68,7 @@ const IntegratorEntry kLeapfrog = {
     .holds_force = true,
     .step_matrix = step_matrix,
     .stability_margin = margin,
-    .stability_limit = limit,
+    .stability_limit = leapfrog_limit,
 };
 
 }  // namespace hapbench

@@ -24,7 +24,7 @@ class Rk4 final : public Integrator {
 
 /// Ends of the stability region |1 + z + z^2/2 + z^3/6 + z^4/24| <= 1 on the imaginary axis, z^2 = -8, and on the real
 /// one.
-std::optional<double> limit(const RaisedSpringDamper& problem) {
+std::optional<double> rk4_limit(const RaisedSpringDamper& problem) {
   return limit_of_one_alone(problem, {8.0, 2.785293563405282});
 }
 
@@ -41,7 +41,7 @@ const IntegratorEntry kRk4 = {
     .order = 4,
     .damped_order = 4,
     .forces = 4,
-    .stability_limit = limit,
+    .stability_limit = rk4_limit,
 };
 
 }  // namespace hapbench

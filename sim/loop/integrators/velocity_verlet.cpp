@@ -23,7 +23,7 @@ class VelocityVerlet final : public Integrator {
   }
 };
 
-std::optional<double> limit(const RaisedSpringDamper& problem) {
+std::optional<double> velocity_verlet_limit(const RaisedSpringDamper& problem) {
   return limit_of_one_alone(problem, {4.0, 4.0});
 }
 
@@ -38,7 +38,7 @@ const IntegratorEntry kVelocityVerlet = {
     .make = []() -> std::unique_ptr<Integrator> { return std::make_unique<VelocityVerlet>(); },
     .order = 2,
     .forces = 2,
-    .stability_limit = limit,
+    .stability_limit = velocity_verlet_limit,
 };
 
 }  // namespace hapbench

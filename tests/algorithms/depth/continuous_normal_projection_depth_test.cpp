@@ -13,7 +13,7 @@
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_geometry.hpp"
 
-namespace hapbench {
+namespace hapbench::continuous_normal_projection_depth_test {
 namespace {
 
 /// Of coordinates up to 1 m, in a few operations [m].
@@ -226,4 +226,4 @@ TEST(ContinuousNormalProjectionDepth, DoesNotCreepAtRest) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::continuous_normal_projection_depth_test

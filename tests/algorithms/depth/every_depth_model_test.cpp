@@ -8,7 +8,7 @@
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_geometry.hpp"
 
-namespace hapbench {
+namespace hapbench::every_depth_model_test {
 namespace {
 
 class EveryDepthModel : public testing::TestWithParam<DepthModelEntry> {};
@@ -139,4 +139,4 @@ TEST_P(EveryDepthModel, LearnsNothingFromASecondStepWithoutContacts) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::every_depth_model_test

@@ -8,7 +8,7 @@
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_geometry.hpp"
 
-namespace hapbench {
+namespace hapbench::normal_projection_depth_test {
 namespace {
 
 using test::Vec3L;
@@ -165,4 +165,4 @@ TEST(NormalProjectionDepth, OfAZeroNormalIsZero) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::normal_projection_depth_test

@@ -5,7 +5,7 @@
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_geometry.hpp"
 
-namespace hapbench {
+namespace hapbench::shortest_distance_test {
 namespace {
 
 using test::Vec3L;
@@ -152,4 +152,4 @@ TEST(ShortestDistance, DepthsAloneLeaveGradientsUntouched) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::shortest_distance_test

@@ -5,7 +5,7 @@
 #include "algorithms/depth/shortest_distance.hpp"
 #include "tests/support/tool_geometry.hpp"
 
-namespace hapbench {
+namespace hapbench::surface_normal_test {
 namespace {
 
 TEST(SurfaceNormal, HasTheDepthOfShortestDistanceAndTheInwardNormalAsGradient) {
@@ -41,4 +41,4 @@ TEST(SurfaceNormal, DepthOnAFlatSaturatesAtTheToolsRadius) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::surface_normal_test

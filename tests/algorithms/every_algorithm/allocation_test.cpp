@@ -15,7 +15,7 @@
 #include "tests/support/setting.hpp"
 #include "tests/support/tool_kinds.hpp"
 
-namespace hapbench {
+namespace hapbench::allocation_test {
 namespace {
 
 // ---- The counter counts.
@@ -265,4 +265,4 @@ TEST_P(NoAllocationWith, ATool) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::allocation_test

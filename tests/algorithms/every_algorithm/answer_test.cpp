@@ -6,7 +6,7 @@
 
 #include "sim/contact/stiffness_tensor.hpp"
 
-namespace hapbench {
+namespace hapbench::answer_test {
 namespace {
 
 class Answer : public test::AlgorithmOnSceneTest {};
@@ -131,4 +131,4 @@ TEST(AngularDamping, InOneContactATurnIsTheVelocityOfTheToolThere) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::answer_test

@@ -2,7 +2,7 @@
 #include "tests/algorithms/every_algorithm/algorithm_on_scene.hpp"
 #include "tests/support/contact_sets.hpp"
 
-namespace hapbench {
+namespace hapbench::invariance_test {
 namespace {
 
 class Invariance : public test::AlgorithmOnSceneTest {
@@ -113,4 +113,4 @@ TEST_P(FarPoints, DoNotMatter) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::invariance_test

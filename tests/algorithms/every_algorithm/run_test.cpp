@@ -3,7 +3,7 @@
 #include "tests/support/bits.hpp"
 #include "tests/support/fakes.hpp"
 
-namespace hapbench {
+namespace hapbench::run_test {
 namespace {
 
 constexpr std::uint64_t kSteps = 200;
@@ -57,4 +57,4 @@ TEST_P(Run, WithReductionAndLocalAverageIsTheSameToTheBitAfterReset) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::run_test

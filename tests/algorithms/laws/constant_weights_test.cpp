@@ -5,7 +5,7 @@
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 
-namespace hapbench {
+namespace hapbench::constant_weights_test {
 namespace {
 
 // Sums of n <= 300 products, each rounded: below 2 n eps of the sum of magnitudes.
@@ -55,4 +55,4 @@ TEST(Mean, IsSoftWhereMostContactsPointElsewhere) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::constant_weights_test

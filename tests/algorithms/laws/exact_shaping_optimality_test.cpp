@@ -10,7 +10,7 @@
 #include "tests/support/scale.hpp"
 #include "tests/support/shaping_optimality.hpp"
 
-namespace hapbench {
+namespace hapbench::exact_shaping_optimality_test {
 namespace {
 
 constexpr std::size_t kSetsOfAFamily = 25000;
@@ -176,4 +176,4 @@ TEST_F(ExactShapingOnHardSets, TakesAboutTwoNewtonStepsWhereGradientsAreSpread) 
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::exact_shaping_optimality_test

@@ -11,7 +11,7 @@
 #include "tests/support/scale.hpp"
 #include "tests/support/shaping_optimality.hpp"
 
-namespace hapbench {
+namespace hapbench::exact_shaping_reference_test {
 namespace {
 
 constexpr double kShapingEps = kExactShapingEpsilon;
@@ -110,4 +110,4 @@ TEST(ExactShaping, IsCloseToManyIterationsOnGenericSets) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::exact_shaping_reference_test

@@ -9,7 +9,7 @@
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 
-namespace hapbench {
+namespace hapbench::exact_shaping_test {
 namespace {
 
 constexpr double kShapingEps = kExactShapingEpsilon;
@@ -152,4 +152,4 @@ TEST(ExactShaping, DoesNotRememberEarlierWeights) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::exact_shaping_test

@@ -4,7 +4,7 @@
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 
-namespace hapbench {
+namespace hapbench::highest_depth_test {
 namespace {
 
 LawForce evaluate(const std::vector<Vec3>& gradients, const std::vector<double>& depths = {}) {
@@ -68,4 +68,4 @@ TEST(HighestDepth, StoresTheEnergyOfItsOneSpring) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::highest_depth_test

@@ -7,7 +7,7 @@
 #include "tests/support/dense_laws.hpp"
 #include "tests/support/setting.hpp"
 
-namespace hapbench {
+namespace hapbench::least_squares_test {
 namespace {
 
 constexpr double kK = 20000.0;
@@ -147,4 +147,4 @@ TEST(LeastSquares, ReachesItsForceBoundInTheWedgeWhoseSingularValueIsTheRootOfEp
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::least_squares_test

@@ -7,7 +7,7 @@
 #include "algorithms/laws/exact_shaping.hpp"
 #include "tests/support/contact_sets.hpp"
 
-namespace hapbench {
+namespace hapbench::merged_shaping_test {
 namespace {
 
 constexpr double kK = 20'000.0;
@@ -146,4 +146,4 @@ TEST(MergedShaping, IsExactShapingWithOneContactAGroup) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::merged_shaping_test

@@ -4,7 +4,7 @@
 #include "algorithms/laws/laws.hpp"
 #include "tests/support/contact_sets.hpp"
 
-namespace hapbench {
+namespace hapbench::multiplicity_test {
 namespace {
 
 constexpr std::size_t kCopies = 4;
@@ -81,4 +81,4 @@ TEST(Multiplicity, StiffensTheSumFourfold) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::multiplicity_test

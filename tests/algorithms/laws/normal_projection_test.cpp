@@ -4,7 +4,7 @@
 #include "tests/support/bits.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace hapbench {
+namespace hapbench::normal_projection_test {
 namespace {
 
 /// Both kinds of normal projection differ from stiffness shaping in their depth models only.
@@ -30,4 +30,4 @@ TEST_P(NormalProjectionLaw, IsStiffnessShapingOnItsDepthModelWithTheSameIteratio
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::normal_projection_test

@@ -5,7 +5,7 @@
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 
-namespace hapbench {
+namespace hapbench::original_averaging_test {
 namespace {
 
 LawForce evaluate(ContactBuffer& contacts, double K = 1.0) {
@@ -91,4 +91,4 @@ TEST(OriginalAveraging, StiffnessIsOneAlongTheMeanGradientAndZeroAcross) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::original_averaging_test

@@ -9,7 +9,7 @@
 #include "tests/support/dense_laws.hpp"
 #include "tests/support/scale.hpp"
 
-namespace hapbench {
+namespace hapbench::shaped_stiffness_test {
 namespace {
 
 // Without iterations 20 roundings of a tensor below n = 100, 2e-13, in ratios of at least 1; with them the tensor is of
@@ -157,4 +157,4 @@ TEST(ShapedStiffness, IsNowhereStifferThanTheProvedBound) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::shaped_stiffness_test

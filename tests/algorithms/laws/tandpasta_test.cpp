@@ -6,7 +6,7 @@
 #include "tests/support/dense_laws.hpp"
 #include "tests/support/scale.hpp"
 
-namespace hapbench {
+namespace hapbench::tandpasta_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -109,4 +109,4 @@ TEST(Tandpasta, GivesNoForceForSpringsWithoutDepth) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::tandpasta_test

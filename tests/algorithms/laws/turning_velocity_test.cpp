@@ -10,7 +10,7 @@
 #include "tests/support/dense_laws.hpp"
 
 /// ForceLaw::turning_velocity: what the tool's turning adds to the normal velocity.
-namespace hapbench {
+namespace hapbench::turning_velocity_test {
 namespace {
 
 using MakeLaw = std::unique_ptr<ForceLaw> (*)(const RenderingConfig&);
@@ -122,4 +122,4 @@ TEST(MeanArm, IsWeighedAndZeroWithoutWeights) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::turning_velocity_test

@@ -5,7 +5,7 @@
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 
-namespace hapbench {
+namespace hapbench::virtual_coupling_test {
 namespace {
 
 constexpr double kK = 20000.0;
@@ -103,4 +103,4 @@ TEST(VirtualCoupling, IsNeverStifferThanTheCoupling) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::virtual_coupling_test

@@ -8,7 +8,7 @@
 #include "algorithms/laws/exact_shaping.hpp"
 #include "tests/support/setting.hpp"
 
-namespace hapbench {
+namespace hapbench::way_out_test {
 namespace {
 
 // Sums of a dozen products of numbers below 12, and up to 2000 updates that contract: some hundred eps.
@@ -113,4 +113,4 @@ TEST(WayOutOfACone, OfTheProxyIsFullyStiff) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::way_out_test

@@ -5,7 +5,7 @@
 #include "sim/contact/stiffness_tensor.hpp"
 #include "tests/support/contact_sets.hpp"
 
-namespace hapbench {
+namespace hapbench::nearest_allowed_test {
 namespace {
 
 /// Sum lambda_i u_i, and what rounding may make of it.
@@ -219,4 +219,4 @@ TEST(NearestAllowed, EndsOnNumbersThatAreNone) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::nearest_allowed_test

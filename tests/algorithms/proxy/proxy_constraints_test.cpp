@@ -7,7 +7,7 @@
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/tool/cylinder.hpp"
 
-namespace hapbench {
+namespace hapbench::proxy_constraints_test {
 namespace {
 
 const SpringSet kSprings{{{1, 0, 0}, {0, 0, 1}}, true};
@@ -68,4 +68,4 @@ TEST(ShellConstraints, AreThoseOfEveryPointWithinTheMargin) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::proxy_constraints_test

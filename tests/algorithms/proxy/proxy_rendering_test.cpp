@@ -14,7 +14,7 @@
 #include "tests/support/setting.hpp"
 #include "tests/support/tool_geometry.hpp"
 
-namespace hapbench {
+namespace hapbench::proxy_rendering_test {
 namespace {
 
 constexpr double kK = 20'000.0;
@@ -287,4 +287,4 @@ TEST(TypicalSpacing, IsThatOfALatticeAndOfALine) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::proxy_rendering_test

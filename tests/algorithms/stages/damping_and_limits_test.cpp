@@ -5,7 +5,7 @@
 #include "sim/contact/stiffness_tensor.hpp"
 #include "tests/support/contact_sets.hpp"
 
-namespace hapbench {
+namespace hapbench::damping_and_limits_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -145,4 +145,4 @@ TEST(DampingAndLimits, AToolAtRestFeelsTheSpringsAlone) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::damping_and_limits_test

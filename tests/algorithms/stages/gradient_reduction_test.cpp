@@ -9,7 +9,7 @@
 #include "tests/support/bits.hpp"
 #include "tests/support/contact_sets.hpp"
 
-namespace hapbench {
+namespace hapbench::gradient_reduction_test {
 namespace {
 
 /// A stage prepared for a scene of up to `points` contacts.
@@ -215,4 +215,4 @@ TEST(GradientReduction, AShuffledReductionIsTheAlgorithmInTheShuffledOrder) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::gradient_reduction_test

@@ -9,7 +9,7 @@
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/fakes.hpp"
 
-namespace hapbench {
+namespace hapbench::local_average_test {
 namespace {
 
 constexpr double kCell = 0.001;
@@ -180,4 +180,4 @@ TEST_F(LocalAverage, RefusesScenesWithoutAGrid) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::local_average_test

@@ -11,7 +11,7 @@
 #include "tests/support/fakes.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace hapbench {
+namespace hapbench::passivity_controller_test {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -297,4 +297,4 @@ TEST(PassivityController, ItsJacobianIsThatOfTheForceItRenders) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::passivity_controller_test

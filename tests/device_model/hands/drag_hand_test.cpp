@@ -6,7 +6,7 @@
 
 #include "sim/geometry/analytic_shells.hpp"
 
-namespace hapbench {
+namespace hapbench::drag_hand_test {
 namespace {
 
 constexpr double kSmoothing = 0.0005;
@@ -106,4 +106,4 @@ TEST(DragHand, PushesAlongTheNormalOfASphereWhereTheHandleIs) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::drag_hand_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hapbench {
+namespace hapbench::impedance_hand_test {
 namespace {
 
 TEST(ImpedanceHand, IsASpringAndADamperFromTargetToHandle) {
@@ -18,4 +18,4 @@ TEST(ImpedanceHand, DoesNotPushOnATargetItMovesWith) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::impedance_hand_test

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace hapbench {
+namespace hapbench::scripted_hands_test {
 namespace {
 
 TEST(NoHand, NeverPushes) {
@@ -41,4 +41,4 @@ TEST(PushDirection, LeansFromStraightDownTowardsItsAzimuth) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::scripted_hands_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace hapbench {
+namespace hapbench::tracking_hand_test {
 namespace {
 
 constexpr double kStep = 1.0 / 2048;
@@ -166,4 +166,4 @@ TEST(TrackingHand, AResetRepeatsEverythingBitForBitAndASeedChangesIt) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::tracking_hand_test

@@ -9,7 +9,7 @@
 
 #include "tests/results/files.hpp"
 
-namespace hapbench {
+namespace hapbench::atomic_file_test {
 namespace {
 
 using test::FileSizeLimit;
@@ -168,4 +168,4 @@ TEST(WriteFileAtomically, WritesTheContentsAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::atomic_file_test

@@ -10,7 +10,7 @@
 #include "results/allocations/allocations.hpp"
 #include "tests/results/files.hpp"
 
-namespace hapbench {
+namespace hapbench::csv_writer_test {
 namespace {
 
 using test::lines_of;
@@ -97,4 +97,4 @@ TEST(CsvWriter, KeepsAnErrorOfItsRowsForFinish) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::csv_writer_test

@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-namespace hapbench {
+namespace hapbench::json_text_test {
 namespace {
 
 using nlohmann::ordered_json;
@@ -65,4 +65,4 @@ TEST(JsonText, DoublesReadBackBitForBit) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::json_text_test

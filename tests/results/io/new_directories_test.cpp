@@ -4,7 +4,7 @@
 
 #include "tests/results/files.hpp"
 
-namespace hapbench {
+namespace hapbench::new_directories_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -41,4 +41,4 @@ TEST(NewDirectories, SaysWhenItCannot) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::new_directories_test

@@ -10,7 +10,7 @@
 
 #include "tests/results/files.hpp"
 
-namespace hapbench {
+namespace hapbench::stale_temporaries_test {
 namespace {
 
 using test::TemporaryDirectory;
@@ -109,4 +109,4 @@ TEST(StaleTemporaries, OfAFileThatIsNoDirectoryThrowNamingIt) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::stale_temporaries_test

@@ -4,7 +4,7 @@
 
 #include "tests/results/rows.hpp"
 
-namespace hapbench {
+namespace hapbench::approach_test {
 namespace {
 
 /// The approach of a tool whose tip centre is at these places, a second apart, to the cube from -1 to 1.
@@ -34,4 +34,4 @@ TEST(Approach, KeepsTheFirstOfTheClosestRows) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::approach_test

@@ -12,7 +12,7 @@
 #include "sim/core/random.hpp"
 #include "tests/results/rows.hpp"
 
-namespace hapbench {
+namespace hapbench::contact_forces_test {
 namespace {
 
 using Phase = ContactForceObserver::Phase;
@@ -214,4 +214,4 @@ TEST(ContactForces, AreObservedWithoutAllocating) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::contact_forces_test

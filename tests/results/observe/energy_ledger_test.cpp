@@ -13,7 +13,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/setting.hpp"
 
-namespace hapbench {
+namespace hapbench::energy_ledger_test {
 namespace {
 
 using test::Setting;
@@ -245,4 +245,4 @@ TEST(EnergyLedger, KeepsTheLargestEventsInOrder) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::energy_ledger_test

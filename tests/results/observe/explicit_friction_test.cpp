@@ -5,7 +5,7 @@
 #include "results/observe/metrics.hpp"
 #include "tests/results/rows.hpp"
 
-namespace hapbench {
+namespace hapbench::explicit_friction_test {
 namespace {
 
 TEST(ExplicitFrictionLimit, OfTheThesisIs79NewtonsInThePlaneAnd40OnThePlatform) {
@@ -73,4 +73,4 @@ TEST(ExplicitFriction, OfMergedRunsIsTheSumAndTheFirstRunsFirst) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::explicit_friction_test

@@ -9,7 +9,7 @@
 #include "results/allocations/allocations.hpp"
 #include "sim/core/random.hpp"
 
-namespace hapbench {
+namespace hapbench::force_fidelity_test {
 namespace {
 
 constexpr double kDt = 0.001;
@@ -156,4 +156,4 @@ TEST(ForceFidelity, AllocatesNothingInARow) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::force_fidelity_test

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-namespace hapbench {
+namespace hapbench::high_pass_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -87,4 +87,4 @@ TEST(HighPass, TreatsComponentsAlike) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::high_pass_test

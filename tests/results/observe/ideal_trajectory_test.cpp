@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace hapbench {
+namespace hapbench::ideal_trajectory_test {
 namespace {
 
 const BlockWithHole kBlock;
@@ -113,4 +113,4 @@ TEST(IdealTrajectory, MeansAndExtremesAreOverTheRows) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::ideal_trajectory_test

@@ -9,7 +9,7 @@
 
 #include "sim/core/random.hpp"
 
-namespace hapbench {
+namespace hapbench::interpenetration_test {
 namespace {
 
 constexpr double kRounding = 1e-11;  // what the header promises
@@ -150,4 +150,4 @@ TEST(Interpenetration, DoesNotDependOnTheAzimuth) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::interpenetration_test

@@ -5,7 +5,7 @@
 #include "results/summary/metric_list.hpp"
 #include "tests/results/rows.hpp"
 
-namespace hapbench {
+namespace hapbench::lost_torque_test {
 namespace {
 
 TEST(LostTorque, IsAveragedOverTheRowsInContact) {
@@ -34,4 +34,4 @@ TEST(LostTorque, HasNoValueWithoutContact) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::lost_torque_test

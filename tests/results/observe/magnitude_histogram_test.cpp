@@ -9,7 +9,7 @@
 
 #include "sim/core/random.hpp"
 
-namespace hapbench {
+namespace hapbench::magnitude_histogram_test {
 namespace {
 
 MagnitudeHistogram histogram_of(const std::vector<double>& numbers) {
@@ -77,4 +77,4 @@ TEST(MagnitudeHistogram, OfSeveralSetsIsTheSumInAnyOrder) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::magnitude_histogram_test

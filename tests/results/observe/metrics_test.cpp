@@ -11,7 +11,7 @@
 #include "results/allocations/allocations.hpp"
 #include "tests/results/rows.hpp"
 
-namespace hapbench {
+namespace hapbench::metrics_test {
 namespace {
 
 using test::contacts_along;
@@ -247,4 +247,4 @@ TEST(MetricsObserver, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::metrics_test

@@ -8,7 +8,7 @@
 #include "results/allocations/allocations.hpp"
 #include "tests/support/fakes.hpp"
 
-namespace hapbench {
+namespace hapbench::passivity_observer_test {
 namespace {
 
 constexpr double kDt = 0.5;
@@ -94,4 +94,4 @@ TEST(PassivityObserver, WantsSpringsOnlyAndAllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::passivity_observer_test

@@ -6,7 +6,7 @@
 #include "results/observe/metrics.hpp"
 #include "tests/results/rows.hpp"
 
-namespace hapbench {
+namespace hapbench::reduction_jumps_test {
 namespace {
 
 ContactBuffer kept(const std::vector<std::uint32_t>& points) {
@@ -79,4 +79,4 @@ TEST(ReductionJumps, AreAMetricOfRunsWithAReductionOnly) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::reduction_jumps_test

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace hapbench {
+namespace hapbench::step_latency_test {
 namespace {
 
 using Times = std::vector<std::uint64_t>;
@@ -106,4 +106,4 @@ TEST(StepLatency, GivesMediansOverTheRun) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::step_latency_test

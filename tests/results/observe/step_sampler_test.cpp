@@ -7,7 +7,7 @@
 
 #include "tests/results/rows.hpp"
 
-namespace hapbench {
+namespace hapbench::step_sampler_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -47,4 +47,4 @@ TEST(StepSampler, TakesAFewOfManySteps) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::step_sampler_test

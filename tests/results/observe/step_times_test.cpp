@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-namespace hapbench {
+namespace hapbench::step_times_test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -77,4 +77,4 @@ TEST(StepTimes, AStepDoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::step_times_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace hapbench {
+namespace hapbench::target_metrics_test {
 namespace {
 
 TargetRow row(std::size_t subject, std::size_t place, bool removed, double time, std::uint64_t rows, double force) {
@@ -87,4 +87,4 @@ TEST(TargetMetrics, MeansAreOverTheRowsOnTheTarget) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::target_metrics_test

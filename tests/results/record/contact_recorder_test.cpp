@@ -6,7 +6,7 @@
 #include "tests/results/files.hpp"
 #include "tests/results/rows.hpp"
 
-namespace hapbench {
+namespace hapbench::contact_recorder_test {
 namespace {
 
 using test::read_file;
@@ -52,4 +52,4 @@ TEST(ContactRecorder, AllocatesNothingInAStep) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::contact_recorder_test

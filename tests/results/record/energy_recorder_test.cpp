@@ -6,7 +6,7 @@
 #include "tests/results/files.hpp"
 #include "tests/results/rows.hpp"
 
-namespace hapbench {
+namespace hapbench::energy_recorder_test {
 namespace {
 
 using test::read_file;
@@ -66,4 +66,4 @@ TEST(EnergyRecorder, AllocatesNothingInAStep) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::energy_recorder_test

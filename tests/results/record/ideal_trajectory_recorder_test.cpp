@@ -8,7 +8,7 @@
 #include "tests/results/files.hpp"
 #include "tests/results/rows.hpp"
 
-namespace hapbench {
+namespace hapbench::ideal_trajectory_recorder_test {
 namespace {
 
 using test::TemporaryDirectory;
@@ -53,4 +53,4 @@ TEST(IdealTrajectoryRecorder, AllocatesNothingInAStep) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::ideal_trajectory_recorder_test

@@ -11,7 +11,7 @@
 #include "tests/results/files.hpp"
 #include "tests/results/rows.hpp"
 
-namespace hapbench {
+namespace hapbench::ratio_recorder_test {
 namespace {
 
 using test::cells_of;
@@ -152,4 +152,4 @@ TEST(RatioRecorder, AllocatesNothingInAStep) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::ratio_recorder_test

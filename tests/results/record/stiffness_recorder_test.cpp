@@ -8,7 +8,7 @@
 #include "tests/results/files.hpp"
 #include "tests/results/rows.hpp"
 
-namespace hapbench {
+namespace hapbench::stiffness_recorder_test {
 namespace {
 
 using test::cells_of;
@@ -68,4 +68,4 @@ TEST(StiffnessRecorder, AllocatesNothingInAStep) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::stiffness_recorder_test

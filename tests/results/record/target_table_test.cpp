@@ -4,7 +4,7 @@
 
 #include "tests/results/files.hpp"
 
-namespace hapbench {
+namespace hapbench::target_table_test {
 namespace {
 
 TEST(TargetTable, WritesALineForEachTarget) {
@@ -27,4 +27,4 @@ TEST(TargetTable, WritesALineForEachTarget) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::target_table_test

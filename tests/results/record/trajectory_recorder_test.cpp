@@ -10,7 +10,7 @@
 #include "tests/results/files.hpp"
 #include "tests/results/rows.hpp"
 
-namespace hapbench {
+namespace hapbench::trajectory_recorder_test {
 namespace {
 
 using test::lines_of;
@@ -140,4 +140,4 @@ TEST(TrajectoryRecorder, WritesTheQuaternionWhoseFirstNumberIsNotNegative) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::trajectory_recorder_test

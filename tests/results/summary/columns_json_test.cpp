@@ -13,7 +13,7 @@
 #include "results/record/target_table.hpp"
 #include "results/record/trajectory_recorder.hpp"
 
-namespace hapbench {
+namespace hapbench::columns_json_test {
 namespace {
 
 TEST(ColumnsJson, HoldsTheColumnsOfEachFileAndTheMetrics) {
@@ -73,4 +73,4 @@ TEST(Metrics, AreDocumentedWithTheUnitTheyAreNamedAfter) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::columns_json_test

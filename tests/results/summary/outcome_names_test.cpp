@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hapbench {
+namespace hapbench::outcome_names_test {
 namespace {
 
 TEST(OutcomeNames, AreThoseOfTheScenarioFormat) {
@@ -26,4 +26,4 @@ TEST(OutcomeNames, DoNotIncludeOtherWords) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::outcome_names_test

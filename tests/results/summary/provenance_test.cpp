@@ -5,7 +5,7 @@
 #include <regex>
 #include <sstream>
 
-namespace hapbench {
+namespace hapbench::provenance_test {
 namespace {
 
 TEST(Provenance, NamesTheBuild) {
@@ -33,4 +33,4 @@ TEST(Provenance, CpuModelIsUnknownWhenCpuinfoHasNone) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::provenance_test

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace hapbench {
+namespace hapbench::summary_test {
 namespace {
 
 RunSummary example() {
@@ -251,4 +251,4 @@ TEST(Summary, WithTheRealProvenanceDoesNotNameTheInstructionSet) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::summary_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hapbench {
+namespace hapbench::timing_test {
 namespace {
 
 const Provenance kProvenance = {.version = "1.2.3",
@@ -62,4 +62,4 @@ TEST(InstructionSet, IsKnownOnX86) {
 #endif
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::timing_test

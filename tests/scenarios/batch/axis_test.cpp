@@ -8,7 +8,7 @@
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench {
+namespace hapbench::axis_test {
 namespace {
 
 using Values = std::vector<std::string>;
@@ -126,4 +126,4 @@ TEST(Axis, RefusesTooManyValuesInAFewWords) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::axis_test

@@ -10,7 +10,7 @@
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-namespace hapbench {
+namespace hapbench::batch_plan_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -139,4 +139,4 @@ TEST_F(BatchPlanOf, RunsWritesTheSameFilesWhateverTheJobs) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::batch_plan_test

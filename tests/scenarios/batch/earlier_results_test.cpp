@@ -5,7 +5,7 @@
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 
-namespace hapbench {
+namespace hapbench::earlier_results_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,4 +80,4 @@ TEST_F(EarlierResults, AreNoneWhereTheListCannotBeRead) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::earlier_results_test

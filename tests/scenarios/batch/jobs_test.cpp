@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace hapbench {
+namespace hapbench::jobs_test {
 namespace {
 
 TEST(ForEachJob, DoesEachOnceOnAnyNumberOfThreads) {
@@ -43,4 +43,4 @@ TEST(ForEachJob, BeginsNothingAfterAFailure) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::jobs_test

@@ -8,7 +8,7 @@
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench {
+namespace hapbench::journal_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -187,4 +187,4 @@ TEST_F(JournalFile, OnAFullDiskIsAnErrorThatNamesItAndKeepsWhatWasWritten) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::journal_test

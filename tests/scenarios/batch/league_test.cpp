@@ -7,7 +7,7 @@
 #include "scenarios/batch/league_files.hpp"
 #include "tests/results/files.hpp"
 
-namespace hapbench {
+namespace hapbench::league_test {
 namespace {
 
 using Values = std::vector<std::optional<double>>;
@@ -186,4 +186,4 @@ TEST(LeagueFile, HasARowForEachScenarioAlgorithmAndMetric) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::league_test

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-namespace hapbench {
+namespace hapbench::parallel_for_test {
 namespace {
 
 std::vector<std::size_t> numbers_to(std::size_t n) {
@@ -103,4 +103,4 @@ TEST(ForEachRunInParallel, HasAsManyThreadsAsJobsEvenOnASmallerMachine) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::parallel_for_test

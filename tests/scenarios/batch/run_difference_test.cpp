@@ -9,7 +9,7 @@
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench {
+namespace hapbench::run_difference_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -177,4 +177,4 @@ TEST_F(Differences, NeedFoldersOfResultsWithSomethingInCommon) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::run_difference_test

@@ -10,7 +10,7 @@
 #include "tests/scenarios/batch/sweeps.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench {
+namespace hapbench::run_sweep_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -162,4 +162,4 @@ TEST_F(RunSweep, TakesNoRowsFromItsJournalThatAreNotItsOwn) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::run_sweep_test

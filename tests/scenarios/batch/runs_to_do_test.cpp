@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace hapbench {
+namespace hapbench::runs_to_do_test {
 namespace {
 
 using Numbers = std::vector<std::size_t>;
@@ -46,4 +46,4 @@ TEST(RunsToDo, OfASampleFollowEachOtherByTheListedFields) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::runs_to_do_test

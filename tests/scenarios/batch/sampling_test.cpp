@@ -11,7 +11,7 @@
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench {
+namespace hapbench::sampling_test {
 namespace {
 
 constexpr SamplingMethod kMethods[] = {SamplingMethod::latin_hypercube, SamplingMethod::sobol, SamplingMethod::random};
@@ -157,4 +157,4 @@ TEST(SweepPoints, OfALatinHypercubeGiveListedValuesEqualShares) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::sampling_test

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace hapbench {
+namespace hapbench::statistics_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -46,4 +46,4 @@ TEST(MeanOf, IsNoNumberWithoutValues) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::statistics_test

@@ -10,7 +10,7 @@
 #include "tests/scenarios/batch/sweeps.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench {
+namespace hapbench::sweep_plan_test {
 namespace {
 
 using test::minimal_scenario;
@@ -141,4 +141,4 @@ TEST(SweepPlan, RefusesBadNamedFilesOfAnyRun) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::sweep_plan_test

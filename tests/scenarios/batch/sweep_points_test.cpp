@@ -5,7 +5,7 @@
 #include "scenarios/batch/shard.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench {
+namespace hapbench::sweep_points_test {
 namespace {
 
 using Values = std::vector<std::string>;
@@ -62,4 +62,4 @@ TEST(Shard, SharesOutEveryRunOnce) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::sweep_points_test

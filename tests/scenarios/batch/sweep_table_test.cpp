@@ -8,7 +8,7 @@
 #include "tests/scenarios/support/mutation.hpp"
 
 /// Tables of shards read back; whole sweeps are merged in program/sweep_command_test.cpp.
-namespace hapbench {
+namespace hapbench::sweep_table_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -167,4 +167,4 @@ TEST_F(ShardTables, MustBeAllThoseOfOneSweep) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::sweep_table_test

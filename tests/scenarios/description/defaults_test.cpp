@@ -6,7 +6,7 @@
 #include "tests/scenarios/support/scenarios.hpp"
 
 /// What is filled in where a scenario says nothing: the thesis's numbers for that kind of scene (Tables A.1, A.2, B.1).
-namespace hapbench {
+namespace hapbench::defaults_test {
 namespace {
 
 struct Expected {
@@ -266,4 +266,4 @@ TEST(LocalAverage, NeedsAGrid) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::defaults_test

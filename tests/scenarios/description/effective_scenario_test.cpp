@@ -9,7 +9,7 @@
 #include "tests/scenarios/support/scenarios.hpp"
 
 /// The effective scenario, every default filled in, is a scenario file that means the same.
-namespace hapbench {
+namespace hapbench::effective_scenario_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -144,4 +144,4 @@ TEST(ScenarioHash, DiffersWhenAnyFieldDiffers) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::effective_scenario_test

@@ -11,7 +11,7 @@
 #include "tests/scenarios/support/scenarios.hpp"
 
 /// "extends"
-namespace hapbench {
+namespace hapbench::extends_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -146,4 +146,4 @@ TEST_F(Extends, AcceptsItselfInNoJsonInMemory) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::extends_test

@@ -11,7 +11,7 @@
 #include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-namespace hapbench {
+namespace hapbench::named_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -81,4 +81,4 @@ TEST_F(NamedFilesOfAScenario, AreRefusedEveryTime) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::named_files_test

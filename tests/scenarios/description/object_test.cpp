@@ -3,7 +3,7 @@
 #include "tests/scenarios/support/visitors.hpp"
 
 /// Objects with named fields.
-namespace hapbench {
+namespace hapbench::object_test {
 namespace {
 
 struct Inner {
@@ -218,4 +218,4 @@ TEST(Object, LeavesFieldsWithoutADefaultOutOfTheDefaultsOfOthers) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::object_test

@@ -8,7 +8,7 @@
 #include "tests/scenarios/support/errors.hpp"
 
 /// `--set path=value`
-namespace hapbench {
+namespace hapbench::override_test {
 namespace {
 
 constexpr const char* kScenario = R"({
@@ -136,4 +136,4 @@ TEST_F(Override, NestedDeeplyIsRefusedLikeAnyUnknownField) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::override_test

@@ -7,7 +7,7 @@
 #include "scenarios/input/json_file.hpp"
 
 /// How messages name a place (JSON pointer, RFC 6901) and show a value.
-namespace hapbench {
+namespace hapbench::pointer_test {
 namespace {
 
 TEST(Pointer, EscapesTildeAndSlashAsRfc6901Says) {
@@ -57,4 +57,4 @@ TEST(ShownValue, IsAsciiEvenForBytesThatAreNoText) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::pointer_test

@@ -15,7 +15,7 @@
 
 /// The typed reader and the JSON Schema it emits say the same about every document, judged by a validator that is not
 /// ours.
-namespace hapbench {
+namespace hapbench::schema_agreement_test {
 namespace {
 
 using test::NamedScenario;
@@ -154,4 +154,4 @@ TEST(ScenarioSchema, RejectsNothingThatTheReaderAcceptsAfterManyChanges) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::schema_agreement_test

@@ -5,7 +5,7 @@
 #include "tests/scenarios/support/visitors.hpp"
 
 /// Objects whose field "type" chooses the other fields.
-namespace hapbench {
+namespace hapbench::tagged_test {
 namespace {
 
 struct Ball {
@@ -129,4 +129,4 @@ TEST(TwoForms, AreToldApartByTheirJson) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::tagged_test

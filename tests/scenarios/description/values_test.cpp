@@ -6,7 +6,7 @@
 #include "tests/scenarios/support/visitors.hpp"
 
 /// Numbers, names, vectors, lists and null: as they are read, written and described by a schema.
-namespace hapbench {
+namespace hapbench::values_test {
 namespace {
 
 enum class Tip { flat, round, unnamed };
@@ -199,4 +199,4 @@ TEST(Values, HaveSchemas) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::values_test

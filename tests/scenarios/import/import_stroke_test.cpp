@@ -5,41 +5,17 @@
 
 #include <cmath>
 
-#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/motion_file.hpp"
 #include "sim/core/random.hpp"
-#include "tests/results/files.hpp"
-#include "tests/scenarios/support/mutation.hpp"
-#include "tests/support/scale.hpp"
+#include "tests/scenarios/import/recordings.hpp"
 
-namespace hapbench {
+namespace hapbench::import_stroke_test {
 namespace {
 
 using Eigen::Quaterniond;
-
-constexpr const char* kFile = "rec.csv";
-const std::filesystem::path kScenarios = HAPBENCH_SCENARIOS;
-
-ImportOptions time_and_position() {
-  ImportOptions options;
-  set_column(options, "time", {"1"});
-  set_column(options, "position", {"2"});
-  return options;
-}
-
-ImportedStroke imported(const std::string& text, const ImportOptions& options) {
-  return import_stroke(text, kFile, options);
-}
-
-/// Empty when nothing is refused.
-std::string refusal(const std::string& text, const ImportOptions& options = time_and_position()) {
-  try {
-    imported(text, options);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
+using test::imported;
+using test::refusal;
+using test::time_and_position;
 
 constexpr const char* kStraight = "0,0,0,0\n0.01,0.001,0,0\n0.02,0.002,0,0\n0.03,0.003,0,0\n";
 
@@ -237,165 +213,5 @@ TEST(ImportStroke, WritesStrokesThatScenariosRead) {
   EXPECT_FALSE(force->at(0.2)) << "nothing was measured then";
 }
 
-// ---- HAPI logs
-
-template <class Number>
-std::string hapi_binary(const std::vector<const char*>& names, const std::vector<std::vector<double>>& samples) {
-  std::string bytes;
-  for (const char* name : names) bytes += std::string(name) + '\0';
-  bytes += '\0';
-  for (const auto& sample : samples) {
-    for (const double value : sample) {
-      const auto number = static_cast<Number>(value);
-      bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
-    }
-  }
-  return bytes;
-}
-
-ImportOptions hapi() {
-  ImportOptions options;
-  apply_preset(options, (kScenarios / "import/presets/hapi.json").string());
-  return options;
-}
-
-const std::vector<std::vector<double>> kHapiSamples = {{0.5, 0.001, 0.002, 0.003, 0, 1, 0, 0.25, 1, 2, 3},
-                                                       {0.51, 0.001, 0.002, 0.004, 0, 1, 0, 0.5, 1, 2, 4}};
-
-TEST(ImportHapi, TextAndBinaryAreTheSameStroke) {
-  const std::vector<const char*> names = {"TIME", "POSITION", "ORIENTATION", "FORCE"};
-  std::string text = "TIME POSITION ORIENTATION FORCE\n";
-  for (const auto& sample : kHapiSamples) {
-    for (const double value : sample) text += fmt::format("{} ", value);
-    text += "\r\n";
-  }
-  ImportOptions options = hapi();
-  const StrokeSamples expected = imported(text, options).samples;
-  ASSERT_EQ(expected.size(), 2u);
-  EXPECT_NEAR((expected.position[1] - Vec3(0.001, -0.004, 0.002)).norm(), 0.0, 1e-15);
-  EXPECT_EQ(expected.force[1], Vec3(1, -4, 2));
-  EXPECT_TRUE(expected.has_roll);
-  set_format(options, "hapi-binary");
-  EXPECT_EQ(stroke_text(imported(hapi_binary<double>(names, kHapiSamples), options).samples), stroke_text(expected));
-  options.floats = true;
-  const auto floats = imported(hapi_binary<float>(names, kHapiSamples), options).samples;
-  EXPECT_NEAR((floats.position[1] - expected.position[1]).norm(), 0.0, 1e-9);
-}
-
-TEST(ImportHapi, ButtonsAreFourBytes) {
-  ImportOptions options = hapi();
-  set_format(options, "hapi-binary");
-  std::string bytes = hapi_binary<double>({"BUTTONS", "TIME", "POSITION"}, {});
-  for (const double t : {1.0, 1.25}) {
-    const std::int32_t button = 3;
-    bytes.append(reinterpret_cast<const char*>(&button), sizeof button);
-    bytes += hapi_binary<double>({}, {{t, 0.001 * t, 0.002, 0.003}}).substr(1);
-  }
-  const auto [stroke, report] = imported(bytes, options);
-  EXPECT_EQ(stroke.time[1], 0.25);
-  EXPECT_TRUE(stroke.force.empty());
-  EXPECT_FALSE(stroke.has_roll);
-  EXPECT_EQ(report.warnings.size(), 2u) << "neither orientation nor force";
-}
-
-TEST(ImportHapi, ACutOffLogLosesItsLastSampleWithAWord) {
-  ImportOptions options = hapi();
-  set_format(options, "hapi-binary");
-  std::string bytes = hapi_binary<double>({"TIME", "POSITION"}, {{0, 0, 0, 0}, {1, 0, 0, 0}, {2, 0, 0, 0}});
-  bytes.resize(bytes.size() - 3);
-  options.longest_gap = 2.0;
-  const auto [stroke, report] = imported(bytes, options);
-  EXPECT_EQ(stroke.size(), 2u);
-  ASSERT_FALSE(report.warnings.empty());
-  EXPECT_NE(report.warnings[2].find("behind sample 2 are 29 bytes"), std::string::npos) << report.warnings[2];
-}
-
-TEST(ImportHapi, RefusesWhatIsNoLog) {
-  ImportOptions options = hapi();
-  EXPECT_EQ(refusal("TIME POSITON\n0 0 0 0\n", options).find("rec.csv, line 1: unknown field \"POSITON\""), 0u);
-  EXPECT_EQ(refusal("TIME TIME\n0 0\n", options), "rec.csv, line 1: field \"TIME\" twice; allowed: once");
-  set_format(options, "hapi-binary");
-  EXPECT_NE(
-      refusal("TIME POSITION\n0 0 0 0\n0 0 0 0\n0 0 0 0\n0 0 0 0\n0 0 0 0\n0 0 0 0\n", options).find("--format hapi"),
-      std::string::npos);
-  EXPECT_NE(refusal(std::string(1, '\0'), options).find("no field names"), std::string::npos);
-}
-
-TEST(ImportPreset, AllThatComeWithTheProgramAreRead) {
-  std::size_t presets = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(kScenarios / "import/presets")) {
-    ImportOptions options;
-    apply_preset(options, entry.path().string());
-    EXPECT_TRUE(options.columns.contains("position")) << entry.path();
-    ++presets;
-  }
-  EXPECT_GE(presets, 4u);
-}
-
-TEST(ImportPreset, OfTwoNamesTheOneInTheFileCounts) {
-  ImportOptions options;
-  apply_preset(options, (kScenarios / "import/presets/falcon_traces.json").string());
-  const auto stroke = imported("h_pos_x,h_pos_y,h_pos_z\n0,0,0\n0.001,0,0\n", options).samples;
-  EXPECT_EQ(stroke.time[1], 0.001);
-}
-
-// ---- Whatever the bytes have become, they are read or refused.
-
-void expect_read_or_refused(const std::string& bytes, const ImportOptions& options) {
-  try {
-    const auto [stroke, report] = imported(bytes, options);
-    for (std::size_t i = 0; i < stroke.size(); ++i) {
-      ASSERT_TRUE(i == 0 || stroke.time[i - 1] < stroke.time[i]);
-      ASSERT_NEAR(stroke.turn[i].norm(), 1.0, 1e-12);
-      ASSERT_TRUE(stroke.position[i].allFinite());
-    }
-  } catch (const InputError& error) {
-    const std::string message = error.what();
-    EXPECT_EQ(message.find_first_of(std::string("\n\r\0\x1b", 4)), std::string::npos) << message;
-    EXPECT_LT(message.size(), 3000u);
-  }
-}
-
-TEST(ImportFuzz, LogsAreReadOrRefused) {
-  const std::string text = test::read_file(kScenarios / "examples/data/wipe.hapi.txt").substr(0, 2000);
-  const std::string binary = hapi_binary<double>({"TIME", "POSITION", "ORIENTATION", "FORCE"}, kHapiSamples);
-  Random random(4);
-  for (std::size_t i = 0; i < test::cases(4000) && !testing::Test::HasFailure(); ++i) {
-    ImportOptions options = hapi();
-    options.skip_bad_rows = i % 2 == 0;
-    options.longest_gap = 1e9;
-    if (i % 3 == 0) options.smoothing = Smoothing{3, 1};
-    expect_read_or_refused(test::mutated_text(text, random), options);
-    set_format(options, "hapi-binary");
-    options.floats = i % 5 == 0;
-    expect_read_or_refused(test::mutated_text(binary, random), options);
-    expect_read_or_refused(binary.substr(0, random.below(binary.size())), options);
-    std::string garbage;
-    for (std::uint64_t n = random.below(300); n > 0; --n) garbage += static_cast<char>(random.below(256));
-    for (const char* format : {"csv", "traj", "hapi", "hapi-binary"}) {
-      set_format(options, format);
-      expect_read_or_refused(garbage, options);
-    }
-  }
-}
-
-TEST(ImportFuzz, StrokesWithForcesAreReadOrRefused) {
-  const std::string text = test::read_file(kScenarios / "examples/data/wipe.csv").substr(0, 3000);
-  Random random(5);
-  std::size_t accepted = 0;
-  for (std::size_t i = 0; i < test::cases(4000) && !testing::Test::HasFailure(); ++i) {
-    const std::string mutant = test::mutated_text(text.substr(0, text.rfind('\n') + 1), random);
-    try {
-      if (const auto force = stroke_in(mutant, "stroke.csv").force) {
-        EXPECT_TRUE(!force->at(0.01) || force->at(0.01)->allFinite());
-        ++accepted;
-      }
-    } catch (const InputError& error) {
-      EXPECT_LT(std::string(error.what()).size(), 3000u);
-    }
-  }
-  EXPECT_GT(accepted, test::cases(4000) / 50);
-}
-
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::import_stroke_test

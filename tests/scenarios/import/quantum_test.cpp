@@ -6,7 +6,7 @@
 
 #include "sim/core/random.hpp"
 
-namespace hapbench {
+namespace hapbench::quantum_test {
 namespace {
 
 std::vector<double> values(std::size_t count, double quantum, double offset) {
@@ -46,4 +46,4 @@ TEST(Quantum, OfNumbersKeptInFullIsNone) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::quantum_test

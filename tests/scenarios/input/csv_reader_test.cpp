@@ -4,7 +4,7 @@
 
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench {
+namespace hapbench::csv_reader_test {
 namespace {
 
 const std::filesystem::path kFile = "t.csv";
@@ -44,4 +44,4 @@ TEST(CsvReader, RefusesRowsOfAnotherLength) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::csv_reader_test

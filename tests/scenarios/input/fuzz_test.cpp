@@ -19,7 +19,7 @@
 
 /// Valid files with a few bytes changed at random. Whatever they have become, they are read or refused: no crash, no
 /// other exception, and nothing half right comes through.
-namespace hapbench {
+namespace hapbench::fuzz_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -147,4 +147,4 @@ TEST(Fuzz, GarbageIsRefused) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::fuzz_test

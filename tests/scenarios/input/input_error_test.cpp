@@ -7,7 +7,7 @@
 
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench {
+namespace hapbench::input_error_test {
 namespace {
 
 const std::vector<std::string> kNames = {"stiffness_N_per_m", "damping_ratio", "mass_kg", "mu_s_N_s_per_m", "mean"};
@@ -89,4 +89,4 @@ TEST(QuotedList, NamesAllOrSaysNothing) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::input_error_test

@@ -8,7 +8,7 @@
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench {
+namespace hapbench::json_file_test {
 namespace {
 
 std::string refusal_of(const std::string& text) {
@@ -169,4 +169,4 @@ TEST(ReadTextFile, ReadsUpToItsLimitAndNoFurther) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::json_file_test

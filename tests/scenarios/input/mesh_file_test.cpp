@@ -14,7 +14,7 @@
 #include "tests/scenarios/support/mesh_texts.hpp"
 #include "tests/support/meshes.hpp"
 
-namespace hapbench {
+namespace hapbench::mesh_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -275,4 +275,4 @@ TEST_F(MeshFile, LeavesNothingBehindAndPrintsNothing) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::mesh_file_test

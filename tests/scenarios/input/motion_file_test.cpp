@@ -4,7 +4,7 @@
 
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench {
+namespace hapbench::motion_file_test {
 namespace {
 
 const std::string kHeader = "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n";
@@ -85,4 +85,4 @@ TEST(MotionFileOfQuaternions, TheHeaderSaysWhatMayComeAfterThePosition) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::motion_file_test

@@ -7,7 +7,7 @@
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench {
+namespace hapbench::number_table_test {
 namespace {
 
 class NumberTableFile : public testing::Test {
@@ -92,4 +92,4 @@ TEST_F(NumberTableFile, ThatIsMissingOrADirectoryIsRefused) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::number_table_test

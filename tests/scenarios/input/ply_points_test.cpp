@@ -9,7 +9,7 @@
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench {
+namespace hapbench::ply_points_test {
 namespace {
 
 const std::string kSixFloats =
@@ -173,4 +173,4 @@ TEST_F(PlyPoints, AreRefusedWithCellsThatAreNoFiniteNumbers) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::ply_points_test

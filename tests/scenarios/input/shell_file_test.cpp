@@ -10,7 +10,7 @@
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench {
+namespace hapbench::shell_file_test {
 namespace {
 
 class ShellFile : public testing::Test {
@@ -104,4 +104,4 @@ TEST_F(ShellFile, NeedsAKnownExtension) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::shell_file_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hapbench {
+namespace hapbench::text_lines_test {
 namespace {
 
 TEST(WordsOf, AreSeparatedByAnyWhiteSpace) {
@@ -38,4 +38,4 @@ TEST(LineReader, GivesLinesWithTheirNumbersAndLeavesTheRest) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::text_lines_test

@@ -11,7 +11,7 @@
 
 /// Every bad input, given to the real program: exit status 2, one line on standard error that names file, place and
 /// what is allowed, nothing written, soon, in bounded memory.
-namespace hapbench {
+namespace hapbench::bad_input_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -120,4 +120,4 @@ TEST_F(BadScenarioArgument, AmongGoodOnesStopsThemAll) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::bad_input_test

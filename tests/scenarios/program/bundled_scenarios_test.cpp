@@ -14,7 +14,7 @@
 #include "tests/scenarios/support/shortened.hpp"
 
 /// Every scenario that comes with the program, run by the program.
-namespace hapbench {
+namespace hapbench::bundled_scenarios_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -146,4 +146,4 @@ TEST(Trajectory, HasTheShortestNumbersThatReadBackTheSame) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::bundled_scenarios_test

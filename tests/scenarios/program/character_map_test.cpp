@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hapbench {
+namespace hapbench::character_map_test {
 namespace {
 
 TEST(CharacterMap, HasTheFirstRowBelow) {
@@ -14,4 +14,4 @@ TEST(CharacterMap, HasTheFirstRowBelow) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::character_map_test

@@ -7,7 +7,7 @@
 #include "tests/scenarios/support/program.hpp"
 
 /// Comparisons of several scenarios or seeds.
-namespace hapbench {
+namespace hapbench::compare_batch_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -134,4 +134,4 @@ TEST_F(CompareBatch, TellsWhatIsWrongBeforeAnythingRuns) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::compare_batch_test

@@ -6,7 +6,7 @@
 #include "tests/scenarios/support/program.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-namespace hapbench {
+namespace hapbench::compare_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -138,4 +138,4 @@ TEST_F(CompareCommand, RefusesOneAlgorithmTwice) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::compare_command_test

@@ -20,7 +20,7 @@
 #include "tests/scenarios/support/scenarios.hpp"
 
 /// list, describe, validate
-namespace hapbench {
+namespace hapbench::describe_command_test {
 namespace {
 
 using test::hapbench;
@@ -297,4 +297,4 @@ TEST_F(ValidateCommand, WritesNothing) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::describe_command_test

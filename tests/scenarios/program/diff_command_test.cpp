@@ -3,7 +3,7 @@
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 
-namespace hapbench {
+namespace hapbench::diff_command_test {
 namespace {
 
 using test::hapbench;
@@ -82,4 +82,4 @@ TEST_F(DiffCommand, RefusesWhatIsNoRun) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::diff_command_test

@@ -6,7 +6,7 @@
 #include "tests/scenarios/support/scenarios.hpp"
 
 /// `hapbench import`
-namespace hapbench {
+namespace hapbench::import_command_test {
 namespace {
 
 using test::hapbench;
@@ -84,4 +84,4 @@ TEST_F(ImportCommand, ListsPresetsThatCanBeCopied) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::import_command_test

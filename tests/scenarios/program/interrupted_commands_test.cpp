@@ -9,7 +9,7 @@
 #include "tests/scenarios/support/program.hpp"
 
 /// Commands other than sweep that Ctrl-C ends while they compute.
-namespace hapbench {
+namespace hapbench::interrupted_commands_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,4 +80,4 @@ TEST(LargeOutput, IsAnnounced) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::interrupted_commands_test

@@ -10,7 +10,7 @@
 #include "tests/scenarios/support/program.hpp"
 
 /// Sweeps that are killed or stopped, and go on.
-namespace hapbench {
+namespace hapbench::interrupted_sweep_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -172,4 +172,4 @@ TEST_F(InterruptedSweep, ShardsGoOnInOneDirectory) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::interrupted_sweep_test

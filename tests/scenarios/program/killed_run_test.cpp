@@ -7,7 +7,7 @@
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
 
-namespace hapbench {
+namespace hapbench::killed_run_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -71,4 +71,4 @@ TEST_F(KilledRun, LeavesTheResultsOfAnEarlierRunComplete) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::killed_run_test

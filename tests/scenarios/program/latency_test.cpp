@@ -5,7 +5,7 @@
 #include "tests/scenarios/support/program.hpp"
 
 /// `hapbench run --latency` and record.timing.
-namespace hapbench {
+namespace hapbench::latency_test {
 namespace {
 
 using test::hapbench;
@@ -74,4 +74,4 @@ TEST_F(Latency, RefusesMoreStepsThanItKeeps) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::latency_test

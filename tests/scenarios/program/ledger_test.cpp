@@ -7,7 +7,7 @@
 #include "tests/scenarios/support/program.hpp"
 
 /// The claims ledger that is committed, and the command that makes it.
-namespace hapbench {
+namespace hapbench::ledger_test {
 namespace {
 
 using test::hapbench;
@@ -77,4 +77,4 @@ TEST(Ledger, RefusesClaimsThatAreNotThere) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::ledger_test

@@ -7,7 +7,7 @@
 #include "tests/support/meshes.hpp"
 
 /// What is odd about a mesh is told once, by every command that reads it, and does not stop it.
-namespace hapbench {
+namespace hapbench::mesh_warnings_test {
 namespace {
 
 using test::hapbench;
@@ -55,4 +55,4 @@ TEST_F(MeshWarnings, DoNotChangeWhatIsWritten) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::mesh_warnings_test

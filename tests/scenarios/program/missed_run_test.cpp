@@ -4,7 +4,7 @@
 #include "tests/scenarios/support/program.hpp"
 
 /// A run that missed its object says so: outcome, warning, exit status.
-namespace hapbench {
+namespace hapbench::missed_run_test {
 namespace {
 
 using test::hapbench;
@@ -85,4 +85,4 @@ TEST_F(MissedRun, ValidateSaysWhatItSees) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::missed_run_test

@@ -5,7 +5,7 @@
 #include "tests/scenarios/support/scenarios.hpp"
 
 /// `hapbench new`
-namespace hapbench {
+namespace hapbench::new_command_test {
 namespace {
 
 using test::hapbench;
@@ -108,4 +108,4 @@ TEST_F(NewCommand, RefusesWhatItCannotStartFrom) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::new_command_test

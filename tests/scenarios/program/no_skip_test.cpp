@@ -6,7 +6,7 @@
 
 /// `--no-skip` of `run` and `compare`; that results are the same for every scenario:
 /// tests/scenarios/run/skips_test.cpp.
-namespace hapbench {
+namespace hapbench::no_skip_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -46,4 +46,4 @@ TEST(NoSkip, ComparesTheSame) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::no_skip_test

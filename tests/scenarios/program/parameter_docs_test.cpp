@@ -6,7 +6,7 @@
 #include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-namespace hapbench {
+namespace hapbench::parameter_docs_test {
 namespace {
 
 std::vector<const ModelInfo*> all_models() {
@@ -68,4 +68,4 @@ TEST(RangeText, IsThatOfTheSchema) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::parameter_docs_test

@@ -7,7 +7,7 @@
 
 /// What the commands besides `run` write, and what every algorithm makes of scenes of every kind, against the record;
 /// the bundled scenarios' own results are compared in bundled_scenarios_test.cpp.
-namespace hapbench {
+namespace hapbench::results_on_record_test {
 namespace {
 
 TEST(ResultsOnRecord, AreThoseOfEveryCommandAndAlgorithm) {
@@ -50,4 +50,4 @@ TEST(ResultsOnRecord, AreThoseOfEveryCommandAndAlgorithm) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::results_on_record_test

@@ -7,7 +7,7 @@
 #include "tests/results/files.hpp"
 
 /// The robustness of the claims that is committed.
-namespace hapbench {
+namespace hapbench::robustness_on_record_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -67,4 +67,4 @@ TEST(RobustnessOnRecord, OfTheChoicesOnRecordIsTheLedger) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::robustness_on_record_test

@@ -8,7 +8,7 @@
 #include "tests/scenarios/support/shortened.hpp"
 
 /// scenario.effective.json reproduces the run it lies beside.
-namespace hapbench {
+namespace hapbench::round_trip_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -97,4 +97,4 @@ TEST_F(EffectiveScenarioWithFiles, StillMeansTheSameWhenTheDirectoryMovesAsAWhol
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::round_trip_test

@@ -7,7 +7,7 @@
 #include "tests/scenarios/support/program.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-namespace hapbench {
+namespace hapbench::run_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -263,4 +263,4 @@ TEST_F(RunCommand, TakesTheBeginningOfSettledContactFromTheScenario) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::run_command_test

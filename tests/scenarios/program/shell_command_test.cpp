@@ -7,7 +7,7 @@
 #include "tests/scenarios/support/program.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-namespace hapbench {
+namespace hapbench::shell_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -103,4 +103,4 @@ TEST_F(ShellCommand, NeedsAFile) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::shell_command_test

@@ -11,7 +11,7 @@
 #include "tests/scenarios/support/slurm.hpp"
 
 /// Sweeps on a real Slurm.
-namespace hapbench {
+namespace hapbench::slurm_sweep_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -119,4 +119,4 @@ TEST_F(SlurmSweep, ThatSlurmRefusesSaysWhy) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::slurm_sweep_test

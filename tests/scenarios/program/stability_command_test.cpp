@@ -6,7 +6,7 @@
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
 
-namespace hapbench {
+namespace hapbench::stability_command_test {
 namespace {
 
 using test::cells_of;
@@ -129,4 +129,4 @@ TEST_F(StabilityCommand, RefusesScenesWithoutALimitAndWritesNothing) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::stability_command_test

@@ -6,7 +6,7 @@
 #include "tests/scenarios/support/program.hpp"
 
 /// `hapbench stability --map`, `--stress` and `--search` through the program.
-namespace hapbench {
+namespace hapbench::stability_experiments_test {
 namespace {
 
 using test::cells_of;
@@ -182,4 +182,4 @@ TEST_F(StabilityExperiments, AreExplained) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::stability_experiments_test

@@ -4,11 +4,11 @@
 
 #include "algorithms/registry.hpp"
 #include "results/summary/outcome_names.hpp"
-#include "tests/results/files.hpp"
+#include "tests/scenarios/program/peg_sweep.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
-#include "tests/scenarios/support/program.hpp"
 
-namespace hapbench {
+/// What a sweep computes, writes and shows.
+namespace hapbench::sweep_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -19,23 +19,7 @@ using test::ProgramRun;
 using test::read_file;
 using Words = std::vector<std::string>;
 
-class SweepCommand : public testing::Test {
- protected:
-  /// 24 runs in four environments, some of which end early.
-  ProgramRun sweep(const std::string& out, const Words& more = {}) const {
-    Words words = {"sweep",  "peg_in_hole_2d_shaped_stiffness",
-                   "--out",  (directory_ / out).string(),
-                   "--set",  "expect.outcome=[\"completes\",\"leaves_hole\",\"lost_contact\",\"diverges\"]",
-                   "--set",  "expect.metrics={}",
-                   "--vary", "rendering.stiffness_N_per_m=5000:20000:2",
-                   "--vary", "environment.spacing_m=2e-5:5e-5:4:log",
-                   "--vary", "rendering.algorithm=mean,summation,exact_shaping"};
-    words.insert(words.end(), more.begin(), more.end());
-    return hapbench(words);
-  }
-  std::string table(const std::string& out) const { return read_file(directory_ / out / "sweep.csv"); }
-  test::TemporaryDirectory directory_;
-};
+class SweepCommand : public test::PegSweep {};
 
 TEST_F(SweepCommand, HasTheNumbersOfTheRunsAlone) {
   const ProgramRun run = sweep("a");
@@ -70,86 +54,6 @@ TEST_F(SweepCommand, HasTheNumbersOfTheRunsAlone) {
     } else {
       EXPECT_EQ(test::number_in(cells[i]), value.get<double>()) << names[i];
     }
-  }
-}
-
-TEST_F(SweepCommand, GivesTheSameBytesWhateverTheJobsAndShards) {
-  sweep("whole");
-  const std::string whole = table("whole");
-  for (const char* jobs : {"1", "2", "7"}) {
-    EXPECT_EQ(sweep(std::string("jobs_") + jobs, {"--jobs", jobs}).status, 0);
-    test::expect_same_files(directory_ / "whole", directory_ / (std::string("jobs_") + jobs));
-  }
-  for (int count = 1; count <= 5; ++count) {
-    const std::string n = std::to_string(count), out = "shards_" + n;
-    Words merge = {"merge", "--out", (directory_ / out / "all/merged.csv").string()};
-    for (int i = count - 1; i >= 0; --i) {
-      EXPECT_EQ(sweep(out, {"--shard", std::to_string(i) + "/" + n, "--jobs", std::to_string(1 + i)}).status, 0);
-      merge.push_back((directory_ / out / ("sweep_shard_" + std::to_string(i) + "_of_" + n + ".csv")).string());
-    }
-    const ProgramRun merged = hapbench(merge);
-    EXPECT_EQ(merged.status, 0) << merged.err;
-    EXPECT_EQ(read_file(directory_ / out / "all/merged.csv"), whole) << count;
-  }
-}
-
-TEST_F(SweepCommand, OfASampleGivesTheSameBytesWhateverTheJobsAndShards) {
-  const auto sample = [&](const std::string& out, const Words& more) {
-    Words words = {"sweep",    "peg_in_hole_2d_shaped_stiffness",
-                   "--out",    (directory_ / out).string(),
-                   "--set",    "expect.metrics={}",
-                   "--vary",   "rendering.stiffness_N_per_m=5000:20000:log",
-                   "--vary",   "rendering.algorithm=mean,exact_shaping",
-                   "--sample", "lhs:12"};
-    words.insert(words.end(), more.begin(), more.end());
-    return hapbench(words);
-  };
-  const ProgramRun run = sample("whole", {"--jobs", "1"});
-  ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(lines_of(table("whole")).size(), 13u);
-  EXPECT_EQ(Json::parse(read_file(directory_ / "whole/sweep.json"))["sample"],
-            (Json{{"method", "lhs"}, {"runs", 12}, {"seed", 1}}));
-  sample("two", {"--jobs", "2"});
-  test::expect_same_files(directory_ / "whole", directory_ / "two");
-  for (const char* shard : {"0/2", "1/2"}) EXPECT_EQ(sample("shards", {"--shard", shard}).status, 0);
-  hapbench({"merge", (directory_ / "shards/sweep_shard_0_of_2.csv").string(),
-            (directory_ / "shards/sweep_shard_1_of_2.csv").string(), "--out", (directory_ / "merged.csv").string()});
-  EXPECT_EQ(read_file(directory_ / "merged.csv"), table("whole"));
-  sample("other", {"--seed", "2"});
-  EXPECT_NE(table("other"), table("whole"));
-}
-
-TEST_F(SweepCommand, MayHaveMoreShardsThanRuns) {
-  Words merge = {"merge", "--out", (directory_ / "merged.csv").string()};
-  const auto seeds = [&](const Words& more) {
-    Words words = {"sweep", "single_spring", "--vary", "seed=1,2", "--out", directory_.path().string()};
-    words.insert(words.end(), more.begin(), more.end());
-    return hapbench(words);
-  };
-  for (const char* i : {"0", "1", "2"}) {
-    EXPECT_EQ(seeds({"--shard", std::string(i) + "/3"}).status, 0);
-    merge.push_back((directory_ / ("sweep_shard_" + std::string(i) + "_of_3.csv")).string());
-  }
-  EXPECT_EQ(hapbench(merge).status, 0);
-  seeds({});
-  EXPECT_EQ(read_file(directory_ / "merged.csv"), read_file(directory_ / "sweep.csv"));
-}
-
-TEST_F(SweepCommand, MergesNothingThatDoesNotBelongTogether) {
-  const auto seeds = [&](const std::string& out, const std::string& vary, const std::string& shard) {
-    hapbench({"sweep", "single_spring", "--vary", vary, "--out", (directory_ / out).string(), "--shard", shard});
-    return (directory_ / out / ("sweep_shard_" + shard.substr(0, 1) + "_of_2.csv")).string();
-  };
-  const std::string first = seeds("a", "seed=1,2", "0/2"), other = seeds("b", "seed=1,3", "1/2");
-  for (const Words& files : {Words{first}, Words{first, first}, Words{first, other},
-                             Words{first, (directory_ / "missing.csv").string()}, Words{directory_.path().string()}}) {
-    Words words = {"merge", "--out", (directory_ / "out/merged.csv").string()};
-    words.insert(words.end(), files.begin(), files.end());
-    const ProgramRun run = hapbench(words);
-    EXPECT_EQ(run.status, 2);
-    EXPECT_EQ(run.out, "");
-    EXPECT_EQ(lines_of(run.err).size(), 1u) << run.err;
-    EXPECT_FALSE(fs::exists(directory_ / "out"));
   }
 }
 
@@ -276,140 +180,5 @@ TEST_F(SweepCommand, PrintsTheCommandThatRepeatsARun) {
   EXPECT_EQ(sweep("a", {"--print"}).status, 2);
 }
 
-TEST_F(SweepCommand, ShowsHowFarTheShardsAre) {
-  const auto status = [&] { return hapbench({"sweep", "--status", (directory_ / "out").string(), "--json"}); };
-  EXPECT_EQ(status().status, 2) << "there is no such directory";
-  ASSERT_EQ(sweep("out", {"--shard", "1/4"}).status, 0);
-  {
-    // What a killed process leaves.
-    test::write_plainly(directory_ / "out/sweep_shard_2_of_4.journal", "title\nrow\nrow\n");
-  }
-  const Json json = status().json();
-  EXPECT_EQ(json["runs"], 24);
-  EXPECT_EQ(json["runs_done"], 8);
-  EXPECT_EQ(json["merged"], false);
-  Words states;
-  for (const Json& shard : json["shards"]) states.push_back(shard["state"]);
-  EXPECT_EQ(states, (Words{"missing", "done", "failed", "missing"}));
-  const ProgramRun shown = hapbench({"sweep", "--status", (directory_ / "out").string()});
-  EXPECT_NE(shown.out.find("4 shards: 1 done, 0 running, 0 waiting, 1 failed, 2 missing; 8 of 24 runs; not merged\n"),
-            std::string::npos)
-      << shown.out;
-  sweep("out", {"--shard", "0/3"});
-  const ProgramRun mixed = hapbench({"sweep", "--status", (directory_ / "out").string()});
-  EXPECT_EQ(mixed.status, 2);
-  EXPECT_NE(mixed.err.find("holds shards of several sweeps (of 3 and of 4)"), std::string::npos) << mixed.err;
-}
-
-TEST_F(SweepCommand, WritesTheScriptsForSlurmAndSubmitsNothing) {
-  const Words slurm = {"--slurm", "4", "--dry-run", "--time", "2:00:00", "--cpus", "2", "--partition", "short"};
-  ASSERT_EQ(sweep("it's", {"--shard", "1/4"}).status, 0);
-  const ProgramRun run = sweep("it's", slurm);
-  ASSERT_EQ(run.status, 0) << run.err;
-  const std::string script = read_file(directory_ / "it's/sweep.sbatch"),
-                    merge = read_file(directory_ / "it's/merge.sbatch");
-  EXPECT_NE(run.out.find(script), std::string::npos) << run.out;
-  EXPECT_NE(run.out.find(merge), std::string::npos) << run.out;
-  for (const char* line : {"\n#SBATCH --array=0,2-3\n", "\n#SBATCH --time=2:00:00\n", "\n#SBATCH --cpus-per-task=2\n",
-                           "\n#SBATCH --partition=short\n", "\n#SBATCH --requeue\n"}) {
-    EXPECT_NE(script.find(line), std::string::npos) << line;
-  }
-  EXPECT_FALSE(fs::exists(directory_ / "it's/sweep_slurm.json"));
-  // They do what Slurm would have them do: each task its shard, then the merge.
-  for (const char* task : {"0", "2", "3"}) {
-    const std::string text = "SLURM_ARRAY_TASK_ID=" + std::string(task) + "\n" + script;
-    EXPECT_EQ(test::run_program("/bin/bash", {"-c", text}).status, 0);
-  }
-  EXPECT_EQ(test::run_program("/bin/bash", {"-c", merge}).status, 0);
-  sweep("whole");
-  for (const char* file : {"sweep.csv", "sweep.json"}) {
-    EXPECT_EQ(read_file(directory_ / "it's" / file), read_file(directory_ / "whole" / file)) << file;
-  }
-}
-
-TEST_F(SweepCommand, IsNotSubmittedBesideAnotherSweep) {
-  ASSERT_EQ(sweep("out", {"--shard", "1/4"}).status, 0);
-  const ProgramRun run = sweep("out", {"--slurm", "4", "--dry-run", "--set", "seed=9"});
-  EXPECT_EQ(run.status, 2);
-  EXPECT_NE(run.err.find("sweep_shard_1_of_4.csv: is of another sweep"), std::string::npos) << run.err;
-}
-
-struct BadSweep {
-  const char* name;
-  Words words;
-  const char* says;
-};
-void PrintTo(const BadSweep& sweep, std::ostream* out) {  // NOLINT: GoogleTest's name
-  *out << sweep.name;
-}
-
-class BadSweeps : public testing::TestWithParam<BadSweep> {};
-
-TEST_P(BadSweeps, AreRefusedInOneLineAndNothingIsWritten) {
-  const test::TemporaryDirectory directory;
-  Words words = {"sweep", "single_spring", "--out", (directory / "out").string()};
-  words.insert(words.end(), GetParam().words.begin(), GetParam().words.end());
-  const ProgramRun run = hapbench(words);
-  EXPECT_EQ(run.status, 2);
-  EXPECT_EQ(run.out, "");
-  EXPECT_EQ(lines_of(run.err).size(), 1u) << run.err;
-  EXPECT_EQ(run.err.find("hapbench: error: "), 0u) << run.err;
-  EXPECT_NE(run.err.find(GetParam().says), std::string::npos) << run.err;
-  EXPECT_NE(run.err.find("allowed"), std::string::npos) << run.err;
-  EXPECT_LT(run.err.size(), 2000u);
-  EXPECT_FALSE(fs::exists(directory / "out"));
-}
-
-Words vary(const std::string& text) {
-  return {"--vary", text};
-}
-
-const BadSweep kBadSweeps[] = {
-    {"NoPath", vary("1:2:3"), "--vary \"1:2:3\": has no path"},
-    {"EmptyPath", vary("=1:2:3"), "has no path"},
-    {"NoValue", vary("time.steps="), "got an empty value"},
-    {"EmptyValue", vary("time.steps=1,,2"), "got an empty value"},
-    {"UnknownField", vary("time.stepss=1,2"), "/time/stepss: unknown field; allowed here: "},
-    {"UnknownSection", vary("tyme.steps=1,2"), "/tyme: unknown field"},
-    {"ListIndex", vary("environment.groups.7.count=1,2"), "environment.groups.7.count: got list index \"7\""},
-    {"TwoParts", vary("time.step_s=1:2"), "got 2 parts between colons"},
-    {"FiveParts", vary("time.step_s=1:2:3:log:log"), "got 5 parts between colons"},
-    {"TextForAnEnd", vary("time.step_s=a:2:3"), "got \"a\" for an end of the range"},
-    {"NoEnd", vary("time.step_s=:2:3"), "got \"\" for an end of the range"},
-    {"NaN", vary("time.step_s=nan:2:3"), "got \"nan\" for an end of the range"},
-    {"InfiniteEnd", vary("time.step_s=0:inf:3"), "got \"inf\" for an end of the range"},
-    {"EndBeyondDouble", vary("time.step_s=0:1e999:3"), "got \"1e999\" for an end of the range"},
-    {"OneValue", vary("time.step_s=1e-4:2e-4:1"), "got \"1\" values"},
-    {"NegativeCount", vary("time.step_s=1e-4:2e-4:-5"), "got \"-5\" values"},
-    {"FractionalCount", vary("time.step_s=1e-4:2e-4:2.5"), "got \"2.5\" values"},
-    {"HugeCount", vary("time.step_s=1e-4:2e-4:1000000000000"), "allowed: an integer 2 ... 1000000"},
-    {"NotLog", vary("time.step_s=1e-4:2e-4:5:lin"), "got \"lin\"; allowed: \"log\""},
-    {"LogFromZero", vary("time.step_s=0:2e-4:5:log"), "of a logarithmic range; allowed: numbers > 0"},
-    {"OutOfRange", vary("time.step_s=-0.1:0.1:3"), "/time/step_s: got -0.1"},
-    {"NoInteger", vary("time.steps=1:10:3"), "/time/steps: got 5.5"},
-    {"NoSuchAlgorithm", vary("rendering.algorithm=mean,meen"), "got \"meen\""},
-    {"ListedNumberBeyondDouble", vary("time.step_s=0.1,1e999"), "/time/step_s"},
-    {"Quotes", vary("name=\"a\",b"), "quotes or control characters"},
-    {"LineBreak", vary("name=a\nb,c"), "quotes or control characters"},
-    {"CommaInThePath", vary("a,b=1,2"), "has no path"},
-    {"OneFieldTwice", {"--vary", "seed=1,2", "--vary", "seed=3,4"}, "got \"seed\" twice"},
-    {"TooManyRuns",
-     {"--vary", "seed=1:1000:1000", "--vary", "time.steps=1:1001:1001"},
-     "got a grid of 1001000 runs; allowed: at most 1000000"},
-    {"RangeWithACountBesideASample", {"--vary", "seed=1:9:9", "--sample", "lhs:4"}, "beside --sample"},
-    {"RangeWithoutACount", vary("time.step_s=1e-4:2e-4"), "a:b and a:b:log with --sample"},
-    {"NoSuchSample", {"--vary", "seed=1,2", "--sample", "halton:4"}, "--sample: got \"halton:4\""},
-    {"ShardBeyondTheLast", {"--vary", "seed=1,2", "--shard", "2/2"}, "--shard: got \"2/2\""},
-    {"ShardWithoutCount", {"--vary", "seed=1,2", "--shard", "1"}, "--shard: got \"1\""},
-    {"NegativeJobs", {"--vary", "seed=1,2", "--jobs=-1"}, "--jobs: got -1"},
-    {"TooManyJobs", {"--vary", "seed=1,2", "--jobs", "100000"}, "--jobs: got 100000"},
-    {"MoreShardsThanRuns", {"--vary", "seed=1,2", "--slurm", "3", "--dry-run"}, "--slurm: got 3 shards of 2 runs"},
-    {"TimeThatIsNone", {"--vary", "seed=1,2", "--slurm", "2", "--time", "1 h"}, "--time, --partition: got \"1 h\""},
-    {"BadSet", {"--vary", "seed=1,2", "--set", "time.steps=0"}, "/time/steps: got 0"},
-};
-
-INSTANTIATE_TEST_SUITE_P(Texts, BadSweeps, testing::ValuesIn(kBadSweeps),
-                         [](const auto& sweep) { return std::string(sweep.param.name); });
-
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::sweep_command_test

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace hapbench {
+namespace hapbench::table_test {
 namespace {
 
 TEST(Table, AlignsWordsLeftAndNumbersRightUnderTheirTitles) {
@@ -93,4 +93,4 @@ TEST(SignificantDigits, OfWhatHasNoValueAreADash) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::table_test

@@ -12,7 +12,7 @@
 #include "tests/scenarios/support/scenarios.hpp"
 
 /// What people see: widths, manual page, completions, where the program finds its files.
-namespace hapbench {
+namespace hapbench::terminal_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -255,4 +255,4 @@ TEST(Installation, HasItsScenariosBesideTheProgramAndMissesThemAloud) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::terminal_test

@@ -6,7 +6,7 @@
 #include "tests/scenarios/support/program.hpp"
 
 /// The command line itself, and where results may go.
-namespace hapbench {
+namespace hapbench::usage_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -178,4 +178,4 @@ TEST_F(OutputDirectory, MayHaveSpacesQuotesAndLetters) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::usage_test

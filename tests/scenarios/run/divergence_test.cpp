@@ -7,7 +7,7 @@
 #include "scenarios/run/run_scenario.hpp"
 
 /// Runs that go beyond every bound end as diverged, whichever part of the loop goes.
-namespace hapbench {
+namespace hapbench::divergence_test {
 namespace {
 
 /// A hand whose damping is too much for the time step drives the handle, which is a body of its own, to infinity, while
@@ -30,4 +30,4 @@ TEST(Divergence, OfTheHandleEndsTheRun) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::divergence_test

@@ -7,7 +7,7 @@
 #include "scenarios/run/run_scenario.hpp"
 
 /// The hand that drags the tool over a surface, in the loop.
-namespace hapbench {
+namespace hapbench::drag_test {
 namespace {
 
 Json scene() {
@@ -115,4 +115,4 @@ TEST(Drag, TellsOfAToolThatLostTheSurface) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::drag_test

@@ -4,7 +4,7 @@
 
 #include "sim/tool/cylinder.hpp"
 
-namespace hapbench {
+namespace hapbench::encounter_test {
 namespace {
 
 /// A block of 6 x 6 x 7 mm, whose diagonal is 11 mm, and a tool of 10 mm pushed by a hand of constant force.
@@ -83,4 +83,4 @@ TEST_F(EncounterWithBlock, NoContactOfAStrokeInMillimetresAsksForMetres) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::encounter_test

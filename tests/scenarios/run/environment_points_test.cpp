@@ -5,7 +5,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-namespace hapbench {
+namespace hapbench::environment_points_test {
 namespace {
 
 /// A small block, changed by a merge patch.
@@ -26,4 +26,4 @@ TEST(EnvironmentPoints, OfABlockListVerticesOnceOrForEachCell) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::environment_points_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hapbench {
+namespace hapbench::expectation_test {
 namespace {
 
 using Sentences = std::vector<std::string>;
@@ -68,4 +68,4 @@ TEST(Expectation, MayBoundEveryMetricThatIsANumber) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::expectation_test

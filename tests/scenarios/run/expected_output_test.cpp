@@ -5,7 +5,7 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "tests/results/files.hpp"
 
-namespace hapbench {
+namespace hapbench::expected_output_test {
 namespace {
 
 LoadedScenario springs(const char* record, int steps = 2000) {
@@ -44,4 +44,4 @@ TEST(ExpectedOutput, CountsEveryTrialAndNothingThatIsNotRecorded) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::expected_output_test

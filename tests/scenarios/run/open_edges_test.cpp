@@ -4,7 +4,7 @@
 
 #include "tests/results/rows.hpp"
 
-namespace hapbench {
+namespace hapbench::open_edges_test {
 namespace {
 
 /// A row of points along x, a millimetre apart, the mesh being open at x = 0.
@@ -44,4 +44,4 @@ TEST_F(OpenEdges, NearThemTheFirstTouchIsTold) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::open_edges_test

@@ -6,7 +6,7 @@
 #include "scenarios/run/run_scenario.hpp"
 
 /// The planar peg in its hole (thesis A.1, Fig. A.2): the original algorithm vibrates, the shaped one is smooth.
-namespace hapbench {
+namespace hapbench::peg_in_hole_test {
 namespace {
 
 RunReport report_of(const std::string& scenario) {
@@ -53,4 +53,4 @@ TEST(PegInHole, KeepsItsRatiosWithinTheProvenBoundUnderExactShaping) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::peg_in_hole_test

@@ -9,7 +9,7 @@
 #include "tests/scenarios/support/scenarios.hpp"
 
 /// record.pose, record.torque and the roll of a script, through the files that a run writes.
-namespace hapbench {
+namespace hapbench::pose_and_torque_test {
 namespace {
 
 using test::cells_of;
@@ -231,4 +231,4 @@ TEST(Stroke, OfQuaternionsMovesACylinderAsThatOfTheirAxes) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::pose_and_torque_test

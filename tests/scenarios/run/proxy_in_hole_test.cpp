@@ -7,7 +7,7 @@
 #include "sim/contact/shell_query.hpp"
 
 /// What the proxy promises, over whole runs.
-namespace hapbench {
+namespace hapbench::proxy_in_hole_test {
 namespace {
 
 LoadedScenario with_algorithm(const char* scenario, const char* algorithm) {
@@ -125,4 +125,4 @@ TEST(ProxyInHole, IsFiveTimesNearerToTheIdealTrajectoryThanShapingAndVibratesLes
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::proxy_in_hole_test

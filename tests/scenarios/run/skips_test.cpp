@@ -12,7 +12,7 @@
 #include "tests/scenarios/support/scenarios.hpp"
 
 /// Skipped work must not change results: with every skip off, a run writes the same bytes, but for the counted work.
-namespace hapbench {
+namespace hapbench::skips_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -100,4 +100,4 @@ TEST_F(WithAndWithoutSkips, EveryAlgorithmGivesTheSameBytes) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::skips_test

@@ -10,7 +10,7 @@
 
 /// Bundled scenarios of bilateral springs against the linear recurrence they are: one spring-damper under the
 /// integrator is (x, v) <- A (x, v) with the matrix A of Eq. A.2.
-namespace hapbench {
+namespace hapbench::springs_test {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -118,4 +118,4 @@ TEST(SummedSpringsOfTableA3, AreTooStiffForTheTimeStep) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::springs_test

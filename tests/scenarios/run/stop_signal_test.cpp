@@ -7,7 +7,7 @@
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-namespace hapbench {
+namespace hapbench::stop_signal_test {
 namespace {
 
 /// With SIGINT as a shell in the foreground leaves it; behind "&" it is ignored, and stays so.
@@ -64,4 +64,4 @@ TEST_F(StopSignals, EndJobsThatDoNotAskForIt) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::stop_signal_test

@@ -8,7 +8,7 @@
 #include "scenarios/run/run_scenario.hpp"
 
 /// Ten minutes in contact, against the closed form of where they end.
-namespace hapbench {
+namespace hapbench::ten_minutes_test {
 namespace {
 
 /// Steady response x_k of the integrator's spring-damper, (M/dt²)(x_(k+1) - 2 x_k + x_(k-1)) + (B/dt)(x_k - x_(k-1)) +
@@ -42,4 +42,4 @@ TEST(TenMinutesInContact, EndWhereTheClosedFormSaysAndMakeNoEnergy) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::ten_minutes_test

@@ -13,7 +13,7 @@
 #include "tests/scenarios/support/scenarios.hpp"
 
 /// Tools of every type, from the fields of a scenario.
-namespace hapbench {
+namespace hapbench::tools_test {
 namespace {
 
 /// A plane that the tool is pressed on.
@@ -129,4 +129,4 @@ TEST(ScenarioTool, IsInTheSummaryUnlessItIsACylinder) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::tools_test

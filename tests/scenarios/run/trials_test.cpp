@@ -7,7 +7,7 @@
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-namespace hapbench {
+namespace hapbench::trials_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -75,4 +75,4 @@ TEST(Trials, RecordsOfSeveralTrialsLieInDirectoriesOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::trials_test

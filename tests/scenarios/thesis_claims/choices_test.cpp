@@ -9,7 +9,7 @@
 #include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/schema_validator.hpp"
 
-namespace hapbench {
+namespace hapbench::choices_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -223,4 +223,4 @@ TEST_F(ChoicesFile, IsATableForPeople) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::choices_test

@@ -3,7 +3,7 @@
 #include "tests/scenarios/thesis_claims/claim_rules.hpp"
 
 /// The rules of the appendices' claims A, B, D and F, with numbers made up to pass and numbers made up to fail.
-namespace hapbench {
+namespace hapbench::claim_rules_appendices_test {
 namespace {
 
 using test::expect_verdict;
@@ -159,4 +159,4 @@ TEST(ClaimRules, D6Thresholds) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::claim_rules_appendices_test

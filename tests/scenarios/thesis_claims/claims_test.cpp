@@ -12,7 +12,7 @@
 #include "tests/scenarios/thesis_claims/claim_rules.hpp"
 
 /// Every rule, by its claim's own record, with numbers made up to pass and numbers made up to fail.
-namespace hapbench {
+namespace hapbench::claims_test {
 namespace {
 
 using test::claim, test::expect_verdict, test::published;
@@ -287,4 +287,4 @@ TEST(VerdictName, IsThatOfTheLedger) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::claims_test

@@ -8,7 +8,7 @@
 #include "tests/scenarios/support/errors.hpp"
 
 /// The files that claims are judged by.
-namespace hapbench {
+namespace hapbench::evidence_test {
 namespace {
 
 class ResultFile : public testing::Test {
@@ -64,4 +64,4 @@ TEST_F(ResultFile, ThatIsEmptyIsRefused) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::evidence_test

@@ -6,7 +6,7 @@
 #include "scenarios/thesis_claims/ledger.hpp"
 #include "tests/results/files.hpp"
 
-namespace hapbench {
+namespace hapbench::robustness_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -174,4 +174,4 @@ TEST(RobustnessText, SaysWhatDecides) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::robustness_test

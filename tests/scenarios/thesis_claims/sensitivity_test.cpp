@@ -6,7 +6,7 @@
 
 #include "sim/core/random.hpp"
 
-namespace hapbench {
+namespace hapbench::sensitivity_test {
 namespace {
 
 using Bins = std::vector<std::size_t>;
@@ -90,4 +90,4 @@ TEST(DecidingInput, RaisesFalseAlarmsAtItsLevelOnly) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::sensitivity_test

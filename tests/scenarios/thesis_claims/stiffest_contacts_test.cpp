@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace hapbench {
+namespace hapbench::stiffest_contacts_test {
 namespace {
 
 /// (1 + sqrt 3)/2 is proved at the limit, and reached by one update, so a search that works comes close to it from
@@ -24,4 +24,4 @@ TEST(StiffestContacts, AreTheSameOnEveryCall) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::stiffest_contacts_test

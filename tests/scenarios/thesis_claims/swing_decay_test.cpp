@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace hapbench {
+namespace hapbench::swing_decay_test {
 namespace {
 
 /// x = exp(-zeta t) cos(sqrt(1 - zeta^2) t), a hundred samples a unit of time.
@@ -40,4 +40,4 @@ TEST(SwingDecay, IsOneForAMotionThatCreepsToZero) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::swing_decay_test

@@ -5,7 +5,7 @@
 #include "tests/support/bits.hpp"
 #include "tests/support/contact_sets.hpp"
 
-namespace hapbench {
+namespace hapbench::contact_buffer_test {
 namespace {
 
 ContactBuffer random_contacts(std::size_t n) {
@@ -95,4 +95,4 @@ TEST(ContactBuffer, AssignTakesAllContactsInPlaceOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::contact_buffer_test

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 
 #include "sim/geometry/analytic_shells.hpp"
@@ -11,31 +10,18 @@
 #include "tests/support/tool_kinds.hpp"
 
 /// The search without a list must answer exactly as brute force does: same points, same order, same bits.
-namespace hapbench {
+namespace hapbench::grid_query_test {
 namespace {
 
 using test::cases;
 using test::next_pose;
-using test::random_shell;
 using Pair = test::SearchPair<GridQuery>;
 
 TEST(GridQuery, FindsWhatBruteForceFindsAtAMillionPoses) {
-  Random random(7);
-  std::uint64_t contacts = 0;
-  for (std::size_t s = 0; s < cases(2000); ++s) {
-    const double size = std::pow(10.0, random.uniform(-4.0, 0.0));
-    const Cylinder tool{size * random.uniform(0.02, 0.5), size * random.uniform(0.05, 3.0),
-                        random.below(2) == 0 ? Tip::flat : Tip::round};
-    Pair pair(random_shell(random, size), random.below(2) == 0 ? 0.0 : size * random.uniform(0.01, 1.0), tool);
-    ToolPose pose{Vec3::Zero(), random.direction()};
-    for (int k = 0; k < 500; ++k) {
-      pose = next_pose(pose, random, size, 0.2 * tool.radius());
-      ASSERT_TRUE(pair.agree_at(pose)) << "shell " << s << ", pose " << k;
-    }
-    contacts += pair.contacts();
-  }
+  test::WalkTotals totals;
+  test::expect_agreement_at_a_million_poses<GridQuery>(Random(7), test::random_drill, totals);
   // The walks touch something.
-  EXPECT_GT(contacts, cases(2000) * 500);
+  EXPECT_GT(totals.contacts, totals.poses);
 }
 
 // Points that lie exactly on the tool's surface are in the box, whatever the rounding of either.
@@ -86,22 +72,11 @@ INSTANTIATE_TEST_SUITE_P(EveryKind, GridQueryOfTool,
                          [](const auto& kind) { return kind.param.name; });
 
 TEST_P(GridQueryOfTool, FindsWhatBruteForceFindsAtAMillionPoses) {
-  Random random(13);
-  std::uint64_t contacts = 0;
-  const std::size_t shells = cases(2000);
-  for (std::size_t s = 0; s < shells; ++s) {
-    const double size = std::pow(10.0, random.uniform(-4.0, 0.0));
-    const test::DefinedTool tool = GetParam().make(random, 0.5 * size);
-    Pair pair(random_shell(random, size), random.below(2) == 0 ? 0.0 : size * random.uniform(0.01, 1.0), tool.shape);
-    ToolPose pose{Vec3::Zero(), random.direction()};
-    for (int k = 0; k < 500; ++k) {
-      pose = next_pose(pose, random, size, 0.2 * tool.shape->half_width());
-      ASSERT_TRUE(pair.agree_at(pose)) << "shell " << s << ", pose " << k;
-    }
-    contacts += pair.contacts();
-  }
-  EXPECT_GT(contacts, shells * 250);
+  const auto make_tool = [](Random& random, double size) { return GetParam().make(random, 0.5 * size).shape; };
+  test::WalkTotals totals;
+  test::expect_agreement_at_a_million_poses<GridQuery>(Random(13), make_tool, totals);
+  EXPECT_GT(totals.contacts, totals.poses / 2);
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::grid_query_test

@@ -12,7 +12,7 @@
 #include "tests/support/searches.hpp"
 #include "tests/support/tool_geometry.hpp"
 
-namespace hapbench {
+namespace hapbench::most_points_test {
 namespace {
 
 using test::cases;
@@ -73,4 +73,4 @@ TEST(MostPoints, AreNoneOfAnEmptyShell) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::most_points_test

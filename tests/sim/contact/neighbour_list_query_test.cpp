@@ -13,36 +13,20 @@
 
 /// The contact search of a run must answer exactly as brute force does, whatever the tool did before: same points, same
 /// order, same bits.
-namespace hapbench {
+namespace hapbench::neighbour_list_query_test {
 namespace {
 
 using test::cases;
 
 using Pair = test::SearchPair<NeighbourListQuery>;
 using test::next_pose;
-using test::random_shell;
 
 TEST(NeighbourListQuery, FindsWhatBruteForceFindsAtAMillionPoses) {
-  Random random(3);
-  std::uint64_t poses = 0, contacts = 0, rebuilt = 0;
-  const std::size_t shells = cases(2000);
-  for (std::size_t s = 0; s < shells; ++s) {
-    const double size = std::pow(10.0, random.uniform(-4.0, 0.0));
-    const Cylinder tool{size * random.uniform(0.02, 0.5), size * random.uniform(0.05, 3.0),
-                        random.below(2) == 0 ? Tip::flat : Tip::round};
-    Pair pair(random_shell(random, size), random.below(2) == 0 ? 0.0 : size * random.uniform(0.01, 1.0), tool);
-    ToolPose pose{Vec3::Zero(), random.direction()};
-    for (int k = 0; k < 500; ++k, ++poses) {
-      pose = next_pose(pose, random, size, 0.2 * tool.radius());
-      ASSERT_TRUE(pair.agree_at(pose)) << "shell " << s << ", pose " << k;
-    }
-    contacts += pair.contacts();
-    rebuilt += pair.work().lists_rebuilt;
-  }
-  EXPECT_GE(poses, cases(2000) * 500);
+  test::WalkTotals totals;
+  test::expect_agreement_at_a_million_poses<NeighbourListQuery>(Random(3), test::random_drill, totals);
   // The walks touch something, and the lists are used more than once.
-  EXPECT_GT(contacts, poses);
-  EXPECT_LT(rebuilt, poses / 2);
+  EXPECT_GT(totals.contacts, totals.poses);
+  EXPECT_LT(totals.lists_rebuilt, totals.poses / 2);
 }
 
 TEST(NeighbourListQuery, HoldsToItsInequalityWhenTheToolTurnsAboutItsTip) {
@@ -121,22 +105,11 @@ INSTANTIATE_TEST_SUITE_P(EveryKind, NeighbourListQueryOfTool,
                          [](const auto& kind) { return kind.param.name; });
 
 TEST_P(NeighbourListQueryOfTool, FindsWhatBruteForceFindsAtAMillionPoses) {
-  Random random(13);
-  std::uint64_t contacts = 0;
-  const std::size_t shells = cases(2000);
-  for (std::size_t s = 0; s < shells; ++s) {
-    const double size = std::pow(10.0, random.uniform(-4.0, 0.0));
-    const test::DefinedTool tool = GetParam().make(random, 0.5 * size);
-    Pair pair(random_shell(random, size), random.below(2) == 0 ? 0.0 : size * random.uniform(0.01, 1.0), tool.shape);
-    ToolPose pose{Vec3::Zero(), random.direction()};
-    for (int k = 0; k < 500; ++k) {
-      pose = next_pose(pose, random, size, 0.2 * tool.shape->half_width());
-      ASSERT_TRUE(pair.agree_at(pose)) << "shell " << s << ", pose " << k;
-    }
-    contacts += pair.contacts();
-  }
-  EXPECT_GT(contacts, shells * 250);
+  const auto make_tool = [](Random& random, double size) { return GetParam().make(random, 0.5 * size).shape; };
+  test::WalkTotals totals;
+  test::expect_agreement_at_a_million_poses<NeighbourListQuery>(Random(13), make_tool, totals);
+  EXPECT_GT(totals.contacts, totals.poses / 2);
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::neighbour_list_query_test

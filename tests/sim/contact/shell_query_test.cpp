@@ -8,7 +8,7 @@
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_geometry.hpp"
 
-namespace hapbench {
+namespace hapbench::shell_query_test {
 namespace {
 
 using test::cases;
@@ -180,4 +180,4 @@ TEST(ShellQuery, ReturnsAtMostEveryPoint) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::shell_query_test

@@ -8,7 +8,7 @@
 #include "sim/core/random.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 
-namespace hapbench {
+namespace hapbench::smoothed_surface_test {
 namespace {
 
 /// Points spread evenly over a sphere about the origin, on a spiral of golden angles.
@@ -70,4 +70,4 @@ TEST(SmoothedSurface, EndsWithTheShell) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::smoothed_surface_test

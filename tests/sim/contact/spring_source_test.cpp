@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hapbench {
+namespace hapbench::spring_source_test {
 namespace {
 
 // Gradients whose inner products with dyadic positions are exact.
@@ -90,4 +90,4 @@ TEST(SpringSource, CountsQueriesAndSpringsTested) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::spring_source_test

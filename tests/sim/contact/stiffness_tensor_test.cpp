@@ -8,7 +8,7 @@
 #include "tests/support/dense_laws.hpp"
 #include "tests/support/scale.hpp"
 
-namespace hapbench {
+namespace hapbench::stiffness_tensor_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -105,4 +105,4 @@ TEST(LambdaMax, OfADiagonalIsItsLargestEntry) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::stiffness_tensor_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hapbench {
+namespace hapbench::hash_test {
 namespace {
 
 // Values of the reference implementation (draft-eastlake-fnv, test vectors for FNV-1a, 64 bits).
@@ -44,4 +44,4 @@ TEST(Hash, TextHasSixteenHexadecimalDigitsLeadingZerosIncluded) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::hash_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace hapbench {
+namespace hapbench::profile_test {
 namespace {
 
 using Waypoints = Profile::Waypoints;
@@ -119,4 +119,4 @@ TEST(Profile, KeepsTheShapeItWasGiven) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::profile_test

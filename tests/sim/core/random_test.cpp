@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-namespace hapbench {
+namespace hapbench::random_test {
 namespace {
 
 TEST(Random, UniformIsTheTop53BitsOfMt19937_64) {
@@ -87,4 +87,4 @@ TEST(Random, DirectionsFavourNoOctant) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::random_test

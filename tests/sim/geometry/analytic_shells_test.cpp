@@ -7,7 +7,7 @@
 
 #include "sim/core/random.hpp"
 
-namespace hapbench {
+namespace hapbench::analytic_shells_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -239,4 +239,4 @@ TEST(SlotShell, PointsAreNoFartherApartThanTheSpacingWithZFastest) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::analytic_shells_test

@@ -7,7 +7,7 @@
 #include "sim/core/random.hpp"
 #include "tests/support/scale.hpp"
 
-namespace hapbench {
+namespace hapbench::block_with_hole_test {
 namespace {
 
 using test::cases;
@@ -71,4 +71,4 @@ TEST(BlockWithHole, TheSurfaceIsAsFarAwayAsTheDistanceSaysAndTheSignIsMembership
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::block_with_hole_test

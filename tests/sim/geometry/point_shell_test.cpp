@@ -7,7 +7,7 @@
 
 #include "sim/core/random.hpp"
 
-namespace hapbench {
+namespace hapbench::point_shell_test {
 namespace {
 
 std::vector<SurfacePoint> random_points(Random& random, std::size_t n) {
@@ -96,4 +96,4 @@ TEST(PointShell, TwoPointsShareACellExactlyWhenAllTheirCoordinatesDo) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::point_shell_test

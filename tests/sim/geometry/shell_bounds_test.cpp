@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hapbench {
+namespace hapbench::shell_bounds_test {
 namespace {
 
 TEST(ShellBounds, AreThoseOfThePointsWithoutThePadding) {
@@ -13,4 +13,4 @@ TEST(ShellBounds, AreThoseOfThePointsWithoutThePadding) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::shell_bounds_test

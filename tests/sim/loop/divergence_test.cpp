@@ -6,7 +6,7 @@
 
 #include "tests/support/fakes.hpp"
 
-namespace hapbench {
+namespace hapbench::divergence_test {
 namespace {
 
 using test::fake_parts;
@@ -133,4 +133,4 @@ TEST(Divergence, OfAnUnstableSpringComesFromTheIntegratorAlone) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::divergence_test

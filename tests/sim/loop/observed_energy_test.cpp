@@ -7,7 +7,7 @@
 
 #include "tests/support/leapfrog.hpp"
 
-namespace hapbench {
+namespace hapbench::observed_energy_test {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -120,4 +120,4 @@ TEST(ObservedEnergy, ResetForgetsEverything) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::observed_energy_test

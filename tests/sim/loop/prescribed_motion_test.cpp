@@ -2,7 +2,7 @@
 
 #include "tests/support/fakes.hpp"
 
-namespace hapbench {
+namespace hapbench::prescribed_motion_test {
 namespace {
 
 using test::fake_parts;
@@ -65,4 +65,4 @@ TEST(PrescribedMotion, TheHandleOfAnIdealDeviceFollows) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::prescribed_motion_test

@@ -8,7 +8,7 @@
 #include "tests/support/fakes.hpp"
 
 /// What the loop makes of the tool's turn about its own axis.
-namespace hapbench {
+namespace hapbench::roll_test {
 namespace {
 
 const double kDt = SimulationConfig{}.dt;
@@ -122,4 +122,4 @@ TEST(Roll, IsNotComputedUnlessSomebodyReadsIt) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::roll_test

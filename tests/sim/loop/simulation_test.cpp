@@ -7,7 +7,7 @@
 #include "tests/support/fakes.hpp"
 #include "tests/support/leapfrog.hpp"
 
-namespace hapbench {
+namespace hapbench::simulation_test {
 namespace {
 
 using test::Calls;
@@ -272,4 +272,4 @@ TEST(Simulation, SteppingIsRunning) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::simulation_test

@@ -8,7 +8,7 @@
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/setting.hpp"
 
-namespace hapbench {
+namespace hapbench::stability_limits_test {
 namespace {
 
 constexpr double kMass = 0.1, kStep = 0.0005;
@@ -92,4 +92,4 @@ TEST(StabilityLimits, SpringsInAllDirectionsAreGovernedByLambdaMax) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::stability_limits_test

@@ -6,7 +6,7 @@
 #include "sim/loop/stop_rules.hpp"
 #include "tests/support/fakes.hpp"
 
-namespace hapbench {
+namespace hapbench::stop_conditions_test {
 namespace {
 
 using test::fake_parts;
@@ -112,4 +112,4 @@ TEST(StopConditions, AStoppedRunTakesNoFurtherSteps) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::stop_conditions_test

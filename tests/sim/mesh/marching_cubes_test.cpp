@@ -14,7 +14,7 @@
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 
-namespace hapbench {
+namespace hapbench::marching_cubes_test {
 namespace {
 
 using test::cases;
@@ -194,4 +194,4 @@ TEST(CubeCases, UseEveryCrossedEdgeAndNoOther) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::marching_cubes_test

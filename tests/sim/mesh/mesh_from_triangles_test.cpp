@@ -11,7 +11,7 @@
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 
-namespace hapbench {
+namespace hapbench::mesh_from_triangles_test {
 namespace {
 
 using test::cases;
@@ -285,4 +285,4 @@ TEST(MeshFromTriangles, RebuildsAnySurfaceFromItsTrianglesInAnyOrder) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::mesh_from_triangles_test

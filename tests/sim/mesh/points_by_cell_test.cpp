@@ -10,7 +10,7 @@
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 
-namespace hapbench {
+namespace hapbench::points_by_cell_test {
 namespace {
 
 using Coordinates = std::array<double, 3>;
@@ -110,4 +110,4 @@ TEST(PointsByCell, AreTheMeshsVerticesCellAfterCell) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::points_by_cell_test

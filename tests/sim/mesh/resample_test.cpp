@@ -12,7 +12,7 @@
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 
-namespace hapbench {
+namespace hapbench::resample_test {
 namespace {
 
 using test::cases;
@@ -144,4 +144,4 @@ TEST(Thinned, KeepsBothSidesOfAThinWallTheOrderAndTheFirstOfEquals) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::resample_test

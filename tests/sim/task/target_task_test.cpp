@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace hapbench {
+namespace hapbench::target_task_test {
 namespace {
 
 constexpr double kStep = 1.0 / 1024;  // sums of it are exact
@@ -219,4 +219,4 @@ TEST(TargetTask, AResetShowsTheSameTargetsAgain) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::target_task_test

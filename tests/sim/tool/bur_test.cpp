@@ -8,7 +8,7 @@
 
 #include "sim/tool/revolved.hpp"
 
-namespace hapbench {
+namespace hapbench::bur_test {
 namespace {
 
 constexpr BurFamily kFamilies[] = {BurFamily::ball,    BurFamily::cylinder,      BurFamily::round_cylinder,
@@ -74,4 +74,4 @@ TEST(BurProfile, RefusesLengthsThatDoNotSuitTheFamily) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::bur_test

@@ -10,7 +10,7 @@
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_geometry.hpp"
 
-namespace hapbench {
+namespace hapbench::cylinder_test {
 namespace {
 
 using test::cases;
@@ -127,4 +127,4 @@ TEST(LargestSquareWithin, IsTheLastSquareWhoseRootDoesNotExceedTheRadius) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::cylinder_test

@@ -9,7 +9,7 @@
 #include "tests/support/tool_kinds.hpp"
 
 /// What any tool has to answer, against the definition of its body in long double.
-namespace hapbench {
+namespace hapbench::every_tool_test {
 namespace {
 
 using test::cases, test::DefinedTool, test::Vec3L;
@@ -309,4 +309,4 @@ TEST_P(EveryTool, AnswersTheSameWhereverItIs) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::every_tool_test

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace hapbench {
+namespace hapbench::meridian_test {
 namespace {
 
 std::string refused(std::vector<ProfilePoint> points, Tip tip = Tip::flat) {
@@ -79,4 +79,4 @@ TEST(Meridian, CutsTheSectionAtCornersThatTurnInwards) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::meridian_test

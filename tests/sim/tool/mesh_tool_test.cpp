@@ -13,7 +13,7 @@
 #include "tests/support/searches.hpp"
 #include "tests/support/tool_meshes.hpp"
 
-namespace hapbench {
+namespace hapbench::mesh_tool_test {
 namespace {
 
 using test::cases;
@@ -335,4 +335,4 @@ TEST(MeshTool, EqualsTheCylinderOfItsMeshUpToChordsAndRoundedEdges) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::mesh_tool_test

@@ -10,7 +10,7 @@
 #include "sim/tool/tool_state.hpp"
 #include "tests/support/contact_sets.hpp"
 
-namespace hapbench {
+namespace hapbench::recorded_motion_test {
 namespace {
 
 using Sample = RecordedMotion::Sample;
@@ -137,4 +137,4 @@ TEST(RecordedMotion, RefusesOrientationsOfSomeSamplesOnly) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::recorded_motion_test

@@ -7,7 +7,7 @@
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_geometry.hpp"
 
-namespace hapbench {
+namespace hapbench::revolved_test {
 namespace {
 
 using test::cases;
@@ -139,4 +139,4 @@ TEST(Revolved, OfAPoseThatIsNotFiniteHoldsNothing) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::revolved_test

@@ -8,7 +8,7 @@
 #include "sim/tool/tool_state.hpp"
 #include "tests/support/contact_sets.hpp"
 
-namespace hapbench {
+namespace hapbench::scripted_motion_test {
 namespace {
 
 using std::numbers::pi;
@@ -123,4 +123,4 @@ TEST(ScriptedMotion, ScriptsItsRollWhenThatMoves) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::scripted_motion_test

@@ -11,7 +11,7 @@
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_meshes.hpp"
 
-namespace hapbench {
+namespace hapbench::signed_distance_grid_test {
 namespace {
 
 using test::cases;
@@ -180,4 +180,4 @@ TEST(SignedDistanceGrid, RefusesMeshesThatAreThinnerThanTheirGridOrTooLarge) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::signed_distance_grid_test

@@ -2,7 +2,7 @@
 
 #include "tests/support/tool_geometry.hpp"
 
-namespace hapbench {
+namespace hapbench::surface_constraints_test {
 namespace {
 
 constexpr Tip kTips[] = {Tip::flat, Tip::round};
@@ -106,4 +106,4 @@ TEST(SurfaceConstraints, BeyondAnEdgeMeasureToTheEdge) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::surface_constraints_test

@@ -8,7 +8,7 @@
 #include "sim/tool/turn.hpp"
 #include "tests/support/contact_sets.hpp"
 
-namespace hapbench {
+namespace hapbench::tool_pose_test {
 namespace {
 
 constexpr double kRounding = 1e-15;
@@ -80,4 +80,4 @@ TEST(ToolPose, WithoutRollTurnsAsItsAxisDoes) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::tool_pose_test

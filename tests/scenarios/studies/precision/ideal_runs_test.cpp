@@ -6,7 +6,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "tests/scenarios/studies/precision/results.hpp"
 
-namespace hapbench {
+namespace hapbench::ideal_runs_test {
 namespace {
 
 using test::bundled, test::quick, test::value;
@@ -36,4 +36,4 @@ TEST(PrecisionAlgorithms, HaveARowEachAndTheThesissTwoOneWithAngularDamping) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::ideal_runs_test

@@ -9,7 +9,7 @@
 #include "sim/loop/integrators/table.hpp"
 #include "tests/scenarios/studies/precision/results.hpp"
 
-namespace hapbench {
+namespace hapbench::integrators_test {
 namespace {
 
 using test::bundled, test::quick, test::value;
@@ -77,4 +77,4 @@ TEST(PrecisionIntegrators, RefusesWhatHasNoExactSolution) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::integrators_test

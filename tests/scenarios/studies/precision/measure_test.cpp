@@ -5,7 +5,7 @@
 
 #include "scenarios/studies/precision/measure.hpp"
 
-namespace hapbench {
+namespace hapbench::measure_test {
 namespace {
 
 TEST(FittedOrder, OfAPowerIsItsExponent) {
@@ -28,4 +28,4 @@ TEST(Distance, IsThatOfTheCommonSamples) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::measure_test

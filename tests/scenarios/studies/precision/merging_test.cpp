@@ -2,7 +2,7 @@
 
 #include "tests/scenarios/studies/precision/results.hpp"
 
-namespace hapbench {
+namespace hapbench::merging_test {
 namespace {
 
 using test::bundled, test::quick, test::value;
@@ -31,4 +31,4 @@ TEST(PrecisionMerging, DependsOnTheOrderOfTheContactsOnlyWhereTheyAreReduced) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::merging_test

@@ -5,7 +5,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "tests/scenarios/studies/precision/results.hpp"
 
-namespace hapbench {
+namespace hapbench::query_time_test {
 namespace {
 
 using test::bundled, test::quick, test::value;
@@ -34,4 +34,4 @@ TEST(PrecisionQueryTime, NeedsAStroke) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::query_time_test

@@ -2,7 +2,7 @@
 
 #include "tests/scenarios/studies/precision/results.hpp"
 
-namespace hapbench {
+namespace hapbench::reduction_test {
 namespace {
 
 using test::bundled, test::quick, test::value;
@@ -19,4 +19,4 @@ TEST(PrecisionReduction, ExactShapingWithoutReductionIsTheReference) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::reduction_test

@@ -4,7 +4,7 @@
 
 #include "tests/scenarios/studies/precision/results.hpp"
 
-namespace hapbench {
+namespace hapbench::shaping_test {
 namespace {
 
 using test::bundled, test::quick, test::value;
@@ -21,4 +21,4 @@ TEST(PrecisionShaping, IterationsApproachTheExactTensor) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::shaping_test

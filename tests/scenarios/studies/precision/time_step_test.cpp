@@ -5,7 +5,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "tests/scenarios/studies/precision/results.hpp"
 
-namespace hapbench {
+namespace hapbench::time_step_test {
 namespace {
 
 using test::bundled, test::quick, test::value;
@@ -51,4 +51,4 @@ TEST(PrecisionTimeStep, IsRefusedWhereItMeansNothing) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::time_step_test

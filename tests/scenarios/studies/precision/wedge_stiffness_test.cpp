@@ -10,7 +10,7 @@
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/studies/precision/study.hpp"
 
-namespace hapbench {
+namespace hapbench::wedge_stiffness_test {
 namespace {
 
 Scenario wedge_scenario(const std::vector<std::string>& overrides = {}) {
@@ -74,4 +74,4 @@ TEST(WedgeStiffness, HasNoFormulaForAlgorithmsItDoesNotKnow) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::wedge_stiffness_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hapbench {
+namespace hapbench::bisection_test {
 namespace {
 
 TEST(LargestStable, FindsTheEdgeFromBothSides) {
@@ -21,4 +21,4 @@ TEST(LargestStable, SaysWhenThereIsNoEdge) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::bisection_test

@@ -8,7 +8,7 @@
 
 #include "scenarios/studies/stability/stability_limits.hpp"
 
-namespace hapbench {
+namespace hapbench::classify_test {
 namespace {
 
 constexpr std::uint64_t kSteps = 4000;
@@ -161,4 +161,4 @@ TEST(SpringDamperMargin, ChangesItsSignWhereAnEigenvalueLeavesTheUnitCircle) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::classify_test

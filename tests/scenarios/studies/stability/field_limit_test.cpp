@@ -8,7 +8,7 @@
 #include "scenarios/description/scenario_text.hpp"
 #include "scenarios/input/input_error.hpp"
 
-namespace hapbench {
+namespace hapbench::field_limit_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -129,4 +129,4 @@ TEST(FieldLimit, RefusesWhatHasNone) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::field_limit_test

@@ -9,7 +9,7 @@
 #include "scenarios/description/load_scenario.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench {
+namespace hapbench::stability_limits_test {
 namespace {
 
 Scenario single_spring(const std::vector<std::string>& overrides = {}) {
@@ -215,4 +215,4 @@ TEST(RootLocus, OmitsLimitsThatDoNotExist) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::stability_limits_test

@@ -8,7 +8,7 @@
 #include "algorithms/registry.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
 
-namespace hapbench {
+namespace hapbench::stability_map_test {
 namespace {
 
 constexpr JobOptions kTwoThreads{2, ""};
@@ -172,4 +172,4 @@ TEST(MapAxis, CoversItsRange) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::stability_map_test

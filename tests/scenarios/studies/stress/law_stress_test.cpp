@@ -10,7 +10,7 @@
 #include "sim/contact/shell_query.hpp"
 #include "tests/support/scale.hpp"
 
-namespace hapbench {
+namespace hapbench::law_stress_test {
 namespace {
 
 TEST(LawStress, NoForceIsInfiniteOrOutOfBound) {
@@ -116,4 +116,4 @@ TEST_F(ContactSets, OfDepthZeroAreAmongThem) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::law_stress_test

@@ -12,7 +12,7 @@
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench {
+namespace hapbench::adversary_test {
 namespace {
 
 Scenario scene(const std::string& algorithm, std::vector<std::string> overrides = {}) {
@@ -221,4 +221,4 @@ TEST(TrajectoryDraws, SimplifyUntilNothingIsLeft) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::adversary_test

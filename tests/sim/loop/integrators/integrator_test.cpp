@@ -11,7 +11,7 @@
 #include "sim/core/random.hpp"
 #include "tests/support/fakes.hpp"
 
-namespace hapbench {
+namespace hapbench::integrator_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -368,4 +368,4 @@ TEST(IntegratorInTheLoop, LeavesAPrescribedPositionAlone) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::integrator_test

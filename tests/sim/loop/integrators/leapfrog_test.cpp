@@ -6,7 +6,7 @@
 
 #include "tests/support/leapfrog.hpp"
 
-namespace hapbench {
+namespace hapbench::leapfrog_test {
 namespace {
 
 using test::leapfrog;
@@ -142,4 +142,4 @@ TEST(Leapfrog, ConstantForceGivesTheDiscreteParabola) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::leapfrog_test

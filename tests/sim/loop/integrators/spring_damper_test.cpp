@@ -7,7 +7,7 @@
 #include "sim/loop/integrators/spring_damper.hpp"
 #include "tests/support/scale.hpp"
 
-namespace hapbench {
+namespace hapbench::spring_damper_test {
 namespace {
 
 /// kappa = lambda K dt^2 / M and beta = lambda B dt / M decide everything.
@@ -106,4 +106,4 @@ TEST(SpringDamper, HasTheDeterminantsOfItsIntegrators) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::spring_damper_test

@@ -10,7 +10,7 @@
 #include "sim/loop/integrators/spring_damper.hpp"
 
 /// Whatever a row of the table says is true of its integrator.
-namespace hapbench {
+namespace hapbench::table_test {
 namespace {
 
 TEST(IntegratorTable, HasUniqueNamesThatAreFound) {
@@ -96,4 +96,4 @@ TEST(IntegratorTable, LimitsAreWhereStepsBecomeUnstable) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::table_test

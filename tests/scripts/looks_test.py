@@ -1,0 +1,58 @@
+"""Tests how algorithms look in figures and report: each its own way, readable on light and dark.
+
+looks_test.py PROGRAM SOURCE_DIRECTORY
+"""
+import json
+import re
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+PROGRAM, SOURCE = Path(sys.argv[1]), Path(sys.argv[2])
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(SOURCE / "scripts" / "python"))
+import hapbench_looks  # noqa: E402  (the path comes first)
+
+
+def luminance(colour):
+    """Relative luminance of WCAG 2.1 of "#RRGGBB"."""
+    parts = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(first, second):
+    low, high = sorted((luminance(first), luminance(second)))
+    return (high + 0.05) / (low + 0.05)
+
+
+class Looks(unittest.TestCase):
+    LEAST_CONTRAST = 4.5  # WCAG 2.1, level AA, of text
+
+    def test_every_algorithm_has_one_of_its_own(self):
+        listed = subprocess.run([PROGRAM, "list", "--json"], capture_output=True, text=True, check=True).stdout
+        names = {entry["name"] for entry in json.loads(listed) if entry["kind"] == "algorithm"}
+        self.assertEqual(set(hapbench_looks.ALGORITHMS), names)
+        looks = hapbench_looks.ALGORITHMS.values()
+        for part in ("label", "colour", "dark", "marker"):
+            self.assertEqual(len({getattr(look, part) for look in looks}), len(names), part)
+
+    def test_the_published_colour_is_nobody_elses(self):
+        for look in hapbench_looks.ALGORITHMS.values():
+            self.assertNotEqual(look.colour, hapbench_looks.PUBLISHED)
+            self.assertNotEqual(look.dark, hapbench_looks.PUBLISHED_DARK)
+
+    def test_colours_can_be_read(self):
+        style = (SOURCE / "scripts/python/hapbench_report/assets/style.css").read_text(encoding="utf-8")
+        light, dark = (re.findall(rf"--{name}: (#[0-9a-f]{{6}})", style) for name in ("page", "panel"))
+        light, dark = [light[0], "#ffffff"], [light[1], dark[1]]
+        published = hapbench_looks.Look("", hapbench_looks.PUBLISHED, hapbench_looks.PUBLISHED_DARK, (), "")
+        for look in (*hapbench_looks.ALGORITHMS.values(), hapbench_looks.look("unknown"), published):
+            for colour, grounds in ((look.colour, light), (look.dark, dark)):
+                for ground in grounds:
+                    self.assertGreaterEqual(contrast(colour, ground), self.LEAST_CONTRAST, (look.label, colour, ground))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,92 @@
+"""The pages of `hapbench report`."""
+import functools
+import json
+import re
+import sys
+import unittest
+
+from pictures_fixture import PROGRAM, Given, hapbench, make_runs
+
+setUpModule = make_runs
+
+
+class Page(Given):
+    @staticmethod
+    @functools.cache
+    def page(*words):
+        out = Given.root / "page.html"
+        hapbench("report", *words, "--out", out)
+        return out.read_text(encoding="utf-8")
+
+    def test_refers_to_nothing_outside_itself(self):
+        page = self.page(self.root / "mesh")
+        for reference in re.findall(r'(?:src|href)="([^"]*)"', page):
+            self.assertRegex(reference, r"^(#|data:)")
+        names = re.findall(r'\bid="([^"]+)"', page)
+        self.assertEqual(len(names), len(set(names)))
+        self.assertLessEqual(set(re.findall(r'href="#([^"]+)"', page)), set(names))
+
+    def test_holds_nothing_of_the_thesis(self):
+        for name in ("mesh", "springs", "peg"):
+            page = self.page(self.root / name)
+            # A bundled scenario names its source itself.
+            page = re.sub(r"<(style|script|details)\b.*?</\1>|<p class=lead>.*?</p>", "", page, flags=re.S)
+            self.assertEqual(re.findall(r"(?i)thesis|ledger|T\. C\. Lee|not reproduced", page), [])
+
+    def test_sections_are_there_when_they_have_content(self):
+        page = self.page(self.root / "mesh")
+        self.assertEqual(re.findall(r'<section id="(\w+)"', page), ["summary", "replay", "curves", "metrics", "scenario", "rerun", "provenance"])
+        run = self.copy("mesh")
+        (run / "trajectory.csv").unlink()
+        summary = json.loads((run / "summary.json").read_text())
+        summary["warnings"] = ["in contact 4.9 % of the run <b>"]
+        summary["metrics"] |= {"landing_force_max_N": 7.25, "force_rms_above_30Hz_N": 0.125}
+        (run / "summary.json").write_text(json.dumps(summary))
+        page = self.page(run)
+        self.assertEqual(re.findall(r'<section id="(\w+)"', page), ["summary", "warnings", "metrics", "scenario", "rerun", "provenance"])
+        for text in ("in contact 4.9 % of the run &lt;b&gt;", "Landing max, N", "7.25", "Force above 30 Hz rms, N", "0.125"):
+            self.assertTrue(text in page, text)
+
+    def test_the_commands_repeat_the_run(self):
+        page = self.page(self.root / "springs")
+        command = re.search(r"hapbench (run [^\n<]*scenario.effective.json) --out", page)[1]
+        again = self.root / "again"
+        hapbench(*command.split(), "--out", again, "--quiet")
+        self.assertEqual((again / "trajectory.csv").read_bytes(), (self.root / "springs" / "trajectory.csv").read_bytes())
+
+    def test_the_replay_has_every_run(self):
+        scene, = self.scenes(self.root / "peg")
+        self.assertEqual([r["label"] for r in scene["recordings"]], ["mean", "proxy", "summation"])
+        self.assertTrue(scene["planar"])
+        self.assertTrue(scene["shell"])
+        self.assertIsNotNone(scene["recordings"][0]["sound"])
+
+    def test_runs_of_several_scenes_are_several_replays(self):
+        scenes = self.scenes(self.root / "mesh", self.root / "springs")
+        self.assertEqual([scene["id"] for scene in scenes], ["mesh_molar", "springs_limited_mean-2"])
+        self.assertFalse(scenes[0]["planar"])
+        self.assertEqual((scenes[1]["tool"], scenes[1]["shell"]), (None, ""))
+        self.assertTrue(scenes[1]["springs"])
+
+    def scenes(self, *words):
+        data = re.search(r'<script type="application/json" id="replay-data">(.*?)</script>', self.page(*words), re.S)[1]
+        return json.loads(data)
+
+    def test_markup_in_the_input_is_text_in_the_page(self):
+        run = self.copy("springs")
+        hostile = '</script><script>alert(1)</script><img src="https://example.org/x">'
+        summary = json.loads((run / "summary.json").read_text())
+        summary |= {"name": hostile, "algorithm": hostile, "outcome": hostile, "warnings": [hostile]}
+        (run / "summary.json").write_text(json.dumps(summary))
+        page = self.page(run)
+        self.assertFalse("<script>alert" in page or '<img src="https' in page)
+
+    def test_bad_input(self):
+        for words, said in (((self.root / "sweep",), "is a sweep"), ((self.root / "mesh", "--out", "x.pdf"), "allowed: .html"),
+                            ((self.root / "none",), "no such folder")):
+            error = hapbench("report", *words, expected=2)
+            self.assertTrue(said in error and error.count("\n") == 1, error)
+
+if __name__ == "__main__":
+    assert PROGRAM.is_file(), PROGRAM
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])

@@ -1,0 +1,181 @@
+"""`hapbench plot`. Needs numpy and matplotlib."""
+import json
+import shutil
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+from pictures_fixture import PROGRAM, Given, hapbench, make_runs
+
+from hapbench_pictures.columns import header, read_columns
+from hapbench_pictures.given import given_runs, labels, named
+from hapbench_pictures.looks import looks
+from hapbench_pictures.plot import legend_columns, legend_of
+
+setUpModule = make_runs
+
+
+class Plot(Given):
+    def test_a_sketch_and_a_picture(self):
+        said = hapbench("plot", self.root / "mesh")
+        for text in ("rendered force [N]", "largest depth [mm]", "stiffness ratio [K]", "colliding points", "first touch at"):
+            self.assertIn(text, said)
+        self.assertIn(f"picture in {self.root / 'mesh' / 'plot.svg'}", said)
+        picture = (self.root / "mesh" / "plot.svg").read_text()
+        for text in ("rendered force [N]", "tip x [mm]", "tip z [mm]", "(dots: surface)", "time [s]"):
+            self.assertIn(text, picture)
+
+    def test_the_sketch_fits_the_terminal_and_its_characters(self):
+        for locale, known in (("C", str.isascii), ("C.UTF-8", lambda line: all(ord(c) < 128 or 0x2800 <= ord(c) < 0x2900 for c in line))):
+            lines = hapbench("plot", self.root / "mesh", "--out", self.root / "m.svg", locale=locale).splitlines()
+            for line in lines[:-1]:
+                self.assertLessEqual(len(line), 80)
+                self.assertTrue(known(line), line)
+            self.assertEqual(any(not line.isascii() for line in lines), locale != "C")
+
+    def test_the_sketch_names_the_peak(self):
+        columns = read_columns(self.root / "mesh" / "trajectory.csv", ["time_s", "fx_N", "fy_N", "fz_N"])
+        size = np.sqrt(columns["fx_N"] ** 2 + columns["fy_N"] ** 2 + columns["fz_N"] ** 2)
+        said = hapbench("plot", self.root / "mesh", "--y", "force", "--out", self.root / "m.svg")
+        self.assertIn(f"rendered force [N], most {size.max():.4g} at {columns['time_s'][size.argmax()]:.4g} s", said)
+
+    def test_kinds_of_files(self):
+        for name, start in (("a.svg", b"<?xml"), ("a.png", b"\x89PNG"), ("a.pdf", b"%PDF")):
+            self.assertEqual(hapbench("plot", self.root / "springs", "--no-sketch", "--out", self.root / name),
+                             f"picture in {self.root / name}\n")
+            self.assertTrue((self.root / name).read_bytes().startswith(start))
+
+    def test_same_runs_same_bytes(self):
+        pictures = []
+        for _ in range(2):
+            hapbench("plot", self.root / "peg", "--quiet", "--out", self.root / "same.svg")
+            pictures.append((self.root / "same.svg").read_bytes())
+        self.assertEqual(*pictures)
+
+    def test_a_span_of_time_and_a_peak_that_is_cut_off(self):
+        run = self.copy("mesh")
+        table = run / "trajectory.csv"
+        names, (first, *rows) = header(table), table.read_text().splitlines()
+        cells = [row.split(",") for row in rows]
+        touching = next(i for i, row in enumerate(cells) if int(row[names.index("colliding")]) > 0)
+        cells[touching][names.index("fz_N")] = "1234.5"
+        table.write_text("\n".join([first, *(",".join(row) for row in cells)]) + "\n")
+        said = hapbench("plot", run, "--y", "force")
+        self.assertRegex(said, r"rendered force \[N\], most 123\d.* \(cut off\)")
+        self.assertIn("peak 1.23e+03 N", (run / "plot.svg").read_text())
+        after = float(cells[touching + 1][names.index("time_s")])
+        said = hapbench("plot", run, "--y", "force", "--from", after, "--to", 0.24)
+        self.assertNotIn("cut off", said)
+        self.assertNotIn("first touch", said)
+
+    def test_columns_by_their_names(self):
+        said = hapbench("plot", self.root / "mesh", "--y", "fz_N,hx_m,speed", "--out", self.root / "m.svg")
+        for text in ("fz [N]", "hx [mm]", "speed of the tip [m/s]"):
+            self.assertIn(text, said)
+
+    def test_a_comparison_is_overlaid(self):
+        said = hapbench("plot", self.root / "peg", "--y", "force")
+        self.assertIn("a mean   b proxy   c summation   + several", said)
+        # One of 13 800 N beside one of 3 N.
+        self.assertIn("logarithmic", said)
+
+    def test_what_an_earlier_comparison_left_is_not_drawn(self):
+        folder = self.copy("peg")
+        table = (folder / "comparison.csv").read_text().splitlines()
+        (folder / "comparison.csv").write_text("\n".join(line for line in table if not line.startswith("proxy")) + "\n")
+        self.assertEqual(sorted(run.algorithm for run in given_runs([folder])), ["mean", "summation"])
+
+    def test_labels_tell_runs_apart(self):
+        runs = given_runs([self.root / "peg"])
+        self.assertEqual(labels(runs), ["mean", "proxy", "summation"])
+        runs = given_runs([self.root / "peg" / "mean", self.root / "springs"])
+        self.assertEqual(labels(runs), ["peg_in_hole_2d_shaped_stiffness", "springs_limited_mean"])
+        runs = self.variants({"seed": 1}, {"seed": 2})
+        self.assertEqual(named(runs), (["mean, seed 1", "mean, seed 2"], ["mean", "mean"]))
+        runs = self.variants({"rendering.stiffness_N_per_m": 10000}, {"rendering.stiffness_N_per_m": 4e4})
+        self.assertEqual(labels(runs), ["K = 10 000 N/m", "K = 40 000 N/m"])
+        runs = self.variants({"hand.mass_kg": 0.1}, {"rendering.mass_kg": 0.33})
+        self.assertIn("rendering.mass_kg=0.33", labels(runs)[1])
+        runs = self.variants({}, {})
+        self.assertEqual(labels(runs), ["mean, 0/springs", "mean, 1/springs"])
+
+    def variants(self, *changes):
+        """Copies of a run whose scenarios have other values."""
+        folder = Path(tempfile.mkdtemp(dir=self.root))
+        for i, change in enumerate(changes):
+            shutil.copytree(self.root / "springs", folder / str(i) / "springs")
+            file = folder / str(i) / "springs" / "scenario.effective.json"
+            scenario = json.loads(file.read_text())
+            for path, value in change.items():
+                section, _, name = path.rpartition(".")
+                (scenario.setdefault(section, {}) if section else scenario)[name] = value
+            file.write_text(json.dumps(scenario))
+        return given_runs([folder])
+
+    def test_the_legend_has_an_entry_for_all_seeds_and_is_not_cut(self):
+        runs = self.variants({"seed": 1}, {"seed": 2}, {"seed": 3})
+        self.assertEqual(list(legend_of(looks(runs, *named(runs)))), ["mean (3 seeds)"])
+        self.assertEqual([legend_columns(["x" * n], 7.0) for n in (5, 30, 90)], [4, 2, 1])
+
+    def test_a_sweep_over_two_fields_is_a_map(self):
+        said = hapbench("plot", self.root / "sweep", "--metric", "speed_max_m_per_s")
+        self.assertIn("mass [kg]; upwards stiffness K [N/m]", said)
+        picture = (self.root / "sweep" / "plot.svg").read_text()
+        for text in ("mass [kg]", "stiffness K [N/m]", "speed max [m/s]"):
+            self.assertIn(text, picture)
+
+    def test_failed_runs_of_a_sweep_have_no_value(self):
+        folder = self.copy("sweep")
+        table = (folder / "sweep.csv").read_text().splitlines()
+        names = table[0].split(",")
+        failed, empty = table[1].split(","), table[2].split(",")
+        failed[names.index("outcome")], failed[names.index("speed_max_m_per_s")] = "diverges", "1e9"
+        empty[names.index("speed_max_m_per_s")] = ""
+        (folder / "sweep.csv").write_text("\n".join([table[0], ",".join(failed), ",".join(empty), *table[3:]]) + "\n")
+        said = hapbench("plot", folder, "--metric", "speed_max_m_per_s")
+        self.assertIn("x diverges   ? no value", said)
+        self.assertIn(" |xx??", said)
+        self.assertNotIn("e+09", said)
+        picture = (folder / "plot.svg").read_text()
+        for text in ("diverges", "no value"):
+            self.assertIn(text, picture)
+
+    def test_maps_and_limits(self):
+        maps, limit = self.root / "maps", self.root / "limit"
+        hapbench("stability", "--map", "time_step", "--size", 3, "--algorithms", "mean,proxy", "--integrators", "leapfrog,rk4", "--out", maps,
+                 "--quiet")
+        self.assertEqual(hapbench("plot", maps), "".join(f"picture in {maps}/plot_time_step_{name}.svg\n" for name in ("leapfrog", "rk4")))
+        picture = (maps / "plot_time_step_leapfrog.svg").read_text()
+        for text in ("limit, theory", "limit, bisection", "time step [s]", "stiffness [N/m]", "diverged"):
+            self.assertIn(text, picture)
+        hapbench("limit", "springs_limited_mean", "--vary", "rendering.stiffness_N_per_m", "--set", "time.steps=300", "--set", "expect={}",
+                 "--resolution", 0.1, "--out", limit, "--quiet")
+        hapbench("plot", limit, "--quiet")
+        for text in ("limit, bisection", "stiffness K [N/m]", "mean"):
+            self.assertIn(text, (limit / "plot.svg").read_text())
+        for words, said in (((maps, limit), "one such folder alone"), ((limit, "--y", "force"), "allowed for it: --out")):
+            self.assertIn(said, hapbench("plot", *words, expected=2))
+        (limit / "limit_runs.csv").write_text("algorithm,class\nmean,stable\n")
+        self.assertIn("is not a table that hapbench wrote", hapbench("plot", limit, expected=2))
+
+    def test_bad_input(self):
+        mesh, sweep = self.root / "mesh", self.root / "sweep"
+        bare = self.copy("springs")
+        (bare / "trajectory.csv").unlink()
+        for words, said in (
+                ((mesh, "--y", "forse"), 'nearest valid name: "force"'), ((mesh, "--y", "fz"), 'nearest valid name: "fz_N"'),
+                ((mesh, "--y", "energy"), "run it with --set record.energy=true"),
+                ((mesh, "--y", "torque"), "has no tx_Nm; run it with --set record.torque=true"), ((mesh, "--out", "x.gif"), "allowed: .svg, .png, .pdf"),
+                ((self.root / "mseh",), 'nearest valid name: "mesh"'), ((self.root / "nothing" / "here",), "no such folder"),
+                ((sweep, "--metric", "speed_max"), 'nearest valid name: "speed_max_m_per_s"'), ((sweep, "--y", "force"), "allowed for it: --metric"),
+                ((mesh, "--from", "5"), "no row of trajectory.csv between 5 and inf s; allowed: a span with rows between 0 and"), ((mesh, "--to", "x"), "a time in seconds"),
+                ((mesh, "--from", "0.2", "--to", "0.1"), "--from before --to"), ((sweep, "--from", "1"), "--from: "), ((sweep, mesh), "one sweep alone"), ((mesh, "--metric", "x"), "is for a sweep"), ((bare,), "record.trajectory=true")):
+            error = hapbench("plot", *words, expected=2)
+            self.assertTrue(error.startswith("hapbench: error: ") and said in error and error.count("\n") == 1, error)
+
+if __name__ == "__main__":
+    assert PROGRAM.is_file(), PROGRAM
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])

@@ -1,0 +1,73 @@
+"""Tests the published numbers on record: published_test.py SOURCE_DIRECTORY."""
+import json
+import sys
+import unittest
+from pathlib import Path
+
+SOURCE = Path(sys.argv[1])
+CLAIMS = ("T1 T2 T3 T4 R1 R2 L1 J1 G1 A1 A2 A3 A4 B1 B2 B3 C1 C2 C3 C4 F1 F2 D1 D2 D3 D4 D5 D6").split()
+
+
+class PublishedNumbers(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.schema = json.loads((SOURCE / "results" / "reference" / "published.schema.json").read_text(encoding="utf-8"))
+        cls.files = {
+            path.name: json.loads(path.read_text(encoding="utf-8"))
+            for path in sorted((SOURCE / "results" / "reference" / "published").glob("*.json"))
+        }
+        cls.entries = [entry for file in cls.files.values() for entry in file["values"]]
+
+    def test_files_agree_with_the_schema(self):
+        item = self.schema["properties"]["values"]["items"]
+        types = {"string": str, "number": (int, float)}
+        for name, file in self.files.items():
+            self.assertEqual(set(file), set(self.schema["required"]), name)
+            self.assertTrue(file["source"])
+            for entry in file["values"]:
+                with self.subTest(f"{name}: {entry.get('id')}"):
+                    self.assertLessEqual(set(item["required"]), set(entry))
+                    self.assertLessEqual(set(entry), set(item["properties"]))
+                    self.assertRegex(entry["id"], item["properties"]["id"]["pattern"])
+                    for key, value in entry.items():
+                        rule = item["properties"][key]
+                        self.assertIsInstance(value, types[rule["type"]])
+                        self.assertGreaterEqual(
+                            len(value) if isinstance(value, str) else value,
+                            rule.get("minLength", rule.get("minimum", float("-inf"))),
+                        )
+
+    def test_each_entry_says_one_thing(self):
+        for entry in self.entries:
+            with self.subTest(entry["id"]):
+                kinds = [
+                    bool({"mean"} & set(entry)),
+                    bool({"value"} & set(entry)),
+                    bool({"at_least", "at_most"} & set(entry)),
+                    bool({"statement"} & set(entry)),
+                ]
+                self.assertEqual(sum(kinds), 1)
+                self.assertEqual("unit" in entry, not kinds[3])
+                self.assertEqual("mean" in entry, bool({"std", "standard_error"} & set(entry)))
+                self.assertLessEqual(entry.get("at_least", 0), entry.get("at_most", float("inf")))
+
+    def test_every_claim_is_there_once(self):
+        names = [entry["id"] for entry in self.entries]
+        self.assertEqual(len(names), len(set(names)))
+        self.assertEqual({name.split(".")[0] for name in names}, set(CLAIMS))
+
+    def test_published_statistics_agree_with_themselves(self):
+        """The sign of the published t is that of the difference of the published means. Not so in Table A.2, where
+        nothing differs and rounding decides (it prints equal velocities with t = 2.5)."""
+        value = {entry["id"]: entry for entry in self.entries}
+        for claim in ("D1", "D3", "D4"):
+            for measure in ("success", "time", "force", "speed"):
+                difference = (
+                    value[f"{claim}.{measure}.original_averaging"]["mean"]
+                    - value[f"{claim}.{measure}.shaped_stiffness"]["mean"]
+                )
+                self.assertGreater(difference * value[f"{claim}.{measure}.t"]["value"], 0, f"{claim}.{measure}")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
