@@ -1,13 +1,12 @@
 #include <gtest/gtest.h>
 
-#include "scenarios/description/bundled_scenarios.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
-#include "tests/scenarios/support/shortened.hpp"
 
-/// scenario.effective.json reproduces the run it lies beside.
+/// scenario.effective.json reproduces the run it lies beside; those of the bundled scenarios are tested in
+/// bundled_scenarios_test.cpp.
 namespace hapbench::round_trip_test {
 namespace {
 
@@ -16,25 +15,14 @@ using test::hapbench;
 
 /// Runs `scenario`, then the effective scenario of that run, and compares all files.
 void expect_reproduced(const std::string& scenario, const fs::path& directory, const std::string& first,
-                       const std::string& second, const std::vector<std::string>& ignored,
-                       const std::vector<std::string>& more = {}) {
-  std::vector<std::string> arguments = {"run", scenario, "--out", (directory / first).string()};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  const test::ProgramRun run = hapbench(arguments);
+                       const std::string& second, const std::vector<std::string>& ignored) {
+  const test::ProgramRun run = hapbench({"run", scenario, "--out", (directory / first).string()});
   ASSERT_EQ(run.status, 0) << run.err;
   const test::ProgramRun again = hapbench(
       {"run", (directory / first / "scenario.effective.json").string(), "--out", (directory / second).string()});
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(again.err, run.err);  // warnings about the run
   test::expect_same_files(directory / first, directory / second, ignored);
-}
-
-TEST(EffectiveScenarioFile, ReproducesEveryBundledRun) {
-  for (const BundledScenario& bundled : bundled_scenarios()) {
-    SCOPED_TRACE(bundled.name);
-    const test::TemporaryDirectory directory;
-    expect_reproduced(bundled.name, directory.path(), "a", "b", {"timing.json"}, test::shortened(bundled));
-  }
 }
 
 /// Scenarios with files, records of every kind and odd settings, in a directory of their own.
