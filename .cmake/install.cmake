@@ -53,10 +53,16 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/python DESTINATION ${share}/scri
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/results/reference DESTINATION ${share}/results
   PATTERN figures EXCLUDE PATTERN gallery EXCLUDE)
 
-if(HAPBENCH_BUILD_PROGRAM)
-  if(HAPBENCH_SHARED AND NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+# The loader looks in /usr by itself.
+if(HAPBENCH_SHARED AND NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+  if(TARGET hapbench_program)
     set_target_properties(hapbench_program PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   endif()
+  if(TARGET _hapbench)  # in lib/python3/dist-packages/hapbench
+    set_target_properties(_hapbench PROPERTIES INSTALL_RPATH "$ORIGIN/../../../../${CMAKE_INSTALL_LIBDIR}")
+  endif()
+endif()
+if(HAPBENCH_BUILD_PROGRAM)
   install(TARGETS hapbench_program RUNTIME DESTINATION bin)
   # The page and the completions are what the program itself prints, so that they fit it.
   install(CODE "set(program \"$<TARGET_FILE:hapbench_program>\")")
@@ -70,15 +76,11 @@ if(HAPBENCH_BUILD_PROGRAM)
   ]])
 endif()
 
-# The interface of force laws in C, for laws without C++, and the Python package.
+# The interface of force laws in C, and examples of it.
 set(plugin_header ${PROJECT_SOURCE_DIR}/algorithms/plugin/hapbench_plugin.h)
 if(EXISTS ${plugin_header})
   install(FILES ${plugin_header} DESTINATION include)
-endif()
-if(HAPBENCH_BUILD_PYTHON AND TARGET _hapbench)
-  set(python_folder lib/python3/dist-packages)
-  install(TARGETS _hapbench LIBRARY DESTINATION ${python_folder}/hapbench)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/python/hapbench DESTINATION ${python_folder} PATTERN __pycache__ EXCLUDE)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/algorithms/plugin/examples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples/plugin)
 endif()
 
 # The manuals, in the folders in which they link each other.

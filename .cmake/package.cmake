@@ -28,6 +28,12 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lib)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 # To choose the level, the loader must know of them.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libc6 (>= 2.33), python3")
+if(TARGET _hapbench)
+  # A module serves the one Python it was compiled for.
+  math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
+  string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS
+    " (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3 (<< ${Python_VERSION_MAJOR}.${next_minor})")
+endif()
 # To draw; to compile against the library.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS
   "python3-matplotlib, python3-numpy, python3-scipy, cmake, g++, libeigen3-dev, nlohmann-json3-dev")
