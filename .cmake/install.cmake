@@ -85,7 +85,7 @@ endif()
 
 # The manuals, in the folders in which they link each other.
 file(GLOB_RECURSE manuals RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
-  sim/*.md algorithms/*.md device_model/*.md results/*.md scenarios/*.md)
+  sim/*.md algorithms/*.md device_model/*.md results/*.md scenarios/*.md tests/*.md)
 foreach(manual README.md CHANGELOG.md LICENSE CITATION.cff ${manuals})
   cmake_path(GET manual PARENT_PATH folder)
   install(FILES ${PROJECT_SOURCE_DIR}/${manual} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})

@@ -15,19 +15,19 @@ set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/compress.cmake)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER "${maintainer}")
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "bench for haptic rendering without the hardware
- A rigid tool, such as a dental drill, is moved through a virtual object; a force
- algorithm answers, step by step, with the three forces that a device without
- torques can render. hapbench runs such scenes through many algorithms and
- measures force, depth, vibration, energy, stability limits and time.
- .
- The package has the program, the C++ library with its headers, scenarios,
- examples and manuals.")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "bench for haptic rendering without the hardware")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+"A rigid tool, such as a dental drill, is moved through a virtual object; a force
+algorithm answers, step by step, with the three forces that a device without
+torques can render. hapbench runs such scenes through many algorithms and
+measures force, depth, vibration, energy, stability limits and time.
+.
+The package has the program, the C++ library with its headers, scenarios,
+examples and manuals.")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lib)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
-# To choose the level, the loader must know of them.
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "libc6 (>= 2.33), python3")
+set(CPACK_DEBIAN_PACKAGE_DEPENDS python3)
 if(TARGET _hapbench)
   # A module serves the one Python it was compiled for.
   math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
