@@ -17,16 +17,15 @@ set(CPACK_DEBIAN_PACKAGE_MAINTAINER "${maintainer}")
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "bench for haptic rendering without the hardware")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
-"A rigid tool, such as a dental drill, is moved through a virtual object; a force
-algorithm answers, step by step, with the three forces that a device without
-torques can render. hapbench runs such scenes through many algorithms and
-measures force, depth, vibration, energy, stability limits and time.
+"A rigid tool, such as a dental drill, is moved through a virtual object; a
+force algorithm answers, step by step, with the three forces that a device
+without torques can render. hapbench runs such scenes through many algorithms
+and measures force, depth, vibration, energy, stability limits and time.
 .
 The package has the program, the C++ library with its headers, scenarios,
 examples and manuals.")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lib)
-set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS python3)
 if(TARGET _hapbench)
   # A module serves the one Python it was compiled for.
@@ -45,7 +44,13 @@ file(READ ${PROJECT_SOURCE_DIR}/LICENSE license)
 file(CONFIGURE OUTPUT ${debian}/copyright CONTENT "hapbench, by @maintainer@\n\n@license@" @ONLY)
 string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
 file(CONFIGURE OUTPUT ${debian}/changelog @ONLY CONTENT
-  "hapbench (@PROJECT_VERSION@) unstable; urgency=medium\n\n  * CHANGELOG.md says what is new.\n\n -- @maintainer@  @date@\n")
+  "hapbench (@PROJECT_VERSION@) unstable; urgency=medium\n\n  * CHANGELOG.md says what is new.\n\n -- @maintainer@ <none>  @date@\n")
+# cpack's own would name the library once for each level.
+set(soversion ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+file(CONFIGURE OUTPUT ${debian}/shlibs CONTENT "libhapbench @soversion@ hapbench (>= @soversion@)\n" @ONLY)
+file(CONFIGURE OUTPUT ${debian}/triggers CONTENT "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${debian}/shlibs ${debian}/triggers)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 install(FILES ${debian}/copyright ${debian}/changelog DESTINATION share/doc/hapbench)
 install(FILES ${CMAKE_CURRENT_LIST_DIR}/lintian-overrides DESTINATION share/lintian/overrides RENAME hapbench)
 include(CPack)
