@@ -27,7 +27,7 @@ if(NOT HAPBENCH_SHARED)
   set(HAPBENCH_SHARE_RULE [[
 # Static libraries do not know where they lie.
 target_sources(hapbench::scenarios_input INTERFACE ${CMAKE_CURRENT_LIST_DIR}/share_folder.cpp)
-target_compile_definitions(hapbench::scenarios_input INTERFACE HAPBENCH_SHARE="${PACKAGE_PREFIX_DIR}/share/hapbench")]])
+target_compile_definitions(hapbench::scenarios_input INTERFACE HAPBENCH_SHARE="${hapbench_SHARE}")]])
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/share_folder.cpp DESTINATION ${config_folder})
 endif()
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/hapbench-config.cmake.in ${PROJECT_BINARY_DIR}/hapbench-config.cmake
