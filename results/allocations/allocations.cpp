@@ -1,78 +1,11 @@
 #include "results/allocations/allocations.hpp"
 
-#include <cerrno>
-#include <cstddef>
-
-namespace {
-
-/// Of each thread by itself: a run stays on one thread, beside which others may run.
-constinit thread_local std::uint64_t allocations = 0;
-
-}  // namespace
-
-#ifdef __SANITIZE_ADDRESS__
-#define HAPBENCH_SANITIZED
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define HAPBENCH_SANITIZED
-#endif
-#endif
-
-#ifdef HAPBENCH_SANITIZED
-
-// AddressSanitizer owns malloc and offers hooks instead.
-extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*, std::size_t),
-                                                         void (*free_hook)(const volatile void*));
-
-namespace {
-
-const int hooks_installed = __sanitizer_install_malloc_and_free_hooks(
-    [](const volatile void*, std::size_t) { ++allocations; }, [](const volatile void*) {});
-
-}  // namespace
-
-#else
-
-// glibc's allocator under its own names. free stays glibc's: what it frees came from there.
-extern "C" {
-void* __libc_malloc(std::size_t size);
-void* __libc_calloc(std::size_t count, std::size_t size);
-void* __libc_realloc(void* block, std::size_t size);
-void* __libc_memalign(std::size_t alignment, std::size_t size);
-
-void* malloc(std::size_t size) noexcept {
-  ++allocations;
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t count, std::size_t size) noexcept {
-  ++allocations;
-  return __libc_calloc(count, size);
-}
-void* realloc(void* block, std::size_t size) noexcept {
-  ++allocations;
-  return __libc_realloc(block, size);
-}
-void* memalign(std::size_t alignment, std::size_t size) noexcept {
-  ++allocations;
-  return __libc_memalign(alignment, size);
-}
-void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
-  ++allocations;
-  return __libc_memalign(alignment, size);
-}
-int posix_memalign(void** block, std::size_t alignment, std::size_t size) noexcept {
-  ++allocations;
-  *block = __libc_memalign(alignment, size);
-  return *block == nullptr ? ENOMEM : 0;
-}
-}
-
-#endif
-
 namespace hapbench {
 
+constinit thread_local std::uint64_t allocations_of_thread = 0;
+
 std::uint64_t heap_allocations() noexcept {
-  return allocations;
+  return allocations_of_thread;
 }
 
 }  // namespace hapbench

@@ -6,8 +6,12 @@ namespace hapbench {
 
 /// Heap allocations of this thread so far: malloc, calloc, realloc and the aligned ones, hence operator new and Eigen's
 /// allocator too, which call them. So summary.json can state how many a step loop made (none) instead of claiming it,
-/// and tests can count. A program that links this library has malloc replaced by one that counts.
+/// and tests can count. Programs that link hapbench::counting_malloc have malloc replaced by one that counts: hapbench
+/// and its tests. 0 in any other, whose allocations nobody counts.
 std::uint64_t heap_allocations() noexcept;
+
+/// The count, for that malloc. Of each thread by itself: a run stays on one thread, beside which others may run.
+extern constinit thread_local std::uint64_t allocations_of_thread;
 
 /// Counts from its construction on.
 class AllocationCount {

@@ -7,6 +7,10 @@
 
 #include "sim/core/lanes.hpp"
 
+#ifndef HAPBENCH_SIMD
+#error "sim/core/simd.hpp, and what includes it, is for hapbench's own sources; see sim/core/lanes.hpp for yours"
+#endif
+
 #if HAPBENCH_SIMD
 #include <experimental/simd>
 #ifdef __AVX512VL__

@@ -4,6 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#ifndef EIGEN_DONT_VECTORIZE
+#error "EIGEN_DONT_VECTORIZE is missing, on which layouts depend: link hapbench::sim, which brings it"
+#endif
+
 /// Small vectors of the engine. SI units (m, s, N, kg, rad) and double precision everywhere; world frame W,
 /// right-handed. A planar scene is a 3-D scene whose points, normals and motion have no z component.
 namespace hapbench {

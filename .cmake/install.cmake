@@ -1,0 +1,101 @@
+# What `cmake --install` installs: libraries and headers for find_package(hapbench), the files that come with them, the program.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+set(config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/hapbench)
+
+# The commands are our program's own.
+get_property(libraries GLOBAL PROPERTY HAPBENCH_LIBRARIES)
+list(REMOVE_ITEM libraries hapbench_scenarios_program hapbench_scenarios_program_headers)
+get_property(folders GLOBAL PROPERTY HAPBENCH_FOLDERS)
+list(REMOVE_ITEM folders scenarios/program)
+if(HAPBENCH_SHARED)
+  list(APPEND libraries hapbench)
+  foreach(level ${HAPBENCH_LEVELS})
+    install(TARGETS hapbench_${level} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/glibc-hwcaps/${level} NAMELINK_SKIP)
+  endforeach()
+endif()
+install(TARGETS ${libraries} EXPORT hapbench-targets
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(EXPORT hapbench-targets NAMESPACE hapbench:: DESTINATION ${config_folder})
+
+# What the headers need; static libraries, also what their code needs.
+set(HAPBENCH_DEPENDENCIES "find_dependency(Eigen3 3.4)\nfind_dependency(nlohmann_json 3.11)")
+set(HAPBENCH_SHARE_RULE "")
+if(NOT HAPBENCH_SHARED)
+  string(APPEND HAPBENCH_DEPENDENCIES
+    "\nfind_dependency(fmt 9)\nfind_dependency(OpenMesh)\nfind_dependency(TBB 2021)")
+  set(HAPBENCH_SHARE_RULE [[
+# Static libraries do not know where they lie.
+target_sources(hapbench::scenarios_input INTERFACE ${CMAKE_CURRENT_LIST_DIR}/share_folder.cpp)
+target_compile_definitions(hapbench::scenarios_input INTERFACE HAPBENCH_SHARE="${hapbench_SHARE}")]])
+  install(FILES ${CMAKE_CURRENT_LIST_DIR}/share_folder.cpp DESTINATION ${config_folder})
+endif()
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/hapbench-config.cmake.in ${PROJECT_BINARY_DIR}/hapbench-config.cmake
+  INSTALL_DESTINATION ${config_folder})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/hapbench-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/hapbench-config.cmake ${PROJECT_BINARY_DIR}/hapbench-config-version.cmake
+  DESTINATION ${config_folder})
+
+foreach(folder ${folders})
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}/ DESTINATION include/hapbench/${folder}
+    FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h")
+endforeach()
+
+# The files that come with program and libraries. bin and share stay side by side, which is how the program finds them.
+set(share share/hapbench)
+foreach(group thesis limits beyond quality examples)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/${group} DESTINATION ${share}/scenarios)
+endforeach()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/import/presets DESTINATION ${share}/scenarios/import)
+install(FILES ${PROJECT_SOURCE_DIR}/scenarios/scenario.schema.json DESTINATION ${share}/scenarios)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/python DESTINATION ${share}/scripts USE_SOURCE_PERMISSIONS
+  PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/results/reference DESTINATION ${share}/results
+  PATTERN figures EXCLUDE PATTERN gallery EXCLUDE)
+
+# The loader looks in /usr by itself.
+if(HAPBENCH_SHARED AND NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+  if(TARGET hapbench_program)
+    set_target_properties(hapbench_program PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+  endif()
+  if(TARGET _hapbench)  # in lib/python3/dist-packages/hapbench
+    set_target_properties(_hapbench PROPERTIES INSTALL_RPATH "$ORIGIN/../../../../${CMAKE_INSTALL_LIBDIR}")
+  endif()
+endif()
+if(HAPBENCH_BUILD_PROGRAM)
+  install(TARGETS hapbench_program RUNTIME DESTINATION bin)
+  # The page and the completions are what the program itself prints, so that they fit it.
+  install(CODE "set(program \"$<TARGET_FILE:hapbench_program>\")")
+  install(CODE [[
+    set(share "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/share")
+    file(MAKE_DIRECTORY ${share}/man/man1 ${share}/bash-completion/completions)
+    execute_process(COMMAND ${program} man OUTPUT_FILE ${share}/man/man1/hapbench.1 COMMAND_ERROR_IS_FATAL ANY)
+    execute_process(COMMAND ${program} completion bash
+      OUTPUT_FILE ${share}/bash-completion/completions/hapbench COMMAND_ERROR_IS_FATAL ANY)
+    message(STATUS "Installing: ${share}/man/man1/hapbench.1 and completions for bash")
+  ]])
+endif()
+
+# The interface of force laws in C, and examples of it.
+set(plugin_header ${PROJECT_SOURCE_DIR}/algorithms/plugin/hapbench_plugin.h)
+if(EXISTS ${plugin_header})
+  install(FILES ${plugin_header} DESTINATION include)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/algorithms/plugin/examples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples/plugin)
+endif()
+
+# The manuals, in the folders in which they link each other.
+file(GLOB_RECURSE manuals RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
+  sim/*.md algorithms/*.md device_model/*.md results/*.md scenarios/*.md tests/*.md)
+foreach(manual README.md CHANGELOG.md LICENSE CITATION.cff ${manuals})
+  cmake_path(GET manual PARENT_PATH folder)
+  install(FILES ${PROJECT_SOURCE_DIR}/${manual} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})
+endforeach()
+foreach(pictures figures gallery)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/results/reference/${pictures} DESTINATION ${CMAKE_INSTALL_DOCDIR}/results/reference)
+endforeach()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/tests/consumer/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples/own_law
+  FILES_MATCHING PATTERN "*.cpp" PATTERN CMakeLists.txt)
+
+if(PROJECT_IS_TOP_LEVEL AND HAPBENCH_SHARED)
+  include(${CMAKE_CURRENT_LIST_DIR}/package.cmake)
+endif()

@@ -1,0 +1,76 @@
+"""hapbench as a library: a project of its own finds it installed, and takes it in as a folder. Arguments: cmake, the build
+tree, the source tree, the program."""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+CMAKE, BUILD, SOURCE, PROGRAM = sys.argv[1:5]
+CONSUMER = Path(SOURCE) / "tests" / "consumer"
+SCENARIO = "peg_in_hole_2d_mean"
+# A parent's flags are its own business; CMake would take these from the environment.
+ENVIRONMENT = {key: value for key, value in os.environ.items() if key not in ("CXXFLAGS", "LDFLAGS", "CMAKE_BUILD_TYPE")}
+
+
+def must(*words, cwd=None):
+    run = subprocess.run([*map(str, words)], cwd=cwd, env=ENVIRONMENT, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    if run.returncode != 0:
+        raise AssertionError(f"{' '.join(map(str, words))}: {run.returncode}\n{run.stdout}{run.stderr}")
+    return run.stdout
+
+
+class Consumer(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.temporary.cleanup)
+        cls.folder = Path(cls.temporary.name).resolve()
+        cls.prefix = cls.folder / "prefix"
+        must(CMAKE, "--install", BUILD, "--prefix", cls.prefix)
+
+    def test_an_installed_library_runs_a_law_of_another_project(self):
+        build = self.folder / "found"
+        must(CMAKE, "-S", CONSUMER, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}", "-DCMAKE_BUILD_TYPE=Debug")
+        must(CMAKE, "--build", build)
+        file, state_hash = must(build / "own_law", cwd=self.folder).split()
+        self.assertTrue(Path(file).is_relative_to(self.prefix / "share" / "hapbench" / "scenarios"), file)
+        out = self.folder / "out"
+        must(PROGRAM, "run", SCENARIO, "--out", out)
+        self.assertEqual(state_hash, json.loads((out / "summary.json").read_text())["state_hash"])
+
+    def test_headers_without_the_flags_that_lay_out_their_types_do_not_compile(self):
+        source = self.folder / "bare.cpp"
+        for header, complaint in (("sim/core/types.hpp", "EIGEN_DONT_VECTORIZE"), ("sim/core/simd.hpp", "hapbench's own")):
+            source.write_text(f"#include <{header}>\n")
+            run = subprocess.run(["c++", "-std=c++20", "-fsyntax-only", "-isystem", "/usr/include/eigen3", "-I",
+                                  self.prefix / "include" / "hapbench", source], capture_output=True, text=True)
+            self.assertNotEqual(run.returncode, 0, header)
+            self.assertIn(complaint, run.stderr)
+
+    def test_a_folder_of_another_project_leaves_that_alone(self):
+        build = self.folder / "parent"
+        must(CMAKE, "-S", CONSUMER, "-B", build, "-G", "Ninja", f"-DHAPBENCH_SOURCE={SOURCE}")
+        cache = (build / "CMakeCache.txt").read_text().splitlines()
+        self.assertIn("CMAKE_BUILD_TYPE:STRING=", cache)
+        self.assertIn("HAPBENCH_BUILD_TESTS:BOOL=OFF", cache)
+        self.assertFalse((build / "compile_commands.json").exists())
+        self.assertFalse((build / "CTestTestfile.cmake").exists())
+        all_of_parent = must("ninja", "-C", build, "-t", "commands", "all")
+        self.assertIn("own_law.cpp", all_of_parent)
+        self.assertIn("installed_folder.cpp", all_of_parent)
+        self.assertNotIn("scenarios/studies", all_of_parent, "nothing is built that the parent does not link")
+        self.assertNotIn("scenarios/program", all_of_parent)
+        own = next(line for line in all_of_parent.splitlines() if line.endswith("own_law.cpp"))
+        self.assertIn("-ffp-contract=off", own)
+        self.assertIn("-DEIGEN_DONT_VECTORIZE", own)
+        for word in ("-Wconversion", "-march", "-Werror", "HAPBENCH_SIMD"):
+            self.assertNotIn(word, own)
+        # Its scenarios are where the library will look for them.
+        self.assertTrue((build / "hapbench" / "share" / "hapbench" / "scenarios" / "thesis" / f"{SCENARIO}.json").is_file())
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
