@@ -27,6 +27,12 @@ struct OwnParameter {
   const char* meaning;
 };
 
+/// Where the code of an algorithm from outside comes from, for the provenance of results.
+struct AlgorithmOrigin {
+  std::string file;  ///< its name, without folders
+  std::string hash;  ///< of its content
+};
+
 struct AlgorithmEntry {
   const ModelInfo* info;
   /// A new force algorithm for one run.
@@ -42,6 +48,7 @@ struct AlgorithmEntry {
   /// alone.
   bool creates_energy = false;
   std::span<const OwnParameter> own_parameters = {};
+  AlgorithmOrigin origin = {};             ///< empty for a built-in algorithm
   std::shared_ptr<const void> texts = {};  ///< what `info` and `own_parameters` of an added algorithm point to
 };
 

@@ -149,7 +149,8 @@ std::string hint_elsewhere(const std::string& field) {
 InputError in_file(const InputError& fault, const std::filesystem::path& file) {
   std::string problem = fault.problem();
   if (problem.starts_with("unknown field") && problem.find("nearest valid name") == std::string::npos)
-    problem += hint_elsewhere(last_name(fault.place(), '/'));
+    problem += fault.place().starts_with("/rendering/parameters/") ? "; a law from outside brings its own with --plugin"
+                                                                   : hint_elsewhere(last_name(fault.place(), '/'));
   const std::string place = fault.place().empty() ? file.string() : file.string() + ": " + fault.place();
   return {fault.kind(), place, problem};
 }

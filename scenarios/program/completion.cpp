@@ -190,10 +190,10 @@ Words completions(const std::vector<CommandText>& texts, const Words& words) {
   const std::string last = words.back() == "=" || words.back() == ":" ? "" : words.back();
   Words found;
   if (joined.size() == 1) {
-    Words names = {"--help", "--version"};
+    Words names = {"--help", "--version", "--plugin"};
     for (auto command = texts.begin() + 1; command != texts.end(); ++command) names.push_back(command->name);
     found = beginning_with(joined.back(), "", names);
-    if (joined.back().empty()) found.erase(found.begin(), found.begin() + 2);
+    if (joined.back().empty()) found.erase(found.begin(), found.begin() + 3);
   } else {
     for (const CommandText& command : texts) {
       if (command.name == joined[0]) found = candidates(command, {joined.begin() + 1, joined.end()});
