@@ -38,6 +38,15 @@ class KeptFloatingPoint {
   std::fenv_t environment_{};
 };
 
+/// Asked before the file is opened: a directory or a pipe is refused here.
+std::string hash_of_file(const fs::path& file) {
+  try {
+    return hash_text(hash_of(read_text_file(file, kLargestPlugin)));
+  } catch (const InputError& error) {
+    fail_in_file(file, error.problem());
+  }
+}
+
 /// What the library's one function says. The library stays open: its laws may run at any time.
 const HapbenchPlugin& opened(const fs::path& file) {
   const KeptFloatingPoint kept;
@@ -70,8 +79,7 @@ void load_plugin(const fs::path& given) {
   if (error) fail_in_file(given, "cannot be loaded as a plugin: " + error.message());
   const auto is_this = [&file](const LoadedPlugin& plugin) { return plugin.file == file; };
   if (std::any_of(plugins().begin(), plugins().end(), is_this)) return;
-  // Read before it is opened: a directory or a pipe is refused here.
-  const std::string hash = hash_text(hash_of(read_text_file(file, kLargestPlugin)));
+  const std::string hash = hash_of_file(file);
   const HapbenchPlugin& plugin = opened(file);
   try {
     AlgorithmEntry entry = plugin_entry(plugin, {file.filename().string(), hash});

@@ -147,7 +147,8 @@ void CommandLine::add_plugin_option(CLI::App& app) {
   const auto add = [this](const std::vector<std::string>& files) {
     plugins_.insert(plugins_.end(), files.begin(), files.end());
   };
-  app.add_option_function<std::vector<std::string>>("--plugin", add, "a shared library with a law of your own")
+  app.add_option_function<std::vector<std::string>>(
+         "--plugin", add, "FILE.so with a law of your own; HAPBENCH_PLUGIN_PATH names folders of such files")
       ->allow_extra_args(false)
       ->take_all();
 }
@@ -280,9 +281,8 @@ int status_with_faults(int status) {
   const PluginFaults faults = plugin_faults();
   if (faults.count == 0) return status;
   std::fflush(stdout);
-  print_error(fmt::format("a law from a plugin failed {}, what it computed then counts as diverged: {}",
-                          faults.count == 1 ? "once" : fmt::format("{} times, the first time", faults.count),
-                          faults.first));
+  print_error(fmt::format("the law of a plugin failed {}; runs that it failed in count as diverged: {}",
+                          faults.count == 1 ? "once" : fmt::format("{} times", faults.count), faults.first));
   return status == kSuccess ? kUnexpectedOutcome : status;
 }
 
