@@ -74,6 +74,7 @@ struct Table {
   std::deque<AlgorithmEntry> entries = built_in();
   std::size_t built_in_size = entries.size();
   std::vector<std::string> names;
+  std::size_t additions = 0;
 
   Table() {
     for (const AlgorithmEntry& entry : entries) names.emplace_back(entry.info->name);
@@ -136,17 +137,23 @@ const DepthModelEntry* find_depth_model(std::string_view name) {
 
 void add_algorithm(AlgorithmEntry entry) {
   entry = checked_copy(std::move(entry));
-  auto& [entries, built_in_size, names] = table();
+  auto& [entries, built_in_size, names, count] = table();
   AlgorithmEntry* same = find(entries, entry.info->name);
   if (same == nullptr) {
     names.emplace_back(entry.info->name);
     entries.push_back(std::move(entry));
+    ++count;
     return;
   }
   const auto first_added = entries.begin() + static_cast<std::ptrdiff_t>(built_in_size);
   if (std::none_of(first_added, entries.end(), [same](const AlgorithmEntry& e) { return &e == same; }))
     throw std::invalid_argument("\"" + std::string(entry.info->name) + "\" is the name of a built-in algorithm");
   *same = std::move(entry);
+  ++count;
+}
+
+std::size_t additions() {
+  return table().additions;
 }
 
 std::vector<double> own_values(const RenderingConfig& config, const AlgorithmEntry& entry) {

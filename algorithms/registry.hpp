@@ -74,6 +74,9 @@ const DepthModelEntry* find_depth_model(std::string_view name);
 /// algorithm or one that a scenario cannot hold, for texts that are missing, and for parameters without a valid range.
 void add_algorithm(AlgorithmEntry entry);
 
+/// How often an algorithm has been added: what was made of the table holds until this changes.
+std::size_t additions();
+
 /// The values of the own parameters of an algorithm, in the order of its table: those `config` gives, or defaults.
 std::vector<double> own_values(const RenderingConfig& config, const AlgorithmEntry& entry);
 

@@ -150,9 +150,9 @@ AlgorithmEntry plugin_entry(const HapbenchPlugin& plugin, AlgorithmOrigin origin
   return checked_copy({.info = &info, .make = make, .own_parameters = parameters, .origin = std::move(origin)});
 }
 
-PluginFaults plugin_faults() {
+PluginFaults take_plugin_faults() {
   const std::lock_guard lock(faults_mutex);
-  return faults();
+  return std::exchange(faults(), {});
 }
 
 }  // namespace hapbench

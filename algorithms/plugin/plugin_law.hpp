@@ -43,11 +43,12 @@ class PluginLaw final : public ForceLaw {
 /// plugin whose functions or documentation are missing.
 AlgorithmEntry plugin_entry(const HapbenchPlugin& plugin, AlgorithmOrigin origin);
 
-/// Faults of laws from outside since the program began, over all threads.
+/// Faults of laws from outside, over all threads.
 struct PluginFaults {
   std::uint64_t count = 0;
   std::string first;  ///< its text
 };
-PluginFaults plugin_faults();
+/// Those since it was last asked.
+PluginFaults take_plugin_faults();
 
 }  // namespace hapbench

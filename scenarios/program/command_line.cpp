@@ -278,7 +278,7 @@ int complete(const std::vector<CommandText>& texts, std::vector<std::string> wor
 
 /// Runs that a law from outside ended count as diverged; where that is no failure by itself, this is.
 int status_with_faults(int status) {
-  const PluginFaults faults = plugin_faults();
+  const PluginFaults faults = take_plugin_faults();
   if (faults.count == 0) return status;
   std::fflush(stdout);
   print_error(fmt::format("the law of a plugin failed {}; runs that it failed in count as diverged: {}",
@@ -304,6 +304,7 @@ int CommandLine::run(int argc, char** argv) {
     return kBadInput;
   }
   load_plugins(plugins_);
+  take_plugin_faults();  // of an earlier command of this process
   return status_with_faults(chosen_.action());
 }
 

@@ -1,6 +1,6 @@
 /* A force law in C: contacts weigh by a power of their depth.
  *
- *     gcc -std=c11 -O2 -fPIC -shared -I/usr/include/hapbench/algorithms/plugin depth_weighted.c -lm -o depth_weighted.so
+ *     gcc -std=c11 -O2 -fPIC -shared depth_weighted.c -lm -o depth_weighted.so
  *     hapbench --plugin ./depth_weighted.so compare peg_in_hole_2d_shaped_stiffness
  *
  * Weights that add up to 1 make a force that is no larger than K times the deepest depth. */

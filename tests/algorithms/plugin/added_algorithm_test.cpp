@@ -26,7 +26,7 @@ std::string problem_with(const ModelInfo& info, std::vector<OwnParameter> parame
 }
 
 TEST(AddedAlgorithm, IsFoundAndCanBeReplaced) {
-  const std::size_t before = algorithms().size();
+  const std::size_t before = algorithms().size(), additions_before = additions();
   const AlgorithmEntry& mean = *find_algorithm("mean");
   {
     // Texts of its own, which need not stay.
@@ -52,6 +52,7 @@ TEST(AddedAlgorithm, IsFoundAndCanBeReplaced) {
   EXPECT_EQ(algorithms().size(), before + 1);
   EXPECT_EQ(&added, find_algorithm("added"));
   EXPECT_STREQ(added.info->summary, "again");
+  EXPECT_EQ(additions(), additions_before + 2);
 }
 
 TEST(AddedAlgorithm, IsRefusedWithTheReason) {
