@@ -25,6 +25,7 @@ class PenaltyRendering final : public ForceAlgorithm {
   ForceJacobian jacobian() const noexcept override;
   std::optional<double> angular_velocity_cutoff() const noexcept override { return angular_velocity_cutoff_; }
   AlgorithmWork work() const noexcept override;
+  const char* fault() const noexcept override { return law_->fault(); }
 
  private:
   void reduce(ContactBuffer& contacts) noexcept;

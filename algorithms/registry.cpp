@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "algorithms/added_algorithm.hpp"
 #include "algorithms/depth/continuous_normal_projection_depth.hpp"
 #include "algorithms/depth/normal_projection_depth.hpp"
 #include "algorithms/depth/shortest_distance.hpp"
@@ -25,46 +26,65 @@ std::unique_ptr<ForceAlgorithm> penalty(const RenderingConfig& config) {
   return std::make_unique<PenaltyRendering>(make_law(config), config);
 }
 
-constexpr AlgorithmEntry kAlgorithms[] = {
-    {.info = &kOriginalAveragingInfo,
-     .make = penalty<make_original_averaging>,
-     .theory = &kOriginalAveragingTheory,
-     .fixed_depth_model = "shortest_distance",
-     .may_reduce = false,
-     .creates_energy = true},
-    {.info = &kSummationInfo, .make = penalty<make_summation>, .theory = &kSummationTheory, .creates_energy = true},
-    {.info = &kMeanInfo, .make = penalty<make_mean>, .theory = &kMeanTheory},
-    {.info = &kVirtualCouplingInfo, .make = penalty<make_virtual_coupling>, .theory = &kVirtualCouplingTheory},
-    {.info = &kShapedStiffnessInfo, .make = penalty<make_shaped_stiffness>, .theory = &kShapedStiffnessTheory},
-    {.info = &kTandpastaInfo, .make = penalty<make_tandpasta>, .theory = &kTandpastaTheory, .creates_energy = true},
-    {.info = &kNormalProjectionInfo,
-     .make = penalty<make_shaped_stiffness>,
-     .theory = &kShapedStiffnessTheory,
-     .fixed_depth_model = "normal_projection",
-     .creates_energy = true},
-    {.info = &kExactShapingInfo, .make = penalty<make_exact_shaping>, .theory = &kExactShapingTheory},
-    {.info = &kContinuousNormalProjectionInfo,
-     .make = penalty<make_shaped_stiffness>,
-     .theory = &kShapedStiffnessTheory,
-     .fixed_depth_model = "continuous_normal_projection"},
-    {.info = &kMergedShapingInfo,
-     .make = penalty<make_merged_shaping>,
-     .theory = &kExactShapingTheory,
-     .may_reduce = false},
-    {.info = &kProxyInfo,
-     .make = make_proxy,
-     .theory = &kProxyTheory,
-     .may_reduce = false,
-     .reported_depth_model = "surface_normal"},
-    {.info = &kLeastSquaresInfo,
-     .make = penalty<make_least_squares>,
-     .theory = &kLeastSquaresTheory,
-     .may_reduce = false},
-    {.info = &kHighestDepthInfo,
-     .make = penalty<make_highest_depth>,
-     .theory = &kHighestDepthTheory,
-     .may_reduce = false},
+std::deque<AlgorithmEntry> built_in() {
+  return {
+      {.info = &kOriginalAveragingInfo,
+       .make = penalty<make_original_averaging>,
+       .theory = &kOriginalAveragingTheory,
+       .fixed_depth_model = "shortest_distance",
+       .may_reduce = false,
+       .creates_energy = true},
+      {.info = &kSummationInfo, .make = penalty<make_summation>, .theory = &kSummationTheory, .creates_energy = true},
+      {.info = &kMeanInfo, .make = penalty<make_mean>, .theory = &kMeanTheory},
+      {.info = &kVirtualCouplingInfo, .make = penalty<make_virtual_coupling>, .theory = &kVirtualCouplingTheory},
+      {.info = &kShapedStiffnessInfo, .make = penalty<make_shaped_stiffness>, .theory = &kShapedStiffnessTheory},
+      {.info = &kTandpastaInfo, .make = penalty<make_tandpasta>, .theory = &kTandpastaTheory, .creates_energy = true},
+      {.info = &kNormalProjectionInfo,
+       .make = penalty<make_shaped_stiffness>,
+       .theory = &kShapedStiffnessTheory,
+       .fixed_depth_model = "normal_projection",
+       .creates_energy = true},
+      {.info = &kExactShapingInfo, .make = penalty<make_exact_shaping>, .theory = &kExactShapingTheory},
+      {.info = &kContinuousNormalProjectionInfo,
+       .make = penalty<make_shaped_stiffness>,
+       .theory = &kShapedStiffnessTheory,
+       .fixed_depth_model = "continuous_normal_projection"},
+      {.info = &kMergedShapingInfo,
+       .make = penalty<make_merged_shaping>,
+       .theory = &kExactShapingTheory,
+       .may_reduce = false},
+      {.info = &kProxyInfo,
+       .make = make_proxy,
+       .theory = &kProxyTheory,
+       .may_reduce = false,
+       .reported_depth_model = "surface_normal"},
+      {.info = &kLeastSquaresInfo,
+       .make = penalty<make_least_squares>,
+       .theory = &kLeastSquaresTheory,
+       .may_reduce = false},
+      {.info = &kHighestDepthInfo,
+       .make = penalty<make_highest_depth>,
+       .theory = &kHighestDepthTheory,
+       .may_reduce = false},
+  };
+}
+
+/// The table, built at the first use: others may ask before this file's variables are.
+struct Table {
+  std::deque<AlgorithmEntry> entries = built_in();
+  std::size_t built_in_size = entries.size();
+  std::vector<std::string> names;
+  std::size_t additions = 0;
+
+  Table() {
+    for (const AlgorithmEntry& entry : entries) names.emplace_back(entry.info->name);
+  }
 };
+
+Table& table() {
+  static Table the_one;
+  return the_one;
+}
 
 constexpr DepthModelEntry kDepthModels[] = {
     {&kShortestDistanceInfo, make_shortest_distance},
@@ -76,10 +96,11 @@ constexpr DepthModelEntry kDepthModels[] = {
 constexpr const ModelInfo* kStages[] = {&kLocalAverageInfo, &kGradientReductionInfo, &kDampingAndLimitsInfo,
                                         &kPassivityControllerInfo};
 
-template <class Entry>
-const Entry* find(std::span<const Entry> table, std::string_view name) {
-  const auto found = std::find_if(table.begin(), table.end(), [name](const Entry& e) { return e.info->name == name; });
-  return found == table.end() ? nullptr : &*found;
+template <class Entries>
+auto* find(Entries& entries, std::string_view name) {
+  const auto found =
+      std::find_if(std::begin(entries), std::end(entries), [name](auto& e) { return e.info->name == name; });
+  return found == std::end(entries) ? nullptr : &*found;
 }
 
 const AlgorithmEntry& algorithm_entry(const RenderingConfig& config) {
@@ -90,8 +111,12 @@ const AlgorithmEntry& algorithm_entry(const RenderingConfig& config) {
 
 }  // namespace
 
-std::span<const AlgorithmEntry> algorithms() {
-  return kAlgorithms;
+const std::deque<AlgorithmEntry>& algorithms() {
+  return table().entries;
+}
+
+const std::vector<std::string>& algorithm_names() {
+  return table().names;
 }
 
 std::span<const DepthModelEntry> depth_models() {
@@ -103,11 +128,42 @@ std::span<const ModelInfo* const> stages() {
 }
 
 const AlgorithmEntry* find_algorithm(std::string_view name) {
-  return find(algorithms(), name);
+  return find(table().entries, name);
 }
 
 const DepthModelEntry* find_depth_model(std::string_view name) {
-  return find(depth_models(), name);
+  return find(kDepthModels, name);
+}
+
+void add_algorithm(AlgorithmEntry entry) {
+  entry = checked_copy(std::move(entry));
+  auto& [entries, built_in_size, names, count] = table();
+  AlgorithmEntry* same = find(entries, entry.info->name);
+  if (same == nullptr) {
+    names.emplace_back(entry.info->name);
+    entries.push_back(std::move(entry));
+    ++count;
+    return;
+  }
+  const auto first_added = entries.begin() + static_cast<std::ptrdiff_t>(built_in_size);
+  if (std::none_of(first_added, entries.end(), [same](const AlgorithmEntry& e) { return &e == same; }))
+    throw std::invalid_argument("\"" + std::string(entry.info->name) + "\" is the name of a built-in algorithm");
+  *same = std::move(entry);
+  ++count;
+}
+
+std::size_t additions() {
+  return table().additions;
+}
+
+std::vector<double> own_values(const RenderingConfig& config, const AlgorithmEntry& entry) {
+  std::vector<double> values;
+  const auto given = config.parameters.find(entry.info->name);
+  for (const OwnParameter& p : entry.own_parameters) {
+    const bool has = given != config.parameters.end() && given->second.contains(p.name);
+    values.push_back(has ? given->second.at(p.name) : p.initial);
+  }
+  return values;
 }
 
 RenderingConfig with_fixed_stages(RenderingConfig config) {

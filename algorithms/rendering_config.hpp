@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -42,6 +43,9 @@ struct RenderingConfig {
   std::optional<double> angular_velocity_cutoff = 20.0;  ///< of the low-pass of the angular velocity they see [Hz]
 
   bool passivity_controller = false;  ///< around the algorithm
+
+  /// Of parameters that belong to one algorithm alone (OwnParameter), the values given: by algorithm, by name.
+  std::map<std::string, std::map<std::string, double>> parameters;
 
   /// ForceAlgorithm::angular_velocity_cutoff of what damps like this.
   std::optional<double> angular_velocity_read() const {

@@ -39,6 +39,8 @@ class ForceLaw {
   /// What the tool's turning adds to the normal velocity S v of the last `evaluate`, whose contacts and S are handed in
   /// [m/s]. Of weighted springs: sum c_i <omega x r_i, u_i> u_i, r_i from the tip centre to the colliding point. O(n).
   virtual Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept;
+  /// What went wrong in code from outside since the last reset; null for nothing. The force then is no number.
+  virtual const char* fault() const noexcept { return nullptr; }
   /// Inner iterations since the last reset.
   std::uint64_t iterations() const noexcept { return iterations_; }
 

@@ -48,6 +48,7 @@ class PassivityController final : public ForceAlgorithm {
     return algorithm_->angular_velocity_cutoff();
   }
   AlgorithmWork work() const noexcept override;
+  const char* fault() const noexcept override { return algorithm_->fault(); }
 
  private:
   void note_turn() noexcept;

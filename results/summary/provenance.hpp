@@ -12,12 +12,14 @@ namespace hapbench {
 
 /// Goes into summary.json. Unknown parts are "unknown".
 struct Provenance {
-  std::string version;     ///< of hapbench
-  std::string commit;      ///< of the source tree at build time; ends in "-dirty" when tracked files differ from it
-  std::string compiler;    ///< name and version
-  std::string build_type;  ///< of CMake
-  std::string flags;       ///< compiler flags that can change numbers
-  std::string cpu;         ///< model name
+  std::string version;      ///< of hapbench
+  std::string commit;       ///< of the source tree at build time; ends in "-dirty" when tracked files differ from it
+  std::string compiler;     ///< name and version
+  std::string build_type;   ///< of CMake
+  std::string flags;        ///< compiler flags that can change numbers
+  std::string cpu;          ///< model name
+  std::string plugin = {};  ///< of an algorithm from outside the file it comes from; else empty
+  std::string plugin_hash = {};  ///< of that file's content
 };
 
 /// Returns the provenance of the running program. Reads /proc/cpuinfo.

@@ -26,6 +26,7 @@ ordered_json divergence_json(const SimulationResult& result) {
                        {"magnitude", number_or_null(d.magnitude)},
                        {"bound", number_or_null(d.bound)}};
   if (!std::isfinite(d.magnitude)) json["magnitude_text"] = std::isnan(d.magnitude) ? "nan" : "inf";
+  if (!d.fault.empty()) json["fault"] = d.fault;
   return json;
 }
 
@@ -93,9 +94,11 @@ ordered_json work_json(const RunWork& work) {
 }
 
 ordered_json provenance_json(const Provenance& p, const std::string& scenario_hash) {
-  return {{"hapbench_version", p.version}, {"commit", p.commit}, {"compiler", p.compiler},
-          {"build_type", p.build_type},    {"flags", p.flags},   {"cpu", p.cpu},
-          {"scenario_hash", scenario_hash}};
+  ordered_json json = {{"hapbench_version", p.version}, {"commit", p.commit}, {"compiler", p.compiler},
+                       {"build_type", p.build_type},    {"flags", p.flags},   {"cpu", p.cpu},
+                       {"scenario_hash", scenario_hash}};
+  if (!p.plugin.empty()) json["plugin"] = {{"file", p.plugin}, {"hash", p.plugin_hash}};
+  return json;
 }
 
 }  // namespace

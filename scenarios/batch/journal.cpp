@@ -104,7 +104,7 @@ void Journal::read(const std::string& first_line, const Found& found) {
     fail_in_file(
         file_,
         "is not the journal of this sweep; --resume needs the same scenario, --set, --vary, --shard, --keep-runs, "
-        "named files and program; without --resume the sweep begins anew");
+        "named files, plugins and program; without --resume the sweep begins anew");
   }
   end_ = first_line.size();
   for (; std::getline(in, line) && !in.eof(); end_ += line.size() + 1) {

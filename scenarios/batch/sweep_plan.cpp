@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "algorithms/registry.hpp"
 #include "results/io/json_text.hpp"
 #include "results/summary/provenance.hpp"
 #include "scenarios/batch/parallel_for.hpp"
@@ -25,6 +26,7 @@ struct Point {
   std::vector<std::string> warnings;
   MetricSections sections;
   std::string files;  ///< the parts that name files
+  AlgorithmOrigin origin;
 };
 
 MetricSections sections_of(const Scenario& scenario) {
@@ -37,7 +39,7 @@ MetricSections sections_of(const Scenario& scenario) {
 Point examine(const SweepPlan& plan, std::size_t run) {
   const LoadedScenario loaded = scenario_of(plan, run);
   const Scenario& scenario = loaded.scenario;
-  Point point{loaded.warnings, sections_of(scenario), ""};
+  Point point{loaded.warnings, sections_of(scenario), "", find_algorithm(scenario.rendering.algorithm)->origin};
   if (std::holds_alternative<PointShellEnvironment>(scenario.environment) ||
       std::holds_alternative<MeshEnvironment>(scenario.environment)) {
     point.files = written(scenario.environment).dump();
@@ -59,6 +61,7 @@ class Collector {
     sections_.fidelity |= point.sections.fidelity;
     sections_.torque |= point.sections.torque;
     sections_.places = std::max(sections_.places, point.sections.places);
+    if (!point.origin.file.empty()) plugins_.emplace(point.origin.file, point.origin.hash);
     if (!point.files.empty()) keep_first(files_, point.files, {run, 0});
     for (std::size_t i = 0; i < point.warnings.size(); ++i) keep_first(warnings_, point.warnings[i], {run, i});
   }
@@ -68,6 +71,9 @@ class Collector {
     plan_.metrics = metric_names(sections_);
     for (const auto& [place, warning] : in_order(warnings_)) plan_.warnings.push_back(warning);
   }
+
+  /// The files that algorithms come from, with their hashes.
+  const std::map<std::string, std::string>& plugins() const { return plugins_; }
 
   /// Reads what the scenarios name, each file once for each use, and hashes it.
   Json check_files() {
@@ -102,6 +108,7 @@ class Collector {
   SweepPlan& plan_;
   MetricSections sections_{false, false, false, 0};
   FirstPlaces files_, warnings_;
+  std::map<std::string, std::string> plugins_;
 };
 
 /// Fills the collector; throws the error of the lowest run that has one.
@@ -143,7 +150,7 @@ Json axis_content(const Axis& axis) {
 }
 
 /// The CPU does not count: shards of one sweep may come from several machines.
-Json content_of(const SweepPlan& plan, const Json& files) {
+Json content_of(const SweepPlan& plan, const Json& files, const Json& plugins) {
   const Provenance program = provenance();
   Json vary = Json::array();
   for (const Axis& axis : plan.points.axes()) vary.push_back(axis_content(axis));
@@ -153,6 +160,7 @@ Json content_of(const SweepPlan& plan, const Json& files) {
         {"method", sampling_name(sampling->method)}, {"runs", sampling->count}, {"seed", sampling->seed}};
   }
   content["files"] = files;
+  if (!plugins.empty()) content["plugins"] = plugins;
   content["program"] = {{"hapbench_version", program.version},
                         {"commit", program.commit},
                         {"compiler", program.compiler},
@@ -189,7 +197,7 @@ SweepPlan plan_sweep(ScenarioText scenario, std::vector<std::string> overrides, 
   Collector collector(plan);
   examine_all(plan, jobs, progress, collector);
   collector.finish();
-  plan.content = content_of(plan, collector.check_files());
+  plan.content = content_of(plan, collector.check_files(), collector.plugins());
   plan.definition = hash_text(hash_of(json_text(plan.content)));
   return plan;
 }

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "algorithms/parameters.hpp"
 #include "algorithms/registry.hpp"
 #include "scenarios/description/descriptions.hpp"
@@ -5,10 +7,9 @@
 namespace hapbench {
 namespace {
 
-template <class Table>
-std::vector<std::string> names(const Table& table) {
+std::vector<std::string> depth_model_names() {
   std::vector<std::string> names;
-  for (const auto& entry : table) names.emplace_back(entry.info->name);
+  for (const DepthModelEntry& entry : depth_models()) names.emplace_back(entry.info->name);
   return names;
 }
 
@@ -29,6 +30,39 @@ void number(Fields& f, const Parameter& parameter, Number& value, const char* do
   f.number(key(parameter), value, parameter.range, doc, presence);
 }
 
+void own_parameters(Fields& f, RenderingConfig& rendering, const AlgorithmEntry& entry) {
+  const std::vector<double> values = own_values(rendering, entry);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const OwnParameter& parameter = entry.own_parameters[i];
+    double value = values[i];
+    f.number(parameter.name, value, parameter.range, parameter.meaning);
+    if (f.reads() && f.given(parameter.name)) rendering.parameters[entry.info->name][parameter.name] = value;
+  }
+}
+
+/// The parameters that algorithms have for themselves. Written are those of the algorithm, and those given, so that a
+/// scenario without them is the same whatever algorithms there are.
+void own_parameters(Fields& f, RenderingConfig& rendering) {
+  const auto presence = [&rendering](const AlgorithmEntry& entry) {
+    const bool written = !entry.own_parameters.empty() &&
+                         (entry.info->name == rendering.algorithm || rendering.parameters.contains(entry.info->name));
+    return written ? Presence::no_default : Presence::left_out;
+  };
+  const bool any = std::any_of(algorithms().begin(), algorithms().end(),
+                               [&](const AlgorithmEntry& entry) { return presence(entry) != Presence::left_out; });
+  f.group(
+      "parameters", "parameters of algorithms from outside (--plugin): an object for each algorithm",
+      [&](Fields& all) {
+        for (const AlgorithmEntry& entry : algorithms()) {
+          if (entry.own_parameters.empty()) continue;
+          all.group(
+              entry.info->name, "parameters of this algorithm",
+              [&](Fields& own) { own_parameters(own, rendering, entry); }, presence(entry));
+        }
+      },
+      any ? Presence::no_default : Presence::left_out);
+}
+
 }  // namespace
 
 static void describe(Fields& f, ReductionConfig& reduction) {
@@ -43,8 +77,8 @@ static void describe(Fields& f, ReductionConfig& reduction) {
 }
 
 void describe(Fields& f, RenderingConfig& rendering) {
-  static const std::vector<std::string> kAlgorithms = names(algorithms()), kDepthModels = names(depth_models());
-  f.name("algorithm", rendering.algorithm, kAlgorithms, "algorithm", "force algorithm");
+  static const std::vector<std::string> kDepthModels = depth_model_names();
+  f.name("algorithm", rendering.algorithm, algorithm_names(), "algorithm", "force algorithm");
   // What the algorithm fixes is the default of what follows.
   if (f.reads()) rendering = with_fixed_stages(rendering);
   f.integer(key(parameter::kIterations), rendering.iterations, integers(parameter::kIterations),
@@ -80,6 +114,7 @@ void describe(Fields& f, RenderingConfig& rendering) {
   number(f, parameter::kRegularisation, rendering.regularisation, "eps of algorithm least_squares");
   f.boolean(key(parameter::kPassivityController), rendering.passivity_controller,
             "adaptive damping that lets the algorithm create no energy");
+  own_parameters(f, rendering);
 }
 
 }  // namespace hapbench

@@ -135,11 +135,12 @@ std::string last_name(const std::string& path, char separator) {
 
 /// The hint for a field that is like none where it stands: fields elsewhere with the nearest name.
 std::string hint_elsewhere(const std::string& field) {
+  const std::vector<std::string> paths = scenario_field_paths();
   std::vector<std::string> names, found;
-  for (const std::string& path : scenario_field_paths()) names.push_back(last_name(path, '.'));
+  for (const std::string& path : paths) names.push_back(last_name(path, '.'));
   const std::string nearest = nearest_name(field, names);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (names[i] == nearest) found.push_back(scenario_field_paths()[i]);
+    if (names[i] == nearest) found.push_back(paths[i]);
   }
   return found.empty() ? "" : "; nearest valid names: " + quoted_list(found);
 }
@@ -148,7 +149,8 @@ std::string hint_elsewhere(const std::string& field) {
 InputError in_file(const InputError& fault, const std::filesystem::path& file) {
   std::string problem = fault.problem();
   if (problem.starts_with("unknown field") && problem.find("nearest valid name") == std::string::npos)
-    problem += hint_elsewhere(last_name(fault.place(), '/'));
+    problem += fault.place().starts_with("/rendering/parameters/") ? "; a law from outside brings its own with --plugin"
+                                                                   : hint_elsewhere(last_name(fault.place(), '/'));
   const std::string place = fault.place().empty() ? file.string() : file.string() + ": " + fault.place();
   return {fault.kind(), place, problem};
 }
@@ -276,13 +278,10 @@ Json full_scenario_schema() {
   return schema;
 }
 
-const std::vector<std::string>& scenario_field_paths() {
-  static const std::vector<std::string> kPaths = [] {
-    std::vector<std::string> paths;
-    add_paths(paths, "", full_scenario_schema());
-    return paths;
-  }();
-  return kPaths;
+std::vector<std::string> scenario_field_paths() {
+  std::vector<std::string> paths;
+  add_paths(paths, "", full_scenario_schema());
+  return paths;
 }
 
 Json scenario_schema() {

@@ -66,7 +66,7 @@ Json scenario_schema();
 Json full_scenario_schema();
 
 /// The dotted paths of all fields of objects, as "rendering.limits.max_force_N"; those of list entries aside.
-const std::vector<std::string>& scenario_field_paths();
+std::vector<std::string> scenario_field_paths();
 
 /// Identifies what is simulated: FNV-1a over the effective scenario, with the contents of named files in place of their
 /// paths, as 16 hexadecimal digits. Throws InputError.

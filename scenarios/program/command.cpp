@@ -61,9 +61,7 @@ void announce_large_output(double bytes) {
 }
 
 std::vector<std::string> all_algorithms() {
-  std::vector<std::string> names;
-  for (const AlgorithmEntry& entry : algorithms()) names.emplace_back(entry.info->name);
-  return names;
+  return algorithm_names();
 }
 
 void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid) {

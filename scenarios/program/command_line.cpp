@@ -4,9 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <string_view>
 
+#include "algorithms/plugin/plugin_law.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/program/command.hpp"
 
 namespace hapbench {
@@ -129,6 +133,7 @@ CommandLine::CommandLine(const std::string& version, std::function<std::string()
   }));
   app_->get_option("--version")->description("print the version, and with --json what it is made of");
   app_->get_option("--help")->description("print this, and with a command its help");
+  add_plugin_option(*app_);
   app_->require_subcommand(1);
   app_->footer(
       "Exit status: 0 success, 1 internal fault, 2 bad input or usage, 3 a run did not end as its scenario expects, "
@@ -137,9 +142,21 @@ CommandLine::CommandLine(const std::string& version, std::function<std::string()
 
 CommandLine::~CommandLine() = default;
 
+/// The program and each command have it, so that it may stand anywhere.
+void CommandLine::add_plugin_option(CLI::App& app) {
+  const auto add = [this](const std::vector<std::string>& files) {
+    plugins_.insert(plugins_.end(), files.begin(), files.end());
+  };
+  app.add_option_function<std::vector<std::string>>(
+         "--plugin", add, "FILE.so with a law of your own; HAPBENCH_PLUGIN_PATH names folders of such files")
+      ->allow_extra_args(false)
+      ->take_all();
+}
+
 Command CommandLine::command(const std::string& name, const std::string& summary) {
   CLI::App* app = app_->add_subcommand(name, summary);
   app->get_option("--help")->description("print this");
+  add_plugin_option(*app);
   return Command(app, chosen_);
 }
 
@@ -227,12 +244,52 @@ std::vector<CommandText> CommandLine::texts() const {
   return texts;
 }
 
-int CommandLine::run(int argc, char** argv) {
-  // Asked by a shell at each press of the tab key; its words are no command line yet.
-  if (argc > 2 && argv[1] == std::string_view("complete")) {
-    for (const std::string& word : completions(texts(), {argv + 2, argv + argc})) fmt::print("{}\n", word);
-    return kSuccess;
+namespace {
+
+void load_plugins(const std::vector<std::string>& files) {
+  for (const std::string& file : files) load_plugin(file);
+  if (const char* folders = std::getenv("HAPBENCH_PLUGIN_PATH")) load_plugins_in("HAPBENCH_PLUGIN_PATH", folders);
+}
+
+/// Takes the plugins out of words that may be no command line yet, the last of which is being typed.
+std::vector<std::string> take_plugins(std::vector<std::string>& words) {
+  std::vector<std::string> plugins;
+  for (std::size_t i = 0; i + 2 < words.size();) {
+    if (words[i] != "--plugin") {
+      ++i;
+      continue;
+    }
+    plugins.push_back(words[i + 1]);
+    words.erase(words.begin() + static_cast<std::ptrdiff_t>(i), words.begin() + static_cast<std::ptrdiff_t>(i + 2));
   }
+  return plugins;
+}
+
+/// Asked by a shell at each press of the tab key.
+int complete(const std::vector<CommandText>& texts, std::vector<std::string> words) {
+  try {
+    load_plugins(take_plugins(words));
+  } catch (const InputError&) {
+    // The command itself will say so.
+  }
+  for (const std::string& word : completions(texts, words)) fmt::print("{}\n", word);
+  return kSuccess;
+}
+
+/// Runs that a law from outside ended count as diverged; where that is no failure by itself, this is.
+int status_with_faults(int status) {
+  const PluginFaults faults = take_plugin_faults();
+  if (faults.count == 0) return status;
+  std::fflush(stdout);
+  print_error(fmt::format("the law of a plugin failed {}; runs that it failed in count as diverged: {}",
+                          faults.count == 1 ? "once" : fmt::format("{} times", faults.count), faults.first));
+  return status == kSuccess ? kUnexpectedOutcome : status;
+}
+
+}  // namespace
+
+int CommandLine::run(int argc, char** argv) {
+  if (argc > 2 && argv[1] == std::string_view("complete")) return complete(texts(), {argv + 2, argv + argc});
   try {
     app_->parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
@@ -246,7 +303,9 @@ int CommandLine::run(int argc, char** argv) {
     print_error(problem_of(error, *app_));
     return kBadInput;
   }
-  return chosen_.action();
+  load_plugins(plugins_);
+  take_plugin_faults();  // of an earlier command of this process
+  return status_with_faults(chosen_.action());
 }
 
 }  // namespace hapbench

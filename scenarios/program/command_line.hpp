@@ -84,7 +84,9 @@ class CommandLine {
   ~CommandLine();
 
   Command command(const std::string& name, const std::string& summary);
-  /// Returns the command's exit status, or kBadInput after a wrong usage, with a message on standard error.
+  /// Loads the plugins that the words and HAPBENCH_PLUGIN_PATH name, then runs the command. Returns its exit status, or
+  /// kBadInput after a wrong usage, with a message on standard error; for a success during which the law of a plugin
+  /// failed, kUnexpectedOutcome. Throws InputError for plugins.
   int run(int argc, char** argv);
   /// What the chosen command says of its results when it is stopped.
   const std::string& when_stopped() const { return chosen_.when_stopped; }
@@ -92,8 +94,11 @@ class CommandLine {
   std::vector<CommandText> texts() const;
 
  private:
+  void add_plugin_option(CLI::App& app);
+
   std::unique_ptr<CLI::App> app_;
   ChosenCommand chosen_;
+  std::vector<std::string> plugins_;
 };
 
 }  // namespace hapbench

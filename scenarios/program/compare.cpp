@@ -144,8 +144,9 @@ int verdict(const BatchPlan& plan, const BatchReport& report, bool league) {
         outcome_is_expected(scenario_of(plan, i).scenario.expect, Outcome::diverges)) {
       continue;
     }
-    const std::string text = fmt::format("{}: {} diverges at step {}", plan.scenarios[run.scenario].file.string(),
-                                         summary.algorithm, summary.result.divergence.step);
+    const Divergence& d = summary.result.divergence;
+    const std::string text = fmt::format("{}: {} diverges at step {}{}", plan.scenarios[run.scenario].file.string(),
+                                         summary.algorithm, d.step, d.fault.empty() ? "" : ": " + d.fault);
     if (!league) print_error(text);
     if (count++ == 0) first = text;
   }

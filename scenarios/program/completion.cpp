@@ -190,10 +190,10 @@ WordList completions(const std::vector<CommandText>& texts, const WordList& word
   const std::string last = words.back() == "=" || words.back() == ":" ? "" : words.back();
   WordList found;
   if (joined.size() == 1) {
-    WordList names = {"--help", "--version"};
+    WordList names = {"--help", "--version", "--plugin"};
     for (auto command = texts.begin() + 1; command != texts.end(); ++command) names.push_back(command->name);
     found = beginning_with(joined.back(), "", names);
-    if (joined.back().empty()) found.erase(found.begin(), found.begin() + 2);
+    if (joined.back().empty()) found.erase(found.begin(), found.begin() + 3);
   } else {
     for (const CommandText& command : texts) {
       if (command.name == joined[0]) found = candidates(command, {joined.begin() + 1, joined.end()});

@@ -23,7 +23,16 @@
 namespace hapbench {
 namespace {
 
-Description describe_model(const char* kind, const ModelInfo& info) {
+/// Adds the card of a parameter to the model's.
+void add_parameter(Description& d, const std::string& path, const char* unit, const char* meaning) {
+  const Json& field = *find_in_schema(scenario_schema_once(), path);
+  const std::string initial = default_text(field), range = allowed_text(field);
+  d.text += card({path, unit, initial, range, meaning}, 4);
+  d.json["parameters"].push_back(
+      {{"name", path}, {"unit", unit}, {"default", initial}, {"range", range}, {"meaning", meaning}});
+}
+
+Description describe_model(const char* kind, const ModelInfo& info, std::span<const OwnParameter> own = {}) {
   Description d;
   d.text = fmt::format("{} {}\n{}\n", kind, bold(stdout, info.name), wrapped(info.summary));
   for (const auto& [title, text] : {std::pair{"formula", info.formula}, std::pair{"source", info.source},
@@ -36,13 +45,12 @@ Description describe_model(const char* kind, const ModelInfo& info) {
             {"source", info.source},
             {"known_failure", info.known_failure},
             {"parameters", Json::array()}};
-  if (!info.parameters.empty()) d.text += "\n  parameters\n";
-  for (const auto& [parameter, meaning] : info.parameters) {
-    const Json& field = *find_in_schema(scenario_schema_once(), parameter.field);
-    const std::string unit = parameter.range.unit, initial = default_text(field), range = allowed_text(field);
-    d.text += card({parameter.field, unit, initial, range, meaning}, 4);
-    d.json["parameters"].push_back(
-        {{"name", parameter.field}, {"unit", unit}, {"default", initial}, {"range", range}, {"meaning", meaning}});
+  if (!info.parameters.empty() || !own.empty()) d.text += "\n  parameters\n";
+  for (const auto& [parameter, meaning] : info.parameters)
+    add_parameter(d, parameter.field, parameter.range.unit, meaning);
+  for (const OwnParameter& parameter : own) {
+    add_parameter(d, fmt::format("rendering.parameters.{}.{}", info.name, parameter.name), parameter.range.unit,
+                  parameter.meaning);
   }
   return d;
 }
@@ -174,7 +182,8 @@ Description describe_name(const std::string& name) {
   std::vector<Description> meanings;
   const auto add = [&meanings](Description more) { meanings.push_back(std::move(more)); };
   // A name may mean two things: normal_projection is an algorithm and a depth model.
-  if (const AlgorithmEntry* entry = find_algorithm(name)) add(describe_model("algorithm", *entry->info));
+  if (const AlgorithmEntry* entry = find_algorithm(name))
+    add(describe_model("algorithm", *entry->info, entry->own_parameters));
   if (const DepthModelEntry* entry = find_depth_model(name)) add(describe_model("depth model", *entry->info));
   if (const ModelInfo* stage = find_stage(name)) add(describe_model("stage", *stage));
   if (const IntegratorEntry* entry = find_integrator(name)) add(describe_model("integrator", entry->info));

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "algorithms/registry.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/schema_writer.hpp"
 #include "scenarios/program/table.hpp"
@@ -165,7 +167,9 @@ std::vector<std::string> type_names(const std::string& field) {
 }
 
 const Json& scenario_schema_once() {
-  static const Json schema = full_scenario_schema();
+  static std::size_t built_after = additions();
+  static Json schema = full_scenario_schema();
+  if (std::exchange(built_after, additions()) != additions()) schema = full_scenario_schema();
   return schema;
 }
 

@@ -8,7 +8,7 @@
 /// The JSON Schema as words for the terminal.
 namespace hapbench {
 
-/// The schema of a scenario in full, built once.
+/// The schema of a scenario in full, built once, and again when an algorithm has been added.
 const Json& scenario_schema_once();
 
 /// The part of the schema that `name` means: "scenario" for all of it, or a dotted field path ("rendering.limits"). Null

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "results/io/io_error.hpp"
+#include "scenarios/plugins/load_plugin.hpp"
 
 namespace hapbench {
 namespace {
@@ -29,6 +30,12 @@ std::string shell_line(const std::vector<std::string>& words) {
 std::filesystem::path this_program() {
   std::error_code ignored;
   return std::filesystem::read_symlink("/proc/self/exe", ignored);
+}
+
+std::vector<std::string> plugin_words() {
+  std::vector<std::string> words;
+  for (const LoadedPlugin& plugin : loaded_plugins()) words.insert(words.end(), {"--plugin", plugin.file.string()});
+  return words;
 }
 
 ProgramOutput output_of(const std::vector<std::string>& words) {

@@ -13,6 +13,9 @@ std::string shell_line(const std::vector<std::string>& words);
 /// The file of this program.
 std::filesystem::path this_program();
 
+/// The options of a command line that load the plugins that this program has loaded.
+std::vector<std::string> plugin_words();
+
 /// What a program that ran to its end left.
 struct ProgramOutput {
   int status = 0;    ///< exit status; 127 when there is no such program, 128 and more when a signal ended it

@@ -117,6 +117,7 @@ int print_row(const SweepCommand& command, const fs::path& file) {
   load_scenario(file, overrides);  // which says what is wrong
   std::vector<std::string> words = {this_program().string(), "run", fs::absolute(file).lexically_normal().string()};
   for (const std::string& override : overrides) words.insert(words.end(), {"--set", override});
+  for (std::string& word : plugin_words()) words.push_back(std::move(word));
   print(command.output, shell_line(words) + "\n", Json{{"row", command.row}, {"command", words}});
   return kSuccess;
 }
@@ -130,6 +131,7 @@ std::vector<std::string> shard_command(const SweepCommand& command, const fs::pa
     words.insert(words.end(), {"--sample", command.sample, "--seed", std::to_string(command.seed)});
   }
   if (command.keep_runs) words.emplace_back("--keep-runs");
+  for (std::string& word : plugin_words()) words.push_back(std::move(word));
   return words;
 }
 

@@ -13,6 +13,7 @@ namespace {
 std::string divergence_text(const SimulationResult& result) {
   if (result.outcome != Outcome::diverges) return "";
   const Divergence& d = result.divergence;
+  if (!d.fault.empty()) return fmt::format(" ({}, at step {})", d.fault, d.step);
   return fmt::format(" ({} reached {:.4g} at step {}, beyond {:.4g})", d.quantity, d.magnitude, d.step, d.bound);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/registry.hpp"
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "results/io/new_directories.hpp"
@@ -216,6 +217,9 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
   report.summary = summarise(scenario, results, report.targets);
   if (output) {
     report.summary.provenance = provenance();
+    const AlgorithmOrigin& origin = find_algorithm(scenario.rendering.algorithm)->origin;
+    report.summary.provenance.plugin = origin.file;
+    report.summary.provenance.plugin_hash = origin.hash;
     report.summary.scenario_hash = scenario_hash(scenario, loaded.files);
   }
   report.unmet = unmet_expectations(scenario.expect, report.summary);

@@ -101,6 +101,9 @@ class ForceAlgorithm {
   virtual std::optional<double> angular_velocity_cutoff() const noexcept { return std::nullopt; }
   /// Returns true if `take_input` must be called.
   virtual bool wants_input() const noexcept { return false; }
+  /// Why the answer of the last `compute` is no number, where the algorithm knows: a fault of code from outside. Null
+  /// otherwise. Asked when a run diverges.
+  virtual const char* fault() const noexcept { return nullptr; }
   virtual AlgorithmWork work() const noexcept { return {}; }
 };
 

@@ -107,7 +107,9 @@ def shell_of(scenario):
         return None, "Without the program hapbench in the path only points that were in contact are drawn."
     with tempfile.TemporaryDirectory(prefix="hapbench-report-") as scratch:
         file = Path(scratch) / "shell.csv"
-        line = [program, "shell", str(scenario), "--out", str(file), "--quiet"]
+        # Whatever the algorithm: it may have come from a plugin that is not at hand.
+        plain = ["--set", "rendering.algorithm=mean", "--set", "rendering.parameters={}"]
+        line = [program, "shell", str(scenario), "--out", str(file), "--quiet", *plain]
         try:
             done = subprocess.run(line, capture_output=True, text=True, timeout=PATIENCE_S, stdin=subprocess.DEVNULL)
         except (OSError, subprocess.TimeoutExpired) as error:

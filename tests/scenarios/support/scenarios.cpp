@@ -45,7 +45,7 @@ std::vector<NamedScenario> rich_scenarios() {
           "z_m": {"type": "waypoints", "points": [[0, 0.001], [1.5, -0.001], [2, 0]], "interpolation": "cosine"}}},
       "rendering": {"algorithm": "virtual_coupling", "depth_model": "shortest_distance", "local_average": true,
         "reduction": {"threshold": 0.9, "max_points": 7, "shuffle_seed": 5}, "virtual_coupling_N_per_m": 1000, "regularisation": 0.5,
-        "passivity_controller": true, "damping_N_s_per_m": 3, "angular_damping": true,
+        "passivity_controller": true, "damping_N_s_per_m": 3, "angular_damping": true, "parameters": {},
         "angular_velocity_cutoff_Hz": 30,
         "limits": {"max_damping_N_s_per_m": 0, "max_force_N": 2.5}},
       "record": {"trajectory": true, "every": 2, "ratio_iterations": [0, 3], "contacts": true,

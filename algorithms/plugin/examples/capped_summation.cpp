@@ -1,0 +1,51 @@
+/* A force law in C++ with hapbench's library: the sum of all springs, scaled down where it would be too stiff.
+ *
+ *     g++ -std=c++20 -O2 -fPIC -shared -ffp-contract=off -DEIGEN_DONT_VECTORIZE -I/usr/include/hapbench \
+ *         -I/usr/include/eigen3 capped_summation.cpp -lhapbench -o capped_summation.so
+ *     hapbench --plugin ./capped_summation.so compare peg_in_hole_2d_shaped_stiffness
+ *
+ * CMake knows the flags: find_package(hapbench), add_library(capped_summation MODULE capped_summation.cpp),
+ * target_link_libraries(capped_summation PRIVATE hapbench::algorithms). */
+#include <algorithm>
+#include <algorithms/plugin/law_plugin.hpp>
+
+namespace {
+
+constexpr HapbenchParameter kParameters[] = {{
+    .name = "limit",
+    .unit = "1",
+    .min = 0.01,
+    .max = 1000.0,
+    .initial = 1.0,
+    .meaning = "the greatest stiffness in any direction, in units of K",
+}};
+
+class CappedSummation final : public hapbench::ForceLaw {
+ public:
+  CappedSummation(double stiffness, std::span<const double> parameters) : ForceLaw(stiffness), limit_(parameters[0]) {}
+
+  hapbench::LawForce evaluate(hapbench::ContactBuffer& contacts) noexcept override {
+    hapbench::set_weights(contacts, 1.0);
+    const double stiffest = hapbench::lambda_max(hapbench::stiffness_tensor(contacts));
+    hapbench::set_weights(contacts, std::min(1.0, limit_ / stiffest));
+    return hapbench::weighted_force(contacts, K_);
+  }
+
+ private:
+  double limit_;
+};
+
+}  // namespace
+
+const HapbenchPlugin* hapbench_plugin(uint32_t version) {
+  static const HapbenchPlugin plugin = hapbench::LawPlugin<CappedSummation>::of(
+      {
+          .name = "capped_summation",
+          .summary = "the sum of all penalty springs, scaled down to a greatest stiffness",
+          .formula = "c_i = min(1, limit / lambda_max(sum u u^T))",
+          .source = "example of law_plugin.hpp",
+          .known_failure = "one scale for all directions: those with few points become soft",
+      },
+      kParameters);
+  return version == HAPBENCH_PLUGIN_VERSION ? &plugin : nullptr;
+}

@@ -1,0 +1,158 @@
+#include "algorithms/plugin/plugin_law.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+#include "algorithms/added_algorithm.hpp"
+#include "algorithms/penalty_rendering.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+HapbenchContacts view_of(const ContactBuffer& c) {
+  return {.n = c.size(),
+          .depth = c.depth.data(),
+          .gx = c.ux.data(),
+          .gy = c.uy.data(),
+          .gz = c.uz.data(),
+          .x = c.x.data(),
+          .y = c.y.data(),
+          .z = c.z.data(),
+          .nx = c.nx.data(),
+          .ny = c.ny.data(),
+          .nz = c.nz.data(),
+          .index = c.index.data()};
+}
+
+LawForce force_of(const HapbenchForce& answer) {
+  const auto& [xx, xy, xz, yy, yz, zz] = answer.stiffness;
+  LawForce force{{answer.force[0], answer.force[1], answer.force[2]}, {}};
+  force.S << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+  return force;
+}
+
+std::mutex faults_mutex;
+PluginFaults& faults() {
+  static PluginFaults all;
+  return all;
+}
+
+/// May allocate: the run is over.
+void note_fault(const char* text) {
+  const std::lock_guard lock(faults_mutex);
+  if (faults().count++ == 0) faults().first = text;
+}
+
+}  // namespace
+
+PluginLaw::PluginLaw(const HapbenchPlugin& plugin, double stiffness, std::vector<double> parameters)
+    : ForceLaw(stiffness), plugin_(plugin), parameters_(std::move(parameters)) {}
+
+PluginLaw::~PluginLaw() {
+  if (law_ != nullptr && plugin_.destroy != nullptr) plugin_.destroy(law_);
+}
+
+void PluginLaw::prepare(std::size_t capacity) {
+  if (law_ != nullptr && plugin_.destroy != nullptr) plugin_.destroy(law_);
+  law_ = plugin_.create(parameters_.data(), K_, capacity);
+}
+
+void PluginLaw::reset() noexcept {
+  ForceLaw::reset();
+  fault_[0] = '\0';
+  if (law_ != nullptr && plugin_.reset != nullptr) plugin_.reset(law_);
+}
+
+LawForce PluginLaw::failed(const char* problem) noexcept {
+  std::snprintf(fault_.data(), fault_.size(), "%s %s", plugin_.name, problem);
+  // Printed in one line and written as JSON, whatever the plugin says.
+  for (char& c : fault_) c = c == '\0' || (c >= ' ' && c <= '~') ? c : '?';
+  note_fault(fault_.data());
+  return {Vec3::Constant(kNaN), Mat3::Zero()};
+}
+
+LawForce PluginLaw::failed(int error) noexcept {
+  const char* text = plugin_.error_text != nullptr ? plugin_.error_text(law_, error) : nullptr;
+  std::array<char, 200> problem{};
+  std::snprintf(problem.data(), problem.size(), "reports error %d%s%s", error, text != nullptr ? ": " : "",
+                text != nullptr ? text : "");
+  return failed(problem.data());
+}
+
+LawForce PluginLaw::evaluate(ContactBuffer& contacts) noexcept {
+  if (contacts.empty()) return {};
+  if (fault() != nullptr) return {Vec3::Constant(kNaN), Mat3::Zero()};
+  if (law_ == nullptr) return failed("could not be created with these parameters");
+  const bool gives_force = plugin_.gives == HAPBENCH_FORCE;
+  // What a law forgets to write is found as what is no number.
+  set_weights(contacts, gives_force ? 1.0 / static_cast<double>(contacts.size()) : kNaN);
+  HapbenchForce answer{{kNaN, kNaN, kNaN}, {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}};
+  const HapbenchContacts view = view_of(contacts);
+  if (const int error = plugin_.evaluate(law_, &view, contacts.weight.data(), &answer); error != 0)
+    return failed(error);
+  const LawForce force = gives_force ? force_of(answer) : weighted_force(contacts, K_);
+  // A weight that is not finite leaves a tensor that is not.
+  if (!force.spring.allFinite()) return failed("gives a force that is not finite");
+  if (!force.S.allFinite()) return failed("gives a stiffness that is not finite");
+  return force;
+}
+
+SpringState PluginLaw::spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept {
+  if (fault() != nullptr) return {};
+  if (plugin_.springs != nullptr) {
+    SpringState state;
+    const HapbenchContacts view = view_of(contacts);
+    plugin_.springs(law_, &view, tip.data(), &state.energy, state.moment.data());
+    return state;
+  }
+  if (plugin_.gives == HAPBENCH_WEIGHTS) return ForceLaw::spring_state(contacts, spring, tip);
+  if (K_ == 0.0) return {};
+  return {spring.squaredNorm() / (2.0 * K_), mean_arm(contacts, tip).cross(spring)};
+}
+
+Vec3 PluginLaw::turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept {
+  if (plugin_.gives == HAPBENCH_WEIGHTS) return ForceLaw::turning_velocity(contacts, S, tool);
+  return S * tool.angular_velocity.cross(mean_arm(contacts, tool.pose.position));
+}
+
+AlgorithmEntry plugin_entry(const HapbenchPlugin& plugin, AlgorithmOrigin origin) {
+  if (plugin.create == nullptr) throw std::invalid_argument("its function \"create\" is missing");
+  if (plugin.evaluate == nullptr) throw std::invalid_argument("its function \"evaluate\" is missing");
+  if (plugin.gives != HAPBENCH_WEIGHTS && plugin.gives != HAPBENCH_FORCE)
+    throw std::invalid_argument("\"gives\" is " + std::to_string(plugin.gives) +
+                                "; allowed: HAPBENCH_WEIGHTS or HAPBENCH_FORCE");
+  if (plugin.parameter_count > 0 && plugin.parameters == nullptr)
+    throw std::invalid_argument("its table of parameters is missing");
+  static constexpr ParameterInfo kShared[] = {kStiffnessParameter};
+  const ModelInfo info = {.name = plugin.name,
+                          .summary = plugin.summary,
+                          .formula = plugin.formula,
+                          .source = plugin.source,
+                          .known_failure = plugin.known_failure,
+                          .parameters = kShared};
+  std::vector<OwnParameter> parameters;
+  for (std::size_t i = 0; i < plugin.parameter_count; ++i) {
+    const HapbenchParameter& p = plugin.parameters[i];
+    parameters.push_back({p.name, {p.min, p.max, p.unit}, p.initial, p.meaning});
+  }
+  const auto make = [&plugin](const RenderingConfig& config) -> std::unique_ptr<ForceAlgorithm> {
+    auto values = own_values(config, *find_algorithm(plugin.name));
+    return std::make_unique<PenaltyRendering>(std::make_unique<PluginLaw>(plugin, config.stiffness, std::move(values)),
+                                              config);
+  };
+  return checked_copy({.info = &info, .make = make, .own_parameters = parameters, .origin = std::move(origin)});
+}
+
+PluginFaults take_plugin_faults() {
+  const std::lock_guard lock(faults_mutex);
+  return std::exchange(faults(), {});
+}
+
+}  // namespace hapbench

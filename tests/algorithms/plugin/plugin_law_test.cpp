@@ -1,0 +1,263 @@
+#include "algorithms/plugin/plugin_law.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <limits>
+
+#include "algorithms/laws/laws.hpp"
+#include "algorithms/plugin/law_plugin.hpp"
+#include "results/allocations/allocations.hpp"
+#include "tests/support/contact_sets.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr double kK = 20000.0;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+const Vec3 kTip(0.1, -0.2, 0.3);
+
+/// What the plugins below do, and what was asked of them.
+struct Script {
+  int error = 0;
+  double weight_scale = 1.0;
+  std::size_t weights_forgotten = 0;
+  double force = -1.0;
+  double stiffness = 0.5;
+  bool creates = true;
+  int evaluated = 0, reset = 0, destroyed = 0;
+};
+Script script;
+
+void* create(const double*, double, std::size_t) {
+  return script.creates ? &script : nullptr;
+}
+
+int mean(void*, const HapbenchContacts* contacts, double* weights, HapbenchForce*) {
+  ++script.evaluated;
+  const double c = script.weight_scale / static_cast<double>(contacts->n);
+  for (std::size_t i = script.weights_forgotten; i < contacts->n; ++i) weights[i] = c;
+  return script.error;
+}
+
+int constant_force(void*, const HapbenchContacts*, double*, HapbenchForce* answer) {
+  ++script.evaluated;
+  const double s = script.stiffness;
+  *answer = {{0.0, script.force, 0.0}, {s, 0.0, 0.0, s, 0.0, s}};
+  return script.error;
+}
+
+HapbenchPlugin plugin_of(decltype(HapbenchPlugin::evaluate) evaluate, std::uint32_t gives) {
+  HapbenchPlugin plugin = {};
+  plugin.version = HAPBENCH_PLUGIN_VERSION;
+  plugin.gives = gives;
+  plugin.name = "from_outside";
+  plugin.summary = plugin.formula = plugin.source = plugin.known_failure = "a text";
+  plugin.create = create;
+  plugin.destroy = [](void*) { ++script.destroyed; };
+  plugin.reset = [](void*) { ++script.reset; };
+  plugin.evaluate = evaluate;
+  plugin.error_text = [](void*, int error) { return error == 7 ? "out of luck" : nullptr; };
+  return plugin;
+}
+
+const HapbenchPlugin kMean = plugin_of(mean, HAPBENCH_WEIGHTS);
+const HapbenchPlugin kForce = plugin_of(constant_force, HAPBENCH_FORCE);
+
+class APluginLaw : public testing::Test {
+ protected:
+  APluginLaw() { script = {}; }
+
+  /// The fault of a law that has been asked once.
+  static std::string fault_of(const HapbenchPlugin& plugin) {
+    PluginLaw law(plugin, kK, {});
+    law.prepare(10);
+    law.reset();
+    ContactBuffer contacts = test::contacts_of({Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitX()});
+    const LawForce force = law.evaluate(contacts);
+    EXPECT_EQ(law.fault() == nullptr, force.spring.allFinite());
+    return law.fault() == nullptr ? "" : law.fault();
+  }
+};
+
+TEST_F(APluginLaw, OfWeightsIsTheLawOfTheseWeights) {
+  PluginLaw law(kMean, kK, {});
+  law.prepare(400);
+  const auto mean_law = make_mean({});
+  ToolState tool{{kTip, Vec3::UnitZ()}, Vec3::UnitX(), Vec3(1, 2, 3)};
+  test::for_random_contacts([&](ContactBuffer contacts, const char* family) {
+    ContactBuffer same = contacts;
+    const LawForce force = law.evaluate(contacts), expected = mean_law->evaluate(same);
+    EXPECT_EQ(force.spring, expected.spring) << family;
+    EXPECT_EQ(force.S, expected.S) << family;
+    const SpringState state = law.spring_state(contacts, force.spring, kTip),
+                      expected_state = mean_law->spring_state(same, force.spring, kTip);
+    EXPECT_EQ(state.energy, expected_state.energy);
+    EXPECT_EQ(state.moment, expected_state.moment);
+    EXPECT_EQ(law.turning_velocity(contacts, force.S, tool), mean_law->turning_velocity(same, force.S, tool));
+  });
+}
+
+TEST_F(APluginLaw, OfAForceAnswersThatForce) {
+  PluginLaw law(kForce, kK, {});
+  law.prepare(10);
+  ContactBuffer contacts = test::contacts_of({Vec3::UnitX(), Vec3::UnitY()});
+  const LawForce force = law.evaluate(contacts);
+  EXPECT_EQ(force.spring, Vec3(0, -1, 0));
+  EXPECT_EQ(force.S, Mat3(0.5 * Mat3::Identity()));
+  // One spring of stiffness K at the middle of the contacts, which lie at the origin.
+  const SpringState state = law.spring_state(contacts, force.spring, kTip);
+  EXPECT_DOUBLE_EQ(state.energy, 1.0 / (2.0 * kK));
+  EXPECT_TRUE(state.moment.isApprox((-kTip).cross(force.spring)));
+}
+
+TEST_F(APluginLaw, MayKnowItsOwnSprings) {
+  HapbenchPlugin plugin = kForce;
+  plugin.springs = [](void*, const HapbenchContacts* contacts, const double tip[3], double* energy, double moment[3]) {
+    *energy = static_cast<double>(contacts->n);
+    for (int i = 0; i < 3; ++i) moment[i] = 2.0 * tip[i];
+  };
+  PluginLaw law(plugin, kK, {});
+  law.prepare(10);
+  const ContactBuffer contacts = test::contacts_of({Vec3::UnitX(), Vec3::UnitY()});
+  const SpringState state = law.spring_state(contacts, Vec3::Zero(), kTip);
+  EXPECT_EQ(state.energy, 2.0);
+  EXPECT_EQ(state.moment, Vec3(2.0 * kTip));
+}
+
+TEST_F(APluginLaw, SaysWhatIsNoForce) {
+  EXPECT_EQ(fault_of(kMean), "");
+  EXPECT_EQ(fault_of(kForce), "");
+  script.weights_forgotten = 1;
+  EXPECT_EQ(fault_of(kMean), "from_outside gives a force that is not finite");
+  script = {.weight_scale = kNaN};
+  EXPECT_EQ(fault_of(kMean), "from_outside gives a force that is not finite");
+  script = {.weight_scale = 1e306};  // the depths of 1 mm leave the force finite
+  EXPECT_EQ(fault_of(kMean), "");
+  script = {.weight_scale = std::numeric_limits<double>::infinity()};
+  EXPECT_EQ(fault_of(kMean), "from_outside gives a force that is not finite");
+  script = {.force = kNaN};
+  EXPECT_EQ(fault_of(kForce), "from_outside gives a force that is not finite");
+  script = {.stiffness = kNaN};
+  EXPECT_EQ(fault_of(kForce), "from_outside gives a stiffness that is not finite");
+  script = {.creates = false};
+  EXPECT_EQ(fault_of(kMean), "from_outside could not be created with these parameters");
+}
+
+TEST_F(APluginLaw, IsNotAskedAgainAfterAnErrorUntilAReset) {
+  take_plugin_faults();
+  PluginLaw law(kMean, kK, {});
+  law.prepare(10);
+  ContactBuffer contacts = test::contacts_of({Vec3::UnitX(), Vec3::UnitY()});
+  script.error = 7;
+  law.evaluate(contacts);
+  EXPECT_STREQ(law.fault(), "from_outside reports error 7: out of luck");
+  script.error = 0;
+  EXPECT_FALSE(law.evaluate(contacts).spring.allFinite());
+  EXPECT_EQ(script.evaluated, 1);
+  const PluginFaults faults = take_plugin_faults();
+  EXPECT_EQ(faults.count, 1u);
+  EXPECT_EQ(faults.first, "from_outside reports error 7: out of luck");
+  EXPECT_EQ(take_plugin_faults().count, 0u);
+  law.reset();
+  EXPECT_EQ(law.fault(), nullptr);
+  EXPECT_TRUE(law.evaluate(contacts).spring.allFinite());
+  script.error = -3;
+  law.evaluate(contacts);
+  EXPECT_STREQ(law.fault(), "from_outside reports error -3");
+}
+
+TEST_F(APluginLaw, IsNotAskedWithoutContacts) {
+  PluginLaw law(kMean, kK, {});
+  law.prepare(10);
+  ContactBuffer contacts(10);
+  contacts.pad();
+  EXPECT_EQ(law.evaluate(contacts).spring, Vec3::Zero());
+  EXPECT_EQ(script.evaluated, 0);
+}
+
+TEST_F(APluginLaw, IsDestroyedOnceForEachCreation) {
+  {
+    PluginLaw law(kMean, kK, {});
+    law.prepare(10);
+    law.prepare(20);
+    EXPECT_EQ(script.destroyed, 1);
+  }
+  EXPECT_EQ(script.destroyed, 2);
+  script = {.creates = false};
+  {
+    PluginLaw law(kMean, kK, {});
+    law.prepare(10);
+  }
+  EXPECT_EQ(script.destroyed, 0);
+}
+
+TEST_F(APluginLaw, AllocatesNothingInAStep) {
+  for (const HapbenchPlugin* plugin : {&kMean, &kForce}) {
+    PluginLaw law(*plugin, kK, {});
+    law.prepare(10);
+    ContactBuffer contacts = test::contacts_of({Vec3::UnitX(), Vec3::UnitY()});
+    const AllocationCount count;
+    for (int i = 0; i < 10; ++i) {
+      const LawForce force = law.evaluate(contacts);
+      law.spring_state(contacts, force.spring, kTip);
+    }
+    law.reset();
+    EXPECT_EQ(count.value(), 0u);
+  }
+}
+
+/// virtual_coupling, from outside: it leaves weights, gives force and tensor, and knows its springs.
+class Coupling final : public ForceLaw {
+ public:
+  Coupling(double stiffness, std::span<const double> parameters) : ForceLaw(stiffness) {
+    RenderingConfig config;
+    config.stiffness = stiffness;
+    config.virtual_coupling = parameters[0];
+    law_ = make_virtual_coupling(config);
+  }
+  LawForce evaluate(ContactBuffer& contacts) noexcept override { return law_->evaluate(contacts); }
+  SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
+    return law_->spring_state(contacts, spring, tip);
+  }
+
+ private:
+  std::unique_ptr<ForceLaw> law_;
+};
+
+TEST(ALawPlugin, IsItsLawToTheLastBit) {
+  constexpr HapbenchParameter kParameters[] = {{"coupling_N_per_m", "N/m", 1.0, 1e6, 1e4, "K_vc"}};
+  const HapbenchPlugin plugin = LawPlugin<Coupling>::of({"coupling", "a", "b", "c", "d"}, kParameters);
+  PluginLaw law(plugin, kK, {5000.0});
+  law.prepare(400);
+  RenderingConfig config;
+  config.stiffness = kK;
+  config.virtual_coupling = 5000.0;
+  const auto direct = make_virtual_coupling(config);
+  test::for_random_contacts([&](ContactBuffer contacts, const char* family) {
+    ContactBuffer same = contacts;
+    const AllocationCount count;
+    const LawForce force = law.evaluate(contacts);
+    const SpringState state = law.spring_state(contacts, force.spring, kTip);
+    EXPECT_EQ(count.value(), 0u);
+    const LawForce expected = direct->evaluate(same);
+    EXPECT_EQ(force.spring, expected.spring) << family;
+    EXPECT_EQ(force.S, expected.S) << family;
+    const SpringState expected_state = direct->spring_state(same, expected.spring, kTip);
+    EXPECT_EQ(state.energy, expected_state.energy) << family;
+    EXPECT_EQ(state.moment, expected_state.moment) << family;
+    EXPECT_EQ(contacts.weight, same.weight) << family;
+  });
+}
+
+TEST(ALawPlugin, CannotBeCreatedWhenTheConstructorThrows) {
+  struct Refuses final : ForceLaw {
+    Refuses(double stiffness, std::span<const double>) : ForceLaw(stiffness) { throw std::runtime_error("no"); }
+    LawForce evaluate(ContactBuffer&) noexcept override { return {}; }
+  };
+  const HapbenchPlugin plugin = LawPlugin<Refuses>::of({"refuses", "a", "b", "c", "d"});
+  EXPECT_EQ(plugin.create(nullptr, kK, 10), nullptr);
+}
+
+}  // namespace
+}  // namespace hapbench

@@ -1,0 +1,180 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/environment_variable.hpp"
+#include "tests/scenarios/support/program.hpp"
+
+/// Laws from outside in the program.
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+using test::EnvironmentVariable;
+using test::hapbench;
+using test::lines_of;
+using test::ProgramRun;
+using test::read_file;
+using Words = std::vector<std::string>;
+
+std::string plugin(const std::string& name) {
+  return (fs::path(HAPBENCH_TEST_PLUGINS) / (name + ".so")).string();
+}
+
+class PluginCommand : public testing::Test {
+ protected:
+  std::string out(const std::string& name) const { return (directory_ / name).string(); }
+  Json summary(const std::string& folder) const {
+    return Json::parse(read_file(directory_ / (folder + "/summary.json")));
+  }
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(PluginCommand, KnowsTheLawAndItsParametersEverywhere) {
+  // Before the command and behind it.
+  const ProgramRun described = hapbench({"--plugin", plugin("depth_weighted"), "describe", "depth_weighted"});
+  EXPECT_EQ(described.status, 0) << described.err;
+  EXPECT_NE(described.out.find("algorithm depth_weighted"), std::string::npos);
+  EXPECT_NE(described.out.find("rendering.parameters.depth_weighted.power\n        number >= 0 <= 64 [1]; default 1"),
+            std::string::npos)
+      << described.out;
+  const ProgramRun list =
+      hapbench({"list", "algorithms", "--plugin", plugin("depth_weighted"), "--plugin", plugin("capped_summation")});
+  EXPECT_NE(list.out.find("capped_summation"), std::string::npos) << list.err;
+  EXPECT_NE(list.out.find("depth_weighted"), std::string::npos);
+  EXPECT_EQ(hapbench({"list", "algorithms"}).out.find("depth_weighted"), std::string::npos);
+  const ProgramRun words =
+      hapbench({"complete", "--plugin", plugin("depth_weighted"), "compare", "--algorithms", "dep"});
+  EXPECT_EQ(words.out, "depth_weighted\n");
+  const EnvironmentVariable folders("HAPBENCH_PLUGIN_PATH", out("plugins"));
+  fs::create_directory(out("plugins"));
+  fs::copy_file(plugin("depth_weighted"), out("plugins/my.so"));
+  EXPECT_EQ(hapbench({"complete", "run", "x", "--set", "rendering.parameters.depth_weighted.p"}).out,
+            "rendering.parameters.depth_weighted.power=\n");
+}
+
+TEST_F(PluginCommand, ComparesTheLawsWithOurs) {
+  const ProgramRun run =
+      hapbench({"compare", "peg_in_hole_2d_shaped_stiffness", "--plugin", plugin("depth_weighted"), "--plugin",
+                plugin("capped_summation"), "--algorithms", "mean,depth_weighted,capped_summation", "--set",
+                "rendering.parameters.depth_weighted.power=0", "--out", out("a"), "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const Json json = run.json();
+  ASSERT_EQ(json.size(), 3u);
+  // With power 0 it is the mean to the last bit.
+  EXPECT_EQ(json[1]["state_hash"], json[0]["state_hash"]);
+  EXPECT_LE(json[2]["metrics"]["ratio_max"].get<double>(), 1.0 + 1e-12);
+  EXPECT_FALSE(summary("a/mean")["provenance"].contains("plugin"));
+  const Json provenance = summary("a/depth_weighted")["provenance"];
+  EXPECT_EQ(provenance["plugin"]["file"], "depth_weighted.so");
+  EXPECT_EQ(provenance["plugin"]["hash"].get<std::string>().size(), 16u);
+  // A plugin beside it changes nothing of a run.
+  hapbench({"run", "peg_in_hole_2d_mean", "--out", out("with"), "--plugin", plugin("depth_weighted")});
+  hapbench({"run", "peg_in_hole_2d_mean", "--out", out("without")});
+  for (const char* file : {"/summary.json", "/scenario.effective.json", "/trajectory.csv"})
+    EXPECT_EQ(read_file(out("with") + file), read_file(out("without") + file)) << file;
+}
+
+TEST_F(PluginCommand, StressesLimitsAndMapsTheLaw) {
+  const Words law = {"--plugin", plugin("capped_summation")};
+  const auto with_law = [&law](Words words) {
+    words.insert(words.end(), law.begin(), law.end());
+    return hapbench(words);
+  };
+  const ProgramRun stress = with_law({"stability", "--stress", "--count", "500", "--out", out("stress"), "--json"});
+  ASSERT_EQ(stress.status, 0) << stress.err;
+  const Json counts = stress.json();
+  EXPECT_EQ(counts.back()["algorithm"], "capped_summation");
+  EXPECT_TRUE(counts.back()["largest_share_of_bound"].is_null()) << "nothing is known of its bound";
+  const ProgramRun limit = with_law({"limit", "single_spring", "--vary", "rendering.parameters.capped_summation.limit", "--between", "0.1:10",
+                                     "--algorithms", "capped_summation", "--out", out("limit"), "--json"});
+  EXPECT_EQ(limit.status, 0) << limit.err;
+}
+
+TEST_F(PluginCommand, EndsARunAndNoMoreWhenALawFails) {
+  const EnvironmentVariable how("HOSTILE", "error");
+  const Words words = {"--plugin", plugin("hostile"), "--out", out("run"), "--set", "rendering.algorithm=hostile"};
+  Words run_words = {"run", "peg_in_hole_2d_shaped_stiffness"};
+  run_words.insert(run_words.end(), words.begin(), words.end());
+  const ProgramRun run = hapbench(run_words);
+  EXPECT_EQ(run.status, 3);
+  EXPECT_NE(run.err.find("outcome is \"diverges\" (hostile reports error 42: the oven? is ? cold, at step 0)"),
+            std::string::npos)
+      << run.err;
+  EXPECT_EQ(summary("run")["divergence"]["fault"], "hostile reports error 42: the oven? is ? cold");
+
+  const ProgramRun both = hapbench({"compare", "peg_in_hole_2d_shaped_stiffness", "--plugin", plugin("hostile"),
+                                    "--algorithms", "hostile,mean", "--out", out("compare"), "--json"});
+  EXPECT_EQ(both.status, 3);
+  EXPECT_EQ(both.json()[0]["outcome"], "diverges");
+  EXPECT_EQ(both.json()[1]["outcome"], "leaves_hole");
+  EXPECT_NE(both.err.find("hostile diverges at step 0: hostile reports error 42"), std::string::npos) << both.err;
+
+  // Where divergence is no failure, the law's is.
+  const ProgramRun expected =
+      hapbench({"run", "single_spring", "--plugin", plugin("hostile"), "--set", "rendering.algorithm=hostile", "--set",
+                "expect.outcome=diverges", "--out", out("expected")});
+  EXPECT_EQ(expected.status, 3);
+  EXPECT_NE(expected.err.find("the law of a plugin failed once"), std::string::npos) << expected.err;
+}
+
+TEST_F(PluginCommand, FindsWhatIsNoForceBehindEveryStage) {
+  for (const char* fault : {"nan", "forgets", "not created"}) {
+    const EnvironmentVariable how("HOSTILE", fault);
+    for (const char* stage :
+         {"rendering.passivity_controller=true", "rendering.limits.max_force_N=1", "rendering.angular_damping=true",
+          "integrator.type=rk4", "integrator.type=implicit_midpoint"}) {
+      const ProgramRun run = hapbench({"run", "peg_in_hole_2d_shaped_stiffness", "--plugin", plugin("hostile"), "--set",
+                                       "rendering.algorithm=hostile", "--set", stage, "--out", out("run")});
+      EXPECT_EQ(run.status, 3) << fault << stage;
+      EXPECT_NE(run.err.find("outcome is \"diverges\" (hostile "), std::string::npos) << stage << run.err;
+    }
+  }
+}
+
+TEST_F(PluginCommand, SweepsCarryThePluginAlong) {
+  const fs::path mine = directory_ / "mine.so";
+  fs::copy_file(plugin("depth_weighted"), mine);
+  Words words = {"sweep",    "single_spring",
+                 "--plugin", mine.string(),
+                 "--set",    "rendering.algorithm=depth_weighted",
+                 "--vary",   "rendering.parameters.depth_weighted.power=0,1,2",
+                 "--out",    out("s")};
+  const auto with = [&words](Words more) {
+    more.insert(more.begin(), words.begin(), words.end());
+    return hapbench(more);
+  };
+  const ProgramRun print = with({"--row", "2", "--print"});
+  EXPECT_NE(print.out.find("--plugin " + mine.string()), std::string::npos) << print.out;
+  ASSERT_EQ(with({"--slurm", "2", "--dry-run"}).status, 0);
+  EXPECT_NE(read_file(directory_ / "s/sweep.sbatch").find("--plugin " + mine.string()), std::string::npos);
+  ASSERT_EQ(with({"--shard", "0/2"}).status, 0);
+  const Json description = Json::parse(read_file(directory_ / "s/sweep_shard_0_of_2.json"));
+  EXPECT_EQ(description["plugins"].size(), 1u);
+  // The same law from other bytes is another sweep.
+  fs::remove(mine);
+  fs::copy_file(plugin("depth_weighted"), mine);
+  fs::resize_file(mine, fs::file_size(mine) + 1);
+  ASSERT_EQ(with({"--shard", "1/2"}).status, 0);
+  const ProgramRun merge =
+      hapbench({"merge", out("s/sweep_shard_0_of_2.csv"), out("s/sweep_shard_1_of_2.csv"), "--out", out("m.csv")});
+  EXPECT_EQ(merge.status, 2);
+}
+
+TEST_F(PluginCommand, RefusesPluginsInOneLine) {
+  for (const Words& words : {Words{"--plugin", "no/such.so", "list"}, Words{"list", "--plugin", "/proc/self/exe"}}) {
+    const ProgramRun run = hapbench(words);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(lines_of(run.err).size(), 1u) << run.err;
+    EXPECT_EQ(run.out, "");
+  }
+  const EnvironmentVariable folders("HAPBENCH_PLUGIN_PATH", "/no/such/folder");
+  const ProgramRun run = hapbench({"list"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_EQ(run.err, "hapbench: error: HAPBENCH_PLUGIN_PATH: /no/such/folder: No such file or directory\n");
+  EXPECT_EQ(hapbench({"--help"}).status, 0);
+}
+
+}  // namespace
+}  // namespace hapbench
