@@ -1,23 +1,69 @@
 #include "scenarios/input/installed_folder.hpp"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "scenarios/input/input_error.hpp"
+
+// A static library does not know where it was installed: who finds it by find_package links .cmake/share_folder.cpp.
+extern "C" [[gnu::weak]] const char hapbench_share_folder[];
 
 namespace hapbench {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// In this shared object, or in the program.
+constexpr char kHere = 0;
+
+/// Canonical, so that messages name the place in the source tree to which a build tree has links.
+std::optional<fs::path> folder_at(const fs::path& path) {
+  std::error_code error;
+  const fs::path found = fs::canonical(path, error);
+  if (error || !fs::is_directory(found, error)) return std::nullopt;
+  return found;
+}
+
+std::optional<fs::path> folder_above_shared_object(const fs::path& program, const fs::path& wanted) {
+  Dl_info object;
+  if (dladdr(&kHere, &object) == 0) return std::nullopt;
+  std::error_code error;
+  const fs::path file = fs::canonical(object.dli_fname, error);
+  if (error || file == program) return std::nullopt;
+  for (fs::path above = file.parent_path(); above != above.root_path(); above = above.parent_path()) {
+    if (auto found = folder_at(above / wanted)) return found;
+  }
+  return std::nullopt;
+}
+
+/// The share folder of which the build tells; empty when it does not.
+fs::path share_of_build() {
+#ifdef HAPBENCH_SHARE
+  return HAPBENCH_SHARE;
+#else
+  return hapbench_share_folder != nullptr ? hapbench_share_folder : "";
+#endif
+}
+
+}  // namespace
+
 fs::path installed_folder(const std::string& name) {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const fs::path folder = program.parent_path().parent_path() / "share" / "hapbench" / name;
-  // Canonical, so that messages name the place in the source tree to which a build tree has links.
-  const fs::path found = fs::canonical(folder, error);
-  if (!error && fs::is_directory(found, error)) return found;
+  const fs::path wanted = fs::path("share") / "hapbench" / name;
+  const fs::path beside = program.parent_path().parent_path() / wanted;
+  if (auto found = folder_at(beside)) return *found;
+  if (auto found = folder_above_shared_object(program, wanted)) return *found;
+  const fs::path share = share_of_build();
+  if (!share.empty()) {
+    if (auto found = folder_at(share / name)) return *found;
+  }
   throw InputError(
       fmt::format("{}: is missing; allowed: the program where it was built or installed, with its folders beside it",
-                  folder.string()));
+                  (share.empty() ? beside : share / name).string()));
 }
 
 }  // namespace hapbench

@@ -84,7 +84,7 @@ class CommandLine {
   ~CommandLine();
 
   Command command(const std::string& name, const std::string& summary);
-  /// Returns the command's exit status, or kBadInput after a wrong usage, with a message on standard error.
+  /// Returns the command's exit status. Throws what it throws, and InputError for a wrong usage.
   int run(int argc, char** argv);
   /// What the chosen command says of its results when it is stopped.
   const std::string& when_stopped() const { return chosen_.when_stopped; }

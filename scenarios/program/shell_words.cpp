@@ -4,11 +4,14 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <utility>
 
 #include "results/io/io_error.hpp"
 
 namespace hapbench {
 namespace {
+
+std::filesystem::path given_program;
 
 std::string shell_word(std::string_view word) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:=,+@%";
@@ -28,7 +31,11 @@ std::string shell_line(const std::vector<std::string>& words) {
 
 std::filesystem::path this_program() {
   std::error_code ignored;
-  return std::filesystem::read_symlink("/proc/self/exe", ignored);
+  return given_program.empty() ? std::filesystem::read_symlink("/proc/self/exe", ignored) : given_program;
+}
+
+void set_this_program(std::filesystem::path program) {
+  given_program = std::move(program);
 }
 
 ProgramOutput output_of(const std::vector<std::string>& words) {
