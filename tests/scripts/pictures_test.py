@@ -17,7 +17,7 @@ PROGRAM, SOURCE = Path(sys.argv[1]), Path(sys.argv[2])
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(SOURCE / "scripts" / "python"))
 
-from hapbench_pictures.columns import header, read_columns  # noqa: E402  (the path comes first)
+from hapbench.columns import header, read_columns  # noqa: E402  (the path comes first)
 from hapbench_pictures.given import given_runs, labels, named  # noqa: E402
 from hapbench_pictures.looks import looks  # noqa: E402
 from hapbench_pictures.plot import legend_columns, legend_of  # noqa: E402
@@ -70,7 +70,7 @@ class Columns(Given):
                 np.testing.assert_array_equal(found[name], reference[name], name)
 
     def test_pieces_meet_without_a_seam(self):
-        from hapbench_pictures import columns
+        from hapbench import columns
         self.addCleanup(setattr, columns, "PIECE_BYTES", columns.PIECE_BYTES)
         file = self.root / "mesh" / "trajectory.csv"
         whole = read_columns(file, ["px_m", "ratio_min"])
