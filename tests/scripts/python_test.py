@@ -375,6 +375,21 @@ class Laws(Scratch):
                          hapbench.run(PEG, {**SHORT, "rendering.algorithm": "summation"}).state_hash)
 
 
+PLUGIN = SOURCE / "algorithms/plugin/examples/depth_weighted.c"
+
+
+class Plugins(Scratch):
+    @unittest.skipUnless(PLUGIN.is_file(), "without plugins")
+    def test_stand_beside_laws_in_python(self):
+        subprocess.run(["cc", "-shared", "-fPIC", f"-I{SOURCE}/algorithms/plugin", "-o", self.root / "law.so", PLUGIN, "-lm"], check=True)
+        before = set(hapbench.algorithms())
+        hapbench.load_plugin(self.root / "law.so")
+        (name,) = set(hapbench.algorithms()) - before
+        hapbench.force_law("test_summation")(summation)
+        report = hapbench.compare(PEG, [name, "test_summation", "summation"], SHORT)
+        self.assertEqual(list(report.comparison.algorithm), [name, "test_summation", "summation"])
+
+
 class Steps(Scratch):
     def test_are_those_of_a_run(self):
         run = hapbench.run(PEG, SHORT, record=["contacts"])

@@ -77,9 +77,9 @@ SharedDefinition share(Definition definition) {
 }
 
 /// An array of numpy with `width` numbers for each contact, of which a view of the first rows is handed out.
-class Column {
+class ContactArray {
  public:
-  Column(std::size_t capacity, py::ssize_t width) : width_(width), numbers_(shape(capacity)) {}
+  ContactArray(std::size_t capacity, py::ssize_t width) : width_(width), numbers_(shape(capacity)) {}
 
   double* data() { return numbers_.mutable_data(); }
   /// Of the first n rows; kept from call to call as long as n stays.
@@ -103,11 +103,11 @@ class Column {
   std::size_t rows_ = std::numeric_limits<std::size_t>::max();
 };
 
-void copy(const double* from, std::size_t n, Column& to) {
+void copy(const double* from, std::size_t n, ContactArray& to) {
   std::copy_n(from, n, to.data());
 }
 
-void copy(const double* x, const double* y, const double* z, std::size_t n, Column& to) {
+void copy(const double* x, const double* y, const double* z, std::size_t n, ContactArray& to) {
   double* out = to.data();
   for (std::size_t i = 0; i < n; ++i) {
     *out++ = x[i];
@@ -139,7 +139,7 @@ class PythonLaw final : public ForceLaw {
     const Held held;
     for (const auto& [argument, place] : definition_->arguments) {
       if (argument < Argument::stiffness && !column(argument))
-        column(argument) = std::make_unique<Column>(capacity, argument == Argument::depths ? 1 : 3);
+        column(argument) = std::make_unique<ContactArray>(capacity, argument == Argument::depths ? 1 : 3);
     }
     start();
   }
@@ -172,10 +172,12 @@ class PythonLaw final : public ForceLaw {
     py::object callable;
     std::vector<py::object> own;
     py::object stiffness;
-    std::array<std::unique_ptr<Column>, 4> columns;
+    std::array<std::unique_ptr<ContactArray>, 4> columns;
   };
 
-  std::unique_ptr<Column>& column(Argument argument) { return state_->columns[static_cast<std::size_t>(argument)]; }
+  std::unique_ptr<ContactArray>& column(Argument argument) {
+    return state_->columns[static_cast<std::size_t>(argument)];
+  }
 
   /// A law with a state of its own begins anew.
   void start() noexcept {

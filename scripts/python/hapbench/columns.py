@@ -6,6 +6,8 @@ import numpy as np
 from .errors import ResultError
 
 PIECE_BYTES = 1 << 25
+# Of which some look like numbers.
+TEXTS = ("state_hash",)
 COMMA, NEWLINE = ord(","), ord("\n")
 
 
@@ -116,11 +118,13 @@ def read_mixed(file):
         return read_columns(file, may_be_empty=True)
     except ResultError:
         names, rows = read_rows(file)
-        return {name: numbers_or_texts([row[i] for row in rows]) for i, name in enumerate(names)}
+        return {name: numbers_or_texts(name, [row[i] for row in rows]) for i, name in enumerate(names)}
 
 
-def numbers_or_texts(texts):
-    try:
-        return np.array([float(text) if text else np.nan for text in texts])
-    except (ValueError, TypeError):
-        return np.array(texts, dtype=object)
+def numbers_or_texts(name, texts):
+    if name not in TEXTS:
+        try:
+            return np.array([float(text) if text else np.nan for text in texts])
+        except ValueError:
+            pass
+    return np.array(texts, dtype=object)

@@ -105,6 +105,11 @@ def algorithms() -> list[str]:
     return _hapbench.algorithms()
 
 
+def load_plugin(file: str | os.PathLike) -> None:
+    """Take a law from a shared object with hapbench's C interface, as --plugin does; it then stands beside the others."""
+    command("--plugin", os.fspath(file), "list", "--quiet")
+
+
 def main(words: Sequence[str] | None = None) -> int:
     """Be the program with these words (default: those of the command line) and return its exit status. At the end of a
     script that defines force laws, it lets them take part in every command."""

@@ -118,12 +118,13 @@ class Run(_WithTables):
 
 
 class Folder(_WithTables):
-    """A folder that sweep, compare, stability, limit … wrote: `tables` of its CSV files, `runs` below it by their paths,
-    `json` of its other files. `folder.sweep` is the table of sweep.csv."""
+    """A folder that sweep, compare, stability, limit … wrote: `tables` of its CSV files by their paths, those of its runs
+    aside, `runs` below it by theirs, `json` of its other files. `folder.sweep` is the table of sweep.csv."""
 
     def __init__(self, folder):
         self.folder = Path(folder)
-        self.tables = Tables({file.stem: _reader(file) for file in sorted(self.folder.glob("*.csv"))})
+        files = [file for file in sorted(self.folder.rglob("*.csv")) if not _is_of_run(file)]
+        self.tables = Tables({file.relative_to(self.folder).with_suffix("").as_posix(): _reader(file) for file in files})
 
     @cached_property
     def runs(self):
@@ -176,6 +177,10 @@ class Trial(_WithTables):
 
     def __repr__(self):
         return f"<trial: tables {', '.join(self.tables) or 'none'}>"
+
+
+def _is_of_run(file):
+    return any((folder / SUMMARY).is_file() for folder in list(file.parents)[:2])
 
 
 def _tables_of(folder, described=None):

@@ -3,6 +3,8 @@ from collections.abc import Mapping
 
 from .units import unit_of
 
+MOST_NAMED = 16
+
 
 class Table(Mapping):
     """Columns by name: numpy arrays of float64, NaN where a field is empty; in some tables of sweeps, of texts.
@@ -51,4 +53,6 @@ class Table(Mapping):
         return Table(columns, self.units, self.meanings, self.name)
 
     def __repr__(self):
-        return f"<{self.name}: {self.rows} rows of {', '.join(self._columns)}>"
+        names = list(self._columns)
+        more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+        return f"<{self.name}: {self.rows} rows of {', '.join(names[:MOST_NAMED])}{more}>"
