@@ -2,14 +2,23 @@
 
 #include <fmt/format.h>
 
+#include <exception>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
+#include "results/io/io_error.hpp"
 #include "results/summary/provenance.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 namespace {
+
+int fail(std::string_view what, int status) {
+  print_error(what);
+  return status;
+}
 
 /// What a version stands for.
 constexpr const char* kPromise =
@@ -59,6 +68,21 @@ int run_program(int argc, char** argv) {
   } catch (const Stopped& stop) {
     print_note(fmt::format("stopped; {}", line.when_stopped()));
     return kStopped + stop.signal;
+  }
+}
+
+int run_program_to_exit(int argc, char** argv) {
+  try {
+    return run_program(argc, argv);
+  } catch (const InputError& error) {
+    print_errors(error);
+    return kBadInput;
+  } catch (const IoError& error) {
+    return fail(error.what(), kInternalFault);
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory", kInternalFault);
+  } catch (const std::exception& error) {
+    return fail(one_line(fmt::format("internal fault: {}", error.what())), kInternalFault);
   }
 }
 

@@ -7,4 +7,7 @@ namespace hapbench {
 /// no command, and IoError.
 int run_program(int argc, char** argv);
 
+/// The same, with what it throws said on standard error: exit status 2 for InputError, 1 for all else.
+int run_program_to_exit(int argc, char** argv);
+
 }  // namespace hapbench

@@ -70,12 +70,12 @@ py::dict run(const std::string& scenario, const std::vector<std::string>& overri
   return result;
 }
 
-int program(std::vector<std::string> words) {
+int call(int (*program)(int, char**), std::vector<std::string> words) {
   words.insert(words.begin(), "hapbench");
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
-  return run_program(static_cast<int>(words.size()), pointers.data());
+  return program(static_cast<int>(words.size()), pointers.data());
 }
 
 py::tuple command(const std::vector<std::string>& words, const py::object& progress) {
@@ -83,21 +83,14 @@ py::tuple command(const std::vector<std::string>& words, const py::object& progr
   int status = 0;
   supervise(progress, [&] {
     capture_output(&output);
-    status = program(words);
+    status = call(run_program, words);
   });
   return py::make_tuple(status, output.text, output.warnings, output.errors);
 }
 
 int be_program(const std::vector<std::string>& words) {
   int status = 0;
-  supervise(py::none(), [&] {
-    try {
-      status = program(words);
-    } catch (const InputError& error) {
-      print_errors(error);
-      status = kBadInput;
-    }
-  });
+  supervise(py::none(), [&] { status = call(run_program_to_exit, words); });
   return status;
 }
 

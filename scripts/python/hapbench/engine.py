@@ -45,13 +45,14 @@ def run(scenario: Scenario, overrides: Overrides = None, *, record: Iterable[str
     overrides = {**(overrides or {}), **{f"record.{what}": True for what in record}}
     with _Scratch() as scratch:
         found = scratch.call(_hapbench.run, scratch.file_of(scenario), _words(overrides), progress)
-    for warning in found["warnings"]:
+    summary = json.loads(found["summary"])
+    for warning in found["warnings"] + summary["warnings"]:
         warnings.warn(warning, ScenarioWarning, stacklevel=2)
     trials = [_tables(trial) for trial in found["trials"]]
     only = dict(trials[0]) if len(trials) == 1 else {}
     if found["targets"] is not None:
         only["targets"] = _table("targets", found["targets"])
-    return Run(json.loads(found["summary"]), json.loads(found["scenario"]), only, timing=json.loads(found["timing"]),
+    return Run(summary, json.loads(found["scenario"]), only, timing=json.loads(found["timing"]),
                trials=map(Trial, trials) if len(trials) > 1 else (), unmet=found["unmet"])
 
 
@@ -204,7 +205,7 @@ class _Scratch:
         """The word by which the engine finds a scenario."""
         if not isinstance(scenario, dict):
             return os.fspath(scenario)
-        scenario = json.loads(json.dumps(scenario))
+        scenario = json.loads(json.dumps(scenario, default=_plain))
         for *path, last in _FILES:
             part = scenario
             for key in path:
@@ -264,7 +265,12 @@ def _words(overrides):
 
 def _value(value):
     """As a word of --set: text as it is, all else as JSON."""
-    return value if isinstance(value, str) else json.dumps(value.item() if hasattr(value, "item") else value)
+    return value if isinstance(value, str) else json.dumps(value, default=_plain)
+
+
+def _plain(value):
+    """Numbers and arrays of numpy, for JSON."""
+    return value.tolist()
 
 
 def _table(name, given):

@@ -1,5 +1,6 @@
 """What goes wrong, as exceptions."""
 import re
+from pathlib import Path
 
 
 class InputError(Exception):
@@ -33,6 +34,6 @@ class ScenarioWarning(UserWarning):
 def _split(place):
     """File and JSON pointer of "file: /pointer", of which either may be missing."""
     file, _, pointer = place.rpartition(": ")
-    if pointer.startswith("/") and (file or not place.endswith(".json")):
+    if pointer.startswith("/") and (file or not Path(place).exists()):
         return file, pointer
     return place, ""
