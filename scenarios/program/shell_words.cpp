@@ -34,10 +34,6 @@ std::filesystem::path this_program() {
   return given_program.empty() ? std::filesystem::read_symlink("/proc/self/exe", ignored) : given_program;
 }
 
-void set_this_program(std::filesystem::path program) {
-  given_program = std::move(program);
-}
-
 ProgramOutput output_of(const std::vector<std::string>& words) {
   ProgramOutput output;
   std::FILE* pipe = ::popen((shell_line(words) + " 2>&1").c_str(), "r");
@@ -47,6 +43,10 @@ ProgramOutput output_of(const std::vector<std::string>& words) {
   const int status = ::pclose(pipe);
   output.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return output;
+}
+
+void set_this_program(std::filesystem::path program) {
+  given_program = std::move(program);
 }
 
 }  // namespace hapbench

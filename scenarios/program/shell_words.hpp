@@ -10,11 +10,8 @@ namespace hapbench {
 /// Words as a POSIX shell takes them: those with anything but letters, digits and "_-./:=,+@%" in single quotes.
 std::string shell_line(const std::vector<std::string>& words);
 
-/// The file of this program, or what set_this_program said.
+/// The file of this program.
 std::filesystem::path this_program();
-
-/// Says which program does what these commands do, for code that runs in another one.
-void set_this_program(std::filesystem::path program);
 
 /// What a program that ran to its end left.
 struct ProgramOutput {
@@ -24,5 +21,8 @@ struct ProgramOutput {
 
 /// Runs a program and waits for it. Throws IoError when no process can be started.
 ProgramOutput output_of(const std::vector<std::string>& words);
+
+/// Says what this_program answers, for code that runs in another one.
+void set_this_program(std::filesystem::path program);
 
 }  // namespace hapbench
