@@ -5,8 +5,8 @@
 
 namespace hapbench {
 
-ContactRecorder::ContactRecorder(std::filesystem::path file, std::uint64_t every)
-    : csv_(std::move(file), kColumns), every_(every) {
+ContactRecorder::ContactRecorder(TableTarget target, std::uint64_t every)
+    : writer_(std::move(target), kColumns), every_(every) {
   assert(every > 0);
 }
 
@@ -14,8 +14,8 @@ void ContactRecorder::on_step(const StepRecord& record) noexcept {
   if (!is_recorded(record, every_)) return;
   const ContactBuffer& c = *record.rendered;
   for (std::size_t i = 0; i < c.size(); ++i) {
-    csv_.row(record.step, record.time, std::uint64_t{c.index[i]}, c.point(i), c.normal(i), c.depth[i], c.gradient(i),
-             c.weight[i]);
+    writer_.row(record.step, record.time, std::uint64_t{c.index[i]}, c.point(i), c.normal(i), c.depth[i], c.gradient(i),
+                c.weight[i]);
   }
 }
 

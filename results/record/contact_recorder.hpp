@@ -1,9 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 
-#include "results/io/csv_writer.hpp"
+#include "results/io/table_writer.hpp"
 #include "results/record/recorder.hpp"
 
 namespace hapbench {
@@ -30,13 +29,13 @@ class ContactRecorder final : public Recorder {
       {"weight", "1", "c_i of the law; 0 for laws without weights"}};
 
   /// Keeps rows 0, every, 2 every, … Precondition: every > 0. Throws IoError.
-  explicit ContactRecorder(std::filesystem::path file, std::uint64_t every = 1);
+  explicit ContactRecorder(TableTarget target, std::uint64_t every = 1);
 
   void on_step(const StepRecord& record) noexcept override;
-  void finish() override { csv_.finish(); }
+  void finish() override { writer_.finish(); }
 
  private:
-  CsvWriter csv_;
+  TableWriter writer_;
   std::uint64_t every_;
 };
 

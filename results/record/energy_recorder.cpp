@@ -6,8 +6,8 @@
 
 namespace hapbench {
 
-EnergyRecorder::EnergyRecorder(std::filesystem::path file, std::uint64_t every, const EnergyLedger& ledger)
-    : csv_(std::move(file), kColumns), every_(every), ledger_(&ledger) {
+EnergyRecorder::EnergyRecorder(TableTarget target, std::uint64_t every, const EnergyLedger& ledger)
+    : writer_(std::move(target), kColumns), every_(every), ledger_(&ledger) {
   assert(every > 0);
 }
 
@@ -16,8 +16,8 @@ void EnergyRecorder::on_step(const StepRecord& record) noexcept {
   const EnergyBalance& b = ledger_->balance();
   const auto dissipated = b.device ? std::optional(b.device->dissipated) : std::nullopt;
   const auto stored = b.device ? std::optional(b.device->stored) : std::nullopt;
-  csv_.row(record.step, record.time, b.kinetic, b.stored, b.input, b.spring, b.damping, b.rotation, b.created,
-           b.integration, b.script, b.residual, b.hand, b.actuator, dissipated, stored);
+  writer_.row(record.step, record.time, b.kinetic, b.stored, b.input, b.spring, b.damping, b.rotation, b.created,
+              b.integration, b.script, b.residual, b.hand, b.actuator, dissipated, stored);
 }
 
 }  // namespace hapbench

@@ -1,9 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 
-#include "results/io/csv_writer.hpp"
+#include "results/io/table_writer.hpp"
 #include "results/observe/energy_ledger.hpp"
 #include "results/record/recorder.hpp"
 
@@ -33,13 +32,13 @@ class EnergyRecorder final : public Recorder {
 
   /// Keeps rows 0, every, 2 every, … Must observe after `ledger`, which it reads. Precondition: every > 0. Throws
   /// IoError.
-  EnergyRecorder(std::filesystem::path file, std::uint64_t every, const EnergyLedger& ledger);
+  EnergyRecorder(TableTarget target, std::uint64_t every, const EnergyLedger& ledger);
 
   void on_step(const StepRecord& record) noexcept override;
-  void finish() override { csv_.finish(); }
+  void finish() override { writer_.finish(); }
 
  private:
-  CsvWriter csv_;
+  TableWriter writer_;
   std::uint64_t every_;
   const EnergyLedger* ledger_;
 };

@@ -1,14 +1,13 @@
 #pragma once
 
-#include <filesystem>
-
-#include "results/io/csv_writer.hpp"
+#include "results/io/table_writer.hpp"
 #include "results/observe/force_fidelity.hpp"
 #include "results/record/recorder.hpp"
 
 namespace hapbench {
 
-/// force_reference.csv: the reference force, measured with the stroke or ideal, beside what is rendered at the same place.
+/// force_reference.csv: the reference force, measured with the stroke or ideal, beside what is rendered at the same
+/// place.
 class ForceReferenceRecorder final : public Recorder {
  public:
   static constexpr Column kColumns[] = {
@@ -22,13 +21,13 @@ class ForceReferenceRecorder final : public Recorder {
       {"force_error_z_N", "N", "z of f - f_m"}};
 
   /// Keeps rows 0, every, 2 every, …; must observe after `observer`. Throws IoError.
-  ForceReferenceRecorder(std::filesystem::path file, std::uint64_t every, const ForceFidelityObserver& observer);
+  ForceReferenceRecorder(TableTarget target, std::uint64_t every, const ForceFidelityObserver& observer);
 
   void on_step(const StepRecord& record) noexcept override;
-  void finish() override { csv_.finish(); }
+  void finish() override { writer_.finish(); }
 
  private:
-  CsvWriter csv_;
+  TableWriter writer_;
   std::uint64_t every_;
   const ForceFidelityObserver* observer_;
 };

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <filesystem>
-
-#include "results/io/csv_writer.hpp"
+#include "results/io/table_writer.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/record/recorder.hpp"
 
@@ -24,13 +22,13 @@ class IdealTrajectoryRecorder final : public Recorder {
       {"hand_force_N", "N", "norm of the hand's force"}};
 
   /// Keeps the rows that `observer` compares; must observe after it. Throws IoError.
-  IdealTrajectoryRecorder(std::filesystem::path file, const IdealTrajectoryObserver& observer);
+  IdealTrajectoryRecorder(TableTarget target, const IdealTrajectoryObserver& observer);
 
   void on_step(const StepRecord& record) noexcept override;
-  void finish() override { csv_.finish(); }
+  void finish() override { writer_.finish(); }
 
  private:
-  CsvWriter csv_;
+  TableWriter writer_;
   const IdealTrajectoryObserver* observer_;
 };
 

@@ -17,9 +17,9 @@ std::vector<int> ascending_unique(std::vector<int> values) {
 
 }  // namespace
 
-RatioRecorder::RatioRecorder(std::filesystem::path file, std::uint64_t every, std::vector<int> iterations,
+RatioRecorder::RatioRecorder(TableTarget target, std::uint64_t every, std::vector<int> iterations,
                              ShapingOperations shaping, std::size_t capacity)
-    : csv_(std::move(file), kColumns),
+    : writer_(std::move(target), kColumns),
       every_(every),
       iterations_(ascending_unique(std::move(iterations))),
       shaping_(shaping),
@@ -39,8 +39,8 @@ void RatioRecorder::on_step(const StepRecord& record) noexcept {
   for (const int m : iterations_) {
     for (; done < m; ++done) S = shaping_.update(contacts_, S);
     const RatioRange ratio = ratio_range(contacts_, S);
-    csv_.row(record.step, record.time, static_cast<std::uint64_t>(m), contacts_.size(), ratio.min, ratio.max,
-             lambda_max(S));
+    writer_.row(record.step, record.time, static_cast<std::uint64_t>(m), contacts_.size(), ratio.min, ratio.max,
+                lambda_max(S));
   }
 }
 

@@ -1,10 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <vector>
 
-#include "results/io/csv_writer.hpp"
+#include "results/io/table_writer.hpp"
 #include "results/record/recorder.hpp"
 #include "sim/contact/contact_buffer.hpp"
 
@@ -35,14 +34,14 @@ class RatioRecorder final : public Recorder {
 
   /// Keeps rows 0, every, 2 every, … `capacity`: the most contacts a row can have (ContactQuery::capacity).
   /// `iterations` in any order, duplicates count once. Precondition: every > 0, iterations >= 0. Throws IoError.
-  RatioRecorder(std::filesystem::path file, std::uint64_t every, std::vector<int> iterations, ShapingOperations shaping,
+  RatioRecorder(TableTarget target, std::uint64_t every, std::vector<int> iterations, ShapingOperations shaping,
                 std::size_t capacity);
 
   void on_step(const StepRecord& record) noexcept override;
-  void finish() override { csv_.finish(); }
+  void finish() override { writer_.finish(); }
 
  private:
-  CsvWriter csv_;
+  TableWriter writer_;
   std::uint64_t every_;
   std::vector<int> iterations_;  ///< ascending, unique
   ShapingOperations shaping_;

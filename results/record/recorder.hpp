@@ -7,8 +7,8 @@
 
 namespace hapbench {
 
-/// An observer that writes one file. Rows are written during the run through a buffer of fixed size. A run that is
-/// interrupted before `finish` leaves no file.
+/// An observer that writes one table, to a file or into memory. A file's rows are written during the run through a
+/// buffer of fixed size; a run that is interrupted before `finish` leaves none.
 class Recorder : public Observer {
  public:
   /// After the run: puts the file under its final name. Throws IoError, also for the errors of earlier rows.

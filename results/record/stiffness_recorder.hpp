@@ -1,9 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 
-#include "results/io/csv_writer.hpp"
+#include "results/io/table_writer.hpp"
 #include "results/record/recorder.hpp"
 
 namespace hapbench {
@@ -24,13 +23,13 @@ class StiffnessRecorder final : public Recorder {
       {"lambda_max", "1", "largest eigenvalue of S"}};
 
   /// Keeps rows 0, every, 2 every, … Precondition: every > 0. Throws IoError.
-  explicit StiffnessRecorder(std::filesystem::path file, std::uint64_t every = 1);
+  explicit StiffnessRecorder(TableTarget target, std::uint64_t every = 1);
 
   void on_step(const StepRecord& record) noexcept override;
-  void finish() override { csv_.finish(); }
+  void finish() override { writer_.finish(); }
 
  private:
-  CsvWriter csv_;
+  TableWriter writer_;
   std::uint64_t every_;
 };
 

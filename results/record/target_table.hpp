@@ -1,10 +1,10 @@
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
 #include "results/io/columns.hpp"
 #include "results/io/io_error.hpp"
+#include "results/io/table_writer.hpp"
 #include "results/observe/target_metrics.hpp"
 
 namespace hapbench {
@@ -25,6 +25,6 @@ inline constexpr ResultTable kTargetTable = {"targets.csv", "of a tracking hand:
 
 /// targets.csv: what became of every target of every subject's trials, in that order, all counted from 0; `force` and
 /// `speed` are means over the rows on target, empty when there was none. Throws IoError.
-void write_target_table(const std::filesystem::path& file, const std::vector<TargetRow>& rows);
+void write_target_table(TableTarget target, const std::vector<TargetRow>& rows);
 
 }  // namespace hapbench

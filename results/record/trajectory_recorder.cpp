@@ -39,8 +39,8 @@ std::span<const Column> TrajectoryRecorder::columns(const TrajectoryExtras& extr
   return std::span(kWithAll).first(std::size(kColumns) + extra);
 }
 
-TrajectoryRecorder::TrajectoryRecorder(std::filesystem::path file, std::uint64_t every, const TrajectoryExtras& extras)
-    : csv_(std::move(file), columns(extras)), every_(every), extras_(extras) {
+TrajectoryRecorder::TrajectoryRecorder(TableTarget target, std::uint64_t every, const TrajectoryExtras& extras)
+    : writer_(std::move(target), columns(extras)), every_(every), extras_(extras) {
   assert(every > 0);
 }
 
@@ -56,9 +56,9 @@ void TrajectoryRecorder::on_step(const StepRecord& r) noexcept {
   };
   if (extras_.pose) add(quaternion(ToolPose{r.tool.pose.position, r.tool.pose.axis, r.roll}.rotation()));
   if (extras_.torque) add(r.springs.moment);
-  csv_.row(r.step, r.time, r.tool.pose.position, r.tool.velocity, r.tool.pose.axis, r.force.rendered, r.force.spring,
-           r.hand.measured, r.hand.input, r.handle.position, r.colliding, r.rendered->size(), r.force.depth_max,
-           ratio_min, ratio_max, std::span<const double>(extras.data(), count));
+  writer_.row(r.step, r.time, r.tool.pose.position, r.tool.velocity, r.tool.pose.axis, r.force.rendered, r.force.spring,
+              r.hand.measured, r.hand.input, r.handle.position, r.colliding, r.rendered->size(), r.force.depth_max,
+              ratio_min, ratio_max, std::span<const double>(extras.data(), count));
 }
 
 }  // namespace hapbench

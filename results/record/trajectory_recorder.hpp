@@ -1,9 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 
-#include "results/io/csv_writer.hpp"
+#include "results/io/table_writer.hpp"
 #include "results/record/recorder.hpp"
 
 namespace hapbench {
@@ -69,16 +68,16 @@ class TrajectoryRecorder final : public Recorder {
   static std::span<const Column> columns(const TrajectoryExtras& extras);
 
   /// Keeps rows 0, every, 2 every, … Precondition: every > 0. Throws IoError.
-  explicit TrajectoryRecorder(std::filesystem::path file, std::uint64_t every = 1, const TrajectoryExtras& extras = {});
+  explicit TrajectoryRecorder(TableTarget target, std::uint64_t every = 1, const TrajectoryExtras& extras = {});
 
   bool wants_ratio() const noexcept override { return true; }
   bool wants_roll() const noexcept override { return extras_.pose; }
   bool wants_springs() const noexcept override { return extras_.torque; }
   void on_step(const StepRecord& record) noexcept override;
-  void finish() override { csv_.finish(); }
+  void finish() override { writer_.finish(); }
 
  private:
-  CsvWriter csv_;
+  TableWriter writer_;
   std::uint64_t every_;
   TrajectoryExtras extras_;
 };

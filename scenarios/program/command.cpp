@@ -19,6 +19,16 @@ namespace hapbench {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+thread_local CapturedOutput* captured = nullptr;
+
+}  // namespace
+
+void capture_output(CapturedOutput* output) noexcept {
+  captured = output;
+}
+
 void add_output_options(Command& command, OutputOptions& options) {
   command.flag("--quiet", options.quiet, "nothing on standard output, no progress bar");
   command.flag("--json", options.json, "JSON on standard output instead of a table");
@@ -34,15 +44,36 @@ void add_skip_option(Command& command, Skips& skips) {
 void print(const OutputOptions& options, const std::string& text, const Json& json) {
   if (options.quiet) return;
   const std::string output = options.json ? json_text(json) : fitted(text);
+  if (captured != nullptr) {
+    captured->text += output;
+    return;
+  }
   std::fwrite(output.data(), 1, output.size(), stdout);
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {
+  if (captured != nullptr) {
+    captured->warnings.insert(captured->warnings.end(), warnings.begin(), warnings.end());
+    return;
+  }
   std::fflush(stdout);  // where both go to one pipe, in the order of printing
   for (const std::string& warning : warnings) fmt::print(stderr, "hapbench: warning: {}\n", warning);
 }
 
+void print_note(std::string_view text) {
+  if (captured != nullptr) {
+    captured->warnings.emplace_back(text);
+    return;
+  }
+  std::fflush(stdout);  // what it is about comes first, where both go to one pipe
+  fmt::print(stderr, "hapbench: {}\n", text);
+}
+
 void print_error(std::string_view text) {
+  if (captured != nullptr) {
+    captured->errors.emplace_back(text);
+    return;
+  }
   std::fflush(stdout);
   fmt::print(stderr, "{} {}\n", bold(stderr, "hapbench: error:"), text);
 }
@@ -56,8 +87,7 @@ void print_errors(const InputError& error) {
 void announce_large_output(double bytes) {
   constexpr double kLarge = 1e8;
   if (bytes <= kLarge) return;
-  fmt::print(stderr, "hapbench: about {} will be written; \"--set record.every=10\" makes it a tenth\n",
-             bytes_text(bytes));
+  print_note(fmt::format("about {} will be written; \"--set record.every=10\" makes it a tenth", bytes_text(bytes)));
 }
 
 std::vector<std::string> all_algorithms() {

@@ -58,8 +58,20 @@ void add_skip_option(Command& command, Skips& skips);
 /// Prints `text`, as wide as the output is, or `json` under --json, or nothing under --quiet.
 void print(const OutputOptions& options, const std::string& text, const Json& json);
 
+/// What a command says.
+struct CapturedOutput {
+  std::string text;                           ///< of standard output
+  std::vector<std::string> warnings, errors;  ///< notes are among the warnings
+};
+
+/// From now on what the commands of this thread say goes there; null: to the terminal. For a host that is no terminal.
+void capture_output(CapturedOutput* output) noexcept;
+
 /// Prints warnings, one line each, on standard error.
 void print_warnings(const std::vector<std::string>& warnings);
+
+/// Prints "hapbench: TEXT" on standard error.
+void print_note(std::string_view text);
 
 /// Prints "hapbench: error: TEXT" on standard error.
 void print_error(std::string_view text);

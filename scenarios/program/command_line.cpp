@@ -229,6 +229,7 @@ std::string problem_of(const CLI::ParseError& error, const CLI::App& program) {
   const std::string name = command ? command->get_name() + ": " : "", words = command ? command->get_name() + " " : "";
   const std::string help = fmt::format("; \"{} {}--help\" explains", kProgramName, words);
   std::vector<std::string> extra = program.remaining(true);
+  std::erase(extra, "--");
   // An option that is not known leaves its value behind: the option is what is wrong.
   std::stable_partition(extra.begin(), extra.end(), [](const std::string& word) { return word.starts_with("-"); });
   if (!extra.empty()) return name + problem_of(extra.front(), program, command) + help;
@@ -300,8 +301,7 @@ int CommandLine::run(int argc, char** argv) {
     fmt::print("{}\n", version.what());
     return kSuccess;
   } catch (const CLI::ParseError& error) {
-    print_error(problem_of(error, *app_));
-    return kBadInput;
+    throw InputError(problem_of(error, *app_));
   }
   load_plugins(plugins_);
   take_plugin_faults();  // of an earlier command of this process

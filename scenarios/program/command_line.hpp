@@ -84,9 +84,9 @@ class CommandLine {
   ~CommandLine();
 
   Command command(const std::string& name, const std::string& summary);
-  /// Loads the plugins that the words and HAPBENCH_PLUGIN_PATH name, then runs the command. Returns its exit status, or
-  /// kBadInput after a wrong usage, with a message on standard error; for a success during which the law of a plugin
-  /// failed, kUnexpectedOutcome. Throws InputError for plugins.
+  /// Loads the plugins that the words and HAPBENCH_PLUGIN_PATH name, then runs the command. Returns its exit status; for
+  /// a success during which the law of a plugin failed, kUnexpectedOutcome. Throws what the command throws, and
+  /// InputError for a wrong usage and for plugins.
   int run(int argc, char** argv);
   /// What the chosen command says of its results when it is stopped.
   const std::string& when_stopped() const { return chosen_.when_stopped; }

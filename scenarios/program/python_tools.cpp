@@ -13,6 +13,7 @@
 #include "results/io/io_error.hpp"
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/shell_words.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/run/wait_notice.hpp"
 
@@ -37,8 +38,7 @@ std::vector<std::string> tool_words(std::vector<std::string> words) {
   const auto launcher = installed_folder("scripts/python") / "launch";
   words.insert(words.begin(), {launcher.string(), "hapbench_pictures"});
   // The tools ask this very program for the points of a scene.
-  std::error_code ignored;
-  setenv("HAPBENCH_PROGRAM", std::filesystem::read_symlink("/proc/self/exe", ignored).c_str(), 1);
+  setenv("HAPBENCH_PROGRAM", this_program().c_str(), 1);
   return words;
 }
 

@@ -4,12 +4,15 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <utility>
 
 #include "results/io/io_error.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 
 namespace hapbench {
 namespace {
+
+std::filesystem::path given_program;
 
 std::string shell_word(std::string_view word) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:=,+@%";
@@ -29,7 +32,7 @@ std::string shell_line(const std::vector<std::string>& words) {
 
 std::filesystem::path this_program() {
   std::error_code ignored;
-  return std::filesystem::read_symlink("/proc/self/exe", ignored);
+  return given_program.empty() ? std::filesystem::read_symlink("/proc/self/exe", ignored) : given_program;
 }
 
 std::vector<std::string> plugin_words() {
@@ -47,6 +50,10 @@ ProgramOutput output_of(const std::vector<std::string>& words) {
   const int status = ::pclose(pipe);
   output.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return output;
+}
+
+void set_this_program(std::filesystem::path program) {
+  given_program = std::move(program);
 }
 
 }  // namespace hapbench

@@ -25,4 +25,7 @@ struct ProgramOutput {
 /// Runs a program and waits for it. Throws IoError when no process can be started.
 ProgramOutput output_of(const std::vector<std::string>& words);
 
+/// Says what this_program answers, for code that runs in another one.
+void set_this_program(std::filesystem::path program);
+
 }  // namespace hapbench

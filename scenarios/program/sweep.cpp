@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -98,9 +97,8 @@ int verdict(const SweepPlan& plan, const SweepReport& report) {
     return kInternalFault;
   }
   if (counts.unexpected > 0) {
-    std::fflush(stdout);  // what it is about comes first, where both go to one pipe
-    fmt::print(stderr, "hapbench: {}: {} of {} runs did not end as expected, the first: {}\n",
-               plan.scenario.file.string(), counts.unexpected, counts.runs, run_text(plan, *counts.first_unexpected));
+    print_note(fmt::format("{}: {} of {} runs did not end as expected, the first: {}", plan.scenario.file.string(),
+                           counts.unexpected, counts.runs, run_text(plan, *counts.first_unexpected)));
     return kUnexpectedOutcome;
   }
   return kSuccess;
@@ -177,8 +175,8 @@ int sweep(const SweepCommand& command) {
 
   const SweepReport report = run_sweep(plan, options);
   if (report.signal != 0) {
-    fmt::print(stderr, "hapbench: stopped after {} of {} runs; the same command with --resume goes on from there\n",
-               report.done, options.part().size(plan.points.size()));
+    print_note(fmt::format("stopped after {} of {} runs; the same command with --resume goes on from there",
+                           report.done, options.part().size(plan.points.size())));
     return kStopped + report.signal;
   }
   if (command.output.json) {

@@ -15,6 +15,8 @@ constexpr auto kSilence = std::chrono::seconds(2);
 constexpr auto kRedraw = std::chrono::milliseconds(200);
 constexpr std::size_t kWidth = 40;
 
+thread_local ProgressListener* thread_listener = nullptr;
+
 /// A line being made, without the heap: the bar is drawn within steps, which allocate nothing.
 class Line {
  public:
@@ -44,6 +46,10 @@ std::size_t columns() {
 
 }  // namespace
 
+void report_progress_to(ProgressListener* listener) noexcept {
+  thread_listener = listener;
+}
+
 void show_status(std::string_view line) {
   const auto length = static_cast<int>(std::min(line.size(), columns() - 1));
   std::fprintf(stderr, "\r%.*s\033[K", length, line.data());
@@ -55,9 +61,10 @@ void hide_status() {
 }
 
 ProgressBar::ProgressBar(std::string label, std::uint64_t total, bool enabled)
-    : label_(std::move(label)),
+    : listener_(thread_listener),
+      label_(std::move(label)),
       total_(total),
-      enabled_(enabled && isatty(STDERR_FILENO) == 1),
+      enabled_(enabled && (listener_ != nullptr || isatty(STDERR_FILENO) == 1)),
       start_(Clock::now()),
       next_(start_ + kSilence) {}
 
@@ -67,6 +74,10 @@ ProgressBar::~ProgressBar() {
 
 void ProgressBar::show(std::uint64_t done, bool counts) noexcept {
   if (!enabled_) return;
+  if (listener_ != nullptr) {
+    listener_->progress(label_, done, total_);
+    return;
+  }
   const auto now = Clock::now();
   if (now < next_) return;
   next_ = now + kRedraw;

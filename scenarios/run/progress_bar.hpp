@@ -13,8 +13,19 @@ void show_status(std::string_view line);
 /// Takes the line back.
 void hide_status();
 
+/// Hears of progress in place of the terminal.
+class ProgressListener {
+ public:
+  virtual ~ProgressListener() = default;
+  /// From any thread, also from within steps: allocates nothing.
+  virtual void progress(std::string_view label, std::uint64_t done, std::uint64_t total) noexcept = 0;
+};
+
+/// Bars that this thread makes from now on tell the listener and draw nothing; null: they draw. It must outlive them.
+void report_progress_to(ProgressListener* listener) noexcept;
+
 /// A progress bar on standard error for work that takes longer than two seconds; silent otherwise, and when standard
-/// error is no terminal.
+/// error is no terminal. Before a listener it tells that of every `show`.
 class ProgressBar {
  public:
   /// `label` stands before the bar; `enabled` false silences it (--quiet).
@@ -35,6 +46,7 @@ class ProgressBar {
  private:
   using Clock = std::chrono::steady_clock;
 
+  ProgressListener* listener_;  ///< may be null
   std::string label_;
   std::uint64_t total_;
   std::uint64_t first_ = 0;

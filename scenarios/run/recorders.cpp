@@ -20,46 +20,46 @@ std::uint64_t every(const RecordedTrial& trial) {
 }
 
 template <class Plain>
-Made plain(const RecordedTrial& t, const fs::path& file) {
-  return std::make_unique<Plain>(file, every(t));
+Made plain(const RecordedTrial& t, TableTarget to) {
+  return std::make_unique<Plain>(std::move(to), every(t));
 }
 
 TrajectoryExtras extras(const RecordFields& fields) {
   return {fields.pose, fields.torque};
 }
 
-Made trajectory(const RecordedTrial& t, const fs::path& file) {
-  return std::make_unique<TrajectoryRecorder>(file, every(t), extras(t.fields));
+Made trajectory(const RecordedTrial& t, TableTarget to) {
+  return std::make_unique<TrajectoryRecorder>(std::move(to), every(t), extras(t.fields));
 }
 
 Mat3 start_shaping(ContactBuffer& contacts) noexcept {
   return shape_weights(contacts, 0);
 }
 
-Made ratios(const RecordedTrial& t, const fs::path& file) {
+Made ratios(const RecordedTrial& t, TableTarget to) {
   const auto& asked = t.fields.ratio_iterations;
   const std::vector<int> iterations(asked.begin(), asked.end());
   const ShapingOperations shaping{start_shaping, update_shaped_weights};
-  return std::make_unique<RatioRecorder>(file, every(t), iterations, shaping, t.contact_capacity);
+  return std::make_unique<RatioRecorder>(std::move(to), every(t), iterations, shaping, t.contact_capacity);
 }
 
-Made energy(const RecordedTrial& t, const fs::path& file) {
-  return std::make_unique<EnergyRecorder>(file, every(t), *t.ledger);
+Made energy(const RecordedTrial& t, TableTarget to) {
+  return std::make_unique<EnergyRecorder>(std::move(to), every(t), *t.ledger);
 }
 
-Made ideal_trajectory(const RecordedTrial& t, const fs::path& file) {
-  return std::make_unique<IdealTrajectoryRecorder>(file, *t.ideal);
+Made ideal_trajectory(const RecordedTrial& t, TableTarget to) {
+  return std::make_unique<IdealTrajectoryRecorder>(std::move(to), *t.ideal);
 }
 
 /// check_named_files has seen to it that there is a measured force.
-Made force_reference(const RecordedTrial& t, const fs::path& file) {
-  return std::make_unique<ForceReferenceRecorder>(file, every(t), *t.fidelity);
+Made force_reference(const RecordedTrial& t, TableTarget to) {
+  return std::make_unique<ForceReferenceRecorder>(std::move(to), every(t), *t.fidelity);
 }
 
 struct RecorderEntry {
   ResultTable table;
   bool (*is_wanted)(const RecordFields& fields);
-  Made (*make)(const RecordedTrial&, const fs::path& file);
+  Made (*make)(const RecordedTrial&, TableTarget to);
 };
 
 const RecorderEntry kRecorders[] = {
@@ -93,12 +93,24 @@ const RecorderEntry kRecorders[] = {
      [](const RecordFields& f) { return f.force_reference; },
      force_reference}};
 
+std::span<const Column> columns_of(const RecorderEntry& entry, const RecordFields& fields) {
+  return entry.make == trajectory ? TrajectoryRecorder::columns(extras(fields)) : entry.table.columns;
+}
+
+MemoryTable& table_in_memory(RecordedTables& tables, const RecorderEntry& entry, const RecordedTrial& trial) {
+  return tables.try_emplace(entry.table.file, columns_of(entry, trial.fields)).first->second;
+}
+
 }  // namespace
 
-std::vector<std::unique_ptr<Recorder>> make_recorders(const RecordedTrial& trial, const fs::path& directory) {
+std::vector<std::unique_ptr<Recorder>> make_recorders(const RecordedTrial& trial, const RecordTarget& target) {
   std::vector<std::unique_ptr<Recorder>> recorders;
   for (const RecorderEntry& entry : kRecorders) {
-    if (entry.is_wanted(trial.fields)) recorders.push_back(entry.make(trial, directory / entry.table.file));
+    if (!entry.is_wanted(trial.fields)) continue;
+    const auto* directory = std::get_if<fs::path>(&target);
+    recorders.push_back(entry.make(trial, directory
+                                              ? TableTarget(*directory / entry.table.file)
+                                              : &table_in_memory(*std::get<RecordedTables*>(target), entry, trial)));
   }
   return recorders;
 }
@@ -112,9 +124,8 @@ std::vector<ResultTable> record_tables() {
 std::vector<ResultTable> record_tables(const RecordFields& fields) {
   std::vector<ResultTable> tables;
   for (const RecorderEntry& entry : kRecorders) {
-    if (entry.is_wanted(fields)) tables.push_back(entry.table);
+    if (entry.is_wanted(fields)) tables.push_back({entry.table.file, entry.table.holds, columns_of(entry, fields)});
   }
-  if (fields.trajectory) tables.front().columns = TrajectoryRecorder::columns(extras(fields));
   return tables;
 }
 

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "results/io/columns.hpp"
+#include "results/io/memory_table.hpp"
 #include "results/observe/energy_ledger.hpp"
 #include "results/observe/force_fidelity.hpp"
 #include "results/observe/ideal_trajectory.hpp"
@@ -22,9 +26,14 @@ struct RecordedTrial {
   const ForceFidelityObserver* fidelity;  ///< null without a measured force
 };
 
-/// Recorders for what the scenario asks for, which write into the directory. Throws IoError.
-std::vector<std::unique_ptr<Recorder>> make_recorders(const RecordedTrial& trial,
-                                                      const std::filesystem::path& directory);
+/// The tables of a trial in memory, by the names that their files would have.
+using RecordedTables = std::map<std::string, MemoryTable>;
+
+/// Where the recorders of a trial write: files in a directory, or tables in memory (never null, outlive the recorders).
+using RecordTarget = std::variant<std::filesystem::path, RecordedTables*>;
+
+/// Recorders for what the scenario asks for. Throws IoError.
+std::vector<std::unique_ptr<Recorder>> make_recorders(const RecordedTrial& trial, const RecordTarget& target);
 
 /// The tables of all recorders there are.
 std::vector<ResultTable> record_tables();

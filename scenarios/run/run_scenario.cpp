@@ -145,12 +145,21 @@ void add_step_times(const std::vector<TrialResult>& trials, RunTiming& timing) {
   if (all.size() >= 100) timing.step_p99 = 1e-9 * static_cast<double>(latency.p99);
 }
 
-void write_results(const fs::path& directory, const Scenario& scenario, const RunReport& report,
-                   std::vector<TrialResult>& trials) {
-  remove_files_of_earlier_runs(directory);
-  for (TrialResult& trial : trials) {
+void finish_recorders(const std::vector<TrialResult>& trials) {
+  for (const TrialResult& trial : trials) {
     for (const auto& recorder : trial.recorders) recorder->finish();
   }
+}
+
+void finish_tables(RunTables& tables, const RunReport& report, const std::vector<TrialResult>& trials) {
+  finish_recorders(trials);
+  if (report.summary.targets) write_target_table(&tables.targets.emplace(kTargetColumns), report.targets);
+}
+
+void write_results(const fs::path& directory, const Scenario& scenario, const RunReport& report,
+                   const std::vector<TrialResult>& trials) {
+  remove_files_of_earlier_runs(directory);
+  finish_recorders(trials);
   write_file_atomically(directory / "scenario.effective.json", json_text(effective_scenario(scenario, directory)));
   std::vector<ResultTable> tables = record_tables(scenario.record);
   if (report.summary.targets) {
@@ -174,23 +183,26 @@ void remove_run(const fs::path& directory) {
   fs::remove(directory / "scenario.effective.json", ignored);
 }
 
-RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress) {
+RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,
+                       RunTables* tables) {
   RunTiming timing;
   const auto shell = [&] {
     const WaitNotice notice(loaded.scenario.name + ": building the shell", progress);
     return make_shell(loaded.scenario, timed_environment_points(loaded, timing));
   }();
-  return run_with_shell(loaded, shell, output, progress, timing);
+  return run_with_shell(loaded, shell, output, progress, timing, tables);
 }
 
 RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
-                         const std::optional<fs::path>& output, bool progress, const RunTiming& timing) {
+                         const std::optional<fs::path>& output, bool progress, const RunTiming& timing,
+                         RunTables* tables) {
   const Scenario& scenario = loaded.scenario;
   RunReport report;
   report.timing = timing;
   const std::vector<Trial> trials = trials_of(scenario);
   NewDirectories directories;
   if (output) create_output(directories, *output);
+  if (tables != nullptr) tables->trials.resize(trials.size());
 
   std::optional<StepTimes> times;
   if (scenario.record.timing) times.emplace(static_cast<std::size_t>(scenario.time.steps) * trials.size());
@@ -198,8 +210,13 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
   for (const Trial trial : trials) {
     TrialOptions options;
     options.files = loaded.files;
-    if (output && records_rows(scenario.record)) options.directory = trial_directory(*output, trial, trials.size());
-    if (options.directory) create_output(directories, *options.directory);
+    if (output && records_rows(scenario.record)) {
+      const fs::path directory = trial_directory(*output, trial, trials.size());
+      create_output(directories, directory);
+      options.target = directory;
+    } else if (tables != nullptr) {
+      options.target = &tables->trials[results.size()];
+    }
     if (progress) options.label = scenario.name;
     if (progress && trials.size() > 1) options.label += fmt::format(" {}/{}", results.size() + 1, trials.size());
     if (times) options.times = &*times;
@@ -215,7 +232,7 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
   add_step_times(results, report.timing);
   if (times) report.timing.latency = step_latency(times->nanoseconds(), times->overhead());
   report.summary = summarise(scenario, results, report.targets);
-  if (output) {
+  if (output || tables != nullptr) {
     report.summary.provenance = provenance();
     const AlgorithmOrigin& origin = find_algorithm(scenario.rendering.algorithm)->origin;
     report.summary.provenance.plugin = origin.file;
@@ -224,7 +241,11 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
   }
   report.unmet = unmet_expectations(scenario.expect, report.summary);
   report.summary.expected = report.unmet.empty();
-  if (output) write_results(*output, scenario, report, results);
+  if (output) {
+    write_results(*output, scenario, report, results);
+  } else if (tables != nullptr) {
+    finish_tables(*tables, report, results);
+  }
   return report;
 }
 

@@ -9,6 +9,7 @@
 #include "results/summary/summary.hpp"
 #include "results/summary/timing.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/run/recorders.hpp"
 
 namespace hapbench {
 
@@ -20,19 +21,27 @@ struct RunReport {
   RunTiming timing;                ///< of a tracking hand, all trials together
 };
 
+/// What a run recorded in memory.
+struct RunTables {
+  std::vector<RecordedTables> trials;
+  std::optional<MemoryTable> targets;  ///< targets.csv, of a tracking hand
+};
+
 /// Runs a scenario. With `output`, writes summary.json, scenario.effective.json and what the scenario records into that
 /// directory, which is created, records of several trials into a subdirectory each; each file appears complete or not
-/// at all, the summary last; without it, the summary has no provenance and no scenario hash. `progress` allows a
-/// progress bar. With skips off (RenderingConfig), the results are the
-/// same but for the counted work. Throws InputError for files it cannot use (before anything is written), IoError when
-/// writing fails, Stopped when a signal ends the run: then nothing of it is left.
-RunReport run_scenario(const LoadedScenario& loaded, const std::optional<std::filesystem::path>& output, bool progress);
+/// at all, the summary last. With `tables`, and without a directory, what the scenario records goes there. Without
+/// either, the summary has no provenance and no scenario hash. `progress` allows a progress bar. With skips off
+/// (RenderingConfig), the results are the same but for the counted work. Throws InputError for files it cannot use
+/// (before anything is written), IoError when writing fails, Stopped when a signal ends the run: then nothing of it is
+/// left.
+RunReport run_scenario(const LoadedScenario& loaded, const std::optional<std::filesystem::path>& output, bool progress,
+                       RunTables* tables = nullptr);
 
 /// The same in a shell that is there already and that several runs, also at once, may share: make_shell of the
 /// scenario. `timing` says what is known of the shell's making.
 RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
                          const std::optional<std::filesystem::path>& output, bool progress,
-                         const RunTiming& timing = {});
+                         const RunTiming& timing = {}, RunTables* tables = nullptr);
 
 /// Removes the files that a run wrote into a directory, if it is there, and leaves all others. Throws IoError when the
 /// directory cannot be listed.

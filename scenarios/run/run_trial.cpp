@@ -11,14 +11,11 @@
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/open_edges.hpp"
 #include "scenarios/run/progress.hpp"
-#include "scenarios/run/recorders.hpp"
 #include "scenarios/run/run_to_end.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// None where the position is prescribed: no force moves the tool.
 std::optional<double> friction_limit(const Scenario& scenario, const Motion& motion) {
@@ -86,10 +83,10 @@ class TrialObservers {
   }
 
   /// Adds recorders for what the scenario asks for. Throws IoError.
-  void record(const RecordFields& fields, const fs::path& directory, std::size_t contact_capacity) {
+  void record(const RecordFields& fields, const RecordTarget& target, std::size_t contact_capacity) {
     recorders_ = make_recorders({fields, contact_capacity, ledger_ ? &*ledger_ : nullptr, ideal_ ? &*ideal_ : nullptr,
                                  fidelity_ ? &*fidelity_ : nullptr},
-                                directory);
+                                target);
     for (const auto& recorder : recorders_) observers_.push_back(recorder.get());
   }
 
@@ -146,6 +143,7 @@ SimulationResult run_timed(Simulation& simulation, StepTimes& times) {
     throw_if_stopped();
     for (std::uint64_t i = 0; i < kAskEvery && (more = simulation.step()); ++i) times.lap();
   }
+  throw_if_stopped();
   return simulation.result();
 }
 
@@ -163,7 +161,7 @@ TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell
   const NamedFiles files = options.files ? *options.files : NamedFiles(scenario);
   SimulationParts parts = assemble(scenario, files, std::move(shell), trial);
   TrialObservers observers(scenario, files, parts, trial);
-  if (options.directory) observers.record(scenario.record, *options.directory, parts.source->capacity());
+  if (options.target) observers.record(scenario.record, *options.target, parts.source->capacity());
   Progress bar(options.label, static_cast<std::uint64_t>(scenario.time.steps), !options.label.empty());
   observers.add(bar);
   StepSampler sampler(static_cast<std::uint64_t>(scenario.time.steps));

@@ -1,15 +1,14 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "results/observe/step_times.hpp"
-#include "results/record/recorder.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/recorders.hpp"
 
 namespace hapbench {
 
@@ -29,16 +28,16 @@ struct TrialResult {
   double loop_seconds = 0.0;                    ///< wall time of the step loop
   std::vector<std::uint64_t> step_nanoseconds;  ///< samples of what steps take by themselves (StepSampler)
   std::uint64_t preemptions = 0;                ///< involuntary context switches in the loop
-  /// Files of what was recorded, complete but under temporary names until `finish`.
+  /// Of what was recorded: files are complete but under temporary names until `finish`.
   std::vector<std::unique_ptr<Recorder>> recorders;
 };
 
 /// How a trial runs, beside what its scenario says.
 struct TrialOptions {
-  std::optional<std::filesystem::path> directory;  ///< exists; what the scenario records goes there
-  std::string label;                               ///< of the progress bar; none when empty
-  StepTimes* times = nullptr;                      ///< when not null, every step is timed into it
-  std::optional<NamedFiles> files;                 ///< of the scenario; read when not given
+  std::optional<RecordTarget> target;  ///< of what the scenario records; a directory exists
+  std::string label;                   ///< of the progress bar; none when empty
+  StepTimes* times = nullptr;          ///< when not null, every step is timed into it
+  std::optional<NamedFiles> files;     ///< of the scenario; read when not given
 };
 
 /// Runs one trial. `shell` is make_shell of the scenario. Throws InputError for files it cannot use and IoError when a

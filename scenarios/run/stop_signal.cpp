@@ -36,6 +36,10 @@ int StopSignal::received() noexcept {
   return received_signal;
 }
 
+void stop_work(int signal) noexcept {
+  received_signal = signal;
+}
+
 void throw_if_stopped() {
   if (const int signal = StopSignal::received(); signal != 0) throw Stopped{signal};
 }

@@ -8,7 +8,7 @@ namespace hapbench {
 
 /// While an object of this class exists, the first SIGINT or SIGTERM is only recorded, so that work can end cleanly;
 /// the second one terminates the process as usual. Signals that were ignored stay ignored. The program has one; at most
-/// one object may exist at a time. Without one no signal is ever received.
+/// one object may exist at a time. Without one no signal is received but by stop_work.
 class StopSignal {
  public:
   StopSignal();
@@ -27,6 +27,10 @@ class StopSignal {
 struct Stopped {
   int signal = 0;
 };
+
+/// Stops all work of this process as if the signal had been received: for a host with signals of its own, such as an
+/// interpreter. 0 lets work begin again. From any thread.
+void stop_work(int signal) noexcept;
 
 /// Throws Stopped if a signal has been received.
 void throw_if_stopped();

@@ -8,7 +8,7 @@ from scipy import signal
 
 from pictures_fixture import PROGRAM, Given, make_runs
 
-from hapbench_pictures.columns import header, read_columns
+from hapbench.columns import header, read_columns
 from hapbench_pictures.reduced import curve, reduced
 from hapbench_pictures.settled import settled_range, settled_rows
 from hapbench_report.json_input import InputError
@@ -30,7 +30,7 @@ class Columns(Given):
                 np.testing.assert_array_equal(found[name], reference[name], name)
 
     def test_pieces_meet_without_a_seam(self):
-        from hapbench_pictures import columns
+        from hapbench import columns
         self.addCleanup(setattr, columns, "PIECE_BYTES", columns.PIECE_BYTES)
         file = self.root / "mesh" / "trajectory.csv"
         whole = read_columns(file, ["px_m", "ratio_min"])

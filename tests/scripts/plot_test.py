@@ -10,7 +10,7 @@ import numpy as np
 
 from pictures_fixture import PROGRAM, Given, hapbench, make_runs
 
-from hapbench_pictures.columns import header, read_columns
+from hapbench.columns import header, read_columns
 from hapbench_pictures.given import given_runs, labels, named
 from hapbench_pictures.looks import looks
 from hapbench_pictures.plot import legend_columns, legend_of

@@ -58,5 +58,5 @@ def make_claims(file):
 
 def report(*words):
     """The finished process of scripts/report."""
-    return subprocess.run([sys.executable, SCRIPTS / "report", *map(str, words)], capture_output=True, text=True,
+    return subprocess.run([SCRIPTS / "report", *map(str, words)], capture_output=True, text=True,
                           stdin=subprocess.DEVNULL)

@@ -66,6 +66,7 @@ MotionClass classify(Simulation& simulation, const MotionClassifier& classifier)
     throw_if_stopped();
     for (std::uint64_t i = 0; i < kAskEvery && more; ++i) more = !classifier.at_rest() && simulation.step();
   }
+  throw_if_stopped();
   return classifier.motion_class(simulation.result().outcome);
 }
 

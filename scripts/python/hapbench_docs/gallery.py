@@ -7,7 +7,7 @@ import matplotlib
 import numpy as np
 from hapbench_figures.style import AMBER, BLACK, GREY, PETROL, SETTINGS
 from hapbench_looks import look
-from hapbench_pictures.columns import read_columns
+from hapbench.columns import read_columns
 from hapbench_pictures.files import write
 from hapbench_pictures.panels import section
 from hapbench_pictures.reduced import reduced

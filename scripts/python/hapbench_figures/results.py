@@ -1,11 +1,12 @@
 """Reads what hapbench wrote: tables (CSV) and summaries (JSON) below one directory."""
-import csv
-import io
-import json
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
+
+from hapbench.columns import read_columns, read_records
+from hapbench.errors import ResultError
+from hapbench.results import read_json
 
 
 class MissingResult(Exception):
@@ -16,18 +17,15 @@ class BadResult(Exception):
     """A result file cannot be understood."""
 
 
-@lru_cache(maxsize=None)
-def _numbers(path):
-    with open(path, encoding="utf-8") as file:
-        names = file.readline().strip().split(",")
-        # Empty cells, such as the ratio of a row without contact; twice, as of two beside each other one is found.
-        body = file.read().replace(",,", ",nan,").replace(",,", ",nan,").replace(",\n", ",nan\n")
-    rows = np.loadtxt(io.StringIO(body), delimiter=",", ndmin=2)
-    if rows.shape[0] == 0:
-        raise ValueError("no rows")
-    if rows.shape[1] != len(names):
-        raise ValueError(f"{len(names)} columns in the first line, {rows.shape[1]} in the others")
-    return {name: rows[:, i] for i, name in enumerate(names)}
+# Several figures show one table.
+_columns = lru_cache(maxsize=None)(read_columns)
+
+
+def _records(file):
+    rows = read_records(file)
+    if not rows:
+        raise ResultError(f"{file}: no rows")
+    return rows
 
 
 class Results:
@@ -48,22 +46,14 @@ class Results:
 
     def table(self, path):
         """Columns of numbers by name."""
-        return self._read(path, _numbers)
+        return self._read(path, _columns)
 
     def records(self, path):
         """Rows as dictionaries of texts, for tables that hold names or gaps."""
-
-        def read(file):
-            with open(file, encoding="utf-8", newline="") as stream:
-                rows = list(csv.DictReader(stream))
-            if not rows:
-                raise ValueError("no rows")
-            return rows
-
-        return self._read(path, read)
+        return self._read(path, _records)
 
     def json(self, path):
-        return self._read(path, lambda file: json.loads(file.read_text(encoding="utf-8")))
+        return self._read(path, read_json)
 
     def _read(self, path, read):
         file = self.directory / path
@@ -72,8 +62,8 @@ class Results:
         self.sources.add(path)
         try:
             return read(file)
-        except (ValueError, OSError) as error:
-            raise BadResult(f"{file}: {error}") from error
+        except ResultError as error:
+            raise BadResult(str(error)) from error
 
 
 def numbers(records, name):

@@ -1,9 +1,9 @@
 """The runs that RUN… on the command line mean: folders of `run`, folders of `compare`, or one folder of `sweep`."""
-import csv
 import json
 import os
 from pathlib import Path
 
+from hapbench.columns import read_records
 from hapbench_report.json_input import InputError
 from hapbench_report.runs import load_run, load_runs
 
@@ -48,8 +48,7 @@ def compared(folder):
     runs = load_runs(folder)
     if not table.is_file():
         return runs
-    with table.open(newline="", encoding="utf-8") as text:
-        named = [row.get("algorithm") for row in csv.DictReader(text)]
+    named = [row.get("algorithm") for row in read_records(table)]
     order = {name: i for i, name in reversed(list(enumerate(named)))}
     return sorted((run for run in runs if run.algorithm in order), key=lambda run: order[run.algorithm])
 

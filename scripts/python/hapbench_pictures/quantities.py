@@ -3,9 +3,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hapbench.columns import header, read_columns
 from hapbench_report.json_input import InputError
 
-from .columns import header, read_columns
 from .names import nearest
 from .settled import settled_of, settled_range
 

@@ -9,12 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
-from hapbench_report.json_input import InputError, at
+from hapbench.columns import read_columns
+from hapbench_report.json_input import at
 from hapbench_report.replay_pack import MARGIN, SHELL_COLUMNS, packed_scene, radius_of, touched_box
 from hapbench_report.replay_read import Recording
 from hapbench_report.replay_sound import LONGEST
-
-from .columns import read_columns
 
 # Points drawn: near the contacts, and with the rest.
 NEAR, ALL = 5000, 8000
@@ -34,7 +33,7 @@ def replays(runs, labels):
 
 def scene(i, members):
     runs, labels = zip(*members)
-    recordings = [Recording(run.directory, read) for run in runs]
+    recordings = [Recording(run.directory) for run in runs]
     shell, said = points_of(runs[0], recordings)
     longest = max(recording.columns["time_s"][-1] for recording in recordings)
     speed = min(SPEEDS, key=lambda speed: abs(np.log(speed / max(longest / WATCHED_S, 1e-9))))
@@ -43,16 +42,6 @@ def scene(i, members):
     names = list(dict.fromkeys(run.name for run in runs))
     return packed_scene(recordings, shell, labels, id=names[0] if i == 0 else f"{names[0]}-{i + 1}",
                         title=", ".join(names), speed=speed, scenario=names[0], note=said)
-
-
-def read(file, names, steps=None):
-    """As hapbench_report.replay_read.numbers, for files of a million rows."""
-    columns = read_columns(file, [*names, *({"step"} - set(names) if steps is not None else ())])
-    bad = next((name for name, values in columns.items() if (np.abs(values) >= 1e38).any()), None)
-    if bad:
-        raise InputError(f"{file}: {bad}: holds numbers beyond 1e38; allowed: finite numbers")
-    kept = slice(None) if steps is None else np.isin(columns["step"], np.fromiter(steps, float))
-    return {name: columns[name][kept].tolist() for name in names}
 
 
 def points_of(run, recordings):

@@ -1,9 +1,8 @@
 """A sweep's table as a picture: a metric over one varied field, or over two as curves or a heat map."""
-import csv
-
 import matplotlib
 import numpy as np
 
+from hapbench.columns import read_records
 from hapbench_figures.stability import edges, is_geometric
 from hapbench_figures.style import SETTINGS
 from hapbench_looks import look
@@ -28,11 +27,7 @@ SHADES = {True: " ░▒▓█", False: " .:+#"}
 class Sweep:
     def __init__(self, folder, metric):
         file = folder / "sweep.csv"
-        try:
-            with file.open(newline="", encoding="utf-8") as text:
-                self.rows = list(csv.DictReader(text))
-        except (OSError, UnicodeDecodeError, csv.Error) as error:
-            raise InputError(f"{file}: cannot be read: {error}") from error
+        self.rows = read_records(file)
         if not self.rows:
             raise InputError(f"{file}: holds no row")
         names = list(self.rows[0])

@@ -2,20 +2,8 @@
 import json
 import math
 
-
-class InputError(Exception):
-    """Bad input or usage; the message is one line for the user."""
-
-
-def load_json(file):
-    try:
-        text = file.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{file}: cannot be read: {error}") from error
-    try:
-        return json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{file}: not JSON: {error}") from error
+from hapbench.errors import InputError
+from hapbench.results import read_json as load_json
 
 
 def shown(value):

@@ -1,7 +1,9 @@
 """Reads what a replay needs of a recorded run."""
-import csv
-import math
 from pathlib import Path
+
+import numpy as np
+
+from hapbench.columns import read_columns
 
 from .json_input import InputError, at, load_object
 from .markup import number
@@ -18,73 +20,51 @@ NORMAL_COLUMNS = ("nx", "ny", "nz")
 
 def numbers(file, columns, steps=None):
     """The named columns of a CSV file, each a list; with `steps`, of those rows whose step is among them."""
-    try:
-        with file.open(newline="", encoding="utf-8") as text:
-            reader = csv.reader(text)
-            header = next(reader, [])
-            missing = [name for name in columns if name not in header]
-            if missing:
-                raise InputError(f"{file}: line 1: no column {missing[0]}")
-            places = [header.index(name) for name in columns]
-            step = header.index("step") if steps is not None else None
-            rows = []
-            for row in reader:
-                if len(row) != len(header):
-                    raise InputError(f"{file}: line {reader.line_num}: got {len(row)} fields; allowed: {len(header)}")
-                if step is None or finite(row[step], file, reader.line_num, "step") in steps:
-                    rows.append([finite(row[i], file, reader.line_num, header[i]) for i in places])
-            return dict(zip(columns, zip(*rows))) if rows else {name: () for name in columns}
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"{file}: cannot be read: {error}") from error
-
-
-def finite(value, file, line, name):
-    """The number; NaN for an empty field, which is how a row without contacts has no ratio."""
-    if value == "":
-        return math.nan
-    try:
-        parsed = float(value)
-    except (TypeError, ValueError):
-        parsed = math.nan
-    # Beyond single precision nothing can be drawn either.
-    if not abs(parsed) < 1e38:
-        raise InputError(f"{file}: line {line}: {name}: got {str(value)[:40]}; allowed: a finite number")
-    return parsed
+    found = read_columns(file, [*columns, *({"step"} - set(columns) if steps is not None else ())], may_be_empty=True)
+    # Beyond single precision nothing can be drawn.
+    bad = next((name for name, values in found.items() if (np.abs(values) >= 1e38).any()), None)
+    if bad:
+        raise InputError(f"{file}: {bad}: holds numbers beyond 1e38; allowed: finite numbers")
+    without = np.flatnonzero(np.isnan(found.get("step", ())))
+    if without.size:
+        raise InputError(f"{file}: line {2 + without[0]}: step: got nan; allowed: a finite number")
+    kept = slice(None) if steps is None else np.isin(found["step"], np.fromiter(steps, float))
+    return {name: found[name][kept].tolist() for name in columns}
 
 
 class Recording:
-    """One algorithm's run through a scene. `read` is `numbers` or a faster function that does the same."""
+    """One algorithm's run through a scene."""
 
-    def __init__(self, directory: Path, read=numbers):
+    def __init__(self, directory: Path):
         self.summary = load_object(directory / "summary.json")
         self.scenario = load_object(directory / "scenario.effective.json")
         self.tool = tool_profile(self.scenario, self.summary)
         self.algorithm = str(self.summary.get("algorithm", directory.name))
         # All rows, for the sound and the worst moments.
-        self.columns = read(directory / "trajectory.csv", ("step", *MEASURED_COLUMNS, "colliding"))
+        self.columns = numbers(directory / "trajectory.csv", ("step", *MEASURED_COLUMNS, "colliding"))
         if not self.columns["step"]:
             raise InputError(f"{directory / 'trajectory.csv'}: holds no row")
         self.shown = rows_to_show(self.columns)
         self.steps = [int(self.columns["step"][row]) for row in self.shown]
-        self.tensors = self.read_tensors(directory / "stiffness_tensor.csv", read)
-        self.contacts = self.read_contacts(directory / "contacts.csv", read)
+        self.tensors = self.read_tensors(directory / "stiffness_tensor.csv")
+        self.contacts = self.read_contacts(directory / "contacts.csv")
 
-    def read_tensors(self, file, read):
+    def read_tensors(self, file):
         """Of every shown row; None when they were not recorded."""
         if not file.is_file():
             return None
-        columns = read(file, ("step", *TENSOR_COLUMNS), set(self.steps))
+        columns = numbers(file, ("step", *TENSOR_COLUMNS), set(self.steps))
         of_step = dict(zip(map(int, columns["step"]), zip(*(columns[name] for name in TENSOR_COLUMNS))))
         for step in self.steps:
             if step not in of_step:
                 raise InputError(f"{file}: no row of step {step}")
         return [of_step[step] for step in self.steps]
 
-    def read_contacts(self, file, read):
+    def read_contacts(self, file):
         """Of every shown row, in the order of the file, with their normals; none when they were not recorded."""
         rows = {step: [] for step in self.steps}
         if file.is_file():
-            columns = read(file, ("step", *CONTACT_COLUMNS, *NORMAL_COLUMNS), set(self.steps))
+            columns = numbers(file, ("step", *CONTACT_COLUMNS, *NORMAL_COLUMNS), set(self.steps))
             for step, *contact in zip(*columns.values()):
                 rows[int(step)].append(contact)
         return [rows[step] for step in self.steps]

@@ -1,37 +1,33 @@
 """The runs in a results directory: every directory with a summary.json."""
-from dataclasses import dataclass, field
 from pathlib import Path
 
-from .json_input import load_object, member, number_or_none
+from hapbench import results
+
+from .json_input import member, number_or_none
 
 # Written for the replay, not as results of their own.
 REPLAY_DIRECTORY = "replay"
 
 
-@dataclass
-class Run:
-    path: str  # of its directory, relative to the results
-    summary: dict
-    scenario: dict = field(default_factory=dict)  # every field, defaults filled in; empty when not kept
-    timing: dict = field(default_factory=dict)
-    compared: bool = False  # one of several algorithms; the scenario's expectations are about its own one
-    directory: Path = Path()
+class Run(results.Run):
+    """A run as pages know it: `path` is that of its folder, relative to the results; one of several algorithms was
+    `compared`, and the scenario's expectations are about its own one."""
+
+    def __init__(self, path, found, compared=False):
+        super().__init__(found.summary, found.scenario, found.tables, found.timing, found.trials, found.folder)
+        self.path, self.compared = path, compared
 
     @property
     def name(self):
-        return str(self.summary.get("name", self.path))
+        return super().name or self.path
 
     @property
-    def algorithm(self):
-        return str(self.summary.get("algorithm", ""))
+    def directory(self):
+        return self.folder
 
     @property
     def group(self):
         return self.path.split("/")[0]
-
-    @property
-    def outcome(self):
-        return str(self.summary.get("outcome", ""))
 
     @property
     def expected(self):
@@ -42,21 +38,15 @@ class Run:
     def anchor(self):
         return "run-" + "".join(c if c.isalnum() else "-" for c in self.path)
 
-    @property
-    def warnings(self):
-        """What the program warned of when it ran this."""
-        said = self.summary.get("warnings")
-        return [str(warning) for warning in said] if isinstance(said, list) else []
-
     def metric(self, key):
         metrics = self.summary.get("metrics")
         return number_or_none(metrics.get(key)) if isinstance(metrics, dict) else None
 
 
-def load_runs(results: Path):
+def load_runs(directory: Path):
     runs = []
-    for file in sorted(results.rglob("summary.json")):
-        path = file.parent.relative_to(results).as_posix()
+    for file in sorted(directory.rglob(results.SUMMARY)):
+        path = file.parent.relative_to(directory).as_posix()
         if path.split("/")[0] == REPLAY_DIRECTORY:
             continue
         runs.append(load_run(file.parent, path))
@@ -65,16 +55,10 @@ def load_runs(results: Path):
 
 def load_run(directory, path):
     """The run of one directory, which is known as `path`."""
-    file = directory / "summary.json"
-    summary = load_object(file)
+    found = results.load_run(directory)
     for key in ("metrics", "provenance", "targets"):
-        member(summary, key, dict, file, "")
-    return Run(path, summary, optional_object(file.with_name("scenario.effective.json")),
-               optional_object(file.with_name("timing.json")), (directory.resolve().parent / "comparison.csv").exists(), directory)
-
-
-def optional_object(file):
-    return load_object(file) if file.is_file() else {}
+        member(found.summary, key, dict, directory / results.SUMMARY, "")
+    return Run(path, found, (directory.resolve().parent / "comparison.csv").exists())
 
 
 def find_run(runs, name):

@@ -1,9 +1,8 @@
 """Tables that hapbench writes as CSV: stability limits, precision studies and their times, comparisons."""
-import csv
 from dataclasses import dataclass
 from pathlib import Path
 
-from .json_input import InputError
+from hapbench.columns import read_rows
 
 # The stability limits, which stand beside the published ones.
 LIMITS = "stability/limits.csv"
@@ -27,17 +26,7 @@ class Study:
 
 
 def load_study(file: Path, results: Path):
-    try:
-        with file.open(newline="", encoding="utf-8") as text:
-            rows = [row for row in csv.reader(text) if row]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"{file}: cannot be read: {error}") from error
-    if not rows:
-        raise InputError(f"{file}: empty; allowed: a header line and rows")
-    for line, row in enumerate(rows[1:], start=2):
-        if len(row) != len(rows[0]):
-            raise InputError(f"{file}: line {line}: got {len(row)} fields; allowed: {len(rows[0])}, as in the header")
-    return Study(file.relative_to(results).as_posix(), rows[0], rows[1:])
+    return Study(file.relative_to(results).as_posix(), *read_rows(file))
 
 
 def load_studies(results: Path):

@@ -1,9 +1,13 @@
-"""Columns of numbers from CSV files of a million rows, in seconds: only those asked for, by numpy, piece by piece."""
+"""Reads CSV files. Columns of numbers from a million rows in seconds: only those asked for, by numpy, piece by piece."""
+import csv
+
 import numpy as np
 
-from hapbench_report.json_input import InputError
+from .errors import ResultError
 
 PIECE_BYTES = 1 << 25
+# Of which some look like numbers.
+TEXTS = ("state_hash",)
 COMMA, NEWLINE = ord(","), ord("\n")
 
 
@@ -13,22 +17,26 @@ def header(file):
         with file.open(encoding="utf-8") as stream:
             return stream.readline().strip().split(",")
     except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{file}: cannot be read: {error}") from error
+        raise ResultError(f"{file}: cannot be read: {error}") from error
 
 
-def read_columns(file, names):
-    """Arrays by name; NaN for an empty field, which is how a row without contact has no ratio."""
+def read_columns(file, names=None, may_be_empty=False):
+    """Arrays by name, of all columns or of those named; NaN for an empty field, which is how a row without contact has no
+    ratio."""
     every = header(file)
+    names = every if names is None else names
     absent = [name for name in names if name not in every]
     if absent:
-        raise InputError(f"{file}: line 1: no column {absent[0]}")
+        raise ResultError(f"{file}: line 1: no column {absent[0]}")
     parts, line = [], 2
     for piece in whole_lines(file):
         stops = ends_of_fields(piece, len(every), file, line)
         parts.append([values(piece, stops, every.index(name), file, line, name) for name in names])
         line += len(stops)
     if not parts:
-        raise InputError(f"{file}: holds no row")
+        if may_be_empty:
+            return {name: np.empty(0) for name in names}
+        raise ResultError(f"{file}: holds no row")
     return {name: np.concatenate([part[i] for part in parts]) for i, name in enumerate(names)}
 
 
@@ -54,7 +62,7 @@ def ends_of_fields(piece, columns, file, line):
     fields = np.diff(last, prepend=-1)
     wrong = np.flatnonzero(fields != columns)
     if wrong.size:
-        raise InputError(f"{file}: line {line + wrong[0]}: got {fields[wrong[0]]} fields; allowed: {columns}")
+        raise ResultError(f"{file}: line {line + wrong[0]}: got {fields[wrong[0]]} fields; allowed: {columns}")
     return stops.reshape(-1, columns)
 
 
@@ -71,7 +79,7 @@ def values(piece, stops, column, file, line, name):
         return texts.astype(float)
     except ValueError:
         bad = next(i for i, text in enumerate(texts) if not is_number(text))
-        raise InputError(f"{file}: line {line + bad}: {name}: got {texts[bad][:40].decode(errors='replace')}; "
+        raise ResultError(f"{file}: line {line + bad}: {name}: got {texts[bad][:40].decode(errors='replace')}; "
                          "allowed: a number") from None
 
 
@@ -81,3 +89,42 @@ def is_number(text):
     except ValueError:
         return False
     return True
+
+
+def read_rows(file):
+    """The names in the first line, and the other rows as lists of texts."""
+    try:
+        with file.open(encoding="utf-8", newline="") as stream:
+            rows = [row for row in csv.reader(stream) if row]
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise ResultError(f"{file}: cannot be read: {error}") from error
+    if not rows:
+        raise ResultError(f"{file}: empty; allowed: a header line and rows")
+    for line, row in enumerate(rows[1:], start=2):
+        if len(row) != len(rows[0]):
+            raise ResultError(f"{file}: line {line}: got {len(row)} fields; allowed: {len(rows[0])}, as in the header")
+    return rows[0], rows[1:]
+
+
+def read_records(file):
+    """Rows as dictionaries of texts, for tables that hold names or gaps."""
+    names, rows = read_rows(file)
+    return [dict(zip(names, row)) for row in rows]
+
+
+def read_mixed(file):
+    """All columns by name: of numbers where every field is one or empty, else of texts."""
+    try:
+        return read_columns(file, may_be_empty=True)
+    except ResultError:
+        names, rows = read_rows(file)
+        return {name: numbers_or_texts(name, [row[i] for row in rows]) for i, name in enumerate(names)}
+
+
+def numbers_or_texts(name, texts):
+    if name not in TEXTS:
+        try:
+            return np.array([float(text) if text else np.nan for text in texts])
+        except ValueError:
+            pass
+    return np.array(texts, dtype=object)

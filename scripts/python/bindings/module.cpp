@@ -1,0 +1,116 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "algorithms/registry.hpp"
+#include "bindings/errors.hpp"
+#include "bindings/python_law.hpp"
+#include "bindings/simulation.hpp"
+#include "bindings/supervise.hpp"
+#include "results/io/json_text.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/program/command.hpp"
+#include "scenarios/program/program.hpp"
+#include "scenarios/program/shell_words.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/run_scenario.hpp"
+
+/// The engine and the program's commands for Python. What people use is the package around it (hapbench/).
+namespace hapbench {
+namespace {
+
+namespace py = pybind11;
+
+/// Of each column its name, unit and meaning, and the numbers: an array of columns x rows.
+py::tuple table_of(const MemoryTable& table) {
+  py::list columns;
+  for (const Column& column : table.columns()) columns.append(py::make_tuple(column.name, column.unit, column.meaning));
+  const std::size_t width = table.columns().size(), rows = table.rows();
+  py::array_t<double> numbers({width, rows});
+  double* out = numbers.mutable_data();
+  const double* in = table.numbers().data();
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t i = 0; i < width; ++i) out[i * rows + row] = in[row * width + i];
+  }
+  return py::make_tuple(columns, numbers);
+}
+
+py::dict tables_of(const RecordedTables& tables) {
+  py::dict all;
+  for (const auto& [file, table] : tables) all[py::str(std::filesystem::path(file).stem().string())] = table_of(table);
+  return all;
+}
+
+py::dict run(const std::string& scenario, const std::vector<std::string>& overrides, const py::object& progress) {
+  RunReport report;
+  RunTables tables;
+  std::string effective;
+  std::vector<std::string> warnings;
+  const bool shown = progress.ptr() != Py_False;
+  supervise(progress, [&] {
+    const LoadedScenario loaded = load_scenario(find_scenario(scenario), overrides);
+    warnings = loaded.warnings;
+    for (std::string& warning : check_named_files(loaded)) warnings.push_back(std::move(warning));
+    effective = json_text(effective_scenario(loaded.scenario, std::filesystem::current_path()));
+    report = run_scenario(loaded, std::nullopt, shown, &tables);
+  });
+  py::dict result;
+  result["summary"] = summary_text(report.summary);
+  result["scenario"] = effective;
+  result["timing"] = timing_text(report.timing, instruction_set(), report.summary.provenance);
+  result["warnings"] = warnings;
+  result["unmet"] = report.unmet;
+  py::list trials;
+  for (const RecordedTables& trial : tables.trials) trials.append(tables_of(trial));
+  result["trials"] = trials;
+  result["targets"] = tables.targets ? py::object(table_of(*tables.targets)) : py::object(py::none());
+  return result;
+}
+
+int call(int (*program)(int, char**), std::vector<std::string> words) {
+  words.insert(words.begin(), "hapbench");
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  return program(static_cast<int>(words.size()), pointers.data());
+}
+
+py::tuple command(const std::vector<std::string>& words, const py::object& progress) {
+  CapturedOutput output;
+  int status = 0;
+  supervise(progress, [&] {
+    capture_output(&output);
+    status = call(run_program, words);
+  });
+  return py::make_tuple(status, output.text, output.warnings, output.errors);
+}
+
+int be_program(const std::vector<std::string>& words) {
+  int status = 0;
+  supervise(py::none(), [&] { status = call(run_program_to_exit, words); });
+  return status;
+}
+
+}  // namespace
+}  // namespace hapbench
+
+PYBIND11_MODULE(_hapbench, module) {
+  using namespace hapbench;
+  module.doc() = "The compiled part of hapbench: use the package around it.";
+  translate_errors();
+  module.def(
+      "set_program", [](const std::string& program) { set_this_program(program); }, py::arg("program"),
+      "Say which file is the program, for commands that name it.");
+  module.def("run", run, py::arg("scenario"), py::arg("overrides"), py::arg("progress"),
+             "Run a scenario and keep what it records in memory.");
+  module.def("command", command, py::arg("words"), py::arg("progress"),
+             "Run a command of the program; returns status, standard output, warnings and errors.");
+  module.def("main", be_program, py::arg("words"), "Be the program: print on the terminal and return the exit status.");
+  module.def(
+      "algorithms", [] { return algorithm_names(); }, "The names of all algorithms there are.");
+  bind_force_laws(module);
+  bind_simulation(module);
+}

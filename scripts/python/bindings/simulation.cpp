@@ -1,0 +1,156 @@
+#include "bindings/simulation.hpp"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "bindings/supervise.hpp"
+#include "results/summary/outcome_names.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/run_to_end.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace py = pybind11;
+
+/// Keeps the last row, with its contacts.
+class LastRow final : public Observer {
+ public:
+  explicit LastRow(std::size_t capacity) : contacts(capacity) {}
+
+  void on_step(const StepRecord& record) noexcept override {
+    row = record;
+    contacts.assign(*record.rendered);
+  }
+  void reset() {
+    row = {};
+    contacts.clear();
+  }
+
+  StepRecord row;
+  ContactBuffer contacts;
+};
+
+py::array_t<double> array_of(const Vec3& v) {
+  return py::array_t<double>(3, v.data());
+}
+
+/// n x 3, of three columns.
+template <class At>
+py::array_t<double> rows_of(std::size_t n, At at) {
+  py::array_t<double> rows({n, std::size_t{3}});
+  auto cells = rows.mutable_unchecked<2>();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 v = at(i);
+    for (int j = 0; j < 3; ++j) cells(static_cast<py::ssize_t>(i), j) = v[j];
+  }
+  return rows;
+}
+
+/// A run step by step.
+class PythonSimulation {
+ public:
+  PythonSimulation(const std::string& scenario, const std::vector<std::string>& overrides)
+      : loaded_(load_scenario(find_scenario(scenario), overrides)) {
+    SimulationParts parts = with_file(loaded_, [&] { return assemble(loaded_.scenario); });
+    last_.emplace(parts.source->capacity());
+    simulation_.emplace(simulation_config(loaded_.scenario), std::move(parts), std::vector<Observer*>{&*last_});
+    raise_python_error();
+  }
+
+  bool step() {
+    const bool more = simulation_->step();
+    raise_python_error();
+    return more;
+  }
+
+  /// In pieces, between which signals are looked after.
+  std::uint64_t advance(std::uint64_t steps) {
+    const std::uint64_t first = simulation_->result().rows;
+    for (bool more = true; more && steps > 0;) {
+      const std::uint64_t piece = std::min(steps, kAskEvery);
+      {
+        const py::gil_scoped_release released;
+        more = simulation_->advance(piece);
+      }
+      steps -= piece;
+      raise_python_error();
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    }
+    return simulation_->result().rows - first;
+  }
+
+  void reset() {
+    simulation_->reset();
+    last_->reset();
+    raise_python_error();
+  }
+
+  py::dict state() const {
+    const StepRecord& r = last_->row;
+    py::dict state;
+    state["step"] = r.step;
+    state["time_s"] = r.time;
+    state["position_m"] = array_of(r.tool.pose.position);
+    state["velocity_m_per_s"] = array_of(r.tool.velocity);
+    state["axis"] = array_of(r.tool.pose.axis);
+    state["force_N"] = array_of(r.force.rendered);
+    state["spring_force_N"] = array_of(r.force.spring);
+    const Mat3& S = r.force.S;  // symmetric
+    state["stiffness_tensor"] = py::array_t<double>({3, 3}, S.data());
+    state["measured_force_N"] = array_of(r.hand.measured);
+    state["input_force_N"] = array_of(r.hand.input);
+    state["handle_m"] = array_of(r.handle.position);
+    state["colliding"] = r.colliding;
+    state["depth_max_m"] = r.force.depth_max;
+    return state;
+  }
+
+  py::dict contacts() const {
+    const ContactBuffer& c = last_->contacts;
+    const std::size_t n = c.size();
+    py::dict contacts;
+    contacts["index"] = py::array_t<std::uint32_t>(static_cast<py::ssize_t>(n), c.index.data());
+    contacts["points_m"] = rows_of(n, [&](std::size_t i) { return c.point(i); });
+    contacts["normals"] = rows_of(n, [&](std::size_t i) { return c.normal(i); });
+    contacts["depths_m"] = py::array_t<double>(static_cast<py::ssize_t>(n), c.depth.data());
+    contacts["gradients"] = rows_of(n, [&](std::size_t i) { return c.gradient(i); });
+    contacts["weights"] = py::array_t<double>(static_cast<py::ssize_t>(n), c.weight.data());
+    return contacts;
+  }
+
+  std::uint64_t rows() const { return simulation_->result().rows; }
+  double step_size() const { return loaded_.scenario.time.step; }
+  std::uint64_t steps() const { return static_cast<std::uint64_t>(loaded_.scenario.time.steps); }
+  std::string outcome() const { return std::string(outcome_name(simulation_->result().outcome)); }
+
+ private:
+  LoadedScenario loaded_;
+  std::optional<LastRow> last_;
+  std::optional<Simulation> simulation_;
+};
+
+}  // namespace
+
+void bind_simulation(py::module_& module) {
+  py::class_<PythonSimulation>(module, "Simulation",
+                               "One run of a scenario, step by step. hapbench.Simulation is made of it.")
+      .def(py::init<const std::string&, const std::vector<std::string>&>(), py::arg("scenario"), py::arg("overrides"))
+      .def("step", &PythonSimulation::step, "Compute the next row. False, and nothing done, once the run has ended.")
+      .def("advance", &PythonSimulation::advance, py::arg("steps"),
+           "Compute up to so many rows without the interpreter; returns how many.")
+      .def("reset", &PythonSimulation::reset, "Back to the start, bit for bit.")
+      .def_property_readonly("state", &PythonSimulation::state, "The last row: copies.")
+      .def_property_readonly("contacts", &PythonSimulation::contacts, "Its rendered contacts: copies.")
+      .def_property_readonly("rows", &PythonSimulation::rows, "Rows computed so far.")
+      .def_property_readonly("time_step_s", &PythonSimulation::step_size, "The time from row to row [s].")
+      .def_property_readonly("steps", &PythonSimulation::steps, "Rows of the whole run.")
+      .def_property_readonly("outcome", &PythonSimulation::outcome,
+                             "How the run ended; \"completes\" while it goes on.");
+}
+
+}  // namespace hapbench

@@ -1,0 +1,202 @@
+#include "bindings/supervise.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <csignal>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include "scenarios/run/progress_bar.hpp"
+#include "scenarios/run/stop_signal.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace py = pybind11;
+using namespace std::chrono_literals;
+
+/// How long Ctrl-C may wait.
+constexpr auto kLookEvery = 50ms;
+
+/// The number of supervised calls, and the error that ends them: guarded by the interpreter's lock.
+int under_way = 0;
+/// Null when there is none. A bare pointer, because at the end of the process there is no interpreter.
+PyObject* python_error = nullptr;
+
+void forget_python_error() {
+  Py_CLEAR(python_error);
+}
+
+/// Raises an error, which it takes.
+[[noreturn]] void raise_taken(PyObject* error) {
+  PyErr_Restore(Py_NewRef(reinterpret_cast<PyObject*>(Py_TYPE(error))), error, PyException_GetTraceback(error));
+  throw py::error_already_set();
+}
+
+/// The last progress that the work reported.
+class ProgressBoard final : public ProgressListener {
+ public:
+  struct State {
+    std::string label;
+    std::uint64_t done = 0, total = 0;
+  };
+
+  void progress(std::string_view label, std::uint64_t done, std::uint64_t total) noexcept override {
+    const std::lock_guard lock(mutex_);
+    length_ = std::min(label.size(), label_.size());
+    std::copy_n(label.begin(), length_, label_.begin());
+    done_ = done;
+    total_ = total;
+  }
+
+  /// What was reported last, if anything.
+  std::optional<State> last() {
+    const std::lock_guard lock(mutex_);
+    if (total_ == 0) return std::nullopt;
+    return State{{label_.data(), length_}, done_, total_};
+  }
+  /// The same, unless it was taken before.
+  std::optional<State> take() {
+    const auto state = last();
+    const bool is_new =
+        state && (state->done != taken_.done || state->total != taken_.total || state->label != taken_.label);
+    if (!is_new) return std::nullopt;
+    taken_ = *state;
+    return state;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::array<char, 256> label_;
+  std::size_t length_ = 0;
+  std::uint64_t done_ = 0, total_ = 0;
+  State taken_;
+};
+
+/// Work on its thread.
+class Worker {
+ public:
+  Worker(ProgressListener* listener, const std::function<void()>& work)
+      : thread_([this, listener, &work] { run(listener, work); }) {}
+  ~Worker() { join(); }
+
+  /// Waits for a while; returns whether the work has ended.
+  bool wait() {
+    std::unique_lock lock(mutex_);
+    return ended_.wait_for(lock, kLookEvery, [this] { return has_ended_; });
+  }
+  void join() {
+    if (thread_.joinable()) thread_.join();
+  }
+  const std::exception_ptr& failure() const { return failure_; }
+
+ private:
+  void run(ProgressListener* listener, const std::function<void()>& work) {
+    report_progress_to(listener);
+    try {
+      work();
+    } catch (...) {
+      failure_ = std::current_exception();
+    }
+    const std::lock_guard lock(mutex_);
+    has_ended_ = true;
+    ended_.notify_all();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool has_ended_ = false;
+  std::exception_ptr failure_;
+  std::thread thread_;
+};
+
+void tell(const py::object& progress, ProgressBoard& board) {
+  if (const auto state = board.take(); state && PyCallable_Check(progress.ptr()))
+    progress(state->label, state->done, state->total);
+}
+
+/// Precondition: the interpreter is held.
+void look_after(const py::object& progress, ProgressBoard& board) {
+  if (python_error != nullptr) return;
+  try {
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    tell(progress, board);
+  } catch (py::error_already_set& error) {
+    error.restore();
+    stop_by_python_error();
+  }
+}
+
+/// The end of a call: that of the last one lets work begin again.
+class UnderWay {
+ public:
+  UnderWay() { ++under_way; }
+  ~UnderWay() {
+    if (--under_way > 0) return;
+    forget_python_error();
+    stop_work(0);
+  }
+};
+
+}  // namespace
+
+void supervise(const py::object& progress, const std::function<void()>& work) {
+  const UnderWay counted;
+  ProgressBoard board;
+  std::exception_ptr failure;
+  {
+    const py::gil_scoped_release released;
+    Worker worker(progress.is_none() ? nullptr : &board, work);
+    while (!worker.wait()) {
+      const py::gil_scoped_acquire held;
+      look_after(progress, board);
+    }
+    worker.join();
+    failure = worker.failure();
+  }
+  if (python_error != nullptr) raise_taken(Py_NewRef(python_error));
+  if (failure) {
+    try {
+      std::rethrow_exception(failure);
+    } catch (const Stopped&) {
+      PyErr_SetNone(PyExc_KeyboardInterrupt);
+      throw py::error_already_set();
+    }
+  }
+  if (const auto last = board.last(); last && PyCallable_Check(progress.ptr()))
+    progress(last->label, last->total, last->total);
+}
+
+void stop_by_python_error() {
+  PyObject *type, *value, *traceback;
+  PyErr_Fetch(&type, &value, &traceback);
+  PyErr_NormalizeException(&type, &value, &traceback);
+  if (traceback != nullptr) PyException_SetTraceback(value, traceback);
+  Py_XDECREF(traceback);
+  Py_XDECREF(type);
+  if (python_error == nullptr) {
+    python_error = value;
+  } else {
+    Py_XDECREF(value);
+  }
+  stop_work(SIGINT);
+}
+
+void raise_python_error() {
+  if (python_error == nullptr) return;
+  stop_work(0);
+  raise_taken(std::exchange(python_error, nullptr));
+}
+
+bool is_work_under_way() {
+  return under_way > 0;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,28 @@
+"""hapbench from Python: run scenes, compare, sweep, map their stability, with force laws of your own, and read results.
+
+    import hapbench
+    r = hapbench.run("peg_in_hole_2d", {"rendering.stiffness_N_per_m": 4e4})
+    r.trajectory["fx_N"], r.summary["metrics"]["force_max_N"]
+
+Reading results (`load`) needs numpy alone; everything else the compiled module that comes with the program."""
+from .errors import InputError, ResultError, ScenarioError, ScenarioWarning
+from .results import Folder, Run, Trial, load
+from .table import Table
+
+__all__ = ["Folder", "InputError", "Parameter", "ResultError", "Run", "ScenarioError", "ScenarioWarning", "Simulation", "Table",
+           "Trial", "algorithms", "command", "compare", "force_law", "load", "load_plugin", "main", "run", "stability", "sweep"]
+
+_COMPILED = {"Parameter": "laws", "force_law": "laws"}
+
+
+def __getattr__(name):
+    """What needs the compiled module, when it is first asked for."""
+    if name not in __all__:
+        raise AttributeError(f"module 'hapbench' has no attribute {name!r}")
+    from importlib import import_module
+
+    return getattr(import_module("." + _COMPILED.get(name, "engine"), __name__), name)
+
+
+def __dir__():
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,284 @@
+"""Computing: what the program's commands do, with results in memory."""
+import json
+import os
+import shutil
+import sys
+import tempfile
+import warnings
+import weakref
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from .errors import ScenarioError, ScenarioWarning
+from .results import Folder, Run, Trial
+from .table import Table
+
+try:
+    from . import _hapbench
+except ImportError as error:
+    raise ImportError(
+        "hapbench computes with its compiled module, which is not beside this package: build it (scripts/setup --python, then "
+        "PYTHONPATH=build/release/lib/python3/dist-packages) or install hapbench; hapbench.load works without"
+    ) from error
+
+_hapbench.set_program(str(Path(_hapbench.__file__).resolve().parents[4] / "bin" / "hapbench"))
+
+Scenario = str | os.PathLike | dict
+Overrides = Mapping[str, object] | None
+Names = str | Sequence[str] | None
+Place = str | os.PathLike | None
+Progress = Callable[[str, int, int], object] | bool | None
+
+# Where a scenario names files.
+_FILES = (("extends",), ("environment", "file"), ("tool", "file"), ("motion", "position", "file"))
+
+
+def run(scenario: Scenario, overrides: Overrides = None, *, record: Iterable[str] = (), progress: Progress = None) -> Run:
+    """Run a scenario and return its Run, all in memory: the same numbers as `hapbench run` writes.
+
+    `scenario`: a file, the name of a bundled one, or a dict; relative paths in a dict start from the working directory.
+    `overrides`: fields as in --set, {"rendering.stiffness_N_per_m": 4e4}. `record`: what to keep beside the scenario's own
+    choice: "contacts", "energy", "stiffness_tensor", "ideal_trajectory", "force_reference", "timing".
+    `progress`: None for a bar where standard error is a terminal, False for none, or a function of (label, done, total).
+    Ctrl-C ends it with KeyboardInterrupt. Raises ScenarioError."""
+    overrides = {**(overrides or {}), **{f"record.{what}": True for what in record}}
+    with _Scratch() as scratch:
+        found = scratch.call(_hapbench.run, scratch.file_of(scenario), _words(overrides), progress)
+    summary = json.loads(found["summary"])
+    for warning in found["warnings"] + summary["warnings"]:
+        warnings.warn(warning, ScenarioWarning, stacklevel=2)
+    trials = [_tables(trial) for trial in found["trials"]]
+    only = dict(trials[0]) if len(trials) == 1 else {}
+    if found["targets"] is not None:
+        only["targets"] = _table("targets", found["targets"])
+    return Run(summary, json.loads(found["scenario"]), only, timing=json.loads(found["timing"]),
+               trials=map(Trial, trials) if len(trials) > 1 else (), unmet=found["unmet"])
+
+
+def compare(scenarios: Scenario | Sequence[Scenario], algorithms: Names = None, overrides: Overrides = None, *, seeds: int | None = None,
+            jitter: float | None = None, by: Names = None, jobs: int | None = None, out: Place = None,
+            progress: Progress = None) -> "Report":
+    """Run scenarios through several algorithms (default: all), as `hapbench compare` does.
+
+    Returns a Report: `runs` by their paths ("mean", of several scenarios and seeds "drag_molar/mean/seed_0"), the tables
+    `comparison` and, with several scenarios or seeds or `by`, `league`. `out` keeps the folder; without it, it goes with
+    the Report. `scenarios`, `overrides` and `progress` as in `run`."""
+    return _report(["compare"], scenarios, overrides, out, progress, algorithms=algorithms, seeds=seeds, jitter=jitter, by=by, jobs=jobs)
+
+
+def sweep(scenario: Scenario, vary: Mapping[str, object], overrides: Overrides = None, *, sample: str | None = None,
+          seed: int | None = None, keep_runs: bool = False, resume: bool = False, jobs: int | None = None, out: Place = None,
+          progress: Progress = None) -> "Report":
+    """Run a scenario over a grid, or a sample, of values of any fields, as `hapbench sweep` does.
+
+    `vary`: {"rendering.stiffness_N_per_m": [2e4, 4e4]}, of which a string is taken as --vary takes it ("1e4:1e5:10:log").
+    Returns a Report whose table `sweep` has a row for each run."""
+    words = ["sweep"]
+    for field, values in vary.items():
+        words += ["--vary", f"{field}={values if isinstance(values, str) else ','.join(map(_value, values))}"]
+    return _report(words, scenario, overrides, out, progress, sample=sample, seed=seed, keep_runs=keep_runs, resume=resume, jobs=jobs)
+
+
+def stability(scenarios: Scenario | Sequence[Scenario] = (), overrides: Overrides = None, *, map: Names = None, search: bool = False,
+              stress: bool = False, algorithms: Names = None, integrators: Names = None, size: int | None = None,
+              count: int | None = None, objective: str | None = None, evaluations: int | None = None, seed: int | None = None,
+              jobs: int | None = None, out: Place = None, progress: Progress = None) -> "Report":
+    """Limits of springs scenarios; with `map` ("all", or names) maps of stable and diverged runs; with `search` the motion
+    that an algorithm renders worst in a scenario; with `stress` random contact sets. As `hapbench stability` does.
+
+    Returns a Report: the tables are those of the command, such as `limits` or `stability_map_stiffness_mass`."""
+    return _report(["stability"], scenarios, overrides, out, progress, map=map, search=search, stress=stress, algorithms=algorithms,
+                   integrators=integrators, size=size, count=count, objective=objective, evaluations=evaluations, seed=seed,
+                   jobs=jobs)
+
+
+def command(*words: object, progress: Progress = None) -> Any:
+    """A command of the program by its words, as `hapbench.command("describe", "mean")`: what it prints with --json, read;
+    None where it prints nothing. Raises ScenarioError for what the program refuses."""
+    status, text, said, errors = _hapbench.command([*map(str, words), "--json"], progress)
+    _warn(said + errors, status)
+    return json.loads(text) if text else None
+
+
+def algorithms() -> list[str]:
+    """The names of all algorithms there are, own ones among them."""
+    return _hapbench.algorithms()
+
+
+def load_plugin(file: str | os.PathLike) -> None:
+    """Take a law from a shared object with hapbench's C interface, as --plugin does; it then stands beside the others."""
+    command("--plugin", os.fspath(file), "list", "--quiet")
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Be the program with these words (default: those of the command line) and return its exit status. At the end of a
+    script that defines force laws, it lets them take part in every command."""
+    sys.stdout.flush()
+    try:
+        return _hapbench.main(list(map(str, sys.argv[1:] if words is None else words)))
+    except KeyboardInterrupt:
+        return 130
+
+
+class Report(Folder):
+    """The folder that a command wrote: its tables and runs. `report` is what the command prints with --json, `status` its
+    exit status: 0, or 3 when a run did not end as its scenario expects."""
+
+    def __init__(self, folder, status, report, scratch=None):
+        super().__init__(folder)
+        self.status, self.report = status, report
+        self._scratch = scratch  # removed with this object
+
+
+class Simulation:
+    """One run of a scenario, step by step, for loops of your own. `scenario` and `overrides` as in `run`.
+
+        simulation = hapbench.Simulation("drag_molar")
+        while simulation.step():
+            print(simulation.state["force_N"], len(simulation.contacts["depths_m"]))
+
+    The state is that of the last row: everything before the integrator moved the tool."""
+
+    def __init__(self, scenario: Scenario, overrides: Overrides = None):
+        with _Scratch() as scratch:
+            self._simulation = scratch.call(_hapbench.Simulation, scratch.file_of(scenario), _words(overrides or {}))
+
+    def step(self) -> bool:
+        """Compute the next row. False, and nothing done, once the run has ended."""
+        return self._simulation.step()
+
+    def advance(self, steps: int) -> int:
+        """Compute up to so many rows, the interpreter released; returns how many."""
+        return self._simulation.advance(steps)
+
+    def reset(self) -> None:
+        """Back to the start, bit for bit."""
+        self._simulation.reset()
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """The last row as a dict: step, time_s, position_m, velocity_m_per_s, axis, force_N, spring_force_N,
+        stiffness_tensor (in units of K), measured_force_N, input_force_N, handle_m, colliding, depth_max_m."""
+        return self._simulation.state
+
+    @property
+    def contacts(self) -> dict[str, Any]:
+        """Its rendered contacts as a dict of arrays: index, points_m, normals, depths_m, gradients, weights."""
+        return self._simulation.contacts
+
+    @property
+    def rows(self) -> int:
+        """Rows computed so far."""
+        return self._simulation.rows
+
+    @property
+    def steps(self) -> int:
+        """Rows of the whole run."""
+        return self._simulation.steps
+
+    @property
+    def time_step_s(self) -> float:
+        """The time from row to row [s]."""
+        return self._simulation.time_step_s
+
+    @property
+    def outcome(self) -> str:
+        """How the run ended; "completes" while it goes on."""
+        return self._simulation.outcome
+
+
+class _Scratch:
+    """A folder that goes with this object, for scenarios that are dicts and for results."""
+
+    def __init__(self):
+        self.path = Path(tempfile.mkdtemp(prefix="hapbench-"))
+        self._remove = weakref.finalize(self, shutil.rmtree, self.path, ignore_errors=True)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._remove()
+
+    def file_of(self, scenario):
+        """The word by which the engine finds a scenario."""
+        if not isinstance(scenario, dict):
+            return os.fspath(scenario)
+        scenario = json.loads(json.dumps(scenario, default=_plain))
+        for *path, last in _FILES:
+            part = scenario
+            for key in path:
+                part = part.get(key) if isinstance(part, dict) else None
+            if isinstance(part, dict) and isinstance(part.get(last), str):
+                part[last] = _named(part[last], is_scenario=last == "extends")
+        name = str(scenario.get("name") or "scenario").replace("/", "_")
+        folder = Path(tempfile.mkdtemp(dir=self.path))
+        file = folder / f"{name}.json"
+        file.write_text(json.dumps(scenario), encoding="utf-8")
+        return str(file)
+
+    def call(self, function, *arguments):
+        """Errors name a dict's place alone, because its file is gone."""
+        try:
+            return function(*arguments)
+        except ScenarioError as error:
+            if not error.file.startswith(str(self.path)):
+                raise
+            raise ScenarioError([(fault.pointer, fault.problem) for fault in error.faults]) from None
+
+
+def _named(file, is_scenario):
+    """A path that means the same from another folder. What is no file here may be the name of a bundled scenario."""
+    return file if is_scenario and not Path(file).is_file() else str(Path(file).absolute())
+
+
+def _report(words, scenarios, overrides, out, progress, **options):
+    scratch = _Scratch()
+    given = [scenarios] if isinstance(scenarios, (str, dict, os.PathLike)) else list(scenarios)
+    for name, value in options.items():
+        option = "--" + name.replace("_", "-")
+        if value is None or value is False:
+            continue
+        words = [*words, option]
+        if value is not True:
+            words.append(value if isinstance(value, str) else _value(value) if isinstance(value, (int, float)) else ",".join(value))
+    for word in _words(overrides or {}):
+        words = [*words, "--set", word]
+    folder = Path(out) if out is not None else scratch.path / "out"
+    words = [*words, "--out", str(folder), "--json", "--", *map(scratch.file_of, given)]
+    status, text, said, errors = scratch.call(_hapbench.command, words, progress)
+    _warn(said + errors, status)
+    return Report(folder, status, json.loads(text) if text else None, scratch)
+
+
+def _warn(said, status):
+    for warning in said:
+        warnings.warn(warning, ScenarioWarning, stacklevel=4)
+    if status == 1:
+        raise RuntimeError(said[-1] if said else "hapbench: a run could not be computed")
+
+
+def _words(overrides):
+    return [f"{field}={_value(value)}" for field, value in overrides.items()]
+
+
+def _value(value):
+    """As a word of --set: text as it is, all else as JSON."""
+    return value if isinstance(value, str) else json.dumps(value, default=_plain)
+
+
+def _plain(value):
+    """Numbers and arrays of numpy, for JSON."""
+    return value.tolist()
+
+
+def _table(name, given):
+    columns, numbers = given
+    names = [column for column, _, _ in columns]
+    return Table(zip(names, numbers), {column: unit for column, unit, _ in columns},
+                 {column: meaning for column, _, meaning in columns}, name)
+
+
+def _tables(given):
+    return {name: _table(name, table) for name, table in given.items()}

@@ -1,0 +1,39 @@
+"""What goes wrong, as exceptions."""
+import re
+from pathlib import Path
+
+
+class InputError(Exception):
+    """Bad input: a scenario, an argument, a file. The message is one line that names the place and what is allowed."""
+
+
+class ResultError(InputError):
+    """A result file that is not there or cannot be understood."""
+
+
+class ScenarioError(InputError):
+    """A scenario or an argument that the engine refuses: the message stands for the first of `faults`.
+
+    `file` is the scenario's file ("" for none), `pointer` the JSON pointer of the field ("" for the whole), `problem`
+    what is wrong with it and what is allowed, `nearest` the valid name nearest to the one given, or None."""
+
+    def __init__(self, faults):
+        place, problem = faults[0]
+        super().__init__(f"{place}: {problem}" if place else problem)
+        self.file, self.pointer = _split(place)
+        self.problem = problem
+        found = re.search(r'nearest valid names?: "([^"]*)"', problem)
+        self.nearest = found.group(1) if found else None
+        self.faults = [self] + [ScenarioError([fault]) for fault in faults[1:]]
+
+
+class ScenarioWarning(UserWarning):
+    """What may make the numbers of a run mislead, or a field without effect."""
+
+
+def _split(place):
+    """File and JSON pointer of "file: /pointer", of which either may be missing."""
+    file, _, pointer = place.rpartition(": ")
+    if pointer.startswith("/") and (file or not Path(place).exists()):
+        return file, pointer
+    return place, ""

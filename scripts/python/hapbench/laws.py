@@ -1,0 +1,84 @@
+"""Force laws written in Python."""
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TypeVar
+
+from .engine import _hapbench
+
+Law = TypeVar("Law", bound=Callable)
+_ARGUMENTS = ("depths", "gradients", "points", "normals", "stiffness")
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a law: what scenarios may set as rendering.parameters.LAW.NAME."""
+
+    default: float
+    least: float
+    greatest: float
+    unit: str = "1"
+    meaning: str = "parameter of a law in Python"
+
+
+def force_law(name: str, parameters: Mapping[str, Parameter | float] | None = None, *, depth_model: str | None = None,
+              formula: str | None = None, source: str | None = None, known_failure: str | None = None) -> Callable[[Law], Law]:
+    """Make a function a force law, known by its name to every scenario, study and map of this process.
+
+        @hapbench.force_law("mine", parameters={"share": hapbench.Parameter(0.5, 0, 1)})
+        def mine(depths, gradients, share):
+            return share * numpy.ones(len(depths))
+
+    The function is called in every step with contact. It takes, by the names of its arguments and in any order:
+    `depths` (n) [m], `gradients` (n × 3, unit vectors along which a point leaves the tool), `points` (n × 3) [m], `normals`
+    (n × 3, out of the environment), `stiffness`, K of one spring [N/m], and its own `parameters`, floats. Arrays are
+    views that the next call fills anew: copy what is to be kept.
+
+    It returns the weights c_i of the springs, one for each contact or one for all: f = -K Σ c_i d_i u_i and
+    S = Σ c_i u_i u_iᵀ; or a tuple of the force [N] and the symmetric stiffness tensor S in units of K (3 × 3), with
+    which damping and friction are computed. A class in place of a function: an object of it is called, a new one for
+    each run, so that a law can have a state.
+
+    An exception in the law ends what is computed and is raised there. A law of the same name gives way to a new one.
+    `parameters`: names with a Parameter, or with a number, its default, which may then be 0 … 1e12.
+    `depth_model`: the only one the law is for. The first line of the docstring is the law's summary."""
+
+    def add(law):
+        is_class = inspect.isclass(law)
+        own = {key: _parameter(value) for key, value in (parameters or {}).items()}
+        texts = (_summary(law), formula or "as written in Python", source or _place(law), known_failure or "unknown")
+        table = [(key, p.default, p.least, p.greatest, p.unit, p.meaning) for key, p in own.items()]
+        _hapbench.add_force_law(name, law, is_class, _arguments(name, law, own), table, texts, depth_model or "")
+        return law
+
+    return add
+
+
+def _parameter(value):
+    if isinstance(value, Parameter):
+        return value
+    return Parameter(float(value), min(0.0, float(value)), 1e12)
+
+
+def _arguments(name, law, own):
+    function = law.__call__ if inspect.isclass(law) else law
+    given = list(inspect.signature(function).parameters.values())[1 if inspect.isclass(law) else 0:]
+    for parameter in given:
+        if parameter.kind not in (parameter.POSITIONAL_ONLY, parameter.POSITIONAL_OR_KEYWORD):
+            raise TypeError(f"force law {name!r}: argument {parameter.name!r} must be one that is given by its place")
+        if parameter.name not in (*_ARGUMENTS, *own):
+            raise TypeError(f"force law {name!r}: unknown argument {parameter.name!r}; allowed: {', '.join((*_ARGUMENTS, *own))}")
+    unused = set(own) - {parameter.name for parameter in given}
+    if unused:
+        raise TypeError(f"force law {name!r}: parameter {min(unused)!r} is none of its arguments")
+    return [parameter.name for parameter in given]
+
+
+def _summary(law):
+    lines = (inspect.getdoc(law) or "").strip().splitlines()
+    return lines[0].rstrip(".") if lines else "a law written in Python"
+
+
+def _place(law):
+    module = getattr(law, "__module__", "?")
+    return f"Python, {module}.{getattr(law, '__qualname__', '?')}"

@@ -1,0 +1,213 @@
+"""Results: of a run, and of a folder of them. Needs no compiled module."""
+import json
+import os
+import re
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+
+from .columns import read_columns, read_mixed
+from .errors import ResultError
+from .table import Table
+
+SUMMARY, SCENARIO = "summary.json", "scenario.effective.json"
+
+
+def read_json(file):
+    """The content of a JSON file. Raises ResultError."""
+    try:
+        return json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise ResultError(f"{file}: cannot be read: {error}") from error
+    except (ValueError, RecursionError) as error:
+        raise ResultError(f"{file}: not JSON: {error}") from error
+
+
+class Tables(Mapping):
+    """Tables by name, each read when it is first asked for."""
+
+    def __init__(self, readers):
+        self._readers = dict(readers)
+        self._read = {}
+
+    def __getitem__(self, name):
+        if name not in self._read:
+            self._read[name] = self._readers[name]()
+        return self._read[name]
+
+    def __iter__(self):
+        return iter(self._readers)
+
+    def __len__(self):
+        return len(self._readers)
+
+    def __repr__(self):
+        return f"<tables {', '.join(self) or 'none'}>"
+
+
+class _WithTables:
+    """Tables as attributes: `run.trajectory` is `run.tables["trajectory"]`."""
+
+    def __getattr__(self, name):
+        if name.startswith("_") or name == "tables":
+            raise AttributeError(name)
+        if name in self.tables:
+            return self.tables[name]
+        raise AttributeError(self._no_table(name))
+
+    def _no_table(self, name):
+        return f"no table or attribute {name!r}; tables: {', '.join(self.tables) or 'none'}"
+
+    def __dir__(self):
+        return [*super().__dir__(), *self.tables]
+
+
+class Run(_WithTables):
+    """One run.
+
+    `summary`, `scenario` (with every default filled in) and `timing` are dicts as in summary.json,
+    scenario.effective.json and timing.json. What the scenario records are tables: `trajectory`, and where it asks for
+    them `contacts`, `stiffness_tensor`, `ratios`, `energy`, `ideal_trajectory`, `force_reference`, `targets`; `tables`
+    has them by name. Of a scenario of several trials, each of `trials` has its own tables. `folder` is None for a run in
+    memory, `unmet` says which expectations of its scenario a run in memory missed."""
+
+    def __init__(self, summary, scenario, tables, timing=None, trials=(), folder=None, unmet=None):
+        self.summary, self.scenario, self.timing = summary, scenario, timing or {}
+        self.tables, self.trials, self.folder = tables, list(trials), folder
+        self.unmet = unmet
+
+    @property
+    def name(self):
+        return str(self.summary.get("name", ""))
+
+    @property
+    def algorithm(self):
+        return str(self.summary.get("algorithm", ""))
+
+    @property
+    def outcome(self):
+        return str(self.summary.get("outcome", ""))
+
+    @property
+    def expected(self):
+        """True when the run ended as its scenario expects."""
+        return bool(self.summary.get("expected"))
+
+    @property
+    def warnings(self):
+        said = self.summary.get("warnings")
+        return [str(warning) for warning in said] if isinstance(said, list) else []
+
+    @property
+    def metrics(self):
+        return self.summary.get("metrics", {})
+
+    @property
+    def state_hash(self):
+        """Over the bit patterns of position, velocity and force of every row: equal for runs that are the same."""
+        return self.summary.get("state_hash")
+
+    def _no_table(self, name):
+        fields = {"contacts", "energy", "stiffness_tensor", "ideal_trajectory", "force_reference", "trajectory"}
+        hint = f"; hapbench.run(…, record=[{name!r}]) records it" if name in fields else ""
+        trials = f"; it has {len(self.trials)} trials with tables of their own" if self.trials else ""
+        return super()._no_table(name) + trials + hint
+
+    def __repr__(self):
+        return f"<run {self.name} with {self.algorithm}: {self.outcome}, tables {', '.join(self.tables) or 'none'}>"
+
+
+class Folder(_WithTables):
+    """A folder that sweep, compare, stability, limit … wrote: `tables` of its CSV files by their paths, those of its runs
+    aside, `runs` below it by theirs, `json` of its other files. `folder.sweep` is the table of sweep.csv."""
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+        files = [file for file in sorted(self.folder.rglob("*.csv")) if not _is_of_run(file)]
+        self.tables = Tables({file.relative_to(self.folder).with_suffix("").as_posix(): _reader(file) for file in files})
+
+    @cached_property
+    def runs(self):
+        files = sorted(self.folder.rglob(SUMMARY))
+        found = {file.parent.relative_to(self.folder).as_posix(): load_run(file.parent) for file in files}
+        for run in found.values():
+            run.part_of = self  # whose files may go with it
+        return found
+
+    @cached_property
+    def json(self):
+        return {file.stem: read_json(file) for file in sorted(self.folder.glob("*.json"))}
+
+    @property
+    def scenario(self):
+        """The scenario of what is in the folder, where it has one."""
+        return self.json.get("scenario.effective")
+
+    def __repr__(self):
+        return f"<{self.folder}: tables {', '.join(self.tables) or 'none'}>"
+
+
+def load(folder: str | os.PathLike) -> "Run | Folder":
+    """What is in a folder of results: a Run, or else a Folder of tables and runs. Raises ResultError."""
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise ResultError(f"{folder}: is not a folder; allowed: one that run, compare, sweep, stability, limit … wrote")
+    if (folder / SUMMARY).is_file():
+        return load_run(folder)
+    found = Folder(folder)
+    if not found.tables and not found.runs:
+        raise ResultError(f"{folder}: holds no results of hapbench")
+    return found
+
+
+def load_run(folder):
+    """The run of one folder."""
+    folder = Path(folder)
+    trials = sorted(folder.glob("subject_*_trial_*"), key=_numbers_of)
+    return Run(_object(folder / SUMMARY), _optional(folder / SCENARIO), _tables_of(folder),
+               timing=_optional(folder / "timing.json"), folder=folder,
+               trials=[Trial(_tables_of(trial, folder)) for trial in trials])
+
+
+class Trial(_WithTables):
+    """The tables of one trial of a run."""
+
+    def __init__(self, tables):
+        self.tables = tables
+
+    def __repr__(self):
+        return f"<trial: tables {', '.join(self.tables) or 'none'}>"
+
+
+def _is_of_run(file):
+    return any((folder / SUMMARY).is_file() for folder in list(file.parents)[:2])
+
+
+def _tables_of(folder, described=None):
+    columns = _optional((described or folder) / "columns.json")
+    return Tables({file.stem: _reader(file, columns.get(file.name)) for file in sorted(folder.glob("*.csv"))})
+
+
+def _reader(file, described=None):
+    def read():
+        if not described:
+            return Table(read_mixed(file), name=file.stem)
+        return Table(read_columns(file, may_be_empty=True), {c["name"]: c["unit"] for c in described},
+                     {c["name"]: c["meaning"] for c in described}, file.stem)
+
+    return read
+
+
+def _object(file):
+    value = read_json(file)
+    if not isinstance(value, dict):
+        raise ResultError(f"{file}: /: got {json.dumps(value)[:60]}; allowed: an object")
+    return value
+
+
+def _optional(file):
+    return _object(file) if file.is_file() else {}
+
+
+def _numbers_of(path):
+    return [int(number) for number in re.findall(r"\d+", path.name)]

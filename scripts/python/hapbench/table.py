@@ -1,0 +1,58 @@
+"""A table of results."""
+from collections.abc import Mapping
+
+from .units import unit_of
+
+MOST_NAMED = 16
+
+
+class Table(Mapping):
+    """Columns by name: numpy arrays of float64, NaN where a field is empty; in some tables of sweeps, of texts.
+
+    `units` and `meanings` say of each column what they can. `table["time_s"]`, `table.time_s` and, for pandas,
+    `pandas.DataFrame(dict(table))` all work."""
+
+    def __init__(self, columns, units=None, meanings=None, name="table"):
+        self._columns = dict(columns)
+        self.units = {column: (units or {}).get(column, unit_of(column)) for column in self._columns}
+        self.meanings = dict(meanings or {})
+        self.name = name
+
+    def __getitem__(self, column):
+        try:
+            return self._columns[column]
+        except KeyError:
+            raise KeyError(f"{self.name} has no column {column!r}; it has {', '.join(self._columns)}") from None
+
+    def __getattr__(self, column):
+        if column.startswith("_") or column not in self._columns:
+            raise AttributeError(f"{self.__dict__.get('name', 'table')} has no column {column!r}")
+        return self._columns[column]
+
+    def __dir__(self):
+        return [*super().__dir__(), *self._columns]
+
+    def __iter__(self):
+        return iter(self._columns)
+
+    def __len__(self):
+        """The number of columns, as of every mapping; `rows` is that of the rows."""
+        return len(self._columns)
+
+    @property
+    def rows(self):
+        return len(next(iter(self._columns.values()), ()))
+
+    def where(self, **chosen):
+        """The rows whose columns have these values: `table.where(algorithm="mean")`."""
+        kept = None
+        for column, value in chosen.items():
+            same = self[column] == value
+            kept = same if kept is None else kept & same
+        columns = self._columns if kept is None else {name: values[kept] for name, values in self._columns.items()}
+        return Table(columns, self.units, self.meanings, self.name)
+
+    def __repr__(self):
+        names = list(self._columns)
+        more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+        return f"<{self.name}: {self.rows} rows of {', '.join(names[:MOST_NAMED])}{more}>"

@@ -1,0 +1,508 @@
+"""The Python package with its compiled module. Arguments: the built program, the source tree, the folder of the built package."""
+import ast
+import inspect
+import io
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import traceback
+import unittest
+import warnings
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+
+PROGRAM, SOURCE, PACKAGES = (Path(word).resolve() for word in sys.argv[1:4])
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(PACKAGES))
+
+import hapbench  # noqa: E402  (the path comes first)
+from hapbench import _hapbench  # noqa: E402
+from hapbench.columns import read_columns  # noqa: E402
+
+PEG = "peg_in_hole_2d_shaped_stiffness"
+# Short, and with contact from the first step on.
+SHORT = {"time.steps": 300, "expect": "{}"}
+EVERYTHING = {"record.contacts": True, "record.stiffness_tensor": True, "record.energy": True, "record.torque": True,
+              "record.pose": True, "record.ratio_iterations": "[0,3]"}
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(PACKAGES), "PYTHONDONTWRITEBYTECODE": "1"}
+
+
+def summation(depths):
+    """All springs added."""
+    return np.ones(len(depths))
+
+
+def program(*words, expected=0):
+    done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    assert done.returncode == expected, (words, done.returncode, done.stderr)
+    return done
+
+
+def python(*words, **options):
+    return subprocess.run([sys.executable, *map(str, words)], capture_output=True, text=True, env=ENVIRONMENT,
+                          stdin=subprocess.DEVNULL, **options)
+
+
+def words_of(overrides):
+    return [word for field, value in overrides.items() for word in ("--set", f"{field}={value if isinstance(value, str) else json.dumps(value)}")]
+
+
+class Scratch(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory(prefix="hapbench-python-")
+        self.addCleanup(scratch.cleanup)
+        self.root = Path(scratch.name)
+        warnings.simplefilter("ignore", hapbench.ScenarioWarning)
+
+
+class Runs(Scratch):
+    def compare(self, scene, overrides):
+        """What Python computes and what the program writes are the same."""
+        run = hapbench.run(scene, overrides)
+        program("run", scene, *words_of(overrides), "--out", self.root / scene, "--quiet")
+        files = {file.stem for file in (self.root / scene).glob("*.csv")}
+        self.assertEqual(set(run.tables), files)
+        for name in files:
+            written = read_columns(self.root / scene / f"{name}.csv", may_be_empty=True)
+            self.assertEqual(list(run.tables[name]), list(written))
+            for column, values in written.items():
+                found = run.tables[name][column]
+                self.assertEqual(found.dtype, np.float64)
+                # By their bits, except that there are many NaN.
+                np.testing.assert_array_equal(np.isnan(found), np.isnan(values), f"{name} {column}")
+                known = ~np.isnan(values)
+                np.testing.assert_array_equal(found[known].view(np.int64), values[known].view(np.int64), f"{name} {column}")
+        self.assertEqual(run.summary, json.loads((self.root / scene / "summary.json").read_text()))
+        read = hapbench.load(self.root / scene)
+        self.assertEqual(run.state_hash, read.state_hash)
+        self.assertEqual(run.scenario, read.scenario)
+        self.assertEqual(run.trajectory.units, read.trajectory.units)
+        self.assertEqual(run.trajectory.meanings, read.trajectory.meanings)
+        return run, read
+
+    def test_are_those_of_the_program(self):
+        run, read = self.compare(PEG, {**SHORT, **EVERYTHING})
+        self.assertEqual(set(run.tables), {"trajectory", "contacts", "stiffness_tensor", "energy", "ratios"})
+        self.assertGreater(run.contacts.rows, 1000)
+        self.assertEqual(run.trajectory.units["fx_N"], "N")
+        self.assertTrue(np.isnan(run.trajectory.ratio_min).any() or (run.trajectory.rendered > 0).all())
+        self.assertEqual((run.name, run.algorithm, run.outcome), (PEG, "shaped_stiffness", "completes"))
+        self.assertEqual(repr(run.trajectory), repr(read.trajectory))
+
+    def test_of_springs(self):
+        self.compare("springs_limited_mean", SHORT)
+
+    def test_of_several_trials(self):
+        scene = json.loads((SOURCE / "scenarios/thesis/vertical_peg_in_hole_shaped_stiffness.json").read_text())
+        self.assertEqual(scene.get("hand", {}).get("type", "tracking"), "tracking")
+        name = "vertical_peg_in_hole_shaped_stiffness"
+        overrides = {"time.duration_s": 0.2, "record.trajectory": True, "hand.trials": 2, "expect": "{}"}
+        run = hapbench.run(name, overrides)
+        program("run", name, *words_of(overrides), "--out", self.root / "trials", "--quiet")
+        read = hapbench.load(self.root / "trials")
+        self.assertEqual(run.summary, read.summary)
+        self.assertEqual(len(run.trials), len(read.trials))
+        self.assertGreater(len(run.trials), 1)
+        for own, other in zip(run.trials, read.trials):
+            np.testing.assert_array_equal(own.trajectory["fx_N"], other.trajectory["fx_N"])
+        self.assertEqual(list(run.targets), list(read.targets))
+        with self.assertRaisesRegex(AttributeError, "trials with tables of their own"):
+            run.trajectory
+
+    def test_dicts_and_recorded_tables(self):
+        scene = {"extends": PEG, "name": "mine", "time": {"steps": 300}, "expect": {}}
+        run = hapbench.run(scene, record=["contacts"])
+        self.assertEqual(run.name, "mine")
+        self.assertEqual(run.state_hash, hapbench.run(PEG, SHORT).state_hash)
+        self.assertGreater(len(run.contacts["depth_m"]), 0)
+        with self.assertRaisesRegex(AttributeError, r"record=\['energy'\]"):
+            run.energy
+        with self.assertRaisesRegex(AttributeError, "tables: .*trajectory"):
+            run.nothing
+        # The effective scenario is one that gives the same run.
+        self.assertEqual(hapbench.run(run.scenario).state_hash, run.state_hash)
+
+    def test_files_that_a_dict_names(self):
+        here = os.getcwd()
+        self.addCleanup(os.chdir, here)
+        os.chdir(SOURCE / "scenarios/examples")
+        scene = json.loads(Path("mesh_molar.json").read_text())
+        scene.update(time={**scene["time"], "duration_s": 0.02}, expect={})
+        by_dict = hapbench.run(scene)
+        by_name = hapbench.run("mesh_molar", {"time.duration_s": 0.02, "expect": "{}"})
+        self.assertEqual(by_dict.state_hash, by_name.state_hash)
+        self.assertEqual(by_dict.summary["provenance"], by_name.summary["provenance"])  # the scenario's hash in it
+
+    def test_threads_compute_at_once(self):
+        stiffness = [2e4, 3e4, 4e4, 5e4]
+        alone = [hapbench.run(PEG, {**SHORT, "rendering.stiffness_N_per_m": k}).state_hash for k in stiffness]
+        with ThreadPoolExecutor(4) as pool:
+            beside = list(pool.map(lambda k: hapbench.run(PEG, {**SHORT, "rendering.stiffness_N_per_m": k}).state_hash, stiffness))
+        self.assertEqual(alone, beside)
+
+    def test_the_interpreter_is_released(self):
+        counted = []
+        thread = threading.Thread(target=lambda: [counted.append(time.sleep(0.001)) for _ in range(1000)], daemon=True)
+        thread.start()
+        before = len(counted)
+        hapbench.run(PEG, {"record.trajectory": False, "time.steps": 20000, "time.stop_when": "[]", "expect": "{}"})
+        self.assertGreater(len(counted), before)
+
+    def test_progress(self):
+        seen = []
+        hapbench.run(PEG, SHORT, progress=lambda *state: seen.append(state))
+        self.assertEqual(seen[-1][::2], (PEG, 300))
+        hapbench.run(PEG, SHORT, progress=False)
+
+        def fails(label, done, total):
+            raise ZeroDivisionError("in progress")
+
+        with self.assertRaisesRegex(ZeroDivisionError, "in progress"):
+            hapbench.run(PEG, SHORT, progress=fails)
+
+
+class Errors(Scratch):
+    def test_say_where_and_what(self):
+        with self.assertRaises(hapbench.ScenarioError) as caught:
+            hapbench.run({"extends": PEG, "rendering": {"algoritm": "mean"}})
+        self.assertEqual((caught.exception.pointer, caught.exception.nearest), ("/rendering/algoritm", "algorithm"))
+        self.assertTrue(str(caught.exception).startswith("/rendering/algoritm: "), caught.exception)
+        with self.assertRaises(hapbench.ScenarioError) as caught:
+            hapbench.run(PEG, {"rendering.algorithm": "shaped_stifness"})
+        self.assertEqual((caught.exception.pointer, caught.exception.nearest), ("/rendering/algorithm", "shaped_stiffness"))
+        self.assertTrue(caught.exception.file.endswith(f"{PEG}.json"))
+        with self.assertRaisesRegex(hapbench.ScenarioError, 'nearest valid name: "drag_molar"'):
+            hapbench.run("drag_mola")
+        with self.assertRaises(hapbench.ScenarioError) as caught:
+            hapbench.run(PEG, {"rendering.mass_kg": -1, "time.step_s": -1})
+        self.assertEqual({fault.pointer for fault in caught.exception.faults}, {"/rendering/mass_kg", "/time/step_s"})
+
+    def test_of_commands(self):
+        with self.assertRaisesRegex(hapbench.ScenarioError, "allowed"):
+            hapbench.compare(PEG, algorithms=["mean", "nobody"])
+        with self.assertRaisesRegex(hapbench.ScenarioError, "unknown command"):
+            hapbench.command("runn")
+        with self.assertRaises(hapbench.ScenarioError):
+            hapbench.compare(PEG, seeds=0)
+
+    def test_of_results(self):
+        with self.assertRaisesRegex(hapbench.ResultError, "is not a folder"):
+            hapbench.load(self.root / "nothing")
+        with self.assertRaisesRegex(hapbench.ResultError, "no results"):
+            hapbench.load(self.root)
+        (self.root / "summary.json").write_text("{")
+        with self.assertRaisesRegex(hapbench.ResultError, "summary.json: not JSON"):
+            hapbench.load(self.root)
+
+    def test_without_the_module_results_can_be_read(self):
+        program("run", PEG, *words_of(SHORT), "--out", self.root / "run", "--quiet")
+        code = (f"import hapbench; print(hapbench.load({str(self.root / 'run')!r}).trajectory.rows)\n"
+                "try:\n    hapbench.run\nexcept ImportError as error:\n    print(error)")
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True,
+                              env={**ENVIRONMENT, "PYTHONPATH": str(SOURCE / "scripts/python")})
+        self.assertEqual(done.stdout.splitlines()[0], "300", done.stderr)
+        self.assertIn("compiled module", done.stdout)
+
+
+class Studies(Scratch):
+    def test_compare(self):
+        report = hapbench.compare(PEG, ["mean", "summation"], SHORT, jobs=2)
+        self.assertEqual(list(report.comparison.algorithm), ["mean", "summation"])
+        self.assertEqual([run["algorithm"] for run in report.report], ["mean", "summation"])
+        alone = hapbench.run(PEG, {**SHORT, "rendering.algorithm": "mean"})
+        mean = report.runs["mean"]
+        del report  # its folder stays as long as the run
+        self.assertEqual(mean.state_hash, alone.state_hash)
+        self.assertEqual(mean.trajectory.rows, 300)
+
+    def test_league(self):
+        report = hapbench.compare([PEG, {"extends": PEG, "name": "other", "seed": 2}], ["mean", "summation"], SHORT, seeds=2,
+                                  jitter=1e-6, out=self.root / "kept")
+        self.assertEqual(len(report.runs), 8)
+        self.assertIn("league", report.tables)
+        self.assertEqual(set(hapbench.load(self.root / "kept").runs), set(report.runs))
+
+    def test_sweep(self):
+        seen = []
+        report = hapbench.sweep(PEG, {"rendering.stiffness_N_per_m": [2e4, 4e4], "rendering.algorithm": "mean,summation"}, SHORT,
+                                jobs=2, progress=lambda *state: seen.append(state))
+        table = report.sweep
+        self.assertEqual(table.rows, 4)
+        self.assertEqual(seen[-1][1:], (4, 4))
+        alone = hapbench.run(PEG, {**SHORT, "rendering.stiffness_N_per_m": 4e4, "rendering.algorithm": "mean"})
+        row = table.where(**{"rendering.algorithm": "mean", "rendering.stiffness_N_per_m": 4e4})
+        self.assertEqual((row.rows, row["state_hash"][0]), (1, alone.state_hash))
+        self.assertEqual(row["force_max_N"][0], alone.metrics["force_max_N"])
+
+    def test_stability(self):
+        report = hapbench.stability("single_spring")
+        self.assertIn("stiffness_undamped", list(report.limits.case))
+        self.assertEqual(report.report[0]["name"], "single_spring")
+
+    def test_commands(self):
+        self.assertIn("mean", json.dumps(hapbench.command("describe", "mean")))
+
+
+class Laws(Scratch):
+    def test_a_law_is_like_a_built_in_one(self):
+        hapbench.force_law("test_summation")(summation)
+        for scene in (PEG, "springs_limited_mean"):
+            own, built_in = (hapbench.run(scene, {**SHORT, "rendering.algorithm": name}, record=["contacts"])
+                             for name in ("test_summation", "summation"))
+            self.assertEqual(own.state_hash, built_in.state_hash, scene)
+            np.testing.assert_array_equal(own.contacts.weight, built_in.contacts.weight)
+        self.assertIn("test_summation", hapbench.algorithms())
+        self.assertIn("All springs added", json.dumps(hapbench.command("describe", "test_summation")))
+
+    def test_a_force_and_a_tensor(self):
+        @hapbench.force_law("test_force")
+        def law(depths, gradients, stiffness):
+            return -stiffness * depths @ gradients, gradients.T @ gradients
+
+        own = hapbench.run(PEG, {**SHORT, "rendering.algorithm": "test_force"})
+        built_in = hapbench.run(PEG, {**SHORT, "rendering.algorithm": "summation"})
+        # Sums in another order: the first row differs by rounding, of at most some 30 terms.
+        np.testing.assert_allclose(own.trajectory.fx_N[0], built_in.trajectory.fx_N[0], rtol=1e-13, atol=1e-10)
+
+    def test_arguments(self):
+        seen = {}
+
+        @hapbench.force_law("test_arguments", parameters={"share": hapbench.Parameter(0.5, 0, 1, "1", "of the weights"), "other": 2})
+        def law(normals, share, points, stiffness, gradients, depths, other):
+            seen.update(shapes=(normals.shape, points.shape, gradients.shape, depths.shape), share=share, other=other, K=stiffness,
+                        contiguous=gradients.flags.c_contiguous, owned=gradients.flags.owndata)
+            return share
+
+        run = hapbench.run(PEG, {**SHORT, "rendering.algorithm": "test_arguments", "rendering.parameters.test_arguments.share": 0.25},
+                           record=["contacts"])
+        n = int(run.trajectory.rendered[run.trajectory.rendered > 0][-1])
+        self.assertEqual(seen["shapes"], ((n, 3), (n, 3), (n, 3), (n,)))
+        self.assertEqual((seen["share"], seen["other"], seen["K"], seen["contiguous"], seen["owned"]), (0.25, 2.0, 20000.0, True, False))
+        self.assertEqual(set(run.contacts.weight), {0.25})
+        self.assertEqual(run.scenario["rendering"]["parameters"]["test_arguments"], {"share": 0.25, "other": 2.0})
+        with self.assertRaises(hapbench.ScenarioError) as caught:
+            hapbench.run(PEG, {"rendering.algorithm": "test_arguments", "rendering.parameters.test_arguments.share": 2})
+        self.assertEqual(caught.exception.pointer, "/rendering/parameters/test_arguments/share")
+        with self.assertRaisesRegex(TypeError, "unknown argument 'depth'"):
+            hapbench.force_law("test_wrong")(lambda depth: 1)
+        with self.assertRaisesRegex(ValueError, "built-in"):
+            hapbench.force_law("mean")(summation)
+
+    def test_a_new_definition_replaces(self):
+        hashes = []
+        for weight in (0.5, 1.0):
+            hapbench.force_law("test_again")(eval(f"lambda depths: {weight}"))
+            hashes.append(hapbench.run(PEG, {**SHORT, "rendering.algorithm": "test_again"}).state_hash)
+        self.assertNotEqual(*hashes)
+        self.assertEqual(hashes[1], hapbench.run(PEG, {**SHORT, "rendering.algorithm": "summation"}).state_hash)
+        self.assertEqual(hapbench.algorithms().count("test_again"), 1)
+
+    def test_a_state_of_each_run(self):
+        made = []
+
+        @hapbench.force_law("test_state")
+        class Law:
+            def __init__(self):
+                self.calls = 0
+                made.append(self)
+
+            def __call__(self, depths):
+                self.calls += 1
+                return 1.0 / self.calls
+
+        first, second = (hapbench.run(PEG, {**SHORT, "rendering.algorithm": "test_state"}).state_hash for _ in range(2))
+        self.assertEqual(first, second)
+        self.assertGreaterEqual(len(made), 2)
+
+    def test_in_studies(self):
+        hapbench.force_law("test_summation")(summation)
+        report = hapbench.compare(PEG, ["summation", "test_summation"], SHORT, jobs=2)
+        self.assertEqual(report.runs["summation"].state_hash, report.runs["test_summation"].state_hash)
+        table = hapbench.sweep(PEG, {"rendering.algorithm": "test_summation,summation", "seed": [1, 2, 3]}, SHORT, jobs=2).sweep
+        self.assertEqual(list(table["state_hash"][:3]), list(table["state_hash"][3:]))
+        table = hapbench.stability(map="contacts", algorithms=["test_summation", "summation"], size=2, jobs=2).stability_map_contacts
+        own, built_in = table.where(algorithm="test_summation"), table.where(algorithm="summation")
+        self.assertEqual(list(own["class"]), list(built_in["class"]))
+        self.assertEqual(own.rows, 4)
+
+    def test_exceptions_end_the_run(self):
+        calls = []
+
+        @hapbench.force_law("test_raises")
+        def law(depths):
+            calls.append(len(depths))
+            if len(calls) > 3:
+                raise RuntimeError("enough")
+            return 1
+
+        for compute in (lambda: hapbench.run(PEG, {**SHORT, "rendering.algorithm": "test_raises"}),
+                        lambda: hapbench.compare(PEG, ["mean", "test_raises"], SHORT, out=self.root / "out", jobs=2),
+                        lambda: hapbench.sweep(PEG, {"rendering.algorithm": "test_raises", "seed": [1, 2]}, SHORT, jobs=2)):
+            calls.clear()
+            try:
+                compute()
+            except RuntimeError as error:
+                self.assertEqual((str(error), traceback.extract_tb(error.__traceback__)[-1].name), ("enough", "law"))
+            else:
+                self.fail("no error")
+        self.assertFalse((self.root / "out" / "test_raises" / "summary.json").exists())
+        # Nothing of it stays behind.
+        self.assertEqual(hapbench.run(PEG, SHORT).outcome, "completes")
+
+    def test_answers_that_are_no_force(self):
+        for answer, said in ((np.ones(1000), "shape"), (np.nan, "nan"), ("text", "str"), (None, "NoneType"), ((1, 2, 3), "tuple of 3"),
+                             ((np.zeros(3), np.arange(9.0).reshape(3, 3)), "symmetric"), (np.ones((2, 2)), "shape")):
+            hapbench.force_law("test_wrong")(eval("lambda depths: answer", {"answer": answer}))
+            with self.assertRaisesRegex(ValueError, f'force law "test_wrong": .*{said}'):
+                hapbench.run(PEG, {**SHORT, "rendering.algorithm": "test_wrong"})
+
+    def test_laws_on_the_command_line(self):
+        script = self.root / "mine.py"
+        script.write_text("import sys, hapbench\n@hapbench.force_law('mine')\ndef mine(depths):\n    return 1\n"
+                          "sys.exit(hapbench.main())\n")
+        words = ["run", PEG, *words_of({**SHORT, "rendering.algorithm": "mine"}), "--out", self.root / "out"]
+        done = python(script, *words)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(hapbench.load(self.root / "out").state_hash,
+                         hapbench.run(PEG, {**SHORT, "rendering.algorithm": "summation"}).state_hash)
+
+
+PLUGIN = SOURCE / "algorithms/plugin/examples/depth_weighted.c"
+
+
+class Plugins(Scratch):
+    @unittest.skipUnless(PLUGIN.is_file(), "without plugins")
+    def test_stand_beside_laws_in_python(self):
+        subprocess.run(["cc", "-shared", "-fPIC", f"-I{SOURCE}/algorithms/plugin", "-o", self.root / "law.so", PLUGIN, "-lm"], check=True)
+        before = set(hapbench.algorithms())
+        hapbench.load_plugin(self.root / "law.so")
+        (name,) = set(hapbench.algorithms()) - before
+        hapbench.force_law("test_summation")(summation)
+        report = hapbench.compare(PEG, [name, "test_summation", "summation"], SHORT)
+        self.assertEqual(list(report.comparison.algorithm), [name, "test_summation", "summation"])
+
+
+class Steps(Scratch):
+    def test_are_those_of_a_run(self):
+        run = hapbench.run(PEG, SHORT, record=["contacts"])
+        simulation = hapbench.Simulation(PEG, SHORT)
+        for _ in range(2):
+            self.assertEqual((simulation.rows, simulation.steps), (0, 300))
+            rows = 0
+            while simulation.step():
+                state, contacts = simulation.state, simulation.contacts
+                row = {name: column[rows] for name, column in run.trajectory.items()}
+                self.assertEqual(state["step"], row["step"])
+                for name, key in (("p", "position_m"), ("f", "force_N"), ("h", "handle_m")):
+                    unit = "N" if key.endswith("N") else "m"
+                    self.assertEqual([row[f"{name}{axis}_{unit}"] for axis in "xyz"], list(state[key]))
+                mine = run.contacts.step == rows
+                np.testing.assert_array_equal(contacts["depths_m"], run.contacts.depth_m[mine])
+                np.testing.assert_array_equal(contacts["gradients"][:, 1], run.contacts.gradient_y[mine])
+                rows += 1
+            self.assertEqual((rows, simulation.rows, simulation.outcome), (300, 300, "completes"))
+            simulation.reset()
+        self.assertEqual(simulation.advance(100), 100)
+        self.assertEqual(simulation.state["step"], 99)
+        self.assertEqual(simulation.advance(1000), 200)
+
+    def test_errors_of_a_law(self):
+        hapbench.force_law("test_raises_at_once")(eval("lambda depths: 1 / 0"))
+        simulation = hapbench.Simulation(PEG, {**SHORT, "rendering.algorithm": "test_raises_at_once"})
+        with self.assertRaises(ZeroDivisionError):
+            simulation.advance(300)
+        self.assertEqual(hapbench.run(PEG, SHORT).outcome, "completes")
+
+
+class Program(Scratch):
+    def test_is_the_same(self):
+        for words, expected in ((["describe", "mean"], 0), (["run", "nobody"], 2), (["runn"], 2),
+                                (["run", PEG, *words_of({"expect.outcome": "diverges", "time.steps": 50}), "--out", self.root / "a"], 3)):
+            own, built = python("-m", "hapbench", *words), program(*words, expected=expected)
+            self.assertEqual(own.returncode, expected, own.stderr)
+            without_times = [re.sub(r"[0-9.]+ (µs|us|s|ms)\b", "", text) for text in (own.stdout + own.stderr, built.stdout + built.stderr)]
+            if words[0] != "run" or expected == 2:
+                self.assertEqual(*without_times)
+
+    def test_stops_cleanly(self):
+        for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
+            out = self.root / f"stopped_{code}"
+            words = ["run", PEG, *words_of({"time.steps": 50_000_000, "time.stop_when": "[]", "record.every": 1000, "expect": "{}"}), "--out", str(out)]
+            running = subprocess.Popen([sys.executable, "-m", "hapbench", *words], env=ENVIRONMENT, stderr=subprocess.PIPE, text=True)
+            while not any(out.glob(".*.tmp")) and running.poll() is None:
+                time.sleep(0.02)
+            running.send_signal(number)
+            said = running.communicate(timeout=60)[1]
+            self.assertEqual(running.returncode, code, said)
+            self.assertEqual(list(out.glob("*")) + list(out.glob(".*")) if out.exists() else [], [])
+
+    def test_ctrl_c_in_a_script(self):
+        code = ("import hapbench, os, signal, threading\n"
+                "threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()\n"
+                f"try:\n    hapbench.run({PEG!r}, {{'time.steps': 50_000_000, 'time.stop_when': '[]', 'record.every': 1000}})\n"
+                "except KeyboardInterrupt:\n    print('stopped')\n"
+                f"print(hapbench.run({PEG!r}, {{'time.steps': 10}}).trajectory.rows)")
+        done = python("-c", code, timeout=120)
+        self.assertEqual(done.stdout.split(), ["stopped", "10"], done.stderr)
+
+
+class Stubs(unittest.TestCase):
+    def test_agree_with_the_module(self):
+        stub = ast.parse((SOURCE / "scripts/python/hapbench/_hapbench.pyi").read_text())
+        functions = {node.name: node for node in stub.body if isinstance(node, ast.FunctionDef)}
+        self.assertEqual(set(functions) | {"Simulation"}, {name for name in vars(_hapbench) if not name.startswith("_")})
+        for name, node in functions.items():
+            self.assert_same_arguments(getattr(_hapbench, name), node)
+        (stubbed,) = (node for node in stub.body if isinstance(node, ast.ClassDef))
+        members = {node.name: node for node in stubbed.body}
+        found = {name: member for name, member in vars(_hapbench.Simulation).items() if not name.startswith("_") or name == "__init__"}
+        self.assertEqual(set(members), set(found))
+        for name, member in found.items():
+            self.assertEqual(bool(members[name].decorator_list), isinstance(member, property), name)
+            if not isinstance(member, property):
+                self.assert_same_arguments(member, members[name])
+
+    def assert_same_arguments(self, function, node):
+        """pybind11 writes the signature into the docstring."""
+        given = re.search(r"\((.*)\) ->", function.__doc__.splitlines()[0]).group(1)
+        own = [part.split(":")[0].strip() for part in re.sub(r"\[[^][]*(\[[^][]*\])*[^][]*\]", "", given).split(",") if part.strip()]
+        self.assertEqual(own, [argument.arg for argument in node.args.args], node.name)
+
+    def test_everything_public_is_documented(self):
+        for name in hapbench.__all__:
+            self.assertTrue(inspect.getdoc(getattr(hapbench, name)), name)
+
+
+class Notebook(Scratch):
+    def test_runs(self):
+        import matplotlib
+
+        matplotlib.use("agg")
+        here, path = os.getcwd(), list(sys.path)
+        self.addCleanup(os.chdir, here)
+        self.addCleanup(sys.path.__setitem__, slice(None), path)
+        for file in sorted((SOURCE / "scripts/python/notebooks").glob("*.ipynb")):
+            notebook = json.loads(file.read_text())
+            names = {"__name__": "__main__"}
+            os.chdir(self.root)
+            for cell in notebook["cells"]:
+                self.assertFalse(cell.get("outputs"), f"{file.name}: keep it without outputs")
+                if cell["cell_type"] == "code":
+                    with unittest.mock.patch("sys.stdout", io.StringIO()):
+                        exec(compile("".join(cell["source"]), file.name, "exec"), names)
+            self.assertGreater(len(matplotlib.pyplot.get_fignums()), 0)
+            self.assertIn("mine", names["hapbench"].algorithms())
+
+
+if __name__ == "__main__":
+    import unittest.mock
+
+    unittest.main(argv=sys.argv[:1])
