@@ -8,7 +8,7 @@
 #include "results/record/contact_recorder.hpp"
 #include "tests/results/rows.hpp"
 
-namespace hapbench {
+namespace hapbench::memory_table_test {
 namespace {
 
 constexpr Column kColumns[] = {{"n", "1", ""}, {"x", "m", ""}, {"y", "m", ""},
@@ -47,4 +47,4 @@ TEST(MemoryTable, IsFilledByARecorderWithoutTheHeap) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::memory_table_test

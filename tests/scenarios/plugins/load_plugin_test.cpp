@@ -13,7 +13,7 @@
 #include "tests/scenarios/support/environment_variable.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench {
+namespace hapbench::load_plugin_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -149,4 +149,4 @@ TEST_F(OwnParameters, AreInTheSchema) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::load_plugin_test

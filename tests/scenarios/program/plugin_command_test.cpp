@@ -7,7 +7,7 @@
 #include "tests/scenarios/support/program.hpp"
 
 /// Laws from outside in the program.
-namespace hapbench {
+namespace hapbench::plugin_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -177,4 +177,4 @@ TEST_F(PluginCommand, RefusesPluginsInOneLine) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::plugin_command_test
