@@ -29,8 +29,9 @@ BadInput mesh_tool(const std::string& test, const std::string& contents, const s
 const std::string kTriangle = "0 0 0\n1 0 0\n0 1 0\n";
 const std::string kObj = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
-std::string ply(const std::string& faces, const std::string& format = "ascii", const std::string& coordinate = "float",
-                const std::string& list = "property list uchar int vertex_indices\n") {
+std::string mesh_ply(const std::string& faces, const std::string& format = "ascii",
+                     const std::string& coordinate = "float",
+                     const std::string& list = "property list uchar int vertex_indices\n") {
   const std::string property = "property " + coordinate + " ";
   return "ply\nformat " + format + " 1.0\nelement vertex 3\n" + property + "x\n" + property + "y\n" + property +
          "z\nelement face " + faces + "\n" + list + "end_header\n";
@@ -88,14 +89,15 @@ std::vector<BadInput> bad_text_meshes() {
            "m.stl, line 5: allowed after \"outer loop\": three vertices"),
       mesh("StlOtherWord", "m.stl", "solid\nsquare 0 0\n", "line 2: got \"square\"; allowed: solid, facet, outer loop"),
       mesh("StlWithoutFacets", "m.stl", "solid x\nendsolid x\n", "has no faces"),
-      mesh("PlyMeshNanVertex", "m.ply", ply("1") + "0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n",
+      mesh("PlyMeshNanVertex", "m.ply", mesh_ply("1") + "0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n",
            "got \"nan\"; allowed: a finite number"),
-      mesh("PlyMeshWord", "m.ply", ply("1") + "0 0 0\n1 up 0\n0 1 0\n3 0 1 2\n",
+      mesh("PlyMeshWord", "m.ply", mesh_ply("1") + "0 0 0\n1 up 0\n0 1 0\n3 0 1 2\n",
            "got \"up\"; allowed: a finite number"),
-      mesh("PlyMeshTooFewFaces", "m.ply", ply("2") + kTriangle + "3 0 1 2\n",
+      mesh("PlyMeshTooFewFaces", "m.ply", mesh_ply("2") + kTriangle + "3 0 1 2\n",
            "the file ends before its 2 \"face\"; allowed: a complete file"),
-      mesh("PlyMeshVertexMissing", "m.ply", ply("1") + kTriangle + "3 0 1 3\n", "triangle 0: got vertex 3; allowed:"),
-      mesh("PlyMeshNegativeVertex", "m.ply", ply("1") + kTriangle + "3 0 1 -1\n",
+      mesh("PlyMeshVertexMissing", "m.ply", mesh_ply("1") + kTriangle + "3 0 1 3\n",
+           "triangle 0: got vertex 3; allowed:"),
+      mesh("PlyMeshNegativeVertex", "m.ply", mesh_ply("1") + kTriangle + "3 0 1 -1\n",
            "got \"-1\" as a vertex; allowed: an integer from 0"),
   };
 }
@@ -120,46 +122,50 @@ std::vector<BadInput> bad_binary_meshes() {
       mesh("PlyMeshBinaryCut", "m.ply", binary_ply_text(block, true, false).substr(0, 300),
            "m.ply: the file ends before its 12 \"face\"; allowed: a complete file"),
       mesh("PlyMeshBinaryNanVertex", "m.ply",
-           ply("1", "binary_little_endian") + std::string(8, '\0') + nan + std::string(24, '\0') +
+           mesh_ply("1", "binary_little_endian") + std::string(8, '\0') + nan + std::string(24, '\0') +
                std::string("\3\0\0\0\0\1\0\0\0\2\0\0\0", 13),
            "vertex 0: is not finite; allowed: finite coordinates"),
       mesh("PlyMeshHugeFace", "m.ply",
-           ply("1", "binary_little_endian", "float", "property list int int vertex_indices\n") + std::string(36, '\0') +
-               "\xff\xff\xff\x7f",
+           mesh_ply("1", "binary_little_endian", "float", "property list int int vertex_indices\n") +
+               std::string(36, '\0') + "\xff\xff\xff\x7f",
            "m.ply: the file ends before its 1 \"face\"; allowed: a complete file"),
-      mesh("PlyMeshHugeCount", "m.ply", ply("4000000000", "binary_little_endian") + std::string(36, '\0'),
+      mesh("PlyMeshHugeCount", "m.ply", mesh_ply("4000000000", "binary_little_endian") + std::string(36, '\0'),
            "m.ply: the file ends before its 4000000000 \"face\"; allowed: a complete file"),
-      mesh("PlyMeshWholeCoordinates", "m.ply", ply("1", "ascii", "int"), "line 4: allowed for a coordinate: float or"),
+      mesh("PlyMeshWholeCoordinates", "m.ply", mesh_ply("1", "ascii", "int"),
+           "line 4: allowed for a coordinate: float or"),
       mesh("PlyMeshWithoutFaceElement", "m.ply", "ply\nformat ascii 1.0\nelement vertex 0\nend_header\n",
            "line 4: has no faces; allowed: \"element face COUNT\""),
       mesh("PlyMeshFacesFirst", "m.ply",
            "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n",
            "line 3: allowed before the faces: vertices with one each of x, y and z"),
       mesh("PlyMeshRealIndices", "m.ply",
-           ply("1", "ascii", "float", "property uchar flag\nproperty list uchar float vertex_indices\n"),
+           mesh_ply("1", "ascii", "float", "property uchar flag\nproperty list uchar float vertex_indices\n"),
            "line 9: allowed: \"property list COUNT TYPE NAME\" with an integer type COUNT, for the vertices of a face"),
       mesh("PlyMeshRealCount", "m.ply",
-           ply("1", "ascii", "float", "property list uchar int vertex_indices\nproperty list float int more\n"),
+           mesh_ply("1", "ascii", "float", "property list uchar int vertex_indices\nproperty list float int more\n"),
            "line 9: allowed: \"property list COUNT TYPE NAME\" with an integer type COUNT"),
       mesh("PlyMeshOtherType", "m.ply",
-           ply("1", "ascii", "float", "property list uchar int vertex_indices\nproperty word flag\n"),
+           mesh_ply("1", "ascii", "float", "property list uchar int vertex_indices\nproperty word flag\n"),
            "line 9: allowed: \"property TYPE NAME\" or \"property list COUNT TYPE NAME\""),
-      mesh("PlyMeshOtherList", "m.ply", ply("1", "ascii", "float", "property list uchar int corners\n"),
+      mesh("PlyMeshOtherList", "m.ply", mesh_ply("1", "ascii", "float", "property list uchar int corners\n"),
            "line 7: allowed for a face: one \"property list COUNT INDEX vertex_indices\""),
       mesh("PlyMeshTwoLists", "m.ply",
-           ply("1", "ascii", "float", "property list uchar int vertex_indices\nproperty list uchar int vertex_index\n"),
+           mesh_ply("1", "ascii", "float",
+                    "property list uchar int vertex_indices\nproperty list uchar int vertex_index\n"),
            "line 7: allowed for a face: one \"property list COUNT INDEX vertex_indices\""),
-      mesh("PlyMeshShortFace", "m.ply", ply("1", "binary_little_endian") + std::string(36, '\0') + "\2",
+      mesh("PlyMeshShortFace", "m.ply", mesh_ply("1", "binary_little_endian") + std::string(36, '\0') + "\2",
            "m.ply: face 0: got 2 corners; allowed: at least 3"),
       mesh("PlyMeshNegativeList", "m.ply",
-           ply("1", "binary_little_endian", "float",
-               "property list char int other\nproperty list uchar int vertex_indices\n") +
+           mesh_ply("1", "binary_little_endian", "float",
+                    "property list char int other\nproperty list uchar int vertex_indices\n") +
                std::string(36, '\0') + "\xff",
            "m.ply: \"face\" 0: got a list of -1 entries; allowed: an integer from 0"),
-      mesh("PlyMeshBinaryNegativeVertex", "m.ply",
-           ply("1", "binary_big_endian") + std::string(36, '\0') + "\3" + std::string(8, '\0') + "\xff\xff\xff\xff",
-           "m.ply: triangle 0: got vertex -1; allowed: 0 ... 2, the vertices of the file"),
-      mesh("PlyMeshHeaderCut", "m.ply", ply("1").substr(0, ply("1").find("end_header")), "the header does not end"),
+      mesh(
+          "PlyMeshBinaryNegativeVertex", "m.ply",
+          mesh_ply("1", "binary_big_endian") + std::string(36, '\0') + "\3" + std::string(8, '\0') + "\xff\xff\xff\xff",
+          "m.ply: triangle 0: got vertex -1; allowed: 0 ... 2, the vertices of the file"),
+      mesh("PlyMeshHeaderCut", "m.ply", mesh_ply("1").substr(0, mesh_ply("1").find("end_header")),
+           "the header does not end"),
   };
 }
 
