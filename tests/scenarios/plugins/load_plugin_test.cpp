@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cfenv>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "algorithms/registry.hpp"
 #include "scenarios/description/load_scenario.hpp"
@@ -80,6 +80,12 @@ TEST(LoadPlugin, LoadsAFileOnceAndALawOnce) {
   fs::copy_file(plugin("hostile"), copy);
   EXPECT_EQ(problem_with(copy), "is no plugin that can be used: \"hostile\" is the name of the law in " +
                                     fs::canonical(plugin("hostile")).string());
+}
+
+TEST(LoadPlugin, LeavesTheArithmeticAlone) {
+  load_plugin(plugin("hostile"));
+  volatile double least = std::numeric_limits<double>::min();
+  EXPECT_GT(least / 2.0, 0.0);
 }
 
 TEST(LoadPlugin, LoadsFoldersInTheOrderOfNames) {
