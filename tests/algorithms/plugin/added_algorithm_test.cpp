@@ -8,7 +8,7 @@
 #include "algorithms/registry.hpp"
 
 /// In a program of its own: what is added stays.
-namespace hapbench {
+namespace hapbench::added_algorithm_test {
 namespace {
 
 std::unique_ptr<ForceAlgorithm> make_some(const RenderingConfig& config) {
@@ -87,4 +87,4 @@ TEST(AddedAlgorithm, IsRefusedWithTheReason) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::added_algorithm_test

@@ -10,7 +10,7 @@
 #include "results/allocations/allocations.hpp"
 #include "tests/support/contact_sets.hpp"
 
-namespace hapbench {
+namespace hapbench::plugin_law_test {
 namespace {
 
 constexpr double kK = 20000.0;
@@ -260,4 +260,4 @@ TEST(ALawPlugin, CannotBeCreatedWhenTheConstructorThrows) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::plugin_law_test

@@ -7,7 +7,7 @@
 #include "tests/scenarios/support/program.hpp"
 
 /// Laws from outside in the program.
-namespace hapbench {
+namespace hapbench::plugin_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -88,8 +88,9 @@ TEST_F(PluginCommand, StressesLimitsAndMapsTheLaw) {
   const Json counts = stress.json();
   EXPECT_EQ(counts.back()["algorithm"], "capped_summation");
   EXPECT_TRUE(counts.back()["largest_share_of_bound"].is_null()) << "nothing is known of its bound";
-  const ProgramRun limit = with_law({"limit", "single_spring", "--vary", "rendering.parameters.capped_summation.limit", "--between", "0.1:10",
-                                     "--algorithms", "capped_summation", "--out", out("limit"), "--json"});
+  const ProgramRun limit =
+      with_law({"limit", "single_spring", "--vary", "rendering.parameters.capped_summation.limit", "--between",
+                "0.1:10", "--algorithms", "capped_summation", "--out", out("limit"), "--json"});
   EXPECT_EQ(limit.status, 0) << limit.err;
 }
 
@@ -178,4 +179,4 @@ TEST_F(PluginCommand, RefusesPluginsInOneLine) {
 }
 
 }  // namespace
-}  // namespace hapbench
+}  // namespace hapbench::plugin_command_test
