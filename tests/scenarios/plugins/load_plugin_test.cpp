@@ -47,9 +47,12 @@ TEST(LoadPlugin, SaysWhatIsWrongWithAFile) {
 
 TEST(LoadPlugin, SaysWhatIsWrongWithAPlugin) {
   const std::size_t before = algorithms().size();
-  const auto hostile = [](const char* how) {
+  const test::TemporaryDirectory directory;
+  const fs::path file = fs::canonical(directory.path()) / "not_loaded_yet.so";
+  fs::copy_file(plugin("hostile"), file);
+  const auto hostile = [&file](const char* how) {
     const test::EnvironmentVariable chosen("HOSTILE", how);
-    return problem_with(plugin("hostile"));
+    return problem_with(file);
   };
   EXPECT_EQ(hostile("refuses"),
             "does not support version 1 of the interface; allowed: built with the hapbench_plugin.h of this program");
