@@ -151,6 +151,8 @@ InputError in_file(const InputError& fault, const std::filesystem::path& file) {
   if (problem.starts_with("unknown field") && problem.find("nearest valid name") == std::string::npos)
     problem += fault.place().starts_with("/rendering/parameters/") ? "; a law from outside brings its own with --plugin"
                                                                    : hint_elsewhere(last_name(fault.place(), '/'));
+  if (fault.place() == "/rendering/algorithm" && problem.find("nearest valid name") == std::string::npos)
+    problem += "; a law from outside comes with --plugin";
   const std::string place = fault.place().empty() ? file.string() : file.string() + ": " + fault.place();
   return {fault.kind(), place, problem};
 }

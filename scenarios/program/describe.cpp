@@ -32,7 +32,8 @@ void add_parameter(Description& d, const std::string& path, const char* unit, co
       {{"name", path}, {"unit", unit}, {"default", initial}, {"range", range}, {"meaning", meaning}});
 }
 
-Description describe_model(const char* kind, const ModelInfo& info, std::span<const OwnParameter> own = {}) {
+Description describe_model(const char* kind, const ModelInfo& info, std::span<const OwnParameter> own = {},
+                           const AlgorithmOrigin& origin = {}) {
   Description d;
   d.text = fmt::format("{} {}\n{}\n", kind, bold(stdout, info.name), wrapped(info.summary));
   for (const auto& [title, text] : {std::pair{"formula", info.formula}, std::pair{"source", info.source},
@@ -45,6 +46,10 @@ Description describe_model(const char* kind, const ModelInfo& info, std::span<co
             {"source", info.source},
             {"known_failure", info.known_failure},
             {"parameters", Json::array()}};
+  if (!origin.file.empty()) {
+    d.text += entry("plugin", fmt::format("{}, hash {}", origin.file, origin.hash), 2, 17);
+    d.json["plugin"] = {{"file", origin.file}, {"hash", origin.hash}};
+  }
   if (!info.parameters.empty() || !own.empty()) d.text += "\n  parameters\n";
   for (const auto& [parameter, meaning] : info.parameters)
     add_parameter(d, parameter.field, parameter.range.unit, meaning);
@@ -183,7 +188,7 @@ Description describe_name(const std::string& name) {
   const auto add = [&meanings](Description more) { meanings.push_back(std::move(more)); };
   // A name may mean two things: normal_projection is an algorithm and a depth model.
   if (const AlgorithmEntry* entry = find_algorithm(name))
-    add(describe_model("algorithm", *entry->info, entry->own_parameters));
+    add(describe_model("algorithm", *entry->info, entry->own_parameters, entry->origin));
   if (const DepthModelEntry* entry = find_depth_model(name)) add(describe_model("depth model", *entry->info));
   if (const ModelInfo* stage = find_stage(name)) add(describe_model("stage", *stage));
   if (const IntegratorEntry* entry = find_integrator(name)) add(describe_model("integrator", entry->info));

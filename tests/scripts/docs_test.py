@@ -59,6 +59,12 @@ def write_recording(file):
     file.write_text(f"t,fx,fy,fz,x,y,z,qx,qy,qz,qw\n{rows}", encoding="ascii")
 
 
+def compile_law(file):
+    """The example in C, from its header in the tree."""
+    law = SOURCE / "algorithms/plugin/examples/depth_weighted.c"
+    subprocess.run(["gcc", "-std=c11", "-O2", "-fPIC", "-shared", f"-I{law.parent.parent}", law, "-lm", "-o", file], check=True)
+
+
 class Bench:
     """A folder with the files that manuals call their reader's own."""
 
@@ -70,6 +76,7 @@ class Bench:
         write_stl(folder / "my.stl")
         shutil.copy(SOURCE / "scenarios/examples/data/wipe.hapi.txt", folder / "log.txt")
         write_recording(folder / "rec.csv")
+        compile_law(folder / "depth_weighted.so")
         self.must("new", "mesh", "--from", "my.stl", "--out", "my.json")
         for name in "abc":
             shutil.copy(folder / "my.json", folder / f"{name}.json")

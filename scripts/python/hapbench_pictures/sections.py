@@ -4,7 +4,7 @@ import shlex
 
 from hapbench_report.json_input import at, number_or_none
 from hapbench_report.markup import cell, command, heading_cell, number, number_cell, table, text
-from hapbench_report.section_runs import provenance_of, provenance_section
+from hapbench_report.section_runs import plugin_text, provenance_of, provenance_section
 
 from .fields import differing
 
@@ -105,7 +105,7 @@ def scenario_section(runs, labels):
         return ""
     return differences(known) + "".join(
         f"<details><summary>Scenario of {text(label)}</summary><pre>{text(json.dumps(run.scenario, indent=2, ensure_ascii=False))}</pre>"
-        f"<p class=note>State hash {text(run.summary.get('state_hash', '–'))}.</p></details>" for run, label in known)
+        f"<p class=note>State hash {text(run.summary.get('state_hash', '–'))}{plugin_text(run)}.</p></details>" for run, label in known)
 
 
 def differences(known):
@@ -118,12 +118,18 @@ def differences(known):
 
 
 def commands_section(runs, words):
-    lines = [f"hapbench run {quoted(run.directory / 'scenario.effective.json')} --out {quoted(run.directory.name + '_again')}"
-             for run in runs if run.scenario]
+    lines = [f"hapbench run {quoted(run.directory / 'scenario.effective.json')}{plugin_option(run)} "
+             f"--out {quoted(run.directory.name + '_again')}" for run in runs if run.scenario]
     given = " ".join(quoted(word) for word in words)
     return ((f"<p>Each run again, the same bytes:</p>{command(chr(10).join(lines))}" if lines else "")
             + f"<p>Pictures and this page:</p>{command(f'hapbench plot {given}{chr(10)}hapbench report {given}')}"
             + "<p class=note>The paths are those of the machine that wrote this page. Elsewhere, save a scenario from above as a file.</p>")
+
+
+def plugin_option(run):
+    """Of the law of a plugin, which the results know by its file's name."""
+    file = at(run.summary, "/provenance/plugin/file")
+    return f" --plugin {quoted(file)}" if file else ""
 
 
 def quoted(path):

@@ -69,7 +69,7 @@ def run_details(run, links):
             f"{listed('Claims', claims)}{listed('Figures', figures)}{command(rerun(run))}"
             f"<pre>{text(compact(dict(parts)))}</pre>"
             f"<p class=note>State hash {text(run.summary.get('state_hash', '–'))}, scenario hash "
-            f"{text(at(run.summary, '/provenance/scenario_hash') or '–')}.</p></details>")
+            f"{text(at(run.summary, '/provenance/scenario_hash') or '–')}{plugin_text(run)}.</p></details>")
 
 
 def rerun(run):
@@ -83,11 +83,17 @@ def compact(parts):
     return "\n".join(f"{key}: {json.dumps(value, ensure_ascii=False)}" for key, value in parts.items())
 
 
+def plugin_text(run):
+    plugin = at(run.summary, "/provenance/plugin")
+    return f", law from {text(plugin['file'])} with hash {text(plugin['hash'])}" if plugin else ""
+
+
 def provenance_of(runs):
     """Distinct builds and machines, with the number of their runs."""
     found = {}
     for run in runs:
-        build = {k: v for k, v in (run.summary.get("provenance") or {}).items() if k != "scenario_hash"}
+        # What is the scenario's or the law's own is no other build.
+        build = {k: v for k, v in (run.summary.get("provenance") or {}).items() if k not in ("scenario_hash", "plugin")}
         key = json.dumps(build, sort_keys=True)
         found[key] = found.get(key, 0) + 1
     return [(json.loads(key), count) for key, count in sorted(found.items())]

@@ -36,6 +36,7 @@ TEST_F(PluginCommand, KnowsTheLawAndItsParametersEverywhere) {
   const ProgramRun described = hapbench({"--plugin", plugin("depth_weighted"), "describe", "depth_weighted"});
   EXPECT_EQ(described.status, 0) << described.err;
   EXPECT_NE(described.out.find("algorithm depth_weighted"), std::string::npos);
+  EXPECT_NE(described.out.find("depth_weighted.so, hash "), std::string::npos);
   EXPECT_NE(described.out.find("rendering.parameters.depth_weighted.power\n        number >= 0 <= 64 [1]; default 1"),
             std::string::npos)
       << described.out;
@@ -87,8 +88,9 @@ TEST_F(PluginCommand, StressesLimitsAndMapsTheLaw) {
   const Json counts = stress.json();
   EXPECT_EQ(counts.back()["algorithm"], "capped_summation");
   EXPECT_TRUE(counts.back()["largest_share_of_bound"].is_null()) << "nothing is known of its bound";
-  const ProgramRun limit = with_law({"limit", "single_spring", "--vary", "rendering.parameters.capped_summation.limit", "--between", "0.1:10",
-                                     "--algorithms", "capped_summation", "--out", out("limit"), "--json"});
+  const ProgramRun limit =
+      with_law({"limit", "single_spring", "--vary", "rendering.parameters.capped_summation.limit", "--between",
+                "0.1:10", "--algorithms", "capped_summation", "--out", out("limit"), "--json"});
   EXPECT_EQ(limit.status, 0) << limit.err;
 }
 
