@@ -13,6 +13,7 @@
 #include "algorithms/penalty_rendering.hpp"
 #include "algorithms/registry.hpp"
 #include "bindings/supervise.hpp"
+#include "sim/core/hash.hpp"
 
 namespace hapbench {
 namespace {
@@ -302,7 +303,8 @@ Argument argument_named(const std::string& name) {
 
 void add_force_law(const std::string& name, const py::object& callable, bool is_class,
                    const std::vector<std::string>& arguments, const std::vector<GivenParameter>& parameters,
-                   const std::array<std::string, 4>& texts, const std::string& depth_model) {
+                   const std::array<std::string, 4>& texts, const std::string& depth_model,
+                   const std::string& file, const std::string& source) {
   if (is_work_under_way()) throw std::runtime_error("a force law cannot be defined while something is computed");
   Definition definition{name, callable, is_class, {}};
   std::vector<OwnParameter> own;
@@ -324,6 +326,7 @@ void add_force_law(const std::string& name, const py::object& callable, bool is_
   entry.info = &info;
   if (fixed != nullptr) entry.fixed_depth_model = fixed->info->name;
   entry.own_parameters = own;
+  entry.origin = {file, hash_text(hash_of(source))};
   entry.make = [shared = share(std::move(definition)), name](const RenderingConfig& config) {
     return std::make_unique<PenaltyRendering>(
         std::make_unique<PythonLaw>(shared, own_values(config, *find_algorithm(name)), config.stiffness), config);
@@ -335,7 +338,7 @@ void add_force_law(const std::string& name, const py::object& callable, bool is_
 
 void bind_force_laws(py::module_& module) {
   module.def("add_force_law", add_force_law, py::arg("name"), py::arg("callable"), py::arg("is_class"),
-             py::arg("arguments"), py::arg("parameters"), py::arg("texts"), py::arg("depth_model"),
+             py::arg("arguments"), py::arg("parameters"), py::arg("texts"), py::arg("depth_model"), py::arg("file"), py::arg("source"),
              "Make an algorithm of a callable; hapbench.force_law checks and fills the arguments.");
 }
 

@@ -2,6 +2,7 @@
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TypeVar
 
 from .engine import _hapbench
@@ -48,7 +49,7 @@ def force_law(name: str, parameters: Mapping[str, Parameter | float] | None = No
         own = {key: _parameter(value) for key, value in (parameters or {}).items()}
         texts = (_summary(law), formula or "as written in Python", source or _place(law), known_failure or "unknown")
         table = [(key, p.default, p.least, p.greatest, p.unit, p.meaning) for key, p in own.items()]
-        _hapbench.add_force_law(name, law, is_class, _arguments(name, law, own), table, texts, depth_model or "")
+        _hapbench.add_force_law(name, law, is_class, _arguments(name, law, own), table, texts, depth_model or "", *_origin(law))
         return law
 
     return add
@@ -72,6 +73,14 @@ def _arguments(name, law, own):
     if unused:
         raise TypeError(f"force law {name!r}: parameter {min(unused)!r} is none of its arguments")
     return [parameter.name for parameter in given]
+
+
+def _origin(law):
+    """The file and the text of a law, for the provenance of results."""
+    try:
+        return Path(inspect.getsourcefile(law) or "").name or "Python", inspect.getsource(law)
+    except (OSError, TypeError):
+        return "Python", ""
 
 
 def _summary(law):
