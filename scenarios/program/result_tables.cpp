@@ -57,12 +57,12 @@ constexpr Column kShellColumns[] = {
 
 /// A sweep's table has the metrics that `expect` may bound between `steps` and `state_hash`.
 std::vector<Column> sweep_columns() {
-  static const MetricList kMetrics = metrics_without_values();
+  static const MetricList kShownMetrics = metrics_without_values();
   std::vector<Column> columns = {{"index", "1", "number of the run, from 0; the varied fields follow, by their paths"},
                                  {"outcome", "", "how the run ended; \"error\" for one that could not be computed"},
                                  {"expected", "", "true when it ended as the scenario's expect says"},
                                  {"steps", "1", "rows of the run"}};
-  for (const Metric& metric : kMetrics) columns.push_back({metric.name.c_str(), metric.unit, metric.meaning});
+  for (const Metric& metric : kShownMetrics) columns.push_back({metric.name.c_str(), metric.unit, metric.meaning});
   columns.push_back(
       {"state_hash", "", "over the bits of position, velocity and force of every row: equal for equal runs"});
   return columns;

@@ -13,7 +13,7 @@
 namespace hapbench::bench {
 namespace {
 
-constexpr std::uint64_t kBatch = 64;
+constexpr std::uint64_t kStepsAtATime = 64;
 
 /// The wall of a hole, 0.05 mm inside the upright drill that fills it: n points, every one a contact, evenly spread as
 /// seeds are in a sunflower.
@@ -44,7 +44,7 @@ class FilledHole {
     passivity_ = std::make_unique<PassivityObserver>(config.dt);
     simulation_ = std::make_unique<Simulation>(config, assemble(scenario, wall(n, make_cylinder(scenario.tool)), {}),
                                                std::vector<Observer*>{metrics_.get(), passivity_.get()});
-    take(kBatch);
+    take(kStepsAtATime);
   }
   void take(std::uint64_t steps) { simulation_->advance(steps); }
   Metrics metrics() const { return metrics_->metrics(); }
@@ -63,7 +63,7 @@ void step(benchmark::State& state, std::size_t n) {
   };
   if (!proved(state, fmt::format("growth/step/{}", n), wrong)) return;
   FilledHole run(n, Skips::taken);
-  while (state.KeepRunningBatch(kBatch)) run.take(kBatch);
+  while (state.KeepRunningBatch(kStepsAtATime)) run.take(kStepsAtATime);
   state.counters["contacts"] = run.metrics().colliding_mean;
 }
 
