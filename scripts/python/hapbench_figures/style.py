@@ -102,17 +102,26 @@ def note(ax, x, y, text, colour=BLACK, **keywords):
     return ax.text(x, y, text, transform=ax.transAxes, color=colour, fontsize=7, bbox=PLATE, **keywords)
 
 
+def fix_layout(figure):
+    """Finds the layout now and for good: matplotlib would find it again for every format. Its last digits differ from run
+    to run, with what lies where in memory, and would show in the identifiers of an SVG."""
+    engine = figure.get_layout_engine()
+    if engine is None:
+        return
+    engine.execute(figure)
+    for axes in figure.axes:
+        axes.set_position(Bbox(axes.get_position(original=True).get_points().round(12)))
+    # None at all: with any, matplotlib would go through the figure once more before it draws.
+    with matplotlib.rc_context({"figure.constrained_layout.use": False}):
+        figure.set_layout_engine(None)
+
+
 def save(figure, stem, directory):
     """Writes the figure in every format, each file complete or not at all; returns the names. Same figure, same bytes:
     no dates, and identifiers in the SVG that follow from the figure's name."""
-    # Once for all formats: finding the layout takes longer than drawing. And then no engine at all, or matplotlib would go
-    # through every figure once more before it draws.
-    figure.get_layout_engine().execute(figure)
-    for axes in figure.axes:  # the layout's last digits differ from run to run, with what lies where in memory
-        axes.set_position(Bbox(axes.get_position(original=True).get_points().round(12)))
+    fix_layout(figure)
     names = []
-    with matplotlib.rc_context({"svg.hashsalt": stem, "figure.constrained_layout.use": False}):
-        figure.set_layout_engine(None)
+    with matplotlib.rc_context({"svg.hashsalt": stem}):
         for kind in FORMATS:
             metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {"Software": None}}[kind]
             bytes_ = io.BytesIO()

@@ -6,7 +6,7 @@ import io
 import matplotlib
 import numpy as np
 
-from hapbench_figures.style import SETTINGS
+from hapbench_figures.style import SETTINGS, fix_layout
 
 from .looks import DARK, LIGHT, looks, on_dark, settings
 from .panels import PATH_COLUMNS, draw_over_time, draw_path, projections
@@ -54,6 +54,7 @@ def drawing(size, draw, light, title, words, **labels):
             draw(ax, shown)
             ax.set(**labels)
             picture = io.BytesIO()
+            fix_layout(figure)
             figure.savefig(picture, format="svg", metadata={"Date": None})
             plt.close(figure)
         data = base64.b64encode(picture.getvalue()).decode()

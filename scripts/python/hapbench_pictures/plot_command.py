@@ -62,10 +62,12 @@ def refuse(options, names, why):
 def write_all(figures, file, quiet):
     """Several of them beside each other, told apart by their names."""
     import matplotlib
+    from hapbench_figures.style import fix_layout
 
     for name, figure in figures:
         to = file.with_stem(f"{file.stem}_{name}") if len(figures) > 1 else file
         picture = io.BytesIO()
+        fix_layout(figure)
         # Same runs, same bytes.
         with matplotlib.rc_context({"svg.hashsalt": "hapbench", "svg.fonttype": "none"}):
             figure.savefig(picture, format=to.suffix[1:], dpi=150, metadata=undated(to.suffix))
