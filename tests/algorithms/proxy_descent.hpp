@@ -4,6 +4,7 @@
 
 #include "algorithms/registry.hpp"
 #include "algorithms/shell_source.hpp"
+#include "sim/core/random.hpp"
 
 namespace hapbench::test {
 

@@ -35,7 +35,7 @@ void for_random_contacts(MakeLaw make, F f) {
       contacts.y[k] = point.y();
       contacts.z[k] = point.z();
     }
-    const auto law = make({});
+    const auto law = make(RenderingConfig{});
     law->prepare(contacts.capacity());
     const Mat3 S = law->evaluate(contacts).S;
     f(*law, S, contacts, tool);
@@ -100,7 +100,7 @@ TEST(TurningVelocity, OfContactsInOnePlaceIsThatOfATranslation) {
       std::vector<Vec3> gradients(20);
       for (Vec3& u : gradients) u = random.direction();
       ContactBuffer contacts = test::contacts_of(gradients);  // at the origin
-      const auto law = make({});
+      const auto law = make(RenderingConfig{});
       law->prepare(contacts.capacity());
       const Mat3 S = law->evaluate(contacts).S;
       const ToolState tool = turning_tool(random);
