@@ -33,7 +33,7 @@ class Consumer(unittest.TestCase):
 
     def test_an_installed_library_runs_a_law_of_another_project(self):
         build = self.folder / "found"
-        must(CMAKE, "-S", CONSUMER, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}", "-DCMAKE_BUILD_TYPE=Debug")
+        must(CMAKE, "-G", "Ninja", "-S", CONSUMER, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}", "-DCMAKE_BUILD_TYPE=Debug")
         must(CMAKE, "--build", build)
         file, state_hash = must(build / "own_law", cwd=self.folder).split()
         self.assertTrue(Path(file).is_relative_to(self.prefix / "share" / "hapbench" / "scenarios"), file)
@@ -52,7 +52,7 @@ class Consumer(unittest.TestCase):
 
     def test_a_folder_of_another_project_leaves_that_alone(self):
         build = self.folder / "parent"
-        must(CMAKE, "-S", CONSUMER, "-B", build, "-G", "Ninja", f"-DHAPBENCH_SOURCE={SOURCE}")
+        must(CMAKE, "-G", "Ninja", "-S", CONSUMER, "-B", build, "-G", "Ninja", f"-DHAPBENCH_SOURCE={SOURCE}")
         cache = (build / "CMakeCache.txt").read_text().splitlines()
         self.assertIn("CMAKE_BUILD_TYPE:STRING=", cache)
         self.assertIn("HAPBENCH_BUILD_TESTS:BOOL=OFF", cache)
