@@ -52,7 +52,7 @@ class Consumer(unittest.TestCase):
 
     def test_a_folder_of_another_project_leaves_that_alone(self):
         build = self.folder / "parent"
-        must(CMAKE, "-G", "Ninja", "-S", CONSUMER, "-B", build, "-G", "Ninja", f"-DHAPBENCH_SOURCE={SOURCE}")
+        must(CMAKE, "-S", CONSUMER, "-B", build, "-G", "Ninja", f"-DHAPBENCH_SOURCE={SOURCE}")
         cache = (build / "CMakeCache.txt").read_text().splitlines()
         self.assertIn("CMAKE_BUILD_TYPE:STRING=", cache)
         self.assertIn("HAPBENCH_BUILD_TESTS:BOOL=OFF", cache)

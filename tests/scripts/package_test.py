@@ -86,7 +86,7 @@ class Package(unittest.TestCase):
 
     def test_a_project_of_its_own_runs_its_law_with_it(self):
         build = self.folder / "build"
-        must(["cmake", "-S", CONSUMER, "-B", build, f"-DCMAKE_PREFIX_PATH={self.usr}"])
+        must(["cmake", "-G", "Ninja", "-S", CONSUMER, "-B", build, f"-DCMAKE_PREFIX_PATH={self.usr}"])
         must(["cmake", "--build", build])
         file, _ = must([build / "own_law"], LD_LIBRARY_PATH=str(self.library)).split()
         self.assertTrue(Path(file).is_relative_to(self.usr / "share" / "hapbench"), file)
