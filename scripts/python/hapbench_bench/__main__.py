@@ -13,7 +13,7 @@ from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Arguments, say_err
 from . import commit, peers
 from .measure import performance
 from .program import ROOT, BenchError, build, listed
-from .table import MANUAL, RECORD, aligned, markdown, spliced
+from .table import BEGIN, END, MANUAL, RECORD, aligned, markdown, spliced
 
 DESCRIPTION = """Builds the program and its benchmarks and prints what they take as ratios, each to a benchmark that ran in the
 same process, its repetitions interleaved with theirs, beside its target (about two minutes). With --against compares every
@@ -67,18 +67,23 @@ def replace(file, text):
         scratch.unlink(missing_ok=True)
 
 
+def save(chosen, record, found, text, begin, end):
+    """Writes what was found, and with --record also the file on record and its table, `text`, in the manual."""
+    content = json.dumps(found, indent=1, ensure_ascii=False) + "\n"
+    files = {chosen.out / record.name: content}
+    if chosen.record:
+        files |= {record: content, MANUAL: spliced(MANUAL.read_text(encoding="utf-8"), text, begin, end)}
+    for file, written in files.items():
+        replace(file, written)
+
+
 def measure(chosen):
     programs = build(ROOT, ROOT / "build" / "release", "bin/hapbench", "bin/hapbench_bench")
     options = ["--full"] if chosen.full or chosen.record else []
     bench = programs / "hapbench_bench"
     growing = [name for name in listed(bench, *options) if name.startswith("growth/")]
     found = performance(bench, programs / "hapbench", growing, options)
-    text = json.dumps(found, indent=1, ensure_ascii=False) + "\n"
-    files = {chosen.out / "performance.json": text}
-    if chosen.record:
-        files |= {RECORD: text, MANUAL: spliced(MANUAL.read_text(encoding="utf-8"), markdown(found))}
-    for file, content in files.items():
-        replace(file, content)
+    save(chosen, RECORD, found, markdown(found), BEGIN, END)
     if chosen.record:
         redraw()
     print(aligned(markdown(found)), end="")
@@ -88,12 +93,7 @@ def measure(chosen):
 def measure_peers(chosen):
     program = build(ROOT, ROOT / "build" / "release", "bin/hapbench_bench_peers") / "hapbench_bench_peers"
     found = peers.measure(program)
-    files = {chosen.out / "peers.json": peers.text(found)}
-    if chosen.record:
-        manual = spliced(MANUAL.read_text(encoding="utf-8"), peers.markdown(found), peers.BEGIN, peers.END)
-        files |= {peers.RECORD: peers.text(found), MANUAL: manual}
-    for file, content in files.items():
-        replace(file, content)
+    save(chosen, peers.RECORD, found, peers.markdown(found), peers.BEGIN, peers.END)
     print(aligned(peers.markdown(found)), end="")
     return SUCCESS
 

@@ -8,7 +8,6 @@ from .program import ROOT, BenchError, listed, measured, say
 from .table import number, quantity
 
 RECORD = ROOT / "results" / "reference" / "peers.json"
-MANUAL = ROOT / "tests" / "README.md"
 BEGIN = "<!-- peers: scripts/bench --peers --record writes what follows, from results/reference/peers.json -->"
 END = "<!-- /peers -->"
 PACKAGES = "libcgal-dev, libfcl-dev, libbullet-dev, libode-dev"
@@ -56,6 +55,11 @@ def measure(program):
             "compiler": context["compiler"], "repetitions": REPETITIONS, "rows": rows}
 
 
+def depths(row):
+    """The library's mean largest depth and ours; nothing of a library that gives none."""
+    return f"{1e6 * row['depth_m']:.0f}, {1e6 * row['our_depth_m']:.0f} µm" if row["depth_m"] else ""
+
+
 def markdown(peers):
     """How many times as long as ours each takes for a pose."""
     by_task = {(row["library"], row["task"]): row for row in peers["rows"]}
@@ -66,8 +70,7 @@ def markdown(peers):
         name, answers, _ = LIBRARIES[library]
         cells = [f"{number(by_task[library, task]['ratio'])} ×" for task in TASKS]
         last = by_task[library, TASKS[-1]]
-        depth = f"{1e6 * last['depth_m']:.0f}, {1e6 * last['our_depth_m']:.0f} µm" if last["depth_m"] else ""
-        lines.append(f"| {name} | {answers} | {' | '.join(cells)} | {last['contacts']:.0f}, {last['our_contacts']:.0f} | {depth} |")
+        lines.append(f"| {name} | {answers} | {' | '.join(cells)} | {last['contacts']:.0f}, {last['our_contacts']:.0f} | {depths(last)} |")
     ours = [quantity(by_task[libraries[-1], task]["our_seconds"], "s") for task in TASKS]
     lines += ["", f"One × is {', '.join(ours)} of our search with depths at a pose of {', '.join(TASKS)}; of the search alone",
               "for the library that answers our question."]
@@ -77,7 +80,3 @@ def markdown(peers):
 def record():
     """What scripts/bench --peers --record has measured."""
     return json.loads(RECORD.read_text(encoding="utf-8"))
-
-
-def text(peers):
-    return json.dumps(peers, indent=1, ensure_ascii=False) + "\n"

@@ -60,11 +60,10 @@ def peers_table():
     cells = []
     for row in record["rows"]:
         name, answers, _ = peers.LIBRARIES[row["library"]]
-        depths = f"{quantity_um(row['depth_m'])}, {quantity_um(row['our_depth_m'])}" if row["depth_m"] else ""
         cells.append([cell(text(name)), cell(text(answers)), cell(text(row["task"])),
                       cell(f"{number(row['ratio'])} × {spread(row)}", row["ratio"], "number"),
                       cell(quantity(row["seconds"], "s"), row["seconds"], "number"),
-                      cell(f"{row['contacts']:.0f}, {row['our_contacts']:.0f}", classes="number"), cell(depths, classes="number")])
+                      cell(f"{row['contacts']:.0f}, {row['our_contacts']:.0f}", classes="number"), cell(peers.depths(row), classes="number")])
     headings = [heading_cell("Library"), heading_cell("Answers"), heading_cell("Scene"), heading_cell("Over ours", True),
                 heading_cell("Takes", True), heading_cell("Contacts, ours", True), heading_cell("Depth, ours", True)]
     return ("<p>Other collision libraries at the same poses of the same block, timed in one process with our search: CGAL is asked "
@@ -72,7 +71,3 @@ def peers_table():
             f"{text(record['cpu'])}, {text(record['compiler'])}; commit <code>{text(record['commit'])}</code>, "
             f"{text(record['date'])}.</p>" + command("scripts/bench --peers")
             + table(headings, cells, "<b>Other libraries</b>", "sortable"))
-
-
-def quantity_um(metres):
-    return f"{1e6 * metres:.0f} µm"
