@@ -50,18 +50,20 @@ Push push_of(const Scenario& scenario, const Motion& motion) {
 PrecisionRow row_of(const Way& way, const Push& push, std::size_t level, SimulationParts& parts, int repetitions) {
   ContactBuffer contacts(parts.source->capacity());
   parts.source->reset();
+  std::vector<ToolPose> poses;  // not made while it is timed
+  for (std::size_t pose = 0; pose < kPoses; ++pose) poses.push_back(push.at(level, pose));
   double depth = 0.0, count = 0.0;
-  for (std::size_t pose = 0; pose < kPoses; ++pose) {
-    parts.source->contacts_at(push.at(level, pose), contacts);
+  for (const ToolPose& pose : poses) {
+    parts.source->contacts_at(pose, contacts);
     depth += contacts.largest_depth();
     count += static_cast<double>(contacts.size());
   }
   const auto tested = static_cast<double>(parts.source->work().points_tested);
   const double seconds = seconds_per_call(kPoses, repetitions, [&] {
-    for (std::size_t pose = 0; pose < kPoses; ++pose) parts.source->contacts_at(push.at(level, pose), contacts);
+    for (const ToolPose& pose : poses) parts.source->contacts_at(pose, contacts);
   });
   const double n = static_cast<double>(kPoses);
-  const double pushed = (push.at(level, kPoses / 2).position - push.start.position).norm();
+  const double pushed = (poses[kPoses / 2].position - push.start.position).norm();
   return {fmt::format("{} {:.4g}mm", way.name, 1e3 * pushed),
           "completes",
           {pushed, depth / n, count / n, tested / n},
