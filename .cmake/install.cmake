@@ -77,11 +77,8 @@ if(HAPBENCH_BUILD_PROGRAM)
 endif()
 
 # The interface of force laws in C, and examples of it.
-set(plugin_header ${PROJECT_SOURCE_DIR}/algorithms/plugin/hapbench_plugin.h)
-if(EXISTS ${plugin_header})
-  install(FILES ${plugin_header} DESTINATION include)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/algorithms/plugin/examples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples/plugin)
-endif()
+install(FILES ${PROJECT_SOURCE_DIR}/algorithms/plugin/hapbench_plugin.h DESTINATION include)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/algorithms/plugin/examples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples/plugin)
 
 # The manuals, in the folders in which they link each other.
 file(GLOB_RECURSE manuals RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
