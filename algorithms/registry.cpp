@@ -66,6 +66,17 @@ std::deque<AlgorithmEntry> built_in() {
        .make = penalty<make_highest_depth>,
        .theory = &kHighestDepthTheory,
        .may_reduce = false},
+      {.info = &kMcNeelyInfo,
+       .make = penalty<make_mcneely>,
+       .theory = &kMcNeelyTheory,
+       .may_reduce = false,
+       .creates_energy = true,
+       .own_parameters = kMcNeelyOwnParameters},
+      {.info = &kStaticCouplingInfo,
+       .make = penalty<make_static_coupling>,
+       .theory = &kStaticCouplingTheory,
+       .may_reduce = false,
+       .own_parameters = kStaticCouplingOwnParameters},
   };
 }
 
@@ -158,11 +169,7 @@ std::size_t additions() {
 
 std::vector<double> own_values(const RenderingConfig& config, const AlgorithmEntry& entry) {
   std::vector<double> values;
-  const auto given = config.parameters.find(entry.info->name);
-  for (const OwnParameter& p : entry.own_parameters) {
-    const bool has = given != config.parameters.end() && given->second.contains(p.name);
-    values.push_back(has ? given->second.at(p.name) : p.initial);
-  }
+  for (const OwnParameter& p : entry.own_parameters) values.push_back(own_value(config, entry.info->name, p));
   return values;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "algorithms/depth/depth_model.hpp"
+#include "algorithms/own_parameter.hpp"
 #include "algorithms/rendering_config.hpp"
 #include "algorithms/theory.hpp"
 #include "sim/core/model_info.hpp"
@@ -17,15 +18,6 @@
 /// The one table of names. Adding an algorithm to the tree is one line in registry.cpp; `add_algorithm` adds one from
 /// outside while the program runs.
 namespace hapbench {
-
-/// A parameter that belongs to one algorithm alone and is no member of RenderingConfig: a number, the field
-/// rendering.parameters.<algorithm>.<name> of a scenario.
-struct OwnParameter {
-  const char* name;
-  NumberRange range;
-  double initial;  ///< its default
-  const char* meaning;
-};
 
 /// Where the code of an algorithm from outside comes from, for the provenance of results.
 struct AlgorithmOrigin {

@@ -47,10 +47,11 @@ SpringState shifted_springs(const ContactBuffer& contacts, const Vec3& shift, co
     const Pack ux = load(&contacts.ux[i]), uy = load(&contacts.uy[i]), uz = load(&contacts.uz[i]);
     const Pack d = load(&contacts.depth[i]) + (ux * sx + uy * sy + uz * sz);
     const Pack x = load(&contacts.x[i]) - tip_x, y = load(&contacts.y[i]) - tip_y, z = load(&contacts.z[i]) - tip_z;
-    energy += d * d;
-    mx += d * (y * uz - z * uy);
-    my += d * (z * ux - x * uz);
-    mz += d * (x * uy - y * ux);
+    const Pack cd = load(&contacts.weight[i]) * d;
+    energy += cd * d;
+    mx += cd * (y * uz - z * uy);
+    my += cd * (z * ux - x * uz);
+    mz += cd * (x * uy - y * ux);
   }
   return {0.5 * K * simd::sum(energy), -K * Vec3(simd::sum(mx), simd::sum(my), simd::sum(mz))};
 }

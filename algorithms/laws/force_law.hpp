@@ -21,8 +21,9 @@ struct LawForce {
 };
 
 /// A force law: merges the penalty springs of all contacts into one force (thesis C.4). All laws but
-/// `original_averaging`, `highest_depth`, `virtual_coupling` and `least_squares` are f_spring = -K sum c_i d_i u_i and
-/// S = sum c_i u_i u_i^T and differ in the weights c_i only. Per-run state; one virtual call per step.
+/// `original_averaging`, `highest_depth` and those with a coupling (virtual_coupling, static_coupling, least_squares)
+/// are f_spring = -K sum c_i d_i u_i and S = sum c_i u_i u_i^T and differ in the weights c_i only. Per-run state; one
+/// virtual call per step.
 class ForceLaw {
  public:
   explicit ForceLaw(double stiffness) : K_(stiffness) {}
@@ -59,8 +60,8 @@ Vec3 gradient_sum(const ContactBuffer& contacts) noexcept;
 /// without weights. O(n).
 Vec3 mean_arm(const ContactBuffer& contacts, const Vec3& tip) noexcept;
 
-/// Energy and moment about `tip` of unweighted springs of stiffness K [N/m] whose ends have moved by `shift` [m]: the
-/// depths are d_i + <u_i, shift>. O(n).
+/// Energy and moment about `tip` of springs of stiffness K [N/m] and the weights in the buffer, whose ends have moved
+/// by `shift` [m]: the depths are d_i + <u_i, shift>. O(n).
 SpringState shifted_springs(const ContactBuffer& contacts, const Vec3& shift, const Vec3& tip, double K) noexcept;
 
 /// f_spring and S of the weights in the buffer. O(n).

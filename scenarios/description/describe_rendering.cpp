@@ -51,7 +51,7 @@ void own_parameters(Fields& f, RenderingConfig& rendering) {
   const bool any = std::any_of(algorithms().begin(), algorithms().end(),
                                [&](const AlgorithmEntry& entry) { return presence(entry) != Presence::left_out; });
   f.group(
-      "parameters", "parameters of algorithms from outside (--plugin): an object for each algorithm",
+      "parameters", "parameters that algorithms have for themselves: an object for each algorithm",
       [&](Fields& all) {
         for (const AlgorithmEntry& entry : algorithms()) {
           if (entry.own_parameters.empty()) continue;

@@ -33,6 +33,8 @@ ALGORITHMS = {
     "continuous_normal_projection": Look("contin. projection (ours)", "#775543", "#D3AE97", (3, 1), "*"),
     "least_squares": Look("least squares (ours)", "#1B06E8", "#8F9BFF", (1, 1.5), "d"),
     "highest_depth": Look("highest depth", "#09335D", "#C3D3EA", (6, 2), "<"),
+    "mcneely": Look("McNeely, 10/N", "#8A4B00", "#F0B060", (3, 1.5, 1, 1.5), "1"),
+    "static_coupling": Look("static coupling", "#00516B", "#5FC4E8", (2, 2), "2"),
     "merged_shaping": Look("merged shaping (ours)", "#9F0375", "#F07CC8", (4, 1, 1, 1), "p"),
     "proxy": Look("proxy (ours)", "#1D6A01", "#7EDB5A", (8, 1), ">"),
 }

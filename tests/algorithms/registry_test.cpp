@@ -95,6 +95,8 @@ TEST(ForceBound, HoldsForSpringsOfEqualDepthInClosedForm) {
     EXPECT_GE(bound("virtual_coupling", n), points / (1.0 + points));  // n parallel springs in series with one
     EXPECT_GE(bound("least_squares", n), points / (0.01 + points));
     EXPECT_EQ(bound("highest_depth", n), 1.0);
+    EXPECT_EQ(bound("mcneely", n), std::min(points, 10.0));
+    EXPECT_EQ(bound("static_coupling", n), 30.0 / 20'000.0);  // N over N/m
     EXPECT_GE(bound("shaped_stiffness", n), 1.0);
     EXPECT_LE(bound("shaped_stiffness", n), 3.0);
   }

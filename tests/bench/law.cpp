@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "algorithms/laws/exact_shaping.hpp"
@@ -50,6 +51,8 @@ std::function<Vec3(const Dense&)> reference(std::string_view algorithm) {
   if (algorithm == "highest_depth") return highest_depth;
   if (algorithm == "summation") return [=](const Dense& c) { return weighted(c, ones); };
   if (algorithm == "mean") return [=](const Dense& c) -> Vec3 { return weighted(c, ones) / double(c.n()); };
+  if (algorithm == "mcneely")
+    return [=](const Dense& c) -> Vec3 { return weighted(c, ones) * std::min(1.0, 10.0 / double(c.n())); };
   if (algorithm == "tandpasta") return [](const Dense& c) { return weighted(c, test::tandpasta_weights); };
   if (algorithm == "shaped_stiffness" || algorithm.ends_with("normal_projection")) {
     return [=](const Dense& c) { return weighted(c, shaped); };

@@ -73,19 +73,28 @@ TEST_P(RigidMotion, OfTheWholeSceneTurnsForceAndTorque) {
   }
 }
 
+/// What the algorithm has of its own in newtons, such as a force at which it saturates, belongs to the scale.
+RenderingConfig with_forces_scaled(RenderingConfig config, double s) {
+  for (const OwnParameter& own : find_algorithm(config.algorithm)->own_parameters) {
+    if (std::string_view(own.range.unit) == "N")
+      config.parameters[config.algorithm][own.name] = s * own_value(config, config.algorithm.c_str(), own);
+  }
+  return config;
+}
+
 TEST_P(Invariance, LengthsScaleTheSpringForce) {
   // Powers of four scale every product, sum and root without rounding: the force is the same to the bit.
   const Vec3 original = test::Probe(setting, config).force_at(setting.pose).spring;
   for (const double s : {4.0, 0.25, 1024.0}) {
     const test::Setting scaled = test::scaled(setting, s);
-    EXPECT_EQ(test::Probe(scaled, config).force_at(scaled.pose).spring, s * original) << "s = " << s;
+    EXPECT_EQ(test::Probe(scaled, with_forces_scaled(config, s)).force_at(scaled.pose).spring, s * original) << "s = " << s;
   }
 }
 
 TEST_P(Invariance, StiffnessScalesTheSpringForce) {
   const Vec3 original = test::Probe(setting, config).force_at(setting.pose).spring;
   for (const double s : {4.0, 0.25, 1024.0}) {
-    RenderingConfig stiffer = config;
+    RenderingConfig stiffer = with_forces_scaled(config, s);
     stiffer.stiffness *= s;
     EXPECT_EQ(test::Probe(setting, stiffer).force_at(setting.pose).spring, s * original) << "s = " << s;
   }

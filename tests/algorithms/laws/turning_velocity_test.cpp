@@ -94,8 +94,9 @@ TEST(TurningVelocity, OfOriginalAveragingIsThatOfTheMiddleOfTheContactsAlongTheM
 TEST(TurningVelocity, OfContactsInOnePlaceIsThatOfATranslation) {
   // S v with v = omega x r: at one place a turn is nothing else.
   Random random(2);
-  for (const MakeLaw make : {make_summation, make_mean, make_shaped_stiffness, make_tandpasta, make_exact_shaping,
-                             make_virtual_coupling, make_least_squares, make_original_averaging, make_highest_depth}) {
+  for (const MakeLaw make :
+       {make_summation, make_mean, make_shaped_stiffness, make_tandpasta, make_exact_shaping, make_virtual_coupling,
+        make_least_squares, make_original_averaging, make_highest_depth, make_mcneely, make_static_coupling}) {
     for (int i = 0; i < 20; ++i) {
       std::vector<Vec3> gradients(20);
       for (Vec3& u : gradients) u = random.direction();

@@ -80,6 +80,11 @@ Vec3 share(std::string_view algorithm, const RenderingConfig& r, const Vec3& spr
   if (algorithm == "least_squares") {
     return -K / r.regularisation * (c.depth + c.gradient.dot(spring) / K) * c.gradient;
   }
+  if (algorithm == "static_coupling") {
+    const double K_vc = r.virtual_coupling.value_or(K), saturation = 30.0;
+    const Vec3 s = spring / (K_vc * std::sqrt(1.0 - (spring / saturation).squaredNorm()));
+    return -K * c.weight * (c.depth + c.gradient.dot(s)) * c.gradient;
+  }
   return -K * c.weight * c.depth * c.gradient;
 }
 

@@ -1,0 +1,163 @@
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/laws/laws.hpp"
+#include "algorithms/parameters.hpp"
+#include "sim/core/simd.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr ParameterInfo kParameters[] = {
+    kStiffnessParameter,
+    {parameter::kVirtualCoupling, "K_vc: stiffness of the coupling spring before it saturates; null: K"},
+};
+constexpr OwnParameter kSaturation[] = {{"saturation_N",
+                                         {1e-6, 1e12, "N"},
+                                         30.0,
+                                         "F_s: the coupling never pulls with more; default what the trainer gives"}};
+
+/// Newton steps at most, and halvings of one. Where they end before the balance the force is still the coupling's.
+constexpr int kMostSteps = 30;
+constexpr double kSmallestPart = 1e-6;
+/// What may be out of balance, of K times the root of the sum of the squares of p_i. The rounding of the sum of n pulls
+/// is below 1e-16 sqrt(n) of it.
+constexpr double kBalanced = 1e-13;
+
+}  // namespace
+
+const ModelInfo kStaticCouplingInfo = {
+    .name = "static_coupling",
+    .summary = "a massless copy of the tool in balance between its contacts and a coupling spring that saturates",
+    .formula =
+        "f = g(|s|) s / |s|, g(x) = K_vc x / sqrt(1 + (K_vc x / F_s)^2), where the copy's displacement s from the tool "
+        "balances -K sum p_i u_i = f; p_i = d_i + <u_i, s> where it has the sign of d_i, else 0; S = -df/dp / K",
+    .source =
+        "static virtual coupling of Barbic and James, Six-DoF haptic rendering of contact between geometrically complex "
+        "reduced deformable models (IEEE Trans. Haptics 1, 2008); the shape of g and solving it to the end are ours",
+    .known_failure = "the copy follows the direction with most points, and what lies beyond the saturation feels soft",
+    .parameters = kParameters,
+};
+
+const std::span<const OwnParameter> kStaticCouplingOwnParameters = kSaturation;
+
+namespace {
+
+double saturation_of(const RenderingConfig& config) {
+  return own_value(config, kStaticCouplingInfo.name, kSaturation[0]);
+}
+
+/// Finds the balance by Newton's method with halved steps. It is the minimum of a convex energy,
+///
+///   W(s) + K/2 sum p_i^2,  W(s) = F_s^2 / K_vc (sqrt(1 + (K_vc |s| / F_s)^2) - 1),
+///
+/// without memory of the step before, so that every force is the derivative of one potential of the contacts.
+class StaticCoupling final : public ForceLaw {
+ public:
+  StaticCoupling(double stiffness, std::optional<double> coupling, double saturation)
+      : ForceLaw(stiffness), K_vc_(coupling.value_or(stiffness)), F_s_(saturation) {}
+
+  LawForce evaluate(ContactBuffer& contacts) noexcept override {
+    shift_.setZero();
+    pass_.setZero();
+    if (contacts.empty() || K_ == 0.0 || K_vc_ == 0.0) {
+      set_weights(contacts, 0.0);
+      return {};
+    }
+    find_balance(contacts);
+    const Mat3 springs = K_ * stiffness_tensor(contacts);
+    const Mat3 coupling = coupling_stiffness(shift_);
+    pass_ = Eigen::LLT<Mat3>(coupling + springs).solve(coupling).transpose();
+    // Coupling and contacts in series; symmetric, but for the rounding that averaging removes.
+    const Mat3 S = pass_ * springs / K_;
+    return {coupling_force(shift_), 0.5 * (S + S.transpose())};
+  }
+
+  SpringState spring_state(const ContactBuffer& contacts, const Vec3&, const Vec3& tip) const noexcept override {
+    SpringState state = shifted_springs(contacts, shift_, tip, K_);
+    state.energy += coupling_energy(shift_);
+    return state;
+  }
+
+  /// The coupling passes velocities on as it does depths.
+  Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
+    return pass_ * ForceLaw::turning_velocity(contacts, S, tool);
+  }
+
+ private:
+  /// What the contacts do to the copy.
+  struct Pull {
+    double pressed = 0.0;       ///< root of the sum of the squares of p_i [m]
+    Vec3 force = Vec3::Zero();  ///< [N]
+  };
+
+  void find_balance(ContactBuffer& contacts) noexcept {
+    Pull pull = pull_at(contacts, shift_);
+    Vec3 residual = pull.force - coupling_force(shift_);
+    for (int step = 0; step < kMostSteps && residual.norm() > kBalanced * K_ * pull.pressed; ++step, ++iterations_) {
+      const Mat3 stiffness = coupling_stiffness(shift_) + K_ * stiffness_tensor(contacts);
+      const Vec3 newton = Eigen::LLT<Mat3>(stiffness).solve(residual);
+      const Vec3 from = shift_;
+      const double before = residual.norm();
+      // Where the coupling saturates or contacts let go, a whole step may go too far.
+      for (double part = 1.0; part > kSmallestPart; part *= 0.5) {
+        shift_ = from + part * newton;
+        pull = pull_at(contacts, shift_);
+        residual = pull.force - coupling_force(shift_);
+        if (residual.norm() < before) break;
+      }
+    }
+  }
+
+  double stretch(const Vec3& s) const noexcept { return std::sqrt(1.0 + (K_vc_ / F_s_ * s).squaredNorm()); }
+  Vec3 coupling_force(const Vec3& s) const noexcept { return K_vc_ / stretch(s) * s; }
+  /// W without the cancellation in its difference.
+  double coupling_energy(const Vec3& s) const noexcept { return K_vc_ * s.squaredNorm() / (1.0 + stretch(s)); }
+  Mat3 coupling_stiffness(const Vec3& s) const noexcept {
+    const double q = stretch(s);
+    const Vec3 r = K_vc_ / (F_s_ * q) * s;
+    return K_vc_ / q * (Mat3::Identity() - r * r.transpose());
+  }
+
+  /// Of a copy displaced by s. The contacts it is still in get the weight 1, others 0. O(n).
+  Pull pull_at(ContactBuffer& contacts, const Vec3& s) const noexcept {
+    using simd::load, simd::Pack, simd::select;
+    const Pack sx(s.x()), sy(s.y()), sz(s.z()), zero(0.0);
+    Pack squares(0.0), fx(0.0), fy(0.0), fz(0.0);
+    for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+      const Pack ux = load(&contacts.ux[i]), uy = load(&contacts.uy[i]), uz = load(&contacts.uz[i]);
+      const Pack depth = load(&contacts.depth[i]);
+      const Pack d = depth + (ux * sx + uy * sy + uz * sz);
+      const Pack weight = select(d * depth > zero, Pack(1.0), zero);  // the padding has no depth
+      const Pack p = weight * d;
+      simd::store(weight, &contacts.weight[i]);
+      squares += p * p;
+      fx += p * ux;
+      fy += p * uy;
+      fz += p * uz;
+    }
+    return {std::sqrt(simd::sum(squares)), -K_ * Vec3(simd::sum(fx), simd::sum(fy), simd::sum(fz))};
+  }
+
+  double K_vc_;                ///< [N/m]
+  double F_s_;                 ///< [N]
+  Vec3 shift_ = Vec3::Zero();  ///< s of the last contacts [m]
+  Mat3 pass_ = Mat3::Zero();   ///< of what moves the tool, the part that reaches the contacts
+};
+
+/// The coupling holds the copy with what the contacts give, n K d at most, and with no more than F_s.
+double static_coupling_bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
+  const double summed = static_cast<double>(n) * depth;
+  return config.stiffness > 0.0 ? std::min(summed, saturation_of(config) / config.stiffness) : summed;
+}
+
+}  // namespace
+
+const AlgorithmTheory kStaticCouplingTheory = {.force_bound = static_coupling_bound};
+
+std::unique_ptr<ForceLaw> make_static_coupling(const RenderingConfig& config) {
+  return std::make_unique<StaticCoupling>(config.stiffness, config.virtual_coupling, saturation_of(config));
+}
+
+}  // namespace hapbench
