@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "results/observe/high_pass.hpp"
+#include "results/observe/butterworth.hpp"
 #include "results/observe/magnitude_histogram.hpp"
 
 namespace hapbench {

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "results/observe/butterworth.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "results/observe/explicit_friction.hpp"
-#include "results/observe/high_pass.hpp"
 #include "results/observe/reduction_jumps.hpp"
 #include "sim/core/hash.hpp"
 #include "sim/loop/observer.hpp"

@@ -13,6 +13,7 @@
 #include "results/observe/lost_torque.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/observe/passivity_observer.hpp"
+#include "results/observe/perception.hpp"
 #include "results/observe/target_metrics.hpp"
 
 namespace hapbench {
@@ -39,6 +40,7 @@ MetricList metric_list(const EnergyMetrics& energy);
 MetricList metric_list(const IdealTrajectoryMetrics& ideal_trajectory);
 MetricList metric_list(const ForceFidelity& fidelity);
 MetricList metric_list(const LostTorqueMetrics& torque);
+MetricList metric_list(const PerceptionMetrics& perception);
 MetricList metric_list(const std::vector<PlaceMetrics>& targets);
 
 /// The value of that name; none when there is no such metric.

@@ -119,6 +119,7 @@ ordered_json summary_json(const RunSummary& run) {
   if (run.ideal_trajectory) json["ideal_trajectory"] = metrics_json(metric_list(*run.ideal_trajectory));
   if (run.fidelity) json["fidelity"] = metrics_json(metric_list(*run.fidelity));
   if (run.torque) json["torque"] = metrics_json(metric_list(*run.torque));
+  if (run.perception) json["perception"] = metrics_json(metric_list(*run.perception));
   if (run.targets) json["targets"] = metrics_json(metric_list(*run.targets));
   json["state_hash"] = hash_text(run.metrics.state_hash);
   json["work"] = work_json(run.work);
@@ -134,6 +135,7 @@ MetricList metric_list(const RunSummary& run) {
   if (run.ideal_trajectory) append(list, "ideal_trajectory", metric_list(*run.ideal_trajectory));
   if (run.fidelity) append(list, "fidelity", metric_list(*run.fidelity));
   if (run.torque) append(list, "torque", metric_list(*run.torque));
+  if (run.perception) append(list, "perception", metric_list(*run.perception));
   if (run.targets) append(list, "targets", metric_list(*run.targets));
   return list;
 }

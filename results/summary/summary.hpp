@@ -50,6 +50,7 @@ struct RunSummary {
   std::optional<IdealTrajectoryMetrics> ideal_trajectory;  ///< when the scenario asks for it
   std::optional<ForceFidelity> fidelity;                   ///< of a stroke with a measured force
   std::optional<LostTorqueMetrics> torque;                 ///< when the scenario asks for it
+  std::optional<PerceptionMetrics> perception;             ///< when the scenario asks for it
   std::optional<std::vector<PlaceMetrics>> targets;        ///< of a tracking hand
   std::optional<ToolSummary> tool;                         ///< of a tool that is no cylinder
   std::vector<std::string> warnings;                       ///< what may make the numbers mislead, a sentence each
@@ -64,8 +65,8 @@ nlohmann::ordered_json summary_json(const RunSummary& run);
 
 /// The numbers of a summary that a scenario's `expect` may bound and the table of a sweep holds: those of "metrics"
 /// under their own names, the final position's coordinates, as "final_position_m.x", and those of "passivity" and of
-/// the sections "energy", "ideal_trajectory", "fidelity", "torque" and "targets", which not every run has, as in
-/// "energy.created_sum_J" or "targets.0.success_rate.mean".
+/// the sections "energy", "ideal_trajectory", "fidelity", "torque", "perception" and "targets", which not every run
+/// has, as in "energy.created_sum_J" or "targets.0.success_rate.mean".
 MetricList metric_list(const RunSummary& run);
 
 /// summary.json as text.

@@ -33,6 +33,7 @@ MetricSections sections_of(const Scenario& scenario) {
   const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
   return {scenario.record.energy, scenario.record.ideal_trajectory,
           std::holds_alternative<RecordedPosition>(scenario.motion.position), scenario.record.torque,
+          scenario.perception.has_value(),
           hand == nullptr ? 0 : hand->task.places.size()};
 }
 
@@ -60,6 +61,7 @@ class Collector {
     sections_.ideal_trajectory |= point.sections.ideal_trajectory;
     sections_.fidelity |= point.sections.fidelity;
     sections_.torque |= point.sections.torque;
+    sections_.perception |= point.sections.perception;
     sections_.places = std::max(sections_.places, point.sections.places);
     if (!point.origin.file.empty()) plugins_.emplace(point.origin.file, point.origin.hash);
     if (!point.files.empty()) keep_first(files_, point.files, {run, 0});

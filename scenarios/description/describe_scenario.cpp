@@ -114,6 +114,19 @@ static void describe(Fields& f, SettlingRule& metrics) {
            "how long a landing lasts, and how long the tool must be away for the next touch to be a first one");
 }
 
+static void describe(Fields& f, PerceptionThresholds& thresholds) {
+  f.number("force_jnd", thresholds.force_jnd, {0.0, 10.0, "1"},
+           "smallest change of a force that is noticed, of the force (Jones 1989; Pang, Tan and Durlach 1991)");
+  f.number("least_force_N", thresholds.least_force, {0.0, 1e6, "N"},
+           "below this force the noticeable change is that of this force");
+  f.group("band_Hz", "the band in which touch is most sensitive (Bolanowski et al. 1988)", [&](Fields& band) {
+    band.number("from", thresholds.band_from, {0.0, 1e6, "Hz", true}, "its low end");
+    band.number("to", thresholds.band_to, {0.0, 1e6, "Hz", true}, "its high end");
+  });
+  f.number("amplitude_at_250Hz_m", thresholds.amplitude_at_250Hz, {0.0, 1.0, "m", true},
+           "of a vibration that is just felt (the same)");
+}
+
 static void describe(Fields& f, MetricBound& bound) {
   const auto number = [](Fields& b, double& value) { b.number(value, {-1e15, 1e15}); };
   f.if_any("min", bound.min, "smallest value allowed", number);
@@ -180,6 +193,8 @@ void describe(Fields& f, Scenario& scenario) {
            [](Fields& o, ReferenceForceFields& reference) { o.object(reference); });
   f.object("record", scenario.record, "what is written beside the summary");
   f.object("metrics", scenario.metrics, "where metrics of settled contact begin");
+  f.if_any("perception", scenario.perception, "from when on people feel something; adds the metrics of perception",
+           [](Fields& o, PerceptionThresholds& thresholds) { o.object(thresholds); });
   f.object("expect", scenario.expect, "what the run must show; each scenario is its own regression test");
   if (!f.reads()) return;
   check_relations(scenario, steps);

@@ -9,6 +9,7 @@ MetricList metrics_without_values(const MetricSections& sections) {
   if (sections.ideal_trajectory) run.ideal_trajectory.emplace();
   if (sections.fidelity) run.fidelity.emplace();
   if (sections.torque) run.torque.emplace();
+  if (sections.perception) run.perception.emplace();
   if (sections.places > 0) run.targets.emplace();
   for (std::size_t place = 0; place < sections.places; ++place) run.targets->emplace_back().place = place;
   MetricList metrics = metric_list(run);

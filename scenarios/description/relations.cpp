@@ -132,6 +132,13 @@ void check_tracking_hand(const Scenario& scenario, double steps) {
   fail("/hand/trials", fmt::format("got {:.3g} steps in all trials; allowed: at most {:.0g}", all_steps, kMostSteps));
 }
 
+void check_perception(const Scenario& scenario) {
+  if (!scenario.perception) return;
+  const double from = scenario.perception->band_from, to = scenario.perception->band_to;
+  if (from < to) return;
+  fail("/perception/band_Hz", fmt::format("got from {:g} to {:g}; allowed: from below to", from, to));
+}
+
 }  // namespace
 
 void check_relations(const Scenario& scenario, double steps) {
@@ -143,6 +150,7 @@ void check_relations(const Scenario& scenario, double steps) {
   check_push_hand(scenario);
   check_drag_hand(scenario, steps);
   check_tracking_hand(scenario, steps);
+  check_perception(scenario);
 }
 
 }  // namespace hapbench

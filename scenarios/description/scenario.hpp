@@ -217,6 +217,7 @@ struct Scenario {
   std::optional<ReferenceForceFields> reference_force;
   RecordFields record;
   SettlingRule metrics;
+  std::optional<PerceptionThresholds> perception;
   ExpectFields expect;
 
   std::filesystem::path directory;  ///< of the scenario file: what relative paths start from
@@ -243,6 +244,7 @@ struct MetricSections {
   bool ideal_trajectory = true;
   bool fidelity = true;
   bool torque = true;
+  bool perception = true;
   std::size_t places = 2;  ///< target places; the thesis's tasks have two
 };
 

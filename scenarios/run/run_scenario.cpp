@@ -121,6 +121,7 @@ RunSummary summarise(const Scenario& scenario, const std::vector<TrialResult>& t
     summary.ideal_trajectory = trials.front().ideal_trajectory;
     summary.fidelity = trials.front().fidelity;
     summary.torque = trials.front().torque;
+    summary.perception = trials.front().perception;
   }
   if (std::holds_alternative<TrackingHandFields>(scenario.hand)) summary.targets = place_metrics(targets);
   for (const TrialResult& trial : trials) summary.work += trial.work;

@@ -64,6 +64,8 @@ class TrialObservers {
       observers_.push_back(&*fidelity_);
     }
     if (scenario.record.torque) observers_.push_back(&torque_.emplace());
+    if (scenario.perception)
+      observers_.push_back(&perception_.emplace(*scenario.perception, force_.get(), scenario.time.step));
     if (parts.shell && parts.shell->size() > 0) {
       approach_.emplace(parts.shell->bounds());
       observers_.push_back(&*approach_);
@@ -115,6 +117,7 @@ class TrialObservers {
     if (ideal_) out.ideal_trajectory = ideal_->metrics();
     if (fidelity_) out.fidelity = fidelity_->metrics();
     if (torque_) out.torque = torque_->metrics();
+    if (perception_) out.perception = perception_->metrics();
     if (targets_) out.targets = targets_->rows();
     out.recorders = std::move(recorders_);
   }
@@ -128,6 +131,7 @@ class TrialObservers {
   std::shared_ptr<const ReferenceForce> force_;
   std::optional<ForceFidelityObserver> fidelity_;
   std::optional<LostTorqueObserver> torque_;
+  std::optional<PerceptionObserver> perception_;
   std::optional<ApproachObserver> approach_;
   std::optional<OpenEdgeObserver> open_edges_;
   std::optional<DragCourseObserver> drag_;

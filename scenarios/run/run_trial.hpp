@@ -22,6 +22,7 @@ struct TrialResult {
   std::optional<IdealTrajectoryMetrics> ideal_trajectory;
   std::optional<ForceFidelity> fidelity;
   std::optional<LostTorqueMetrics> torque;
+  std::optional<PerceptionMetrics> perception;
   std::vector<TargetRow> targets;     ///< of a tracking hand
   std::vector<std::string> warnings;  ///< what may make the numbers mislead
   RunWork work;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "results/observe/high_pass.hpp"
+#include "results/observe/butterworth.hpp"
 #include "sim/loop/observer.hpp"
 #include "sim/loop/simulation.hpp"
 

@@ -1,0 +1,75 @@
+#include "results/observe/perception.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hapbench {
+namespace {
+
+/// As of the physical metric of vibration: below is what a hand means to do.
+constexpr double kMeantBelow = 30.0;  // [Hz]
+
+template <class Filter>
+void make_if_held(std::optional<Filter>& filter, double cutoff, double rate) {
+  if (cutoff > 0.0 && cutoff < 0.5 * rate) filter.emplace(cutoff, rate);
+}
+
+}  // namespace
+
+double PerceptionThresholds::acceleration_rms() const noexcept {
+  const double omega = 2.0 * std::numbers::pi * 250.0;
+  return amplitude_at_250Hz * omega * omega / std::numbers::sqrt2;
+}
+
+PerceptionObserver::PerceptionObserver(const PerceptionThresholds& thresholds, const ReferenceForce* reference,
+                                       double dt)
+    : thresholds_(thresholds), reference_(reference), dt_(dt) {
+  const double rate = 1.0 / dt;
+  make_if_held(force_high_pass_, kMeantBelow, rate);
+  make_if_held(band_from_, thresholds_.band_from, rate);
+  make_if_held(band_to_, thresholds_.band_to, rate);
+  counts_.threshold_rms = thresholds_.acceleration_rms();
+}
+
+double PerceptionObserver::noticed(double force) const noexcept {
+  return thresholds_.force_jnd * std::max(force, thresholds_.least_force);
+}
+
+void PerceptionObserver::add_force(const StepRecord& record) noexcept {
+  const Vec3& f = record.force.rendered;
+  if (reference_ != nullptr) {
+    if (const auto wanted = reference_->at(record.time)) {
+      ++counts_.reference_rows;
+      if ((f - *wanted).norm() > noticed(wanted->norm())) ++counts_.error_rows;
+    }
+  }
+  const Vec3 fast = force_high_pass_ ? force_high_pass_->filter(f) : Vec3(Vec3::Zero());
+  if (record.colliding == 0) return;
+  ++counts_.rows_in_contact;
+  if (fast.norm() > noticed((f - fast).norm())) ++counts_.vibration_rows;
+}
+
+void PerceptionObserver::add_motion(const Vec3& velocity) noexcept {
+  Vec3 acceleration = begun_ ? Vec3((velocity - last_velocity_) / dt_) : Vec3(Vec3::Zero());
+  begun_ = true;
+  last_velocity_ = velocity;
+  ++rows_;
+  if (!band_from_) return;
+  acceleration = band_from_->filter(acceleration);
+  if (band_to_) acceleration = band_to_->filter(acceleration);
+  acceleration_sum_ += acceleration.squaredNorm();
+}
+
+void PerceptionObserver::on_step(const StepRecord& record) noexcept {
+  add_force(record);
+  add_motion(record.handle.velocity);
+}
+
+PerceptionMetrics PerceptionObserver::metrics() const noexcept {
+  PerceptionMetrics found = counts_;
+  if (band_from_ && rows_ > 0) found.acceleration_rms = std::sqrt(acceleration_sum_ / static_cast<double>(rows_));
+  return found;
+}
+
+}  // namespace hapbench
