@@ -31,8 +31,10 @@ struct Point {
 
 MetricSections sections_of(const Scenario& scenario) {
   const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
-  return {scenario.record.energy, scenario.record.ideal_trajectory,
-          std::holds_alternative<RecordedPosition>(scenario.motion.position), scenario.record.torque,
+  return {scenario.record.energy,
+          scenario.record.ideal_trajectory,
+          std::holds_alternative<RecordedPosition>(scenario.motion.position),
+          scenario.record.torque,
           scenario.perception.has_value(),
           hand == nullptr ? 0 : hand->task.places.size()};
 }

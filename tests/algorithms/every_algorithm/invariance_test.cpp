@@ -87,7 +87,8 @@ TEST_P(Invariance, LengthsScaleTheSpringForce) {
   const Vec3 original = test::Probe(setting, config).force_at(setting.pose).spring;
   for (const double s : {4.0, 0.25, 1024.0}) {
     const test::Setting scaled = test::scaled(setting, s);
-    EXPECT_EQ(test::Probe(scaled, with_forces_scaled(config, s)).force_at(scaled.pose).spring, s * original) << "s = " << s;
+    EXPECT_EQ(test::Probe(scaled, with_forces_scaled(config, s)).force_at(scaled.pose).spring, s * original)
+        << "s = " << s;
   }
 }
 
