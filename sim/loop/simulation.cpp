@@ -190,7 +190,8 @@ bool Simulation::check_bounds() noexcept {
   const auto inside = [this](const char* quantity, const Vec3& v, double bound) {
     const double magnitude = v.norm();
     if (magnitude <= bound) return true;  // false for NaN
-    const char* fault = parts_.algorithm->fault();
+    const char* fault = parts_.source->fault();
+    if (fault == nullptr) fault = parts_.algorithm->fault();
     result_.divergence = {row_, record_.time, quantity, magnitude, bound, fault != nullptr ? fault : ""};
     return false;
   };

@@ -1,0 +1,67 @@
+#include "algorithms/peers/peer_source.hpp"
+
+#include <exception>
+#include <limits>
+#include <utility>
+
+namespace hapbench {
+namespace {
+
+Vec3 vector(const std::array<double, 3>& v) {
+  return {v[0], v[1], v[2]};
+}
+
+void push(const PeerContact& contact, ContactBuffer& contacts) {
+  const Vec3 along = vector(contact.gradient);
+  const double length = along.norm();
+  if (!(length > 0.0 && contact.depth >= 0.0)) return;
+  const Vec3 gradient = along / length;
+  const std::size_t i = contacts.size();
+  contacts.push(contact.number, vector(contact.point), -gradient);
+  contacts.depth[i] = contact.depth;
+  contacts.set_gradient(i, gradient);
+}
+
+}  // namespace
+
+PeerPose peer_pose(const ToolPose& pose, double length) noexcept {
+  const Vec3 centre = pose.position - 0.5 * length * pose.axis;
+  const Mat3 r = pose.rotation();
+  return {{centre.x(), centre.y(), centre.z()},
+          {r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2)}};
+}
+
+PeerSource::PeerSource(std::unique_ptr<Peer> peer, std::string name, double length, std::size_t most_contacts)
+    : peer_(std::move(peer)), name_(std::move(name)), length_(length), room_(most_contacts) {}
+
+void PeerSource::reset() noexcept {
+  work_ = {};
+  fault_.clear();
+}
+
+std::size_t PeerSource::ask(const ToolPose& pose) noexcept {
+  if (fault() != nullptr) return 0;
+  try {
+    return peer_->contacts_at(peer_pose(pose, length_), room_);
+  } catch (const std::exception& error) {
+    fault_ = name_ + " fails: " + error.what();
+  } catch (...) {
+    fault_ = name_ + " fails";
+  }
+  return 0;
+}
+
+void PeerSource::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
+  ++work_.queries;
+  contacts.clear();
+  const std::size_t found = ask(pose);
+  for (std::size_t i = 0; i < found; ++i) push(room_[i], contacts);
+  if (fault() != nullptr) {
+    contacts.push(0, pose.position, -pose.axis);
+    contacts.depth[0] = std::numeric_limits<double>::quiet_NaN();
+    contacts.set_gradient(0, pose.axis);
+  }
+  contacts.pad();
+}
+
+}  // namespace hapbench
