@@ -1,3 +1,5 @@
+#include "scenarios/studies/precision/ideal_runs.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/precision/measure.hpp"
-#include "scenarios/studies/precision/study.hpp"
 
 /// The studies whose reference is the ideal trajectory.
 namespace hapbench {
@@ -23,12 +24,12 @@ constexpr std::pair<const char*, Density> kDensities[] = {{"signed_distance", De
 /// compares.
 constexpr const char* kAngularlyDamped[] = {"original_averaging", "shaped_stiffness"};
 
+}  // namespace
+
 const std::vector<std::string> kIdealColumns = {"ideal_height_error_rms_m", "ideal_height_error_max_m",
                                                 "ideal_lateral_error_rms_m", "interpenetration_max_m",
                                                 "force_step_max_N"};
 
-/// Errors of a run against the ideal trajectory, over the rows in which the hand is gentle, if it ever is; and the
-/// largest change of the force in a step of all rows.
 PrecisionRow ideal_row(std::string setting, const Scenario& scenario, std::shared_ptr<const PointShell> shell,
                        int repetitions) {
   const BlockWithHole& block = std::get<BlockEnvironment>(scenario.environment).block;
@@ -44,8 +45,6 @@ PrecisionRow ideal_row(std::string setting, const Scenario& scenario, std::share
       {errors.height_rms, highest, errors.lateral_rms, errors.interpenetration_max, motion.metrics().force_step_max},
       seconds_per_step(scenario, std::move(shell), repetitions)};
 }
-
-}  // namespace
 
 static PrecisionResult study_spacing(const Scenario& given, const PrecisionOptions& options) {
   PrecisionResult result;
