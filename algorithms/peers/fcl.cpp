@@ -4,9 +4,9 @@
 
 #include "algorithms/peers/peer.hpp"
 
-/// FCL: triangles in a tree of oriented boxes with rectangle swept spheres, its default for meshes, against its cylinder.
-/// Each triangle that the cylinder meets is a contact; depth and direction are those of the shortest translation that
-/// parts the two, as libccd approximates it (EPA).
+/// FCL: triangles in a tree of oriented boxes with rectangle swept spheres, its default for meshes, against its
+/// cylinder. Each triangle that the cylinder meets is a contact; depth and direction are those of the shortest
+/// translation that parts the two, as libccd approximates it (EPA).
 namespace hapbench {
 namespace {
 

@@ -94,9 +94,10 @@ void describe(Fields& f, RenderingConfig& rendering) {
             "m of the shaping iteration");
   f.name("depth_model", rendering.depth_model, kDepthModels, "depth model",
          "default surface_normal, or what the algorithm's definition fixes", Presence::no_default);
-  f.name("contact_source", rendering.contact_source, contact_sources(), "source of contacts",
-         "own: our search, with the depth model; else a library whose contacts, depths and directions are taken instead, "
-         "where the environment is a block_with_hole or a mesh and the tool a cylinder with a flat tip");
+  f.name(
+      "contact_source", rendering.contact_source, contact_sources(), "source of contacts",
+      "own: our search, with the depth model; else a library whose contacts, depths and directions are taken instead, "
+      "where the environment is a block_with_hole or a mesh and the tool a cylinder with a flat tip");
   f.boolean(key(parameter::kLocalAverage), rendering.local_average,
             "merge colliding points that share a grid cell of the shell");
   f.field("reduction", "gradient-based reduction, whose kept points change in jumps; null: off", Presence::has_default,

@@ -63,9 +63,10 @@ void fix_stages(Fields& f, Scenario& scenario) {
       f.warn(fmt::format("/rendering/contact_source: not used: algorithm \"{}\" finds its points itself",
                          given.algorithm));
     } else if (!entry.fixed_depth_model.empty()) {
-      f.warn(fmt::format("/rendering/contact_source: algorithm \"{}\" is defined with depth model \"{}\"; here it has "
-                         "the depths of \"{}\"",
-                         given.algorithm, entry.fixed_depth_model, given.contact_source));
+      f.warn(
+          fmt::format("/rendering/contact_source: algorithm \"{}\" is defined with depth model \"{}\"; here it has "
+                      "the depths of \"{}\"",
+                      given.algorithm, entry.fixed_depth_model, given.contact_source));
     }
   }
   if (given.reduction && !fixed.reduction) {

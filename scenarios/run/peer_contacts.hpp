@@ -7,8 +7,8 @@
 
 namespace hapbench {
 
-/// The scenario's environment as triangles: those whose vertices our shell has, or those of its mesh file. Precondition:
-/// it is a block_with_hole or a mesh. Throws InputError when the file cannot be used.
+/// The scenario's environment as triangles: those whose vertices our shell has, or those of its mesh file.
+/// Precondition: it is a block_with_hole or a mesh. Throws InputError when the file cannot be used.
 PeerSurface peer_surface(const Scenario& scenario, const NamedFiles& files);
 
 /// Loads the module of rendering.contact_source. Throws InputError, which says how to have it, when it is not there.

@@ -19,8 +19,8 @@ namespace {
 
 using Kernel = CGAL::Simple_cartesian<double>;
 using Numbered = std::pair<Kernel::Point_3, std::uint32_t>;
-using Traits = CGAL::Search_traits_adapter<Numbered, CGAL::First_of_pair_property_map<Numbered>,
-                                           CGAL::Search_traits_3<Kernel>>;
+using Traits =
+    CGAL::Search_traits_adapter<Numbered, CGAL::First_of_pair_property_map<Numbered>, CGAL::Search_traits_3<Kernel>>;
 using Tree = CGAL::Kd_tree<Traits>;
 using Box = CGAL::Fuzzy_iso_box<Traits>;
 

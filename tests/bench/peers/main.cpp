@@ -101,8 +101,8 @@ void time_library(benchmark::State& state, const Library& library, const std::st
   for (std::size_t k = 0; k < known.poses.size(); ++k) {
     const std::span answer(room.data(), peer->contacts_at(known.poses[k], room));
     const auto is_same = [](const PeerContact& contact, std::uint32_t point) { return contact.number == point; };
-    if (library.same_question && !std::equal(answer.begin(), answer.end(), known.points[k].begin(),
-                                             known.points[k].end(), is_same))
+    if (library.same_question &&
+        !std::equal(answer.begin(), answer.end(), known.points[k].begin(), known.points[k].end(), is_same))
       return state.SkipWithError(fmt::format("not the points of our search at pose {}", k).c_str());
     contacts += static_cast<double>(answer.size());
     agreed += answer.empty() == known.points[k].empty() ? 1.0 : 0.0;

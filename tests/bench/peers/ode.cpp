@@ -4,8 +4,8 @@
 
 #include "tests/bench/peers/linked_peers.hpp"
 
-/// ODE: its triangle mesh (OPCODE) against its cylinder, in millimetres. It returns as many contacts as it is given room
-/// for.
+/// ODE: its triangle mesh (OPCODE) against its cylinder, in millimetres. It returns as many contacts as it is given
+/// room for.
 namespace hapbench::bench {
 namespace {
 
