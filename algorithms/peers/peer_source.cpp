@@ -1,7 +1,6 @@
 #include "algorithms/peers/peer_source.hpp"
 
 #include <exception>
-#include <limits>
 #include <utility>
 
 namespace hapbench {
@@ -36,7 +35,7 @@ PeerSource::PeerSource(std::unique_ptr<Peer> peer, std::string name, double leng
 
 void PeerSource::reset() noexcept {
   work_ = {};
-  fault_.clear();
+  fault_ = nullptr;
 }
 
 std::size_t PeerSource::ask(const ToolPose& pose) noexcept {
@@ -44,10 +43,11 @@ std::size_t PeerSource::ask(const ToolPose& pose) noexcept {
   try {
     return peer_->contacts_at(peer_pose(pose, length_), room_);
   } catch (const std::exception& error) {
-    fault_ = name_ + " fails: " + error.what();
+    fault_text_ = name_ + " fails: " + error.what();
   } catch (...) {
-    fault_ = name_ + " fails";
+    fault_text_ = name_ + " fails";
   }
+  fault_ = fault_text_.c_str();
   return 0;
 }
 
@@ -56,11 +56,6 @@ void PeerSource::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noex
   contacts.clear();
   const std::size_t found = ask(pose);
   for (std::size_t i = 0; i < found; ++i) push(room_[i], contacts);
-  if (fault() != nullptr) {
-    contacts.push(0, pose.position, -pose.axis);
-    contacts.depth[0] = std::numeric_limits<double>::quiet_NaN();
-    contacts.set_gradient(0, pose.axis);
-  }
   contacts.pad();
 }
 

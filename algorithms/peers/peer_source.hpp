@@ -23,12 +23,11 @@ class PeerSource final : public ContactSource {
   /// `most_contacts` is that of triangles; `length` is the drill's [m].
   PeerSource(std::unique_ptr<Peer> peer, std::string name, double length, std::size_t most_contacts);
 
-  /// Once the library has thrown: a contact that is no number, until the next reset.
+  /// Once the library has thrown, nothing until the next reset.
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return room_.size(); }
   void reset() noexcept override;
   const SearchWork& work() const noexcept override { return work_; }
-  const char* fault() const noexcept override { return fault_.empty() ? nullptr : fault_.c_str(); }
 
  private:
   std::size_t ask(const ToolPose& pose) noexcept;
@@ -38,7 +37,7 @@ class PeerSource final : public ContactSource {
   double length_;
   std::vector<PeerContact> room_;
   SearchWork work_;
-  std::string fault_;
+  std::string fault_text_;
 };
 
 /// The drill's pose as peers take it; its length [m].

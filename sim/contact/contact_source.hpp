@@ -19,8 +19,12 @@ class ContactSource {
   /// Back to t = 0, counters included.
   virtual void reset() noexcept = 0;
   virtual const SearchWork& work() const noexcept = 0;
-  /// Why the last answer holds a contact that is no number: a fault of code from outside. Null for nothing.
-  virtual const char* fault() const noexcept { return nullptr; }
+  /// What went wrong in code from outside since the last reset, which ends the run; null for nothing. Not virtual: it is
+  /// looked at in every step.
+  const char* fault() const noexcept { return fault_; }
+
+ protected:
+  const char* fault_ = nullptr;
 };
 
 }  // namespace hapbench
