@@ -1,8 +1,9 @@
 #include <cmath>
 #include <optional>
+#include <string_view>
 
+#include "scenarios/plugins/load_peer.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/peer_contacts.hpp"
 #include "scenarios/run/run_to_end.hpp"
 #include "scenarios/studies/precision/ideal_runs.hpp"
 #include "scenarios/studies/precision/measure.hpp"
@@ -61,34 +62,28 @@ Answers answers_at(const std::vector<Place>& places, const Scenario& scenario,
   return {sum.contacts / n, sum.depth / n, std::sqrt(sum.force_error / n)};
 }
 
-bool is_built(const Scenario& scenario) {
-  try {
-    require_contact_source(scenario);
-    return true;
-  } catch (const InputError&) {
-    return false;
-  }
-}
-
 }  // namespace
 
 static PrecisionResult study_contact_sources(const Scenario& given, const PrecisionOptions& options) {
   Scenario scenario = drill_in_hole(given);
   PrecisionResult result;
-  result.columns = {"contacts_mean", "depth_max_mean_m", "spring_force_error_rms_N"};
-  const std::size_t at_places = result.columns.size();
+  result.columns = {"contacts_mean", "depth_max_mean_m", "spring_force_error_rms_N", "way_apart_rms_m"};
+  const std::size_t own_columns = result.columns.size();
   result.columns.insert(result.columns.end(), kIdealColumns.begin(), kIdealColumns.end());
   result.timed = "step";
   const auto shell = make_shell(scenario);
   scenario.rendering.contact_source = kOwnContacts;
   const std::vector<Place> places = places_of(scenario, shell);
+  std::vector<Vec3> way;
+  for (const Place& place : places) way.push_back(place.tool.pose.position);
   const auto add_row = [&](const char* source) {
     scenario.rendering.contact_source = source;
-    PrecisionRow row{source, "not built", std::vector<std::optional<double>>(at_places + kIdealColumns.size())};
-    if (is_built(scenario)) {
-      row = ideal_row(source, scenario, shell, options.repetitions);
+    PrecisionRow row{source, "not built", std::vector<std::optional<double>>(own_columns + kIdealColumns.size())};
+    if (source == std::string_view(kOwnContacts) || find_peer(source) != nullptr) {
+      IdealRun run = ideal_run(source, scenario, shell, options.repetitions);
       const auto [contacts, depth, error] = answers_at(places, scenario, shell);
-      row.values.insert(row.values.begin(), {contacts, depth, error});
+      row = std::move(run.row);
+      row.values.insert(row.values.begin(), {contacts, depth, error, distance(run.positions, way).rms});
     }
     result.rows.push_back(std::move(row));
     options.progress(result.rows.size(), 1 + kPeers.size());
