@@ -160,7 +160,7 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
       throw InputError(InputError::Kind::relation, file_of(loaded, pointer).string() + ": " + pointer, error.what());
     }
   };
-  at("/rendering/contact_source", [&] { require_contact_source(scenario); });
+  with_file(loaded, [&] { require_contact_source(scenario); });
   if (std::holds_alternative<PointShellEnvironment>(scenario.environment)) {
     at("/environment/file", [&] { loaded.files.shell_points(); });
   }

@@ -16,9 +16,11 @@ void add(std::vector<double>& numbers, const Vec3& p) {
 MakePeer& peer_of(const Scenario& scenario) {
   const std::string& name = scenario.rendering.contact_source;
   if (MakePeer* make = find_peer(name)) return *make;
-  throw InputError(fmt::format(
-      "got \"{}\", which is not built here; allowed: \"{}\", or install {} and build the target contact_sources", name,
-      kOwnContacts, peer_package(name)));
+  throw InputError(
+      InputError::Kind::relation, "/rendering/contact_source",
+      fmt::format("got \"{}\", which is not built here; allowed: \"{}\", or install {} and build the target "
+                  "contact_sources",
+                  name, kOwnContacts, peer_package(name)));
 }
 
 }  // namespace
