@@ -1,4 +1,5 @@
 """Force laws in Python, and plugins beside them. Arguments: those of python_fixture.py."""
+import json
 import subprocess
 import sys
 import threading
