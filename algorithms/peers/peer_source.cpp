@@ -1,5 +1,6 @@
 #include "algorithms/peers/peer_source.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
@@ -47,6 +48,7 @@ std::size_t PeerSource::ask(const ToolPose& pose) noexcept {
   } catch (...) {
     fault_text_ = name_ + " fails";
   }
+  std::replace(fault_text_.begin(), fault_text_.end(), '\n', ' ');  // for messages of one line
   fault_ = fault_text_.c_str();
   return 0;
 }

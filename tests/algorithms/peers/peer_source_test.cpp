@@ -27,7 +27,7 @@ class FakePeer final : public Peer {
 
   std::size_t contacts_at(const PeerPose& pose, std::span<PeerContact> room) override {
     script_.pose = pose;
-    if (script_.asked++ == script_.throws_at) throw std::runtime_error("no way");
+    if (script_.asked++ == script_.throws_at) throw std::runtime_error("no\nway");
     std::copy(script_.answer.begin(), script_.answer.end(), room.begin());
     return script_.answer.size();
   }
