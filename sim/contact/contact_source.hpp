@@ -19,8 +19,8 @@ class ContactSource {
   /// Back to t = 0, counters included.
   virtual void reset() noexcept = 0;
   virtual const SearchWork& work() const noexcept = 0;
-  /// What went wrong in code from outside since the last reset, which ends the run; null for nothing. Not virtual: it is
-  /// looked at in every step.
+  /// What went wrong in code from outside since the last reset, which ends the run; null for nothing. Not virtual: it
+  /// is looked at in every step.
   const char* fault() const noexcept { return fault_; }
 
  protected:

@@ -21,6 +21,6 @@ struct IdealRun {
 /// Errors of a run against the ideal trajectory, over the rows in which the hand is gentle, if it ever is; and the
 /// largest change of the force in a step of all rows. Precondition: the scenario is a `drill_in_hole`.
 IdealRun ideal_run(std::string setting, const Scenario& scenario, std::shared_ptr<const PointShell> shell,
-                       int repetitions);
+                   int repetitions);
 
 }  // namespace hapbench
