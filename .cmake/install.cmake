@@ -76,22 +76,21 @@ if(HAPBENCH_BUILD_PROGRAM)
   ]])
 endif()
 
-# The interface of force laws in C, and examples of it.
+# The interface of force laws in C.
 install(FILES ${PROJECT_SOURCE_DIR}/algorithms/plugin/hapbench_plugin.h DESTINATION include)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/algorithms/plugin/examples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples/plugin)
 
-# The manuals, in the folders in which they link each other.
+# The manuals, and the examples that they link, in the folders in which they do.
 file(GLOB_RECURSE manuals RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
-  sim/*.md algorithms/*.md device_model/*.md results/*.md scenarios/*.md tests/*.md)
-foreach(manual README.md CHANGELOG.md LICENSE CITATION.cff ${manuals})
+  algorithms/plugin/examples/* algorithms/plugin/hapbench_plugin.h algorithms/plugin/law_plugin.hpp algorithms/laws/mean.cpp
+  scripts/python/notebooks/*.ipynb tests/consumer/*.cpp tests/consumer/CMakeLists.txt
+  sim/*.md algorithms/*.md device_model/*.md results/*.md scenarios/*.md scripts/*.md tests/*.md)
+foreach(manual README.md CHANGELOG.md CONTRIBUTING.md LICENSE CITATION.cff ${manuals})
   cmake_path(GET manual PARENT_PATH folder)
   install(FILES ${PROJECT_SOURCE_DIR}/${manual} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})
 endforeach()
 foreach(pictures figures gallery)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/results/reference/${pictures} DESTINATION ${CMAKE_INSTALL_DOCDIR}/results/reference)
 endforeach()
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/tests/consumer/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples/own_law
-  FILES_MATCHING PATTERN "*.cpp" PATTERN CMakeLists.txt)
 
 if(PROJECT_IS_TOP_LEVEL AND HAPBENCH_SHARED)
   include(${CMAKE_CURRENT_LIST_DIR}/package.cmake)

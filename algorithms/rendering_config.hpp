@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -20,11 +21,17 @@ struct ReductionConfig {
   std::optional<std::uint64_t> shuffle_seed;
 };
 
+/// The contacts of our search and our depth models.
+inline constexpr const char* kOwnContacts = "own";
+/// Collision libraries whose contacts a run can take instead, each a module of its own (algorithms/peers).
+inline constexpr std::array kPeers = {"fcl", "bullet"};
+
 /// How contacts become a force. Names are those of registry.hpp; units N, m, s, kg.
 struct RenderingConfig {
   std::string algorithm = "shaped_stiffness";
   int iterations = 3;  ///< m of the shaping iteration, for the laws that iterate
   std::string depth_model = "surface_normal";
+  std::string contact_source = kOwnContacts;  ///< or a peer's name (kPeers)
   bool local_average = false;
   std::optional<ReductionConfig> reduction;
 

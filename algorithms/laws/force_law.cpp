@@ -56,6 +56,15 @@ SpringState shifted_springs(const ContactBuffer& contacts, const Vec3& shift, co
   return {0.5 * K * simd::sum(energy), -K * Vec3(simd::sum(mx), simd::sum(my), simd::sum(mz))};
 }
 
+SpringState spring_of_force(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip, double K) noexcept {
+  if (K == 0.0) return {};
+  return {spring.squaredNorm() / (2.0 * K), mean_arm(contacts, tip).cross(spring)};
+}
+
+Vec3 turning_velocity_of_force(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) noexcept {
+  return S * tool.angular_velocity.cross(mean_arm(contacts, tool.pose.position));
+}
+
 LawForce weighted_force(const ContactBuffer& contacts, double K) noexcept {
   return {-K * weighted_depth(contacts), stiffness_tensor(contacts)};
 }

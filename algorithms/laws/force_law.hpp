@@ -60,6 +60,11 @@ Vec3 gradient_sum(const ContactBuffer& contacts) noexcept;
 /// without weights. O(n).
 Vec3 mean_arm(const ContactBuffer& contacts, const Vec3& tip) noexcept;
 
+/// What ForceLaw::spring_state and turning_velocity are of a law that gives force and S and no springs: one spring of
+/// stiffness K [N/m] along the force, at the mean of the contacts by their weights. O(n).
+SpringState spring_of_force(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip, double K) noexcept;
+Vec3 turning_velocity_of_force(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) noexcept;
+
 /// Energy and moment about `tip` of springs of stiffness K [N/m] and the weights in the buffer, whose ends have moved
 /// by `shift` [m]: the depths are d_i + <u_i, shift>. O(n).
 SpringState shifted_springs(const ContactBuffer& contacts, const Vec3& shift, const Vec3& tip, double K) noexcept;

@@ -1,6 +1,5 @@
 #include "algorithms/plugin/plugin_law.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdio>
 #include <limits>
@@ -113,13 +112,12 @@ SpringState PluginLaw::spring_state(const ContactBuffer& contacts, const Vec3& s
     return state;
   }
   if (plugin_.gives == HAPBENCH_WEIGHTS) return ForceLaw::spring_state(contacts, spring, tip);
-  if (K_ == 0.0) return {};
-  return {spring.squaredNorm() / (2.0 * K_), mean_arm(contacts, tip).cross(spring)};
+  return spring_of_force(contacts, spring, tip, K_);
 }
 
 Vec3 PluginLaw::turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept {
   if (plugin_.gives == HAPBENCH_WEIGHTS) return ForceLaw::turning_velocity(contacts, S, tool);
-  return S * tool.angular_velocity.cross(mean_arm(contacts, tool.pose.position));
+  return turning_velocity_of_force(contacts, S, tool);
 }
 
 AlgorithmEntry plugin_entry(const HapbenchPlugin& plugin, AlgorithmOrigin origin) {

@@ -15,7 +15,7 @@ class ContactRecorder final : public Recorder {
   static constexpr Column kColumns[] = {
       kStepColumn,
       kTimeColumn,
-      {"index", "1", "number of the shell point or spring, from 0"},
+      {"index", "1", "number of the shell point, spring or, of another library's contact, triangle, from 0"},
       {"x_m", "m", "x of the colliding point"},
       {"y_m", "m", "y of the colliding point"},
       {"z_m", "m", "z of the colliding point"},

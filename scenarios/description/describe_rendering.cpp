@@ -13,6 +13,15 @@ std::vector<std::string> depth_model_names() {
   return names;
 }
 
+const std::vector<std::string>& contact_sources() {
+  static const std::vector<std::string> all = [] {
+    std::vector<std::string> names = {kOwnContacts};
+    names.insert(names.end(), kPeers.begin(), kPeers.end());
+    return names;
+  }();
+  return all;
+}
+
 /// The field's name without the objects it lies in.
 std::string_view key(const Parameter& parameter) {
   const std::string_view path = parameter.field;
@@ -85,6 +94,10 @@ void describe(Fields& f, RenderingConfig& rendering) {
             "m of the shaping iteration");
   f.name("depth_model", rendering.depth_model, kDepthModels, "depth model",
          "default surface_normal, or what the algorithm's definition fixes", Presence::no_default);
+  f.name(
+      "contact_source", rendering.contact_source, contact_sources(), "source of contacts",
+      "own: our search, with the depth model; else a library whose contacts, depths and directions are taken instead, "
+      "where the environment is a block_with_hole or a mesh and the tool a cylinder with a flat tip");
   f.boolean(key(parameter::kLocalAverage), rendering.local_average,
             "merge colliding points that share a grid cell of the shell");
   f.field("reduction", "gradient-based reduction, whose kept points change in jumps; null: off", Presence::has_default,

@@ -57,6 +57,18 @@ void fix_stages(Fields& f, Scenario& scenario) {
     f.warn(fmt::format("/rendering/depth_model: \"{}\" is not used: algorithm \"{}\" is defined with \"{}\"",
                        given.depth_model, given.algorithm, fixed.depth_model));
   }
+  if (given.contact_source != kOwnContacts) {
+    const AlgorithmEntry& entry = *find_algorithm(given.algorithm);
+    if (!entry.reported_depth_model.empty()) {
+      f.warn(fmt::format("/rendering/contact_source: not used: algorithm \"{}\" finds its points itself",
+                         given.algorithm));
+    } else if (!entry.fixed_depth_model.empty()) {
+      f.warn(
+          fmt::format("/rendering/contact_source: algorithm \"{}\" is defined with depth model \"{}\"; here it has "
+                      "the depths of \"{}\"",
+                      given.algorithm, entry.fixed_depth_model, given.contact_source));
+    }
+  }
   if (given.reduction && !fixed.reduction) {
     f.warn(fmt::format("/rendering/reduction: not used: algorithm \"{}\" is defined without", given.algorithm));
   }

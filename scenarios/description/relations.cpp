@@ -58,6 +58,24 @@ void check_local_average(const Scenario& scenario) {
   }
 }
 
+/// A peer's contacts are of triangles and a cylinder, and no points of the shell.
+void check_contact_source(const Scenario& scenario) {
+  const RenderingConfig& rendering = scenario.rendering;
+  if (rendering.contact_source == kOwnContacts) return;
+  const auto* drill = std::get_if<CylinderFields>(&scenario.tool);
+  const bool is_solid = std::holds_alternative<BlockEnvironment>(scenario.environment) ||
+                        std::holds_alternative<MeshEnvironment>(scenario.environment);
+  const char* problem = !is_solid ? "unless the environment is a block_with_hole or a mesh"
+                        : drill == nullptr || drill->tip != Tip::flat ? "unless the tool is a cylinder with a flat tip"
+                        : rendering.local_average                     ? "with local_average, which merges shell points"
+                        : rendering.reduction && rendering.reduction->shuffle_seed
+                            ? "with reduction.shuffle_seed, which orders shell points"
+                            : nullptr;
+  if (problem == nullptr) return;
+  fail("/rendering/contact_source",
+       fmt::format("got \"{}\"; allowed: \"{}\", {}", rendering.contact_source, kOwnContacts, problem));
+}
+
 void check_ideal_trajectory(const Scenario& scenario) {
   if (!scenario.record.ideal_trajectory || has_ideal_trajectory(scenario)) return;
   fail("/record/ideal_trajectory",
@@ -145,6 +163,7 @@ void check_relations(const Scenario& scenario, double steps) {
   check_sizes(scenario, steps);
   check_orientation(scenario.motion);
   check_local_average(scenario);
+  check_contact_source(scenario);
   check_ideal_trajectory(scenario);
   check_force_reference(scenario);
   check_push_hand(scenario);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cfenv>
 #include <stdexcept>
+#include <utility>
 
 #include "algorithms/plugin/plugin_law.hpp"
 #include "scenarios/input/input_error.hpp"
@@ -23,6 +24,11 @@ constexpr const char* kEntryPoint = "hapbench_plugin";
 std::vector<LoadedPlugin>& plugins() {
   static std::vector<LoadedPlugin> all;
   return all;
+}
+
+std::function<std::shared_ptr<void>()>& loading_guard() {
+  static std::function<std::shared_ptr<void>()> guard = [] { return nullptr; };
+  return guard;
 }
 
 /// A library that is compiled with -ffast-math switches subnormal numbers off for the whole program as it is loaded,
@@ -79,6 +85,7 @@ void load_plugin(const fs::path& given) {
   if (error) fail_in_file(given, "cannot be loaded as a plugin: " + error.message());
   const auto is_this = [&file](const LoadedPlugin& plugin) { return plugin.file == file; };
   if (std::any_of(plugins().begin(), plugins().end(), is_this)) return;
+  const std::shared_ptr<void> guarded = loading_guard()();
   const std::string hash = hash_of_file(file);
   const HapbenchPlugin& plugin = opened(file);
   try {
@@ -109,6 +116,10 @@ void load_plugins_in(const std::string& what, const std::string& folders) {
     std::sort(files.begin(), files.end());
     for (const fs::path& file : files) load_plugin(file);
   }
+}
+
+void guard_loading(std::function<std::shared_ptr<void>()> guard) {
+  loading_guard() = std::move(guard);
 }
 
 const std::vector<LoadedPlugin>& loaded_plugins() {

@@ -14,6 +14,7 @@
 #include "device_model/hands/tracking_hand.hpp"
 #include "device_model/ideal_device.hpp"
 #include "scenarios/run/environment_points.hpp"
+#include "scenarios/run/peer_contacts.hpp"
 #include "sim/contact/spring_source.hpp"
 #include "sim/core/random.hpp"
 #include "sim/loop/stop_rules.hpp"
@@ -159,6 +160,7 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
       throw InputError(InputError::Kind::relation, file_of(loaded, pointer).string() + ": " + pointer, error.what());
     }
   };
+  with_file(loaded, [&] { require_contact_source(scenario); });
   if (std::holds_alternative<PointShellEnvironment>(scenario.environment)) {
     at("/environment/file", [&] { loaded.files.shell_points(); });
   }
@@ -225,6 +227,8 @@ SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std:
     const auto seed = static_cast<std::uint64_t>(scenario.seed);
     parts.springs = std::make_shared<const SpringSet>(make_springs(*springs, seed));
     parts.source = std::make_unique<SpringSource>(parts.springs);
+  } else if (rendering.contact_source != kOwnContacts) {
+    parts.source = make_peer_source(scenario, files);
   } else {
     auto search = make_contact_query(*parts.shell, *parts.tool, rendering.skips);
     parts.source = std::make_unique<ShellSource>(*parts.shell, *parts.tool, std::move(search),

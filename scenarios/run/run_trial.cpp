@@ -69,7 +69,9 @@ class TrialObservers {
     if (parts.shell && parts.shell->size() > 0) {
       approach_.emplace(parts.shell->bounds());
       observers_.push_back(&*approach_);
-      if (std::holds_alternative<MeshEnvironment>(scenario.environment) && !files.mesh().open_edges().empty()) {
+      // It knows points of the shell, and a peer's contacts are none.
+      if (std::holds_alternative<MeshEnvironment>(scenario.environment) &&
+          scenario.rendering.contact_source == kOwnContacts && !files.mesh().open_edges().empty()) {
         open_edges_.emplace(*parts.shell, files.mesh().open_edges(), parts.tool->half_width());
         observers_.push_back(&*open_edges_);
       }

@@ -6,7 +6,7 @@ namespace hapbench {
 
 /// The environment as the step loop sees it: answers which contacts a tool in a given pose has, each with its depth and
 /// gradient. A shell of points needs a search and a depth model for that (algorithms/shell_source.hpp); springs know
-/// their depths.
+/// their depths, and so do other libraries (algorithms/peers).
 class ContactSource {
  public:
   virtual ~ContactSource() = default;
@@ -19,6 +19,12 @@ class ContactSource {
   /// Back to t = 0, counters included.
   virtual void reset() noexcept = 0;
   virtual const SearchWork& work() const noexcept = 0;
+  /// What went wrong in code from outside since the last reset, which ends the run; null for nothing. Not virtual: it
+  /// is looked at in every step.
+  const char* fault() const noexcept { return fault_; }
+
+ protected:
+  const char* fault_ = nullptr;
 };
 
 }  // namespace hapbench

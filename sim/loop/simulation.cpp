@@ -1,6 +1,7 @@
 #include "sim/loop/simulation.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -127,6 +128,12 @@ bool Simulation::step() noexcept {
   r.hand = parts_.device->measure(r.hand_force);
 
   parts_.source->contacts_at(tool_.pose, contacts_);
+  if (parts_.source->fault() != nullptr) {
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    result_.divergence = {row_, r.time, "contacts", kNaN, 0.0, parts_.source->fault()};
+    end(Outcome::diverges);
+    return true;
+  }
   r.colliding = contacts_.size();
   if (input_wanted_) parts_.algorithm->take_input(r.hand.input);
   parts_.algorithm->compute(tool_, contacts_, r.force);

@@ -73,7 +73,7 @@ struct Divergence {
   const char* quantity = "";  ///< as in "position", "handle velocity" or "rendered force"
   double magnitude = 0.0;     ///< its norm, possibly not finite
   double bound = 0.0;
-  std::string fault = {};  ///< the reason, where the algorithm knows it (ForceAlgorithm::fault); mostly empty
+  std::string fault = {};  ///< the reason, where the source of contacts or the algorithm knows it; mostly empty
 };
 
 struct SimulationResult {

@@ -9,6 +9,10 @@ import unittest
 from pathlib import Path
 
 CMAKE, BUILD, SOURCE, PROGRAM = sys.argv[1:5]
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(SOURCE) / "scripts" / "python"))
+from hapbench_docs.manuals import Manual, broken_links  # noqa: E402  (the path comes first)
+
 CONSUMER = Path(SOURCE) / "tests" / "consumer"
 SCENARIO = "peg_in_hole_2d_mean"
 # A parent's flags are its own business; CMake would take these from the environment.
@@ -40,6 +44,12 @@ class Consumer(unittest.TestCase):
         out = self.folder / "out"
         must(PROGRAM, "run", SCENARIO, "--out", out)
         self.assertEqual(state_hash, json.loads((out / "summary.json").read_text())["state_hash"])
+
+    def test_links_of_the_installed_manuals_lead_somewhere(self):
+        folder = self.prefix / "share" / "doc" / "hapbench"
+        manuals = sorted(folder.rglob("*.md"))
+        self.assertIn(folder / "scripts" / "python" / "README.md", manuals)
+        self.assertEqual({str(file): links for file in manuals if (links := list(broken_links(Manual(file))))}, {})
 
     def test_headers_without_the_flags_that_lay_out_their_types_do_not_compile(self):
         source = self.folder / "bare.cpp"

@@ -1,4 +1,4 @@
-"""The Python package with its compiled module. Arguments: the built program, the source tree, the folder of the built package."""
+"""Runs, studies and results by the Python package. Arguments: those of python_fixture.py."""
 import ast
 import inspect
 import io
@@ -8,59 +8,19 @@ import re
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
 import time
-import traceback
 import unittest
-import warnings
+import unittest.mock
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
+from python_fixture import ENVIRONMENT, EVERYTHING, PEG, SHORT, SOURCE, Scratch, program, python, words_of
 
-PROGRAM, SOURCE, PACKAGES = (Path(word).resolve() for word in sys.argv[1:4])
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(PACKAGES))
-
-import hapbench  # noqa: E402  (the path comes first)
-from hapbench import _hapbench  # noqa: E402
-from hapbench.columns import read_columns  # noqa: E402
-
-PEG = "peg_in_hole_2d_shaped_stiffness"
-# Short, and with contact from the first step on.
-SHORT = {"time.steps": 300, "expect": "{}"}
-EVERYTHING = {"record.contacts": True, "record.stiffness_tensor": True, "record.energy": True, "record.torque": True,
-              "record.pose": True, "record.ratio_iterations": "[0,3]"}
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(PACKAGES), "PYTHONDONTWRITEBYTECODE": "1"}
-
-
-def summation(depths):
-    """All springs added."""
-    return np.ones(len(depths))
-
-
-def program(*words, expected=0):
-    done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, stdin=subprocess.DEVNULL)
-    assert done.returncode == expected, (words, done.returncode, done.stderr)
-    return done
-
-
-def python(*words, **options):
-    return subprocess.run([sys.executable, *map(str, words)], capture_output=True, text=True, env=ENVIRONMENT,
-                          stdin=subprocess.DEVNULL, **options)
-
-
-def words_of(overrides):
-    return [word for field, value in overrides.items() for word in ("--set", f"{field}={value if isinstance(value, str) else json.dumps(value)}")]
-
-
-class Scratch(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory(prefix="hapbench-python-")
-        self.addCleanup(scratch.cleanup)
-        self.root = Path(scratch.name)
-        warnings.simplefilter("ignore", hapbench.ScenarioWarning)
+import hapbench
+from hapbench import _hapbench
+from hapbench.columns import read_columns
 
 
 class Runs(Scratch):
@@ -251,146 +211,6 @@ class Studies(Scratch):
         self.assertIn("mean", json.dumps(hapbench.command("describe", "mean")))
 
 
-class Laws(Scratch):
-    def test_a_law_is_like_a_built_in_one(self):
-        hapbench.force_law("test_summation")(summation)
-        for scene in (PEG, "springs_limited_mean"):
-            own, built_in = (hapbench.run(scene, {**SHORT, "rendering.algorithm": name}, record=["contacts"])
-                             for name in ("test_summation", "summation"))
-            self.assertEqual(own.state_hash, built_in.state_hash, scene)
-            np.testing.assert_array_equal(own.contacts.weight, built_in.contacts.weight)
-            self.assertEqual(own.summary["provenance"]["plugin"]["file"], "python_test.py")
-            self.assertNotIn("plugin", built_in.summary["provenance"])
-        self.assertIn("test_summation", hapbench.algorithms())
-        self.assertIn("All springs added", json.dumps(hapbench.command("describe", "test_summation")))
-
-    def test_a_force_and_a_tensor(self):
-        @hapbench.force_law("test_force")
-        def law(depths, gradients, stiffness):
-            return -stiffness * depths @ gradients, gradients.T @ gradients
-
-        own = hapbench.run(PEG, {**SHORT, "rendering.algorithm": "test_force"})
-        built_in = hapbench.run(PEG, {**SHORT, "rendering.algorithm": "summation"})
-        # Sums in another order: the first row differs by rounding, of at most some 30 terms.
-        np.testing.assert_allclose(own.trajectory.fx_N[0], built_in.trajectory.fx_N[0], rtol=1e-13, atol=1e-10)
-
-    def test_arguments(self):
-        seen = {}
-
-        @hapbench.force_law("test_arguments", parameters={"share": hapbench.Parameter(0.5, 0, 1, "1", "of the weights"), "other": 2})
-        def law(normals, share, points, stiffness, gradients, depths, other):
-            seen.update(shapes=(normals.shape, points.shape, gradients.shape, depths.shape), share=share, other=other, K=stiffness,
-                        contiguous=gradients.flags.c_contiguous, owned=gradients.flags.owndata)
-            return share
-
-        run = hapbench.run(PEG, {**SHORT, "rendering.algorithm": "test_arguments", "rendering.parameters.test_arguments.share": 0.25},
-                           record=["contacts"])
-        n = int(run.trajectory.rendered[run.trajectory.rendered > 0][-1])
-        self.assertEqual(seen["shapes"], ((n, 3), (n, 3), (n, 3), (n,)))
-        self.assertEqual((seen["share"], seen["other"], seen["K"], seen["contiguous"], seen["owned"]), (0.25, 2.0, 20000.0, True, False))
-        self.assertEqual(set(run.contacts.weight), {0.25})
-        self.assertEqual(run.scenario["rendering"]["parameters"]["test_arguments"], {"share": 0.25, "other": 2.0})
-        with self.assertRaises(hapbench.ScenarioError) as caught:
-            hapbench.run(PEG, {"rendering.algorithm": "test_arguments", "rendering.parameters.test_arguments.share": 2})
-        self.assertEqual(caught.exception.pointer, "/rendering/parameters/test_arguments/share")
-        with self.assertRaisesRegex(TypeError, "unknown argument 'depth'"):
-            hapbench.force_law("test_wrong")(lambda depth: 1)
-        with self.assertRaisesRegex(ValueError, "built-in"):
-            hapbench.force_law("mean")(summation)
-
-    def test_a_new_definition_replaces(self):
-        hashes = []
-        for weight in (0.5, 1.0):
-            hapbench.force_law("test_again")(eval(f"lambda depths: {weight}"))
-            hashes.append(hapbench.run(PEG, {**SHORT, "rendering.algorithm": "test_again"}).state_hash)
-        self.assertNotEqual(*hashes)
-        self.assertEqual(hashes[1], hapbench.run(PEG, {**SHORT, "rendering.algorithm": "summation"}).state_hash)
-        self.assertEqual(hapbench.algorithms().count("test_again"), 1)
-
-    def test_a_state_of_each_run(self):
-        made = []
-
-        @hapbench.force_law("test_state")
-        class Law:
-            def __init__(self):
-                self.calls = 0
-                made.append(self)
-
-            def __call__(self, depths):
-                self.calls += 1
-                return 1.0 / self.calls
-
-        first, second = (hapbench.run(PEG, {**SHORT, "rendering.algorithm": "test_state"}).state_hash for _ in range(2))
-        self.assertEqual(first, second)
-        self.assertGreaterEqual(len(made), 2)
-
-    def test_in_studies(self):
-        hapbench.force_law("test_summation")(summation)
-        report = hapbench.compare(PEG, ["summation", "test_summation"], SHORT, jobs=2)
-        self.assertEqual(report.runs["summation"].state_hash, report.runs["test_summation"].state_hash)
-        table = hapbench.sweep(PEG, {"rendering.algorithm": "test_summation,summation", "seed": [1, 2, 3]}, SHORT, jobs=2).sweep
-        self.assertEqual(list(table["state_hash"][:3]), list(table["state_hash"][3:]))
-        table = hapbench.stability(map="contacts", algorithms=["test_summation", "summation"], size=2, jobs=2).stability_map_contacts
-        own, built_in = table.where(algorithm="test_summation"), table.where(algorithm="summation")
-        self.assertEqual(list(own["class"]), list(built_in["class"]))
-        self.assertEqual(own.rows, 4)
-
-    def test_exceptions_end_the_run(self):
-        calls = []
-
-        @hapbench.force_law("test_raises")
-        def law(depths):
-            calls.append(len(depths))
-            if len(calls) > 3:
-                raise RuntimeError("enough")
-            return 1
-
-        for compute in (lambda: hapbench.run(PEG, {**SHORT, "rendering.algorithm": "test_raises"}),
-                        lambda: hapbench.compare(PEG, ["mean", "test_raises"], SHORT, out=self.root / "out", jobs=2),
-                        lambda: hapbench.sweep(PEG, {"rendering.algorithm": "test_raises", "seed": [1, 2]}, SHORT, jobs=2)):
-            calls.clear()
-            try:
-                compute()
-            except RuntimeError as error:
-                self.assertEqual((str(error), traceback.extract_tb(error.__traceback__)[-1].name), ("enough", "law"))
-            else:
-                self.fail("no error")
-        self.assertFalse((self.root / "out" / "test_raises" / "summary.json").exists())
-        # Nothing of it stays behind.
-        self.assertEqual(hapbench.run(PEG, SHORT).outcome, "completes")
-
-    def test_answers_that_are_no_force(self):
-        for answer, said in ((np.ones(1000), "shape"), (np.nan, "nan"), ("text", "str"), (None, "NoneType"), ((1, 2, 3), "tuple of 3"),
-                             ((np.zeros(3), np.arange(9.0).reshape(3, 3)), "symmetric"), (np.ones((2, 2)), "shape")):
-            hapbench.force_law("test_wrong")(eval("lambda depths: answer", {"answer": answer}))
-            with self.assertRaisesRegex(ValueError, f'force law "test_wrong": .*{said}'):
-                hapbench.run(PEG, {**SHORT, "rendering.algorithm": "test_wrong"})
-
-    def test_laws_on_the_command_line(self):
-        script = self.root / "mine.py"
-        script.write_text("import sys, hapbench\n@hapbench.force_law('mine')\ndef mine(depths):\n    return 1\n"
-                          "sys.exit(hapbench.main())\n")
-        words = ["run", PEG, *words_of({**SHORT, "rendering.algorithm": "mine"}), "--out", self.root / "out"]
-        done = python(script, *words)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(hapbench.load(self.root / "out").state_hash,
-                         hapbench.run(PEG, {**SHORT, "rendering.algorithm": "summation"}).state_hash)
-
-
-PLUGIN = SOURCE / "algorithms/plugin/examples/depth_weighted.c"
-
-
-class Plugins(Scratch):
-    def test_stand_beside_laws_in_python(self):
-        subprocess.run(["cc", "-shared", "-fPIC", f"-I{SOURCE}/algorithms/plugin", "-o", self.root / "law.so", PLUGIN, "-lm"], check=True)
-        before = set(hapbench.algorithms())
-        hapbench.load_plugin(self.root / "law.so")
-        (name,) = set(hapbench.algorithms()) - before
-        hapbench.force_law("test_summation")(summation)
-        report = hapbench.compare(PEG, [name, "test_summation", "summation"], SHORT)
-        self.assertEqual(list(report.comparison.algorithm), [name, "test_summation", "summation"])
-
-
 class Steps(Scratch):
     def test_are_those_of_a_run(self):
         run = hapbench.run(PEG, SHORT, record=["contacts"])
@@ -504,6 +324,4 @@ class Notebook(Scratch):
 
 
 if __name__ == "__main__":
-    import unittest.mock
-
     unittest.main(argv=sys.argv[:1])

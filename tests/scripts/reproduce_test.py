@@ -32,13 +32,13 @@ class Reproduce(unittest.TestCase):
         file.write_text(text, encoding="utf-8")
         file.chmod(0o755)
 
-    def start(self, program, *words):
+    def start(self, program, *words, **environment):
         self.put("build/release/bin/hapbench", program)
         return subprocess.Popen([self.root / "scripts" / "reproduce", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                text=True, env={**os.environ, "PATH": f"{self.root / 'bin'}:{os.environ['PATH']}"})
+                                text=True, env={**os.environ, "PATH": f"{self.root / 'bin'}:{os.environ['PATH']}", **environment})
 
-    def run_with(self, program, *words):
-        process = self.start(program, *words)
+    def run_with(self, program, *words, **environment):
+        process = self.start(program, *words, **environment)
         out, err = process.communicate(timeout=60)
         return process.returncode, out, err
 
@@ -52,6 +52,11 @@ class Reproduce(unittest.TestCase):
         self.assertEqual(status, 1)
         self.assertIn("FAILED: Run time against error (exit status 7)", out)
         self.assertIn("== Report", out)  # the others were done
+
+    def test_laws_from_outside_take_no_part(self):
+        program = '#!/bin/sh\n[ -z "$HAPBENCH_PLUGIN_PATH" ] || exit 7\n'
+        self.assertEqual(self.run_with(program, HAPBENCH_PLUGIN_PATH="/plugins")[0], 0)
+        self.assertEqual(self.run_with(program, "--only", "T1", HAPBENCH_PLUGIN_PATH="/plugins")[0], 0)
 
     def test_an_unknown_argument(self):
         status, _, err = self.run_with(NOTHING, "--no-such")

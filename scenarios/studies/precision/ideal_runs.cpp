@@ -1,3 +1,5 @@
+#include "scenarios/studies/precision/ideal_runs.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/precision/measure.hpp"
-#include "scenarios/studies/precision/study.hpp"
 
 /// The studies whose reference is the ideal trajectory.
 namespace hapbench {
@@ -23,29 +24,28 @@ constexpr std::pair<const char*, Density> kDensities[] = {{"signed_distance", De
 /// compares.
 constexpr const char* kAngularlyDamped[] = {"original_averaging", "shaped_stiffness"};
 
+}  // namespace
+
 const std::vector<std::string> kIdealColumns = {"ideal_height_error_rms_m", "ideal_height_error_max_m",
                                                 "ideal_lateral_error_rms_m", "interpenetration_max_m",
                                                 "force_step_max_N"};
 
-/// Errors of a run against the ideal trajectory, over the rows in which the hand is gentle, if it ever is; and the
-/// largest change of the force in a step of all rows.
-PrecisionRow ideal_row(std::string setting, const Scenario& scenario, std::shared_ptr<const PointShell> shell,
-                       int repetitions) {
+IdealRun ideal_run(std::string setting, const Scenario& scenario, std::shared_ptr<const PointShell> shell,
+                   int repetitions) {
   const BlockWithHole& block = std::get<BlockEnvironment>(scenario.environment).block;
   IdealTrajectoryObserver ideal(block, make_cylinder(scenario.tool));
   MetricsObserver motion(scenario.time.step);
-  const SampledRun run = sampled_run(scenario, shell, 1024, {&ideal, &motion});
+  SampledRun run = sampled_run(scenario, shell, kContactSetStride, {&ideal, &motion});
   const IdealTrajectoryMetrics metrics = ideal.metrics();
   const TrajectoryErrors& errors = metrics.gentle.rows > 0 ? metrics.gentle : metrics.firm;
   const double highest = std::max(-errors.height_min, errors.height_max);
   return {
-      std::move(setting),
-      std::string(outcome_name(run.result.outcome)),
-      {errors.height_rms, highest, errors.lateral_rms, errors.interpenetration_max, motion.metrics().force_step_max},
-      seconds_per_step(scenario, std::move(shell), repetitions)};
+      {std::move(setting),
+       std::string(outcome_name(run.result.outcome)),
+       {errors.height_rms, highest, errors.lateral_rms, errors.interpenetration_max, motion.metrics().force_step_max},
+       seconds_per_step(scenario, std::move(shell), repetitions)},
+      std::move(run.positions)};
 }
-
-}  // namespace
 
 static PrecisionResult study_spacing(const Scenario& given, const PrecisionOptions& options) {
   PrecisionResult result;
@@ -59,7 +59,7 @@ static PrecisionResult study_spacing(const Scenario& given, const PrecisionOptio
       environment.density = density;
       environment.grid = spacing;
       const auto shell = make_shell(scenario);
-      PrecisionRow row = ideal_row(fmt::format("{} {}", name, spacing), scenario, shell, options.repetitions);
+      PrecisionRow row = ideal_run(fmt::format("{} {}", name, spacing), scenario, shell, options.repetitions).row;
       const double points = static_cast<double>(shell->size());
       const double bytes = static_cast<double>(shell->padded_size() * 6 * sizeof(double));
       row.values.insert(row.values.begin(), {spacing, points, bytes});
@@ -82,7 +82,7 @@ static PrecisionResult study_algorithms(const Scenario& given, const PrecisionOp
   const auto add_row = [&](std::string setting, const RenderingConfig& config) {
     Scenario run = scenario;
     run.rendering = with_fixed_stages(config);
-    result.rows.push_back(ideal_row(std::move(setting), run, shell, options.repetitions));
+    result.rows.push_back(ideal_run(std::move(setting), run, shell, options.repetitions).row);
     options.progress(result.rows.size(), all);
   };
   RenderingConfig config = scenario.rendering;

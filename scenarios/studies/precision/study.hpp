@@ -57,9 +57,10 @@ extern const PrecisionStudy kMergingStudy;
 extern const PrecisionStudy kAlgorithmsStudy;
 extern const PrecisionStudy kStiffnessStudy;
 extern const PrecisionStudy kQueryTimeStudy;
+extern const PrecisionStudy kContactSourcesStudy;
 
-inline constexpr std::array kPrecisionStudies = {&kIntegratorsStudy, &kTimeStepStudy,  &kShapingStudy,
-                                                 &kSpacingStudy,     &kReductionStudy, &kMergingStudy,
-                                                 &kAlgorithmsStudy,  &kStiffnessStudy, &kQueryTimeStudy};
+inline constexpr std::array kPrecisionStudies = {
+    &kIntegratorsStudy, &kTimeStepStudy,   &kShapingStudy,   &kSpacingStudy,   &kReductionStudy,
+    &kMergingStudy,     &kAlgorithmsStudy, &kStiffnessStudy, &kQueryTimeStudy, &kContactSourcesStudy};
 
 }  // namespace hapbench

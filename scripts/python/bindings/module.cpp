@@ -101,6 +101,7 @@ PYBIND11_MODULE(_hapbench, module) {
   using namespace hapbench;
   module.doc() = "The compiled part of hapbench: use the package around it.";
   translate_errors();
+  guard_plugins();
   module.def(
       "set_program", [](const std::string& program) { set_this_program(program); }, py::arg("program"),
       "Say which file is the program, for commands that name it.");

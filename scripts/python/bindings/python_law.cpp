@@ -167,6 +167,13 @@ class PythonLaw final : public ForceLaw {
     return no_force(contacts);
   }
 
+  SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
+    return gave_force_ ? spring_of_force(contacts, spring, tip, K_) : ForceLaw::spring_state(contacts, spring, tip);
+  }
+  Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
+    return gave_force_ ? turning_velocity_of_force(contacts, S, tool) : ForceLaw::turning_velocity(contacts, S, tool);
+  }
+
  private:
   /// Objects of Python: made and given up with the interpreter held.
   struct State {
@@ -233,7 +240,8 @@ class PythonLaw final : public ForceLaw {
   }
 
   LawForce force_of(const py::object& answer, ContactBuffer& contacts) {
-    if (py::isinstance<py::tuple>(answer)) return given_force(answer, contacts);
+    gave_force_ = py::isinstance<py::tuple>(answer);
+    if (gave_force_) return given_force(answer, contacts);
     const auto weights = numbers(answer);
     const std::size_t n = contacts.size();
     if (weights.ndim() == 0) {
@@ -259,7 +267,7 @@ class PythonLaw final : public ForceLaw {
     for (int i = 0; i < 9; ++i) result.S(i / 3, i % 3) = require_finite(tensor.data()[i], "the stiffness tensor");
     if (result.S != result.S.transpose())
       throw py::value_error(title() + "got a stiffness tensor that is not symmetric");
-    set_weights(contacts, 0.0);
+    set_weights(contacts, 1.0 / static_cast<double>(contacts.size()));
     return result;
   }
 
@@ -287,6 +295,7 @@ class PythonLaw final : public ForceLaw {
 
   SharedDefinition definition_;
   std::unique_ptr<State> state_;
+  bool gave_force_ = false;  ///< in place of weights, at the last call
   bool failed_ = false;
 };
 
@@ -303,8 +312,8 @@ Argument argument_named(const std::string& name) {
 
 void add_force_law(const std::string& name, const py::object& callable, bool is_class,
                    const std::vector<std::string>& arguments, const std::vector<GivenParameter>& parameters,
-                   const std::array<std::string, 4>& texts, const std::string& depth_model,
-                   const std::string& file, const std::string& source) {
+                   const std::array<std::string, 4>& texts, const std::string& depth_model, const std::string& file,
+                   const std::string& source) {
   if (is_work_under_way()) throw std::runtime_error("a force law cannot be defined while something is computed");
   Definition definition{name, callable, is_class, {}};
   std::vector<OwnParameter> own;
@@ -338,8 +347,8 @@ void add_force_law(const std::string& name, const py::object& callable, bool is_
 
 void bind_force_laws(py::module_& module) {
   module.def("add_force_law", add_force_law, py::arg("name"), py::arg("callable"), py::arg("is_class"),
-             py::arg("arguments"), py::arg("parameters"), py::arg("texts"), py::arg("depth_model"), py::arg("file"), py::arg("source"),
-             "Make an algorithm of a callable; hapbench.force_law checks and fills the arguments.");
+             py::arg("arguments"), py::arg("parameters"), py::arg("texts"), py::arg("depth_model"), py::arg("file"),
+             py::arg("source"), "Make an algorithm of a callable; hapbench.force_law checks and fills the arguments.");
 }
 
 }  // namespace hapbench

@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <csignal>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -13,6 +14,8 @@
 #include <thread>
 #include <utility>
 
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
@@ -197,6 +200,14 @@ void raise_python_error() {
 
 bool is_work_under_way() {
   return under_way > 0;
+}
+
+void guard_plugins() {
+  guard_loading([] {
+    auto held = std::make_shared<py::gil_scoped_acquire>();  // which work needs to begin
+    if (under_way > 1) throw InputError("a plugin cannot be loaded while another thread computes");
+    return held;
+  });
 }
 
 }  // namespace hapbench

@@ -24,4 +24,7 @@ void raise_python_error();
 /// True while there is supervised work. Precondition: the interpreter is held.
 bool is_work_under_way();
 
+/// Lets no plugin be loaded while another thread computes, nor another thread begin to compute while one is loaded.
+void guard_plugins();
+
 }  // namespace hapbench

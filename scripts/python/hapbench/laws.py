@@ -37,7 +37,8 @@ def force_law(name: str, parameters: Mapping[str, Parameter | float] | None = No
 
     It returns the weights c_i of the springs, one for each contact or one for all: f = -K Σ c_i d_i u_i and
     S = Σ c_i u_i u_iᵀ; or a tuple of the force [N] and the symmetric stiffness tensor S in units of K (3 × 3), with
-    which damping and friction are computed. A class in place of a function: an object of it is called, a new one for
+    which damping and friction are computed; its energy and moment are those of one spring of stiffness K in the middle of
+    the contacts. A class in place of a function: an object of it is called, a new one for
     each run, so that a law can have a state.
 
     An exception in the law ends what is computed and is raised there. A law of the same name gives way to a new one.

@@ -31,6 +31,7 @@ def renewed(manual, scratch, program):
     if program:
         makers["session"] = lambda old: sessions.renewed(old, program, scratch)
         makers["ideal_trajectory"] = lambda old: studies.ideal_trajectory(old, program, scratch)
+        makers["contact_sources"] = lambda old: studies.contact_sources(old, program, scratch)
     text = blocks.renewed(manual.text, makers)
     if manual.file != table.MANUAL:
         return text

@@ -10,7 +10,7 @@
 #include <iterator>
 #include <utility>
 
-#include "tests/bench/peers/peer.hpp"
+#include "tests/bench/peers/linked_peers.hpp"
 
 /// CGAL: a k-d tree over the points of the shell, asked for those in the box around the drill, each of which is then
 /// compared with the drill. The only library here that answers our own question, to the point.
@@ -19,22 +19,23 @@ namespace {
 
 using Kernel = CGAL::Simple_cartesian<double>;
 using Numbered = std::pair<Kernel::Point_3, std::uint32_t>;
-using Traits = CGAL::Search_traits_adapter<Numbered, CGAL::First_of_pair_property_map<Numbered>,
-                                           CGAL::Search_traits_3<Kernel>>;
+using Traits =
+    CGAL::Search_traits_adapter<Numbered, CGAL::First_of_pair_property_map<Numbered>, CGAL::Search_traits_3<Kernel>>;
 using Tree = CGAL::Kd_tree<Traits>;
 using Box = CGAL::Fuzzy_iso_box<Traits>;
 
 class KdTree final : public Peer {
  public:
   KdTree(const PeerSurface& surface, const PeerDrill& drill) : drill_(drill) {
-    for (std::uint32_t i = 0; 3 * i < surface.points.size(); ++i) {
-      const double* p = &surface.points[3 * i];
+    for (std::uint32_t i = 0; 3 * i < surface.vertices.size(); ++i) {
+      const double* p = &surface.vertices[3 * i];
       tree_.insert({{p[0], p[1], p[2]}, i});
     }
     tree_.build();
   }
 
-  PeerAnswer ask(const PeerPose& pose) override {
+  /// Their numbers, ascending.
+  std::size_t contacts_at(const PeerPose& pose, std::span<PeerContact> room) override {
     near_.clear();
     points_.clear();
     const auto& r = pose.rotation;
@@ -52,9 +53,10 @@ class KdTree final : public Peer {
         points_.push_back(number);
     }
     std::sort(points_.begin(), points_.end());
-    return {points_.size(), 0.0};
+    const std::size_t found = std::min(points_.size(), room.size());
+    for (std::size_t i = 0; i < found; ++i) room[i].number = points_[i];
+    return found;
   }
-  const std::vector<std::uint32_t>& points() const override { return points_; }
 
  private:
   PeerDrill drill_;

@@ -6,10 +6,12 @@
 #include <exception>
 #include <map>
 
+#include "algorithms/peers/peer_source.hpp"
 #include "results/summary/provenance.hpp"
+#include "scenarios/plugins/load_peer.hpp"
+#include "scenarios/run/peer_contacts.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
-#include "sim/mesh/block_field.hpp"
-#include "tests/bench/peers/peer.hpp"
+#include "tests/bench/peers/linked_peers.hpp"
 #include "tests/bench/task_scene.hpp"
 
 /// Our search and other libraries at the same poses of the same scenes: peers/<library>/<task> takes as long for a pose
@@ -20,52 +22,42 @@ namespace {
 /// They take milliseconds a pose.
 constexpr std::size_t kEvery = 64;
 
+/// Room for what a library answers; ODE says no more than this.
+constexpr std::size_t kRoom = 100'000;
+
 struct Library {
-  const char* name;
+  std::string name;
   MakePeer* make;
   bool same_question;  ///< which points of the shell are in the drill
 };
-const Library kLibraries[] = {
-#ifdef HAPBENCH_PEER_KD_TREE
-    {"cgal_kd_tree", make_kd_tree, true},
-#endif
-#ifdef HAPBENCH_PEER_FCL
-    {"fcl", make_fcl, false},
-#endif
-#ifdef HAPBENCH_PEER_BULLET
-    {"bullet", make_bullet, false},
-#endif
-#ifdef HAPBENCH_PEER_ODE
-    {"ode", make_ode, false},
-#endif
-};
 
-const PeerSurface& surface() {
-  static const PeerSurface made = [] {
-    PeerSurface surface;
-    const auto add = [](std::vector<double>& to, const Vec3& p) { to.insert(to.end(), {p.x(), p.y(), p.z()}); };
-    const auto shell = block_shell();
-    for (std::size_t i = 0; i < shell->size(); ++i) add(surface.points, shell->point(i).position);
-    const auto& block = std::get<BlockEnvironment>(task_scene("T1").loaded.scenario.environment);
-    const IsoSurface mesh =
-        marching_cubes(density_field(block.block, block.grid, block.density), {.triangles = true});
-    for (const SurfacePoint& vertex : mesh.vertices) add(surface.vertices, vertex.position);
-    for (const auto& triangle : mesh.triangles)
-      surface.triangles.insert(surface.triangles.end(), triangle.begin(), triangle.end());
-    return surface;
-  }();
-  return made;
+std::vector<Library> libraries() {
+  std::vector<Library> here;
+#ifdef HAPBENCH_PEER_KD_TREE
+  here.push_back({"cgal_kd_tree", make_kd_tree, true});
+#endif
+  for (const char* name : kPeers)
+    if (MakePeer* make = find_peer(name)) here.push_back({name, make, false});
+#ifdef HAPBENCH_PEER_ODE
+  here.push_back({"ode", make_ode, false});
+#endif
+  return here;
 }
 
-PeerPose pose_of(const ToolPose& pose, double length) {
-  const Vec3 centre = pose.position - 0.5 * length * pose.axis;
-  const Mat3 r = pose.rotation();
-  PeerPose out;
-  for (int i = 0; i < 3; ++i) {
-    out.centre[static_cast<std::size_t>(i)] = centre[i];
-    for (int k = 0; k < 3; ++k) out.rotation[static_cast<std::size_t>(3 * i + k)] = r(i, k);
-  }
-  return out;
+/// The block with a hole, in the form that the library wants.
+const PeerSurface& surface_for(const Library& library) {
+  static const PeerSurface points = [] {
+    PeerSurface surface;
+    const auto shell = block_shell();
+    for (std::size_t i = 0; i < shell->size(); ++i) {
+      const Vec3& p = shell->point(i).position;
+      surface.vertices.insert(surface.vertices.end(), {p.x(), p.y(), p.z()});
+    }
+    return surface;
+  }();
+  static const PeerSurface triangles =
+      peer_surface(task_scene("T1").loaded.scenario, NamedFiles(task_scene("T1").loaded.scenario));
+  return library.same_question ? points : triangles;
 }
 
 /// What our search and depths say at the poses that the libraries are asked at.
@@ -86,7 +78,7 @@ const Ours& ours(const std::string& task) {
   Ours answers;
   for (std::size_t k = 0; k < scene.poses.size(); k += kEvery) {
     parts.source->contacts_at(scene.poses[k], contacts);
-    answers.poses.push_back(pose_of(scene.poses[k], drill.length()));
+    answers.poses.push_back(peer_pose(scene.poses[k], drill.length()));
     answers.points.emplace_back(contacts.index.begin(), contacts.index.begin() + static_cast<long>(contacts.size()));
     std::sort(answers.points.back().begin(), answers.points.back().end());
     answers.depths.push_back(contacts.largest_depth());
@@ -96,7 +88,7 @@ const Ours& ours(const std::string& task) {
 
 std::unique_ptr<Peer> make_peer(const Library& library, const TaskScene& scene) {
   const Cylinder drill = make_cylinder(scene.loaded.scenario.tool);
-  return library.make(surface(), {drill.radius(), drill.length()});
+  return library.make(surface_for(library), {drill.radius(), drill.length()});
 }
 
 /// Compares the answers before it times them: to the point with a library that is asked our question, else how often
@@ -104,18 +96,23 @@ std::unique_ptr<Peer> make_peer(const Library& library, const TaskScene& scene) 
 void time_library(benchmark::State& state, const Library& library, const std::string& task) {
   const Ours& known = ours(task);
   const auto peer = make_peer(library, task_scene(task));
+  std::vector<PeerContact> room(kRoom);
   double contacts = 0.0, agreed = 0.0, depth = 0.0, our_depth = 0.0;
   for (std::size_t k = 0; k < known.poses.size(); ++k) {
-    const PeerAnswer answer = peer->ask(known.poses[k]);
-    if (library.same_question && peer->points() != known.points[k])
+    const std::span answer(room.data(), peer->contacts_at(known.poses[k], room));
+    const auto is_same = [](const PeerContact& contact, std::uint32_t point) { return contact.number == point; };
+    if (library.same_question &&
+        !std::equal(answer.begin(), answer.end(), known.points[k].begin(), known.points[k].end(), is_same))
       return state.SkipWithError(fmt::format("not the points of our search at pose {}", k).c_str());
-    contacts += static_cast<double>(answer.contacts);
-    agreed += (answer.contacts > 0) == !known.points[k].empty() ? 1.0 : 0.0;
-    depth += answer.depth;
+    contacts += static_cast<double>(answer.size());
+    agreed += answer.empty() == known.points[k].empty() ? 1.0 : 0.0;
+    double deepest = 0.0;
+    for (const PeerContact& contact : answer) deepest = std::max(deepest, contact.depth);
+    depth += deepest;
     our_depth += known.depths[k];
   }
   for (auto _ : state) {
-    for (const PeerPose& pose : known.poses) benchmark::DoNotOptimize(peer->ask(pose).contacts);
+    for (const PeerPose& pose : known.poses) benchmark::DoNotOptimize(peer->contacts_at(pose, room));
   }
   const auto n = static_cast<double>(known.poses.size());
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(known.poses.size()));
@@ -165,9 +162,9 @@ int run(int argc, char** argv) {
   for (const std::string task : kTasks) {
     benchmark::RegisterBenchmark(("peers/hapbench/" + task).c_str(), time_search, task);
     benchmark::RegisterBenchmark(("peers/hapbench_with_depths/" + task).c_str(), time_search_and_depths, task);
-    for (const Library& library : kLibraries) {
+    for (const Library& library : libraries()) {
       benchmark::RegisterBenchmark(fmt::format("peers/{}/{}", library.name, task).c_str(),
-                                   [&library, task](benchmark::State& state) { time_library(state, library, task); });
+                                   [library, task](benchmark::State& state) { time_library(state, library, task); });
     }
   }
   return benchmark::RunSpecifiedBenchmarks() == 0 ? 2 : 0;

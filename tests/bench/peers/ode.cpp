@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "tests/bench/peers/peer.hpp"
+#include "tests/bench/peers/linked_peers.hpp"
 
-/// ODE: its triangle mesh (OPCODE) against its cylinder, in millimetres. It returns as many contacts as it is given room
-/// for.
+/// ODE: its triangle mesh (OPCODE) against its cylinder, in millimetres. It returns as many contacts as it is given
+/// room for.
 namespace hapbench::bench {
 namespace {
 
@@ -35,17 +35,16 @@ class Ode final : public Peer {
   Ode(const Ode&) = delete;
   Ode& operator=(const Ode&) = delete;
 
-  PeerAnswer ask(const PeerPose& pose) override {
+  std::size_t contacts_at(const PeerPose& pose, std::span<PeerContact> room) override {
     const auto& r = pose.rotation;
     const dMatrix3 rotation = {r[0], r[1], r[2], 0.0, r[3], r[4], r[5], 0.0, r[6], r[7], r[8], 0.0};
     dGeomSetRotation(drill_, rotation);
     dGeomSetPosition(drill_, kMillimetres * pose.centre[0], kMillimetres * pose.centre[1],
                      kMillimetres * pose.centre[2]);
-    const int found = dCollide(mesh_, drill_, kRoom, contacts_.data(), sizeof(dContactGeom));
-    PeerAnswer answer{static_cast<std::size_t>(found), 0.0};
-    for (int i = 0; i < found; ++i)
-      answer.depth = std::max(answer.depth, contacts_[static_cast<std::size_t>(i)].depth / kMillimetres);
-    return answer;
+    const auto given = static_cast<std::size_t>(dCollide(mesh_, drill_, kRoom, contacts_.data(), sizeof(dContactGeom)));
+    const std::size_t found = std::min(given, room.size());
+    for (std::size_t i = 0; i < found; ++i) room[i].depth = contacts_[i].depth / kMillimetres;
+    return found;
   }
 
  private:

@@ -43,7 +43,7 @@ std::vector<NamedScenario> rich_scenarios() {
           "roll_rad": {"type": "ramp", "start": 0.1, "rate_per_s": -2}},
         "position": {"type": "prescribed", "x_m": {"type": "ramp", "start": 0, "rate_per_s": 1e-4}, "y_m": 0,
           "z_m": {"type": "waypoints", "points": [[0, 0.001], [1.5, -0.001], [2, 0]], "interpolation": "cosine"}}},
-      "rendering": {"algorithm": "virtual_coupling", "depth_model": "shortest_distance", "local_average": true,
+      "rendering": {"algorithm": "virtual_coupling", "depth_model": "shortest_distance", "contact_source": "own", "local_average": true,
         "reduction": {"threshold": 0.9, "max_points": 7, "shuffle_seed": 5}, "virtual_coupling_N_per_m": 1000, "regularisation": 0.5,
         "passivity_controller": true, "damping_N_s_per_m": 3, "angular_damping": true, "parameters": {},
         "angular_velocity_cutoff_Hz": 30,

@@ -1,0 +1,85 @@
+#include <btBulletCollisionCommon.h>
+
+#include "algorithms/peers/peer.hpp"
+
+/// Bullet, in double precision: a quantised tree of boxes over static triangles against its cylinder. In millimetres,
+/// because its margins and thresholds are made for lengths about 1. Each triangle that the cylinder meets is a contact;
+/// depth and direction are those that its GJK and EPA find for the pair.
+namespace hapbench {
+namespace {
+
+constexpr double kMillimetres = 1e3;
+
+/// Takes the contacts of one pair.
+class Taker final : public btCollisionWorld::ContactResultCallback {
+ public:
+  Taker(std::span<PeerContact> room, const btCollisionObject& tool) : room_(room), tool_(&tool) {}
+
+  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int index_a,
+                           const btCollisionObjectWrapper*, int, int index_b) override {
+    if (point.getDistance() > 0.0 || found == room_.size()) return 0.0;
+    // The normal points from the second object to the first.
+    const bool tool_is_first = a->getCollisionObject() == tool_;
+    const btVector3 u = tool_is_first ? -point.m_normalWorldOnB : point.m_normalWorldOnB;
+    const btVector3 at = (tool_is_first ? point.m_positionWorldOnB : point.m_positionWorldOnA) / kMillimetres;
+    room_[found++] = {static_cast<std::uint32_t>(tool_is_first ? index_b : index_a),
+                      {at.x(), at.y(), at.z()},
+                      {u.x(), u.y(), u.z()},
+                      -point.getDistance() / kMillimetres};
+    return 0.0;
+  }
+
+  std::size_t found = 0;
+
+ private:
+  std::span<PeerContact> room_;
+  const btCollisionObject* tool_;
+};
+
+class Bullet final : public Peer {
+ public:
+  Bullet(const PeerSurface& surface, const PeerDrill& drill)
+      : vertices_(surface.vertices),
+        triangles_(surface.triangles.begin(), surface.triangles.end()),
+        drill_(btVector3(drill.radius, drill.radius, drill.length / 2.0) * kMillimetres) {
+    for (double& x : vertices_) x *= kMillimetres;
+    indices_ = std::make_unique<btTriangleIndexVertexArray>(
+        static_cast<int>(triangles_.size() / 3), triangles_.data(), static_cast<int>(3 * sizeof(int)),
+        static_cast<int>(vertices_.size() / 3), vertices_.data(), static_cast<int>(3 * sizeof(double)));
+    mesh_ = std::make_unique<btBvhTriangleMeshShape>(indices_.get(), true);
+    mesh_->setMargin(0.0);
+    drill_.setMargin(1e-3);
+    surface_.setCollisionShape(mesh_.get());
+    tool_.setCollisionShape(&drill_);
+  }
+
+  std::size_t contacts_at(const PeerPose& pose, std::span<PeerContact> room) override {
+    const auto& r = pose.rotation;
+    const btMatrix3x3 rotation(r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]);
+    const btVector3 centre(pose.centre[0], pose.centre[1], pose.centre[2]);
+    tool_.setWorldTransform(btTransform(rotation, centre * kMillimetres));
+    Taker taker(room, tool_);
+    world_.contactPairTest(&surface_, &tool_, taker);
+    return taker.found;
+  }
+
+ private:
+  std::vector<double> vertices_;
+  std::vector<int> triangles_;
+  btCylinderShapeZ drill_;
+  std::unique_ptr<btTriangleIndexVertexArray> indices_;
+  std::unique_ptr<btBvhTriangleMeshShape> mesh_;
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_{&configuration_};
+  btDbvtBroadphase broadphase_;
+  btCollisionWorld world_{&dispatcher_, &broadphase_, &configuration_};
+  btCollisionObject surface_, tool_;
+};
+
+}  // namespace
+}  // namespace hapbench
+
+extern "C" std::unique_ptr<hapbench::Peer> hapbench_make_peer(const hapbench::PeerSurface& surface,
+                                                              const hapbench::PeerDrill& drill) {
+  return std::make_unique<hapbench::Bullet>(surface, drill);
+}

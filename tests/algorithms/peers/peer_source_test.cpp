@@ -1,0 +1,111 @@
+#include "algorithms/peers/peer_source.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+
+#include "algorithms/registry.hpp"
+#include "tests/support/fakes.hpp"
+#include "tests/support/setting.hpp"
+
+namespace hapbench::peer_source_test {
+namespace {
+
+constexpr double kLength = 0.01;
+
+/// A peer that answers what it is told to, or throws.
+class FakePeer final : public Peer {
+ public:
+  struct Script {
+    std::vector<PeerContact> answer;
+    int asked = 0;
+    int throws_at = -1;
+    PeerPose pose;
+  };
+  explicit FakePeer(Script& script) : script_(script) {}
+
+  std::size_t contacts_at(const PeerPose& pose, std::span<PeerContact> room) override {
+    script_.pose = pose;
+    if (script_.asked++ == script_.throws_at) throw std::runtime_error("no\nway");
+    std::copy(script_.answer.begin(), script_.answer.end(), room.begin());
+    return script_.answer.size();
+  }
+
+ private:
+  Script& script_;
+};
+
+std::unique_ptr<PeerSource> source_of(FakePeer::Script& script) {
+  return std::make_unique<PeerSource>(std::make_unique<FakePeer>(script), "fake", kLength, 10);
+}
+
+TEST(PeerSource, TakesPointDepthAndDirectionAsTheyAre) {
+  FakePeer::Script script;
+  script.answer = {{7, {1, 2, 3}, {0, 0, -2}, 0.5}, {8, {4, 5, 6}, {1, 0, 0}, 0.0}};
+  const auto source = source_of(script);
+  ContactBuffer contacts(source->capacity());
+  source->contacts_at({}, contacts);
+  ASSERT_EQ(contacts.size(), 2u);
+  EXPECT_EQ(contacts.index[0], 7u);
+  EXPECT_EQ(contacts.point(0), Vec3(1, 2, 3));
+  EXPECT_EQ(contacts.gradient(0), Vec3(0, 0, -1));
+  EXPECT_EQ(contacts.normal(0), Vec3(0, 0, 1));
+  EXPECT_EQ(contacts.depth[0], 0.5);
+  EXPECT_EQ(contacts.largest_depth(), 0.5);
+  EXPECT_EQ(source->work().queries, 1u);
+  EXPECT_EQ(source->fault(), nullptr);
+}
+
+TEST(PeerSource, LeavesOutWhatHasNoDirectionOrDepth) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  FakePeer::Script script;
+  script.answer = {
+      {0, {}, {0, 0, 0}, 0.5}, {0, {}, {kNaN, 0, 1}, 0.5}, {0, {}, {0, 0, 1}, -0.5}, {0, {}, {0, 0, 1}, kNaN}};
+  const auto source = source_of(script);
+  ContactBuffer contacts(source->capacity());
+  source->contacts_at({}, contacts);
+  EXPECT_TRUE(contacts.empty());
+}
+
+TEST(PeerSource, AsksAboutTheMiddleOfTheDrillWithItsShankAlongZ) {
+  FakePeer::Script script;
+  const auto source = source_of(script);
+  ContactBuffer contacts(source->capacity());
+  const Vec3 axis = Vec3(1, 2, -3).normalized();
+  source->contacts_at({{0.1, 0.2, 0.3}, axis}, contacts);
+  const auto& [centre, r] = script.pose;
+  EXPECT_TRUE(Vec3(centre[0], centre[1], centre[2]).isApprox(Vec3(0.1, 0.2, 0.3) - 0.5 * kLength * axis, 1e-15));
+  EXPECT_TRUE(Vec3(r[2], r[5], r[8]).isApprox(-axis, 1e-15));
+}
+
+TEST(PeerSource, EndsTheRunWhenTheLibraryThrows) {
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    for (const bool controlled : {false, true}) {
+      FakePeer::Script script;
+      script.answer = {{0, {}, {0, 0, -1}, 1e-5}, {1, {}, {1, 0, 0}, 1e-5}};
+      script.throws_at = 3;
+      test::Setting setting;
+      setting.springs.emplace();
+      RenderingConfig config;
+      config.algorithm = algorithm.info->name;
+      config.passivity_controller = controlled;
+      config.max_force = 1.0;
+      config.reduction.emplace();
+      SimulationParts parts = test::free_run(setting, config);
+      parts.source = source_of(script);
+      Simulation simulation(test::free_run_config(setting, config, 10), std::move(parts), {});
+      const SimulationResult result = simulation.run();
+      EXPECT_EQ(result.outcome, Outcome::diverges) << algorithm.info->name << controlled;
+      EXPECT_EQ(result.divergence.step, 3u);
+      EXPECT_EQ(result.divergence.fault, "fake fails: no way");
+      EXPECT_EQ(script.asked, 4);
+      simulation.reset();
+      script.throws_at = -1;
+      EXPECT_EQ(simulation.run().outcome, Outcome::completes);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hapbench::peer_source_test
