@@ -14,8 +14,8 @@
 #include "scenarios/description/scenario_text.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/studies/stability/bisection.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
+#include "sim/core/bisection.hpp"
 
 namespace hapbench {
 namespace {

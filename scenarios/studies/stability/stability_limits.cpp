@@ -9,7 +9,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_to_end.hpp"
 #include "scenarios/studies/first_tensor.hpp"
-#include "scenarios/studies/stability/bisection.hpp"
+#include "sim/core/bisection.hpp"
 
 namespace hapbench {
 namespace {

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/studies/stability/bisection.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
+#include "sim/core/bisection.hpp"
 
 namespace hapbench {
 namespace {
