@@ -2,13 +2,17 @@
 
 #include <optional>
 
+#include "device_model/attached_hand.hpp"
+#include "device_model/force_path.hpp"
+#include "device_model/handle_motion.hpp"
 #include "device_model/velocity_filter.hpp"
+#include "sim/loop/device.hpp"
 
 namespace hapbench {
 
 /// An impedance display: a light handle with motors, which measures positions and renders forces.
 struct ImpedanceDeviceConfig {
-  double handle_mass = 0.05;   ///< of everything that moves, as felt at the handle [kg]
+  double handle_mass = 0.05;   ///< m, of everything that moves, as felt at the handle [kg]
   double viscous = 0.0;        ///< friction b, each axis [N s/m]
   double coulomb = 0.0;        ///< friction c, each axis [N]
   double encoder_step = 0.0;   ///< q [m]; 0: exact
@@ -19,16 +23,41 @@ struct ImpedanceDeviceConfig {
   std::optional<double> force_slew;  ///< fastest change of the force, by its norm [N/s]
 };
 
-/// How a hand's force answers the motion of the handle between samples:
+/// The loop of an impedance display (Colgate and Brown, "Factors affecting the Z-width of a haptic display", ICRA 1994;
+/// Diolaiti et al., IEEE Transactions on Robotics 22(2), 2006):
 ///
-///   f_hand = f_k - stiffness (x - x_k) - damping (x' - x'_k) - mass x''
+///   handle -> encoder -> x_k -> filter -> v_k -> f_render(x_k, v_k) -> resolution, saturation, slew -> delay d T
+///     -> hold -> motors -> handle <- hand
 ///
-/// with f_k its force at the sample. All zero for a hand whose force is sampled and held. Otherwise the hand is a mass,
-/// fixed to the handle, on a spring and a damper towards a target whose place and velocity are those of the sample.
-struct AttachedHand {
-  double mass = 0.0;       ///< [kg]
-  double stiffness = 0.0;  ///< [N/m]
-  double damping = 0.0;    ///< [N s/m]
+/// There is no virtual mass: the tool is where the encoder says the handle is. x_k is the nearest multiple of q, halves
+/// away from zero, in each axis; v_0 = 0. Motors give nothing before the first force arrives, at t = d T; a fraction of
+/// d changes the force within the period. Between samples the handle moves exactly (handle_motion.hpp).
+///
+/// In the energy balance `actuator` is the work of the motors on the handle; f_in is zero, since it drives nothing.
+/// Allocates in the constructor only; a step without Coulomb friction takes about 50 ns.
+class ImpedanceDevice final : public Device {
+ public:
+  /// dt: the period T [s]; hand: all zero for one whose force is held from sample to sample.
+  ImpedanceDevice(const ImpedanceDeviceConfig& config, double dt, const AttachedHand& hand = {});
+
+  void reset(const ToolState& tool) noexcept override;
+  MeasuredForce measure(const Vec3& hand_force) noexcept override { return {hand_force, Vec3::Zero()}; }
+  /// Does nothing: it is the handle that moves the tool.
+  void advance(const ToolState&, const Vec3&, double) noexcept override {}
+  HandleState handle() const noexcept override { return motion_.handle(); }
+  std::optional<DeviceEnergy> energy() const noexcept override { return motion_.energy(); }
+
+  bool moves_tool() const noexcept override { return true; }
+  void drive(const Vec3& rendered, const Vec3& hand_force) noexcept override;
+  HandleState sampled() const noexcept override { return sampled_; }
+
+ private:
+  double encoder_step_;
+  VelocityFilter filter_;
+  ForcePath path_;
+  HandleMotion motion_;
+  FreeMotion before_, after_;  ///< the two parts of a period
+  HandleState sampled_;
 };
 
 }  // namespace hapbench
