@@ -71,23 +71,15 @@ double eigenvalue_edge(SampledLoop loop) {
   });
 }
 
-std::span<const HeldMass> hand_family() {
-  static constexpr HeldMass kFamily[] = {{},
-                                         {0.1, 0.0, 100.0},
-                                         {0.1, 0.0, 300.0},
-                                         {0.1, 0.0, 1000.0},
-                                         {0.2, 0.0, 100.0},
-                                         {0.2, 0.0, 300.0},
-                                         {0.2, 0.0, 1000.0},
-                                         {0.5, 0.0, 100.0},
-                                         {0.5, 0.0, 300.0},
-                                         {0.5, 0.0, 1000.0}};
+std::span<const AttachedHand> hand_family() {
+  static constexpr AttachedHand kFamily[] = {{},           {0.1, 100.0},  {0.1, 300.0}, {0.1, 1000.0}, {0.2, 100.0},
+                                             {0.2, 300.0}, {0.2, 1000.0}, {0.5, 100.0}, {0.5, 300.0},  {0.5, 1000.0}};
   return kFamily;
 }
 
 double worst_hand_edge(SampledLoop loop) {
   double least = std::numeric_limits<double>::infinity();
-  for (const HeldMass& hand : hand_family()) {
+  for (const AttachedHand& hand : hand_family()) {
     loop.hand = hand;
     least = std::min(least, eigenvalue_edge(loop));
   }

@@ -4,16 +4,11 @@
 #include <optional>
 #include <span>
 
+#include "device_model/attached_hand.hpp"
+
 /// The loop of an impedance device at a wall, as a linear system: what stays of it while nothing saturates, without
 /// Coulomb friction and without steps of encoder and force. Along one axis, SI units.
 namespace hapbench {
-
-/// A passive hand: a mass on a spring and a damper, rigidly attached to the handle. All zero: no hand.
-struct HeldMass {
-  double mass = 0.0;       ///< [kg]
-  double damping = 0.0;    ///< [N s/m]
-  double stiffness = 0.0;  ///< [N/m]
-};
 
 /// A handle m x'' = f - b x', with or without a hand, moves freely between samples. At sample k the wall answers
 ///
@@ -23,9 +18,9 @@ struct HeldMass {
 /// low-pass of it, a = exp(-2 pi f_c T). Springs on both sides: a wall that only pushes would let go of the handle, and
 /// the loop would be another one.
 struct SampledLoop {
-  double handle_mass = 0.1;  ///< m [kg]
-  double damping = 0.0;      ///< b, of the handle alone [N s/m]
-  HeldMass hand;
+  double handle_mass = 0.1;      ///< m [kg]
+  double damping = 0.0;          ///< b, of the handle alone [N s/m]
+  AttachedHand hand;             ///< all zero: none
   double period = 0.001;         ///< T [s]
   double delay = 0.0;            ///< d [samples], whole or not
   std::optional<double> cutoff;  ///< f_c of the velocity filter [Hz]; none: the difference
@@ -55,7 +50,7 @@ double eigenvalue_edge(SampledLoop loop);
 
 /// Hands that a device meets (the usual range: 100 to 1000 N/m, 0.1 to 0.5 kg), and none. They add no damping: a hand
 /// that does is safer.
-std::span<const HeldMass> hand_family();
+std::span<const AttachedHand> hand_family();
 
 /// The least eigenvalue_edge over the family, in place of the loop's own hand.
 double worst_hand_edge(SampledLoop loop);

@@ -120,7 +120,7 @@ TEST(SampledLoop, CountsAHandsMassAndDampingAsTheHandles) {
   SampledLoop held = unit_loop(1.5, 0.2), heavy = held;
   held.handle_mass = 0.6;
   held.damping = 0.01;
-  held.hand = {0.4, 0.02, 0.0};
+  held.hand = {0.4, 0.0, 0.02};
   heavy.damping = 0.03;
   EXPECT_NEAR(eigenvalue_edge(held), eigenvalue_edge(heavy), 1e-10);
 }
@@ -128,7 +128,7 @@ TEST(SampledLoop, CountsAHandsMassAndDampingAsTheHandles) {
 TEST(SampledLoop, OfAHandWithASpringMovesAsTheClosedFormHasIt) {
   SampledLoop loop;  // no wall: x'' + 2 zeta w x' + w^2 x = 0
   loop.handle_mass = 0.1;
-  loop.hand = {0.3, 2.0, 500.0};
+  loop.hand = {0.3, 500.0, 2.0};
   const double w = std::sqrt(500.0 / 0.4), zeta = 2.0 / (2.0 * std::sqrt(500.0 * 0.4)), T = loop.period;
   const double wd = w * std::sqrt(1.0 - zeta * zeta), decay = std::exp(-zeta * w * T);
   const Eigen::MatrixXd A = loop.state_matrix();
@@ -195,7 +195,7 @@ TEST(SampledLoop, HasNoCrossingBelowItsEdge) {
   for (int i = 0; i < 12; ++i) {
     SampledLoop loop = unit_loop(std::floor(10.0 * random.uniform()) / 4.0, 0.4 * random.uniform());
     loop.damping = 0.05 + 0.1 * random.uniform();
-    loop.hand = {2.0 * random.uniform(), 0.0, i % 2 == 0 ? 0.0 : 0.01 * random.uniform()};
+    loop.hand = {2.0 * random.uniform(), i % 2 == 0 ? 0.0 : 0.01 * random.uniform(), 0.0};
     if (i % 3 == 0) loop.cutoff = 0.1;
     const double edge = eigenvalue_edge(loop);
     ASSERT_GT(edge, 0.0);
@@ -210,7 +210,7 @@ TEST(HandFamily, NeedsLessStiffnessThanAnyOfItsHands) {
   loop.wall_damping = 5.0;
   const double worst = worst_hand_edge(loop);
   bool met = false;
-  for (const HeldMass& hand : hand_family()) {
+  for (const AttachedHand& hand : hand_family()) {
     loop.hand = hand;
     const double edge = eigenvalue_edge(loop);
     EXPECT_GE(edge, worst);
