@@ -28,6 +28,12 @@ EnergyLedger::EnergyLedger(double mass, double dt, bool position_is_free, std::s
   rendered_.reserve(capacity);
 }
 
+EnergyLedger EnergyLedger::of_handle(double dt, std::size_t capacity) {
+  EnergyLedger ledger(0.0, dt, false, capacity);
+  ledger.row_force_is_held_ = true;
+  return ledger;
+}
+
 void EnergyLedger::on_step(const StepRecord& record) noexcept {
   const auto& index = record.rendered->index;
   rendered_.assign(index.begin(), index.begin() + static_cast<std::ptrdiff_t>(record.rendered->size()));
@@ -54,8 +60,9 @@ EnergyLedger::Works EnergyLedger::works(const Vec3& spring, const Vec3& rendered
 
 EnergyLedger::Works EnergyLedger::works_until(const StepRecord& now) const noexcept {
   const Vec3 velocities = last_.tool.velocity + now.tool.velocity;
-  if (row_force_moves_) return works(last_.force.spring, last_.force.rendered, 0.5 * velocities * dt_);
   const Vec3 moved = now.tool.pose.position - last_.tool.pose.position;
+  if (row_force_is_held_) return works(last_.force.spring, last_.force.rendered, moved);
+  if (row_force_moves_) return works(last_.force.spring, last_.force.rendered, 0.5 * velocities * dt_);
   Works w =
       works(0.5 * (last_.force.spring + now.force.spring), 0.5 * (last_.force.rendered + now.force.rendered), moved);
   const double kinetic = 0.5 * mass_ * (now.tool.velocity - last_.tool.velocity).dot(velocities);

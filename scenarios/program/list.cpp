@@ -49,7 +49,7 @@ std::vector<Listed> everything() {
   for (const ModelInfo* stage : stages()) add_models(all, "stage", *stage);
   for (const IntegratorEntry* entry : kIntegrators) add_models(all, "integrator", entry->info);
   for (const char* field : {"environment", "tool", "hand", "device"}) {
-    for (const std::string& type : type_names(field)) all.push_back({field, type, type_summary(type)});
+    for (const std::string& type : type_names(field)) all.push_back({field, type, type_summary(type, field)});
   }
   for (const BundledScenario& bundled : bundled_scenarios()) all.push_back(listed_scenario(bundled));
   for (const auto& [name, unit, meaning, value] : metrics_without_values()) all.push_back({"metric", name, meaning});

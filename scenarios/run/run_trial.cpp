@@ -17,9 +17,9 @@
 namespace hapbench {
 namespace {
 
-/// None where the position is prescribed: no force moves the tool.
+/// None where the position is prescribed or a handle moves the tool: no integrator does.
 std::optional<double> friction_limit(const Scenario& scenario, const Motion& motion) {
-  if (!motion.position_is_free()) return std::nullopt;
+  if (!motion.position_is_free() || handle_moves_tool(scenario.device)) return std::nullopt;
   const RenderingConfig& rendering = scenario.rendering;
   return explicit_friction_limit(*scenario.integrator.type, rendering.mass, scenario.time.step, rendering.mu_s,
                                  rendering.mu_f);
@@ -39,12 +39,18 @@ class TrialObservers {
   TrialObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts, Trial trial)
       : tool_(parts.tool),
         metrics_(scenario.time.step, metrics_config(scenario, parts)),
-        passivity_(scenario.time.step) {
+        passivity_(scenario.time.step, handle_moves_tool(scenario.device)) {
     observers_.push_back(&metrics_);
     observers_.push_back(&passivity_);
     if (scenario.record.energy) {
-      ledger_.emplace(scenario.rendering.mass, scenario.time.step, parts.motion->position_is_free(),
-                      parts.source->capacity(), *scenario.integrator.type);
+      const double dt = scenario.time.step;
+      const std::size_t capacity = parts.source->capacity();
+      if (handle_moves_tool(scenario.device)) {
+        ledger_.emplace(EnergyLedger::of_handle(dt, capacity));
+      } else {
+        ledger_.emplace(scenario.rendering.mass, dt, parts.motion->position_is_free(), capacity,
+                        *scenario.integrator.type);
+      }
       observers_.push_back(&*ledger_);
     }
     if (scenario.record.ideal_trajectory) {

@@ -116,6 +116,8 @@ void require_lasting_springs(const Scenario& scenario) {
   if (!std::holds_alternative<FreePosition>(scenario.motion.position))
     fail("/motion/position/type", "allowed for stability: \"free\"");
   if (!std::holds_alternative<NoHandFields>(scenario.hand)) fail("/hand/type", "allowed for stability: \"none\"");
+  if (handle_moves_tool(scenario.device))
+    fail("/device/type", "got \"impedance\", which has no virtual mass; allowed for stability: \"ideal\"");
   if (scenario.rendering.passivity_controller)
     fail("/rendering/passivity_controller", "got true; allowed for stability: false");
 }
