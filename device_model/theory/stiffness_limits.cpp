@@ -92,23 +92,23 @@ std::optional<double> undamped_handle(const SampledLoop& loop) {
 }
 
 constexpr StiffnessLimit kLimits[] = {
-    {"colgate_schenkel", "passive (Colgate, Schenkel)", "K < 2 (b - |B|) / T",
+    {"passive_colgate_schenkel", "K < 2 (b - |B|) / T",
      "J. E. Colgate, G. Schenkel, Passivity of a class of sampled-data systems, J. Robotic Systems 14(1), 1997",
      "no delay, velocity by the difference; passive for every passive hand", colgate_schenkel},
-    {"passive_with_delay", "passive, with delay and filter",
+    {"passive_with_delay",
      "b > max over theta of K T sin((d + 1/2) theta) / (2 sin(theta/2)) - B Re{F e^(-j (d + 1) theta)}",
      "the general condition of Colgate and Schenkel for this wall, derived; F is the velocity filter",
      "whole delays; passive for every passive hand", passive_with_delay},
-    {"gil_hulin", "stable (Gil, Hulin)", "K < (b + B) / (T/2 + t_d), b with the hand's",
+    {"stable_gil_hulin", "K < (b + B) / (T/2 + t_d), b with the hand's",
      "J. J. Gil, E. Sanchez, T. Hulin, C. Preusche, G. Hirzinger, J. Comput. Inf. Sci. Eng. 9(1), 2009",
      "an approximation for low damping and short delays, (b + B)(T + t_d) / m <= 0.15 (ours: at most 14 % above the exact "
      "edge there); velocity by the difference",
      gil_hulin},
-    {"abbott_okamura", "passive (Abbott, Okamura)", "K <= min(2 b / T, 2 c / q)",
+    {"passive_abbott_okamura", "K <= min(2 b / T, 2 c / q)",
      "J. J. Abbott, A. M. Okamura, Effects of position quantization and sampling rate on virtual-wall passivity, IEEE "
      "T-RO 21(5), 2005",
      "no delay, B = 0, an encoder step q > 0", abbott_okamura},
-    {"undamped_handle", "exact, b = 0", "K T^2/m < 2 beta (2 - beta) / (2 + beta), beta = B T/m", "derived",
+    {"exact_undamped_handle", "K T^2/m < 2 beta (2 - beta) / (2 + beta), beta = B T/m", "derived",
      "no delay, velocity by the difference, neither handle nor hand damp and no hand's spring", undamped_handle},
 };
 

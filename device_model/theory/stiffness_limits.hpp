@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "device_model/theory/sampled_loop.hpp"
 
