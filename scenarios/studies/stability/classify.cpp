@@ -39,9 +39,12 @@ void MotionClassifier::on_step(const StepRecord& record) noexcept {
   const double speed = v.norm();
   quarter.amplitude = std::max(quarter.amplitude, speed);
   largest_speed_ = std::max(largest_speed_, speed);
-  for (int i = 0; i < 3; ++i) quarter.turns[static_cast<std::size_t>(i)] += v[i] * last_velocity_[i] < 0.0;
+  for (int i = 0; i < 3; ++i) {
+    if (v[i] == 0.0) continue;
+    quarter.turns[static_cast<std::size_t>(i)] += v[i] * last_velocity_[i] < 0.0;
+    last_velocity_[i] = v[i];
+  }
   rows_at_rest_ = speed <= kRest * largest_speed_ ? rows_at_rest_ + 1 : 0;
-  last_velocity_ = v;
 }
 
 bool MotionClassifier::oscillates_in(const Quarter& quarter) const noexcept {
