@@ -11,8 +11,7 @@ namespace hapbench {
 
 /// One known limit. `b` in the texts is the handle's damping, `m` the moving mass, t_d = d T.
 struct StiffnessLimit {
-  const char* name;   ///< of its column
-  const char* label;  ///< of its curve
+  const char* name;  ///< of its column and its curve
   const char* formula;
   const char* source;
   const char* applies;  ///< when it does

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "algorithms/registry.hpp"
+#include "device_model/theory/stiffness_limits.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
@@ -111,6 +112,13 @@ Description describe_stability() {
     maps += fmt::format("  {}: {} over {}\n{}", map.name, map.y.name, map.x.name, wrapped(map.summary, 6));
     d.json["maps"].push_back({{"name", map.name}, {"x", map.x.name}, {"y", map.y.name}, {"summary", map.summary}});
   }
+  std::string limits;
+  for (const StiffnessLimit& limit : stiffness_limits()) {
+    limits += fmt::format("  {}\n{}", limit.name, entry("formula", limit.formula, 4, 10));
+    limits += entry("for", limit.applies, 4, 10) + entry("source", limit.source, 4, 10);
+    d.json["limits"].push_back(
+        {{"name", limit.name}, {"formula", limit.formula}, {"applies", limit.applies}, {"source", limit.source}});
+  }
   d.text = fmt::format(
       "stability maps\n"
       "  A run of {} steps is judged by its motion alone, quarter by quarter; the amplitude is the largest speed.\n\n"
@@ -125,10 +133,16 @@ Description describe_stability() {
       "lambda_max(S),\n"
       "  is given where the tool is alone with springs that stay in contact and the force is -K S p. Under "
       "velocity_verlet\n"
-      "  and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. The edge by bisection "
-      "is\n"
-      "  that of \"diverged\", in the map of the device that of runs that come to rest.\n\n{}",
-      kMapSteps, maps);
+      "  and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. With a device in the loop "
+      "it is\n"
+      "  where the first eigenvalue of the loop of hand, handle and wall leaves the unit circle: the loop while nothing\n"
+      "  saturates and the contact lasts. The edge by bisection is that of \"diverged\"; that of runs that come to rest "
+      "in the\n"
+      "  maps of the admittance device and of friction.\n\n{}\n"
+      "limits of the stiffness K of a wall on an impedance device\n"
+      "  b is the handle's damping, c its Coulomb friction, q the encoder's step, m the moving mass, T the period, t_d = "
+      "d T\n  the delay. Written beside the edge where they apply.\n{}",
+      kMapSteps, maps, limits);
   return d;
 }
 

@@ -11,9 +11,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "device_model/theory/eigenvalue_edge.hpp"
 #include "scenarios/description/scenario_text.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/studies/stability/device_loop.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
 #include "sim/core/bisection.hpp"
 
@@ -147,23 +149,34 @@ class Search {
 
   std::optional<double> theory(const std::string& algorithm) const {
     const auto stable = [&](double part) { return step_is_stable(at(algorithm, way_.value(part)).scenario); };
+    const Scenario start = at(algorithm, way_.value(0.0)).scenario;
     try {
-      require_lasting_springs(at(algorithm, way_.value(0.0)).scenario);
+      has_device(start) ? require_bilateral_springs(start) : require_lasting_springs(start);
     } catch (const InputError&) {
       return std::nullopt;
     }
+    if (has_device(start) && !device_loop(start, 1.0).not_linear.empty()) return std::nullopt;
     const Edge edge = find_edge(way_, stable, false);
     if (!edge.stable) return std::nullopt;
     if (edge.beyond) return way_.value(*edge.stable);
     return question_.smallest ? 0.0 : std::numeric_limits<double>::infinity();
   }
 
-  /// True when no mode of the springs leaves the unit circle.
+  /// True of a device that is part of the loop.
+  static bool has_device(const Scenario& scenario) {
+    return !std::holds_alternative<IdealDeviceFields>(scenario.device);
+  }
+
+  /// True when no mode of the springs leaves the unit circle, alone or in the loop of the device.
   static bool step_is_stable(const Scenario& scenario) {
     const RenderingConfig& r = scenario.rendering;
     const double B = r.damping.value_or(2.0 * r.damping_ratio * std::sqrt(r.stiffness * r.mass));
     const Eigen::SelfAdjointEigenSolver<Mat3> S(stiffness_tensor_of(scenario), Eigen::EigenvaluesOnly);
     return std::all_of(S.eigenvalues().begin(), S.eigenvalues().end(), [&](double lambda) {
+      if (has_device(scenario)) {
+        constexpr double kNoWall = 1e-12;  // a direction without springs: the handle is free to go
+        return lambda < kNoWall || is_stable_step(device_loop(scenario, lambda).state_matrix());
+      }
       return SpringDamper{r.stiffness, B, r.mass, scenario.time.step, lambda, scenario.integrator.type}.is_stable();
     });
   }
