@@ -30,12 +30,12 @@ DeviceLoop impedance_loop(const Scenario& scenario, const ImpedanceDeviceConfig&
   if (const auto* hand = std::get_if<MassSpringDamperHandFields>(&scenario.hand))
     loop.hand = {hand->mass, hand->spring.stiffness, hand->spring.damping};
   else if (!is_blind(scenario.hand))
-    result.not_linear = "the hand's force is sampled";
+    result.no_theory = "the hand's force is sampled";
 
   if (std::holds_alternative<AdaptiveWindowFilter>(device.velocity_filter))
-    result.not_linear = "an adaptive window is not linear";
+    result.no_theory = "an adaptive window is not linear";
   if (device.coulomb > 0.0 || device.encoder_step > 0.0 || device.force_step > 0.0)
-    result.not_linear = "Coulomb friction and steps of encoder and force are not linear";
+    result.no_theory = "Coulomb friction and steps of encoder and force are not linear";
   return result;
 }
 
@@ -50,17 +50,24 @@ DeviceLoop admittance_loop(const Scenario& scenario, const AdmittanceDeviceConfi
     loop.hand_stiffness = hand->stiffness;
     loop.hand_damping = hand->damping;
   } else if (!is_blind(scenario.hand)) {
-    result.not_linear = "the hand is no spring and damper";
+    result.no_theory = "the hand is no spring and damper";
   }
   return result;
 }
 
+/// Eigenvalues of larger matrices take seconds.
+constexpr double kLongestDelay = 200.0;
+
 }  // namespace
 
 DeviceLoop device_loop(const Scenario& scenario, double lambda) {
-  if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device))
-    return impedance_loop(scenario, *device, lambda);
-  return admittance_loop(scenario, std::get<AdmittanceDeviceConfig>(scenario.device), lambda);
+  const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
+  const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
+  DeviceLoop result = impedance != nullptr ? impedance_loop(scenario, *impedance, lambda)
+                                           : admittance_loop(scenario, *admittance, lambda);
+  const double delay = impedance != nullptr ? impedance->delay_samples : static_cast<double>(admittance->servo.delay);
+  if (delay > kLongestDelay) result.no_theory = "a delay beyond 200 samples makes the loop too large to solve";
+  return result;
 }
 
 }  // namespace hapbench

@@ -13,7 +13,7 @@ namespace hapbench {
 /// Device, hand and wall of a scenario as a linear loop, as it is while nothing saturates and the contact lasts.
 struct DeviceLoop {
   std::variant<SampledLoop, AdmittanceLoop> loop;
-  std::string not_linear;  ///< why the loop's eigenvalues do not tell its stability; empty where they do
+  std::string no_theory;  ///< why the loop's eigenvalues do not tell its stability; empty where they do
 
   Eigen::MatrixXd state_matrix() const {
     return std::visit([](const auto& linear) { return linear.state_matrix(); }, loop);

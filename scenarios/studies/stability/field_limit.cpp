@@ -149,17 +149,23 @@ class Search {
 
   std::optional<double> theory(const std::string& algorithm) const {
     const auto stable = [&](double part) { return step_is_stable(at(algorithm, way_.value(part)).scenario); };
-    const Scenario start = at(algorithm, way_.value(0.0)).scenario;
-    try {
-      has_device(start) ? require_bilateral_springs(start) : require_lasting_springs(start);
-    } catch (const InputError&) {
-      return std::nullopt;
+    for (const double end : {0.0, 1.0}) {
+      if (!has_theory(at(algorithm, way_.value(end)).scenario)) return std::nullopt;
     }
-    if (has_device(start) && !device_loop(start, 1.0).not_linear.empty()) return std::nullopt;
     const Edge edge = find_edge(way_, stable, false);
     if (!edge.stable) return std::nullopt;
     if (edge.beyond) return way_.value(*edge.stable);
     return question_.smallest ? 0.0 : std::numeric_limits<double>::infinity();
+  }
+
+  /// True of springs that stay in contact, and devices whose loop is linear.
+  static bool has_theory(const Scenario& scenario) {
+    try {
+      has_device(scenario) ? require_bilateral_springs(scenario) : require_lasting_springs(scenario);
+    } catch (const InputError&) {
+      return false;
+    }
+    return !has_device(scenario) || device_loop(scenario, 1.0).no_theory.empty();
   }
 
   /// True of a device that is part of the loop.

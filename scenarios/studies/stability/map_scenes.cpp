@@ -189,7 +189,7 @@ constexpr StabilityMap kMaps[] = {
      delay_scene},
     {"velocity_filter",
      "K over the cut-off of the velocity's low-pass, B = 5 N s/m, impedance device as for z_width",
-     {"cutoff_Hz", 10.0, 500.0, Scale::logarithmic},
+     {"cutoff_Hz", 20.0, 500.0, Scale::logarithmic},
      kHandleStiffness,
      velocity_filter_scene},
     {"hand",

@@ -110,14 +110,14 @@ double edge_in_y(const StabilityMap& map, double precision, Holds holds) {
 void add_loop_theory(const StabilityMap& map, const MapSubject& subject, double lambda, BoundaryPoint& point) {
   const auto loop_at = [&](double y) { return device_loop(scene(map, subject, point.x, y), lambda); };
   const DeviceLoop start = loop_at(map.y.low);
-  point.no_theory = start.not_linear;
-  if (start.not_linear.empty()) {
+  point.no_theory = start.no_theory;
+  if (start.no_theory.empty()) {
     point.analytic = first_edge(kBelowTheMap * map.y.low, kBeyondTheMap * map.y.high,
                                 [&](double y) { return loop_at(y).state_matrix(); });
   }
   const auto* sampled = std::get_if<SampledLoop>(&start.loop);
   if (sampled == nullptr) return;
-  if (start.not_linear.empty() && map.has_stiffness_as_y()) point.worst_hand = worst_hand_edge(*sampled) / lambda;
+  if (start.no_theory.empty() && map.has_stiffness_as_y()) point.worst_hand = worst_hand_edge(*sampled) / lambda;
   for (std::size_t i = 0; i < point.limits.size(); ++i) {
     const auto largest = stiffness_limits()[i].largest;
     if (map.has_stiffness_as_y()) {

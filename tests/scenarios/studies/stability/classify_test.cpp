@@ -50,6 +50,14 @@ TEST(MotionClassifier, OfASustainedOscillationIsVibrating) {
   }
 }
 
+TEST(MotionClassifier, SeesTurnsBetweenZerosThatAnEncoderLeaves) {
+  const auto stepping = [](double k) {
+    const int phase = static_cast<int>(k) % 40;
+    return phase == 0 ? 1.0 : (phase == 20 ? -1.0 : 0.0);
+  };
+  EXPECT_EQ(class_of(stepping), MotionClass::vibrating);
+}
+
 /// An oscillation that changes by the factor `per_step` in every step. The amplitude of the fourth quarter is that of
 /// the first times per_step^(3/4 kSteps), up to the phase at the beginning of a quarter, a period of 10 rows: 1 % of
 /// it.
