@@ -160,7 +160,7 @@ TEST(StabilityMap, OfFrictionHasFourRegions) {
     EXPECT_NEAR(point.simulation, 1.0, 0.05) << point.x;
     const auto limit = limit_at(point, "passive_abbott_okamura");
     EXPECT_EQ(limit.has_value(), point.x > 1.0);
-    if (limit) EXPECT_NEAR(*limit, 1.0, 1e-8);
+    EXPECT_NEAR(limit.value_or(1.0), 1.0, 1e-8);
   }
 }
 
