@@ -169,7 +169,8 @@ class MapFile:
         if not self.boundary:
             return []
         ends = f"_{self.y_name}"
-        names = [name for name in self.boundary[0] if name.endswith(ends) and not name.startswith(("analytic_", "simulation_"))]
+        others = (self.x_name, f"analytic{ends}", f"simulation{ends}")
+        names = [name for name in self.boundary[0] if name.endswith(ends) and name not in others]
         looks = zip(names, LIMIT_LOOKS)
         return [(name, look) for name, look in looks if (np.nan_to_num(numbers(self.boundary, name)) > 0).any()]
 
