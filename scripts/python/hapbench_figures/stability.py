@@ -1,4 +1,5 @@
 """Stability: the root locus of A.3, and our maps of stable, vibrating and diverged runs."""
+from itertools import cycle
 from textwrap import wrap
 
 import numpy as np
@@ -171,7 +172,7 @@ class MapFile:
         ends = f"_{self.y_name}"
         others = (self.x_name, f"analytic{ends}", f"simulation{ends}")
         names = [name for name in self.boundary[0] if name.endswith(ends) and name not in others]
-        looks = zip(names, LIMIT_LOOKS)
+        looks = zip(names, cycle(LIMIT_LOOKS))
         return [(name, look) for name, look in looks if (np.nan_to_num(numbers(self.boundary, name)) > 0).any()]
 
     def limit_label(self, column):
