@@ -54,7 +54,7 @@ TEST(FieldLimit, OfAnyFieldHasATheoryWhereSpringsStay) {
 
 /// (b + B) / (T/2 + t_d), less what is not small any more: the eigenvalues of the loop.
 TEST(FieldLimit, OfADeviceInTheLoopHasTheTheoryOfTheLoop) {
-  Words device = {"time.steps=2000", R"(device={"type":"impedance","handle_mass_kg":0.1,"viscous_N_s_per_m":0.5})",
+  Words device = {"time.steps=20000", R"(device={"type":"impedance","handle_mass_kg":0.1,"viscous_N_s_per_m":0.5})",
                   "rendering.damping_N_s_per_m=2"};
   const FieldLimit limit = ask({"single_spring", "rendering.stiffness_N_per_m", device}).front();
   ASSERT_TRUE(limit.value && limit.theory);
