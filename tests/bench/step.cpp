@@ -92,7 +92,7 @@ TimedRun::TimedRun(const std::string& name, Skips skips) {
   const SimulationConfig config = simulation_config(scenario);
   steps_ = config.steps;
   metrics_ = std::make_unique<MetricsObserver>(config.dt);
-  passivity_ = std::make_unique<PassivityObserver>(config.dt, handle_moves_tool(scenario.device));
+  passivity_ = std::make_unique<PassivityObserver>(config.dt);
   recorder_ = std::make_unique<MemoryRecorder>(steps_);
   simulation_ = std::make_unique<Simulation>(config, parts_of(scenario, name),
                                              std::vector<Observer*>{metrics_.get(), passivity_.get(), recorder_.get()});

@@ -11,9 +11,9 @@
 
 /// Judges whether a run is stable by its motion alone, without eigenvalues, tensors or knowledge of the law.
 ///
-/// The run is cut into quarters. Their amplitude is the largest speed of the tool in them; a turn is a change of sign
-/// of a component of the velocity, two for each period of an oscillation. Zeros in between, which an encoder's steps
-/// leave, do not hide it.
+/// The run is cut into quarters. Their amplitude is the largest speed of the tool in them (of the handle, where it
+/// moves the tool: an encoder makes jumps of it that nobody feels); a turn is a change of sign of a component of the
+/// velocity, two for each period of an oscillation; dry friction that holds a handle in between does not hide it.
 ///
 ///   diverged   the run left its bounds, or it oscillates and its amplitude has grown by more than 1 % from each
 ///              quarter to the next
