@@ -163,7 +163,8 @@ Description describe_stability() {
       "  where the first eigenvalue of the loop of hand, handle and wall leaves the unit circle: the loop while nothing\n"
       "  saturates and the contact lasts. The edge by bisection is that of \"diverged\"; that of runs that come to rest "
       "in the\n"
-      "  maps of the admittance device and of friction.\n\n{}\n"
+      "  maps of the admittance device and of Coulomb friction, which stops a handle for good: there what still moves "
+      "in the\n  end, however little, vibrates.\n\n{}\n"
       "limits of the stiffness K of a wall on an impedance device\n"
       "  b is the handle's damping, c its Coulomb friction, q the encoder's step, m the moving mass, T the period, t_d = "
       "d T\n  the delay. Written beside the edge where they apply.\n{}",

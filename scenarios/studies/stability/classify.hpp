@@ -13,7 +13,7 @@
 ///
 /// The run is cut into quarters. Their amplitude is the largest speed of the tool in them (of the handle, where it
 /// moves the tool: an encoder makes jumps of it that nobody feels); a turn is a change of sign of a component of the
-/// velocity, two for each period of an oscillation; dry friction that holds a handle in between does not hide it.
+/// velocity, two for each period of an oscillation, whether or not dry friction holds a handle at the turns.
 ///
 ///   diverged   the run left its bounds, or it oscillates and its amplitude has grown by more than 1 % from each
 ///              quarter to the next

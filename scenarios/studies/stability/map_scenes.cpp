@@ -202,7 +202,9 @@ constexpr StabilityMap kMaps[] = {
      {"encoder_step_m", 1e-6, 1e-3, Scale::logarithmic},
      kHandleStiffness,
      encoder_step_scene,
-     MapEdge::largest_at_rest},
+     MapEdge::largest_at_rest,
+     std::nullopt,
+     true},
     {"friction_quantisation",
      "Coulomb friction over viscous friction, in units of what the encoder and the sampling of a wall need, B = 0, "
      "impedance device as for z_width",
@@ -210,7 +212,8 @@ constexpr StabilityMap kMaps[] = {
      {"2c_over_Kq", 0.1, 10.0, Scale::logarithmic},
      friction_scene,
      MapEdge::smallest_at_rest,
-     1000.0},
+     1000.0,
+     true},
 };
 
 }  // namespace

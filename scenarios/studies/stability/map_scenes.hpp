@@ -39,6 +39,8 @@ struct StabilityMap {
   MapEdge edge = MapEdge::largest_bounded;
   /// Where it matters how far a run begins from rest, every cell has a second run from so many times as far.
   std::optional<double> far = std::nullopt;
+  /// True where dry friction stops the handle for good: there what still moves in the end, however little, vibrates.
+  bool friction_stops = false;
 
   /// True when y is the K of the wall, which limits of the stiffness are about.
   bool has_stiffness_as_y() const noexcept { return std::string_view(y.name) == kStiffnessAxis; }

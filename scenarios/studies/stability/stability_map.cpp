@@ -46,11 +46,12 @@ struct Probe {
   bool linear;   ///< the force is -K S p
 };
 
-Probe probe(const Scenario& scenario) {
+Probe probe(const StabilityMap& map, const Scenario& scenario) {
   FirstRow first;
   MotionClassifier classifier(static_cast<std::uint64_t>(scenario.time.steps));
   Simulation simulation(simulation_config(scenario), assemble(scenario), {&first, &classifier});
-  const MotionClass motion = classify(simulation, classifier);
+  MotionClass motion = classify(simulation, classifier);
+  if (map.friction_stops && comes_to_rest(motion) && !classifier.at_rest()) motion = MotionClass::vibrating;
   const double K = scenario.rendering.stiffness;
   // Sums of up to a hundred springs; exact_shaping's weights are good to 1e-12.
   const double rounding = 1e-10 * K * (1.0 + first.S.norm()) * first.position.norm();
@@ -71,12 +72,12 @@ Scenario scene(const StabilityMap& map, const MapSubject& subject, double x, dou
 
 MapPoint map_point(const StabilityMap& map, const MapSubject& subject, double x, double y) {
   const Scenario scenario = scene(map, subject, x, y);
-  const Probe run = probe(scenario);
+  const Probe run = probe(map, scenario);
   MapPoint point{x, y, run.motion, run.lambdas[2], {}, {}};
   if (map.far) {
     Scenario far = scenario;
     far.initial.position *= *map.far;
-    point.motion_from_far = probe(far).motion;
+    point.motion_from_far = probe(map, far).motion;
   }
   if (!is_alone(scenario) || !run.linear) return point;
   const double K = scenario.rendering.stiffness, M = scenario.rendering.mass;
@@ -138,11 +139,11 @@ BoundaryPoint boundary_point(const StabilityMap& map, const MapSubject& subject,
   BoundaryPoint point;
   point.x = x;
   point.simulation = edge_in_y(map, kMapPrecision, [&](double y) {
-    const MotionClass motion = probe(scene(map, subject, x, y)).motion;
+    const MotionClass motion = probe(map, scene(map, subject, x, y)).motion;
     return map.edge == MapEdge::largest_bounded ? motion != MotionClass::diverged : comes_to_rest(motion);
   });
   const Scenario start = scene(map, subject, x, map.y.low);
-  const Probe run = probe(start);
+  const Probe run = probe(map, start);
   if (!run.linear) {
     point.no_theory = "the force is not -K S p";
   } else if (is_alone(start)) {

@@ -71,10 +71,10 @@ def class_of(row):
     far = row.get("class_from_far")
     if not far:
         return row["class"]
-    rests = row["class"] in ("stable", "dying_out")
+    rests, far_rests = (name in ("stable", "dying_out") for name in (row["class"], far))
     if far == "diverged":
         return "locally_stable" if rests else "unstable"
-    return "passive" if rests else "limit_cycles"
+    return "limit_cycles" if not rests else "passive" if far_rests else "vibrating"
 
 
 # Known limits, in the order of their columns.

@@ -156,11 +156,21 @@ TEST(StabilityMap, OfFrictionHasFourRegions) {
   }
   for (const BoundaryPoint& point : result.boundary) {
     EXPECT_FALSE(point.analytic);
-    // Runs of a given start find a little less than what every motion needs.
-    EXPECT_NEAR(point.simulation, 1.0, 0.05) << point.x;
+    EXPECT_NEAR(point.simulation, 1.0, 0.002) << point.x;  // bisection stops at 0.1 %
     const auto limit = limit_at(point, "passive_abbott_okamura");
     EXPECT_EQ(limit.has_value(), point.x > 1.0);
     EXPECT_NEAR(limit.value_or(1.0), 1.0, 1e-8);
+  }
+}
+
+/// K up to min(2b/T, 2c/q) is passive; runs find the second number itself, and a little more than the first, since what
+/// is passive must bear faster motions than theirs.
+TEST(StabilityMap, OfTheEncoderFollowsAbbottAndOkamura) {
+  const MapResult result = stability_map(*find_stability_map("encoder_step"), {"summation"}, 3, kTwoThreads);
+  for (const BoundaryPoint& point : result.boundary) {
+    const double limit = limit_at(point, "passive_abbott_okamura").value();
+    EXPECT_NEAR(limit, std::min(1000.0, 2.0 * 0.02 / point.x), 1e-9 * limit);
+    EXPECT_NEAR(point.simulation, limit, (limit < 1000.0 ? 0.002 : 0.1) * limit) << point.x;
   }
 }
 
