@@ -42,6 +42,10 @@ void CsvWriter::put(const std::optional<double>& value) noexcept {
   }
 }
 
+void CsvWriter::put(std::span<const std::optional<double>> values) noexcept {
+  for (const std::optional<double>& value : values) put(value);
+}
+
 void CsvWriter::put(std::string_view text) noexcept {
   begin_cell();
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) {

@@ -25,8 +25,8 @@ class CsvWriter {
   CsvWriter(std::filesystem::path file, std::span<const Column> columns)
       : CsvWriter(std::move(file), header_of(columns)) {}
 
-  /// One row: numbers, Vec3 (three cells), std::span<const double> (a cell each, perhaps none), text (quoted if it must
-  /// be), std::optional<double> (an empty cell for none).
+  /// One row: numbers, Vec3 (three cells), text (quoted if it must be), std::optional<double> (an empty cell for none),
+  /// std::span of numbers or of optional ones (a cell each, perhaps none).
   /// Precondition: as many cells as the header has columns. Errors are kept for `finish`.
   template <class... Cells>
   void row(const Cells&... cells) noexcept {
@@ -44,6 +44,7 @@ class CsvWriter {
   void put(const Vec3& value) noexcept;
   void put(std::span<const double> values) noexcept;
   void put(const std::optional<double>& value) noexcept;
+  void put(std::span<const std::optional<double>> values) noexcept;
   void put(std::string_view text) noexcept;
   void begin_cell() noexcept;
   void end_row() noexcept;

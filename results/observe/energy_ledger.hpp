@@ -16,6 +16,10 @@ namespace hapbench {
 ///   input = hand + actuator                                        (when the handle is the tool)
 ///   device.stored = device.hand + device.actuator + device.dissipated   (when it has mechanics of its own)
 ///
+/// Where the handle of a device moves the tool, there is no virtual mass: kinetic, input and residual are zero, the
+/// work of a force is the row's, held, times the displacement between the rows, and script is what the handle does to
+/// the rendering.
+///
 /// If the integrator holds the row's force over the step (leapfrog), the work of a force is the row's force times dt
 /// times the mean of the velocities before and after the step, which equals its contribution to the kinetic energy
 /// exactly. Other integrators evaluate forces at intermediate states that are not recorded. For them, work is the mean
@@ -34,11 +38,13 @@ struct EnergyBalance {
   /// rule). It is zero for linear springs that stay in contact; contacts that appear, vanish or change their weight
   /// create or destroy energy.
   double created = 0.0;
-  double integration = 0.0;  ///< made by the integrator: `spring` plus what translation put into the springs (leapfrog)
-  double script = 0.0;       ///< work of the prescribed motion, if the position is prescribed
-  double residual = 0.0;     ///< kinetic energy not explained by the terms above (free position): rounding errors
-  double hand = 0.0;         ///< work of the hand on the handle
-  double actuator = 0.0;     ///< work of the actuators: against the hand (ideal device) or on the carriage
+  /// Made by the integrator, or by holding a device's force: `spring` plus what translation put into the springs
+  /// (leapfrog and held forces).
+  double integration = 0.0;
+  double script = 0.0;    ///< work of the prescribed motion, or of the handle that moves the tool
+  double residual = 0.0;  ///< kinetic energy not explained by the terms above (free position): rounding errors
+  double hand = 0.0;      ///< work of the hand on the handle
+  double actuator = 0.0;  ///< work of the actuators: against the hand (ideal device) or on the carriage
   std::optional<DeviceEnergy> device;  ///< for devices with mechanics of their own
 };
 

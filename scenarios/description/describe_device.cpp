@@ -1,4 +1,8 @@
+#include <algorithm>
+
+#include "device_model/device_presets.hpp"
 #include "scenarios/description/descriptions.hpp"
+#include "scenarios/input/input_error.hpp"
 
 namespace hapbench {
 
@@ -41,8 +45,66 @@ static void describe(Fields& f, AdmittanceDeviceConfig& device) {
   f.object("mechanics", device.mechanics, "the moving parts");
 }
 
+static void describe(Fields&, DifferenceFilter&) {}
+
+static void describe(Fields& f, LowPassFilter& filter) {
+  f.number("cutoff_Hz", filter.cutoff, {0.0, 1e9, "Hz", true},
+           "of the first-order low-pass that takes 1 - exp(-2 pi cutoff_Hz step_s) of what is new (ours)");
+}
+
+static void describe(Fields& f, AdaptiveWindowFilter& filter) {
+  f.number("noise_m", filter.noise, {0.0, 1.0, "m"},
+           "largest distance of a sample from the line through the window's ends; half of encoder_step_m fits (ours)");
+}
+
+static void describe(Fields& f, VelocityFilterConfig& filter) {
+  f.variant(filter, "velocity filter", {"difference", "low_pass", "adaptive_window"},
+            [](Fields& v, auto& fields) { describe(v, fields); });
+}
+
+/// Puts the numbers of a published device in place of the defaults. They are written out in full and the name is not,
+/// because the numbers are what is simulated.
+static void describe_preset(Fields& f, ImpedanceDeviceConfig& device) {
+  std::optional<std::string> preset;
+  std::vector<std::string> names;
+  for (const DevicePreset& known : device_presets()) names.emplace_back(known.name);
+  f.if_any("preset", preset,
+           "a published device, whose numbers hold where the file gives none; \"hapbench list presets\" shows them",
+           [&names](Fields& n, std::string& name) {
+             auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+             n.name(index, names, "preset");
+             if (n.reads()) name = names[index];
+           });
+  if (!f.reads()) return;
+  if (preset) {
+    device = config_of(*find_device_preset(*preset));
+  } else if (!f.given("preset") && !f.given("handle_mass_kg")) {
+    throw InputError(InputError::Kind::relation, f.at(),
+                     "missing field; allowed: handle_mass_kg, or a preset, which has one");
+  }
+}
+
+static void describe(Fields& f, ImpedanceDeviceConfig& device) {
+  describe_preset(f, device);
+  f.number("handle_mass_kg", device.handle_mass, {1e-6, 1e6, "kg"},
+           "of all that moves, as felt at the handle; required without a preset", Presence::no_default);
+  f.number("viscous_N_s_per_m", device.viscous, {0.0, 1e9, "N s/m"}, "viscous friction of each axis");
+  f.number("coulomb_N", device.coulomb, {0.0, 1e9, "N"}, "dry friction of each axis, moving and at rest");
+  f.number("encoder_step_m", device.encoder_step, {0.0, 1.0, "m"},
+           "the measured position is the nearest multiple of it, halves away from zero; 0: exact");
+  f.number("delay_samples", device.delay_samples, {0.0, 10'000.0, "time steps"},
+           "from a sample to its force; a fraction changes the force within a time step");
+  f.value("velocity_filter", device.velocity_filter, "makes the tool's velocity of measured positions");
+  f.number("force_max_N", device.force_max, {0.0, 1e9, "N", true}, "the motors saturate at this norm; null: never");
+  f.number("force_step_N", device.force_step, {0.0, 1e9, "N"},
+           "the motors' force is the nearest multiple of it in each axis; 0: exact");
+  f.number("force_slew_N_per_s", device.force_slew, {0.0, 1e12, "N/s", true},
+           "fastest change of the motors' force from step to step; null: any");
+}
+
 void describe(Fields& f, DeviceFields& device) {
-  f.variant(device, "device", {"ideal", "admittance"}, [](Fields& d, auto& fields) { describe(d, fields); });
+  f.variant(device, "device", {"ideal", "admittance", "impedance"},
+            [](Fields& d, auto& fields) { describe(d, fields); });
 }
 
 }  // namespace hapbench

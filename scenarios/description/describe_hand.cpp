@@ -23,7 +23,7 @@ static void describe(Fields& f, PushHandFields& hand) {
   f.number("azimuth_rad", hand.azimuth, kAngle, "of its lean, from +x about z");
 }
 
-static void describe(Fields& f, ImpedanceHandFields& hand) {
+static void describe_spring(Fields& f, ImpedanceHandFields& hand) {
   f.number("stiffness_N_per_m", hand.stiffness, {0.0, 1e9, "N/m"}, "of the spring from target to handle");
   f.number("damping_N_s_per_m", hand.damping, {0.0, 1e9, "N s/m"}, "of the damper beside it");
   f.group(
@@ -35,6 +35,15 @@ static void describe(Fields& f, ImpedanceHandFields& hand) {
         }
       },
       Presence::required);
+}
+
+static void describe(Fields& f, ImpedanceHandFields& hand) {
+  describe_spring(f, hand);
+}
+
+static void describe(Fields& f, MassSpringDamperHandFields& hand) {
+  f.number("mass_kg", hand.mass, {0.0, 1e6, "kg"}, "of the hand, fixed to the handle (ours)");
+  describe_spring(f, hand.spring);
 }
 
 static void describe(Fields& f, DragHandFields& hand) {
@@ -110,7 +119,7 @@ static void describe(Fields& f, TrackingHandFields& hand) {
 }
 
 void describe(Fields& f, HandFields& hand) {
-  f.variant(hand, "hand", {"none", "force", "push", "impedance", "drag", "tracking"},
+  f.variant(hand, "hand", {"none", "force", "push", "impedance", "drag", "tracking", "mass_spring_damper"},
             [](Fields& h, auto& fields) { describe(h, fields); });
 }
 

@@ -75,6 +75,13 @@ void fix_stages(Fields& f, Scenario& scenario) {
   given = fixed;
 }
 
+void warn_of_idle_integrator(Fields& f, const Scenario& scenario) {
+  if (!handle_moves_tool(scenario.device) || scenario.integrator.type == IntegratorFields{}.type) return;
+  f.warn(
+      fmt::format("/integrator/type: \"{}\" is not used: device \"impedance\" moves the tool, without a virtual mass",
+                  scenario.integrator.type->info.name));
+}
+
 }  // namespace
 
 static void describe(Fields& f, InitialFields& initial) {
@@ -212,6 +219,7 @@ void describe(Fields& f, Scenario& scenario) {
   check_relations(scenario, steps);
   scenario.time.steps = static_cast<std::int64_t>(steps);
   fix_stages(f, scenario);
+  warn_of_idle_integrator(f, scenario);
 }
 
 }  // namespace hapbench

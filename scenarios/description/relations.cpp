@@ -157,6 +157,27 @@ void check_perception(const Scenario& scenario) {
   fail("/perception/band_Hz", fmt::format("got from {:g} to {:g}; allowed: from below to", from, to));
 }
 
+/// What presupposes a virtual mass between hand and tool.
+void check_impedance_device(const Scenario& scenario) {
+  const bool impedance = handle_moves_tool(scenario.device);
+  if (!impedance && std::holds_alternative<MassSpringDamperHandFields>(scenario.hand)) {
+    fail(
+        "/hand/type",
+        "got \"mass_spring_damper\", which is fixed to the handle of device \"impedance\"; allowed with other devices: "
+        "\"impedance\", the same spring and damper without the mass");
+  }
+  if (!impedance) return;
+  if (!std::holds_alternative<FreePosition>(scenario.motion.position)) {
+    fail("/motion/position/type",
+         "got a prescribed position; allowed: \"free\" with device \"impedance\", whose handle moves the tool");
+  }
+  if (scenario.rendering.passivity_controller) {
+    fail("/rendering/passivity_controller",
+         "got true; allowed: false with device \"impedance\": the controller looks ahead by the virtual mass, which is "
+         "not there");
+  }
+}
+
 }  // namespace
 
 void check_relations(const Scenario& scenario, double steps) {
@@ -170,6 +191,7 @@ void check_relations(const Scenario& scenario, double steps) {
   check_drag_hand(scenario, steps);
   check_tracking_hand(scenario, steps);
   check_perception(scenario);
+  check_impedance_device(scenario);
 }
 
 }  // namespace hapbench

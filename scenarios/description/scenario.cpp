@@ -22,6 +22,21 @@ double trial_count(const HandFields& hand) {
                              : static_cast<double>(tracking->subjects.size()) * static_cast<double>(tracking->trials);
 }
 
+const ImpedanceHandFields* spring_of(const HandFields& hand) {
+  const auto* passive = std::get_if<MassSpringDamperHandFields>(&hand);
+  return passive != nullptr ? &passive->spring : std::get_if<ImpedanceHandFields>(&hand);
+}
+
+bool handle_moves_tool(const DeviceFields& device) {
+  return std::holds_alternative<ImpedanceDeviceConfig>(device);
+}
+
+std::optional<double> input_force_limit(const DeviceFields& device) {
+  if (const auto* ideal = std::get_if<IdealDeviceFields>(&device)) return ideal->force_limit;
+  const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&device);
+  return admittance != nullptr ? admittance->force_limit : std::nullopt;
+}
+
 BurProfile profile_of(const BurFields& bur) {
   return bur_profile(bur.family, bur.diameter, bur.length.value_or(bur.diameter),
                      bur.shank_diameter.value_or(BurFields::kShankShare * bur.diameter));

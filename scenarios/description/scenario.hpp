@@ -14,6 +14,7 @@
 #include "device_model/admittance_device.hpp"
 #include "device_model/hands/drag_hand.hpp"
 #include "device_model/hands/tracking_hand.hpp"
+#include "device_model/impedance_device.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "results/summary/metric_list.hpp"
 #include "sim/core/profile.hpp"
@@ -141,6 +142,11 @@ struct ImpedanceHandFields {
   double damping = 6.0;           ///< [N s/m]
   std::array<Profile, 3> target;  ///< [m]
 };
+/// A passive hand, fixed to the handle of an impedance device.
+struct MassSpringDamperHandFields {
+  double mass = 0.2;           ///< [kg]
+  ImpedanceHandFields spring;  ///< and damper, towards the target
+};
 struct DragHandFields {
   Drag drag;
   std::optional<std::vector<Vec3>> path;  ///< [m]; it or the direction
@@ -156,12 +162,20 @@ struct TrackingHandFields {
   std::int64_t trials = 1;
 };
 using HandFields = std::variant<NoHandFields, ForceHandFields, PushHandFields, ImpedanceHandFields, DragHandFields,
-                                TrackingHandFields>;
+                                TrackingHandFields, MassSpringDamperHandFields>;
+
+/// The spring and damper towards a target that a hand is, or is fixed to; null of other hands.
+const ImpedanceHandFields* spring_of(const HandFields& hand);
 
 struct IdealDeviceFields {
   std::optional<double> force_limit;  ///< [N]
 };
-using DeviceFields = std::variant<IdealDeviceFields, AdmittanceDeviceConfig>;
+using DeviceFields = std::variant<IdealDeviceFields, AdmittanceDeviceConfig, ImpedanceDeviceConfig>;
+
+/// True when the handle moves the tool: there is no virtual mass, so that the integrator and f_in have no part in it.
+bool handle_moves_tool(const DeviceFields& device);
+/// Threshold of the input-force limiter [N], if the device has one.
+std::optional<double> input_force_limit(const DeviceFields& device);
 
 struct IntegratorFields {
   const IntegratorEntry* type = &kLeapfrog;  ///< never null

@@ -4,6 +4,8 @@
 #include <memory>
 
 #include "algorithms/registry.hpp"
+#include "device_model/device_presets.hpp"
+#include "device_model/theory/stiffness_limits.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
@@ -102,6 +104,30 @@ Description describe_profile() {
   return {fields_text("profile", profile), profile};
 }
 
+/// The numbers of a published device, each with its source.
+Description describe_preset(const DevicePreset& preset) {
+  Description d;
+  d.text = fmt::format("preset {}: {}\n{}", bold(stdout, preset.name), preset.device,
+                       wrapped("of device.type \"impedance\": \"device\": {\"type\": \"impedance\", \"preset\": \"" +
+                               std::string(preset.name) + "\"}; fields beside it override its numbers")) +
+           "\n";
+  d.json = {{"kind", "preset"}, {"name", preset.name}, {"device", preset.device}, {"numbers", Json::object()}};
+  const std::tuple<const char*, SourcedNumber, const char*> numbers[] = {
+      {"handle_mass_kg", preset.handle_mass, ""},
+      {"viscous_N_s_per_m", preset.viscous, ""},
+      {"coulomb_N", preset.coulomb, ""},
+      {"encoder_step_m", preset.encoder_step, ""},
+      {"force_max_N", preset.force_max, ""},
+      {"max_stiffness_N_per_m", preset.max_stiffness, "published largest stable stiffness; "},
+      {"max_damping_N_s_per_m", preset.max_damping, "published largest stable damping; "}};
+  for (const auto& [name, number, meaning] : numbers) {
+    d.text +=
+        entry(fmt::format("{} {:g}", name, number.value), std::string(meaning) + source_text(number.source), 2, 32);
+    d.json["numbers"][name] = {{"value", number.value}, {"source", source_text(number.source)}};
+  }
+  return d;
+}
+
 /// The maps of "hapbench stability --map" and how their runs are judged.
 Description describe_stability() {
   std::string maps;
@@ -110,6 +136,13 @@ Description describe_stability() {
   for (const StabilityMap& map : stability_maps()) {
     maps += fmt::format("  {}: {} over {}\n{}", map.name, map.y.name, map.x.name, wrapped(map.summary, 6));
     d.json["maps"].push_back({{"name", map.name}, {"x", map.x.name}, {"y", map.y.name}, {"summary", map.summary}});
+  }
+  std::string limits;
+  for (const StiffnessLimit& limit : stiffness_limits()) {
+    limits += fmt::format("  {}\n{}", limit.name, entry("formula", limit.formula, 4, 10));
+    limits += entry("for", limit.applies, 4, 10) + entry("source", limit.source, 4, 10);
+    d.json["limits"].push_back(
+        {{"name", limit.name}, {"formula", limit.formula}, {"applies", limit.applies}, {"source", limit.source}});
   }
   d.text = fmt::format(
       "stability maps\n"
@@ -125,10 +158,17 @@ Description describe_stability() {
       "lambda_max(S),\n"
       "  is given where the tool is alone with springs that stay in contact and the force is -K S p. Under "
       "velocity_verlet\n"
-      "  and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. The edge by bisection "
-      "is\n"
-      "  that of \"diverged\", in the map of the device that of runs that come to rest.\n\n{}",
-      kMapSteps, maps);
+      "  and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. With a device in the loop "
+      "it is\n"
+      "  where the first eigenvalue of the loop of hand, handle and wall leaves the unit circle: the loop while nothing\n"
+      "  saturates and the contact lasts. The edge by bisection is that of \"diverged\"; that of runs that come to rest "
+      "in the\n"
+      "  maps of the admittance device and of Coulomb friction, which stops a handle for good: there what still moves "
+      "in the\n  end, however little, vibrates.\n\n{}\n"
+      "limits of the stiffness K of a wall on an impedance device\n"
+      "  b is the handle's damping, c its Coulomb friction, q the encoder's step, m the moving mass, T the period, t_d = "
+      "d T\n  the delay. Written beside the edge where they apply.\n{}",
+      kMapSteps, maps, limits);
   return d;
 }
 
@@ -146,6 +186,7 @@ std::vector<std::string> described_names() {
   for (const char* field : {"environment", "tool", "hand", "device", kSomeProfile}) {
     for (const std::string& name : type_names(field)) names.push_back(name);
   }
+  for (const DevicePreset& preset : device_presets()) names.emplace_back(preset.name);
   for (const BundledScenario& bundled : bundled_scenarios()) names.push_back(bundled.name);
   for (const std::string& name : result_names()) names.push_back(name);
   for (const std::string& name : described_words()) names.push_back(name);
@@ -192,6 +233,7 @@ Description describe_name(const std::string& name) {
   if (const DepthModelEntry* entry = find_depth_model(name)) add(describe_model("depth model", *entry->info));
   if (const ModelInfo* stage = find_stage(name)) add(describe_model("stage", *stage));
   if (const IntegratorEntry* entry = find_integrator(name)) add(describe_model("integrator", entry->info));
+  if (const DevicePreset* preset = find_device_preset(name)) add(describe_preset(*preset));
   for (Description& result : describe_results(name)) add(std::move(result));
   const std::vector<Description> fields = describe_field(name);
   for (const Description& field : fields) add(field);

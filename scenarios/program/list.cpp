@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/registry.hpp"
+#include "device_model/device_presets.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/scenario.hpp"
@@ -49,8 +50,9 @@ std::vector<Listed> everything() {
   for (const ModelInfo* stage : stages()) add_models(all, "stage", *stage);
   for (const IntegratorEntry* entry : kIntegrators) add_models(all, "integrator", entry->info);
   for (const char* field : {"environment", "tool", "hand", "device"}) {
-    for (const std::string& type : type_names(field)) all.push_back({field, type, type_summary(type)});
+    for (const std::string& type : type_names(field)) all.push_back({field, type, type_summary(type, field)});
   }
+  for (const DevicePreset& preset : device_presets()) all.push_back({"preset", preset.name, preset.device});
   for (const BundledScenario& bundled : bundled_scenarios()) all.push_back(listed_scenario(bundled));
   for (const auto& [name, unit, meaning, value] : metrics_without_values()) all.push_back({"metric", name, meaning});
   for (const Json& claim : claims_on_record())

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "device_model/theory/stiffness_limits.hpp"
 #include "results/record/target_table.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/program/comparison_table.hpp"
@@ -50,6 +51,20 @@ constexpr Column kPrecisionColumns[] = {
     {"across_formula", "1", "the same in closed form"},
     {"lambda_max", "1", "largest eigenvalue of S"}};
 
+/// Those that every map fills.
+constexpr Column kEdgeColumns[] = {
+    {"algorithm", "", "force algorithm"},
+    {"{x}", "by name", "x of the map"},
+    {"analytic_{y}", "by name",
+     "the edge in y in closed form, or by the eigenvalues of a step or of the loop; empty without theory"},
+    {"simulation_{y}", "by name", "the edge in y by bisection on runs, to 0.1 %"},
+    {"relative_difference", "1", "simulation / analytic - 1"},
+    {"no_theory", "", "why there is no analytic limit"},
+    {"integrator", "", "integrator"},
+    {"worst_hand_{y}", "by name",
+     "least edge over passive hands of 100 to 1000 N/m and 0.1 to 0.5 kg, and none, by eigenvalues; of maps of K with an "
+     "impedance device"}};
+
 constexpr Column kShellColumns[] = {
     {"x_m", "m", "x of a point of the shell"},         {"y_m", "m", "y of a point of the shell"},
     {"z_m", "m", "z of a point of the shell"},         {"nx", "1", "x of the outward unit normal there"},
@@ -78,6 +93,24 @@ std::string map_header(std::span<const Column> columns, const std::string& x, co
   return fmt::format(fmt::runtime(header_of(columns)), fmt::arg("x", x), fmt::arg("y", y));
 }
 
+std::span<const Column> stability_boundary_columns() {
+  static const std::vector<std::string> kTexts = [] {
+    std::vector<std::string> texts;
+    for (const StiffnessLimit& limit : stiffness_limits()) {
+      texts.push_back(fmt::format("{}_{{y}}", limit.name));
+      texts.push_back(fmt::format("the y at which {}; for {} ({})", limit.formula, limit.applies, limit.source));
+    }
+    return texts;
+  }();
+  static const std::vector<Column> kColumns = [] {
+    std::vector<Column> columns = all(kEdgeColumns);
+    for (std::size_t i = 0; i < kTexts.size(); i += 2)
+      columns.push_back({kTexts[i].c_str(), "by name", kTexts[i + 1].c_str()});
+    return columns;
+  }();
+  return kColumns;
+}
+
 std::vector<DescribedTable> result_tables() {
   std::vector<DescribedTable> tables;
   for (const ResultTable& table : record_tables()) tables.push_back({table.file, table.holds, all(table.columns)});
@@ -88,8 +121,8 @@ std::vector<DescribedTable> result_tables() {
   tables.push_back({"root_locus.csv", "of stability SCENARIO: eigenvalues of a step as the case's number grows",
                     all(kRootLocusColumns)});
   tables.push_back({"stability_map_NAME.csv", "of stability --map: one line per run", all(kStabilityMapColumns)});
-  tables.push_back(
-      {"stability_boundary_NAME.csv", "of stability --map: one line per x of the map", all(kStabilityBoundaryColumns)});
+  tables.push_back({"stability_boundary_NAME.csv", "of stability --map: one line per x of the map",
+                    all(stability_boundary_columns())});
   tables.push_back({"stability_stress.csv", "of stability --stress: one line per algorithm", all(kStressColumns)});
   tables.push_back({"precision_STUDY.csv", "of precision: one line per setting, with the columns of its study",
                     all(kPrecisionColumns)});

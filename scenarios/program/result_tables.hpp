@@ -35,17 +35,12 @@ inline constexpr Column kStabilityMapColumns[] = {
     {"lambda_max", "1", "largest eigenvalue of S in the first row"},
     {"stability_margin", "1",
      "4 - 2 lambda B dt / M - lambda K dt^2 / M under leapfrog: below 0 unstable; empty without theory"},
-    {"integrator", "", "integrator"}};
+    {"integrator", "", "integrator"},
+    {"class_from_far", "",
+     "what became of the motion from a thousand times as far; empty where a map has no such runs"}};
 
-inline constexpr Column kStabilityBoundaryColumns[] = {
-    {"algorithm", "", "force algorithm"},
-    {"{x}", "by name", "x of the map"},
-    {"analytic_{y}", "by name",
-     "largest stable y in closed form, or by the eigenvalues of a step; empty without theory"},
-    {"simulation_{y}", "by name", "largest stable y by bisection on runs, to 0.1 %"},
-    {"relative_difference", "1", "simulation / analytic - 1"},
-    {"no_theory", "", "why there is no analytic limit"},
-    {"integrator", "", "integrator"}};
+/// With one for each limit of the stiffness that is known (stiffness_limits.hpp).
+std::span<const Column> stability_boundary_columns();
 
 inline constexpr Column kStressColumns[] = {
     {"algorithm", "", "force algorithm"},

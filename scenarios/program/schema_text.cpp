@@ -127,7 +127,13 @@ std::vector<const Json*> types_in(const Json& schema) {
   return types;
 }
 
-constexpr std::pair<const char*, const char*> kTypeSummaries[] = {
+struct TypeSummary {
+  const char* type;
+  const char* summary;
+  const char* field = "";  ///< that it is a type of, where another field has a type of that name
+};
+
+constexpr TypeSummary kTypeSummaries[] = {
     {"springs", "springs on the tool's tip, without a surface"},
     {"hole_2d", "a hole in the plane, with its mouth"},
     {"plane", "a flat square"},
@@ -142,7 +148,12 @@ constexpr std::pair<const char*, const char*> kTypeSummaries[] = {
     {"none", "nobody: the tool moves by the rendered force alone"},
     {"force", "a force over time"},
     {"push", "a force over time along a direction that leans from straight down"},
-    {"impedance", "a spring and damper towards a moving target"},
+    {"impedance", "a spring and damper towards a moving target", "hand"},
+    {"impedance", "measures positions and renders forces: a light handle with motors, as most desktop devices", "device"},
+    {"mass_spring_damper", "a passive hand fixed to the handle of an impedance device"},
+    {"difference", "the last two positions over the time between them"},
+    {"low_pass", "the difference through a first-order low-pass"},
+    {"adaptive_window", "slope over the longest window that fits a straight line (Janabi-Sharifi et al. 2000)"},
     {"drag", "leads the tool over the surface, pressing along its normal"},
     {"tracking", "a simulated subject who follows targets on a display"},
     {"ideal", "measures and pushes without error"},
@@ -154,10 +165,11 @@ constexpr std::pair<const char*, const char*> kTypeSummaries[] = {
 
 }  // namespace
 
-const char* type_summary(std::string_view type) {
-  const auto* found = std::find_if(std::begin(kTypeSummaries), std::end(kTypeSummaries),
-                                   [type](const auto& known) { return known.first == type; });
-  return found == std::end(kTypeSummaries) ? nullptr : found->second;
+const char* type_summary(std::string_view type, std::string_view field) {
+  for (const TypeSummary& known : kTypeSummaries) {
+    if (known.type == type && (*known.field == '\0' || known.field == field)) return known.summary;
+  }
+  return nullptr;
 }
 
 std::vector<std::string> type_names(const std::string& field) {
@@ -256,7 +268,7 @@ std::string types_text(const std::string& type_field) {
   if (find_in_schema(scenario_schema_once(), field) == nullptr) return "";
   std::string text;
   for (const std::string& type : type_names(field)) {
-    const char* summary = type_summary(type);
+    const char* summary = type_summary(type, field);
     text += entry(fmt::format("\"{}\"", type), summary != nullptr ? summary : "", 4, 24);
   }
   if (text.empty()) return "";
@@ -276,7 +288,7 @@ std::string card(const FieldCard& field, std::size_t indent) {
 std::string fields_text(const std::string& title, const Json& schema, const std::string& types) {
   std::string text = bold(stdout, title) + "\n";
   if (!types.empty()) text += wrapped("of " + types);
-  if (const char* summary = type_summary(title)) text += wrapped(summary);
+  if (const char* summary = type_summary(title, types)) text += wrapped(summary);
   if (schema.contains("description")) text += wrapped(schema["description"].get<std::string>());
   const Json* object = shown_object(schema);
   if (object != &schema) text += wrapped("allowed: " + allowed_text(schema));
@@ -287,7 +299,7 @@ std::string fields_text(const std::string& title, const Json& schema, const std:
   if (schema.contains("default")) text += wrapped("default: " + spaced(schema["default"]));
   for (const Json* type : types_in(schema)) {
     const std::string tag = tag_of(*type);
-    const char* summary = type_summary(tag);
+    const char* summary = type_summary(tag, title);
     text += fmt::format("\n  type \"{}\"{}{}\n{}", bold(stdout, tag), summary != nullptr ? ": " : "",
                         summary != nullptr ? summary : "", field_cards("", *type, 6));
   }

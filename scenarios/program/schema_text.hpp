@@ -46,8 +46,8 @@ struct FieldCard {
 std::string card(const FieldCard& field, std::size_t indent = 2);
 
 /// What a tagged object of that "type" is, in a few words; null for names that are no type of environment, hand, device
-/// or profile.
-const char* type_summary(std::string_view type);
+/// or profile. `field` is what it is a type of, as "hand", since two fields may have types of one name.
+const char* type_summary(std::string_view type, std::string_view field);
 
 /// The types among which the object of a field chooses, as those of "environment".
 std::vector<std::string> type_names(const std::string& field);

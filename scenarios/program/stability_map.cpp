@@ -60,7 +60,8 @@ void write_points(const fs::path& directory, const StabilityMap& map, const std:
   for (const MapResult& result : results) {
     for (const MapPoint& p : result.points) {
       csv.row(std::string_view(result.subject.algorithm), p.x, p.y, motion_class_name(p.motion), p.lambda, p.margin,
-              std::string_view(result.subject.integrator->info.name));
+              std::string_view(result.subject.integrator->info.name),
+              p.motion_from_far ? motion_class_name(*p.motion_from_far) : std::string_view());
     }
   }
   csv.finish();
@@ -68,11 +69,12 @@ void write_points(const fs::path& directory, const StabilityMap& map, const std:
 
 void write_boundary(const fs::path& directory, const StabilityMap& map, const std::vector<MapResult>& results) {
   CsvWriter csv(directory / fmt::format("stability_boundary_{}.csv", map.name),
-                map_header(kStabilityBoundaryColumns, map.x.name, map.y.name));
+                map_header(stability_boundary_columns(), map.x.name, map.y.name));
   for (const MapResult& result : results) {
     for (const BoundaryPoint& p : result.boundary) {
       csv.row(std::string_view(result.subject.algorithm), p.x, p.analytic, p.simulation, p.difference(),
-              std::string_view(p.no_theory), std::string_view(result.subject.integrator->info.name));
+              std::string_view(p.no_theory), std::string_view(result.subject.integrator->info.name), p.worst_hand,
+              std::span<const std::optional<double>>(p.limits));
     }
   }
   csv.finish();
@@ -92,31 +94,40 @@ std::size_t count_of(const MapResult& result, MotionClass motion) {
                                                 [motion](const MapPoint& p) { return p.motion == motion; }));
 }
 
-/// The analytic limit is drawn where the runs confirm it: '=' is the first run beyond.
-std::string drawing(const MapResult& result) {
+/// The classes of the runs, or of those from far. The analytic limit is drawn where the runs confirm it: '=' is the
+/// first run beyond.
+std::string drawn_classes(const MapResult& result, bool from_far) {
   // In the order of the enumeration.
   constexpr std::array<char, 4> kMarks = {'.', ':', '~', '#'};
   const std::size_t n = result.size;
   const MapAxis &x = result.map->x, &y = result.map->y;
   const auto cell = [&](std::size_t column, std::size_t row) {
-    const MotionClass motion = result.points[column * n + row].motion;
+    const MapPoint& point = result.points[column * n + row];
+    const MotionClass motion = from_far ? point.motion_from_far.value() : point.motion;
     const auto beyond = [&](std::size_t j) { return y.at(j, n) > result.boundary[column].analytic.value_or(1e300); };
     const bool limit = motion == MotionClass::diverged && beyond(row) && (row == 0 || !beyond(row - 1));
     return limit ? '=' : kMarks[static_cast<std::size_t>(motion)];
   };
   std::vector<std::string> labels(n);
   for (const std::size_t row : {std::size_t{0}, n - 1}) labels[row] = significant(y.at(row, n), 3);
-  return fmt::format(
-      "{}: {}\n\n{}  . stable  : dying out  ~ vibrating  # diverged  = diverged, first beyond the analytic limit\n\n",
-      label(result.subject), result.map->summary,
-      character_map({x.name, n, significant(x.low, 3), significant(x.high, 3)}, y.name, labels, cell));
+  return character_map({x.name, n, significant(x.low, 3), significant(x.high, 3)}, y.name, labels, cell);
+}
+
+std::string drawing(const MapResult& result) {
+  std::string text =
+      fmt::format("{}: {}\n\n{}", label(result.subject), result.map->summary, drawn_classes(result, false));
+  if (result.map->far)
+    text += fmt::format("\nfrom {} times as far:\n\n{}", *result.map->far, drawn_classes(result, true));
+  return text + "  . stable  : dying out  ~ vibrating  # diverged  = diverged, first beyond the analytic limit\n\n";
 }
 
 /// More are a flood; one algorithm's are all drawn.
 constexpr std::size_t kMostDrawn = 4;
 
 bool are_alike(const MapResult& a, const MapResult& b) {
-  const auto same_motion = [](const MapPoint& p, const MapPoint& q) { return p.motion == q.motion; };
+  const auto same_motion = [](const MapPoint& p, const MapPoint& q) {
+    return p.motion == q.motion && p.motion_from_far == q.motion_from_far;
+  };
   const auto same_edge = [](const BoundaryPoint& p, const BoundaryPoint& q) { return p.simulation == q.simulation; };
   return std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), same_motion) &&
          std::equal(a.boundary.begin(), a.boundary.end(), b.boundary.begin(), b.boundary.end(), same_edge);
@@ -141,11 +152,15 @@ Json result_json(const MapResult& result) {
   Json rows = Json::array();
   const auto or_null = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   for (const BoundaryPoint& p : result.boundary) {
+    Json limits = Json::object();
+    for (std::size_t i = 0; i < p.limits.size(); ++i) limits[stiffness_limits()[i].name] = or_null(p.limits[i]);
     rows.push_back({{result.map->x.name, p.x},
                     {"analytic", or_null(p.analytic)},
                     {"simulation", p.simulation},
                     {"relative_difference", or_null(p.difference())},
-                    {"no_theory", p.no_theory}});
+                    {"no_theory", p.no_theory},
+                    {"worst_hand", or_null(p.worst_hand)},
+                    {"limits", std::move(limits)}});
   }
   Json json = {{"map", result.map->name},
                {"algorithm", result.subject.algorithm},

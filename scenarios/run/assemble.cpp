@@ -13,6 +13,7 @@
 #include "device_model/hands/scripted_hands.hpp"
 #include "device_model/hands/tracking_hand.hpp"
 #include "device_model/ideal_device.hpp"
+#include "device_model/impedance_device.hpp"
 #include "scenarios/run/environment_points.hpp"
 #include "scenarios/run/peer_contacts.hpp"
 #include "sim/contact/spring_source.hpp"
@@ -120,16 +121,26 @@ void add_hand_and_motion(const Scenario& scenario, const NamedFiles& files, Tria
     parts.hand = std::make_unique<ForceHand>(force->force);
   } else if (const auto* push = std::get_if<PushHandFields>(&scenario.hand)) {
     parts.hand = std::make_unique<PushHand>(push->force, push_direction(push->angle, push->azimuth));
-  } else if (const auto* impedance = std::get_if<ImpedanceHandFields>(&scenario.hand)) {
-    parts.hand = std::make_unique<ImpedanceHand>(impedance->stiffness, impedance->damping, impedance->target);
+  } else if (const ImpedanceHandFields* spring = spring_of(scenario.hand)) {
+    parts.hand = std::make_unique<ImpedanceHand>(spring->stiffness, spring->damping, spring->target);
   } else {
     parts.hand = std::make_unique<NoHand>();
   }
 }
 
+/// What a hand does between its samples: nothing, unless it is fixed to the handle.
+AttachedHand attached_hand(const HandFields& hand) {
+  const auto* fields = std::get_if<MassSpringDamperHandFields>(&hand);
+  return fields == nullptr ? AttachedHand{}
+                           : AttachedHand{fields->mass, fields->spring.stiffness, fields->spring.damping};
+}
+
 std::unique_ptr<Device> make_device(const Scenario& scenario, Trial trial) {
   if (const auto* ideal = std::get_if<IdealDeviceFields>(&scenario.device)) {
     return std::make_unique<IdealDevice>(ideal->force_limit);
+  }
+  if (const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
+    return std::make_unique<ImpedanceDevice>(*impedance, scenario.time.step, attached_hand(scenario.hand));
   }
   AdmittanceDeviceConfig config = std::get<AdmittanceDeviceConfig>(scenario.device);
   if (scenario.motion.orientation) config.sensor.down = -scenario.motion.orientation->up.normalized();

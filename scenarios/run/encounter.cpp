@@ -54,7 +54,7 @@ std::string likely_cause(const Scenario& scenario, Outcome outcome, const Encoun
   const bool recorded = std::holds_alternative<RecordedPosition>(scenario.motion.position);
   if (recorded && e.approach.closest > kTooLarge * size)
     return "; are the positions of motion.position.file in metres?";
-  if (const auto* hand = std::get_if<ImpedanceHandFields>(&scenario.hand)) {
+  if (const ImpedanceHandFields* hand = spring_of(scenario.hand)) {
     const double closest = closest_target(*hand, scenario.time, e.environment);
     if (closest > 0.0)
       return fmt::format("; hand.target stays {} away from it: does it lead to the surface?", length_text(closest));

@@ -17,9 +17,9 @@
 namespace hapbench {
 namespace {
 
-/// None where the position is prescribed: no force moves the tool.
+/// None where the position is prescribed or a handle moves the tool: no integrator does.
 std::optional<double> friction_limit(const Scenario& scenario, const Motion& motion) {
-  if (!motion.position_is_free()) return std::nullopt;
+  if (!motion.position_is_free() || handle_moves_tool(scenario.device)) return std::nullopt;
   const RenderingConfig& rendering = scenario.rendering;
   return explicit_friction_limit(*scenario.integrator.type, rendering.mass, scenario.time.step, rendering.mu_s,
                                  rendering.mu_f);

@@ -80,7 +80,7 @@ constexpr double kNearlyAlways = 0.95;
 constexpr double kMostly = 0.5;
 
 double force_limit(const Scenario& scenario) {
-  return std::visit([](const auto& device) { return device.force_limit; }, scenario.device).value();
+  return input_force_limit(scenario.device).value();
 }
 
 Measured measure_saturated_motion(const Evidence& e) {

@@ -10,7 +10,7 @@ namespace hapbench {
 /// The hand's force in one step, as the device measures and limits it [N].
 struct MeasuredForce {
   Vec3 measured = Vec3::Zero();  ///< f_meas: what the sensor reads
-  Vec3 input = Vec3::Zero();     ///< f_meas*: what drives the virtual mass, after the input-force limiter
+  Vec3 input = Vec3::Zero();  ///< f_meas*: what drives the virtual mass, after the input-force limiter; 0 without one
 };
 
 /// Energy balance of a device's moving parts since its last reset [J]. Up to rounding, stored = hand + actuator +
@@ -22,7 +22,8 @@ struct DeviceEnergy {
   double stored = 0.0;      ///< kinetic and elastic energy of the parts, above that at the reset
 };
 
-/// The haptic device in the admittance loop: it measures the hand's force and moves the handle after the tool.
+/// The haptic device: it measures the hand's force and moves the handle after the tool, which is a virtual mass; or its
+/// handle moves the tool (`moves_tool`), and there is no such mass.
 class Device {
  public:
   virtual ~Device() = default;
@@ -34,6 +35,15 @@ class Device {
   virtual HandleState handle() const noexcept = 0;
   /// Returns nothing if the handle is the tool itself and has no mass or friction of its own.
   virtual std::optional<DeviceEnergy> energy() const noexcept { return std::nullopt; }
+
+  /// True of a device whose handle moves the tool. `drive` then takes the place of the integrator and of `advance`.
+  virtual bool moves_tool() const noexcept { return false; }
+  /// From row k to row k + 1, with f_render and the hand's force of row k [N].
+  virtual void drive(const Vec3& rendered, const Vec3& hand_force) noexcept {
+    static_cast<void>(rendered), static_cast<void>(hand_force);
+  }
+  /// Where, and how fast, such a device takes its handle to be, and puts the tool.
+  virtual HandleState sampled() const noexcept { return handle(); }
 };
 
 }  // namespace hapbench

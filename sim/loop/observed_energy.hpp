@@ -16,6 +16,10 @@ namespace hapbench {
 ///
 /// A row is `move`, then `answer`. Observer and controller share this code, so that they agree to the last bit.
 /// Without force and moment a row costs a few comparisons and the copy of an axis.
+///
+/// Where the handle of a device moves the tool, the work is that of the force that is held while the tool moves on,
+/// f_render_k . (p_(k+1) - p_k), and E that of the display (Hannaford and Ryu): what sampling and holding create is in
+/// it.
 class ObservedEnergy {
  public:
   explicit ObservedEnergy(double dt) : dt_(dt) {}
@@ -24,12 +28,12 @@ class ObservedEnergy {
   void reset() noexcept { *this = ObservedEnergy(dt_); }
 
   /// Starts the next row; `tool` is the tool's state in it.
-  void move(const ToolState& tool) noexcept {
+  void move(const ToolState& tool, bool handle_moves_tool = false) noexcept {
     first_ = !begun_;
     begun_ = true;
     now_ = !now_;
     note(tool.pose);
-    if (force_acts_) energy_ -= force_.dot(0.5 * (velocity_ + tool.velocity) * dt_);
+    if (force_acts_) energy_ -= force_.dot(way_to(tool, handle_moves_tool));
     if (moment_acts_) energy_ -= 0.5 * moment_.dot(turned());
   }
   /// Ends the row: `rendered` and `springs` act on the tool passed to `move`.
@@ -70,6 +74,11 @@ class ObservedEnergy {
   }
 
  private:
+  /// Of this row from the one before, whose force acts.
+  Vec3 way_to(const ToolState& tool, bool handle_moves_tool) const noexcept {
+    if (handle_moves_tool) return tool.pose.position - pose_[!now_].position;
+    return 0.5 * (velocity_ + tool.velocity) * dt_;
+  }
   /// Branch-free, unlike Eigen's isZero.
   static bool is_zero(const Vec3& v) noexcept { return (v.x() == 0.0) & (v.y() == 0.0) & (v.z() == 0.0); }
 

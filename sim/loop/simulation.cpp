@@ -55,6 +55,7 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
   position_is_free_ = parts_.motion->position_is_free();
   input_wanted_ = parts_.algorithm->wants_input();
   handle_is_apart_ = parts_.device->energy().has_value();
+  handle_moves_tool_ = position_is_free_ && parts_.device->moves_tool();
   angular_velocity_cutoff_ = parts_.algorithm->angular_velocity_cutoff();
   tool_rolls_ = parts_.tool && !is_round(*parts_.tool);
   turn_rolls_ = tool_rolls_ || parts_.motion->scripts_roll();
@@ -69,12 +70,14 @@ void Simulation::reset() noexcept {
   ended_ = config_.steps == 0;
   result_ = {};
   record_ = {};
+  record_.handle_moves_tool = handle_moves_tool_;
   tool_ = {{config_.position, Vec3::Zero()}, config_.velocity};
   parts_.hand->reset();  // first, because a hand may steer the orientation
   move_tool_by_script();
   parts_.source->reset();
   parts_.algorithm->reset();
   parts_.device->reset(tool_);
+  if (handle_moves_tool_) put_tool_on_handle();
   integrator_->reset();
 }
 
@@ -114,6 +117,12 @@ void Simulation::move_tool_by_force() noexcept {
   integrator_->step(tool_, record_.hand.input + record_.force.rendered, config_.mass, config_.dt, surroundings);
 }
 
+void Simulation::put_tool_on_handle() noexcept {
+  const HandleState sampled = parts_.device->sampled();
+  tool_.pose.position = sampled.position;
+  tool_.velocity = sampled.velocity;
+}
+
 bool Simulation::step() noexcept {
   if (ended_) return false;
 
@@ -147,14 +156,19 @@ bool Simulation::step() noexcept {
   ++result_.rows;
   if (check_stop_rules()) return true;
 
-  if (position_is_free_) move_tool_by_force();
+  if (handle_moves_tool_) {
+    parts_.device->drive(r.force.rendered, r.hand_force);
+    put_tool_on_handle();
+  } else if (position_is_free_) {
+    move_tool_by_force();
+  }
   ++row_;
   if (row_ == config_.steps) {
     end(Outcome::completes);
     return true;
   }
   move_tool_by_script();
-  parts_.device->advance(tool_, r.hand_force, config_.dt);
+  if (!handle_moves_tool_) parts_.device->advance(tool_, r.hand_force, config_.dt);
   return true;
 }
 

@@ -45,8 +45,8 @@ struct DivergenceBounds {
 struct SimulationConfig {
   double dt = 0.0005;                              ///< [s]
   std::uint64_t steps = 0;                         ///< rows 0 … steps - 1
-  double mass = 0.2;                               ///< of the virtual tool [kg]
-  const IntegratorEntry* integrator = &kLeapfrog;  ///< of a free position; never null
+  double mass = 0.2;                               ///< of the virtual tool, if there is one [kg]
+  const IntegratorEntry* integrator = &kLeapfrog;  ///< of a virtual tool whose position is free; never null
   Vec3 position = Vec3::Zero();     ///< of the tip centre at t = 0 [m]; ignored when the motion prescribes it
   Vec3 velocity = Vec3::Zero();     ///< [m/s]
   std::vector<StopRule> stop_when;  ///< if several hold, the first one counts
@@ -82,8 +82,8 @@ struct SimulationResult {
   Divergence divergence;   ///< meaningful when the outcome is `diverges`
 };
 
-/// The step loop: hand -> device -> contacts -> force algorithm -> observers -> integrator. Owns the contact buffer and
-/// allocates only in the constructor.
+/// The step loop: hand -> device -> contacts -> force algorithm -> observers -> integrator, or device again where its
+/// handle moves the tool. Owns the contact buffer and allocates only in the constructor.
 class Simulation {
  public:
   /// Prepares the algorithm. Observers must outlive the simulation. Throws what `prepare` throws.
@@ -110,6 +110,7 @@ class Simulation {
 
   void move_tool_by_force() noexcept;
   void move_tool_by_script() noexcept;
+  void put_tool_on_handle() noexcept;
   double roll_at(double t) const noexcept;
   Vec3 angular_velocity_after(double part, const Vec3& axis, double roll) const noexcept;
   void note_springs() noexcept;
@@ -130,6 +131,7 @@ class Simulation {
   bool roll_wanted_ = false;  ///< somebody reads it
   bool input_wanted_ = false;
   bool handle_is_apart_ = false;                   ///< the handle is a body of its own
+  bool handle_moves_tool_ = false;                 ///< and there is no virtual mass
   std::optional<double> angular_velocity_cutoff_;  ///< none: nobody wants it
   ContactBuffer contacts_;
 

@@ -106,7 +106,7 @@ double seconds_per_step(const Scenario& scenario, std::shared_ptr<const PointShe
 }
 
 IdealDeviceFields with_ideal_device(const DeviceFields& device) {
-  return {std::visit([](const auto& fields) { return fields.force_limit; }, device)};
+  return {input_force_limit(device)};
 }
 
 Scenario drill_in_hole(Scenario scenario) {

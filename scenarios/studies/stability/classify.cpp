@@ -34,14 +34,17 @@ MotionClassifier MotionClassifier::of_moved_tool(std::uint64_t steps, double tim
 
 void MotionClassifier::on_step(const StepRecord& record) noexcept {
   Quarter& quarter = quarters_[std::min<std::uint64_t>(3, record.step * 4 / steps_)];
-  if (high_pass_ && record.step == 0) high_pass_->settle_at(record.tool.velocity);
-  const Vec3 v = high_pass_ ? high_pass_->filter(record.tool.velocity) : record.tool.velocity;
+  if (high_pass_ && record.step == 0) high_pass_->settle_at(record.body_velocity());
+  const Vec3 v = high_pass_ ? high_pass_->filter(record.body_velocity()) : record.body_velocity();
   const double speed = v.norm();
   quarter.amplitude = std::max(quarter.amplitude, speed);
   largest_speed_ = std::max(largest_speed_, speed);
-  for (int i = 0; i < 3; ++i) quarter.turns[static_cast<std::size_t>(i)] += v[i] * last_velocity_[i] < 0.0;
+  for (int i = 0; i < 3; ++i) {
+    if (v[i] == 0.0) continue;
+    quarter.turns[static_cast<std::size_t>(i)] += v[i] * last_velocity_[i] < 0.0;
+    last_velocity_[i] = v[i];
+  }
   rows_at_rest_ = speed <= kRest * largest_speed_ ? rows_at_rest_ + 1 : 0;
-  last_velocity_ = v;
 }
 
 bool MotionClassifier::oscillates_in(const Quarter& quarter) const noexcept {

@@ -11,8 +11,9 @@
 
 /// Judges whether a run is stable by its motion alone, without eigenvalues, tensors or knowledge of the law.
 ///
-/// The run is cut into quarters. Their amplitude is the largest speed of the tool in them; a turn is a change of sign
-/// of a component of the velocity, two for each period of an oscillation.
+/// The run is cut into quarters. Their amplitude is the largest speed of the tool in them (of the handle, where it
+/// moves the tool: an encoder makes jumps of it that nobody feels); a turn is a change of sign of a component of the
+/// velocity, two for each period of an oscillation, whether or not dry friction holds a handle at the turns.
 ///
 ///   diverged   the run left its bounds, or it oscillates and its amplitude has grown by more than 1 % from each
 ///              quarter to the next
@@ -71,7 +72,7 @@ class MotionClassifier final : public Observer {
   bool is_moved_ = false;
   std::optional<HighPass> high_pass_;
   std::array<Quarter, 4> quarters_{};
-  Vec3 last_velocity_ = Vec3::Zero();
+  Vec3 last_velocity_ = Vec3::Zero();  ///< of each component the last that was not zero
   double largest_speed_ = 0.0;
   int rows_at_rest_ = 0;
 };

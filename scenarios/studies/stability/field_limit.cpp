@@ -11,11 +11,13 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "device_model/theory/eigenvalue_edge.hpp"
 #include "scenarios/description/scenario_text.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/studies/stability/bisection.hpp"
+#include "scenarios/studies/stability/device_loop.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
+#include "sim/core/bisection.hpp"
 
 namespace hapbench {
 namespace {
@@ -147,10 +149,8 @@ class Search {
 
   std::optional<double> theory(const std::string& algorithm) const {
     const auto stable = [&](double part) { return step_is_stable(at(algorithm, way_.value(part)).scenario); };
-    try {
-      require_lasting_springs(at(algorithm, way_.value(0.0)).scenario);
-    } catch (const InputError&) {
-      return std::nullopt;
+    for (const double end : {0.0, 1.0}) {
+      if (!has_theory(at(algorithm, way_.value(end)).scenario)) return std::nullopt;
     }
     const Edge edge = find_edge(way_, stable, false);
     if (!edge.stable) return std::nullopt;
@@ -158,12 +158,31 @@ class Search {
     return question_.smallest ? 0.0 : std::numeric_limits<double>::infinity();
   }
 
-  /// True when no mode of the springs leaves the unit circle.
+  /// True of springs that stay in contact, and devices whose loop is linear.
+  static bool has_theory(const Scenario& scenario) {
+    try {
+      has_device(scenario) ? require_bilateral_springs(scenario) : require_lasting_springs(scenario);
+    } catch (const InputError&) {
+      return false;
+    }
+    return !has_device(scenario) || device_loop(scenario, 1.0).no_theory.empty();
+  }
+
+  /// True of a device that is part of the loop.
+  static bool has_device(const Scenario& scenario) {
+    return !std::holds_alternative<IdealDeviceFields>(scenario.device);
+  }
+
+  /// True when no mode of the springs leaves the unit circle, alone or in the loop of the device.
   static bool step_is_stable(const Scenario& scenario) {
     const RenderingConfig& r = scenario.rendering;
     const double B = r.damping.value_or(2.0 * r.damping_ratio * std::sqrt(r.stiffness * r.mass));
     const Eigen::SelfAdjointEigenSolver<Mat3> S(stiffness_tensor_of(scenario), Eigen::EigenvaluesOnly);
     return std::all_of(S.eigenvalues().begin(), S.eigenvalues().end(), [&](double lambda) {
+      if (has_device(scenario)) {
+        constexpr double kNoWall = 1e-12;  // a direction without springs: the handle is free to go
+        return lambda < kNoWall || is_stable_step(device_loop(scenario, lambda).state_matrix());
+      }
       return SpringDamper{r.stiffness, B, r.mass, scenario.time.step, lambda, scenario.integrator.type}.is_stable();
     });
   }

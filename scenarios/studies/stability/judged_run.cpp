@@ -22,6 +22,7 @@ struct HandMoves {
   bool operator()(const ForceHandFields& hand) const { return any_changes(hand.force); }
   bool operator()(const PushHandFields& hand) const { return changes(hand.force); }
   bool operator()(const ImpedanceHandFields& hand) const { return any_changes(hand.target); }
+  bool operator()(const MassSpringDamperHandFields& hand) const { return any_changes(hand.spring.target); }
   template <class Other>
   bool operator()(const Other&) const {
     return true;
@@ -89,8 +90,7 @@ RunVerdict judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointS
 
 bool unstable_without_contact(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
-  if (!std::holds_alternative<ImpedanceHandFields>(scenario.hand) ||
-      std::holds_alternative<SpringsEnvironment>(scenario.environment))
+  if (spring_of(scenario.hand) == nullptr || std::holds_alternative<SpringsEnvironment>(scenario.environment))
     return false;
   MotionClassifier classifier = classifier_of(scenario);
   const auto nothing = std::make_shared<const PointShell>(std::vector<SurfacePoint>{}, 0.0);

@@ -67,46 +67,153 @@ Scenario device_scene(double delay_samples, double hand_stiffness, std::string_v
   return scenario;
 }
 
+/// A handle of an impedance device at 1 kHz, with a wall on both sides, since limits are about linear loops: a wall
+/// that only pushes lets go of the handle. 100 g, 0.5 N s/m (ours): K stays passive up to 2 b / T = 1000 N/m.
+Scenario handle_scene(double K, double B, std::string_view algorithm) {
+  Scenario scenario = one_spring(K, algorithm);
+  scenario.time.step = 0.001;
+  scenario.rendering.damping = B;
+  ImpedanceDeviceConfig device;
+  device.handle_mass = 0.1;
+  device.viscous = 0.5;
+  scenario.device = device;
+  return scenario;
+}
+
+ImpedanceDeviceConfig& handle_of(Scenario& scenario) {
+  return std::get<ImpedanceDeviceConfig>(scenario.device);
+}
+
+constexpr double kWallDamping = 5.0;  // [N s/m]
+
+Scenario z_width_scene(double B, double K, std::string_view algorithm) {
+  return handle_scene(K, B, algorithm);
+}
+
+Scenario delay_scene(double samples, double K, std::string_view algorithm) {
+  Scenario scenario = handle_scene(K, kWallDamping, algorithm);
+  handle_of(scenario).delay_samples = samples;
+  return scenario;
+}
+
+Scenario velocity_filter_scene(double cutoff, double K, std::string_view algorithm) {
+  Scenario scenario = handle_scene(K, kWallDamping, algorithm);
+  handle_of(scenario).velocity_filter = LowPassFilter{cutoff};
+  return scenario;
+}
+
+Scenario hand_scene(double hand_stiffness, double K, std::string_view algorithm) {
+  Scenario scenario = handle_scene(K, kWallDamping, algorithm);
+  MassSpringDamperHandFields hand;
+  hand.mass = 0.2;
+  hand.spring.stiffness = hand_stiffness;
+  hand.spring.damping = 2.0;
+  scenario.hand = hand;
+  return scenario;
+}
+
+/// Lets a hand push so that the wall balances it between two steps q of the encoder, where friction has to hold the
+/// handle: at a step, the wall does.
+void push_between_steps(Scenario& scenario, double q) {
+  ForceHandFields hand;
+  hand.force[0] = 2.5 * scenario.rendering.stiffness * q;
+  scenario.hand = hand;
+  handle_of(scenario).encoder_step = q;
+}
+
+Scenario encoder_step_scene(double step, double K, std::string_view algorithm) {
+  Scenario scenario = handle_scene(K, 0.0, algorithm);
+  scenario.initial.position *= 10.0;  // so that it is not friction that keeps the motion from growing
+  handle_of(scenario).coulomb = 0.02;
+  push_between_steps(scenario, step);
+  return scenario;
+}
+
+/// Begins six steps of the encoder away from rest.
+Scenario friction_scene(double damping, double friction, std::string_view algorithm) {
+  constexpr double kStiffness = 1000.0, kStep = 1e-6;  // K, q
+  Scenario scenario = handle_scene(kStiffness, 0.0, algorithm);
+  scenario.initial.position = -3.3 * kStep * Vec3::UnitX();
+  handle_of(scenario).viscous = 0.5 * damping * kStiffness * scenario.time.step;
+  handle_of(scenario).coulomb = 0.5 * friction * kStiffness * kStep;
+  push_between_steps(scenario, kStep);
+  return scenario;
+}
+
 using Scale = MapAxis::Scale;
-constexpr MapAxis kStiffness = {"stiffness_N_per_m", 1e3, 1e7, Scale::logarithmic};
+constexpr const char* kStiffnessName = StabilityMap::kStiffnessAxis.data();
+constexpr MapAxis kStiffness = {kStiffnessName, 1e3, 1e7, Scale::logarithmic};
+constexpr MapAxis kHandleStiffness = {kStiffnessName, 1e2, 1e5, Scale::logarithmic};
 
 constexpr StabilityMap kMaps[] = {
     {"time_step",
      "K over the time step, one spring",
      {"time_step_s", 5e-5, 5e-3, Scale::logarithmic},
      kStiffness,
-     time_step_scene,
-     nullptr},
+     time_step_scene},
     {"mass",
      "K over the mass of the virtual tool, one spring",
      {"mass_kg", 0.01, 10.0, Scale::logarithmic},
      kStiffness,
-     mass_scene,
-     nullptr},
+     mass_scene},
     {"damping_ratio",
      "K over zeta, one spring",
      {"damping_ratio", 0.0, 3.0, Scale::linear},
      kStiffness,
-     damping_ratio_scene,
-     nullptr},
+     damping_ratio_scene},
     {"contacts",
      "K over the number of parallel contacts",
      {"contacts", 1.0, 100.0, Scale::logarithmic, true},
      kStiffness,
-     contacts_scene,
-     nullptr},
+     contacts_scene},
     {"wedge",
      "K over the angle between two faces",
      {"wedge_angle_rad", 0.0, std::numbers::pi, Scale::linear},
      kStiffness,
-     wedge_scene,
-     nullptr},
+     wedge_scene},
     {"device",
      "stiffness of the hand over the delay of the servo, K = 20 000 N/m, admittance device",
      {"delay_samples", 0.0, 16.0, Scale::linear, true},
      {"hand_stiffness_N_per_m", 30.0, 3e5, Scale::logarithmic},
      device_scene,
-     "servo, handle and hand are part of the loop"},
+     MapEdge::largest_at_rest},
+    {"z_width",
+     "K over B of one wall on both sides, impedance device of 100 g and 0.5 N s/m at 1 kHz",
+     {"wall_damping_N_s_per_m", 0.1, 150.0, Scale::logarithmic},
+     kHandleStiffness,
+     z_width_scene},
+    {"delay",
+     "K over the delay of the force, B = 5 N s/m, impedance device as for z_width",
+     {"delay_samples", 0.0, 8.0, Scale::linear},
+     kHandleStiffness,
+     delay_scene},
+    {"velocity_filter",
+     "K over the cut-off of the velocity's low-pass, B = 5 N s/m, impedance device as for z_width",
+     {"cutoff_Hz", 20.0, 500.0, Scale::logarithmic},
+     kHandleStiffness,
+     velocity_filter_scene},
+    {"hand",
+     "K over the stiffness of a passive hand of 200 g and 2 N s/m, B = 5 N s/m, impedance device as for z_width",
+     {"hand_stiffness_N_per_m", 10.0, 1e4, Scale::logarithmic},
+     kHandleStiffness,
+     hand_scene},
+    {"encoder_step",
+     "K over the encoder's step, B = 0, impedance device as for z_width with 0.02 N of Coulomb friction",
+     {"encoder_step_m", 1e-6, 1e-3, Scale::logarithmic},
+     kHandleStiffness,
+     encoder_step_scene,
+     MapEdge::largest_at_rest,
+     std::nullopt,
+     true},
+    {"friction_quantisation",
+     "Coulomb friction over viscous friction, in units of what the encoder and the sampling of a wall need, B = 0, "
+     "impedance device as for z_width",
+     {"2b_over_KT", 0.1, 10.0, Scale::logarithmic},
+     {"2c_over_Kq", 0.1, 10.0, Scale::logarithmic},
+     friction_scene,
+     MapEdge::smallest_at_rest,
+     1000.0,
+     true},
 };
 
 }  // namespace

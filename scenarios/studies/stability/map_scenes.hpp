@@ -1,13 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 
 #include "scenarios/description/scenario.hpp"
 
 /// The scenes behind `hapbench stability --map`: two numbers to vary, everything else as on the platform (M = 0.1 kg,
-/// step 0.5 ms, zeta = 0.7).
+/// step 0.5 ms, zeta = 0.7), and for the impedance device as stated in map_scenes.cpp.
 namespace hapbench {
 
 /// One of the two numbers of a map.
@@ -21,14 +22,29 @@ struct MapAxis {
   double at(std::size_t i, std::size_t n) const noexcept;
 };
 
+/// Which y the edge of a map is.
+enum class MapEdge {
+  largest_bounded,  ///< the largest whose run does not diverge
+  largest_at_rest,  ///< the largest whose run comes to rest
+  smallest_at_rest  ///< the smallest whose run comes to rest
+};
+
 struct StabilityMap {
   const char* name;
   const char* summary;
   MapAxis x, y;
-  /// The scenario at (x, y) for an algorithm. The y of the spring maps is K.
+  /// The scenario at (x, y) for an algorithm. Springs under an ideal device stay in contact, so that the step of the
+  /// integrator has a limit in theory; other devices have that of their loop (device_loop.hpp).
   Scenario (*scene)(double x, double y, std::string_view algorithm);
-  /// Null where the tool is alone with springs that stay in contact; else why no limit is known.
-  const char* no_theory;
+  MapEdge edge = MapEdge::largest_bounded;
+  /// Where it matters how far a run begins from rest, every cell has a second run from so many times as far.
+  std::optional<double> far = std::nullopt;
+  /// True where dry friction stops the handle for good: there what still moves in the end, however little, vibrates.
+  bool friction_stops = false;
+
+  /// True when y is the K of the wall, which limits of the stiffness are about.
+  bool has_stiffness_as_y() const noexcept { return std::string_view(y.name) == kStiffnessAxis; }
+  static constexpr std::string_view kStiffnessAxis = "stiffness_N_per_m";
 };
 
 /// Steps of one run of a map.

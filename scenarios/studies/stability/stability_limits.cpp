@@ -9,7 +9,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_to_end.hpp"
 #include "scenarios/studies/first_tensor.hpp"
-#include "scenarios/studies/stability/bisection.hpp"
+#include "sim/core/bisection.hpp"
 
 namespace hapbench {
 namespace {
@@ -89,6 +89,10 @@ bool simulation_stays_bounded(Scenario scenario, const SpringDamper& system, con
   return run_to_end(simulation).outcome != Outcome::diverges && !energy.grows();
 }
 
+[[noreturn]] void fail(const char* place, const char* problem) {
+  throw InputError(InputError::Kind::relation, place, problem);
+}
+
 }  // namespace
 
 Mat3 stiffness_tensor_of(Scenario scenario) {
@@ -100,11 +104,8 @@ Mat3 stiffness_tensor_of(Scenario scenario) {
   return tensor.S;
 }
 
-void require_lasting_springs(const Scenario& scenario) {
+void require_bilateral_springs(const Scenario& scenario) {
   const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment);
-  const auto fail = [](const char* place, const char* problem) {
-    throw InputError(InputError::Kind::relation, place, problem);
-  };
   if (springs == nullptr)
     fail("/environment/type", "stability limits exist for \"springs\" only: elsewhere contacts come and go");
   if (!springs->bilateral) fail("/environment/bilateral", "got false; allowed for stability: true");
@@ -115,9 +116,15 @@ void require_lasting_springs(const Scenario& scenario) {
   if (scenario.rendering.max_force) fail("/rendering/limits/max_force_N", "allowed for stability: null");
   if (!std::holds_alternative<FreePosition>(scenario.motion.position))
     fail("/motion/position/type", "allowed for stability: \"free\"");
-  if (!std::holds_alternative<NoHandFields>(scenario.hand)) fail("/hand/type", "allowed for stability: \"none\"");
   if (scenario.rendering.passivity_controller)
     fail("/rendering/passivity_controller", "got true; allowed for stability: false");
+}
+
+void require_lasting_springs(const Scenario& scenario) {
+  require_bilateral_springs(scenario);
+  if (!std::holds_alternative<NoHandFields>(scenario.hand)) fail("/hand/type", "allowed for stability: \"none\"");
+  if (handle_moves_tool(scenario.device))
+    fail("/device/type", "got \"impedance\", which has no virtual mass; allowed for stability: \"ideal\"");
 }
 
 std::optional<double> analytic_limit(StabilityCase which, const Scenario& scenario, double lambda) {

@@ -44,7 +44,9 @@ std::optional<double> analytic_limit(StabilityCase which, const Scenario& scenar
 /// up to 1e15, or 1e6 s, is unstable.
 double eigenvalue_limit(StabilityCase which, const Scenario& scenario, double lambda, double start);
 
-/// Throws InputError, with the place, unless the scenario is bilateral springs without friction and limits.
+/// Throws InputError, with the place, unless the environment is bilateral springs without friction and limits.
+void require_bilateral_springs(const Scenario& scenario);
+/// The same unless the tool is alone with them, too: no hand, and a device that leaves the tool to the integrator.
 void require_lasting_springs(const Scenario& scenario);
 
 /// The stiffness tensor S of such a scenario under its algorithm, in units of K.

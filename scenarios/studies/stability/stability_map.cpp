@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "device_model/theory/eigenvalue_edge.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/studies/stability/bisection.hpp"
+#include "scenarios/studies/stability/device_loop.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
+#include "sim/core/bisection.hpp"
 
 namespace hapbench {
 namespace {
@@ -18,6 +20,11 @@ constexpr double kMapPrecision = 1e-3;
 /// How far beyond a map's range an edge is looked for. Further out, from K dt^2 / M = 6e8 on, the rounding of a step of
 /// implicit_midpoint, which damps nothing there, grows.
 constexpr double kBeyondTheMap = 1e4;
+/// And before it, of the edge of a loop.
+constexpr double kBelowTheMap = 1e-3;
+
+/// Of limits in closed form that are about another number than y.
+constexpr double kLimitPrecision = 1e-9;
 
 /// The first row: where the springs start from.
 class FirstRow final : public Observer {
@@ -39,16 +46,22 @@ struct Probe {
   bool linear;   ///< the force is -K S p
 };
 
-Probe probe(const Scenario& scenario) {
+Probe probe(const StabilityMap& map, const Scenario& scenario) {
   FirstRow first;
   MotionClassifier classifier(static_cast<std::uint64_t>(scenario.time.steps));
   Simulation simulation(simulation_config(scenario), assemble(scenario), {&first, &classifier});
-  const MotionClass motion = classify(simulation, classifier);
+  MotionClass motion = classify(simulation, classifier);
+  if (map.friction_stops && comes_to_rest(motion) && !classifier.at_rest()) motion = MotionClass::vibrating;
   const double K = scenario.rendering.stiffness;
   // Sums of up to a hundred springs; exact_shaping's weights are good to 1e-12.
   const double rounding = 1e-10 * K * (1.0 + first.S.norm()) * first.position.norm();
   const bool linear = (first.spring + K * (first.S * first.position)).norm() <= rounding;
   return {motion, Eigen::SelfAdjointEigenSolver<Mat3>(first.S, Eigen::EigenvaluesOnly).eigenvalues(), linear};
+}
+
+/// No device and no hand have a part in what the springs do to the tool.
+bool is_alone(const Scenario& scenario) {
+  return std::holds_alternative<IdealDeviceFields>(scenario.device);
 }
 
 Scenario scene(const StabilityMap& map, const MapSubject& subject, double x, double y) {
@@ -59,9 +72,14 @@ Scenario scene(const StabilityMap& map, const MapSubject& subject, double x, dou
 
 MapPoint map_point(const StabilityMap& map, const MapSubject& subject, double x, double y) {
   const Scenario scenario = scene(map, subject, x, y);
-  const Probe run = probe(scenario);
-  MapPoint point{x, y, run.motion, run.lambdas[2], {}};
-  if (map.no_theory != nullptr || !run.linear) return point;
+  const Probe run = probe(map, scenario);
+  MapPoint point{x, y, run.motion, run.lambdas[2], {}, {}};
+  if (map.far) {
+    Scenario far = scenario;
+    far.initial.position *= *map.far;
+    point.motion_from_far = probe(map, far).motion;
+  }
+  if (!is_alone(scenario) || !run.linear) return point;
   const double K = scenario.rendering.stiffness, M = scenario.rendering.mass;
   const double B = 2.0 * scenario.rendering.damping_ratio * std::sqrt(K * M);
   point.margin = SpringDamper{K, B, M, scenario.time.step, run.lambdas[2], subject.integrator}.margin();
@@ -80,24 +98,58 @@ double theory_of(const Scenario& start, const Vec3& lambdas) {
   return least;
 }
 
+/// The y up to which, or from which, something holds; zero or infinite as in BoundaryPoint.
+template <class Holds>
+double edge_in_y(const StabilityMap& map, double precision, Holds holds) {
+  if (map.edge != MapEdge::smallest_at_rest)
+    return largest_stable(map.y.low, precision, holds, kBeyondTheMap * map.y.high);
+  const auto holds_at_inverse = [&holds](double inverse) { return holds(1.0 / inverse); };
+  return 1.0 / largest_stable(1.0 / map.y.high, precision, holds_at_inverse, kBeyondTheMap / map.y.low);
+}
+
+/// What is known of the loops along one x, in which the wall is lambda K, lambda B.
+void add_loop_theory(const StabilityMap& map, const MapSubject& subject, double lambda, BoundaryPoint& point) {
+  const auto loop_at = [&](double y) { return device_loop(scene(map, subject, point.x, y), lambda); };
+  const DeviceLoop start = loop_at(map.y.low);
+  point.no_theory = start.no_theory;
+  if (start.no_theory.empty()) {
+    point.analytic = first_edge(kBelowTheMap * map.y.low, kBeyondTheMap * map.y.high,
+                                [&](double y) { return loop_at(y).state_matrix(); });
+  }
+  const auto* sampled = std::get_if<SampledLoop>(&start.loop);
+  if (sampled == nullptr) return;
+  if (start.no_theory.empty() && map.has_stiffness_as_y()) point.worst_hand = worst_hand_edge(*sampled) / lambda;
+  for (std::size_t i = 0; i < point.limits.size(); ++i) {
+    const auto largest = stiffness_limits()[i].largest;
+    if (map.has_stiffness_as_y()) {
+      const std::optional<double> K = largest(*sampled);
+      if (K) point.limits[i] = *K / lambda;
+      continue;
+    }
+    const double edge = edge_in_y(map, kLimitPrecision, [&](double y) {
+      const SampledLoop loop = std::get<SampledLoop>(loop_at(y).loop);
+      const std::optional<double> K = largest(loop);
+      return K && loop.stiffness <= *K;
+    });
+    if (edge > 0.0 && std::isfinite(edge)) point.limits[i] = edge;
+  }
+}
+
 BoundaryPoint boundary_point(const StabilityMap& map, const MapSubject& subject, double x) {
   BoundaryPoint point;
   point.x = x;
-  const auto holds = [&](double y) {
-    const MotionClass motion = probe(scene(map, subject, x, y)).motion;
-    return map.no_theory == nullptr ? motion != MotionClass::diverged : comes_to_rest(motion);
-  };
-  point.simulation = largest_stable(map.y.low, kMapPrecision, holds, kBeyondTheMap * map.y.high);
-  if (map.no_theory != nullptr) {
-    point.no_theory = map.no_theory;
-    return point;
-  }
+  point.simulation = edge_in_y(map, kMapPrecision, [&](double y) {
+    const MotionClass motion = probe(map, scene(map, subject, x, y)).motion;
+    return map.edge == MapEdge::largest_bounded ? motion != MotionClass::diverged : comes_to_rest(motion);
+  });
   const Scenario start = scene(map, subject, x, map.y.low);
-  const Probe run = probe(start);
-  if (run.linear) {
+  const Probe run = probe(map, start);
+  if (!run.linear) {
+    point.no_theory = "the force is not -K S p";
+  } else if (is_alone(start)) {
     point.analytic = theory_of(start, run.lambdas);
   } else {
-    point.no_theory = "the force is not -K S p";
+    add_loop_theory(map, subject, run.lambdas[2], point);
   }
   return point;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "device_model/theory/stiffness_limits.hpp"
 #include "scenarios/batch/jobs.hpp"
 #include "scenarios/studies/stability/classify.hpp"
 #include "scenarios/studies/stability/map_scenes.hpp"
@@ -18,18 +19,25 @@ struct MapPoint {
   double lambda = 0.0;  ///< lambda_max(S) of the first row
   /// SpringDamper::margin; none where the theory does not apply, nor of integrators without a closed form of it.
   std::optional<double> margin;
+  /// Of the run from further away; none of maps without (StabilityMap::far).
+  std::optional<MotionClass> motion_from_far;
 };
 
-/// The edge of the stable runs at one x. Of a spring map, the largest K that does not diverge; of a map without theory,
-/// the largest y whose run comes to rest.
+/// The edge of the stable runs at one x, as the map defines it (MapEdge).
 struct BoundaryPoint {
   double x = 0.0;
-  /// In closed form, or of the eigenvalues of a step where the integrator has none; infinite when no y is unstable,
-  /// none where the theory does not apply.
+  /// In closed form, or of the eigenvalues of a step; with a device in the loop of the eigenvalues of the loop.
+  /// Infinite when no y is unstable, none where the theory does not apply.
   std::optional<double> analytic;
   double simulation =
       0.0;  ///< by bisection on runs to 0.1 %; 0, or infinite when there is none up to 1e4 times the map's range
   std::string no_theory;  ///< why there is no analytic limit; empty when there is one
+  /// The least edge over hand_family() instead of the map's hand, by eigenvalues; where y is the K of an impedance
+  /// device's wall.
+  std::optional<double> worst_hand;
+  /// As many as stiffness_limits(): the y up to which, or from which, each allows the K of the wall; none where it does
+  /// not apply.
+  std::vector<std::optional<double>> limits = std::vector<std::optional<double>>(stiffness_limits().size());
 
   /// simulation / analytic - 1; zero when both are infinite, none without an analytic limit.
   std::optional<double> difference() const;
@@ -51,8 +59,9 @@ struct MapResult {
 
 /// The map of one algorithm and integrator on a grid of size x size. The same whatever the number of threads.
 ///
-/// The theory applies where the tool is alone with springs in contact and the force of the first row is -K S p: then
-/// the springs are the linear system whose step the limit is about. Precondition: the algorithm is known, size >= 1.
+/// The theory applies where the force of the first row is -K S p: then the springs are the linear system whose step the
+/// limit is about, alone or with a device and a hand (device_loop.hpp). Precondition: the algorithm is known, size
+/// >= 1.
 MapResult stability_map(const StabilityMap& map, const MapSubject& subject, std::size_t size,
                         const JobOptions& options);
 

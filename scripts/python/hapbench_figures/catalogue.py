@@ -36,7 +36,8 @@ class Figure:
         return "figure_" + self.id.replace("-", "_").replace("/", "_")
 
 
-STABILITY_MAPS = ("time_step", "mass", "damping_ratio", "contacts", "wedge", "device")
+STABILITY_MAPS = ("time_step", "mass", "damping_ratio", "contacts", "wedge", "device", "z_width", "delay", "velocity_filter",
+                  "hand", "encoder_step", "friction_quantisation")
 
 FIGURES = (
     Figure("2", "2", "Excessive stiffness and ways to merge contacts", stiffness_fields.excessive_stiffness),

@@ -1,4 +1,5 @@
 """Stability: the root locus of A.3, and our maps of stable, vibrating and diverged runs."""
+from itertools import cycle
 from textwrap import wrap
 
 import numpy as np
@@ -57,6 +58,35 @@ CLASSES = {
     "vibrating": ("vibrating", "#E0A030", ""),
     "thrown_out": ("thrown out", "#B05A1E", ""),
     "diverged": ("diverged", "#7A2E00", ""),
+    # Of runs from near and from far.
+    "passive": ("comes to rest from near and far", style.PALE, ""),
+    "locally_stable": ("from near only", "#E9F3FA", "/////"),
+    "limit_cycles": ("limit cycles", "#E0A030", ""),
+    "unstable": ("unstable", "#7A2E00", ""),
+}
+
+
+def class_of(row):
+    """The class of a row's run or, where another one begins far from rest, what both of them make."""
+    far = row.get("class_from_far")
+    if not far:
+        return row["class"]
+    rests, far_rests = (name in ("stable", "dying_out") for name in (row["class"], far))
+    if far == "diverged":
+        return "locally_stable" if rests else "unstable"
+    return "limit_cycles" if not rests else "passive" if far_rests else "vibrating"
+
+
+# Known limits, in the order of their columns.
+LIMIT_LOOKS = tuple({"color": colour, "lw": 1.4, "ls": line} for line in ("-", (0, (5, 2))) for colour in
+                    (style.PLUM, "#1F4E9E", "#2E6B34"))
+LIMITS = {
+    "worst_hand": "limit, worst hand",
+    "passive_colgate_schenkel": "passive (Colgate, Schenkel)",
+    "passive_with_delay": "passive, with delay",
+    "stable_gil_hulin": "stable (Gil, Hulin)",
+    "passive_abbott_okamura": "passive (Abbott, Okamura)",
+    "exact_undamped_handle": "exact, undamped handle",
 }
 
 
@@ -64,12 +94,14 @@ def look_of_class(name):
     return CLASSES.get(name) or (name.replace("_", " "), "#C8C8C8", "xxx")
 
 
-AXES = {"contacts": "contacts [1]", "delay_samples": "delay [samples]", "damping_ratio": "damping ratio ζ [1]"}
+AXES = {"contacts": "contacts [1]", "delay_samples": "delay [samples]", "damping_ratio": "damping ratio ζ [1]",
+        "2b_over_KT": "2b / (KT) [1]", "2c_over_Kq": "2c / (Kq) [1]"}
 
 
 def axis_label(name):
     """ "time_step_s" -> "time step [s]"."""
-    for ending, unit in (("_N_per_m", "N/m"), ("_rad", "rad"), ("_kg", "kg"), ("_s", "s")):
+    for ending, unit in (("_N_per_m", "N/m"), ("_N_s_per_m", "N s/m"), ("_rad", "rad"), ("_kg", "kg"), ("_s", "s"),
+                         ("_Hz", "Hz"), ("_m", "m")):
         if name.endswith(ending):
             return f"{name.removesuffix(ending).replace('_', ' ')} [{unit}]"
     return AXES.get(name, name.replace("_", " "))
@@ -105,24 +137,25 @@ def draw_map(ax, rows, x_name, y_name):
     ax.set(xlim=edges(columns)[[0, -1]], ylim=edges(lines)[[0, -1]])
 
 
-def draw_boundary(ax, rows, x_name, y_name):
-    for kind, look in (
-        ("analytic", {"color": "white", "lw": 3.6}),
-        ("analytic", {"color": style.PETROL, "lw": 2.6}),
-        # Narrower, so that both show where they agree.
-        ("simulation", {"color": style.BLACK, "lw": 0.9, "ls": (0, (2, 2))}),
+def draw_boundary(ax, rows, x_name, y_name, limits=()):
+    # Ever narrower, so that all show where they agree.
+    for column, look in (
+        (f"analytic_{y_name}", {"color": "white", "lw": 3.6}),
+        (f"analytic_{y_name}", {"color": style.PETROL, "lw": 2.6}),
+        *((column, {"color": "white", "lw": 2.2}) for column, _ in limits),
+        *limits,
+        (f"simulation_{y_name}", {"color": style.BLACK, "lw": 0.9, "ls": (0, (2, 2))}),
     ):
-        column = f"{kind}_{y_name}"
         if column in rows[0]:
             y = numbers(rows, column)
-            ax.plot(numbers(rows, x_name), np.where(np.isfinite(y), y, np.nan), **look)
+            ax.plot(numbers(rows, x_name), np.where(np.isfinite(y) & (y > 0), y, np.nan), **look)
 
 
 class MapFile:
     """stability_map_NAME.csv and the boundary beside it."""
 
     def __init__(self, results, path):
-        self.rows = results.records(path)
+        self.rows = [{**row, "class": class_of(row)} for row in results.records(path)]
         self.x_name, self.y_name = list(self.rows[0])[1:3]
         boundary = path.replace("stability_map_", "stability_boundary_")
         self.boundary = results.records(boundary) if results.has(boundary) else []
@@ -130,6 +163,21 @@ class MapFile:
     @property
     def has_theory(self):
         return any(np.isfinite(numbers(self.boundary, f"analytic_{self.y_name}"))) if self.boundary else False
+
+    @property
+    def limits(self):
+        """Pairs of a column and the look of its line, of the known limits that apply somewhere."""
+        if not self.boundary:
+            return []
+        ends = f"_{self.y_name}"
+        others = (self.x_name, f"analytic{ends}", f"simulation{ends}")
+        names = [name for name in self.boundary[0] if name.endswith(ends) and name not in others]
+        looks = zip(names, cycle(LIMIT_LOOKS))
+        return [(name, look) for name, look in looks if (np.nan_to_num(numbers(self.boundary, name)) > 0).any()]
+
+    def limit_label(self, column):
+        name = column.removesuffix(f"_{self.y_name}")
+        return LIMITS.get(name, name.replace("_", " "))
 
     @property
     def integrators(self):
@@ -144,7 +192,7 @@ class MapFile:
         draw_map(ax, of_subject(self.rows), self.x_name, self.y_name)
         boundary = of_subject(self.boundary)
         if boundary:
-            draw_boundary(ax, boundary, self.x_name, self.y_name)
+            draw_boundary(ax, boundary, self.x_name, self.y_name, self.limits)
 
 
 def map_file(results, name, of_integrators):
@@ -156,8 +204,8 @@ def map_file(results, name, of_integrators):
     raise MissingResult(f"no stability_map_{name}.csv{' of several integrators' if of_integrators else ''}")
 
 
-def class_legend(figure, maps, top):
-    """What the cells and lines of the maps mean, above them; `top`: the share of the height that is left for them."""
+def class_legend(figure, maps, **place):
+    """What the cells and lines of the maps mean."""
     present = {row["class"] for found in maps for row in found.rows}
     looks = [look_of_class(name) for name in sorted(present, key=lambda name: ([*CLASSES, name].index(name), name))]
     handles = [Patch(facecolor=colour, hatch=hatch, edgecolor=style.PETROL, lw=0) for _, colour, hatch in looks]
@@ -167,7 +215,9 @@ def class_legend(figure, maps, top):
         if any(np.isfinite(numbers(found.boundary, f"{column}_{found.y_name}")).any() for found in maps if found.boundary):
             handles.append(Line2D([], [], **look))
             names.append(label)
-    figure.legend(handles, names, loc="upper center", bbox_to_anchor=(0.5, top), ncol=6, handlelength=1.6)
+    limits = {found.limit_label(column): look for found in maps for column, look in found.limits}
+    handles += [Line2D([], [], **look) for look in limits.values()]
+    figure.legend(handles, [*names, *limits], ncol=4 if limits else 6, handlelength=1.6, **place)
 
 
 def alike(found, algorithms):
@@ -209,8 +259,8 @@ def draw_limits(axes, found, algorithms):
     legend.legend(loc="center left", borderaxespad=0, handlelength=3.2, labelspacing=0.35)
 
 
-def draw_groups(part, found, groups, lines):
-    axes = part.subplots(lines, 4, sharex=True, sharey=True, squeeze=False)
+def draw_groups(part, found, groups, lines, columns):
+    axes = part.subplots(lines, columns, sharex=True, sharey=True, squeeze=False)
     for ax in axes.flat[len(groups):]:
         ax.set_visible(False)
     for i, (ax, group) in enumerate(zip(axes.flat, groups)):
@@ -219,8 +269,8 @@ def draw_groups(part, found, groups, lines):
         if i == len(groups) - 1 and len(group) > 3:
             names = f"{'all others' if i else 'all'} ({len(group)})"
         ax.set_title("\n".join(wrap(names, 30)), fontsize=6.5)
-        ax.tick_params(labelbottom=i + 4 >= len(groups), labelsize=7)
-        if i + 4 >= len(groups):
+        ax.tick_params(labelbottom=i + columns >= len(groups), labelsize=7)
+        if i + columns >= len(groups):
             ax.set_xlabel(axis_label(found.x_name))
     for ax in axes[:, 0]:
         ax.set_ylabel(axis_label(found.y_name))
@@ -230,15 +280,15 @@ def draw_stability_map(found):
     """Above the limit of every algorithm, where there is one; below the classes of the runs. `found`: of one integrator."""
     present = list(dict.fromkeys(row["algorithm"] for row in found.rows))
     groups = alike(found, present)
-    lines = -(-len(groups) // 4)
-    heights = (2.5, 0.75 + 1.65 * lines)
+    columns = min(4, max(2, len(groups)))
+    lines = -(-len(groups) // columns)
+    heights = (2.5, 0.6 if found.limits else 0.25, 0.5 + 1.65 * lines + 0.6 * (columns == 2))
     figure = style.plt.figure(figsize=(style.WIDTH, sum(heights)))
-    above, below = figure.subfigures(2, 1, height_ratios=heights)
+    above, between, below = figure.subfigures(3, 1, height_ratios=heights)
     widths = [1, 1, 0.62] if found.has_theory else [2, 0.62]
     draw_limits(above.subplots(1, len(widths), gridspec_kw={"width_ratios": widths}), found, present)
-    draw_groups(below, found, groups, lines)
-    figure.get_layout_engine().set(hspace=0.08)
-    class_legend(figure, [found], heights[1] / sum(heights) + 0.02)
+    class_legend(between, [found], loc="center")
+    draw_groups(below, found, groups, lines, columns)
     return figure
 
 
@@ -275,7 +325,7 @@ def integrators(results):
     for ax, name in zip(axes[0], names):
         ax.set_title(name.replace("_", " "))
     figure.get_layout_engine().set(rect=(0, 0, 1, 0.95))
-    class_legend(figure, maps, 1.0)
+    class_legend(figure, maps, loc="upper center", bbox_to_anchor=(0.5, 1.0))
     return figure, (
         f"Where a run is stable, still dies out, vibrates or diverges under each integrator, {style.look(algorithm).label}: stiffness "
         "of one spring over the time step and over zeta, stiffness of the hand over the delay of the device's servo. "

@@ -9,20 +9,32 @@
 namespace hapbench {
 namespace {
 
-/// The force of the spring-damper, in x alone.
+/// The force of the spring-damper, and one that is held over the step.
 class LinearForce final : public ForceField {
  public:
-  explicit LinearForce(const SpringDamper& s)
-      : jacobian_{s.lambda * s.K * Mat3::Identity(), s.lambda * s.B * Mat3::Identity()} {}
+  LinearForce(const SpringDamper& s, const Vec3& held)
+      : jacobian_{s.lambda * s.K * Mat3::Identity(), s.lambda * s.B * Mat3::Identity()}, held_(held) {}
 
   Vec3 force_at(double, const Vec3& position, const Vec3& velocity) noexcept override {
-    return -jacobian_.stiffness * position - jacobian_.damping * velocity;
+    return held_ - jacobian_.stiffness * position - jacobian_.damping * velocity;
   }
   ForceJacobian jacobian() const noexcept override { return jacobian_; }
 
  private:
   ForceJacobian jacobian_;
+  Vec3 held_;
 };
+
+/// What the integrator makes of (x, v) in a step in which a force [N] is held.
+Eigen::Vector2d stepped(const SpringDamper& s, double x, double v, double held) {
+  LinearForce field(s, held * Vec3::UnitX());
+  ToolState tool;
+  tool.pose.position = x * Vec3::UnitX();
+  tool.velocity = v * Vec3::UnitX();
+  const Vec3 force = field.force_at(0.0, tool.pose.position, tool.velocity);
+  s.integrator->make()->step(tool, force, s.M, s.dt, field);
+  return {tool.pose.position.x(), tool.velocity.x()};
+}
 
 /// Eigen's solver for matrices of any size takes seconds to compile; two by two need one rotation, which makes the
 /// matrix triangular if the eigenvalues are real.
@@ -54,18 +66,13 @@ std::pair<std::complex<double>, std::complex<double>> eigenvalues_of(const Eigen
 
 Eigen::Matrix2d SpringDamper::step_matrix() const {
   if (integrator->step_matrix != nullptr) return integrator->step_matrix(*this);
-  LinearForce field(*this);
-  const auto stepper = integrator->make();
   Eigen::Matrix2d A;
-  for (const int column : {0, 1}) {
-    ToolState tool;
-    (column == 0 ? tool.pose.position : tool.velocity) = Vec3::UnitX();
-    const Vec3 force = field.force_at(0.0, tool.pose.position, tool.velocity);
-    stepper->reset();
-    stepper->step(tool, force, M, dt, field);
-    A.col(column) << tool.pose.position.x(), tool.velocity.x();
-  }
+  A << stepped(*this, 1.0, 0.0, 0.0), stepped(*this, 0.0, 1.0, 0.0);
   return A;
+}
+
+Eigen::Vector2d SpringDamper::input_step() const {
+  return stepped(*this, 0.0, 0.0, 1.0);
 }
 
 std::pair<std::complex<double>, std::complex<double>> SpringDamper::eigenvalues() const {

@@ -22,6 +22,8 @@ struct SpringDamper {
   /// What one step makes of (x, v): the integrator's closed form, or built from the integrator itself, applied to
   /// (1, 0) and (0, 1).
   Eigen::Matrix2d step_matrix() const;
+  /// What a step adds to (x, v) for each newton of a force that is held over it, from the integrator itself.
+  Eigen::Vector2d input_step() const;
   /// The two eigenvalues of that matrix.
   std::pair<std::complex<double>, std::complex<double>> eigenvalues() const;
   /// Largest modulus of the two.

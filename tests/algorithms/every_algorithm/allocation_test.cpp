@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "algorithms/shell_source.hpp"
+#include "device_model/impedance_device.hpp"
 #include "results/allocations/allocations.hpp"
 #include "sim/core/aligned.hpp"
 #include "sim/geometry/analytic_shells.hpp"
@@ -222,6 +223,40 @@ TEST_P(NoAllocationOf, AnIntegrator) {
     if (!springs) run.position = {0.0002, -0.004, 0.0};
     ContactCounter observer;
     Simulation simulation(run, test::free_run(setting, config), {&observer});
+    const AllocationCount count;
+    simulation.run();
+    simulation.reset();
+    simulation.run();
+    EXPECT_EQ(count.value(), 0u);
+    EXPECT_GT(observer.rows_with_contact, 0);
+  }
+}
+
+// ---- And with an impedance device, whose friction, delay line and filter all have something to do.
+
+TEST(NoAllocationInAStep, OfAnImpedanceDevice) {
+  const Instance instance{"shaped_stiffness", "surface_normal", &kStages[1], false};
+  const RenderingConfig config;
+  ImpedanceDeviceConfig device{.handle_mass = 0.1,
+                               .viscous = 0.5,
+                               .coulomb = 0.05,
+                               .encoder_step = 1e-5,
+                               .delay_samples = 2.4,
+                               .velocity_filter = {},
+                               .force_max = 2.0,
+                               .force_step = 0.01,
+                               .force_slew = 1000.0};
+  for (const VelocityFilterConfig& filter :
+       {VelocityFilterConfig(DifferenceFilter{}), VelocityFilterConfig(LowPassFilter{}),
+        VelocityFilterConfig(AdaptiveWindowFilter{})}) {
+    device.velocity_filter = filter;
+    const test::Setting setting = setting_of(instance);
+    SimulationConfig run = test::free_run_config(setting, config, 300);
+    run.position = {0.0002, -0.004, 0.0};
+    SimulationParts parts = test::free_run(setting, config);
+    parts.device = std::make_unique<ImpedanceDevice>(device, run.dt, AttachedHand{0.1, 300.0, 6.0});
+    ContactCounter observer;
+    Simulation simulation(run, std::move(parts), {&observer});
     const AllocationCount count;
     simulation.run();
     simulation.reset();

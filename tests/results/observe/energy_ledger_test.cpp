@@ -10,6 +10,8 @@
 #include "device_model/admittance_device.hpp"
 #include "device_model/hands/scripted_hands.hpp"
 #include "device_model/ideal_device.hpp"
+#include "device_model/impedance_device.hpp"
+#include "results/observe/passivity_observer.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/setting.hpp"
 
@@ -168,6 +170,46 @@ TEST(EnergyLedger, AnAdmittanceDeviceHasABalanceOfItsOwn) {
   EXPECT_LT(b.device->dissipated, 0.0);
   EXPECT_NEAR(b.device->stored, b.hand + b.actuator + b.device->dissipated, 1e-12 * (std::abs(b.hand) + 1.0));
   EXPECT_LE(a.metrics.residual_max, 2000 * 20 * kEpsilon * a.turnover);
+}
+
+/// Without delay, encoder and limits the motors do what is rendered, on the handle's own way: their work is that of the
+/// rendering. What holding an undamped spring creates is what the handle has at the end, and passivity sees it.
+TEST(EnergyLedger, OfAnImpedanceDeviceSaysWhatHoldingTheForceCreates) {
+  constexpr double kStep = 0.001;
+  const Setting setting = springs_in_x(3);
+  RenderingConfig config = rendering("summation");
+  config.stiffness = 1000.0;
+  config.damping_ratio = 0.0;
+  const double stored = 0.5 * 3 * config.stiffness * 9e-6;
+  for (const double viscous : {0.0, 0.4}) {
+    SimulationConfig run = test::free_run_config(setting, config, 101);
+    run.dt = kStep;
+    SimulationParts parts = test::free_run(setting, config);
+    ImpedanceDeviceConfig device;
+    device.handle_mass = 0.2;
+    device.viscous = viscous;
+    parts.device = std::make_unique<ImpedanceDevice>(device, kStep);
+    EnergyLedger ledger(config.mass, kStep, true, parts.source->capacity());
+    PassivityObserver passivity(kStep);
+    Simulation(run, std::move(parts), {&ledger, &passivity}).run();
+    const EnergyBalance b = ledger.balance();
+    const double rounding = 100 * 20 * kEpsilon * 10 * stored;
+    ASSERT_TRUE(b.device);
+    EXPECT_EQ(b.kinetic, 0.0);
+    EXPECT_EQ(b.input, 0.0);
+    EXPECT_EQ(b.residual, 0.0);
+    EXPECT_EQ(b.hand, 0.0);
+    EXPECT_NEAR(b.actuator, b.spring + b.damping, rounding);
+    EXPECT_NEAR(b.script, -b.actuator, rounding);
+    EXPECT_NEAR(b.device->stored, b.actuator + b.device->dissipated, rounding);
+    EXPECT_NEAR(b.stored, stored + b.damping + b.created + b.integration + b.script, rounding);
+    EXPECT_NEAR(b.created, 0.0, rounding);
+    EXPECT_NEAR(b.integration, b.stored + b.device->stored - b.device->dissipated - stored, rounding);
+    // Of holding f = -k x over a way d, k d^2 / 2 is from nothing.
+    EXPECT_GT(b.integration, 0.05 * stored);
+    EXPECT_NEAR(passivity.metrics()->energy_end, stored - b.actuator, rounding);
+    EXPECT_LT(passivity.metrics()->energy_end, b.stored);
+  }
 }
 
 /// Two unit springs, one of which appears stretched: its energy comes from nowhere.

@@ -206,6 +206,30 @@ TEST(AdmittanceDevice, WarnsUnderAHandThatDoesNotFeelTheHandle) {
   EXPECT_TRUE(warnings(R"({"type": "impedance", "target": {"x_m": 0, "y_m": 0, "z_m": 0}})", kDelay).empty());
 }
 
+Json effective_device(const char* device) {
+  Json json = test::minimal_scenario("plane");
+  json["device"] = Json::parse(device);
+  return effective(json)["device"];
+}
+
+TEST(ImpedanceDevice, WritesTheNumbersOfAPresetInFull) {
+  const Json device = effective_device(R"({"type": "impedance", "preset": "touch", "force_max_N": null})");
+  EXPECT_EQ(device, Json::parse(R"({"type": "impedance", "handle_mass_kg": 0.045, "viscous_N_s_per_m": 0.1,
+    "coulomb_N": 0.2, "encoder_step_m": 5.5e-5, "delay_samples": 0.0, "velocity_filter": {"type": "difference"},
+    "force_max_N": null, "force_step_N": 0.0, "force_slew_N_per_s": null})"));
+  EXPECT_EQ(effective_device(device.dump().c_str()), device) << "which is the same device again";
+  EXPECT_EQ(effective_device(R"({"type": "impedance", "preset": "omega.3"})")["force_max_N"], 12.0);
+}
+
+TEST(ImpedanceDevice, WarnsOfAnIntegratorThatIsNotUsed) {
+  Json json = test::minimal_scenario("plane");
+  json["device"] = {{"type", "impedance"}, {"preset", "touch"}};
+  EXPECT_TRUE(loaded(json).warnings.empty());
+  json["integrator"] = {{"type", "rk4"}};
+  ASSERT_EQ(loaded(json).warnings.size(), 1u);
+  EXPECT_EQ(loaded(json).warnings[0].find("/integrator/type: \"rk4\" is not used"), 0u);
+}
+
 TEST(ScenarioInCode, IsThatOfSpringsWithoutAnyField) {
   Json springs = test::minimal_scenario("springs");
   springs["time"]["steps"] = 1;

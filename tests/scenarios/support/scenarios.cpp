@@ -108,6 +108,21 @@ std::vector<NamedScenario> rich_scenarios() {
       "hand": {"type": "impedance", "stiffness_N_per_m": 100, "damping_N_s_per_m": 1,
         "target": {"x_m": {"type": "ramp", "start": 0, "rate_per_s": 0.01}, "y_m": 0, "z_m": -0.01}},
       "device": {"type": "admittance"}})")},
+          {"impedance_plane", Json::parse(R"({
+      "time": {"step_s": 0.001, "steps": 100},
+      "environment": {"type": "plane", "size_m": 0.004, "spacing_m": 0.0002},
+      "hand": {"type": "mass_spring_damper", "mass_kg": 0.3, "stiffness_N_per_m": 100, "damping_N_s_per_m": 1,
+        "target": {"x_m": {"type": "ramp", "start": 0, "rate_per_s": 0.01}, "y_m": 0, "z_m": -0.01}},
+      "device": {"type": "impedance", "handle_mass_kg": 0.1, "viscous_N_s_per_m": 0.2, "coulomb_N": 0.1,
+        "encoder_step_m": 1e-5, "delay_samples": 1.5, "velocity_filter": {"type": "low_pass", "cutoff_Hz": 80},
+        "force_max_N": 10, "force_step_N": 0.01, "force_slew_N_per_s": 2000},
+      "record": {"energy": true}})")},
+          {"preset_plane", Json::parse(R"({
+      "time": {"step_s": 0.001, "steps": 100},
+      "environment": {"type": "plane", "size_m": 0.004, "spacing_m": 0.0002},
+      "hand": {"type": "push", "force_N": 1},
+      "device": {"type": "impedance", "preset": "touch", "coulomb_N": 0.1,
+        "velocity_filter": {"type": "adaptive_window", "noise_m": 3e-5}}})")},
           {"dragged_plane", Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 100},
       "environment": {"type": "plane", "size_m": 0.004, "spacing_m": 0.0002},

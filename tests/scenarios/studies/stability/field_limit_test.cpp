@@ -52,6 +52,18 @@ TEST(FieldLimit, OfAnyFieldHasATheoryWhereSpringsStay) {
   EXPECT_NEAR(*step.theory, 0.0023284, 0.002 * 0.0023284);
 }
 
+/// (b + B) / (T/2 + t_d), less what is not small any more: the eigenvalues of the loop.
+TEST(FieldLimit, OfADeviceInTheLoopHasTheTheoryOfTheLoop) {
+  Words device = {"time.steps=20000", R"(device={"type":"impedance","handle_mass_kg":0.1,"viscous_N_s_per_m":0.5})",
+                  "rendering.damping_N_s_per_m=2"};
+  const FieldLimit limit = ask({"single_spring", "rendering.stiffness_N_per_m", device}).front();
+  ASSERT_TRUE(limit.value && limit.theory);
+  EXPECT_NEAR(*limit.theory, 2.5 / 0.00025, 0.02 * 2.5 / 0.00025);
+  EXPECT_NEAR(*limit.value, *limit.theory, 0.01 * *limit.theory);
+  device.emplace_back("device.coulomb_N=0.01");
+  EXPECT_FALSE(ask({"single_spring", "rendering.stiffness_N_per_m", device}).front().theory);
+}
+
 TEST(FieldLimit, OfAFieldOfIntegersIsOne) {
   // n (2 B dt / M + K dt^2 / M) = 4 with B = 62.6 N s/m, K = 20 000 N/m: n = 5.9.
   const FieldLimit limit =

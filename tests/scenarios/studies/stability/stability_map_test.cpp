@@ -22,10 +22,14 @@ void PrintTo(const MapOfAlgorithm& instance, std::ostream* out) {
   *out << instance.map->name << " " << instance.algorithm;
 }
 
+bool is_of_springs(const StabilityMap& map) {
+  return std::holds_alternative<IdealDeviceFields>(map.scene(map.x.low, map.y.low, "mean").device);
+}
+
 std::vector<MapOfAlgorithm> spring_maps() {
   std::vector<MapOfAlgorithm> all;
   for (const StabilityMap& map : stability_maps()) {
-    if (map.no_theory != nullptr) continue;
+    if (!is_of_springs(map)) continue;
     for (const AlgorithmEntry& entry : algorithms()) {
       // The greater of two depths is not linear in the position.
       if (std::string_view(map.name) == "wedge" && std::string_view(entry.info->name) == "highest_depth") continue;
@@ -96,18 +100,78 @@ TEST(StabilityMap, WithoutDampingVibratesUpToTheLimit) {
   EXPECT_NEAR(*result.boundary[0].analytic, 1.6e6, 1e-3);  // 4 M / dt^2
 }
 
-TEST(StabilityMap, OfTheDeviceHasAnEdgeButNoTheory) {
-  const MapResult result = stability_map(*find_stability_map("device"), {"summation"}, 3, kTwoThreads);
+TEST(StabilityMap, OfTheAdmittanceDeviceHasTheEdgeOfItsLoop) {
+  const StabilityMap& map = *find_stability_map("device");
+  const MapResult result = stability_map(map, {"summation"}, 3, kTwoThreads);
+  for (const MapPoint& point : result.points) EXPECT_FALSE(point.margin);
+  // Below the edge nothing saturates for long: what is linear then comes to rest. Beyond, the limiter of the input
+  // keeps runs from growing that the loop would let grow.
+  const double edge = *result.boundary[0].analytic;
+  EXPECT_GT(edge, 1000.0);
+  EXPECT_GT(result.boundary[0].simulation, edge);
+  EXPECT_EQ(result.points.front().motion, MotionClass::stable);
+  // A servo eight samples late comes to rest under no hand.
+  EXPECT_EQ(*result.boundary[1].analytic, 0.0);
+  EXPECT_EQ(result.boundary[1].simulation, 0.0);
+}
+
+/// Where nothing saturates, runs and eigenvalues have one edge.
+TEST(StabilityMap, OfTheImpedanceDeviceHasItsEdgeWithinOnePercentOfTheLoops) {
+  for (const char* name : {"z_width", "delay", "velocity_filter", "hand"}) {
+    const MapResult result = stability_map(*find_stability_map(name), {"shaped_stiffness"}, 5, kTwoThreads);
+    for (const BoundaryPoint& point : result.boundary) {
+      ASSERT_TRUE(point.analytic) << point.no_theory;
+      EXPECT_LE(std::abs(*point.difference()), 0.01) << name << ", x = " << point.x;
+      EXPECT_LE(*point.worst_hand, *point.analytic * (1.0 + 1e-9));
+    }
+  }
+}
+
+std::optional<double> limit_at(const BoundaryPoint& point, const char* name) {
+  const auto row = find_stiffness_limit(name) - stiffness_limits().data();
+  return point.limits[static_cast<std::size_t>(row)];
+}
+
+TEST(StabilityMap, HasTheKnownLimitsOfTheStiffnessBesideItsEdge) {
+  const MapResult result = stability_map(*find_stability_map("z_width"), {"virtual_coupling"}, 3, kTwoThreads);
+  // Springs of K in series with a coupling of K are a wall of half the stiffness and damping.
+  const BoundaryPoint& point = result.boundary[0];
+  EXPECT_NEAR(*limit_at(point, "passive_colgate_schenkel"), 2.0 * 2.0 * (0.5 - 0.5 * 0.1) / 0.001, 1e-6);
+  EXPECT_NEAR(*limit_at(point, "stable_gil_hulin"), 2.0 * (0.5 + 0.5 * 0.1) / 0.0005, 1e-6);
+  EXPECT_FALSE(limit_at(point, "passive_abbott_okamura"));
+  for (const BoundaryPoint& p : stability_map(*find_stability_map("wedge"), {"mean"}, 2, kTwoThreads).boundary) {
+    EXPECT_FALSE(p.worst_hand);
+    for (const auto& limit : p.limits) EXPECT_FALSE(limit) << "of impedance devices";
+  }
+}
+
+/// The four regions: either friction or damping alone leaves large motions or small ones undone.
+TEST(StabilityMap, OfFrictionHasFourRegions) {
+  const MapResult result = stability_map(*find_stability_map("friction_quantisation"), {"summation"}, 4, kTwoThreads);
+  for (const MapPoint& point : result.points) {
+    SCOPED_TRACE(testing::Message() << point.x << " " << point.y);
+    ASSERT_TRUE(point.motion_from_far);
+    EXPECT_EQ(comes_to_rest(point.motion), point.y > 1.0) << "friction covers the steps of the encoder";
+    EXPECT_EQ(*point.motion_from_far == MotionClass::diverged, point.x < 1.0) << "damping covers the sampling";
+  }
   for (const BoundaryPoint& point : result.boundary) {
     EXPECT_FALSE(point.analytic);
-    EXPECT_FALSE(point.difference());
-    EXPECT_NE(point.no_theory, "");
+    EXPECT_NEAR(point.simulation, 1.0, 0.002) << point.x;  // bisection stops at 0.1 %
+    const auto limit = limit_at(point, "passive_abbott_okamura");
+    EXPECT_EQ(limit.has_value(), point.x > 1.0);
+    EXPECT_NEAR(limit.value_or(1.0), 1.0, 1e-8);
   }
-  for (const MapPoint& point : result.points) EXPECT_FALSE(point.margin);
-  // A soft hand on an undelayed servo comes to rest; a servo eight samples late does so for no hand.
-  EXPECT_EQ(result.points.front().motion, MotionClass::stable);
-  EXPECT_GT(result.boundary[0].simulation, 100.0);
-  EXPECT_EQ(result.boundary[1].simulation, 0.0);
+}
+
+/// K up to min(2b/T, 2c/q) is passive; runs find the second number itself, and a little more than the first, since what
+/// is passive must bear faster motions than theirs.
+TEST(StabilityMap, OfTheEncoderFollowsAbbottAndOkamura) {
+  const MapResult result = stability_map(*find_stability_map("encoder_step"), {"summation"}, 3, kTwoThreads);
+  for (const BoundaryPoint& point : result.boundary) {
+    const double limit = limit_at(point, "passive_abbott_okamura").value();
+    EXPECT_NEAR(limit, std::min(1000.0, 2.0 * 0.02 / point.x), 1e-9 * limit);
+    EXPECT_NEAR(point.simulation, limit, (limit < 1000.0 ? 0.002 : 0.1) * limit) << point.x;
+  }
 }
 
 class IntegratorMap : public testing::TestWithParam<const IntegratorEntry*> {};

@@ -18,13 +18,14 @@ void bisect(double& low, double& high, Stable stable, Middle middle, Apart apart
   }
 }
 
-/// The largest value below which `stable` holds, by powers of two from `start` and bisection of the logarithm down to
-/// the relative width `precision`. Where the stable values are not one interval (velocity Verlet with damping is stable
-/// again beyond its first edge) it is the first edge, unless that is the beginning of a gap narrower than a factor of
-/// two. Zero when nothing is stable, infinite when everything up to `largest` is. About log2(1 / precision) calls
-/// besides one for each power of two.
+/// The largest value below which `stable` holds, by powers of `factor` from `start` and bisection of the logarithm down
+/// to the relative width `precision`. Where the stable values are not one interval (velocity Verlet with damping is
+/// stable again beyond its first edge) it is the first edge, unless that is the beginning of a gap narrower than a
+/// `factor`. Zero when nothing is stable, infinite when everything up to `largest` is. About log2(1 / precision) calls
+/// besides one for each power.
 template <class Stable>
-double largest_stable(double start, double precision, Stable stable, double largest = kLargestProbe) {
+double largest_stable(double start, double precision, Stable stable, double largest = kLargestProbe,
+                      double factor = 2.0) {
   double low = start;
   while (!stable(low)) {
     low /= 2.0;
@@ -33,7 +34,7 @@ double largest_stable(double start, double precision, Stable stable, double larg
   double high = low;
   while (stable(high)) {
     low = high;
-    high *= 2.0;
+    high *= factor;
     if (high > largest) return std::numeric_limits<double>::infinity();
   }
   bisect(

@@ -1,4 +1,4 @@
-#include "scenarios/studies/stability/bisection.hpp"
+#include "sim/core/bisection.hpp"
 
 #include <gtest/gtest.h>
 

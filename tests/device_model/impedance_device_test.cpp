@@ -1,0 +1,228 @@
+// The device in the loop of the simulation, against recurrences that know nothing of it.
+
+#include "device_model/impedance_device.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "device_model/device_presets.hpp"
+#include "device_model/hands/scripted_hands.hpp"
+#include "tests/support/fakes.hpp"
+
+namespace hapbench::impedance_device_test {
+namespace {
+
+constexpr double kT = 0.001, kMass = 0.1;
+
+/// The rows of a run in which the device renders `law` of the tool and a hand pushes with `push` along x.
+std::vector<StepRecord> rows_of(const ImpedanceDeviceConfig& config, test::FakeAlgorithm::Law law, std::uint64_t steps,
+                                const Vec3& start, const Vec3& velocity = Vec3::Zero(), double push = 0.0) {
+  SimulationParts parts = test::fake_parts(std::move(law));
+  parts.hand = std::make_unique<ForceHand>(std::array<Profile, 3>{push, 0.0, 0.0});
+  parts.device = std::make_unique<ImpedanceDevice>(config, kT);
+  SimulationConfig run;
+  run.dt = kT;
+  run.steps = steps;
+  run.mass = 1e9;  // nobody may ask for it
+  run.position = start;
+  run.velocity = velocity;
+  test::Recorder recorder;
+  Simulation(run, std::move(parts), {&recorder}).run();
+  return recorder.rows;
+}
+
+/// Pushes only, along +x from x = 0 on.
+test::FakeAlgorithm::Law wall(double K, double B) {
+  return [=](const ToolState& t) {
+    const double x = t.pose.position.x();
+    return x < 0.0 ? Vec3(-K * x - B * t.velocity.x(), 0, 0) : Vec3(0, 0, 0);
+  };
+}
+
+/// Position at the samples of a mass with viscous friction b under held forces, by its transfer function
+/// (b1 z + b2) / ((z - 1)(z - e)).
+struct Plant {
+  double e, b1, b2;
+
+  explicit Plant(double b) : e(std::exp(-b * kT / kMass)) {
+    const double r = b * kT / kMass;
+    b1 = b == 0.0 ? 0.5 * kT * kT / kMass : kMass / (b * b) * (r - 1.0 + e);
+    b2 = b == 0.0 ? b1 : kMass / (b * b) * (1.0 - e - r * e);
+  }
+};
+
+TEST(ImpedanceDevice, BouncesOnAWallAsTheSampledPlantSays) {
+  constexpr double K = 2000.0, B = 1.0, kPush = -3.0, x0 = 0.001, v0 = -0.2;
+  for (const double b : {0.0, 0.5}) {
+    for (const int delay : {0, 1, 3}) {
+      ImpedanceDeviceConfig config;
+      config.handle_mass = kMass;
+      config.viscous = b;
+      config.delay_samples = delay;
+      const auto rows = rows_of(config, wall(K, B), 400, {x0, 0, 0}, {v0, 0, 0}, kPush);
+      ASSERT_EQ(rows.size(), 400u);
+      const Plant plant(b);
+      const double drift = b == 0.0 ? v0 * kT : v0 * kMass / b * (1.0 - plant.e);
+      std::vector<double> x = {x0}, f;
+      for (int k = 0; k < 400; ++k) {
+        const std::size_t i = static_cast<std::size_t>(k);
+        const double v = k == 0 ? 0.0 : (x[i] - x[i - 1]) / kT;
+        f.push_back(x[i] < 0.0 ? -K * x[i] - B * v : 0.0);
+        const auto acting = [&](int row) {
+          return kPush + (row >= delay ? f[static_cast<std::size_t>(row - delay)] : 0.0);
+        };
+        x.push_back(k == 0 ? x0 + drift + plant.b1 * acting(0)
+                           : (1.0 + plant.e) * x[i] - plant.e * x[i - 1] + plant.b1 * acting(k) +
+                                 plant.b2 * acting(k - 1));
+        // (r - 1 + e) / b^2 keeps about 11 digits for b = 0.5; the bounces multiply errors by some 10.
+        EXPECT_NEAR(rows[i].tool.pose.position.x(), x[i], 1e-11) << b << " " << delay << " row " << k;
+        EXPECT_NEAR(rows[i].force.rendered.x(), f[i], 1e-11 * (K + B / kT)) << k;
+        EXPECT_EQ(rows[i].handle.position, rows[i].tool.pose.position) << "an exact encoder";
+        EXPECT_EQ(rows[i].hand.input, Vec3(0, 0, 0)) << "drives no virtual mass";
+        EXPECT_EQ(rows[i].hand.measured, Vec3(kPush, 0, 0));
+      }
+      EXPECT_EQ(rows[0].tool.velocity, Vec3(0, 0, 0));
+    }
+  }
+}
+
+TEST(ImpedanceDevice, AFractionalDelayChangesTheForceWithinThePeriod) {
+  constexpr double K = 1500.0, B = 5.0, kDelay = 1.25, x0 = -0.001;
+  ImpedanceDeviceConfig config;
+  config.handle_mass = kMass;
+  config.delay_samples = kDelay;
+  const auto rows = rows_of(config, wall(K, B), 200, {x0, 0, 0});
+  double x = x0, v = 0.0, last = x0;
+  std::vector<double> f;
+  for (std::size_t k = 0; k < 200; ++k) {
+    EXPECT_NEAR(rows[k].tool.pose.position.x(), x, 1e-12) << k;
+    EXPECT_NEAR(rows[k].handle.velocity.x(), v, 1e-10) << k;
+    f.push_back(x < 0.0 ? -K * x - B * (x - last) / kT : 0.0);
+    last = x;
+    for (const auto& [part, age] : {std::pair<double, std::size_t>{0.25, 2}, {0.75, 1}}) {
+      const double a = k >= age ? f[k - age] / kMass : 0.0, h = part * kT;
+      x += v * h + 0.5 * a * h * h;
+      v += a * h;
+    }
+  }
+}
+
+/// Largest K T^2 / m of an undamped handle, and the B T / m that allows it, by samples of delay (from the roots of
+/// 2 z^(d+1) (z-1)^2 + (z+1) ((alpha + beta) z - beta)). Two percent to either side of it a run dies out or grows.
+TEST(ImpedanceDevice, IsStableUpToTheStiffnessOfTheTheory) {
+  constexpr struct {
+    int delay;
+    double alpha, beta;
+  } kLargest[] = {{0, 0.6863, 0.828}, {1, 0.1445, 0.43}, {2, 0.0624, 0.29}, {3, 0.0348, 0.23}};
+  for (const auto& [delay, alpha, beta] : kLargest) {
+    for (const double share : {0.98, 1.02}) {
+      const double K = share * alpha * kMass / (kT * kT), B = beta * kMass / kT;
+      ImpedanceDeviceConfig config;
+      config.handle_mass = kMass;
+      config.delay_samples = delay;
+      const auto spring = [=](const ToolState& t) { return Vec3(-K * t.pose.position - B * t.velocity); };
+      const auto rows = rows_of(config, spring, 4000, {1e-6, 0, 0});
+      const auto largest = [&rows](std::size_t from, std::size_t to) {
+        double most = 0.0;
+        for (std::size_t k = from; k < to; ++k) most = std::max(most, std::abs(rows[k].handle.position.x()));
+        return most;
+      };
+      const double early = largest(0, std::min<std::size_t>(1000, rows.size() / 2));
+      const double late = largest(rows.size() - std::min<std::size_t>(1000, rows.size() / 2), rows.size());
+      EXPECT_EQ(late > early, share > 1.0) << delay << ": " << early << " " << late;
+    }
+  }
+}
+
+TEST(ImpedanceDevice, TheToolIsWhereTheEncoderSays) {
+  constexpr double q = 1.0 / 4096;
+  ImpedanceDeviceConfig config;
+  config.handle_mass = kMass;
+  config.encoder_step = q;
+  const auto rows = rows_of(config, test::weightless, 100, {2.5 * q, -2.5 * q, 0.4 * q}, {0.031, 0.0, -0.017});
+  EXPECT_EQ(rows[0].tool.pose.position, Vec3(3 * q, -3 * q, 0)) << "halves away from zero";
+  EXPECT_EQ(rows[0].tool.velocity, Vec3(0, 0, 0));
+  EXPECT_EQ(rows[0].handle.position, Vec3(2.5 * q, -2.5 * q, 0.4 * q)) << "the true one";
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const Vec3 place = rows[k].tool.pose.position;
+    EXPECT_LE((place - rows[k].handle.position).cwiseAbs().maxCoeff(), 0.5 * q);
+    EXPECT_EQ(place.x() / q, std::round(place.x() / q));
+    EXPECT_EQ(rows[k].tool.velocity, Vec3((place - rows[k - 1].tool.pose.position) / kT));
+  }
+}
+
+/// The motors hold what they can; the hand's spring settles the rest.
+TEST(ImpedanceDevice, SaturatedMotorsYield) {
+  for (const double push : {-2.9, -3.1}) {
+    ImpedanceDeviceConfig config;
+    config.handle_mass = kMass;
+    config.viscous = 5.0;
+    config.force_max = 3.0;
+    const auto rows = rows_of(config, wall(1000.0, 5.0), 4000, Vec3::Zero(), Vec3::Zero(), push);
+    // Beyond, 0.1 N moves it against the friction at 0.02 m/s for four seconds.
+    EXPECT_EQ(rows.back().handle.position.x() < -0.05, push < -3.0);
+  }
+}
+
+TEST(ImpedanceDevice, AHandThatIsFixedToItsHandleAddsItsMass) {
+  ImpedanceDeviceConfig light, heavy;
+  light.handle_mass = 0.04;
+  heavy.handle_mass = 0.1;
+  light.delay_samples = heavy.delay_samples = 0.5;
+  ImpedanceDevice with_hand(light, kT, {0.06, 0.0, 0.0}), alone(heavy, kT);
+  for (ImpedanceDevice* device : {&with_hand, &alone}) device->reset({});
+  for (int k = 0; k < 200; ++k) {
+    const Vec3 force(std::sin(0.1 * k), 1.0, 0.0), push(0.0, -0.5, 2.0);
+    with_hand.drive(force, push);
+    alone.drive(force, push);
+    EXPECT_LE((with_hand.handle().position - alone.handle().position).norm(), 1e-14);
+  }
+}
+
+TEST(ImpedanceDevice, AResetRepeatsEverythingBitForBit) {
+  ImpedanceDeviceConfig config = config_of(*find_device_preset("touch"));
+  config.delay_samples = 2.3;
+  config.velocity_filter = AdaptiveWindowFilter{3e-5};
+  config.force_step = 0.01;
+  config.force_slew = 500.0;
+  SimulationParts parts = test::fake_parts(wall(500.0, 1.0));
+  parts.hand =
+      std::make_unique<ForceHand>(std::array<Profile, 3>{Profile::Shape(Profile::Sine{-1, 2, 0.1, 0}), 0.1, 0});
+  parts.device = std::make_unique<ImpedanceDevice>(config, kT);
+  SimulationConfig run;
+  run.dt = kT;
+  run.steps = 500;
+  run.position = {0.002, 0, 0};
+  test::Recorder recorder;
+  Simulation simulation(run, std::move(parts), {&recorder});
+  simulation.run();
+  simulation.reset();
+  simulation.run();
+  ASSERT_EQ(recorder.rows.size(), 1000u);
+  for (std::size_t k = 0; k < 500; ++k) {
+    EXPECT_EQ(recorder.rows[k].handle.position, recorder.rows[k + 500].handle.position);
+    EXPECT_EQ(recorder.rows[k].tool.velocity, recorder.rows[k + 500].tool.velocity);
+  }
+}
+
+TEST(DevicePresets, HaveNamesOfTheirOwnAndPossibleNumbers) {
+  for (const DevicePreset& preset : device_presets()) {
+    EXPECT_EQ(find_device_preset(preset.name), &preset);
+    const ImpedanceDeviceConfig config = config_of(preset);
+    EXPECT_GT(config.handle_mass, 0.0);
+    EXPECT_GE(config.viscous, 0.0);
+    EXPECT_GE(config.coulomb, 0.0);
+    EXPECT_GT(config.encoder_step, 0.0);
+    EXPECT_GT(config.force_max.value(), 0.0);
+    EXPECT_GT(preset.max_stiffness.value, 0.0);
+    EXPECT_EQ(preset.max_stiffness.source, NumberSource::chai3d);
+    EXPECT_GT(preset.max_damping.value, 0.0);
+  }
+  EXPECT_EQ(find_device_preset("touch")->max_stiffness.value, 400.0);
+  EXPECT_EQ(find_device_preset("Touch"), nullptr);
+}
+
+}  // namespace
+}  // namespace hapbench::impedance_device_test
