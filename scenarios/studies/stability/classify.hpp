@@ -50,6 +50,10 @@ class MotionClassifier final : public Observer {
   /// never at rest.
   static MotionClassifier of_moved_tool(std::uint64_t steps, double time_step);
 
+  /// Watches the handle instead of the tool, whose velocity is made of encoder steps where the handle moves it: a
+  /// handle that creeps over one would seem to jump.
+  void watch_handle() noexcept { watches_handle_ = true; }
+
   void on_step(const StepRecord& record) noexcept override;
 
   /// True once the tool has come to rest to 1e-12 of its largest speed for 200 rows: what is left is rounding, and the
@@ -69,6 +73,7 @@ class MotionClassifier final : public Observer {
 
   std::uint64_t steps_;
   bool is_moved_ = false;
+  bool watches_handle_ = false;
   std::optional<HighPass> high_pass_;
   std::array<Quarter, 4> quarters_{};
   Vec3 last_velocity_ = Vec3::Zero();
