@@ -23,9 +23,8 @@ struct LowPassFilter {
 /// further than the noise from the straight line through its ends, and ends at the first that does not.
 struct AdaptiveWindowFilter {
   double noise = 1e-5;  ///< largest error of a sample [m]; half the encoder's step for a rounded position
-  /// The longest window [samples]. It delays a changing velocity by half its length: 7.5 ms at 1 kHz, a tenth of what
-  /// a hand takes to react. Beyond, a step of the encoder is already worth a fifteenth of what the difference makes of
-  /// it.
+  /// The longest window [samples] (ours). It takes an encoder's step down to a fifteenth of what the difference makes
+  /// of it, and lags by half its length, 7.5 ms at 1 kHz; a longer one would lag more than it calms.
   static constexpr std::size_t kLongest = 15;
 };
 

@@ -28,17 +28,11 @@ EnergyLedger::EnergyLedger(double mass, double dt, bool position_is_free, std::s
   rendered_.reserve(capacity);
 }
 
-EnergyLedger EnergyLedger::of_handle(double dt, std::size_t capacity) {
-  EnergyLedger ledger(0.0, dt, false, capacity);
-  ledger.row_force_is_held_ = true;
-  return ledger;
-}
-
 void EnergyLedger::on_step(const StepRecord& record) noexcept {
   const auto& index = record.rendered->index;
   rendered_.assign(index.begin(), index.begin() + static_cast<std::ptrdiff_t>(record.rendered->size()));
   std::sort(rendered_.begin(), rendered_.end());
-  balance_.kinetic = 0.5 * mass_ * record.tool.velocity.squaredNorm();
+  balance_.kinetic = record.handle_moves_tool ? 0.0 : 0.5 * mass_ * record.tool.velocity.squaredNorm();
   balance_.stored = record.springs.energy;
   if (has_row_) {
     add_step(record);
@@ -61,7 +55,7 @@ EnergyLedger::Works EnergyLedger::works(const Vec3& spring, const Vec3& rendered
 EnergyLedger::Works EnergyLedger::works_until(const StepRecord& now) const noexcept {
   const Vec3 velocities = last_.tool.velocity + now.tool.velocity;
   const Vec3 moved = now.tool.pose.position - last_.tool.pose.position;
-  if (row_force_is_held_) return works(last_.force.spring, last_.force.rendered, moved);
+  if (now.handle_moves_tool) return works(last_.force.spring, last_.force.rendered, moved);
   if (row_force_moves_) return works(last_.force.spring, last_.force.rendered, 0.5 * velocities * dt_);
   Works w =
       works(0.5 * (last_.force.spring + now.force.spring), 0.5 * (last_.force.rendered + now.force.rendered), moved);
@@ -79,8 +73,9 @@ void EnergyLedger::add_step(const StepRecord& now) noexcept {
   b.integration += w.left;
   left_ += w.left;
   const double left = b.kinetic - kinetic_at_start_ - b.input - b.spring - b.damping - left_;
-  (free_ ? b.residual : b.script) = left;
-  if (free_) residual_max_ = std::max(residual_max_, std::abs(left));
+  const bool free = free_ && !now.handle_moves_tool;
+  (free ? b.residual : b.script) = left;
+  if (free) residual_max_ = std::max(residual_max_, std::abs(left));
   if (now.device) {
     b.device = now.device;
     b.hand = now.device->hand;

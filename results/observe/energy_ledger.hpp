@@ -76,8 +76,6 @@ class EnergyLedger final : public Observer {
   /// mass of the virtual tool [kg], time step [s], the most contacts a row can have, what moves a free position.
   EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity,
                const IntegratorEntry& integrator = kLeapfrog);
-  /// Of a run in which the handle of a device moves the tool.
-  static EnergyLedger of_handle(double dt, std::size_t capacity);
 
   bool wants_energy() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override;
@@ -114,8 +112,7 @@ class EnergyLedger final : public Observer {
   double mass_;
   double dt_;
   bool free_;
-  bool row_force_moves_;            ///< alone, for all of the step
-  bool row_force_is_held_ = false;  ///< while a handle moves the tool
+  bool row_force_moves_;  ///< alone, for all of the step
   bool has_row_ = false;
   Row last_;
   std::vector<std::uint32_t> rendered_;  ///< sorted shell indices of this row

@@ -27,7 +27,7 @@ MetricsObserver::MetricsObserver(double dt, const MetricsConfig& config) : conta
 }
 
 void MetricsObserver::on_step(const StepRecord& record) noexcept {
-  add_motion(record.tool);
+  add_motion(record.tool.pose.position, record.body_velocity());
   add_contacts(record, add_force(record.force));
   ++metrics_.rows;
 
@@ -36,8 +36,7 @@ void MetricsObserver::on_step(const StepRecord& record) noexcept {
   add(hash_, record.force.rendered);
 }
 
-void MetricsObserver::add_motion(const ToolState& tool) noexcept {
-  const Vec3& v = tool.velocity;
+void MetricsObserver::add_motion(const Vec3& position, const Vec3& v) noexcept {
   const bool first = metrics_.rows == 0;
   if (!first) metrics_.velocity_total_variation += (v - last_velocity_).norm();
   if (high_pass_) {
@@ -45,7 +44,7 @@ void MetricsObserver::add_motion(const ToolState& tool) noexcept {
     vibration_sum_ += high_pass_->filter(v).squaredNorm();
   }
   speed_max_squared_ = std::max(speed_max_squared_, v.squaredNorm());
-  metrics_.final_position = tool.pose.position;
+  metrics_.final_position = position;
   last_velocity_ = v;
 }
 

@@ -67,7 +67,7 @@ class MetricsObserver final : public Observer {
   Metrics metrics() const noexcept;
 
  private:
-  void add_motion(const ToolState& tool) noexcept;
+  void add_motion(const Vec3& position, const Vec3& v) noexcept;
   ForceChange add_force(const RenderedForce& force) noexcept;
   void add_contacts(const StepRecord& record, const ForceChange& change) noexcept;
 

@@ -6,7 +6,7 @@ namespace hapbench {
 
 void PassivityObserver::on_step(const StepRecord& record) noexcept {
   if (observed_.rests(record.force.rendered, record.springs)) return observed_.rest(record.tool);
-  observed_.move(record.tool);
+  observed_.move(record.tool, record.handle_moves_tool);
   observed_.answer(record.tool, record.force.rendered, record.springs);
   const double energy = observed_.energy();
   // The negated comparison keeps a NaN as the minimum.

@@ -24,7 +24,7 @@ std::optional<PassivityMetrics> merged(const std::vector<std::optional<Passivity
 class PassivityObserver final : public Observer {
  public:
   /// `dt`: time from row to row [s].
-  explicit PassivityObserver(double dt, bool handle_moves_tool = false) : observed_(dt, handle_moves_tool) {}
+  explicit PassivityObserver(double dt) : observed_(dt) {}
 
   bool wants_springs() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override;

@@ -39,18 +39,12 @@ class TrialObservers {
   TrialObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts, Trial trial)
       : tool_(parts.tool),
         metrics_(scenario.time.step, metrics_config(scenario, parts)),
-        passivity_(scenario.time.step, handle_moves_tool(scenario.device)) {
+        passivity_(scenario.time.step) {
     observers_.push_back(&metrics_);
     observers_.push_back(&passivity_);
     if (scenario.record.energy) {
-      const double dt = scenario.time.step;
-      const std::size_t capacity = parts.source->capacity();
-      if (handle_moves_tool(scenario.device)) {
-        ledger_.emplace(EnergyLedger::of_handle(dt, capacity));
-      } else {
-        ledger_.emplace(scenario.rendering.mass, dt, parts.motion->position_is_free(), capacity,
-                        *scenario.integrator.type);
-      }
+      ledger_.emplace(scenario.rendering.mass, scenario.time.step, parts.motion->position_is_free(),
+                      parts.source->capacity(), *scenario.integrator.type);
       observers_.push_back(&*ledger_);
     }
     if (scenario.record.ideal_trajectory) {

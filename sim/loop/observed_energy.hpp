@@ -22,19 +22,18 @@ namespace hapbench {
 /// it.
 class ObservedEnergy {
  public:
-  /// dt: from row to row [s].
-  explicit ObservedEnergy(double dt, bool handle_moves_tool = false) : dt_(dt), by_place_(handle_moves_tool) {}
+  explicit ObservedEnergy(double dt) : dt_(dt) {}
 
   /// Back to t = 0.
-  void reset() noexcept { *this = ObservedEnergy(dt_, by_place_); }
+  void reset() noexcept { *this = ObservedEnergy(dt_); }
 
   /// Starts the next row; `tool` is the tool's state in it.
-  void move(const ToolState& tool) noexcept {
+  void move(const ToolState& tool, bool handle_moves_tool = false) noexcept {
     first_ = !begun_;
     begun_ = true;
     now_ = !now_;
     note(tool.pose);
-    if (force_acts_) energy_ -= force_.dot(way_to(tool));
+    if (force_acts_) energy_ -= force_.dot(way_to(tool, handle_moves_tool));
     if (moment_acts_) energy_ -= 0.5 * moment_.dot(turned());
   }
   /// Ends the row: `rendered` and `springs` act on the tool passed to `move`.
@@ -76,8 +75,8 @@ class ObservedEnergy {
 
  private:
   /// Of this row from the one before, whose force acts.
-  Vec3 way_to(const ToolState& tool) const noexcept {
-    if (by_place_) return tool.pose.position - pose_[!now_].position;
+  Vec3 way_to(const ToolState& tool, bool handle_moves_tool) const noexcept {
+    if (handle_moves_tool) return tool.pose.position - pose_[!now_].position;
     return 0.5 * (velocity_ + tool.velocity) * dt_;
   }
   /// Branch-free, unlike Eigen's isZero.
@@ -89,7 +88,6 @@ class ObservedEnergy {
   }
 
   double dt_;
-  bool by_place_;
   double energy_ = 0.0;
   bool begun_ = false;
   bool first_ = false;

@@ -18,12 +18,16 @@ struct StepRecord {
   Vec3 hand_force = Vec3::Zero();  ///< what the hand pushes with [N]
   MeasuredForce hand;              ///< what the device makes of it
   HandleState handle;
+  bool handle_moves_tool = false;           ///< the tool is where its device measures the handle; no virtual mass
   const TargetTask* task = nullptr;         ///< what the hand works on at this row; null without such a task
   std::size_t colliding = 0;                ///< colliding points before any point stage
   const ContactBuffer* rendered = nullptr;  ///< contacts the law saw; valid during on_step only
   RatioRange ratio;                         ///< over the rendered contacts; filled only if an observer wants it
   SpringState springs;                      ///< filled only if an observer wants springs or energy
   std::optional<DeviceEnergy> device;       ///< filled only if an observer wants energy
+
+  /// Of the body that moves, virtual mass or handle [m/s]: not what encoder and filter make of it.
+  const Vec3& body_velocity() const noexcept { return handle_moves_tool ? handle.velocity : tool.velocity; }
 };
 
 /// Watches a run without changing it.

@@ -69,6 +69,7 @@ void Simulation::reset() noexcept {
   ended_ = config_.steps == 0;
   result_ = {};
   record_ = {};
+  record_.handle_moves_tool = handle_moves_tool_;
   tool_ = {{config_.position, Vec3::Zero()}, config_.velocity};
   parts_.hand->reset();  // first, because a hand may steer the orientation
   move_tool_by_script();

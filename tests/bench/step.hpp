@@ -10,9 +10,23 @@
 namespace hapbench::bench {
 
 /// The runs whose steps are timed.
-inline constexpr const char* kSteps[] = {
-    "T1",         "T2",      "T2_proxy", "T3",      "T1_revolved",    "T2_revolved", "T3_revolved",
-    "T3_grooved", "T1_mesh", "T2_mesh",  "T3_mesh", "unreduced_1000", "free_air",    "upright",     "upright_proxy"};
+inline constexpr const char* kSteps[] = {"T1",
+                                         "T2",
+                                         "T2_proxy",
+                                         "T3",
+                                         "T1_revolved",
+                                         "T2_revolved",
+                                         "T3_revolved",
+                                         "T3_grooved",
+                                         "T1_mesh",
+                                         "T2_mesh",
+                                         "T3_mesh",
+                                         "unreduced_1000",
+                                         "free_air",
+                                         "upright",
+                                         "upright_proxy",
+                                         "pressed_ideal",
+                                         "pressed_impedance"};
 
 /// Steps before the first that is timed: by then T1 has touched the block and every buffer has been used.
 inline constexpr std::uint64_t kWarmUp = 1024;

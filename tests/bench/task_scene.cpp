@@ -32,6 +32,19 @@ LoadedScenario load_step_scenario(const std::string& name) {
     if (name == "upright_proxy") overrides.emplace_back("rendering.algorithm=proxy");
     return load_unrecorded("vertical_peg_in_hole_shaped_stiffness", std::move(overrides));
   }
+  if (name == "pressed_ideal" || name == "pressed_impedance") {
+    // Soft enough that both rest on the same points.
+    const char* device =
+        name == "pressed_ideal"
+            ? R"(device={"type":"ideal"})"
+            : R"(device={"type":"impedance","handle_mass_kg":0.1,"viscous_N_s_per_m":2,"coulomb_N":0.05,
+                                  "encoder_step_m":1e-6,"delay_samples":0.5})";
+    return load_unrecorded("round_the_wall", {device,
+                                              R"(hand={"type":"impedance","stiffness_N_per_m":300,"damping_N_s_per_m":6,
+                                                 "target":{"x_m":0,"y_m":0,"z_m":-0.006}})",
+                                              "initial.position_m=[0,0,-0.0049]", "rendering.stiffness_N_per_m=2000",
+                                              "rendering.damping_ratio=0.1", "time.duration_s=10"});
+  }
   return load_unrecorded("round_the_wall",
                          {"hand={\"type\":\"none\"}", "device={\"type\":\"ideal\"}", "initial.position_m=[0,0,0.05]"});
 }

@@ -27,8 +27,9 @@ const TaskScene& task_scene(const std::string& task);
 /// The scenario a step is timed in: one of kTasks, `T2_proxy` (T2 with a proxy), `unreduced_1000` (a drill that nearly
 /// fills the hole touches about 1000 points, none of them reduced away), `free_air` (an upright drill at rest 5 cm
 /// above the block), `upright` or `upright_proxy` (a simulated subject of appendix D leads the upright drill over the
-/// bottom of the hole, with shaping and with a proxy), or a task with `_mesh` behind it, whose drill TimedRun
-/// replaces by a mesh of it. Nothing is recorded.
+/// bottom of the hole, with shaping and with a proxy), `pressed_ideal` or `pressed_impedance` (a hand's spring presses
+/// an upright drill on the bottom of the hole, through either device), or a task with `_mesh` behind it, whose
+/// drill TimedRun replaces by a mesh of it. Nothing is recorded.
 const LoadedScenario& step_scenario(const std::string& name);
 /// A bundled scenario with overrides as of `--set`, nothing recorded.
 LoadedScenario load_unrecorded(const char* bundled, std::vector<std::string> overrides);

@@ -34,9 +34,8 @@ MotionClassifier MotionClassifier::of_moved_tool(std::uint64_t steps, double tim
 
 void MotionClassifier::on_step(const StepRecord& record) noexcept {
   Quarter& quarter = quarters_[std::min<std::uint64_t>(3, record.step * 4 / steps_)];
-  const Vec3& velocity = watches_handle_ ? record.handle.velocity : record.tool.velocity;
-  if (high_pass_ && record.step == 0) high_pass_->settle_at(velocity);
-  const Vec3 v = high_pass_ ? high_pass_->filter(velocity) : velocity;
+  if (high_pass_ && record.step == 0) high_pass_->settle_at(record.body_velocity());
+  const Vec3 v = high_pass_ ? high_pass_->filter(record.body_velocity()) : record.body_velocity();
   const double speed = v.norm();
   quarter.amplitude = std::max(quarter.amplitude, speed);
   largest_speed_ = std::max(largest_speed_, speed);

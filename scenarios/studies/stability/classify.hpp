@@ -11,8 +11,9 @@
 
 /// Judges whether a run is stable by its motion alone, without eigenvalues, tensors or knowledge of the law.
 ///
-/// The run is cut into quarters. Their amplitude is the largest speed of the tool in them; a turn is a change of sign
-/// of a component of the velocity, two for each period of an oscillation.
+/// The run is cut into quarters. Their amplitude is the largest speed of the tool in them (of the handle, where it
+/// moves the tool: an encoder makes jumps of it that nobody feels); a turn is a change of sign of a component of the
+/// velocity, two for each period of an oscillation.
 ///
 ///   diverged   the run left its bounds, or it oscillates and its amplitude has grown by more than 1 % from each
 ///              quarter to the next
@@ -50,10 +51,6 @@ class MotionClassifier final : public Observer {
   /// never at rest.
   static MotionClassifier of_moved_tool(std::uint64_t steps, double time_step);
 
-  /// Watches the handle instead of the tool, whose velocity is made of encoder steps where the handle moves it: a
-  /// handle that creeps over one would seem to jump.
-  void watch_handle() noexcept { watches_handle_ = true; }
-
   void on_step(const StepRecord& record) noexcept override;
 
   /// True once the tool has come to rest to 1e-12 of its largest speed for 200 rows: what is left is rounding, and the
@@ -73,7 +70,6 @@ class MotionClassifier final : public Observer {
 
   std::uint64_t steps_;
   bool is_moved_ = false;
-  bool watches_handle_ = false;
   std::optional<HighPass> high_pass_;
   std::array<Quarter, 4> quarters_{};
   Vec3 last_velocity_ = Vec3::Zero();

@@ -97,10 +97,7 @@ class LastQuarter final : public Observer {
 
 MotionClassifier classifier_of(const Scenario& scenario) {
   const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
-  MotionClassifier classifier =
-      is_moved(scenario) ? MotionClassifier::of_moved_tool(steps, scenario.time.step) : MotionClassifier(steps);
-  if (handle_moves_tool(scenario.device)) classifier.watch_handle();
-  return classifier;
+  return is_moved(scenario) ? MotionClassifier::of_moved_tool(steps, scenario.time.step) : MotionClassifier(steps);
 }
 
 RunVerdict verdict_of(MotionClass motion) {

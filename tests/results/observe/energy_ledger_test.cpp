@@ -189,8 +189,8 @@ TEST(EnergyLedger, OfAnImpedanceDeviceSaysWhatHoldingTheForceCreates) {
     device.handle_mass = 0.2;
     device.viscous = viscous;
     parts.device = std::make_unique<ImpedanceDevice>(device, kStep);
-    EnergyLedger ledger = EnergyLedger::of_handle(kStep, parts.source->capacity());
-    PassivityObserver passivity(kStep, true);
+    EnergyLedger ledger(config.mass, kStep, true, parts.source->capacity());
+    PassivityObserver passivity(kStep);
     Simulation(run, std::move(parts), {&ledger, &passivity}).run();
     const EnergyBalance b = ledger.balance();
     const double rounding = 100 * 20 * kEpsilon * 10 * stored;

@@ -50,6 +50,19 @@ TEST(MotionClassifier, OfASustainedOscillationIsVibrating) {
   }
 }
 
+/// A velocity that an encoder makes of a handle that creeps is all jumps.
+TEST(MotionClassifier, OfAHandleThatMovesTheToolTakesItsOwnVelocity) {
+  MotionClassifier classifier(kSteps);
+  StepRecord record;
+  record.handle_moves_tool = true;
+  for (record.step = 0; record.step < kSteps; ++record.step) {
+    record.tool.velocity = Vec3(record.step % 2 == 0 ? 1.0 : -1.0, 0.0, 0.0);
+    record.handle.velocity = Vec3(0.001, 0.0, 0.0);
+    classifier.on_step(record);
+  }
+  EXPECT_EQ(classifier.motion_class(Outcome::completes), MotionClass::stable);
+}
+
 /// An oscillation that changes by the factor `per_step` in every step. The amplitude of the fourth quarter is that of
 /// the first times per_step^(3/4 kSteps), up to the phase at the beginning of a quarter, a period of 10 rows: 1 % of
 /// it.
