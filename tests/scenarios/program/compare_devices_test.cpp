@@ -98,7 +98,7 @@ TEST_F(CompareDevices, RefusesBadInput) {
   refused({"compare", scene, "--devices", "omega3", "--out", out}, "nearest valid name: \"omega.3\"");
   refused({"compare", scene, "--devices", "all,touch", "--out", out}, "--devices: got \"all\" beside other names");
   refused({"compare", scene, "--devices", "touch", "--vibration", "0", "--out", out}, "--vibration: got \"0\"");
-  refused({"compare", scene, "--devices", "touch", "--seeds", "2", "--out", out}, "--seeds excludes --devices");
+  refused({"compare", scene, "--devices", "touch", "--seeds", "2", "--out", out}, "--devices excludes --seeds");
   refused({"compare", scene, "--vibration", "1", "--out", out}, "--vibration requires --devices");
   refused({"compare", scene, scene, "--devices", "touch", "--out", out}, "a second scenario named \"press\"");
   refused({"compare", scene, "--devices", "touch", "--set", "time.step_s=0.02", "--out", out},
