@@ -12,6 +12,8 @@
 namespace hapbench {
 namespace {
 
+constexpr std::size_t kNarrowGap = 1;  // with it three scenes and two algorithms fit into kTableWidth
+
 /// Three digits, without an exponent.
 std::string stiffness_text(double K) {
   const double unit = std::pow(10.0, std::floor(std::log10(K)) - 2.0);
@@ -60,9 +62,9 @@ std::string title(const DeviceQuestion& question, std::size_t column) {
 }
 
 Table stiffness_table(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
-  std::vector<Table::Column> columns = {{"device", false}, {"published"}};
+  std::vector<Table::Column> columns = {{"device", false}, {"pub-\nlished"}};
   for (std::size_t c = 0; c < columns_of(question); ++c) columns.push_back({title(question, c)});
-  Table table(columns);
+  Table table(columns, kNarrowGap);
   for (std::size_t d = 0; d < question.devices.size(); ++d) {
     const ComparedDevice& device = question.devices[d];
     std::vector<std::string> cells = {device.name,
