@@ -128,7 +128,8 @@ class Search {
         limit.astray.push_back(limit.runs.back());
     }
     const JudgedValue suspect = limit.beyond ? *limit.beyond : limit.runs.front();
-    limit.unstable_alone = !is_stable(suspect.verdict) && unstable_without_contact(at(algorithm, suspect.value));
+    limit.unstable_alone =
+        !is_stable(suspect.verdict) && unstable_without_contact(at(algorithm, suspect.value), question_.most_vibration);
     limit.theory = theory(algorithm);
     return limit;
   }

@@ -100,9 +100,10 @@ MotionClassifier classifier_of(const Scenario& scenario) {
   return is_moved(scenario) ? MotionClassifier::of_moved_tool(steps, scenario.time.step) : MotionClassifier(steps);
 }
 
-RunVerdict verdict_of(MotionClass motion) {
+RunVerdict verdict_of(MotionClass motion, const SettledState& settled, std::optional<double> most_vibration) {
   // Of the same names.
-  return static_cast<RunVerdict>(motion);
+  if (!most_vibration || motion == MotionClass::diverged) return static_cast<RunVerdict>(motion);
+  return settled.vibration && *settled.vibration <= *most_vibration ? RunVerdict::stable : RunVerdict::vibrating;
 }
 static_assert(static_cast<int>(RunVerdict::diverged) == static_cast<int>(MotionClass::diverged));
 
@@ -136,20 +137,22 @@ JudgedRun judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointSh
     if (!last.touched) return RunVerdict::no_contact;
     if (simulation.result().outcome == Outcome::leaves_hole) return RunVerdict::thrown_out;
     if (shell && has_left(last, *shell, reach)) return RunVerdict::thrown_out;
-    if (!most_vibration) return verdict_of(motion);
-    return settled.vibration && *settled.vibration <= *most_vibration ? RunVerdict::stable : RunVerdict::vibrating;
+    return verdict_of(motion, settled, most_vibration);
   };
   return {verdict(), settled};
 }
 
-bool unstable_without_contact(const LoadedScenario& loaded) {
+bool unstable_without_contact(const LoadedScenario& loaded, std::optional<double> most_vibration) {
   const Scenario& scenario = loaded.scenario;
   if (spring_of(scenario.hand) == nullptr || std::holds_alternative<SpringsEnvironment>(scenario.environment))
     return false;
   MotionClassifier classifier = classifier_of(scenario);
+  LastQuarter quarter(scenario.time);
   const auto nothing = std::make_shared<const PointShell>(std::vector<SurfacePoint>{}, 0.0);
-  Simulation simulation(simulation_config(scenario), assemble(scenario, loaded.files, nothing, {}), {&classifier});
-  return !comes_to_rest(classify(simulation, classifier));
+  Simulation simulation(simulation_config(scenario), assemble(scenario, loaded.files, nothing, {}),
+                        {&classifier, &quarter});
+  const MotionClass motion = classify(simulation, classifier);
+  return !is_stable(verdict_of(motion, quarter.state(), most_vibration));
 }
 
 }  // namespace hapbench

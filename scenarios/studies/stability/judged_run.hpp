@@ -53,7 +53,8 @@ JudgedRun judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointSh
                      std::optional<double> most_vibration = {});
 
 /// True when the tool vibrates or diverges without any environment, so that hand and device are to blame and not the
-/// contact. False for hands that do not feel the handle, and for those that need a surface to be there.
-bool unstable_without_contact(const LoadedScenario& loaded);
+/// contact; `most_vibration` as above. False for hands that do not feel the handle, and for those that need a surface
+/// to be there.
+bool unstable_without_contact(const LoadedScenario& loaded, std::optional<double> most_vibration = {});
 
 }  // namespace hapbench
