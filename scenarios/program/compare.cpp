@@ -12,8 +12,9 @@
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/run_batch.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/program/command.hpp"
+#include "scenarios/program/compare_devices.hpp"
 #include "scenarios/program/comparison_table.hpp"
+#include "scenarios/program/device_limits_text.hpp"
 #include "scenarios/program/league_text.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/expectation.hpp"
@@ -37,7 +38,17 @@ struct CompareOptions {
   bool html = false;
   Skips skips = Skips::taken;
   OutputOptions output;
+  std::vector<std::string> devices;
+  std::string vibration;
+  std::string resolution;
 };
+
+/// --devices asks for something else: the largest stiffness that each of them renders.
+CompareDevicesOptions device_options(const CompareOptions& options) {
+  if (options.skips == Skips::off) throw InputError("--no-skip: got it beside --devices; allowed: without");
+  return {options.devices,    options.scenarios, options.algorithms, options.overrides, options.vibration,
+          options.resolution, options.jobs,      options.out,        options.output};
+}
 
 /// There is something to rank over, or by.
 bool wants_league(const CompareOptions& options, const BatchPlan& plan) {
@@ -157,6 +168,9 @@ int verdict(const BatchPlan& plan, const BatchReport& report, bool league) {
 }
 
 int compare(const CompareOptions& options) {
+  if (!options.devices.empty()) return compare_devices(device_options(options));
+  if (options.scenarios.empty())
+    throw InputError("compare: scenarios is required; \"hapbench compare --help\" explains");
   // All input is checked before anything runs or is written.
   const BatchPlan plan = plan_of(options);
   const fs::path out = directory_of(options, plan);
@@ -197,26 +211,50 @@ void add_compare(CommandLine& line) {
   auto options = std::make_shared<CompareOptions>();
   Command command =
       line.command("compare", "Run scenarios through several algorithms, side by side; of several, a league table");
-  command.add("scenarios", options->scenarios, "scenario files, names of bundled scenarios, or of groups of them")
-      .required();
-  command.add("--algorithms", options->algorithms, "names, separated by commas, or all (default: all)")
+  command.add("scenarios", options->scenarios,
+              "scenario files, names of bundled scenarios, or of groups of them (with --devices default: " +
+                  fmt::format("{}", fmt::join(default_device_scenes(), " ")) + ")");
+  command
+      .add("--algorithms", options->algorithms,
+           "names, separated by commas, or all (default: all; with --devices shaped_stiffness,summation)")
       .comma_separated();
+  const CommandOption devices =
+      command
+          .add(
+              "--devices", options->devices,
+              "instead: the largest stiffness that each of these devices renders stably and quietly: ideal, admittance, "
+              "presets of \"hapbench list presets\", or all")
+          .comma_separated();
+  command
+      .add("--vibration", options->vibration,
+           fmt::format("with --devices: most vibration of the handle above 30 Hz [m/s rms] (default: {})",
+                       kMostVibration))
+      .needs(devices);
+  command.add("--resolution", options->resolution, "with --devices: relative width of a limit (default: 0.01)")
+      .needs(devices);
   command.add("--seeds", options->seeds, "run each K times, time k with the scenario's seed + k (default: 1)")
-      .range(1, 10'000);
-  command.add("--jitter", options->jitter,
-              "shift the start by a vector of this length [m] whose direction the seed gives, the same for all "
-              "algorithms: a spread where nothing else is random");
+      .range(1, 10'000)
+      .excludes(devices);
+  command
+      .add("--jitter", options->jitter,
+           "shift the start by a vector of this length [m] whose direction the seed gives, the same for all "
+           "algorithms: a spread where nothing else is random")
+      .excludes(devices);
   command
       .add("--by", options->metrics,
            "metrics of the league, less is better: names of summary.json, separated by commas (default: " +
                default_metrics_text() + "; fidelity where every scene has a reference force)")
-      .comma_separated();
+      .comma_separated()
+      .excludes(devices);
   command.add("--jobs", options->jobs, "runs at once (default: one per thread; 1 where the table shows times)")
       .range(1, 1024);
-  command.add("--out", options->out,
-              "directory of the results (default: results/out/compare_NAME, of several scenarios results/out/compare)");
+  command.add(
+      "--out", options->out,
+      "directory of the results (default: results/out/compare_NAME, of several scenarios results/out/compare, of "
+      "devices results/out/compare_devices)");
   command.add("--set", options->overrides, "override a field: path=value").repeatable();
-  command.flag("--html", options->html, "write OUT/report.html as well: curves, replay, metrics, commands");
+  command.flag("--html", options->html, "write OUT/report.html as well: curves, replay, metrics, commands")
+      .excludes(devices);
   add_skip_option(command, options->skips);
   add_output_options(command, options->output);
   command.footer(
@@ -224,7 +262,12 @@ void add_compare(CommandLine& line) {
       "for each scenario. With several scenarios or seeds, or --by, a league: rank, ratio to the best, mean and spread "
       "over the seeds, whether a difference is more than the spread, and where each algorithm wins and fails; all of "
       "it in league.csv. A run fails that diverges, has no contact or loses it, or ends otherwise than its scenario "
-      "allows; it ranks behind all others. What an earlier comparison left in OUT is removed, other files are not.");
+      "allows; it ranks behind all others. What an earlier comparison left in OUT is removed, other files are not.\n"
+      "With --devices K is bisected as \"hapbench limit\" does it, for each device, scene and algorithm; the published "
+      "stiffness stands beside it, and below it each K over that of the first scene with the first algorithm, beside 1 / "
+      "lambda_max(S) and the contacts of the run at that K. Other fields stay those of the scene, also the rule by which B follows K, and --set "
+      "changes them for all devices. A hand with a mass loses it on ideal and admittance, where the virtual mass stands for it. Files: "
+      "device_limits.csv and device_runs.csv; \"hapbench plot OUT\" draws them.");
   command.runs([options] { return compare(*options); }, "the folders of finished runs are kept, no table is written");
 }
 

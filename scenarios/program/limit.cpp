@@ -10,7 +10,8 @@
 #include "scenarios/description/scenario_text.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/command.hpp"
+#include "scenarios/program/compare_devices.hpp"
+#include "scenarios/program/device_limits_text.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
@@ -25,6 +26,7 @@ struct LimitOptions {
   std::string field;
   std::string between;
   std::string resolution;
+  std::string vibration;
   bool smallest = false;
   std::vector<std::string> algorithms;
   unsigned jobs = 0;  ///< 0: as many as the machine has
@@ -50,12 +52,8 @@ LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scena
   }
   LimitQuestion question = limit_question(scenario, options.overrides, options.field, range_of(options.between));
   question.smallest = options.smallest;
-  if (options.resolution.empty()) return question;
-  const auto resolution = finite_number(options.resolution);
-  if (!resolution || *resolution < 1e-6 || *resolution > 0.5) {
-    throw InputError(fmt::format("--resolution: got \"{}\"; allowed: 1e-6 ... 0.5", options.resolution));
-  }
-  question.resolution = *resolution;
+  if (!options.resolution.empty()) question.resolution = resolution_of(options.resolution);
+  if (!options.vibration.empty()) question.most_vibration = vibration_of(options.vibration);
   return question;
 }
 
@@ -73,6 +71,12 @@ std::string question_text(const LimitQuestion& question, const Scenario& scenari
   std::string text =
       fmt::format("{}: {} stable {} between {} and {}, to {}; {} steps a run\n", scenario.name, side(question),
                   question.path, end(question.range.from), end(question.range.to), width, scenario.time.steps);
+  if (question.most_vibration) {
+    return text + fmt::format(
+                      "stable: at most {} m/s rms above 30 Hz at the handle in the last quarter of a run, and not "
+                      "diverged, thrown_out or no_contact\n\n",
+                      significant(*question.most_vibration));
+  }
   text += "stable: comes to rest or dies out; not: vibrating, diverged, thrown_out, no_contact\n";
   if (is_moved(scenario)) text += "a script moves the tool: only what is above 30 Hz and 1 mm/s counts as motion\n";
   return text + "\n";
@@ -80,12 +84,6 @@ std::string question_text(const LimitQuestion& question, const Scenario& scenari
 
 std::string value_text(const std::optional<double>& value) {
   return !value ? "-" : std::isinf(*value) || *value == 0.0 ? "none" : significant(*value, 6);
-}
-
-/// What lies beyond the limit, in words.
-std::string beyond_text(const FieldLimit& limit) {
-  if (limit.beyond) return std::string(run_verdict_name(limit.beyond->verdict));
-  return limit.value ? "end of the range" : std::string(run_verdict_name(limit.runs.front().verdict));
 }
 
 Table table_of(const std::vector<FieldLimit>& limits) {
@@ -207,6 +205,8 @@ void add_limit(CommandLine& line) {
       .comma_separated();
   command.add("--resolution", options->resolution,
               "relative width of the answer (default: 0.001; of the range when it reaches 0 or below)");
+  command.add("--vibration", options->vibration,
+              "most vibration of the handle above 30 Hz [m/s rms], which then decides what is stable");
   command.add("--jobs", options->jobs, "algorithms at once (default: as many as the machine has threads)")
       .range(1, 1024);
   command.add("--out", options->out, "directory of the results (default: results/out/limit_NAME)");

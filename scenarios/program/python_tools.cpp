@@ -104,7 +104,7 @@ void add_plot(CommandLine& line) {
   auto options = std::make_shared<PictureOptions>();
   Command command =
       line.command("plot", "Draw runs over time and in space, a sweep, a stability map: a sketch here and a picture");
-  add_common(command, *options, "folders that run, compare, sweep, stability --map or limit wrote",
+  add_common(command, *options, "folders that run, compare (also --devices), sweep, stability --map or limit wrote",
              "FILE.svg, .png or .pdf; default: plot.svg in the folder of the runs");
   command.add("--y", options->quantities, "what to draw, separated by commas (below)");
   command.add("--metric", options->metric, "of a sweep: the column of sweep.csv to draw");

@@ -116,6 +116,9 @@ std::vector<DescribedTable> result_tables() {
   for (const ResultTable& table : record_tables()) tables.push_back({table.file, table.holds, all(table.columns)});
   tables.push_back({kTargetTable.file, kTargetTable.holds, all(kTargetTable.columns)});
   tables.push_back({"comparison.csv", "of compare: one line per algorithm", comparison_columns()});
+  tables.push_back({"device_limits.csv", "of compare --devices: one line per device, scene and algorithm",
+                    all(kDeviceLimitColumns)});
+  tables.push_back({"device_runs.csv", "of compare --devices: one line per run", all(kDeviceRunColumns)});
   tables.push_back({"sweep.csv", "of sweep: one line per run", sweep_columns()});
   tables.push_back({"limits.csv", "of stability SCENARIO: one line per limit", all(kStabilityLimitColumns)});
   tables.push_back({"root_locus.csv", "of stability SCENARIO: eigenvalues of a step as the case's number grows",

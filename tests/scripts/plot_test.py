@@ -161,6 +161,14 @@ class Plot(Given):
         (limit / "limit_runs.csv").write_text("algorithm,class\nmean,stable\n")
         self.assertIn("is not a table that hapbench wrote", hapbench("plot", limit, expected=2))
 
+    def test_devices(self):
+        folder = self.root / "devices"
+        hapbench("compare", "tap_wall", "--devices", "ideal,touch", "--set", "time.steps=200", "--resolution", 0.5, "--out", folder, "--quiet")
+        self.assertEqual(hapbench("plot", folder), f"picture in {folder}/plot.svg\n")
+        picture = (folder / "plot.svg").read_text()
+        for text in ("tap wall", "touch", "summation", "published, of a wall", "largest stable stiffness K [N/m]"):
+            self.assertIn(text, picture)
+
     def test_bad_input(self):
         mesh, sweep = self.root / "mesh", self.root / "sweep"
         bare = self.copy("springs")

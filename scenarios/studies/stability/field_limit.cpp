@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "device_model/theory/eigenvalue_edge.hpp"
+#include "results/observe/contact_forces.hpp"
 #include "scenarios/description/scenario_text.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
@@ -108,23 +109,29 @@ class Search {
   FieldLimit limit(const std::string& algorithm) {
     FieldLimit limit;
     limit.algorithm = algorithm;
-    std::map<double, RunVerdict> runs;  // by value
+    std::map<double, JudgedRun> runs;  // by value
     const auto judge = [&](double part) {
       const double value = way_.value(part);
       const auto known = runs.find(value);
-      return is_stable(known == runs.end() ? runs.emplace(value, verdict(algorithm, value)).first->second
-                                           : known->second);
+      return is_stable(
+          (known == runs.end() ? runs.emplace(value, judged(algorithm, value)).first : known)->second.verdict);
     };
+    const auto at_part = [&](double part) { return JudgedValue{way_.value(part), runs.at(way_.value(part)).verdict}; };
     const Edge edge = find_edge(way_, judge, true);
-    if (edge.stable) limit.value = way_.value(*edge.stable);
-    if (edge.beyond) limit.beyond = {way_.value(*edge.beyond), runs.at(way_.value(*edge.beyond))};
-    if (way_.own()) limit.own = {way_.value(*way_.own()), runs.at(way_.value(*way_.own()))};
-    for (const auto& [value, verdict] : runs) {
-      limit.runs.push_back({value, verdict});
-      if (limit.value && is_stable(verdict) != on_stable_side(value, limit)) limit.astray.push_back({value, verdict});
+    if (edge.stable) {
+      limit.value = way_.value(*edge.stable);
+      limit.settled = runs.at(*limit.value).settled;
+    }
+    if (edge.beyond) limit.beyond = at_part(*edge.beyond);
+    if (way_.own()) limit.own = at_part(*way_.own());
+    for (const auto& [value, run] : runs) {
+      limit.runs.push_back({value, run.verdict});
+      if (limit.value && is_stable(run.verdict) != on_stable_side(value, limit))
+        limit.astray.push_back(limit.runs.back());
     }
     const JudgedValue suspect = limit.beyond ? *limit.beyond : limit.runs.front();
-    limit.unstable_alone = !is_stable(suspect.verdict) && unstable_without_contact(at(algorithm, suspect.value));
+    limit.unstable_alone =
+        !is_stable(suspect.verdict) && unstable_without_contact(at(algorithm, suspect.value), question_.most_vibration);
     limit.theory = theory(algorithm);
     return limit;
   }
@@ -135,9 +142,9 @@ class Search {
     return question_.smallest ? value > limit.beyond->value : value < limit.beyond->value;
   }
 
-  RunVerdict verdict(const std::string& algorithm, double value) {
+  JudgedRun judged(const std::string& algorithm, double value) {
     const LoadedScenario loaded = at(algorithm, value);
-    return with_file(loaded, [&] { return judged_run(loaded, shells_.of(loaded)); });
+    return with_file(loaded, [&] { return judged_run(loaded, shells_.of(loaded), question_.most_vibration); });
   }
 
   LoadedScenario at(const std::string& algorithm, double value) const {
@@ -220,16 +227,24 @@ double allowed_end(double value, int sign, const std::function<bool(double)>& al
   return value;
 }
 
+[[noreturn]] void refuse(const LoadedScenario& loaded, const char* place, const std::string& problem) {
+  throw InputError(InputError::Kind::relation, loaded.file.string() + ": " + place, problem);
+}
+
 void check_scene(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
-  const auto fail = [&loaded](const char* place, const std::string& problem) {
-    throw InputError(InputError::Kind::relation, loaded.file.string() + ": " + place, problem);
-  };
   if (!std::holds_alternative<FreePosition>(scenario.motion.position)) {
-    fail("/motion/position/type", "a prescribed tool cannot become unstable; allowed for limit: \"free\"");
+    refuse(loaded, "/motion/position/type", "a prescribed tool cannot become unstable; allowed for limit: \"free\"");
   }
   if (scenario.time.steps < 4)
-    fail("/time/steps", fmt::format("got {}; allowed for limit: at least 4", scenario.time.steps));
+    refuse(loaded, "/time/steps", fmt::format("got {}; allowed for limit: at least 4", scenario.time.steps));
+}
+
+void check_sampling(const LoadedScenario& loaded) {
+  if (kVibrationCutoff * loaded.scenario.time.step < 0.5) return;
+  refuse(loaded, "/time/step_s",
+         fmt::format("got {}; allowed for --vibration, which is what is above {} Hz: below {:.4g}",
+                     loaded.scenario.time.step, kVibrationCutoff, 0.5 / kVibrationCutoff));
 }
 
 }  // namespace
@@ -284,6 +299,7 @@ LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std
 std::vector<FieldLimit> field_limits(const ScenarioText& scenario, const std::vector<std::string>& overrides,
                                      const std::vector<std::string>& algorithms, const LimitQuestion& question,
                                      const JobOptions& jobs) {
+  if (question.most_vibration) check_sampling(load_scenario(scenario, overrides));
   Search search(scenario, overrides, question);
   std::vector<FieldLimit> limits(algorithms.size());
   for_each_job(algorithms.size(), jobs, [&](std::size_t i) { limits[i] = search.limit(algorithms[i]); });

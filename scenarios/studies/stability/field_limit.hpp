@@ -24,6 +24,8 @@ struct LimitQuestion {
   bool smallest = false;
   /// Width at which bisection stops: relative to the value in a logarithmic range, to the range in a linear one.
   double resolution = 1e-3;
+  /// Most vibration of the handle above 30 Hz, which then decides what is stable [m/s rms] (judged_run.hpp).
+  std::optional<double> most_vibration = {};
   std::vector<std::string> warnings = {};  ///< of the scenario with the field given
 };
 
@@ -41,6 +43,7 @@ struct FieldLimit {
   /// The same by the eigenvalues of a step, where the springs stay in contact; infinite (smallest: 0) when the whole
   /// range is stable, none where there is no theory or nothing is stable.
   std::optional<double> theory;
+  SettledState settled;            ///< the run at `value`
   std::optional<JudgedValue> own;  ///< the run at the scenario's value, if that was in the range
   /// Hand and device are unstable even where there is nothing to touch, at the value beyond, or without a limit at the
   /// first one. Only asked of a hand that feels the handle and needs no surface.
@@ -64,7 +67,8 @@ LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std
 /// narrowed down by bisection, and three values on either side of it are tried besides; if they show an earlier edge,
 /// that is narrowed down instead, up to five times.
 /// Some 35 to 120 runs for each algorithm; the same whatever the number of threads.
-/// Throws InputError, with the file, for a scene without a free position or with fewer than 4 steps.
+/// Throws InputError, with the file, for a scene without a free position or with fewer than 4 steps, and where
+/// vibration is asked for at a sampling rate of 60 Hz or less.
 std::vector<FieldLimit> field_limits(const ScenarioText& scenario, const std::vector<std::string>& overrides,
                                      const std::vector<std::string>& algorithms, const LimitQuestion& question,
                                      const JobOptions& jobs);

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
+#include "results/observe/contact_forces.hpp"
+#include "results/observe/high_pass.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/stability/classify.hpp"
+#include "sim/contact/stiffness_tensor.hpp"
 
 namespace hapbench {
 namespace {
@@ -48,14 +52,58 @@ bool has_left(const LastPlace& last, const PointShell& shell, double reach) {
   return !last.touches && !inside;
 }
 
+/// Sums over the quarter that was begun last: the last one, unless the run was cut short because it came to rest.
+class LastQuarter final : public Observer {
+ public:
+  explicit LastQuarter(const TimeFields& time) : steps_(static_cast<std::uint64_t>(time.steps)) {
+    if (kVibrationCutoff * time.step < 0.5) high_pass_.emplace(kVibrationCutoff, 1.0 / time.step);
+  }
+
+  void on_step(const StepRecord& record) noexcept override {
+    if (const std::uint64_t quarter = record.step * 4 / steps_; quarter != quarter_) {
+      quarter_ = quarter;
+      rows_ = rows_in_contact_ = contacts_ = 0;
+      speed_sum_ = 0.0;
+      S_sum_.setZero();
+    }
+    ++rows_;
+    if (high_pass_) {
+      if (record.step == 0) high_pass_->settle_at(record.handle.velocity);
+      speed_sum_ += high_pass_->filter(record.handle.velocity).squaredNorm();
+    }
+    if (record.rendered->size() == 0) return;
+    ++rows_in_contact_;
+    contacts_ += record.rendered->size();
+    S_sum_ += record.force.S;
+  }
+
+  SettledState state() const {
+    SettledState state;
+    if (high_pass_ && rows_ > 0) state.vibration = std::sqrt(speed_sum_ / static_cast<double>(rows_));
+    if (rows_in_contact_ == 0) return state;
+    const auto rows = static_cast<double>(rows_in_contact_);
+    state.contacts = static_cast<double>(contacts_) / rows;
+    state.lambda_max = lambda_max(S_sum_ / rows);
+    return state;
+  }
+
+ private:
+  std::uint64_t steps_;
+  std::optional<HighPass> high_pass_;
+  std::uint64_t quarter_ = 0, rows_ = 0, rows_in_contact_ = 0, contacts_ = 0;
+  double speed_sum_ = 0.0;
+  Mat3 S_sum_ = Mat3::Zero();
+};
+
 MotionClassifier classifier_of(const Scenario& scenario) {
   const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
   return is_moved(scenario) ? MotionClassifier::of_moved_tool(steps, scenario.time.step) : MotionClassifier(steps);
 }
 
-RunVerdict verdict_of(MotionClass motion) {
+RunVerdict verdict_of(MotionClass motion, const SettledState& settled, std::optional<double> most_vibration) {
   // Of the same names.
-  return static_cast<RunVerdict>(motion);
+  if (!most_vibration || motion == MotionClass::diverged) return static_cast<RunVerdict>(motion);
+  return settled.vibration && *settled.vibration <= *most_vibration ? RunVerdict::stable : RunVerdict::vibrating;
 }
 static_assert(static_cast<int>(RunVerdict::diverged) == static_cast<int>(MotionClass::diverged));
 
@@ -73,29 +121,38 @@ bool is_moved(const Scenario& scenario) {
   return std::visit(HandMoves{}, scenario.hand);
 }
 
-RunVerdict judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell) {
+JudgedRun judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell,
+                     std::optional<double> most_vibration) {
   const Scenario& scenario = loaded.scenario;
   MotionClassifier classifier = classifier_of(scenario);
   LastPlace last;
+  LastQuarter quarter(scenario.time);
   SimulationParts parts = assemble(scenario, loaded.files, shell, {});
   const double reach = parts.tool->reach();
-  Simulation simulation(simulation_config(scenario), std::move(parts), {&classifier, &last});
+  Simulation simulation(simulation_config(scenario), std::move(parts), {&classifier, &last, &quarter});
   const MotionClass motion = classify(simulation, classifier);
-  if (motion == MotionClass::diverged) return RunVerdict::diverged;
-  if (!last.touched) return RunVerdict::no_contact;
-  if (simulation.result().outcome == Outcome::leaves_hole) return RunVerdict::thrown_out;
-  if (shell && has_left(last, *shell, reach)) return RunVerdict::thrown_out;
-  return verdict_of(motion);
+  const SettledState settled = quarter.state();
+  const auto verdict = [&] {
+    if (motion == MotionClass::diverged) return RunVerdict::diverged;
+    if (!last.touched) return RunVerdict::no_contact;
+    if (simulation.result().outcome == Outcome::leaves_hole) return RunVerdict::thrown_out;
+    if (shell && has_left(last, *shell, reach)) return RunVerdict::thrown_out;
+    return verdict_of(motion, settled, most_vibration);
+  };
+  return {verdict(), settled};
 }
 
-bool unstable_without_contact(const LoadedScenario& loaded) {
+bool unstable_without_contact(const LoadedScenario& loaded, std::optional<double> most_vibration) {
   const Scenario& scenario = loaded.scenario;
   if (spring_of(scenario.hand) == nullptr || std::holds_alternative<SpringsEnvironment>(scenario.environment))
     return false;
   MotionClassifier classifier = classifier_of(scenario);
+  LastQuarter quarter(scenario.time);
   const auto nothing = std::make_shared<const PointShell>(std::vector<SurfacePoint>{}, 0.0);
-  Simulation simulation(simulation_config(scenario), assemble(scenario, loaded.files, nothing, {}), {&classifier});
-  return !comes_to_rest(classify(simulation, classifier));
+  Simulation simulation(simulation_config(scenario), assemble(scenario, loaded.files, nothing, {}),
+                        {&classifier, &quarter});
+  const MotionClass motion = classify(simulation, classifier);
+  return !is_stable(verdict_of(motion, quarter.state(), most_vibration));
 }
 
 }  // namespace hapbench

@@ -1,4 +1,5 @@
-"""The pictures of `stability --map` and `limit`: classes of runs as coloured cells or marks, with the limits found."""
+"""The pictures of `stability --map` and `limit`: classes of runs as coloured cells or marks, with the limits found; and
+which study a folder holds."""
 import copy
 from pathlib import Path
 
@@ -11,6 +12,8 @@ from hapbench_figures.style import BLACK, PETROL, SETTINGS
 from hapbench_looks import look
 from hapbench_report.json_input import InputError
 
+from .device_plot import TABLE as DEVICES
+from .device_plot import draw_devices
 from .fields import axis
 
 matplotlib.use("agg")
@@ -20,15 +23,16 @@ MAP, LIMIT, LIMIT_RUNS = "stability_map_", "limit.csv", "limit_runs.csv"
 
 
 def given_study(words):
-    """The table that a folder of maps or of a limit, or one map's file, stands for; None where none was given."""
+    """The table that a folder of maps, of a limit or of devices, or one map's file, stands for; None where none was given."""
     studies = [Path(word) for word in words if is_study(Path(word))]
     if studies and len(words) > 1:
-        raise InputError(f"{studies[0]}: holds stability maps or a limit; allowed: one such folder alone, or any number of runs")
+        raise InputError(f"{studies[0]}: holds stability maps or limits; allowed: one such folder alone, or any number of runs")
     return studies[0] if studies else None
 
 
 def is_study(path):
-    return path.name.startswith(MAP) and path.is_file() or any(path.glob(f"{MAP}*.csv")) or (path / LIMIT_RUNS).is_file()
+    return path.name.startswith(MAP) and path.is_file() or any(path.glob(f"{MAP}*.csv")) or \
+        any((path / name).is_file() for name in (LIMIT_RUNS, DEVICES))
 
 
 def study_figures(path):
@@ -37,6 +41,8 @@ def study_figures(path):
         with matplotlib.rc_context(SETTINGS):
             if (path / LIMIT_RUNS).is_file():
                 return [("", draw_limit(Results(path)))]
+            if (path / DEVICES).is_file():
+                return [("", draw_devices(Results(path)))]
             results = Results(path.parent if path.is_file() else path)
             files = [path.name] if path.is_file() else results.glob(f"{MAP}*.csv")
             return [(name, draw_stability_map(found)) for file in files for name, found in single_maps(results, file)]

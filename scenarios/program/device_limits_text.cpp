@@ -1,0 +1,202 @@
+#include "scenarios/program/device_limits_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "results/observe/contact_forces.hpp"
+#include "scenarios/program/table.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr std::size_t kNarrowGap = 1;  // with it three scenes and two algorithms fit into kTableWidth
+
+/// Three digits, without an exponent.
+std::string stiffness_text(double K) {
+  const double unit = std::pow(10.0, std::floor(std::log10(K)) - 2.0);
+  return unit < 1.0 ? significant(K, 3) : fmt::format("{:.0f}", std::round(K / unit) * unit);
+}
+
+std::string limit_text(const FieldLimit& limit) {
+  if (!limit.value) return "none";
+  return fmt::format("{}{}{}", limit.beyond ? "" : "> ", stiffness_text(*limit.value),
+                     limit.astray.empty() ? "" : " ~");
+}
+
+std::string damping_text(const RenderingConfig& rendering) {
+  if (rendering.damping) return fmt::format("B = {} N s/m", significant(*rendering.damping));
+  if (rendering.damping_ratio == 0.0) return "no damping is rendered (damping_ratio 0): B = 0 at every K";
+  return fmt::format("B = 2 zeta sqrt(K m) with damping_ratio zeta = {} and rendering.mass_kg m = {}",
+                     significant(rendering.damping_ratio), significant(rendering.mass));
+}
+
+/// What is asked, what "stable" means here, and how B follows K.
+std::string question_text(const DeviceQuestion& question) {
+  std::string text = fmt::format(
+      "largest stable rendering.stiffness_N_per_m, to {:.3g} %\n"
+      "stable: at most {} m/s rms above {:.0f} Hz at the handle in the last quarter of a run, and not diverged, "
+      "thrown_out or no_contact\n",
+      100.0 * question.resolution, significant(question.most_vibration), kVibrationCutoff);
+  std::vector<std::string> rules;
+  for (const ScenarioText& scene : question.scenes) {
+    const LoadedScenario loaded =
+        load_scenario(scene, overrides_on(question.devices.front(), scene, question.overrides));
+    std::string rule = fmt::format("{} steps of {} s; {}\n", loaded.scenario.time.steps,
+                                   significant(loaded.scenario.time.step), damping_text(loaded.scenario.rendering));
+    if (std::find(rules.begin(), rules.end(), rule) == rules.end()) rules.push_back(std::move(rule));
+  }
+  for (const std::string& rule : rules) text += rule;
+  return text;
+}
+
+std::size_t columns_of(const DeviceQuestion& question) {
+  return question.scenes.size() * question.algorithms.size();
+}
+
+std::string title(const DeviceQuestion& question, std::size_t column) {
+  return scene_name(question, column / question.algorithms.size()) + "\n" +
+         question.algorithms[column % question.algorithms.size()];
+}
+
+Table stiffness_table(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
+  std::vector<Table::Column> columns = {{"device", false}, {"pub-\nlished"}};
+  for (std::size_t c = 0; c < columns_of(question); ++c) columns.push_back({title(question, c)});
+  Table table(columns, kNarrowGap);
+  for (std::size_t d = 0; d < question.devices.size(); ++d) {
+    const ComparedDevice& device = question.devices[d];
+    std::vector<std::string> cells = {device.name,
+                                      device.published_stiffness ? stiffness_text(*device.published_stiffness) : "-"};
+    for (std::size_t c = 0; c < columns_of(question); ++c)
+      cells.push_back(limit_text(limits[d * columns_of(question) + c].limit));
+    table.add(std::move(cells));
+  }
+  return table;
+}
+
+std::string ratio_text(const DeviceLimit& limit, const DeviceLimit& reference) {
+  const auto ratio = ratio_of(limit, reference).stiffness;
+  if (!ratio) return "-";
+  const SettledState& settled = limit.limit.settled;
+  return fmt::format("{} ({}, {:.0f})", significant(*ratio, 2),
+                     settled.lambda_max > 0.0 ? significant(1.0 / settled.lambda_max, 2) : "-", settled.contacts);
+}
+
+/// Without the column of the reference.
+Table ratio_table(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
+  std::vector<Table::Column> columns = {{"device", false}};
+  for (std::size_t c = 1; c < columns_of(question); ++c) columns.push_back({title(question, c)});
+  Table table(columns);
+  for (std::size_t d = 0; d < question.devices.size(); ++d) {
+    std::vector<std::string> cells = {question.devices[d].name};
+    for (std::size_t c = 1; c < columns_of(question); ++c) {
+      cells.push_back(ratio_text(limits[d * columns_of(question) + c], limits[reference_of(question, d)]));
+    }
+    table.add(std::move(cells));
+  }
+  return table;
+}
+
+/// "0.8 ... 1.2, median 1"
+std::string spread_text(std::vector<double> values) {
+  if (values.empty()) return "none";
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  const double median = values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+  return fmt::format("{} ... {}, median {}", significant(values.front(), 2), significant(values.back(), 2),
+                     significant(median, 2));
+}
+
+/// A line for each column: how the ratios spread over the devices, of K and of what is rendered with it.
+std::string spreads_text(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
+  std::string text;
+  for (std::size_t c = 1; c < columns_of(question); ++c) {
+    std::vector<double> stiffness, rendered;
+    for (std::size_t d = 0; d < question.devices.size(); ++d) {
+      const DeviceRatio ratio = ratio_of(limits[d * columns_of(question) + c], limits[reference_of(question, d)]);
+      if (ratio.stiffness) stiffness.push_back(*ratio.stiffness);
+      if (ratio.rendered) rendered.push_back(*ratio.rendered);
+    }
+    const std::size_t none = question.devices.size() - stiffness.size();
+    text += fmt::format("{} in {}: {}; K lambda_max: {}{}\n", question.algorithms[c % question.algorithms.size()],
+                        scene_name(question, c / question.algorithms.size()), spread_text(stiffness),
+                        spread_text(rendered), none > 0 ? fmt::format("; none on {} devices", none) : "");
+  }
+  return text;
+}
+
+Json or_null(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+}  // namespace
+
+std::vector<std::string> default_device_scenes() {
+  return {"tap_wall", "tap_corner", "tap_hole"};
+}
+
+std::string scene_name(const DeviceQuestion& question, std::size_t scene) {
+  return question.scenes[scene].file.stem().string();
+}
+
+std::size_t reference_of(const DeviceQuestion& question, std::size_t device) {
+  return device * columns_of(question);
+}
+
+DeviceRatio ratio_of(const DeviceLimit& limit, const DeviceLimit& reference) {
+  if (!limit.limit.value || !reference.limit.value) return {};
+  const double stiffness = *limit.limit.value / *reference.limit.value;
+  const double lambda = reference.limit.settled.lambda_max;
+  return {stiffness, lambda > 0.0 ? std::optional(stiffness * limit.limit.settled.lambda_max / lambda) : std::nullopt};
+}
+
+std::string beyond_text(const FieldLimit& limit) {
+  if (limit.beyond) return std::string(run_verdict_name(limit.beyond->verdict));
+  return limit.value ? "end of the range" : std::string(run_verdict_name(limit.runs.front().verdict));
+}
+
+std::string device_limits_text(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
+  std::string text = question_text(question) + "\n" + stiffness_table(question, limits).text();
+  text += "published: largest stable stiffness of a wall; \"hapbench describe DEVICE\" names its source\n";
+  if (std::any_of(limits.begin(), limits.end(), [](const DeviceLimit& limit) { return !limit.limit.astray.empty(); }))
+    text += "~: some values below it are unstable, or some beyond it are stable: device_runs.csv\n";
+  if (columns_of(question) == 1) return text;
+  const std::string reference = fmt::format("{} in {}", question.algorithms.front(), scene_name(question, 0));
+  text += fmt::format("\nover the device's K of {} (in brackets 1 / lambda_max(S), and contacts, at the limit)\n\n",
+                      reference);
+  text += ratio_table(question, limits).text();
+  text += fmt::format("\nleast ... largest of the devices, over {}:\n", reference);
+  return text + spreads_text(question, limits);
+}
+
+Json device_limits_json(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
+  Json rows = Json::array();
+  for (const DeviceLimit& found : limits) {
+    const FieldLimit& limit = found.limit;
+    const DeviceRatio ratio = ratio_of(found, limits[reference_of(question, found.device)]);
+    const auto settled = [&limit](double value) { return limit.value ? Json(value) : Json(nullptr); };
+    rows.push_back({{"device", question.devices[found.device].name},
+                    {"scenario", scene_name(question, found.scene)},
+                    {"algorithm", limit.algorithm},
+                    {"limit_N_per_m", or_null(limit.value)},
+                    {"beyond_N_per_m", limit.beyond ? Json(limit.beyond->value) : Json(nullptr)},
+                    {"class_beyond", beyond_text(limit)},
+                    {"published_N_per_m", or_null(question.devices[found.device].published_stiffness)},
+                    {"vibration_m_per_s", limit.value ? or_null(limit.settled.vibration) : Json(nullptr)},
+                    {"contacts", settled(limit.settled.contacts)},
+                    {"lambda_max", settled(limit.settled.lambda_max)},
+                    {"stiffness_ratio", or_null(ratio.stiffness)},
+                    {"rendered_ratio", or_null(ratio.rendered)},
+                    {"unstable_without_contact", limit.unstable_alone},
+                    {"runs", limit.runs.size()},
+                    {"astray", limit.astray.size()}});
+  }
+  return {{"most_vibration_m_per_s", question.most_vibration},
+          {"resolution", question.resolution},
+          {"reference", {{"scenario", scene_name(question, 0)}, {"algorithm", question.algorithms.front()}}},
+          {"limits", std::move(rows)}};
+}
+
+}  // namespace hapbench

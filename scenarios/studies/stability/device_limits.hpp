@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/batch/jobs.hpp"
+#include "scenarios/description/scenario_text.hpp"
+#include "scenarios/studies/stability/field_limit.hpp"
+
+/// What can be rendered on which device: the largest stiffness, for each device, scene and algorithm, at which a run is
+/// stable and its handle still (judged_run.hpp), found as field_limit.hpp finds it.
+namespace hapbench {
+
+/// A device that a scene is tried on.
+struct ComparedDevice {
+  std::string name;                                ///< "ideal", "admittance" or a preset's
+  std::string json;                                ///< the scenario's field "device"
+  bool has_place_for_mass = false;                 ///< of a hand that is fixed to the handle
+  std::optional<double> published_stiffness = {};  ///< of a preset: the largest stable one of a wall [N/m]
+};
+
+/// All of them: both devices with a virtual mass as they are by default, then the presets.
+std::vector<ComparedDevice> compared_devices();
+
+/// What is compared. The overrides hold for all runs, also for fields of the device.
+struct DeviceQuestion {
+  std::vector<ComparedDevice> devices;
+  std::vector<ScenarioText> scenes;
+  std::vector<std::string> algorithms;
+  std::vector<std::string> overrides;
+  double most_vibration = 0.0;  ///< [m/s rms]
+  double resolution = 1e-2;     ///< relative width of a limit
+};
+
+/// Answers for one device in one scene.
+struct DeviceLimit {
+  std::size_t device = 0, scene = 0;  ///< of the question
+  LimitQuestion question;             ///< with the range of K
+  FieldLimit limit;                   ///< of one algorithm
+};
+
+/// The overrides that put the scene on the device, before the given ones. A hand with a mass loses it where the device
+/// has no place for one; the virtual mass is there instead.
+std::vector<std::string> overrides_on(const ComparedDevice& device, const ScenarioText& scene,
+                                      const std::vector<std::string>& overrides);
+
+/// By device, then scene, then algorithm. K is looked for between a thousandth and a thousandfold of the scene's own.
+/// Some 40 runs each; the same whatever the number of threads. Throws InputError.
+std::vector<DeviceLimit> device_limits(const DeviceQuestion& question, const JobOptions& jobs);
+
+}  // namespace hapbench

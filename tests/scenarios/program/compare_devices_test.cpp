@@ -1,0 +1,110 @@
+#include <gtest/gtest.h>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/file_tree.hpp"
+#include "tests/scenarios/support/program.hpp"
+
+/// `compare --devices`: the largest stiffness that devices render.
+namespace hapbench::compare_devices_test {
+namespace {
+
+using test::hapbench;
+using test::lines_of;
+using test::ProgramRun;
+using Words = std::vector<std::string>;
+
+class CompareDevices : public testing::Test {
+ protected:
+  CompareDevices() {
+    // A probe pressed on a plane of 49 points by a hand with a mass.
+    test::write_plainly(directory_ / "press.json",
+                        R"({"time": {"step_s": 0.001, "steps": 200}, "tool": {"diameter_m": 0.01, "length_m": 0.1},
+                            "environment": {"type": "plane", "size_m": 0.006, "spacing_m": 0.001},
+                            "hand": {"type": "mass_spring_damper", "mass_kg": 0.2, "stiffness_N_per_m": 300,
+                                     "damping_N_s_per_m": 6, "target": {"x_m": 0, "y_m": 0, "z_m": -0.003}},
+                            "device": {"type": "impedance", "preset": "omega.3"},
+                            "rendering": {"stiffness_N_per_m": 2000, "damping_ratio": 0,
+                                          "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}})");
+  }
+  std::string file(const std::string& name) const { return (directory_ / name).string(); }
+  ProgramRun compare(const std::string& devices, const std::string& out, const Words& more = {}) const {
+    Words words = {"compare", file("press.json"), "--devices", devices, "--out", file(out)};
+    words.insert(words.end(), more.begin(), more.end());
+    return hapbench(words);
+  }
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(CompareDevices, AnswersAsLimitDoes) {
+  const Words question = {"--algorithms", "shaped_stiffness,summation", "--vibration", "0.002", "--resolution", "0.01",
+                          "--json"};
+  const ProgramRun table = compare("omega.3", "out", question);
+  ASSERT_EQ(table.status, 0) << table.err;
+  Words words = {"limit", file("press.json"), "--vary", "rendering.stiffness_N_per_m", "--out", file("limit")};
+  words.insert(words.end(), question.begin(), question.end());
+  const Json limits = hapbench(words).json()["limits"], rows = table.json()["limits"];
+  ASSERT_EQ(rows.size(), 2u);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_TRUE(rows[i]["limit_N_per_m"].is_number());
+    EXPECT_EQ(rows[i]["limit_N_per_m"], limits[i]["limit"]);
+    EXPECT_EQ(rows[i]["beyond_N_per_m"], limits[i]["beyond"]);
+    EXPECT_EQ(rows[i]["runs"], limits[i]["runs"]);
+    EXPECT_LE(rows[i]["vibration_m_per_s"], 0.002);
+    EXPECT_EQ(rows[i]["published_N_per_m"], 5000.0);
+  }
+}
+
+TEST_F(CompareDevices, SummationRendersOneOverTheContactsOfAFlatWall) {
+  const Json rows = compare("touch", "out", {"--json"}).json()["limits"];
+  const Json &shaped = rows[0], &summation = rows[1];
+  EXPECT_EQ(shaped["stiffness_ratio"], 1.0);
+  EXPECT_NEAR(shaped["lambda_max"].get<double>(), 1.0, 1e-9);
+  EXPECT_NEAR(summation["contacts"].get<double>(), 49.0, 1e-9);
+  EXPECT_NEAR(summation["lambda_max"].get<double>(), 49.0, 1e-9);
+  // Equal normals make one spring of n K: both searches end within their 1 % of the same stiffness.
+  EXPECT_NEAR(summation["rendered_ratio"].get<double>(), 1.0, 0.021);
+  EXPECT_NEAR(summation["stiffness_ratio"].get<double>(), 1.0 / 49.0, 0.021 / 49.0);
+}
+
+TEST_F(CompareDevices, GivesTheSameBytesWhateverTheJobs) {
+  const ProgramRun one = compare("ideal,admittance,touch", "one", {"--jobs", "1"});
+  const ProgramRun two = compare("ideal,admittance,touch", "two", {"--jobs", "2"});
+  EXPECT_EQ(one.status, 0) << one.err;
+  test::expect_same_files(directory_ / "one", directory_ / "two");
+  EXPECT_EQ(test::names_below(directory_ / "one"), (Words{"device_limits.csv", "device_runs.csv"}));
+  EXPECT_EQ(lines_of(test::read_file(directory_ / "one/device_limits.csv")).size(), 1u + 3 * 2);
+  for (const char* text :
+       {"B = 0 at every K", "published", "touch", "0.001 m/s rms above 30 Hz", "summation in press: "}) {
+    EXPECT_NE(one.out.find(text), std::string::npos) << text << one.out;
+  }
+}
+
+TEST_F(CompareDevices, OverridesHoldForEveryDevice) {
+  const ProgramRun run =
+      compare("ideal,touch", "out",
+              {"--set", "rendering.damping_ratio=0.5", "--set", "rendering.mass_kg=0.3", "--set", "hand.mass_kg=0.1"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("damping_ratio zeta = 0.5 and rendering.mass_kg m = 0.3"), std::string::npos) << run.out;
+}
+
+TEST_F(CompareDevices, RefusesBadInput) {
+  const auto refused = [&](const Words& words, const char* said) {
+    const ProgramRun run = hapbench(words);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_NE(run.err.find(said), std::string::npos) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(directory_ / "bad"));
+  };
+  const std::string scene = file("press.json"), out = file("bad");
+  refused({"compare", scene, "--devices", "omega3", "--out", out}, "nearest valid name: \"omega.3\"");
+  refused({"compare", scene, "--devices", "all,touch", "--out", out}, "--devices: got \"all\" beside other names");
+  refused({"compare", scene, "--devices", "touch", "--vibration", "0", "--out", out}, "--vibration: got \"0\"");
+  refused({"compare", scene, "--devices", "touch", "--seeds", "2", "--out", out}, "--devices excludes --seeds");
+  refused({"compare", scene, "--vibration", "1", "--out", out}, "--vibration requires --devices");
+  refused({"compare", scene, scene, "--devices", "touch", "--out", out}, "a second scenario named \"press\"");
+  refused({"compare", scene, "--devices", "touch", "--set", "time.step_s=0.02", "--out", out},
+          "/time/step_s: got 0.02; allowed for --vibration");
+  refused({"compare", "--out", out}, "compare: scenarios is required");
+}
+
+}  // namespace
+}  // namespace hapbench::compare_devices_test
