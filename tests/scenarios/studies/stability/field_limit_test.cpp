@@ -88,6 +88,27 @@ TEST(FieldLimit, SaysWhenThereIsNone) {
   EXPECT_EQ(undamped.runs.front().verdict, RunVerdict::vibrating);
 }
 
+TEST(FieldLimit, IsDecidedByTheVibrationThatIsAllowed) {
+  // An undamped spring vibrates below K = 4 M / dt^2 = 1.6e6 N/m for ever, and above it diverges.
+  const std::vector<std::string> undamped = {"time.steps=2000", "rendering.damping_ratio=0"};
+  const ScenarioText scenario = read_scenario_text(find_scenario("single_spring"));
+  LimitQuestion question = limit_question(scenario, undamped, "rendering.stiffness_N_per_m", Range{1e5, 1e7, false});
+  const auto limit = [&](double most) {
+    question.most_vibration = most;
+    return field_limits(scenario, undamped, {"summation"}, question, {}).front();
+  };
+  const FieldLimit any = limit(1e9);
+  ASSERT_TRUE(any.value && any.settled.vibration);
+  EXPECT_NEAR(*any.value, 1.6e6, 0.01 * 1.6e6);
+  EXPECT_EQ(any.beyond->verdict, RunVerdict::diverged);
+  EXPECT_GT(*any.settled.vibration, 0.0);
+  EXPECT_NEAR(any.settled.lambda_max, 1.0, 1e-12);
+  EXPECT_EQ(any.settled.contacts, 1.0);
+  const FieldLimit none = limit(1e-9);
+  EXPECT_FALSE(none.value);
+  EXPECT_EQ(none.runs.front().verdict, RunVerdict::vibrating);
+}
+
 TEST(FieldLimit, OfAPlaneHasNoTheory) {
   const Words pressed = {R"(hand={"type":"force","z_N":-1})", "time.duration_s=0.5", "rendering.reduction=null"};
   const std::vector<FieldLimit> limits =
