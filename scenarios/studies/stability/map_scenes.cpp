@@ -208,8 +208,9 @@ constexpr StabilityMap kMaps[] = {
     {"friction_quantisation",
      "Coulomb friction over viscous friction, in units of what the encoder and the sampling of a wall need, B = 0, "
      "impedance device as for z_width",
-     {"2b_over_KT", 0.1, 10.0, Scale::logarithmic},
-     {"2c_over_Kq", 0.1, 10.0, Scale::logarithmic},
+     // Without 1 on any grid, where a run is neither.
+     {"2b_over_KT", 0.12, 12.0, Scale::logarithmic},
+     {"2c_over_Kq", 0.12, 12.0, Scale::logarithmic},
      friction_scene,
      MapEdge::smallest_at_rest,
      1000.0,
