@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "results/observe/contact_forces.hpp"
-#include "results/observe/high_pass.hpp"
+#include "results/observe/butterworth.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/stability/classify.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
