@@ -222,9 +222,19 @@ class Figures(unittest.TestCase):
             text = " ".join(xml.parse(self.drawn / entry["files"][0]).getroot().itertext())
             with self.subTest(entry["id"]):
                 self.assertRegex(
-                    text, r"\[(mm|s|ms|µs|N|N/m|rad|kg|mm/s|m/s)\]|/ K|iterations|real part|points in contact|contacts"
+                    text, r"\[(1|mm|s|ms|µs|N|N/m|N s/m|Hz|rad|kg|mm/s|m|m/s)\]|/ K|iterations|real part|points in contact|contacts"
                     "|0 to 100"
                 )
+
+    def test_maps_of_an_impedance_device_name_limits_and_regions(self):
+        for name, texts in (
+            ("z_width", ("limit, worst hand", "passive (Colgate, Schenkel)", "stable (Gil, Hulin)")),
+            ("encoder_step", ("passive (Abbott, Okamura)", "vibrating")),
+            ("friction_quantisation", ("comes to rest from near and far", "from near only", "limit cycles", "unstable")),
+        ):
+            text = " ".join(xml.parse(self.drawn / f"figure_stability_{name}.svg").getroot().itertext())
+            for label in texts:
+                self.assertIn(label, text, name)
 
     def test_same_data_same_bytes(self):
         again = self.directory / "again"

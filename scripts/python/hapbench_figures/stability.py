@@ -304,6 +304,7 @@ def stability_map(name):
             f"Where a run is stable, vibrates or diverges: {y_label} over {x_label}. Above: the limit of every algorithm, found "
             "by bisection over simulated runs, and its ratio to the limit from theory, where there is one. Below: the class of "
             f"single runs; algorithms whose {len(found.rows) // len(present)} runs fall into the same classes share a panel. "
+            f"{'Thin lines: known limits, and the least over passive hands. ' if found.limits else ''}"
             "Single cells beyond the limit are runs that are not stable, but stay within the bounds, or leave them, by chance. Ours."
         )
 
