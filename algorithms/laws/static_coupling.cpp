@@ -21,6 +21,9 @@ constexpr OwnParameter kSaturation[] = {{"saturation_N",
 /// Newton steps at most, and halvings of one. Where they end before the balance the force is still the coupling's.
 constexpr int kMostSteps = 30;
 constexpr double kSmallestPart = 1e-6;
+/// Least stiffness of the coupling along its force, of that across: far beyond saturation rounding would leave none, or
+/// less.
+constexpr double kSoftest = 1e-12;
 /// What may be out of balance, of K times the root of the sum of the squares of p_i. The rounding of the sum of n pulls
 /// is below 1e-16 sqrt(n) of it.
 constexpr double kBalanced = 1e-13;
@@ -68,7 +71,7 @@ class StaticCoupling final : public ForceLaw {
     find_balance(contacts);
     const Mat3 springs = K_ * stiffness_tensor(contacts);
     const Mat3 coupling = coupling_stiffness(shift_);
-    pass_ = Eigen::LLT<Mat3>(coupling + springs).solve(coupling).transpose();
+    pass_ = Eigen::LDLT<Mat3>(coupling + springs).solve(coupling).transpose();
     // Coupling and contacts in series; symmetric, but for the rounding that averaging removes.
     const Mat3 S = pass_ * springs / K_;
     return {coupling_force(shift_), 0.5 * (S + S.transpose())};
@@ -97,7 +100,7 @@ class StaticCoupling final : public ForceLaw {
     Vec3 residual = pull.force - coupling_force(shift_);
     for (int step = 0; step < kMostSteps && residual.norm() > kBalanced * K_ * pull.pressed; ++step, ++iterations_) {
       const Mat3 stiffness = coupling_stiffness(shift_) + K_ * stiffness_tensor(contacts);
-      const Vec3 newton = Eigen::LLT<Mat3>(stiffness).solve(residual);
+      const Vec3 newton = Eigen::LDLT<Mat3>(stiffness).solve(residual);
       const Vec3 from = shift_;
       const double before = residual.norm();
       // Where the coupling saturates or contacts let go, a whole step may go too far.
@@ -107,6 +110,10 @@ class StaticCoupling final : public ForceLaw {
         residual = pull.force - coupling_force(shift_);
         if (residual.norm() < before) break;
       }
+      if (residual.norm() < before) continue;
+      shift_ = from;  // rounding is all that is left, or the balance is out of reach
+      pull_at(contacts, shift_);
+      return;
     }
   }
 
@@ -116,7 +123,8 @@ class StaticCoupling final : public ForceLaw {
   double coupling_energy(const Vec3& s) const noexcept { return K_vc_ * s.squaredNorm() / (1.0 + stretch(s)); }
   Mat3 coupling_stiffness(const Vec3& s) const noexcept {
     const double q = stretch(s);
-    const Vec3 r = K_vc_ / (F_s_ * q) * s;
+    Vec3 r = K_vc_ / (F_s_ * q) * s;  // |r|^2 = 1 - 1 / q^2, along s the rest of the stiffness
+    if (const double along = r.squaredNorm(); along > 1.0 - kSoftest) r *= std::sqrt((1.0 - kSoftest) / along);
     return K_vc_ / q * (Mat3::Identity() - r * r.transpose());
   }
 

@@ -22,7 +22,7 @@ TEST(PrecisionSpacing, RefusesAnotherEnvironment) {
 TEST(PrecisionAlgorithms, HaveARowEachAndTheThesissTwoOneWithAngularDamping) {
   const PrecisionResult result =
       kAlgorithmsStudy.run(bundled("task2_rotate_signed_distance", {"time.duration_s=0.5"}), quick());
-  ASSERT_EQ(result.rows.size(), algorithms().size() + 6);  // two damped by the turn, four with the passivity controller
+  ASSERT_EQ(result.rows.size(), algorithms().size() + 7);  // two damped by the turn, five with the passivity controller
   const auto row_of = [&](const std::string& setting) -> const PrecisionRow& {
     for (const PrecisionRow& row : result.rows) {
       if (row.setting == setting) return row;

@@ -31,7 +31,8 @@ std::vector<MapOfAlgorithm> spring_maps() {
   for (const StabilityMap& map : stability_maps()) {
     if (!is_of_springs(map)) continue;
     for (const AlgorithmEntry& entry : algorithms()) {
-      // The greater of two depths is not linear in the position.
+      // A coupling that saturates is not linear in the position, nor is the greater of two depths.
+      if (std::string_view(entry.info->name) == "static_coupling") continue;
       if (std::string_view(map.name) == "wedge" && std::string_view(entry.info->name) == "highest_depth") continue;
       all.push_back({&map, entry.info->name});
     }
