@@ -63,11 +63,12 @@ SurfacePath SurfacePath::over(const SmoothedSurface& surface, std::span<const Ve
   return {surface, places};
 }
 
-SurfacePath SurfacePath::along(const SmoothedSurface& surface, const Vec3& start, const Vec3& direction,
-                               double length) {
-  const Vec3 forward = direction.normalized();
-  const double step = spacing(surface.radius());
-  std::vector<SurfacePoint> places = {surface.nearest(start)};
+namespace {
+
+/// Places over the surface from `first` on along `forward`, a unit vector, `step` apart.
+std::vector<SurfacePoint> walk(const SmoothedSurface& surface, const SurfacePoint& first, const Vec3& forward,
+                               double length, double step) {
+  std::vector<SurfacePoint> places = {first};
   for (double done = 0.0; done < length; done += step) {
     const SurfacePoint& here = places.back();
     const Vec3 within = forward - here.normal.dot(forward) * here.normal;
@@ -76,6 +77,19 @@ SurfacePath SurfacePath::along(const SmoothedSurface& surface, const Vec3& start
     if (forward.dot(next.position - here.position) < kLeastProgress * kLeastProgress * step) break;
     places.push_back(next);
   }
+  return places;
+}
+
+}  // namespace
+
+SurfacePath SurfacePath::along(const SmoothedSurface& surface, const Vec3& start, const Vec3& direction,
+                               double length) {
+  const Vec3 forward = direction.normalized();
+  const double step = spacing(surface.radius());
+  const SurfacePoint first = surface.nearest(start);
+  std::vector<SurfacePoint> places = walk(surface, first, forward, length, step);
+  // Found from far above a rough surface, the first place may lie off it, so that the first step, onto it, leads back.
+  if (places.size() == 1) places = walk(surface, surface.nearest(first.position), forward, length, step);
   return {surface, places};
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -20,14 +21,45 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool is_file(const std::string& name) {
+  return name.ends_with(".json");
+}
+
+/// Those of the program by their names, and files. Each name once, since it is all that tells the rows apart.
 std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given) {
-  std::vector<ComparedDevice> all = compared_devices(), chosen;
-  std::vector<std::string> names;
-  for (const ComparedDevice& device : all) names.push_back(device.name);
-  for (const std::string& name : chosen_names("--devices: got", given, names)) {
-    chosen.push_back(*std::find_if(all.begin(), all.end(), [&](const auto& device) { return device.name == name; }));
+  const std::vector<ComparedDevice> all = compared_devices();
+  std::vector<std::string> known, named;
+  for (const ComparedDevice& device : all) known.push_back(device.name);
+  std::remove_copy_if(given.begin(), given.end(), std::back_inserter(named), is_file);
+  if (!named.empty()) chosen_names("--devices: got", named, known);
+
+  std::vector<ComparedDevice> chosen;
+  for (const std::string& name : given) {
+    if (is_file(name)) chosen.push_back(device_of_file(name));
+    std::copy_if(all.begin(), all.end(), std::back_inserter(chosen),
+                 [&name](const ComparedDevice& device) { return name == "all" || name == device.name; });
+  }
+  std::set<std::string> names;
+  for (const ComparedDevice& device : chosen) {
+    if (!names.insert(device.name).second)
+      throw InputError(
+          fmt::format("--devices: got a second device named \"{}\"; allowed: each name once, and a file is "
+                      "named by what stands before .json",
+                      device.name));
   }
   return chosen;
+}
+
+/// Another device for all rows would leave them their names alone.
+void require_fields_alone(const std::vector<std::string>& overrides) {
+  for (const std::string& override : overrides) {
+    const std::string path = override.substr(0, override.find('='));
+    if (path != "device" && path != "device.type" && path != "device.preset") continue;
+    throw InputError(fmt::format(
+        "--set: got {} with --devices; allowed: fields of the devices, such as device.delay_samples; a device "
+        "of your own goes into --devices, as a file NAME.json",
+        path));
+  }
 }
 
 std::vector<ScenarioText> chosen_scenes(const std::vector<std::string>& given) {
@@ -44,8 +76,10 @@ std::vector<ScenarioText> chosen_scenes(const std::vector<std::string>& given) {
 }
 
 DeviceQuestion question_of(const CompareDevicesOptions& options) {
+  require_fields_alone(options.overrides);
   DeviceQuestion question;
-  question.devices = chosen_devices(options.devices);
+  for (const ComparedDevice& device : chosen_devices(options.devices))
+    question.devices.push_back(with_marked_name(device, options.overrides));
   question.scenes = chosen_scenes(options.scenarios);
   question.algorithms = options.algorithms.empty()
                             ? std::vector<std::string>{"shaped_stiffness", "summation"}

@@ -9,7 +9,7 @@ namespace hapbench {
 
 /// What `compare --devices` is asked.
 struct CompareDevicesOptions {
-  std::vector<std::string> devices;     ///< names, or all
+  std::vector<std::string> devices;     ///< names, or all, and files NAME.json
   std::vector<std::string> scenarios;   ///< none: those of a hand that taps on a wall, in a corner and in a hole
   std::vector<std::string> algorithms;  ///< none: shaped_stiffness and summation
   std::vector<std::string> overrides;

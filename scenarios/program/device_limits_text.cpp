@@ -160,6 +160,9 @@ std::string beyond_text(const FieldLimit& limit) {
 std::string device_limits_text(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
   std::string text = question_text(question) + "\n" + stiffness_table(question, limits).text();
   text += "published: largest stable stiffness of a wall; \"hapbench describe DEVICE\" names its source\n";
+  if (std::any_of(question.devices.begin(), question.devices.end(),
+                  [](const ComparedDevice& device) { return device.name.ends_with('*'); }))
+    text += "*: a preset with numbers of --set, of which nothing is published\n";
   if (std::any_of(limits.begin(), limits.end(), [](const DeviceLimit& limit) { return !limit.limit.astray.empty(); }))
     text += "~: some values below it are unstable, or some beyond it are stable: device_runs.csv\n";
   if (columns_of(question) == 1) return text;

@@ -37,7 +37,8 @@ inline constexpr Column kStabilityMapColumns[] = {
      "4 - 2 lambda B dt / M - lambda K dt^2 / M under leapfrog: below 0 unstable; empty without theory"},
     {"integrator", "", "integrator"},
     {"class_from_far", "",
-     "what became of the motion from a thousand times as far; empty where a map has no such runs"}};
+     "what became of the motion from a thousand times as far; empty where a map has no such runs"},
+    {"overrides", "", "of device and hand, as --set gave them; empty without"}};
 
 /// With one for each limit of the stiffness that is known (stiffness_limits.hpp).
 std::span<const Column> stability_boundary_columns();
@@ -53,7 +54,7 @@ inline constexpr Column kStressColumns[] = {
     {"largest_share_of_bound", "1", "largest ||f_spring|| in units of the law's bound; empty for laws without one"}};
 
 inline constexpr Column kDeviceLimitColumns[] = {
-    {"device", "", "ideal, admittance, or the preset of an impedance device"},
+    {"device", "", "ideal, admittance, the preset of an impedance device (* with numbers of --set), or a file's"},
     {"scenario", "", "name of the scene's file"},
     {"algorithm", "", "force algorithm"},
     {"limit_N_per_m", "N/m", "largest stable K by bisection on runs; empty when no run is stable"},
@@ -69,7 +70,7 @@ inline constexpr Column kDeviceLimitColumns[] = {
     {"astray", "1", "runs unstable below the limit, or stable beyond it"}};
 
 inline constexpr Column kDeviceRunColumns[] = {
-    {"device", "", "ideal, admittance, or the preset of an impedance device"},
+    {"device", "", "ideal, admittance, the preset of an impedance device (* with numbers of --set), or a file's"},
     {"scenario", "", "name of the scene's file"},
     {"algorithm", "", "force algorithm"},
     {"rendering.stiffness_N_per_m", "N/m", "K of the run"},

@@ -133,11 +133,8 @@ int stability(const StabilityOptions& options) {
   if (!options.algorithms.empty() && !has_algorithms) {
     throw InputError("--algorithms: got names; allowed: with --map and --search only");
   }
-  const bool has_scenarios = options.maps.empty() && !options.stress;
-  if (!options.overrides.empty() && !has_scenarios) {
-    throw InputError(fmt::format("--set: got an override; allowed: with scenarios only{}",
-                                 options.maps.empty() ? "" : " (maps take --algorithms and --integrators)"));
-  }
+  if (!options.overrides.empty() && options.stress)
+    throw InputError("--set: got an override; allowed: with scenarios and --map only");
   if (!options.maps.empty()) return stability_maps_command(options);
   if (options.stress) return stability_stress_command(options);
   if (options.search) return stability_search_command(options);
@@ -203,7 +200,8 @@ void add_stability(CommandLine& line) {
       "Stability limits of springs (thesis A.3), stability maps, stress test, search for the worst motion");
   add_experiments(command, *options);
   command.add("--out", options->out, "directory of the results (default: results/out/stability_NAME)");
-  command.add("--set", options->overrides, "override a field: path=value").repeatable();
+  command.add("--set", options->overrides, "override a field: path=value; with --map those of device and hand alone")
+      .repeatable();
   add_output_options(command, options->output);
   command.runs([options] { return stability(*options); }, "maps and searches that were complete are kept");
 }

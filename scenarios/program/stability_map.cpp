@@ -13,6 +13,7 @@
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
+#include "scenarios/studies/stability/map_overrides.hpp"
 
 namespace hapbench {
 namespace {
@@ -23,8 +24,10 @@ std::vector<const StabilityMap*> chosen_maps(const StabilityOptions& options) {
   std::vector<std::string> names;
   for (const StabilityMap& map : stability_maps()) names.emplace_back(map.name);
   std::vector<const StabilityMap*> maps;
-  for (const std::string& name : chosen_names("--map: got", options.maps, names))
+  for (const std::string& name : chosen_names("--map: got", options.maps, names)) {
     maps.push_back(find_stability_map(name));
+    require_overridable(*maps.back(), options.overrides);
+  }
   return maps;
 }
 
@@ -43,7 +46,8 @@ std::vector<const IntegratorEntry*> chosen_integrators(const StabilityOptions& o
 std::vector<MapSubject> chosen_subjects(const StabilityOptions& options) {
   std::vector<MapSubject> subjects;
   for (const std::string& algorithm : options.chosen_algorithms()) {
-    for (const IntegratorEntry* integrator : chosen_integrators(options)) subjects.push_back({algorithm, integrator});
+    for (const IntegratorEntry* integrator : chosen_integrators(options))
+      subjects.push_back({algorithm, integrator, options.overrides});
   }
   return subjects;
 }
@@ -54,14 +58,27 @@ std::string label(const MapSubject& subject) {
              : fmt::format("{} {}", subject.algorithm, subject.integrator->info.name);
 }
 
+/// As --set takes them, on one line.
+std::string overrides_text(const MapSubject& subject) {
+  std::vector<std::string> texts;
+  for (const std::string& override : subject.overrides) {
+    const std::size_t value = override.find('=') + 1;
+    const std::string text = override.substr(value);
+    texts.push_back(override.substr(0, value) + (Json::accept(text) ? parse_json(text).dump() : text));
+  }
+  return one_line(fmt::format("{}", fmt::join(texts, " ")));
+}
+
 void write_points(const fs::path& directory, const StabilityMap& map, const std::vector<MapResult>& results) {
   CsvWriter csv(directory / fmt::format("stability_map_{}.csv", map.name),
                 map_header(kStabilityMapColumns, map.x.name, map.y.name));
   for (const MapResult& result : results) {
+    const std::string overrides = overrides_text(result.subject);
     for (const MapPoint& p : result.points) {
       csv.row(std::string_view(result.subject.algorithm), p.x, p.y, motion_class_name(p.motion), p.lambda, p.margin,
               std::string_view(result.subject.integrator->info.name),
-              p.motion_from_far ? motion_class_name(*p.motion_from_far) : std::string_view());
+              p.motion_from_far ? motion_class_name(*p.motion_from_far) : std::string_view(),
+              std::string_view(overrides));
     }
   }
   csv.finish();
@@ -71,10 +88,11 @@ void write_boundary(const fs::path& directory, const StabilityMap& map, const st
   CsvWriter csv(directory / fmt::format("stability_boundary_{}.csv", map.name),
                 map_header(stability_boundary_columns(), map.x.name, map.y.name));
   for (const MapResult& result : results) {
+    const std::string overrides = overrides_text(result.subject);
     for (const BoundaryPoint& p : result.boundary) {
       csv.row(std::string_view(result.subject.algorithm), p.x, p.analytic, p.simulation, p.difference(),
               std::string_view(p.no_theory), std::string_view(result.subject.integrator->info.name), p.worst_hand,
-              std::span<const std::optional<double>>(p.limits));
+              std::span<const std::optional<double>>(p.limits), std::string_view(overrides));
     }
   }
   csv.finish();
@@ -114,8 +132,9 @@ std::string drawn_classes(const MapResult& result, bool from_far) {
 }
 
 std::string drawing(const MapResult& result) {
-  std::string text =
-      fmt::format("{}: {}\n\n{}", label(result.subject), result.map->summary, drawn_classes(result, false));
+  const std::string overrides = overrides_text(result.subject);
+  std::string text = fmt::format("{}: {}{}\n\n{}", label(result.subject), result.map->summary,
+                                 overrides.empty() ? "" : "\nbut " + overrides, drawn_classes(result, false));
   if (result.map->far)
     text += fmt::format("\nfrom {} times as far:\n\n{}", *result.map->far, drawn_classes(result, true));
   return text + "  . stable  : dying out  ~ vibrating  # diverged  = diverged, first beyond the analytic limit\n\n";
@@ -165,6 +184,7 @@ Json result_json(const MapResult& result) {
   Json json = {{"map", result.map->name},
                {"algorithm", result.subject.algorithm},
                {"integrator", result.subject.integrator->info.name},
+               {"overrides", result.subject.overrides},
                {"boundary", std::move(rows)}};
   for (const MotionClass motion : kMotionClasses) {
     json[std::string(motion_class_name(motion))] = count_of(result, motion);

@@ -59,6 +59,12 @@ def write_recording(file):
     file.write_text(f"t,fx,fy,fz,x,y,z,qx,qy,qz,qw\n{rows}", encoding="ascii")
 
 
+def write_device(file):
+    """The device that its manual shows."""
+    manual = (SOURCE / "device_model/README.md").read_text(encoding="utf-8")
+    file.write_text(re.search(r"^    {\n.*?^    }$", manual, re.M | re.S)[0], encoding="ascii")
+
+
 def compile_law(file):
     """The example in C, from its header in the tree."""
     law = SOURCE / "algorithms/plugin/examples/depth_weighted.c"
@@ -76,6 +82,7 @@ class Bench:
         write_stl(folder / "my.stl")
         shutil.copy(SOURCE / "scenarios/examples/data/wipe.hapi.txt", folder / "log.txt")
         write_recording(folder / "rec.csv")
+        write_device(folder / "mydevice.json")
         compile_law(folder / "depth_weighted.so")
         self.must("new", "mesh", "--from", "my.stl", "--out", "my.json")
         for name in "abc":

@@ -151,6 +151,9 @@ class Plot(Given):
         picture = (maps / "plot_time_step_leapfrog.svg").read_text()
         for text in ("limit, theory", "limit, bisection", "time step [s]", "stiffness [N/m]", "diverged"):
             self.assertIn(text, picture)
+        hapbench("stability", "--map", "z_width", "--size", 2, "--algorithms", "mean", "--set", "device.handle_mass_kg=0.2", "--out", maps, "--quiet")
+        hapbench("plot", maps / "stability_map_z_width.csv", "--out", maps / "own.svg", "--quiet")
+        self.assertIn("with device.handle_mass_kg=0.2", (maps / "own.svg").read_text())
         hapbench("limit", "springs_limited_mean", "--vary", "rendering.stiffness_N_per_m", "--set", "time.steps=300", "--set", "expect={}",
                  "--resolution", 0.1, "--out", limit, "--quiet")
         hapbench("plot", limit, "--quiet")
@@ -163,10 +166,12 @@ class Plot(Given):
 
     def test_devices(self):
         folder = self.root / "devices"
-        hapbench("compare", "tap_wall", "--devices", "ideal,touch", "--set", "time.steps=200", "--resolution", 0.5, "--out", folder, "--quiet")
+        own = self.root / "my$own$.json"
+        own.write_text('{"type": "impedance", "handle_mass_kg": 0.1}')
+        hapbench("compare", "tap_wall", "--devices", f"touch,{own}", "--set", "time.steps=200", "--resolution", 0.5, "--out", folder, "--quiet")
         self.assertEqual(hapbench("plot", folder), f"picture in {folder}/plot.svg\n")
         picture = (folder / "plot.svg").read_text()
-        for text in ("tap wall", "touch", "summation", "published, of a wall", "largest stable stiffness K [N/m]"):
+        for text in ("tap wall", "touch", "my$own$", "summation", "published, of a wall", "largest stable stiffness K [N/m]"):
             self.assertIn(text, picture)
 
     def test_bad_input(self):

@@ -2,14 +2,37 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "device_model/device_presets.hpp"
+#include "scenarios/description/descriptions.hpp"
+#include "scenarios/description/reader.hpp"
+#include "scenarios/description/writer.hpp"
 
 namespace hapbench {
 namespace {
 
 constexpr const char* kStiffness = "rendering.stiffness_N_per_m";
+
+/// What a DevicePreset says of a device; the rest belongs to its controller.
+constexpr std::array<std::string_view, 5> kPresetFields = {"device.handle_mass_kg", "device.viscous_N_s_per_m",
+                                                           "device.coulomb_N", "device.encoder_step_m",
+                                                           "device.force_max_N"};
+
+/// The device of a file that is one, or of a scenario, of which nothing else is looked at.
+DeviceFields read_device(const Json& file) {
+  const bool is_scenario = file.contains("device");
+  if (!is_scenario && !file.contains("type")) {
+    throw InputError(
+        R"(got no device; allowed: an object such as {"type": "impedance", "handle_mass_kg": 0.1}, or a scenario with "device")");
+  }
+  DeviceFields device;
+  Reader reader(is_scenario ? file["device"] : file, is_scenario ? "/device" : "");
+  describe(reader, device);
+  return device;
+}
 
 /// The scene's hand without its mass; null when it has none.
 Json massless_hand(const ScenarioText& scene) {
@@ -39,6 +62,26 @@ std::vector<ComparedDevice> compared_devices() {
                        preset.max_stiffness.value});
   }
   return devices;
+}
+
+ComparedDevice device_of_file(const std::filesystem::path& file) {
+  const ScenarioText text = read_scenario_text(file);
+  LoadedScenario place;
+  place.file = file;
+  place.layers = text.layers;
+  const DeviceFields device = with_file(place, [&text] { return read_device(text.json); });
+  return {file.stem().string(), written(device).dump(), handle_moves_tool(device)};
+}
+
+ComparedDevice with_marked_name(ComparedDevice device, const std::vector<std::string>& overrides) {
+  const bool is_changed = std::any_of(overrides.begin(), overrides.end(), [](const std::string& override) {
+    const std::string_view path = std::string_view(override).substr(0, override.find('='));
+    return std::find(kPresetFields.begin(), kPresetFields.end(), path) != kPresetFields.end();
+  });
+  if (!device.published_stiffness || !is_changed) return device;
+  device.name += '*';
+  device.published_stiffness.reset();
+  return device;
 }
 
 std::vector<std::string> overrides_on(const ComparedDevice& device, const ScenarioText& scene,

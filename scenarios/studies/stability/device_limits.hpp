@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,7 +15,7 @@ namespace hapbench {
 
 /// A device that a scene is tried on.
 struct ComparedDevice {
-  std::string name;                                ///< "ideal", "admittance" or a preset's
+  std::string name;                                ///< "ideal", "admittance", a preset's or its file's
   std::string json;                                ///< the scenario's field "device"
   bool has_place_for_mass = false;                 ///< of a hand that is fixed to the handle
   std::optional<double> published_stiffness = {};  ///< of a preset: the largest stable one of a wall [N/m]
@@ -23,7 +24,15 @@ struct ComparedDevice {
 /// All of them: both devices with a virtual mass as they are by default, then the presets.
 std::vector<ComparedDevice> compared_devices();
 
-/// What is compared. The overrides hold for all runs, also for fields of the device.
+/// One of a user's own, named after its file: an object with the fields of a scenario's device, or a scenario with such
+/// an object as its `device`. Throws InputError with file and pointer.
+ComparedDevice device_of_file(const std::filesystem::path& file);
+
+/// A preset one of whose own numbers is overridden is another device: its name ends in '*', and nothing is published of
+/// it. Other devices stay as they are.
+ComparedDevice with_marked_name(ComparedDevice device, const std::vector<std::string>& overrides);
+
+/// What is compared. The overrides hold for all runs, also for fields of the devices.
 struct DeviceQuestion {
   std::vector<ComparedDevice> devices;
   std::vector<ScenarioText> scenes;

@@ -214,6 +214,7 @@ constexpr StabilityMap kMaps[] = {
      friction_scene,
      MapEdge::smallest_at_rest,
      1000.0,
+     true,
      true},
 };
 

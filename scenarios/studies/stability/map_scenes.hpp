@@ -41,6 +41,8 @@ struct StabilityMap {
   std::optional<double> far = std::nullopt;
   /// True where dry friction stops the handle for good: there what still moves in the end, however little, vibrates.
   bool friction_stops = false;
+  /// True where the axes are in units of numbers of the device, which then cannot be other ones.
+  bool in_units_of_device = false;
 
   /// True when y is the K of the wall, which limits of the stiffness are about.
   bool has_stiffness_as_y() const noexcept { return std::string_view(y.name) == kStiffnessAxis; }

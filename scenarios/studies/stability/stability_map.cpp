@@ -8,6 +8,7 @@
 #include "device_model/theory/eigenvalue_edge.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/stability/device_loop.hpp"
+#include "scenarios/studies/stability/map_overrides.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
 #include "sim/core/bisection.hpp"
 
@@ -67,7 +68,7 @@ bool is_alone(const Scenario& scenario) {
 Scenario scene(const StabilityMap& map, const MapSubject& subject, double x, double y) {
   Scenario scenario = map.scene(x, y, subject.algorithm);
   scenario.integrator.type = subject.integrator;
-  return scenario;
+  return subject.overrides.empty() ? scenario : with_overrides(map, std::move(scenario), subject.overrides);
 }
 
 MapPoint map_point(const StabilityMap& map, const MapSubject& subject, double x, double y) {
@@ -135,14 +136,21 @@ void add_loop_theory(const StabilityMap& map, const MapSubject& subject, double 
   }
 }
 
+/// True where motors keep every run bounded, however unstable it is.
+bool saturates(const Scenario& scenario) {
+  const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
+  return device != nullptr && device->force_max.has_value();
+}
+
 BoundaryPoint boundary_point(const StabilityMap& map, const MapSubject& subject, double x) {
   BoundaryPoint point;
   point.x = x;
+  const Scenario start = scene(map, subject, x, map.y.low);
+  const bool is_of_bounded = map.edge == MapEdge::largest_bounded && !saturates(start);
   point.simulation = edge_in_y(map, kMapPrecision, [&](double y) {
     const MotionClass motion = probe(map, scene(map, subject, x, y)).motion;
-    return map.edge == MapEdge::largest_bounded ? motion != MotionClass::diverged : comes_to_rest(motion);
+    return is_of_bounded ? motion != MotionClass::diverged : comes_to_rest(motion);
   });
-  const Scenario start = scene(map, subject, x, map.y.low);
   const Probe run = probe(map, start);
   if (!run.linear) {
     point.no_theory = "the force is not -K S p";

@@ -47,6 +47,9 @@ struct BoundaryPoint {
 struct MapSubject {
   std::string algorithm;
   const IntegratorEntry* integrator = &kLeapfrog;
+  /// Of device and hand (map_overrides.hpp). With motors that saturate, the edge of a map of bounded runs becomes that
+  /// of runs that come to rest: they all stay bounded.
+  std::vector<std::string> overrides = {};
 };
 
 struct MapResult {
@@ -60,8 +63,8 @@ struct MapResult {
 /// The map of one algorithm and integrator on a grid of size x size. The same whatever the number of threads.
 ///
 /// The theory applies where the force of the first row is -K S p: then the springs are the linear system whose step the
-/// limit is about, alone or with a device and a hand (device_loop.hpp). Precondition: the algorithm is known, size
-/// >= 1.
+/// limit is about, alone or with a device and a hand (device_loop.hpp). Precondition: the algorithm is known, the map
+/// takes the overrides (require_overridable), size >= 1.
 MapResult stability_map(const StabilityMap& map, const MapSubject& subject, std::size_t size,
                         const JobOptions& options);
 

@@ -175,6 +175,12 @@ class MapFile:
         looks = zip(names, cycle(LIMIT_LOOKS))
         return [(name, look) for name, look in looks if (np.nan_to_num(numbers(self.boundary, name)) > 0).any()]
 
+    @property
+    def overrides(self):
+        """Lines that say which fields of device and hand are not the map's own; none where all are."""
+        text = self.rows[0].get("overrides") or ""
+        return [line.replace("$", r"\$") for line in wrap(text.replace(",", ", "), 110, break_on_hyphens=False)]
+
     def limit_label(self, column):
         name = column.removesuffix(f"_{self.y_name}")
         return LIMITS.get(name, name.replace("_", " "))
@@ -282,10 +288,12 @@ def draw_stability_map(found):
     groups = alike(found, present)
     columns = min(4, max(2, len(groups)))
     lines = -(-len(groups) // columns)
-    heights = (2.5, 0.6 if found.limits else 0.25, 0.5 + 1.65 * lines + 0.6 * (columns == 2))
+    heights = (2.5 + 0.14 * len(found.overrides), 0.6 if found.limits else 0.25, 0.5 + 1.65 * lines + 0.6 * (columns == 2))
     figure = style.plt.figure(figsize=(style.WIDTH, sum(heights)))
     above, between, below = figure.subfigures(3, 1, height_ratios=heights)
     widths = [1, 1, 0.62] if found.has_theory else [2, 0.62]
+    if found.overrides:
+        above.suptitle("\n".join(["with " + found.overrides[0], *found.overrides[1:]]), fontsize=7)
     draw_limits(above.subplots(1, len(widths), gridspec_kw={"width_ratios": widths}), found, present)
     class_legend(between, [found], loc="center")
     draw_groups(below, found, groups, lines, columns)

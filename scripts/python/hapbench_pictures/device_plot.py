@@ -32,7 +32,8 @@ def draw_devices(results):
             ax.vlines(list(published.values()), places - 0.4, places + 0.4, color=BLACK, lw=1.2,
                       ls=PUBLISHED_LINE["ls"], label="published, of a wall")
         ax.set(title=scene.replace("_", " "), xscale="log", xlabel="largest stable stiffness K [N/m]",
-               yticks=range(len(devices)), yticklabels=devices, ylim=(len(devices) - 0.4, -0.6))
+               yticks=range(len(devices)), yticklabels=[name.replace("$", r"\$") for name in devices],
+               ylim=(len(devices) - 0.4, -0.6))
     # A legend of the figure takes no room by itself.
     figure.get_layout_engine().set(rect=(0, 0, 1, 1 - LEGEND / figure.get_figheight()))
     handles, labels = axes[0, 0].get_legend_handles_labels()

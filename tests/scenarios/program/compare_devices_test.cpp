@@ -87,6 +87,43 @@ TEST_F(CompareDevices, OverridesHoldForEveryDevice) {
   EXPECT_NE(run.out.find("damping_ratio zeta = 0.5 and rendering.mass_kg m = 0.3"), std::string::npos) << run.out;
 }
 
+TEST_F(CompareDevices, TakesADeviceOfOnesOwn) {
+  // touch, in numbers: the answers have to be the same.
+  const std::string device =
+      R"({"type": "impedance", "handle_mass_kg": 0.045, "viscous_N_s_per_m": 0.1, "coulomb_N": 0.2,
+          "encoder_step_m": 0.055e-3, "force_max_N": 3.3})";
+  test::write_plainly(directory_ / "mine.json", device);
+  test::write_plainly(directory_ / "scene.json", R"({"extends": "press.json", "device": )" + device + "}");
+  const ProgramRun run =
+      compare("touch," + file("mine.json") + "," + file("scene.json"), "out", {"--algorithms", "summation", "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const Json rows = run.json()["limits"];
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[1]["device"], "mine");
+  EXPECT_EQ(rows[2]["device"], "scene");
+  for (const Json& row : rows) EXPECT_EQ(row["limit_N_per_m"], rows[0]["limit_N_per_m"]);
+  EXPECT_EQ(rows[0]["published_N_per_m"], 400.0);
+  EXPECT_EQ(rows[1]["published_N_per_m"], nullptr);
+}
+
+TEST_F(CompareDevices, MarksAPresetWithOtherNumbers) {
+  const Words question = {"--algorithms", "mean", "--resolution", "0.5"};
+  const auto with = [&](const char* override) {
+    Words words = question;
+    words.insert(words.end(), {"--set", override});
+    return compare("touch", "out", words);
+  };
+  const ProgramRun changed = with("device.coulomb_N=0");
+  EXPECT_NE(changed.out.find("\ntouch*"), std::string::npos) << changed.out;
+  EXPECT_NE(changed.out.find("*: a preset with numbers of --set"), std::string::npos) << changed.out;
+  EXPECT_EQ(lines_of(test::read_file(directory_ / "out/device_limits.csv"))[1].find("touch*,press,mean,"), 0u);
+  EXPECT_EQ(changed.out.find("400"), std::string::npos) << changed.out;
+  // The delay is the controller's: what is published of the device stays.
+  const ProgramRun delayed = with("device.delay_samples=1");
+  EXPECT_EQ(delayed.out.find("touch*"), std::string::npos) << delayed.out;
+  EXPECT_NE(delayed.out.find("400"), std::string::npos) << delayed.out;
+}
+
 TEST_F(CompareDevices, RefusesBadInput) {
   const auto refused = [&](const Words& words, const char* said) {
     const ProgramRun run = hapbench(words);
@@ -104,6 +141,19 @@ TEST_F(CompareDevices, RefusesBadInput) {
   refused({"compare", scene, "--devices", "touch", "--set", "time.step_s=0.02", "--out", out},
           "/time/step_s: got 0.02; allowed for --vibration");
   refused({"compare", "--out", out}, "compare: scenarios is required");
+  refused({"compare", scene, "--devices", "touch", "--set", "device.preset=falcon", "--out", out},
+          "--set: got device.preset with --devices; allowed: fields of the devices");
+  const auto refuses_file = [&](const char* name, const char* text, const char* said) {
+    test::write_plainly(directory_ / name, text);
+    refused({"compare", scene, "--devices", file(name) + ",touch", "--out", out}, said);
+  };
+  refuses_file("a.json", R"({"type": "impedance", "handle_mas_kg": 0.1})",
+               "a.json: /handle_mas_kg: unknown field; allowed here: ");
+  refuses_file("a.json", R"({"time": {"step_s": 0.001}})", "a.json: got no device; allowed: ");
+  refuses_file("a.json", R"({"extends": "press.json", "device": {"type": "impedance", "handle_mass_kg": 0}})",
+               "a.json: /device/handle_mass_kg: got 0");
+  refuses_file("touch.json", R"({"type": "ideal"})", "--devices: got a second device named \"touch\"");
+  refused({"compare", scene, "--devices", file("none.json"), "--out", out}, "none.json: ");
 }
 
 }  // namespace

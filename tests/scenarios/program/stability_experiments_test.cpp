@@ -29,14 +29,15 @@ TEST_F(StabilityExperiments, MapsAreWrittenPointByPointAndEdgeByEdge) {
                                             "stability_map_device.csv", "stability_map_wedge.csv"}));
   const auto points = lines_of(test::read_file(directory_ / "out/stability_map_wedge.csv"));
   EXPECT_EQ(points[0],
-            "algorithm,wedge_angle_rad,stiffness_N_per_m,class,lambda_max,stability_margin,integrator,class_from_far");
+            "algorithm,wedge_angle_rad,stiffness_N_per_m,class,lambda_max,stability_margin,integrator,class_from_far,"
+            "overrides");
   EXPECT_EQ(points.size(), 1u + 2 * 9);
   const auto edges = lines_of(test::read_file(directory_ / "out/stability_boundary_wedge.csv"));
   EXPECT_EQ(edges[0],
             "algorithm,wedge_angle_rad,analytic_stiffness_N_per_m,simulation_stiffness_N_per_m,relative_difference,"
             "no_theory,integrator,worst_hand_stiffness_N_per_m,passive_colgate_schenkel_stiffness_N_per_m,"
             "passive_with_delay_stiffness_N_per_m,stable_gil_hulin_stiffness_N_per_m,"
-            "passive_abbott_okamura_stiffness_N_per_m,exact_undamped_handle_stiffness_N_per_m");
+            "passive_abbott_okamura_stiffness_N_per_m,exact_undamped_handle_stiffness_N_per_m,overrides");
   ASSERT_EQ(edges.size(), 1u + 2 * 3);
   for (std::size_t i = 1; i < edges.size(); ++i) {
     const auto cells = cells_of(edges[i]);
@@ -56,7 +57,51 @@ TEST_F(StabilityExperiments, WhatHasNoTheorySaysWhyAndHasRunsFromFar) {
   EXPECT_EQ(cells_of(edges[1])[2], "");
   EXPECT_NE(edges[1].find("not linear"), std::string::npos) << edges[1];
   const auto points = lines_of(test::read_file(directory_ / "out/stability_map_friction_quantisation.csv"));
-  EXPECT_EQ(cells_of(points[1]).back(), "diverged");
+  EXPECT_EQ(cells_of(points[1])[7], "diverged");
+}
+
+TEST_F(StabilityExperiments, MapsAreOfADeviceOfOnesOwn) {
+  const auto edges = [&](const Names& overrides) {
+    Names words = {"stability", "--map", "delay", "--algorithms", "summation", "--size", "3", "--json", "--out", out_};
+    for (const std::string& override : overrides) words.insert(words.end(), {"--set", override});
+    const ProgramRun run = hapbench(words);
+    EXPECT_EQ(run.status, 0) << run.err;
+    return run.json()[0];
+  };
+  const Json own = edges({}), same = edges({"device.handle_mass_kg=0.1"}), heavy = edges({"device.handle_mass_kg=0.2"});
+  EXPECT_EQ(heavy["overrides"], Json::array({"device.handle_mass_kg=0.2"}));
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(same["boundary"][i]["analytic"], own["boundary"][i]["analytic"]);
+    EXPECT_GT(heavy["boundary"][i]["analytic"], own["boundary"][i]["analytic"]);
+    EXPECT_EQ(same["boundary"][i]["simulation"], own["boundary"][i]["simulation"]);
+    // As of the map's own device: both are linear.
+    EXPECT_LE(std::abs(heavy["boundary"][i]["relative_difference"].get<double>()), 0.01);
+  }
+  const ProgramRun drawn = hapbench({"stability", "--map", "z_width", "--algorithms", "mean", "--size", "3", "--out",
+                                     out_, "--set", "device={\"type\": \"impedance\",\n\"preset\": \"omega.3\"}"});
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_NE(drawn.out.find(R"(but device={"type":"impedance","preset":"omega.3"})"), std::string::npos) << drawn.out;
+  const std::string table = test::read_file(directory_ / "out/stability_boundary_z_width.csv");
+  EXPECT_NE(table.find(R"("device={""type"":""impedance"",""preset"":""omega.3""}")"), std::string::npos) << table;
+  EXPECT_NE(table.find("not linear"), std::string::npos) << table;
+}
+
+TEST_F(StabilityExperiments, MapsRefuseOverridesThatAreNotTheirs) {
+  const auto refused = [&](const char* map, const char* override, const char* said) {
+    const ProgramRun run = hapbench({"stability", "--map", map, "--size", "2", "--set", override, "--out", out_});
+    EXPECT_EQ(run.status, 2) << override;
+    EXPECT_NE(run.err.find(said), std::string::npos) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(out_));
+  };
+  refused("wedge", "device.handle_mass_kg=1", "for the map \"wedge\"; allowed: for \"z_width\", \"delay\"");
+  refused("friction_quantisation", "device.encoder_step_m=1e-5", "for the map \"friction_quantisation\"; allowed: for");
+  refused("delay", "device.delay_samples=1", "which delay_samples of the map \"delay\" varies");
+  refused("delay", R"(device={"type":"impedance","preset":"touch"})", "got device, which delay_samples");
+  refused("hand", "hand.stiffness_N_per_m=1", "which hand_stiffness_N_per_m of the map");
+  refused("z_width", "rendering.mass_kg=1", "allowed: fields of device and hand");
+  refused("z_width", "device.preset=touch", "allowed: device as a whole");
+  refused("z_width", "device={\"type\":\"ideal\"}", "allowed: \"impedance\"");
+  refused("z_width", "device.handle_mas_kg=1", "map z_width: /device/handle_mas_kg: unknown field; allowed here: ");
 }
 
 TEST_F(StabilityExperiments, OneAlgorithmsMapIsDrawn) {
