@@ -17,7 +17,7 @@ struct RunHeading {
   bool number = true;
 };
 inline constexpr RunHeading kRunHeadings[] = {
-    {"outcome", {"outcome", nullptr}, false},     {"cont\n%", {"contact_share"}},
+    {"outcome", {"outcome", nullptr}, false},     {"con\n%", {"contact_share"}},
     {"land.\nmax N", {"landing_force_max_N"}},    {"mean\nN", {"force_mean_in_contact_N"}},
     {"step\np99 N", {"force_step_p99_N"}},        {">30Hz\nrms N", {"force_rms_above_30Hz_N"}},
     {"rev.\n1/s", {"force_reversals_per_s"}},     {"depth\nmm", {"depth_max_m"}},

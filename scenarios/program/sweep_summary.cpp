@@ -33,7 +33,7 @@ std::string runs_text(const SweepPlan& plan, const std::vector<std::string>& row
     double factor;
   };
   // As the tables of run and compare have them (run_table.cpp).
-  static constexpr Metric kMetrics[] = {{"contact_share", "cont\n%", 100.0},
+  static constexpr Metric kMetrics[] = {{"contact_share", "con\n%", 100.0},
                                         {"landing_force_max_N", "land.\nmax N", 1.0},
                                         {"force_mean_in_contact_N", "mean\nN", 1.0},
                                         {"force_step_p99_N", "step\np99 N", 1.0},
