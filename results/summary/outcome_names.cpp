@@ -7,7 +7,7 @@ namespace hapbench {
 namespace {
 
 /// In the order of the enumeration.
-constexpr std::array<std::string_view, 6> kNames = {"completes",  "leaves_hole",  "tool_horizontal",
+constexpr std::array<std::string_view, 7> kNames = {"completes",  "leaves_hole",  "tool_horizontal", "not_dragged",
                                                     "no_contact", "lost_contact", "diverges"};
 static_assert(static_cast<std::size_t>(Outcome::diverges) == kNames.size() - 1);
 

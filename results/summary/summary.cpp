@@ -104,6 +104,8 @@ ordered_json provenance_json(const Provenance& p, const std::string& scenario_ha
 }  // namespace
 
 ordered_json summary_json(const RunSummary& run) {
+  std::vector<std::string> warnings = run.file_warnings;
+  warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
   ordered_json json = {{"name", run.name},
                        {"algorithm", run.algorithm},
                        {"outcome", outcome_name(run.result.outcome)},
@@ -111,7 +113,7 @@ ordered_json summary_json(const RunSummary& run) {
                        {"steps", run.result.rows},
                        {"duration_s", number_or_null(run.duration)},
                        {"divergence", divergence_json(run.result)},
-                       {"warnings", run.warnings},
+                       {"warnings", warnings},
                        {"metrics", metrics_json(run.metrics)},
                        {"passivity", metrics_json(metric_list(run.passivity))}};
   if (run.tool) json["tool"] = tool_json(*run.tool);

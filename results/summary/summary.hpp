@@ -54,6 +54,8 @@ struct RunSummary {
   std::optional<std::vector<PlaceMetrics>> targets;        ///< of a tracking hand
   std::optional<ToolSummary> tool;                         ///< of a tool that is no cylinder
   std::vector<std::string> warnings;                       ///< what may make the numbers mislead, a sentence each
+  /// About the files that the scenario names, each with its pointer; summary.json has them before the others.
+  std::vector<std::string> file_warnings;
   RunWork work;
   Provenance provenance;
   std::string scenario_hash;  ///< of the effective scenario

@@ -16,7 +16,7 @@ std::string default_metrics_text() {
 }
 
 bool is_failure(std::string_view outcome) {
-  constexpr std::string_view kFailures[] = {"diverges", "no_contact", "lost_contact"};
+  constexpr std::string_view kFailures[] = {"diverges", "not_dragged", "no_contact", "lost_contact"};
   return std::find(std::begin(kFailures), std::end(kFailures), outcome) != std::end(kFailures);
 }
 

@@ -19,7 +19,8 @@ inline constexpr std::string_view kFidelityMetrics[] = {"fidelity.force_error_re
 /// kDefaultMetrics, separated by commas.
 std::string default_metrics_text();
 
-/// True for an outcome after which a run's numbers say nothing about its algorithm: diverges, no_contact, lost_contact.
+/// True for an outcome after which a run's numbers say nothing about its algorithm: diverges, not_dragged, no_contact,
+/// lost_contact.
 bool is_failure(std::string_view outcome);
 
 /// The runs of a finished batch by the metrics, names of metric_list (default: kFidelityMetrics if every

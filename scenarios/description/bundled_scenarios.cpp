@@ -48,6 +48,9 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
   }
   if (fs::exists(file.string() + ".json", error))
     throw InputError(fmt::format("{}: no such file and no bundled scenario; there is {}.json", argument, argument));
+  if (argument.find('=') != std::string::npos)
+    throw InputError(
+        fmt::format("{}: no such file and no bundled scenario; a field is overridden by --set {}", argument, argument));
   const std::string stem = fs::path(argument).stem().string();
   throw InputError(fmt::format("{}: no such file and no bundled scenario{}; \"hapbench list\" shows them", argument,
                                nearest_name_hint(stem, names)));

@@ -60,10 +60,12 @@ CheckedMesh connect(const TriangleSoup& soup, const fs::path& file) {
   }
 }
 
+/// With the file's name alone: they go into results, which do not depend on where the file lies.
 std::vector<std::string> warnings_about(const MeshFindings& found, const fs::path& file) {
   std::vector<std::string> warnings;
   const auto warn = [&](std::size_t count, const char* text) {
-    if (count > 0) warnings.push_back(one_line(file.string() + ": " + fmt::format(fmt::runtime(text), count)));
+    if (count > 0)
+      warnings.push_back(one_line(file.filename().string() + ": " + fmt::format(fmt::runtime(text), count)));
   };
   if (!found.open_edges.empty()) {
     Box box{found.open_edges[0], found.open_edges[0]};
@@ -75,7 +77,14 @@ std::vector<std::string> warnings_about(const MeshFindings& found, const fs::pat
                      a.x(), b.x(), a.y(), b.y(), a.z(), b.z())
              .c_str());
   }
-  warn(found.crowded_edges, "the surface is cut along edges with more than two faces: {}");
+  if (!found.crowded_edges.empty()) {
+    const Vec3 p = 1e3 * found.crowded_edges[0];
+    warn(found.crowded_edges.size(),
+         fmt::format("the surface is cut along edges with more than two faces: {{}}, the first at ({:.3g}, {:.3g}, "
+                     "{:.3g}) mm",
+                     p.x(), p.y(), p.z())
+             .c_str());
+  }
   warn(found.degenerate_triangles, "faces left out, two of their corners being the same: {}");
   warn(found.rewound_triangles, "faces turned, which were wound against their neighbours: {}");
   warn(found.inside_out_parts, "closed parts turned, which were inside out: {}");

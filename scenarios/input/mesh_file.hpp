@@ -32,7 +32,8 @@ class MeshFile {
   /// file and says why it is refused.
   MeshFile(std::string_view bytes, const std::filesystem::path& file, const MeshSampling& sampling);
 
-  /// What is odd about the mesh: it is open, or its winding had to be changed. Each names the file.
+  /// What is odd about the mesh: it is open, or its winding had to be changed. Each names the file, without
+  /// its directory.
   const std::vector<std::string>& warnings() const { return warnings_; }
   /// Middles of the edges where the surface ends [m]; none when it is closed.
   const std::vector<Vec3>& open_edges() const;

@@ -223,7 +223,7 @@ void add_compare(CommandLine& line) {
           .add(
               "--devices", options->devices,
               "instead: the largest stiffness that each of these devices renders stably and quietly: ideal, admittance, "
-              "presets of \"hapbench list presets\", or all")
+              "presets of \"hapbench list presets\", or all; NAME.json is a file with a device of your own")
           .comma_separated();
   command
       .add("--vibration", options->vibration,
@@ -261,7 +261,7 @@ void add_compare(CommandLine& line) {
       "Files go to OUT/[SCENARIO/]ALGORITHM[/seed_K], the parts in brackets where there are several; comparison.csv "
       "for each scenario. With several scenarios or seeds, or --by, a league: rank, ratio to the best, mean and spread "
       "over the seeds, whether a difference is more than the spread, and where each algorithm wins and fails; all of "
-      "it in league.csv. A run fails that diverges, has no contact or loses it, or ends otherwise than its scenario "
+      "it in league.csv. A run fails that diverges, has no contact or loses it, is not dragged, or ends otherwise than its scenario "
       "allows; it ranks behind all others. What an earlier comparison left in OUT is removed, other files are not.\n"
       "With --devices K is bisected as \"hapbench limit\" does it, for each device, scene and algorithm; the published "
       "stiffness stands beside it, and below it each K over that of the first scene with the first algorithm, beside 1 / "

@@ -221,6 +221,16 @@ std::vector<Description> describe_field(const std::string& path) {
   return meanings;
 }
 
+/// Fields of that name in any section: "torque" for record.torque.
+std::vector<Description> describe_fields_called(const std::string& name) {
+  std::vector<Description> meanings;
+  for (const std::string& path : scenario_field_paths()) {
+    if (!path.ends_with("." + name)) continue;
+    for (Description& field : describe_field(path)) meanings.push_back(std::move(field));
+  }
+  return meanings;
+}
+
 Description describe_name(const std::string& name) {
   if (name == "stability") return describe_stability();
   if (name == "choices_schema") return {json_text(choices_schema()), choices_schema()};
@@ -234,6 +244,10 @@ Description describe_name(const std::string& name) {
   if (const ModelInfo* stage = find_stage(name)) add(describe_model("stage", *stage));
   if (const IntegratorEntry* entry = find_integrator(name)) add(describe_model("integrator", entry->info));
   if (const DevicePreset* preset = find_device_preset(name)) add(describe_preset(*preset));
+  if (name == "algorithm") {
+    for (Description& field : describe_field("rendering.algorithm")) add(std::move(field));
+    meanings.back().text += wrapped("\"hapbench list algorithms\" shows them with what they do");
+  }
   for (Description& result : describe_results(name)) add(std::move(result));
   const std::vector<Description> fields = describe_field(name);
   for (const Description& field : fields) add(field);
@@ -247,6 +261,7 @@ Description describe_name(const std::string& name) {
   for (Description& word : describe_word(name)) add(std::move(word));
   if (meanings.empty()) meanings = describe_heading(name);
   if (meanings.empty()) meanings = describe_thesis(name);
+  if (meanings.empty()) meanings = describe_fields_called(name);
   if (!meanings.empty()) return joined(meanings);
   for (const BundledScenario& bundled : bundled_scenarios()) {
     if (bundled.name == name) return describe_scenario(bundled.file);

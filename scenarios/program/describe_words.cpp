@@ -27,6 +27,9 @@ constexpr Word kWords[] = {
     {"completes", kOutcome, "all steps are done, or the hand has finished its task"},
     {"leaves_hole", kOutcome, "the tip centre rose above height 0"},
     {"tool_horizontal", kOutcome, "the tool's axis reached the horizontal plane"},
+    {"not_dragged", kOutcome,
+     "all steps are done, but a tool that a hand of type drag was to lead further than two of its widths came less than "
+     "one along the path"},
     {"no_contact", kOutcome, "all steps are done, and the tool never touched the environment"},
     {"lost_contact", kOutcome,
      "all steps are done, but a freely moving tool ended further from the environment's box than the box is wide and the "

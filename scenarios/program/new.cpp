@@ -75,6 +75,7 @@ int write_new(const NewOptions& options) {
   require_writable_directory(directory.empty() ? "." : directory);
   write_file_atomically(out, start.text);
 
+  print_warnings(start.warnings);
   const std::vector<FieldMeaning> meanings = field_meanings(json);
   std::string text = fmt::format("{}: {}\n", out.string(), kind.summary);
   for (const std::string& note : start.notes) text += note + "\n";

@@ -112,7 +112,7 @@ void add_plot(CommandLine& line) {
   command.add("--to", options->to, "time up to which to draw [s]");
   command.flag("--no-sketch", options->no_sketch, "the picture alone");
   command.footer(
-      "--y takes force, spring, measured, input, reference, force_error, depth, ratio, contacts, rendered, speed, x, y, z, path, energy, "
+      "--y takes force, spring, measured, input, reference, force_error, torque (needs record.torque), depth, ratio, contacts, rendered, speed, x, y, z, path, energy, "
       "input_energy, or any column of the runs' tables; by default force, depth, ratio, contacts, path, and energy "
       "where it was recorded.\n"
       "A comparison's folder stands for all its runs. Every run has the colour of its algorithm, runs of one algorithm "

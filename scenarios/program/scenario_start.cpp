@@ -8,7 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/program/drag_start.hpp"
 #include "scenarios/run/environment_points.hpp"
+#include "scenarios/run/quantity_text.hpp"
 #include "sim/core/box.hpp"
 
 namespace hapbench {
@@ -47,7 +49,10 @@ const std::string kPress = R"(
     }
   },)";
 const std::string kDrag = R"(
-  "hand": {"type": "drag", "force_N": 1, "direction": [1, 0, 0], "speed_m_per_s": 0.005, "tilt_rad": 0.3},)";
+  "hand": {
+    "type": "drag", "force_N": 1, "direction": [@dx@, @dy@, 0], "speed_m_per_s": @speed@, "tilt_rad": 0.3,
+    "smoothing_m": @smoothing@
+  },)";
 const std::string kTurn = R"(
   "motion": {"orientation": {"tilt_rad": {"type": "sine", "mean": 0.3, "amplitude": 0.2, "period_s": 1}}},
   "hand": {"type": "force", "z_N": -1},)";
@@ -74,7 +79,7 @@ const std::string kRendering = R"(
 constexpr double kStep = 0.0005;          ///< [s]
 constexpr double kToothLength = 0.01;     ///< [m]
 constexpr double kClearance = 0.001;      ///< between tool and surface at the start [m]
-constexpr double kDragSpeed = 0.005;      ///< as in kDrag [m/s]
+constexpr double kDragSpeed = 5.0;        ///< in diameters of the tool [1/s]
 constexpr double kPressedBelow = 0.0035;  ///< the hand's target, 1 N below the surface with kPress [m]
 
 /// What stands for @name@.
@@ -117,6 +122,17 @@ Vec3 middle_of_the_top(const std::vector<SurfacePoint>& points, double top, doub
   return nearest->position;
 }
 
+/// The highest of the points that lie above or below the box's middle, to within `aside`; where there are none, as in a
+/// ring, the middle.
+Vec3 top_of_the_middle(const std::vector<SurfacePoint>& points, const Box& box, double aside) {
+  const Vec3 middle = 0.5 * (box.min + box.max);
+  Vec3 top(middle.x(), middle.y(), box.min.z());
+  for (const SurfacePoint& point : points) {
+    if ((point.position - middle).head<2>().norm() <= aside && point.position.z() > top.z()) top = point.position;
+  }
+  return top.z() > box.min.z() ? top : middle;
+}
+
 double guessed_scale(double longest) {
   double best = 1.0;
   const auto misfit = [longest](double scale) { return std::abs(std::log(longest * scale / kToothLength)); };
@@ -145,11 +161,10 @@ class Start {
     } else if (has("@x@")) {
       place_tool();
     }
-    if (has(kDrag)) choose_drag_steps();
     if (has(kStroke)) choose_stroke_steps();
   }
 
-  ScenarioStart result() const { return {text(), notes_}; }
+  ScenarioStart result() const { return {text(), notes_, warnings_}; }
 
  private:
   bool has(const std::string& part) const { return sections_.find(part) != std::string::npos; }
@@ -197,13 +212,26 @@ class Start {
     longest_ = (box.max - box.min).maxCoeff();
     choose_tool(longest_);
     const Vec3 top = middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
-    const double touching = top.z() + 0.5 * diameter_;  // centre of the round tip
-    values_["x"] = to_micrometres(top.x());
-    values_["y"] = to_micrometres(top.y());
-    values_["z"] = to_micrometres(touching + kClearance);
-    values_["z_pressed"] = to_micrometres(touching - kPressedBelow);
+    values_["z_pressed"] = to_micrometres(top.z() + 0.5 * diameter_ - kPressedBelow);
+    if (has(kDrag)) {
+      notes_.push_back(fmt::format("{} points", shell.size()));
+      return choose_way(shell, {start_above(top), start_above(top_of_the_middle(shell, box, diameter_))});
+    }
+    start_at(start_above(top));
     notes_.push_back(fmt::format("{} points; the tool starts 1 mm above the highest, at x = {:.4g}, y = {:.4g} mm",
                                  shell.size(), 1e3 * top.x(), 1e3 * top.y()));
+  }
+
+  /// Where the tool starts whose round tip is to land at `place`.
+  Vec3 start_above(const Vec3& place) const {
+    return {to_micrometres(place.x()), to_micrometres(place.y()),
+            to_micrometres(place.z() + 0.5 * diameter_ + kClearance)};
+  }
+
+  void start_at(const Vec3& place) {
+    values_["x"] = place.x();
+    values_["y"] = place.y();
+    values_["z"] = place.z();
   }
 
   /// Above the plane's middle. Tools are about as long as the teeth they work on.
@@ -224,10 +252,29 @@ class Start {
         longest, scale, 1e3 * longest * scale));
   }
 
-  /// To land, and a quarter of the object's length.
-  void choose_drag_steps() {
-    const double seconds = rounded(0.5 + 0.25 * longest_ / kDragSpeed);
-    values_["steps"] = static_cast<std::int64_t>(std::ceil(seconds / kStep));
+  /// Four fifths of the way to where the surface ends: the edge is another scene.
+  void choose_way(const std::vector<SurfacePoint>& points, const std::vector<Vec3>& starts) {
+    const DragStart drag = choose_drag(PointShell(points, 0.0), starts, 0.5 * diameter_, 0.25 * longest_);
+    const double way = 0.8 * drag.room, speed = kDragSpeed * diameter_;
+    const bool has_room = way >= diameter_;
+    start_at(drag.position);
+    values_["dx"] = static_cast<int>(drag.direction.x());
+    values_["dy"] = static_cast<int>(drag.direction.y());
+    values_["speed"] = rounded(speed);
+    values_["smoothing"] = drag.smoothing;
+    const double seconds = (has_room ? way : 0.25 * longest_) / speed;
+    values_["steps"] = static_cast<std::int64_t>(std::ceil(rounded(seconds) / kStep));
+    if (!has_room) {
+      warnings_.push_back(
+          fmt::format("no way longer than {} was found over the surface along x or y, from its highest place or its "
+                      "middle: set hand.path_m to points on the surface, or initial.position_m and hand.direction",
+                      length_text(drag.room)));
+      return;
+    }
+    notes_.push_back(fmt::format(
+        "dragged from x = {:.4g}, y = {:.4g} mm on along [{}, {}, 0] for {}; the surface ends or turns after {}",
+        1e3 * drag.position.x(), 1e3 * drag.position.y(), values_["dx"].dump(), values_["dy"].dump(), length_text(way),
+        length_text(drag.room)));
   }
 
   void choose_stroke_steps() {
@@ -248,10 +295,20 @@ class Start {
   fs::path directory_;
   double diameter_ = 0.001;  ///< [m]
   double longest_ = 0.0;     ///< edge of the environment's box [m]
-  Values values_ = {{"x", 0.0},           {"y", 0.0},          {"z", 0.0},
-                    {"z_pressed", 0.0},   {"scale", 0.001},    {"tool_scale", 0.001},
-                    {"spacing", nullptr}, {"diameter", 0.001}, {"length", 0.01}};
-  std::vector<std::string> notes_;
+  Values values_ = {{"x", 0.0},
+                    {"y", 0.0},
+                    {"z", 0.0},
+                    {"z_pressed", 0.0},
+                    {"scale", 0.001},
+                    {"tool_scale", 0.001},
+                    {"spacing", nullptr},
+                    {"diameter", 0.001},
+                    {"length", 0.01},
+                    {"dx", 1},
+                    {"dy", 0},
+                    {"speed", 0.005},
+                    {"smoothing", 0.0005}};
+  std::vector<std::string> notes_, warnings_;
 };
 
 }  // namespace

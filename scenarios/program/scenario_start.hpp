@@ -27,13 +27,15 @@ const std::vector<StartKind>& start_kinds();
 
 /// A start.
 struct ScenarioStart {
-  std::string text;                ///< of the scenario file
-  std::vector<std::string> notes;  ///< what was guessed and chosen, a line each
+  std::string text;                   ///< of the scenario file
+  std::vector<std::string> notes;     ///< what was guessed and chosen, a line each
+  std::vector<std::string> warnings;  ///< what it could not find
 };
 
 /// Makes a start that is to stand in `directory`. A mesh gets the unit, of m, cm and mm, that makes it most like a
 /// tooth in size, 10 mm long, and points a tenth of the tool's diameter apart. The tool, 1 mm thick or a fiftieth of a
-/// longer object, starts 1 mm above the middle of what is highest. Precondition: a source exactly where the kind wants
+/// longer object, starts 1 mm above the middle of what is highest; a drag where it has room (drag_start.hpp), over most
+/// of it. Precondition: a source exactly where the kind wants
 /// one. Throws InputError when it cannot be used.
 ScenarioStart scenario_start(const StartKind& kind, const std::optional<std::filesystem::path>& source,
                              const std::filesystem::path& directory);

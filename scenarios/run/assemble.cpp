@@ -161,9 +161,32 @@ std::vector<StopRule> stop_rules(const Scenario& scenario) {
 
 }  // namespace
 
-std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
+std::vector<std::string> named_file_warnings(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
   std::vector<std::string> warnings;
+  const auto add = [&warnings](const char* pointer, const std::vector<std::string>& about) {
+    for (const std::string& warning : about) warnings.push_back(fmt::format("{}: {}", pointer, warning));
+  };
+  if (std::holds_alternative<MeshEnvironment>(scenario.environment))
+    add("/environment/file", loaded.files.mesh().warnings());
+  if (std::holds_alternative<MeshToolFields>(scenario.tool)) add("/tool/file", loaded.files.tool_mesh().warnings());
+  if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
+    const RecordedMotion& stroke = loaded.files.recorded_motion();
+    const double start = stroke.samples().front().time, stop = stroke.samples().back().time;
+    const double end = scenario.time.step * static_cast<double>(scenario.time.steps - 1);
+    if (start > end || stop < 0.0) {
+      add("/motion/position/file",
+          {fmt::format(
+              "the stroke's clock runs from {:.6g} to {:.6g} s and the run's from 0 to {:.6g} s: the tool stays "
+              "at the {} sample; let the stroke begin at 0 or adapt time",
+              start, stop, end, start > end ? "first" : "last")});
+    }
+  }
+  return warnings;
+}
+
+std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
+  const Scenario& scenario = loaded.scenario;
   const auto at = [&loaded](const char* pointer, auto read) {
     try {
       read();
@@ -172,19 +195,12 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
     }
   };
   with_file(loaded, [&] { require_contact_source(scenario); });
-  if (std::holds_alternative<PointShellEnvironment>(scenario.environment)) {
+  if (std::holds_alternative<PointShellEnvironment>(scenario.environment))
     at("/environment/file", [&] { loaded.files.shell_points(); });
-  }
-  if (std::holds_alternative<MeshEnvironment>(scenario.environment)) {
-    at("/environment/file", [&] { warnings = loaded.files.mesh().warnings(); });
-    const std::string place = file_of(loaded, "/environment/file").string() + ": /environment/file: ";
-    for (std::string& warning : warnings) warning = place + warning;
-  }
-  if (std::holds_alternative<MeshToolFields>(scenario.tool)) {
+  if (std::holds_alternative<MeshEnvironment>(scenario.environment))
+    at("/environment/file", [&] { loaded.files.mesh(); });
+  if (std::holds_alternative<MeshToolFields>(scenario.tool))
     at("/tool/file", [&] { make_tool(scenario, loaded.files); });
-    const std::string place = file_of(loaded, "/tool/file").string() + ": /tool/file: ";
-    for (const std::string& warning : loaded.files.tool_mesh().warnings()) warnings.push_back(place + warning);
-  }
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
     at("/motion/position/file", [&] { loaded.files.recorded_motion(); });
     if (scenario.record.force_reference && !scenario.reference_force && !loaded.files.recorded_force())
@@ -192,15 +208,11 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
                        file_of(loaded, "/record/force_reference").string() + ": /record/force_reference",
                        fmt::format("got true; allowed: false, because {} has no columns mfx_N,mfy_N,mfz_N",
                                    loaded.files.motion()->path().string()));
-    const RecordedMotion& stroke = loaded.files.recorded_motion();
-    const double start = stroke.samples().front().time, stop = stroke.samples().back().time;
-    const double end = scenario.time.step * static_cast<double>(scenario.time.steps - 1);
-    if (start > end || stop < 0.0) {
-      warnings.push_back(fmt::format(
-          "{}: /motion/position/file: the stroke's clock runs from {:.6g} to {:.6g} s and the run's from 0 to {:.6g} s: "
-          "the tool stays at the {} sample; let the stroke begin at 0 or adapt time",
-          loaded.file.string(), start, stop, end, start > end ? "first" : "last"));
-    }
+  }
+  std::vector<std::string> warnings = named_file_warnings(loaded);
+  for (std::string& warning : warnings) {
+    const std::string pointer = warning.substr(0, warning.find(": "));
+    warning = file_of(loaded, pointer).string() + ": " + warning;
   }
   return warnings;
 }

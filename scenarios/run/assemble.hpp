@@ -13,6 +13,10 @@ namespace hapbench {
 /// InputError.
 std::vector<std::string> check_named_files(const LoadedScenario& loaded);
 
+/// The same warnings with the pointer alone in front, as results keep them: equal wherever the files lie. Precondition:
+/// the files can be used.
+std::vector<std::string> named_file_warnings(const LoadedScenario& loaded);
+
 /// Numbers of the run.
 SimulationConfig simulation_config(const Scenario& scenario);
 

@@ -10,8 +10,26 @@
 
 namespace hapbench {
 
-DragCourseObserver::DragCourseObserver(const DragHand& hand, double half_width, bool along_direction)
-    : hand_(hand), half_width_(half_width), along_direction_(along_direction) {
+double way_to_cover(const DragHandFields& hand, double duration) {
+  const double way = hand.drag.speed * duration;
+  if (!hand.path) return way;
+  double legs = 0.0;
+  for (std::size_t i = 1; i < hand.path->size(); ++i) legs += ((*hand.path)[i] - (*hand.path)[i - 1]).norm();
+  return std::min(way, legs);
+}
+
+std::optional<std::string> short_path_warning(const DragHandFields& hand, double path, double to_cover, double width) {
+  // By less than the tool is wide it is the edge that ends the way.
+  if (to_cover <= path + width) return std::nullopt;
+  const std::string ends =
+      fmt::format("the path of the drag ends after {} of {}: ", length_text(path), length_text(to_cover));
+  return ends + (hand.path ? "hand.path_m leads no further over the surface; let its points lie on it"
+                           : "beyond, the surface ends or turns against hand.direction; another initial.position_m, a "
+                             "larger hand.smoothing_m or hand.path_m leads further");
+}
+
+DragCourseObserver::DragCourseObserver(const DragHand& hand, const DragHandFields& fields, double half_width)
+    : hand_(hand), fields_(fields), half_width_(half_width) {
   course_.width = 2.0 * half_width;
 }
 
@@ -36,8 +54,8 @@ DragCourse DragCourseObserver::course() const {
   const SurfacePoint foot = hand_.path().at(hand_.nearest());
   course.height = foot.normal.dot(course.place - foot.position);
   course.path = hand_.path().length();
-  // By less than the tool is wide it is the edge that ends the way.
-  course.ends_early = along_direction_ && hand_.drag().speed * time_ > course.path + course.width;
+  course.to_cover = way_to_cover(fields_, time_);
+  course.short_path = short_path_warning(fields_, course.path, course.to_cover, course.width);
   const bool presses = hand_.drag().force(time_) > 0.0;
   if (presses && last_contact_ && time_ - *last_contact_ >= SettlingRule().time) course.lost = last_contact_;
   return course;
@@ -59,11 +77,9 @@ std::vector<std::string> drag_warnings(const DragCourse& c) {
                     "{:.4g}] m in the end",
                     c.still_since, length_text(c.way), length_text(c.asked), c.place.x(), c.place.y(), c.place.z()));
   }
-  if (c.ends_early) {
-    warnings.push_back(
-        fmt::format("the path of the drag ends after {}: beyond, the surface ends or turns against hand.direction; the "
-                    "tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end",
-                    length_text(c.path), c.place.x(), c.place.y(), c.place.z()));
+  if (c.short_path) {
+    warnings.push_back(fmt::format("{}; the tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end", *c.short_path,
+                                   c.place.x(), c.place.y(), c.place.z()));
   }
   return warnings;
 }

@@ -80,7 +80,8 @@ Outcome outcome_of(const Scenario& scenario, const Encounter& e) {
   const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
   const bool left = e.approach.last > diagonal(e.environment) + e.tool.reach();
   const bool lost = e.drag && e.drag->lost;
-  return (is_free && left) || lost ? Outcome::lost_contact : Outcome::completes;
+  if ((is_free && left) || lost) return Outcome::lost_contact;
+  return e.drag && e.drag->not_dragged() ? Outcome::not_dragged : Outcome::completes;
 }
 
 std::optional<std::string> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {

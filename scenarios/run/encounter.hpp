@@ -23,7 +23,8 @@ struct Encounter {
 /// The outcome of a run that completed, once it is known what it touched: `no_contact` when no row had a colliding
 /// point; `lost_contact` when a tool that moves freely ended further from the environment's box than the box is wide
 /// and the tool reaches together, as one does that was thrown out or pushed past, or when a dragged tool lost the
-/// surface; else `completes`.
+/// surface; `not_dragged` when one came nowhere (DragCourse): it was pressed, and its calm numbers tell nothing of a
+/// drag; else `completes`.
 Outcome outcome_of(const Scenario& scenario, const Encounter& encounter);
 
 /// For a tool from a mesh whose size is out of proportion with the environment's, a question about its scale.

@@ -233,6 +233,7 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
   add_step_times(results, report.timing);
   if (times) report.timing.latency = step_latency(times->nanoseconds(), times->overhead());
   report.summary = summarise(scenario, results, report.targets);
+  report.summary.file_warnings = named_file_warnings(loaded);
   if (output || tables != nullptr) {
     report.summary.provenance = provenance();
     const AlgorithmOrigin& origin = find_algorithm(scenario.rendering.algorithm)->origin;

@@ -77,7 +77,7 @@ class TrialObservers {
       }
     }
     if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get())) {
-      drag_.emplace(*hand, parts.tool->half_width(), std::get<DragHandFields>(scenario.hand).direction.has_value());
+      drag_.emplace(*hand, std::get<DragHandFields>(scenario.hand), parts.tool->half_width());
       observers_.push_back(&*drag_);
     }
     if (const TargetTask* task = parts.hand->task()) {

@@ -5,6 +5,7 @@
 
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/drag_course.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/environment_points.hpp"
 #include "scenarios/run/force_warnings.hpp"
@@ -70,6 +71,12 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   surface.box = shell->bounds();
   surface.points = shell->size();
   if (auto warning = scale_warning(scenario, *tool, surface.box)) facts.warnings.push_back(*warning);
+  if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get())) {
+    const auto& fields = std::get<DragHandFields>(scenario.hand);
+    const double way = way_to_cover(fields, scenario.time.step * static_cast<double>(scenario.time.steps));
+    if (auto warning = short_path_warning(fields, hand->path().length(), way, 2.0 * tool->half_width()))
+      facts.warnings.push_back(*warning);
+  }
   place_tool(*tool, first_pose(scenario, parts), *shell, surface);
   return facts;
 }

@@ -41,7 +41,7 @@ struct SceneFacts {
   ToolFacts tool;
   std::optional<bool> is_closed;  ///< of a mesh
   std::size_t trials = 1;
-  std::vector<std::string> warnings;  ///< about the tool, in this scene
+  std::vector<std::string> warnings;  ///< about the tool, and the way of its drag, in this scene
 };
 
 /// Builds the environment and places the tool. Throws InputError when a named file cannot be used.

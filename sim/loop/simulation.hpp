@@ -23,7 +23,8 @@ enum class Outcome {
   completes,        ///< all steps done, or the hand has finished its task
   leaves_hole,      ///< the tip centre rose above height 0 (stop_rules.hpp)
   tool_horizontal,  ///< the axis reached the horizontal plane (stop_rules.hpp)
-  no_contact,       ///< all steps done, and the tool never touched the environment (scenarios/run/encounter.hpp)
+  not_dragged,      ///< all steps done, but a hand that drags led the tool nowhere (scenarios/run/encounter.hpp)
+  no_contact,       ///< all steps done, and the tool never touched the environment (there, too)
   lost_contact,     ///< all steps done, but the tool left the environment behind (there, too)
   diverges          ///< a value stopped being finite or left its bound
 };

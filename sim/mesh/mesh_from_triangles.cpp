@@ -87,8 +87,9 @@ std::vector<Hinge> hinges_of(const std::vector<Side>& sides, const std::vector<V
       return sides[j].low == sides[i].low && sides[j].high == sides[i].high;
     };
     for (end = i + 1; end < sides.size() && same_edge(end);) ++end;
-    if (end - i == 1) found.open_edges.push_back(0.5 * (vertices[sides[i].low] + vertices[sides[i].high]));
-    if (end - i > 2) ++found.crowded_edges;
+    const Vec3 middle = 0.5 * (vertices[sides[i].low] + vertices[sides[i].high]);
+    if (end - i == 1) found.open_edges.push_back(middle);
+    if (end - i > 2) found.crowded_edges.push_back(middle);
     if (end - i == 2) {
       const Side &a = sides[i], &b = sides[i + 1];
       hinges.push_back({{a.triangle, b.triangle}, {a.corner, b.corner}, a.forward != b.forward});

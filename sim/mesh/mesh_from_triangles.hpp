@@ -12,7 +12,8 @@ struct MeshFindings {
   std::size_t degenerate_triangles = 0;  ///< with two equal corners: left out
   std::size_t rewound_triangles = 0;     ///< wound against most of their part: turned
   std::size_t inside_out_parts = 0;      ///< closed parts whose normals pointed inwards: turned
-  std::size_t crowded_edges = 0;         ///< with more than two triangles: the surface is cut along them
+  /// Middles of the edges with more than two triangles: the surface is cut along them.
+  std::vector<Vec3> crowded_edges = {};
   /// Middles of the edges with a triangle on one side only, where the surface is open.
   std::vector<Vec3> open_edges = {};
 };

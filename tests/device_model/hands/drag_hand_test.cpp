@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "sim/geometry/analytic_shells.hpp"
 
@@ -50,6 +51,24 @@ TEST_F(DragOnPlane, PathAlongADirectionEndsAtTheEdge) {
   EXPECT_NEAR(path->at(0.0005).position.x(), 0.0015, 1e-12);
   EXPECT_NEAR(along({0, 0, 0}, {1, 0, 0}, 0.001)->length(), 0.001, 1.01 * SurfacePath::spacing(kSmoothing));
   EXPECT_EQ(along({0, 0, 0}, {0, 0, 1}, 0.001)->length(), 0.0) << "no way on along the normal";
+}
+
+TEST(SurfacePath, AlongADirectionStartsFromFarAboveARoughSurface) {
+  // Waves of 0.1 mm, shorter than the smoothing radius: seen from 2 mm above, the first place lies off the surface.
+  constexpr double kWave = 2.0 * std::numbers::pi / 0.0003, kHeight = 0.0001;
+  std::vector<SurfacePoint> points;
+  for (int i = -40; i <= 40; ++i) {
+    for (int j = -40; j <= 40; ++j) {
+      const double x = 5e-5 * i, y = 5e-5 * j;
+      const Vec3 normal(-kHeight * kWave * std::cos(kWave * x), -kHeight * kWave * std::cos(kWave * y), 1.0);
+      const double z = kHeight * (std::sin(kWave * x) + std::sin(kWave * y));
+      points.push_back({Vec3(x, y, z), normal.normalized()});
+    }
+  }
+  const PointShell shell(points, 0.0);
+  const SmoothedSurface surface(shell, kSmoothing);
+  for (int i = -3; i <= 3; ++i)
+    EXPECT_GT(SurfacePath::along(surface, {1e-4 * i, 1e-4, 0.002}, {1, 0, 0}, 0.001).length(), 0.0009) << i;
 }
 
 TEST_F(DragOnPlane, PushesAlongTheNormalAndPullsWithinTheSurface) {

@@ -146,12 +146,12 @@ std::vector<BadInput> wrong_values() {
       {"BoundZero", plane("/bounds", R"({"position_m": 0})"), "/bounds/position_m", "got 0; allowed: a number > 0"},
       {"EveryZero", plane("/record", R"({"every": 0})"), "/record/every", "got 0; allowed: an integer 1 ..."},
       {"OutcomeMisspelt", plane("/expect", R"({"outcome": "complete"})"), "/expect/outcome",
-       "allowed: outcome: one of \"completes\", \"leaves_hole\", \"tool_horizontal\", \"no_contact\", "
+       "allowed: outcome: one of \"completes\", \"leaves_hole\", \"tool_horizontal\", \"not_dragged\", \"no_contact\", "
        "\"lost_contact\", \"diverges\"; nearest valid "
        "name: "
        "\"completes\""},
       {"OutcomesEmpty", plane("/expect", R"({"outcome": []})"), "/expect/outcome",
-       "got []; allowed: a list of 1 ... 6 entries"},
+       "got []; allowed: a list of 1 ... 7 entries"},
       {"MetricMisspelt", plane("/expect", R"({"metrics": {"force_max": {"max": 1}}})"), "/expect/metrics/force_max",
        "nearest valid name: \"force_max_N\""},
       {"SeedNegative", plane("/seed", "-1"), "/seed", "got -1; allowed: an integer 0 ... 9007199254740992"},

@@ -98,6 +98,14 @@ TEST(DescribeCommand, GivesFieldsWithDefaultRangeAndMeaning) {
   }
 }
 
+TEST(DescribeCommand, FindsAFieldByTheEndOfItsPath) {
+  EXPECT_NE(hapbench({"describe", "torque"}).out.find("record.torque\n"), std::string::npos);
+  const std::string algorithm = hapbench({"describe", "algorithm"}).out;
+  EXPECT_NE(algorithm.find("rendering.algorithm\n"), std::string::npos) << algorithm;
+  EXPECT_NE(algorithm.find("hapbench list algorithms"), std::string::npos) << algorithm;
+  EXPECT_NE(hapbench({"plot", "--help"}).out.find("torque (needs"), std::string::npos);
+}
+
 TEST(DescribeCommand, ExplainsEveryField) {
   for (const std::string& path : scenario_field_paths()) {
     if (path.starts_with("expect.metrics.")) continue;  // as every metric
@@ -114,7 +122,8 @@ TEST(DescribeCommand, SaysOfWhichTypeAFieldIs) {
   const std::string delay = hapbench({"describe", "device.servo.delay_samples"}).out;
   EXPECT_NE(delay.find("of device.type \"admittance\""), std::string::npos) << delay;
   const std::string types = hapbench({"describe", "hand.type"}).out;
-  for (const std::string& type : type_names("hand")) EXPECT_NE(types.find("\"" + type + "\""), std::string::npos) << types;
+  for (const std::string& type : type_names("hand"))
+    EXPECT_NE(types.find("\"" + type + "\""), std::string::npos) << types;
 }
 
 TEST(DescribeCommand, LeavesBoundsOnMetricsToTheListOfMetrics) {

@@ -27,10 +27,11 @@ class MeshWarnings : public testing::Test {
     arguments.insert(arguments.begin() + 1, path("scene.json"));
     const test::ProgramRun run = hapbench(arguments);
     EXPECT_EQ(run.status, 0);
-    EXPECT_EQ(run.err,
-              "hapbench: warning: " + path("scene.json") + ": /environment/file: " + path("cube.obj") +
-                  ": the mesh is open: 3 boundary edges, within x 5 ... 5, y -5 ... 0, z 0 ... 5 mm; beyond them "
-                  "there is nothing to touch\n")
+    EXPECT_EQ(
+        run.err,
+        "hapbench: warning: " + path("scene.json") +
+            ": /environment/file: cube.obj: the mesh is open: 3 boundary edges, within x 5 ... 5, y -5 ... 0, z 0 ... 5 mm; beyond them "
+            "there is nothing to touch\n")
         << arguments[0];
   }
   std::string path(const std::string& name) const { return (directory_ / name).string(); }
@@ -44,6 +45,13 @@ TEST_F(MeshWarnings, ComeOnceFromEveryCommand) {
   expect_warning({"run", "--quiet", "--out", path("out")});
   expect_warning({"shell", "--out", path("shell.csv")});
   expect_warning({"compare", "--algorithms", "mean,summation,shaped_stiffness", "--out", path("out")});
+}
+
+TEST_F(MeshWarnings, AreInTheSummaryWhereverTheFileLies) {
+  expect_warning({"run", "--out", path("out")});
+  const Json said = Json::parse(test::read_file(directory_ / "out" / "summary.json"))["warnings"];
+  ASSERT_EQ(said.size(), 1u) << said;
+  EXPECT_TRUE(said[0].get<std::string>().starts_with("/environment/file: cube.obj: the mesh is open: 3")) << said;
 }
 
 TEST_F(MeshWarnings, DoNotChangeWhatIsWritten) {

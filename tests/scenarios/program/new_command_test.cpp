@@ -66,6 +66,30 @@ TEST_F(NewCommand, DragsOverAMeshToo) {
   EXPECT_GT(summary["metrics"]["steps_in_contact"], summary["steps"].get<int>() / 2);
 }
 
+TEST_F(NewCommand, DragsWhereTheSurfaceHasRoom) {
+  // Of a plate of 10 x 2 x 2 mm, higher at its end at -x: from there the way leads on along x.
+  const std::string plate =
+      "v 0 -1 0\nv 10 -1 0\nv 10 1 0\nv 0 1 0\nv 0 -1 2\nv 10 -1 1.5\nv 10 1 1.5\nv 0 1 2\n"
+      "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+  test::write_plainly(directory_ / "plate.obj", plate);
+  const ProgramRun made = hapbench({"new", "bur", "--from", path("plate.obj"), "--out", path("bur.json")});
+  EXPECT_EQ(made.err, "");
+  const Json json = Json::parse(test::read_file(directory_ / "bur.json"));
+  EXPECT_EQ(json["hand"]["direction"], Json::parse("[1, 0, 0]")) << made.out;
+  const double way = json["hand"]["speed_m_per_s"].get<double>() * 0.0005 * json["time"]["steps"].get<double>();
+  EXPECT_GT(way, 0.005) << made.out;
+  EXPECT_EQ(hapbench({"validate", path("bur.json")}).err, "");
+
+  // A needle of 0.2 x 0.2 x 10 mm has none, and it is said.
+  std::string needle = "v -.1 -.1 0\nv .1 -.1 0\nv .1 .1 0\nv -.1 .1 0\nv -.1 -.1 10\nv .1 -.1 10\nv .1 .1 10\n";
+  needle += "v -.1 .1 10\n" + plate.substr(plate.find("f 1 4"));
+  test::write_plainly(directory_ / "needle.obj", needle);
+  const ProgramRun none = hapbench({"new", "bur", "--from", path("needle.obj"), "--out", path("none.json")});
+  EXPECT_EQ(none.status, 0);
+  EXPECT_NE(none.err.find("no way longer than"), std::string::npos) << none.err;
+  EXPECT_NE(hapbench({"validate", path("none.json")}).err.find("the path of the drag ends after"), std::string::npos);
+}
+
 TEST_F(NewCommand, ExplainsEveryFieldItWrites) {
   const Json answer = hapbench({"new", "drag", "--out", path("drag.json"), "--json"}).json();
   const Json json = Json::parse(test::read_file(directory_ / "drag.json"));

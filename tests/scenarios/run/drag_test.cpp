@@ -5,6 +5,7 @@
 #include "results/observe/metrics.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/scene_facts.hpp"
 
 /// The hand that drags the tool over a surface, in the loop.
 namespace hapbench::drag_test {
@@ -99,8 +100,30 @@ TEST(Drag, TellsOfAToolThatStandsStill) {
   json["integrator"] = {{"type", "implicit_euler"}};
   json["tool"] = {{"diameter_m", 0.0005}};
   const RunReport report = run_scenario(read_scenario(json, ""), std::nullopt, false);
-  EXPECT_EQ(report.summary.result.outcome, Outcome::completes);
+  EXPECT_EQ(report.summary.result.outcome, Outcome::not_dragged);
   EXPECT_NE(warnings_of(report).find("the dragged tool stood still since"), std::string::npos) << warnings_of(report);
+}
+
+TEST(Drag, WithoutAWayIsNotDraggedAndToldOfBeforeItRuns) {
+  Json json = scene();
+  json["hand"]["direction"] = {0, 0, 1};
+  json["tool"] = {{"diameter_m", 0.0005}};
+  Json to_and_fro = scene();  // both points are nearest to one place
+  to_and_fro["hand"].erase("direction");
+  to_and_fro["hand"]["path_m"] = {{-0.002, 0, 0.003}, {-0.002, 0, 0}};
+  to_and_fro["tool"] = json["tool"];
+  for (const auto& [scenario, remedy] :
+       {std::pair(json, "hand.smoothing_m"), {to_and_fro, "let its points lie on it"}}) {
+    const LoadedScenario loaded = read_scenario(scenario, "");
+    const std::vector<std::string> before = scene_facts(loaded).warnings;
+    ASSERT_EQ(before.size(), 1u) << remedy;
+    EXPECT_NE(before[0].find(remedy), std::string::npos) << before[0];
+    const RunReport report = run_scenario(loaded, std::nullopt, false);
+    EXPECT_EQ(report.summary.result.outcome, Outcome::not_dragged);
+    EXPECT_EQ(report.unmet.size(), 1u);
+    EXPECT_NE(warnings_of(report).find(remedy), std::string::npos) << warnings_of(report);
+  }
+  EXPECT_TRUE(scene_facts(read_scenario(scene(), "")).warnings.empty());
 }
 
 TEST(Drag, TellsOfAToolThatLostTheSurface) {

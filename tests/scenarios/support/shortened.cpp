@@ -13,7 +13,7 @@ std::vector<std::string> shortened(const BundledScenario& bundled) {
   if (scenario.time.steps <= 10'000) return {};
   std::vector<std::string> arguments = {
       "--set",
-      R"(expect={"outcome": ["completes", "leaves_hole", "tool_horizontal", "no_contact", "lost_contact", "diverges"]})",
+      R"(expect={"outcome": ["completes", "leaves_hole", "tool_horizontal", "not_dragged", "no_contact", "lost_contact", "diverges"]})",
       "--set", fmt::format("time={{\"step_s\": {}, \"steps\": 2000}}", scenario.time.step)};
   if (tracking) arguments.insert(arguments.end(), {"--set", "hand.trials=1"});
   return arguments;
