@@ -6,6 +6,7 @@ from . import (
     comparison,
     corner,
     damping,
+    devices,
     experiments,
     force_limit,
     growth,
@@ -80,5 +81,6 @@ FIGURES = (
         Figure(f"stability-{name}", None, f"Stability over {name.replace('_', ' ')}", stability.stability_map(name))
         for name in STABILITY_MAPS
     ),
+    Figure("devices", None, "What each device renders with each algorithm", devices.of_all_devices),
     Figure("stability-integrators", None, "Stability under each integrator", stability.integrators),
 )

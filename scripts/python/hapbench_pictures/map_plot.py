@@ -6,14 +6,14 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
+from hapbench_figures.devices import TABLE as DEVICES
+from hapbench_figures.devices import draw_devices
 from hapbench_figures.results import BadResult, MissingResult, Results, numbers
 from hapbench_figures.stability import CLASSES, MapFile, draw_stability_map, is_geometric, look_of_class
 from hapbench_figures.style import BLACK, PETROL, SETTINGS
 from hapbench_looks import look
 from hapbench_report.json_input import InputError
 
-from .device_plot import TABLE as DEVICES
-from .device_plot import draw_devices
 from .fields import axis
 
 matplotlib.use("agg")

@@ -1,13 +1,8 @@
 """The picture of `compare --devices`: the largest stable stiffness of each device, a panel for each scene."""
-import matplotlib
 import numpy as np
 
-from hapbench_figures.results import numbers
-from hapbench_figures.style import BLACK, PUBLISHED_LINE
-from hapbench_looks import look
-
-matplotlib.use("agg")
-from matplotlib import pyplot as plt  # noqa: E402  (the backend comes first)
+from .results import numbers
+from .style import BLACK, PUBLISHED_LINE, look, plt
 
 TABLE = "device_limits.csv"
 PANEL = 2.6  # [inch]
@@ -15,8 +10,8 @@ LEGEND = 0.3  # [inch]
 STEP = 0.16  # of a row, between algorithms
 
 
-def draw_devices(results):
-    rows = results.records(TABLE)
+def draw_devices(results, table=TABLE):
+    rows = results.records(table)
     devices, scenes, algorithms = (list(dict.fromkeys(row[name] for row in rows)) for name in ("device", "scenario", "algorithm"))
     figure, axes = plt.subplots(1, len(scenes), sharex=True, sharey=True, squeeze=False,
                                 figsize=(1.0 + PANEL * len(scenes), 0.9 + LEGEND + 0.24 * len(devices)))
@@ -39,3 +34,12 @@ def draw_devices(results):
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="upper left", ncol=4)
     return figure
+
+
+def of_all_devices(results):
+    return draw_devices(results, f"devices/{TABLE}"), (
+        "The largest stiffness that each device renders stably and quietly while a hand taps with a flat probe on a wall, in a "
+        "corner and in a hole a tenth wider than the probe, without damping. Short lines: the published largest stable "
+        "stiffness of a wall. If shaping makes one K safe in every direction, its marks stand in one column in all panels, "
+        "while those of the sum fall back by the number of contacts. Ours."
+    )
