@@ -91,6 +91,7 @@ def make_results(directory):
         *("stability", "--map", "time_step,damping_ratio,device", "--algorithms", "shaped_stiffness", "--size", "3"),
         *("--integrators", "all", "--quiet", "--out", directory / "stability_integrators"),
     )
+    hapbench("compare", "--devices", "touch,omega.3", "--quiet", "--out", directory / "devices")
     (directory / "performance.json").write_text(json.dumps(performance()))
     timing = {
         "step_latency": {
