@@ -131,45 +131,45 @@ Scenario encoder_step_scene(double step, double K, std::string_view algorithm) {
 
 /// Begins six steps of the encoder away from rest.
 Scenario friction_scene(double damping, double friction, std::string_view algorithm) {
-  constexpr double kStiffnessAxis = 1000.0, kStep = 1e-6;  // K, q
-  Scenario scenario = handle_scene(kStiffnessAxis, 0.0, algorithm);
+  constexpr double kWallStiffness = 1000.0, kStep = 1e-6;  // K, q
+  Scenario scenario = handle_scene(kWallStiffness, 0.0, algorithm);
   scenario.initial.position = -3.3 * kStep * Vec3::UnitX();
-  handle_of(scenario).viscous = 0.5 * damping * kStiffnessAxis * scenario.time.step;
-  handle_of(scenario).coulomb = 0.5 * friction * kStiffnessAxis * kStep;
+  handle_of(scenario).viscous = 0.5 * damping * kWallStiffness * scenario.time.step;
+  handle_of(scenario).coulomb = 0.5 * friction * kWallStiffness * kStep;
   push_between_steps(scenario, kStep);
   return scenario;
 }
 
 using Scale = MapAxis::Scale;
 constexpr const char* kStiffnessName = StabilityMap::kStiffnessAxis.data();
-constexpr MapAxis kStiffnessAxis = {kStiffnessName, 1e3, 1e7, Scale::logarithmic};
+constexpr MapAxis kSpringStiffness = {kStiffnessName, 1e3, 1e7, Scale::logarithmic};
 constexpr MapAxis kHandleStiffness = {kStiffnessName, 1e2, 1e5, Scale::logarithmic};
 
 constexpr StabilityMap kMaps[] = {
     {"time_step",
      "K over the time step, one spring",
      {"time_step_s", 5e-5, 5e-3, Scale::logarithmic},
-     kStiffnessAxis,
+     kSpringStiffness,
      time_step_scene},
     {"mass",
      "K over the mass of the virtual tool, one spring",
      {"mass_kg", 0.01, 10.0, Scale::logarithmic},
-     kStiffnessAxis,
+     kSpringStiffness,
      mass_scene},
     {"damping_ratio",
      "K over zeta, one spring",
      {"damping_ratio", 0.0, 3.0, Scale::linear},
-     kStiffnessAxis,
+     kSpringStiffness,
      damping_ratio_scene},
     {"contacts",
      "K over the number of parallel contacts",
      {"contacts", 1.0, 100.0, Scale::logarithmic, true},
-     kStiffnessAxis,
+     kSpringStiffness,
      contacts_scene},
     {"wedge",
      "K over the angle between two faces",
      {"wedge_angle_rad", 0.0, std::numbers::pi, Scale::linear},
-     kStiffnessAxis,
+     kSpringStiffness,
      wedge_scene},
     {"device",
      "stiffness of the hand over the delay of the servo, K = 20 000 N/m, admittance device",
