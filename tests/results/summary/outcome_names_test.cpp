@@ -13,7 +13,7 @@ TEST(OutcomeNames, AreThoseOfTheScenarioFormat) {
 }
 
 TEST(OutcomeNames, LeadBackToTheirOutcomes) {
-  ASSERT_EQ(outcome_names().size(), 6u);
+  ASSERT_EQ(outcome_names().size(), 7u);
   for (const std::string_view name : outcome_names()) {
     const auto outcome = outcome_named(name);
     ASSERT_TRUE(outcome) << name;
