@@ -40,8 +40,12 @@ const ModelInfo kDampingAndLimitsInfo = {
     .parameters = kDampingParameters,
 };
 
+double normal_damping(const RenderingConfig& config) noexcept {
+  return config.damping.value_or(2.0 * config.damping_ratio * std::sqrt(config.stiffness * config.mass));
+}
+
 DampingAndLimits::DampingAndLimits(const RenderingConfig& config)
-    : B_(config.damping.value_or(2.0 * config.damping_ratio * std::sqrt(config.stiffness * config.mass))),
+    : B_(normal_damping(config)),
       mu_s_(config.mu_s),
       mu_f_(config.mu_f),
       max_damping_(config.max_damping),

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "sim/core/model_info.hpp"
 #include "algorithms/rendering_config.hpp"
+#include "sim/core/model_info.hpp"
 #include "sim/loop/force_algorithm.hpp"
 
 namespace hapbench {
@@ -13,6 +13,9 @@ struct ContactVelocity {
   Vec3 mean = Vec3::Zero();    ///< of the tool's material at the contacts
   Vec3 normal = Vec3::Zero();  ///< v_n, what normal damping acts on
 };
+
+/// B of the normal damping [N s/m]: the one given, or 2 zeta sqrt(K M).
+double normal_damping(const RenderingConfig& config) noexcept;
 
 /// Damping, friction and limits, the same for every law (thesis 2.5, 2.6, A.2.1, B.2, C.4.3):
 ///

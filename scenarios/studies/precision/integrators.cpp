@@ -4,6 +4,7 @@
 #include <cmath>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "algorithms/stages/damping_and_limits.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -18,8 +19,7 @@ namespace {
 /// weights are constant obey; from the matrix exponential, exact to rounding.
 std::vector<Vec3> exact_positions(const Scenario& scenario, const Mat3& S, double T, std::size_t samples) {
   const RenderingConfig& r = scenario.rendering;
-  const double K = r.stiffness, M = r.mass;
-  const double B = r.damping.value_or(2.0 * r.damping_ratio * std::sqrt(K * M));
+  const double K = r.stiffness, M = r.mass, B = normal_damping(r);
   Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();
   A.topRightCorner<3, 3>() = Mat3::Identity();
   A.bottomLeftCorner<3, 3>() = -K / M * S;

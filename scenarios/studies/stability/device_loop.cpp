@@ -1,13 +1,9 @@
 #include "scenarios/studies/stability/device_loop.hpp"
 
-#include <cmath>
+#include "algorithms/stages/damping_and_limits.hpp"
 
 namespace hapbench {
 namespace {
-
-double damping_of(const RenderingConfig& r) {
-  return r.damping.value_or(2.0 * r.damping_ratio * std::sqrt(r.stiffness * r.mass));
-}
 
 /// A hand whose force does not depend on the handle.
 bool is_blind(const HandFields& hand) {
@@ -25,7 +21,7 @@ DeviceLoop impedance_loop(const Scenario& scenario, const ImpedanceDeviceConfig&
   loop.delay = device.delay_samples;
   loop.period = scenario.time.step;
   loop.stiffness = lambda * scenario.rendering.stiffness;
-  loop.wall_damping = lambda * damping_of(scenario.rendering);
+  loop.wall_damping = lambda * normal_damping(scenario.rendering);
   if (const auto* filter = std::get_if<LowPassFilter>(&device.velocity_filter)) loop.cutoff = filter->cutoff;
   if (const auto* hand = std::get_if<MassSpringDamperHandFields>(&scenario.hand))
     loop.hand = {hand->mass, hand->spring.stiffness, hand->spring.damping};
@@ -43,7 +39,7 @@ DeviceLoop admittance_loop(const Scenario& scenario, const AdmittanceDeviceConfi
   DeviceLoop result;
   AdmittanceLoop& loop = result.loop.emplace<AdmittanceLoop>();
   const RenderingConfig& r = scenario.rendering;
-  loop.tool = {r.stiffness, damping_of(r), r.mass, scenario.time.step, lambda, scenario.integrator.type};
+  loop.tool = {r.stiffness, normal_damping(r), r.mass, scenario.time.step, lambda, scenario.integrator.type};
   loop.servo = device.servo;
   loop.mechanics = device.mechanics;
   if (const auto* hand = std::get_if<ImpedanceHandFields>(&scenario.hand)) {

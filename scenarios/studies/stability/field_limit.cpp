@@ -11,6 +11,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/stages/damping_and_limits.hpp"
 #include "device_model/theory/eigenvalue_edge.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "scenarios/description/scenario_text.hpp"
@@ -183,7 +184,7 @@ class Search {
   /// True when no mode of the springs leaves the unit circle, alone or in the loop of the device.
   static bool step_is_stable(const Scenario& scenario) {
     const RenderingConfig& r = scenario.rendering;
-    const double B = r.damping.value_or(2.0 * r.damping_ratio * std::sqrt(r.stiffness * r.mass));
+    const double B = normal_damping(r);
     const Eigen::SelfAdjointEigenSolver<Mat3> S(stiffness_tensor_of(scenario), Eigen::EigenvaluesOnly);
     return std::all_of(S.eigenvalues().begin(), S.eigenvalues().end(), [&](double lambda) {
       if (has_device(scenario)) {
