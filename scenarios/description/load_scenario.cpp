@@ -47,7 +47,7 @@ void apply_override(Json& json, const std::string& text) {
 
 /// True when a run with this field overridden is still the run that the scenario's expectations were written for.
 bool leaves_run_alone(std::string_view override) {
-  const std::string_view path = override.substr(0, override.find('='));
+  const std::string_view path = overridden_path(override);
   const std::string_view section = path.substr(0, path.find('.'));
   // Metrics come and go with these, and those of the ideal trajectory are over the recorded rows.
   if (path == "record.energy" || path == "record.ideal_trajectory" || path == "record.torque" || path == "record.every")

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <vector>
 
 #include "scenarios/description/extends.hpp"
@@ -21,5 +22,10 @@ struct ScenarioText {
 /// threads.
 ScenarioText read_scenario_text(const std::filesystem::path& file);
 LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::string> overrides);
+
+/// The dotted path of an override, path=value.
+inline std::string_view overridden_path(std::string_view override) noexcept {
+  return override.substr(0, override.find('='));
+}
 
 }  // namespace hapbench

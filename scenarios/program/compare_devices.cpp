@@ -53,7 +53,7 @@ std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given
 /// Another device for all rows would leave them their names alone.
 void require_fields_alone(const std::vector<std::string>& overrides) {
   for (const std::string& override : overrides) {
-    const std::string path = override.substr(0, override.find('='));
+    const std::string_view path = overridden_path(override);
     if (path != "device" && path != "device.type" && path != "device.preset") continue;
     throw InputError(fmt::format(
         "--set: got {} with --devices; allowed: fields of the devices, such as device.delay_samples; a device "

@@ -75,8 +75,7 @@ ComparedDevice device_of_file(const std::filesystem::path& file) {
 
 ComparedDevice with_marked_name(ComparedDevice device, const std::vector<std::string>& overrides) {
   const bool is_changed = std::any_of(overrides.begin(), overrides.end(), [](const std::string& override) {
-    const std::string_view path = std::string_view(override).substr(0, override.find('='));
-    return std::find(kPresetFields.begin(), kPresetFields.end(), path) != kPresetFields.end();
+    return std::find(kPresetFields.begin(), kPresetFields.end(), overridden_path(override)) != kPresetFields.end();
   });
   if (!device.published_stiffness || !is_changed) return device;
   device.name += '*';
@@ -90,7 +89,7 @@ std::vector<std::string> overrides_on(const ComparedDevice& device, const Scenar
   const Json hand = device.has_place_for_mass ? Json() : massless_hand(scene);
   if (!hand.is_null()) all.push_back("hand=" + hand.dump());
   for (const std::string& override : overrides) {
-    if (hand.is_null() || !override.starts_with("hand.mass_kg=")) all.push_back(override);
+    if (hand.is_null() || overridden_path(override) != "hand.mass_kg") all.push_back(override);
   }
   return all;
 }

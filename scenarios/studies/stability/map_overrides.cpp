@@ -14,12 +14,9 @@ namespace {
 
 constexpr std::string_view kAnyAlgorithm = "summation";  // no algorithm changes device or hand
 
-std::string_view path_of(std::string_view override) {
-  return override.substr(0, override.find('='));
-}
-
 std::string_view section_of(std::string_view override) {
-  return path_of(override).substr(0, path_of(override).find('.'));
+  const std::string_view path = overridden_path(override);
+  return path.substr(0, path.find('.'));
 }
 
 bool has_own_device(const StabilityMap& map) {
@@ -45,7 +42,7 @@ Json field_at(const StabilityMap& map, double x, double y, std::string_view path
 }
 
 void require_field(const StabilityMap& map, std::string_view override) {
-  const std::string_view path = path_of(override), section = section_of(override);
+  const std::string_view path = overridden_path(override), section = section_of(override);
   if (section != "device" && section != "hand") {
     throw InputError(fmt::format(
         "--set: got {} with --map; allowed: fields of device and hand, such as device.handle_mass_kg", path));
