@@ -77,14 +77,18 @@ std::optional<double> ContactForces::reversals_per_second() const noexcept {
   return if_settled(*this, static_cast<double>(reversals) / settled);
 }
 
+std::optional<HighPass> vibration_filter(double dt) {
+  const double sampling_rate = 1.0 / dt;
+  if (sampling_rate <= 2.0 * kVibrationCutoff) return std::nullopt;
+  return HighPass(kVibrationCutoff, sampling_rate);
+}
+
 ContactForceObserver::ContactForceObserver(double dt, const SettlingRule& rule)
     : dt_(dt), settling_rows_(rows_in(rule.time, dt)), rows_away_(settling_rows_) {
   assert(dt > 0.0);
   if (rule.from) settled_from_ = rows_in(*rule.from, dt);
-  const double sampling_rate = 1.0 / dt;
-  if (sampling_rate <= 2.0 * kVibrationCutoff) return;
-  high_pass_.emplace(kVibrationCutoff, sampling_rate);
-  forces_.above_cutoff_squares = 0.0;
+  high_pass_ = vibration_filter(dt);
+  if (high_pass_) forces_.above_cutoff_squares = 0.0;
 }
 
 ContactForceObserver::Phase ContactForceObserver::phase_of_next_row(bool in_contact) noexcept {

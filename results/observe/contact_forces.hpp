@@ -12,6 +12,10 @@ namespace hapbench {
 /// Hz, and the sense of touch is most alert to vibration well above.
 inline constexpr double kVibrationCutoff = 30.0;
 
+/// The high-pass at that frequency for one sample each `dt` seconds; none where the sampling rate is 60 Hz or less and
+/// cannot hold it.
+std::optional<HighPass> vibration_filter(double dt);
+
 /// Settled contact shorter than this has no metrics [s]: one period of the cutoff, the longest that counts as
 /// vibration. Of less, no vibration is seen whole, and a run that hammers and so hardly settles would look the calmest.
 inline constexpr double kLeastSettled = 1.0 / kVibrationCutoff;

@@ -22,8 +22,7 @@ MetricsObserver::MetricsObserver(double dt, const MetricsConfig& config) : conta
     friction_limit_squared_ = *config.friction_limit * *config.friction_limit;
   }
   if (config.most_reduced) reduction_.emplace(*config.most_reduced);
-  const double sampling_rate = 1.0 / dt;
-  if (sampling_rate > 2.0 * kVibrationCutoff) high_pass_.emplace(kVibrationCutoff, sampling_rate);
+  high_pass_ = vibration_filter(dt);
 }
 
 void MetricsObserver::on_step(const StepRecord& record) noexcept {

@@ -4,11 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "results/observe/contact_forces.hpp"
+
 namespace hapbench {
 namespace {
-
-/// As of the physical metric of vibration: below is what a hand means to do.
-constexpr double kMeantBelow = 30.0;  // [Hz]
 
 template <class Filter>
 void make_if_held(std::optional<Filter>& filter, double cutoff, double rate) {
@@ -24,9 +23,8 @@ double PerceptionThresholds::acceleration_rms() const noexcept {
 
 PerceptionObserver::PerceptionObserver(const PerceptionThresholds& thresholds, const ReferenceForce* reference,
                                        double dt)
-    : thresholds_(thresholds), reference_(reference), dt_(dt) {
+    : thresholds_(thresholds), reference_(reference), dt_(dt), force_high_pass_(vibration_filter(dt)) {
   const double rate = 1.0 / dt;
-  make_if_held(force_high_pass_, kMeantBelow, rate);
   make_if_held(band_from_, thresholds_.band_from, rate);
   make_if_held(band_to_, thresholds_.band_to, rate);
   counts_.threshold_rms = thresholds_.acceleration_rms();

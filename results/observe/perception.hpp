@@ -58,7 +58,8 @@ class PerceptionObserver final : public Observer {
   PerceptionThresholds thresholds_;
   const ReferenceForce* reference_;
   double dt_;
-  std::optional<HighPass> force_high_pass_, band_from_;
+  std::optional<HighPass> force_high_pass_;  ///< what is slower a hand means to do
+  std::optional<HighPass> band_from_;
   std::optional<LowPass> band_to_;
   bool begun_ = false;
   Vec3 last_velocity_ = Vec3::Zero();

@@ -28,7 +28,7 @@ std::string_view motion_class_name(MotionClass motion) noexcept {
 MotionClassifier MotionClassifier::of_moved_tool(std::uint64_t steps, double time_step) {
   MotionClassifier classifier(steps);
   classifier.is_moved_ = true;
-  if (kVibrationCutoff * time_step < 0.5) classifier.high_pass_.emplace(kVibrationCutoff, 1.0 / time_step);
+  classifier.high_pass_ = vibration_filter(time_step);
   return classifier;
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "results/observe/contact_forces.hpp"
-#include "results/observe/butterworth.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/stability/classify.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
@@ -55,9 +54,8 @@ bool has_left(const LastPlace& last, const PointShell& shell, double reach) {
 /// Sums over the quarter that was begun last: the last one, unless the run was cut short because it came to rest.
 class LastQuarter final : public Observer {
  public:
-  explicit LastQuarter(const TimeFields& time) : steps_(static_cast<std::uint64_t>(time.steps)) {
-    if (kVibrationCutoff * time.step < 0.5) high_pass_.emplace(kVibrationCutoff, 1.0 / time.step);
-  }
+  explicit LastQuarter(const TimeFields& time)
+      : steps_(static_cast<std::uint64_t>(time.steps)), high_pass_(vibration_filter(time.step)) {}
 
   void on_step(const StepRecord& record) noexcept override {
     if (const std::uint64_t quarter = record.step * 4 / steps_; quarter != quarter_) {
