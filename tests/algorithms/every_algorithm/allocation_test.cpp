@@ -168,6 +168,15 @@ class ContactCounter final : public Observer {
   int rows_with_contact = 0;
 };
 
+/// Of a run, a reset and the same run again; from the very first step on, since nothing may have to warm up.
+std::uint64_t allocations_of_two_runs(Simulation& simulation) {
+  const AllocationCount count;
+  simulation.run();
+  simulation.reset();
+  simulation.run();
+  return count.value();
+}
+
 class NoAllocation : public testing::TestWithParam<Instance> {};
 INSTANTIATE_TEST_SUITE_P(Every, NoAllocation, testing::ValuesIn(instances()),
                          [](const auto& instance) { return instance.param.name(); });
@@ -188,12 +197,7 @@ TEST_P(NoAllocation, InAStepOrAReset) {
   const SimulationConfig run = test::free_run_config(setting_of(GetParam()), config, 300);
   Simulation simulation(run, parts_of(GetParam(), config), {&observer});
 
-  // From the very first step: nothing warms up.
-  const AllocationCount count;
-  simulation.run();
-  simulation.reset();
-  simulation.run();
-  EXPECT_EQ(count.value(), 0u);
+  EXPECT_EQ(allocations_of_two_runs(simulation), 0u);
   EXPECT_EQ(observer.rows_with_contact, 600);
 }
 
@@ -223,11 +227,7 @@ TEST_P(NoAllocationOf, AnIntegrator) {
     if (!springs) run.position = {0.0002, -0.004, 0.0};
     ContactCounter observer;
     Simulation simulation(run, test::free_run(setting, config), {&observer});
-    const AllocationCount count;
-    simulation.run();
-    simulation.reset();
-    simulation.run();
-    EXPECT_EQ(count.value(), 0u);
+    EXPECT_EQ(allocations_of_two_runs(simulation), 0u);
     EXPECT_GT(observer.rows_with_contact, 0);
   }
 }
@@ -257,11 +257,7 @@ TEST(NoAllocationInAStep, OfAnImpedanceDevice) {
     parts.device = std::make_unique<ImpedanceDevice>(device, run.dt, AttachedHand{0.1, 300.0, 6.0});
     ContactCounter observer;
     Simulation simulation(run, std::move(parts), {&observer});
-    const AllocationCount count;
-    simulation.run();
-    simulation.reset();
-    simulation.run();
-    EXPECT_EQ(count.value(), 0u);
+    EXPECT_EQ(allocations_of_two_runs(simulation), 0u);
     EXPECT_GT(observer.rows_with_contact, 0);
   }
 }
@@ -289,11 +285,7 @@ TEST_P(NoAllocationWith, ATool) {
                                                    make_depth_model(config));
       ContactCounter observer;
       Simulation simulation(test::free_run_config(setting_of(instance), config, 300), std::move(parts), {&observer});
-      const AllocationCount count;
-      simulation.run();
-      simulation.reset();
-      simulation.run();
-      EXPECT_EQ(count.value(), 0u);
+      EXPECT_EQ(allocations_of_two_runs(simulation), 0u);
       EXPECT_GT(observer.rows_with_contact, 0);
     }
   }
