@@ -106,6 +106,9 @@ class Moments(unittest.TestCase):
         # All is shown where the peak is not far beyond, and without settled contact.
         self.assertIsNone(settled_range([(calm, np.minimum(force, 3), np.minimum(force, 3))]))
         self.assertIsNone(settled_range([(calm & False, force, force)]))
+        # So is a run that hammers: what settles of it for a moment tells nothing of the rest.
+        hammering = np.where(calm & (np.arange(502) % 2 > 0), 10.0, force)
+        self.assertIsNone(settled_range([(calm & (np.arange(502) < 50) & (hammering < 2), hammering, hammering)]))
 
     def test_the_worst_step_is_not_the_landing(self):
         times = [i / 100 for i in range(100)]

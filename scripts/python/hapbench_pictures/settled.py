@@ -6,6 +6,8 @@ from hapbench_report.replay_rows import SETTLING_S
 
 # A peak of more than so many times the settled values is cut off.
 CUT_OFF = 3
+# If settled contact tells little of a run, as of one that hammers to the end, no range leaves out more of its rows.
+LARGEST_LEFT_OUT = 0.1
 BULK = (1, 99)  # percentiles of the settled rows
 
 
@@ -31,7 +33,7 @@ def settled_of(run, trajectory):
 
 def settled_range(curves):
     """The least and the greatest value of the bulk of settled contact with some air; None when all is to be shown. Each
-    curve: settled or not, lower edge, upper edge."""
+    curve: which rows are settled, and the lower and upper edge of every row."""
     ends = [(np.nanpercentile(low[calm], BULK[0]), np.nanpercentile(high[calm], BULK[1])) for calm, low, high in curves
             if np.isfinite(low[calm]).any() and np.isfinite(high[calm]).any()]
     if not ends:
@@ -42,4 +44,6 @@ def settled_range(curves):
     if not peak > CUT_OFF * size > 0:
         return None
     air = max(0.25 * (high - low), 0.05 * size)
-    return float(low - air), float(high + air)
+    bottom, top = float(low - air), float(high + air)
+    left_out = max(np.mean((lows < bottom) | (highs > top)) for _, lows, highs in curves if len(lows))
+    return (bottom, top) if left_out <= LARGEST_LEFT_OUT else None
