@@ -68,8 +68,8 @@ def legend_columns(entries, width):
 
 
 def write_title(top, head, runs, entries, columns):
-    names = {run.name for run in runs}
-    name = next(iter(entries)) if len(runs) == 1 else names.pop() if len(names) == 1 else f"{len(runs)} runs"
+    scenes = ", ".join(dict.fromkeys(run.name for run in runs))
+    name = next(iter(entries)) if len(runs) == 1 else scenes if len(scenes) <= LONGEST_NAME else f"{len(runs)} runs"
     top.text(0.01, 1 - 0.06 / head, name, ha="left", va="top", fontsize=9, weight="bold")
     if len(runs) > 1:
         handles = [plt.Line2D([], [], color=one.colour, ls=one.line) for one in entries.values()]
