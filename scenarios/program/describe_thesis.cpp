@@ -63,10 +63,12 @@ std::vector<Place> places_in(const std::string& source) {
   return places;
 }
 
-/// The place that is asked for, of any kind where none is said; nothing when the name is that of no place.
+/// The place that is asked for, of any kind where none is said, or that a figure's file is called after, such as
+/// figure_A.4_springs.svg; nothing when the name is that of no place.
 std::optional<Place> asked_place(const std::string& name) {
-  static const std::regex kPlace(R"((?:(fig|figs|figure|table|section)[._ ]*)?((?:[a-f]\.)?\d+(?:\.\d+)*[a-d]?))",
-                                 std::regex::icase);
+  static const std::regex kPlace(
+      R"((?:(fig|figs|figure|table|section)[._ ]*)?((?:[a-f]\.)?\d+(?:\.\d+)*[a-d]?)(?:_[a-z_]+)?(?:\.(?:svg|png|pdf))?)",
+      std::regex::icase);
   std::smatch parts;
   if (!std::regex_match(name, parts, kPlace)) return std::nullopt;
   Place place{parts[1].matched ? place_kind(parts[1]) : "", parts[2]};

@@ -4,7 +4,9 @@
 #include <memory>
 
 #include "results/io/io_error.hpp"
+#include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/input/json_file.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/latency_table.hpp"
 #include "scenarios/program/run_table.hpp"
@@ -25,6 +27,15 @@ struct RunOptions {
   OutputOptions output;
 };
 
+/// Whoever tries values of a field may not mean to lose the run of the last one.
+void note_replaced_run(const LoadedScenario& loaded, const fs::path& directory) {
+  const fs::path earlier = directory / "scenario.effective.json";
+  std::error_code ignored;
+  if (!fs::is_regular_file(earlier, ignored)) return;
+  if (read_text_file(earlier, kLargestJsonFile) == json_text(effective_scenario(loaded.scenario, directory))) return;
+  print_note(fmt::format("replaces the run of other fields in {}; --out DIRECTORY keeps both", directory.string()));
+}
+
 int run(const RunOptions& options) {
   // All input is checked before anything runs or is written.
   std::vector<std::string> overrides = options.overrides;
@@ -41,6 +52,9 @@ int run(const RunOptions& options) {
     print_warnings(warnings);
   }
   for (const fs::path& directory : directories) require_writable_directory(directory);
+  if (options.out.empty() && !options.overrides.empty()) {
+    for (std::size_t i = 0; i < scenarios.size(); ++i) note_replaced_run(scenarios[i], directories[i]);
+  }
   double bytes = 0.0;
   for (const LoadedScenario& loaded : scenarios) bytes += expected_output_bytes(loaded.scenario);
   announce_large_output(bytes);
@@ -73,7 +87,7 @@ int run(const RunOptions& options) {
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
   const std::string latency_text = options.latency ? "\n" + latencies.text() : "";
   print(options.output,
-        table.text() + step_time_text(reports) + targets + latency_text +
+        table.text() + unsettled_text(reports) + step_time_text(reports) + targets + latency_text +
             fmt::format("\nresults in {}\n", where.string()),
         summaries);
   return status;
@@ -84,7 +98,8 @@ int run(const RunOptions& options) {
 void add_run(CommandLine& line) {
   auto options = std::make_shared<RunOptions>();
   Command command = line.command("run", "Run scenarios and write their results");
-  command.add("scenarios", options->scenarios, "scenario files, names of bundled scenarios, or of groups of them").required();
+  command.add("scenarios", options->scenarios, "scenario files, names of bundled scenarios, or of groups of them")
+      .required();
   command.add("--out", options->out,
               "directory of the results; several scenarios get a subdirectory each (default: results/out/NAME)");
   command.add("--set", options->overrides, "override a field: path=value, as in time.steps=100").repeatable();

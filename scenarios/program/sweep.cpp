@@ -182,7 +182,10 @@ int sweep(const SweepCommand& command) {
   if (command.output.json) {
     print(command.output, "", summary_json(plan, report));
   } else {
-    print(command.output, summary_text(plan, report, metric), {});
+    const std::string picture = command.metric.empty() ? ""
+                                                       : fmt::format("\"hapbench plot {} --metric {}\" draws it\n",
+                                                                     options.directory.string(), metric);
+    print(command.output, summary_text(plan, report, metric) + picture, {});
   }
   return verdict(plan, report);
 }

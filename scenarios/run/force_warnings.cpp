@@ -8,9 +8,9 @@ std::vector<std::string> force_warnings(const Metrics& metrics) {
   std::vector<std::string> warnings;
   if (const auto& friction = metrics.explicit_friction; friction && friction->first_step) {
     warnings.push_back(fmt::format(
-        "beyond {:.3g} N of spring force, first in step {}, the explicit step of friction is unstable; what follows is "
-        "the integrator's doing, not the law's",
-        friction->limit, *friction->first_step));
+        "beyond {:.3g} N of spring force, in {} of {} rows, first in step {}, the explicit step of friction is unstable; "
+        "what follows is the integrator's doing, not the law's",
+        friction->limit, friction->rows_beyond, metrics.rows, *friction->first_step));
   }
   if (const auto& jumps = metrics.reduction; jumps && jumps->stand_out()) {
     warnings.push_back(fmt::format(

@@ -156,7 +156,7 @@ TEST(DescribeCommand, ExplainsEveryClaim) {
 }
 
 TEST(DescribeCommand, ShowsWhatNamesAPlaceOfTheThesis) {
-  for (const char* name : {"Fig. A.2", "fig a.2", "figure_A.2"}) {
+  for (const char* name : {"Fig. A.2", "fig a.2", "figure_A.2", "figure_A.2_springs.svg"}) {
     const Json place = hapbench({"describe", name, "--json"}).json();
     EXPECT_EQ(place["claims"], Json::array({"A1"})) << name;
     EXPECT_NE(place["scenarios"].dump().find("peg_in_hole_2d_shaped_stiffness"), std::string::npos) << name;

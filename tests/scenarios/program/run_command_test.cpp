@@ -97,6 +97,18 @@ TEST_F(RunCommand, ShowsATableRowForEachScenario) {
   EXPECT_EQ(lines[8], "results in " + out());
 }
 
+TEST_F(RunCommand, SaysThatItReplacesARunOfOtherFields) {
+  const auto notes_of = [this](const char* steps) {
+    return hapbench({"run", "single_spring", "--set", std::string("time.steps=") + steps},
+                    {.directory = directory_.path()})
+        .err;
+  };
+  EXPECT_EQ(notes_of("5"), "");
+  EXPECT_EQ(notes_of("5"), "");
+  EXPECT_EQ(notes_of("6"),
+            "hapbench: replaces the run of other fields in results/out/single_spring; --out DIRECTORY keeps both\n");
+}
+
 TEST_F(RunCommand, PrintsNothingUnderQuiet) {
   const ProgramRun run = hapbench({"run", "single_spring", "--out", out(), "--quiet"});
   EXPECT_EQ(run.status, 0);
@@ -229,8 +241,9 @@ TEST_F(RunCommand, StopsADivergenceOfTheFirstRow) {
 
 TEST_F(RunCommand, WarnsOfFrictionThatTheIntegratorCannotStep) {
   const std::string shown = hapbench({"run", "peg_in_hole_2d_summation", "--out", out()}).err;
-  EXPECT_NE(shown.find("warning: peg_in_hole_2d_summation: beyond 79.5 N of spring force, first in step 0, "),
-            std::string::npos)
+  EXPECT_NE(
+      shown.find("warning: peg_in_hole_2d_summation: beyond 79.5 N of spring force, in 2 of 5 rows, first in step 0, "),
+      std::string::npos)
       << shown;
   EXPECT_EQ(summary()["warnings"].size(), 1u);
   EXPECT_EQ(summary()["metrics"]["explicit_friction_limit_N"], 79.5);
