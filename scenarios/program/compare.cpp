@@ -125,7 +125,8 @@ std::string comparison_text(std::span<const RunReport> reports) {
     cells.insert(cells.begin(), report.summary.algorithm);
     table.add(std::move(cells));
   }
-  return fmt::format("{}\n\n{}{}", reports.front().summary.name, table.text(), step_time_text(reports));
+  return fmt::format("{}\n\n{}{}{}", reports.front().summary.name, table.text(), unsettled_text(reports),
+                     step_time_text(reports));
 }
 
 Json summaries_json(const BatchPlan& plan, const BatchReport& report, bool league) {

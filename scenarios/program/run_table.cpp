@@ -25,6 +25,12 @@ std::string without_numbers(std::string text) {
   return text;
 }
 
+/// Runs of one scenario are told apart by their algorithms.
+std::string distinct_name(const RunReport& report, std::span<const RunReport> reports) {
+  const bool one_scenario = reports.front().summary.name == reports.back().summary.name;
+  return one_scenario ? report.summary.algorithm : report.summary.name;
+}
+
 }  // namespace
 
 std::vector<Table::Column> run_columns() {
@@ -87,14 +93,24 @@ std::string step_time_text(std::span<const RunReport> reports) {
   const RunReport& slowest = *std::ranges::max_element(reports, {}, p99_or(0.0));
   if (!slowest.timing.step_p99) return "";
   const auto us = [](const RunReport& report) { return cell(1e6 * *report.timing.step_p99, 2); };
-  if (reports.size() == 1) return fmt::format("\n99 % of the steps take at most {} us\n", us(slowest));
-  // Runs of one scenario are told apart by their algorithms.
-  const bool one_scenario = reports.front().summary.name == reports.back().summary.name;
-  const auto name = [&](const RunReport& report) {
-    return one_scenario ? report.summary.algorithm : report.summary.name;
-  };
-  return fmt::format("\n99 % of the steps take at most {} us ({}) to {} us ({})\n", us(quickest), name(quickest),
-                     us(slowest), name(slowest));
+  const std::string quick = distinct_name(quickest, reports), slow = distinct_name(slowest, reports);
+  if (quick == slow) return fmt::format("\n99 % of the steps take at most {} us\n", us(slowest));
+  return fmt::format("\n99 % of the steps take at most {} us ({}) to {} us ({})\n", us(quickest), quick, us(slowest),
+                     slow);
+}
+
+std::string unsettled_text(std::span<const RunReport> reports) {
+  std::vector<std::string> names;
+  for (const RunReport& report : reports) {
+    const Metrics& m = report.summary.metrics;
+    if (m.steps_in_contact > 0 && !m.contact.mean()) names.push_back(distinct_name(report, reports));
+  }
+  if (names.empty()) return "";
+  return fmt::format("\n{}",
+                     wrapped(fmt::format("\"-\": under 1/30 s of settled contact ({}); --set metrics.from_s=0 takes "
+                                         "all contact",
+                                         fmt::join(names, ", ")),
+                             0));
 }
 
 std::string targets_text(const RunReport& report) {

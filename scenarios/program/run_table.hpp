@@ -35,6 +35,9 @@ std::vector<std::string> run_cells(const RunReport& report);
 /// column more would make the table too wide. Empty when no run was long enough to sample. Precondition: not empty.
 std::string step_time_text(std::span<const RunReport> reports);
 
+/// Why runs that touched have "-" for the metrics of settled contact; empty when none has.
+std::string unsettled_text(std::span<const RunReport> reports);
+
 /// The tables of thesis D.4 for a report with targets: mean and standard error over subjects, a line for each place.
 /// Empty for other reports.
 std::string targets_text(const RunReport& report);

@@ -29,13 +29,15 @@ TEST_F(CompareCommand, ShowsARowForEachAlgorithm) {
   const ProgramRun run = compare({"--algorithms", "original_averaging,mean,exact_shaping"});
   EXPECT_EQ(run.status, 0) << run.err;
   const auto lines = lines_of(run.out);
-  ASSERT_EQ(lines.size(), 12u) << run.out;
+  ASSERT_EQ(lines.size(), 14u) << run.out;
   EXPECT_EQ(lines[0], "peg_in_hole_2d_shaped_stiffness");
   EXPECT_EQ(lines[3].find("algorithm          outcome"), 0u);
   EXPECT_EQ(lines[5].find("original_averaging leaves_hole"), 0u);
   EXPECT_EQ(lines[6].find("mean               leaves_hole"), 0u);
   EXPECT_EQ(lines[7].find("exact_shaping      leaves_hole"), 0u);
-  EXPECT_EQ(lines[9].find("99 % of the steps take at most "), 0u) << lines[9];
+  EXPECT_EQ(lines[9],
+            "\"-\": under 1/30 s of settled contact (original_averaging); --set metrics.from_s=0 takes all contact");
+  EXPECT_EQ(lines[11].find("99 % of the steps take at most "), 0u) << lines[11];
 }
 
 TEST_F(CompareCommand, ShowsAllAlgorithmsIn100Columns) {
@@ -45,13 +47,21 @@ TEST_F(CompareCommand, ShowsAllAlgorithmsIn100Columns) {
 }
 
 TEST_F(CompareCommand, NamesTheAlgorithmsWhoseFrictionTheIntegratorCannotStep) {
-  EXPECT_EQ(compare({"--algorithms", "mean,summation,tandpasta"}).err,
-            "hapbench: warning: peg_in_hole_2d_shaped_stiffness: beyond 79.5 N of spring force, first in step 0, the "
-            "explicit step of friction is unstable; what follows is the integrator's doing, not the law's (summation; "
-            "likewise tandpasta)\n");
+  EXPECT_EQ(
+      compare({"--algorithms", "mean,summation,tandpasta"}).err,
+      "hapbench: warning: peg_in_hole_2d_shaped_stiffness: beyond 79.5 N of spring force, in 2 of 5 rows, "
+      "first in step 0, the explicit step of friction is unstable; what follows is the integrator's doing, not the "
+      "law's (summation; likewise tandpasta)\n");
   EXPECT_EQ(compare({"--algorithms", "mean"}).err, "");
   const std::string implicit = compare({"--algorithms", "summation", "--set", "integrator.type=implicit_euler"}).err;
   EXPECT_EQ(implicit.find("friction"), std::string::npos) << implicit;
+}
+
+TEST_F(CompareCommand, SaysWhySettledContactHasNoMetrics) {
+  const std::string why = "\"-\": under 1/30 s of settled contact (mean)";
+  EXPECT_NE(compare({"--algorithms", "mean", "--set", "time.steps=50"}).out.find(why), std::string::npos);
+  EXPECT_EQ(compare({"--algorithms", "mean", "--set", "time.steps=100", "--set", "metrics.from_s=0"}).out.find("\"-\""),
+            std::string::npos);
 }
 
 TEST_F(CompareCommand, WritesTheFilesOfEachSideBySideAndTheTable) {
