@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "sim/contact/push_hits.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
@@ -57,25 +58,32 @@ double typical_spacing(const PointShell& shell) {
 
 void add_edge_constraints(const ToolShape& tool, const ToolPose& pose, double spacing, double margin,
                           const PlaceArrays& places, ContactBuffer& contacts) noexcept {
-  const std::size_t points = contacts.size();
+  const std::size_t points = contacts.size(), padded = contacts.padded_size();
+  const PackRange all{0, padded / simd::lanes, 0xff, static_cast<std::uint8_t>(0xffu >> (padded - points))};
+  const PointColumns columns{contacts.index.data(), contacts.x.data(),  contacts.y.data(), contacts.z.data(),
+                             contacts.nx.data(),    contacts.ny.data(), contacts.nz.data()};
   const Pack highest(margin), deepest(-kDeepest * spacing), patch2(kPatch * spacing * kPatch * spacing);
   tool.foremost_places(pose, contacts, places);
-  for (std::size_t i = 0; i < points; i += simd::lanes) {
+  for (std::size_t i = 0; i < padded; i += simd::lanes) {
     const Pack nx = load(&contacts.nx[i]), ny = load(&contacts.ny[i]), nz = load(&contacts.nz[i]);
     const Pack dx = load(&places.x[i]) - load(&contacts.x[i]), dy = load(&places.y[i]) - load(&contacts.y[i]),
                dz = load(&places.z[i]) - load(&contacts.z[i]);
     const Pack height = nx * dx + ny * dy + nz * dz;
     const Pack aside2 = dx * dx + dy * dy + dz * dz - height * height;
     const simd::Mask applies = height <= highest && height >= deepest && aside2 <= patch2;
-    if (!simd::any(applies)) continue;
-    alignas(64) double heights[simd::lanes];
-    simd::store(height, heights);
-    for (std::size_t k = 0; k < simd::lanes && i + k < points; ++k) {
-      if (!simd::lane(applies, k)) continue;
-      contacts.push_copy_of(contacts, i + k);
-      contacts.depth[contacts.size() - 1] = -heights[k];
-      contacts.set_gradient(contacts.size() - 1, -contacts.normal(i + k));
-    }
+    const std::uint8_t patches = all.own(simd::bits(applies), i / simd::lanes);
+    if (patches == 0) continue;
+    const std::size_t to = contacts.size();
+    push_hits(patches, columns, i, contacts);
+    const auto write = [patches, to](const Pack& values, AlignedDoubles& column) {
+      alignas(64) double eight[simd::lanes];
+      simd::store(values, eight);
+      simd::store_selected(patches, eight, &column[to]);
+    };
+    write(-height, contacts.depth);
+    write(-nx, contacts.ux);
+    write(-ny, contacts.uy);
+    write(-nz, contacts.uz);
   }
   contacts.pad();
 }

@@ -26,7 +26,8 @@ struct Violation {
   double amount = 0.0;  ///< d + <u, x> [m]
 };
 
-Violation largest_violation(const ContactBuffer& c, const Vec3& x) noexcept {
+/// The first of equals; none, with amount 0, when all are within the tolerance.
+Violation largest_violation(const ContactBuffer& c, const Vec3& x, double tolerance) noexcept {
   const Pack x0(x.x()), x1(x.y()), x2(x.z());
   Pack largest(-kNever);
   const auto amount = [&](std::size_t i) {
@@ -34,6 +35,7 @@ Violation largest_violation(const ContactBuffer& c, const Vec3& x) noexcept {
   };
   for (std::size_t i = 0; i < c.padded_size(); i += simd::lanes) largest = simd::max(largest, amount(i));
   const double most = simd::max_lane(largest);
+  if (!(most > tolerance)) return {};
   for (std::size_t i = 0; i < c.padded_size(); i += simd::lanes) {
     const simd::Mask here = amount(i) >= Pack(most);
     if (simd::any(here)) return {i + simd::first(here), most};
@@ -155,7 +157,7 @@ bool solve_exactly(const Vec3& wanted, double tolerance, ContactBuffer& contacts
   ActiveSet active;
   out.move = wanted;
   for (;;) {
-    const Violation worst = largest_violation(contacts, out.move);
+    const Violation worst = largest_violation(contacts, out.move, tolerance);
     // An active contact is satisfied but for rounding.
     if (!(worst.amount > tolerance) || active.contains(worst.contact)) break;
     if (++out.iterations > kMostIterations) return false;

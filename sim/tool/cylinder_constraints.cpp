@@ -52,25 +52,30 @@ void Cylinder::surface_constraints(const ToolPose& pose, const Vec3& wanted, dou
     const Pack end = round ? bottom : simd::max(q.s, bottom);
     const Pack forward = round ? -one : select(tip_nearer, one, -one);
 
-    // Beyond side and end the nearest place is the edge between them.
-    const Mask beyond_both = side > zero && end > zero;
-    const Pack to_edge = simd::sqrt(side * side + end * end);
     const Mask side_wins = side >= end;
-    Pack distance = select(beyond_both, to_edge, select(side_wins, side, end));
-    const Pack edge_scale = one / select(beyond_both, to_edge, one);
-    Pack outwards = select(beyond_both, side * edge_scale, select(side_wins, one, zero));
-    Pack along = forward * select(beyond_both, end * edge_scale, select(side_wins, zero, one));
+    Pack distance = select(side_wins, side, end);
+    Pack outwards = select(side_wins, one, zero);
+    Pack along = forward * select(side_wins, zero, one);
+    if (const Mask at_edge = side > in_reach && end > in_reach; simd::any(at_edge)) {
+      // Beyond side and end the nearest place is the edge between them.
+      const Mask beyond_both = side > zero && end > zero;
+      const Pack to_edge = simd::sqrt(side * side + end * end);
+      const Pack edge_scale = one / select(beyond_both, to_edge, one);
+      distance = select(beyond_both, to_edge, distance);
+      outwards = select(beyond_both, side * edge_scale, outwards);
+      along = select(beyond_both, forward * (end * edge_scale), along);
 
-    const Pack towards_side = out.x * wx + out.y * wy + out.z * wz;
-    const Pack towards_end = ax * wx + ay * wy + az * wz;
-    const Pack nx = simd::load(&contacts.nx[i]), ny = simd::load(&contacts.ny[i]), nz = simd::load(&contacts.nz[i]);
-    const Pack faces_side = -(out.x * nx + out.y * ny + out.z * nz),
-               faces_end = -forward * (ax * nx + ay * ny + az * nz);
-    const Mask bumps = outwards * towards_side + along * towards_end > distance && side > in_reach && end > in_reach;
-    const Mask along_end = bumps && faces_end > flush, along_side = bumps && faces_side > flush;
-    distance = select(along_end, end, select(along_side, side, distance));
-    outwards = select(along_end, zero, select(along_side, one, outwards));
-    along = select(along_end, forward, select(along_side, zero, along));
+      const Pack towards_side = out.x * wx + out.y * wy + out.z * wz;
+      const Pack towards_end = ax * wx + ay * wy + az * wz;
+      const Pack nx = simd::load(&contacts.nx[i]), ny = simd::load(&contacts.ny[i]), nz = simd::load(&contacts.nz[i]);
+      const Pack faces_side = -(out.x * nx + out.y * ny + out.z * nz),
+                 faces_end = -forward * (ax * nx + ay * ny + az * nz);
+      const Mask bumps = at_edge && outwards * towards_side + along * towards_end > distance;
+      const Mask along_end = bumps && faces_end > flush, along_side = bumps && faces_side > flush;
+      distance = select(along_end, end, select(along_side, side, distance));
+      outwards = select(along_end, zero, select(along_side, one, outwards));
+      along = select(along_end, forward, select(along_side, zero, along));
+    }
     Pack mx = outwards * out.x + along * ax, my = outwards * out.y + along * ay, mz = outwards * out.z + along * az;
     if (round) {
       const Pack from_centre = simd::sqrt(q.distance2());

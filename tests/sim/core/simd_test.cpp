@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -142,6 +143,13 @@ TEST(Simd, MinAndMaxKeepTheFirstArgumentWhenTheSecondIsNaN) {
   EXPECT_EQ(values(max(Pack(1.0), Pack(kNaN)))[0], 1.0);
   EXPECT_EQ(values(min(Pack(1.0), Pack(-kInf)))[0], -kInf);
   EXPECT_EQ(values(max(Pack(1.0), Pack(kInf)))[0], kInf);
+  // Of equals and beside NaN the first, in every build, down to the sign of zero.
+  EXPECT_TRUE(std::isnan(values(min(Pack(kNaN), Pack(1.0)))[0]));
+  EXPECT_TRUE(std::isnan(values(max(Pack(kNaN), Pack(1.0)))[0]));
+  for (const double zero : {0.0, -0.0}) {
+    EXPECT_EQ(std::signbit(values(min(Pack(zero), Pack(-zero)))[0]), std::signbit(zero));
+    EXPECT_EQ(std::signbit(values(max(Pack(zero), Pack(-zero)))[0]), std::signbit(zero));
+  }
 }
 
 TEST(Simd, MinLaneAndMaxLaneFindEveryLane) {
