@@ -100,10 +100,9 @@ TEST(ScenarioSchema, AcceptsFilesThatExtendOthersAsTheyStand) {
   EXPECT_FALSE(accepts(R"({"environment": {"type": "plane"}})"));
 }
 
-/// What one mutant must show.
-void expect_agreement(const test::Mutation& mutant, const std::string& name) {
+/// What one mutant must show; `objection` is the reader's.
+void expect_agreement(const test::Mutation& mutant, const std::optional<InputError>& objection, const std::string& name) {
   const bool accepted = schema().accepts(mutant.document);
-  const std::optional<InputError> objection = objection_to(mutant.document);
   const bool wrong_shape = objection && objection->kind() == InputError::Kind::shape;
   EXPECT_EQ(wrong_shape, !accepted) << name << " " << mutant.change
                                     << "\n reader: " << (objection ? objection->what() : "fine")
@@ -124,10 +123,9 @@ TEST(ScenarioSchema, RejectsExactlyTheMutantsWhoseShapeTheReaderRefuses) {
     const std::size_t mutants = mutants_of(s);
     for (std::size_t i = 0; i < mutants && !HasFailure(); ++i, ++total) {
       const test::Mutation mutant = test::mutated(scenarios[s].json, random);
-      expect_agreement(mutant, scenarios[s].name);
-      if (const auto objection = objection_to(mutant.document)) {
-        ++(objection->kind() == InputError::Kind::shape ? refused : related);
-      }
+      const std::optional<InputError> objection = objection_to(mutant.document);
+      expect_agreement(mutant, objection, scenarios[s].name);
+      if (objection) ++(objection->kind() == InputError::Kind::shape ? refused : related);
     }
   }
   // The mutants are neither all good nor all bad, or the test would show little.

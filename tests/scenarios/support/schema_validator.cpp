@@ -31,7 +31,7 @@ nlohmann::json plain(const Json& json) {
     return value;
   }
   if (json.is_number_unsigned() && json.get<std::uint64_t>() > INT64_MAX) return json.get<double>();
-  return nlohmann::json::parse(json.dump());
+  return json;
 }
 
 }  // namespace
