@@ -46,9 +46,9 @@ struct KeptOfSurface {
 /// manifold. Where a cell's face is ambiguous the inside corners are separated, on both sides of the face alike.
 ///
 /// Evaluates the field near the surface only: squares of nodes in a layer that the distance at their middle shows to be
-/// all inside or all outside are not looked into. Cost and memory grow with the surface (some 100 ns and 40 bytes a
-/// vertex), but for a few layers of the grid and a few operations for every 64 nodes. Layers are shared out among the
-/// threads that oneTBB gives; the result does not depend on their number.
+/// all inside or all outside are not looked into. Cost and memory grow with the surface (some 100 ns and, beside the
+/// result, 40 bytes a vertex), but for a few layers of the grid and a few operations for every 64 nodes. Layers are
+/// shared out among the threads that oneTBB gives; the result does not depend on their number.
 IsoSurface marching_cubes(const DensityField& field, KeptOfSurface kept = {});
 
 }  // namespace hapbench
