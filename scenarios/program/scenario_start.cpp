@@ -9,7 +9,7 @@
 
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/drag_start.hpp"
-#include "scenarios/run/environment_points.hpp"
+#include "scenarios/run/make_shell.hpp"
 #include "scenarios/run/quantity_text.hpp"
 #include "sim/core/box.hpp"
 
@@ -185,7 +185,7 @@ class Start {
 
   std::vector<SurfacePoint> points() const {
     const LoadedScenario loaded = scenario();
-    return environment_points(loaded.scenario, loaded.files).points;
+    return make_shell(loaded.scenario, loaded.files)->points();
   }
 
   /// From the mesh's own vertices, taken for millimetres.

@@ -9,7 +9,7 @@
 #include "scenarios/input/shell_file.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/environment_points.hpp"
+#include "scenarios/run/make_shell.hpp"
 #include "scenarios/run/wait_notice.hpp"
 
 namespace hapbench {
@@ -30,7 +30,7 @@ int shell(const ShellOptions& options) {
   const std::vector<SurfacePoint> points = [&] {
     const WaitNotice notice("building the shell", !options.output.quiet);
     print_warnings(check_named_files(loaded));
-    return environment_points(loaded.scenario, loaded.files).points;
+    return make_shell(loaded.scenario, loaded.files)->points();
   }();
   const std::filesystem::path file = options.out;
   const std::string text = point_shell_text(points, file);

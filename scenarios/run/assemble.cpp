@@ -14,7 +14,6 @@
 #include "device_model/hands/tracking_hand.hpp"
 #include "device_model/ideal_device.hpp"
 #include "device_model/impedance_device.hpp"
-#include "scenarios/run/environment_points.hpp"
 #include "scenarios/run/peer_contacts.hpp"
 #include "sim/contact/spring_source.hpp"
 #include "sim/core/random.hpp"
@@ -22,11 +21,6 @@
 
 namespace hapbench {
 namespace {
-
-template <class... Visitors>
-struct Overloaded : Visitors... {
-  using Visitors::operator()...;
-};
 
 SpringSet make_springs(const SpringsEnvironment& fields, std::uint64_t seed) {
   SpringSet springs;
@@ -43,16 +37,6 @@ SpringSet make_springs(const SpringsEnvironment& fields, std::uint64_t seed) {
     springs.gradients.push_back(fields.random.planar ? random.direction_in_plane() : random.direction());
   }
   return springs;
-}
-
-/// Edge of the grid cells the local average merges in.
-double cell_size(const Environment& environment) {
-  return std::visit(Overloaded{[](const SpringsEnvironment&) { return 0.0; },
-                               [](const PointShellEnvironment& shell) { return shell.grid.value_or(0.0); },
-                               [](const MeshEnvironment& mesh) { return mesh.grid.value_or(0.0); },
-                               [](const BlockEnvironment& block) { return block.grid; },
-                               [](const auto& analytic) { return analytic.spacing; }},
-                    environment);
 }
 
 Orientation make_orientation(const OrientationFields& fields) {
@@ -231,15 +215,6 @@ SimulationConfig simulation_config(const Scenario& scenario) {
   return config;
 }
 
-std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, ShellPoints points) {
-  if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return nullptr;
-  return std::make_shared<const PointShell>(points.points, cell_size(scenario.environment), std::move(points.cells));
-}
-
-std::shared_ptr<const PointShell> make_shell(const Scenario& scenario) {
-  return make_shell(scenario, environment_points(scenario));
-}
-
 SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std::shared_ptr<const PointShell> shell,
                          Trial trial) {
   SimulationParts parts;
@@ -269,7 +244,7 @@ SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointSh
 
 SimulationParts assemble(const Scenario& scenario) {
   const NamedFiles files(scenario);
-  return assemble(scenario, files, make_shell(scenario, environment_points(scenario, files)), {});
+  return assemble(scenario, files, make_shell(scenario, files), {});
 }
 
 }  // namespace hapbench

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/run/make_shell.hpp"
 #include "scenarios/run/make_tool.hpp"
 #include "sim/loop/simulation.hpp"
 
@@ -25,12 +26,6 @@ struct Trial {
   std::size_t subject = 0;
   std::size_t number = 0;
 };
-
-/// The points of the scenario's environment (environment_points.hpp) as the contact search wants them; null for
-/// springs.
-std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, ShellPoints points);
-/// The same, making the points too. Throws InputError when a named file cannot be used.
-std::shared_ptr<const PointShell> make_shell(const Scenario& scenario);
 
 /// Everything the run is made of. Precondition: `shell` is make_shell of this scenario. Throws InputError when a named
 /// file cannot be used. With skips off (RenderingConfig), every step compares every point with the tool.

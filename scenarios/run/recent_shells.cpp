@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/environment_points.hpp"
 
 namespace hapbench {
 
@@ -16,7 +15,7 @@ std::shared_ptr<const PointShell> RecentShells::of(const LoadedScenario& loaded,
   const auto entry = entry_of(environment);
   const std::lock_guard lock(entry->mutex);
   if (!entry->made) {
-    entry->shell = make_shell(loaded.scenario, environment_points(loaded.scenario, loaded.files));
+    entry->shell = make_shell(loaded.scenario, loaded.files);
     entry->made = true;
   }
   return entry->shell;

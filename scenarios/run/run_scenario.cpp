@@ -10,7 +10,6 @@
 #include "results/io/new_directories.hpp"
 #include "results/record/target_table.hpp"
 #include "results/summary/columns_json.hpp"
-#include "scenarios/run/environment_points.hpp"
 #include "scenarios/run/expectation.hpp"
 #include "scenarios/run/force_warnings.hpp"
 #include "scenarios/run/recorders.hpp"
@@ -25,13 +24,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-ShellPoints timed_environment_points(const LoadedScenario& loaded, RunTiming& timing) {
-  const auto start = Clock::now();
-  ShellPoints shell = environment_points(loaded.scenario, loaded.files);
-  timing.shell = seconds_since(start);
-  return shell;
 }
 
 /// The trials of a scenario, subject by subject.
@@ -189,7 +181,10 @@ RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::pat
   RunTiming timing;
   const auto shell = [&] {
     const WaitNotice notice(loaded.scenario.name + ": building the shell", progress);
-    return make_shell(loaded.scenario, timed_environment_points(loaded, timing));
+    const auto start = Clock::now();
+    auto made = make_shell(loaded.scenario, loaded.files);
+    timing.shell = seconds_since(start);
+    return made;
   }();
   return run_with_shell(loaded, shell, output, progress, timing, tables);
 }

@@ -7,7 +7,6 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/drag_course.hpp"
 #include "scenarios/run/encounter.hpp"
-#include "scenarios/run/environment_points.hpp"
 #include "scenarios/run/force_warnings.hpp"
 #include "sim/tool/mesh_tool.hpp"
 
@@ -62,7 +61,7 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   const auto tool = make_tool(scenario, loaded.files);
   facts.tool = tool_facts(scenario, loaded.files, *tool);
   facts.warnings = tool_warnings(scenario.rendering, *tool);
-  const auto shell = make_shell(scenario, environment_points(scenario, loaded.files));
+  const auto shell = make_shell(scenario, loaded.files);
   if (!shell || shell->size() == 0) return facts;
   if (std::holds_alternative<MeshEnvironment>(scenario.environment))
     facts.is_closed = loaded.files.mesh().open_edges().empty();

@@ -3,7 +3,6 @@
 #include <chrono>
 
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/environment_points.hpp"
 
 namespace hapbench {
 

@@ -14,7 +14,6 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/number_table.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/environment_points.hpp"
 #include "scenarios/run/run_to_end.hpp"
 
 namespace hapbench {
@@ -127,7 +126,7 @@ RunReport Evidence::run(const std::string& name, std::span<const std::string> mo
 
 std::shared_ptr<const PointShell> Evidence::shell(const LoadedScenario& loaded) const {
   if (shells != nullptr) return shells->of(loaded);
-  return make_shell(loaded.scenario, environment_points(loaded.scenario, loaded.files));
+  return make_shell(loaded.scenario, loaded.files);
 }
 
 void Evidence::for_each_row(const LoadedScenario& loaded, const std::function<void(const StepRecord&)>& row) const {

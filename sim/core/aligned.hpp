@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <new>
+#include <utility>
 #include <vector>
 
 namespace hapbench {
@@ -22,5 +23,24 @@ struct CacheLineAllocator {
 };
 
 using AlignedDoubles = std::vector<double, CacheLineAllocator<double>>;
+
+/// The same, but what `resize` adds holds no value yet: for large columns that several threads fill at once, each the
+/// pages it touches first.
+template <class T>
+struct UnsetCacheLineAllocator : CacheLineAllocator<T> {
+  template <class U>
+  struct rebind {
+    using other = UnsetCacheLineAllocator<U>;
+  };
+  template <class U, class... Args>
+  void construct(U* p, Args&&... args) {
+    if constexpr (sizeof...(Args) == 0)
+      ::new (static_cast<void*>(p)) U;
+    else
+      ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
+  }
+};
+
+using UnsetDoubles = std::vector<double, UnsetCacheLineAllocator<double>>;
 
 }  // namespace hapbench

@@ -1,41 +1,76 @@
 #include "sim/geometry/point_shell.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <utility>
 
-#include "sim/core/simd.hpp"
+#include "sim/core/lanes.hpp"
 
 namespace hapbench {
 
-Box bounds_of(const std::vector<SurfacePoint>& points) {
+namespace {
+
+template <class Point, class Position>
+Box bounds_of(const std::vector<Point>& points, Position position) {
   if (points.empty()) return {};
-  Box box{points[0].position, points[0].position};
-  for (const SurfacePoint& point : points) {
-    box.min = box.min.cwiseMin(point.position);
-    box.max = box.max.cwiseMax(point.position);
+  Box box{position(points[0]), position(points[0])};
+  for (const Point& point : points) {
+    box.min = box.min.cwiseMin(position(point));
+    box.max = box.max.cwiseMax(position(point));
   }
   return box;
 }
 
-PointShell::PointShell(const std::vector<SurfacePoint>& points, double cell_size, std::vector<std::uint32_t> cells)
-    : size_(points.size()), cell_size_(cell_size), bounds_(bounds_of(points)), cells_(std::move(cells)) {
-  const std::size_t padded = simd::padded(points.size());
-  for (AlignedDoubles* column : {&x_, &y_, &z_}) column->assign(padded, kFarAway);
-  for (AlignedDoubles* column : {&nx_, &ny_, &nz_}) column->assign(padded, 0.0);
+ShellColumns columns_of(const std::vector<SurfacePoint>& points) {
+  ShellColumns columns;
+  auto& [x, y, z, nx, ny, nz] = columns;
+  for (UnsetDoubles* column : {&x, &y, &z, &nx, &ny, &nz}) column->resize(simd::padded(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i) {
-    x_[i] = points[i].position.x();
-    y_[i] = points[i].position.y();
-    z_[i] = points[i].position.z();
-    nx_[i] = points[i].normal.x();
-    ny_[i] = points[i].normal.y();
-    nz_[i] = points[i].normal.z();
+    x[i] = points[i].position.x();
+    y[i] = points[i].position.y();
+    z[i] = points[i].position.z();
+    nx[i] = points[i].normal.x();
+    ny[i] = points[i].normal.y();
+    nz[i] = points[i].normal.z();
   }
+  return columns;
+}
+
+}  // namespace
+
+Box bounds_of(const std::vector<SurfacePoint>& points) {
+  return bounds_of(points, [](const SurfacePoint& point) -> const Vec3& { return point.position; });
+}
+
+Box bounds_of(const std::vector<Vec3>& points) {
+  return bounds_of(points, [](const Vec3& point) -> const Vec3& { return point; });
+}
+
+PointShell::PointShell(ShellColumns columns, std::size_t size, const Box& bounds, double cell_size)
+    : size_(size), cell_size_(cell_size), bounds_(bounds), columns_(std::move(columns)) {
+  auto& [x, y, z, nx, ny, nz] = columns_;
+  for (UnsetDoubles* column : {&x, &y, &z})
+    std::fill(column->begin() + static_cast<std::ptrdiff_t>(size), column->end(), kFarAway);
+  for (UnsetDoubles* column : {&nx, &ny, &nz})
+    std::fill(column->begin() + static_cast<std::ptrdiff_t>(size), column->end(), 0.0);
+}
+
+PointShell::PointShell(const std::vector<SurfacePoint>& points, double cell_size, std::vector<std::uint32_t> cells)
+    : PointShell(columns_of(points), points.size(), bounds_of(points), cell_size) {
+  cells_ = std::move(cells);
 }
 
 SurfacePoint PointShell::point(std::size_t i) const {
-  return {{x_[i], y_[i], z_[i]}, {nx_[i], ny_[i], nz_[i]}};
+  return {{x()[i], y()[i], z()[i]}, {nx()[i], ny()[i], nz()[i]}};
+}
+
+std::vector<SurfacePoint> PointShell::points() const {
+  std::vector<SurfacePoint> all;
+  all.reserve(size_);
+  for (std::size_t i = 0; i < size_; ++i) all.push_back(point(i));
+  return all;
 }
 
 std::vector<std::uint32_t> PointShell::cell_of_points() const {
@@ -44,7 +79,7 @@ std::vector<std::uint32_t> PointShell::cell_of_points() const {
   std::vector<std::uint32_t> cell(size_);
   const auto along = [this](double a) { return std::floor(a / cell_size_ + 0.5); };
   for (std::size_t i = 0; i < size_; ++i) {
-    const std::array<double, 3> key{along(x_[i]), along(y_[i]), along(z_[i])};
+    const std::array<double, 3> key{along(x()[i]), along(y()[i]), along(z()[i])};
     cell[i] = cells.try_emplace(key, static_cast<std::uint32_t>(cells.size())).first->second;
   }
   return cell;

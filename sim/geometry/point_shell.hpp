@@ -17,6 +17,7 @@ struct SurfacePoint {
 
 /// The box of all points; at the origin when there are none.
 Box bounds_of(const std::vector<SurfacePoint>& points);
+Box bounds_of(const std::vector<Vec3>& points);
 
 /// The points of a shell, and the grid cells they were listed by.
 struct ShellPoints {
@@ -24,6 +25,11 @@ struct ShellPoints {
   /// Number of each point's grid cell, 0 … cells - 1 in order of first appearance; empty when the cells follow from the
   /// positions.
   std::vector<std::uint32_t> cells;
+};
+
+/// Coordinates and normals of points, all as long as whole packs (simd::padded).
+struct ShellColumns {
+  UnsetDoubles x, y, z, nx, ny, nz;
 };
 
 /// The environment object as points with normals, laid out for the contact search: one array per coordinate, 64-byte
@@ -37,20 +43,24 @@ class PointShell {
   /// `cells` is empty, or says which cell lists each point, as in ShellPoints.
   PointShell(const std::vector<SurfacePoint>& points, double cell_size, std::vector<std::uint32_t> cells = {});
 
+  /// Takes columns of which the first `size` values are set; `bounds` is the box of these points.
+  PointShell(ShellColumns columns, std::size_t size, const Box& bounds, double cell_size);
+
   std::size_t size() const { return size_; }
-  std::size_t padded_size() const { return x_.size(); }
+  std::size_t padded_size() const { return columns_.x.size(); }
   double cell_size() const { return cell_size_; }
   /// Of all points; at the origin when there are none.
   const Box& bounds() const { return bounds_; }
 
-  const double* x() const { return x_.data(); }
-  const double* y() const { return y_.data(); }
-  const double* z() const { return z_.data(); }
-  const double* nx() const { return nx_.data(); }
-  const double* ny() const { return ny_.data(); }
-  const double* nz() const { return nz_.data(); }
+  const double* x() const { return columns_.x.data(); }
+  const double* y() const { return columns_.y.data(); }
+  const double* z() const { return columns_.z.data(); }
+  const double* nx() const { return columns_.nx.data(); }
+  const double* ny() const { return columns_.ny.data(); }
+  const double* nz() const { return columns_.nz.data(); }
 
   SurfacePoint point(std::size_t i) const;
+  std::vector<SurfacePoint> points() const;
 
   /// Number of each point's grid cell, 0 … cells - 1 in order of first appearance: the cells the shell was made with,
   /// else the cubes between half-integer multiples of cell_size, so that a shell spaced by cell_size from the origin
@@ -61,7 +71,7 @@ class PointShell {
   std::size_t size_;
   double cell_size_;
   Box bounds_;
-  AlignedDoubles x_, y_, z_, nx_, ny_, nz_;
+  ShellColumns columns_;
   std::vector<std::uint32_t> cells_;
 };
 

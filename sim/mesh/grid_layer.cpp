@@ -1,49 +1,78 @@
 #include "sim/mesh/grid_layer.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace hapbench {
 
-NodeGrid::NodeGrid(const DensityField& field) : spacing_(field.spacing) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<Eigen::Index>(axis);
-    // A cell to spare on each side, so that the surface cuts no cell at the border.
-    first_[axis] = static_cast<std::int64_t>(std::floor(field.min[a] / spacing_)) - 1;
-    const auto last = static_cast<std::int64_t>(std::ceil(field.max[a] / spacing_)) + 2;
-    count_[axis] = static_cast<std::size_t>(last - first_[axis] + 1);
-  }
+GridLayer::GridLayer(const DensityField& field, const NodeGrid& grid)
+    : field_(field),
+      grid_(grid),
+      words_((grid.count(0) + 63) / 64),
+      starting_in_last_((std::uint64_t{1} << (grid.count(0) - 1) % 64) - 1),
+      inside_(words_ * grid.count(1)),
+      known_(words_ * grid.count(1)),
+      edges_(words_ * grid.count(1)),
+      density_(std::make_unique_for_overwrite<double[]>(64 * words_ * grid.count(1))) {}
+
+double GridLayer::set_density(std::size_t i, std::size_t j, double distance) {
+  known_[j * words_ + i / 64] |= std::uint64_t{1} << i % 64;
+  return density_[j * 64 * words_ + i] =
+             field_.density == Density::signed_distance ? -distance : (distance < 0.0 ? 0.5 : -0.5);
 }
 
-GridLayer::GridLayer(const NodeGrid& grid)
-    : density_(grid.nodes_in_layer(), std::numeric_limits<double>::quiet_NaN()),
-      on_edge_(std::make_unique_for_overwrite<std::uint32_t[]>(3 * grid.nodes_in_layer())) {}
+double GridLayer::density(std::size_t i, std::size_t j) {
+  if ((known_[j * words_ + i / 64] >> i % 64 & 1u) != 0) return density_[j * 64 * words_ + i];
+  return set_density(i, j, field_.signed_distance(grid_.node(i, j, k_)));
+}
 
-void GridLayer::evaluate(const DensityField& field, const NodeGrid& grid, std::size_t k) {
-  for (const std::uint32_t node : near_) density_[node] = std::numeric_limits<double>::quiet_NaN();
-  near_.clear();
-  // A cut cell has the surface on one of its edges, no further from any corner than the cell's diagonal. 1e-9 of slack
-  // for the rounding of the distance.
-  const double reach = std::numbers::sqrt3 * grid.spacing() * (1.0 + 1e-9);
-  std::size_t row = 0;
-  for (std::size_t j = 0; j < grid.count(1); ++j, row += grid.count(0)) {
-    Vec3 point = grid.node(0, j, k);
-    for (std::size_t i = 0; i < grid.count(0);) {
-      point.x() = grid.coordinate(i, 0);
-      const double distance = field.signed_distance(point);
-      const double beyond = std::abs(distance) - reach;
-      if (beyond > 0.0) {
-        // A distance falls by no more than the way: the nodes between are beyond reach, too.
-        const double steps = std::ceil(beyond / grid.spacing());
-        i += steps < static_cast<double>(grid.count(0)) ? static_cast<std::size_t>(steps) : grid.count(0);
-        continue;
+/// The nodes of the square of `size` x `size` from (i, j), which lies in one word of each row.
+void GridLayer::find_inside(std::size_t i, std::size_t j, std::size_t size) {
+  const double half = 0.5 * grid_.spacing() * static_cast<double>(size - 1);
+  const double distance = field_.signed_distance(grid_.node(i, j, k_) + Vec3(half, half, 0.0));
+  // A distance falls by no more than the way: without the surface nearer than its corners, the square is all inside or
+  // all outside. 1e-9 of slack for the rounding of the distance.
+  if (size > 1 && std::abs(distance) <= std::numbers::sqrt2 * half * (1.0 + 1e-9)) {
+    for (const std::size_t y : {j, j + size / 2}) {
+      for (const std::size_t x : {i, i + size / 2}) {
+        if (x < grid_.count(0) && y < grid_.count(1)) find_inside(x, y, size / 2);
       }
-      const std::size_t node = row + i++;
-      near_.push_back(static_cast<std::uint32_t>(node));
-      density_[node] = field.density == Density::signed_distance ? -distance : (distance < 0.0 ? 0.5 : -0.5);
+    }
+    return;
+  }
+  if (size == 1) set_density(i, j, distance);
+  if (!(distance < 0.0)) return;
+  const std::uint64_t bits = (size < 64 ? (std::uint64_t{1} << size) - 1 : ~std::uint64_t{0}) << i % 64;
+  for (std::size_t y = j; y < std::min(j + size, grid_.count(1)); ++y) inside_[y * words_ + i / 64] |= bits;
+}
+
+std::size_t GridLayer::evaluate(std::size_t k) {
+  k_ = k;
+  std::fill(inside_.begin(), inside_.end(), 0);
+  std::fill(known_.begin(), known_.end(), 0);
+  for (std::size_t j = 0; j < grid_.count(1); j += 64) {
+    for (std::size_t i = 0; i < grid_.count(0); i += 64) find_inside(i, j, 64);
+  }
+  std::size_t count = 0;
+  for (std::size_t j = 0; j < grid_.count(1); ++j) {
+    for (std::size_t w = 0; w < words_; ++w) {
+      Edges& crossed = edges(w, j);
+      crossed.x = (inside(w, j) ^ next_inside(w, j)) & starting(w);
+      crossed.y = j + 1 < grid_.count(1) ? inside(w, j) ^ inside(w, j + 1) : 0;
+      count += static_cast<std::size_t>(std::popcount(crossed.x) + std::popcount(crossed.y));
     }
   }
+  return count;
+}
+
+std::size_t GridLayer::cross_to(const GridLayer& above) {
+  std::size_t count = 0;
+  for (std::size_t word = 0; word < edges_.size(); ++word) {
+    edges_[word].z = inside_[word] ^ above.inside_[word];
+    count += static_cast<std::size_t>(std::popcount(edges_[word].z));
+  }
+  return count;
 }
 
 }  // namespace hapbench

@@ -45,10 +45,10 @@ struct KeptOfSurface {
 /// The surface of the solid by marching cubes with linear interpolation along the edges of the grid: closed and
 /// manifold. Where a cell's face is ambiguous the inside corners are separated, on both sides of the face alike.
 ///
-/// Evaluates the field near the surface only: walking along a row of nodes, it steps over those that the distance shows
-/// to be too far from it. Cost and memory grow with the surface and not with the volume: some 100 ns and 50 bytes a
-/// vertex, beside a few layers of the grid. Layers are shared out among the threads that oneTBB gives; the result does
-/// not depend on their number.
+/// Evaluates the field near the surface only: squares of nodes in a layer that the distance at their middle shows to be
+/// all inside or all outside are not looked into. Cost and memory grow with the surface (some 100 ns and, beside the
+/// result, 40 bytes a vertex), but for a few layers of the grid and a few operations for every 64 nodes. Layers are
+/// shared out among the threads that oneTBB gives; the result does not depend on their number.
 IsoSurface marching_cubes(const DensityField& field, KeptOfSurface kept = {});
 
 }  // namespace hapbench

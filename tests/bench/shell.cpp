@@ -7,7 +7,6 @@
 #include <fstream>
 #include <string>
 
-#include "scenarios/run/environment_points.hpp"
 #include "tests/bench/bench.hpp"
 
 namespace hapbench::bench {

@@ -3,7 +3,7 @@
 #include <map>
 
 #include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/run/environment_points.hpp"
+#include "scenarios/run/make_shell.hpp"
 
 namespace hapbench::bench {
 namespace {

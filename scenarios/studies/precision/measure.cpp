@@ -6,7 +6,6 @@
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/environment_points.hpp"
 #include "scenarios/run/run_to_end.hpp"
 
 namespace hapbench {

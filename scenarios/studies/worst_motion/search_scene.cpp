@@ -8,7 +8,6 @@
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/environment_points.hpp"
 
 namespace hapbench {
 namespace {

@@ -3,7 +3,6 @@
 
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/environment_points.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
 /// Runs that go beyond every bound end as diverged, whichever part of the loop goes.

@@ -1,0 +1,236 @@
+#include "sim/mesh/surface_slab.hpp"
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+#include "sim/mesh/cube_cases.hpp"
+#include "sim/mesh/grid_layer.hpp"
+#include "sim/mesh/triangle_normal.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Layers are shared out in so many slabs at most, whatever the number of threads, because a normal that is summed in
+/// two slabs depends in its last digits on where they meet.
+constexpr std::size_t kMostSlabs = 16;
+
+/// Calls visit(i) for each set bit of the word that starts with node 64 w.
+template <class Visit>
+void for_each_node(std::uint64_t bits, std::size_t w, Visit visit) {
+  for (; bits != 0; bits &= bits - 1) visit(64 * w + static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
+/// A case of marching cubes, laid out for the loop over cells.
+struct CutCase {
+  struct Edge {
+    std::uint8_t x, y, z, axis;  ///< of the corner where it starts, 0 or 1 each
+  };
+  std::vector<Edge> edges;                             ///< that are crossed, in the order of their numbers
+  std::vector<std::array<std::uint8_t, 3>> triangles;  ///< of places in `edges`
+
+  explicit CutCase(unsigned inside) {
+    const std::vector<CubeTriangle>& all = cube_triangles(inside);
+    std::array<std::uint8_t, 24> place{};
+    for (std::uint8_t number = 0; number < 24; ++number) {
+      const std::uint8_t corner = number / 3, axis = number % 3;
+      const bool crossed =
+          std::ranges::any_of(all, [&](const CubeTriangle& t) { return std::ranges::find(t, number) != t.end(); });
+      if (!crossed) continue;
+      place[number] = static_cast<std::uint8_t>(edges.size());
+      edges.push_back({std::uint8_t(corner & 1), std::uint8_t(corner >> 1 & 1), std::uint8_t(corner >> 2), axis});
+    }
+    for (const auto& [a, b, c] : all) {
+      const auto at = [&](int number) { return place[static_cast<std::size_t>(number)]; };
+      triangles.push_back({at(a), at(b), at(c)});
+    }
+  }
+};
+
+const std::vector<CutCase>& cut_cases() {
+  static const auto cases = [] {
+    std::vector<CutCase> all;
+    for (unsigned inside = 0; inside < 256; ++inside) all.emplace_back(inside);
+    return all;
+  }();
+  return cases;
+}
+
+/// Two neighbouring layers of nodes, which a thread uses for slab after slab.
+struct LayerPair {
+  GridLayer low, high;
+  LayerPair(const DensityField& field, const NodeGrid& grid) : low(field, grid), high(field, grid) {}
+};
+
+/// Makes a slab with the vertices in both layers of nodes at its ends, and sums of normals.
+class SlabBuilder {
+ public:
+  SlabBuilder(const NodeGrid& grid, KeptOfSurface kept, LayerPair& layers, SurfaceSlab& slab)
+      : grid_(grid), kept_(kept), low_(&layers.low), high_(&layers.high), slab_(slab) {}
+
+  /// Cells between the layers of nodes first < last. Returns how many vertices lie in the last.
+  std::size_t build(std::size_t first, std::size_t last) {
+    slab_.layers.resize(1 + last - first);
+    above_ = slab_.layers.data();
+    std::size_t in_layer = low_->evaluate(first);
+    make_room(in_layer);
+    add_vertices_in(*low_, first);
+    for (std::size_t k = first; k < last; ++k) {
+      in_layer = high_->evaluate(k + 1);
+      first_below_ += below_ == nullptr ? 0 : below_->vertices.size();
+      below_ = above_++;
+      make_room(low_->cross_to(*high_) + in_layer);
+      add_vertices_between(k);
+      add_vertices_in(*high_, k + 1);
+      add_cells(k);
+      std::swap(low_, high_);
+    }
+    return in_layer;
+  }
+
+ private:
+  /// For all vertices of the layer above: memory would hold many twice if it grew with them.
+  void make_room(std::size_t vertices) {
+    above_->vertices.reserve(vertices);
+    above_->normals.assign(vertices, Vec3::Zero());
+  }
+
+  /// The vertex on the edge from a node of density a to the next one along the axis, of density b.
+  void add_vertex(std::size_t i, std::size_t j, std::size_t k, unsigned axis, double a, double b) {
+    const std::size_t node = std::array{i, j, k}[axis];
+    const double p = grid_.coordinate(node, axis), q = grid_.coordinate(node + 1, axis);
+    above_->vertices.push_back({p + (q - p) * (a / (a - b)), static_cast<std::uint32_t>(j * grid_.count(0) + i),
+                                static_cast<std::uint32_t>(k) & 0x3fffffffu, axis & 3u});
+  }
+
+  /// Number in its layer of the next vertex.
+  std::uint32_t next_vertex() const { return static_cast<std::uint32_t>(above_->vertices.size()); }
+
+  void add_vertices_in(GridLayer& layer, std::size_t k) {
+    for (std::size_t j = 0; j < grid_.count(1); ++j) {
+      for (std::size_t w = 0; w < layer.words(); ++w) {
+        GridLayer::Edges& edges = layer.edges(w, j);
+        edges.first_in_layer = next_vertex();
+        for_each_node(edges.x | edges.y, w, [&](std::size_t i) {
+          const double density = layer.density(i, j);
+          if ((edges.x >> i % 64 & 1u) != 0) add_vertex(i, j, k, 0, density, layer.density(i + 1, j));
+          if ((edges.y >> i % 64 & 1u) != 0) add_vertex(i, j, k, 1, density, layer.density(i, j + 1));
+        });
+      }
+    }
+  }
+
+  void add_vertices_between(std::size_t k) {
+    for (std::size_t j = 0; j < grid_.count(1); ++j) {
+      for (std::size_t w = 0; w < low_->words(); ++w) {
+        GridLayer::Edges& edges = low_->edges(w, j);
+        edges.first_along_z = next_vertex();
+        for_each_node(edges.z, w,
+                      [&](std::size_t i) { add_vertex(i, j, k, 2, low_->density(i, j), high_->density(i, j)); });
+      }
+    }
+  }
+
+  /// Of the cells whose lowest corners are in layer k, those that the surface cuts.
+  void add_cells(std::size_t k) {
+    const std::vector<CutCase>& cases = cut_cases();
+    for (std::size_t j = 0; j + 1 < grid_.count(1); ++j) {
+      for (std::size_t w = 0; w < low_->words(); ++w) {
+        // Bits of corner c, as numbered in cube_cases.hpp.
+        const std::array<std::uint64_t, 8> corners{
+            low_->inside(w, j),  low_->next_inside(w, j),  low_->inside(w, j + 1),  low_->next_inside(w, j + 1),
+            high_->inside(w, j), high_->next_inside(w, j), high_->inside(w, j + 1), high_->next_inside(w, j + 1)};
+        std::uint64_t any = 0, all = ~std::uint64_t{0};
+        for (const std::uint64_t corner : corners) {
+          any |= corner;
+          all &= corner;
+        }
+        for_each_node(any & ~all & low_->starting(w), w, [&](std::size_t i) {
+          unsigned inside = 0;
+          for (std::size_t c = 0; c < 8; ++c) inside |= static_cast<unsigned>(corners[c] >> i % 64 & 1u) << c;
+          add_cell(i, j, k, cases[inside]);
+        });
+      }
+    }
+  }
+
+  void add_cell(std::size_t i, std::size_t j, std::size_t k, const CutCase& cut) {
+    const std::array x{grid_.coordinate(i, 0), grid_.coordinate(i + 1, 0)};
+    const std::array y{grid_.coordinate(j, 1), grid_.coordinate(j + 1, 1)};
+    const std::array z{grid_.coordinate(k, 2), grid_.coordinate(k + 1, 2)};
+    std::array<std::uint32_t, 12> vertices;  // numbered in the slab
+    std::array<Vec3*, 12> normals;
+    std::array<Vec3, 12> positions;
+    for (std::size_t e = 0; e < cut.edges.size(); ++e) {
+      const CutCase::Edge& edge = cut.edges[e];
+      const bool below = edge.z == 0 && edge.axis != 2;
+      SurfaceLayer& layer = below ? *below_ : *above_;
+      const std::uint32_t number = (edge.z == 0 ? low_ : high_)->vertex(i + edge.x, j + edge.y, edge.axis);
+      vertices[e] = static_cast<std::uint32_t>(first_below_ + (below ? 0 : below_->vertices.size()) + number);
+      normals[e] = &layer.normals[number];
+      positions[e] = {x[edge.x], y[edge.y], z[edge.z]};
+      positions[e][edge.axis] = layer.vertices[number].along;
+    }
+    for (const auto& [a, b, c] : cut.triangles) {
+      const Vec3 normal = triangle_normal(positions[a], positions[b], positions[c]);
+      for (const std::size_t corner : {a, b, c}) *normals[corner] += normal;
+      if (kept_.triangles) slab_.triangles.push_back({vertices[a], vertices[b], vertices[c]});
+    }
+    if (kept_.cells) {
+      CutCells& cells = slab_.cells;
+      cells.centres.push_back(Vec3(x[0], y[0], z[0]) + Vec3::Constant(0.5 * grid_.spacing()));
+      cells.vertices.insert(cells.vertices.end(), vertices.begin(),
+                            vertices.begin() + static_cast<std::ptrdiff_t>(cut.edges.size()));
+      cells.starts.push_back(static_cast<std::uint32_t>(cells.vertices.size()));
+    }
+  }
+
+  const NodeGrid& grid_;
+  KeptOfSurface kept_;
+  GridLayer* low_;
+  GridLayer* high_;
+  SurfaceSlab& slab_;
+  SurfaceLayer* below_ = nullptr;
+  SurfaceLayer* above_ = nullptr;
+  std::size_t first_below_ = 0;  ///< number in the slab of the first vertex of the layer below
+};
+
+void normalise(Vec3& normal) {
+  const double length = normal.norm();
+  if (length > 0.0) normal /= length;
+}
+
+/// Gives the vertices that two slabs share to the upper one, `in_last` of each, and all normals length one.
+void finish(std::vector<SurfaceSlab>& slabs, const std::vector<std::size_t>& in_last) {
+  for (std::size_t s = 0; s + 1 < slabs.size(); ++s) {
+    SurfaceLayer& last = slabs[s].layers.back();
+    const std::size_t own = last.vertices.size() - in_last[s];
+    std::vector<Vec3>& shared = slabs[s + 1].layers.front().normals;
+    for (std::size_t i = 0; i < in_last[s]; ++i) shared[i] += last.normals[own + i];
+    last.vertices.resize(own);
+    last.normals.resize(own);
+  }
+  tbb::parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
+    for (SurfaceLayer& layer : slabs[s].layers) std::ranges::for_each(layer.normals, normalise);
+  });
+}
+
+}  // namespace
+
+std::vector<SurfaceSlab> surface_slabs(const DensityField& field, const NodeGrid& grid, KeptOfSurface kept) {
+  const std::size_t layers = grid.count(2) - 1, thickness = (layers + kMostSlabs - 1) / kMostSlabs;
+  std::vector<SurfaceSlab> slabs((layers + thickness - 1) / thickness);
+  std::vector<std::size_t> in_last(slabs.size());
+  tbb::enumerable_thread_specific<LayerPair> layer_pairs([&] { return LayerPair(field, grid); });
+  tbb::parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
+    SlabBuilder builder(grid, kept, layer_pairs.local(), slabs[s]);
+    in_last[s] = builder.build(s * thickness, std::min((s + 1) * thickness, layers));
+  });
+  finish(slabs, in_last);
+  return slabs;
+}
+
+}  // namespace hapbench
