@@ -201,9 +201,15 @@ inline Pack max(const Pack& a, const Pack& b) {
 
 /// The eight partial sums added pairwise in one fixed order.
 inline double sum(const Pack& a) {
+#if HAPBENCH_SIMD && defined(__AVX512VL__)
+  const auto v = static_cast<__m512d>(a);
+  const __m256d half = __builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 4, 5, 6, 7);
+  return (half[0] + half[2]) + (half[1] + half[3]);
+#else
   alignas(64) double v[lanes];
   store(a, v);
   return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+#endif
 }
 inline double min_lane(const Pack& a) {
   alignas(64) double v[lanes];
