@@ -192,11 +192,21 @@ inline std::size_t first(const Mask& m) {
 inline Pack abs(const Pack& a) {
   return select(a < Pack(0.0), -a, a);
 }
+/// b < a ? b : a, which is a when they are equal or one is NaN; that is what the instruction does, too.
 inline Pack min(const Pack& a, const Pack& b) {
+#if HAPBENCH_SIMD && defined(__AVX512VL__)
+  return Pack(_mm512_min_pd(static_cast<__m512d>(b), static_cast<__m512d>(a)));
+#else
   return select(b < a, b, a);
+#endif
 }
+/// a < b ? b : a
 inline Pack max(const Pack& a, const Pack& b) {
+#if HAPBENCH_SIMD && defined(__AVX512VL__)
+  return Pack(_mm512_max_pd(static_cast<__m512d>(b), static_cast<__m512d>(a)));
+#else
   return select(a < b, b, a);
+#endif
 }
 
 /// The eight partial sums added pairwise in one fixed order.
