@@ -192,10 +192,12 @@ inline std::size_t first(const Mask& m) {
 inline Pack abs(const Pack& a) {
   return select(a < Pack(0.0), -a, a);
 }
+// g++ 12 warns of the instructions of `min` and `max` unless they come with a mask (GCC bug 105593), here that of all.
+
 /// b < a ? b : a, which is a when they are equal or one is NaN; that is what the instruction does, too.
 inline Pack min(const Pack& a, const Pack& b) {
 #if HAPBENCH_SIMD && defined(__AVX512VL__)
-  return Pack(_mm512_min_pd(static_cast<__m512d>(b), static_cast<__m512d>(a)));
+  return Pack(_mm512_maskz_min_pd(0xff, static_cast<__m512d>(b), static_cast<__m512d>(a)));
 #else
   return select(b < a, b, a);
 #endif
@@ -203,7 +205,7 @@ inline Pack min(const Pack& a, const Pack& b) {
 /// a < b ? b : a
 inline Pack max(const Pack& a, const Pack& b) {
 #if HAPBENCH_SIMD && defined(__AVX512VL__)
-  return Pack(_mm512_max_pd(static_cast<__m512d>(b), static_cast<__m512d>(a)));
+  return Pack(_mm512_maskz_max_pd(0xff, static_cast<__m512d>(b), static_cast<__m512d>(a)));
 #else
   return select(a < b, b, a);
 #endif
