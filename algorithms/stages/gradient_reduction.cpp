@@ -76,7 +76,8 @@ class GradientReduction final : public PointStage {
       for (;;) {
         const Pack inner = x * Pack(ux[place]) + y * Pack(uy[place]) + z * Pack(uz[place]);
         const unsigned similar = simd::bits(inner > threshold) & lanes;
-        const unsigned deeper = simd::bits(depth > Pack(d[place])) & similar;
+        // Most kept contacts are similar to none of the eight, and their depth needs no look.
+        const unsigned deeper = similar == 0 ? 0 : simd::bits(depth > Pack(d[place])) & similar;
         if (deeper == 0) {
           if (place != k) c.copy(place, k);
           return refused | (lanes & ~similar);
