@@ -9,8 +9,7 @@ namespace hapbench {
 
 void set_weights(ContactBuffer& contacts, double c) noexcept {
   std::fill_n(contacts.weight.begin(), contacts.size(), c);
-  std::fill(contacts.weight.begin() + static_cast<std::ptrdiff_t>(contacts.size()),
-            contacts.weight.begin() + static_cast<std::ptrdiff_t>(contacts.padded_size()), 0.0);
+  simd::zero_pack(&contacts.weight[contacts.size()]);
 }
 
 Vec3 gradient_sum(const ContactBuffer& contacts) noexcept {

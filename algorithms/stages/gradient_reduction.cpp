@@ -54,59 +54,45 @@ class GradientReduction final : public PointStage {
     if (shuffled_) shuffle(contacts);
     const std::size_t n = contacts.size();
     std::size_t kept = 0;
-    bool try_whole_pack = false;
-    for (std::size_t i = 0; i < n; i += simd::lanes) {
-      if (try_whole_pack && absorbs_pack(contacts, i, kept)) continue;
-      try_whole_pack = true;
-      for (std::size_t j = i; j < std::min(i + simd::lanes, n); ++j) try_whole_pack &= absorbs(contacts, j, kept);
-    }
+    for (std::size_t i = 0; i < n; i += simd::lanes) visit_pack(contacts, i, std::min(simd::lanes, n - i), kept);
     contacts.shrink(kept);
     contacts.pad();
   }
 
  private:
-  /// Visits contact i. True if one that is kept, and stays as it is, absorbs it.
-  bool absorbs(ContactBuffer& contacts, std::size_t i, std::size_t& kept) noexcept {
-    const std::size_t k = first_similar(contacts, i, kept);
-    if (k < kept) {
-      if (!(contacts.depth[i] > contacts.depth[k])) return true;
-      contacts.copy(i, k);
-    } else if (kept < config_.max_points) {
-      contacts.copy(i, kept++);
-    } else {
-      ++dropped_;
-    }
-    return false;
-  }
-
-  /// True if those that are kept, as they are, absorb all of the eight contacts from i on, which then need no visit.
-  /// After the first packs of a smooth surface that is so for most.
-  bool absorbs_pack(const ContactBuffer& c, std::size_t i, std::size_t kept) const noexcept {
+  /// Visits the `n` contacts from i on. Instead of each in turn asking all that are kept, each that is kept, in turn,
+  /// is asked by all eight that none before it has absorbed: the same, because what becomes of a kept contact depends
+  /// only on those that the ones before it refuse, in their order.
+  void visit_pack(ContactBuffer& c, std::size_t i, std::size_t n, std::size_t& kept) noexcept {
     using simd::load, simd::Pack;
-    if (c.size() - i < simd::lanes) return false;
-    const Pack x = load(&c.ux[i]), y = load(&c.uy[i]), z = load(&c.uz[i]), threshold(config_.threshold);
-    const Pack depth = load(&c.depth[i]);
-    unsigned open = 0xff;  // lanes that nothing similar was found for
-    for (std::size_t k = 0; k < kept && open != 0; ++k) {
-      const Pack inner = x * Pack(c.ux[k]) + y * Pack(c.uy[k]) + z * Pack(c.uz[k]);
-      const unsigned similar = simd::bits(inner > threshold) & open;
-      if ((similar & simd::bits(depth > Pack(c.depth[k]))) != 0) return false;
-      open &= ~similar;
-    }
-    return open == 0;
-  }
-
-  std::size_t first_similar(const ContactBuffer& c, std::size_t i, std::size_t kept) const noexcept {
-    using simd::load, simd::Pack;
-    const Pack x(c.ux[i]), y(c.uy[i]), z(c.uz[i]), threshold(config_.threshold);
-    for (std::size_t k = 0; k < kept; k += simd::lanes) {
-      const Pack inner = x * load(&c.ux[k]) + y * load(&c.uy[k]) + z * load(&c.uz[k]);
-      if (const unsigned similar = simd::bits(inner > threshold); similar != 0) {
-        // Beyond `kept` lie contacts that are still to be visited.
-        return std::min(kept, k + static_cast<std::size_t>(std::countr_zero(similar)));
+    const Pack x = load(&c.ux[i]), y = load(&c.uy[i]), z = load(&c.uz[i]), depth = load(&c.depth[i]);
+    const Pack threshold(config_.threshold);
+    // Read once, not anew for each test.
+    const double *const ux = c.ux.data(), *const uy = c.uy.data(), *const uz = c.uz.data(), *const d = c.depth.data();
+    const auto first = [i](unsigned lanes) { return i + static_cast<std::size_t>(std::countr_zero(lanes)); };
+    // Of the lanes those that the contact at `place`, kept as number k, refuses.
+    const auto refused_by = [&](std::size_t k, std::size_t place, unsigned lanes) {
+      unsigned refused = 0;
+      for (;;) {
+        const Pack inner = x * Pack(ux[place]) + y * Pack(uy[place]) + z * Pack(uz[place]);
+        const unsigned similar = simd::bits(inner > threshold) & lanes;
+        // Most kept contacts are similar to none of the eight, and their depth needs no look.
+        const unsigned deeper = similar == 0 ? 0 : simd::bits(depth > Pack(d[place])) & similar;
+        if (deeper == 0) {
+          if (place != k) c.copy(place, k);
+          return refused | (lanes & ~similar);
+        }
+        // The first that is deeper is kept instead, and those behind it meet that one.
+        const unsigned visited = deeper ^ (deeper - 1);
+        refused |= lanes & ~similar & visited;
+        lanes &= ~visited;
+        place = first(deeper);
       }
-    }
-    return kept;
+    };
+    unsigned lanes = 0xffu >> (simd::lanes - n);
+    for (std::size_t k = 0; k < kept && lanes != 0; ++k) lanes = refused_by(k, k, lanes);
+    for (; lanes != 0 && kept < config_.max_points; ++kept) lanes = refused_by(kept, first(lanes), lanes & (lanes - 1));
+    dropped_ += static_cast<std::uint64_t>(std::popcount(lanes));
   }
 
   void shuffle(ContactBuffer& contacts) noexcept {

@@ -47,7 +47,11 @@ void ContactBuffer::shrink(std::size_t n) {
 }
 
 void ContactBuffer::pad() {
-  for (std::size_t i = size_; i < padded_size(); ++i) depth[i] = ux[i] = uy[i] = uz[i] = weight[i] = 0.0;
+  simd::zero_pack(&depth[size_]);
+  simd::zero_pack(&ux[size_]);
+  simd::zero_pack(&uy[size_]);
+  simd::zero_pack(&uz[size_]);
+  simd::zero_pack(&weight[size_]);
 }
 
 void ContactBuffer::set_gradient(std::size_t i, const Vec3& u) {

@@ -50,7 +50,7 @@ class ContactBuffer {
   void copy(std::size_t from, std::size_t to);
   /// Keeps the first n contacts. Precondition: n <= size().
   void shrink(std::size_t n);
-  /// Zeroes depth, gradient and weight in the last pack beyond size().
+  /// Zeroes depth, gradient and weight beyond size(), at least to the end of the last pack.
   void pad();
 
   /// The largest depth, perhaps negative; 0 without contacts.

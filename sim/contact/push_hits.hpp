@@ -10,8 +10,11 @@ namespace hapbench {
 /// Copies those of the eight points from i on whose bit is set in `hits` to place k and those behind it of columns with
 /// the same names, a column at a time: one by one takes longer than the search. Returns how many they are. For source
 /// files only (see simd.hpp). Precondition: i is a multiple of eight, and there is room for eight.
+///
+/// Always inline: around a call, every search would save and restore the packs it holds in registers.
 template <class Columns>
-std::size_t copy_hits(std::uint8_t hits, const PointColumns& points, std::size_t i, Columns& to, std::size_t k) {
+[[gnu::always_inline]] inline std::size_t copy_hits(std::uint8_t hits, const PointColumns& points, std::size_t i,
+                                                    Columns& to, std::size_t k) {
   simd::store_selected(hits, points.index + i, &to.index[k]);
   simd::store_selected(hits, points.x + i, &to.x[k]);
   simd::store_selected(hits, points.y + i, &to.y[k]);
@@ -23,7 +26,8 @@ std::size_t copy_hits(std::uint8_t hits, const PointColumns& points, std::size_t
 }
 
 /// Appends the hits to the contacts. Depth, gradient and weight are left to depth model and law.
-inline void push_hits(std::uint8_t hits, const PointColumns& points, std::size_t i, ContactBuffer& contacts) {
+[[gnu::always_inline]] inline void push_hits(std::uint8_t hits, const PointColumns& points, std::size_t i,
+                                             ContactBuffer& contacts) {
   contacts.extend(copy_hits(hits, points, i, contacts, contacts.size()));
 }
 

@@ -192,29 +192,36 @@ inline std::size_t first(const Mask& m) {
 inline Pack abs(const Pack& a) {
   return select(a < Pack(0.0), -a, a);
 }
+// g++ 12 warns of the instructions of `min` and `max` unless they come with a mask (GCC bug 105593), here that of all.
+
+/// b < a ? b : a, which is a when they are equal or one is NaN; that is what the instruction does, too.
+inline Pack min(const Pack& a, const Pack& b) {
 #if HAPBENCH_SIMD && defined(__AVX512VL__)
-/// The same as below in one instruction, also with NaN and zeros of either sign, about which std::experimental::max is
-/// not exact. Loops that look for a largest value wait for it.
-inline Pack min(const Pack& a, const Pack& b) {
   return Pack(_mm512_maskz_min_pd(0xff, static_cast<__m512d>(b), static_cast<__m512d>(a)));
-}
-inline Pack max(const Pack& a, const Pack& b) {
-  return Pack(_mm512_maskz_max_pd(0xff, static_cast<__m512d>(b), static_cast<__m512d>(a)));
-}
 #else
-inline Pack min(const Pack& a, const Pack& b) {
   return select(b < a, b, a);
-}
-inline Pack max(const Pack& a, const Pack& b) {
-  return select(a < b, b, a);
-}
 #endif
+}
+/// a < b ? b : a
+inline Pack max(const Pack& a, const Pack& b) {
+#if HAPBENCH_SIMD && defined(__AVX512VL__)
+  return Pack(_mm512_maskz_max_pd(0xff, static_cast<__m512d>(b), static_cast<__m512d>(a)));
+#else
+  return select(a < b, b, a);
+#endif
+}
 
 /// The eight partial sums added pairwise in one fixed order.
 inline double sum(const Pack& a) {
+#if HAPBENCH_SIMD && defined(__AVX512VL__)
+  const auto v = static_cast<__m512d>(a);
+  const __m256d half = __builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 4, 5, 6, 7);
+  return (half[0] + half[2]) + (half[1] + half[3]);
+#else
   alignas(64) double v[lanes];
   store(a, v);
   return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+#endif
 }
 inline double min_lane(const Pack& a) {
   alignas(64) double v[lanes];

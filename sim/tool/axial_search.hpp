@@ -31,14 +31,16 @@ void mark(const ToolPose pose, const PointArrays points, std::span<const PackRan
 template <class Test>
 void push(const ToolPose pose, const PointColumns points, std::span<const PackRange> ranges, ContactBuffer& contacts,
           const Test test) {
+  std::size_t size = contacts.size();
   for (const PackRange range : ranges) {
     for (std::size_t pack = range.first; pack < range.last; ++pack) {
       const std::size_t i = pack * simd::lanes;
       const std::uint8_t hits = simd::bits(test(AxialPack(pose, points.x + i, points.y + i, points.z + i)));
       if (hits == 0) continue;
-      if (const std::uint8_t own = range.own(hits, pack); own != 0) push_hits(own, points, i, contacts);
+      if (const std::uint8_t own = range.own(hits, pack); own != 0) size += copy_hits(own, points, i, contacts, size);
     }
   }
+  contacts.extend(size - contacts.size());
 }
 
 /// The part of the axis with low <= s <= high, from the tip centre; none when low > high.

@@ -63,6 +63,14 @@ TEST(ContactBuffer, PadZeroesWhatSumsReadBeyondTheLastContact) {
   EXPECT_NE(contacts.weight[8], 0.0);
 }
 
+TEST(ContactBuffer, PadStaysWithinAFullBuffer) {
+  for (std::size_t n = 0; n <= 17; ++n) {
+    ContactBuffer contacts = random_contacts(n);
+    ASSERT_GE(contacts.weight.size(), n + 8);
+    contacts.pad();
+  }
+}
+
 TEST(ContactBuffer, ShrinkKeepsTheFirstContacts) {
   const ContactBuffer all = random_contacts(12);
   ContactBuffer contacts = all;
