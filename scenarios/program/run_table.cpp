@@ -101,16 +101,18 @@ std::string step_time_text(std::span<const RunReport> reports) {
 
 std::string unsettled_text(std::span<const RunReport> reports) {
   std::vector<std::string> names;
+  bool landed = false;
   for (const RunReport& report : reports) {
     const Metrics& m = report.summary.metrics;
-    if (m.steps_in_contact > 0 && !m.contact.mean()) names.push_back(distinct_name(report, reports));
+    if (m.steps_in_contact == 0 || m.contact.mean()) continue;
+    names.push_back(distinct_name(report, reports));
+    landed = landed || m.contact.landing_max();
   }
   if (names.empty()) return "";
-  return fmt::format("\n{}",
-                     wrapped(fmt::format("\"-\": under 1/30 s of settled contact ({}); --set metrics.from_s=0 takes "
-                                         "all contact",
-                                         fmt::join(names, ", ")),
-                             0));
+  // Without landings all contact counts already.
+  const std::string_view advice = landed ? "; --set metrics.from_s=0 takes all contact" : "";
+  return fmt::format(
+      "\n{}", wrapped(fmt::format("\"-\": under 1/30 s of settled contact ({}){}", fmt::join(names, ", "), advice), 0));
 }
 
 std::string targets_text(const RunReport& report) {
