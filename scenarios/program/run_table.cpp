@@ -94,7 +94,10 @@ std::string step_time_text(std::span<const RunReport> reports) {
   if (!slowest.timing.step_p99) return "";
   const auto us = [](const RunReport& report) { return cell(1e6 * *report.timing.step_p99, 2); };
   const std::string quick = distinct_name(quickest, reports), slow = distinct_name(slowest, reports);
-  if (quick == slow) return fmt::format("\n99 % of the steps take at most {} us\n", us(slowest));
+  if (quick == slow) {
+    const std::string whose = reports.size() == 1 ? "" : fmt::format(" ({})", slow);
+    return fmt::format("\n99 % of the steps take at most {} us{}\n", us(slowest), whose);
+  }
   return fmt::format("\n99 % of the steps take at most {} us ({}) to {} us ({})\n", us(quickest), quick, us(slowest),
                      slow);
 }
