@@ -78,8 +78,8 @@ class ShellBuilder {
   }
 
   Box box_of(const SurfaceLayer& layer) const {
-    constexpr double kNone = std::numeric_limits<double>::infinity();
-    Box box{Vec3::Constant(kNone), Vec3::Constant(-kNone)};
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    Box box{Vec3::Constant(kInfinite), Vec3::Constant(-kInfinite)};
     for (const EdgeVertex& vertex : layer.vertices) {
       const Vec3 point = position(grid_, vertex);
       box.min = box.min.cwiseMin(point);
