@@ -12,40 +12,26 @@ namespace hapbench {
 
 namespace {
 
-template <class Point, class Position>
-Box bounds_of(const std::vector<Point>& points, Position position) {
-  if (points.empty()) return {};
-  Box box{position(points[0]), position(points[0])};
-  for (const Point& point : points) {
-    box.min = box.min.cwiseMin(position(point));
-    box.max = box.max.cwiseMax(position(point));
-  }
-  return box;
-}
-
 ShellColumns columns_of(const std::vector<SurfacePoint>& points) {
-  ShellColumns columns;
-  auto& [x, y, z, nx, ny, nz] = columns;
-  for (UnsetDoubles* column : {&x, &y, &z, &nx, &ny, &nz}) column->resize(simd::padded(points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    x[i] = points[i].position.x();
-    y[i] = points[i].position.y();
-    z[i] = points[i].position.z();
-    nx[i] = points[i].normal.x();
-    ny[i] = points[i].normal.y();
-    nz[i] = points[i].normal.z();
-  }
+  ShellColumns columns(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) columns.set(i, points[i].position, points[i].normal);
   return columns;
 }
 
 }  // namespace
 
 Box bounds_of(const std::vector<SurfacePoint>& points) {
-  return bounds_of(points, [](const SurfacePoint& point) -> const Vec3& { return point.position; });
+  if (points.empty()) return {};
+  Box box{points[0].position, points[0].position};
+  for (const SurfacePoint& point : points) {
+    box.min = box.min.cwiseMin(point.position);
+    box.max = box.max.cwiseMax(point.position);
+  }
+  return box;
 }
 
-Box bounds_of(const std::vector<Vec3>& points) {
-  return bounds_of(points, [](const Vec3& point) -> const Vec3& { return point; });
+ShellColumns::ShellColumns(std::size_t points) {
+  for (UnsetDoubles* column : {&x, &y, &z, &nx, &ny, &nz}) column->resize(simd::padded(points));
 }
 
 PointShell::PointShell(ShellColumns columns, std::size_t size, const Box& bounds, double cell_size)

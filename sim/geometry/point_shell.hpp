@@ -17,7 +17,6 @@ struct SurfacePoint {
 
 /// The box of all points; at the origin when there are none.
 Box bounds_of(const std::vector<SurfacePoint>& points);
-Box bounds_of(const std::vector<Vec3>& points);
 
 /// The points of a shell, and the grid cells they were listed by.
 struct ShellPoints {
@@ -27,9 +26,19 @@ struct ShellPoints {
   std::vector<std::uint32_t> cells;
 };
 
-/// Coordinates and normals of points, all as long as whole packs (simd::padded).
+/// Coordinates and normals of points, each column as long as whole packs (simd::padded). Holds no values at first.
 struct ShellColumns {
   UnsetDoubles x, y, z, nx, ny, nz;
+
+  explicit ShellColumns(std::size_t points);
+  void set(std::size_t i, const Vec3& position, const Vec3& normal) {
+    x[i] = position.x();
+    y[i] = position.y();
+    z[i] = position.z();
+    nx[i] = normal.x();
+    ny[i] = normal.y();
+    nz[i] = normal.z();
+  }
 };
 
 /// The environment object as points with normals, laid out for the contact search: one array per coordinate, 64-byte

@@ -11,13 +11,16 @@
 #include <utility>
 
 #include "sim/contact/grid_index.hpp"
-#include "sim/core/lanes.hpp"
 #include "sim/mesh/surface_slab.hpp"
 
 namespace hapbench {
 namespace {
 
 using Numbers = std::vector<std::uint32_t>;
+
+/// A box that grows from no point.
+const Box kNothing{Vec3::Constant(std::numeric_limits<double>::infinity()),
+                   Vec3::Constant(-std::numeric_limits<double>::infinity())};
 
 void drop_those_without_normal(SurfaceLayer& layer) {
   std::size_t kept = 0;
@@ -41,31 +44,20 @@ class ShellBuilder {
       drop_those_without_normal(layers_[l]);
       boxes[l] = box_of(layers_[l]);
     });
-    std::vector<Vec3> corners;
+    Box all = kNothing;
     for (std::size_t l = 0; l < layers_.size(); ++l) {
-      if (layers_[l].vertices.empty()) continue;
       size_ += layers_[l].vertices.size();
-      corners.insert(corners.end(), {boxes[l].min, boxes[l].max});
+      all = {all.min.cwiseMin(boxes[l].min), all.max.cwiseMax(boxes[l].max)};
     }
-    bounds_ = bounds_of(corners);
+    if (size_ > 0) bounds_ = all;
   }
 
   PointShell build() {
     const std::vector<Numbers> places = places_in(GridCells(bounds_, size_, grid_.spacing()));
-    ShellColumns columns;
-    auto& [x, y, z, nx, ny, nz] = columns;
-    for (UnsetDoubles* column : {&x, &y, &z, &nx, &ny, &nz}) column->resize(simd::padded(size_));
+    ShellColumns columns(size_);
     for_each_layer([&](std::size_t l) {
-      for (std::size_t i = 0; i < places[l].size(); ++i) {
-        const std::size_t place = places[l][i];
-        const Vec3 point = position(grid_, layers_[l].vertices[i]), &normal = layers_[l].normals[i];
-        x[place] = point.x();
-        y[place] = point.y();
-        z[place] = point.z();
-        nx[place] = normal.x();
-        ny[place] = normal.y();
-        nz[place] = normal.z();
-      }
+      for (std::size_t i = 0; i < places[l].size(); ++i)
+        columns.set(places[l][i], position(grid_, layers_[l].vertices[i]), layers_[l].normals[i]);
       layers_[l] = SurfaceLayer();
     });
     return {std::move(columns), size_, bounds_, grid_.spacing()};
@@ -78,8 +70,7 @@ class ShellBuilder {
   }
 
   Box box_of(const SurfaceLayer& layer) const {
-    constexpr double kInfinite = std::numeric_limits<double>::infinity();
-    Box box{Vec3::Constant(kInfinite), Vec3::Constant(-kInfinite)};
+    Box box = kNothing;
     for (const EdgeVertex& vertex : layer.vertices) {
       const Vec3 point = position(grid_, vertex);
       box.min = box.min.cwiseMin(point);
