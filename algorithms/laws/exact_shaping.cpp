@@ -8,7 +8,7 @@
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
+constexpr ParameterInfo kExactShapingParameters[] = {kStiffnessParameter};
 
 }  // namespace
 
@@ -22,7 +22,7 @@ const ModelInfo kExactShapingInfo = {
     .known_failure =
         "as shaped_stiffness: ratios above 1 where the weight is zero; soft along the way out of a wedge, "
         "2 sin^2 w / (1 + cos^2 2w) K for half angle w, about w^2 K",
-    .parameters = kParameters,
+    .parameters = kExactShapingParameters,
 };
 
 namespace {
@@ -67,18 +67,19 @@ class ExactShaping final : public ForceLaw {
 };
 
 /// sum c: at the optimum tr S >= |S|^2_F >= (tr S)^2 / 3, so that tr S <= 3, and tr S = sum c.
-double bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
+double exact_shaping_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return std::min(3.0, static_cast<double>(n)) * depth;
 }
 
 /// The limit of the iteration; epsilon = 1e-6 of it apart. Under merged_shaping each face is a group.
-WedgeStiffness wedge(const RenderingConfig&, double w, double) {
+WedgeStiffness exact_shaping_wedge(const RenderingConfig&, double w, double) {
   return wedge_of_weight(shaped_wedge_weight(w), w);
 }
 
 }  // namespace
 
-const AlgorithmTheory kExactShapingTheory = {.force_bound = bound, .wedge_stiffness = wedge};
+const AlgorithmTheory kExactShapingTheory = {.force_bound = exact_shaping_bound,
+                                             .wedge_stiffness = exact_shaping_wedge};
 
 std::unique_ptr<ForceLaw> make_exact_shaping(const RenderingConfig& config) {
   return std::make_unique<ExactShaping>(config.stiffness);

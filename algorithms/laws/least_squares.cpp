@@ -7,7 +7,7 @@
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kParameters[] = {
+constexpr ParameterInfo kLeastSquaresParameters[] = {
     kStiffnessParameter,
     {parameter::kRegularisation, "eps: weight of a short translation against resolving the depths"},
 };
@@ -24,7 +24,7 @@ const ModelInfo kLeastSquaresInfo = {
     .known_failure =
         "a small eps makes S jump as the first contact along a direction comes or the last one goes, and contacts that "
         "nearly oppose push the tool out by up to 1 / (2 sqrt eps) times the norm of their depths",
-    .parameters = kParameters,
+    .parameters = kLeastSquaresParameters,
 };
 
 namespace {
@@ -67,12 +67,12 @@ class LeastSquares final : public ForceLaw {
 
 /// x = (eps I + U U^T)^-1 U d with the gradients in the columns of U. By the singular values s of U,
 /// |x| <= max s / (eps + s^2) |d|, at most 1 / (2 sqrt eps) where s^2 = eps, and |d| <= sqrt(n) times the deepest.
-double bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
+double least_squares_bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
   return 0.5 * std::sqrt(static_cast<double>(n) / config.regularisation) * depth;
 }
 
 /// Along an axis of S_sum with the eigenvalue s it is s / (eps + s).
-WedgeStiffness wedge(const RenderingConfig& config, double w, double n) {
+WedgeStiffness least_squares_wedge(const RenderingConfig& config, double w, double n) {
   const auto resolved = [eps = config.regularisation](double s) { return s / (eps + s); };
   const auto [along, across] = wedge_of_weight(n, w);
   return {resolved(along), resolved(across)};
@@ -80,7 +80,8 @@ WedgeStiffness wedge(const RenderingConfig& config, double w, double n) {
 
 }  // namespace
 
-const AlgorithmTheory kLeastSquaresTheory = {.force_bound = bound, .wedge_stiffness = wedge};
+const AlgorithmTheory kLeastSquaresTheory = {.force_bound = least_squares_bound,
+                                             .wedge_stiffness = least_squares_wedge};
 
 std::unique_ptr<ForceLaw> make_least_squares(const RenderingConfig& config) {
   return std::make_unique<LeastSquares>(config.stiffness, config.regularisation);

@@ -10,7 +10,7 @@
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
+constexpr ParameterInfo kMergedShapingParameters[] = {kStiffnessParameter};
 
 }  // namespace
 
@@ -28,7 +28,7 @@ const ModelInfo kMergedShapingInfo = {
         "contacts of a group share a weight, so single ratios stray from 1 by about the square of a cell's angle; a "
         "cell's "
         "border is a jump for a gradient that turns across it",
-    .parameters = kParameters,
+    .parameters = kMergedShapingParameters,
 };
 
 namespace {

@@ -7,7 +7,7 @@
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
+constexpr ParameterInfo kOriginalAveragingParameters[] = {kStiffnessParameter};
 
 }  // namespace
 
@@ -19,7 +19,7 @@ const ModelInfo kOriginalAveragingInfo = {
         "zero force when |sum u_i| <= 1e-9 n",
     .source = "thesis B.2, Eq. B.1; always with depth model shortest_distance and without reduction",
     .known_failure = "opposite gradients make d_r explode and u_r flip by 180 degrees (thesis B.3.3): vibration",
-    .parameters = kParameters,
+    .parameters = kOriginalAveragingParameters,
 };
 
 namespace {
@@ -38,13 +38,14 @@ class OriginalAveraging final : public AveragedDirectionLaw {
 };
 
 /// sum d_i / |sum u_i|, where |sum u_i| > kCancelledBelow n, or the force is zero.
-double bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
+double original_averaging_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return 1e9 * std::min(1.0, static_cast<double>(n)) * depth;
 }
 
 }  // namespace
 
-const AlgorithmTheory kOriginalAveragingTheory = {.force_bound = bound, .wedge_stiffness = averaged_direction_wedge};
+const AlgorithmTheory kOriginalAveragingTheory = {.force_bound = original_averaging_bound,
+                                                  .wedge_stiffness = averaged_direction_wedge};
 
 std::unique_ptr<ForceLaw> make_original_averaging(const RenderingConfig& config) {
   return std::make_unique<OriginalAveraging>(config.stiffness);

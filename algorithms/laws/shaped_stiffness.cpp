@@ -9,7 +9,7 @@
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kParameters[] = {
+constexpr ParameterInfo kShapedStiffnessParameters[] = {
     kStiffnessParameter,
     {parameter::kIterations, "m: updates of the weights; 0 is summation"},
 };
@@ -25,7 +25,7 @@ const ModelInfo kShapedStiffnessInfo = {
         "rho_i stays above 1 where the weight dies out (it is a projection onto a cone); soft along the way out of a "
         "wedge, because only ratios along contacts are regulated: 2 sin^2 w / (1 + cos^2 2w) K, about w^2 K, for half "
         "angle w (10 degrees: 0.032 K), and in a cone 2 sin^2 w / (cos^4 w + 2 sin^4 w) K, about 2 w^2 K",
-    .parameters = kParameters,
+    .parameters = kShapedStiffnessParameters,
 };
 
 const ModelInfo kNormalProjectionInfo = {
@@ -34,7 +34,7 @@ const ModelInfo kNormalProjectionInfo = {
     .formula = "weights of shaped_stiffness; d_i = exit distance along -n_i (see depth model normal_projection)",
     .source = "thesis F.1; always with depth model normal_projection",
     .known_failure = "the force jumps when a point appears at a corner (Fig. F.4)",
-    .parameters = kParameters,
+    .parameters = kShapedStiffnessParameters,
 };
 
 const ModelInfo kContinuousNormalProjectionInfo = {
@@ -46,7 +46,7 @@ const ModelInfo kContinuousNormalProjectionInfo = {
     .source = "ours, after thesis F.1; always with depth model continuous_normal_projection",
     .known_failure =
         "depends on the way: under a face that it slid in below sideways, the tool feels the shortest distance only",
-    .parameters = kParameters,
+    .parameters = kShapedStiffnessParameters,
 };
 
 Mat3 update_shaped_weights(ContactBuffer& contacts, const Mat3& S) noexcept {
@@ -92,19 +92,20 @@ class ShapedStiffness final : public ForceLaw {
 
 /// After an update c_i <- c_i / rho_i with rho_i = u_i^T S u_i >= 1 / (u_i^T S^+ u_i) for unit u_i (Cauchy and
 /// Schwarz), sum c_i / rho_i <= sum c_i u_i^T S^+ u_i = tr(S^+ S) <= 3. Without an update: summation.
-double bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
+double shaped_stiffness_bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
   const double most = static_cast<double>(n);
   return (config.iterations > 0 ? std::min(3.0, most) : most) * depth;
 }
 
 /// The closed form holds from the first update on.
-WedgeStiffness wedge(const RenderingConfig& config, double w, double n) {
+WedgeStiffness shaped_stiffness_wedge(const RenderingConfig& config, double w, double n) {
   return wedge_of_weight(config.iterations == 0 ? n : shaped_wedge_weight(w), w);
 }
 
 }  // namespace
 
-const AlgorithmTheory kShapedStiffnessTheory = {.force_bound = bound, .wedge_stiffness = wedge};
+const AlgorithmTheory kShapedStiffnessTheory = {.force_bound = shaped_stiffness_bound,
+                                                .wedge_stiffness = shaped_stiffness_wedge};
 
 std::unique_ptr<ForceLaw> make_shaped_stiffness(const RenderingConfig& config) {
   return std::make_unique<ShapedStiffness>(config.stiffness, config.iterations);

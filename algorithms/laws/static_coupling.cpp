@@ -9,7 +9,7 @@
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kParameters[] = {
+constexpr ParameterInfo kStaticCouplingParameters[] = {
     kStiffnessParameter,
     {parameter::kVirtualCoupling, "K_vc: stiffness of the coupling spring before it saturates; null: K"},
 };
@@ -40,7 +40,7 @@ const ModelInfo kStaticCouplingInfo = {
         "static virtual coupling of Barbic and James, Six-DoF haptic rendering of contact between geometrically complex "
         "reduced deformable models (IEEE Trans. Haptics 1, 2008); the shape of g and solving it to the end are ours",
     .known_failure = "the copy follows the direction with most points, and what lies beyond the saturation feels soft",
-    .parameters = kParameters,
+    .parameters = kStaticCouplingParameters,
 };
 
 const std::span<const OwnParameter> kStaticCouplingOwnParameters = kSaturation;

@@ -6,7 +6,7 @@
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kParameters[] = {kStiffnessParameter};
+constexpr ParameterInfo kTandpastaParameters[] = {kStiffnessParameter};
 
 }  // namespace
 
@@ -18,7 +18,7 @@ const ModelInfo kTandpastaInfo = {
         "c_i = beta_i / sigma_E; zero force when sigma_E <= 1e-12",
     .source = "thesis F.2",
     .known_failure = "boosts the outward force until the tool jumps out; O(n^2)",
-    .parameters = kParameters,
+    .parameters = kTandpastaParameters,
 };
 
 namespace {
@@ -67,18 +67,18 @@ class Tandpasta final : public ForceLaw {
 
 /// c = beta / sigma keeps the energy: sum c d_i^2 = sum d_i^2 <= n d^2, and sum c <= n / sigma, since beta <= 1.
 /// Cauchy and Schwarz: sum c d_i <= n d / sqrt(sigma), where sigma > kNoEnergyBelow, or the force is zero.
-double bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
+double tandpasta_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return 1e6 * static_cast<double>(n) * depth;
 }
 
 /// On a wedge every spring has the same beta, and sigma_E cancels it.
-WedgeStiffness wedge(const RenderingConfig&, double w, double n) {
+WedgeStiffness tandpasta_wedge(const RenderingConfig&, double w, double n) {
   return wedge_of_weight(n, w);
 }
 
 }  // namespace
 
-const AlgorithmTheory kTandpastaTheory = {.force_bound = bound, .wedge_stiffness = wedge};
+const AlgorithmTheory kTandpastaTheory = {.force_bound = tandpasta_bound, .wedge_stiffness = tandpasta_wedge};
 
 std::unique_ptr<ForceLaw> make_tandpasta(const RenderingConfig& config) {
   return std::make_unique<Tandpasta>(config.stiffness);

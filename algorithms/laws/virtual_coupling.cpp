@@ -7,7 +7,7 @@
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kParameters[] = {
+constexpr ParameterInfo kVirtualCouplingParameters[] = {
     kStiffnessParameter,
     {parameter::kVirtualCoupling, "K_vc: stiffness of the coupling spring; null: K"},
 };
@@ -20,7 +20,7 @@ const ModelInfo kVirtualCouplingInfo = {
     .formula = "f = -K_vc (K_vc I + K S_sum)^-1 K sum d_i u_i, S = K_vc (K_vc I + K S_sum)^-1 S_sum, S_sum = sum u u^T",
     .source = "thesis Fig. 2d",
     .known_failure = "bounds the stiffness, but the force still follows the direction with most points",
-    .parameters = kParameters,
+    .parameters = kVirtualCouplingParameters,
 };
 
 namespace {
@@ -60,12 +60,12 @@ class VirtualCoupling final : public ForceLaw {
 };
 
 /// (I + U U^T)^-1 U has the singular values s / (1 + s^2) <= 1/2, and |(d_1 … d_n)| <= sqrt(n) d. For K_vc = K.
-double bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
+double virtual_coupling_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return 0.5 * std::sqrt(static_cast<double>(n)) * depth;
 }
 
 /// The sum in series with K_vc, along each axis by itself.
-WedgeStiffness wedge(const RenderingConfig& config, double w, double n) {
+WedgeStiffness virtual_coupling_wedge(const RenderingConfig& config, double w, double n) {
   const double k = config.virtual_coupling.value_or(config.stiffness) / config.stiffness;
   const auto in_series = [k](double x) { return k * x / (k + x); };
   const auto [along, across] = wedge_of_weight(n, w);
@@ -74,7 +74,8 @@ WedgeStiffness wedge(const RenderingConfig& config, double w, double n) {
 
 }  // namespace
 
-const AlgorithmTheory kVirtualCouplingTheory = {.force_bound = bound, .wedge_stiffness = wedge};
+const AlgorithmTheory kVirtualCouplingTheory = {.force_bound = virtual_coupling_bound,
+                                                .wedge_stiffness = virtual_coupling_wedge};
 
 std::unique_ptr<ForceLaw> make_virtual_coupling(const RenderingConfig& config) {
   return std::make_unique<VirtualCoupling>(config.stiffness, config.virtual_coupling);

@@ -12,7 +12,7 @@
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kParameters[] = {
+constexpr ParameterInfo kReductionParameters[] = {
     {parameter::kThreshold, "alpha_TH: gradients with a larger inner product are similar"},
     {parameter::kMaxPoints, "n_ext: most points kept; further ones are dropped and counted"},
     {parameter::kShuffleSeed, "visit the shell points in a fixed random order instead of ascending index"},
@@ -30,7 +30,7 @@ const ModelInfo kGradientReductionInfo = {
         "thesis C.3, 2.8; algorithm C.1 as printed appends replaced points and compares on after a similar one, which "
         "cannot be meant",
     .known_failure = "depends on the order of the points; collapses gradually curved surfaces (thesis 4.1)",
-    .parameters = kParameters,
+    .parameters = kReductionParameters,
 };
 
 namespace {

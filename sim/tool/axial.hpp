@@ -1,9 +1,16 @@
 #pragma once
 
+#include <limits>
+
 #include "sim/core/simd.hpp"
 #include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
+
+/// Relative to the largest radius: nearer to the axis than this, the direction away from it is rounding.
+inline constexpr double kOnAxis = 1e-12;
+/// The way out of a tool along a ray that never leaves it [m].
+inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Eight points in the tool's axial coordinates: x is relative to the tip centre, s its component along the axis,
 /// rho = x - s * axis the radial vector. All that a solid of revolution computes of points starts from these, so that a

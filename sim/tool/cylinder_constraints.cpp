@@ -11,13 +11,6 @@ namespace {
 
 using simd::Mask, simd::Pack, simd::select;
 
-/// Relative to the radius: nearer to the axis than this, the direction away from it is rounding.
-constexpr double kOnAxis = 1e-12;
-
-/// Cosine of the angle up to which a plane of the tool counts as flush with a surface, 6 degrees: normals of shells are
-/// off by a few, and a plane that leans by more holds an edge up too early.
-constexpr double kFlush = 0.9945;
-
 /// Cosine to the axis below which a surface runs along the side, so that no edge comes first.
 constexpr double kAlongSide = 1e-9;
 

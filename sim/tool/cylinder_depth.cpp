@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "sim/tool/axial.hpp"
 #include "sim/tool/cylinder.hpp"
@@ -8,10 +7,6 @@
 /// What depth models ask of a cylinder.
 namespace hapbench {
 namespace {
-
-constexpr double kNever = std::numeric_limits<double>::infinity();
-/// A radial direction shorter than this fraction of the radius is undefined.
-constexpr double kUndefinedBelow = 1e-12;
 
 Vec3 shortest_gradient(const Cylinder& tool, const ToolPose& pose, const ContactBuffer& contacts, std::size_t i) {
   // The same order of operations as AxialPack, so that "which surface is nearest" is decided on the same numbers.
@@ -27,7 +22,7 @@ Vec3 shortest_gradient(const Cylinder& tool, const ToolPose& pose, const Contact
     if (d_tip < d_radial && d_tip <= d_bottom) return pose.axis;
     if (d_bottom < d_radial && d_bottom < d_tip) return -pose.axis;
   }
-  return length < kUndefinedBelow * tool.radius() ? Vec3(-contacts.normal(i)) : Vec3(radial / length);
+  return length < kOnAxis * tool.radius() ? Vec3(-contacts.normal(i)) : Vec3(radial / length);
 }
 
 /// Only positive exits count, as the thesis says ("the minimal positive value"): a point exactly on one surface whose

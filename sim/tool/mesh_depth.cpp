@@ -19,8 +19,6 @@ constexpr double kUndefinedBelow = 1e-9;
 constexpr double kShortestWay = 0.125;
 /// A bracket of some spacings shrinks to rounding in less than ten rounds of regula falsi.
 constexpr int kMostRounds = 40;
-/// Cosine of the angle up to which a face of the tool counts as flush with a surface (see cylinder_constraints.cpp).
-constexpr double kFlush = 0.9945;
 
 /// The field at eight points anywhere, one after the other.
 class FieldPack {

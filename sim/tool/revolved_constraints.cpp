@@ -11,12 +11,6 @@ namespace {
 
 using simd::Mask, simd::Pack, simd::select;
 
-/// Relative to the largest radius: nearer to the axis than this, the direction away from it is rounding.
-constexpr double kOnAxis = 1e-12;
-
-/// Cosine of the angle up to which a plane of the tool counts as flush with a surface, 6 degrees, as of a cylinder.
-constexpr double kFlush = 0.9945;
-
 /// Sine of the angle to a line below which a surface runs along it, so that none of its ends comes first.
 constexpr double kAlongLine = 1e-9;
 

@@ -1,7 +1,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "sim/tool/revolved.hpp"
 #include "sim/tool/revolved_body.hpp"
@@ -11,10 +10,6 @@ namespace hapbench {
 namespace {
 
 using simd::Mask, simd::Pack, simd::select;
-
-constexpr double kNever = std::numeric_limits<double>::infinity();
-/// A radial direction shorter than this fraction of the largest radius is undefined.
-constexpr double kUndefinedBelow = 1e-12;
 
 /// A ray x + d u in axial coordinates: s + d slope along the axis and the vector rho + d u across it.
 struct AxialRay {
@@ -135,7 +130,7 @@ void Revolved::shortest_depths(const ToolPose& pose, ContactBuffer& contacts) co
 void Revolved::shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept {
   const Pack ax(pose.axis.x()), ay(pose.axis.y()), az(pose.axis.z());
   const Pack ball(meridian_.ball), zero(0.0), one(1.0), sideways(1e-6);
-  const Pack undefined_rho(kUndefinedBelow * meridian_.widest), undefined_x(kUndefinedBelow * meridian_.ball);
+  const Pack undefined_rho(kOnAxis * meridian_.widest), undefined_x(kOnAxis * meridian_.ball);
   const bool round = meridian_.tip == Tip::round;
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
     const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);

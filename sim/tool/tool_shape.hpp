@@ -37,6 +37,10 @@ struct PackRange {
   }
 };
 
+/// Cosine of the angle up to which a flat face of a tool counts as flush with a surface, 6 degrees: normals of shells are
+/// off by a few, and a face that leans by more holds an edge up too early.
+inline constexpr double kFlush = 0.9945;
+
 /// The solid that touches the environment: everything that contact search, depth models, the proxy and metrics ask of
 /// its geometry. What lies beyond this interface knows neither a radius nor a tip. A new shape is a class derived from
 /// this one, a line in sim/CMakeLists.txt and the place where a scenario's tool is made; sim/tool/cylinder.hpp is the

@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint32_t kLeaf = 4;
 /// Halving 2^32 triangles takes 32 levels, and a search keeps one box a level.
 constexpr std::size_t kStack = 64;
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kFarthest = std::numeric_limits<double>::infinity();
 
 using simd::Mask, simd::Pack;
 
@@ -140,7 +140,7 @@ void TriangleTree::lower_to_squared_distances(const double* x, const double* y, 
 double TriangleTree::first_hit(const Vec3& origin, const Vec3& direction, double from) const noexcept {
   std::array<std::uint32_t, kStack> stack;
   std::size_t size = 0;
-  double best = kNever;
+  double best = kFarthest;
   stack[size++] = 0;
   while (size > 0) {
     const Node& node = nodes_[stack[--size]];
