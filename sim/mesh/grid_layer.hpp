@@ -49,7 +49,7 @@ class GridLayer {
     const std::uint64_t below = (std::uint64_t{1} << i % 64) - 1;
     const auto count = [](std::uint64_t bits) { return static_cast<std::uint32_t>(std::popcount(bits)); };
     if (axis == 2) return edges.first_along_z + count(edges.z & below);
-    const std::uint32_t along_x = axis == 1 ? edges.x >> i % 64 & 1u : 0;
+    const bool along_x = axis == 1 && (edges.x >> i % 64 & 1u) != 0;
     return edges.first_in_layer + count(edges.x & below) + count(edges.y & below) + along_x;
   }
 
