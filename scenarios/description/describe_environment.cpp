@@ -37,11 +37,7 @@ void check_springs(const SpringsEnvironment& springs, const std::string& at) {
   double count = static_cast<double>(springs.random.count);
   for (std::size_t i = 0; i < springs.groups.size(); ++i) {
     count += static_cast<double>(springs.groups[i].count);
-    const Vec3& direction = springs.groups[i].direction;
-    if (direction.norm() >= kShortestDirection) continue;
-    throw InputError(InputError::Kind::relation, fmt::format("{}/groups/{}/direction", at, i),
-                     fmt::format("got [{}, {}, {}]; allowed: a direction that is not zero, length at least {}",
-                                 direction.x(), direction.y(), direction.z(), kShortestDirection));
+    require_direction(springs.groups[i].direction, fmt::format("{}/groups/{}/direction", at, i));
   }
   refuse_too_many(count, at, "springs");
   if (springs.bilateral || springs.signed_depths) return;

@@ -84,13 +84,16 @@ static void describe(Fields& f, BurFields& tool) {
 
 static void describe(Fields& f, MeshToolFields& tool) {
   f.text("file", tool.file, 4096,
-         "closed surface as OBJ, PLY, STL or OFF in the tool's own frame: tip centre at the origin, axis along -z; "
-         "relative to the scenario file",
+         "closed surface as OBJ, PLY, STL or OFF, its tip where tip_m and tip_axis say; relative to the scenario file",
          Presence::required);
   f.number("scale", tool.scale, {0.0, 1e6, "m", true}, "length of the file's unit: 0.001 for millimetres",
            Presence::required);
+  f.vector3("tip_m", tool.tip, {-1000.0, 1000.0, "m"}, "place in the file, scaled, that is the tip centre");
+  f.vector3("tip_axis", tool.tip_axis, {-1e9, 1e9, "1"},
+            "where the tip points in the file; the least turn takes it to -z, where the tool's axis points unturned");
   f.number("grid_m", tool.grid, kLength,
            "spacing of the grid that holds the signed distances; null: such that it has about 128^3 nodes");
+  if (f.reads()) require_direction(tool.tip_axis, f.at() + "/tip_axis");
 }
 
 void describe(Fields& f, ToolFields& tool) {

@@ -10,6 +10,8 @@ namespace hapbench {
 inline constexpr NumberRange kLength = {0.0, 1000.0, "m", true};
 /// Anything much shorter loses digits, or all, when it is squared.
 inline constexpr double kShortestDirection = 1e-12;
+/// Throws InputError at `at` when a direction is shorter.
+void require_direction(const Vec3& direction, const std::string& at);
 
 // Objects.
 void describe(Fields& f, Scenario& scenario);

@@ -124,8 +124,7 @@ void check_drag_hand(const Scenario& scenario, double steps) {
         "got tilt_rad, azimuth_rad or roll_rad beside hand \"drag\", which turns the tool; allowed: without, or hand.tilt_rad "
         "null");
   }
-  if (hand->direction && hand->direction->norm() < kShortestDirection)
-    fail("/hand/direction", fmt::format("got {}; allowed: a direction that is not zero", shown(*hand->direction)));
+  if (hand->direction) require_direction(*hand->direction, "/hand/direction");
   const double entries = drag_length(*hand, steps * scenario.time.step) / SurfacePath::spacing(hand->smoothing);
   if (entries <= kLongestDrag) return;
   fail("/hand/smoothing_m",
@@ -179,6 +178,12 @@ void check_impedance_device(const Scenario& scenario) {
 }
 
 }  // namespace
+
+void require_direction(const Vec3& direction, const std::string& at) {
+  if (direction.norm() >= kShortestDirection) return;
+  fail(at, fmt::format("got {}; allowed: a direction that is not zero, length at least {}", shown(direction),
+                       kShortestDirection));
+}
 
 void check_relations(const Scenario& scenario, double steps) {
   check_sizes(scenario, steps);

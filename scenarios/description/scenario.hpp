@@ -104,6 +104,8 @@ BurProfile profile_of(const BurFields& bur);
 struct MeshToolFields {
   std::string file;            ///< OBJ, PLY, STL or OFF, relative to the scenario file
   double scale = 1.0;          ///< [m] for each unit of the file
+  Vec3 tip = Vec3::Zero();     ///< place of the file that is the tip centre [m]
+  Vec3 tip_axis = {0, 0, -1};  ///< where the tip points in the file; of any length
   std::optional<double> grid;  ///< spacing of the signed distances [m]
 };
 using ToolFields = std::variant<CylinderFields, RevolvedFields, BurFields, MeshToolFields>;

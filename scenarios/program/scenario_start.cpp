@@ -9,8 +9,11 @@
 
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/drag_start.hpp"
+#include "scenarios/program/tool_start.hpp"
 #include "scenarios/run/make_shell.hpp"
+#include "scenarios/run/make_tool.hpp"
 #include "scenarios/run/quantity_text.hpp"
+#include "scenarios/run/tool_warnings.hpp"
 #include "sim/core/box.hpp"
 
 namespace hapbench {
@@ -35,7 +38,8 @@ const std::string kBurAbove = R"(
   "tool": {"type": "bur", "family": "ball", "diameter_m": @diameter@},)";
 const std::string kMeshToolAbove = R"(
   "initial": {"position_m": [@x@, @y@, @z@]},
-  "tool": {"type": "mesh", "file": @file@, "scale": @tool_scale@, "grid_m": null},)";
+  "tool": {"type": "mesh", "file": @file@, "scale": @tool_scale@, "tip_m": @tip@, "tip_axis": @tip_axis@,
+           "grid_m": null},)";
 const std::string kInHole = R"(
   "initial": {"position_m": [0, 0, -0.0049]},
   "tool": {"diameter_m": 0.001, "length_m": 0.01, "tip": "flat"},)";
@@ -236,20 +240,44 @@ class Start {
 
   /// Above the plane's middle. Tools are about as long as the teeth they work on.
   void place_mesh_tool() {
-    const auto box_of_tool = [this] {
+    const auto surface = [this] {
       const LoadedScenario loaded = scenario();
-      return box_of(loaded.files.tool_mesh().triangles().vertices);
+      return tool_surface(std::get<MeshToolFields>(loaded.scenario.tool), loaded.files);
     };
-    const Box given = box_of_tool();
+    const Box given = box_of(surface().vertices);
     const double longest = (given.max - given.min).maxCoeff() / 0.001, scale = guessed_scale(longest);
     values_["tool_scale"] = scale;
-    const double touching = -given.min.z() / 0.001 * scale;
+    notes_.push_back(
+        fmt::format("longest edge of the tool's box: {:.4g}, with scale {} {:.4g} mm; if it is not, change tool.scale",
+                    longest, scale, 1e3 * longest * scale));
+    find_tip(surface());
+    const double touching = -box_of(surface().vertices).min.z();
     values_["z"] = to_micrometres(touching + kClearance);
     values_["z_pressed"] = to_micrometres(touching - kPressedBelow);
+  }
+
+  /// Its origin is taken for the tip centre and -z for its axis unless it lies oddly to them.
+  void find_tip(const TriangleSoup& surface) {
+    const std::string odd = odd_frame(box_of(surface.vertices));
+    if (odd.empty()) {
+      notes_.push_back(
+          "taken for its tip centre: the file's origin, the tip pointing along -z; if it is not, change tool.tip_m and "
+          "tool.tip_axis");
+      return;
+    }
+    const auto [place, direction] = guess_tip(surface);
+    const auto rounded_to = [](double digits, const Vec3& v) {
+      Json json = Json::array();
+      for (const double x : v) json.push_back(std::round(digits * x) / digits + 0.0);  // never -0
+      return json;
+    };
+    values_["tip"] = rounded_to(1e6, place);
+    values_["tip_axis"] = rounded_to(1e4, direction);
+    notes_.push_back(fmt::format("with the file's origin for tip centre and the tip along -z the tool {}", odd));
     notes_.push_back(fmt::format(
-        "longest edge of the tool's box: {:.4g}, with scale {} {:.4g} mm; if it is not, change tool.scale; its origin is "
-        "the tip centre, its axis -z",
-        longest, scale, 1e3 * longest * scale));
+        "taken for its tip: its thinner end, x = {:.4g}, y = {:.4g}, z = {:.4g} mm, pointing along {}; if it is not, change "
+        "tool.tip_m and tool.tip_axis",
+        1e3 * place.x(), 1e3 * place.y(), 1e3 * place.z(), values_["tip_axis"].dump()));
   }
 
   /// Four fifths of the way to where the surface ends: the edge is another scene.
@@ -301,6 +329,8 @@ class Start {
                     {"z_pressed", 0.0},
                     {"scale", 0.001},
                     {"tool_scale", 0.001},
+                    {"tip", {0, 0, 0}},
+                    {"tip_axis", {0, 0, -1}},
                     {"spacing", nullptr},
                     {"diameter", 0.001},
                     {"length", 0.01},

@@ -19,6 +19,7 @@ namespace {
 
 struct ValidateOptions {
   std::vector<std::string> files;
+  std::vector<std::string> overrides;
   OutputOptions output;
 };
 
@@ -36,8 +37,10 @@ std::string tool_text(const ToolFacts& tool) {
                                  length_text(tool.half_width), length_text(tool.reach));
   if (!tool.convex) text += ", not convex";
   if (tool.mesh) {
-    text += fmt::format("\n               {} triangles, closed, {}; grid {}, depths within {}", tool.mesh->triangles,
-                        size_text(tool.mesh->box), length_text(tool.mesh->grid), length_text(tool.mesh->error_bound));
+    text += fmt::format(
+        "\n               from its tip centre {}\n               {} triangles, closed; grid {}, depths right to {}",
+        place_text(tool.mesh->box), tool.mesh->triangles, length_text(tool.mesh->grid),
+        length_text(tool.mesh->error_bound));
   }
   return text + "\n";
 }
@@ -92,7 +95,7 @@ int validate(const ValidateOptions& options) {
   for (const std::string& argument : options.files) {
     try {
       const WaitNotice notice(argument, !options.output.quiet);
-      const LoadedScenario loaded = load_scenario(find_scenario(argument));
+      const LoadedScenario loaded = load_scenario(find_scenario(argument), options.overrides);
       const std::vector<std::string> warnings = check_named_files(loaded);
       print_warnings(loaded.warnings);
       print_warnings(warnings);
@@ -118,6 +121,7 @@ void add_validate(CommandLine& line) {
   Command command = line.command(
       "validate", "Check scenario files and the files they name, without running them, and say what is in them");
   command.add("files", options->files, "scenario files").required();
+  command.add("--set", options->overrides, "override a field of all: path=value").repeatable();
   add_output_options(command, options->output);
   command.runs([options] { return validate(*options); });
 }

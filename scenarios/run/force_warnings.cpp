@@ -21,11 +21,4 @@ std::vector<std::string> force_warnings(const Metrics& metrics) {
   return warnings;
 }
 
-std::vector<std::string> tool_warnings(const RenderingConfig& rendering, const ToolShape& tool) {
-  if (rendering.algorithm != "proxy" || tool.convex()) return {};
-  return {
-      "the tool is not convex: the proxy's guarantee that no point enters it is lost, points may enter where the tool is "
-      "hollow; a convex tool, or another algorithm, has no such gap"};
-}
-
 }  // namespace hapbench

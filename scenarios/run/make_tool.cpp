@@ -19,7 +19,7 @@ namespace {
 using Grid = std::shared_ptr<const SignedDistanceGrid>;
 
 Grid make_grid(const MeshToolFields& fields, const NamedFiles& files) {
-  const TriangleSoup surface = files.tool_mesh().triangles();
+  const TriangleSoup surface = tool_surface(fields, files);
   const double spacing = fields.grid.value_or(SignedDistanceGrid::suggested_spacing(surface.vertices));
   try {
     return std::make_shared<const SignedDistanceGrid>(surface.vertices, surface.triangles, spacing);
@@ -32,7 +32,9 @@ Grid make_grid(const MeshToolFields& fields, const NamedFiles& files) {
 class RecentGrids {
  public:
   Grid of(const MeshToolFields& fields, const NamedFiles& files) {
-    const std::string content = fmt::format("{} {} {}", files.tool()->hash(), fields.scale, fields.grid.value_or(0.0));
+    const std::string content =
+        fmt::format("{} {} {} {} {}", files.tool()->hash(), fields.scale, fields.grid.value_or(0.0),
+                    fmt::join(fields.tip, " "), fmt::join(fields.tip_axis, " "));
     const std::lock_guard lock(mutex_);
     const auto found =
         std::find_if(grids_.begin(), grids_.end(), [&](const auto& known) { return known.first == content; });
@@ -72,6 +74,13 @@ struct Make {
 };
 
 }  // namespace
+
+TriangleSoup tool_surface(const MeshToolFields& fields, const NamedFiles& files) {
+  TriangleSoup surface = files.tool_mesh().triangles();
+  const Mat3 to_file = ToolPose{.position = fields.tip, .axis = fields.tip_axis.normalized()}.rotation();
+  for (Vec3& vertex : surface.vertices) vertex = to_file.transpose() * (vertex - fields.tip);
+  return surface;
+}
 
 std::shared_ptr<const ToolShape> make_tool(const Scenario& scenario, const NamedFiles& files) {
   return std::visit(Make{files}, scenario.tool);

@@ -14,6 +14,7 @@
 #include "scenarios/run/force_warnings.hpp"
 #include "scenarios/run/recorders.hpp"
 #include "scenarios/run/run_trial.hpp"
+#include "scenarios/run/tool_warnings.hpp"
 #include "scenarios/run/wait_notice.hpp"
 
 namespace hapbench {

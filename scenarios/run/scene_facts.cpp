@@ -7,7 +7,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/drag_course.hpp"
 #include "scenarios/run/encounter.hpp"
-#include "scenarios/run/force_warnings.hpp"
+#include "scenarios/run/tool_warnings.hpp"
 #include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {

@@ -296,6 +296,7 @@ TEST_F(ValidateCommand, PrintsVerdictsAsJson) {
   EXPECT_EQ(verdicts[1]["valid"], false);
   EXPECT_NE(verdicts[1]["error"].get<std::string>().find("missing field"), std::string::npos);
   EXPECT_EQ(hapbench({"validate", good, "--quiet"}).out, "");
+  EXPECT_EQ(hapbench({"validate", good, "--set", "time.steps=30", "--json"}).json()[0]["steps"], 30);
 }
 
 TEST_F(ValidateCommand, WritesNothing) {

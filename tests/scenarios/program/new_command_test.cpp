@@ -59,6 +59,25 @@ TEST_F(NewCommand, GuessesTheUnitOfAMesh) {
   EXPECT_EQ(scale_of("0.006", "metres"), 1.0);
 }
 
+TEST_F(NewCommand, FindsTheTipOfAToolThatLiesSomewhere) {
+  // A pyramid of 8 mm along x, its tip at (20, 3, 4).
+  test::write_plainly(
+      directory_ / "pick.obj",
+      "v 20 3 4\nv 28 2 3\nv 28 4 3\nv 28 4 5\nv 28 2 5\nf 1 3 2\nf 1 4 3\nf 1 5 4\nf 1 2 5\nf 2 3 4 5\n");
+  const ProgramRun made = hapbench({"new", "tool", "--from", path("pick.obj"), "--out", path("pick.json")});
+  ASSERT_EQ(made.status, 0) << made.err;
+  for (const std::string& line : test::lines_of(made.out)) EXPECT_LE(line.size(), 160u) << line;
+  const Json pick = Json::parse(test::read_file(directory_ / "pick.json"));
+  EXPECT_EQ(pick["tool"]["tip_m"], Json::parse("[0.02, 0.003, 0.004]"));
+  EXPECT_EQ(pick["tool"]["tip_axis"], Json::parse("[-1.0, 0.0, 0.0]"));
+  EXPECT_EQ(pick["initial"]["position_m"], Json::parse("[0.0, 0.0, 0.001]"));
+  const ProgramRun valid = hapbench({"validate", path("pick.json")});
+  EXPECT_EQ(valid.err, "");
+  const ProgramRun odd = hapbench({"validate", path("pick.json"), "--set", "tool.tip_m=[0,0,0]"});
+  EXPECT_EQ(odd.status, 0);
+  EXPECT_NE(odd.err.find("the tool lies 20.3 mm away from its tip centre"), std::string::npos) << odd.err;
+}
+
 TEST_F(NewCommand, DragsOverAMeshToo) {
   ASSERT_EQ(hapbench({"new", "drag", "--from", data("cube.obj"), "--out", path("drag.json")}).status, 0);
   const Json summary = hapbench({"run", path("drag.json"), "--out", path("run"), "--json"}).json()[0];

@@ -1,13 +1,15 @@
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/run/force_warnings.hpp"
 #include "scenarios/run/make_tool.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/tool_warnings.hpp"
 #include "sim/tool/mesh_tool.hpp"
 #include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
@@ -35,7 +37,8 @@ std::shared_ptr<const ToolShape> tool_of(const std::string& fields) {
   return make_tool(scenario.scenario, scenario.files);
 }
 
-const std::string kCube = R"({"type": "mesh", "file": "cube.obj", "scale": 0.0001, "grid_m": 0.00005})";
+const std::string kCube = R"({"type": "mesh", "file": "cube.obj", "scale": 0.0001, "tip_m": [0.0, 0.0, 0.0],
+                               "tip_axis": [0.0, 0.0, -1.0], "grid_m": 0.00005})";
 const std::string kHourglass =
     R"({"type": "revolved", "profile_m": [[-0.01, 0.002], [-0.002, 0.0003], [0, 0.001]], "tip": "flat"})";
 
@@ -65,6 +68,36 @@ TEST(ScenarioTool, HasTheSizeItsFieldsSay) {
   EXPECT_NEAR(tool_of(kCube)->half_width(), 0.0005, 0.00005);
   EXPECT_TRUE(tool_of(kCube)->convex());
   EXPECT_FALSE(tool_of(kHourglass)->convex());
+}
+
+/// The tool's frame at its tip, on whichever face of the cube that is; with it the box lies behind the tip centre.
+TEST(ScenarioTool, OfAMeshHasItsTipWhereItsFieldsSay) {
+  for (const auto& [place, axis] : {std::pair{"[0.0005, 0, 0]", "[2, 0, 0]"},
+                                    {"[0, -0.0005, 0]", "[0, -1, 0]"},
+                                    {"[0, 0, 0.0005]", "[0, 0, 1]"},
+                                    {"[0, 0, -0.0005]", "[0, 0, -1]"}}) {
+    const auto tool = tool_of(fmt::format(
+        R"({{"type": "mesh", "file": "cube.obj", "scale": 0.0001, "tip_m": {}, "tip_axis": {}, "grid_m": 0.00005}})",
+        place, axis));
+    Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+    for (const Vec3& vertex : dynamic_cast<const MeshTool&>(*tool).grid().vertices()) {
+      low = low.cwiseMin(vertex);
+      high = high.cwiseMax(vertex);
+    }
+    // Rounding of places of 1 mm by a turn: some units in the last place, 2e-19.
+    EXPECT_LT((low - Vec3(-0.0005, -0.0005, 0.0)).norm(), 1e-18) << axis << ": " << low.transpose();
+    EXPECT_LT((high - Vec3(0.0005, 0.0005, 0.001)).norm(), 1e-18) << axis << ": " << high.transpose();
+  }
+}
+
+TEST(ScenarioTool, ThatLiesOddlyInItsFrameIsNamed) {
+  const Vec3 wide(0.001, 0.001, 0.0), low(0, 0, 0.009);
+  EXPECT_EQ(odd_frame({-wide, wide + low}), "");
+  EXPECT_EQ(odd_frame({-wide - low, wide}), "lies before its tip centre, not behind");
+  EXPECT_EQ(odd_frame({Vec3(0, -0.001, -0.001), Vec3(0.009, 0.001, 0.001)}), "lies across its axis");
+  EXPECT_EQ(odd_frame({wide + low, 2.0 * wide + 2.0 * low}), "lies 9.11 mm away from its tip centre");
+  // A wheel is wider than it is long on purpose.
+  EXPECT_EQ(odd_frame({Vec3(-0.002, -0.002, 0), Vec3(0.002, 0.002, 0.0005)}), "");
 }
 
 TEST(ScenarioTool, HasAnOutlineFromTheFarEndToTheTipThatIsAsLargeAsItIs) {

@@ -153,7 +153,7 @@ std::vector<NamedScenario> rich_scenarios() {
       "time": {"step_s": 0.0005, "steps": 100},
       "environment": {"type": "plane", "size_m": 0.02, "spacing_m": 0.001},
       "initial": {"position_m": [0, 0, 0.005]},
-      "tool": {"type": "mesh", "file": "cube.obj", "scale": 0.001, "grid_m": 0.0005},
+      "tool": {"type": "mesh", "file": "cube.obj", "scale": 0.001, "tip_m": [0.0001, 0, 0], "tip_axis": [0, 1, -2], "grid_m": 0.0005},
       "hand": {"type": "force", "z_N": -1}})")},
           {"scanned_cube", Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 10},
