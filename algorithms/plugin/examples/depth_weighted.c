@@ -1,6 +1,7 @@
 /* A force law in C: contacts weigh by a power of their depth.
  *
- *     gcc -std=c11 -O2 -fPIC -shared -Ialgorithms/plugin algorithms/plugin/examples/depth_weighted.c -lm -o depth_weighted.so
+ *     gcc -std=c11 -O2 -fPIC -shared -Ialgorithms/plugin \
+ *         algorithms/plugin/examples/depth_weighted.c -lm -o depth_weighted.so
  *     hapbench --plugin ./depth_weighted.so compare peg_in_hole_2d_shaped_stiffness
  *
  * is for the root of hapbench's tree. With hapbench installed the header is in PREFIX/include: -IPREFIX/include, or
