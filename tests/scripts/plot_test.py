@@ -102,12 +102,12 @@ class Plot(Given):
         runs = self.variants({}, {})
         self.assertEqual(labels(runs), ["mean, 0/springs", "mean, 1/springs"])
 
-    def variants(self, *changes):
+    def variants(self, *changes, places="{}/springs"):
         """Copies of a run whose scenarios have other values."""
         folder = Path(tempfile.mkdtemp(dir=self.root))
         for i, change in enumerate(changes):
-            shutil.copytree(self.root / "springs", folder / str(i) / "springs")
-            file = folder / str(i) / "springs" / "scenario.effective.json"
+            shutil.copytree(self.root / "springs", folder / places.format(i))
+            file = folder / places.format(i) / "scenario.effective.json"
             scenario = json.loads(file.read_text())
             for path, value in change.items():
                 section, _, name = path.rpartition(".")
@@ -118,6 +118,11 @@ class Plot(Given):
     def test_the_legend_has_an_entry_for_all_seeds_and_is_not_cut(self):
         runs = self.variants({"seed": 1}, {"seed": 2}, {"seed": 3})
         self.assertEqual(list(legend_of(looks(runs, *named(runs)))), ["mean (3 seeds)"])
+        jittered = [{"seed": i, "initial.position_m": [0.001 * i, 0, 0]} for i in range(3)]
+        runs = self.variants(*jittered, places="mean/seed_{}")
+        self.assertEqual(list(legend_of(looks(runs, *named(runs)))), ["mean (3 seeds)"])
+        runs = self.variants(*jittered)
+        self.assertEqual(len(legend_of(looks(runs, *named(runs)))), 3)
         self.assertEqual([legend_columns(["x" * n], 7.0) for n in (5, 30, 90)], [4, 2, 1])
 
     def test_a_sweep_over_two_fields_is_a_map(self):
