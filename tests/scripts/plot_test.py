@@ -21,11 +21,11 @@ setUpModule = make_runs
 class Plot(Given):
     def test_a_sketch_and_a_picture(self):
         said = hapbench("plot", self.root / "mesh")
-        for text in ("rendered force [N]", "largest depth [mm]", "stiffness ratio [K]", "colliding points", "first touch at"):
+        for text in ("|rendered force| [N]", "largest depth [mm]", "stiffness ratio [K]", "colliding points", "first touch at"):
             self.assertIn(text, said)
         self.assertIn(f"picture in {self.root / 'mesh' / 'plot.svg'}", said)
         picture = (self.root / "mesh" / "plot.svg").read_text()
-        for text in ("rendered force [N]", "tip x [mm]", "tip z [mm]", "(dots: surface)", "time [s]"):
+        for text in ("|rendered force| [N]", "tip x [mm]", "tip z [mm]", "(dots: surface)", "time [s]"):
             self.assertIn(text, picture)
 
     def test_the_sketch_fits_the_terminal_and_its_characters(self):
@@ -40,7 +40,7 @@ class Plot(Given):
         columns = read_columns(self.root / "mesh" / "trajectory.csv", ["time_s", "fx_N", "fy_N", "fz_N"])
         size = np.sqrt(columns["fx_N"] ** 2 + columns["fy_N"] ** 2 + columns["fz_N"] ** 2)
         said = hapbench("plot", self.root / "mesh", "--y", "force", "--out", self.root / "m.svg")
-        self.assertIn(f"rendered force [N], most {size.max():.4g} at {columns['time_s'][size.argmax()]:.4g} s", said)
+        self.assertIn(f"|rendered force| [N], most {size.max():.4g} at {columns['time_s'][size.argmax()]:.4g} s", said)
 
     def test_kinds_of_files(self):
         for name, start in (("a.svg", b"<?xml"), ("a.png", b"\x89PNG"), ("a.pdf", b"%PDF")):
@@ -64,7 +64,7 @@ class Plot(Given):
         cells[touching][names.index("fz_N")] = "1234.5"
         table.write_text("\n".join([first, *(",".join(row) for row in cells)]) + "\n")
         said = hapbench("plot", run, "--y", "force")
-        self.assertRegex(said, r"rendered force \[N\], most 123\d.* \(cut off\)")
+        self.assertRegex(said, r"\|rendered force\| \[N\], most 123\d.* \(cut off\)")
         self.assertIn("peak 1.23e+03 N", (run / "plot.svg").read_text())
         after = float(cells[touching + 1][names.index("time_s")])
         said = hapbench("plot", run, "--y", "force", "--from", after, "--to", 0.24)
@@ -73,7 +73,7 @@ class Plot(Given):
 
     def test_columns_by_their_names(self):
         said = hapbench("plot", self.root / "mesh", "--y", "fz_N,hx_m,speed", "--out", self.root / "m.svg")
-        for text in ("fz [N]", "hx [mm]", "speed of the tip [m/s]"):
+        for text in ("fz [N]", "hx [mm]", "|velocity of the tip| [m/s]"):
             self.assertIn(text, said)
 
     def test_a_comparison_is_overlaid(self):
@@ -185,6 +185,7 @@ class Plot(Given):
         (bare / "trajectory.csv").unlink()
         for words, said in (
                 ((mesh, "--y", "forse"), 'nearest valid name: "force"'), ((mesh, "--y", "fz"), 'nearest valid name: "fz_N"'),
+                ((mesh, "--y", "force_z"), 'nearest valid name: "fz_N"'), ((mesh, "--y", "qqq"), "or a column of trajectory.csv: step, time_s,"),
                 ((mesh, "--y", "energy"), "run it with --set record.energy=true"),
                 ((mesh, "--y", "torque"), "has no tx_Nm; run it with --set record.torque=true"), ((mesh, "--out", "x.gif"), "allowed: .svg, .png, .pdf"),
                 ((self.root / "mseh",), 'nearest valid name: "mesh"'), ((self.root / "nothing" / "here",), "no such folder"),
