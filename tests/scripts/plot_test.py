@@ -4,6 +4,8 @@ import shutil
 import sys
 import tempfile
 import unittest
+from contextlib import redirect_stdout
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +16,7 @@ from hapbench.columns import header, read_columns
 from hapbench_pictures.given import given_runs, labels, named
 from hapbench_pictures.looks import looks
 from hapbench_pictures.plot import legend_columns, legend_of
+from hapbench_pictures.plot_command import plot
 
 setUpModule = make_runs
 
@@ -25,7 +28,7 @@ class Plot(Given):
             self.assertIn(text, said)
         self.assertIn(f"picture in {self.root / 'mesh' / 'plot.svg'}", said)
         picture = (self.root / "mesh" / "plot.svg").read_text()
-        for text in ("|rendered force| [N]", "tip x [mm]", "tip z [mm]", "(dots: surface)", "time [s]"):
+        for text in ("|rendered force| [N]", "tip x [mm]", "tip z [mm]", "dots: section of the surface through", "time [s]"):
             self.assertIn(text, picture)
 
     def test_the_sketch_fits_the_terminal_and_its_characters(self):
@@ -54,6 +57,13 @@ class Plot(Given):
             hapbench("plot", self.root / "peg", "--quiet", "--out", self.root / "same.svg")
             pictures.append((self.root / "same.svg").read_bytes())
         self.assertEqual(*pictures)
+        self.assertIn(b"outlines: tool on its way, first run", pictures[0])
+
+    def test_the_path_alone_has_no_sketch(self):
+        folder, said = self.root / "peg" / "mean", StringIO()
+        with redirect_stdout(said):
+            plot([str(folder), "--y", "path", "--out", str(self.root / "path.svg")])
+        self.assertEqual(said.getvalue(), f"path: is in the picture only\npicture in {self.root / 'path.svg'}\n")
 
     def test_a_span_of_time_and_a_peak_that_is_cut_off(self):
         run = self.copy("mesh")
