@@ -112,9 +112,11 @@ void add_plot(CommandLine& line) {
   command.add("--to", options->to, "time up to which to draw [s]");
   command.flag("--no-sketch", options->no_sketch, "the picture alone");
   command.footer(
-      "--y takes force, spring, measured, input, reference, force_error, torque (needs record.torque), depth, ratio, contacts, rendered, speed, x, y, z, path, energy, "
+      "--y takes force, spring, measured, input, reference, force_error, torque (needs record.torque), depth, ratio, "
+      "contacts, rendered, speed, x, y, z, path, energy, "
       "input_energy, or any column of the runs' tables; by default force, depth, ratio, contacts, path, and energy "
-      "where it was recorded.\n"
+      "where it was recorded. force, speed and the like are lengths of vectors, drawn as |rendered force|; --y fx_N,fy_N,fz_N "
+      "draws the components.\n"
       "A comparison's folder stands for all its runs. Every run has the colour of its algorithm, runs of one algorithm "
       "have colours of their own; triangles mark the first touch. A peak of more than three times what settled contact "
       "shows is cut off, and its value written there. Of long runs the least and the greatest value for each pixel are drawn, so that no spike is lost.\n"

@@ -135,6 +135,7 @@ class OwnPage(unittest.TestCase):
         self.assertEqual(self.time(), 0)
 
     def test_the_worst_moment(self):
+        self.assertIn(" in view: ", self.js("document.querySelector('#replay-worst button').textContent"))
         self.click("#replay-worst button")
         row = self.js("Math.max(...player.shown.map((r) => r.worst[0].value))")
         at = self.js(f"player.shown.map((r) => r.worst[0]).find((m) => m.value === {row}).time")

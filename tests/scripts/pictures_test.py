@@ -118,6 +118,9 @@ class Moments(unittest.TestCase):
         step, depth = worst_moments(columns, {})
         self.assertEqual((step["title"], step["time"], step["value"]), ("settled force step", 0.7, 0.5))
         self.assertEqual((depth["time"], depth["value"]), (0.1, 9.0))
+        # Three rows, 0.03 s, are too little to be called settled.
+        step, _ = worst_moments({name: values[:18] for name, values in columns.items()}, {})
+        self.assertEqual((step["title"], step["value"]), ("force step", 9.0))
 
 
 class Hearing(unittest.TestCase):

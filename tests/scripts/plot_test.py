@@ -4,6 +4,8 @@ import shutil
 import sys
 import tempfile
 import unittest
+from contextlib import redirect_stdout
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +16,7 @@ from hapbench.columns import header, read_columns
 from hapbench_pictures.given import given_runs, labels, named
 from hapbench_pictures.looks import looks
 from hapbench_pictures.plot import legend_columns, legend_of
+from hapbench_pictures.plot_command import plot
 
 setUpModule = make_runs
 
@@ -21,11 +24,11 @@ setUpModule = make_runs
 class Plot(Given):
     def test_a_sketch_and_a_picture(self):
         said = hapbench("plot", self.root / "mesh")
-        for text in ("rendered force [N]", "largest depth [mm]", "stiffness ratio [K]", "colliding points", "first touch at"):
+        for text in ("|rendered force| [N]", "largest depth [mm]", "stiffness ratio [K]", "colliding points", "first touch at"):
             self.assertIn(text, said)
         self.assertIn(f"picture in {self.root / 'mesh' / 'plot.svg'}", said)
         picture = (self.root / "mesh" / "plot.svg").read_text()
-        for text in ("rendered force [N]", "tip x [mm]", "tip z [mm]", "(dots: surface)", "time [s]"):
+        for text in ("|rendered force| [N]", "tip x [mm]", "tip z [mm]", "dots: section of the surface through", "time [s]"):
             self.assertIn(text, picture)
 
     def test_the_sketch_fits_the_terminal_and_its_characters(self):
@@ -40,7 +43,7 @@ class Plot(Given):
         columns = read_columns(self.root / "mesh" / "trajectory.csv", ["time_s", "fx_N", "fy_N", "fz_N"])
         size = np.sqrt(columns["fx_N"] ** 2 + columns["fy_N"] ** 2 + columns["fz_N"] ** 2)
         said = hapbench("plot", self.root / "mesh", "--y", "force", "--out", self.root / "m.svg")
-        self.assertIn(f"rendered force [N], most {size.max():.4g} at {columns['time_s'][size.argmax()]:.4g} s", said)
+        self.assertIn(f"|rendered force| [N], most {size.max():.4g} at {columns['time_s'][size.argmax()]:.4g} s", said)
 
     def test_kinds_of_files(self):
         for name, start in (("a.svg", b"<?xml"), ("a.png", b"\x89PNG"), ("a.pdf", b"%PDF")):
@@ -54,6 +57,13 @@ class Plot(Given):
             hapbench("plot", self.root / "peg", "--quiet", "--out", self.root / "same.svg")
             pictures.append((self.root / "same.svg").read_bytes())
         self.assertEqual(*pictures)
+        self.assertIn(b"outlines: tool on its way, first run", pictures[0])
+
+    def test_the_path_alone_has_no_sketch(self):
+        folder, said = self.root / "peg" / "mean", StringIO()
+        with redirect_stdout(said):
+            plot([str(folder), "--y", "path", "--out", str(self.root / "path.svg")])
+        self.assertEqual(said.getvalue(), f"path: is in the picture only\npicture in {self.root / 'path.svg'}\n")
 
     def test_a_span_of_time_and_a_peak_that_is_cut_off(self):
         run = self.copy("mesh")
@@ -64,7 +74,7 @@ class Plot(Given):
         cells[touching][names.index("fz_N")] = "1234.5"
         table.write_text("\n".join([first, *(",".join(row) for row in cells)]) + "\n")
         said = hapbench("plot", run, "--y", "force")
-        self.assertRegex(said, r"rendered force \[N\], most 123\d.* \(cut off\)")
+        self.assertRegex(said, r"\|rendered force\| \[N\], most 123\d.* \(cut off\)")
         self.assertIn("peak 1.23e+03 N", (run / "plot.svg").read_text())
         after = float(cells[touching + 1][names.index("time_s")])
         said = hapbench("plot", run, "--y", "force", "--from", after, "--to", 0.24)
@@ -73,7 +83,7 @@ class Plot(Given):
 
     def test_columns_by_their_names(self):
         said = hapbench("plot", self.root / "mesh", "--y", "fz_N,hx_m,speed", "--out", self.root / "m.svg")
-        for text in ("fz [N]", "hx [mm]", "speed of the tip [m/s]"):
+        for text in ("fz [N]", "hx [mm]", "|velocity of the tip| [m/s]"):
             self.assertIn(text, said)
 
     def test_a_comparison_is_overlaid(self):
@@ -102,12 +112,12 @@ class Plot(Given):
         runs = self.variants({}, {})
         self.assertEqual(labels(runs), ["mean, 0/springs", "mean, 1/springs"])
 
-    def variants(self, *changes):
+    def variants(self, *changes, places="{}/springs"):
         """Copies of a run whose scenarios have other values."""
         folder = Path(tempfile.mkdtemp(dir=self.root))
         for i, change in enumerate(changes):
-            shutil.copytree(self.root / "springs", folder / str(i) / "springs")
-            file = folder / str(i) / "springs" / "scenario.effective.json"
+            shutil.copytree(self.root / "springs", folder / places.format(i))
+            file = folder / places.format(i) / "scenario.effective.json"
             scenario = json.loads(file.read_text())
             for path, value in change.items():
                 section, _, name = path.rpartition(".")
@@ -118,6 +128,11 @@ class Plot(Given):
     def test_the_legend_has_an_entry_for_all_seeds_and_is_not_cut(self):
         runs = self.variants({"seed": 1}, {"seed": 2}, {"seed": 3})
         self.assertEqual(list(legend_of(looks(runs, *named(runs)))), ["mean (3 seeds)"])
+        jittered = [{"seed": i, "initial.position_m": [0.001 * i, 0, 0]} for i in range(3)]
+        runs = self.variants(*jittered, places="mean/seed_{}")
+        self.assertEqual(list(legend_of(looks(runs, *named(runs)))), ["mean (3 seeds)"])
+        runs = self.variants(*jittered)
+        self.assertEqual(len(legend_of(looks(runs, *named(runs)))), 3)
         self.assertEqual([legend_columns(["x" * n], 7.0) for n in (5, 30, 90)], [4, 2, 1])
 
     def test_a_sweep_over_two_fields_is_a_map(self):
@@ -180,6 +195,7 @@ class Plot(Given):
         (bare / "trajectory.csv").unlink()
         for words, said in (
                 ((mesh, "--y", "forse"), 'nearest valid name: "force"'), ((mesh, "--y", "fz"), 'nearest valid name: "fz_N"'),
+                ((mesh, "--y", "force_z"), 'nearest valid name: "fz_N"'), ((mesh, "--y", "qqq"), "or a column of trajectory.csv: step, time_s,"),
                 ((mesh, "--y", "energy"), "run it with --set record.energy=true"),
                 ((mesh, "--y", "torque"), "has no tx_Nm; run it with --set record.torque=true"), ((mesh, "--out", "x.gif"), "allowed: .svg, .png, .pdf"),
                 ((self.root / "mseh",), 'nearest valid name: "mesh"'), ((self.root / "nothing" / "here",), "no such folder"),

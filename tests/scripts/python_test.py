@@ -177,11 +177,17 @@ class Studies(Scratch):
         report = hapbench.compare(PEG, ["mean", "summation"], SHORT, jobs=2)
         self.assertEqual(list(report.comparison.algorithm), ["mean", "summation"])
         self.assertEqual([run["algorithm"] for run in report.report], ["mean", "summation"])
+        heading, mean, summation, left = str(report.comparison).split("\n", 3)
+        self.assertEqual(mean.split()[0], "mean")
+        self.assertEqual(len(heading), len(summation))
+        self.assertIn(f"{report.comparison.force_max_N[0]:.5g}", mean)
+        self.assertIn("and columns ", left)
         alone = hapbench.run(PEG, {**SHORT, "rendering.algorithm": "mean"})
         mean = report.runs["mean"]
         del report  # its folder stays as long as the run
         self.assertEqual(mean.state_hash, alone.state_hash)
         self.assertEqual(mean.trajectory.rows, 300)
+        self.assertIn("and 280 more rows", str(mean.trajectory))
 
     def test_league(self):
         report = hapbench.compare([PEG, {"extends": PEG, "name": "other", "seed": 2}], ["mean", "summation"], SHORT, seeds=2,

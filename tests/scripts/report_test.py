@@ -146,7 +146,7 @@ class Page(WithResults):
     def test_the_ledger_tells_how_robust_its_verdicts_are(self):
         page = self.full_page()
         for text in ("this verdict in 64 of 64 samples<", "this verdict in 31 of 64 samples; decided by hand.angle (S = 0.43)",
-                     "this verdict in 31 of 64 samples; no single choice decides"):
+                     "this verdict in 31 of 64 samples; no single choice decides", "its first-order Sobol index S"):
             self.assertIn(text, page)
 
     def test_every_choice_on_record_is_there(self):

@@ -1,4 +1,5 @@
-/* A force law in C++ with hapbench's library: the sum of all springs, scaled down where it would be too stiff.
+/* A force law in C++ with hapbench's library: the sum of all springs, scaled down where it would be too stiff. With
+ * hapbench installed below /usr (elsewhere: -IPREFIX/include/hapbench and -LPREFIX/lib), from this folder:
  *
  *     g++ -std=c++20 -O2 -fPIC -shared -ffp-contract=off -DEIGEN_DONT_VECTORIZE -I/usr/include/hapbench \
  *         -I/usr/include/eigen3 capped_summation.cpp -lhapbench -o capped_summation.so

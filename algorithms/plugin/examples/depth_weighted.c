@@ -1,7 +1,11 @@
 /* A force law in C: contacts weigh by a power of their depth.
  *
- *     gcc -std=c11 -O2 -fPIC -shared depth_weighted.c -lm -o depth_weighted.so
+ *     gcc -std=c11 -O2 -fPIC -shared -Ialgorithms/plugin \
+ *         algorithms/plugin/examples/depth_weighted.c -lm -o depth_weighted.so
  *     hapbench --plugin ./depth_weighted.so compare peg_in_hole_2d_shaped_stiffness
+ *
+ * is for the root of hapbench's tree. With hapbench installed the header is in PREFIX/include: -IPREFIX/include, or
+ * no -I where PREFIX is /usr.
  *
  * Weights that add up to 1 make a force that is no larger than K times the deepest depth. */
 #include <hapbench_plugin.h>

@@ -1,9 +1,12 @@
 """A table of results."""
 from collections.abc import Mapping
 
+import textwrap
+
 from .units import unit_of
 
 MOST_NAMED = 16
+MOST_PRINTED, WIDEST = 20, 100  # rows and characters of a printed table
 
 
 class Table(Mapping):
@@ -56,3 +59,27 @@ class Table(Mapping):
         names = list(self._columns)
         more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
         return f"<{self.name}: {self.rows} rows of {', '.join(names[:MOST_NAMED])}{more}>"
+
+    def __str__(self):
+        """The first rows, aligned, of as many columns as fit; below them what is left out."""
+        shown, width = [], 0
+        for name, values in self._columns.items():
+            cells = [name, *map(_cell, values[:MOST_PRINTED])]
+            wide = max(map(len, cells))
+            width += wide + 2
+            if width > WIDEST and shown:
+                break
+            shown.append([cell.rjust(wide) for cell in cells])
+        lines = ["  ".join(row) for row in zip(*shown)]
+        if self.rows > MOST_PRINTED:
+            lines.append(f"and {self.rows - MOST_PRINTED} more rows")
+        if left := list(self._columns)[len(shown):]:
+            lines += textwrap.wrap(f"and columns {', '.join(left)}", WIDEST)
+        return "\n".join(lines)
+
+
+def _cell(value):
+    """A number in short, a count in full, nothing for NaN."""
+    if isinstance(value, str):
+        return value
+    return "" if value != value else f"{value:.0f}" if value % 1 == 0 and abs(value) < 1e9 else f"{value:.5g}"

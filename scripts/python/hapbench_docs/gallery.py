@@ -9,7 +9,7 @@ from hapbench_figures.style import AMBER, BLACK, GREY, PETROL, SETTINGS
 from hapbench_looks import look
 from hapbench.columns import read_columns
 from hapbench_pictures.files import write
-from hapbench_pictures.panels import section
+from hapbench_pictures.panels import outline, section
 from hapbench_pictures.reduced import reduced
 from hapbench_report.replay_tool import tool_profile
 from matplotlib import pyplot as plt
@@ -73,7 +73,7 @@ class Scene:
         self.name = name
         self.scenario = json.loads((folder / name / "scenario.effective.json").read_text(encoding="utf-8"))
         summary = json.loads((folder / name / "summary.json").read_text(encoding="utf-8"))
-        self.profile = np.array(tool_profile(self.scenario, summary))
+        self.profile = tool_profile(self.scenario, summary)
         names = [f"{n}{a}{u}" for n, u in (("p", "_m"), ("axis_", ""), ("f", "_N")) for a in "xyz"]
         rows = read_columns(folder / name / "trajectory.csv", ["time_s", *names])
         self.time = rows["time_s"]
@@ -90,13 +90,7 @@ class Scene:
         return section(self.points, (self.across, self.up), self.tip)
 
     def tool(self, row):
-        """Outline of the tool's projection; right where the axis lies in the plane, and near it elsewhere."""
-        axis = self.plane(self.axis[row:row + 1])[0]
-        axis /= np.linalg.norm(axis)
-        side = np.array([-axis[1], axis[0]])
-        s, radius = self.profile.T[:, :, None]
-        half = self.plane(self.tip[row:row + 1]) + s * axis
-        return np.vstack([half + radius * side, (half - radius * side)[::-1]])
+        return outline(self.profile, *(self.plane(vectors[row:row + 1])[0] for vectors in (self.tip, self.axis)))
 
 
 def picture(scene, half):

@@ -1,6 +1,7 @@
 """The runs that RUN… on the command line mean: folders of `run`, folders of `compare`, or one folder of `sweep`."""
 import json
 import os
+import re
 from pathlib import Path
 
 from hapbench.columns import read_records
@@ -11,6 +12,7 @@ from .fields import differing, entry, leaves
 from .names import nearest
 
 SUMMARY, SWEEP = "summary.json", "sweep.csv"
+SEED_FOLDER = re.compile(r"seed_\d+")  # of a comparison with --seeds
 
 
 def given_sweep(words):
@@ -93,11 +95,16 @@ def group_labels(runs):
     return [", ".join([*(part[i] for part in several), *fields]) or plain[i] for i, fields in enumerate(field_entries(runs, both))]
 
 
+def by_seed(run):
+    """The fields that a seed sets: in a comparison, with --jitter, the start too."""
+    return ("seed", "initial.position_m") if SEED_FOLDER.fullmatch(run.directory.name) else ("seed",)
+
+
 def kind(run):
-    """All that makes a run, but the seed."""
+    """All that makes a run, but what its seed sets."""
     if not run.scenario:
         return run.directory.as_posix()
-    return [run.name, {path: value for path, value in leaves(run.scenario) if path != "seed"}]
+    return [run.name, {path: value for path, value in leaves(run.scenario) if path not in by_seed(run)}]
 
 
 def field_entries(runs, scenes):
@@ -105,8 +112,7 @@ def field_entries(runs, scenes):
     paths = {}
     for scene in dict.fromkeys(scenes):
         paths |= dict.fromkeys(differing([run.scenario for run, own in zip(runs, scenes) if own == scene and run.scenario]))
-    paths.pop("seed", None)
-    values = [dict(leaves(run.scenario)) for run in runs]
+    values = [{path: value for path, value in leaves(run.scenario) if path not in by_seed(run)} for run in runs]
     return [[entry(path, of[path], paths) for path in paths if path in of] for of in values]
 
 

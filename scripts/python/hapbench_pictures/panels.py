@@ -1,5 +1,6 @@
 """One quantity over time, and the tip's way in space, of several runs, into matplotlib's axes."""
 import numpy as np
+from matplotlib.patches import Polygon
 
 from .quantities import range_of
 from .reduced import curve, reduced
@@ -9,7 +10,9 @@ SPANS = 900  # of a curve: more than a page has pixels
 LARGEST_RATIO = 30
 SECTION_M = 0.15e-3  # a point of the surface no further away belongs to its section
 SURFACE = "#8A949C"  # on paper and in the dark
-PATH_COLUMNS = ("px_m", "py_m", "pz_m")
+PATH_COLUMNS, AXIS_COLUMNS = ("px_m", "py_m", "pz_m"), ("axis_x", "axis_y", "axis_z")
+SNAPSHOTS = (0.3, 0.45, 0.65, 0.9)  # opacity of the tool at so many places of its way
+LEAST_IN_PLANE = 0.85  # of the tool's axis, for its outline to be drawn: no more than 30 degrees out of the plane
 
 
 def draw_over_time(ax, quantity, samples, looks):
@@ -85,6 +88,31 @@ def draw_surface(ax, plane, samples, points):
     # As an image: thousands of points would make the file large.
     ax.plot(*dots[inside].T, ".", color=SURFACE, ms=1.5, zorder=0, rasterized=True)
     ax.grid(False)
+
+
+def outline(profile, tip, axis):
+    """Of the tool [m] at a tip with an axis, both projected into a plane; right where the axis lies in the plane, and near it
+    elsewhere. `profile`: hapbench_report.replay_tool.tool_profile."""
+    axis = axis / np.linalg.norm(axis)
+    s, radius = np.array(profile).T[:, :, None]
+    half, across = tip + s * axis, radius * np.array([-axis[1], axis[0]])
+    return np.vstack([half + across, (half - across)[::-1]])
+
+
+def draw_tool(ax, plane, samples, profile, colour):
+    """Its outline at a few places of a run's way, as far as the axes reach; whether there is one. Of a way that is shorter
+    than the tool is wide, it would be lines across the picture."""
+    tip, axis = (np.column_stack([samples.trajectory[columns["xyz".index(one)]] for one in plane])
+                 for columns in (PATH_COLUMNS, AXIS_COLUMNS))
+    low, high = 1e-3 * np.array([ax.get_xlim(), ax.get_ylim()]).T
+    if high[0] - low[0] < 2 * max(radius for _, radius in profile):
+        return False
+    seen = np.flatnonzero(((tip >= low) & (tip <= high)).all(axis=1) & (np.linalg.norm(axis, axis=1) >= LEAST_IN_PLANE))
+    if not seen.size:
+        return False
+    for row, alpha in zip(seen[np.linspace(0, len(seen) - 1, len(SNAPSHOTS)).astype(int)], SNAPSHOTS):
+        ax.add_patch(Polygon(1e3 * outline(profile, tip[row], axis[row]), facecolor="none", edgecolor=colour, lw=0.8, alpha=alpha))
+    return True
 
 
 def draw_path(ax, plane, samples, looks, surface=None):

@@ -5,8 +5,10 @@ from collections import Counter
 import matplotlib
 
 from hapbench_figures.style import SETTINGS
+from hapbench_report.json_input import at
+from hapbench_report.replay_tool import tool_profile
 
-from .panels import PATH_COLUMNS, draw_over_time, draw_path, projections
+from .panels import AXIS_COLUMNS, PATH_COLUMNS, draw_over_time, draw_path, draw_tool, projections
 from .quantities import Samples
 
 matplotlib.use("agg")
@@ -16,10 +18,12 @@ PANEL_HEIGHT, WIDTH, PATH_WIDTH = 1.35, 7.0, 2.6  # [inch]
 LEGEND_COLUMNS = 4
 LETTER = 0.068  # width of a letter of the legend [inch]
 LONGEST_NAME = 90  # letters
+SURFACE_SAID = ("dots: section of the surface through", "the middle of the way")
+TOOL_SAID = "outlines: tool on its way"
 
 
 def samples_of(runs, quantities, with_path, window):
-    return [Samples(run, quantities, PATH_COLUMNS if with_path else (), window) for run in runs]
+    return [Samples(run, quantities, (*PATH_COLUMNS, *AXIS_COLUMNS) if with_path else (), window) for run in runs]
 
 
 def draw(runs, shown, quantities, with_path, samples, surface=None):
@@ -40,12 +44,18 @@ def draw(runs, shown, quantities, with_path, samples, surface=None):
                 draw_over_time(ax, quantity, samples, shown)
             axes[-1].set_xlabel("time [s]   (triangles and dotted lines: first touch)")
         if ways:
-            axes = parts[-1].subplots(len(ways), 1, squeeze=False)[:, 0]
+            axes, profile, outlined = parts[-1].subplots(len(ways), 1, squeeze=False)[:, 0], profile_of(runs[0]), False
             for ax, plane in zip(axes, ways):
                 draw_path(ax, plane, samples, shown, surface)
-            if surface is not None:
-                axes[-1].set_xlabel(f"{axes[-1].get_xlabel()}   (dots: surface)")
+                outlined |= profile is not None and draw_tool(ax, plane, samples[0], profile, shown[0].colour)
+            said = [*(SURFACE_SAID if surface is not None else ()), *([TOOL_SAID + ", first run" * (len(runs) > 1)] if outlined else ())]
+            axes[-1].set_xlabel("\n".join([axes[-1].get_xlabel(), *said]))
         return figure
+
+
+def profile_of(run):
+    """Of the tool; None for springs, which have none."""
+    return None if at(run.scenario, "/environment/type") == "springs" else tool_profile(run.scenario, run.summary)
 
 
 def legend_of(shown):

@@ -113,6 +113,8 @@ def of_runs(options):
     figure = draw(runs, shown, quantities, with_path, samples, surface_of(runs) if with_path else None)
     if options.no_sketch or options.quiet:
         return figure, []
+    if not quantities:
+        return figure, ["path: is in the picture only"]
     return figure, sketch(quantities, samples, shown, this_terminal())
 
 

@@ -32,7 +32,8 @@ class Quantity:
 
     @property
     def axis(self):
-        return f"{self.title} [{self.unit}]" if self.unit else self.title
+        title = f"|{self.title}|" if self.kind == "norm" else self.title
+        return f"{title} [{self.unit}]" if self.unit else title
 
     def of(self, table):
         """Lower and upper edge at every row; the same array twice for a curve."""
@@ -58,7 +59,7 @@ SHORT = {q.name: q for q in (
     Quantity("ratio", "stiffness ratio", "K", 1, TRAJECTORY, ("ratio_min", "ratio_max"), "band"),
     Quantity("contacts", "colliding points", "", 1, TRAJECTORY, ("colliding",)),
     Quantity("rendered", "rendered points", "", 1, TRAJECTORY, ("rendered",)),
-    Quantity("speed", "speed of the tip", "m/s", 1, TRAJECTORY,
+    Quantity("speed", "velocity of the tip", "m/s", 1, TRAJECTORY,
              ("vx_m_per_s", "vy_m_per_s", "vz_m_per_s"), "norm"),
     Quantity("x", "tip x", "mm", 1e3, TRAJECTORY, ("px_m",)),
     Quantity("y", "tip y", "mm", 1e3, TRAJECTORY, ("py_m",)),
@@ -95,11 +96,20 @@ def quantity(name, runs):
     found = SHORT.get(name) or (by_column(name, known[name]) if name in known else None)
     if not found:
         raise InputError(f"--y: got \"{name}\"; allowed: {', '.join([*SHORT, PATH])}, or a column of "
-                         f"{' or '.join(sorted(set(known.values())) or [TRAJECTORY])}{nearest(name, [*SHORT, PATH, *known])}")
+                         f"{' or '.join(sorted(set(known.values())) or [TRAJECTORY])}{meant(name, known)}")
     if not any(has(run, found) for run in runs):
         lacks = found.columns[0] if found.columns[0] in SWITCH else found.file
         raise InputError(f"--y {name}: {runs[0].directory}: has no {lacks}; run it with --set {SWITCH[lacks]}=true")
     return found
+
+
+def meant(name, columns):
+    """The nearest name: of "force_x" the column of that component. All columns where none is near."""
+    stem, _, axis = name.rpartition("_")
+    vector = SHORT.get(stem)
+    if vector and len(vector.columns) == 3 and axis in ("x", "y", "z"):
+        return f"; nearest valid name: \"{vector.columns['xyz'.index(axis)]}\""
+    return nearest(name, [*SHORT, PATH, *columns]) or f": {', '.join(columns)}"
 
 
 def has(run, quantity):

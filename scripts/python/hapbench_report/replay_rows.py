@@ -3,6 +3,7 @@ import math
 
 SPANS = 500  # of a run; each keeps up to five rows
 SETTLING_S = 0.05
+LEAST_SETTLED_S = 1 / 30  # less tells nothing: the run hammers, and the metrics of settled contact are left out, too
 
 
 def sizes(columns):
@@ -46,11 +47,14 @@ def settled(columns, settling_s, from_s):
 
 
 def worst_moments(columns, scenario):
-    """Where the settled force steps most and where the tool is deepest: title, time, value, unit."""
+    """Where the settled force steps most, of a run that hardly settles the force of all its rows, and where the tool is
+    deepest: title, time, value, unit."""
     chosen = scenario.get("metrics") if isinstance(scenario.get("metrics"), dict) else {}
     calm = settled(columns, chosen.get("settling_s", SETTLING_S), chosen.get("from_s"))
     times, step, depth = columns["time_s"], steps(columns), columns["depth_max_m"]
     rows = [i for i, yes in enumerate(calm) if yes]
+    if len(times) < 2 or len(rows) * (times[1] - times[0]) < LEAST_SETTLED_S:
+        rows = []
     title = "settled force step" if rows else "force step"
     jump = max(rows or range(len(times)), key=step.__getitem__)
     deepest = max(range(len(times)), key=depth.__getitem__)

@@ -48,7 +48,9 @@ def ledger_section(claims, links):
             "with the figures and runs behind it. "
             "Hands are calibrated to mean and standard deviation of the raw colliding points; all else is a prediction. "
             "Robustness: how often the verdict is the same at points spread over the plausible ranges of everything the "
-            'thesis leaves open (<a href="#choices">choices on record</a>), and the choice that decides it, if one does.</p>'
+            'thesis leaves open (<a href="#choices">choices on record</a>), '
+            "and the choice that decides it, if one does, "
+            "with its first-order Sobol index S.</p>"
             + filters("ledger-table", [("Verdict", 1)])
             + table(headings, rows, "<b>The ledger</b>", "sortable stack", "ledger-table"))
 

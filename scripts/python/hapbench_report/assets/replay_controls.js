@@ -123,8 +123,9 @@ function showWorstMoments(player) {
   }
   player.find("#replay-worst").replaceChildren(...[...kinds.values()].map((moment) => {
     const whose = player.shown.length > 1 ? `, ${moment.recording.label}` : "";
+    const among = player.shown.length < player.scene.recordings.length ? " in view" : "";
     const button = Object.assign(document.createElement("button"), {type: "button",
-      textContent: `Largest ${moment.title}: ${show(moment.value)} ${moment.unit} at ${+moment.time.toPrecision(4)} s${whose}`});
+      textContent: `Largest ${moment.title}${among}: ${show(moment.value)} ${moment.unit} at ${+moment.time.toPrecision(4)} s${whose}`});
     button.addEventListener("click", () => { player.pause(); player.seek(moment.time); });
     return button;
   }));
