@@ -22,7 +22,10 @@ void merge(Json& base, const Json& more) {
     base = more;
     return;
   }
-  for (const auto& entry : more.items()) erase_alternative(base, entry.key());
+  for (const auto& [a, b] : kEitherOr) {
+    if (more.contains(a)) base.erase(b);
+    if (more.contains(b)) base.erase(a);
+  }
   for (const auto& entry : more.items()) merge(base[entry.key()], entry.value());
 }
 
@@ -72,13 +75,6 @@ fs::path base_file(const Json& json, const fs::path& file, const std::vector<Sce
 }
 
 }  // namespace
-
-void erase_alternative(Json& object, std::string_view field) {
-  for (const auto& [a, b] : kEitherOr) {
-    if (field == a) object.erase(b);
-    if (field == b) object.erase(a);
-  }
-}
 
 Json read_extended(const fs::path& file, std::vector<ScenarioLayer>& layers) {
   Json json;

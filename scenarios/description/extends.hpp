@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <string_view>
 #include <vector>
 
 #include "scenarios/input/json_file.hpp"
@@ -17,9 +16,6 @@ struct ScenarioLayer {
   std::filesystem::path file;
   Json json;
 };
-
-/// Removes from the object what the field would contradict: of "steps" and "duration_s", for example, the other.
-void erase_alternative(Json& object, std::string_view field);
 
 /// Reads a scenario file and, over and over, the one that its field "extends" names: a file, relative to the one that
 /// names it, or else a bundled scenario. Returns the fields of all, each merged over those it extends, and appends the

@@ -7,7 +7,6 @@
 #include "results/io/json_text.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/descriptions.hpp"
-#include "scenarios/description/extends.hpp"
 #include "scenarios/description/reader.hpp"
 #include "scenarios/description/scenario_text.hpp"
 #include "scenarios/description/schema_writer.hpp"
@@ -39,7 +38,6 @@ void apply_override(Json& json, const std::string& text) {
       node = &(*node)[std::stoul(key)];
     } else {
       if (!node->is_object()) *node = Json::object();  // null or a number gives way to an object
-      erase_alternative(*node, key);
       node = &(*node)[key];
     }
   }

@@ -44,11 +44,6 @@ TEST_F(Override, ReplacesANestedField) {
   EXPECT_EQ(with({"rendering.reduction.threshold=0.5"})["rendering"]["reduction"]["threshold"], 0.5);
 }
 
-TEST_F(Override, DrivesOutTheFieldThatItExcludes) {
-  EXPECT_EQ(with({"time.duration_s=0.05"})["time"]["steps"], 100);
-  EXPECT_EQ(with({"time.duration_s=0.05", "time.steps=7"})["time"]["steps"], 7);
-}
-
 TEST_F(Override, ReachesListEntriesByIndex) {
   const Json groups =
       with({"environment.groups.1.count=9", "environment.groups.0.direction.2=4"})["environment"]["groups"];
