@@ -10,6 +10,7 @@
 #include "scenarios/description/reader.hpp"
 #include "scenarios/description/scenario_text.hpp"
 #include "scenarios/description/schema_writer.hpp"
+#include "scenarios/description/unplayed_script.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "sim/core/hash.hpp"
@@ -17,12 +18,15 @@
 namespace hapbench {
 namespace {
 
-/// Sets the field at a dotted path; a number in the path indexes a list.
+/// Sets the field at a dotted path; a number in the path indexes a list. Of two fields that say the same, the other
+/// goes, as where a scenario extends another.
 void apply_override(Json& json, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == 0 || equals == std::string::npos) {
     throw InputError("--set: got \"" + text + "\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000");
   }
+  const std::string written_value = text.substr(equals + 1);
+  const Json value = Json::accept(written_value) ? parse_json(written_value) : Json(written_value);
   Json* node = &json;
   std::string path = text.substr(0, equals);
   for (std::size_t start = 0; start != std::string::npos;) {
@@ -38,11 +42,11 @@ void apply_override(Json& json, const std::string& text) {
       node = &(*node)[std::stoul(key)];
     } else {
       if (!node->is_object()) *node = Json::object();  // null or a number gives way to an object
+      if (start == std::string::npos && !value.is_null()) drop_alternative(*node, key);
       node = &(*node)[key];
     }
   }
-  const std::string value = text.substr(equals + 1);
-  *node = Json::accept(value) ? parse_json(value) : Json(value);
+  *node = value;
 }
 
 /// True when a run with this field overridden is still the run that the scenario's expectations were written for.
@@ -203,6 +207,8 @@ LoadedScenario read_scenario(const Json& json, const std::filesystem::path& dire
   Reader reader(json, "", &loaded.warnings);
   reader.object(loaded.scenario);
   if (auto warning = idle_device_warning(loaded.scenario)) loaded.warnings.push_back(*warning);
+  for (std::string& warning : unplayed_script_warnings(json, loaded.scenario))
+    loaded.warnings.push_back(std::move(warning));
   loaded.files = NamedFiles(loaded.scenario);
   return loaded;
 }
