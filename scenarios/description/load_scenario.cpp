@@ -138,7 +138,8 @@ std::string last_name(const std::string& path, char separator) {
 }
 
 /// The hint for a field that is like none where it stands: fields elsewhere with the nearest name.
-std::string hint_elsewhere(const std::string& field) {
+std::string hint_elsewhere(const std::string& place) {
+  const std::string field = last_name(place, '/');
   const std::vector<std::string> paths = scenario_field_paths();
   std::vector<std::string> names, found;
   for (const std::string& path : paths) names.push_back(last_name(path, '.'));
@@ -146,6 +147,9 @@ std::string hint_elsewhere(const std::string& field) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (names[i] == nearest) found.push_back(paths[i]);
   }
+  std::string typed = place.substr(1);
+  std::replace(typed.begin(), typed.end(), '/', '.');
+  if (std::find(found.begin(), found.end(), typed) != found.end()) return "; only an object of another type has it";
   return found.empty() ? "" : "; nearest valid names: " + quoted_list(found);
 }
 
@@ -154,7 +158,7 @@ InputError in_file(const InputError& fault, const std::filesystem::path& file) {
   std::string problem = fault.problem();
   if (problem.starts_with("unknown field") && problem.find("nearest valid name") == std::string::npos)
     problem += fault.place().starts_with("/rendering/parameters/") ? "; a law from outside brings its own with --plugin"
-                                                                   : hint_elsewhere(last_name(fault.place(), '/'));
+                                                                   : hint_elsewhere(fault.place());
   if (fault.place() == "/rendering/algorithm" && problem.find("nearest valid name") == std::string::npos)
     problem += "; a law from outside comes with --plugin";
   const std::string place = fault.place().empty() ? file.string() : file.string() + ": " + fault.place();
