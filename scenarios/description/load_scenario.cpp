@@ -25,8 +25,6 @@ void apply_override(Json& json, const std::string& text) {
   if (equals == 0 || equals == std::string::npos) {
     throw InputError("--set: got \"" + text + "\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000");
   }
-  const std::string written_value = text.substr(equals + 1);
-  const Json value = Json::accept(written_value) ? parse_json(written_value) : Json(written_value);
   Json* node = &json;
   std::string path = text.substr(0, equals);
   for (std::size_t start = 0; start != std::string::npos;) {
@@ -42,11 +40,12 @@ void apply_override(Json& json, const std::string& text) {
       node = &(*node)[std::stoul(key)];
     } else {
       if (!node->is_object()) *node = Json::object();  // null or a number gives way to an object
-      if (start == std::string::npos && !value.is_null()) drop_alternative(*node, key);
+      if (start == std::string::npos) drop_alternative(*node, key);
       node = &(*node)[key];
     }
   }
-  *node = value;
+  const std::string value = text.substr(equals + 1);
+  *node = Json::accept(value) ? parse_json(value) : Json(value);
 }
 
 /// True when a run with this field overridden is still the run that the scenario's expectations were written for.

@@ -100,7 +100,6 @@ TEST_F(Override, IsCheckedLikeTheFile) {
 TEST_F(Override, DrivesOutTheFieldThatSaysTheSame) {
   EXPECT_EQ(with({"time.duration_s=1"})["time"]["steps"], 2000);
   EXPECT_EQ(with({"time.duration_s=1", "time.steps=8"})["time"]["steps"], 8);
-  EXPECT_EQ(with({"time.duration_s=null"})["time"]["steps"], 20) << "null says nothing";
   EXPECT_EQ(refusal(R"(time={"step_s":0.1,"steps":1,"duration_s":1})").find("/time: got both"), 0u);
 }
 
