@@ -105,8 +105,8 @@ TEST_F(StabilityExperiments, MapsRefuseOverridesThatAreNotTheirs) {
   refused("wedge", "device.handle_mass_kg=1", "for the map \"wedge\"; allowed: for \"z_width\", \"delay\"");
   refused("friction_quantisation", "device.encoder_step_m=1e-5", "for the map \"friction_quantisation\"; allowed: for");
   refused("delay", "device.delay_samples=1", "which delay_samples of the map \"delay\" varies");
-  refused("delay", "device=my.json", R"("$(cat my.json)" is what is in the file) ");
-      refused("hand", "hand.stiffness_N_per_m=1", "which hand_stiffness_N_per_m of the map");
+  refused("delay", "device=my.json", "\"$(cat my.json)\" is what is in the file");
+  refused("hand", "hand.stiffness_N_per_m=1", "which hand_stiffness_N_per_m of the map");
   refused("z_width", "rendering.mass_kg=1", "allowed: time.step_s and fields of device and hand");
   refused("z_width", "time.steps=5", "allowed: time.step_s and");
   refused("z_width", "device.preset=touch", "allowed: device as a whole");
