@@ -13,7 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Fields of which an object has one or the other.
-constexpr std::pair<const char*, const char*> kEitherOr[] = {{"steps", "duration_s"}, {"path_m", "direction"}};
+constexpr std::pair<std::string_view, const char*> kEitherOr[] = {
+    {"steps", "duration_s"}, {"duration_s", "steps"}, {"path_m", "direction"}, {"direction", "path_m"}};
 
 void merge(Json& base, const Json& more) {
   const bool other_type =
@@ -22,10 +23,7 @@ void merge(Json& base, const Json& more) {
     base = more;
     return;
   }
-  for (const auto& [a, b] : kEitherOr) {
-    if (more.contains(a)) base.erase(b);
-    if (more.contains(b)) base.erase(a);
-  }
+  for (const auto& entry : more.items()) drop_alternative(base, entry.key());
   for (const auto& entry : more.items()) merge(base[entry.key()], entry.value());
 }
 
@@ -75,6 +73,12 @@ fs::path base_file(const Json& json, const fs::path& file, const std::vector<Sce
 }
 
 }  // namespace
+
+void drop_alternative(Json& object, std::string_view field) {
+  for (const auto& [given, other] : kEitherOr) {
+    if (given == field) object.erase(other);
+  }
+}
 
 Json read_extended(const fs::path& file, std::vector<ScenarioLayer>& layers) {
   Json json;

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <vector>
 
 #include "scenarios/input/json_file.hpp"
@@ -28,5 +29,8 @@ struct ScenarioLayer {
 ///
 /// Throws InputError that begins with the file at fault; a chain that comes back to itself is refused.
 Json read_extended(const std::filesystem::path& file, std::vector<ScenarioLayer>& layers);
+
+/// Takes out of `object` the field that the one of this name excludes.
+void drop_alternative(Json& object, std::string_view field);
 
 }  // namespace hapbench

@@ -10,6 +10,7 @@
 #include "scenarios/description/reader.hpp"
 #include "scenarios/description/scenario_text.hpp"
 #include "scenarios/description/schema_writer.hpp"
+#include "scenarios/description/unplayed_script.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "sim/core/hash.hpp"
@@ -17,7 +18,8 @@
 namespace hapbench {
 namespace {
 
-/// Sets the field at a dotted path; a number in the path indexes a list.
+/// Sets the field at a dotted path; a number in the path indexes a list. Of two fields that say the same, the other
+/// goes, as where a scenario extends another.
 void apply_override(Json& json, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == 0 || equals == std::string::npos) {
@@ -38,6 +40,7 @@ void apply_override(Json& json, const std::string& text) {
       node = &(*node)[std::stoul(key)];
     } else {
       if (!node->is_object()) *node = Json::object();  // null or a number gives way to an object
+      if (start == std::string::npos) drop_alternative(*node, key);
       node = &(*node)[key];
     }
   }
@@ -134,7 +137,8 @@ std::string last_name(const std::string& path, char separator) {
 }
 
 /// The hint for a field that is like none where it stands: fields elsewhere with the nearest name.
-std::string hint_elsewhere(const std::string& field) {
+std::string hint_elsewhere(const std::string& place) {
+  const std::string field = last_name(place, '/');
   const std::vector<std::string> paths = scenario_field_paths();
   std::vector<std::string> names, found;
   for (const std::string& path : paths) names.push_back(last_name(path, '.'));
@@ -142,6 +146,9 @@ std::string hint_elsewhere(const std::string& field) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (names[i] == nearest) found.push_back(paths[i]);
   }
+  std::string typed = place.substr(1);
+  std::replace(typed.begin(), typed.end(), '/', '.');
+  if (std::find(found.begin(), found.end(), typed) != found.end()) return "; only an object of another type has it";
   return found.empty() ? "" : "; nearest valid names: " + quoted_list(found);
 }
 
@@ -150,7 +157,7 @@ InputError in_file(const InputError& fault, const std::filesystem::path& file) {
   std::string problem = fault.problem();
   if (problem.starts_with("unknown field") && problem.find("nearest valid name") == std::string::npos)
     problem += fault.place().starts_with("/rendering/parameters/") ? "; a law from outside brings its own with --plugin"
-                                                                   : hint_elsewhere(last_name(fault.place(), '/'));
+                                                                   : hint_elsewhere(fault.place());
   if (fault.place() == "/rendering/algorithm" && problem.find("nearest valid name") == std::string::npos)
     problem += "; a law from outside comes with --plugin";
   const std::string place = fault.place().empty() ? file.string() : file.string() + ": " + fault.place();
@@ -203,6 +210,8 @@ LoadedScenario read_scenario(const Json& json, const std::filesystem::path& dire
   Reader reader(json, "", &loaded.warnings);
   reader.object(loaded.scenario);
   if (auto warning = idle_device_warning(loaded.scenario)) loaded.warnings.push_back(*warning);
+  for (std::string& warning : unplayed_script_warnings(json, loaded.scenario))
+    loaded.warnings.push_back(std::move(warning));
   loaded.files = NamedFiles(loaded.scenario);
   return loaded;
 }

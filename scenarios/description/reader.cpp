@@ -29,6 +29,12 @@ std::string Reader::at() const {
   return is_entry_ ? element(parent_->at(), index_) : member(parent_->at(), std::string(name_));
 }
 
+/// For who means what is in a file.
+static std::string text_of_file_hint(const Json& given) {
+  if (!given.is_string() || !given.get_ref<const std::string&>().ends_with(".json")) return "";
+  return fmt::format("; on a command line \"$(cat {})\" is what is in the file", given.get_ref<const std::string&>());
+}
+
 void Reader::refuse(Body what, const std::string& hint) const {
   SchemaWriter description;
   what(description);
@@ -146,7 +152,8 @@ void Reader::one_or_list(bool, Body one, Body list) {
 
 void Reader::alternatives(const char* what, std::span<const char* const> names, Untyped untyped, std::size_t held,
                           FunctionRef<Fields&, std::size_t> fields) {
-  if (!json_.is_object()) refuse([&](Fields& f) { f.alternatives(what, names, untyped, held, fields); });
+  if (!json_.is_object())
+    refuse([&](Fields& f) { f.alternatives(what, names, untyped, held, fields); }, text_of_file_hint(json_));
   const std::vector<std::string> types(names.begin(), names.end());
   const auto type = json_.find(kTypeField);
   if (type == json_.end() && untyped == Untyped::refused) {

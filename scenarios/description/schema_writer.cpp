@@ -83,7 +83,7 @@ void SchemaWriter::one_or_list(bool, Body one, Body list) {
   any_of(one, ", or ", list);
 }
 
-void SchemaWriter::alternatives(const char* what, std::span<const char* const> names, Untyped untyped, std::size_t,
+void SchemaWriter::alternatives(const char*, std::span<const char* const> names, Untyped untyped, std::size_t,
                                 FunctionRef<Fields&, std::size_t> fields) {
   Json choices = Json::array();
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -96,7 +96,7 @@ void SchemaWriter::alternatives(const char* what, std::span<const char* const> n
     choices.push_back(std::move(choice.schema_));
   }
   schema_ = {{"oneOf", std::move(choices)}};
-  allowed_ = fmt::format("an object whose \"{}\" is {}: one of {}", kTypeField, what,
+  allowed_ = fmt::format("an object whose \"{}\" is one of {}", kTypeField,
                          quoted_list(std::vector<std::string>(names.begin(), names.end())));
 }
 

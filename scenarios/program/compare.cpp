@@ -1,10 +1,13 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <memory>
+#include <set>
 #include <span>
 
+#include "algorithms/registry.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/batch/earlier_results.hpp"
 #include "scenarios/batch/league_files.hpp"
@@ -17,6 +20,7 @@
 #include "scenarios/program/device_limits_text.hpp"
 #include "scenarios/program/league_text.hpp"
 #include "scenarios/program/run_table.hpp"
+#include "scenarios/program/table.hpp"
 #include "scenarios/run/expectation.hpp"
 #include "scenarios/run/expected_output.hpp"
 #include "scenarios/run/stop_signal.hpp"
@@ -129,6 +133,23 @@ std::string comparison_text(std::span<const RunReport> reports) {
                      step_time_text(reports));
 }
 
+/// Which algorithms of a single scenario are defined with a depth model other than the one that others have. A run of
+/// theirs would warn of it.
+std::string own_depth_models_text(const BatchPlan& plan) {
+  std::vector<std::string> own;
+  std::set<std::string> models;
+  for (std::size_t i = 0; i < plan.size(); i += plan.definition.seeds) {
+    const Scenario scenario = scenario_of(plan, i).scenario;
+    if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return "";
+    const RenderingConfig& rendering = scenario.rendering;
+    models.insert(rendering.depth_model);
+    if (!find_algorithm(rendering.algorithm)->fixed_depth_model.empty())
+      own.push_back(fmt::format("{} with {}", rendering.algorithm, rendering.depth_model));
+  }
+  if (models.size() < 2) return "";
+  return wrapped(fmt::format("defined with a depth model of their own: {}", fmt::join(own, ", ")), 0);
+}
+
 Json summaries_json(const BatchPlan& plan, const BatchReport& report, bool league) {
   Json summaries = Json::array();
   for (std::size_t i = 0; i < plan.size(); ++i) {
@@ -200,7 +221,7 @@ int compare(const CompareOptions& options) {
     batch.update(league_json(league));
     print(options.output, league_text(league) + where, batch);
   } else {
-    print(options.output, comparison_text(report.runs) + where, json);
+    print(options.output, comparison_text(report.runs) + own_depth_models_text(plan) + where, json);
   }
   if (options.html) write_report(out, options.output.quiet || options.output.json);
   return verdict(plan, report, wants_league(options, plan));
@@ -224,7 +245,8 @@ void add_compare(CommandLine& line) {
           .add(
               "--devices", options->devices,
               "instead: the largest stiffness that each of these devices renders stably and quietly: ideal, admittance, "
-              "presets of \"hapbench list presets\", or all; NAME.json is a file with a device of your own")
+              "presets of \"hapbench list presets\", impedance for all of these, or all; NAME.json is a file with a device of "
+              "your own")
           .comma_separated();
   command
       .add("--vibration", options->vibration,

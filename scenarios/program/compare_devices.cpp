@@ -25,10 +25,12 @@ bool is_file(const std::string& name) {
   return name.ends_with(".json");
 }
 
-/// Those of the program by their names, and files. Each name once, since it is all that tells the rows apart.
+constexpr const char* kPresets = "impedance";  ///< all of the program with that type
+
+/// Those of the program by their names or type, and files. Each name once, since it is all that tells the rows apart.
 std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given) {
   const std::vector<ComparedDevice> all = compared_devices();
-  std::vector<std::string> known, named;
+  std::vector<std::string> known = {kPresets}, named;
   for (const ComparedDevice& device : all) known.push_back(device.name);
   std::remove_copy_if(given.begin(), given.end(), std::back_inserter(named), is_file);
   if (!named.empty()) chosen_names("--devices: got", named, known);
@@ -36,8 +38,9 @@ std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given
   std::vector<ComparedDevice> chosen;
   for (const std::string& name : given) {
     if (is_file(name)) chosen.push_back(device_of_file(name));
-    std::copy_if(all.begin(), all.end(), std::back_inserter(chosen),
-                 [&name](const ComparedDevice& device) { return name == "all" || name == device.name; });
+    std::copy_if(all.begin(), all.end(), std::back_inserter(chosen), [&name](const ComparedDevice& device) {
+      return name == "all" || name == device.name || (name == kPresets && device.published_stiffness);
+    });
   }
   std::set<std::string> names;
   for (const ComparedDevice& device : chosen) {
@@ -90,12 +93,28 @@ DeviceQuestion question_of(const CompareDevicesOptions& options) {
   return question;
 }
 
+/// The scene on the device. A fault is one of the device that is named, since the overrides are for all.
+LoadedScenario load_on(const ComparedDevice& device, const ScenarioText& scene,
+                       const std::vector<std::string>& overrides) {
+  try {
+    return load_scenario(scene, overrides_on(device, scene, overrides));
+  } catch (const InputError& error) {
+    std::vector<InputError> faults;
+    for (const InputError& fault : error.faults()) {
+      const bool is_of_type = fault.place().find("/device/") != std::string::npos && !device.has_place_for_mass;
+      faults.emplace_back(fault.kind(), fmt::format("--devices {}: {}", device.name, fault.place()),
+                          fault.problem() + (is_of_type ? "; \"--devices impedance\" leaves this one out" : ""));
+    }
+    throw InputError::all(faults);
+  }
+}
+
 /// Each once.
 void print_all_warnings(const DeviceQuestion& question) {
   std::vector<std::string> warnings;
   for (const ComparedDevice& device : question.devices) {
     for (const ScenarioText& scene : question.scenes) {
-      const LoadedScenario loaded = load_scenario(scene, overrides_on(device, scene, question.overrides));
+      const LoadedScenario loaded = load_on(device, scene, question.overrides);
       for (const auto& some : {loaded.warnings, check_named_files(loaded)}) {
         for (const std::string& warning : some) {
           if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) warnings.push_back(warning);

@@ -118,6 +118,7 @@ Description describe_preset(const DevicePreset& preset) {
       {"coulomb_N", preset.coulomb, ""},
       {"encoder_step_m", preset.encoder_step, ""},
       {"force_max_N", preset.force_max, ""},
+      {"delay_samples", {config_of(preset).delay_samples, NumberSource::ours}, "none is published; "},
       {"max_stiffness_N_per_m", preset.max_stiffness, "published largest stable stiffness; "},
       {"max_damping_N_s_per_m", preset.max_damping, "published largest stable damping; "}};
   for (const auto& [name, number, meaning] : numbers) {

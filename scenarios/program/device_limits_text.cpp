@@ -1,9 +1,11 @@
 #include "scenarios/program/device_limits_text.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "results/observe/contact_forces.hpp"
@@ -127,6 +129,23 @@ std::string spreads_text(const DeviceQuestion& question, const std::vector<Devic
   return text;
 }
 
+/// Which delay the force of each impedance device has, if they differ: "0 of touch, omega.3; 1 of mine". Empty
+/// otherwise.
+std::string delays_text(const DeviceQuestion& question) {
+  std::map<double, std::vector<std::string>> names;
+  for (const ComparedDevice& device : question.devices) {
+    const LoadedScenario loaded =
+        load_scenario(question.scenes.front(), overrides_on(device, question.scenes.front(), question.overrides));
+    if (const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&loaded.scenario.device))
+      names[impedance->delay_samples].push_back(device.name);
+  }
+  if (names.size() < 2) return "";
+  std::vector<std::string> parts;
+  for (const auto& [delay, having] : names)
+    parts.push_back(fmt::format("{} of {}", significant(delay), fmt::join(having, ", ")));
+  return wrapped(fmt::format("delay_samples: {}; none of a preset is published", fmt::join(parts, "; ")), 0);
+}
+
 Json or_null(const std::optional<double>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
@@ -163,6 +182,7 @@ std::string device_limits_text(const DeviceQuestion& question, const std::vector
   if (std::any_of(question.devices.begin(), question.devices.end(),
                   [](const ComparedDevice& device) { return device.name.ends_with('*'); }))
     text += "*: a preset with numbers of --set, of which nothing is published\n";
+  text += delays_text(question);
   if (std::any_of(limits.begin(), limits.end(), [](const DeviceLimit& limit) { return !limit.limit.astray.empty(); }))
     text += "~: some values below it are unstable, or some beyond it are stable: device_runs.csv\n";
   if (columns_of(question) == 1) return text;

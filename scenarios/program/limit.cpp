@@ -100,7 +100,7 @@ Table table_of(const std::vector<FieldLimit>& limits) {
 
 /// What a limit alone would hide: lines for algorithms whose stable values are not all on one side of it, or whose hand
 /// and device are to blame.
-std::string remarks_text(const std::vector<FieldLimit>& limits, bool smallest) {
+std::string remarks_text(const std::vector<FieldLimit>& limits, const LimitQuestion& question) {
   constexpr std::size_t kMost = 4;
   std::string text;
   for (const FieldLimit& limit : limits) {
@@ -108,7 +108,11 @@ std::string remarks_text(const std::vector<FieldLimit>& limits, bool smallest) {
       text +=
           fmt::format("{}: {} at the scenario's own {}: the edge is that of the first stable values from the {} end\n",
                       limit.algorithm, run_verdict_name(limit.own->verdict), significant(limit.own->value),
-                      smallest ? "high" : "low");
+                      question.smallest ? "high" : "low");
+    }
+    if (!limit.has_effect) {
+      text += fmt::format("{}: {} has no effect here: the handle moves alike in all {} runs\n", limit.algorithm,
+                          question.path, limit.runs.size());
     }
     if (limit.unstable_alone) {
       text +=
@@ -155,6 +159,7 @@ Json limits_json(const std::vector<FieldLimit>& limits, const LimitQuestion& que
                     {"class_beyond", beyond_text(limit)},
                     {"theory", or_null(limit.theory)},
                     {"unstable_without_contact", limit.unstable_alone},
+                    {"has_effect", limit.has_effect},
                     {"runs", limit.runs.size()},
                     {"astray", std::move(astray)}});
   }
@@ -185,7 +190,7 @@ int limit(const LimitOptions& options) {
   const std::vector<FieldLimit> limits = field_limits(scenario, options.overrides, algorithms, question, jobs);
   write_limits(out, limits, question);
   print(options.output,
-        question_text(question, loaded.scenario) + table_of(limits).text() + remarks_text(limits, question.smallest) +
+        question_text(question, loaded.scenario) + table_of(limits).text() + remarks_text(limits, question) +
             fmt::format("\nresults in {}\n", out.string()),
         limits_json(limits, question));
   return kSuccess;

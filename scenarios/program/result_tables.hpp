@@ -38,7 +38,7 @@ inline constexpr Column kStabilityMapColumns[] = {
     {"integrator", "", "integrator"},
     {"class_from_far", "",
      "what became of the motion from a thousand times as far; empty where a map has no such runs"},
-    {"overrides", "", "of device and hand, as --set gave them; empty without"}};
+    {"overrides", "", "of time step, device and hand, as --set gave them; empty without"}};
 
 /// With one for each limit of the stiffness that is known (stiffness_limits.hpp).
 std::span<const Column> stability_boundary_columns();

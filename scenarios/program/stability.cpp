@@ -200,7 +200,9 @@ void add_stability(CommandLine& line) {
       "Stability limits of springs (thesis A.3), stability maps, stress test, search for the worst motion");
   add_experiments(command, *options);
   command.add("--out", options->out, "directory of the results (default: results/out/stability_NAME)");
-  command.add("--set", options->overrides, "override a field: path=value; with --map those of device and hand alone")
+  command
+      .add("--set", options->overrides,
+           "override a field: path=value; with --map time.step_s and those of device and hand")
       .repeatable();
   add_output_options(command, options->output);
   command.runs([options] { return stability(*options); }, "maps and searches that were complete are kept");

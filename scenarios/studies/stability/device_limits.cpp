@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <nlohmann/json.hpp>
 
 #include "device_model/device_presets.hpp"
@@ -15,11 +14,6 @@ namespace hapbench {
 namespace {
 
 constexpr const char* kStiffness = "rendering.stiffness_N_per_m";
-
-/// What a DevicePreset says of a device; the rest belongs to its controller.
-constexpr std::array<std::string_view, 5> kPresetFields = {"device.handle_mass_kg", "device.viscous_N_s_per_m",
-                                                           "device.coulomb_N", "device.encoder_step_m",
-                                                           "device.force_max_N"};
 
 /// The device of a file that is one, or of a scenario, of which nothing else is looked at.
 DeviceFields read_device(const Json& file) {
@@ -75,7 +69,7 @@ ComparedDevice device_of_file(const std::filesystem::path& file) {
 
 ComparedDevice with_marked_name(ComparedDevice device, const std::vector<std::string>& overrides) {
   const bool is_changed = std::any_of(overrides.begin(), overrides.end(), [](const std::string& override) {
-    return std::find(kPresetFields.begin(), kPresetFields.end(), overridden_path(override)) != kPresetFields.end();
+    return overridden_path(override).starts_with("device.");
   });
   if (!device.published_stiffness || !is_changed) return device;
   device.name += '*';

@@ -130,6 +130,8 @@ class Search {
       if (limit.value && is_stable(run.verdict) != on_stable_side(value, limit))
         limit.astray.push_back(limit.runs.back());
     }
+    limit.has_effect = std::any_of(runs.begin(), runs.end(),
+                                   [&runs](const auto& run) { return run.second.way != runs.begin()->second.way; });
     const JudgedValue suspect = limit.beyond ? *limit.beyond : limit.runs.front();
     limit.unstable_alone =
         !is_stable(suspect.verdict) && unstable_without_contact(at(algorithm, suspect.value), question_.most_vibration);

@@ -8,6 +8,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/stability/classify.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
+#include "sim/core/hash.hpp"
 
 namespace hapbench {
 namespace {
@@ -32,14 +33,16 @@ struct HandMoves {
   }
 };
 
-/// Whether the tool ever touched, and where it was last.
+/// Whether the tool ever touched, where it was last, and a hash of where it was.
 class LastPlace final : public Observer {
  public:
   void on_step(const StepRecord& record) noexcept override {
     touches = record.colliding > 0;
     touched = touched || touches;
     position = record.tool.pose.position;
+    for (const double coordinate : record.handle.position) way.real(coordinate);
   }
+  Hash64 way;
   bool touched = false, touches = false;
   Vec3 position = Vec3::Zero();
 };
@@ -137,7 +140,7 @@ JudgedRun judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointSh
     if (shell && has_left(last, *shell, reach)) return RunVerdict::thrown_out;
     return verdict_of(motion, settled, most_vibration);
   };
-  return {verdict(), settled};
+  return {verdict(), settled, last.way.value()};
 }
 
 bool unstable_without_contact(const LoadedScenario& loaded, std::optional<double> most_vibration) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -42,6 +43,7 @@ struct SettledState {
 struct JudgedRun {
   RunVerdict verdict = RunVerdict::stable;
   SettledState settled;
+  std::uint64_t way = 0;  ///< a hash of all positions of the handle: runs that differ in it moved differently
 };
 
 /// Runs the scenario's first trial, without records, and judges it. With `most_vibration` [m/s] that decides between

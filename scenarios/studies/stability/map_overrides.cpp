@@ -13,6 +13,8 @@ namespace hapbench {
 namespace {
 
 constexpr std::string_view kAnyAlgorithm = "summation";  // no algorithm changes device or hand
+constexpr std::string_view kTimeStep = "time.step_s";
+constexpr std::string_view kWholeDevice = "device";
 
 std::string_view section_of(std::string_view override) {
   const std::string_view path = overridden_path(override);
@@ -43,10 +45,12 @@ Json field_at(const StabilityMap& map, double x, double y, std::string_view path
 
 void require_field(const StabilityMap& map, std::string_view override) {
   const std::string_view path = overridden_path(override), section = section_of(override);
-  if (section != "device" && section != "hand") {
+  if (section != "device" && section != "hand" && path != kTimeStep) {
     throw InputError(fmt::format(
-        "--set: got {} with --map; allowed: fields of device and hand, such as device.handle_mass_kg", path));
+        "--set: got {} with --map; allowed: {} and fields of device and hand, such as device.handle_mass_kg", path,
+        kTimeStep));
   }
+  if (path == kWholeDevice) return;  // but for what an axis varies
   if (path == "device.type" || path == "device.preset") {
     throw InputError(fmt::format(
         R"(--set: got {} with --map, whose device has all its numbers; allowed: device as a whole, such as 'device={{"type":"impedance","preset":"touch"}}')",
@@ -60,6 +64,24 @@ void require_field(const StabilityMap& map, std::string_view override) {
         fmt::format("--set: got {}, which {} of the map \"{}\" varies; allowed: other fields of device and hand", path,
                     axis->name, map.name));
   }
+}
+
+bool gives_impedance_device(const std::string& override) {
+  const std::string value = override.substr(override.find('=') + 1);
+  if (overridden_path(override) != kWholeDevice || !Json::accept(value)) return false;
+  const Json device = parse_json(value);
+  return device.is_object() && device.value("type", Json()) == "impedance";
+}
+
+/// What the axes vary of the device, as overrides with the values that a scene of the map has.
+std::vector<std::string> device_at(const StabilityMap& map, const Json& scene) {
+  std::vector<std::string> varied;
+  for (const auto& field : scene.at(kWholeDevice).items()) {
+    const std::string path = fmt::format("{}.{}", kWholeDevice, field.key());
+    if (field_at(map, map.x.low, map.y.low, path) != field_at(map, map.x.high, map.y.high, path))
+      varied.push_back(fmt::format("{}={}", path, field.value().dump()));
+  }
+  return varied;
 }
 
 }  // namespace
@@ -78,9 +100,15 @@ Scenario with_overrides(const StabilityMap& map, Scenario scenario, const std::v
   // Numbers of a search for an edge go beyond what a file may hold: what no override is about stays out of it.
   const bool has_hand =
       std::any_of(overrides.begin(), overrides.end(), [](const auto& o) { return section_of(o) == "hand"; });
+  std::vector<std::string> all = overrides;
+  if (std::any_of(overrides.begin(), overrides.end(), gives_impedance_device)) {
+    const std::vector<std::string> varied = device_at(map, text.json);
+    all.insert(all.end(), varied.begin(), varied.end());
+  }
   text.json.erase("rendering");
   if (!has_hand) text.json.erase("hand");
-  const LoadedScenario loaded = load_scenario(text, overrides);
+  const LoadedScenario loaded = load_scenario(text, all);
+  scenario.time.step = loaded.scenario.time.step;
   scenario.device = loaded.scenario.device;
   if (has_hand) scenario.hand = loaded.scenario.hand;
   return scenario;

@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 from . import published, style
 from .results import MissingResult, numbers
@@ -111,6 +112,16 @@ def is_geometric(values):
     return values[0] > 0 and values[-1] / values[0] > 20
 
 
+def label_decades(axis):
+    """Also 2 and 5 of each decade, where there is hardly more than one power of ten."""
+    low, high = axis.get_view_interval()
+    if axis.get_scale() != "log" or high / low > 50:
+        return
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
 def edges(values):
     """Borders of the cells around the values of a grid."""
     if is_geometric(values):
@@ -135,6 +146,7 @@ def draw_map(ax, rows, x_name, y_name):
     ax.set_xscale("log" if is_geometric(columns) else "linear")
     ax.set_yscale("log" if is_geometric(lines) else "linear")
     ax.set(xlim=edges(columns)[[0, -1]], ylim=edges(lines)[[0, -1]])
+    label_decades(ax.xaxis)
 
 
 def draw_boundary(ax, rows, x_name, y_name, limits=()):
@@ -166,14 +178,15 @@ class MapFile:
 
     @property
     def limits(self):
-        """Pairs of a column and the look of its line, of the known limits that apply somewhere."""
+        """Pairs of a column and the look of its line, of the known limits that apply somewhere and lie on the map."""
         if not self.boundary:
             return []
         ends = f"_{self.y_name}"
         others = (self.x_name, f"analytic{ends}", f"simulation{ends}")
         names = [name for name in self.boundary[0] if name.endswith(ends) and name not in others]
         looks = zip(names, cycle(LIMIT_LOOKS))
-        return [(name, look) for name, look in looks if (np.nan_to_num(numbers(self.boundary, name)) > 0).any()]
+        bottom = numbers(self.rows, self.y_name).min()
+        return [(name, look) for name, look in looks if (np.nan_to_num(numbers(self.boundary, name)) > bottom).any()]
 
     @property
     def overrides(self):
@@ -261,6 +274,7 @@ def draw_limits(axes, found, algorithms):
     for ax in (limit, *ratio):
         x = np.unique(numbers(found.rows, found.x_name))
         ax.set(xlabel=axis_label(found.x_name), xscale="log" if is_geometric(x) else "linear")
+        label_decades(ax.xaxis)
     legend.axis("off")
     legend.legend(loc="center left", borderaxespad=0, handlelength=3.2, labelspacing=0.35)
 

@@ -93,9 +93,23 @@ TEST_F(Override, IsCheckedLikeTheFile) {
   EXPECT_EQ(refusal("rendering.mass_kg=heavy").find("/rendering/mass_kg: got \"heavy\"; allowed: a number > 0"), 0u);
   EXPECT_EQ(refusal("rendering.mass_kg=NaN").find("/rendering/mass_kg: got \"NaN\""), 0u);
   EXPECT_EQ(refusal("rendering.mass_kg=1e999").find("/rendering/mass_kg: got \"1e999\""), 0u);
-  EXPECT_EQ(refusal("time.duration_s=1").find("/time: got both"), 0u);
   EXPECT_EQ(refusal("seed.x=1").find("/seed: got {\"x\":1}; allowed: an integer"), 0u);
   EXPECT_NE(refusal(R"(rendering={"iterations":1,"iterations":2})").find("stands twice"), std::string::npos);
+}
+
+TEST_F(Override, DrivesOutTheFieldThatSaysTheSame) {
+  EXPECT_EQ(with({"time.duration_s=1"})["time"]["steps"], 2000);
+  EXPECT_EQ(with({"time.duration_s=1", "time.steps=8"})["time"]["steps"], 8);
+  EXPECT_EQ(refusal(R"(time={"step_s":0.1,"steps":1,"duration_s":1})").find("/time: got both"), 0u);
+}
+
+TEST_F(Override, ThatEndsTheRunBeforeALegOfItsScriptBeginsIsWarnedOf) {
+  const std::string hand = R"(hand={"type":"force","x_N":{"type":"waypoints","points":[[0,0],[0.005,1],[0.02,0]]}})";
+  EXPECT_TRUE(load_scenario(file_, std::vector<std::string>{hand}).warnings.empty());
+  const auto warnings = load_scenario(file_, std::vector<std::string>{hand, "time.steps=10"}).warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("/hand/x_N: the script's last waypoint is at 0.02 s, but the run ends at 0.005 s"),
+            std::string::npos);
 }
 
 TEST_F(Override, OutsideAListNamesTheIndicesThatExist) {

@@ -29,7 +29,7 @@ TEST_F(CompareCommand, ShowsARowForEachAlgorithm) {
   const ProgramRun run = compare({"--algorithms", "original_averaging,mean,exact_shaping"});
   EXPECT_EQ(run.status, 0) << run.err;
   const auto lines = lines_of(run.out);
-  ASSERT_EQ(lines.size(), 14u) << run.out;
+  ASSERT_EQ(lines.size(), 15u) << run.out;
   EXPECT_EQ(lines[0], "peg_in_hole_2d_shaped_stiffness");
   EXPECT_EQ(lines[3].find("algorithm          outcome"), 0u);
   EXPECT_EQ(lines[5].find("original_averaging leaves_hole"), 0u);
@@ -38,6 +38,7 @@ TEST_F(CompareCommand, ShowsARowForEachAlgorithm) {
   EXPECT_EQ(lines[9],
             "\"-\": under 1/30 s of settled contact (original_averaging); --set metrics.from_s=0 takes all contact");
   EXPECT_EQ(lines[11].find("99 % of the steps take at most "), 0u) << lines[11];
+  EXPECT_EQ(lines[12], "defined with a depth model of their own: original_averaging with shortest_distance");
 }
 
 TEST_F(CompareCommand, ShowsAllAlgorithmsIn100Columns) {

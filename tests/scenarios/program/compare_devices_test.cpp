@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "device_model/device_presets.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
@@ -118,14 +119,42 @@ TEST_F(CompareDevices, MarksAPresetWithOtherNumbers) {
   EXPECT_NE(changed.out.find("*: a preset with numbers of --set"), std::string::npos) << changed.out;
   EXPECT_EQ(lines_of(test::read_file(directory_ / "out/device_limits.csv"))[1].find("touch*,press,mean,"), 0u);
   EXPECT_EQ(changed.out.find("400"), std::string::npos) << changed.out;
-  // The delay is the controller's: what is published of the device stays.
   const ProgramRun delayed = with("device.delay_samples=1");
-  EXPECT_EQ(delayed.out.find("touch*"), std::string::npos) << delayed.out;
-  EXPECT_NE(delayed.out.find("400"), std::string::npos) << delayed.out;
+  EXPECT_NE(delayed.out.find("\ntouch*"), std::string::npos) << delayed.out;
+  EXPECT_EQ(with("hand.mass_kg=0.1").out.find("touch*"), std::string::npos);
+}
+
+TEST_F(CompareDevices, SaysWhichDelaysDiffer) {
+  test::write_plainly(directory_ / "mine.json",
+                      R"({"type": "impedance", "handle_mass_kg": 0.1, "delay_samples": 1.5})");
+  const Words question = {"--algorithms", "mean", "--resolution", "0.5"};
+  const auto out = [&](const std::string& devices) { return compare(devices, "out", question).out; };
+  EXPECT_NE(out("touch,ideal," + file("mine.json")).find("\ndelay_samples: 0 of touch; 1.5 of mine; "),
+            std::string::npos);
+  EXPECT_EQ(out("touch,falcon,ideal").find("delay_samples"), std::string::npos);
+}
+
+TEST_F(CompareDevices, TakesAllPresetsByTheirType) {
+  const Words question = {"--algorithms", "mean", "--resolution", "0.5", "--set", "device.delay_samples=1", "--json"};
+  const Json rows = compare("impedance", "out", question).json()["limits"];
+  ASSERT_EQ(rows.size(), device_presets().size());
+  EXPECT_EQ(rows[0]["device"], "touch*");
+}
+
+TEST_F(CompareDevices, LimitSaysThatAFieldHasNoEffect) {
+  const auto limit = [&](const char* field, const char* override) {
+    return hapbench({"limit", file("press.json"), "--vary", field, "--set", override, "--resolution", "0.1", "--out",
+                     file("limit")})
+        .out;
+  };
+  const char* filter = "device.velocity_filter={\"type\":\"low_pass\",\"cutoff_Hz\":100}";
+  const std::string idle = "cutoff_Hz has no effect here: the handle moves alike in all ";
+  EXPECT_NE(limit("device.velocity_filter.cutoff_Hz", filter).find(idle), std::string::npos);
+  EXPECT_EQ(limit("rendering.stiffness_N_per_m", filter).find("no effect"), std::string::npos);
 }
 
 TEST_F(CompareDevices, RefusesBadInput) {
-  const auto refused = [&](const Words& words, const char* said) {
+  const auto refused = [&](const Words& words, const std::string& said) {
     const ProgramRun run = hapbench(words);
     EXPECT_EQ(run.status, 2);
     EXPECT_NE(run.err.find(said), std::string::npos) << run.err;
@@ -140,6 +169,10 @@ TEST_F(CompareDevices, RefusesBadInput) {
   refused({"compare", scene, scene, "--devices", "touch", "--out", out}, "a second scenario named \"press\"");
   refused({"compare", scene, "--devices", "touch", "--set", "time.step_s=0.02", "--out", out},
           "/time/step_s: got 0.02; allowed for --vibration");
+  refused({"compare", scene, "--devices", "touch,ideal", "--set", "device.delay_samples=1", "--out", out},
+          "--devices ideal: " + scene +
+              ": /device/delay_samples: unknown field; allowed here: \"type\", "
+              "\"force_limit_N\"; only an object of another type has it; \"--devices impedance\" leaves this one out");
   refused({"compare", "--out", out}, "compare: scenarios is required");
   refused({"compare", scene, "--devices", "touch", "--set", "device.preset=falcon", "--out", out},
           "--set: got device.preset with --devices; allowed: fields of the devices");

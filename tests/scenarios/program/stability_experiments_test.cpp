@@ -77,6 +77,15 @@ TEST_F(StabilityExperiments, MapsAreOfADeviceOfOnesOwn) {
     // As of the map's own device: both are linear.
     EXPECT_LE(std::abs(heavy["boundary"][i]["relative_difference"].get<double>()), 0.01);
   }
+  // Half the step is half the delay. And the axis holds, whatever a whole device says of it.
+  const Json fast = edges({"time.step_s=0.0005"});
+  const Json whole =
+      edges({R"(device={"type":"impedance","handle_mass_kg":0.1,"viscous_N_s_per_m":0.5,"delay_samples":7})"});
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_GT(fast["boundary"][i]["analytic"], own["boundary"][i]["analytic"]);
+    EXPECT_LE(std::abs(fast["boundary"][i]["relative_difference"].get<double>()), 0.01);
+    EXPECT_EQ(whole["boundary"][i]["analytic"], own["boundary"][i]["analytic"]);
+  }
   const ProgramRun drawn = hapbench({"stability", "--map", "z_width", "--algorithms", "mean", "--size", "3", "--out",
                                      out_, "--set", "device={\"type\": \"impedance\",\n\"preset\": \"omega.3\"}"});
   EXPECT_EQ(drawn.status, 0) << drawn.err;
@@ -96,9 +105,10 @@ TEST_F(StabilityExperiments, MapsRefuseOverridesThatAreNotTheirs) {
   refused("wedge", "device.handle_mass_kg=1", "for the map \"wedge\"; allowed: for \"z_width\", \"delay\"");
   refused("friction_quantisation", "device.encoder_step_m=1e-5", "for the map \"friction_quantisation\"; allowed: for");
   refused("delay", "device.delay_samples=1", "which delay_samples of the map \"delay\" varies");
-  refused("delay", R"(device={"type":"impedance","preset":"touch"})", "got device, which delay_samples");
+  refused("delay", "device=my.json", "\"$(cat my.json)\" is what is in the file");
   refused("hand", "hand.stiffness_N_per_m=1", "which hand_stiffness_N_per_m of the map");
-  refused("z_width", "rendering.mass_kg=1", "allowed: fields of device and hand");
+  refused("z_width", "rendering.mass_kg=1", "allowed: time.step_s and fields of device and hand");
+  refused("z_width", "time.steps=5", "allowed: time.step_s and");
   refused("z_width", "device.preset=touch", "allowed: device as a whole");
   refused("z_width", "device={\"type\":\"ideal\"}", "allowed: \"impedance\"");
   refused("z_width", "device.handle_mas_kg=1", "map z_width: /device/handle_mas_kg: unknown field; allowed here: ");
