@@ -22,8 +22,11 @@ static void describe(Fields& f, ForceSensorConfig& sensor) {
 }
 
 static void describe(Fields& f, PositionServoConfig& servo) {
-  f.number("stiffness_N_per_m", servo.stiffness, {0.0, 1e9, "N/m"}, "force per position error (ours); for a bandwidth of f Hz: m (2 pi f / 2.05)^2, m = carriage_mass_kg + handle_mass_kg");
-  f.number("damping_N_s_per_m", servo.damping, {0.0, 1e9, "N s/m"}, "force per velocity error (ours); for a bandwidth of f Hz and the damping ratio 0.7: 1.4 m 2 pi f / 2.05");
+  f.number("stiffness_N_per_m", servo.stiffness, {0.0, 1e9, "N/m"},
+           "force per position error (ours); for a bandwidth of f Hz at the damping ratio 0.7: m (2 pi f / 2.05)^2, "
+           "m = carriage_mass_kg + handle_mass_kg");
+  f.number("damping_N_s_per_m", servo.damping, {0.0, 1e9, "N s/m"},
+           "force per velocity error (ours); for a bandwidth of f Hz at the damping ratio 0.7: 1.4 m 2 pi f / 2.05");
   f.number("max_force_N", servo.max_force, {0.0, 1e9, "N", true}, "the actuators saturate here");
   f.integer("delay_samples", servo.delay, {0, 10'000}, "from the command to the force (ours)");
 }
