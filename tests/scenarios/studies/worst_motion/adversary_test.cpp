@@ -144,8 +144,9 @@ TEST(Adversary, IsRefusedWhereThereIsNoSurface) {
   const auto no_surface = test::input_error_of([&] { search_adversary(springs, options(1)); });
   ASSERT_TRUE(no_surface);
   EXPECT_EQ(no_surface->place(), "/environment/type");
-  const auto too_fine =
-      test::input_error_of([&] { search_adversary(scene("mean", {"time.step_s=1e-9"}), options(1)); });
+  const auto too_fine = test::input_error_of([&] {
+    search_adversary(scene("mean", {"time.step_s=1e-9", "time.steps=2000"}), options(1));
+  });
   ASSERT_TRUE(too_fine);
   EXPECT_EQ(too_fine->place(), "/time/step_s");
   const Scenario led = scene("mean", {R"(motion={"position":{"type":"prescribed","x_m":0,"y_m":0,"z_m":0}})"});
