@@ -181,8 +181,8 @@ void check_impedance_device(const Scenario& scenario) {
 
 void require_direction(const Vec3& direction, const std::string& at) {
   if (direction.norm() >= kShortestDirection) return;
-  fail(at, fmt::format("got {}; allowed: a direction that is not zero, length at least {}", shown(direction),
-                       kShortestDirection));
+  fail(at, fmt::format("got [{}, {}, {}]; allowed: a direction that is not zero, length at least {}", direction.x(),
+                       direction.y(), direction.z(), kShortestDirection));
 }
 
 void check_relations(const Scenario& scenario, double steps) {

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <regex>
 
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "tests/results/files.hpp"
@@ -91,13 +92,19 @@ TEST_F(BundledScenarios, HaveTheResultsOnRecord) {
   test::expect_recorded("scenario:", hashes);
 }
 
+/// Warnings about fields name the file that has them.
+std::string without_files(const std::string& err) {
+  static const std::regex file(R"(warning: \S+\.json: )");
+  return std::regex_replace(err, file, "warning: ");
+}
+
 /// Another process, and the scenario that the run wrote: neither changes a byte.
 TEST_F(BundledScenarios, GiveTheSameBytesAgainFromTheirEffectiveScenarios) {
   for (const auto& [name, warnings] : shortened_runs()) {
     const ProgramRun again = test::hapbench({"run", (directory("short") / name / "scenario.effective.json").string(),
                                              "--out", (directory("again") / name).string()});
     EXPECT_EQ(again.status, 0) << name << ": " << again.err;
-    EXPECT_EQ(again.err, warnings) << name;
+    EXPECT_EQ(without_files(again.err), without_files(warnings)) << name;
   }
   test::expect_same_files(directory("short"), directory("again"), {"timing.json"});
 }
