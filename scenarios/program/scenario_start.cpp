@@ -11,7 +11,6 @@
 #include "scenarios/program/drag_start.hpp"
 #include "scenarios/program/tool_start.hpp"
 #include "scenarios/run/make_shell.hpp"
-#include "scenarios/run/make_tool.hpp"
 #include "scenarios/run/quantity_text.hpp"
 #include "scenarios/run/tool_warnings.hpp"
 #include "sim/core/box.hpp"
@@ -240,30 +239,29 @@ class Start {
 
   /// Above the plane's middle. Tools are about as long as the teeth they work on.
   void place_mesh_tool() {
-    const auto surface = [this] {
-      const LoadedScenario loaded = scenario();
-      return tool_surface(std::get<MeshToolFields>(loaded.scenario.tool), loaded.files);
-    };
-    const Box given = box_of(surface().vertices);
+    TriangleSoup surface = scenario().files.tool_mesh().triangles();  // taken for millimetres
+    const Box given = box_of(surface.vertices);
     const double longest = (given.max - given.min).maxCoeff() / 0.001, scale = guessed_scale(longest);
     values_["tool_scale"] = scale;
     notes_.push_back(
         fmt::format("longest edge of the tool's box: {:.4g}, with scale {} {:.4g} mm; if it is not, change tool.scale",
                     longest, scale, 1e3 * longest * scale));
-    find_tip(surface());
-    const double touching = -box_of(surface().vertices).min.z();
+    for (Vec3& vertex : surface.vertices) vertex *= scale / 0.001;
+    const double touching = find_tip(surface);
     values_["z"] = to_micrometres(touching + kClearance);
     values_["z_pressed"] = to_micrometres(touching - kPressedBelow);
   }
 
-  /// Its origin is taken for the tip centre and -z for its axis unless it lies oddly to them.
-  void find_tip(const TriangleSoup& surface) {
-    const std::string odd = odd_frame(box_of(surface.vertices));
+  /// Its origin is taken for the tip centre and -z for its axis unless it lies oddly to them. Returns how far the tool
+  /// reaches beyond its tip centre [m].
+  double find_tip(const TriangleSoup& surface) {
+    const Box box = box_of(surface.vertices);
+    const std::string odd = odd_frame(box);
     if (odd.empty()) {
       notes_.push_back(
           "taken for its tip centre: the file's origin, the tip pointing along -z; if it is not, change tool.tip_m and "
           "tool.tip_axis");
-      return;
+      return -box.min.z();
     }
     const auto [place, direction] = guess_tip(surface);
     const auto rounded_to = [](double digits, const Vec3& v) {
@@ -278,6 +276,7 @@ class Start {
         "taken for its tip: its thinner end, x = {:.4g}, y = {:.4g}, z = {:.4g} mm, pointing along {}; if it is not, change "
         "tool.tip_m and tool.tip_axis",
         1e3 * place.x(), 1e3 * place.y(), 1e3 * place.z(), values_["tip_axis"].dump()));
+    return 0.0;  // the place is on the plane that touches the tool
   }
 
   /// Four fifths of the way to where the surface ends: the edge is another scene.

@@ -35,8 +35,8 @@ Spread spread_of(const TriangleSoup& mesh) {
 
 std::optional<Vec3> longest_direction(const Mat3& variance) {
   constexpr double kStandsOut = 2.0;  // of squared lengths
-  constexpr double kNearAxis =
-      0.995;  // cosine of 6 degrees: tools are modelled along an axis, but are seldom symmetric
+  // Cosine of 6 degrees: tools are modelled along an axis, but are seldom symmetric about it.
+  constexpr double kNearAxis = 0.995;
   const Eigen::SelfAdjointEigenSolver<Mat3> principal(variance);
   if (principal.eigenvalues()[2] < kStandsOut * principal.eigenvalues()[1]) return std::nullopt;
   const Vec3 direction = principal.eigenvectors().col(2);

@@ -18,6 +18,14 @@ namespace {
 
 using Grid = std::shared_ptr<const SignedDistanceGrid>;
 
+/// The mesh in the tool's own frame: tip centre at the origin, axis along -z.
+TriangleSoup tool_surface(const MeshToolFields& fields, const NamedFiles& files) {
+  TriangleSoup surface = files.tool_mesh().triangles();
+  const Mat3 to_file = ToolPose{.position = fields.tip, .axis = fields.tip_axis.normalized()}.rotation();
+  for (Vec3& vertex : surface.vertices) vertex = to_file.transpose() * (vertex - fields.tip);
+  return surface;
+}
+
 Grid make_grid(const MeshToolFields& fields, const NamedFiles& files) {
   const TriangleSoup surface = tool_surface(fields, files);
   const double spacing = fields.grid.value_or(SignedDistanceGrid::suggested_spacing(surface.vertices));
@@ -74,13 +82,6 @@ struct Make {
 };
 
 }  // namespace
-
-TriangleSoup tool_surface(const MeshToolFields& fields, const NamedFiles& files) {
-  TriangleSoup surface = files.tool_mesh().triangles();
-  const Mat3 to_file = ToolPose{.position = fields.tip, .axis = fields.tip_axis.normalized()}.rotation();
-  for (Vec3& vertex : surface.vertices) vertex = to_file.transpose() * (vertex - fields.tip);
-  return surface;
-}
 
 std::shared_ptr<const ToolShape> make_tool(const Scenario& scenario, const NamedFiles& files) {
   return std::visit(Make{files}, scenario.tool);

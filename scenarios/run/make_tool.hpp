@@ -13,10 +13,6 @@ std::shared_ptr<const ToolShape> make_tool(const Scenario& scenario, const Named
 /// The same, reading the scenario's files.
 std::shared_ptr<const ToolShape> make_tool(const Scenario& scenario);
 
-/// The surface of a tool that is a mesh, in the tool's own frame: tip centre at the origin, axis along -z.
-/// Precondition: the files are those of its scenario. Throws InputError when the mesh cannot be used.
-TriangleSoup tool_surface(const MeshToolFields& fields, const NamedFiles& files);
-
 /// The tool, for those who need to know that it is a cylinder. Throws InputError when it is none.
 Cylinder make_cylinder(const ToolFields& fields);
 
