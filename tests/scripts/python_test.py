@@ -16,7 +16,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
-from python_fixture import ENVIRONMENT, EVERYTHING, PEG, SHORT, SOURCE, Scratch, program, python, words_of
+from python_fixture import ENVIRONMENT, EVERYTHING, PEG, SHORT, SOURCE, Scratch, main, program, python, words_of
 
 import hapbench
 from hapbench import _hapbench
@@ -277,7 +277,7 @@ class Program(Scratch):
                 f"try:\n    hapbench.run({PEG!r}, {{'time.steps': 50_000_000, 'time.stop_when': '[]', 'record.every': 1000}})\n"
                 "except KeyboardInterrupt:\n    print('stopped')\n"
                 f"print(hapbench.run({PEG!r}, {{'time.steps': 10}}).trajectory.rows)")
-        done = python("-c", code, timeout=120)
+        done = python("-c", code)
         self.assertEqual(done.stdout.split(), ["stopped", "10"], done.stderr)
 
 
@@ -330,4 +330,4 @@ class Notebook(Scratch):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    main()
