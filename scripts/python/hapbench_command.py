@@ -1,4 +1,4 @@
-"""What the commands written in Python share: how they refuse, how they write files, and a notice of what takes long."""
+"""Shared by the commands written in Python: error messages, writing of files, and a notice while work takes long."""
 import argparse
 import os
 import sys
@@ -45,7 +45,7 @@ class Notice:
         self._thread = threading.Thread(target=self._show, daemon=True) if sys.stderr.isatty() else None
 
     def say(self, text):
-        """What is being done now."""
+        """Changes the text."""
         self._text = text
 
     def __enter__(self):

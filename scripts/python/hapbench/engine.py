@@ -30,7 +30,7 @@ Names = str | Sequence[str] | None
 Place = str | os.PathLike | None
 Progress = Callable[[str, int, int], object] | bool | None
 
-# Where a scenario names files.
+# Fields of a scenario that name files.
 _FILES = (("extends",), ("environment", "file"), ("tool", "file"), ("motion", "position", "file"))
 
 
@@ -267,7 +267,7 @@ def _words(overrides):
 
 
 def _value(value):
-    """As a word of --set: text as it is, all else as JSON."""
+    """The word that --set takes for a value: text as it is, all else as JSON."""
     return value if isinstance(value, str) else json.dumps(value, default=_plain)
 
 

@@ -17,7 +17,7 @@ SEED_FOLDER = re.compile(r"seed_\d+")  # of a comparison with --seeds
 
 
 def nearest(name, names):
-    """What ends a message about a name that is none, in the words of the program; nothing when none is near."""
+    """The end of a message about an unknown name, in the words of the program; empty if no name is near."""
     lower = {candidate.lower(): candidate for candidate in reversed(names)}
     # Half a name before one that merely looks alike.
     longer = sorted((n for n in lower if n.startswith(name.lower())), key=len) or [n for n in lower if name.lower() in n]
