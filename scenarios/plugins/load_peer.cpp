@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 /// Names in the module and in what it needs are its own before they are ours. A sanitizer replaces functions of all
 /// modules and cannot have that.
-#ifdef __SANITIZE_ADDRESS__
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr int kApart = RTLD_NOW | RTLD_LOCAL;
 #else
 constexpr int kApart = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;

@@ -6,7 +6,7 @@ from hapbench_style import curve, reduced
 
 from .quantities import range_of
 
-SPANS = 900  # of a curve: more than a page has pixels
+SPANS = 600  # of a curve: a page hardly shows more
 # Runs whose peaks are further apart than this share no linear axis.
 LARGEST_RATIO = 30
 SECTION_M = 0.15e-3  # a point of the surface no further away belongs to its section
