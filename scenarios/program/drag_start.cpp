@@ -1,6 +1,6 @@
 #include "scenarios/program/drag_start.hpp"
 
-#include "device_model/hands/surface_path.hpp"
+#include "device_model/hands/drag_hand.hpp"
 
 namespace hapbench {
 
