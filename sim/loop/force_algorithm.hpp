@@ -18,6 +18,10 @@ struct Scene {
   const PointShell* shell = nullptr;   ///< the environment, unless it is springs
   const SpringSet* springs = nullptr;  ///< the environment, unless it is a shell
   double dt = 0.0005;                  ///< time step [s]
+  /// The present row and its f_in [N], which drives the tool together with f_render over the coming step. They change
+  /// before the first `compute` of each row. Null if the algorithm is not stepped by a Simulation.
+  const std::uint64_t* row = nullptr;
+  const Vec3* input = nullptr;
 };
 
 /// What an algorithm answers for one step.
@@ -84,9 +88,6 @@ class ForceAlgorithm {
   virtual void prepare(const Scene& scene) = 0;
   /// Back to t = 0, bit for bit.
   virtual void reset() noexcept = 0;
-  /// Passes f_in [N], which drives the tool together with f_render over the coming step. Called once before the
-  /// `compute` of each row if `wants_input` is true.
-  virtual void take_input(const Vec3& input) noexcept { static_cast<void>(input); }
   /// One step, or one state within it: some integrators (sim/loop/integrators) ask several times a step, the first
   /// time at the row. `contacts` holds the contacts at the tool's pose, with depth and gradient (ContactSource); on
   /// return it holds the rendered ones, with their weights.
@@ -99,8 +100,6 @@ class ForceAlgorithm {
   /// Cut-off frequency [Hz] of the low-pass through which `compute` reads the tool's angular velocity, infinite for the
   /// unfiltered velocity. Nothing if `compute` does not read it; it is then not computed.
   virtual std::optional<double> angular_velocity_cutoff() const noexcept { return std::nullopt; }
-  /// Returns true if `take_input` must be called.
-  virtual bool wants_input() const noexcept { return false; }
   /// Why the answer of the last `compute` is no number, where the algorithm knows: a fault of code from outside. Null
   /// otherwise. Asked when a run diverges.
   virtual const char* fault() const noexcept { return nullptr; }

@@ -89,6 +89,9 @@ class Simulation {
  public:
   /// Prepares the algorithm. Observers must outlive the simulation. Throws what `prepare` throws.
   Simulation(SimulationConfig config, SimulationParts parts, std::vector<Observer*> observers);
+  // The algorithm has pointers to the row (Scene).
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
 
   /// Back to t = 0, bit for bit (observers keep what they saw).
   void reset() noexcept;
@@ -130,7 +133,6 @@ class Simulation {
   bool tool_rolls_ = false;   ///< it is no solid of revolution
   bool turn_rolls_ = false;   ///< the turn about its axis belongs to its angular velocity
   bool roll_wanted_ = false;  ///< somebody reads it
-  bool input_wanted_ = false;
   bool handle_is_apart_ = false;                   ///< the handle is a body of its own
   bool handle_moves_tool_ = false;                 ///< and there is no virtual mass
   std::optional<double> angular_velocity_cutoff_;  ///< none: nobody wants it
