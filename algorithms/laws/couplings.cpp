@@ -6,7 +6,144 @@
 #include "algorithms/registry.hpp"
 #include "sim/core/simd.hpp"
 
+/// Laws with a coupling spring between the tool and its contacts: virtual_coupling, least_squares and static_coupling.
 namespace hapbench {
+namespace {
+
+/// f = -K M^-1 sum d_i u_i, S = M^-1 S_sum with M = shift I + scale S_sum, S_sum = sum u u^T.
+class SeriesLaw : public ForceLaw {
+ public:
+  SeriesLaw(double stiffness, double shift, double scale) : ForceLaw(stiffness), shift_(shift), scale_(scale) {}
+
+  LawForce evaluate(ContactBuffer& contacts) noexcept override {
+    set_weights(contacts, 1.0);
+    const Mat3 S_sum = stiffness_tensor(contacts);
+    // Positive definite, because S_sum is a sum of u u^T.
+    series_.compute(shift_ * Mat3::Identity() + scale_ * S_sum);
+    const Mat3 S = series_.solve(S_sum);
+    // S_sum and the inverse commute, so S is symmetric; averaging removes the rounding of the solve.
+    return {-K_ * series_.solve(weighted_depth(contacts)), 0.5 * (S + S.transpose())};
+  }
+
+  /// The coupling passes velocities on as it does depths.
+  Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
+    return series_.solve(ForceLaw::turning_velocity(contacts, S, tool));
+  }
+
+ protected:
+  /// Springs of penalty stiffness K_p [N/m] and a coupling that the force `spring` stretches by `stretch` [m], which
+  /// relieves every penalty spring: depth d_i + <u_i, stretch>.
+  static SpringState springs(const ContactBuffer& contacts, const Vec3& spring, const Vec3& stretch, const Vec3& tip,
+                             double K_p) noexcept {
+    SpringState state = shifted_springs(contacts, stretch, tip, K_p);
+    state.energy += 0.5 * spring.dot(stretch);
+    return state;
+  }
+
+  double shift_, scale_;
+
+ private:
+  Eigen::LLT<Mat3> series_;  ///< of M of the last contacts
+};
+
+/// The formula divided by K_vc, so that K = 0 needs no case of its own.
+class VirtualCoupling final : public SeriesLaw {
+ public:
+  explicit VirtualCoupling(const RenderingConfig& config)
+      : SeriesLaw(config.stiffness, 1.0, config.virtual_coupling ? config.stiffness / *config.virtual_coupling : 1.0) {}
+
+  SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
+    return K_ == 0.0 ? SpringState{} : springs(contacts, spring, spring * (scale_ / K_), tip, K_);
+  }
+};
+
+/// (I + U U^T)^-1 U has the singular values s / (1 + s^2) <= 1/2, and |(d_1 … d_n)| <= sqrt(n) d.
+/// Precondition: K_vc = K.
+double virtual_coupling_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
+  return 0.5 * std::sqrt(static_cast<double>(n)) * depth;
+}
+
+/// The summed stiffness in series with K_vc, along each axis separately.
+WedgeStiffness virtual_coupling_wedge(const RenderingConfig& config, double w, double n) {
+  const double k = config.virtual_coupling.value_or(config.stiffness) / config.stiffness;
+  const auto in_series = [k](double x) { return k * x / (k + x); };
+  const auto [along, across] = wedge_of_weight(n, w);
+  return {in_series(along), in_series(across)};
+}
+
+}  // namespace
+
+AlgorithmEntry virtual_coupling_entry() {
+  static constexpr ParameterInfo kParameters[] = {
+      kStiffnessParameter,
+      {parameter::kVirtualCoupling, "K_vc: stiffness of the coupling spring; null: K"},
+  };
+  static constexpr ModelInfo kInfo = {
+      .name = "virtual_coupling",
+      .summary = "all springs in series with one quasi-static coupling spring",
+      .formula =
+          "f = -K_vc (K_vc I + K S_sum)^-1 K sum d_i u_i, S = K_vc (K_vc I + K S_sum)^-1 S_sum, S_sum = sum u u^T",
+      .source = "thesis Fig. 2d",
+      .known_failure = "bounds the stiffness, but the force still follows the direction with most points",
+      .parameters = kParameters,
+  };
+  return {.info = &kInfo,
+          .make_law = law_of<VirtualCoupling>,
+          .theory = {.force_bound = virtual_coupling_bound, .wedge_stiffness = virtual_coupling_wedge}};
+}
+
+namespace {
+
+/// The energy of the law is that of its mechanical equivalent: penalty springs of stiffness K / eps in series with one
+/// coupling spring of stiffness K. E = K / (2 eps) min over x of sum (d_i - <u_i, x>)^2 + eps |x|^2; its gradient with
+/// respect to the position of the tool is K x = -f. Depths and velocities are resolved alike.
+class LeastSquares final : public SeriesLaw {
+ public:
+  explicit LeastSquares(const RenderingConfig& config) : SeriesLaw(config.stiffness, config.regularisation, 1.0) {}
+
+  SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
+    return K_ == 0.0 ? SpringState{} : springs(contacts, spring, spring / K_, tip, K_ / shift_);
+  }
+};
+
+/// x = (eps I + U U^T)^-1 U d with the gradients in the columns of U. By the singular values s of U,
+/// |x| <= max s / (eps + s^2) |d|, at most 1 / (2 sqrt eps) where s^2 = eps, and |d| <= sqrt(n) times the deepest.
+double least_squares_bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
+  return 0.5 * std::sqrt(static_cast<double>(n) / config.regularisation) * depth;
+}
+
+/// The stiffness along an axis of S_sum with eigenvalue s is s / (eps + s).
+WedgeStiffness least_squares_wedge(const RenderingConfig& config, double w, double n) {
+  const auto resolved = [eps = config.regularisation](double s) { return s / (eps + s); };
+  const auto [along, across] = wedge_of_weight(n, w);
+  return {resolved(along), resolved(across)};
+}
+
+}  // namespace
+
+AlgorithmEntry least_squares_entry() {
+  static constexpr ParameterInfo kParameters[] = {
+      kStiffnessParameter,
+      {parameter::kRegularisation, "eps: weight of a short translation against resolving the depths"},
+  };
+  static constexpr ModelInfo kInfo = {
+      .name = "least_squares",
+      .summary = "one spring along the one translation that best resolves all depths",
+      .formula =
+          "x = argmin sum (d_i - <u_i, x>)^2 + eps |x|^2 = (eps I + S_sum)^-1 sum d_i u_i, f = -K x, "
+          "S = (eps I + S_sum)^-1 S_sum, S_sum = sum u u^T; always without reduction",
+      .source = "ours (Tikhonov's regularised least squares); virtual_coupling with stiffness K / eps is the same law",
+      .known_failure =
+          "a small eps makes S jump as the first contact along a direction comes or the last one goes, and contacts that "
+          "nearly oppose push the tool out by up to 1 / (2 sqrt eps) times the norm of their depths",
+      .parameters = kParameters,
+  };
+  return {.info = &kInfo,
+          .make_law = law_of<LeastSquares>,
+          .theory = {.force_bound = least_squares_bound, .wedge_stiffness = least_squares_wedge},
+          .may_reduce = false};
+}
+
 namespace {
 
 constexpr OwnParameter kSaturation[] = {{"saturation_N",
