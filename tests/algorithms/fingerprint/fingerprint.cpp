@@ -17,8 +17,8 @@
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/setting.hpp"
 #include "tests/support/tool_geometry.hpp"
-#include "tests/support/tool_meshes.hpp"
 #include "tests/support/tool_kinds.hpp"
+#include "tests/support/tool_meshes.hpp"
 
 namespace hapbench::test {
 namespace {

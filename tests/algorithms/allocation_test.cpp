@@ -19,9 +19,7 @@
 namespace hapbench::allocation_test {
 namespace {
 
-// ---- The counter counts.
-
-/// Keeps the compiler from removing an allocation that nobody reads.
+/// Keeps the compiler from removing an unused allocation.
 void use(const void* block) {
   asm volatile("" : : "g"(block) : "memory");
 }
@@ -70,7 +68,7 @@ TEST(AllocationCounter, CountsEveryWayToAllocate) {
 }
 
 TEST(AllocationCounter, SeesAnAllocationInsideAStep) {
-  // A simulation whose observer allocates: what the tests below would find.
+  // A simulation whose observer allocates.
   class Allocating final : public Observer {
    public:
     void on_step(const StepRecord& record) noexcept override { rows.push_back(record.time); }
@@ -83,8 +81,6 @@ TEST(AllocationCounter, SeesAnAllocationInsideAStep) {
   simulation.run();
   EXPECT_GE(count.value(), 1u);
 }
-
-// ---- The claim.
 
 struct Stages {
   const char* name;
@@ -152,7 +148,7 @@ SimulationParts parts_of(const Instance& instance, const RenderingConfig& config
   const test::Setting setting = setting_of(instance);
   SimulationParts parts = test::free_run(setting, config);
   if (!instance.springs) {
-    // Led through the hole, or laws that push the peg out would soon be done.
+    // Led through the hole, because some laws would push the peg out.
     parts.motion = std::make_unique<ScriptedMotion>(
         Orientation{{0, 1, 0}, {1, 0, 0}, Profile::Shape(Profile::Ramp{0.1, 1.2}), {}},
         std::array<Profile, 3>{Profile::Shape(Profile::Sine{0.0, 0.0001, 0.05, 0.0}), -0.004, 0.0});
@@ -160,7 +156,7 @@ SimulationParts parts_of(const Instance& instance, const RenderingConfig& config
   return parts;
 }
 
-/// Asks for the ratio, so that computing it is part of the step, and sees whether the run touched anything.
+/// Counts rows with contact. Wants the ratio, so that it is computed in the step.
 class ContactCounter final : public Observer {
  public:
   bool wants_ratio() const noexcept override { return true; }
@@ -168,7 +164,7 @@ class ContactCounter final : public Observer {
   int rows_with_contact = 0;
 };
 
-/// Of a run, a reset and the same run again; from the very first step on, since nothing may have to warm up.
+/// Allocations of a run, a reset and the same run again, from the first step on.
 std::uint64_t allocations_of_two_runs(Simulation& simulation) {
   const AllocationCount count;
   simulation.run();
@@ -201,8 +197,7 @@ TEST_P(NoAllocation, InAStepOrAReset) {
   EXPECT_EQ(observer.rows_with_contact, 600);
 }
 
-// ---- And with every integrator, some of which search and render again within a step.
-
+/// Some integrators search and render again within a step.
 class NoAllocationOf : public testing::TestWithParam<std::tuple<AlgorithmEntry, const IntegratorEntry*>> {};
 INSTANTIATE_TEST_SUITE_P(Every, NoAllocationOf,
                          testing::Combine(testing::ValuesIn(algorithms().begin(), algorithms().end()),
@@ -232,8 +227,6 @@ TEST_P(NoAllocationOf, AnIntegrator) {
   }
 }
 
-// ---- And with an impedance device, whose friction, delay line and filter all have something to do.
-
 TEST(NoAllocationInAStep, OfAnImpedanceDevice) {
   const Instance instance{"shaped_stiffness", "surface_normal", &kStages[1], false};
   const RenderingConfig config;
@@ -261,8 +254,6 @@ TEST(NoAllocationInAStep, OfAnImpedanceDevice) {
     EXPECT_GT(observer.rows_with_contact, 0);
   }
 }
-
-// ---- And with every kind of tool.
 
 class NoAllocationWith : public testing::TestWithParam<test::ToolKind> {};
 INSTANTIATE_TEST_SUITE_P(Every, NoAllocationWith,

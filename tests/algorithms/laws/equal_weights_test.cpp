@@ -1,11 +1,10 @@
-// summation (c = 1) and mean (c = 1/n).
 #include <gtest/gtest.h>
 
 #include "algorithms/registry.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 
-namespace hapbench::constant_weights_test {
+namespace hapbench::equal_weights_test {
 namespace {
 
 // Sums of n <= 300 products, each rounded: below 2 n eps of the sum of magnitudes.
@@ -47,12 +46,40 @@ TEST(Summation, GrowsWithTheNumberOfParallelContacts) {
 }
 
 TEST(Mean, IsSoftWhereMostContactsPointElsewhere) {
-  // As in the springs demo of thesis A.2: one upward spring among 64 gets 1/64 of its stiffness.
+  // The springs demo of thesis A.2: one upward spring among 64 gets 1/64 of its stiffness.
   std::vector<Vec3> gradients(63, Vec3::UnitX());
   gradients.push_back(Vec3::UnitY());
   ContactBuffer contacts = test::contacts_of(gradients);
   EXPECT_EQ(make_law("mean", {})->evaluate(contacts).S(1, 1), 1.0 / 64);
 }
 
+LawForce mcneely(ContactBuffer& contacts, std::optional<double> points = {}) {
+  RenderingConfig config;
+  if (points) config.parameters["mcneely"]["points"] = *points;
+  return make_law("mcneely", config)->evaluate(contacts);
+}
+
+LawForce summed(ContactBuffer contacts) {
+  return make_law("summation", RenderingConfig{})->evaluate(contacts);
+}
+
+TEST(McNeely, IsTheSumUpToTenPointsAndTenMeansBeyond) {
+  for (const std::size_t n : {1u, 10u, 11u, 40u}) {
+    ContactBuffer contacts = test::contacts_of(std::vector<Vec3>(n, Vec3::UnitX()), std::vector<double>(n, 0.001));
+    const double springs = n <= 10 ? static_cast<double>(n) : 10.0;
+    const LawForce force = mcneely(contacts);
+    // n products and sums of numbers of about the same size.
+    const double rounding = 1e-16 * static_cast<double>(4 * n) * springs;
+    EXPECT_NEAR(force.spring.x(), -20'000.0 * 0.001 * springs, 20.0 * rounding) << n;
+    EXPECT_NEAR(force.S(0, 0), springs, rounding) << n;
+  }
+}
+
+TEST(McNeely, TakesItsNumberOfPointsFromItsOwnParameter) {
+  ContactBuffer contacts = test::contacts_of({Vec3::UnitX(), Vec3::UnitX(), Vec3::UnitY()}, {0.001, 0.002, 0.001});
+  EXPECT_EQ(mcneely(contacts, 3.0).spring, summed(contacts).spring);
+  EXPECT_TRUE(mcneely(contacts, 1.0).spring.isApprox(summed(contacts).spring / 3.0, 1e-15));
+}
+
 }  // namespace
-}  // namespace hapbench::constant_weights_test
+}  // namespace hapbench::equal_weights_test
