@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/jobs.hpp"
+#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/program/command.hpp"
 
 /// The experiments of `hapbench stability`; the limits of A.3 are in stability.cpp itself.

@@ -6,7 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/batch/league_runs.hpp"
+#include "scenarios/batch/league.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"

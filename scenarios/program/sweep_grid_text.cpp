@@ -8,8 +8,8 @@
 #include <optional>
 #include <utility>
 
-#include "scenarios/batch/league_runs.hpp"
-#include "scenarios/batch/sweep_row.hpp"
+#include "scenarios/batch/league.hpp"
+#include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/character_map.hpp"
 #include "scenarios/program/table.hpp"
@@ -34,18 +34,13 @@ bool holds_texts(const Axis& axis) {
 /// The field of a sweep that goes across, the one that goes down, and the cells.
 class Grid {
  public:
-  Grid(const SweepPlan& plan, const std::vector<std::string>& rows, std::string_view metric)
+  Grid(const SweepPlan& plan, const std::vector<SweepRow>& rows, std::string_view metric)
       : first_down_(!holds_texts(plan.points.axes()[1]) || holds_texts(plan.points.axes()[0])),
         across_(plan.points.axes()[first_down_ ? 1 : 0]),
         down_(plan.points.axes()[first_down_ ? 0 : 1]) {
-    const std::string header = sweep_header(plan);
-    const Words names = parts_of(header, ',');
-    const auto column = static_cast<std::size_t>(std::find(names.begin(), names.end(), metric) - names.begin());
-    for (const std::string& row : rows) {
-      const Words words = parts_of(row, ',');
-      const std::string_view outcome = words[1 + plan.points.axes().size()];
-      const bool failed = outcome == kErrorOutcome || is_failure(outcome);
-      cells_.push_back({failed ? std::nullopt : finite_number(words[column]), std::string(failed ? outcome : "")});
+    for (const SweepRow& row : rows) {
+      const bool failed = row.outcome == kErrorOutcome || is_failure(row.outcome);
+      cells_.push_back({failed ? std::nullopt : row.number(plan, metric), failed ? row.outcome : ""});
     }
   }
 
@@ -137,7 +132,7 @@ std::string map_text(const Grid& grid, std::string_view metric) {
 
 }  // namespace
 
-std::string grid_text(const SweepPlan& plan, const std::vector<std::string>& rows, std::string_view metric) {
+std::string grid_text(const SweepPlan& plan, const std::vector<SweepRow>& rows, std::string_view metric) {
   const bool is_grid = plan.points.axes().size() == 2 && !plan.points.sampling();
   if (!is_grid || rows.size() != plan.points.size() || rows.size() > kMostCells) return "";
   const Grid grid(plan, rows, metric);

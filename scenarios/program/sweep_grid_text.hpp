@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scenarios/batch/sweep_plan.hpp"
+#include "scenarios/batch/sweep_table.hpp"
 
 namespace hapbench {
 
@@ -13,6 +13,6 @@ namespace hapbench {
 /// error) stands its outcome. Empty when the points are no grid of two fields, when rows are missing (a shard), and for
 /// more than 400 cells; the map alone is left out when it is wider than the terminal. Precondition: `metric` is among
 /// the plan's.
-std::string grid_text(const SweepPlan& plan, const std::vector<std::string>& rows, std::string_view metric);
+std::string grid_text(const SweepPlan& plan, const std::vector<SweepRow>& rows, std::string_view metric);
 
 }  // namespace hapbench

@@ -11,7 +11,7 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/run_sweep.hpp"
-#include "scenarios/batch/shard_rows.hpp"
+#include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"

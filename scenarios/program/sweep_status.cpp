@@ -9,7 +9,7 @@
 
 #include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/run_sweep.hpp"
-#include "scenarios/batch/shard_rows.hpp"
+#include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/sweep_slurm.hpp"

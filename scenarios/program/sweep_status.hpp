@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/shard.hpp"
+#include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/input/json_file.hpp"
 
 namespace hapbench {

@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <iterator>
 
-#include "scenarios/batch/league_runs.hpp"
-#include "scenarios/batch/sweep_row.hpp"
+#include "scenarios/batch/league.hpp"
+#include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/sweep_grid_text.hpp"
 #include "scenarios/program/table.hpp"
 
@@ -19,66 +18,35 @@ namespace {
 /// Longer tables are not printed; other programs show them better.
 constexpr std::size_t kMostShown = 100;
 
-/// A number of a cell for people, in another unit.
-std::string shown(std::string_view cell, double factor) {
-  const auto number = finite_number(cell);
-  return number ? significant(factor * *number, 3) : "-";
+/// A metric for people, in another unit.
+std::string shown(const std::optional<double>& value, double factor) {
+  return value ? significant(factor * *value, 3) : "-";
 }
 
 /// The runs of a single axis.
-std::string runs_text(const SweepPlan& plan, const std::vector<std::string>& rows) {
-  struct Metric {
+std::string runs_text(const SweepPlan& plan, const std::vector<SweepRow>& rows) {
+  struct Shown {
     const char* column;
     const char* title;
     double factor;
   };
   // As the tables of run and compare have them (run_table.cpp).
-  static constexpr Metric kMetrics[] = {{"contact_share", "con\n%", 100.0},
-                                        {"landing_force_max_N", "land.\nmax N", 1.0},
-                                        {"force_mean_in_contact_N", "mean\nN", 1.0},
-                                        {"force_step_p99_N", "step\np99 N", 1.0},
-                                        {"force_rms_above_30Hz_N", ">30Hz\nrms N", 1.0},
-                                        {"force_reversals_per_s", "rev.\n1/s", 1.0},
-                                        {"depth_max_m", "depth\nmm", 1e3}};
+  static constexpr Shown kMetrics[] = {{"contact_share", "con\n%", 100.0},
+                                       {"landing_force_max_N", "land.\nmax N", 1.0},
+                                       {"force_mean_in_contact_N", "mean\nN", 1.0},
+                                       {"force_step_p99_N", "step\np99 N", 1.0},
+                                       {"force_rms_above_30Hz_N", ">30Hz\nrms N", 1.0},
+                                       {"force_reversals_per_s", "rev.\n1/s", 1.0},
+                                       {"depth_max_m", "depth\nmm", 1e3}};
   std::vector<Table::Column> columns = {{plan.points.axes()[0].path}, {"outcome", false}};
-  for (const Metric& metric : kMetrics) columns.push_back({metric.title});
+  for (const Shown& metric : kMetrics) columns.push_back({metric.title});
   Table table(columns);
-  const std::string header = sweep_header(plan);
-  const Words names = parts_of(header, ',');
-  for (const std::string& row : rows) {
-    const Words words = parts_of(row, ',');
-    std::vector<std::string> cells = {std::string(words[1]), std::string(words[2])};
-    for (const Metric& metric : kMetrics) {
-      const auto column = std::find(names.begin(), names.end(), metric.column) - names.begin();
-      cells.push_back(shown(words[static_cast<std::size_t>(column)], metric.factor));
-    }
+  for (const SweepRow& row : rows) {
+    std::vector<std::string> cells = {plan.points.value(row.run, 0), row.outcome};
+    for (const Shown& metric : kMetrics) cells.push_back(shown(row.number(plan, metric.column), metric.factor));
     table.add(std::move(cells));
   }
   return table.text();
-}
-
-/// The rows as objects: numbers as such, null for empty cells.
-Json rows_json(const std::string& header, const std::vector<std::string>& rows) {
-  const Words names = parts_of(header, ',');
-  Json list = Json::array();
-  for (const std::string& row : rows) {
-    const Words cells = parts_of(row, ',');
-    Json object = Json::object();
-    for (std::size_t c = 0; c < names.size(); ++c) {
-      const auto count = whole_number(cells[c]);
-      const auto number = finite_number(cells[c]);
-      // A hash may look like a number.
-      const bool text = names[c] == "state_hash";
-      object[std::string(names[c])] = cells[c].empty()                            ? Json(nullptr)
-                                      : text                                      ? Json(cells[c])
-                                      : count                                     ? Json(*count)
-                                      : number                                    ? Json(*number)
-                                      : cells[c] == "true" || cells[c] == "false" ? Json(cells[c] == "true")
-                                                                                  : Json(cells[c]);
-    }
-    list.push_back(std::move(object));
-  }
-  return list;
 }
 
 }  // namespace
@@ -112,7 +80,10 @@ Json summary_json(const SweepPlan& plan, const SweepReport& report) {
   for (const auto& [outcome, count] : counts.outcomes) outcomes[outcome] = count.runs;
   Json json = {{"definition", plan.definition},   {"runs", counts.runs},     {"outcomes", std::move(outcomes)},
                {"unexpected", counts.unexpected}, {"failed", counts.failed}, {"file", report.table.string()}};
-  if (counts.runs <= SweepReport::kMostRows) json["rows"] = rows_json(sweep_header(plan), report.rows);
+  if (counts.runs <= SweepReport::kMostRows) {
+    json["rows"] = Json::array();
+    for (const SweepRow& row : report.rows) json["rows"].push_back(row_json(plan, row));
+  }
   return json;
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "scenarios/batch/sweep_row.hpp"
+#include "scenarios/batch/sweep_table.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/batch/sweeps.hpp"
 #include "tests/scenarios/support/errors.hpp"
