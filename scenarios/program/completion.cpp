@@ -7,9 +7,9 @@
 
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/import/import_options.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/describe.hpp"
+#include "scenarios/program/import.hpp"
 #include "scenarios/program/scenario_start.hpp"
 #include "scenarios/program/schema_text.hpp"
 #include "scenarios/studies/precision/study.hpp"
@@ -65,14 +65,13 @@ WordList values_of(const std::string& name) {
     return {"algorithms", "depth_models", "stages", "integrators", "environments", "hands",   "devices", "scenarios",
             "thesis",     "limits",       "beyond", "quality",     "examples",     "metrics", "claims"};
   if (name == "--objective") return {"created", "vibration"};
-  if (name == "--format") return stroke_format_names();
-  if (name == "--orientation") return orientation_names();
+  if (name == "--format") return kRecordingFormats;
+  if (name == "--orientation") return kRecordedOrientations;
+  if (name == "--preset") return import_preset_names();
   if (name == "shell") return {"bash", "zsh", "fish"};
   WordList words;
   if (name == "kind")
     for (const StartKind& kind : start_kinds()) words.emplace_back(kind.name);
-  if (name == "--preset")
-    for (const ImportPreset& preset : import_presets()) words.push_back(preset.name);
   if (name == "--map")
     for (const StabilityMap& map : stability_maps()) words.push_back(map.name);
   if (name == "studies")
