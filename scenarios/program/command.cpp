@@ -125,15 +125,11 @@ std::vector<std::string> all_algorithms_and_all() {
 }
 
 std::vector<std::string> all_integrators() {
-  std::vector<std::string> names;
-  for (const IntegratorEntry* entry : kIntegrators) names.emplace_back(entry->info.name);
-  return names;
+  return names_of(kIntegrators, [](const IntegratorEntry* entry) { return entry->info.name; });
 }
 
 std::vector<std::string> all_scenarios() {
-  std::vector<std::string> names;
-  for (const BundledScenario& bundled : bundled_scenarios()) names.push_back(bundled.name);
-  return names;
+  return names_of(bundled_scenarios(), &BundledScenario::name);
 }
 
 std::vector<std::string> field_assignments() {

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -65,6 +68,20 @@ void write_report(const std::filesystem::path& folder, bool quiet);
 
 /// Warns on standard error of results of more than 100 MB.
 void announce_large_output(double bytes);
+
+/// The names of a table's entries, or of what its pointers point to.
+template <class Table, class Name>
+std::vector<std::string> names_of(const Table& table, Name name) {
+  std::vector<std::string> names;
+  for (const auto& entry : table) names.emplace_back(std::invoke(name, entry));
+  return names;
+}
+
+/// A value as JSON; null for none.
+template <class Value>
+Json or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
 
 /// The names of all registered algorithms.
 std::vector<std::string> all_algorithms();

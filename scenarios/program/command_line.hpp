@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -130,7 +131,18 @@ class CommandLine {
   CommandLine(const std::string& version, std::function<std::string()> version_json);
   ~CommandLine();
 
+  /// Adds a command. One with options of its own also gets them: they live as long as the command line, and `action` is
+  /// called with them when the command is chosen (Command::runs).
   Command command(const std::string& name, const std::string& summary);
+  template <class Options>
+  std::pair<Command, Options&> command(const std::string& name, const std::string& summary,
+                                       int (*action)(const Options&),
+                                       const std::string& when_stopped = "incomplete results are removed") {
+    auto options = std::make_shared<Options>();
+    Command command = this->command(name, summary);
+    command.runs([options, action] { return action(*options); }, when_stopped);
+    return {command, *options};
+  }
   /// Loads the plugins that the words and HAPBENCH_PLUGIN_PATH name, then runs the command. Returns its exit status;
   /// for a success during which the law of a plugin failed, kUnexpectedOutcome. Throws what the command throws, and
   /// InputError for a wrong usage and for plugins.

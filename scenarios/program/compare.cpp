@@ -4,7 +4,6 @@
 
 #include <limits>
 #include <map>
-#include <memory>
 #include <set>
 #include <span>
 
@@ -342,10 +341,10 @@ int compare(const CompareOptions& options) {
 }  // namespace
 
 void add_compare(CommandLine& line) {
-  auto options = std::make_shared<CompareOptions>();
-  CompareDevicesOptions& common = options->common;
-  Command command =
-      line.command("compare", "Run scenarios through several algorithms side by side; several scenarios give a league");
+  auto [command, options] =
+      line.command("compare", "Run scenarios through several algorithms side by side; several scenarios give a league",
+                   compare, "the folders of finished runs are kept, but no table is written");
+  CompareDevicesOptions& common = options.common;
   command
       .add("scenarios", common.scenarios,
            fmt::format("scenario files, names of bundled scenarios, or of groups of them (with --devices default: {})",
@@ -372,16 +371,16 @@ void add_compare(CommandLine& line) {
       .needs(devices);
   command.add("--resolution", common.resolution, "with --devices: relative width of a limit (default: 0.01)")
       .needs(devices);
-  command.add("--seeds", options->seeds, "run each K times, time k with the scenario's seed + k (default: 1)")
+  command.add("--seeds", options.seeds, "run each K times, time k with the scenario's seed + k (default: 1)")
       .range(1, 10'000)
       .excludes(devices);
   command
-      .add("--jitter", options->jitter,
+      .add("--jitter", options.jitter,
            "shift the start by a vector of this length [m] whose direction depends on the seed and is the same for all "
            "algorithms: gives a spread where nothing else is random")
       .excludes(devices);
   command
-      .add("--by", options->metrics,
+      .add("--by", options.metrics,
            "metrics of the league, less is better: names of summary.json, separated by commas (default: " +
                default_metrics_text() + "; fidelity where every scene has a reference force)")
       .words([] { return metric_names(); })
@@ -392,9 +391,9 @@ void add_compare(CommandLine& line) {
               "directory of the results (default: results/out/compare_NAME, for several scenarios results/out/compare, "
               "for devices results/out/compare_devices)");
   add_overrides(command, common.overrides);
-  command.flag("--html", options->html, "also write OUT/report.html: curves, replay, metrics, commands")
+  command.flag("--html", options.html, "also write OUT/report.html: curves, replay, metrics, commands")
       .excludes(devices);
-  add_skip_option(command, options->skips);
+  add_skip_option(command, options.skips);
   add_output_options(command, common.output);
   command.footer(
       "Files go to OUT/[SCENARIO/]ALGORITHM[/seed_K], the parts in brackets where there are several, and "
@@ -409,8 +408,6 @@ void add_compare(CommandLine& line) {
       "also the rule by which B follows K; --set changes them for all devices. A hand with a mass loses it on ideal and "
       "admittance, where the virtual mass stands for it. Files: device_limits.csv and device_runs.csv; \"hapbench plot "
       "OUT\" draws them.");
-  command.runs([options] { return compare(*options); },
-               "the folders of finished runs are kept, but no table is written");
 }
 
 }  // namespace hapbench

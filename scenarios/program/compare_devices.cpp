@@ -114,47 +114,22 @@ LoadedScenario load_on(const ComparedDevice& device, const ScenarioText& scene,
   }
 }
 
+/// Appends a text unless it is there already.
+void add_once(std::vector<std::string>& texts, const std::string& text) {
+  if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
+}
+
 /// Prints the warnings of all runs, each once.
 void print_all_warnings(const DeviceQuestion& question) {
   std::vector<std::string> warnings;
   for (const ComparedDevice& device : question.devices) {
     for (const ScenarioText& scene : question.scenes) {
       const LoadedScenario loaded = load_on(device, scene, question.overrides);
-      for (const auto& some : {loaded.warnings, check_named_files(loaded)}) {
-        for (const std::string& warning : some) {
-          if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) warnings.push_back(warning);
-        }
-      }
+      for (const std::string& warning : loaded.warnings) add_once(warnings, warning);
+      for (const std::string& warning : check_named_files(loaded)) add_once(warnings, warning);
     }
   }
   print_warnings(warnings);
-}
-
-std::size_t columns_of(const DeviceQuestion& question) {
-  return question.scenes.size() * question.algorithms.size();
-}
-
-/// The name of a scene: that of its file.
-std::string scene_name(const DeviceQuestion& question, std::size_t scene) {
-  return question.scenes[scene].file.stem().string();
-}
-
-/// The place of a device's reference among the answers: the first scene with the first algorithm.
-std::size_t reference_of(const DeviceQuestion& question, std::size_t device) {
-  return device * columns_of(question);
-}
-
-/// A limit over its device's reference; none where either has no value.
-struct DeviceRatio {
-  std::optional<double> stiffness;  ///< K over that of the reference
-  std::optional<double> rendered;   ///< K lambda_max(S), the stiffness that the hand meets, over that of the reference
-};
-
-DeviceRatio ratio_of(const DeviceLimit& limit, const DeviceLimit& reference) {
-  if (!limit.limit.value || !reference.limit.value) return {};
-  const double stiffness = *limit.limit.value / *reference.limit.value;
-  const double lambda = reference.limit.settled.lambda_max;
-  return {stiffness, lambda > 0.0 ? std::optional(stiffness * limit.limit.settled.lambda_max / lambda) : std::nullopt};
 }
 
 constexpr std::size_t kDeviceGap = 1;  // three scenes and two algorithms then fit into kTableWidth
@@ -187,57 +162,12 @@ std::string question_text(const DeviceQuestion& question) {
       100.0 * question.resolution, significant(question.most_vibration), kVibrationCutoff);
   std::vector<std::string> rules;
   for (const ScenarioText& scene : question.scenes) {
-    const LoadedScenario loaded =
-        load_scenario(scene, overrides_on(question.devices.front(), scene, question.overrides));
-    std::string rule = fmt::format("{} steps of {} s; {}\n", loaded.scenario.time.steps,
-                                   significant(loaded.scenario.time.step), damping_text(loaded.scenario.rendering));
-    if (std::find(rules.begin(), rules.end(), rule) == rules.end()) rules.push_back(std::move(rule));
+    const Scenario scenario =
+        load_scenario(scene, overrides_on(question.devices.front(), scene, question.overrides)).scenario;
+    add_once(rules, fmt::format("{} steps of {} s; {}\n", scenario.time.steps, significant(scenario.time.step),
+                                damping_text(scenario.rendering)));
   }
-  for (const std::string& rule : rules) text += rule;
-  return text;
-}
-
-std::string title(const DeviceQuestion& question, std::size_t column) {
-  return scene_name(question, column / question.algorithms.size()) + "\n" +
-         question.algorithms[column % question.algorithms.size()];
-}
-
-Table stiffness_table(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
-  std::vector<Table::Column> columns = {{"device", false}, {"pub-\nlished"}};
-  for (std::size_t c = 0; c < columns_of(question); ++c) columns.push_back({title(question, c)});
-  Table table(columns, kDeviceGap);
-  for (std::size_t d = 0; d < question.devices.size(); ++d) {
-    const ComparedDevice& device = question.devices[d];
-    std::vector<std::string> cells = {device.name,
-                                      device.published_stiffness ? stiffness_text(*device.published_stiffness) : "-"};
-    for (std::size_t c = 0; c < columns_of(question); ++c)
-      cells.push_back(limit_text(limits[d * columns_of(question) + c].limit));
-    table.add(std::move(cells));
-  }
-  return table;
-}
-
-std::string ratio_text(const DeviceLimit& limit, const DeviceLimit& reference) {
-  const auto ratio = ratio_of(limit, reference).stiffness;
-  if (!ratio) return "-";
-  const SettledState& settled = limit.limit.settled;
-  return fmt::format("{} ({}, {:.0f})", significant(*ratio, 2),
-                     settled.lambda_max > 0.0 ? significant(1.0 / settled.lambda_max, 2) : "-", settled.contacts);
-}
-
-/// The table of ratios, without the column of the reference.
-Table ratio_table(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
-  std::vector<Table::Column> columns = {{"device", false}};
-  for (std::size_t c = 1; c < columns_of(question); ++c) columns.push_back({title(question, c)});
-  Table table(columns);
-  for (std::size_t d = 0; d < question.devices.size(); ++d) {
-    std::vector<std::string> cells = {question.devices[d].name};
-    for (std::size_t c = 1; c < columns_of(question); ++c) {
-      cells.push_back(ratio_text(limits[d * columns_of(question) + c], limits[reference_of(question, d)]));
-    }
-    table.add(std::move(cells));
-  }
-  return table;
+  return text + fmt::format("{}", fmt::join(rules, ""));
 }
 
 /// "0.8 ... 1.2, median 1"
@@ -248,24 +178,6 @@ std::string spread_text(std::vector<double> values) {
   const double median = values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
   return fmt::format("{} ... {}, median {}", significant(values.front(), 2), significant(values.back(), 2),
                      significant(median, 2));
-}
-
-/// A line for each column: how the ratios spread over the devices, of K and of what is rendered with it.
-std::string spreads_text(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
-  std::string text;
-  for (std::size_t c = 1; c < columns_of(question); ++c) {
-    std::vector<double> stiffness, rendered;
-    for (std::size_t d = 0; d < question.devices.size(); ++d) {
-      const DeviceRatio ratio = ratio_of(limits[d * columns_of(question) + c], limits[reference_of(question, d)]);
-      if (ratio.stiffness) stiffness.push_back(*ratio.stiffness);
-      if (ratio.rendered) rendered.push_back(*ratio.rendered);
-    }
-    const std::size_t none = question.devices.size() - stiffness.size();
-    text += fmt::format("{} in {}: {}; K lambda_max: {}{}\n", question.algorithms[c % question.algorithms.size()],
-                        scene_name(question, c / question.algorithms.size()), spread_text(stiffness),
-                        spread_text(rendered), none > 0 ? fmt::format("; none on {} devices", none) : "");
-  }
-  return text;
 }
 
 /// The delay of the force of each impedance device, as "0 of touch, omega.3; 1 of mine"; empty when all are equal.
@@ -284,37 +196,114 @@ std::string delays_text(const DeviceQuestion& question) {
   return wrapped(fmt::format("delay_samples: {}; none of a preset is published", fmt::join(parts, "; ")), 0);
 }
 
-Json or_null(const std::optional<double>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
+/// A limit over its device's reference; none where either has no value.
+struct DeviceRatio {
+  std::optional<double> stiffness;  ///< K over that of the reference
+  std::optional<double> rendered;   ///< K lambda_max(S), the stiffness that the hand meets, over that of the reference
+};
 
-/// The question, the table of K, that of the ratios, and a line for each of its columns.
-std::string device_limits_text(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
-  std::string text = question_text(question) + "\n" + stiffness_table(question, limits).text();
-  text += "published: largest stable stiffness of a wall; \"hapbench describe DEVICE\" names its source\n";
-  if (std::any_of(question.devices.begin(), question.devices.end(),
-                  [](const ComparedDevice& device) { return device.name.ends_with('*'); }))
-    text += "*: a preset with numbers of --set, of which nothing is published\n";
-  text += delays_text(question);
-  if (std::any_of(limits.begin(), limits.end(), [](const DeviceLimit& limit) { return !limit.limit.astray.empty(); }))
-    text += "~: some values below it are unstable, or some beyond it are stable: device_runs.csv\n";
-  if (columns_of(question) == 1) return text;
-  const std::string reference = fmt::format("{} in {}", question.algorithms.front(), scene_name(question, 0));
-  text += fmt::format("\nover the device's K of {} (in brackets 1 / lambda_max(S), and contacts, at the limit)\n\n",
-                      reference);
-  text += ratio_table(question, limits).text();
-  text += fmt::format("\nleast ... largest of the devices, over {}:\n", reference);
-  return text + spreads_text(question, limits);
-}
+/// The limits of all devices, a row for each, by columns: each scene with each algorithm. The first column is a
+/// device's reference.
+class Answers {
+ public:
+  Answers(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits)
+      : question_(question), limits_(limits) {}
+
+  std::size_t columns() const { return question_.scenes.size() * question_.algorithms.size(); }
+  std::string scene(std::size_t column) const { return scene_name(column / question_.algorithms.size()); }
+  const std::string& algorithm(std::size_t column) const {
+    return question_.algorithms[column % question_.algorithms.size()];
+  }
+  /// The name of a scene is that of its file.
+  std::string scene_name(std::size_t scene) const { return question_.scenes[scene].file.stem().string(); }
+  const FieldLimit& at(std::size_t device, std::size_t column) const {
+    return limits_[device * columns() + column].limit;
+  }
+  DeviceRatio ratio(std::size_t device, const FieldLimit& limit) const {
+    const FieldLimit& reference = at(device, 0);
+    if (!limit.value || !reference.value) return {};
+    const double stiffness = *limit.value / *reference.value, lambda = reference.settled.lambda_max;
+    return {stiffness, lambda > 0.0 ? std::optional(stiffness * limit.settled.lambda_max / lambda) : std::nullopt};
+  }
+
+  std::string text() const {
+    std::string text = question_text(question_) + "\n" + stiffness_table().text();
+    text += "published: largest stable stiffness of a wall; \"hapbench describe DEVICE\" names its source\n";
+    if (std::ranges::any_of(question_.devices, [](const auto& device) { return device.name.ends_with('*'); }))
+      text += "*: a preset with numbers of --set, of which nothing is published\n";
+    text += delays_text(question_);
+    if (std::ranges::any_of(limits_, [](const DeviceLimit& limit) { return !limit.limit.astray.empty(); }))
+      text += "~: some values below it are unstable, or some beyond it are stable: device_runs.csv\n";
+    if (columns() == 1) return text;
+    const std::string reference = fmt::format("{} in {}", algorithm(0), scene(0));
+    text += fmt::format("\nover the device's K of {} (in brackets 1 / lambda_max(S), and contacts, at the limit)\n\n",
+                        reference);
+    text += ratio_table().text() + fmt::format("\nleast ... largest of the devices, over {}:\n", reference);
+    for (std::size_t c = 1; c < columns(); ++c) text += spreads_text(c);
+    return text;
+  }
+
+ private:
+  std::string title(std::size_t column) const { return scene(column) + "\n" + algorithm(column); }
+
+  Table stiffness_table() const {
+    std::vector<Table::Column> columns = {{"device", false}, {"pub-\nlished"}};
+    for (std::size_t c = 0; c < this->columns(); ++c) columns.push_back({title(c)});
+    Table table(columns, kDeviceGap);
+    for (std::size_t d = 0; d < question_.devices.size(); ++d) {
+      const auto& [name, json, has_place, published] = question_.devices[d];
+      std::vector<std::string> cells = {name, published ? stiffness_text(*published) : "-"};
+      for (std::size_t c = 0; c < this->columns(); ++c) cells.push_back(limit_text(at(d, c)));
+      table.add(std::move(cells));
+    }
+    return table;
+  }
+
+  /// The ratios of all columns but the reference.
+  Table ratio_table() const {
+    std::vector<Table::Column> columns = {{"device", false}};
+    for (std::size_t c = 1; c < this->columns(); ++c) columns.push_back({title(c)});
+    Table table(columns);
+    for (std::size_t d = 0; d < question_.devices.size(); ++d) {
+      std::vector<std::string> cells = {question_.devices[d].name};
+      for (std::size_t c = 1; c < this->columns(); ++c) {
+        const auto stiffness = ratio(d, at(d, c)).stiffness;
+        const auto& [vibration, contacts, lambda_max] = at(d, c).settled;
+        cells.push_back(stiffness ? fmt::format("{} ({}, {:.0f})", significant(*stiffness, 2),
+                                                lambda_max > 0.0 ? significant(1.0 / lambda_max, 2) : "-", contacts)
+                                  : "-");
+      }
+      table.add(std::move(cells));
+    }
+    return table;
+  }
+
+  /// How the ratios of a column spread over the devices, of K and of the rendered stiffness.
+  std::string spreads_text(std::size_t column) const {
+    std::vector<double> stiffness, rendered;
+    for (std::size_t d = 0; d < question_.devices.size(); ++d) {
+      const DeviceRatio ratio = this->ratio(d, at(d, column));
+      if (ratio.stiffness) stiffness.push_back(*ratio.stiffness);
+      if (ratio.rendered) rendered.push_back(*ratio.rendered);
+    }
+    const std::size_t none = question_.devices.size() - stiffness.size();
+    return fmt::format("{} in {}: {}; K lambda_max: {}{}\n", algorithm(column), scene(column), spread_text(stiffness),
+                       spread_text(rendered), none > 0 ? fmt::format("; none on {} devices", none) : "");
+  }
+
+  const DeviceQuestion& question_;
+  const std::vector<DeviceLimit>& limits_;
+};
 
 Json device_limits_json(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
+  const Answers answers(question, limits);
   Json rows = Json::array();
   for (const DeviceLimit& found : limits) {
     const FieldLimit& limit = found.limit;
-    const DeviceRatio ratio = ratio_of(found, limits[reference_of(question, found.device)]);
+    const DeviceRatio ratio = answers.ratio(found.device, limit);
     const auto settled = [&limit](double value) { return limit.value ? Json(value) : Json(nullptr); };
     rows.push_back({{"device", question.devices[found.device].name},
-                    {"scenario", scene_name(question, found.scene)},
+                    {"scenario", answers.scene_name(found.scene)},
                     {"algorithm", limit.algorithm},
                     {"limit_N_per_m", or_null(limit.value)},
                     {"beyond_N_per_m", limit.beyond ? Json(limit.beyond->value) : Json(nullptr)},
@@ -331,19 +320,20 @@ Json device_limits_json(const DeviceQuestion& question, const std::vector<Device
   }
   return {{"most_vibration_m_per_s", question.most_vibration},
           {"resolution", question.resolution},
-          {"reference", {{"scenario", scene_name(question, 0)}, {"algorithm", question.algorithms.front()}}},
+          {"reference", {{"scenario", answers.scene_name(0)}, {"algorithm", question.algorithms.front()}}},
           {"limits", std::move(rows)}};
 }
 
 void write(const fs::path& directory, const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
+  const Answers answers(question, limits);
   CsvWriter table(directory / "device_limits.csv", kDeviceLimitColumns);
   CsvWriter runs(directory / "device_runs.csv", kDeviceRunColumns);
   for (const DeviceLimit& found : limits) {
     const ComparedDevice& device = question.devices[found.device];
-    const std::string scene = scene_name(question, found.scene);
+    const std::string scene = answers.scene_name(found.scene);
     const FieldLimit& limit = found.limit;
     const auto settled = [&limit](double value) { return limit.value ? std::optional(value) : std::nullopt; };
-    const DeviceRatio ratio = ratio_of(found, limits.at(reference_of(question, found.device)));
+    const DeviceRatio ratio = answers.ratio(found.device, limit);
     table.row(std::string_view(device.name), std::string_view(scene), std::string_view(limit.algorithm), limit.value,
               limit.beyond ? std::optional(limit.beyond->value) : std::nullopt, std::string_view(beyond_text(limit)),
               device.published_stiffness, limit.value ? limit.settled.vibration : std::nullopt,
@@ -396,7 +386,7 @@ int compare_devices(const CompareDevicesOptions& options) {
   require_writable_directory(out);
   const std::vector<DeviceLimit> limits = device_limits(question, job_options(options.jobs, options.output, "compare"));
   write(out, question, limits);
-  print(options.output, device_limits_text(question, limits) + fmt::format("\nresults in {}\n", out.string()),
+  print(options.output, Answers(question, limits).text() + fmt::format("\nresults in {}\n", out.string()),
         device_limits_json(question, limits));
   return kSuccess;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <memory>
 
 #include "scenarios/program/command.hpp"
 
@@ -109,6 +108,12 @@ constexpr const char* kZsh = "autoload -U +X bashcompinit && bashcompinit\n";
 constexpr const char* kFish = R"(complete -c hapbench -a '(hapbench complete (commandline -opc)[2..] (commandline -ct))'
 )";
 
+int print_script(const std::string& shell) {
+  if (shell == "zsh") std::fputs(kZsh, stdout);
+  std::fputs(shell == "fish" ? kFish : kBash, stdout);
+  return kSuccess;
+}
+
 }  // namespace
 
 WordList completions(const std::vector<CommandText>& texts, const WordList& words) {
@@ -132,9 +137,9 @@ WordList completions(const std::vector<CommandText>& texts, const WordList& word
 }
 
 void add_completion(CommandLine& line) {
-  auto shell = std::make_shared<std::string>();
-  Command command = line.command("completion", "Print a script that lets a shell complete commands, options and names");
-  command.add("shell", *shell, "bash, zsh or fish").required().one_of({"bash", "zsh", "fish"});
+  auto [command, shell] =
+      line.command("completion", "Print a script that lets a shell complete commands, options and names", print_script);
+  command.add("shell", shell, "bash, zsh or fish").required().one_of({"bash", "zsh", "fish"});
   command.footer(
       "In ~/.bashrc:\n"
       "  source <(hapbench completion bash)\n"
@@ -142,11 +147,6 @@ void add_completion(CommandLine& line) {
       "  source <(hapbench completion zsh)\n"
       "For fish:\n"
       "  hapbench completion fish >~/.config/fish/completions/hapbench.fish");
-  command.runs([shell] {
-    if (*shell == "zsh") std::fputs(kZsh, stdout);
-    std::fputs(*shell == "fish" ? kFish : kBash, stdout);
-    return kSuccess;
-  });
 }
 
 }  // namespace hapbench

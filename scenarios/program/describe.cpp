@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <memory>
-
 #include "algorithms/registry.hpp"
 #include "device_model/device_presets.hpp"
 #include "device_model/theory/stiffness_limits.hpp"
@@ -287,32 +285,34 @@ Description describe_name(const std::string& name) {
                   name, nearest_name_hint(name, described_names())));
 }
 
+struct DescribeOptions {
+  std::string name;
+  OutputOptions output;
+};
+
+int describe(const DescribeOptions& options) {
+  const Description d = describe_name(options.name);
+  print(options.output, d.text, d.json);
+  return kSuccess;
+}
+
 }  // namespace
 
 void add_describe(CommandLine& line) {
-  struct Options {
-    std::string name;
-    OutputOptions output;
-  };
-  auto options = std::make_shared<Options>();
-  Command command = line.command(
+  auto [command, options] = line.command(
       "describe",
       "Explain an algorithm, a depth model, an integrator, an environment, a field, a scenario, a metric, a column or "
-      "file of the results, a word or heading that the program prints, a claim or a place of the thesis");
+      "file of the results, a word or heading that the program prints, a claim or a place of the thesis",
+      describe);
   command
-      .add("name", options->name,
+      .add("name", options.name,
            "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
            "\"choices_schema\", \"stability\"; a metric or a column, \"metrics\" or \"columns\" for all of them, a "
            "heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5 or a place such as "
            "\"Fig. A.2\"")
       .words(described_names)
       .required();
-  add_output_options(command, options->output);
-  command.runs([options] {
-    const Description d = describe_name(options->name);
-    print(options->output, d.text, d.json);
-    return kSuccess;
-  });
+  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

@@ -2,7 +2,6 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <memory>
 
 #include "results/io/csv_writer.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
@@ -145,7 +144,6 @@ void write_limits(const fs::path& directory, const std::vector<FieldLimit>& limi
 }
 
 Json limits_json(const std::vector<FieldLimit>& limits, const LimitQuestion& question) {
-  const auto or_null = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   Json rows = Json::array();
   for (const FieldLimit& limit : limits) {
     Json astray = Json::array();
@@ -195,29 +193,29 @@ int limit(const LimitOptions& options) {
 }  // namespace
 
 void add_limit(CommandLine& line) {
-  auto options = std::make_shared<LimitOptions>();
-  Command command =
-      line.command("limit", "Find the largest stable value of any field, by bisection on runs of any scene");
-  command.add("scenario", options->scenario, "scenario file, or name of a bundled scenario")
+  auto [command, options] =
+      line.command("limit", "Find the largest stable value of any field, by bisection on runs of any scene", limit,
+                   "no limit is written");
+  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario")
       .words(all_scenarios)
       .required();
-  command.add("--vary", options->field, "the field, as in rendering.stiffness_N_per_m")
+  command.add("--vary", options.field, "the field, as in rendering.stiffness_N_per_m")
       .words(scenario_field_paths)
       .required();
-  command.add("--between", options->between,
+  command.add("--between", options.between,
               "a:b, the range to search (default: a thousandth to a thousandfold of the scenario's value)");
-  command.flag("--smallest", options->smallest, "find the smallest stable value instead, as of a mass");
-  command.add("--algorithms", options->algorithms, "names separated by commas, or all (default: the scenario's own)")
+  command.flag("--smallest", options.smallest, "find the smallest stable value instead, as of a mass");
+  command.add("--algorithms", options.algorithms, "names separated by commas, or all (default: the scenario's own)")
       .words(all_algorithms_and_all)
       .comma_separated();
-  command.add("--resolution", options->resolution,
+  command.add("--resolution", options.resolution,
               "relative width of the answer (default: 0.001); of the range when the range reaches 0 or below");
-  command.add("--vibration", options->vibration,
+  command.add("--vibration", options.vibration,
               "judge stability by the handle's vibration: the largest allowed above 30 Hz [m/s rms]");
-  add_jobs(command, options->jobs, "algorithms at once (default: as many as the machine has threads)");
-  command.add("--out", options->out, "directory of the results (default: results/out/limit_NAME)");
-  add_overrides(command, options->overrides, "override a field of all runs: path=value");
-  add_output_options(command, options->output);
+  add_jobs(command, options.jobs, "algorithms at once (default: as many as the machine has threads)");
+  command.add("--out", options.out, "directory of the results (default: results/out/limit_NAME)");
+  add_overrides(command, options.overrides, "override a field of all runs: path=value");
+  add_output_options(command, options.output);
   command.footer(
       "A run is stable when it comes to rest or dies out, the classes of \"hapbench describe stability\". It is not "
       "stable when it vibrates, diverges, is thrown out (leaves the hole, or ends without contact beyond the shell's box "
@@ -228,7 +226,6 @@ void add_limit(CommandLine& line) {
       "side and stable ones beyond the edge. Where the hand is an impedance, a run without environment tells whether "
       "hand and device alone are unstable beyond the edge. Where the springs stay in contact, the theoretical limit "
       "stands beside the edge. limit_runs.csv has every run.");
-  command.runs([options] { return limit(*options); }, "no limit is written");
 }
 
 }  // namespace hapbench

@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "algorithms/registry.hpp"
@@ -181,19 +180,17 @@ int list(const ListOptions& options) {
 }  // namespace
 
 void add_list(CommandLine& line) {
-  auto options = std::make_shared<ListOptions>();
-  Command command = line.command(
+  auto [command, options] = line.command(
       "list",
-      "List algorithms, models, integrators, environments, tools, hands, devices, scenarios, metrics and claims");
+      "List algorithms, models, integrators, environments, tools, hands, devices, scenarios, metrics and claims", list);
   command
       .add(
-          "what", options->what,
+          "what", options.what,
           "one kind alone, such as algorithms, depth_models, hands, metrics or claims, or one group of scenarios, such "
           "as thesis")
       .words(words_for_sections);
-  command.add("--grep", options->grep, "only things with this text in their name, description or source");
-  add_output_options(command, options->output);
-  command.runs([options] { return list(*options); });
+  command.add("--grep", options.grep, "only things with this text in their name, description or source");
+  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <memory>
 #include <optional>
 
 #include "results/io/atomic_file.hpp"
@@ -34,9 +33,7 @@ struct PrecisionCommandOptions {
 };
 
 std::vector<std::string> study_names() {
-  std::vector<std::string> names;
-  for (const PrecisionStudy* study : kPrecisionStudies) names.emplace_back(study->name);
-  return names;
+  return names_of(kPrecisionStudies, &PrecisionStudy::name);
 }
 
 std::vector<const PrecisionStudy*> chosen_studies(const std::vector<std::string>& given) {
@@ -87,7 +84,7 @@ Json study_json(const PrecisionStudy& study, const PrecisionResult& result) {
   for (const PrecisionRow& row : result.rows) {
     Json json = {{"setting", row.setting}, {"outcome", row.outcome}};
     for (std::size_t i = 0; i < result.columns.size(); ++i) {
-      json[result.columns[i]] = row.values[i] ? Json(*row.values[i]) : Json(nullptr);
+      json[result.columns[i]] = or_null(row.values[i]);
     }
     json["seconds_per_" + result.timed] = row.seconds;
     rows.push_back(std::move(json));
@@ -137,26 +134,25 @@ int precision(const PrecisionCommandOptions& options) {
 }  // namespace
 
 void add_precision(CommandLine& line) {
-  auto options = std::make_shared<PrecisionCommandOptions>();
-  Command command = line.command("precision", "Measure run time against error, one row per setting");
+  auto [command, options] = line.command("precision", "Measure run time against error, one row per setting", precision,
+                                         "complete studies are kept");
   std::string studies = "The studies:";
   for (const PrecisionStudy* study : kPrecisionStudies)
     studies += fmt::format("\n  {}: {}", study->name, study->summary);
-  command.add("studies", options->studies, "names of studies (below), or all")
+  command.add("studies", options.studies, "names of studies (below), or all")
       .words([] { return with_all(study_names()); })
       .required();
   command.footer(studies);
   command
-      .add("--scenario", options->scenario,
+      .add("--scenario", options.scenario,
            "scenario to start from instead of the study's own: any scenario for time_step")
       .words(all_scenarios);
-  command.add("--out", options->out,
+  command.add("--out", options.out,
               "directory of the results (default: results/out/precision, with --scenario results/out/precision_NAME)");
-  add_overrides(command, options->overrides);
-  command.add("--repetitions", options->repetitions, "repetitions of every timing; the least counts (default: 5)")
+  add_overrides(command, options.overrides);
+  command.add("--repetitions", options.repetitions, "repetitions of every timing; the least counts (default: 5)")
       .range(1, 1000);
-  add_output_options(command, options->output);
-  command.runs([options] { return precision(*options); }, "complete studies are kept");
+  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

@@ -2,7 +2,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <memory>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -39,9 +38,7 @@ struct ReproduceOptions {
 };
 
 std::vector<std::string> claim_ids() {
-  std::vector<std::string> ids;
-  for (const Claim& claim : all_claims()) ids.emplace_back(claim.id);
-  return ids;
+  return names_of(all_claims(), &Claim::id);
 }
 
 std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
@@ -263,31 +260,29 @@ int reproduce(const ReproduceOptions& options) {
 }  // namespace
 
 void add_reproduce(CommandLine& line) {
-  auto options = std::make_shared<ReproduceOptions>();
-  Command command = line.command("reproduce", "Run the thesis's experiments and judge its claims");
-  command.add("--only", options->only, "ids of claims, separated by commas; \"hapbench list claims\" shows them")
+  auto [command, options] = line.command("reproduce", "Run the thesis's experiments and judge its claims", reproduce,
+                                         "finished runs are kept, and the same command continues from there");
+  command.add("--only", options.only, "ids of claims, separated by commas; \"hapbench list claims\" shows them")
       .words(claim_ids)
       .comma_separated();
-  command.add("--out", options->out, "directory of the results (default: results/out/reproduce)");
-  command.add("--ledger", options->ledger,
+  command.add("--out", options.out, "directory of the results (default: results/out/reproduce)");
+  command.add("--ledger", options.ledger,
               "file of the ledger, JSON, with a Markdown table beside it (default: OUT/claims.json; with --only none)");
-  command.flag("--anew", options->anew,
+  command.flag("--anew", options.anew,
                "run every scenario and judge every sample again, even where results are current");
-  command.add("--jobs", options->jobs, "runs at once (default: one for each processor)").range(1, 1024);
+  command.add("--jobs", options.jobs, "runs at once (default: one for each processor)").range(1, 1024);
   command
       .add(
-          "--robustness", options->samples,
+          "--robustness", options.samples,
           "judge every claim again at this many samples of the choices on record (default: 256), appendix D at a quarter "
           "of them; writes robustness.csv, .json and .md beside the ledger, if there is one")
       .value_if_none("256")
       .range(4, 100'000);
-  add_output_options(command, options->output);
+  add_output_options(command, options.output);
   command.footer(
       "choices.md beside the ledger lists what the thesis leaves open (results/reference/choices.json). Ctrl-C stops "
       "--robustness after the samples under way; the same command continues from there.\n"
       "Exit status: 0 success, 2 bad input or usage, 3 a run did not end as its scenario expects, 130 stopped by Ctrl-C.");
-  command.runs([options] { return reproduce(*options); },
-               "finished runs are kept, and the same command continues from there");
 }
 
 }  // namespace hapbench

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <memory>
-
 #include "results/io/io_error.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
@@ -91,19 +89,18 @@ int run(const RunOptions& options) {
 }  // namespace
 
 void add_run(CommandLine& line) {
-  auto options = std::make_shared<RunOptions>();
-  Command command = line.command("run", "Run scenarios and write their results");
-  command.add("scenarios", options->scenarios, "scenario files, names of bundled scenarios, or of groups of them")
+  auto [command, options] = line.command("run", "Run scenarios and write their results", run,
+                                         "nothing of the unfinished run is written; finished runs are kept");
+  command.add("scenarios", options.scenarios, "scenario files, names of bundled scenarios, or of groups of them")
       .words(all_scenarios)
       .required();
-  command.add("--out", options->out,
+  command.add("--out", options.out,
               "directory of the results; several scenarios get a subdirectory each (default: results/out/NAME)");
-  add_overrides(command, options->overrides, "override a field: path=value, as in time.steps=100");
-  command.flag("--latency", options->latency,
+  add_overrides(command, options.overrides, "override a field: path=value, as in time.steps=100");
+  command.flag("--latency", options.latency,
                "time every step, as record.timing does, and print percentiles and missed deadlines");
-  add_skip_option(command, options->skips);
-  add_output_options(command, options->output);
-  command.runs([options] { return run(*options); }, "nothing of the unfinished run is written; finished runs are kept");
+  add_skip_option(command, options.skips);
+  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <memory>
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/csv_writer.hpp"
@@ -55,7 +54,7 @@ Json limits_json(const LoadedScenario& loaded, const std::vector<StabilityLimit>
   for (const StabilityLimit& limit : limits) {
     rows.push_back({{"case", case_name(limit.which)},
                     {"unit", limit.unit},
-                    {"analytic", limit.analytic ? Json(*limit.analytic) : Json(nullptr)},
+                    {"analytic", or_null(limit.analytic)},
                     {"eigenvalue", limit.eigenvalue},
                     {"simulation", limit.simulation},
                     {"damping_at_limit_N_s_per_m", limit.damping_at_limit},
@@ -151,7 +150,7 @@ Json counts_json(const StressCounts& c) {
                {"out_of_bound", c.out_of_bound},
                {"points_dropped", c.points_dropped},
                {"largest_force_per_K_d", c.largest_force},
-               {"largest_share_of_bound", c.largest_share ? Json(*c.largest_share) : Json(nullptr)}};
+               {"largest_share_of_bound", or_null(c.largest_share)}};
   json["first_bad_set"] = is_bad(c) ? Json(c.first_bad) : Json(nullptr);
   return json;
 }
@@ -285,12 +284,6 @@ int stability(const StabilityOptions& options) {
   return limits(options);
 }
 
-std::vector<std::string> map_names_and_all() {
-  std::vector<std::string> names;
-  for (const StabilityMap& map : stability_maps()) names.emplace_back(map.name);
-  return with_all(names);
-}
-
 /// The four experiments exclude each other, and each has options of its own.
 void add_experiments(Command& command, StabilityOptions& options) {
   CommandOption scenarios = command.add(
@@ -300,7 +293,7 @@ void add_experiments(Command& command, StabilityOptions& options) {
                                   "draw maps of stable, dying, vibrating and diverged runs: names separated by commas, "
                                   "or all (see \"hapbench describe stability\")");
   scenarios.words(all_scenarios);
-  map.words(map_names_and_all).comma_separated();
+  map.words([] { return with_all(names_of(stability_maps(), &StabilityMap::name)); }).comma_separated();
   CommandOption stress = command.flag("--stress", options.stress, "pass random contact sets through every algorithm");
   CommandOption search = command.flag("--search", options.search,
                                       "search for the motion of the hand that an algorithm renders worst in a scene");
@@ -346,17 +339,16 @@ JobOptions StabilityOptions::job_options(const std::string& label) const {
 }
 
 void add_stability(CommandLine& line) {
-  auto options = std::make_shared<StabilityOptions>();
-  Command command = line.command(
+  auto [command, options] = line.command(
       "stability",
       "Find stability limits of springs (thesis A.3), draw stability maps, stress algorithms, search for the worst "
-      "motion");
-  add_experiments(command, *options);
-  command.add("--out", options->out, "directory of the results (default: results/out/stability_NAME)");
-  add_overrides(command, options->overrides,
+      "motion",
+      stability, "maps and searches that were complete are kept");
+  add_experiments(command, options);
+  command.add("--out", options.out, "directory of the results (default: results/out/stability_NAME)");
+  add_overrides(command, options.overrides,
                 "override a field: path=value; with --map only time.step_s and fields of device and hand");
-  add_output_options(command, options->output);
-  command.runs([options] { return stability(*options); }, "maps and searches that were complete are kept");
+  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

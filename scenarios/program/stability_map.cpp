@@ -20,8 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<const StabilityMap*> chosen_maps(const StabilityOptions& options) {
-  std::vector<std::string> names;
-  for (const StabilityMap& map : stability_maps()) names.emplace_back(map.name);
+  const std::vector<std::string> names = names_of(stability_maps(), &StabilityMap::name);
   std::vector<const StabilityMap*> maps;
   for (const std::string& name : chosen_names("--map: got", options.maps, names)) {
     maps.push_back(find_stability_map(name));
@@ -165,7 +164,6 @@ std::string drawings_of(const std::vector<MapResult>& results, bool draw) {
 
 Json result_json(const MapResult& result) {
   Json rows = Json::array();
-  const auto or_null = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   for (const BoundaryPoint& p : result.boundary) {
     Json limits = Json::object();
     for (std::size_t i = 0; i < p.limits.size(); ++i) limits[stiffness_limits()[i].name] = or_null(p.limits[i]);

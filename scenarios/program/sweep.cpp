@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <iterator>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/batch/league_runs.hpp"
@@ -221,40 +220,38 @@ void add_shard_options(Command& command, SweepCommand& options) {
 }  // namespace
 
 void add_sweep(CommandLine& line) {
-  auto options = std::make_shared<SweepCommand>();
-  Command command =
-      line.command("sweep", "Run one scenario over a grid or a sample of values of any fields, in parallel");
-  command.add("scenario", options->scenario, "scenario file, or name of a bundled scenario").words(all_scenarios);
+  auto [command, options] =
+      line.command("sweep", "Run one scenario over a grid or a sample of values of any fields, in parallel", sweep);
+  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario").words(all_scenarios);
   command
       .add(
-          "--vary", options->vary,
+          "--vary", options.vary,
           "a field and its values: path=a:b:n (n numbers from a to b), path=a:b:n:log (in equal ratios) or path=v,w,... "
           "(numbers or texts; rendering.algorithm=all). Several give all combinations; the last one varies fastest. "
           "With --sample: path=a:b, path=a:b:log or path=v,w,...")
       .words(field_assignments)
       .repeatable();
   const CommandOption sample =
-      command.add("--sample", options->sample,
+      command.add("--sample", options.sample,
                   "run a sample of points instead of all combinations: lhs:N (Latin hypercube), sobol:N (shifted Sobol "
                   "sequence, best for powers of two) or random:N; listed values take equal shares");
-  command.add("--seed", options->seed, "seed of the sample (default: 1)").needs(sample);
+  command.add("--seed", options.seed, "seed of the sample (default: 1)").needs(sample);
   command
-      .add("--metric", options->metric,
+      .add("--metric", options.metric,
            "the column of sweep.csv that a sweep of two fields shows as table and map (default: " +
                std::string(kDefaultMetrics[0]) + ")")
       .words([] { return metric_names(); });
-  command.add("--out", options->out, "directory of sweep.csv (default: results/out/sweep_NAME)");
-  add_overrides(command, options->overrides, "override a field of all runs: path=value");
-  add_run_options(command, *options);
-  add_shard_options(command, *options);
-  add_output_options(command, options->output);
+  command.add("--out", options.out, "directory of sweep.csv (default: results/out/sweep_NAME)");
+  add_overrides(command, options.overrides, "override a field of all runs: path=value");
+  add_run_options(command, options);
+  add_shard_options(command, options);
+  add_output_options(command, options.output);
   command.footer(
       "sweep.csv has a row for each run: index, the varied fields, outcome (\"error\" when it could not be computed), "
       "expected, steps, every metric, state_hash. Shards write sweep_shard_I_of_N.csv; \"hapbench merge\" joins them. "
       "Ctrl-C stops after the runs that are under way.\n"
       "Exit status: 0 success, 1 a run could not be computed, 2 bad input or usage, 3 a run did not end as expected, "
       "130 stopped by Ctrl-C.");
-  command.runs([options] { return sweep(*options); });
 }
 
 namespace {
@@ -278,17 +275,15 @@ int merge(const MergeOptions& options) {
 }  // namespace
 
 void add_merge(CommandLine& line) {
-  auto options = std::make_shared<MergeOptions>();
-  Command command = line.command("merge", "Join the tables of all shards of a sweep");
-  command.add("files", options->files, "sweep_shard_I_of_N.csv for every I, in any order").required();
+  auto [command, options] = line.command("merge", "Join the tables of all shards of a sweep", merge);
+  command.add("files", options.files, "sweep_shard_I_of_N.csv for every I, in any order").required();
   command
       .add(
-          "--out", options->out,
+          "--out", options.out,
           "file of the table, which gets the same bytes as sweep.csv of the undivided sweep; a JSON file beside it, as "
           "sweep.json, names everything the table depends on")
       .required();
-  add_output_options(command, options->output);
-  command.runs([options] { return merge(*options); });
+  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

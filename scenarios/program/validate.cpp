@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <memory>
 
 #include "results/io/atomic_file.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
@@ -120,13 +119,12 @@ int validate(const ValidateOptions& options) {
 }  // namespace
 
 void add_validate(CommandLine& line) {
-  auto options = std::make_shared<ValidateOptions>();
-  Command command = line.command(
-      "validate", "Check scenario files and the files they name, without running them, and say what is in them");
-  command.add("files", options->files, "scenario files, or names of bundled scenarios").words(all_scenarios).required();
-  add_overrides(command, options->overrides, "override a field of all: path=value");
-  add_output_options(command, options->output);
-  command.runs([options] { return validate(*options); });
+  auto [command, options] = line.command(
+      "validate", "Check scenario files and the files they name, without running them, and say what is in them",
+      validate);
+  command.add("files", options.files, "scenario files, or names of bundled scenarios").words(all_scenarios).required();
+  add_overrides(command, options.overrides, "override a field of all: path=value");
+  add_output_options(command, options.output);
 }
 
 namespace {
@@ -160,15 +158,13 @@ int shell(const ShellOptions& options) {
 }  // namespace
 
 void add_shell(CommandLine& line) {
-  auto options = std::make_shared<ShellOptions>();
-  Command command = line.command("shell", "Write the environment's point shell: positions and normals");
-  command.add("scenario", options->scenario, "scenario file, or name of a bundled scenario")
+  auto [command, options] = line.command("shell", "Write the environment's point shell: positions and normals", shell);
+  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario")
       .words(all_scenarios)
       .required();
-  command.add("--out", options->out, "FILE.csv (exact) or FILE.ply (single precision, for viewers)").required();
-  add_overrides(command, options->overrides);
-  add_output_options(command, options->output);
-  command.runs([options] { return shell(*options); });
+  command.add("--out", options.out, "FILE.csv (exact) or FILE.ply (single precision, for viewers)").required();
+  add_overrides(command, options.overrides);
+  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench
