@@ -6,6 +6,7 @@
 #include <set>
 
 #include "scenarios/batch/sweep_row.hpp"
+#include "scenarios/run/run_scenario.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/batch/sweeps.hpp"
 #include "tests/scenarios/support/errors.hpp"
@@ -89,6 +90,30 @@ TEST(SweepPlan, HasTheColumnsOfWhateverSomeRunRecords) {
   EXPECT_NE(header({"record.energy=false,true"}).find(",energy.created_sum_J,"), std::string::npos);
   EXPECT_EQ(header({"record.energy=false,true"}), header({"record.energy=true,false"}));
   EXPECT_EQ(header({"record.energy=false,true"}).find("ideal_trajectory"), std::string::npos);
+}
+
+TEST(SweepPlan, HasExactlyTheMetricsOfItsRuns) {
+  std::vector<test::NamedScenario> scenarios = test::rich_scenarios();
+  for (test::NamedScenario& minimal : test::minimal_scenarios()) scenarios.push_back(std::move(minimal));
+  Json prescribed = minimal_scenario("plane");
+  prescribed["motion"]["position"] = {{"type", "prescribed"}, {"x_m", 0}, {"y_m", 0}, {"z_m", 0}};
+  prescribed["reference_force"] = {{"z_N", 1.0}};
+  prescribed["perception"] = Json::object();
+  scenarios.push_back({"with_reference_force", prescribed});
+  Json block = minimal_scenario("block_with_hole");
+  block["record"] = {{"ideal_trajectory", true}};
+  scenarios.push_back({"with_ideal_trajectory", block});
+  std::set<std::string> all;
+  for (const auto& [name, json] : scenarios) {
+    const bool has_targets = json.contains("hand") && json["hand"]["type"] == "tracking";  // which take their time
+    const SweepPlan plan = plan_of(json, {has_targets ? "seed=1" : "time.steps=2"});
+    std::vector<std::string> names;
+    for (const Metric& metric : metric_list(run_scenario(scenario_of(plan, 0), std::nullopt, false).summary))
+      names.push_back(metric.name);
+    EXPECT_EQ(plan.metrics, names) << name;
+    all.insert(names.begin(), names.end());
+  }
+  for (const std::string& name : metric_names()) EXPECT_TRUE(all.contains(name)) << name;
 }
 
 TEST(SweepPlan, HasAnotherDefinitionForEveryOtherContent) {
