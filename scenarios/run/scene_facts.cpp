@@ -66,7 +66,7 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   if (std::holds_alternative<MeshEnvironment>(scenario.environment))
     facts.is_closed = loaded.files.mesh().open_edges().empty();
   const SimulationParts parts = assemble(scenario, loaded.files, shell, {});
-  SceneFacts::Surface& surface = facts.surface.emplace();
+  SceneFacts::Surface& surface = facts.surface.emplace(SceneFacts::Surface{});
   surface.box = shell->bounds();
   surface.points = shell->size();
   if (auto warning = scale_warning(scenario, *tool, surface.box)) facts.warnings.push_back(*warning);

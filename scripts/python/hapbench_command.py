@@ -2,7 +2,7 @@
 import argparse
 import sys
 
-SUCCESS, BAD_INPUT, INTERRUPTED = 0, 2, 130
+SUCCESS, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 
 def say_error(text):
