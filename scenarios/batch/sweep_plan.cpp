@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -25,7 +26,7 @@ namespace {
 struct Point {
   std::vector<std::string> warnings;
   MetricSections sections;
-  std::string files;  ///< the parts that name files
+  std::string files;  ///< the objects that name files
   AlgorithmOrigin origin;
 };
 
@@ -46,12 +47,11 @@ Point examine(const SweepPlan& plan, std::size_t run) {
   const LoadedScenario loaded = scenario_of(plan, run);
   const Scenario& scenario = loaded.scenario;
   Point point{loaded.warnings, sections_of(scenario), "", find_algorithm(scenario.rendering.algorithm)->origin};
-  if (std::holds_alternative<PointShellEnvironment>(scenario.environment) ||
-      std::holds_alternative<MeshEnvironment>(scenario.environment)) {
-    point.files = written(scenario.environment).dump();
-  }
-  if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
-    point.files += written_object(scenario.motion).dump();
+  if (loaded.files.all().empty()) return point;
+  const Json json = written_object(scenario);
+  for (const auto& file : loaded.files.all()) {
+    const Json::json_pointer field(file->pointer());
+    point.files += file->pointer() + " " + json.at(field.parent_pointer()).dump() + "\n";
   }
   return point;
 }

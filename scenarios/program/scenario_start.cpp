@@ -239,7 +239,7 @@ class Start {
 
   /// Above the plane's middle. Tools are about as long as the teeth they work on.
   void place_mesh_tool() {
-    TriangleSoup surface = scenario().files.tool_mesh().triangles();  // taken for millimetres
+    TriangleSoup surface = scenario().files.at(kToolFile).mesh().triangles();  // taken for millimetres
     const Box given = box_of(surface.vertices);
     const double longest = (given.max - given.min).maxCoeff() / 0.001, scale = guessed_scale(longest);
     values_["tool_scale"] = scale;
@@ -306,7 +306,8 @@ class Start {
 
   void choose_stroke_steps() {
     const LoadedScenario loaded = scenario();
-    const auto samples = loaded.files.recorded_motion().samples();
+    const auto stroke = loaded.files.at(kMotionFile).stroke();
+    const auto samples = stroke->motion.samples();
     const auto lower = [](const auto& a, const auto& b) { return a.position.z() < b.position.z(); };
     const double lowest = std::min_element(samples.begin(), samples.end(), lower)->position.z();
     const double last = samples.back().time;
