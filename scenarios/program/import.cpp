@@ -10,7 +10,6 @@
 #include "scenarios/input/number_table.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
-#include "scenarios/program/shell_words.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/quantity_text.hpp"
 
@@ -205,7 +204,11 @@ void add_import(CommandLine& line) {
   auto words = std::make_shared<ImportWords>();
   Command command = line.command("import", "Make a stroke to play back from a recording: poses and measured forces");
   command.add("file", words->file, "the recording");
-  command.add("--preset", words->preset, "a layout by name or from FILE.json; options below override it");
+  command.add("--preset", words->preset, "a layout by name or from FILE.json; options below override it").words([] {
+    std::vector<std::string> names;
+    for (const ImportPreset& preset : import_presets()) names.push_back(preset.name);
+    return names;
+  });
   command.flag("--list", words->list, "list the presets");
   command.add("--format", words->format, "csv (default), traj (blanks between numbers), hapi, hapi-binary")
       .one_of(stroke_format_names());

@@ -13,12 +13,10 @@
 #include "results/io/io_error.hpp"
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/program/command.hpp"
-#include "scenarios/program/shell_words.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/run/wait_notice.hpp"
 
-/// Commands that draw: they hand their words to Python, which reads the result files. Nothing of a run passes through
-/// here.
+/// Commands that draw: they pass their options on to Python, which reads the result files.
 namespace hapbench {
 namespace {
 

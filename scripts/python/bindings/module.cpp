@@ -14,7 +14,6 @@
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/program.hpp"
-#include "scenarios/program/shell_words.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
