@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "algorithms/registry.hpp"
-#include "algorithms/shell_source.hpp"
+#include "algorithms/depth/depth_model.hpp"
 #include "device_model/admittance_device.hpp"
 #include "device_model/hands/drag_hand.hpp"
 #include "device_model/hands/impedance_hand.hpp"
