@@ -4,7 +4,6 @@ bench_test.py SOURCE_DIRECTORY: the tree with scripts and manuals.
 """
 import copy
 import json
-import os
 import random
 import shutil
 import signal
@@ -19,7 +18,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(SOURCE / "scripts" / "python"))
 from hapbench_bench import peers, table  # noqa: E402  (the path comes first)
 from hapbench_bench.program import BenchError  # noqa: E402
-from hapbench_bench.significance import compare  # noqa: E402
+from hapbench_bench.against import compare  # noqa: E402
 from hapbench_bench.targets import GROUPS  # noqa: E402
 
 RECORD = json.loads((SOURCE / "results" / "reference" / "performance.json").read_text(encoding="utf-8"))

@@ -14,7 +14,7 @@ PROGRAM, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(SOURCE / "scripts" / "python"))
 
-from hapbench_docs import blocks, ledger, sessions  # noqa: E402  (the path comes first)
+from hapbench_docs import blocks, ledger  # noqa: E402  (the path comes first)
 from hapbench_docs.manuals import Manual, anchor, broken_links, manuals  # noqa: E402
 from hapbench_docs.program import Program, ProgramError, same_but_for_times  # noqa: E402
 
@@ -230,14 +230,14 @@ class Generated(unittest.TestCase):
 
     def test_a_session_holds_what_the_command_prints(self):
         with tempfile.TemporaryDirectory() as scratch:
-            new = sessions.renewed("    $ hapbench describe mean\n\n    old\n", Program(PROGRAM), scratch)
+            new = blocks.session("    $ hapbench describe mean\n\n    old\n", Program(PROGRAM), scratch)
             self.assertIn("c_i = 1/n", new)
             self.assertNotIn("old", new)
             dated = new.replace("Printed by ", "Printed by an older ")
-            self.assertEqual(sessions.renewed(dated, Program(PROGRAM), scratch), dated)
-            self.assertNotEqual(sessions.renewed(dated.replace("1/n", "2/n"), Program(PROGRAM), scratch), dated)
+            self.assertEqual(blocks.session(dated, Program(PROGRAM), scratch), dated)
+            self.assertNotEqual(blocks.session(dated.replace("1/n", "2/n"), Program(PROGRAM), scratch), dated)
             with self.assertRaisesRegex(ProgramError, "nosuch"):
-                sessions.renewed("    $ hapbench describe nosuch\n", Program(PROGRAM), scratch)
+                blocks.session("    $ hapbench describe nosuch\n", Program(PROGRAM), scratch)
 
     def test_measured_times_are_no_news(self):
         old = "    law     force   us/\n                   step\n    ------  -----  ----\n    mean     1.25  0.25\n\n" \

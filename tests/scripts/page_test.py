@@ -46,7 +46,7 @@ class Page(Given):
         (run / "summary.json").write_text(json.dumps(summary))
         page = self.page(run)
         self.assertEqual(re.findall(r'<section id="(\w+)"', page), ["summary", "warnings", "metrics", "scenario", "rerun", "provenance"])
-        for text in ("in contact 4.9 % of the run &lt;b&gt;", "Landing max, N", "7.25", "Force above 30 Hz rms, N", "0.125"):
+        for text in ("in contact 4.9 % of the run &lt;b&gt;", "landing force max<br><span class=unit>N</span>", "7.25", "force rms above 30Hz", "0.125"):
             self.assertTrue(text in page, text)
 
     def test_the_commands_repeat_the_run(self):

@@ -5,11 +5,10 @@ import tempfile
 from pathlib import Path
 
 from hapbench_bench import peers, table
-from hapbench_command import BAD_INPUT, FAILED, INTERRUPTED, SUCCESS, Arguments, say_error
-from hapbench_pictures.files import write
+from hapbench_command import BAD_INPUT, FAILED, INTERRUPTED, SUCCESS, Arguments, say_error, write
 from hapbench_report.json_input import InputError
 
-from . import blocks, ledger, sessions, studies
+from . import blocks, ledger, studies
 from .manuals import ROOT, Manual, manuals
 from .program import Program, ProgramError
 
@@ -32,7 +31,7 @@ def renewed(manual, scratch, program):
     """The manual's text with its blocks made anew."""
     makers = dict(ledger.MAKERS)
     if program:
-        makers["session"] = lambda old: sessions.renewed(old, program, scratch)
+        makers["session"] = lambda old: blocks.session(old, program, scratch)
         makers["ideal_trajectory"] = lambda old: studies.ideal_trajectory(old, program, scratch)
         makers["contact_sources"] = lambda old: studies.contact_sources(old, program, scratch)
     text = blocks.renewed(manual.text, makers)
@@ -65,7 +64,7 @@ def main(words=None):
                     print(differences(manual, text))
                     status = FAILED
                 else:
-                    write(manual.file, text.encode())
+                    write(manual.file, text)
                     print(f"renewed {manual.file.relative_to(ROOT)}")
     except (ProgramError, InputError, blocks.BlockError, OSError) as error:
         say_error(error)
