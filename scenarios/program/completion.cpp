@@ -94,9 +94,10 @@ WordList completed(const CommandText& command, const WordList& words) {
   return beginning_with(typed, before, option->words());
 }
 
+/// bash hands over the program's name as it was typed, with the backslashes before blanks and quotes.
 constexpr const char* kBash = R"(_hapbench() {
-  local IFS=$'\n'
-  COMPREPLY=($("${1/#\~/$HOME}" complete "${COMP_WORDS[@]:1:$COMP_CWORD}" 2>/dev/null))
+  local IFS=$'\n' program=${1/#\~/$HOME}
+  COMPREPLY=($("${program//\\/}" complete "${COMP_WORDS[@]:1:$COMP_CWORD}" 2>/dev/null))
   case ${COMPREPLY[0]-} in *=) compopt -o nospace 2>/dev/null ;; esac
 }
 complete -o default -F _hapbench hapbench

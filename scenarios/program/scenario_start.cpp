@@ -349,7 +349,7 @@ class Start {
 
   /// Places the tool above the plane's middle, at a scale that makes it about as long as a tooth.
   void place_mesh_tool() {
-    TriangleSoup surface = scenario().files.tool_mesh().triangles();  // taken for millimetres
+    TriangleSoup surface = scenario().files.at(kToolFile).mesh().triangles();  // taken for millimetres
     const Box given = box_of(surface.vertices);
     const double longest = (given.max - given.min).maxCoeff() / 0.001, scale = guessed_scale(longest);
     values_["tool_scale"] = scale;
@@ -416,7 +416,8 @@ class Start {
 
   void choose_stroke_steps() {
     const LoadedScenario loaded = scenario();
-    const auto samples = loaded.files.recorded_motion().samples();
+    const auto stroke = loaded.files.at(kMotionFile).stroke();
+    const auto samples = stroke->motion.samples();
     const auto lower = [](const auto& a, const auto& b) { return a.position.z() < b.position.z(); };
     const double lowest = std::min_element(samples.begin(), samples.end(), lower)->position.z();
     const double last = samples.back().time;

@@ -19,11 +19,11 @@ struct Build {
 
   Shell operator()(const SpringsEnvironment&) const { return nullptr; }
   Shell operator()(const PointShellEnvironment& given) const {
-    return of(files.shell_points(), given.grid.value_or(0.0));
+    return of(files.at(kEnvironmentFile).points(), given.grid.value_or(0.0));
   }
   Shell operator()(const MeshEnvironment& mesh) const {
     const double cell_size = mesh.grid.value_or(0.0);
-    return of(in_grid_order(files.mesh().points(), cell_size), cell_size);
+    return of(in_grid_order(files.at(kEnvironmentFile).mesh().points(), cell_size), cell_size);
   }
   Shell operator()(const BlockEnvironment& block) const {
     const DensityField field = density_field(block.block, block.grid, block.density);

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "algorithms/registry.hpp"
-#include "algorithms/shell_source.hpp"
+#include "algorithms/depth/depth_model.hpp"
 #include "results/allocations/allocations.hpp"
 #include "sim/core/random.hpp"
 #include "sim/geometry/analytic_shells.hpp"

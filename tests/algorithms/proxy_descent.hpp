@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/registry.hpp"
-#include "algorithms/shell_source.hpp"
+#include "algorithms/depth/depth_model.hpp"
 #include "sim/core/random.hpp"
 
 namespace hapbench::test {

@@ -1,4 +1,4 @@
-#include "algorithms/shell_source.hpp"
+#include "algorithms/depth/depth_model.hpp"
 
 #include <gtest/gtest.h>
 

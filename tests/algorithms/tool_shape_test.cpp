@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "algorithms/registry.hpp"
-#include "algorithms/shell_source.hpp"
+#include "algorithms/depth/depth_model.hpp"
 #include "sim/contact/grid_query.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "sim/geometry/analytic_shells.hpp"

@@ -38,9 +38,7 @@ DRAWN_TWICE = "A.5,B.4,C.1,C.3,D.7,E.3,precision,stability-wedge"
 
 
 def hapbench(*arguments):
-    done = subprocess.run(
-        [PROGRAM, *arguments], capture_output=True, text=True
-    )
+    done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True)
     if done.returncode not in (0, 3):
         raise AssertionError(f"hapbench {' '.join(map(str, arguments))}: {done.stderr}")
 
@@ -144,9 +142,7 @@ def make_studies(directory):
             + f",{0.001 / (i + 1)}" * len(columns)
             for i, name in enumerate(names)
         ]
-        (directory / f"precision_{study}.csv").write_text(
-            "\n".join(["setting,outcome," + ",".join(columns), *rows]) + "\n"
-        )
+        (directory / f"precision_{study}.csv").write_text("\n".join(["setting,outcome," + ",".join(columns), *rows]) + "\n")
         times = [f"{name},{1e-6 * (i + 1)},{1e-6 * (i + 1)}" for i, name in enumerate(names)]
         (directory / f"precision_{study}_timing.csv").write_text(
             "\n".join(["setting,seconds_per_step,seconds_per_call", *times]) + "\n"
@@ -175,9 +171,7 @@ class Figures(unittest.TestCase):
 
     def test_the_figures_of_the_thesis_are_there(self):
         redrawn = " ".join(entry["thesis_figure"] or "" for entry in self.index())
-        for name in (
-            "2 4 5 6 7a-c 8 A.1 A.2a-b A.5 B.3 B.4 B.5 C.1 C.2 C.3 C.4 D.6 D.7 D.8 E.1 E.2 E.3 E.4 F.4 F.5"
-        ).split():
+        for name in ("2 4 5 6 7a-c 8 A.1 A.2a-b A.5 B.3 B.4 B.5 C.1 C.2 C.3 C.4 D.6 D.7 D.8 E.1 E.2 E.3 E.4 F.4 F.5").split():
             self.assertRegex(redrawn, rf"(^|\s){re.escape(name)}(,|\s|$)")
         self.assertIn("A.4 (springs)", redrawn)
         self.assertIn("A.4 (root locus)", redrawn)

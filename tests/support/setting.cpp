@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "algorithms/shell_source.hpp"
+#include "algorithms/depth/depth_model.hpp"
 #include "device_model/hands/scripted_hands.hpp"
 #include "device_model/ideal_device.hpp"
 #include "sim/contact/spring_source.hpp"

@@ -1,19 +1,16 @@
 """Pictures of bundled scenes, made by runs: the scene in section with the tool, and the rendered force over time."""
-import io
 import json
 import textwrap
 
-import matplotlib
 import numpy as np
-from hapbench_figures.style import AMBER, BLACK, GREY, PETROL, SETTINGS
-from hapbench_looks import look
-from hapbench.columns import read_columns
-from hapbench_pictures.files import write
-from hapbench_pictures.panels import outline, section
-from hapbench_pictures.reduced import reduced
-from hapbench_report.replay_tool import tool_profile
-from matplotlib import pyplot as plt
 from matplotlib.patches import Polygon
+
+import hapbench_style as style
+from hapbench.columns import read_columns
+from hapbench_command import write
+from hapbench_looks import look
+from hapbench_pictures.panels import outline, section
+from hapbench_report.recording import tool_profile
 
 from .manuals import ROOT
 
@@ -95,27 +92,26 @@ class Scene:
 
 def picture(scene, half):
     colour = look(scene.scenario["rendering"]["algorithm"]).colour
-    with matplotlib.rc_context({**SETTINGS, "svg.hashsalt": scene.name}):
-        figure, (left, right) = plt.subplots(1, 2, figsize=INCHES, width_ratios=[1, 1.7])
+    with style.plt.rc_context(style.SETTINGS):
+        figure, (left, right) = style.plt.subplots(1, 2, figsize=INCHES, width_ratios=[1, 1.7])
         draw_section(left, scene, half, colour)
         draw_force(right, scene, colour)
-        drawn = io.BytesIO()
-        figure.savefig(drawn, format="svg", dpi=110, metadata={"Date": None})
-        plt.close(figure)
-    return drawn.getvalue()
+        drawn = style.picture(figure, "svg", salt=scene.name, dpi=110)
+        style.plt.close(figure)
+    return drawn
 
 
 def draw_section(ax, scene, half, colour):
     # As an image: thousands of points would make the file large.
-    ax.plot(*1e3 * scene.section().T, ".", color=PETROL, ms=1.5, rasterized=True)
+    ax.plot(*1e3 * scene.section().T, ".", color=style.PETROL, ms=1.5, rasterized=True)
     way = 1e3 * scene.plane(scene.tip)
     middle = (np.nanmin(way, 0) + np.nanmax(way, 0)) / 2
     near = np.flatnonzero((np.abs(way - middle) <= 1.5 * half).all(axis=1))
     rows = near[np.linspace(0, len(near) - 1, SNAPSHOTS).astype(int)]
-    for row, grey in zip(rows, ("#BBBBBB", "#8E8E8E", GREY, BLACK)):
+    for row, grey in zip(rows, ("#BBBBBB", "#8E8E8E", style.GREY, style.BLACK)):
         ax.add_patch(Polygon(1e3 * scene.tool(row), closed=True, facecolor="none", edgecolor=grey, lw=0.9))
     shown = way[near[:: max(1, len(near) // 600)]]
-    ax.plot(*shown.T, color=AMBER if colour == BLACK else colour, lw=1.2)
+    ax.plot(*shown.T, color=style.AMBER if colour == style.BLACK else colour, lw=1.2)
     ax.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half), aspect="equal",
            xlabel="x [mm]", ylabel="xyz"[scene.up] + " [mm]")
     ax.grid(False)
@@ -123,7 +119,7 @@ def draw_section(ax, scene, half, colour):
 
 def draw_force(ax, scene, colour):
     size = np.linalg.norm(scene.force, axis=1)
-    time, low, high = reduced(scene.time, size, size, SPANS)
+    time, low, high = style.reduced(scene.time, size, size, SPANS)
     ax.fill_between(time, low, high, color=colour, lw=0.6)
     ax.set(xlabel="time [s]", ylabel="rendered force [N]", ylim=(0, None),
            title=look(scene.scenario["rendering"]["algorithm"]).label)

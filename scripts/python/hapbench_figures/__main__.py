@@ -6,9 +6,10 @@ import time
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
-from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Arguments, say_error
+import hapbench_style as style
+from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Arguments, say_error, write
 
-from . import catalogue, style
+from . import catalogue
 from .drawing import attempts
 from .results import Results
 
@@ -62,7 +63,7 @@ def write_index(directory, entries):
             pass  # not ours or damaged: written anew
     merged.update({entry["id"]: entry for entry in entries})
     known = [merged[f.id] for f in catalogue.FIGURES if f.id in merged and (directory / f"{f.stem}.svg").is_file()]
-    style.write(file, (json.dumps({"figures": known}, indent=2, ensure_ascii=False) + "\n").encode())
+    write(file, json.dumps({"figures": known}, indent=2, ensure_ascii=False) + "\n")
 
 
 def show_progress(done, total):

@@ -1,7 +1,7 @@
 """Normal projection at a corner of the hole (figure F.4)."""
 import numpy as np
 
-from . import style
+import hapbench_style as style
 
 # Directory, algorithm, name of its depth; the wide line shows below the one that covers it.
 STROKES = (

@@ -4,7 +4,9 @@ import warnings
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from . import published, style
+import hapbench_style as style
+
+from . import published
 from .results import numbers
 
 MEASURES = (

@@ -2,7 +2,9 @@
 import numpy as np
 from matplotlib.patches import Polygon
 
-from . import published, style
+import hapbench_style as style
+
+from . import published
 from .results import MissingResult
 
 RUN = "task2_rotate_signed_distance"

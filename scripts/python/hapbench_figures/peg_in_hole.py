@@ -1,7 +1,9 @@
 """The planar peg-in-hole simulations (figures A.1, A.2, F.5 and B.3.3)."""
 import numpy as np
 
-from . import published, scene, style
+import hapbench_style as style
+
+from . import published, scene
 
 
 def simulation_view(results):

@@ -4,7 +4,9 @@ from textwrap import wrap
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from . import published, style
+import hapbench_style as style
+
+from . import published
 from .results import MissingResult, numbers
 
 # study, column of the error, its label and scale, column of the time and its label, title

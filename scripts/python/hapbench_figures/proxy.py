@@ -1,7 +1,8 @@
 """The drill turned in the hole under a steady push: the proxy beside stiffness shaping."""
 import numpy as np
 
-from . import style
+import hapbench_style as style
+
 from .ideal_trajectory import draw_block
 
 ALGORITHMS = ("shaped_stiffness", "exact_shaping", "proxy")

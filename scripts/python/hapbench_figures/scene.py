@@ -4,7 +4,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.patches import Polygon
 
-from . import style
+import hapbench_style as style
 
 MM = 1e3
 
@@ -153,15 +153,7 @@ def draw_segments(ax, contacts, colours, scale=1.0):
 def draw_arrow(ax, start, vector, colour, label=None, at=(3, 3), **keywords):
     """An arrow, both ends in the units of the axes; the label at its head."""
     head = np.asarray(start) + vector
-    style_ = {
-        "arrowstyle": "-|>",
-        "color": colour,
-        "lw": 1.8,
-        "shrinkA": 0,
-        "shrinkB": 0,
-        "mutation_scale": 9,
-        **keywords,
-    }
+    style_ = {"arrowstyle": "-|>", "color": colour, "lw": 1.8, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 9, **keywords}
     ax.annotate("", xy=head, xytext=start, arrowprops=style_, zorder=6)
     if label:
         ax.annotate(label, xy=head, xytext=at, textcoords="offset points", color=colour, fontsize=7.5, bbox=style.PLATE, zorder=7)

@@ -1,7 +1,7 @@
 """A mass on many springs, every algorithm (figures A.4 and A.5)."""
 import numpy as np
 
-from . import style
+import hapbench_style as style
 
 
 def draw_path(ax, rows, look):
@@ -53,9 +53,7 @@ def paths(results, kind, published):
 
 
 def unlimited(results):
-    return paths(
-        results, "unlimited", "not limited. Published: every algorithm reaches the origin; ours: what the panels say."
-    )
+    return paths(results, "unlimited", "not limited. Published: every algorithm reaches the origin; ours: what the panels say.")
 
 
 def limited(results):

@@ -8,7 +8,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
-from . import published, style
+import hapbench_style as style
+
+from . import published
 from .results import MissingResult, numbers
 
 CASES = (

@@ -6,7 +6,9 @@ from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon
 
-from . import published, scene, style
+import hapbench_style as style
+
+from . import published, scene
 
 SWEEP = "tilt_sweep_shaped_stiffness"
 # That sweep, and the wedge, under every algorithm.

@@ -1,8 +1,9 @@
 """The three evaluation tasks of 3.2 (figures 4, 5, C.2, C.4 and E.1 to E.4)."""
 import numpy as np
 
-from . import published, style
-from .results import envelope
+import hapbench_style as style
+
+from . import published
 
 TASKS = (
     ("T1", "task1_flat", "task 1: poke and drag"),
@@ -41,6 +42,11 @@ def published_count(ax, x, task, what):
     entry = published.entries()[id_]
     error = [[entry["std"]], [entry["std"]]] if "std" in entry else None
     ax.errorbar([x], [published.value(id_)], yerr=error, **style.PUBLISHED, clip_on=False)
+
+
+def span(time, values):
+    """Where each of so many spans of time begins, and the least and the greatest value in it."""
+    return style.reduced(time, values, values, BINS)
 
 
 PERIOD = 1 / 2048  # of the trainer's loop [s]
@@ -175,9 +181,7 @@ def convergence_by_task(results):
         draw_quantiles(ax, least, style.AMBER, "s", 0)
         ax.axhline(bound[0], color=style.BLACK, ls="--", lw=0.8)
         ax.axhline(bound[1], **style.PUBLISHED_LINE)
-        ax.errorbar(
-            [0.8], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"}
-        )
+        ax.errorbar([0.8], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"})
         ax.set(xscale="log", title=task[2], xlabel="iterations", xlim=(0.7, 200), ylim=(0.4, 1.62))
         ax.set_xticks([1, 3, 10, 40, 160], ["1", "3", "10", "40", "160"])
         ax.minorticks_off()
@@ -202,25 +206,14 @@ def convergence(results):
         draw_quantiles(ax, greatest, style.PETROL, "o", 4)
         draw_quantiles(ax, least, style.AMBER, "s", 0)
         ax.axhline(1, color=style.BLACK, ls="--", lw=0.8)
-        ax.errorbar(
-            [0.85], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"}
-        )
-        ax.set(
-            xscale="log",
-            yscale="log",
-            title=f"density: {name}",
-            xlabel="iterations",
-            xlim=(0.75, 200),
-            ylim=(0.42, 1.6),
-        )
+        ax.errorbar([0.85], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"})
+        ax.set(xscale="log", yscale="log", title=f"density: {name}", xlabel="iterations", xlim=(0.75, 200), ylim=(0.42, 1.6))
         ax.set_xticks(ITERATIONS, [str(i) if i in (1, 2, 3, 5, 10, 20, 40, 80, 160) else "" for i in ITERATIONS])
         ticks = (0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.2, 1.4, 1.6)
         ax.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
         ax.minorticks_off()
     axes[0, 0].set_ylabel("stiffness ratio")
-    style.note(
-        axes[0, 0], 0.97, 0.95, "greatest: stays above 1 where\na contact's weight vanishes", style.PETROL, ha="right"
-    )
+    style.note(axes[0, 0], 0.97, 0.95, "greatest: stays above 1 where\na contact's weight vanishes", style.PETROL, ha="right")
     style.note(axes[0, 0], 0.97, 0.06, "least: tends to 1", style.AMBER, ha="right", va="bottom")
     style.letter(axes[0])
     return figure, (
@@ -245,16 +238,12 @@ def over_time(results, draw, label, height=2.6, rows=1, **keywords):
 
 
 def positions(results):
-    coordinates = (
-        ("px_m", "x", style.PETROL, "-"),
-        ("py_m", "y", style.AMBER, (0, (4, 1.5))),
-        ("pz_m", "z", style.BLACK, "-"),
-    )
+    coordinates = (("px_m", "x", style.PETROL, "-"), ("py_m", "y", style.AMBER, (0, (4, 1.5))), ("pz_m", "z", style.BLACK, "-"))
 
     def draw(ax, _, task):
         rows = trajectory(results, task)
         for column, name, colour, line in coordinates:
-            time, low, high = envelope(rows["time_s"], 1e3 * rows[column], BINS)
+            time, low, high = span(rows["time_s"], 1e3 * rows[column])
             ax.plot(time, (low + high) / 2, color=colour, ls=line, lw=1.1, label=name)
             ax.fill_between(time, low, high, color=colour, alpha=0.3, lw=0)
 
@@ -271,7 +260,7 @@ def model_force(results):
     def draw(ax, _, task):
         rows = trajectory(results, task)
         size = np.sqrt(sum(rows[f"f{axis}_N"] ** 2 for axis in "xyz"))
-        time, low, high = envelope(rows["time_s"], size, BINS)
+        time, low, high = span(rows["time_s"], size)
         ax.fill_between(time, low, high, color=style.PETROL, alpha=0.45, lw=0)
         ax.plot(time, (low + high) / 2, color=style.PETROL, lw=0.9)
         ax.axhline(published.value("L1.threshold"), color=style.RED, ls="--", lw=0.9)
@@ -297,7 +286,7 @@ def _ratio_over_time(results, column, colour, word):
 
     def draw(ax, i, task):
         rows = ratios(results, task, ITERATIONS[i])
-        time, low, high = envelope(rows["time_s"], rows[column], BINS)
+        time, low, high = span(rows["time_s"], rows[column])
         ax.fill_between(time, low, high, color=colour, alpha=0.75, lw=0.4, edgecolor=colour)
         ax.axhline(1, color=style.BLACK, lw=0.7, ls="--")
         once = published.entries()["R1.once"]["at_most" if column == "ratio_max" else "at_least"]

@@ -1,12 +1,10 @@
-#include "algorithms/depth/continuous_normal_projection_depth.hpp"
+#include "algorithms/depth/depth_model.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <map>
 
-#include "algorithms/depth/normal_projection_depth.hpp"
-#include "algorithms/depth/shortest_distance.hpp"
 #include "sim/contact/shell_query.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/tool/turn.hpp"
@@ -56,7 +54,7 @@ class Stroke {
   PointShell shell_;
   ShellQuery query_;
   ContactBuffer contacts_;
-  std::unique_ptr<DepthModel> model_ = make_continuous_normal_projection_depth();
+  std::unique_ptr<DepthModel> model_ = make_depth_model("continuous_normal_projection");
 };
 
 ToolPose upright(double x, double z) {

@@ -8,7 +8,7 @@
 #include <ostream>
 #include <tuple>
 
-#include "algorithms/shell_source.hpp"
+#include "algorithms/depth/depth_model.hpp"
 #include "device_model/impedance_device.hpp"
 #include "results/allocations/allocations.hpp"
 #include "sim/core/aligned.hpp"

@@ -1,4 +1,4 @@
-#include "algorithms/stages/local_average.hpp"
+#include "algorithms/stages/point_stage.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,22 @@
 """The rendered force above 30 Hz as a sound: what a hand feels as vibration."""
+import base64
 import math
+import sys
+from array import array
 
-from .binary import base64_of
+import numpy as np
 
 CUTOFF_HZ = 30.0
 # Two minutes at 2 kHz; half a megabyte in the page.
 LONGEST = 1 << 18
+
+
+def base64_of(code, values):
+    """Numbers as text for a page: little endian, base64. Raises OverflowError for one that the type of array cannot hold."""
+    packed = array(code, values)
+    if sys.byteorder == "big":
+        packed.byteswap()
+    return base64.b64encode(packed.tobytes()).decode()
 
 
 def sound(columns):
@@ -17,16 +28,17 @@ def sound(columns):
     rate = (len(times) - 1) / (times[-1] - times[0])
     if rate < 4 * CUTOFF_HZ:
         return None
-    filtered = [high_passed(columns[f"f{axis}_N"][:LONGEST], rate) for axis in "xyz"]
-    direction = strongest(filtered)
-    heard = [sum(d * f for d, f in zip(direction, sample)) for sample in zip(*filtered)]
-    peak = max(map(abs, heard))
-    touching = [x for x, colliding in zip(heard, columns["colliding"]) if colliding > 0]
-    if not 0 < peak < 1e30:
+    filtered = np.array([high_passed(columns[f"f{axis}_N"][:LONGEST].tolist(), rate) for axis in "xyz"])
+    if not (np.abs(filtered) < 1e30).all():
         return None
+    heard = strongest(filtered) @ filtered
+    peak = np.abs(heard).max()
+    if peak == 0:
+        return None
+    touching = heard[columns["colliding"][:LONGEST] > 0]
     return {"rate": rate, "scale": peak / 32767, "start": times[0],
-            "rms": math.sqrt(sum(x * x for x in touching) / len(touching)) if touching else 0.0,
-            "samples": base64_of("h", (round(x / peak * 32767) for x in heard))}
+            "rms": math.sqrt(np.mean(touching**2)) if touching.size else 0.0,
+            "samples": base64_of("h", map(round, (heard / peak * 32767).tolist()))}
 
 
 def high_passed(samples, rate):
@@ -47,15 +59,6 @@ def high_passed(samples, rate):
     return samples
 
 
-def strongest(parts):
-    """Unit vector along which the three signals have most power: the first eigenvector of their covariance, by power
-    iteration, which needs no more than to hear the right one of two that are nearly equal."""
-    power = [[math.fsum(a * b for a, b in zip(p, q)) for q in parts] for p in parts]
-    v = [1.0 if i == max(range(3), key=lambda j: power[j][j]) else 0.1 for i in range(3)]
-    for _ in range(100):
-        v = [sum(a * x for a, x in zip(row, v)) for row in power]
-        length = math.hypot(*v)
-        if not length > 0:
-            return [1.0, 0.0, 0.0]
-        v = [x / length for x in v]
-    return v
+def strongest(signals):
+    """Unit vector along which the three signals have most power: the last eigenvector of their covariance."""
+    return np.linalg.eigh(signals @ signals.T)[1][:, -1]

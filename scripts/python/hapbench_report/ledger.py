@@ -1,7 +1,53 @@
-"""Summary and ledger."""
-from .claims import VERDICTS, robustness_text, verdict_counts
-from .links import claim_link, listed
-from .markup import cell, command, counted, folded, heading_cell, table, text, typeset
+"""The ledger: what the thesis claims, what it publishes, what we measure, and the verdict; with the choices on record and the
+summary of the page."""
+from .json_input import InputError, load_object, member, number_or_none, objects, shown
+from .links import claim_link
+from .markup import cell, command, counted, filters, folded, heading_cell, listed, table, text, typeset
+
+# Verdict -> (mark, tone). The mark tells verdicts apart without colour.
+VERDICTS = {
+    "reproduced": ("✓", "good"),
+    "reproduced in kind": ("≈", "fair"),
+    "not reproduced": ("✗", "bad"),
+    "refuted": ("⊘", "bad"),
+    "not reproducible": ("–", "none"),
+}
+
+
+def load_claims(file):
+    claims = objects(load_object(file), "claims", file)
+    for i, claim in enumerate(claims):
+        verdict = claim.get("verdict")
+        if verdict not in VERDICTS:
+            raise InputError(f"{file}: /claims/{i}/verdict: got {shown(verdict)}; allowed: {shown_verdicts()}")
+        if claim.get("robustness") is not None:
+            member(claim, "robustness", dict, file, f"/claims/{i}")
+    return claims
+
+
+def robustness_text(claim):
+    """How a claim's verdict fares over the choices on record, as the ledger's Markdown says it."""
+    robustness = claim.get("robustness")
+    if not robustness:
+        return "not sampled: times of one machine" if claim.get("timing") else ""
+    holds, judged, decided_by = (robustness.get(key) for key in ("holds", "judged", "decided_by"))
+    text = f"this verdict in {holds} of {judged} samples"
+    if isinstance(decided_by, dict):
+        return f"{text}; decided by {decided_by.get('choice')} (S = {number_or_none(decided_by.get('index')) or 0:.2f})"
+    return text if holds == judged else f"{text}; no single choice decides"
+
+
+def load_choices(file):
+    """What the thesis leaves open: results/reference/choices.json."""
+    return objects(load_object(file), "choices", file)
+
+
+def shown_verdicts():
+    return ", ".join(f'"{verdict}"' for verdict in VERDICTS)
+
+
+def verdict_counts(claims):
+    return {verdict: sum(claim["verdict"] == verdict for claim in claims) for verdict in VERDICTS}
 
 
 def verdict_mark(verdict):
@@ -88,11 +134,3 @@ def plausible(choice):
     if isinstance(options, list):
         return ", ".join(map(str, options))
     return " to ".join(map(str, range_ if isinstance(range_, list) else [])) + (", log" if choice.get("scale") == "log" else "")
-
-
-def filters(table_id, menus):
-    """Controls of a filtered table: a text and menus over columns."""
-    options = "".join(f'<label>{text(title)} <select data-column="{column}"><option value="">all</option></select></label>'
-                      for title, column in menus)
-    return (f'<div class="bar" data-filters="{table_id}"><label>Filter <input type="search" placeholder="words"></label>'
-            f"{options}<output></output></div>")

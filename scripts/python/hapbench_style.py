@@ -1,9 +1,10 @@
-"""One look for every figure: sizes, colours (those of algorithms are in hapbench_looks), and how figures become files."""
+"""The base of every picture: one look (sizes, colours; those of algorithms are in hapbench_looks), fewer rows for curves
+that cannot show all of theirs, and how a figure becomes the bytes of a file."""
 import io
-import os
-from pathlib import Path
+import re
 
 import matplotlib
+import numpy as np
 
 from hapbench_looks import ALGORITHMS, look  # noqa: F401  (style.look is how figures name it)
 from hapbench_looks import PUBLISHED as PUBLISHED_COLOUR
@@ -13,42 +14,19 @@ from matplotlib import pyplot as plt  # noqa: E402  (the backend comes first)
 from matplotlib.transforms import Bbox  # noqa: E402
 
 WIDTH = 7.0  # of a page's text [inch]
-FORMATS = ("svg", "pdf", "png")
-PNG_DPI = 150
+DPI = 150  # of a PNG
 
-# Lines and texts have a contrast of at least 4.5 to white. What is no algorithm's: readings, forces, contacts. Amber beside
-# petrol is told apart by every kind of colour vision; where there is more, line styles and markers help. Red is the thesis's.
+# Lines and texts have a contrast of at least 4.5 to white. These colours are for readings, forces and contacts, not for
+# algorithms. Amber and petrol differ for every kind of colour vision; a third colour comes with a line style or marker of
+# its own. Red is for the thesis's numbers.
 BLACK, GREY, AMBER, PETROL, PLUM, RED = "#000000", "#5F5F5F", "#8A5600", "#00647D", "#8A3B75", PUBLISHED_COLOUR
 # For areas only.
 SAND, PALE = "#EFE8DC", "#CFE6F5"
 SOIL = "#8C7A58"  # the sand's border
 
-# Those that the thesis's scenes are run with.
-OF_THE_THESIS = (
-    "original_averaging",
-    "summation",
-    "mean",
-    "virtual_coupling",
-    "shaped_stiffness",
-    "tandpasta",
-    "normal_projection",
-    "exact_shaping",
-)
-
 # Numbers of the thesis are hollow diamonds everywhere.
-PUBLISHED = {
-    "marker": "D",
-    "mfc": "white",
-    "mec": RED,
-    "ecolor": RED,
-    "color": RED,
-    "ms": 4.5,
-    "mew": 1.2,
-    "elinewidth": 1.2,
-    "capsize": 2.5,
-    "ls": "none",
-    "zorder": 5,
-}
+PUBLISHED = {"marker": "D", "mfc": "white", "mec": RED, "ecolor": RED, "color": RED, "ms": 4.5, "mew": 1.2, "elinewidth": 1.2,
+             "capsize": 2.5, "ls": "none", "zorder": 5}
 PUBLISHED_LINE = {"color": RED, "lw": 1, "ls": (0, (1, 1.5))}
 
 # Behind a label that may stand on a line.
@@ -116,24 +94,46 @@ def fix_layout(figure):
         figure.set_layout_engine(None)
 
 
-def save(figure, stem, directory):
-    """Writes the figure in every format, each file complete or not at all; returns the names. Same figure, same bytes:
-    no dates, and identifiers in the SVG that follow from the figure's name."""
+def picture(figure, kind, salt="hapbench", dpi=DPI):
+    """The bytes of the figure as "svg", "pdf" or "png". Same figure, same bytes: no dates, and identifiers in an SVG that
+    follow from `salt`."""
     fix_layout(figure)
-    names = []
-    with matplotlib.rc_context({"svg.hashsalt": stem}):
-        for kind in FORMATS:
-            metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {"Software": None}}[kind]
-            bytes_ = io.BytesIO()
-            figure.savefig(bytes_, format=kind, dpi=PNG_DPI, metadata=metadata)
-            write(Path(directory) / f"{stem}.{kind}", bytes_.getvalue())
-            names.append(f"{stem}.{kind}")
-    plt.close(figure)
-    return names
+    drawn = io.BytesIO()
+    undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {"Software": None}}[kind]
+    with matplotlib.rc_context({"svg.hashsalt": salt, "svg.fonttype": "none"}):
+        figure.savefig(drawn, format=kind, dpi=dpi, metadata=undated)
+    return thinned(drawn.getvalue().decode()).encode() if kind == "svg" else drawn.getvalue()
 
 
-def write(path, data):
-    """Replaces the file by one with the bytes."""
-    temporary = path.with_name(f".{path.name}.tmp")
-    temporary.write_bytes(data)
-    os.replace(temporary, path)
+# In an SVG: attributes that hold places, the shape of a marker, and one place that it is drawn at.
+PLACES = re.compile(r'( (?:d|x|y)=")([^"]*)')
+MARKER = re.compile(r'<path id="(\w+)" d="[^"]*" style="([^"]*)"/>')
+MARK = re.compile(r'(<use xlink:href="#(\w+)"[^>]*?) style="([^"]*)"/>')
+LONG_NUMBER = re.compile(r"-?\d+\.\d{3,}")
+
+
+def thinned(svg):
+    """The same drawing in fewer bytes: places to a hundredth of a point, and marks without the style that they repeat from
+    their marker."""
+    styles = dict(MARKER.findall(svg))
+    svg = MARK.sub(lambda mark: f"{mark[1]}/>" if styles.get(mark[2]) == mark[3] else mark[0], svg)
+    return PLACES.sub(lambda place: place[1] + LONG_NUMBER.sub(lambda number: f"{round(float(number[0]), 2):.8g}", place[2]), svg)
+
+
+def reduced(time, low, high, spans):
+    """The least of `low` and the greatest of `high` in each of so many equal spans of time that hold a row, and where
+    the span begins; the rows themselves if they are no more. NaN only where a span has nothing else."""
+    if len(time) <= 2 * spans:
+        return time, low, high
+    length = (time[-1] - time[0]) or 1.0
+    span = np.minimum(((time - time[0]) / length * spans).astype(int), spans - 1)
+    starts = np.flatnonzero(np.diff(span, prepend=-1))
+    return time[starts], np.fmin.reduceat(low, starts), np.fmax.reduceat(high, starts)
+
+
+def curve(time, low, high, spans):
+    """The same as one line: down and up within each span."""
+    t, least, most = reduced(time, low, high, spans)
+    if len(t) == len(time):
+        return time, low
+    return np.repeat(t, 2), np.column_stack([least, most]).ravel()

@@ -1,14 +1,12 @@
 """`hapbench report`: one page of the runs given, and nothing else."""
 from pathlib import Path
 
-from hapbench_command import Arguments
+from hapbench_command import Arguments, write
 from hapbench_report.json_input import InputError
 from hapbench_report.page import whole_page
-from hapbench_report.section_replay import player
+from hapbench_report.replay import player
 
-from .curves import curves_section
-from .fidelity import fidelity_section
-from .files import write
+from .curves import curves_section, fidelity_section
 from .given import common_folder, given_runs, given_sweep, labels
 from .quantities import TRAJECTORY, tables_of
 from .replay import replays
