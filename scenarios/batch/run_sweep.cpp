@@ -4,16 +4,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdint>
 #include <nlohmann/json.hpp>
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/parallel_for.hpp"
-#include "scenarios/batch/runs_to_do.hpp"
-#include "scenarios/batch/sweep_row.hpp"
-#include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/recent_shells.hpp"
 #include "scenarios/run/run_scenario.hpp"
@@ -24,7 +20,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The rows of the shard's runs: which there are, and where.
+bool is_of_environment(const Axis& axis) {
+  return axis.path == "environment" || axis.path.starts_with("environment.");
+}
+
+/// The axes by whose values runs can be grouped: each point of a sampled range has a value of its own.
+std::vector<std::size_t> environment_axes(const SweepPoints& points) {
+  std::vector<std::size_t> axes;
+  for (std::size_t a = 0; a < points.axes().size(); ++a) {
+    if (is_of_environment(points.axes()[a]) && points.axes()[a].size() > 1) axes.push_back(a);
+  }
+  return axes;
+}
+
+/// Journal offset of each finished row of the shard.
 class Rows {
  public:
   Rows(const SweepPlan& plan, const Shard& shard)
@@ -38,10 +47,10 @@ class Rows {
     places_[run / shard_.count] = place;
   }
   void set_failed(std::size_t run) { set(run, kFailed); }
-  /// Precondition: there is one, and the journal is written.
-  std::string row(std::size_t run, const Journal& journal) const {
+  /// Precondition: the run has a row, and the journal is flushed.
+  std::string row(std::size_t run, Journal& journal) const {
     const Journal::Place place = places_[run / shard_.count];
-    return place == kFailed ? error_row(plan_, run) : journal.row_at(place);
+    return place == kFailed ? row_text(plan_, error_row(plan_, run)) : journal.row_at(place);
   }
 
  private:
@@ -54,17 +63,18 @@ class Rows {
   std::size_t count_ = 0;
 };
 
-/// Notes a row that the journal holds. Its first line is right, but somebody may have written to it.
+/// Records a row that was found in the journal. Refuses rows that are not of this sweep, since somebody may have edited
+/// the file.
 void note(Rows& rows, const SweepPlan& plan, const Shard& shard, const fs::path& file, Journal::Place place,
           std::string_view row) {
-  const auto run = run_of_row(plan, row);
-  if (!run || !shard.has(*run)) {
+  const auto known = parse_row(plan, row);
+  if (!known || !shard.has(known->run)) {
     fail_in_file(file, fmt::format("got the row \"{}\"; allowed: rows of this sweep", row.substr(0, 60)));
   }
-  rows.set(*run, place);
+  rows.set(known->run, place);
 }
 
-/// A run on its way from the threads to the journal.
+/// A finished run that is not yet in the journal.
 struct FinishedRun {
   std::string row;
   std::chrono::steady_clock::duration time;
@@ -76,14 +86,14 @@ FinishedRun compute(const SweepPlan& plan, const SweepOptions& options, RecentSh
   const auto shell = shells.of(loaded, environment_of(plan.points, run));
   std::optional<fs::path> output;
   if (options.keep_runs) output = options.directory / "runs" / fmt::format("{:06}", run);
-  std::string row = sweep_row(plan, run, run_with_shell(loaded, shell, output, false).summary);
+  std::string row = row_text(plan, sweep_row(plan, run, run_with_shell(loaded, shell, output, false).summary));
   return {std::move(row), std::chrono::steady_clock::now() - start};
 }
 
-/// Does the runs that have no row yet.
+/// Computes the runs that have no row yet.
 void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& journal, Rows& rows,
                   SweepReport& report) {
-  // A file is written to after so much work, not after each run: that would take 1 % of a short one.
+  // The journal is flushed after this much work, because flushing after each run would take 1 % of a short one.
   constexpr std::chrono::milliseconds kMostUnwritten(10);
   std::chrono::steady_clock::duration unwritten{};
   RunsToDo runs(plan.points, options.part());
@@ -127,6 +137,36 @@ void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& j
 
 }  // namespace
 
+std::string environment_of(const SweepPoints& points, std::size_t run) {
+  std::string environment;
+  for (std::size_t a = 0; a < points.axes().size(); ++a) {
+    // No value has a line break.
+    if (is_of_environment(points.axes()[a])) environment += points.value(run, a) + "\n";
+  }
+  return environment;
+}
+
+RunsToDo::RunsToDo(const SweepPoints& points, const Shard& shard) : shard_(shard), count_(shard.size(points.size())) {
+  const std::vector<std::size_t> axes = environment_axes(points);
+  if (axes.empty()) return;
+  order_.reserve(count_);
+  for (std::size_t run = shard.index; run < points.size(); run += shard.count) {
+    std::uint32_t environment = 0;  // may overflow: then runs of two environments alternate
+    for (const std::size_t a : axes) {
+      environment = environment * static_cast<std::uint32_t>(points.axes()[a].size()) +
+                    static_cast<std::uint32_t>(points.place(run, a));
+    }
+    order_.push_back(std::uint64_t{environment} << 32 | run);
+  }
+  std::sort(order_.begin(), order_.end());
+}
+
+std::optional<std::size_t> RunsToDo::next() {
+  if (given_ == count_) return std::nullopt;
+  const std::size_t i = given_++;
+  return order_.empty() ? shard_.index + i * shard_.count : order_[i] & 0xffffffff;
+}
+
 std::string stem_of(const std::optional<Shard>& shard) {
   return shard ? fmt::format("sweep_shard_{}_of_{}", shard->index, shard->count) : "sweep";
 }
@@ -151,10 +191,11 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
   report.table = options.directory / (stem + ".csv");
   write_file_atomically(options.directory / (stem + ".json"), json_text(sweep_description(plan, options.part())));
   write_sweep_table(report.table, plan, options.shard, [&](std::size_t run) {
-    std::string row = rows.row(run, journal);
-    report.counts.add(plan, run, row);
-    if (rows.size() <= SweepReport::kMostRows) report.rows.push_back(row);
-    return row;
+    std::string text = rows.row(run, journal);
+    SweepRow row = parse_row(plan, text).value();
+    report.counts.add(row);
+    if (rows.size() <= SweepReport::kMostRows) report.rows.push_back(std::move(row));
+    return text;
   });
   journal.remove();
   return report;

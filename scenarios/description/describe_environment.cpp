@@ -4,7 +4,6 @@
 
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/size_limits.hpp"
 
 namespace hapbench {
 namespace {

@@ -7,7 +7,6 @@
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/extends.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/size_limits.hpp"
 
 namespace hapbench {
 namespace {

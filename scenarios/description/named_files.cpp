@@ -1,10 +1,10 @@
 #include "scenarios/description/named_files.hpp"
 
 #include <algorithm>
-
 #include "scenarios/description/descriptions.hpp"
-#include "scenarios/input/number_table.hpp"
-#include "scenarios/input/shell_file.hpp"
+#include "scenarios/input/mesh_file.hpp"
+#include "scenarios/input/motion_file.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {

@@ -5,7 +5,6 @@
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/input/size_limits.hpp"
 
 /// What fields of a scenario say together, beyond a schema.
 namespace hapbench {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "scenarios/input/byte_reader.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
+#include "scenarios/input/mesh_formats.hpp"
 #include "scenarios/input/text_lines.hpp"
 
 namespace hapbench {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/number_table.hpp"
+#include "scenarios/input/text_lines.hpp"
 
 namespace hapbench {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scenarios/batch/jobs.hpp"
+#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/program/command_line.hpp"

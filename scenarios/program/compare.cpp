@@ -8,10 +8,10 @@
 #include <span>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/batch/earlier_results.hpp"
-#include "scenarios/batch/league_files.hpp"
-#include "scenarios/batch/league_runs.hpp"
+#include "results/summary/outcome_names.hpp"
+#include "scenarios/batch/league.hpp"
 #include "scenarios/batch/parallel_for.hpp"
+#include "scenarios/batch/result_folders.hpp"
 #include "scenarios/batch/run_batch.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/program/compare_devices.hpp"

@@ -7,7 +7,6 @@
 #include "results/io/atomic_file.hpp"
 #include "scenarios/import/import_stroke.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/number_table.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/table.hpp"

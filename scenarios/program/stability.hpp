@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/program/command.hpp"
 
 /// The experiments of `hapbench stability`: limits of A.3, stress test and search in stability.cpp, maps in

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/batch/league_runs.hpp"
+#include "scenarios/batch/league.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"

@@ -8,8 +8,8 @@
 #include <optional>
 #include <utility>
 
-#include "scenarios/batch/league_runs.hpp"
-#include "scenarios/batch/sweep_row.hpp"
+#include "scenarios/batch/league.hpp"
+#include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/run_table.hpp"
@@ -22,69 +22,24 @@ namespace {
 constexpr std::size_t kMostRowsShown = 100;
 constexpr std::size_t kMostCells = 400;
 
-/// The rows of a sweep's table by the columns of sweep_header: index, varied fields, outcome, expected, steps, metrics,
-/// state_hash.
-class SweepTable {
- public:
-  SweepTable(const SweepPlan& plan, const std::vector<std::string>& rows)
-      : header_(sweep_header(plan)), names_(parts_of(header_, ',')), outcome_(1 + plan.points.axes().size()) {
-    for (const std::string& row : rows) rows_.push_back(parts_of(row, ','));
-  }
-
-  std::size_t size() const { return rows_.size(); }
-  std::string_view outcome(std::size_t row) const { return rows_[row][outcome_]; }
-  std::string_view first_field(std::size_t row) const { return rows_[row][1]; }
-  bool has(std::string_view metric) const { return column_of(metric) < names_.size(); }
-  /// None for an empty cell. Precondition: has(metric).
-  std::optional<double> metric(std::size_t row, std::string_view metric) const {
-    return finite_number(rows_[row][column_of(metric)]);
-  }
-
-  /// The row as an object: null for empty cells.
-  Json json(std::size_t row) const {
-    Json object = Json::object();
-    for (std::size_t c = 0; c < names_.size(); ++c) {
-      const std::string_view cell = rows_[row][c];
-      object[std::string(names_[c])] = cell.empty()             ? Json(nullptr)
-                                       : c == outcome_          ? Json(cell)
-                                       : c == outcome_ + 1      ? Json(cell == "true")
-                                       : c + 1 == names_.size() ? Json(cell)  // a hash may look like a number
-                                                                : value_json(cell);
-    }
-    return object;
-  }
-
- private:
-  std::size_t column_of(std::string_view metric) const {
-    return static_cast<std::size_t>(std::find(names_.begin(), names_.end(), metric) - names_.begin());
-  }
-  /// A number of a run or a value of a varied field, which may also be a flag or a text.
-  static Json value_json(std::string_view cell) {
-    if (const auto count = whole_number(cell)) return *count;
-    if (const auto number = finite_number(cell)) return *number;
-    return cell == "true" || cell == "false" ? Json(cell == "true") : Json(cell);
-  }
-
-  std::string header_;
-  Words names_;
-  std::size_t outcome_;  ///< column
-  std::vector<Words> rows_;
-};
+bool has_metric(const SweepPlan& plan, std::string_view name) {
+  return std::find(plan.metrics.begin(), plan.metrics.end(), name) != plan.metrics.end();
+}
 
 /// The runs of a single axis, with the headings that run and compare have.
-std::string runs_text(const SweepPlan& plan, const SweepTable& sweep) {
+std::string runs_text(const SweepPlan& plan, const std::vector<SweepRow>& rows) {
   std::vector<RunHeading> metrics;
   std::vector<Table::Column> columns = {{plan.points.axes()[0].path}, {"outcome", false}};
   for (const RunHeading& heading : kRunHeadings) {
-    if (heading.factor == 0.0 || !sweep.has(heading.shows[0])) continue;
+    if (heading.factor == 0.0 || !has_metric(plan, heading.shows[0])) continue;
     metrics.push_back(heading);
     columns.push_back({heading.title});
   }
   Table table(columns);
-  for (std::size_t row = 0; row < sweep.size(); ++row) {
-    std::vector<std::string> cells = {std::string(sweep.first_field(row)), std::string(sweep.outcome(row))};
+  for (const SweepRow& row : rows) {
+    std::vector<std::string> cells = {plan.points.value(row.run, 0), row.outcome};
     for (const RunHeading& heading : metrics) {
-      const auto value = sweep.metric(row, heading.shows[0]);
+      const auto value = row.number(plan, heading.shows[0]);
       cells.push_back(value ? significant(heading.factor * *value, 3) : "-");
     }
     table.add(std::move(cells));
@@ -105,14 +60,13 @@ struct Cell {
 /// A sweep of two fields by one metric. One field goes across, the other one down; fields of texts go down.
 class Grid {
  public:
-  Grid(const std::vector<Axis>& axes, const SweepTable& sweep, std::string_view metric)
-      : first_down_(!holds_texts(axes[1]) || holds_texts(axes[0])),
-        across_(axes[first_down_ ? 1 : 0]),
-        down_(axes[first_down_ ? 0 : 1]) {
-    for (std::size_t row = 0; row < sweep.size(); ++row) {
-      const std::string_view outcome = sweep.outcome(row);
-      const bool failed = outcome == kErrorOutcome || is_failure(outcome);
-      cells_.push_back({failed ? std::nullopt : sweep.metric(row, metric), std::string(failed ? outcome : "")});
+  Grid(const SweepPlan& plan, const std::vector<SweepRow>& rows, std::string_view metric)
+      : first_down_(!holds_texts(plan.points.axes()[1]) || holds_texts(plan.points.axes()[0])),
+        across_(plan.points.axes()[first_down_ ? 1 : 0]),
+        down_(plan.points.axes()[first_down_ ? 0 : 1]) {
+    for (const SweepRow& row : rows) {
+      const bool failed = row.outcome == kErrorOutcome || is_failure(row.outcome);
+      cells_.push_back({failed ? std::nullopt : row.number(plan, metric), failed ? row.outcome : ""});
     }
   }
 
@@ -204,10 +158,10 @@ std::string map_text(const Grid& grid, std::string_view metric) {
                      metric, levels.legend());
 }
 
-std::string grid_text(const SweepPlan& plan, const SweepTable& sweep, std::string_view metric) {
+std::string grid_text(const SweepPlan& plan, const std::vector<SweepRow>& rows, std::string_view metric) {
   const bool is_grid = plan.points.axes().size() == 2 && !plan.points.sampling();
-  if (!is_grid || sweep.size() != plan.points.size() || sweep.size() > kMostCells) return "";
-  const Grid grid(plan.points.axes(), sweep, metric);
+  if (!is_grid || rows.size() != plan.points.size() || rows.size() > kMostCells) return "";
+  const Grid grid(plan, rows, metric);
   std::string text = fmt::format("{}\n\n{}\n", metric, table_text(grid));
   constexpr std::size_t kMostAcross = 40;  // a wider map does not fit beside its labels
   if (grid.across().size() <= kMostAcross) text += map_text(grid, metric) + "\n";
@@ -221,16 +175,14 @@ std::string chosen_metric(const SweepPlan& plan, const std::string& asked_for) {
     require_valid_name("--metric: got", asked_for, plan.metrics);
     return asked_for;
   }
-  const auto has = [&plan](std::string_view name) {
-    return std::find(plan.metrics.begin(), plan.metrics.end(), name) != plan.metrics.end();
-  };
+  const auto has = [&plan](std::string_view name) { return has_metric(plan, name); };
   return std::string(*std::find_if(std::begin(kDefaultMetrics), std::end(kDefaultMetrics) - 1, has));
 }
 
 std::string summary_text(const SweepPlan& plan, const SweepReport& report, const std::string& metric) {
-  const SweepTable sweep(plan, report.rows);
-  std::string text = grid_text(plan, sweep, metric);
-  if (plan.points.axes().size() == 1 && report.counts.runs <= kMostRowsShown) text = runs_text(plan, sweep) + "\n";
+  std::string text = grid_text(plan, report.rows, metric);
+  if (plan.points.axes().size() == 1 && report.counts.runs <= kMostRowsShown)
+    text = runs_text(plan, report.rows) + "\n";
   Table table({{"outcome", false}, {"runs"}, {"as expected"}});
   for (const auto& [outcome, count] : report.counts.outcomes) {
     table.add({outcome, std::to_string(count.runs), std::to_string(count.expected)});
@@ -247,9 +199,8 @@ Json summary_json(const SweepPlan& plan, const SweepReport& report) {
   Json json = {{"definition", plan.definition},   {"runs", counts.runs},     {"outcomes", std::move(outcomes)},
                {"unexpected", counts.unexpected}, {"failed", counts.failed}, {"file", report.table.string()}};
   if (counts.runs > SweepReport::kMostRows) return json;
-  const SweepTable sweep(plan, report.rows);
   Json& rows = json["rows"] = Json::array();
-  for (std::size_t row = 0; row < sweep.size(); ++row) rows.push_back(sweep.json(row));
+  for (const SweepRow& row : report.rows) rows.push_back(row_json(plan, row));
   return json;
 }
 

@@ -7,7 +7,7 @@
 #include "results/io/atomic_file.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/input/shell_file.hpp"
+#include "scenarios/input/mesh_file.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/expected_output.hpp"

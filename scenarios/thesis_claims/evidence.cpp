@@ -9,10 +9,9 @@
 
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/scenario_text.hpp"
-#include "scenarios/input/csv_reader.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/input/number_table.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_to_end.hpp"
 

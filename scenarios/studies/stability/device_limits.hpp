@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/jobs.hpp"
+#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/scenario_text.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
 

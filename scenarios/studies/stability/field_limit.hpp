@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/axis.hpp"
-#include "scenarios/batch/jobs.hpp"
+#include "scenarios/batch/parallel_for.hpp"
+#include "scenarios/batch/sweep_points.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/recent_shells.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"

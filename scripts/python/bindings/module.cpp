@@ -6,10 +6,6 @@
 #include <optional>
 
 #include "algorithms/registry.hpp"
-#include "bindings/errors.hpp"
-#include "bindings/python_law.hpp"
-#include "bindings/simulation.hpp"
-#include "bindings/supervise.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/program/command.hpp"

@@ -101,5 +101,40 @@ TEST(ForEachRunInParallel, HasAsManyThreadsAsJobsEvenOnASmallerMachine) {
   EXPECT_EQ(delivered, 4u);
 }
 
+// ---- Lists of jobs
+
+TEST(ForEachJob, DoesEachOnceOnAnyNumberOfThreads) {
+  for (const unsigned threads : {0u, 1u, 2u, 7u, 100u}) {
+    for (const std::size_t count : {0u, 1u, 5u, 1000u}) {
+      std::vector<std::atomic<int>> done(count);
+      for_each_job(count, {threads, ""}, [&](std::size_t i) { ++done[i]; });
+      for (const auto& times : done) EXPECT_EQ(times, 1);
+    }
+  }
+}
+
+TEST(ForEachJob, ThrowsWhatTheLowestFailingJobThrew) {
+  for (const unsigned threads : {1u, 4u}) {
+    // All fail: the first one is begun before any other and is the lowest.
+    try {
+      for_each_job(50, {threads, ""}, [](std::size_t i) { throw std::runtime_error(std::to_string(i)); });
+      FAIL() << "nothing was thrown";
+    } catch (const std::runtime_error& error) {
+      EXPECT_EQ(std::string(error.what()), "0");
+    }
+  }
+}
+
+TEST(ForEachJob, BeginsNothingAfterAFailure) {
+  std::size_t begun = 0;
+  EXPECT_THROW(for_each_job(1000, {1, ""},
+                            [&](std::size_t i) {
+                              ++begun;
+                              if (i == 10) throw std::runtime_error("ten");
+                            }),
+               std::runtime_error);
+  EXPECT_EQ(begun, 11u);
+}
+
 }  // namespace
 }  // namespace hapbench::parallel_for_test

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "scenarios/batch/sweep_row.hpp"
+#include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/batch/sweeps.hpp"

@@ -9,7 +9,6 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/motion_file.hpp"
-#include "scenarios/input/shell_file.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/mesh_texts.hpp"
 #include "tests/scenarios/support/mutation.hpp"

@@ -1,11 +1,11 @@
-#include "scenarios/batch/earlier_results.hpp"
+#include "scenarios/batch/result_folders.hpp"
 
 #include <gtest/gtest.h>
 
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 
-namespace hapbench::earlier_results_test {
+namespace hapbench::result_folders_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,4 +80,4 @@ TEST_F(EarlierResults, AreNoneWhereTheListCannotBeRead) {
 }
 
 }  // namespace
-}  // namespace hapbench::earlier_results_test
+}  // namespace hapbench::result_folders_test

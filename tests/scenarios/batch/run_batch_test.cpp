@@ -1,16 +1,15 @@
-#include "scenarios/batch/batch_plan.hpp"
+#include "scenarios/batch/run_batch.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "scenarios/batch/run_batch.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-namespace hapbench::batch_plan_test {
+namespace hapbench::run_batch_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -139,4 +138,4 @@ TEST_F(BatchPlanOf, RunsWritesTheSameFilesWhateverTheJobs) {
 }
 
 }  // namespace
-}  // namespace hapbench::batch_plan_test
+}  // namespace hapbench::run_batch_test
