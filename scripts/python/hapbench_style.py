@@ -105,19 +105,30 @@ def picture(figure, kind, salt="hapbench", dpi=DPI):
     return thinned(drawn.getvalue().decode()).encode() if kind == "svg" else drawn.getvalue()
 
 
-# In an SVG: attributes that hold places, the shape of a marker, and one place that it is drawn at.
+# In an SVG: attributes that hold places, the shape of a marker, a mark, and a group of marks.
 PLACES = re.compile(r'( (?:d|x|y)=")([^"]*)')
+LONG_NUMBER = re.compile(r"-?\d+\.\d{3,}")
 MARKER = re.compile(r'<path id="(\w+)" d="[^"]*" style="([^"]*)"/>')
 MARK = re.compile(r'(<use xlink:href="#(\w+)"[^>]*?) style="([^"]*)"/>')
-LONG_NUMBER = re.compile(r"-?\d+\.\d{3,}")
+MARKS = re.compile(r'<g( clip-path="[^"]*")?>\n((?:\s*<use [^>]*/>\n)+)')
+STYLE = re.compile(r' style="[^"]*"')
 
 
 def thinned(svg):
-    """The same drawing in fewer bytes: places to a hundredth of a point, and marks without the style that they repeat from
-    their marker."""
+    """The same drawing in fewer bytes: places to a hundredth of a point, and marks without the style of their marker or of all
+    marks of their group."""
     styles = dict(MARKER.findall(svg))
     svg = MARK.sub(lambda mark: f"{mark[1]}/>" if styles.get(mark[2]) == mark[3] else mark[0], svg)
-    return PLACES.sub(lambda place: place[1] + LONG_NUMBER.sub(lambda number: f"{round(float(number[0]), 2):.8g}", place[2]), svg)
+    svg = PLACES.sub(lambda place: place[1] + LONG_NUMBER.sub(lambda number: f"{round(float(number[0]), 2):.8g}", place[2]), svg)
+    return MARKS.sub(with_one_style, svg)
+
+
+def with_one_style(group):
+    clip, marks = group.groups(default="")
+    styles = STYLE.findall(marks)
+    if len(set(styles)) != 1 or len(styles) != marks.count("<use "):
+        return group[0]
+    return f"<g{clip}{styles[0]}>\n{STYLE.sub('', marks)}"
 
 
 def reduced(time, low, high, spans):

@@ -8,7 +8,7 @@ from hapbench_bench import peers, table
 from hapbench_command import BAD_INPUT, FAILED, INTERRUPTED, SUCCESS, Arguments, say_error, write
 from hapbench_report.json_input import InputError
 
-from . import blocks, ledger, studies
+from . import blocks, gallery, ledger, studies
 from .manuals import ROOT, Manual, manuals
 from .program import Program, ProgramError
 
@@ -54,7 +54,6 @@ def main(words=None):
         program = None if chosen.tables else Program(chosen.program)
         with tempfile.TemporaryDirectory(prefix="hapbench-docs-") as scratch:
             if chosen.gallery and program:
-                from . import gallery  # only here: matplotlib takes a second
                 gallery.draw_all(program, Path(scratch))
             for manual in map(Manual, manuals()):
                 text = renewed(manual, Path(scratch), program)

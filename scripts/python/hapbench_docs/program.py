@@ -25,7 +25,7 @@ class Program:
         done = subprocess.run([self.file, *words], cwd=directory, capture_output=True, text=True, encoding="utf-8",
                               env={**environment, "COLUMNS": str(COLUMNS), "LC_ALL": "C.UTF-8"}, stdin=subprocess.DEVNULL)
         if done.returncode not in (0, 3):
-            raise ProgramError(f"hapbench {' '.join(words)}: exit status {done.returncode}: {done.stderr.strip()}")
+            raise ProgramError(f"hapbench {' '.join(map(str, words))}: exit status {done.returncode}: {done.stderr.strip()}")
         return done.stdout
 
     def stamped(self, text, old):

@@ -17,19 +17,13 @@ NOTHING_DRAWN = KILLED = 1
 
 
 def arguments(argv):
-    parser = Arguments(
-        prog="scripts/figures",
-        description="Draws the figures of the thesis with our data, and ours, as "
-        "SVG, PDF and PNG. A figure whose data is missing is skipped, and said so.",
-    )
+    parser = Arguments(prog="scripts/figures", description="Draws the figures of the thesis with our data, and ours, as SVG, PDF and "
+                       "PNG. A figure whose data is missing is skipped, with a message.")
     parser.add_argument("results", nargs="?", metavar="RESULTS_DIR", help="results as scripts/reproduce leaves them")
     parser.add_argument("--out", metavar="DIR", help="directory of the figures and of figures.json")
-    parser.add_argument(
-        "--only", metavar="ID,…", help="draw these; an id stands for those that begin with it and a hyphen, too"
-    )
-    parser.add_argument(
-        "--jobs", type=int, metavar="N", default=len(os.sched_getaffinity(0)), help="figures at once (default: one per thread)"
-    )
+    parser.add_argument("--only", metavar="ID,…", help="draw these; an id stands for those that begin with it and a hyphen, too")
+    parser.add_argument("--jobs", type=int, metavar="N", default=len(os.sched_getaffinity(0)), help="figures at once (default: one per "
+                        "thread)")
     parser.add_argument("--list", action="store_true", help="list the figures")
     chosen = parser.parse_args(argv)
     if not chosen.list and not (chosen.results and chosen.out):

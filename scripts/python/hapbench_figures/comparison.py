@@ -71,18 +71,11 @@ def discussion(results):
 
 
 def draw_over_reduction(ax, results):
-    for name, colour, line, label in (
-        ("unreduced", style.AMBER, (0, (4, 1.2)), "all"),
-        ("reduced", style.PETROL, "-", "reduced"),
-    ):
+    for name, colour, line, label in (("unreduced", style.AMBER, (0, (4, 1.2)), "all"),
+                                      ("reduced", style.PETROL, "-", "reduced")):
         rows = results.table(f"thesis/over_reduction_{name}/trajectory.csv")
-        ax.plot(
-            -1e3 * rows["px_m"],
-            np.where(rows["rendered"] > 0, rows["rendered"], np.nan),
-            color=colour,
-            ls=line,
-            label=label,
-        )
+        ax.plot(-1e3 * rows["px_m"], np.where(rows["rendered"] > 0, rows["rendered"], np.nan), color=colour, ls=line,
+                label=label)
     ax.set(yscale="log", xlabel="way into the groove [mm]", ylabel="rendered contacts", title="over-reduction")
     ax.legend(loc="center right")
 

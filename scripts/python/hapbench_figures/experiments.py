@@ -104,12 +104,8 @@ def experiment(results, task, targets, what):
 
 
 def vertical(results):
-    return experiment(
-        results,
-        "vertical",
-        ((1, "D1", "side target (0.52 mm)"), (0, "D2", "central target")),
-        "Vertical peg-in-hole task",
-    )
+    return experiment(results, "vertical", ((1, "D1", "side target (0.52 mm)"), (0, "D2", "central target")),
+                      "Vertical peg-in-hole task")
 
 
 def rotational(results):

@@ -112,10 +112,5 @@ def draw_error(ax, sweep):
     ax.figure.colorbar(marks, ax=ax, label="tilt [rad]", shrink=0.9)
     ax.axvline(1e3 * published.entries()["G1.negligible"]["at_most"], **style.PUBLISHED_LINE)
     style.note(ax, 0.22, 0.98, "published: negligible\nup to 0.25 mm", style.RED)
-    ax.set(
-        xlabel="distance along the normal [mm]",
-        ylabel="depth too small by [mm]",
-        title="underestimation",
-        xlim=(0, 1.3),
-        ylim=(-0.02, 0.85),
-    )
+    ax.set(xlabel="distance along the normal [mm]", ylabel="depth too small by [mm]", title="underestimation", xlim=(0, 1.3),
+           ylim=(-0.02, 0.85))

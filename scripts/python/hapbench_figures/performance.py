@@ -42,11 +42,8 @@ def series(rows):
 def with_times(results, study):
     """Rows of a study, each with the time of its setting."""
     times = {row["setting"]: row for row in results.records(f"precision/precision_{study}_timing.csv")}
-    return [
-        {**row, **times[row["setting"]]}
-        for row in results.records(f"precision/precision_{study}.csv")
-        if row["setting"] in times
-    ]
+    return [{**row, **times[row["setting"]]} for row in results.records(f"precision/precision_{study}.csv")
+            if row["setting"] in times]
 
 
 def finished(rows, error, largest=np.inf):

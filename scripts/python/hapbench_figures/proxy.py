@@ -6,7 +6,7 @@ import hapbench_style as style
 from .ideal_trajectory import draw_block
 
 ALGORITHMS = ("shaped_stiffness", "exact_shaping", "proxy")
-EVERY = 160  # rows: a drawn mark of every row could not be told from its neighbours
+EVERY = 320  # rows: a drawn mark of every row could not be told from its neighbours
 SETTLED = 0.5  # seconds: the drill starts above its place
 
 

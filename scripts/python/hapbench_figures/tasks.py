@@ -13,10 +13,8 @@ TASKS = (
 DENSITIES = (("signed_distance", "signed distance"), ("binary", "binary"))
 ITERATIONS = (1, 2, 3, 4, 5, 10, 20, 40, 80, 160)
 BINS = 240  # of a time axis: more cannot be told apart at column width
-HAND = (
-    "Hands and paths are ours, calibrated to the published mean and standard deviation of the raw points and to nothing "
-    "else."
-)
+HAND = ("Hands and paths are ours, calibrated to the published mean and standard deviation of the raw points and to nothing "
+        "else.")
 
 
 def trajectory(results, task, density="signed_distance"):
@@ -113,10 +111,8 @@ def count_distribution(results):
     figure, axes = style.panels(1, 2, 2.9, sharey=True)
     offsets = {"signed_distance": 0.2, "binary": 0.0}
     markers = {"signed_distance": "o", "binary": "s"}
-    for ax, column, what, title in (
-        (axes[0, 0], "colliding", "raw", "before the reduction"),
-        (axes[0, 1], "rendered", "reduced", "after the reduction"),
-    ):
+    for ax, column, what, title in ((axes[0, 0], "colliding", "raw", "before the reduction"),
+                                    (axes[0, 1], "rendered", "reduced", "after the reduction")):
         for place, (id_, task, _) in enumerate(TASKS):
             y = len(TASKS) - place
             for density, name in DENSITIES:
@@ -126,12 +122,8 @@ def count_distribution(results):
             for k, suffix in enumerate(("", ".C3")):
                 if f"{id_}.{what}{suffix}" in published.entries():
                     entry = published.entries()[f"{id_}.{what}{suffix}"]
-                    ax.errorbar(
-                        [published.value(entry["id"])],
-                        [y - 0.2 - 0.13 * k],
-                        xerr=[[entry.get("std", 0)]] * 2,
-                        **style.PUBLISHED,
-                    )
+                    ax.errorbar([published.value(entry["id"])], [y - 0.2 - 0.13 * k], xerr=[[entry.get("std", 0)]] * 2,
+                                **style.PUBLISHED)
         ax.set(title=title, xlabel="points in contact", xscale="log")
         ax.set_xlim((1, 1000) if what == "raw" else (0.8, 100))
         ax.set_ylim(0.5, 3.5)
@@ -250,10 +242,8 @@ def positions(results):
     figure, axes = over_time(results, draw, ["position of the tip [mm]"])
     figure.get_layout_engine().set(rect=(0, 0, 1, 0.92))
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="upper center", ncol=3, handlelength=2)
-    return figure, (
-        "Position of the tip over time in the three tasks, ours (signed-distance block). x and y span the top face "
-        f"of the block, whose height is z = 0; the bottom of the hole is at z = -5 mm. {HAND}"
-    )
+    return figure, ("Position of the tip over time in the three tasks, ours (signed-distance block). x and y span the top face "
+                    f"of the block, whose height is z = 0; the bottom of the hole is at z = -5 mm. {HAND}")
 
 
 def model_force(results):
@@ -301,15 +291,8 @@ def _ratio_over_time(results, column, colour, word):
     figure.supylabel("stiffness ratio after so many iterations", fontsize=8)
     for ax in axes.flat:
         ax.set_ylim((0.95, 1.4) if above else (0.4, 1.05))
-    style.note(
-        axes[0, 0],
-        0.98,
-        0.3 if above else 0.1,
-        f"published: {'1.3' if above else '0.8'}",
-        style.RED,
-        ha="right",
-        va="bottom",
-    )
+    style.note(axes[0, 0], 0.98, 0.3 if above else 0.1, f"published: {'1.3' if above else '0.8'}", style.RED, ha="right",
+               va="bottom")
     return figure, (
         f"The {word} stiffness ratio of a step's contacts over time, after {', '.join(labels[:-1])} and {labels[-1]} "
         f"shaping iterations (rows), ours (signed-distance block): range in each of {BINS} spans of time; numbers: the "
