@@ -1,7 +1,7 @@
 #pragma once
 
 #include "algorithms/rendering_config.hpp"
-#include "sim/core/number_range.hpp"
+#include "sim/core/model_info.hpp"
 
 namespace hapbench {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "sim/core/skips.hpp"
+#include "sim/core/types.hpp"
 
 namespace hapbench {
 
@@ -62,7 +62,7 @@ struct RenderingConfig {
 
   /// Stages without contacts, the reduction of one, friction with coefficients of zero. The run that is made of this
   /// takes the same for its search and its records.
-  Skips skips = Skips::taken;
+  Skips skips = Skips::on;
 };
 
 }  // namespace hapbench

@@ -12,7 +12,7 @@ ShellSource::ShellSource(const PointShell& shell, const ToolShape& tool, std::un
 
 void ShellSource::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
   search_->contacts_at(pose, contacts);
-  if (contacts.empty() && knows_of_no_contacts_ && skips_ == Skips::taken) return;
+  if (contacts.empty() && knows_of_no_contacts_ && skips_ == Skips::on) return;
   depth_model_->evaluate(*tool_, pose, contacts);
   knows_of_no_contacts_ = contacts.empty();
 }

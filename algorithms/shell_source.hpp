@@ -13,7 +13,7 @@ class ShellSource final : public ContactSource {
  public:
   /// Shell and tool must outlive the source, and so must they the search, which is over them.
   ShellSource(const PointShell& shell, const ToolShape& tool, std::unique_ptr<ContactQuery> search,
-              std::unique_ptr<DepthModel> depth_model, Skips skips = Skips::taken);
+              std::unique_ptr<DepthModel> depth_model, Skips skips = Skips::on);
 
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return search_->capacity(); }

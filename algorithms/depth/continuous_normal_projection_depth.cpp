@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "sim/tool/tool_state.hpp"
-#include "sim/tool/turn.hpp"
 
 namespace hapbench {
 

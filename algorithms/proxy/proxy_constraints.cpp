@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "algorithms/proxy/edge_constraints.hpp"
-#include "sim/contact/spring_source.hpp"
+#include "sim/contact/contact_source.hpp"
 
 namespace hapbench {
 namespace {

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "sim/contact/contact_query.hpp"
-#include "sim/geometry/springs.hpp"
+#include "sim/contact/contact_source.hpp"
 
 namespace hapbench {
 

@@ -7,8 +7,8 @@
 #include "scenarios/input/number_table.hpp"
 #include "scenarios/input/size_limits.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "sim/mesh/half_edge_mesh.hpp"
 #include "sim/mesh/mesh_from_triangles.hpp"
-#include "sim/mesh/resample.hpp"
 
 namespace hapbench {
 namespace {

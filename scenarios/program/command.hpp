@@ -9,7 +9,7 @@
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/program/command_line.hpp"
-#include "sim/core/skips.hpp"
+#include "sim/core/types.hpp"
 
 /// The command line: each command adds its options to the parser and says what to do when it is chosen.
 namespace hapbench {

@@ -40,7 +40,7 @@ struct CompareOptions {
   std::string out;
   std::vector<std::string> overrides;
   bool html = false;
-  Skips skips = Skips::taken;
+  Skips skips = Skips::on;
   OutputOptions output;
   std::vector<std::string> devices;
   std::string vibration;

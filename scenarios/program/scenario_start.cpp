@@ -13,7 +13,7 @@
 #include "scenarios/run/make_shell.hpp"
 #include "scenarios/run/quantity_text.hpp"
 #include "scenarios/run/tool_warnings.hpp"
-#include "sim/core/box.hpp"
+#include "sim/core/types.hpp"
 
 namespace hapbench {
 namespace {

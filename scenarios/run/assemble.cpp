@@ -15,9 +15,9 @@
 #include "device_model/ideal_device.hpp"
 #include "device_model/impedance_device.hpp"
 #include "scenarios/run/peer_contacts.hpp"
-#include "sim/contact/spring_source.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/core/random.hpp"
-#include "sim/loop/stop_rules.hpp"
+#include "sim/loop/simulation.hpp"
 
 namespace hapbench {
 namespace {

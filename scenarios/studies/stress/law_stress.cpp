@@ -6,7 +6,7 @@
 
 #include "algorithms/registry.hpp"
 #include "algorithms/shell_source.hpp"
-#include "sim/contact/shell_query.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 
 namespace hapbench {

@@ -8,7 +8,7 @@
 #include "algorithms/proxy/edge_constraints.hpp"
 #include "algorithms/proxy/nearest_allowed.hpp"
 #include "algorithms/shell_source.hpp"
-#include "sim/contact/shell_query.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/setting.hpp"
