@@ -14,7 +14,7 @@
 
 #include "scenarios/description/function_ref.hpp"
 #include "scenarios/input/mesh_file.hpp"
-#include "sim/core/number_range.hpp"
+#include "sim/core/model_info.hpp"
 #include "sim/core/types.hpp"
 
 /// The format of scenario files, described once. A function `describe(Fields&, T&)` for each struct names its fields

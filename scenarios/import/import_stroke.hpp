@@ -8,7 +8,7 @@
 #include "scenarios/import/import_options.hpp"
 #include "scenarios/import/resample_stroke.hpp"
 #include "scenarios/import/smooth_stroke.hpp"
-#include "sim/core/box.hpp"
+#include "sim/core/types.hpp"
 
 namespace hapbench {
 

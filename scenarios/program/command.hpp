@@ -12,7 +12,7 @@
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/program/command_line.hpp"
-#include "sim/core/skips.hpp"
+#include "sim/core/types.hpp"
 
 /// What commands share: exit status, output, common options, names, directories of results, other programs.
 namespace hapbench {

@@ -31,7 +31,7 @@ struct CompareOptions {
   unsigned seeds = 1;
   double jitter = 0.0;
   bool html = false;
-  Skips skips = Skips::taken;
+  Skips skips = Skips::on;
   CompareDevicesOptions common;  ///< all others, most of which a comparison of algorithms has, too
 };
 

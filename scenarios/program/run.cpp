@@ -19,7 +19,7 @@ struct RunOptions {
   std::vector<std::string> scenarios;
   std::string out;
   std::vector<std::string> overrides;
-  Skips skips = Skips::taken;
+  Skips skips = Skips::on;
   bool latency = false;
   OutputOptions output;
 };

@@ -15,7 +15,7 @@
 #include "scenarios/run/make_shell.hpp"
 #include "scenarios/run/quantity_text.hpp"
 #include "scenarios/run/tool_warnings.hpp"
-#include "sim/core/box.hpp"
+#include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/mesh/triangle_soup.hpp"
 

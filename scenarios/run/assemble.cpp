@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algorithms/registry.hpp"
 #include "algorithms/depth/depth_model.hpp"
+#include "algorithms/registry.hpp"
 #include "device_model/admittance_device.hpp"
 #include "device_model/hands/drag_hand.hpp"
 #include "device_model/hands/impedance_hand.hpp"
@@ -15,9 +15,9 @@
 #include "device_model/ideal_device.hpp"
 #include "device_model/impedance_device.hpp"
 #include "scenarios/run/peer_contacts.hpp"
-#include "sim/contact/spring_source.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/core/random.hpp"
-#include "sim/loop/stop_rules.hpp"
+#include "sim/loop/simulation.hpp"
 
 namespace hapbench {
 namespace {

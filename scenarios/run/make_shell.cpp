@@ -4,9 +4,7 @@
 
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/contact/grid_index.hpp"
-#include "sim/mesh/block_field.hpp"
-#include "sim/mesh/points_by_cell.hpp"
-#include "sim/mesh/surface_shell.hpp"
+#include "sim/mesh/marching_cubes.hpp"
 
 namespace hapbench {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "scenarios/plugins/load_peer.hpp"
 #include "scenarios/run/make_tool.hpp"
-#include "sim/mesh/block_field.hpp"
+#include "sim/mesh/marching_cubes.hpp"
 
 namespace hapbench {
 namespace {

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "algorithms/depth/depth_model.hpp"
-#include "sim/contact/grid_query.hpp"
+#include "sim/contact/neighbour_list_query.hpp"
 #include "tests/bench/task_scene.hpp"
 
 namespace hapbench::bench {

@@ -5,7 +5,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "sim/contact/shell_query.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/fakes.hpp"
 
