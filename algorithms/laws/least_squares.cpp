@@ -1,39 +1,17 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "algorithms/laws/laws.hpp"
 #include "algorithms/parameters.hpp"
+#include "algorithms/registry.hpp"
 
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kLeastSquaresParameters[] = {
-    kStiffnessParameter,
-    {parameter::kRegularisation, "eps: weight of a short translation against resolving the depths"},
-};
-
-}  // namespace
-
-const ModelInfo kLeastSquaresInfo = {
-    .name = "least_squares",
-    .summary = "one spring along the one translation that best resolves all depths",
-    .formula =
-        "x = argmin sum (d_i - <u_i, x>)^2 + eps |x|^2 = (eps I + S_sum)^-1 sum d_i u_i, f = -K x, "
-        "S = (eps I + S_sum)^-1 S_sum, S_sum = sum u u^T; always without reduction",
-    .source = "ours (Tikhonov's regularised least squares); virtual_coupling with stiffness K / eps is the same law",
-    .known_failure =
-        "a small eps makes S jump as the first contact along a direction comes or the last one goes, and contacts that "
-        "nearly oppose push the tool out by up to 1 / (2 sqrt eps) times the norm of their depths",
-    .parameters = kLeastSquaresParameters,
-};
-
-namespace {
-
-/// The quasi-static balance of penalty springs of stiffness K / eps in series with one coupling spring of stiffness K,
-/// which is stretched by f / K = -x: where the law's energy comes from.
+/// The energy of the law is that of its mechanical equivalent: penalty springs of stiffness K / eps in series with one
+/// coupling spring of stiffness K, which is stretched by f / K = -x.
 class LeastSquares final : public ForceLaw {
  public:
-  LeastSquares(double stiffness, double regularisation) : ForceLaw(stiffness), eps_(regularisation) {}
+  explicit LeastSquares(const RenderingConfig& config) : ForceLaw(config), eps_(config.regularisation) {}
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     set_weights(contacts, 1.0);
@@ -44,9 +22,9 @@ class LeastSquares final : public ForceLaw {
     return {-K_ * normal_equations_.solve(weighted_depth(contacts)), 0.5 * (S + S.transpose())};
   }
 
-  /// E = K / (2 eps) min over x of sum (d_i - <u_i, x>)^2 + eps |x|^2: its gradient over the tool's position, on which
-  /// the depths depend by u_i, is K x = -f. The first term is that of the penalty springs, with what x leaves of their
-  /// depths, the second that of the coupling.
+  /// E = K / (2 eps) min over x of sum (d_i - <u_i, x>)^2 + eps |x|^2. Its gradient with respect to the position of the
+  /// tool is K x = -f. The first term is the energy of the penalty springs at the depths that x leaves, the second that
+  /// of the coupling.
   SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
     if (K_ == 0.0) return {};
     const Vec3 minus_x = spring / K_;
@@ -55,14 +33,14 @@ class LeastSquares final : public ForceLaw {
     return state;
   }
 
-  /// Velocities are resolved as depths are.
+  /// Velocities are resolved like depths.
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
     return normal_equations_.solve(ForceLaw::turning_velocity(contacts, S, tool));
   }
 
  private:
   double eps_;
-  Eigen::LLT<Mat3> normal_equations_;  ///< of eps I + S_sum, of the last contacts; positive definite
+  Eigen::LLT<Mat3> normal_equations_;  ///< of eps I + S_sum of the last contacts; positive definite
 };
 
 /// x = (eps I + U U^T)^-1 U d with the gradients in the columns of U. By the singular values s of U,
@@ -71,7 +49,7 @@ double least_squares_bound(const RenderingConfig& config, const ToolShape&, std:
   return 0.5 * std::sqrt(static_cast<double>(n) / config.regularisation) * depth;
 }
 
-/// Along an axis of S_sum with the eigenvalue s it is s / (eps + s).
+/// The stiffness along an axis of S_sum with eigenvalue s is s / (eps + s).
 WedgeStiffness least_squares_wedge(const RenderingConfig& config, double w, double n) {
   const auto resolved = [eps = config.regularisation](double s) { return s / (eps + s); };
   const auto [along, across] = wedge_of_weight(n, w);
@@ -80,11 +58,27 @@ WedgeStiffness least_squares_wedge(const RenderingConfig& config, double w, doub
 
 }  // namespace
 
-const AlgorithmTheory kLeastSquaresTheory = {.force_bound = least_squares_bound,
-                                             .wedge_stiffness = least_squares_wedge};
-
-std::unique_ptr<ForceLaw> make_least_squares(const RenderingConfig& config) {
-  return std::make_unique<LeastSquares>(config.stiffness, config.regularisation);
+AlgorithmEntry least_squares_entry() {
+  static constexpr ParameterInfo kParameters[] = {
+      kStiffnessParameter,
+      {parameter::kRegularisation, "eps: weight of a short translation against resolving the depths"},
+  };
+  static constexpr ModelInfo kInfo = {
+      .name = "least_squares",
+      .summary = "one spring along the one translation that best resolves all depths",
+      .formula =
+          "x = argmin sum (d_i - <u_i, x>)^2 + eps |x|^2 = (eps I + S_sum)^-1 sum d_i u_i, f = -K x, "
+          "S = (eps I + S_sum)^-1 S_sum, S_sum = sum u u^T; always without reduction",
+      .source = "ours (Tikhonov's regularised least squares); virtual_coupling with stiffness K / eps is the same law",
+      .known_failure =
+          "a small eps makes S jump as the first contact along a direction comes or the last one goes, and contacts that "
+          "nearly oppose push the tool out by up to 1 / (2 sqrt eps) times the norm of their depths",
+      .parameters = kParameters,
+  };
+  return {.info = &kInfo,
+          .make_law = law_of<LeastSquares>,
+          .theory = {.force_bound = least_squares_bound, .wedge_stiffness = least_squares_wedge},
+          .may_reduce = false};
 }
 
 }  // namespace hapbench

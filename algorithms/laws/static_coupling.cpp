@@ -2,64 +2,41 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algorithms/laws/laws.hpp"
 #include "algorithms/parameters.hpp"
+#include "algorithms/registry.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kStaticCouplingParameters[] = {
-    kStiffnessParameter,
-    {parameter::kVirtualCoupling, "K_vc: stiffness of the coupling spring before it saturates; null: K"},
-};
 constexpr OwnParameter kSaturation[] = {{"saturation_N",
                                          {1e-6, 1e12, "N"},
                                          30.0,
                                          "F_s: the coupling never pulls with more; default what the trainer gives"}};
 
-/// Newton steps at most, and halvings of one. Where they end before the balance the force is still the coupling's.
+/// Most Newton steps, and the smallest part of one. If they end before the balance, the force is still that of the
+/// coupling.
 constexpr int kMostSteps = 30;
 constexpr double kSmallestPart = 1e-6;
-/// Least stiffness of the coupling along its force, of that across: far beyond saturation rounding would leave none, or
-/// less.
+/// Least stiffness of the coupling along its force, relative to that across it. Far beyond saturation rounding would
+/// make it zero or negative.
 constexpr double kSoftest = 1e-12;
-/// What may be out of balance, of K times the root of the sum of the squares of p_i. The rounding of the sum of n pulls
-/// is below 1e-16 sqrt(n) of it.
+/// Tolerated imbalance, relative to K sqrt(sum p_i^2). The rounding of the sum of n pulls is below 1e-16 sqrt(n) of it.
 constexpr double kBalanced = 1e-13;
 
-}  // namespace
-
-const ModelInfo kStaticCouplingInfo = {
-    .name = "static_coupling",
-    .summary = "a massless copy of the tool in balance between its contacts and a coupling spring that saturates",
-    .formula =
-        "f = g(|s|) s / |s|, g(x) = K_vc x / sqrt(1 + (K_vc x / F_s)^2), where the copy's displacement s from the tool "
-        "balances -K sum p_i u_i = f; p_i = d_i + <u_i, s> where it has the sign of d_i, else 0; S = -df/dp / K",
-    .source =
-        "static virtual coupling of Barbic and James, Six-DoF haptic rendering of contact between geometrically complex "
-        "reduced deformable models (IEEE Trans. Haptics 1, 2008); the shape of g and solving it to the end are ours",
-    .known_failure = "the copy follows the direction with most points, and what lies beyond the saturation feels soft",
-    .parameters = kStaticCouplingParameters,
-};
-
-const std::span<const OwnParameter> kStaticCouplingOwnParameters = kSaturation;
-
-namespace {
-
 double saturation_of(const RenderingConfig& config) {
-  return own_value(config, kStaticCouplingInfo.name, kSaturation[0]);
+  return own_value(config, "static_coupling", kSaturation[0]);
 }
 
 /// Finds the balance by Newton's method with halved steps. It is the minimum of a convex energy,
 ///
 ///   W(s) + K/2 sum p_i^2,  W(s) = F_s^2 / K_vc (sqrt(1 + (K_vc |s| / F_s)^2) - 1),
 ///
-/// without memory of the step before, so that every force is the derivative of one potential of the contacts.
+/// and does not depend on the step before, so every force is the derivative of one potential of the contacts.
 class StaticCoupling final : public ForceLaw {
  public:
-  StaticCoupling(double stiffness, std::optional<double> coupling, double saturation)
-      : ForceLaw(stiffness), K_vc_(coupling.value_or(stiffness)), F_s_(saturation) {}
+  explicit StaticCoupling(const RenderingConfig& config)
+      : ForceLaw(config), K_vc_(config.virtual_coupling.value_or(config.stiffness)), F_s_(saturation_of(config)) {}
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     shift_.setZero();
@@ -89,7 +66,7 @@ class StaticCoupling final : public ForceLaw {
   }
 
  private:
-  /// What the contacts do to the copy.
+  /// The action of the contacts on the copy.
   struct Pull {
     double pressed = 0.0;       ///< root of the sum of the squares of p_i [m]
     Vec3 force = Vec3::Zero();  ///< [N]
@@ -103,7 +80,7 @@ class StaticCoupling final : public ForceLaw {
       const Vec3 newton = Eigen::LDLT<Mat3>(stiffness).solve(residual);
       const Vec3 from = shift_;
       const double before = residual.norm();
-      // Where the coupling saturates or contacts let go, a whole step may go too far.
+      // A whole step may go too far where the coupling saturates or contacts separate.
       for (double part = 1.0; part > kSmallestPart; part *= 0.5) {
         shift_ = from + part * newton;
         pull = pull_at(contacts, shift_);
@@ -119,16 +96,16 @@ class StaticCoupling final : public ForceLaw {
 
   double stretch(const Vec3& s) const noexcept { return std::sqrt(1.0 + (K_vc_ / F_s_ * s).squaredNorm()); }
   Vec3 coupling_force(const Vec3& s) const noexcept { return K_vc_ / stretch(s) * s; }
-  /// W without the cancellation in its difference.
+  /// W, written without the cancellation in its difference.
   double coupling_energy(const Vec3& s) const noexcept { return K_vc_ * s.squaredNorm() / (1.0 + stretch(s)); }
   Mat3 coupling_stiffness(const Vec3& s) const noexcept {
     const double q = stretch(s);
-    Vec3 r = K_vc_ / (F_s_ * q) * s;  // |r|^2 = 1 - 1 / q^2, along s the rest of the stiffness
+    Vec3 r = K_vc_ / (F_s_ * q) * s;  // |r|^2 = 1 - 1 / q^2; 1 - |r|^2 is the relative stiffness along s
     if (const double along = r.squaredNorm(); along > 1.0 - kSoftest) r *= std::sqrt((1.0 - kSoftest) / along);
     return K_vc_ / q * (Mat3::Identity() - r * r.transpose());
   }
 
-  /// Of a copy displaced by s. The contacts it is still in get the weight 1, others 0. O(n).
+  /// The pull on a copy displaced by s. Contacts that the copy still touches get the weight 1, others 0. O(n).
   Pull pull_at(ContactBuffer& contacts, const Vec3& s) const noexcept {
     using simd::load, simd::Pack, simd::select;
     const Pack sx(s.x()), sy(s.y()), sz(s.z()), zero(0.0);
@@ -151,10 +128,10 @@ class StaticCoupling final : public ForceLaw {
   double K_vc_;                ///< [N/m]
   double F_s_;                 ///< [N]
   Vec3 shift_ = Vec3::Zero();  ///< s of the last contacts [m]
-  Mat3 pass_ = Mat3::Zero();   ///< of what moves the tool, the part that reaches the contacts
+  Mat3 pass_ = Mat3::Zero();   ///< maps a motion of the tool to the part that reaches the contacts
 };
 
-/// The coupling holds the copy with what the contacts give, n K d at most, and with no more than F_s.
+/// The coupling force balances the contacts, at most n K d, and is below F_s.
 double static_coupling_bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
   const double summed = static_cast<double>(n) * depth;
   return config.stiffness > 0.0 ? std::min(summed, saturation_of(config) / config.stiffness) : summed;
@@ -162,10 +139,29 @@ double static_coupling_bound(const RenderingConfig& config, const ToolShape&, st
 
 }  // namespace
 
-const AlgorithmTheory kStaticCouplingTheory = {.force_bound = static_coupling_bound};
-
-std::unique_ptr<ForceLaw> make_static_coupling(const RenderingConfig& config) {
-  return std::make_unique<StaticCoupling>(config.stiffness, config.virtual_coupling, saturation_of(config));
+AlgorithmEntry static_coupling_entry() {
+  static constexpr ParameterInfo kParameters[] = {
+      kStiffnessParameter,
+      {parameter::kVirtualCoupling, "K_vc: stiffness of the coupling spring before it saturates; null: K"},
+  };
+  static constexpr ModelInfo kInfo = {
+      .name = "static_coupling",
+      .summary = "a massless copy of the tool in balance between its contacts and a coupling spring that saturates",
+      .formula =
+          "f = g(|s|) s / |s|, g(x) = K_vc x / sqrt(1 + (K_vc x / F_s)^2), where the copy's displacement s from the tool "
+          "balances -K sum p_i u_i = f; p_i = d_i + <u_i, s> where it has the sign of d_i, else 0; S = -df/dp / K",
+      .source =
+          "static virtual coupling of Barbic and James, Six-DoF haptic rendering of contact between geometrically complex "
+          "reduced deformable models (IEEE Trans. Haptics 1, 2008); the shape of g and solving it to the end are ours",
+      .known_failure =
+          "the copy follows the direction with most points, and what lies beyond the saturation feels soft",
+      .parameters = kParameters,
+  };
+  return {.info = &kInfo,
+          .make_law = law_of<StaticCoupling>,
+          .theory = {.force_bound = static_coupling_bound},
+          .may_reduce = false,
+          .own_parameters = kSaturation};
 }
 
 }  // namespace hapbench

@@ -1,34 +1,16 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "algorithms/laws/laws.hpp"
 #include "algorithms/parameters.hpp"
+#include "algorithms/registry.hpp"
 
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kVirtualCouplingParameters[] = {
-    kStiffnessParameter,
-    {parameter::kVirtualCoupling, "K_vc: stiffness of the coupling spring; null: K"},
-};
-
-}  // namespace
-
-const ModelInfo kVirtualCouplingInfo = {
-    .name = "virtual_coupling",
-    .summary = "all springs in series with one quasi-static coupling spring",
-    .formula = "f = -K_vc (K_vc I + K S_sum)^-1 K sum d_i u_i, S = K_vc (K_vc I + K S_sum)^-1 S_sum, S_sum = sum u u^T",
-    .source = "thesis Fig. 2d",
-    .known_failure = "bounds the stiffness, but the force still follows the direction with most points",
-    .parameters = kVirtualCouplingParameters,
-};
-
-namespace {
-
 class VirtualCoupling final : public ForceLaw {
  public:
-  VirtualCoupling(double stiffness, std::optional<double> coupling)
-      : ForceLaw(stiffness), K_over_K_vc_(coupling ? stiffness / *coupling : 1.0) {}
+  explicit VirtualCoupling(const RenderingConfig& config)
+      : ForceLaw(config), K_over_K_vc_(config.virtual_coupling ? config.stiffness / *config.virtual_coupling : 1.0) {}
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     set_weights(contacts, 1.0);
@@ -56,15 +38,16 @@ class VirtualCoupling final : public ForceLaw {
 
  private:
   double K_over_K_vc_;
-  Eigen::LLT<Mat3> series_;  ///< of I + K / K_vc S_sum, of the last contacts
+  Eigen::LLT<Mat3> series_;  ///< of I + K / K_vc S_sum of the last contacts
 };
 
-/// (I + U U^T)^-1 U has the singular values s / (1 + s^2) <= 1/2, and |(d_1 … d_n)| <= sqrt(n) d. For K_vc = K.
+/// (I + U U^T)^-1 U has the singular values s / (1 + s^2) <= 1/2, and |(d_1 … d_n)| <= sqrt(n) d.
+/// Precondition: K_vc = K.
 double virtual_coupling_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return 0.5 * std::sqrt(static_cast<double>(n)) * depth;
 }
 
-/// The sum in series with K_vc, along each axis by itself.
+/// The summed stiffness in series with K_vc, along each axis separately.
 WedgeStiffness virtual_coupling_wedge(const RenderingConfig& config, double w, double n) {
   const double k = config.virtual_coupling.value_or(config.stiffness) / config.stiffness;
   const auto in_series = [k](double x) { return k * x / (k + x); };
@@ -74,11 +57,23 @@ WedgeStiffness virtual_coupling_wedge(const RenderingConfig& config, double w, d
 
 }  // namespace
 
-const AlgorithmTheory kVirtualCouplingTheory = {.force_bound = virtual_coupling_bound,
-                                                .wedge_stiffness = virtual_coupling_wedge};
-
-std::unique_ptr<ForceLaw> make_virtual_coupling(const RenderingConfig& config) {
-  return std::make_unique<VirtualCoupling>(config.stiffness, config.virtual_coupling);
+AlgorithmEntry virtual_coupling_entry() {
+  static constexpr ParameterInfo kParameters[] = {
+      kStiffnessParameter,
+      {parameter::kVirtualCoupling, "K_vc: stiffness of the coupling spring; null: K"},
+  };
+  static constexpr ModelInfo kInfo = {
+      .name = "virtual_coupling",
+      .summary = "all springs in series with one quasi-static coupling spring",
+      .formula =
+          "f = -K_vc (K_vc I + K S_sum)^-1 K sum d_i u_i, S = K_vc (K_vc I + K S_sum)^-1 S_sum, S_sum = sum u u^T",
+      .source = "thesis Fig. 2d",
+      .known_failure = "bounds the stiffness, but the force still follows the direction with most points",
+      .parameters = kParameters,
+  };
+  return {.info = &kInfo,
+          .make_law = law_of<VirtualCoupling>,
+          .theory = {.force_bound = virtual_coupling_bound, .wedge_stiffness = virtual_coupling_wedge}};
 }
 
 }  // namespace hapbench

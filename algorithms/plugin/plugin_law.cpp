@@ -1,14 +1,13 @@
 #include "algorithms/plugin/plugin_law.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <limits>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
-
-#include "algorithms/added_algorithm.hpp"
-#include "algorithms/penalty_rendering.hpp"
+#include <vector>
 
 namespace hapbench {
 namespace {
@@ -43,13 +42,39 @@ PluginFaults& faults() {
   return all;
 }
 
-/// May allocate: the run is over.
+/// May allocate, because the run is over.
 void note_fault(const char* text) {
   const std::lock_guard lock(faults_mutex);
   if (faults().count++ == 0) faults().first = text;
 }
 
-}  // namespace
+/// A law behind the C interface. It reads the contacts of the step in place. A step adds one indirect call and a check
+/// that the answer is finite; it does not allocate.
+class PluginLaw final : public ForceLaw {
+ public:
+  /// `plugin` must outlive the law; `parameters` are in its order.
+  PluginLaw(const HapbenchPlugin& plugin, double stiffness, std::vector<double> parameters);
+  ~PluginLaw() override;
+  PluginLaw(const PluginLaw&) = delete;
+  PluginLaw& operator=(const PluginLaw&) = delete;
+
+  void prepare(std::size_t capacity) override;
+  void reset() noexcept override;
+  /// After a fault the force is NaN until the next reset.
+  LawForce evaluate(ContactBuffer& contacts) noexcept override;
+  SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override;
+  Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override;
+  const char* fault() const noexcept override { return fault_[0] == '\0' ? nullptr : fault_.data(); }
+
+ private:
+  LawForce failed(const char* problem) noexcept;
+  LawForce failed(int error) noexcept;
+
+  const HapbenchPlugin& plugin_;
+  std::vector<double> parameters_;
+  void* law_ = nullptr;
+  std::array<char, 256> fault_{};  ///< empty without a fault
+};
 
 PluginLaw::PluginLaw(const HapbenchPlugin& plugin, double stiffness, std::vector<double> parameters)
     : ForceLaw(stiffness), plugin_(plugin), parameters_(std::move(parameters)) {}
@@ -71,7 +96,7 @@ void PluginLaw::reset() noexcept {
 
 LawForce PluginLaw::failed(const char* problem) noexcept {
   std::snprintf(fault_.data(), fault_.size(), "%s %s", plugin_.name, problem);
-  // Printed in one line and written as JSON, whatever the plugin says.
+  // The text is printed in one line and written as JSON, whatever the plugin answers.
   for (char& c : fault_) c = c == '\0' || (c >= ' ' && c <= '~') ? c : '?';
   note_fault(fault_.data());
   return {Vec3::Constant(kNaN), Mat3::Zero()};
@@ -90,14 +115,14 @@ LawForce PluginLaw::evaluate(ContactBuffer& contacts) noexcept {
   if (fault() != nullptr) return {Vec3::Constant(kNaN), Mat3::Zero()};
   if (law_ == nullptr) return failed("could not be created with these parameters");
   const bool gives_force = plugin_.gives == HAPBENCH_FORCE;
-  // What a law forgets to write is found as what is no number.
+  // Pre-fills with NaN to detect outputs that the plugin did not write.
   set_weights(contacts, gives_force ? 1.0 / static_cast<double>(contacts.size()) : kNaN);
   HapbenchForce answer{{kNaN, kNaN, kNaN}, {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}};
   const HapbenchContacts view = view_of(contacts);
   if (const int error = plugin_.evaluate(law_, &view, contacts.weight.data(), &answer); error != 0)
     return failed(error);
   const LawForce force = gives_force ? force_of(answer) : weighted_force(contacts, K_);
-  // A weight that is not finite leaves a tensor that is not.
+  // A weight that is not finite makes the tensor not finite, too.
   if (!force.spring.allFinite()) return failed("gives a force that is not finite");
   if (!force.S.allFinite()) return failed("gives a stiffness that is not finite");
   return force;
@@ -120,6 +145,8 @@ Vec3 PluginLaw::turning_velocity(const ContactBuffer& contacts, const Mat3& S, c
   return turning_velocity_of_force(contacts, S, tool);
 }
 
+}  // namespace
+
 AlgorithmEntry plugin_entry(const HapbenchPlugin& plugin, AlgorithmOrigin origin) {
   if (plugin.create == nullptr) throw std::invalid_argument("its function \"create\" is missing");
   if (plugin.evaluate == nullptr) throw std::invalid_argument("its function \"evaluate\" is missing");
@@ -128,24 +155,21 @@ AlgorithmEntry plugin_entry(const HapbenchPlugin& plugin, AlgorithmOrigin origin
                                 "; allowed: HAPBENCH_WEIGHTS or HAPBENCH_FORCE");
   if (plugin.parameter_count > 0 && plugin.parameters == nullptr)
     throw std::invalid_argument("its table of parameters is missing");
-  static constexpr ParameterInfo kShared[] = {kStiffnessParameter};
   const ModelInfo info = {.name = plugin.name,
                           .summary = plugin.summary,
                           .formula = plugin.formula,
                           .source = plugin.source,
                           .known_failure = plugin.known_failure,
-                          .parameters = kShared};
+                          .parameters = kStiffnessAlone};
   std::vector<OwnParameter> parameters;
   for (std::size_t i = 0; i < plugin.parameter_count; ++i) {
     const HapbenchParameter& p = plugin.parameters[i];
-    parameters.push_back({p.name, {p.min, p.max, p.unit}, p.initial, p.meaning});
+    parameters.push_back({.name = p.name, .range = {p.min, p.max, p.unit}, .initial = p.initial, .meaning = p.meaning});
   }
-  const auto make = [&plugin](const RenderingConfig& config) -> std::unique_ptr<ForceAlgorithm> {
-    auto values = own_values(config, *find_algorithm(plugin.name));
-    return std::make_unique<PenaltyRendering>(std::make_unique<PluginLaw>(plugin, config.stiffness, std::move(values)),
-                                              config);
+  const auto make_law = [&plugin](const RenderingConfig& config) {
+    return std::make_unique<PluginLaw>(plugin, config.stiffness, own_values(config, *find_algorithm(plugin.name)));
   };
-  return checked_copy({.info = &info, .make = make, .own_parameters = parameters, .origin = std::move(origin)});
+  return checked_copy({.info = &info, .make_law = make_law, .own_parameters = parameters, .origin = std::move(origin)});
 }
 
 PluginFaults take_plugin_faults() {

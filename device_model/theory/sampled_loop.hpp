@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <optional>
 #include <span>
 
@@ -33,7 +34,7 @@ struct SampledLoop {
 
   double moving_mass() const { return handle_mass + hand.mass; }   ///< of handle and hand [kg]
   double total_damping() const { return damping + hand.damping; }  ///< of handle and hand [N s/m]
-  bool has_whole_delay() const { return delay == static_cast<long>(delay); }
+  bool has_whole_delay() const { return delay == std::trunc(delay); }
   /// The share a of the filter's memory.
   double filter_memory() const;
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/tool/turn.hpp"
+#include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "sim/geometry/block_with_hole.hpp"
+#include "sim/geometry/analytic_shells.hpp"
 #include "sim/loop/observer.hpp"
 #include "sim/tool/cylinder.hpp"
 

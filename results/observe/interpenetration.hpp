@@ -1,6 +1,6 @@
 #pragma once
 
-#include "sim/geometry/block_with_hole.hpp"
+#include "sim/geometry/analytic_shells.hpp"
 #include "sim/tool/cylinder.hpp"
 
 namespace hapbench {

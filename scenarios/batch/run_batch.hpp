@@ -16,7 +16,7 @@ struct BatchDefinition {
   std::vector<std::string> overrides;  ///< of all runs, as in --set
   std::size_t seeds = 1;               ///< repetition k has the scenario's seed + k
   double jitter = 0.0;                 ///< length of a random shift of the start [m]
-  Skips skips = Skips::taken;
+  Skips skips = Skips::on;
 };
 
 /// One run of a batch, by indices into its definition.

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -25,30 +26,32 @@ namespace {
 struct Point {
   std::vector<std::string> warnings;
   MetricSections sections;
-  std::string files;  ///< the parts that name files
+  std::string files;  ///< the objects that name files
   AlgorithmOrigin origin;
 };
 
+/// The sections that a summary of the scenario has, but for `fidelity` of a stroke: its file says whether it has a
+/// measured force. Several trials are summarised by the sections of the targets alone.
 MetricSections sections_of(const Scenario& scenario) {
   const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
-  return {scenario.record.energy,
-          scenario.record.ideal_trajectory,
-          std::holds_alternative<RecordedPosition>(scenario.motion.position),
-          scenario.record.torque,
-          scenario.perception.has_value(),
-          hand == nullptr ? 0 : hand->task.places.size()};
+  const bool one_trial = trial_count(scenario.hand) == 1.0;
+  return {.energy = one_trial && scenario.record.energy,
+          .ideal_trajectory = one_trial && scenario.record.ideal_trajectory,
+          .fidelity = one_trial && scenario.reference_force,
+          .torque = one_trial && scenario.record.torque,
+          .perception = one_trial && scenario.perception,
+          .places = hand == nullptr ? 0 : hand->task.places.size()};
 }
 
 Point examine(const SweepPlan& plan, std::size_t run) {
   const LoadedScenario loaded = scenario_of(plan, run);
   const Scenario& scenario = loaded.scenario;
   Point point{loaded.warnings, sections_of(scenario), "", find_algorithm(scenario.rendering.algorithm)->origin};
-  if (std::holds_alternative<PointShellEnvironment>(scenario.environment) ||
-      std::holds_alternative<MeshEnvironment>(scenario.environment)) {
-    point.files = written(scenario.environment).dump();
-  }
-  if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
-    point.files += written_object(scenario.motion).dump();
+  if (loaded.files.all().empty()) return point;
+  const Json json = written_object(scenario);
+  for (const auto& file : loaded.files.all()) {
+    const Json::json_pointer field(file->pointer());
+    point.files += file->pointer() + " " + json.at(field.parent_pointer()).dump() + "\n";
   }
   return point;
 }
@@ -70,14 +73,16 @@ class Collector {
     for (std::size_t i = 0; i < point.warnings.size(); ++i) keep_first(warnings_, point.warnings[i], {run, i});
   }
 
-  /// When all have been added.
-  void finish() {
-    plan_.metrics = metric_names(sections_);
+  /// Gives the plan the warnings, when all points have been added.
+  void give_warnings() {
     for (const auto& [place, warning] : in_order(warnings_)) plan_.warnings.push_back(warning);
   }
 
   /// The files that algorithms come from, with their hashes.
   const std::map<std::string, std::string>& plugins() const { return plugins_; }
+
+  /// The metrics that some run has; call it after check_files.
+  std::vector<std::string> metrics() const { return metric_names(sections_); }
 
   /// Reads what the scenarios name, each file once for each use, and hashes it.
   Json check_files() {
@@ -88,6 +93,8 @@ class Collector {
         const auto end = plan_.warnings.end();
         if (std::find(plan_.warnings.begin(), end, warning) == end) plan_.warnings.push_back(std::move(warning));
       }
+      if (std::holds_alternative<RecordedPosition>(loaded.scenario.motion.position))
+        sections_.fidelity |= loaded.files.recorded_force() != nullptr;
       loaded.scenario.name.clear();  // which may be that of the scenario's file
       hashes.push_back(with_file(loaded, [&] { return scenario_hash(loaded.scenario, loaded.files); }));
     }
@@ -110,7 +117,8 @@ class Collector {
   }
 
   SweepPlan& plan_;
-  MetricSections sections_{false, false, false, 0};
+  MetricSections sections_{
+      .energy = false, .ideal_trajectory = false, .fidelity = false, .torque = false, .perception = false, .places = 0};
   FirstPlaces files_, warnings_;
   std::map<std::string, std::string> plugins_;
 };
@@ -200,8 +208,9 @@ SweepPlan plan_sweep(ScenarioText scenario, std::vector<std::string> overrides, 
   SweepPlan plan{std::move(scenario), std::move(overrides), std::move(points), {}, {}, {}, ""};
   Collector collector(plan);
   examine_all(plan, jobs, progress, collector);
-  collector.finish();
+  collector.give_warnings();
   plan.content = content_of(plan, collector.check_files(), collector.plugins());
+  plan.metrics = collector.metrics();
   plan.definition = hash_text(hash_of(json_text(plan.content)));
   return plan;
 }

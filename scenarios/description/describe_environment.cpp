@@ -131,15 +131,14 @@ static void describe(Fields& f, BlockEnvironment& environment) {
 }
 
 static void describe(Fields& f, PointShellEnvironment& shell) {
-  f.text("file", shell.file, 4096,
-         "CSV with header x_m,y_m,z_m,nx,ny,nz, or PLY with normals; relative to the scenario file",
-         Presence::required);
+  f.file(shell.file, {FileContent::Kind::point_shell},
+         "CSV with header x_m,y_m,z_m,nx,ny,nz, or PLY with normals; relative to the scenario file");
   f.number("grid_m", shell.grid, kLength, "cell of the local average; null: no grid");
 }
 
 static void describe(Fields& f, MeshEnvironment& mesh) {
-  f.text("file", mesh.file, 4096, "surface as OBJ, PLY, STL or OFF, ASCII or binary; relative to the scenario file",
-         Presence::required);
+  f.file(mesh.file, {FileContent::Kind::mesh, {mesh.scale, mesh.spacing}},
+         "surface as OBJ, PLY, STL or OFF, ASCII or binary; relative to the scenario file");
   f.number("scale", mesh.scale, {0.0, 1e6, "m", true}, "length of the file's unit: 0.001 for millimetres",
            Presence::required);
   f.number("spacing_m", mesh.spacing, kLength,

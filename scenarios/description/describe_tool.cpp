@@ -83,9 +83,8 @@ static void describe(Fields& f, BurFields& tool) {
 }
 
 static void describe(Fields& f, MeshToolFields& tool) {
-  f.text("file", tool.file, 4096,
-         "closed surface as OBJ, PLY, STL or OFF, its tip where tip_m and tip_axis say; relative to the scenario file",
-         Presence::required);
+  f.file(tool.file, {FileContent::Kind::mesh, {tool.scale, {}}},
+         "closed surface as OBJ, PLY, STL or OFF, its tip where tip_m and tip_axis say; relative to the scenario file");
   f.number("scale", tool.scale, {0.0, 1e6, "m", true}, "length of the file's unit: 0.001 for millimetres",
            Presence::required);
   f.vector3("tip_m", tool.tip, {-1000.0, 1000.0, "m"}, "place in the file, scaled, that is the tip centre");

@@ -32,7 +32,7 @@ void keep_files(Json& json, const fs::path& directory) {
   if (!json.is_structured()) return;
   for (auto& entry : json.items()) {
     Json& value = entry.value();
-    if (entry.key() == "file" && value.is_string()) {
+    if (entry.key() == kFileField && value.is_string()) {
       value = (directory / value.get<std::string>()).string();
     } else {
       keep_files(value, directory);

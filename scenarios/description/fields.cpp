@@ -23,6 +23,14 @@ void Fields::text(std::string_view name, std::string& value, std::size_t max_len
   field(name, doc, presence, [&](Fields& f) { f.text(value, max_length); });
 }
 
+void Fields::file(std::string& path, const FileContent&) {
+  text(path, kLongestPath);
+}
+
+void Fields::file(std::string& path, const FileContent& content, const char* doc) {
+  field(kFileField, doc, Presence::required, [&](Fields& f) { f.file(path, content); });
+}
+
 void Fields::vector3(std::string_view name, Vec3& value, NumberRange component, const char* doc, Presence presence) {
   field(name, doc, presence, [&](Fields& f) { f.vector3(value, component); });
 }

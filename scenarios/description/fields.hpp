@@ -13,7 +13,8 @@
 #include <vector>
 
 #include "scenarios/description/function_ref.hpp"
-#include "sim/core/number_range.hpp"
+#include "scenarios/input/mesh_file.hpp"
+#include "sim/core/model_info.hpp"
 #include "sim/core/types.hpp"
 
 /// The format of scenario files, described once. A function `describe(Fields&, T&)` for each struct names its fields
@@ -54,6 +55,17 @@ struct Choice {
   Enum value;
 };
 
+/// What a file that a scenario names holds, and how it is taken.
+struct FileContent {
+  enum class Kind { point_shell, mesh, stroke };
+  Kind kind;
+  MeshSampling sampling = {};  ///< of a mesh
+};
+
+/// The field of an object that names a file. No other field does, and no field of that name holds anything else.
+inline constexpr const char* kFileField = "file";
+inline constexpr std::size_t kLongestPath = 4096;  ///< characters
+
 /// Visitor of one JSON value: of what kind it is, bound to the C++ object that holds it. Of an object it visits the
 /// fields, each of which is a value of its own and has a visitor of its own.
 class Fields {
@@ -69,6 +81,8 @@ class Fields {
   virtual void boolean(bool& value) = 0;
   /// Any text up to `max_length` characters (code points).
   virtual void text(std::string& value, std::size_t max_length) = 0;
+  /// The path of a file, relative to the scenario file.
+  virtual void file(std::string& path, const FileContent& content);
   /// One of `names`, by its index; `what` says of what kind, for messages.
   virtual void name(std::size_t& index, const std::vector<std::string>& names, const char* what) = 0;
   /// Three numbers [x, y, z].
@@ -152,12 +166,7 @@ class Fields {
   template <class T, class Each>
   void nullable(std::optional<T>& value, Each each) {
     or_null(
-        !value, [&value] { value.reset(); },
-        [&value, &each](Fields& f) {
-          T inner = value.value_or(T{});
-          each(f, inner);
-          if (f.reads()) value = std::move(inner);
-        });
+        !value, [&value] { value.reset(); }, [&value, &each](Fields& f) { describe_held(f, value, each); });
   }
 
   /// The types of a variant, named in the variant's order; `each(Fields&, T&)` describes the fields of one.
@@ -182,6 +191,8 @@ class Fields {
   void boolean(std::string_view name, bool& value, const char* doc);
   void text(std::string_view name, std::string& value, std::size_t max_length, const char* doc,
             Presence presence = Presence::has_default);
+  /// The field kFileField, which is required. `content` as the object says it now.
+  void file(std::string& path, const FileContent& content, const char* doc);
   void vector3(std::string_view name, Vec3& value, NumberRange component, const char* doc,
                Presence presence = Presence::has_default);
   void name(std::string_view name, std::string& value, const std::vector<std::string>& names, const char* what,
@@ -220,14 +231,19 @@ class Fields {
   /// A field that is in the file exactly when the optional has a value.
   template <class T, class Each>
   void if_any(std::string_view name, std::optional<T>& value, const char* doc, Each each) {
-    field(name, doc, value ? Presence::no_default : Presence::left_out, [&](Fields& f) {
-      T inner = value.value_or(T{});
-      each(f, inner);
-      if (f.reads()) value = std::move(inner);
-    });
+    field(name, doc, value ? Presence::no_default : Presence::left_out,
+          [&](Fields& f) { describe_held(f, value, each); });
   }
 
  private:
+  /// Describes the value, or without one a default-constructed one, which is kept when it has been read.
+  template <class T, class Each>
+  static void describe_held(Fields& f, std::optional<T>& value, Each& each) {
+    if (value) return each(f, *value);
+    T example{};
+    each(f, example);
+    if (f.reads()) value = std::move(example);
+  }
   template <class Variant, std::size_t... I>
   static void emplace(Variant& value, std::size_t index, std::index_sequence<I...>) {
     ((index == I ? static_cast<void>(value.template emplace<I>()) : void()), ...);

@@ -81,22 +81,6 @@ std::filesystem::path without_links(const std::filesystem::path& path) {
   return error ? absolute.lexically_normal() : canonical;
 }
 
-std::string* named_file(Scenario& scenario) {
-  if (auto* shell = std::get_if<PointShellEnvironment>(&scenario.environment)) return &shell->file;
-  if (auto* mesh = std::get_if<MeshEnvironment>(&scenario.environment)) return &mesh->file;
-  return nullptr;
-}
-
-std::string* named_motion(Scenario& scenario) {
-  if (auto* recorded = std::get_if<RecordedPosition>(&scenario.motion.position)) return &recorded->file;
-  return nullptr;
-}
-
-std::string* named_tool(Scenario& scenario) {
-  if (auto* mesh = std::get_if<MeshToolFields>(&scenario.tool)) return &mesh->file;
-  return nullptr;
-}
-
 /// Returns true if a part of what the schema allows is allowed, too.
 bool allows_parts(const Json& schema) {
   if (!schema.is_structured()) return true;
@@ -164,9 +148,12 @@ InputError in_file(const InputError& fault, const std::filesystem::path& file) {
   return {fault.kind(), place, problem};
 }
 
-/// Puts the hash of a file's contents in place of its path.
-void name_by_content(std::string* path, NamedFile* file) {
-  if (path != nullptr) *path = file->hash();
+/// The scenario with the hashes of named files in place of their paths, of those in fields below `pointer`.
+Scenario with_contents(Scenario scenario, const NamedFiles& files, std::string_view pointer = "") {
+  for (const auto& [at, path, content] : files_named_in(scenario)) {
+    if (at.starts_with(pointer)) *path = files.at(at).hash();
+  }
+  return scenario;
 }
 
 /// Of an admittance device under a hand that does not feel the handle, what is without effect. None where only sensor
@@ -272,10 +259,9 @@ LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const 
 
 Json effective_scenario(const Scenario& scenario, const std::filesystem::path& directory) {
   Scenario effective = scenario;
-  for (std::string* file : {named_file(effective), named_tool(effective), named_motion(effective)}) {
-    if (file == nullptr) continue;
-    const auto target = without_links(resolve_path(scenario, *file));
-    *file = target.lexically_proximate(without_links(directory)).generic_string();
+  for (const FileReference& file : files_named_in(effective)) {
+    const auto target = without_links(resolve_path(scenario, *file.path));
+    *file.path = target.lexically_proximate(without_links(directory)).generic_string();
   }
   return written_object(effective);
 }
@@ -306,17 +292,11 @@ Json scenario_schema() {
 }
 
 Json environment_content(const Scenario& scenario, const NamedFiles& files) {
-  Scenario content = scenario;
-  name_by_content(named_file(content), files.environment());
-  return written(content.environment);
+  return written(with_contents(scenario, files, "/environment/").environment);
 }
 
 std::string scenario_hash(const Scenario& scenario, const NamedFiles& files) {
-  Scenario content = scenario;
-  name_by_content(named_file(content), files.environment());
-  name_by_content(named_tool(content), files.tool());
-  name_by_content(named_motion(content), files.motion());
-  return hash_text(hash_of(json_text(written_object(content))));
+  return hash_text(hash_of(json_text(written_object(with_contents(scenario, files)))));
 }
 
 }  // namespace hapbench

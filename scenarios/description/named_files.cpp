@@ -1,11 +1,72 @@
 #include "scenarios/description/named_files.hpp"
 
+#include <algorithm>
+#include "scenarios/description/descriptions.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/motion_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
+namespace {
+
+/// Walks through the values that an object holds and collects the names of files.
+class FileFinder final : public Fields {
+ public:
+  std::vector<FileReference> found;
+
+  void file(std::string& path, const FileContent& content) override { found.push_back({at_, &path, content}); }
+
+  void number(double&, NumberRange) override {}
+  void integer(std::int64_t&, IntegerRange) override {}
+  void boolean(bool&) override {}
+  void text(std::string&, std::size_t) override {}
+  void name(std::size_t&, const std::vector<std::string>&, const char*) override {}
+  void vector3(Vec3&, NumberRange) override {}
+  void pair(const char*, Body first, Body second) override {
+    within("0", first);
+    within("1", second);
+  }
+  void entries(std::size_t length, ListSize, FunctionRef<std::size_t>,
+               FunctionRef<Fields&, std::size_t> entry) override {
+    for (std::size_t i = 0; i < length; ++i) within(std::to_string(i), [&](Fields& f) { entry(f, i); });
+  }
+  void or_null(bool is_null, FunctionRef<>, Body value) override {
+    if (!is_null) value(*this);
+  }
+  void number_or_object(bool is_object, Body, Body object) override {
+    if (is_object) object(*this);
+  }
+  void one_or_list(bool is_list, Body one, Body list) override { (is_list ? list : one)(*this); }
+  void alternatives(const char*, std::span<const char* const>, Untyped, std::size_t held,
+                    FunctionRef<Fields&, std::size_t> fields) override {
+    fields(*this, held);
+  }
+  void fields(Body body) override { body(*this); }
+  void field(std::string_view name, const char*, Presence presence, Body value) override {
+    if (presence != Presence::left_out) within(name, value);
+  }
+  void ignored(std::string_view, const char*) override {}
+  void exactly_one_of(const char*, const char*) override {}
+
+ private:
+  void within(std::string_view name, Body value) {
+    const std::size_t length = at_.size();
+    at_.append("/").append(name);
+    value(*this);
+    at_.resize(length);
+  }
+
+  std::string at_;  ///< JSON pointer of the value that is visited
+};
+
+}  // namespace
+
+std::vector<FileReference> files_named_in(Scenario& scenario) {
+  FileFinder finder;
+  finder.object(scenario);
+  return std::move(finder.found);
+}
 
 void NamedFile::read() {
   if (!hash_.empty()) return;
@@ -18,68 +79,45 @@ const std::string& NamedFile::hash() {
   return hash_;
 }
 
-const std::string& NamedFile::bytes() {
-  read();
-  return bytes_;
-}
-
-NamedFiles::NamedFiles(const Scenario& scenario) {
-  if (const auto* shell = std::get_if<PointShellEnvironment>(&scenario.environment))
-    environment_ = std::make_shared<EnvironmentFile>(EnvironmentFile{NamedFile(resolve_path(scenario, shell->file))});
-  if (const auto* mesh = std::get_if<MeshEnvironment>(&scenario.environment)) {
-    environment_ = std::make_shared<EnvironmentFile>(
-        EnvironmentFile{NamedFile(resolve_path(scenario, mesh->file)), {mesh->scale, mesh->spacing}});
+const NamedFile::Contents& NamedFile::contents() {
+  if (!contents_) {
+    contents_ = std::make_shared<const Contents>(parsed());
+    bytes_ = {};
   }
-  if (const auto* tool = std::get_if<MeshToolFields>(&scenario.tool))
-    tool_ = std::make_shared<ToolFile>(ToolFile{NamedFile(resolve_path(scenario, tool->file)), tool->scale});
-  if (const auto* recorded = std::get_if<RecordedPosition>(&scenario.motion.position))
-    motion_ = std::make_shared<MotionFile>(MotionFile{NamedFile(resolve_path(scenario, recorded->file))});
+  return *contents_;
 }
 
-const std::vector<SurfacePoint>& NamedFiles::shell_points() const {
-  auto& [file, sampling, points, mesh] = *environment_;
-  if (!points) {
-    shell_extension(file.path());  // refused unread if it is another
-    points = point_shell_in(file.bytes(), file.path());
-    file.drop_bytes();
+NamedFile::Contents NamedFile::parsed() {
+  // A file with another extension is refused unread.
+  switch (content_.kind) {
+    case FileContent::Kind::point_shell:
+      shell_extension(path_);
+      read();
+      return {.points = point_shell_in(bytes_, path_)};
+    case FileContent::Kind::mesh:
+      mesh_extension(path_);
+      read();
+      return {.mesh = MeshFile(bytes_, path_, content_.sampling)};
+    case FileContent::Kind::stroke:
+      read();
+      return {.stroke = stroke_in(bytes_, path_)};
   }
-  return *points;
+  return {};
 }
 
-const MeshFile& NamedFiles::mesh() const {
-  auto& [file, sampling, points, mesh] = *environment_;
-  if (!mesh) {
-    mesh_extension(file.path());  // refused unread if it is another
-    mesh.emplace(file.bytes(), file.path(), sampling);
-    file.drop_bytes();
-  }
-  return *mesh;
+std::vector<std::string> NamedFile::warnings() {
+  return content_.kind == FileContent::Kind::mesh ? mesh().warnings() : std::vector<std::string>();
 }
 
-const MeshFile& NamedFiles::tool_mesh() const {
-  auto& [file, scale, mesh] = *tool_;
-  if (!mesh) {
-    mesh_extension(file.path());  // refused unread if it is another
-    mesh.emplace(file.bytes(), file.path(), MeshSampling{scale, {}});
-    file.drop_bytes();
-  }
-  return *mesh;
+NamedFiles::NamedFiles(Scenario scenario) {
+  for (const auto& [pointer, path, content] : files_named_in(scenario))
+    files_.push_back(std::make_shared<NamedFile>(pointer, resolve_path(scenario, *path), content));
 }
 
-const RecordedMotion& NamedFiles::recorded_motion() const {
-  auto& [file, motion, force] = *motion_;
-  if (!motion) {
-    Stroke stroke = stroke_in(file.bytes(), file.path());
-    motion = std::move(stroke.motion);
-    if (stroke.force) force = std::make_shared<const ReferenceForce>(*std::move(stroke.force));
-    file.drop_bytes();
-  }
-  return *motion;
-}
-
-std::shared_ptr<const ReferenceForce> NamedFiles::recorded_force() const {
-  recorded_motion();
-  return motion_->force;
+NamedFile* NamedFiles::find(std::string_view pointer) const {
+  const auto found =
+      std::find_if(files_.begin(), files_.end(), [pointer](const auto& file) { return file->pointer() == pointer; });
+  return found == files_.end() ? nullptr : found->get();
 }
 
 }  // namespace hapbench

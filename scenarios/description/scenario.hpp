@@ -20,12 +20,10 @@
 #include "sim/core/profile.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/analytic_shells.hpp"
-#include "sim/geometry/block_with_hole.hpp"
 #include "sim/loop/simulation.hpp"
-#include "sim/mesh/density.hpp"
+#include "sim/mesh/marching_cubes.hpp"
 #include "sim/tool/bur.hpp"
 #include "sim/tool/profile_point.hpp"
-#include "sim/tool/tip.hpp"
 
 /// A scenario file as plain structs, with every default in place: a default-constructed scenario is that of springs.
 /// Names, units and ranges of the file's fields: the functions `describe` of this folder.

@@ -7,8 +7,8 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/mesh_formats.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "sim/mesh/half_edge_mesh.hpp"
 #include "sim/mesh/mesh_from_triangles.hpp"
-#include "sim/mesh/resample.hpp"
 
 namespace hapbench {
 

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <memory>
-
 #include "algorithms/registry.hpp"
 #include "device_model/device_presets.hpp"
 #include "device_model/theory/stiffness_limits.hpp"
@@ -12,9 +10,6 @@
 #include "scenarios/description/scenario_text.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/describe.hpp"
-#include "scenarios/program/describe_results.hpp"
-#include "scenarios/program/describe_thesis.hpp"
-#include "scenarios/program/describe_words.hpp"
 #include "scenarios/program/schema_text.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/studies/stability/map_scenes.hpp"
@@ -25,7 +20,7 @@
 namespace hapbench {
 namespace {
 
-/// Adds the card of a parameter to the model's.
+/// Appends the card of a parameter to the model's.
 void add_parameter(Description& d, const std::string& path, const char* unit, const char* meaning) {
   const Json& field = *find_in_schema(scenario_schema_once(), path);
   const std::string initial = default_text(field), range = allowed_text(field);
@@ -62,7 +57,7 @@ Description describe_model(const char* kind, const ModelInfo& info, std::span<co
   return d;
 }
 
-/// A field that is a function of time.
+/// A field whose value is a function of time, from which `describe profile` takes its schema.
 constexpr const char* kSomeProfile = "motion.orientation.tilt_rad";
 
 const ModelInfo* find_stage(const std::string& name) {
@@ -72,7 +67,7 @@ const ModelInfo* find_stage(const std::string& name) {
   return nullptr;
 }
 
-/// "time.steps=2000" for each value that a scenario's text has, objects by their fields.
+/// Appends a line "time.steps=2000" for each value in a scenario's text.
 void add_assignments(std::string& text, const std::string& path, const Json& value) {
   if (!value.is_object()) {
     text += wrapped(fmt::format("{}={}", path, shown(value)), 6).erase(4, 2);
@@ -104,7 +99,7 @@ Description describe_profile() {
   return {fields_text("profile", profile), profile};
 }
 
-/// The numbers of a published device, each with its source.
+/// Shows the numbers of a published device, each with its source.
 Description describe_preset(const DevicePreset& preset) {
   Description d;
   d.text = fmt::format("preset {}: {}\n{}", bold(stdout, preset.name), preset.device,
@@ -129,7 +124,7 @@ Description describe_preset(const DevicePreset& preset) {
   return d;
 }
 
-/// The maps of "hapbench stability --map" and how their runs are judged.
+/// Explains the maps of "hapbench stability --map" and how their runs are judged.
 Description describe_stability() {
   std::string maps;
   Description d;
@@ -173,13 +168,30 @@ Description describe_stability() {
   return d;
 }
 
-/// Names without a thing of their own.
-constexpr const char* kSections[] = {"choices_schema", "profile", "scenario", "schema", "stability"};
+/// Names that stand for no single thing of a list.
+constexpr struct {
+  const char* name;
+  Description (*describe)();
+} kSections[] = {{"choices_schema",
+                  [] {
+                    return Description{json_text(choices_schema()), choices_schema()};
+                  }},
+                 {"profile", describe_profile},
+                 {"scenario",
+                  [] {
+                    return Description{fields_text("scenario", scenario_schema_once()), scenario_schema_once()};
+                  }},
+                 {"schema",
+                  [] {
+                    return Description{json_text(scenario_schema()), scenario_schema()};
+                  }},
+                 {"stability", describe_stability}};
 
 }  // namespace
 
 std::vector<std::string> described_names() {
-  std::vector<std::string> names(std::begin(kSections), std::end(kSections));
+  std::vector<std::string> names;
+  for (const auto& section : kSections) names.emplace_back(section.name);
   for (const AlgorithmEntry& entry : algorithms()) names.emplace_back(entry.info->name);
   for (const DepthModelEntry& entry : depth_models()) names.emplace_back(entry.info->name);
   for (const ModelInfo* stage : stages()) names.emplace_back(stage->name);
@@ -209,7 +221,7 @@ Description joined(const std::vector<Description>& meanings) {
   return all;
 }
 
-/// The field at that path, once for each of the types that have one of their own.
+/// Explains the field at that path, once for each group of types that share it.
 std::vector<Description> describe_field(const std::string& path) {
   std::vector<Description> meanings;
   for (const auto& [types, field] : typed_fields(scenario_schema_once(), path)) {
@@ -222,7 +234,7 @@ std::vector<Description> describe_field(const std::string& path) {
   return meanings;
 }
 
-/// Fields of that name in any section: "torque" for record.torque.
+/// Explains the fields of that name in any section: "torque" for record.torque.
 std::vector<Description> describe_fields_called(const std::string& name) {
   std::vector<Description> meanings;
   for (const std::string& path : scenario_field_paths()) {
@@ -233,9 +245,6 @@ std::vector<Description> describe_fields_called(const std::string& name) {
 }
 
 Description describe_name(const std::string& name) {
-  if (name == "stability") return describe_stability();
-  if (name == "choices_schema") return {json_text(choices_schema()), choices_schema()};
-  if (name == "schema") return {json_text(scenario_schema()), scenario_schema()};
   std::vector<Description> meanings;
   const auto add = [&meanings](Description more) { meanings.push_back(std::move(more)); };
   // A name may mean two things: normal_projection is an algorithm and a depth model.
@@ -252,13 +261,14 @@ Description describe_name(const std::string& name) {
   for (Description& result : describe_results(name)) add(std::move(result));
   const std::vector<Description> fields = describe_field(name);
   for (const Description& field : fields) add(field);
-  if (name == "scenario") add({fields_text(name, scenario_schema_once()), scenario_schema_once()});
+  for (const auto& section : kSections) {
+    if (name == section.name) add(section.describe());
+  }
   if (fields.empty()) {
     const std::vector<TypedField> types = types_called(scenario_schema_once(), name);
     for (const TypedField& type : types)
       add({fields_text(name, *type.schema, types.size() > 1 ? type.types : ""), *type.schema});
   }
-  if (name == "profile") add(describe_profile());
   for (Description& word : describe_word(name)) add(std::move(word));
   if (meanings.empty()) meanings = describe_heading(name);
   if (meanings.empty()) meanings = describe_thesis(name);
@@ -275,32 +285,34 @@ Description describe_name(const std::string& name) {
                   name, nearest_name_hint(name, described_names())));
 }
 
+struct DescribeOptions {
+  std::string name;
+  OutputOptions output;
+};
+
+int describe(const DescribeOptions& options) {
+  const Description d = describe_name(options.name);
+  print(options.output, d.text, d.json);
+  return kSuccess;
+}
+
 }  // namespace
 
 void add_describe(CommandLine& line) {
-  struct Options {
-    std::string name;
-    OutputOptions output;
-  };
-  auto options = std::make_shared<Options>();
-  Command command = line.command("describe",
-                                 "Explain an algorithm, a depth model, an integrator, an environment, a field, a "
-                                 "scenario, a metric, a column or file of the results, a word or heading "
-                                 "that the program prints, a claim or a place of the thesis");
+  auto [command, options] = line.command(
+      "describe",
+      "Explain an algorithm, a depth model, an integrator, an environment, a field, a scenario, a metric, a column or "
+      "file of the results, a word or heading that the program prints, a claim or a place of the thesis",
+      describe);
   command
-      .add(
-          "name", options->name,
-          "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
-          "\"choices_schema\", \"stability\"; a metric or a column, \"metrics\" or \"columns\" for all of "
-          "them, a heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5 or a place such "
-          "as \"Fig. A.2\"")
+      .add("name", options.name,
+           "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
+           "\"choices_schema\", \"stability\"; a metric or a column, \"metrics\" or \"columns\" for all of them, a "
+           "heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5 or a place such as "
+           "\"Fig. A.2\"")
+      .words(described_names)
       .required();
-  add_output_options(command, options->output);
-  command.runs([options] {
-    const Description d = describe_name(options->name);
-    print(options->output, d.text, d.json);
-    return kSuccess;
-  });
+  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

@@ -1,5 +1,3 @@
-#include "scenarios/program/import.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +10,6 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/program/command.hpp"
-#include "scenarios/program/shell_words.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/run/wait_notice.hpp"
@@ -36,6 +33,15 @@ struct ImportOptions {
 
 fs::path presets_folder() {
   return installed_folder("scenarios/import/presets");
+}
+
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(presets_folder())) {
+    if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 /// Runs hapbench_import, whose words are NAME=VALUE, several times for a list.
@@ -129,15 +135,6 @@ int import(const ImportOptions& options) {
 
 }  // namespace
 
-std::vector<std::string> import_preset_names() {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(presets_folder())) {
-    if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 void add_import(CommandLine& line) {
   auto options = std::make_shared<ImportOptions>();
   Command command = line.command("import", "Make a stroke to play back from a recording: poses and measured forces");
@@ -154,14 +151,17 @@ void add_import(CommandLine& line) {
     command.flag("--" + name, options->flags[name], help);
   };
   command.add("file", options->file, "the recording");
-  command.add("--preset", options->words["preset"], "a layout by name or from FILE.json; options below override it");
+  command.add("--preset", options->words["preset"], "a layout by name or from FILE.json; options below override it")
+      .words(preset_names);
   command.flag("--list", options->list, "list the presets");
-  word("format", kRecordingFormats, "csv (default), traj (blanks between numbers), hapi, hapi-binary");
+  word("format", {"csv", "traj", "hapi", "hapi-binary"},
+       "csv (default), traj (blanks between numbers), hapi, hapi-binary");
   flag("floats", "hapi-binary: numbers of four bytes");
   list("columns", "where quantities are, by name or number from 1 (below)");
   list("scale", "what units are: time [s], position [m], angle [rad], force [N] (below)");
   number("sample-rate", "[Hz] of a file without a column of times");
-  word("orientation", kRecordedOrientations, "what its columns hold; default none: the tool never turns");
+  word("orientation", {"none", "axis", "quat_wxyz", "quat_xyzw", "axis_angle", "matrix"},
+       "what its columns hold; default none: the tool never turns");
   list("tip-axis", "x,y,z: direction out of the tip in the tool's frame; default 0,0,-1");
   list("frame", "recorded directions that are the scenario's x, y, z; y up: x,-z,y");
   list("shift", "x,y,z: added to the places of the tip [m], in the scenario's frame");

@@ -5,7 +5,7 @@
 #include "device_model/theory/stiffness_limits.hpp"
 #include "results/record/target_table.hpp"
 #include "scenarios/description/scenario.hpp"
-#include "scenarios/program/comparison_table.hpp"
+#include "scenarios/program/run_table.hpp"
 #include "scenarios/run/recorders.hpp"
 
 namespace hapbench {

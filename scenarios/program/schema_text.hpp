@@ -11,8 +11,8 @@ namespace hapbench {
 /// The schema of a scenario in full, built once, and again when an algorithm has been added.
 const Json& scenario_schema_once();
 
-/// The part of the schema that `name` means: "scenario" for all of it, or a dotted field path ("rendering.limits"). Null
-/// when there is none.
+/// The part of the schema that `name` means: "scenario" for all of it, or a dotted field path ("rendering.limits").
+/// Null when there is none.
 const Json* find_in_schema(const Json& schema, const std::string& name);
 
 /// A field as some of the types have it among which an object around it chooses.

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algorithms/depth/depth_model.hpp"
 #include "algorithms/registry.hpp"
-#include "algorithms/shell_source.hpp"
 #include "device_model/admittance_device.hpp"
 #include "device_model/hands/drag_hand.hpp"
 #include "device_model/hands/impedance_hand.hpp"
@@ -15,9 +15,9 @@
 #include "device_model/ideal_device.hpp"
 #include "device_model/impedance_device.hpp"
 #include "scenarios/run/peer_contacts.hpp"
-#include "sim/contact/spring_source.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/core/random.hpp"
-#include "sim/loop/stop_rules.hpp"
+#include "sim/loop/simulation.hpp"
 
 namespace hapbench {
 namespace {
@@ -45,7 +45,7 @@ Orientation make_orientation(const OrientationFields& fields) {
 
 std::unique_ptr<Motion> make_motion(const Scenario& scenario, const NamedFiles& files) {
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position))
-    return std::make_unique<RecordedMotion>(files.recorded_motion());
+    return std::make_unique<RecordedMotion>(files.at(kMotionFile).stroke()->motion);
   std::optional<std::array<Profile, 3>> position;
   if (const auto* prescribed = std::get_if<PrescribedPosition>(&scenario.motion.position)) {
     position = prescribed->coordinates;
@@ -148,22 +148,20 @@ std::vector<StopRule> stop_rules(const Scenario& scenario) {
 std::vector<std::string> named_file_warnings(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
   std::vector<std::string> warnings;
-  const auto add = [&warnings](const char* pointer, const std::vector<std::string>& about) {
-    for (const std::string& warning : about) warnings.push_back(fmt::format("{}: {}", pointer, warning));
-  };
-  if (std::holds_alternative<MeshEnvironment>(scenario.environment))
-    add("/environment/file", loaded.files.mesh().warnings());
-  if (std::holds_alternative<MeshToolFields>(scenario.tool)) add("/tool/file", loaded.files.tool_mesh().warnings());
-  if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
-    const RecordedMotion& stroke = loaded.files.recorded_motion();
-    const double start = stroke.samples().front().time, stop = stroke.samples().back().time;
+  for (const auto& file : loaded.files.all()) {
+    for (const std::string& warning : file->warnings())
+      warnings.push_back(fmt::format("{}: {}", file->pointer(), warning));
+  }
+  if (NamedFile* file = loaded.files.find(kMotionFile)) {
+    const auto recorded = file->stroke();
+    const auto stroke = recorded->motion.samples();
+    const double start = stroke.front().time, stop = stroke.back().time;
     const double end = scenario.time.step * static_cast<double>(scenario.time.steps - 1);
     if (start > end || stop < 0.0) {
-      add("/motion/position/file",
-          {fmt::format(
-              "the stroke's clock runs from {:.6g} to {:.6g} s and the run's from 0 to {:.6g} s: the tool stays "
-              "at the {} sample; let the stroke begin at 0 or adapt time",
-              start, stop, end, start > end ? "first" : "last")});
+      warnings.push_back(
+          fmt::format("{}: the stroke's clock runs from {:.6g} to {:.6g} s and the run's from 0 to {:.6g} s: the tool "
+                      "stays at the {} sample; let the stroke begin at 0 or adapt time",
+                      kMotionFile, start, stop, end, start > end ? "first" : "last"));
     }
   }
   return warnings;
@@ -171,27 +169,21 @@ std::vector<std::string> named_file_warnings(const LoadedScenario& loaded) {
 
 std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
-  const auto at = [&loaded](const char* pointer, auto read) {
-    try {
-      read();
-    } catch (const InputError& error) {
-      throw InputError(InputError::Kind::relation, file_of(loaded, pointer).string() + ": " + pointer, error.what());
-    }
-  };
   with_file(loaded, [&] { require_contact_source(scenario); });
-  if (std::holds_alternative<PointShellEnvironment>(scenario.environment))
-    at("/environment/file", [&] { loaded.files.shell_points(); });
-  if (std::holds_alternative<MeshEnvironment>(scenario.environment))
-    at("/environment/file", [&] { loaded.files.mesh(); });
-  if (std::holds_alternative<MeshToolFields>(scenario.tool))
-    at("/tool/file", [&] { make_tool(scenario, loaded.files); });
-  if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
-    at("/motion/position/file", [&] { loaded.files.recorded_motion(); });
-    if (scenario.record.force_reference && !scenario.reference_force && !loaded.files.recorded_force())
-      throw InputError(InputError::Kind::relation,
-                       file_of(loaded, "/record/force_reference").string() + ": /record/force_reference",
-                       fmt::format("got true; allowed: false, because {} has no columns mfx_N,mfy_N,mfz_N",
-                                   loaded.files.motion()->path().string()));
+  for (const auto& file : loaded.files.all()) {
+    try {
+      file->check();
+      if (file->pointer() == kToolFile) make_tool(scenario, loaded.files);  // it must be closed, too
+    } catch (const InputError& error) {
+      const std::string place = file_of(loaded, file->pointer()).string() + ": " + file->pointer();
+      throw InputError(InputError::Kind::relation, place, error.what());
+    }
+  }
+  if (NamedFile* file = loaded.files.find(kMotionFile);
+      file != nullptr && scenario.record.force_reference && !scenario.reference_force && !file->stroke()->force) {
+    throw InputError(
+        InputError::Kind::relation, file_of(loaded, "/record/force_reference").string() + ": /record/force_reference",
+        fmt::format("got true; allowed: false, because {} has no columns mfx_N,mfy_N,mfz_N", file->path().string()));
   }
   std::vector<std::string> warnings = named_file_warnings(loaded);
   for (std::string& warning : warnings) {

@@ -4,9 +4,7 @@
 
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/contact/grid_index.hpp"
-#include "sim/mesh/block_field.hpp"
-#include "sim/mesh/points_by_cell.hpp"
-#include "sim/mesh/surface_shell.hpp"
+#include "sim/mesh/marching_cubes.hpp"
 
 namespace hapbench {
 namespace {
@@ -19,11 +17,11 @@ struct Build {
 
   Shell operator()(const SpringsEnvironment&) const { return nullptr; }
   Shell operator()(const PointShellEnvironment& given) const {
-    return of(files.shell_points(), given.grid.value_or(0.0));
+    return of(files.at(kEnvironmentFile).points(), given.grid.value_or(0.0));
   }
   Shell operator()(const MeshEnvironment& mesh) const {
     const double cell_size = mesh.grid.value_or(0.0);
-    return of(in_grid_order(files.mesh().points(), cell_size), cell_size);
+    return of(in_grid_order(files.at(kEnvironmentFile).mesh().points(), cell_size), cell_size);
   }
   Shell operator()(const BlockEnvironment& block) const {
     const DensityField field = density_field(block.block, block.grid, block.density);

@@ -20,7 +20,7 @@ using Grid = std::shared_ptr<const SignedDistanceGrid>;
 
 /// The mesh in the tool's own frame: tip centre at the origin, axis along -z.
 TriangleSoup tool_surface(const MeshToolFields& fields, const NamedFiles& files) {
-  TriangleSoup surface = files.tool_mesh().triangles();
+  TriangleSoup surface = files.at(kToolFile).mesh().triangles();
   const Mat3 to_file = ToolPose{.position = fields.tip, .axis = fields.tip_axis.normalized()}.rotation();
   for (Vec3& vertex : surface.vertices) vertex = to_file.transpose() * (vertex - fields.tip);
   return surface;
@@ -32,7 +32,7 @@ Grid make_grid(const MeshToolFields& fields, const NamedFiles& files) {
   try {
     return std::make_shared<const SignedDistanceGrid>(surface.vertices, surface.triangles, spacing);
   } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: {}", files.tool()->path().string(), error.what()));
+    throw InputError(fmt::format("{}: {}", files.at(kToolFile).path().string(), error.what()));
   }
 }
 
@@ -41,7 +41,7 @@ class RecentGrids {
  public:
   Grid of(const MeshToolFields& fields, const NamedFiles& files) {
     const std::string content =
-        fmt::format("{} {} {} {} {}", files.tool()->hash(), fields.scale, fields.grid.value_or(0.0),
+        fmt::format("{} {} {} {} {}", files.at(kToolFile).hash(), fields.scale, fields.grid.value_or(0.0),
                     fmt::join(fields.tip, " "), fmt::join(fields.tip_axis, " "));
     const std::lock_guard lock(mutex_);
     const auto found =

@@ -4,7 +4,7 @@
 
 #include "scenarios/plugins/load_peer.hpp"
 #include "scenarios/run/make_tool.hpp"
-#include "sim/mesh/block_field.hpp"
+#include "sim/mesh/marching_cubes.hpp"
 
 namespace hapbench {
 namespace {
@@ -37,7 +37,7 @@ PeerSurface peer_surface(const Scenario& scenario, const NamedFiles& files) {
     for (const SurfacePoint& vertex : mesh.vertices) add(surface.vertices, vertex.position);
     take(mesh.triangles);
   } else {
-    const TriangleSoup mesh = files.mesh().triangles();
+    const TriangleSoup mesh = files.at(kEnvironmentFile).mesh().triangles();
     for (const Vec3& vertex : mesh.vertices) add(surface.vertices, vertex);
     take(mesh.triangles);
   }

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "sim/core/box.hpp"
+#include "sim/core/types.hpp"
 
 namespace hapbench {
 

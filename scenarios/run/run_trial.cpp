@@ -55,7 +55,8 @@ class TrialObservers {
     if (scenario.reference_force) {
       force_ = std::make_shared<const ReferenceForce>(scenario.reference_force->force);
     } else if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
-      force_ = files.recorded_force();
+      const auto stroke = files.at(kMotionFile).stroke();
+      if (stroke->force) force_ = {stroke, &*stroke->force};
       if (!force_ && scenario.record.force_reference)
         throw InputError("/record/force_reference: got true; allowed: false, because the stroke has no measured force");
     }
@@ -71,8 +72,9 @@ class TrialObservers {
       observers_.push_back(&*approach_);
       // It knows points of the shell, and a peer's contacts are none.
       if (std::holds_alternative<MeshEnvironment>(scenario.environment) &&
-          scenario.rendering.contact_source == kOwnContacts && !files.mesh().open_edges().empty()) {
-        open_edges_.emplace(*parts.shell, files.mesh().open_edges(), parts.tool->half_width());
+          scenario.rendering.contact_source == kOwnContacts &&
+          !files.at(kEnvironmentFile).mesh().open_edges().empty()) {
+        open_edges_.emplace(*parts.shell, files.at(kEnvironmentFile).mesh().open_edges(), parts.tool->half_width());
         observers_.push_back(&*open_edges_);
       }
     }

@@ -44,7 +44,7 @@ ToolFacts tool_facts(const Scenario& scenario, const NamedFiles& files, const To
   const auto* mesh = dynamic_cast<const MeshTool*>(&tool);
   if (mesh == nullptr) return facts;
   const SignedDistanceGrid& grid = mesh->grid();
-  facts.mesh = {files.tool_mesh().triangles().triangles.size(),
+  facts.mesh = {files.at(kToolFile).mesh().triangles().triangles.size(),
                 {grid.low(), grid.high()},
                 grid.nodes().spacing,
                 grid.error_bound()};
@@ -64,9 +64,9 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   const auto shell = make_shell(scenario, loaded.files);
   if (!shell || shell->size() == 0) return facts;
   if (std::holds_alternative<MeshEnvironment>(scenario.environment))
-    facts.is_closed = loaded.files.mesh().open_edges().empty();
+    facts.is_closed = loaded.files.at(kEnvironmentFile).mesh().open_edges().empty();
   const SimulationParts parts = assemble(scenario, loaded.files, shell, {});
-  SceneFacts::Surface& surface = facts.surface.emplace();
+  SceneFacts::Surface& surface = facts.surface.emplace(SceneFacts::Surface{});
   surface.box = shell->bounds();
   surface.points = shell->size();
   if (auto warning = scale_warning(scenario, *tool, surface.box)) facts.warnings.push_back(*warning);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scenarios/description/load_scenario.hpp"
-#include "sim/core/box.hpp"
+#include "sim/core/types.hpp"
 
 namespace hapbench {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "algorithms/rendering_config.hpp"
-#include "sim/core/box.hpp"
+#include "sim/core/types.hpp"
 #include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "algorithms/laws/shaped_stiffness.hpp"
-#include "algorithms/stages/gradient_reduction.hpp"
+#include "algorithms/stages/point_stage.hpp"
 #include "scenarios/batch/statistics.hpp"
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/thesis_claims/claims.hpp"

@@ -6,10 +6,9 @@
 #include <map>
 #include <utility>
 
-#include "sim/core/lanes.hpp"
+#include "sim/core/aligned.hpp"
 
 namespace hapbench {
-
 namespace {
 
 ShellColumns columns_of(const std::vector<SurfacePoint>& points) {

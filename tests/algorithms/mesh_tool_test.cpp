@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "algorithms/depth/depth_model.hpp"
 #include "algorithms/registry.hpp"
-#include "algorithms/shell_source.hpp"
 #include "results/allocations/allocations.hpp"
 #include "sim/core/random.hpp"
 #include "sim/geometry/analytic_shells.hpp"
@@ -48,7 +48,7 @@ TEST_P(MeshToolInEveryAlgorithm, IsPushedOutOfAPlaneWithoutAllocating) {
       RenderingConfig config;
       config.algorithm = GetParam().info->name;
       if (GetParam().fixed_depth_model.empty()) config.depth_model = model.info->name;
-      ShellSource source(shell, *tool, make_contact_query(shell, *tool, Skips::taken), make_depth_model(config));
+      ShellSource source(shell, *tool, make_contact_query(shell, *tool, Skips::on), make_depth_model(config));
       ContactBuffer contacts(source.capacity());
       const auto algorithm = make_algorithm(config);
       algorithm->prepare({source.capacity(), tool.get(), &shell});

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "algorithms/depth/depth_model.hpp"
 #include "algorithms/registry.hpp"
-#include "algorithms/shell_source.hpp"
 #include "sim/core/random.hpp"
 
 namespace hapbench::test {
@@ -15,7 +15,7 @@ void expect_proxy_stays_out(const ToolShape& tool, const PointShell& shell, cons
                             const Deepest& deepest) {
   RenderingConfig config;
   config.algorithm = "proxy";
-  ShellSource source(shell, tool, make_contact_query(shell, tool, Skips::taken), make_depth_model(config));
+  ShellSource source(shell, tool, make_contact_query(shell, tool, Skips::on), make_depth_model(config));
   ContactBuffer contacts(source.capacity());
   const auto proxy = make_algorithm(config);
   proxy->prepare({source.capacity(), &tool, &shell});

@@ -60,10 +60,9 @@ TEST(Registry, EveryModelDocumentsItself) {
 
 TEST(Registry, EveryTheoryIsThatOfItsAlgorithm) {
   for (const AlgorithmEntry& entry : algorithms()) {
-    ASSERT_NE(entry.theory, nullptr) << entry.info->name;
     RenderingConfig config;
     config.algorithm = entry.info->name;
-    if (const auto bound = entry.theory->force_bound) {
+    if (const auto bound = entry.theory.force_bound) {
       // One spring pulls with its own stiffness, and no algorithm may answer with less bound than that.
       test::Setting setting;
       setting.springs = SpringSet{{Vec3::UnitX()}, true};
@@ -73,7 +72,7 @@ TEST(Registry, EveryTheoryIsThatOfItsAlgorithm) {
       EXPECT_GT(force.spring.norm(), 0.0) << entry.info->name;
       EXPECT_LE(force.spring.norm(), most * (1.0 + 1e-12)) << entry.info->name;
     }
-    if (const auto wedge = entry.theory->wedge_stiffness) {
+    if (const auto wedge = entry.theory.wedge_stiffness) {
       // A right angle of single points: one spring each, as far as the algorithm knows the faces apart.
       const WedgeStiffness stiffness = wedge(config, 0.25 * std::numbers::pi, 1.0);
       EXPECT_TRUE(std::isfinite(stiffness.along) && std::isfinite(stiffness.across)) << entry.info->name;
@@ -86,7 +85,7 @@ TEST(Registry, EveryTheoryIsThatOfItsAlgorithm) {
 TEST(ForceBound, HoldsForSpringsOfEqualDepthInClosedForm) {
   RenderingConfig config;
   const auto bound = [&](const char* algorithm, std::size_t n) {
-    return find_algorithm(algorithm)->theory->force_bound(config, Cylinder{}, n, 1.0);
+    return find_algorithm(algorithm)->theory.force_bound(config, Cylinder{}, n, 1.0);
   };
   for (const std::size_t n : {1u, 2u, 10u, 200u}) {
     const auto points = static_cast<double>(n);

@@ -1,9 +1,9 @@
-#include "algorithms/shell_source.hpp"
+#include "algorithms/depth/depth_model.hpp"
 
 #include <gtest/gtest.h>
 
 #include "algorithms/registry.hpp"
-#include "sim/contact/shell_query.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/tool/cylinder.hpp"
 
@@ -65,7 +65,7 @@ TEST_F(ShellSourceTest, AnswersThePointsOfTheSearchWithTheDepthsOfTheModel) {
 }
 
 TEST_F(ShellSourceTest, TellsTheModelOnceThatThereIsNoContact) {
-  for (const Skips skips : {Skips::taken, Skips::off}) {
+  for (const Skips skips : {Skips::on, Skips::off}) {
     counts = {};
     ShellSource source = counting(skips);
     EXPECT_EQ(counts.prepared, 1);
@@ -74,12 +74,12 @@ TEST_F(ShellSourceTest, TellsTheModelOnceThatThereIsNoContact) {
       source.contacts_at(pose, contacts);
     }
     EXPECT_EQ(counts.with_contacts, 3);
-    EXPECT_EQ(counts.evaluated, skips == Skips::taken ? 5 : 7);
+    EXPECT_EQ(counts.evaluated, skips == Skips::on ? 5 : 7);
   }
 }
 
 TEST_F(ShellSourceTest, ForgetsInAResetThatThereWasNoContact) {
-  ShellSource source = counting(Skips::taken);
+  ShellSource source = counting(Skips::on);
   ContactBuffer contacts(source.capacity());
   source.contacts_at(kFree, contacts);
   source.reset();

@@ -6,9 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "algorithms/depth/depth_model.hpp"
 #include "algorithms/registry.hpp"
-#include "algorithms/shell_source.hpp"
-#include "sim/contact/grid_query.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/algorithms/proxy_descent.hpp"
@@ -108,7 +107,7 @@ TEST_P(NewShapeInEveryAlgorithm, IsPushedOutOfAPlane) {
   const PointShell shell(surface_points(Plane{0.004, kSpacing}), kSpacing);
   RenderingConfig config;
   config.algorithm = GetParam().info->name;
-  ShellSource source(shell, brick, make_contact_query(shell, brick, Skips::taken), make_depth_model(config));
+  ShellSource source(shell, brick, make_contact_query(shell, brick, Skips::on), make_depth_model(config));
   ContactBuffer contacts(source.capacity());
   const auto algorithm = make_algorithm(config);
   algorithm->prepare({source.capacity(), &brick, &shell});

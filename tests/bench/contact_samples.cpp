@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "algorithms/depth/surface_normal.hpp"
-#include "sim/contact/grid_query.hpp"
+#include "algorithms/depth/depth_model.hpp"
+#include "sim/contact/neighbour_list_query.hpp"
 #include "tests/bench/task_scene.hpp"
 
 namespace hapbench::bench {
@@ -16,7 +16,7 @@ template <class Take>
 void for_contacts(const std::string& task, std::size_t every, Take take) {
   const TaskScene& scene = task_scene(task);
   GridQuery query(*scene.shell, *scene.tool);
-  const auto depth_model = make_surface_normal();
+  const auto depth_model = make_depth_model("surface_normal");
   ContactBuffer here(query.capacity());
   for (std::size_t k = 0; k < scene.poses.size(); k += every) {
     query.contacts_at(scene.poses[k], here);

@@ -57,12 +57,12 @@ class FilledHole {
 
 void step(benchmark::State& state, std::size_t n) {
   const auto wrong = [n]() -> std::string {
-    const Metrics metrics = FilledHole(n, Skips::taken).metrics();
+    const Metrics metrics = FilledHole(n, Skips::on).metrics();
     if (metrics.colliding_mean != static_cast<double>(n)) return "not every point is a contact";
     return metrics.state_hash == FilledHole(n, Skips::off).metrics().state_hash ? "" : "not the run without skips";
   };
   if (!proved(state, fmt::format("growth/step/{}", n), wrong)) return;
-  FilledHole run(n, Skips::taken);
+  FilledHole run(n, Skips::on);
   while (state.KeepRunningBatch(kStepsAtATime)) run.take(kStepsAtATime);
   state.counters["contacts"] = run.metrics().colliding_mean;
 }

@@ -21,7 +21,7 @@ struct Problem {
 class Problems final : public Observer {
  public:
   Problems(const PointShell& shell, const ToolShape& tool, double K)
-      : constraints_(shell, tool, Skips::taken), found_(constraints_.capacity()), K_(K) {}
+      : constraints_(shell, tool, Skips::on), found_(constraints_.capacity()), K_(K) {}
 
   void on_step(const StepRecord& record) noexcept override {
     if (record.step % kRowsApart != 0 || record.rendered->empty()) return;

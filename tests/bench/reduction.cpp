@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "algorithms/stages/gradient_reduction.hpp"
+#include "algorithms/stages/point_stage.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/contact_samples.hpp"
 

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "sim/contact/grid_query.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/support/searches.hpp"

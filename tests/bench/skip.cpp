@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include "algorithms/registry.hpp"
-#include "sim/contact/grid_query.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/contact_samples.hpp"
@@ -43,8 +42,7 @@ class Rendering {
 };
 
 void rendering_benchmark(benchmark::State& state, const RenderingConfig& config, std::size_t contacts, Skips skips) {
-  Rendering rendering(config, skips, contacts),
-      other(config, skips == Skips::off ? Skips::taken : Skips::off, contacts);
+  Rendering rendering(config, skips, contacts), other(config, skips == Skips::off ? Skips::on : Skips::off, contacts);
   if (bits_of(rendering.compute()) != bits_of(other.compute())) {
     return refute(state, "the skip changes the force");
   }
@@ -58,7 +56,7 @@ void clearance_benchmark(benchmark::State& state, Skips skips) {
   const ToolPose pose{{0.0, 0.0, 0.002}, {0.0, 0.0, -1.0}};
   NeighbourListQuery list(*scene.shell, *scene.tool);
   GridQuery grid(*scene.shell, *scene.tool);
-  ContactQuery& query = skips == Skips::taken ? static_cast<ContactQuery&>(list) : grid;
+  ContactQuery& query = skips == Skips::on ? static_cast<ContactQuery&>(list) : grid;
   ContactBuffer contacts(query.capacity());
   for (ContactQuery* each : {static_cast<ContactQuery*>(&list), static_cast<ContactQuery*>(&grid)}) {
     each->contacts_at(pose, contacts);
@@ -75,7 +73,7 @@ void records_benchmark(benchmark::State& state, Skips skips) {
     config.skips = s;
     return Simulation(config, assemble(scenario, block_shell(), {}), {});
   };
-  Simulation simulation = run(skips), other = run(skips == Skips::off ? Skips::taken : Skips::off);
+  Simulation simulation = run(skips), other = run(skips == Skips::off ? Skips::on : Skips::off);
   for (int k = 0; k < 2048; ++k) {
     simulation.step();
     other.step();
@@ -105,9 +103,9 @@ void register_skips() {
   RenderingConfig plain = task_rendering();
   plain.reduction.reset();
   plain.mu_s = plain.mu_f = 0.0;
-  for (const Skips skips : {Skips::taken, Skips::off}) {
+  for (const Skips skips : {Skips::on, Skips::off}) {
     const auto add = [skips](const char* what, auto function, auto... arguments) {
-      const char* way = skips == Skips::taken ? "taken" : "off";
+      const char* way = skips == Skips::on ? "taken" : "off";
       benchmark::RegisterBenchmark(fmt::format("skip/{}/{}", what, way).c_str(), function, arguments..., skips);
     };
     add("clearance", clearance_benchmark);

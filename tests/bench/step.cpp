@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "algorithms/registry.hpp"
-#include "algorithms/shell_source.hpp"
+#include "algorithms/depth/depth_model.hpp"
 #include "sim/contact/contact_query.hpp"
 #include "sim/tool/cylinder.hpp"
 #include "sim/tool/mesh_tool.hpp"

@@ -36,7 +36,7 @@ inline constexpr std::uint64_t kWarmUp = 1024;
 /// same body; in `_grooved` it has grooves of 0.1 um, so that it is not convex but meets nearly the same points.
 class TimedRun {
  public:
-  explicit TimedRun(const std::string& name, Skips skips = Skips::taken);
+  explicit TimedRun(const std::string& name, Skips skips = Skips::on);
   ~TimedRun();
 
   /// Back to the state after kWarmUp steps.

@@ -38,9 +38,7 @@ DRAWN_TWICE = "A.5,B.4,C.1,C.3,D.7,E.3,precision,stability-wedge"
 
 
 def hapbench(*arguments):
-    done = subprocess.run(
-        [PROGRAM, *arguments], capture_output=True, text=True
-    )
+    done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True)
     if done.returncode not in (0, 3):
         raise AssertionError(f"hapbench {' '.join(map(str, arguments))}: {done.stderr}")
 
@@ -69,28 +67,20 @@ def make_results(directory):
     name = "corner_continuous_normal_projection"
     hapbench("run", name, "--quiet", "--out", directory / "beyond" / name)
     hapbench("stability", "single_spring", "--quiet", "--out", directory / "stability")
-    hapbench(
-        *("compare", "rotate_in_hole_proxy", "--algorithms", "proxy,shaped_stiffness,exact_shaping", "--quiet"),
-        *("--set=time.duration_s=2", "--set=record.every=8", "--set=rendering.reduction={}"),
-        *("--out", directory / "proxy"),
-    )
-    hapbench(
-        *("compare", "lost_torque", "--algorithms", "original_averaging,shaped_stiffness", "--quiet"),
-        *("--out", directory / "torque"),
-    )
+    hapbench(*("compare", "rotate_in_hole_proxy", "--algorithms", "proxy,shaped_stiffness,exact_shaping", "--quiet"),
+             *("--set=time.duration_s=2", "--set=record.every=8", "--set=rendering.reduction={}"),
+             *("--out", directory / "proxy"))
+    hapbench(*("compare", "lost_torque", "--algorithms", "original_averaging,shaped_stiffness", "--quiet"),
+             *("--out", directory / "torque"))
     hapbench("compare", "peg_in_hole_2d_shaped_stiffness", "--quiet", "--out", directory / "compare")
     for scene, scenario in (("peg", "tilt_sweep_shaped_stiffness"), ("wedge", "wedge_stiffness")):
         out = directory / "stiffness" / scene
         hapbench("compare", scenario, "--set=record.stiffness_tensor=true", "--quiet", "--out", out)
     make_studies(directory / "precision")
-    hapbench(
-        *("stability", "--map", "all", "--algorithms", "shaped_stiffness,summation", "--size", "3", "--quiet"),
-        *("--out", directory / "stability_maps"),
-    )
-    hapbench(
-        *("stability", "--map", "time_step,damping_ratio,device", "--algorithms", "shaped_stiffness", "--size", "3"),
-        *("--integrators", "all", "--quiet", "--out", directory / "stability_integrators"),
-    )
+    hapbench(*("stability", "--map", "all", "--algorithms", "shaped_stiffness,summation", "--size", "3", "--quiet"),
+             *("--out", directory / "stability_maps"))
+    hapbench(*("stability", "--map", "time_step,damping_ratio,device", "--algorithms", "shaped_stiffness", "--size", "3"),
+             *("--integrators", "all", "--quiet", "--out", directory / "stability_integrators"))
     hapbench("compare", "--devices", "touch,omega.3", "--quiet", "--out", directory / "devices")
     (directory / "performance.json").write_text(json.dumps(performance()))
     timing = {
@@ -124,11 +114,9 @@ def make_studies(directory):
     """Tables as of `hapbench precision`, whose runs would take longer than all else here."""
     directory.mkdir()
     settings = {
-        "integrators": [
-            f"{name} dt={step}"
-            for name in ("leapfrog", "velocity_verlet", "rk4", "implicit_euler", "implicit_midpoint")
-            for step in ("0.001", "0.0001")
-        ],
+        "integrators": [f"{name} dt={step}"
+                        for name in ("leapfrog", "velocity_verlet", "rk4", "implicit_euler", "implicit_midpoint")
+                        for step in ("0.001", "0.0001")],
         "time_step": ["dt=0.001", "dt=0.0001"],
         "shaping": ["m=0", "m=1", "exact"],
         "reduction": ["shaped_stiffness 0.9", "exact_shaping off"],
@@ -139,14 +127,9 @@ def make_studies(directory):
     columns = ("step_s", "error_rms_m", "tensor_error_rms", "force_error_relative", "ideal_height_error_rms_m",
                "pushed_m", "contacts_mean", "points_tested_mean")
     for study, names in settings.items():
-        rows = [
-            f"{name},{'diverges' if name.startswith('original') else 'completes'}"
-            + f",{0.001 / (i + 1)}" * len(columns)
-            for i, name in enumerate(names)
-        ]
-        (directory / f"precision_{study}.csv").write_text(
-            "\n".join(["setting,outcome," + ",".join(columns), *rows]) + "\n"
-        )
+        rows = [f"{name},{'diverges' if name.startswith('original') else 'completes'}" + f",{0.001 / (i + 1)}" * len(columns)
+                for i, name in enumerate(names)]
+        (directory / f"precision_{study}.csv").write_text("\n".join(["setting,outcome," + ",".join(columns), *rows]) + "\n")
         times = [f"{name},{1e-6 * (i + 1)},{1e-6 * (i + 1)}" for i, name in enumerate(names)]
         (directory / f"precision_{study}_timing.csv").write_text(
             "\n".join(["setting,seconds_per_step,seconds_per_call", *times]) + "\n"
@@ -175,9 +158,7 @@ class Figures(unittest.TestCase):
 
     def test_the_figures_of_the_thesis_are_there(self):
         redrawn = " ".join(entry["thesis_figure"] or "" for entry in self.index())
-        for name in (
-            "2 4 5 6 7a-c 8 A.1 A.2a-b A.5 B.3 B.4 B.5 C.1 C.2 C.3 C.4 D.6 D.7 D.8 E.1 E.2 E.3 E.4 F.4 F.5"
-        ).split():
+        for name in ("2 4 5 6 7a-c 8 A.1 A.2a-b A.5 B.3 B.4 B.5 C.1 C.2 C.3 C.4 D.6 D.7 D.8 E.1 E.2 E.3 E.4 F.4 F.5").split():
             self.assertRegex(redrawn, rf"(^|\s){re.escape(name)}(,|\s|$)")
         self.assertIn("A.4 (springs)", redrawn)
         self.assertIn("A.4 (root locus)", redrawn)
@@ -260,14 +241,8 @@ class Figures(unittest.TestCase):
         target = damaged / "thesis" / "gradient_flip" / "trajectory.csv"
         target.parent.mkdir(parents=True)
         whole = (self.results / "thesis" / "gradient_flip" / "trajectory.csv").read_text()
-        for text in (
-            "",
-            "step,time_s\n",
-            whole[: len(whole) // 2],
-            whole.replace("fspring_x_N", "other"),
-            "step\nmany\n",
-            "\x00\xff",
-        ):
+        for text in ("", "step,time_s\n", whole[: len(whole) // 2], whole.replace("fspring_x_N", "other"), "step\nmany\n",
+                     "\x00\xff"):
             target.write_text(text)
             done = figures(damaged, "--out", out, "--only", "B.3.3")
             with self.subTest(text[:30]):

@@ -1,7 +1,9 @@
 """The pages of `hapbench report`."""
 import functools
+import html
 import json
 import re
+import shlex
 import sys
 import unittest
 
@@ -44,14 +46,14 @@ class Page(Given):
         (run / "summary.json").write_text(json.dumps(summary))
         page = self.page(run)
         self.assertEqual(re.findall(r'<section id="(\w+)"', page), ["summary", "warnings", "metrics", "scenario", "rerun", "provenance"])
-        for text in ("in contact 4.9 % of the run &lt;b&gt;", "Landing max, N", "7.25", "Force above 30 Hz rms, N", "0.125"):
+        for text in ("in contact 4.9 % of the run &lt;b&gt;", "landing force max<br><span class=unit>N</span>", "7.25", "force rms above 30Hz", "0.125"):
             self.assertTrue(text in page, text)
 
     def test_the_commands_repeat_the_run(self):
         page = self.page(self.root / "springs")
-        command = re.search(r"hapbench (run [^\n<]*scenario.effective.json) --out", page)[1]
+        command = re.search(r"hapbench (run [^\n<]*scenario.effective.json\S*) --out", page)[1]
         again = self.root / "again"
-        hapbench(*command.split(), "--out", again, "--quiet")
+        hapbench(*shlex.split(html.unescape(command)), "--out", again, "--quiet")
         self.assertEqual((again / "trajectory.csv").read_bytes(), (self.root / "springs" / "trajectory.csv").read_bytes())
 
     def test_the_replay_has_every_run(self):

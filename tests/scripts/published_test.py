@@ -12,10 +12,8 @@ class PublishedNumbers(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.schema = json.loads((SOURCE / "results" / "reference" / "published.schema.json").read_text(encoding="utf-8"))
-        cls.files = {
-            path.name: json.loads(path.read_text(encoding="utf-8"))
-            for path in sorted((SOURCE / "results" / "reference" / "published").glob("*.json"))
-        }
+        cls.files = {path.name: json.loads(path.read_text(encoding="utf-8"))
+                     for path in sorted((SOURCE / "results" / "reference" / "published").glob("*.json"))}
         cls.entries = [entry for file in cls.files.values() for entry in file["values"]]
 
     def test_files_agree_with_the_schema(self):
@@ -32,20 +30,14 @@ class PublishedNumbers(unittest.TestCase):
                     for key, value in entry.items():
                         rule = item["properties"][key]
                         self.assertIsInstance(value, types[rule["type"]])
-                        self.assertGreaterEqual(
-                            len(value) if isinstance(value, str) else value,
-                            rule.get("minLength", rule.get("minimum", float("-inf"))),
-                        )
+                        self.assertGreaterEqual(len(value) if isinstance(value, str) else value,
+                                                rule.get("minLength", rule.get("minimum", float("-inf"))))
 
     def test_each_entry_says_one_thing(self):
         for entry in self.entries:
             with self.subTest(entry["id"]):
-                kinds = [
-                    bool({"mean"} & set(entry)),
-                    bool({"value"} & set(entry)),
-                    bool({"at_least", "at_most"} & set(entry)),
-                    bool({"statement"} & set(entry)),
-                ]
+                kinds = [bool({"mean"} & set(entry)), bool({"value"} & set(entry)), bool({"at_least", "at_most"} & set(entry)),
+                         bool({"statement"} & set(entry))]
                 self.assertEqual(sum(kinds), 1)
                 self.assertEqual("unit" in entry, not kinds[3])
                 self.assertEqual("mean" in entry, bool({"std", "standard_error"} & set(entry)))
@@ -62,10 +54,8 @@ class PublishedNumbers(unittest.TestCase):
         value = {entry["id"]: entry for entry in self.entries}
         for claim in ("D1", "D3", "D4"):
             for measure in ("success", "time", "force", "speed"):
-                difference = (
-                    value[f"{claim}.{measure}.original_averaging"]["mean"]
-                    - value[f"{claim}.{measure}.shaped_stiffness"]["mean"]
-                )
+                difference = (value[f"{claim}.{measure}.original_averaging"]["mean"]
+                              - value[f"{claim}.{measure}.shaped_stiffness"]["mean"])
                 self.assertGreater(difference * value[f"{claim}.{measure}.t"]["value"], 0, f"{claim}.{measure}")
 
 

@@ -16,7 +16,7 @@ SVG = ('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 60"><path d="M5 
 
 def make_results(directory):
     """Short runs, one recorded time, limits, and the replay's recordings."""
-    from hapbench_report.replay_record import record_replays
+    from hapbench_report.replay import record_replays
 
     for scenario in SCENARIOS:
         hapbench("run", scenario, "--set", "record.timing=true", "--out", directory / "thesis" / scenario)

@@ -12,11 +12,10 @@ from pathlib import Path
 
 from report_fixture import PROGRAM, SCRIPTS, claim, make_claims, make_figures, make_results, report
 
-from hapbench_report.markup import number, strip, typeset
-from hapbench_report.replay_pack import packed_replays
-from hapbench_report.replay_read import CONTACT_COLUMNS, MEASURED_COLUMNS, Recording
-from hapbench_report.section_thesis import figure_labels
-from hapbench_report.units import column
+from hapbench_report.markup import column, number, strip, typeset
+from hapbench_report.recording import CONTACT_COLUMNS, MEASURED_COLUMNS, Recording
+from hapbench_report.replay import packed_replays
+from hapbench_report.thesis import figure_labels
 
 PEERS = json.loads((SCRIPTS.parent / "results" / "reference" / "peers.json").read_text(encoding="utf-8"))
 

@@ -5,9 +5,9 @@
 #include <numeric>
 
 #include "algorithms/laws/exact_shaping.hpp"
-#include "algorithms/laws/merged_shaping.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
-#include "algorithms/stages/gradient_reduction.hpp"
+#include "algorithms/registry.hpp"
+#include "algorithms/stages/point_stage.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/studies/precision/study.hpp"
@@ -22,15 +22,15 @@ constexpr std::uint64_t kOrders = 4;
 
 struct MergingWay {
   const char* name;
-  std::unique_ptr<ForceLaw> (*make_law)(const RenderingConfig&);
+  const char* law;
   bool reduces;
 };
 constexpr MergingWay kMergingWays[] = {
-    {"exact_shaping of all", make_exact_shaping, false},
-    {"exact_shaping reduced", make_exact_shaping, true},
-    {"shaped_stiffness of all", make_shaped_stiffness, false},
-    {"shaped_stiffness reduced", make_shaped_stiffness, true},
-    {"merged_shaping", make_merged_shaping, false},
+    {"exact_shaping of all", "exact_shaping", false},
+    {"exact_shaping reduced", "exact_shaping", true},
+    {"shaped_stiffness of all", "shaped_stiffness", false},
+    {"shaped_stiffness reduced", "shaped_stiffness", true},
+    {"merged_shaping", "merged_shaping", false},
 };
 
 using Order = std::vector<std::size_t>;
@@ -39,7 +39,9 @@ using Order = std::vector<std::size_t>;
 class Forces {
  public:
   Forces(const MergingWay& way, const RenderingConfig& config, std::size_t capacity)
-      : reduction_(way.reduces ? make_gradient_reduction({}) : nullptr), law_(way.make_law(config)), work_(capacity) {
+      : reduction_(way.reduces ? make_gradient_reduction({}) : nullptr),
+        law_(make_law(way.law, config)),
+        work_(capacity) {
     if (reduction_) reduction_->prepare({});
     law_->prepare(capacity);
   }

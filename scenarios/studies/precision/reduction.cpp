@@ -5,7 +5,7 @@
 
 #include "algorithms/laws/exact_shaping.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
-#include "algorithms/stages/gradient_reduction.hpp"
+#include "algorithms/stages/point_stage.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/studies/precision/study.hpp"

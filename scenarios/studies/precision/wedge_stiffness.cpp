@@ -9,8 +9,8 @@ namespace hapbench {
 std::optional<WedgeStiffness> wedge_stiffness(const RenderingConfig& config, double half_angle,
                                               double points_per_face) {
   const AlgorithmEntry* entry = find_algorithm(config.algorithm);
-  if (entry == nullptr || entry->theory->wedge_stiffness == nullptr || config.stiffness == 0.0) return std::nullopt;
-  return entry->theory->wedge_stiffness(config, half_angle, points_per_face);
+  if (entry == nullptr || entry->theory.wedge_stiffness == nullptr || config.stiffness == 0.0) return std::nullopt;
+  return entry->theory.wedge_stiffness(config, half_angle, points_per_face);
 }
 
 Scenario with_wedge(Scenario scenario, double half_angle) {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "algorithms/theory.hpp"
+#include "algorithms/registry.hpp"
 #include "scenarios/description/scenario.hpp"
 
 /// What is left of K where no contact normal points: the way out of a wedge.

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <mutex>
 
+#include "algorithms/depth/depth_model.hpp"
 #include "algorithms/registry.hpp"
-#include "algorithms/shell_source.hpp"
-#include "sim/contact/shell_query.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 
 namespace hapbench {
@@ -63,7 +63,7 @@ void count_answer(const ContactSet& set, const RenderingConfig& config, std::uin
   const RenderedForce& force = answer.force;
   const bool bad = counts.non_finite + counts.out_of_bound > 0;
   const double unit = config.stiffness * force.depth_max;
-  const auto bound_of = find_algorithm(config.algorithm)->theory->force_bound;
+  const auto bound_of = find_algorithm(config.algorithm)->theory.force_bound;
   const std::optional<double> bound =
       bound_of == nullptr
           ? std::nullopt
@@ -85,7 +85,7 @@ std::vector<StressCounts> no_counts() {
   for (const AlgorithmEntry& entry : algorithms()) {
     StressCounts& of = counts.emplace_back();
     of.algorithm = entry.info->name;
-    if (entry.theory->force_bound != nullptr) of.largest_share = 0.0;
+    if (entry.theory.force_bound != nullptr) of.largest_share = 0.0;
   }
   return counts;
 }

@@ -1,4 +1,3 @@
-#include "bindings/errors.hpp"
 
 #include <pybind11/pybind11.h>
 

@@ -6,15 +6,10 @@
 #include <optional>
 
 #include "algorithms/registry.hpp"
-#include "bindings/errors.hpp"
-#include "bindings/python_law.hpp"
-#include "bindings/simulation.hpp"
-#include "bindings/supervise.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/program.hpp"
-#include "scenarios/program/shell_words.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 

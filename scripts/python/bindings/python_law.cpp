@@ -1,4 +1,3 @@
-#include "bindings/python_law.hpp"
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -12,7 +11,6 @@
 
 #include "algorithms/penalty_rendering.hpp"
 #include "algorithms/registry.hpp"
-#include "bindings/supervise.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {

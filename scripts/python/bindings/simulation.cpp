@@ -1,4 +1,3 @@
-#include "bindings/simulation.hpp"
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -6,7 +5,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "bindings/supervise.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"

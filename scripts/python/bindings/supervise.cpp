@@ -1,4 +1,3 @@
-#include "bindings/supervise.hpp"
 
 #include <algorithm>
 #include <array>

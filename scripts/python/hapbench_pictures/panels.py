@@ -2,8 +2,9 @@
 import numpy as np
 from matplotlib.patches import Polygon
 
+from hapbench_style import curve, reduced
+
 from .quantities import range_of
-from .reduced import curve, reduced
 
 SPANS = 900  # of a curve: more than a page has pixels
 # Runs whose peaks are further apart than this share no linear axis.

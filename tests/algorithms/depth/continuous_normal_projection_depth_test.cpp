@@ -1,15 +1,13 @@
-#include "algorithms/depth/continuous_normal_projection_depth.hpp"
+#include "algorithms/depth/depth_model.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <map>
 
-#include "algorithms/depth/normal_projection_depth.hpp"
-#include "algorithms/depth/shortest_distance.hpp"
-#include "sim/contact/shell_query.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/geometry/analytic_shells.hpp"
-#include "sim/tool/turn.hpp"
+#include "sim/tool/tool_state.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_geometry.hpp"
 
@@ -56,7 +54,7 @@ class Stroke {
   PointShell shell_;
   ShellQuery query_;
   ContactBuffer contacts_;
-  std::unique_ptr<DepthModel> model_ = make_continuous_normal_projection_depth();
+  std::unique_ptr<DepthModel> model_ = make_depth_model("continuous_normal_projection");
 };
 
 ToolPose upright(double x, double z) {

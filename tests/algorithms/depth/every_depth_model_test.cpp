@@ -4,7 +4,7 @@
 #include <string>
 
 #include "algorithms/registry.hpp"
-#include "sim/contact/shell_query.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_geometry.hpp"
 

@@ -1,10 +1,10 @@
-#include "algorithms/depth/normal_projection_depth.hpp"
+#include "algorithms/depth/depth_model.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "sim/contact/shell_query.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_geometry.hpp"
 
@@ -16,7 +16,7 @@ using test::Vec3L;
 double depth_at(const Cylinder& tool, const ToolPose& pose, const Vec3& point, const Vec3& normal) {
   ContactBuffer contacts(1);
   contacts.push(0, point, normal);
-  make_normal_projection_depth()->evaluate(tool, pose, contacts);
+  make_depth_model("normal_projection")->evaluate(tool, pose, contacts);
   EXPECT_EQ(contacts.gradient(0), Vec3(-normal));
   return contacts.depth[0];
 }

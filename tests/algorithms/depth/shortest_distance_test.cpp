@@ -1,4 +1,4 @@
-#include "algorithms/depth/shortest_distance.hpp"
+#include "algorithms/depth/depth_model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ struct Contact {
 Contact evaluate(const Cylinder& tool, const ToolPose& pose, const Vec3& point, const Vec3& normal = Vec3::UnitY()) {
   ContactBuffer contacts(1);
   contacts.push(0, point, normal);
-  make_shortest_distance()->evaluate(tool, pose, contacts);
+  make_depth_model("shortest_distance")->evaluate(tool, pose, contacts);
   return {contacts.depth[0], contacts.gradient(0)};
 }
 

@@ -1,8 +1,7 @@
-#include "algorithms/depth/surface_normal.hpp"
+#include "algorithms/depth/depth_model.hpp"
 
 #include <gtest/gtest.h>
 
-#include "algorithms/depth/shortest_distance.hpp"
 #include "tests/support/tool_geometry.hpp"
 
 namespace hapbench::surface_normal_test {
@@ -20,8 +19,8 @@ TEST(SurfaceNormal, HasTheDepthOfShortestDistanceAndTheInwardNormalAsGradient) {
       contacts.push(static_cast<std::uint32_t>(contacts.size()), point, random.direction());
     }
     ContactBuffer shortest = contacts;
-    make_surface_normal()->evaluate(tool, pose, contacts);
-    make_shortest_distance()->evaluate(tool, pose, shortest);
+    make_depth_model("surface_normal")->evaluate(tool, pose, contacts);
+    make_depth_model("shortest_distance")->evaluate(tool, pose, shortest);
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       EXPECT_EQ(contacts.depth[i], shortest.depth[i]);
       EXPECT_EQ(contacts.gradient(i), Vec3(-contacts.normal(i)));
@@ -35,7 +34,7 @@ TEST(SurfaceNormal, DepthOnAFlatSaturatesAtTheToolsRadius) {
   for (const double pressed : {0.0001, 0.0004, 0.002, 0.005}) {
     ContactBuffer contacts(1);
     contacts.push(0, Vec3::Zero(), Vec3::UnitZ());
-    make_surface_normal()->evaluate(tool, {{0, 0, -pressed}, {0, 0, -1}}, contacts);
+    make_depth_model("surface_normal")->evaluate(tool, {{0, 0, -pressed}, {0, 0, -1}}, contacts);
     EXPECT_EQ(contacts.depth[0], std::min(pressed, tool.radius()));
   }
 }

@@ -8,7 +8,7 @@
 #include <ostream>
 #include <tuple>
 
-#include "algorithms/shell_source.hpp"
+#include "algorithms/depth/depth_model.hpp"
 #include "device_model/impedance_device.hpp"
 #include "results/allocations/allocations.hpp"
 #include "sim/core/aligned.hpp"
@@ -281,7 +281,7 @@ TEST_P(NoAllocationWith, ATool) {
       SimulationParts parts = parts_of(instance, config);
       parts.tool = GetParam().make(random, 0.01).shape;  // wider than the hole, which is 1 mm wide
       parts.source = std::make_unique<ShellSource>(*parts.shell, *parts.tool,
-                                                   make_contact_query(*parts.shell, *parts.tool, Skips::taken),
+                                                   make_contact_query(*parts.shell, *parts.tool, Skips::on),
                                                    make_depth_model(config));
       ContactCounter observer;
       Simulation simulation(test::free_run_config(setting_of(instance), config, 300), std::move(parts), {&observer});

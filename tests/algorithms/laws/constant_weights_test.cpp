@@ -1,7 +1,7 @@
 // summation (c = 1) and mean (c = 1/n).
 #include <gtest/gtest.h>
 
-#include "algorithms/laws/laws.hpp"
+#include "algorithms/registry.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 
@@ -12,7 +12,7 @@ namespace {
 constexpr double kRounding = 600 * std::numeric_limits<double>::epsilon();
 
 /// Evaluates the law on random sets of all families and compares with weights c(n) by dense matrices.
-void expect_constant_weights(std::unique_ptr<ForceLaw> (*make)(const RenderingConfig&), double (*c_of_n)(double)) {
+void expect_constant_weights(const char* name, double (*c_of_n)(double)) {
   Random random(1);
   RenderingConfig config;
   config.stiffness = 1234.5;
@@ -20,7 +20,7 @@ void expect_constant_weights(std::unique_ptr<ForceLaw> (*make)(const RenderingCo
     for (int i = 0; i < 30; ++i) {
       const auto gradients = family.draw(random, test::random_size(random, 300));
       ContactBuffer contacts = test::contacts_of(gradients, test::random_depths(random, gradients.size()));
-      const LawForce force = make(config)->evaluate(contacts);
+      const LawForce force = make_law(name, config)->evaluate(contacts);
 
       const test::Dense dense(contacts);
       const Eigen::VectorXd c = Eigen::VectorXd::Constant(dense.n(), c_of_n(static_cast<double>(dense.n())));
@@ -33,17 +33,17 @@ void expect_constant_weights(std::unique_ptr<ForceLaw> (*make)(const RenderingCo
 }
 
 TEST(Summation, AddsAllSprings) {
-  expect_constant_weights(make_summation, [](double) { return 1.0; });
+  expect_constant_weights("summation", [](double) { return 1.0; });
 }
 
 TEST(Mean, DividesTheSumByTheNumberOfContacts) {
-  expect_constant_weights(make_mean, [](double n) { return 1.0 / n; });
+  expect_constant_weights("mean", [](double n) { return 1.0 / n; });
 }
 
 TEST(Summation, GrowsWithTheNumberOfParallelContacts) {
   RenderingConfig config;
   ContactBuffer contacts = test::contacts_of(std::vector<Vec3>(64, Vec3::UnitX()), std::vector<double>(64, 0x1p-10));
-  EXPECT_EQ(make_summation(config)->evaluate(contacts).spring, Vec3(-config.stiffness * 64 * 0x1p-10, 0, 0));
+  EXPECT_EQ(make_law("summation", config)->evaluate(contacts).spring, Vec3(-config.stiffness * 64 * 0x1p-10, 0, 0));
 }
 
 TEST(Mean, IsSoftWhereMostContactsPointElsewhere) {
@@ -51,7 +51,7 @@ TEST(Mean, IsSoftWhereMostContactsPointElsewhere) {
   std::vector<Vec3> gradients(63, Vec3::UnitX());
   gradients.push_back(Vec3::UnitY());
   ContactBuffer contacts = test::contacts_of(gradients);
-  EXPECT_EQ(make_mean({})->evaluate(contacts).S(1, 1), 1.0 / 64);
+  EXPECT_EQ(make_law("mean", {})->evaluate(contacts).S(1, 1), 1.0 / 64);
 }
 
 }  // namespace

@@ -117,7 +117,7 @@ TEST(ExactShaping, ANonFiniteGradientDoesNotHang) {
 TEST(ExactShaping, ForceIsThatOfItsWeightsAndNewtonStepsAreCounted) {
   Random random(1);
   RenderingConfig config;
-  const auto law = make_exact_shaping(config);
+  const auto law = make_law("exact_shaping", config);
   std::uint64_t steps = 0;
   for (int i = 0; i < 20; ++i) {
     std::vector<Vec3> gradients(50);

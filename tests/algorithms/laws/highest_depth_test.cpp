@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "algorithms/laws/laws.hpp"
+#include "algorithms/registry.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 
@@ -11,7 +11,7 @@ LawForce evaluate(const std::vector<Vec3>& gradients, const std::vector<double>&
   ContactBuffer contacts = test::contacts_of(gradients, depths);
   RenderingConfig config;
   config.stiffness = 1.0;
-  return make_highest_depth(config)->evaluate(contacts);
+  return make_law("highest_depth", config)->evaluate(contacts);
 }
 
 TEST(HighestDepth, IsTheDeepestContactsDepthAlongTheAveragedGradient) {
@@ -61,7 +61,7 @@ TEST(HighestDepth, OfStretchedSpringsIsTheLeastStretched) {
 TEST(HighestDepth, StoresTheEnergyOfItsOneSpring) {
   ContactBuffer contacts = test::contacts_of({{1, 0, 0}, {0, 1, 0}}, {0.001, 0.003});
   RenderingConfig config;
-  const auto law = make_highest_depth(config);
+  const auto law = make_law("highest_depth", config);
   const LawForce force = law->evaluate(contacts);
   EXPECT_DOUBLE_EQ(law->spring_state(contacts, force.spring, Vec3::Zero()).energy,
                    0.5 * config.stiffness * 0.003 * 0.003);

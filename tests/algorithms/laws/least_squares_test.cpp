@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "algorithms/laws/laws.hpp"
+#include "algorithms/registry.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 #include "tests/support/setting.hpp"
@@ -22,7 +22,7 @@ RenderingConfig config_with(double regularisation) {
 }
 
 LawForce evaluate(ContactBuffer& contacts, double regularisation) {
-  return make_least_squares(config_with(regularisation))->evaluate(contacts);
+  return make_law("least_squares", config_with(regularisation))->evaluate(contacts);
 }
 
 /// Of x in units of a depth's sum: sums of n <= 300 terms, amplified by the condition of eps I + S_sum, at most
@@ -73,7 +73,7 @@ TEST(LeastSquares, IsVirtualCouplingOfPenaltySpringsOverEps) {
       coupled.stiffness = kK / eps;
       coupled.virtual_coupling = kK;
       ContactBuffer same = contacts;
-      const auto law = make_least_squares(config_with(eps)), coupling = make_virtual_coupling(coupled);
+      const auto law = make_law("least_squares", config_with(eps)), coupling = make_law("virtual_coupling", coupled);
       const LawForce force = law->evaluate(contacts), expected = coupling->evaluate(same);
       const test::Dense dense(contacts);
       const double tolerance = rounding(dense, eps), force_scale = kK * dense.d.sum();
@@ -139,7 +139,7 @@ TEST(LeastSquares, ReachesItsForceBoundInTheWedgeWhoseSingularValueIsTheRootOfEp
     const double s = std::sqrt(eps / 2), c = std::sqrt(1 - s * s), depth = 0.001;
     ContactBuffer contacts = test::contacts_of({{c, s, 0}, {-c, s, 0}}, {depth, depth});
     const RenderingConfig config = config_with(eps);
-    const double most = kLeastSquaresTheory.force_bound(config, Cylinder{}, 2, depth);
+    const double most = find_algorithm("least_squares")->theory.force_bound(config, Cylinder{}, 2, depth);
     const Vec3 x = evaluate(contacts, eps).spring / -kK;
     EXPECT_NEAR(x.y(), depth / std::sqrt(2 * eps), 1e-11 * most);
     EXPECT_NEAR(x.norm(), most, 1e-11 * most);

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "algorithms/laws/laws.hpp"
+#include "algorithms/registry.hpp"
 #include "tests/support/contact_sets.hpp"
 
 namespace hapbench::mcneely_test {
@@ -9,11 +9,11 @@ namespace {
 LawForce evaluate(ContactBuffer& contacts, std::optional<double> points = {}) {
   RenderingConfig config;
   if (points) config.parameters["mcneely"]["points"] = *points;
-  return make_mcneely(config)->evaluate(contacts);
+  return make_law("mcneely", config)->evaluate(contacts);
 }
 
 LawForce summed(ContactBuffer contacts) {
-  return make_summation(RenderingConfig{})->evaluate(contacts);
+  return make_law("summation", RenderingConfig{})->evaluate(contacts);
 }
 
 TEST(McNeely, IsTheSumUpToTenPointsAndTenMeansBeyond) {

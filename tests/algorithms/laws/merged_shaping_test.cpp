@@ -1,4 +1,4 @@
-#include "algorithms/laws/merged_shaping.hpp"
+#include "algorithms/registry.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ constexpr double kEps = 2.3e-16;
 LawForce evaluate(ContactBuffer& contacts) {
   RenderingConfig config;
   config.stiffness = kK;
-  const auto law = make_merged_shaping(config);
+  const auto law = make_law("merged_shaping", config);
   law->prepare(contacts.capacity());
   return law->evaluate(contacts);
 }

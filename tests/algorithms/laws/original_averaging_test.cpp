@@ -1,4 +1,4 @@
-#include "algorithms/laws/laws.hpp"
+#include "algorithms/registry.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace {
 LawForce evaluate(ContactBuffer& contacts, double K = 1.0) {
   RenderingConfig config;
   config.stiffness = K;
-  return make_original_averaging(config)->evaluate(contacts);
+  return make_law("original_averaging", config)->evaluate(contacts);
 }
 
 LawForce evaluate(const std::vector<Vec3>& gradients, const std::vector<double>& depths = {}) {

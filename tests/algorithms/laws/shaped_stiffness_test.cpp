@@ -76,7 +76,7 @@ TEST(ShapedStiffness, ForceIsThatOfTheShapedWeights) {
       const Eigen::VectorXd c = test::shaped_weights(dense.A(), m);
       RenderingConfig config;
       config.iterations = m;
-      const LawForce force = make_shaped_stiffness(config)->evaluate(contacts);
+      const LawForce force = make_law("shaped_stiffness", config)->evaluate(contacts);
       EXPECT_LE((force.spring - dense.spring(config.stiffness, c)).norm(),
                 kTolerance * config.stiffness * dense.magnitude(c));
       EXPECT_LE((force.S - dense.S(c)).norm(), kTolerance * c.sum());
@@ -112,7 +112,7 @@ TEST(ShapedStiffness, AZeroGradientGetsNoWeight) {
 TEST(ShapedStiffness, CountsItsIterationsUntilReset) {
   RenderingConfig config;
   config.iterations = 4;
-  const auto law = make_shaped_stiffness(config);
+  const auto law = make_law("shaped_stiffness", config);
   ContactBuffer contacts = test::contacts_of({Vec3::UnitX()});
   for (int step = 1; step <= 3; ++step) {
     law->evaluate(contacts);

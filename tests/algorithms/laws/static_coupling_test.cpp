@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "algorithms/laws/laws.hpp"
+#include "algorithms/registry.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 
@@ -20,7 +20,7 @@ RenderingConfig config_of(double coupling, double saturation) {
 }
 
 LawForce evaluate(ContactBuffer& contacts, double coupling, double saturation) {
-  return make_static_coupling(config_of(coupling, saturation))->evaluate(contacts);
+  return make_law("static_coupling", config_of(coupling, saturation))->evaluate(contacts);
 }
 
 /// The displacement at which the coupling pulls with f: the inverse of f = K x / sqrt(1 + (K x / F)^2).
@@ -56,7 +56,7 @@ TEST(StaticCoupling, WithoutSaturationIsTheVirtualCouplingOfTheContactsItStaysIn
   ContactBuffer contacts =
       test::contacts_of({Vec3::UnitX(), Vec3(0.8, 0.6, 0.0), Vec3(0.8, 0.0, 0.6)}, {0.001, 0.001, 0.001});
   const LawForce force = evaluate(contacts, 2 * kK, 1e9);
-  const LawForce coupled = make_virtual_coupling(config_of(2 * kK, 1e9))->evaluate(contacts);
+  const LawForce coupled = make_law("virtual_coupling", config_of(2 * kK, 1e9))->evaluate(contacts);
   // 1e9 N bend the spring by (f / F)^2 < 1e-13.
   EXPECT_TRUE(force.spring.isApprox(coupled.spring, 1e-12));
   EXPECT_TRUE(force.S.isApprox(coupled.S, 1e-12));
@@ -77,7 +77,7 @@ TEST(StaticCoupling, OfOneContactIsAQuarticInClosedForm) {
 
 TEST(StaticCoupling, ForceAndTensorAreTheDerivativesOfItsEnergy) {
   test::for_random_contacts([](const ContactBuffer& given, const char* name) {
-    const auto law = make_static_coupling(config_of(kK, 12.0));
+    const auto law = make_law("static_coupling", config_of(kK, 12.0));
     // Moved by `by`, contacts are deeper by <u, by>.
     const auto at = [&](const Vec3& by) {
       ContactBuffer contacts = given;

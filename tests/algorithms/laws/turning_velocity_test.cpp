@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "algorithms/laws/exact_shaping.hpp"
-#include "algorithms/laws/laws.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
+#include "algorithms/registry.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 
@@ -13,16 +13,15 @@
 namespace hapbench::turning_velocity_test {
 namespace {
 
-using MakeLaw = std::unique_ptr<ForceLaw> (*)(const RenderingConfig&);
-constexpr MakeLaw kWeighted[] = {make_summation, make_mean, make_shaped_stiffness, make_tandpasta, make_exact_shaping};
+constexpr const char* kWeighted[] = {"summation", "mean", "shaped_stiffness", "tandpasta", "exact_shaping"};
 
 ToolState turning_tool(Random& random) {
   return {{random.direction(), Vec3::UnitZ()}, Vec3::Zero(), 3.0 * random.direction()};
 }
 
-/// Random gradients at random points within 1 cm of the tip, under `make`; calls f(law, S, contacts, tool).
+/// Random gradients at random points within 1 cm of the tip, under the law `name`; calls f(law, S, contacts, tool).
 template <class F>
-void for_random_contacts(MakeLaw make, F f) {
+void for_random_contacts(const char* name, F f) {
   Random random(1);
   for (int i = 0; i < 100; ++i) {
     std::vector<Vec3> gradients(test::random_size(random, 200));
@@ -35,7 +34,7 @@ void for_random_contacts(MakeLaw make, F f) {
       contacts.y[k] = point.y();
       contacts.z[k] = point.z();
     }
-    const auto law = make(RenderingConfig{});
+    const auto law = make_law(name, {});
     law->prepare(contacts.capacity());
     const Mat3 S = law->evaluate(contacts).S;
     f(*law, S, contacts, tool);
@@ -58,8 +57,8 @@ double rounding(const Eigen::VectorXd& c) {
 }
 
 TEST(TurningVelocity, OfWeightedLawsIsTheSumOverTheirContacts) {
-  for (const MakeLaw make : kWeighted) {
-    for_random_contacts(make,
+  for (const char* name : kWeighted) {
+    for_random_contacts(name,
                         [](const ForceLaw& law, const Mat3& S, const ContactBuffer& contacts, const ToolState& tool) {
                           const Eigen::VectorXd c = test::weights(contacts);
                           const Vec3 expected = test::Dense(contacts).U * c.cwiseProduct(normal_speeds(contacts, tool));
@@ -69,19 +68,19 @@ TEST(TurningVelocity, OfWeightedLawsIsTheSumOverTheirContacts) {
 }
 
 TEST(TurningVelocity, OfVirtualCouplingPassesTheCouplingAsDepthsDo) {
-  for_random_contacts(make_virtual_coupling, [](const ForceLaw& law, const Mat3& S, const ContactBuffer& contacts,
-                                                const ToolState& tool) {
-    // K_vc = K.
-    const test::Dense dense(contacts);
-    const Mat3 series = (Mat3::Identity() + dense.U * dense.U.transpose()).inverse();
-    const Vec3 expected = series * (dense.U * normal_speeds(contacts, tool));
-    ASSERT_LE((law.turning_velocity(contacts, S, tool) - expected).norm(), rounding(test::weights(contacts)));
-  });
+  for_random_contacts(
+      "virtual_coupling", [](const ForceLaw& law, const Mat3& S, const ContactBuffer& contacts, const ToolState& tool) {
+        // K_vc = K.
+        const test::Dense dense(contacts);
+        const Mat3 series = (Mat3::Identity() + dense.U * dense.U.transpose()).inverse();
+        const Vec3 expected = series * (dense.U * normal_speeds(contacts, tool));
+        ASSERT_LE((law.turning_velocity(contacts, S, tool) - expected).norm(), rounding(test::weights(contacts)));
+      });
 }
 
 TEST(TurningVelocity, OfOriginalAveragingIsThatOfTheMiddleOfTheContactsAlongTheMeanGradient) {
-  for_random_contacts(make_original_averaging, [](const ForceLaw& law, const Mat3& S, const ContactBuffer& contacts,
-                                                  const ToolState& tool) {
+  for_random_contacts("original_averaging", [](const ForceLaw& law, const Mat3& S, const ContactBuffer& contacts,
+                                               const ToolState& tool) {
     Vec3 middle = Vec3::Zero();
     for (std::size_t i = 0; i < contacts.size(); ++i) middle += contacts.point(i) - tool.pose.position;
     middle /= static_cast<double>(contacts.size());
@@ -94,14 +93,13 @@ TEST(TurningVelocity, OfOriginalAveragingIsThatOfTheMiddleOfTheContactsAlongTheM
 TEST(TurningVelocity, OfContactsInOnePlaceIsThatOfATranslation) {
   // S v with v = omega x r: at one place a turn is nothing else.
   Random random(2);
-  for (const MakeLaw make :
-       {make_summation, make_mean, make_shaped_stiffness, make_tandpasta, make_exact_shaping, make_virtual_coupling,
-        make_least_squares, make_original_averaging, make_highest_depth, make_mcneely, make_static_coupling}) {
+  for (const char* name : {"summation", "mean", "shaped_stiffness", "tandpasta", "exact_shaping", "virtual_coupling",
+                           "least_squares", "original_averaging", "highest_depth", "mcneely", "static_coupling"}) {
     for (int i = 0; i < 20; ++i) {
       std::vector<Vec3> gradients(20);
       for (Vec3& u : gradients) u = random.direction();
       ContactBuffer contacts = test::contacts_of(gradients);  // at the origin
-      const auto law = make(RenderingConfig{});
+      const auto law = make_law(name, {});
       law->prepare(contacts.capacity());
       const Mat3 S = law->evaluate(contacts).S;
       const ToolState tool = turning_tool(random);

@@ -1,4 +1,4 @@
-#include "algorithms/laws/laws.hpp"
+#include "algorithms/registry.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ LawForce evaluate(ContactBuffer& contacts, std::optional<double> coupling) {
   RenderingConfig config;
   config.stiffness = kK;
   config.virtual_coupling = coupling;
-  return make_virtual_coupling(config)->evaluate(contacts);
+  return make_law("virtual_coupling", config)->evaluate(contacts);
 }
 
 // Rounding: sums of n <= 300 terms, amplified by the condition of K_vc I + K S, at most 1 + n K / K_vc.
@@ -68,7 +68,7 @@ TEST(VirtualCoupling, TendsToSummationAsTheCouplingStiffens) {
   test::for_random_contacts([](ContactBuffer contacts, const char* name) {
     RenderingConfig config;
     config.stiffness = kK;
-    const LawForce sum = make_summation(config)->evaluate(contacts);
+    const LawForce sum = make_law("summation", config)->evaluate(contacts);
     const double n = static_cast<double>(contacts.size());
     for (const double stiffer : {1e4, 1e6, 1e8}) {
       const LawForce force = evaluate(contacts, stiffer * kK);

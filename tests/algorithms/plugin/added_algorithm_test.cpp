@@ -3,16 +3,15 @@
 #include <limits>
 #include <stdexcept>
 
-#include "algorithms/laws/laws.hpp"
-#include "algorithms/penalty_rendering.hpp"
 #include "algorithms/registry.hpp"
+#include "algorithms/penalty_rendering.hpp"
 
 /// In a program of its own: what is added stays.
 namespace hapbench::added_algorithm_test {
 namespace {
 
 std::unique_ptr<ForceAlgorithm> make_some(const RenderingConfig& config) {
-  return std::make_unique<PenaltyRendering>(make_mean(config), config);
+  return std::make_unique<PenaltyRendering>(make_law("mean", config), config);
 }
 
 /// What is wrong with an algorithm, or an empty text; it has then been added.

@@ -5,7 +5,7 @@
 #include <bit>
 #include <limits>
 
-#include "algorithms/laws/laws.hpp"
+#include "algorithms/registry.hpp"
 #include "algorithms/plugin/law_plugin.hpp"
 #include "results/allocations/allocations.hpp"
 #include "tests/support/contact_sets.hpp"
@@ -83,7 +83,7 @@ class APluginLaw : public testing::Test {
 TEST_F(APluginLaw, OfWeightsIsTheLawOfTheseWeights) {
   PluginLaw law(kMean, kK, {});
   law.prepare(400);
-  const auto mean_law = make_mean({});
+  const auto mean_law = make_law("mean", {});
   ToolState tool{{kTip, Vec3::UnitZ()}, Vec3::UnitX(), Vec3(1, 2, 3)};
   test::for_random_contacts([&](ContactBuffer contacts, const char* family) {
     ContactBuffer same = contacts;
@@ -214,7 +214,7 @@ class Coupling final : public ForceLaw {
     RenderingConfig config;
     config.stiffness = stiffness;
     config.virtual_coupling = parameters[0];
-    law_ = make_virtual_coupling(config);
+    law_ = make_law("virtual_coupling", config);
   }
   LawForce evaluate(ContactBuffer& contacts) noexcept override { return law_->evaluate(contacts); }
   SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
@@ -233,7 +233,7 @@ TEST(ALawPlugin, IsItsLawToTheLastBit) {
   RenderingConfig config;
   config.stiffness = kK;
   config.virtual_coupling = 5000.0;
-  const auto direct = make_virtual_coupling(config);
+  const auto direct = make_law("virtual_coupling", config);
   test::for_random_contacts([&](ContactBuffer contacts, const char* family) {
     ContactBuffer same = contacts;
     const AllocationCount count;

@@ -43,7 +43,7 @@ TEST(SpringConstraints, OfAUnilateralSpringHoldFromOneSideAtAnyDistance) {
 TEST(ShellConstraints, AreThoseOfEveryPointWithinTheMargin) {
   const Cylinder tool;
   const PointShell shell(surface_points(Plane{0.004, 0.0001}), 0.0);
-  for (const Skips skips : {Skips::taken, Skips::off}) {
+  for (const Skips skips : {Skips::on, Skips::off}) {
     ShellConstraints constraints(shell, tool, skips);
     EXPECT_EQ(constraints.margin(), kProxyMargin * tool.radius());
     ContactBuffer contacts(constraints.capacity());

@@ -4,11 +4,10 @@
 
 #include <Eigen/Geometry>
 
-#include "algorithms/depth/surface_normal.hpp"
-#include "algorithms/proxy/edge_constraints.hpp"
+#include "algorithms/depth/depth_model.hpp"
 #include "algorithms/proxy/nearest_allowed.hpp"
-#include "algorithms/shell_source.hpp"
-#include "sim/contact/shell_query.hpp"
+#include "algorithms/proxy/proxy_constraints.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/setting.hpp"
@@ -36,7 +35,8 @@ struct Rig {
 
   Rig(const test::Setting& setting, const RenderingConfig& config)
       : shell(setting.points, 0.0),
-        source(shell, setting.tool, std::make_unique<ShellQuery>(shell, setting.tool), make_surface_normal()),
+        source(shell, setting.tool, std::make_unique<ShellQuery>(shell, setting.tool),
+               make_depth_model("surface_normal")),
         proxy(config),
         contacts(source.capacity()) {
     proxy.prepare({source.capacity(), &setting.tool, &shell});

@@ -1,4 +1,4 @@
-#include "algorithms/stages/gradient_reduction.hpp"
+#include "algorithms/stages/point_stage.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "algorithms/stages/local_average.hpp"
+#include "algorithms/stages/point_stage.hpp"
 
 #include <gtest/gtest.h>
 
 #include <map>
 #include <stdexcept>
 
-#include "sim/contact/shell_query.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/fakes.hpp"
 

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "results/io/json_text.hpp"
 #include "scenarios/description/load_scenario.hpp"
@@ -108,11 +108,11 @@ INSTANTIATE_TEST_SUITE_P(Formats, MeshFuzz, testing::ValuesIn(test::mesh_texts(t
                          });
 
 TEST_P(MeshFuzz, MeshesAreReadOrRefusedSoon) {
-  using Clock = std::chrono::steady_clock;
   const Tally tally = fuzz({GetParam().text}, test::cases(2000), 6, [](const std::string& mutant) {
-    const auto start = Clock::now();
+    const std::clock_t start = std::clock();
     const auto points = MeshFile(mutant, GetParam().name, {}).points();
-    EXPECT_LT(Clock::now() - start, std::chrono::seconds(30));
+    // Of the processor's time, which a busy machine does not lengthen: a mutant takes some milliseconds.
+    EXPECT_LT(std::clock() - start, 30 * CLOCKS_PER_SEC);
     EXPECT_FALSE(points.empty());
     for (const SurfacePoint& point : points) {
       EXPECT_TRUE(point.position.cwiseAbs().maxCoeff() <= 1000.0);

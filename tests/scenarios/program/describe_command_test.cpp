@@ -14,7 +14,7 @@
 #include "scenarios/studies/stability/classify.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "sim/loop/integrators/integrator.hpp"
+#include "sim/loop/integrators/table.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 #include "tests/scenarios/support/scenarios.hpp"

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/mesh/block_field.hpp"
-#include "sim/mesh/points_by_cell.hpp"
+#include "sim/mesh/marching_cubes.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
 namespace hapbench::make_shell_test {
