@@ -125,9 +125,12 @@ TEST_P(MeshFuzz, MeshesAreReadOrRefusedSoon) {
 }
 
 TEST(Fuzz, RecordedMotionsAreReadOrRefused) {
-  const std::vector<std::string> texts = {test::read_file(test::data_directory() / "stroke.csv")};
+  const std::string with_force = test::read_file(HAPBENCH_SCENARIOS "/examples/data/wipe.csv").substr(0, 3000);
+  const std::vector<std::string> texts = {test::read_file(test::data_directory() / "stroke.csv"),
+                                          with_force.substr(0, with_force.rfind('\n') + 1)};
   expect_mixture(fuzz(texts, test::cases(10'000), 4, [](const std::string& text) {
-    const RecordedMotion motion = stroke_in(text, "stroke.csv").motion;
+    const auto [motion, force] = stroke_in(text, "stroke.csv");
+    if (force) EXPECT_TRUE(!force->at(0.01) || force->at(0.01)->allFinite());
     EXPECT_NEAR(motion.axis_at(-1.0).norm(), 1.0, 1e-12) << text;
     EXPECT_NEAR(motion.axis_at(1e9).norm(), 1.0, 1e-12) << text;
   }));
