@@ -92,18 +92,14 @@ BatchPlan plan_batch(BatchDefinition definition) {
                                  plan.scenarios.size(), plan.definition.algorithms.size(), plan.definition.seeds,
                                  plan.size(), kMostRuns));
   }
-  std::map<std::string, std::size_t> environments;
   for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
     for (std::size_t a = 0; a < plan.definition.algorithms.size(); ++a) {
       const LoadedScenario loaded = load(plan, s, a);
-      if (a > 0) continue;  // files and environment are those of the scenario
+      if (a > 0) continue;  // the files are those of the scenario
       check_seeds_and_jitter(plan.definition, loaded);
       add(plan.warnings, check_named_files(loaded));
-      const Json content = with_file(loaded, [&] { return environment_content(loaded.scenario, loaded.files); });
-      plan.environments.push_back(environments.emplace(content.dump(), environments.size()).first->second);
     }
   }
-  plan.environment_count = environments.size();
   return plan;
 }
 

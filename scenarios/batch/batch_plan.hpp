@@ -31,10 +31,8 @@ struct BatchRun {
 struct BatchPlan {
   BatchDefinition definition;
   std::vector<ScenarioText> scenarios;
-  std::vector<std::string> names;         ///< of the scenarios' files, without extension; each once
-  std::vector<std::string> warnings;      ///< each once
-  std::vector<std::size_t> environments;  ///< for each scenario a number; equal for equal environments
-  std::size_t environment_count = 0;
+  std::vector<std::string> names;     ///< of the scenarios' files, without extension; each once
+  std::vector<std::string> warnings;  ///< each once
 
   std::size_t size() const { return scenarios.size() * definition.algorithms.size() * definition.seeds; }
   BatchRun run(std::size_t number) const;

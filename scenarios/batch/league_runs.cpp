@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "results/summary/outcome_names.hpp"
-#include "scenarios/run/expectation.hpp"
+#include "scenarios/run/encounter.hpp"
 
 namespace hapbench {
 

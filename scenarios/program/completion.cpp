@@ -10,8 +10,8 @@
 #include "scenarios/import/import_options.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/describe.hpp"
+#include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/scenario_start.hpp"
-#include "scenarios/program/schema_text.hpp"
 #include "scenarios/studies/precision/study.hpp"
 #include "scenarios/studies/stability/map_scenes.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
@@ -44,10 +44,11 @@ WordList assignments() {
   WordList words;
   for (const std::string& path : scenario_field_paths()) {
     words.push_back(path + "=");
-    const Json* field = find_in_schema(scenario_schema_once(), path);
-    if (field == nullptr) continue;
-    if (field->value("type", "") == "boolean") words.insert(words.end(), {path + "=true", path + "=false"});
-    for (const Json& value : field->value("enum", Json::array()))
+    const FieldGuide* field = find_field(path);
+    if (field == nullptr || !field->value.schema.is_object()) continue;
+    const Json& schema = field->value.schema;
+    if (schema.value("type", "") == "boolean") words.insert(words.end(), {path + "=true", path + "=false"});
+    for (const Json& value : schema.value("enum", Json::array()))
       words.push_back(path + "=" + value.get<std::string>());
   }
   return words;

@@ -16,7 +16,6 @@
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/run/wait_notice.hpp"
 #include "scenarios/studies/precision/study.hpp"
 
 namespace hapbench {

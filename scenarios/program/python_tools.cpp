@@ -15,7 +15,7 @@
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/shell_words.hpp"
 #include "scenarios/run/stop_signal.hpp"
-#include "scenarios/run/wait_notice.hpp"
+#include "scenarios/run/progress_bar.hpp"
 
 /// Commands that draw: they hand their words to Python, which reads the result files. Nothing of a run passes through
 /// here.

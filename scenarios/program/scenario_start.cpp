@@ -10,9 +10,9 @@
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/drag_start.hpp"
 #include "scenarios/program/tool_start.hpp"
-#include "scenarios/run/make_shell.hpp"
+#include "scenarios/run/assemble.hpp"
 #include "scenarios/run/quantity_text.hpp"
-#include "scenarios/run/tool_warnings.hpp"
+#include "scenarios/run/encounter.hpp"
 #include "sim/core/box.hpp"
 
 namespace hapbench {

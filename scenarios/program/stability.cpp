@@ -14,7 +14,7 @@
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
-#include "scenarios/run/wait_notice.hpp"
+#include "scenarios/run/progress_bar.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
 
 namespace hapbench {

@@ -9,10 +9,10 @@
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/expected_output.hpp"
+#include "scenarios/run/recorders.hpp"
 #include "scenarios/run/quantity_text.hpp"
 #include "scenarios/run/scene_facts.hpp"
-#include "scenarios/run/wait_notice.hpp"
+#include "scenarios/run/progress_bar.hpp"
 
 namespace hapbench {
 namespace {

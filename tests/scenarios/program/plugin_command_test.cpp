@@ -37,7 +37,7 @@ TEST_F(PluginCommand, KnowsTheLawAndItsParametersEverywhere) {
   EXPECT_EQ(described.status, 0) << described.err;
   EXPECT_NE(described.out.find("algorithm depth_weighted"), std::string::npos);
   EXPECT_NE(described.out.find("depth_weighted.so, hash "), std::string::npos);
-  EXPECT_NE(described.out.find("rendering.parameters.depth_weighted.power\n        number >= 0 <= 64 [1]; default 1"),
+  EXPECT_NE(described.out.find("rendering.parameters.depth_weighted.power\n        a number >= 0 and <= 64 [1]; default 1"),
             std::string::npos)
       << described.out;
   const ProgramRun list =
