@@ -14,6 +14,8 @@ struct ForceSensorConfig {
   bool compensated = true;       ///< the weight is taken off before the limiter
   double noise = 0.0;            ///< standard deviation of every component in every sample [N]
   std::uint64_t seed = 1;        ///< of the noise
+
+  bool operator==(const ForceSensorConfig&) const = default;
 };
 
 /// The force sensor under the handle: f_meas = f_hand + weight + noise.

@@ -13,6 +13,8 @@ struct HandleMechanicsConfig {
   double structure_stiffness =
       200000.0;                     ///< between carriage and handle; the structure's compliance is its inverse [N/m]
   double structure_damping = 40.0;  ///< [N s/m]
+
+  bool operator==(const HandleMechanicsConfig&) const = default;
 };
 
 /// Two masses connected by a spring and a damper, independently in each axis, integrated by the implicit midpoint rule,

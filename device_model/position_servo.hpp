@@ -15,6 +15,8 @@ struct PositionServoConfig {
   double damping = 160.0;      ///< force per velocity error [N s/m]
   double max_force = 30.0;     ///< the actuators saturate at this norm [N]
   std::size_t delay = 1;       ///< samples from the command to the force
+
+  bool operator==(const PositionServoConfig&) const = default;
 };
 
 /// A proportional-derivative position servo with saturation and a delay of whole samples. Allocates in the constructor.

@@ -10,7 +10,7 @@
 
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/batch/statistics.hpp"
-#include "scenarios/run/expectation.hpp"
+#include "scenarios/run/encounter.hpp"
 
 namespace hapbench {
 namespace {

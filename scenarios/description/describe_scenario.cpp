@@ -5,7 +5,7 @@
 #include "algorithms/registry.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/descriptions.hpp"
-#include "scenarios/description/extends.hpp"
+#include "scenarios/description/scenario_text.hpp"
 #include "scenarios/input/input_error.hpp"
 
 namespace hapbench {
@@ -47,7 +47,7 @@ void describe_outcomes(Fields& f, std::vector<Outcome>& outcomes) {
       });
 }
 
-/// What the algorithm's definition overrides gives way, with a warning.
+/// Overwrites the settings that the algorithm's definition fixes, with a warning where the scenario has others.
 void fix_stages(Fields& f, Scenario& scenario) {
   RenderingConfig& given = scenario.rendering;
   const RenderingConfig fixed = with_fixed_stages(given);
@@ -136,7 +136,7 @@ static void describe(Fields& f, PerceptionThresholds& thresholds) {
   f.number("force_jnd", thresholds.force_jnd, {0.0, 10.0, "1"},
            "smallest change of a force that is noticed, of the force (Jones 1989; Pang, Tan and Durlach 1991)");
   f.number("least_force_N", thresholds.least_force, {0.0, 1e6, "N"},
-           "below this force the noticeable change is that of this force");
+           "below this force, the smallest noticeable change is that at this force");
   f.group("band_Hz", "the band in which touch is most sensitive (Bolanowski et al. 1988)", [&](Fields& band) {
     band.number("from", thresholds.band_from, {0.0, 1e6, "Hz", true}, "its low end");
     band.number("to", thresholds.band_to, {0.0, 1e6, "Hz", true}, "its high end");
@@ -169,13 +169,15 @@ static void describe(Fields& f, ExpectFields& expect) {
               const auto known = expect.metrics.find(name);
               std::optional<MetricBound> bound;
               if (known != expect.metrics.end()) bound = known->second;
-              metrics.if_any(name, bound, meaning, [](Fields& b, MetricBound& limits) { b.object(limits); });
+              metrics.if_any(name, bound, meaning, [](Fields& b, MetricBound& limits) {
+                b.shared("metric_bound", [&limits](Fields& s) { s.object(limits); });
+              });
               if (bound) expect.metrics[name] = *bound;
             }
           });
 }
 
-/// Reading a file has replaced the field by what it names.
+/// Reading a file has already replaced this field by the fields of the scenario that it names.
 static void describe_extends(Fields& f) {
   std::string other;
   f.text(kExtends, other, 4096,
@@ -206,13 +208,13 @@ void describe(Fields& f, Scenario& scenario) {
   f.object("rendering", scenario.rendering, "how contacts become a force");
   f.object("integrator", scenario.integrator, "how forces become motion");
   f.object("bounds", scenario.bounds, "where a run counts as diverged");
-  f.if_any("reference_force", scenario.reference_force,
-           "the force an ideal rendering would give on a prescribed way; the metrics of fidelity are taken against it",
-           [](Fields& o, ReferenceForceFields& reference) { o.object(reference); });
+  f.object_if_any(
+      "reference_force", scenario.reference_force,
+      "the force an ideal rendering would give on a prescribed way; the metrics of fidelity are taken against it");
   f.object("record", scenario.record, "what is written beside the summary");
   f.object("metrics", scenario.metrics, "where metrics of settled contact begin");
-  f.if_any("perception", scenario.perception, "from when on people feel something; adds the metrics of perception",
-           [](Fields& o, PerceptionThresholds& thresholds) { o.object(thresholds); });
+  f.object_if_any("perception", scenario.perception,
+                  "thresholds above which people feel something; adds the metrics of perception");
   f.object("expect", scenario.expect, "what the run must show; each scenario is its own regression test");
   if (!f.reads()) return;
   check_relations(scenario, steps);

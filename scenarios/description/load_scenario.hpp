@@ -20,27 +20,26 @@ struct LoadedScenario {
   Scenario scenario;
   std::filesystem::path file;
   NamedFiles files;                   ///< that the scenario names
-  std::vector<std::string> warnings;  ///< given values without effect, with file and pointer
-  /// The file and those it extends (extends.hpp), as they stand, overrides in the first; null when it extends none.
+  std::vector<std::string> warnings;  ///< about given values without effect, with file and pointer
+  /// The file and those it extends as they stand, overrides in the first; null when it extends none.
   std::shared_ptr<const std::vector<ScenarioLayer>> layers;
 };
+
+/// Reads a scenario file and what it extends (scenario_text.hpp), applies overrides `path=value` (dotted path, value as
+/// JSON or else as text; later ones win) and checks it. Expectations of the file are about the run it describes: with
+/// any field overridden that changes the run, its bounds on metrics do not count, and the outcomes that count by
+/// default are allowed beside its own. Throws InputError whose message starts with the name of the file at fault.
+LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+/// The same from JSON in memory, which extends nothing; `directory` is what relative paths start from.
+LoadedScenario read_scenario(const Json& json, const std::filesystem::path& directory);
 
 /// The file that the value at a JSON pointer comes from: the scenario's own, or one that it extends.
 std::filesystem::path file_of(const LoadedScenario& loaded, const std::string& pointer);
 
-/// Throws the error again with the file in front, of each fault.
+/// Throws the error again with the file in front of each fault.
 [[noreturn]] void rethrow_with_file(const InputError& error, const std::filesystem::path& file);
-/// The same with the scenario's file, or the one it extends, whichever has the fault.
+/// The same with the scenario's file, or the one it extends that has the fault.
 [[noreturn]] void rethrow_with_file(const InputError& error, const LoadedScenario& loaded);
-
-/// Reads a scenario file and what it extends, applies overrides `path=value` (dotted path, value as JSON or else as
-/// text; later ones win) and checks it. Expectations of the file are about the run it describes: with any field
-/// overridden that changes the run, its bounds on metrics do not count, and beside its outcomes those count that count
-/// by default. Throws InputError whose message starts with the name of the file at fault.
-LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const std::string> overrides = {});
-
-/// The same from JSON in memory, which extends nothing; `directory` is what relative paths start from.
-LoadedScenario read_scenario(const Json& json, const std::filesystem::path& directory);
 
 /// Calls `work` and puts the scenario's file, or the one it extends, in front of the message of an InputError.
 template <class Work>
@@ -59,14 +58,6 @@ Json effective_scenario(const Scenario& scenario, const std::filesystem::path& d
 /// The environment with every default filled in, with hashes of the contents of named files in place of their paths:
 /// equal for equal point shells. Throws InputError.
 Json environment_content(const Scenario& scenario, const NamedFiles& files);
-
-/// The whole JSON Schema (draft 7) that scenarios/scenario.schema.json holds.
-Json scenario_schema();
-/// The part of it that holds for a scenario in full, with what it extends filled in.
-Json full_scenario_schema();
-
-/// The dotted paths of all fields of objects, as "rendering.limits.max_force_N"; those of list entries aside.
-std::vector<std::string> scenario_field_paths();
 
 /// Identifies what is simulated: FNV-1a over the effective scenario, with the contents of named files in place of their
 /// paths, as 16 hexadecimal digits. Throws InputError.

@@ -1,7 +1,15 @@
 #include "scenarios/description/named_files.hpp"
 
+#include <fmt/format.h>
+#include <sys/stat.h>
+
 #include <algorithm>
+#include <ctime>
+#include <map>
+#include <mutex>
 #include "scenarios/description/descriptions.hpp"
+#include "scenarios/description/shared_cache.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/motion_file.hpp"
 #include "scenarios/input/text_lines.hpp"
@@ -38,7 +46,7 @@ class FileFinder final : public Fields {
     if (is_object) object(*this);
   }
   void one_or_list(bool is_list, Body one, Body list) override { (is_list ? list : one)(*this); }
-  void alternatives(const char*, std::span<const char* const>, Untyped, std::size_t held,
+  void alternatives(const char*, std::span<const TypeName>, Untyped, std::size_t held,
                     FunctionRef<Fields&, std::size_t> fields) override {
     fields(*this, held);
   }
@@ -68,38 +76,89 @@ std::vector<FileReference> files_named_in(Scenario& scenario) {
   return std::move(finder.found);
 }
 
+namespace {
+
+/// Hashes of regular files, which are not read again while they look unchanged.
+class KnownHashes {
+ public:
+  /// What tells that a file has changed; nothing for what is no regular file, and for one that changed so recently that
+  /// the clock of the file system might not tell another change.
+  static std::optional<std::string> stamp_of(const std::filesystem::path& file) {
+    struct stat s {};
+    if (::stat(file.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return std::nullopt;
+    constexpr std::time_t kSettled = 2;  // [s]
+    if (std::time(nullptr) < std::max(s.st_mtim.tv_sec, s.st_ctim.tv_sec) + kSettled) return std::nullopt;
+    return fmt::format("{} {} {} {} {} {} {} {}", s.st_dev, s.st_ino, s.st_size, s.st_mtim.tv_sec, s.st_mtim.tv_nsec,
+                       s.st_ctim.tv_sec, s.st_ctim.tv_nsec, file.string());
+  }
+  std::string find(const std::string& stamp) {
+    const std::lock_guard lock(mutex_);
+    const auto found = hashes_.find(stamp);
+    return found == hashes_.end() ? "" : found->second;
+  }
+  void add(const std::string& stamp, const std::string& hash) {
+    const std::lock_guard lock(mutex_);
+    if (hashes_.size() == kMost) hashes_.clear();
+    hashes_[stamp] = hash;
+  }
+
+ private:
+  static constexpr std::size_t kMost = 1000;
+  std::mutex mutex_;
+  std::map<std::string, std::string> hashes_;
+};
+
+KnownHashes& known_hashes() {
+  static KnownHashes hashes;
+  return hashes;
+}
+
+}  // namespace
+
 void NamedFile::read() {
-  if (!hash_.empty()) return;
+  const auto stamp = KnownHashes::stamp_of(path_);
   bytes_ = read_named_file(path_);
-  hash_ = hash_text(hash_of(bytes_));
+  std::string hash = hash_text(hash_of(bytes_));
+  if (!hash_.empty() && hash != hash_) fail_in_file(path_, "has changed since the scenario was loaded");
+  hash_ = std::move(hash);
+  if (stamp && stamp == KnownHashes::stamp_of(path_)) known_hashes().add(*stamp, hash_);
 }
 
 const std::string& NamedFile::hash() {
-  read();
+  if (!hash_.empty()) return hash_;
+  if (const auto stamp = KnownHashes::stamp_of(path_)) hash_ = known_hashes().find(*stamp);
+  if (hash_.empty()) read();
   return hash_;
 }
 
 const NamedFile::Contents& NamedFile::contents() {
-  if (!contents_) {
-    contents_ = std::make_shared<const Contents>(parsed());
-    bytes_ = {};
-  }
+  if (contents_) return *contents_;
+  check_extension();
+  const std::string key =
+      fmt::format("file {} as {}, scale {}, spacing {}: {}", hash(), static_cast<int>(content_.kind),
+                  content_.sampling.scale, content_.sampling.spacing.value_or(0.0), path_.string());
+  const auto parse = [this] {
+    if (bytes_.empty()) read();
+    return std::make_shared<const Contents>(parsed());
+  };
+  // A parsed mesh takes some times the space of its text.
+  contents_ = shared_cache().get<Contents>(key, parse, [this](const Contents&) { return 4 * bytes_.size(); });
+  bytes_ = {};
   return *contents_;
 }
 
+void NamedFile::check_extension() const {
+  if (content_.kind == FileContent::Kind::point_shell) shell_extension(path_);
+  if (content_.kind == FileContent::Kind::mesh) mesh_extension(path_);
+}
+
 NamedFile::Contents NamedFile::parsed() {
-  // A file with another extension is refused unread.
   switch (content_.kind) {
     case FileContent::Kind::point_shell:
-      shell_extension(path_);
-      read();
       return {.points = point_shell_in(bytes_, path_)};
     case FileContent::Kind::mesh:
-      mesh_extension(path_);
-      read();
       return {.mesh = MeshFile(bytes_, path_, content_.sampling)};
     case FileContent::Kind::stroke:
-      read();
       return {.stroke = stroke_in(bytes_, path_)};
   }
   return {};

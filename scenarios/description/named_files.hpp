@@ -30,8 +30,9 @@ inline constexpr std::string_view kEnvironmentFile = "/environment/file";
 inline constexpr std::string_view kToolFile = "/tool/file";
 inline constexpr std::string_view kMotionFile = "/motion/position/file";
 
-/// A file that a scenario names. It is read and parsed once, when something of it is first asked for; the functions
-/// that need its contents throw InputError when they cannot be used.
+/// A file that a scenario names. It is read and parsed when something of it is first asked for, once for all scenarios
+/// of this process that take the same contents alike (SharedCache), and stays as it was then for this scenario. The
+/// functions that need its contents throw InputError when they cannot be used.
 class NamedFile {
  public:
   NamedFile(std::string pointer, std::filesystem::path path, const FileContent& content)
@@ -63,6 +64,7 @@ class NamedFile {
     std::optional<Stroke> stroke = {};
   };
 
+  void check_extension() const;
   void read();
   const Contents& contents();
   Contents parsed();
@@ -70,8 +72,8 @@ class NamedFile {
   std::string pointer_;
   std::filesystem::path path_;
   FileContent content_;
-  std::string hash_;   ///< empty until the file is read
-  std::string bytes_;  ///< until they are parsed
+  std::string hash_;   ///< empty until it is known
+  std::string bytes_;  ///< from when the file is read until it is parsed
   std::shared_ptr<const Contents> contents_;
 };
 

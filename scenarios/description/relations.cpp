@@ -1,16 +1,18 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
 
-/// What fields of a scenario say together, beyond a schema.
+/// Rules between the fields of a scenario, which a schema cannot express.
 namespace hapbench {
 namespace {
 
-constexpr double kMostDelaySamples = 1e6;  ///< that a simulated subject keeps in mind
+constexpr double kMostDelaySamples = 1e6;  ///< longest reaction delay of a simulated subject [time steps]
 constexpr double kLongestDrag = 1e6;       ///< entries of the table of a path over a surface
 
 [[noreturn]] void fail(const std::string& at, const std::string& problem) {
@@ -57,7 +59,7 @@ void check_local_average(const Scenario& scenario) {
   }
 }
 
-/// A peer's contacts are of triangles and a cylinder, and no points of the shell.
+/// A peer finds contacts between triangles and a cylinder; they have no shell points.
 void check_contact_source(const Scenario& scenario) {
   const RenderingConfig& rendering = scenario.rendering;
   if (rendering.contact_source == kOwnContacts) return;
@@ -155,7 +157,7 @@ void check_perception(const Scenario& scenario) {
   fail("/perception/band_Hz", fmt::format("got from {:g} to {:g}; allowed: from below to", from, to));
 }
 
-/// What presupposes a virtual mass between hand and tool.
+/// Refuses what needs a virtual mass between hand and tool where the device has none.
 void check_impedance_device(const Scenario& scenario) {
   const bool impedance = handle_moves_tool(scenario.device);
   if (!impedance && std::holds_alternative<MassSpringDamperHandFields>(scenario.hand)) {
@@ -174,6 +176,41 @@ void check_impedance_device(const Scenario& scenario) {
          "got true; allowed: false with device \"impedance\": the controller looks ahead by the virtual mass, which is "
          "not there");
   }
+}
+
+/// A warning about an admittance device whose servo or mechanics differ from the usual ones under a hand that does not
+/// feel the handle. Sensor and limiter have an effect under any hand, so a device that changes only these is fine.
+void warn_of_idle_device(const Scenario& scenario, std::vector<std::string>& warnings) {
+  const char* hand = std::holds_alternative<NoHandFields>(scenario.hand)      ? "none"
+                     : std::holds_alternative<ForceHandFields>(scenario.hand) ? "force"
+                     : std::holds_alternative<PushHandFields>(scenario.hand)  ? "push"
+                                                                              : nullptr;
+  const auto* device = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
+  if (hand == nullptr || device == nullptr) return;
+  const AdmittanceDeviceConfig usual;
+  const bool changes_loop = device->servo != usual.servo || device->mechanics != usual.mechanics;
+  if (!changes_loop && (device->sensor != usual.sensor || device->force_limit != usual.force_limit)) return;
+  warnings.push_back(fmt::format(
+      "/device: servo and mechanics (lag, delay, structure) move the handle alone and have no effect on the tool and its "
+      "force: hand.type \"{}\" does not feel the handle; \"impedance\", \"drag\" and \"tracking\" do",
+      hand));
+}
+
+/// The first script within `json`, found at `at`, that a run of so long [s] does not play. The reader has checked it.
+std::optional<std::string> first_unplayed(const Json& json, const std::string& at, double duration) {
+  if (!json.is_object()) return std::nullopt;
+  if (json.value("type", Json()) == "waypoints") {
+    const Json& points = json.at("points");
+    if (points.size() < 2 || points[points.size() - 2][0].get<double>() < duration) return std::nullopt;
+    return fmt::format(
+        "{}: the script's last waypoint is at {:.6g} s, but the run ends at {:.6g} s; is time.duration_s (or steps) "
+        "right?",
+        at, points.back()[0].get<double>(), duration);
+  }
+  for (const auto& field : json.items()) {
+    if (auto found = first_unplayed(field.value(), at + "/" + field.key(), duration)) return found;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -196,6 +233,17 @@ void check_relations(const Scenario& scenario, double steps) {
   check_tracking_hand(scenario, steps);
   check_perception(scenario);
   check_impedance_device(scenario);
+}
+
+std::vector<std::string> relation_warnings(const Scenario& scenario, const Json& json) {
+  std::vector<std::string> warnings;
+  warn_of_idle_device(scenario, warnings);
+  const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);
+  for (const char* part : {"hand", "motion"}) {
+    if (!json.contains(part)) continue;
+    if (auto found = first_unplayed(json.at(part), fmt::format("/{}", part), duration)) warnings.push_back(*found);
+  }
+  return warnings;
 }
 
 }  // namespace hapbench

@@ -2,8 +2,6 @@
 
 #include <stdexcept>
 
-#include "scenarios/description/schema_writer.hpp"
-
 namespace hapbench {
 
 Json Writer::written(Body value) const {
@@ -60,11 +58,11 @@ void Writer::one_or_list(bool is_list, Body one, Body list) {
   (is_list ? list : one)(*this);
 }
 
-void Writer::alternatives(const char*, std::span<const char* const> names, Untyped untyped, std::size_t held,
+void Writer::alternatives(const char*, std::span<const TypeName> types, Untyped untyped, std::size_t held,
                           FunctionRef<Fields&, std::size_t> fields) {
-  if (held >= names.size()) throw std::logic_error("a variant without a value");
+  if (held >= types.size()) throw std::logic_error("a variant without a value");
   json_ = Json::object();
-  if (untyped == Untyped::refused || held > 0) json_[kTypeField] = names[held];
+  if (untyped == Untyped::refused || held > 0) json_[kTypeField] = types[held].name;
   fields(*this, held);
 }
 

@@ -29,7 +29,7 @@ class Writer final : public Fields {
   void or_null(bool is_null, FunctionRef<> set_null, Body value) override;
   void number_or_object(bool is_object, Body number, Body object) override;
   void one_or_list(bool is_list, Body one, Body list) override;
-  void alternatives(const char* what, std::span<const char* const> names, Untyped untyped, std::size_t held,
+  void alternatives(const char* what, std::span<const TypeName> types, Untyped untyped, std::size_t held,
                     FunctionRef<Fields&, std::size_t> fields) override;
   void fields(Body body) override;
 

@@ -17,8 +17,8 @@
 #include "scenarios/program/compare_devices.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/program/table.hpp"
-#include "scenarios/run/expectation.hpp"
-#include "scenarios/run/expected_output.hpp"
+#include "scenarios/run/encounter.hpp"
+#include "scenarios/run/recorders.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {

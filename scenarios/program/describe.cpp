@@ -10,7 +10,7 @@
 #include "scenarios/description/scenario_text.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/describe.hpp"
-#include "scenarios/program/schema_text.hpp"
+#include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/studies/stability/map_scenes.hpp"
 #include "scenarios/thesis_claims/choices_file.hpp"
@@ -22,9 +22,9 @@ namespace {
 
 /// Appends the card of a parameter to the model's.
 void add_parameter(Description& d, const std::string& path, const char* unit, const char* meaning) {
-  const Json& field = *find_in_schema(scenario_schema_once(), path);
-  const std::string initial = default_text(field), range = allowed_text(field);
-  d.text += card({path, unit, initial, range, meaning}, 4);
+  const FieldGuide& field = *find_field(path);
+  const std::string initial = default_text(field), range = field.value.allowed;
+  d.text += card({.name = path, .initial = initial, .allowed = range, .meaning = meaning}, 4);
   d.json["parameters"].push_back(
       {{"name", path}, {"unit", unit}, {"default", initial}, {"range", range}, {"meaning", meaning}});
 }
@@ -93,10 +93,10 @@ Description describe_scenario(const std::filesystem::path& file) {
 }
 
 Description describe_profile() {
-  Json profile = *find_in_schema(scenario_schema_once(), kSomeProfile);
-  profile["description"] = "a function of time: a number that does not change, or an object";
-  profile.erase("default");
-  return {fields_text("profile", profile), profile};
+  FieldGuide profile = *find_field(kSomeProfile);
+  profile.meaning = "a function of time: a number that does not change, or an object";
+  profile.presence = Presence::no_default;
+  return {fields_text("profile", profile), profile.schema()};
 }
 
 /// Shows the numbers of a published device, each with its source.
@@ -179,7 +179,7 @@ constexpr struct {
                  {"profile", describe_profile},
                  {"scenario",
                   [] {
-                    return Description{fields_text("scenario", scenario_schema_once()), scenario_schema_once()};
+                    return Description{fields_text("scenario", scenario_guide()), scenario_guide().schema};
                   }},
                  {"schema",
                   [] {
@@ -223,11 +223,11 @@ Description joined(const std::vector<Description>& meanings) {
 
 /// Explains the field at that path, once for each group of types that share it.
 std::vector<Description> describe_field(const std::string& path) {
+  if (const std::string values = types_text(path); !values.empty())
+    return {{values, {{"field", path}, {"types", type_names(path.substr(0, path.rfind('.')))}}}};
   std::vector<Description> meanings;
-  for (const auto& [types, field] : typed_fields(scenario_schema_once(), path)) {
-    const std::string values = types_text(path);
-    if (!values.empty()) return {{values, {{"field", path}, {"types", type_names(path.substr(0, path.rfind('.')))}}}};
-    Json json = *field;
+  for (const auto& [types, field] : typed_fields(path)) {
+    Json json = field->schema();
     if (!types.empty()) json["of"] = types;
     meanings.push_back({fields_text(path, *field, types), std::move(json)});
   }
@@ -265,9 +265,9 @@ Description describe_name(const std::string& name) {
     if (name == section.name) add(section.describe());
   }
   if (fields.empty()) {
-    const std::vector<TypedField> types = types_called(scenario_schema_once(), name);
-    for (const TypedField& type : types)
-      add({fields_text(name, *type.schema, types.size() > 1 ? type.types : ""), *type.schema});
+    const auto types = types_called(name);
+    for (const auto& [field, type] : types)
+      add({fields_text(name, *type, types.size() > 1 ? field : ""), type->schema});
   }
   for (Description& word : describe_word(name)) add(std::move(word));
   if (meanings.empty()) meanings = describe_heading(name);

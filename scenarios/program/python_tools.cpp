@@ -12,8 +12,8 @@
 #include "results/io/io_error.hpp"
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
-#include "scenarios/run/wait_notice.hpp"
 
 /// Commands that draw: they pass their options on to Python, which reads the result files.
 namespace hapbench {

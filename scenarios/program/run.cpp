@@ -8,7 +8,7 @@
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/expected_output.hpp"
+#include "scenarios/run/recorders.hpp"
 
 namespace hapbench {
 namespace {

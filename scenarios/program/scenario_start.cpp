@@ -12,9 +12,10 @@
 
 #include "device_model/hands/surface_path.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/run/make_shell.hpp"
+#include "scenarios/description/parts.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/encounter.hpp"
 #include "scenarios/run/quantity_text.hpp"
-#include "scenarios/run/tool_warnings.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/mesh/triangle_soup.hpp"

@@ -1,5 +1,8 @@
 #include "scenarios/run/recorders.hpp"
 
+#include <cmath>
+#include <string_view>
+
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "results/record/contact_recorder.hpp"
 #include "results/record/energy_recorder.hpp"
@@ -10,6 +13,7 @@
 #include "results/record/trajectory_recorder.hpp"
 
 namespace hapbench {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -127,6 +131,28 @@ std::vector<ResultTable> record_tables(const RecordFields& fields) {
     if (entry.is_wanted(fields)) tables.push_back({entry.table.file, entry.table.holds, columns_of(entry, fields)});
   }
   return tables;
+}
+
+namespace {
+
+constexpr double kBytesOfANumber = 12.0;  // between a zero and seventeen digits
+constexpr double kContactsOfARow = 30.0;
+
+double lines_a_row(const ResultTable& table, const RecordFields& record) {
+  const std::string_view file = table.file;
+  if (file == "contacts.csv") return kContactsOfARow;
+  return file == "ratios.csv" ? static_cast<double>(record.ratio_iterations.size()) : 1.0;
+}
+
+}  // namespace
+
+double expected_output_bytes(const Scenario& scenario) {
+  const RecordFields& record = scenario.record;
+  double row = 0.0;
+  for (const ResultTable& table : record_tables(record))
+    row += lines_a_row(table, record) * kBytesOfANumber * static_cast<double>(table.columns.size());
+  const double rows = std::ceil(static_cast<double>(scenario.time.steps) / static_cast<double>(record.every));
+  return trial_count(scenario.hand) * rows * row;
 }
 
 }  // namespace hapbench

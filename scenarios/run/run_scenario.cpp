@@ -10,12 +10,10 @@
 #include "results/io/new_directories.hpp"
 #include "results/record/target_table.hpp"
 #include "results/summary/columns_json.hpp"
-#include "scenarios/run/expectation.hpp"
-#include "scenarios/run/force_warnings.hpp"
+#include "scenarios/run/encounter.hpp"
+#include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/recorders.hpp"
 #include "scenarios/run/run_trial.hpp"
-#include "scenarios/run/tool_warnings.hpp"
-#include "scenarios/run/wait_notice.hpp"
 
 namespace hapbench {
 namespace {

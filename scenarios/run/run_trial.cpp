@@ -7,11 +7,8 @@
 #include "results/allocations/allocations.hpp"
 #include "results/observe/step_sampler.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/run/drag_course.hpp"
 #include "scenarios/run/encounter.hpp"
-#include "scenarios/run/open_edges.hpp"
-#include "scenarios/run/progress.hpp"
-#include "scenarios/run/run_to_end.hpp"
+#include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {

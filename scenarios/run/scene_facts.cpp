@@ -5,9 +5,8 @@
 
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/drag_course.hpp"
 #include "scenarios/run/encounter.hpp"
-#include "scenarios/run/tool_warnings.hpp"
+#include "scenarios/run/stop_signal.hpp"
 #include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
@@ -62,6 +61,7 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   facts.tool = tool_facts(scenario, loaded.files, *tool);
   facts.warnings = tool_warnings(scenario.rendering, *tool);
   const auto shell = make_shell(scenario, loaded.files);
+  throw_if_stopped();  // that may have taken seconds
   if (!shell || shell->size() == 0) return facts;
   if (std::holds_alternative<MeshEnvironment>(scenario.environment))
     facts.is_closed = loaded.files.at(kEnvironmentFile).mesh().open_edges().empty();

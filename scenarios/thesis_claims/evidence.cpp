@@ -13,7 +13,7 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/run_to_end.hpp"
+#include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 namespace {
@@ -124,7 +124,6 @@ RunReport Evidence::run(const std::string& name, std::span<const std::string> mo
 }
 
 std::shared_ptr<const PointShell> Evidence::shell(const LoadedScenario& loaded) const {
-  if (shells != nullptr) return shells->of(loaded);
   return make_shell(loaded.scenario, loaded.files);
 }
 

@@ -7,7 +7,6 @@
 #include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/shared_shells.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/batch/sweeps.hpp"
 #include "tests/scenarios/support/errors.hpp"
@@ -59,19 +58,6 @@ TEST(RunsToDo, OfASampleFollowEachOtherByTheListedFields) {
 }
 
 // ---- Sweeps
-
-TEST(SharedShells, MakesEachOnceAndDropsItAfterItsLastRun) {
-  const SweepPlan plan = plan_of(minimal_scenario("plane"), {"environment.spacing_m=0.0005,0.0004"});
-  SharedShells shells({2, 1});
-  auto first = shells.take(0, scenario_of(plan, 0).scenario);
-  const auto other = shells.take(1, scenario_of(plan, 1).scenario);
-  EXPECT_NE(first, other);
-  EXPECT_EQ(other.use_count(), 1);
-  EXPECT_EQ(first.use_count(), 2);
-  const auto again = shells.take(0, scenario_of(plan, 0).scenario);
-  EXPECT_EQ(again, first);
-  EXPECT_EQ(first.use_count(), 2);  // the two here; the collection has let go of it
-}
 
 class RunSweep : public testing::Test {
  protected:
