@@ -94,7 +94,7 @@ class Collector {
         if (std::find(plan_.warnings.begin(), end, warning) == end) plan_.warnings.push_back(std::move(warning));
       }
       if (std::holds_alternative<RecordedPosition>(loaded.scenario.motion.position))
-        sections_.fidelity |= loaded.files.recorded_force() != nullptr;
+        sections_.fidelity |= loaded.files.at(kMotionFile).stroke()->force.has_value();
       loaded.scenario.name.clear();  // which may be that of the scenario's file
       hashes.push_back(with_file(loaded, [&] { return scenario_hash(loaded.scenario, loaded.files); }));
     }
