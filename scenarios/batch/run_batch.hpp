@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <vector>
-#include "scenarios/description/scenario_text.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
 namespace hapbench {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "scenarios/batch/sweep_points.hpp"
-#include "scenarios/description/scenario_text.hpp"
+#include "scenarios/description/load_scenario.hpp"
 
 namespace hapbench {
 

@@ -7,8 +7,8 @@
 
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/named_files.hpp"
 #include "scenarios/description/parts.hpp"
-#include "scenarios/description/shared_cache.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "sim/contact/grid_index.hpp"
 #include "sim/core/random.hpp"

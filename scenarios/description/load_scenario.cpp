@@ -9,8 +9,6 @@
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/reader.hpp"
-#include "scenarios/description/scenario_text.hpp"
-#include "scenarios/description/schema_writer.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "sim/core/hash.hpp"

@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <ctime>
 #include <map>
 #include <mutex>
+#include <thread>
 #include "scenarios/description/descriptions.hpp"
-#include "scenarios/description/shared_cache.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/motion_file.hpp"
@@ -16,6 +17,53 @@
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
+
+std::shared_ptr<const void> SharedCache::get_untyped(const std::string& key, const std::function<Made()>& make) {
+  const std::shared_ptr<Entry> entry = entry_of(key);
+  const std::lock_guard lock(entry->mutex);
+  if (entry->made.value) return entry->made.value;
+  // Isolated, or this thread might take up another run while it waits, and wait for itself at the lock.
+  Made made = tbb::this_task_arena::isolate(make);
+  const std::lock_guard list_lock(mutex_);
+  entry->made = std::move(made);
+  ++made_;
+  return entry->made.value;
+}
+
+std::shared_ptr<SharedCache::Entry> SharedCache::entry_of(const std::string& key) {
+  const std::lock_guard lock(mutex_);
+  const auto found =
+      std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) { return entry->key == key; });
+  if (found != entries_.end()) {
+    entries_.splice(entries_.begin(), entries_, found);
+  } else {
+    entries_.push_front(std::make_shared<Entry>());
+    entries_.front()->key = key;
+    drop_oldest();
+  }
+  return entries_.front();
+}
+
+void SharedCache::drop_oldest() {
+  const std::size_t fewest = 2 * std::max(1u, std::thread::hardware_concurrency());
+  std::size_t bytes = 0;
+  for (const auto& entry : entries_) bytes += entry->made.bytes;
+  while (entries_.size() > fewest && (entries_.size() > kMost || bytes > kMostBytes)) {
+    bytes -= entries_.back()->made.bytes;
+    entries_.pop_back();
+  }
+}
+
+std::size_t SharedCache::made() const {
+  const std::lock_guard lock(mutex_);
+  return made_;
+}
+
+SharedCache& shared_cache() {
+  static SharedCache cache;
+  return cache;
+}
+
 namespace {
 
 /// Walks through the values that an object holds and collects the names of files.

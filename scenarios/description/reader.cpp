@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenarios/description/schema_writer.hpp"
+#include "scenarios/description/writer.hpp"
 
 namespace hapbench {
 namespace {

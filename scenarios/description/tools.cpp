@@ -3,9 +3,9 @@
 #include <stdexcept>
 
 #include "scenarios/description/descriptions.hpp"
+#include "scenarios/description/named_files.hpp"
 #include "scenarios/description/parts.hpp"
-#include "scenarios/description/schema_writer.hpp"
-#include "scenarios/description/shared_cache.hpp"
+#include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "sim/tool/mesh_tool.hpp"
 #include "sim/tool/revolved.hpp"

@@ -21,7 +21,7 @@
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/table.hpp"
-#include "scenarios/run/quantity_text.hpp"
+#include "scenarios/run/scene_facts.hpp"
 #include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {

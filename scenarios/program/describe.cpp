@@ -7,7 +7,6 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/description/scenario_text.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/describe.hpp"
 #include "scenarios/program/fields_text.hpp"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/description/schema_writer.hpp"
+#include "scenarios/description/writer.hpp"
 
 /// The fields of scenario files as text for the terminal. Names of fields are dotted paths, as "rendering.limits".
 namespace hapbench {

@@ -15,7 +15,7 @@
 #include "scenarios/description/parts.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/encounter.hpp"
-#include "scenarios/run/quantity_text.hpp"
+#include "scenarios/run/scene_facts.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/mesh/triangle_soup.hpp"

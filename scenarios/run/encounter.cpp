@@ -8,7 +8,7 @@
 #include "results/observe/contact_forces.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/run/quantity_text.hpp"
+#include "scenarios/run/scene_facts.hpp"
 #include "sim/contact/grid_index.hpp"
 #include "sim/tool/mesh_tool.hpp"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/scenario_text.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"

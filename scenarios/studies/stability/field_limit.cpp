@@ -14,7 +14,7 @@
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "device_model/theory/eigenvalue_edge.hpp"
 #include "results/observe/contact_forces.hpp"
-#include "scenarios/description/scenario_text.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"

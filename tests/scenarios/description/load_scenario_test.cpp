@@ -6,7 +6,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/description/scenario_text.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"

@@ -7,7 +7,7 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/description/schema_writer.hpp"
+#include "scenarios/description/writer.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "tests/scenarios/support/mutation.hpp"
 #include "tests/scenarios/support/scenarios.hpp"

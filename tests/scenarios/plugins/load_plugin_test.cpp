@@ -9,7 +9,7 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/description/schema_writer.hpp"
+#include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/environment_variable.hpp"
