@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "results/io/number_text.hpp"
+#include "results/io/json_text.hpp"
 #include "scenarios/batch/sweep_points.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"

@@ -6,6 +6,7 @@
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/extends.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/size_limits.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "results/observe/reference_force.hpp"
+#include "results/observe/force_fidelity.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "sim/geometry/point_shell.hpp"

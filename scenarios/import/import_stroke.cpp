@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "results/io/number_text.hpp"
+#include "results/io/json_text.hpp"
 #include "scenarios/import/quantum.hpp"
 #include "scenarios/input/input_error.hpp"
 

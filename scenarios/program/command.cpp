@@ -9,8 +9,8 @@
 #include <set>
 
 #include "algorithms/registry.hpp"
+#include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
-#include "results/io/new_directories.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/program/terminal.hpp"
 #include "scenarios/run/quantity_text.hpp"

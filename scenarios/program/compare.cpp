@@ -15,6 +15,7 @@
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/run_batch.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/program/compare_devices.hpp"
 #include "scenarios/program/comparison_table.hpp"
 #include "scenarios/program/device_limits_text.hpp"

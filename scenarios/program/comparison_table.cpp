@@ -4,6 +4,7 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/summary/outcome_names.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
 
 namespace hapbench {

@@ -7,6 +7,7 @@
 
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/import/import_options.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/describe.hpp"

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 
-#include "results/summary/columns_json.hpp"
+#include "results/io/columns.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/table.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "results/observe/step_latency.hpp"
+#include "results/observe/step_times.hpp"
 #include "scenarios/program/table.hpp"
 
 namespace hapbench {

@@ -10,7 +10,7 @@
 #include <memory>
 #include <system_error>
 
-#include "results/io/io_error.hpp"
+#include "results/io/atomic_file.hpp"
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/shell_words.hpp"

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "results/io/io_error.hpp"
+#include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/json_file.hpp"

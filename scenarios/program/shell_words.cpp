@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "results/io/io_error.hpp"
+#include "results/io/atomic_file.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 
 namespace hapbench {

@@ -1,4 +1,5 @@
 #include "scenarios/run/expectation.hpp"
+#include "scenarios/description/metric_sections.hpp"
 
 #include <gtest/gtest.h>
 
