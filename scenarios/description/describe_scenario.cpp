@@ -5,6 +5,7 @@
 #include "algorithms/registry.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/descriptions.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario_text.hpp"
 #include "scenarios/input/input_error.hpp"
 
