@@ -14,6 +14,7 @@
 #include "results/summary/provenance.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/descriptions.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
@@ -25,28 +26,16 @@ namespace {
 /// The facts about one run's scenario that the sweep needs.
 struct Point {
   std::vector<std::string> warnings;
-  MetricSections sections;
+  SectionParts sections;
   std::string files;  ///< the objects that name files
   AlgorithmOrigin origin;
 };
 
-/// The sections that a summary of the scenario has, but for `fidelity` of a stroke: its file says whether it has a
-/// measured force. Several trials are summarised by the sections of the targets alone.
-MetricSections sections_of(const Scenario& scenario) {
-  const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
-  const bool one_trial = trial_count(scenario.hand) == 1.0;
-  return {.energy = one_trial && scenario.record.energy,
-          .ideal_trajectory = one_trial && scenario.record.ideal_trajectory,
-          .fidelity = one_trial && scenario.reference_force,
-          .torque = one_trial && scenario.record.torque,
-          .perception = one_trial && scenario.perception,
-          .places = hand == nullptr ? 0 : hand->task.places.size()};
-}
-
 Point examine(const SweepPlan& plan, std::size_t run) {
   const LoadedScenario loaded = scenario_of(plan, run);
   const Scenario& scenario = loaded.scenario;
-  Point point{loaded.warnings, sections_of(scenario), "", find_algorithm(scenario.rendering.algorithm)->origin};
+  Point point{loaded.warnings, sections_of(scenario, scenario.reference_force.has_value()), "",
+              find_algorithm(scenario.rendering.algorithm)->origin};
   if (loaded.files.all().empty()) return point;
   const Json json = written_object(scenario);
   for (const auto& file : loaded.files.all()) {
@@ -62,12 +51,7 @@ class Collector {
   explicit Collector(SweepPlan& plan) : plan_(plan) {}
 
   void add(std::size_t run, const Point& point) {
-    sections_.energy |= point.sections.energy;
-    sections_.ideal_trajectory |= point.sections.ideal_trajectory;
-    sections_.fidelity |= point.sections.fidelity;
-    sections_.torque |= point.sections.torque;
-    sections_.perception |= point.sections.perception;
-    sections_.places = std::max(sections_.places, point.sections.places);
+    add_sections(sections_, point.sections);
     if (!point.origin.file.empty()) plugins_.emplace(point.origin.file, point.origin.hash);
     if (!point.files.empty()) keep_first(files_, point.files, {run, 0});
     for (std::size_t i = 0; i < point.warnings.size(); ++i) keep_first(warnings_, point.warnings[i], {run, i});
@@ -94,7 +78,7 @@ class Collector {
         if (std::find(plan_.warnings.begin(), end, warning) == end) plan_.warnings.push_back(std::move(warning));
       }
       if (std::holds_alternative<RecordedPosition>(loaded.scenario.motion.position))
-        sections_.fidelity |= loaded.files.at(kMotionFile).stroke()->force.has_value();
+        add_sections(sections_, sections_of(loaded.scenario, loaded.files.at(kMotionFile).stroke()->force.has_value()));
       loaded.scenario.name.clear();  // which may be that of the scenario's file
       hashes.push_back(with_file(loaded, [&] { return scenario_hash(loaded.scenario, loaded.files); }));
     }
@@ -117,8 +101,7 @@ class Collector {
   }
 
   SweepPlan& plan_;
-  MetricSections sections_{
-      .energy = false, .ideal_trajectory = false, .fidelity = false, .torque = false, .perception = false, .places = 0};
+  SectionParts sections_;
   FirstPlaces files_, warnings_;
   std::map<std::string, std::string> plugins_;
 };

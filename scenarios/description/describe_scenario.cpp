@@ -7,6 +7,7 @@
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
 

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "results/observe/force_fidelity.hpp"
 #include "scenarios/description/fields.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/input/motion_file.hpp"

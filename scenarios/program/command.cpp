@@ -12,9 +12,8 @@
 #include <utility>
 
 #include "algorithms/registry.hpp"
-#include "results/io/io_error.hpp"
+#include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
-#include "results/io/new_directories.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"

@@ -14,6 +14,7 @@
 #include "scenarios/batch/result_folders.hpp"
 #include "scenarios/batch/run_batch.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/program/compare_devices.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/program/table.hpp"

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/describe.hpp"
 #include "scenarios/program/fields_text.hpp"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/rendering_config.hpp"
-#include "results/io/io_error.hpp"
+#include "results/io/atomic_file.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/program/command.hpp"

@@ -8,6 +8,7 @@
 #include "device_model/device_presets.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"

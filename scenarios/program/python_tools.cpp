@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "results/io/io_error.hpp"
+#include "results/io/atomic_file.hpp"
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/progress_bar.hpp"

@@ -1,7 +1,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "results/io/io_error.hpp"
+#include <memory>
+#include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/json_file.hpp"

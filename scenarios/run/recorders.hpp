@@ -8,22 +8,17 @@
 #include <vector>
 
 #include "results/io/columns.hpp"
-#include "results/io/memory_table.hpp"
-#include "results/observe/energy_ledger.hpp"
-#include "results/observe/force_fidelity.hpp"
-#include "results/observe/ideal_trajectory.hpp"
+#include "results/io/table_writer.hpp"
 #include "results/record/recorder.hpp"
-#include "scenarios/description/scenario.hpp"
+#include "scenarios/description/metric_sections.hpp"
 
 namespace hapbench {
 
 /// What the recorders of a trial are made from.
 struct RecordedTrial {
   const RecordFields& fields;
-  std::size_t contact_capacity;           ///< the most contacts a row can have
-  const EnergyLedger* ledger;             ///< null unless the scenario asks for energy
-  const IdealTrajectoryObserver* ideal;   ///< null unless it asks for the ideal trajectory
-  const ForceFidelityObserver* fidelity;  ///< null without a measured force
+  std::size_t contact_capacity;  ///< the most contacts a row can have
+  const SectionObservers& sections;
 };
 
 /// The tables of a trial in memory, by the names that their files would have.

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "results/io/io_error.hpp"
+#include "results/io/atomic_file.hpp"
 #include "scenarios/batch/sampling.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"

@@ -8,6 +8,7 @@
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/run_table.hpp"
@@ -186,7 +187,7 @@ TEST(DescribeCommand, ExplainsAScenarioFileOfTheCurrentDirectory) {
 }
 
 TEST(DescribeCommand, ExplainsEveryMetric) {
-  for (const auto& [name, unit, meaning, value] : metrics_without_values({.places = 1})) {
+  for (const auto& [name, unit, meaning, value] : metrics_without_values(1)) {
     const ProgramRun run = hapbench({"describe", name});
     EXPECT_EQ(run.status, 0) << name << run.err;
     EXPECT_EQ(run.out.find("metric " + name), 0u) << run.out;

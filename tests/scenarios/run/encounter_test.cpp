@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "results/observe/metrics.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_facts.hpp"

@@ -1,4 +1,4 @@
-#include "results/io/memory_table.hpp"
+#include "results/io/table_writer.hpp"
 
 #include <sys/mman.h>
 
@@ -44,6 +44,10 @@ void MemoryTable::put(std::span<const double> values) noexcept {
 
 void MemoryTable::put(const std::optional<double>& value) noexcept {
   put(value.value_or(std::numeric_limits<double>::quiet_NaN()));
+}
+
+void MemoryTable::put(std::span<const std::optional<double>> values) noexcept {
+  for (const std::optional<double>& value : values) put(value);
 }
 
 }  // namespace hapbench
