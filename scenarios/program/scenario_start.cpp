@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "device_model/hands/surface_path.hpp"
+#include "device_model/hands/drag_hand.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/parts.hpp"
 #include "scenarios/run/assemble.hpp"
