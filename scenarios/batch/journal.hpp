@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "results/io/io_error.hpp"
+#include "results/io/atomic_file.hpp"
 
 namespace hapbench {
 

@@ -10,7 +10,7 @@
 
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/batch/statistics.hpp"
-#include "scenarios/run/expectation.hpp"
+#include "scenarios/run/encounter.hpp"
 
 namespace hapbench {
 namespace {
@@ -227,8 +227,9 @@ LeagueRuns league_runs(const BatchPlan& plan, const BatchReport& report, const s
   LeagueRuns league;
   league.scenarios = plan.names;
   league.algorithms = plan.definition.algorithms;
-  const bool all_have_reference = std::all_of(report.runs.begin(), report.runs.end(),
-                                              [](const RunReport& run) { return run.summary.fidelity.has_value(); });
+  const bool all_have_reference = std::all_of(report.runs.begin(), report.runs.end(), [](const RunReport& run) {
+    return run.summary.section("fidelity") != nullptr;
+  });
   const std::span<const std::string_view> usual =
       all_have_reference ? std::span<const std::string_view>(kFidelityMetrics) : kDefaultMetrics;
   league.metrics = metrics.empty() ? std::vector<std::string>(usual.begin(), usual.end()) : metrics;

@@ -1,15 +1,13 @@
 #include "scenarios/batch/run_batch.hpp"
 
 #include <fmt/format.h>
-
 #include <algorithm>
+#include <chrono>
 #include <map>
 #include <set>
-
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/sweep_points.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/shared_shells.hpp"
 #include "sim/core/random.hpp"
 
 namespace hapbench {
@@ -77,16 +75,12 @@ void add(std::vector<std::string>& warnings, std::vector<std::string> more) {
     if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) warnings.push_back(std::move(warning));
 }
 
-std::vector<std::size_t> uses_of_environments(const BatchPlan& plan) {
-  std::vector<std::size_t> uses(plan.environment_count);
-  for (const std::size_t environment : plan.environments) uses[environment] += plan.size() / plan.scenarios.size();
-  return uses;
-}
-
-RunReport run_one(const BatchPlan& plan, const BatchOptions& options, SharedShells& shells, std::size_t number) {
+RunReport run_one(const BatchPlan& plan, const BatchOptions& options, std::size_t number) {
   const LoadedScenario loaded = scenario_of(plan, number);
   RunTiming timing;
-  const auto shell = shells.take(plan.environments[plan.run(number).scenario], loaded.scenario, &timing);
+  const auto start = std::chrono::steady_clock::now();
+  const auto shell = make_shell(loaded.scenario, loaded.files);
+  timing.shell = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   RunReport report = run_with_shell(loaded, shell, options.directory / run_directory(plan, number), false, timing);
   report.targets.clear();  // they are in the run's files, and a batch may have very many
   return report;
@@ -109,18 +103,14 @@ BatchPlan plan_batch(BatchDefinition definition) {
                                  plan.scenarios.size(), plan.definition.algorithms.size(), plan.definition.seeds,
                                  plan.size(), kMostRuns));
   }
-  std::map<std::string, std::size_t> environments;
   for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
     for (std::size_t a = 0; a < plan.definition.algorithms.size(); ++a) {
       const LoadedScenario loaded = load(plan, s, a);
-      if (a > 0) continue;  // all algorithms share the scenario's files and environment
+      if (a > 0) continue;  // the files are those of the scenario
       check_seeds_and_jitter(plan.definition, loaded);
       add(plan.warnings, check_named_files(loaded));
-      const Json content = with_file(loaded, [&] { return environment_content(loaded.scenario, loaded.files); });
-      plan.environments.push_back(environments.emplace(content.dump(), environments.size()).first->second);
     }
   }
-  plan.environment_count = environments.size();
   return plan;
 }
 
@@ -147,9 +137,8 @@ fs::path run_directory(const BatchPlan& plan, std::size_t number) {
 BatchReport run_batch(const BatchPlan& plan, const BatchOptions& options) {
   BatchReport report;
   report.runs.resize(plan.size());
-  SharedShells shells(uses_of_environments(plan));
   for_each_job(plan.size(), {static_cast<unsigned>(options.jobs), options.progress ? "compare" : ""},
-               [&](std::size_t number) { report.runs[number] = run_one(plan, options, shells, number); });
+               [&](std::size_t number) { report.runs[number] = run_one(plan, options, number); });
   return report;
 }
 

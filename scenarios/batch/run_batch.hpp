@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <vector>
-#include "scenarios/description/scenario_text.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
 namespace hapbench {
@@ -30,10 +30,8 @@ struct BatchRun {
 struct BatchPlan {
   BatchDefinition definition;
   std::vector<ScenarioText> scenarios;
-  std::vector<std::string> names;         ///< unique names of the scenarios' files, without extension
-  std::vector<std::string> warnings;      ///< without duplicates
-  std::vector<std::size_t> environments;  ///< a number for each scenario, equal for equal environments
-  std::size_t environment_count = 0;
+  std::vector<std::string> names;     ///< unique names of the scenarios' files, without extension
+  std::vector<std::string> warnings;  ///< without duplicates
 
   std::size_t size() const { return scenarios.size() * definition.algorithms.size() * definition.seeds; }
   BatchRun run(std::size_t number) const;

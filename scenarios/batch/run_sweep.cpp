@@ -10,8 +10,9 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/parallel_for.hpp"
+#include "scenarios/batch/sweep_table.hpp"
+#include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/run/recent_shells.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
@@ -70,10 +71,10 @@ struct FinishedRun {
   std::chrono::steady_clock::duration time;
 };
 
-FinishedRun compute(const SweepPlan& plan, const SweepOptions& options, RecentShells& shells, std::size_t run) {
+FinishedRun compute(const SweepPlan& plan, const SweepOptions& options, std::size_t run) {
   const auto start = std::chrono::steady_clock::now();
   const LoadedScenario loaded = scenario_of(plan, run);
-  const auto shell = shells.of(loaded, environment_of(plan.points, run));
+  const auto shell = make_shell(loaded.scenario, loaded.files);
   std::optional<fs::path> output;
   if (options.keep_runs) output = options.directory / "runs" / fmt::format("{:06}", run);
   std::string row = row_text(plan, sweep_row(plan, run, run_with_shell(loaded, shell, output, false).summary));
@@ -87,7 +88,6 @@ void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& j
   constexpr std::chrono::milliseconds kMostUnwritten(10);
   std::chrono::steady_clock::duration unwritten{};
   const std::vector<std::size_t> runs = runs_to_do(plan.points, options.part());
-  RecentShells shells(options.jobs);
   ProgressBar bar("sweep", rows.size(), options.progress);
   bar.start_at(rows.count());
   const auto deliver = [&](std::size_t run, const FinishedRun& finished) {
@@ -109,7 +109,7 @@ void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& j
   };
   const auto work = [&](std::size_t run) -> Delivery {
     try {
-      return [&deliver, run, finished = compute(plan, options, shells, run)] { deliver(run, finished); };
+      return [&deliver, run, finished = compute(plan, options, run)] { deliver(run, finished); };
     } catch (const Stopped&) {
       return {};  // --resume computes it
     } catch (const std::exception& error) {
@@ -123,15 +123,6 @@ void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& j
 }
 
 }  // namespace
-
-std::string environment_of(const SweepPoints& points, std::size_t run) {
-  std::string environment;
-  for (std::size_t a = 0; a < points.axes().size(); ++a) {
-    // No value has a line break.
-    if (is_of_environment(points.axes()[a])) environment += points.value(run, a) + "\n";
-  }
-  return environment;
-}
 
 std::vector<std::size_t> runs_to_do(const SweepPoints& points, const Shard& shard) {
   std::vector<std::size_t> runs;

@@ -11,9 +11,6 @@
 
 namespace hapbench {
 
-/// A text that is equal for runs whose varied fields of the environment have equal values; empty when none varies.
-std::string environment_of(const SweepPoints& points, std::size_t run);
-
 /// The runs of a shard in the order in which they are done: runs in one environment follow each other, so that few
 /// shells are needed at a time; apart from that they are in order.
 std::vector<std::size_t> runs_to_do(const SweepPoints& points, const Shard& shard);

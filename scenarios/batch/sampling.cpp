@@ -179,4 +179,10 @@ double UnitSample::at(std::size_t point, std::size_t axis) const {
   return static_cast<double>(sobol.sequence.at(static_cast<std::uint32_t>(point)) ^ sobol.shift) * 0x1.0p-32;
 }
 
+UnitPoint UnitSample::point(std::size_t number) const {
+  UnitPoint point(std::max(sobol_.size(), points_.size()));
+  for (std::size_t axis = 0; axis < point.size(); ++axis) point[axis] = at(number, axis);
+  return point;
+}
+
 }  // namespace hapbench

@@ -51,6 +51,9 @@ struct Sampling {
 /// Reads "lhs:N", "sobol:N" or "random:N" with 1 <= N <= kMostRuns. Throws InputError.
 Sampling parse_sampling(const std::string& text, std::uint64_t seed);
 
+/// One point, a coordinate in [0, 1) for each axis.
+using UnitPoint = std::vector<double>;
+
 /// The points of a sample. A Sobol sequence is shifted digitally (the bits of each coordinate are combined with the
 /// same random bits by exclusive or; Cranley-Patterson in base two, Owen 2003), which keeps its balance and makes it
 /// depend on the seed; its points are computed on demand. The points of the other methods come from one stream of
@@ -62,6 +65,8 @@ class UnitSample {
 
   /// A coordinate in [0, 1). Precondition: point and axis are in the sample.
   double at(std::size_t point, std::size_t axis) const;
+  /// All coordinates of a point. Precondition: it is in the sample.
+  UnitPoint point(std::size_t number) const;
 
  private:
   struct ShiftedSobol {

@@ -7,7 +7,7 @@
 #include <set>
 #include <string_view>
 
-#include "results/io/number_text.hpp"
+#include "results/io/json_text.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 

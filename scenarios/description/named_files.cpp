@@ -1,13 +1,69 @@
 #include "scenarios/description/named_files.hpp"
 
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
+#include <ctime>
+#include <map>
+#include <mutex>
+#include <thread>
 #include "scenarios/description/descriptions.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/motion_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
+
+std::shared_ptr<const void> SharedCache::get_untyped(const std::string& key, const std::function<Made()>& make) {
+  const std::shared_ptr<Entry> entry = entry_of(key);
+  const std::lock_guard lock(entry->mutex);
+  if (entry->made.value) return entry->made.value;
+  // Isolated, or this thread might take up another run while it waits, and wait for itself at the lock.
+  Made made = tbb::this_task_arena::isolate(make);
+  const std::lock_guard list_lock(mutex_);
+  entry->made = std::move(made);
+  ++made_;
+  return entry->made.value;
+}
+
+std::shared_ptr<SharedCache::Entry> SharedCache::entry_of(const std::string& key) {
+  const std::lock_guard lock(mutex_);
+  const auto found =
+      std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) { return entry->key == key; });
+  if (found != entries_.end()) {
+    entries_.splice(entries_.begin(), entries_, found);
+  } else {
+    entries_.push_front(std::make_shared<Entry>());
+    entries_.front()->key = key;
+    drop_oldest();
+  }
+  return entries_.front();
+}
+
+void SharedCache::drop_oldest() {
+  const std::size_t fewest = 2 * std::max(1u, std::thread::hardware_concurrency());
+  std::size_t bytes = 0;
+  for (const auto& entry : entries_) bytes += entry->made.bytes;
+  while (entries_.size() > fewest && (entries_.size() > kMost || bytes > kMostBytes)) {
+    bytes -= entries_.back()->made.bytes;
+    entries_.pop_back();
+  }
+}
+
+std::size_t SharedCache::made() const {
+  const std::lock_guard lock(mutex_);
+  return made_;
+}
+
+SharedCache& shared_cache() {
+  static SharedCache cache;
+  return cache;
+}
+
 namespace {
 
 /// Walks through the values that an object holds and collects the names of files.
@@ -38,7 +94,7 @@ class FileFinder final : public Fields {
     if (is_object) object(*this);
   }
   void one_or_list(bool is_list, Body one, Body list) override { (is_list ? list : one)(*this); }
-  void alternatives(const char*, std::span<const char* const>, Untyped, std::size_t held,
+  void alternatives(const char*, std::span<const TypeName>, Untyped, std::size_t held,
                     FunctionRef<Fields&, std::size_t> fields) override {
     fields(*this, held);
   }
@@ -68,38 +124,89 @@ std::vector<FileReference> files_named_in(Scenario& scenario) {
   return std::move(finder.found);
 }
 
+namespace {
+
+/// Hashes of regular files, which are not read again while they look unchanged.
+class KnownHashes {
+ public:
+  /// What tells that a file has changed; nothing for what is no regular file, and for one that changed so recently that
+  /// the clock of the file system might not tell another change.
+  static std::optional<std::string> stamp_of(const std::filesystem::path& file) {
+    struct stat s {};
+    if (::stat(file.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return std::nullopt;
+    constexpr std::time_t kSettled = 2;  // [s]
+    if (std::time(nullptr) < std::max(s.st_mtim.tv_sec, s.st_ctim.tv_sec) + kSettled) return std::nullopt;
+    return fmt::format("{} {} {} {} {} {} {} {}", s.st_dev, s.st_ino, s.st_size, s.st_mtim.tv_sec, s.st_mtim.tv_nsec,
+                       s.st_ctim.tv_sec, s.st_ctim.tv_nsec, file.string());
+  }
+  std::string find(const std::string& stamp) {
+    const std::lock_guard lock(mutex_);
+    const auto found = hashes_.find(stamp);
+    return found == hashes_.end() ? "" : found->second;
+  }
+  void add(const std::string& stamp, const std::string& hash) {
+    const std::lock_guard lock(mutex_);
+    if (hashes_.size() == kMost) hashes_.clear();
+    hashes_[stamp] = hash;
+  }
+
+ private:
+  static constexpr std::size_t kMost = 1000;
+  std::mutex mutex_;
+  std::map<std::string, std::string> hashes_;
+};
+
+KnownHashes& known_hashes() {
+  static KnownHashes hashes;
+  return hashes;
+}
+
+}  // namespace
+
 void NamedFile::read() {
-  if (!hash_.empty()) return;
+  const auto stamp = KnownHashes::stamp_of(path_);
   bytes_ = read_named_file(path_);
-  hash_ = hash_text(hash_of(bytes_));
+  std::string hash = hash_text(hash_of(bytes_));
+  if (!hash_.empty() && hash != hash_) fail_in_file(path_, "has changed since the scenario was loaded");
+  hash_ = std::move(hash);
+  if (stamp && stamp == KnownHashes::stamp_of(path_)) known_hashes().add(*stamp, hash_);
 }
 
 const std::string& NamedFile::hash() {
-  read();
+  if (!hash_.empty()) return hash_;
+  if (const auto stamp = KnownHashes::stamp_of(path_)) hash_ = known_hashes().find(*stamp);
+  if (hash_.empty()) read();
   return hash_;
 }
 
 const NamedFile::Contents& NamedFile::contents() {
-  if (!contents_) {
-    contents_ = std::make_shared<const Contents>(parsed());
-    bytes_ = {};
-  }
+  if (contents_) return *contents_;
+  check_extension();
+  const std::string key =
+      fmt::format("file {} as {}, scale {}, spacing {}: {}", hash(), static_cast<int>(content_.kind),
+                  content_.sampling.scale, content_.sampling.spacing.value_or(0.0), path_.string());
+  const auto parse = [this] {
+    if (bytes_.empty()) read();
+    return std::make_shared<const Contents>(parsed());
+  };
+  // A parsed mesh takes some times the space of its text.
+  contents_ = shared_cache().get<Contents>(key, parse, [this](const Contents&) { return 4 * bytes_.size(); });
+  bytes_ = {};
   return *contents_;
 }
 
+void NamedFile::check_extension() const {
+  if (content_.kind == FileContent::Kind::point_shell) shell_extension(path_);
+  if (content_.kind == FileContent::Kind::mesh) mesh_extension(path_);
+}
+
 NamedFile::Contents NamedFile::parsed() {
-  // A file with another extension is refused unread.
   switch (content_.kind) {
     case FileContent::Kind::point_shell:
-      shell_extension(path_);
-      read();
       return {.points = point_shell_in(bytes_, path_)};
     case FileContent::Kind::mesh:
-      mesh_extension(path_);
-      read();
       return {.mesh = MeshFile(bytes_, path_, content_.sampling)};
     case FileContent::Kind::stroke:
-      read();
       return {.stroke = stroke_in(bytes_, path_)};
   }
   return {};

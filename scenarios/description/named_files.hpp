@@ -1,18 +1,72 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <list>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "results/observe/force_fidelity.hpp"
 #include "scenarios/description/fields.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/input/motion_file.hpp"
 #include "sim/geometry/point_shell.hpp"
 
 namespace hapbench {
+
+/// Values that take long to make, shared by the runs of a process: parsed files, point shells, distance grids. For
+/// several threads.
+///
+/// The values used last are kept, up to 64 of them and 512 MB. Twice as many as the machine has threads are kept in any
+/// case, so that runs side by side do not take each other's away. A value that was dropped lives on while a run holds
+/// it.
+class SharedCache {
+ public:
+  /// The value of that key, which says all that the value depends on. It is made by `make`, which returns a
+  /// std::shared_ptr<const T>, unless it is there; `bytes` of the value says about how large it is. Waits while another
+  /// thread makes it. What `make` throws is passed on, and the next caller tries again.
+  template <class T, class Make, class Bytes>
+  std::shared_ptr<const T> get(const std::string& key, const Make& make, const Bytes& bytes) {
+    return std::static_pointer_cast<const T>(get_untyped(key, [&]() -> Made {
+      std::shared_ptr<const T> value = make();
+      const std::size_t size = bytes(*value);
+      return {std::move(value), size};
+    }));
+  }
+
+  /// How many values have been made so far.
+  std::size_t made() const;
+
+ private:
+  struct Made {
+    std::shared_ptr<const void> value;
+    std::size_t bytes = 0;
+  };
+  struct Entry {
+    std::string key;
+    std::mutex mutex;
+    Made made;
+  };
+  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMostBytes = std::size_t{512} << 20;
+
+  std::shared_ptr<const void> get_untyped(const std::string& key, const std::function<Made()>& make);
+  std::shared_ptr<Entry> entry_of(const std::string& key);
+  /// Precondition: the list is locked.
+  void drop_oldest();
+
+  mutable std::mutex mutex_;
+  std::list<std::shared_ptr<Entry>> entries_;  ///< the one used last first
+  std::size_t made_ = 0;
+};
+
+/// The one of this process.
+SharedCache& shared_cache();
 
 /// A field of a scenario that names a file.
 struct FileReference {
@@ -30,8 +84,9 @@ inline constexpr std::string_view kEnvironmentFile = "/environment/file";
 inline constexpr std::string_view kToolFile = "/tool/file";
 inline constexpr std::string_view kMotionFile = "/motion/position/file";
 
-/// A file that a scenario names. It is read and parsed once, when something of it is first asked for; the functions
-/// that need its contents throw InputError when they cannot be used.
+/// A file that a scenario names. It is read and parsed when something of it is first asked for, once for all scenarios
+/// of this process that take the same contents alike (SharedCache), and stays as it was then for this scenario. The
+/// functions that need its contents throw InputError when they cannot be used.
 class NamedFile {
  public:
   NamedFile(std::string pointer, std::filesystem::path path, const FileContent& content)
@@ -63,6 +118,7 @@ class NamedFile {
     std::optional<Stroke> stroke = {};
   };
 
+  void check_extension() const;
   void read();
   const Contents& contents();
   Contents parsed();
@@ -70,8 +126,8 @@ class NamedFile {
   std::string pointer_;
   std::filesystem::path path_;
   FileContent content_;
-  std::string hash_;   ///< empty until the file is read
-  std::string bytes_;  ///< until they are parsed
+  std::string hash_;   ///< empty until it is known
+  std::string bytes_;  ///< from when the file is read until it is parsed
   std::shared_ptr<const Contents> contents_;
 };
 

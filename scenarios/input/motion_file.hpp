@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "results/observe/reference_force.hpp"
+#include "results/observe/force_fidelity.hpp"
 #include "sim/tool/motion.hpp"
 
 namespace hapbench {

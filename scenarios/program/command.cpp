@@ -12,16 +12,15 @@
 #include <utility>
 
 #include "algorithms/registry.hpp"
-#include "results/io/io_error.hpp"
+#include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
-#include "results/io/new_directories.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
-#include "scenarios/program/schema_text.hpp"
+#include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/table.hpp"
-#include "scenarios/run/quantity_text.hpp"
+#include "scenarios/run/scene_facts.hpp"
 #include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
@@ -136,10 +135,11 @@ std::vector<std::string> field_assignments() {
   std::vector<std::string> words;
   for (const std::string& path : scenario_field_paths()) {
     words.push_back(path + "=");
-    const Json* field = find_in_schema(scenario_schema_once(), path);
-    if (field == nullptr) continue;
-    if (field->value("type", "") == "boolean") words.insert(words.end(), {path + "=true", path + "=false"});
-    for (const Json& value : field->value("enum", Json::array()))
+    const FieldGuide* field = find_field(path);
+    if (field == nullptr || !field->value.schema.is_object()) continue;
+    const Json& schema = field->value.schema;
+    if (schema.value("type", "") == "boolean") words.insert(words.end(), {path + "=true", path + "=false"});
+    for (const Json& value : schema.value("enum", Json::array()))
       words.push_back(path + "=" + value.get<std::string>());
   }
   return words;

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "algorithms/plugin/plugin_law.hpp"
+#include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/program/command.hpp"

@@ -14,11 +14,12 @@
 #include "scenarios/batch/result_folders.hpp"
 #include "scenarios/batch/run_batch.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/program/compare_devices.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/program/table.hpp"
-#include "scenarios/run/expectation.hpp"
-#include "scenarios/run/expected_output.hpp"
+#include "scenarios/run/encounter.hpp"
+#include "scenarios/run/recorders.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {

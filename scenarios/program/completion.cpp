@@ -3,7 +3,17 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/describe.hpp"
+#include "scenarios/program/fields_text.hpp"
+#include "scenarios/program/scenario_start.hpp"
+#include "scenarios/studies/precision/study.hpp"
+#include "scenarios/studies/stability/map_scenes.hpp"
+#include "scenarios/thesis_claims/claims.hpp"
+#include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
 namespace {

@@ -7,10 +7,9 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/description/scenario_text.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/describe.hpp"
-#include "scenarios/program/schema_text.hpp"
+#include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/studies/stability/map_scenes.hpp"
 #include "scenarios/thesis_claims/choices_file.hpp"
@@ -22,9 +21,9 @@ namespace {
 
 /// Appends the card of a parameter to the model's.
 void add_parameter(Description& d, const std::string& path, const char* unit, const char* meaning) {
-  const Json& field = *find_in_schema(scenario_schema_once(), path);
-  const std::string initial = default_text(field), range = allowed_text(field);
-  d.text += card({path, unit, initial, range, meaning}, 4);
+  const FieldGuide& field = *find_field(path);
+  const std::string initial = default_text(field), range = field.value.allowed;
+  d.text += card({.name = path, .initial = initial, .allowed = range, .meaning = meaning}, 4);
   d.json["parameters"].push_back(
       {{"name", path}, {"unit", unit}, {"default", initial}, {"range", range}, {"meaning", meaning}});
 }
@@ -93,10 +92,10 @@ Description describe_scenario(const std::filesystem::path& file) {
 }
 
 Description describe_profile() {
-  Json profile = *find_in_schema(scenario_schema_once(), kSomeProfile);
-  profile["description"] = "a function of time: a number that does not change, or an object";
-  profile.erase("default");
-  return {fields_text("profile", profile), profile};
+  FieldGuide profile = *find_field(kSomeProfile);
+  profile.meaning = "a function of time: a number that does not change, or an object";
+  profile.presence = Presence::no_default;
+  return {fields_text("profile", profile), profile.schema()};
 }
 
 /// Shows the numbers of a published device, each with its source.
@@ -141,30 +140,37 @@ Description describe_stability() {
         {{"name", limit.name}, {"formula", limit.formula}, {"applies", limit.applies}, {"source", limit.source}});
   }
   d.text = fmt::format(
-      "stability maps\n"
-      "  A run of {} steps is judged by its motion alone, quarter by quarter; the amplitude is the largest speed.\n\n"
-      "  diverged   left its bounds, or oscillates with an amplitude that grows by 1 % from each quarter to the next\n"
-      "  vibrating  does not decay: oscillates in the last quarter with at least 1 % of the first quarter's\n"
-      "             amplitude\n"
-      "  dying_out  oscillates so, but loses a tenth of its amplitude from the second quarter to the third and\n"
-      "             again to the last\n"
-      "  stable     all else: at rest, died out, creeping\n\n"
-      "  Limits count what is stable or dying out as stable: it comes to rest if the run goes on.\n\n"
-      "  The analytic limit, under leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = "
-      "lambda_max(S),\n"
-      "  is given where the tool is alone with springs that stay in contact and the force is -K S p. Under "
-      "velocity_verlet\n"
-      "  and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. With a device in the loop "
-      "it is\n"
-      "  where the first eigenvalue of the loop of hand, handle and wall leaves the unit circle: the loop while nothing\n"
-      "  saturates and the contact lasts. The edge by bisection is that of \"diverged\"; that of runs that come to rest "
-      "in the\n"
-      "  maps of the admittance device and of Coulomb friction, which stops a handle for good: there what still moves "
-      "in the\n  end, however little, vibrates.\n\n{}\n"
-      "limits of the stiffness K of a wall on an impedance device\n"
-      "  b is the handle's damping, c its Coulomb friction, q the encoder's step, m the moving mass, T the period, t_d = "
-      "d T\n  the delay. Written beside the edge where they apply.\n{}",
-      kMapSteps, maps, limits);
+      "stability maps\n{}\n",
+      wrapped(fmt::format(
+          "A run of {} steps is judged by its motion alone, quarter by quarter; the amplitude is the largest speed.",
+          kMapSteps)));
+  for (
+      const auto& [name, meaning] :
+      {std::pair{"diverged",
+                 "left its bounds, or oscillates with an amplitude that grows by 1 % from each quarter to the next"},
+       std::pair{"vibrating",
+                 "does not decay: oscillates in the last quarter with at least 1 % of the first quarter's amplitude"},
+       std::pair{
+           "dying_out",
+           "oscillates as much, but loses a tenth of its amplitude from the second quarter to the third and again to the last"},
+       std::pair{"stable", "all else: at rest, died out, creeping"}})
+    d.text += entry(name, meaning, 2, 13);
+  for (
+      const char* paragraph :
+      {"Limits count stable and dying out as stable: the tool comes to rest if the run goes on.",
+       "The analytic limit, under leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = lambda_max(S), is "
+       "given where the tool is alone with springs that stay in contact and the force is -K S p. Under "
+       "velocity_verlet and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. With a "
+       "device in the loop it is where the first eigenvalue of the loop of hand, handle and wall leaves the unit "
+       "circle, as long as nothing saturates and the contact lasts. The edge by bisection is that of \"diverged\". "
+       "Only in the maps of the admittance device and of Coulomb friction, which stops a handle for good, it is that "
+       "of runs that come to rest: there whatever still moves in the end, however little, counts as vibrating."})
+    d.text += "\n" + wrapped(paragraph);
+  d.text += "\n" + maps + "\nlimits of the stiffness K of a wall on an impedance device\n";
+  d.text += wrapped(
+      "b is the handle's damping, c its Coulomb friction, q the encoder's step, m the moving mass, T the period, t_d = d T "
+      "the delay. Each is written beside the edge where it applies.");
+  d.text += limits;
   return d;
 }
 
@@ -179,7 +185,7 @@ constexpr struct {
                  {"profile", describe_profile},
                  {"scenario",
                   [] {
-                    return Description{fields_text("scenario", scenario_schema_once()), scenario_schema_once()};
+                    return Description{fields_text("scenario", scenario_guide()), scenario_guide().schema};
                   }},
                  {"schema",
                   [] {
@@ -223,11 +229,11 @@ Description joined(const std::vector<Description>& meanings) {
 
 /// Explains the field at that path, once for each group of types that share it.
 std::vector<Description> describe_field(const std::string& path) {
+  if (const std::string values = types_text(path); !values.empty())
+    return {{values, {{"field", path}, {"types", type_names(path.substr(0, path.rfind('.')))}}}};
   std::vector<Description> meanings;
-  for (const auto& [types, field] : typed_fields(scenario_schema_once(), path)) {
-    const std::string values = types_text(path);
-    if (!values.empty()) return {{values, {{"field", path}, {"types", type_names(path.substr(0, path.rfind('.')))}}}};
-    Json json = *field;
+  for (const auto& [types, field] : typed_fields(path)) {
+    Json json = field->schema();
     if (!types.empty()) json["of"] = types;
     meanings.push_back({fields_text(path, *field, types), std::move(json)});
   }
@@ -265,9 +271,9 @@ Description describe_name(const std::string& name) {
     if (name == section.name) add(section.describe());
   }
   if (fields.empty()) {
-    const std::vector<TypedField> types = types_called(scenario_schema_once(), name);
-    for (const TypedField& type : types)
-      add({fields_text(name, *type.schema, types.size() > 1 ? type.types : ""), *type.schema});
+    const auto types = types_called(name);
+    for (const auto& [field, type] : types)
+      add({fields_text(name, *type, types.size() > 1 ? field : ""), type->schema});
   }
   for (Description& word : describe_word(name)) add(std::move(word));
   if (meanings.empty()) meanings = describe_heading(name);

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cctype>
 
-#include "results/summary/columns_json.hpp"
+#include "results/io/columns.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/describe.hpp"

@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/rendering_config.hpp"
-#include "results/io/io_error.hpp"
+#include "results/io/atomic_file.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/table.hpp"
+#include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
-#include "scenarios/run/wait_notice.hpp"
 
 /// `hapbench import`. The Python package hapbench_import reads, resamples and smooths recordings.
 namespace hapbench {

@@ -8,11 +8,12 @@
 #include "device_model/device_presets.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/describe.hpp"
-#include "scenarios/program/schema_text.hpp"
+#include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/table.hpp"
 #include "sim/loop/integrators/table.hpp"
 
@@ -46,7 +47,7 @@ std::vector<Listed> everything() {
   for (const ModelInfo* stage : stages()) add("stage", *stage);
   for (const IntegratorEntry* entry : kIntegrators) add("integrator", entry->info);
   for (const char* field : {"environment", "tool", "hand", "device"}) {
-    for (const std::string& type : type_names(field)) all.push_back({field, type, type_summary(type, field)});
+    for (const ValueGuide& type : types_of(field)) all.push_back({field, type.type, type.summary});
   }
   for (const DevicePreset& preset : device_presets()) all.push_back({"preset", preset.name, preset.device});
   for (const BundledScenario& bundled : bundled_scenarios()) all.push_back(listed_scenario(bundled));

@@ -6,8 +6,8 @@
 #include "results/io/atomic_file.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/scenario_start.hpp"
-#include "scenarios/program/schema_text.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/assemble.hpp"
 

@@ -15,7 +15,6 @@
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/run/wait_notice.hpp"
 #include "scenarios/studies/precision/study.hpp"
 
 namespace hapbench {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "results/io/io_error.hpp"
+#include "results/io/atomic_file.hpp"
 #include "results/summary/provenance.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/program/command.hpp"

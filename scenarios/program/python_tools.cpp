@@ -9,11 +9,11 @@
 #include <filesystem>
 #include <system_error>
 
-#include "results/io/io_error.hpp"
+#include "results/io/atomic_file.hpp"
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
-#include "scenarios/run/wait_notice.hpp"
 
 /// Commands that draw: they pass their options on to Python, which reads the result files.
 namespace hapbench {

@@ -132,11 +132,9 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
     read[scenario].insert(part);
     runs.provide(scenario);
   };
-  RecentShells shells;
-  const Evidence evidence{
-      published, ResultFiles(runs.directory(), provide), {}, &shells, [&](const std::string& scenario) {
-        used.insert(scenario);
-      }};
+  const Evidence evidence{published, ResultFiles(runs.directory(), provide), {}, [&](const std::string& scenario) {
+                            used.insert(scenario);
+                          }};
   std::vector<JudgedClaim> judged;
   ProgressBar bar("claims", claims.size(), progress);
   for (const Claim& claim : claims) {

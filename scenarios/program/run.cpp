@@ -1,14 +1,15 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "results/io/io_error.hpp"
+#include <memory>
+#include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/expected_output.hpp"
+#include "scenarios/run/recorders.hpp"
 
 namespace hapbench {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/summary/outcome_names.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
 
 namespace hapbench {
@@ -146,13 +147,13 @@ std::string unsettled_text(std::span<const RunReport> reports) {
 }
 
 std::string targets_text(const RunReport& report) {
-  if (!report.summary.targets) return "";
+  if (report.summary.section("targets") == nullptr) return "";
   const auto cell = [](const SubjectMean& m, int digits) {
     return m.subjects == 0 ? "-"
                            : fmt::format("{} +- {}", significant(m.mean, digits), significant(m.standard_error, 2));
   };
   Table table({{"place"}, {"success rate"}, {"completion s"}, {"model force N"}, {"speed mm/s"}});
-  for (const PlaceMetrics& place : *report.summary.targets) {
+  for (const PlaceMetrics& place : place_metrics(report.targets)) {
     SubjectMean speed = place.speed;
     speed.mean *= 1e3;
     speed.standard_error *= 1e3;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "results/io/columns.hpp"
-#include "results/observe/step_latency.hpp"
+#include "results/observe/step_times.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/run_scenario.hpp"
 

@@ -13,7 +13,7 @@
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
-#include "scenarios/run/wait_notice.hpp"
+#include "scenarios/run/progress_bar.hpp"
 #include "scenarios/studies/stability/map_scenes.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
 #include "scenarios/studies/stress/law_stress.hpp"

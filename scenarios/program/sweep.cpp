@@ -8,6 +8,7 @@
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/sweep.hpp"
 

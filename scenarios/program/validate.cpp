@@ -7,14 +7,14 @@
 #include "results/io/atomic_file.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/parts.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/expected_output.hpp"
-#include "scenarios/run/make_shell.hpp"
-#include "scenarios/run/quantity_text.hpp"
+#include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/scene_facts.hpp"
-#include "scenarios/run/wait_notice.hpp"
+#include "scenarios/run/recorders.hpp"
+#include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 namespace {
@@ -144,7 +144,9 @@ int shell(const ShellOptions& options) {
   const std::vector<SurfacePoint> points = [&] {
     const WaitNotice notice("building the shell", !options.output.quiet);
     print_warnings(check_named_files(loaded));
-    return make_shell(loaded.scenario, loaded.files)->points();
+    const auto made = make_shell(loaded.scenario, loaded.files);
+    throw_if_stopped();  // that may have taken seconds
+    return made->points();
   }();
   const std::filesystem::path file = options.out;
   const std::string text = point_shell_text(points, file);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "sim/contact/grid_index.hpp"
 #include "sim/contact/push_hits.hpp"
 
 namespace hapbench {

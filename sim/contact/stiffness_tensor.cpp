@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 #include <limits>
 
-#include "sim/contact/contact_buffer.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {

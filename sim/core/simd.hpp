@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 
 #include "sim/core/aligned.hpp"
 
@@ -59,70 +60,49 @@ inline bool lane(const Mask& m, std::size_t i) {
 
 #else
 
+/// The reference: plain loops over eight lanes.
 struct Mask {
   std::array<bool, lanes> v;
-};
 
-/// The reference: plain loops over eight lanes.
-struct Pack {
-  std::array<double, lanes> v;
-
-  Pack() = default;
-  Pack(double a) { v.fill(a); }  // NOLINT: broadcasts implicitly, as the library type does
-
-  template <class F>
-  static Pack map(const Pack& a, const Pack& b, F f) {
-    Pack r;
-    for (std::size_t i = 0; i < lanes; ++i) r.v[i] = f(a.v[i], b.v[i]);
-    return r;
-  }
-  template <class F>
-  static Mask test(const Pack& a, const Pack& b, F f) {
+  template <class Arg, class F>
+  static Mask of(const Arg& a, const Arg& b, F f) {
     Mask r;
     for (std::size_t i = 0; i < lanes; ++i) r.v[i] = f(a.v[i], b.v[i]);
     return r;
   }
-  friend Pack operator+(const Pack& a, const Pack& b) {
-    return map(a, b, [](double x, double y) { return x + y; });
+  friend Mask operator&&(const Mask& a, const Mask& b) { return of(a, b, std::logical_and()); }
+  friend Mask operator||(const Mask& a, const Mask& b) { return of(a, b, std::logical_or()); }
+  friend Mask operator!(const Mask& a) {
+    return of(a, a, [](bool x, bool) { return !x; });
   }
-  friend Pack operator-(const Pack& a, const Pack& b) {
-    return map(a, b, [](double x, double y) { return x - y; });
+};
+
+struct Pack {
+  std::array<double, lanes> v;
+
+  Pack() = default;
+  Pack(double a) { v.fill(a); }  // NOLINT: implicit, as for the library type
+
+  template <class F>
+  static Pack of(const Pack& a, const Pack& b, F f) {
+    Pack r;
+    for (std::size_t i = 0; i < lanes; ++i) r.v[i] = f(a.v[i], b.v[i]);
+    return r;
   }
-  friend Pack operator*(const Pack& a, const Pack& b) {
-    return map(a, b, [](double x, double y) { return x * y; });
-  }
-  friend Pack operator/(const Pack& a, const Pack& b) {
-    return map(a, b, [](double x, double y) { return x / y; });
-  }
+  friend Pack operator+(const Pack& a, const Pack& b) { return of(a, b, std::plus()); }
+  friend Pack operator-(const Pack& a, const Pack& b) { return of(a, b, std::minus()); }
+  friend Pack operator*(const Pack& a, const Pack& b) { return of(a, b, std::multiplies()); }
+  friend Pack operator/(const Pack& a, const Pack& b) { return of(a, b, std::divides()); }
   friend Pack operator-(const Pack& a) {
-    return map(a, a, [](double x, double) { return -x; });
+    return of(a, a, [](double x, double) { return -x; });
   }
   Pack& operator+=(const Pack& b) { return *this = *this + b; }
-  friend Mask operator<(const Pack& a, const Pack& b) {
-    return test(a, b, [](double x, double y) { return x < y; });
-  }
-  friend Mask operator<=(const Pack& a, const Pack& b) {
-    return test(a, b, [](double x, double y) { return x <= y; });
-  }
+  friend Mask operator<(const Pack& a, const Pack& b) { return Mask::of(a, b, std::less()); }
+  friend Mask operator<=(const Pack& a, const Pack& b) { return Mask::of(a, b, std::less_equal()); }
   friend Mask operator>(const Pack& a, const Pack& b) { return b < a; }
   friend Mask operator>=(const Pack& a, const Pack& b) { return b <= a; }
 };
 
-inline Mask operator&&(const Mask& a, const Mask& b) {
-  Mask r;
-  for (std::size_t i = 0; i < lanes; ++i) r.v[i] = a.v[i] && b.v[i];
-  return r;
-}
-inline Mask operator||(const Mask& a, const Mask& b) {
-  Mask r;
-  for (std::size_t i = 0; i < lanes; ++i) r.v[i] = a.v[i] || b.v[i];
-  return r;
-}
-inline Mask operator!(const Mask& a) {
-  Mask r;
-  for (std::size_t i = 0; i < lanes; ++i) r.v[i] = !a.v[i];
-  return r;
-}
 inline Pack load(const double* p) {
   Pack r;
   for (std::size_t i = 0; i < lanes; ++i) r.v[i] = p[i];
@@ -137,7 +117,7 @@ inline Pack select(const Mask& m, const Pack& yes, const Pack& no) {
   return r;
 }
 inline Pack sqrt(const Pack& a) {
-  return Pack::map(a, a, [](double x, double) { return std::sqrt(x); });
+  return Pack::of(a, a, [](double x, double) { return std::sqrt(x); });
 }
 inline bool any(const Mask& m) {
   bool r = false;

@@ -6,8 +6,6 @@
 #include <map>
 #include <utility>
 
-#include "sim/core/aligned.hpp"
-
 namespace hapbench {
 namespace {
 

@@ -1,6 +1,5 @@
 #include "sim/tool/motion.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>

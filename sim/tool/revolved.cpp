@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <span>
 
 #include "sim/tool/axial.hpp"
 #include "sim/tool/cylinder.hpp"

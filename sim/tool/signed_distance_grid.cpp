@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "sim/core/aligned.hpp"
-#include "sim/tool/closed_surface.hpp"
 #include "sim/tool/triangle_tree.hpp"
 
 namespace hapbench {

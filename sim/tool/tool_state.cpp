@@ -1,8 +1,5 @@
 #include "sim/tool/tool_state.hpp"
 
-#include <Eigen/Geometry>
-#include <cmath>
-
 namespace hapbench {
 namespace {
 

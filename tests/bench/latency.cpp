@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "results/observe/step_latency.hpp"
 #include "results/observe/step_times.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/step.hpp"

@@ -1,7 +1,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include "results/io/io_error.hpp"
+#include "results/io/atomic_file.hpp"
 #include "scenarios/input/input_error.hpp"
 
 namespace hapbench {

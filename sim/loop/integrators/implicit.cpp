@@ -1,7 +1,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <limits>
-#include <memory>
 #include <optional>
 
 #include "sim/loop/integrators/table.hpp"

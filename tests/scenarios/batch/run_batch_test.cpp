@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "scenarios/run/assemble.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
@@ -66,8 +67,11 @@ TEST_F(BatchPlanOf, EqualEnvironmentsSharesThem) {
   other["initial"] = {{"position_m", {0.0, 0.0, 0.001}}};
   definition.scenarios.push_back(write("other.json", other));
   const BatchPlan plan = plan_batch(definition);
-  EXPECT_EQ(plan.environments, (std::vector<std::size_t>{0, 1, 0}));
-  EXPECT_EQ(plan.environment_count, 2u);
+  const auto shell_of = [&plan](std::size_t scenario) {
+    return make_shell(scenario_of(plan, scenario * plan.definition.algorithms.size() * plan.definition.seeds).scenario);
+  };
+  EXPECT_EQ(shell_of(0), shell_of(2));
+  EXPECT_NE(shell_of(0), shell_of(1));
 }
 
 TEST_F(BatchPlanOf, JitteredScenesStartFromOnePlaceForEachSeed) {

@@ -7,7 +7,6 @@
 #include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/shared_shells.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/batch/sweeps.hpp"
 #include "tests/scenarios/support/errors.hpp"
@@ -27,7 +26,6 @@ TEST(RunsToDo, AreInOrderWhereTheEnvironmentStaysTheSame) {
   EXPECT_EQ(runs_to_do(points, {}), (Numbers{0, 1, 2, 3}));
   EXPECT_EQ(runs_to_do(points, {1, 3}), Numbers{1});
   EXPECT_EQ(runs_to_do(points, {4, 5}), Numbers{});
-  EXPECT_EQ(environment_of(points, 3), "");
 }
 
 TEST(RunsToDo, OfOneEnvironmentFollowEachOther) {
@@ -35,8 +33,6 @@ TEST(RunsToDo, OfOneEnvironmentFollowEachOther) {
       {parse_axis("a=1,2"), parse_axis("environment.spacing_m=1e-3,2e-3,3e-3"), parse_axis("environment.width_m=1,2")});
   EXPECT_EQ(runs_to_do(points, {}), (Numbers{0, 6, 1, 7, 2, 8, 3, 9, 4, 10, 5, 11}));
   EXPECT_EQ(runs_to_do(points, {1, 2}), (Numbers{1, 7, 3, 9, 5, 11}));
-  EXPECT_EQ(environment_of(points, 1), environment_of(points, 7));
-  EXPECT_NE(environment_of(points, 1), environment_of(points, 2));
 }
 
 TEST(RunsToDo, OfASampleFollowEachOtherByTheListedFields) {
@@ -51,19 +47,6 @@ TEST(RunsToDo, OfASampleFollowEachOtherByTheListedFields) {
 }
 
 // ---- Sweeps
-
-TEST(SharedShells, MakesEachOnceAndDropsItAfterItsLastRun) {
-  const SweepPlan plan = plan_of(minimal_scenario("plane"), {"environment.spacing_m=0.0005,0.0004"});
-  SharedShells shells({2, 1});
-  auto first = shells.take(0, scenario_of(plan, 0).scenario);
-  const auto other = shells.take(1, scenario_of(plan, 1).scenario);
-  EXPECT_NE(first, other);
-  EXPECT_EQ(other.use_count(), 1);
-  EXPECT_EQ(first.use_count(), 2);
-  const auto again = shells.take(0, scenario_of(plan, 0).scenario);
-  EXPECT_EQ(again, first);
-  EXPECT_EQ(first.use_count(), 2);  // the two here; the collection has let go of it
-}
 
 class RunSweep : public testing::Test {
  protected:

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "scenarios/batch/sweep_table.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/batch/sweeps.hpp"

@@ -109,15 +109,10 @@ TEST(Axis, RefusesTooManyValuesInAFewWords) {
 
 constexpr SamplingMethod kMethods[] = {SamplingMethod::latin_hypercube, SamplingMethod::sobol, SamplingMethod::random};
 
-using UnitPoint = std::vector<double>;
-
 std::vector<UnitPoint> points_of(const Sampling& sampling, std::size_t axes) {
   const UnitSample sample(sampling, axes);
   std::vector<UnitPoint> points;
-  for (std::size_t i = 0; i < sampling.count; ++i) {
-    points.emplace_back();
-    for (std::size_t axis = 0; axis < axes; ++axis) points[i].push_back(sample.at(i, axis));
-  }
+  for (std::size_t i = 0; i < sampling.count; ++i) points.push_back(sample.point(i));
   return points;
 }
 
