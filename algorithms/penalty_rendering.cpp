@@ -35,12 +35,12 @@ void PenaltyRendering::reset() noexcept {
 void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   out = kNoForce;
   in_contact_ = false;
-  if (contacts.empty() && skips_ == Skips::taken) return;
+  if (contacts.empty() && skips_ == Skips::on) return;
 
   out.depth_max = contacts.largest_depth();
   if (local_average_) local_average_->process(contacts);
   if (reduction_) reduce(contacts);
-  if (contacts.empty() && skips_ == Skips::taken) return;
+  if (contacts.empty() && skips_ == Skips::on) return;
 
   const LawForce& law = law_force_ = law_->evaluate(contacts);
   // -K times an empty sum is -0, but a step that skips the law answers 0.

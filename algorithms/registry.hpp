@@ -12,7 +12,7 @@
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/laws/force_law.hpp"
 #include "algorithms/rendering_config.hpp"
-#include "sim/core/number_range.hpp"
+#include "sim/core/model_info.hpp"
 
 /// The table of algorithms. An algorithm of this tree is a source file that defines its AlgorithmEntry and a row in
 /// registry.cpp; `add_algorithm` adds one from outside while the program runs.

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "sim/core/skips.hpp"
+#include "sim/core/types.hpp"
 
 namespace hapbench {
 
@@ -62,7 +62,7 @@ struct RenderingConfig {
 
   /// Skipped: stages without contacts, the reduction of one contact, friction with coefficients of zero. The run uses
   /// the same value for its search and its records.
-  Skips skips = Skips::taken;
+  Skips skips = Skips::on;
 };
 
 }  // namespace hapbench

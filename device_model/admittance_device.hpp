@@ -17,6 +17,8 @@ struct ForceSensorConfig {
   bool compensated = true;       ///< the weight is subtracted before the limiter
   double noise = 0.0;            ///< standard deviation of each component in each sample [N]
   std::uint64_t seed = 1;        ///< seed of the noise
+
+  bool operator==(const ForceSensorConfig&) const = default;
 };
 
 /// The force sensor under the handle: f_meas = f_hand + weight + noise.
@@ -56,6 +58,8 @@ struct PositionServoConfig {
   double damping = 160.0;      ///< force per velocity error [N s/m]
   double max_force = 30.0;     ///< the actuators saturate at this norm [N]
   std::size_t delay = 1;       ///< from the command to the force [samples]
+
+  bool operator==(const PositionServoConfig&) const = default;
 };
 
 /// A proportional-derivative position servo with saturation and a delay of whole samples. Allocates in the constructor.
@@ -96,6 +100,8 @@ struct HandleMechanicsConfig {
   double friction = 2.0;                  ///< viscous, on the carriage [N s/m]
   double structure_stiffness = 200000.0;  ///< between carriage and handle, the inverse of the compliance [N/m]
   double structure_damping = 40.0;        ///< between carriage and handle [N s/m]
+
+  bool operator==(const HandleMechanicsConfig&) const = default;
 };
 
 /// Two masses connected by a spring and a damper, independently in each axis, integrated by the implicit midpoint rule,

@@ -8,7 +8,6 @@
 
 #include "sim/core/simd.hpp"
 #include "sim/tool/tool_state.hpp"
-#include "sim/tool/turn.hpp"
 
 /// The depth models, each with its documentation, and the source that applies one.
 namespace hapbench {
@@ -186,7 +185,7 @@ ShellSource::ShellSource(const PointShell& shell, const ToolShape& tool, std::un
 
 void ShellSource::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
   search_->contacts_at(pose, contacts);
-  if (contacts.empty() && model_knows_of_no_contacts_ && skips_ == Skips::taken) return;
+  if (contacts.empty() && model_knows_of_no_contacts_ && skips_ == Skips::on) return;
   depth_model_->evaluate(*tool_, pose, contacts);
   model_knows_of_no_contacts_ = contacts.empty();
 }

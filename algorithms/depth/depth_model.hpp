@@ -6,7 +6,7 @@
 
 #include "sim/contact/contact_source.hpp"
 #include "sim/core/model_info.hpp"
-#include "sim/core/skips.hpp"
+#include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/tool/tool_shape.hpp"
 
@@ -45,7 +45,7 @@ class ShellSource final : public ContactSource {
  public:
   /// Shell and tool must outlive the source and the search, which refers to them.
   ShellSource(const PointShell& shell, const ToolShape& tool, std::unique_ptr<ContactQuery> search,
-              std::unique_ptr<DepthModel> depth_model, Skips skips = Skips::taken);
+              std::unique_ptr<DepthModel> depth_model, Skips skips = Skips::on);
 
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return search_->capacity(); }

@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "sim/contact/contact_source.hpp"
 #include "sim/contact/push_hits.hpp"
-#include "sim/contact/spring_source.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {

@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/geometry/point_shell.hpp"
-#include "sim/geometry/springs.hpp"
 #include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {

@@ -1,8 +1,14 @@
-"""What the commands written in Python share with the program: how they refuse."""
+"""What the commands written in Python share: how they refuse, hints at names, how they write files, and a notice of what takes
+long."""
 import argparse
+import difflib
+import os
 import sys
+import threading
+import time
 
-SUCCESS, BAD_INPUT, INTERRUPTED = 0, 2, 130
+SUCCESS, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+SILENCE = 2.0  # before a notice [s]
 
 
 def say_error(text):
@@ -16,3 +22,59 @@ class Arguments(argparse.ArgumentParser):
     def error(self, message):
         say_error(f"{message}; {self.prog} --help shows what there is")
         sys.exit(BAD_INPUT)
+
+
+def nearest(name, names):
+    """The end of a message about an unknown name, in the words of the program; empty when no name is near."""
+    lower = {candidate.lower(): candidate for candidate in reversed(names)}
+    # Half a name before one that merely looks alike.
+    longer = sorted((n for n in lower if n.startswith(name.lower())), key=len) or [n for n in lower if name.lower() in n]
+    close = longer or difflib.get_close_matches(name.lower(), lower, 1)
+    return f"; nearest valid name: \"{lower[close[0]]}\"" if close else ""
+
+
+def write(file, data):
+    """Makes or replaces a file, complete or not at all. `data`: text or bytes. Raises OSError with the file's name."""
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        scratch = file.with_name(f".{file.name}.{os.getpid()}.tmp")
+        try:
+            scratch.write_bytes(data if isinstance(data, bytes) else data.encode())
+            scratch.replace(file)
+        finally:
+            scratch.unlink(missing_ok=True)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(file)) from error
+
+
+class Notice:
+    """A line with the seconds, for work that takes longer than two; silent when standard error is no terminal."""
+
+    def __init__(self, text):
+        self._text = text
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._show, daemon=True) if sys.stderr.isatty() else None
+
+    def say(self, text):
+        """What is being done now."""
+        self._text = text
+
+    def __enter__(self):
+        if self._thread:
+            self._thread.start()
+        return self
+
+    def __exit__(self, *_):
+        self._ended.set()
+        if self._thread:
+            self._thread.join()
+
+    def _show(self):
+        start = time.monotonic()
+        if self._ended.wait(SILENCE):
+            return
+        while True:
+            print(f"\r{self._text} ... {time.monotonic() - start:.0f} s\033[K", end="", file=sys.stderr, flush=True)
+            if self._ended.wait(0.5):
+                break
+        print("\r\033[K", end="", file=sys.stderr, flush=True)

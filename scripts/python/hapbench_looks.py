@@ -2,9 +2,12 @@
 
 Every colour has a contrast of at least 4.5 to the ground it is drawn on (WCAG 2.1, AA), so that names can be written in
 it: `colour` on white, `dark` on the dark page. The hues were spread for readers with and without deuteranopia and
-protanopia; dashes and markers tell apart what colours cannot.
+protanopia; dashes and markers tell apart what colours cannot. An algorithm without an entry gets a look by its name.
 """
+import colorsys
+import zlib
 from dataclasses import dataclass
+from functools import lru_cache
 
 
 @dataclass(frozen=True)
@@ -42,6 +45,33 @@ ALGORITHMS = {
 PUBLISHED, PUBLISHED_DARK = "#C2261C", "#FF8A75"
 
 
+# Of algorithms without an entry.
+FURTHER_DASHES = ((2, 2), (6, 1, 1, 1), (4, 2), (1, 2))
+FURTHER_MARKERS = ("8", "H", "3", "4", "+", "x", ".")
+# The largest and the least relative luminance that keep a contrast of 4.5 to the light and to the dark ground.
+LIGHTEST_ON_WHITE, DARKEST_ON_BLACK = 0.14, 0.30
+
+
+@lru_cache(maxsize=None)
 def look(algorithm):
-    """Of any algorithm; those that have none of their own share one."""
-    return ALGORITHMS.get(algorithm) or Look(algorithm.replace("_", " "), "#6A6A6A", "#A8ADB3", (2, 2), ".")
+    """The look of any algorithm. Without an entry above, its name alone decides, so that it is the same everywhere."""
+    if algorithm in ALGORITHMS:
+        return ALGORITHMS[algorithm]
+    number = zlib.crc32(algorithm.encode())
+    number, dash = divmod(number, len(FURTHER_DASHES))
+    hue, marker = divmod(number, len(FURTHER_MARKERS))
+    return Look(algorithm.replace("_", " "), *in_hue(hue % 360 / 360), FURTHER_DASHES[dash], FURTHER_MARKERS[marker])
+
+
+def in_hue(hue):
+    """The most vivid colours of a hue, 0 to 1, that can be read on the light and on the dark ground."""
+    shades = [colorsys.hls_to_rgb(hue, percent / 100, 0.65) for percent in range(101)]
+    light = max((s for s in shades if luminance(s) <= LIGHTEST_ON_WHITE), key=luminance)
+    dark = min((s for s in shades if luminance(s) >= DARKEST_ON_BLACK), key=luminance)
+    return ["#" + "".join(f"{round(255 * part):02X}" for part in shade) for shade in (light, dark)]
+
+
+def luminance(rgb):
+    """Relative luminance of WCAG 2.1; parts from 0 to 1."""
+    linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in rgb]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]

@@ -272,7 +272,7 @@ TEST_P(NoAllocationWith, ATool) {
       SimulationParts parts = parts_of(instance, config);
       parts.tool = GetParam().make(random, 0.01).shape;  // wider than the hole, which is 1 mm wide
       parts.source = std::make_unique<ShellSource>(*parts.shell, *parts.tool,
-                                                   make_contact_query(*parts.shell, *parts.tool, Skips::taken),
+                                                   make_contact_query(*parts.shell, *parts.tool, Skips::on),
                                                    make_depth_model(config));
       ContactCounter observer;
       Simulation simulation(test::free_run_config(setting_of(instance), config, 300), std::move(parts), {&observer});

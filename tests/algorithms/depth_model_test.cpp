@@ -5,7 +5,7 @@
 
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/registry.hpp"
-#include "sim/contact/shell_query.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/tool/cylinder.hpp"
 #include "tests/support/scale.hpp"
@@ -276,8 +276,8 @@ TEST_P(EveryDepthModel, KeepsPointsNormalsAndIndices) {
   }
 }
 
-/// Depths of all contacts after the tool has gone through the poses, with `rests` steps without contacts before the last
-/// pose.
+/// Depths of all contacts after the tool has gone through the poses, with `rests` steps without contacts before the
+/// last pose.
 AlignedDoubles depths_after(DepthModel& model, const Cylinder& tool, std::initializer_list<ToolPose> poses, int rests) {
   Random random(5);
   std::vector<SurfacePoint> points;
@@ -371,7 +371,7 @@ TEST_F(ShellSourceTest, AnswersThePointsOfTheSearchWithTheDepthsOfTheModel) {
 }
 
 TEST_F(ShellSourceTest, TellsTheModelOnceThatThereIsNoContact) {
-  for (const Skips skips : {Skips::taken, Skips::off}) {
+  for (const Skips skips : {Skips::on, Skips::off}) {
     counts = {};
     ShellSource source = counting(skips);
     EXPECT_EQ(counts.prepared, 1);
@@ -380,12 +380,12 @@ TEST_F(ShellSourceTest, TellsTheModelOnceThatThereIsNoContact) {
       source.contacts_at(pose, contacts);
     }
     EXPECT_EQ(counts.with_contacts, 3);
-    EXPECT_EQ(counts.evaluated, skips == Skips::taken ? 5 : 7);
+    EXPECT_EQ(counts.evaluated, skips == Skips::on ? 5 : 7);
   }
 }
 
 TEST_F(ShellSourceTest, ForgetsInAResetThatThereWasNoContact) {
-  ShellSource source = counting(Skips::taken);
+  ShellSource source = counting(Skips::on);
   ContactBuffer contacts(source.capacity());
   source.contacts_at(kFree, contacts);
   source.reset();

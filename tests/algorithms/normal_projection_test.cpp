@@ -5,9 +5,9 @@
 #include <map>
 
 #include "algorithms/depth/depth_model.hpp"
-#include "sim/contact/shell_query.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/geometry/analytic_shells.hpp"
-#include "sim/tool/turn.hpp"
+#include "sim/tool/tool_state.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_geometry.hpp"
 

@@ -7,7 +7,6 @@
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/registry.hpp"
 #include "results/allocations/allocations.hpp"
-#include "sim/contact/grid_query.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "sim/core/random.hpp"
 #include "sim/geometry/analytic_shells.hpp"
@@ -110,7 +109,7 @@ TEST_P(NewShapeInEveryAlgorithm, IsPushedOutOfAPlane) {
   const PointShell shell(surface_points(Plane{0.004, kSpacing}), kSpacing);
   RenderingConfig config;
   config.algorithm = GetParam().info->name;
-  ShellSource source(shell, brick, make_contact_query(shell, brick, Skips::taken), make_depth_model(config));
+  ShellSource source(shell, brick, make_contact_query(shell, brick, Skips::on), make_depth_model(config));
   ContactBuffer contacts(source.capacity());
   const auto algorithm = make_algorithm(config);
   algorithm->prepare({source.capacity(), &brick, &shell});
@@ -137,7 +136,7 @@ void expect_proxy_stays_out(const ToolShape& tool, const PointShell& shell, cons
                             const Deepest& deepest) {
   RenderingConfig config;
   config.algorithm = "proxy";
-  ShellSource source(shell, tool, make_contact_query(shell, tool, Skips::taken), make_depth_model(config));
+  ShellSource source(shell, tool, make_contact_query(shell, tool, Skips::on), make_depth_model(config));
   ContactBuffer contacts(source.capacity());
   const auto proxy = make_algorithm(config);
   proxy->prepare({source.capacity(), &tool, &shell});
@@ -224,7 +223,7 @@ TEST_P(MeshToolInEveryAlgorithm, IsPushedOutOfAPlaneWithoutAllocating) {
       RenderingConfig config;
       config.algorithm = GetParam().info->name;
       if (GetParam().fixed_depth_model.empty()) config.depth_model = model.info->name;
-      ShellSource source(shell, *tool, make_contact_query(shell, *tool, Skips::taken), make_depth_model(config));
+      ShellSource source(shell, *tool, make_contact_query(shell, *tool, Skips::on), make_depth_model(config));
       ContactBuffer contacts(source.capacity());
       const auto algorithm = make_algorithm(config);
       algorithm->prepare({source.capacity(), tool.get(), &shell});

@@ -3,7 +3,6 @@
 #include <numbers>
 
 #include "results/observe/ideal_trajectory.hpp"
-#include "results/observe/interpenetration.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
 
@@ -33,7 +32,7 @@ bool is_deepest(const Scene& scene, const ToolPose& pose, double depth) {
       deepest = std::max(deepest, -signed_distance(scene.block, place));
     }
   }
-  // The depth is exact to 1e-11 m (interpenetration.hpp).
+  // The depth is exact to 1e-11 m (ideal_trajectory.hpp).
   return deepest <= depth + 1e-11 && depth <= deepest + (along + scene.tool.radius() * round) / 2 + 1e-11;
 }
 

@@ -11,7 +11,7 @@
 #include "algorithms/proxy/proxy_constraints.hpp"
 #include "algorithms/registry.hpp"
 #include "algorithms/stages/point_stage.hpp"
-#include "sim/contact/grid_query.hpp"
+#include "sim/contact/neighbour_list_query.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
 #include "tests/support/dense_laws.hpp"
@@ -332,7 +332,7 @@ struct Problem {
 class Problems final : public Observer {
  public:
   Problems(const PointShell& shell, const ToolShape& tool, double K)
-      : constraints_(shell, tool, Skips::taken), found_(constraints_.capacity()), K_(K) {}
+      : constraints_(shell, tool, Skips::on), found_(constraints_.capacity()), K_(K) {}
 
   void on_step(const StepRecord& record) noexcept override {
     if (record.step % kRowsApart != 0 || record.rendered->empty()) return;

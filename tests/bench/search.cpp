@@ -9,7 +9,6 @@
 #include <string>
 
 #include "sim/contact/contact_query.hpp"
-#include "sim/contact/grid_query.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"

@@ -10,10 +10,8 @@
 #include "algorithms/registry.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/observe/passivity_observer.hpp"
-#include "results/observe/step_latency.hpp"
 #include "results/observe/step_times.hpp"
 #include "sim/contact/contact_query.hpp"
-#include "sim/contact/grid_query.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/tool/cylinder.hpp"
@@ -53,7 +51,7 @@ constexpr std::uint64_t kWarmUp = 1024;
 /// same body; in `_grooved` it has grooves of 0.1 um, so that it is not convex but meets nearly the same points.
 class TimedRun {
  public:
-  explicit TimedRun(const std::string& name, Skips skips = Skips::taken);
+  explicit TimedRun(const std::string& name, Skips skips = Skips::on);
   ~TimedRun();
 
   /// Back to the state after kWarmUp steps.
@@ -287,12 +285,12 @@ class FilledHole {
 
 void step(benchmark::State& state, std::size_t n) {
   const auto wrong = [n]() -> std::string {
-    const Metrics metrics = FilledHole(n, Skips::taken).metrics();
+    const Metrics metrics = FilledHole(n, Skips::on).metrics();
     if (metrics.colliding_mean != static_cast<double>(n)) return "not every point is a contact";
     return metrics.state_hash == FilledHole(n, Skips::off).metrics().state_hash ? "" : "not the run without skips";
   };
   if (!proved(state, fmt::format("growth/step/{}", n), wrong)) return;
-  FilledHole run(n, Skips::taken);
+  FilledHole run(n, Skips::on);
   while (state.KeepRunningBatch(kStepsAtATime)) run.take(kStepsAtATime);
   state.counters["contacts"] = run.metrics().colliding_mean;
 }
@@ -337,8 +335,7 @@ class Rendering {
 };
 
 void rendering_benchmark(benchmark::State& state, const RenderingConfig& config, std::size_t contacts, Skips skips) {
-  Rendering rendering(config, skips, contacts),
-      other(config, skips == Skips::off ? Skips::taken : Skips::off, contacts);
+  Rendering rendering(config, skips, contacts), other(config, skips == Skips::off ? Skips::on : Skips::off, contacts);
   if (bits_of(rendering.compute()) != bits_of(other.compute())) {
     return refute(state, "the skip changes the force");
   }
@@ -352,7 +349,7 @@ void clearance_benchmark(benchmark::State& state, Skips skips) {
   const ToolPose pose{{0.0, 0.0, 0.002}, {0.0, 0.0, -1.0}};
   NeighbourListQuery list(*scene.shell, *scene.tool);
   GridQuery grid(*scene.shell, *scene.tool);
-  ContactQuery& query = skips == Skips::taken ? static_cast<ContactQuery&>(list) : grid;
+  ContactQuery& query = skips == Skips::on ? static_cast<ContactQuery&>(list) : grid;
   ContactBuffer contacts(query.capacity());
   for (ContactQuery* each : {static_cast<ContactQuery*>(&list), static_cast<ContactQuery*>(&grid)}) {
     each->contacts_at(pose, contacts);
@@ -369,7 +366,7 @@ void records_benchmark(benchmark::State& state, Skips skips) {
     config.skips = s;
     return Simulation(config, assemble(scenario, block_shell(), {}), {});
   };
-  Simulation simulation = run(skips), other = run(skips == Skips::off ? Skips::taken : Skips::off);
+  Simulation simulation = run(skips), other = run(skips == Skips::off ? Skips::on : Skips::off);
   for (int k = 0; k < 2048; ++k) {
     simulation.step();
     other.step();
@@ -399,9 +396,9 @@ void register_skips() {
   RenderingConfig plain = task_rendering();
   plain.reduction.reset();
   plain.mu_s = plain.mu_f = 0.0;
-  for (const Skips skips : {Skips::taken, Skips::off}) {
+  for (const Skips skips : {Skips::on, Skips::off}) {
     const auto add = [skips](const char* what, auto function, auto... arguments) {
-      const char* way = skips == Skips::taken ? "taken" : "off";
+      const char* way = skips == Skips::on ? "taken" : "off";
       benchmark::RegisterBenchmark(fmt::format("skip/{}/{}", what, way).c_str(), function, arguments..., skips);
     };
     add("clearance", clearance_benchmark);

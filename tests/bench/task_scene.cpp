@@ -3,7 +3,7 @@
 #include <map>
 
 #include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/run/make_shell.hpp"
+#include "scenarios/run/assemble.hpp"
 
 namespace hapbench::bench {
 namespace {

@@ -1,22 +1,19 @@
 """The manuals keep what they promise: documented commands work, links lead somewhere, generated tables are those on
-record, and the first page keeps its size. Arguments: the built program, the source tree. Needs numpy and matplotlib."""
+record, and the first page keeps its size."""
 import json
 import os
 import re
 import shutil
 import subprocess
-import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-PROGRAM, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(SOURCE / "scripts" / "python"))
+from fixture import PROGRAM, SOURCE, main, ran
 
-from hapbench_docs import blocks, ledger, sessions  # noqa: E402  (the path comes first)
-from hapbench_docs.manuals import Manual, anchor, broken_links, manuals  # noqa: E402
-from hapbench_docs.program import Program, ProgramError  # noqa: E402
+from hapbench_docs import blocks, ledger
+from hapbench_docs.manuals import Manual, anchor, broken_links, manuals
+from hapbench_docs.program import Program, ProgramError, same_but_for_times
 
 GALLERY, RECORD = SOURCE / "scenarios" / "GALLERY.md", SOURCE / "results" / "reference"
 MANUALS = [Manual(file) for file in manuals()]
@@ -28,15 +25,13 @@ WANTS_PACKAGE = re.compile("which is not built here; allowed: .* or install ")
 LONG = {"precision", "reproduce", "--map", "--stress", "--search"}
 FEW_STEPS = ["--set", 'time={"step_s": 0.0005, "steps": 40}']
 SHORTER = {"run": FEW_STEPS, "compare": FEW_STEPS, "sweep": FEW_STEPS, "limit": [*FEW_STEPS, "--resolution", "0.5"]}
-ENVIRONMENT = {**os.environ, "HAPBENCH_PYTHON": sys.executable, "LC_ALL": "C.UTF-8", "PYTHONDONTWRITEBYTECODE": "1"}
 CORNERS = ((0, 0, 0), (6, 0, 0), (6, 6, 0), (0, 6, 0), (0, 0, 3), (6, 0, 3), (6, 6, 3), (0, 6, 3))
 FACES = ((0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4), (1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6),
          (3, 0, 4), (3, 4, 7))
 
 
 def started(words, directory="."):
-    return subprocess.run([*map(str, words)], cwd=directory, env=ENVIRONMENT, capture_output=True, text=True, encoding="utf-8",
-                          stdin=subprocess.DEVNULL)
+    return ran(*words, cwd=directory, LC_ALL="C.UTF-8")
 
 
 def of_program(command):
@@ -159,8 +154,7 @@ class Commands(unittest.TestCase):
             script = SOURCE / command.words[0]
             with self.subTest(str(command)):
                 self.assertTrue(os.access(script, os.X_OK))
-                # setup has no --help, and would install
-                says = script.read_text(encoding="utf-8") if script.name == "setup" else started([script, "--help"]).stdout
+                says = started([script, "--help"]).stdout
                 for option in (word.split("=")[0] for word in command.words[1:] if word.startswith("--")):
                     self.assertRegex(says, rf"{option}\b")
 
@@ -231,13 +225,22 @@ class Generated(unittest.TestCase):
 
     def test_a_session_holds_what_the_command_prints(self):
         with tempfile.TemporaryDirectory() as scratch:
-            new = sessions.renewed("    $ hapbench describe mean\n\n    old\n", Program(PROGRAM), scratch)
+            new = blocks.session("    $ hapbench describe mean\n\n    old\n", Program(PROGRAM), scratch)
             self.assertIn("c_i = 1/n", new)
             self.assertNotIn("old", new)
             dated = new.replace("Printed by ", "Printed by an older ")
-            self.assertEqual(sessions.renewed(dated, Program(PROGRAM), scratch), dated)
+            self.assertEqual(blocks.session(dated, Program(PROGRAM), scratch), dated)
+            self.assertNotEqual(blocks.session(dated.replace("1/n", "2/n"), Program(PROGRAM), scratch), dated)
             with self.assertRaisesRegex(ProgramError, "nosuch"):
-                sessions.renewed("    $ hapbench describe nosuch\n", Program(PROGRAM), scratch)
+                blocks.session("    $ hapbench describe nosuch\n", Program(PROGRAM), scratch)
+
+    def test_measured_times_are_no_news(self):
+        old = "    law     force   us/\n                   step\n    ------  -----  ----\n    mean     1.25  0.25\n\n" \
+            "    99 % of the steps take at most 0.24 us (mean) to 4.2 us (proxy)"
+        slower = old.replace("0.25", "10.5").replace("  ----", "  -----").replace("4.2 us (proxy)", "14 us (summation)")
+        self.assertTrue(same_but_for_times(old, slower))
+        self.assertFalse(same_but_for_times(old, slower.replace("1.25", "1.26")))
+        self.assertFalse(same_but_for_times(old.replace("us/", "N/"), slower.replace("us/", "N/")))
 
     def test_sessions_say_where_they_come_from(self):
         for manual in MANUALS:
@@ -246,4 +249,4 @@ class Generated(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    main()

@@ -1,18 +1,12 @@
-"""Tests how algorithms look in figures and report: each its own way, readable on light and dark.
-
-looks_test.py PROGRAM SOURCE_DIRECTORY
-"""
+"""How algorithms look in figures and report: each its own way, readable on light and dark."""
 import json
 import re
-import subprocess
 import sys
 import unittest
-from pathlib import Path
 
-PROGRAM, SOURCE = Path(sys.argv[1]), Path(sys.argv[2])
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(SOURCE / "scripts" / "python"))
-import hapbench_looks  # noqa: E402  (the path comes first)
+from fixture import SOURCE, hapbench, main, must
+
+import hapbench_looks
 
 
 def luminance(colour):
@@ -30,13 +24,26 @@ def contrast(first, second):
 class Looks(unittest.TestCase):
     LEAST_CONTRAST = 4.5  # WCAG 2.1, level AA, of text
 
-    def test_every_algorithm_has_one_of_its_own(self):
-        listed = subprocess.run([PROGRAM, "list", "--json"], capture_output=True, text=True, check=True).stdout
-        names = {entry["name"] for entry in json.loads(listed) if entry["kind"] == "algorithm"}
-        self.assertEqual(set(hapbench_looks.ALGORITHMS), names)
-        looks = hapbench_looks.ALGORITHMS.values()
+    def test_algorithms_are_told_apart(self):
+        names = {entry["name"] for entry in json.loads(hapbench("list", "--json")) if entry["kind"] == "algorithm"}
+        self.assertGreaterEqual(names, set(hapbench_looks.ALGORITHMS), "an entry for no algorithm")
+        looks = [hapbench_looks.look(name) for name in names]
         for part in ("label", "colour", "dark", "marker"):
-            self.assertEqual(len({getattr(look, part) for look in looks}), len(names), part)
+            entries = {getattr(look, part) for look in hapbench_looks.ALGORITHMS.values()}
+            self.assertEqual(len(entries), len(hapbench_looks.ALGORITHMS), part)
+        self.assertEqual(len({(look.colour, look.dash, look.marker) for look in looks}), len(names))
+
+    def test_an_algorithm_without_an_entry_has_a_look_by_its_name(self):
+        names = [f"law_{i}" for i in range(200)]
+        looks = [hapbench_looks.look(name) for name in names]
+        # The same in another process: nothing depends on the order of calls or on the seed of hashes.
+        code = "import hapbench_looks; print(hapbench_looks.look('law_7'))"
+        said = must(sys.executable, "-c", code, PYTHONPATH=str(SOURCE / "scripts" / "python"), PYTHONHASHSEED="1")
+        self.assertEqual(said.strip(), repr(looks[7]))
+        # Of 360 hues, 4 dashes and 7 markers, 200 names share few.
+        self.assertGreater(len({(look.colour, look.dash, look.marker) for look in looks}), 190)
+        own = hapbench_looks.ALGORITHMS.values()
+        self.assertFalse({look.marker for look in looks} & {look.marker for look in own})
 
     def test_the_published_colour_is_nobody_elses(self):
         for look in hapbench_looks.ALGORITHMS.values():
@@ -48,11 +55,11 @@ class Looks(unittest.TestCase):
         light, dark = (re.findall(rf"--{name}: (#[0-9a-f]{{6}})", style) for name in ("page", "panel"))
         light, dark = [light[0], "#ffffff"], [light[1], dark[1]]
         published = hapbench_looks.Look("", hapbench_looks.PUBLISHED, hapbench_looks.PUBLISHED_DARK, (), "")
-        for look in (*hapbench_looks.ALGORITHMS.values(), hapbench_looks.look("unknown"), published):
+        for look in (*hapbench_looks.ALGORITHMS.values(), *map(hapbench_looks.look, map(str, range(400))), published):
             for colour, grounds in ((look.colour, light), (look.dark, dark)):
                 for ground in grounds:
                     self.assertGreaterEqual(contrast(colour, ground), self.LEAST_CONTRAST, (look.label, colour, ground))
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    main()

@@ -1,11 +1,12 @@
 """The pages of `hapbench report`."""
 import functools
+import html
 import json
 import re
-import sys
-import unittest
+import shlex
 
-from pictures_fixture import PROGRAM, Given, hapbench, make_runs
+from fixture import hapbench, main
+from pictures_fixture import Given, make_runs
 
 setUpModule = make_runs
 
@@ -44,14 +45,14 @@ class Page(Given):
         (run / "summary.json").write_text(json.dumps(summary))
         page = self.page(run)
         self.assertEqual(re.findall(r'<section id="(\w+)"', page), ["summary", "warnings", "metrics", "scenario", "rerun", "provenance"])
-        for text in ("in contact 4.9 % of the run &lt;b&gt;", "Landing max, N", "7.25", "Force above 30 Hz rms, N", "0.125"):
+        for text in ("in contact 4.9 % of the run &lt;b&gt;", "landing force max<br><span class=unit>N</span>", "7.25", "force rms above 30Hz", "0.125"):
             self.assertTrue(text in page, text)
 
     def test_the_commands_repeat_the_run(self):
         page = self.page(self.root / "springs")
-        command = re.search(r"hapbench (run [^\n<]*scenario.effective.json) --out", page)[1]
+        command = re.search(r"hapbench (run [^\n<]*scenario.effective.json\S*) --out", page)[1]
         again = self.root / "again"
-        hapbench(*command.split(), "--out", again, "--quiet")
+        hapbench(*shlex.split(html.unescape(command)), "--out", again, "--quiet")
         self.assertEqual((again / "trajectory.csv").read_bytes(), (self.root / "springs" / "trajectory.csv").read_bytes())
 
     def test_the_replay_has_every_run(self):
@@ -87,6 +88,6 @@ class Page(Given):
             error = hapbench("report", *words, expected=2)
             self.assertTrue(said in error and error.count("\n") == 1, error)
 
+
 if __name__ == "__main__":
-    assert PROGRAM.is_file(), PROGRAM
-    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
+    main()

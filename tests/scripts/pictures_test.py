@@ -1,20 +1,19 @@
 """The modules behind `hapbench plot` and `hapbench report`. Needs numpy and, for a filter to compare with, scipy."""
 import re
-import sys
 import unittest
 
 import numpy as np
 from scipy import signal
 
-from pictures_fixture import PROGRAM, Given, make_runs
+from fixture import main
+from pictures_fixture import Given, make_runs
 
 from hapbench.columns import header, read_columns
-from hapbench_pictures.reduced import curve, reduced
-from hapbench_pictures.settled import settled_range, settled_rows
+from hapbench_pictures.quantities import settled_range
 from hapbench_report.json_input import InputError
-from hapbench_report.replay_rows import rows_to_show, settled, sizes, steps, worst_moments
-from hapbench_report.replay_sound import high_passed, sound, strongest
-from hapbench_report.replay_tool import tool_profile
+from hapbench_report.recording import force_steps, forces, rows_to_show, settled_rows, tool_profile, worst_moments
+from hapbench_report.sound import high_passed, sound, strongest
+from hapbench_style import curve, reduced
 
 setUpModule = make_runs
 
@@ -70,33 +69,21 @@ class Reduction(unittest.TestCase):
     def test_the_replay_keeps_the_peaks(self):
         rng = np.random.default_rng(5)
         n = 30_000
-        columns = {"time_s": (np.arange(n) * 1e-3).tolist(), "depth_max_m": rng.random(n).tolist(),
-                   **{f"f{axis}_N": rng.normal(size=n).tolist() for axis in "xyz"}}
+        columns = {"time_s": np.arange(n) * 1e-3, "depth_max_m": rng.random(n), **{f"f{axis}_N": rng.normal(size=n) for axis in "xyz"}}
         kept = rows_to_show(columns)
         self.assertLess(len(kept), n / 10)
-        for of in (sizes(columns), steps(columns), columns["depth_max_m"]):
+        for of in (np.linalg.norm(forces(columns), axis=1), force_steps(columns), columns["depth_max_m"]):
             self.assertIn(int(np.argmax(of)), kept)
 
 
 class Moments(unittest.TestCase):
     def test_a_landing_is_what_follows_a_first_touch(self):
         # Contact from 1 to 3 s, a gap of 0.2 s, then from 3.2 s on; free from 5 to 7 s, contact again.
-        times = [i / 10 for i in range(100)]
-        touching = [1 if 1 <= t < 3 or 3.2 <= t < 5 or t >= 7 else 0 for t in times]
-        columns = {"time_s": times, "colliding": touching}
-        calm = [t for t, yes in zip(times, settled(columns, 0.5, None)) if yes]
+        t = np.arange(100) / 10
+        touching = ((1 <= t) & (t < 3) | (3.2 <= t) & (t < 5) | (t >= 7)).astype(int)
         # A gap shorter than the settling time is no landing.
-        self.assertEqual(calm, [t for t in times if 1.5 <= t < 3 or 3.2 <= t < 5 or t >= 7.5])
-        calm = [t for t, yes in zip(times, settled(columns, 0.5, 4.0)) if yes]
-        self.assertEqual(calm, [t for t in times if 4 <= t < 5 or t >= 7])
-
-    def test_settled_rows_are_those_of_the_replay(self):
-        rng = np.random.default_rng(2)
-        times, touching = np.arange(500) / 10, (rng.random(500) < 0.3).astype(int)
-        columns = {"time_s": times.tolist(), "colliding": touching.tolist()}
-        for from_s in (None, 4.0):
-            for settling_s in (0.25, 0.45, 2.0):
-                np.testing.assert_array_equal(settled_rows(times, touching, settling_s, from_s), settled(columns, settling_s, from_s))
+        np.testing.assert_array_equal(settled_rows(t, touching, 0.5, None), (1.5 <= t) & (t < 3) | (3.2 <= t) & (t < 5) | (t >= 7.5))
+        np.testing.assert_array_equal(settled_rows(t, touching, 0.5, 4.0), (4 <= t) & (t < 5) | (t >= 7))
 
     def test_a_landing_sets_no_scale(self):
         force = np.array([0.0, 10.3, *np.linspace(0.9, 1.1, 500)])
@@ -111,10 +98,8 @@ class Moments(unittest.TestCase):
         self.assertIsNone(settled_range([(calm & (np.arange(502) < 50) & (hammering < 2), hammering, hammering)]))
 
     def test_the_worst_step_is_not_the_landing(self):
-        times = [i / 100 for i in range(100)]
-        force = [0.0] * 10 + [9.0] + [1.0] * 59 + [1.5] + [1.0] * 29
-        columns = {"time_s": times, "colliding": [int(f > 0) for f in force], "fx_N": force, "fy_N": [0.0] * 100, "fz_N": [0.0] * 100,
-                   "depth_max_m": [f / 1000 for f in force]}
+        force, none = np.array([0.0] * 10 + [9.0] + [1.0] * 59 + [1.5] + [1.0] * 29), np.zeros(100)
+        columns = {"time_s": np.arange(100) / 100, "colliding": force > 0, "fx_N": force, "fy_N": none, "fz_N": none, "depth_max_m": force / 1000}
         step, depth = worst_moments(columns, {})
         self.assertEqual((step["title"], step["time"], step["value"]), ("settled force step", 0.7, 0.5))
         self.assertEqual((depth["time"], depth["value"]), (0.1, 9.0))
@@ -135,16 +120,16 @@ class Hearing(unittest.TestCase):
         t = np.arange(4096) / 2048
         square = np.sign(np.sin(2 * np.pi * 100 * t))
         direction = np.array([0.6, 0.0, 0.8])
-        found = np.array(strongest([(square * d).tolist() for d in direction]))
+        found = strongest(np.outer(direction, square))
         np.testing.assert_allclose(abs(found @ direction), 1, atol=1e-9)
-        columns = {"time_s": t.tolist(), "colliding": [1] * 4096, **{f"f{a}_N": (square * d).tolist() for a, d in zip("xyz", direction)}}
+        columns = {"time_s": t, "colliding": np.ones(4096), **{f"f{a}_N": square * d for a, d in zip("xyz", direction)}}
         packed = sound(columns)
         self.assertAlmostEqual(packed["rate"], 2048, places=6)
         # A square wave of 100 Hz has little below 30 Hz: its rms of 1 stays within a few per cent.
         self.assertAlmostEqual(packed["rms"], 1, delta=0.05)
 
     def test_too_few_rows_make_no_sound(self):
-        columns = {"time_s": [i / 100 for i in range(50)], "colliding": [1] * 50, "fx_N": [1.0] * 50, "fy_N": [0.0] * 50, "fz_N": [0.0] * 50}
+        columns = {"time_s": np.arange(50) / 100, **dict.fromkeys(("colliding", "fx_N", "fy_N", "fz_N"), np.ones(50))}
         self.assertIsNone(sound(columns))
 
 
@@ -163,6 +148,6 @@ class Tool(unittest.TestCase):
         for wrong in ([], [[0, 1]], [[0, 1], [2]], [[0, 1], [1, None]], "outline", [[0, 1], 5]):
             self.assertIsNone(tool_profile({"tool": {"type": "bur"}}, {"tool": {"outline_m": wrong}}), wrong)
 
+
 if __name__ == "__main__":
-    assert PROGRAM.is_file(), PROGRAM
-    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
+    main()

@@ -1,10 +1,9 @@
-"""Tests the published numbers on record: published_test.py SOURCE_DIRECTORY."""
+"""The published numbers on record."""
 import json
-import sys
 import unittest
-from pathlib import Path
 
-SOURCE = Path(sys.argv[1])
+from fixture import SOURCE, main
+
 CLAIMS = ("T1 T2 T3 T4 R1 R2 L1 J1 G1 A1 A2 A3 A4 B1 B2 B3 C1 C2 C3 C4 F1 F2 D1 D2 D3 D4 D5 D6").split()
 
 
@@ -12,10 +11,8 @@ class PublishedNumbers(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.schema = json.loads((SOURCE / "results" / "reference" / "published.schema.json").read_text(encoding="utf-8"))
-        cls.files = {
-            path.name: json.loads(path.read_text(encoding="utf-8"))
-            for path in sorted((SOURCE / "results" / "reference" / "published").glob("*.json"))
-        }
+        cls.files = {path.name: json.loads(path.read_text(encoding="utf-8"))
+                     for path in sorted((SOURCE / "results" / "reference" / "published").glob("*.json"))}
         cls.entries = [entry for file in cls.files.values() for entry in file["values"]]
 
     def test_files_agree_with_the_schema(self):
@@ -32,20 +29,14 @@ class PublishedNumbers(unittest.TestCase):
                     for key, value in entry.items():
                         rule = item["properties"][key]
                         self.assertIsInstance(value, types[rule["type"]])
-                        self.assertGreaterEqual(
-                            len(value) if isinstance(value, str) else value,
-                            rule.get("minLength", rule.get("minimum", float("-inf"))),
-                        )
+                        self.assertGreaterEqual(len(value) if isinstance(value, str) else value,
+                                                rule.get("minLength", rule.get("minimum", float("-inf"))))
 
     def test_each_entry_says_one_thing(self):
         for entry in self.entries:
             with self.subTest(entry["id"]):
-                kinds = [
-                    bool({"mean"} & set(entry)),
-                    bool({"value"} & set(entry)),
-                    bool({"at_least", "at_most"} & set(entry)),
-                    bool({"statement"} & set(entry)),
-                ]
+                kinds = [bool({"mean"} & set(entry)), bool({"value"} & set(entry)), bool({"at_least", "at_most"} & set(entry)),
+                         bool({"statement"} & set(entry))]
                 self.assertEqual(sum(kinds), 1)
                 self.assertEqual("unit" in entry, not kinds[3])
                 self.assertEqual("mean" in entry, bool({"std", "standard_error"} & set(entry)))
@@ -62,12 +53,10 @@ class PublishedNumbers(unittest.TestCase):
         value = {entry["id"]: entry for entry in self.entries}
         for claim in ("D1", "D3", "D4"):
             for measure in ("success", "time", "force", "speed"):
-                difference = (
-                    value[f"{claim}.{measure}.original_averaging"]["mean"]
-                    - value[f"{claim}.{measure}.shaped_stiffness"]["mean"]
-                )
+                difference = (value[f"{claim}.{measure}.original_averaging"]["mean"]
+                              - value[f"{claim}.{measure}.shaped_stiffness"]["mean"])
                 self.assertGreater(difference * value[f"{claim}.{measure}.t"]["value"], 0, f"{claim}.{measure}")
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    main()

@@ -1,25 +1,20 @@
-"""Tests what scripts/reproduce makes of its parts, with a program that does nothing in place of hapbench.
-
-reproduce_test.py SOURCE_DIRECTORY: the tree with scripts.
-"""
+"""What scripts/reproduce makes of its parts, with a program that does nothing in place of hapbench."""
 import os
+import shlex
 import shutil
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 import unittest
-from pathlib import Path
 
-SOURCE = Path(sys.argv[1])
+from fixture import SOURCE, main, scratch_folder
+
 NOTHING = "#!/bin/sh\nexit 0\n"
 
 
 class Reproduce(unittest.TestCase):
     def setUp(self):
-        self.root = Path(tempfile.mkdtemp(prefix="hapbench-reproduce-"))
-        self.addCleanup(shutil.rmtree, self.root)
+        self.root = scratch_folder(self)
         (self.root / "results" / "reference").mkdir(parents=True)
         (self.root / "results" / "reference" / "performance.json").write_text("{}")
         self.put("scripts/reproduce", (SOURCE / "scripts" / "reproduce").read_text(encoding="utf-8"))
@@ -39,7 +34,7 @@ class Reproduce(unittest.TestCase):
 
     def run_with(self, program, *words, **environment):
         process = self.start(program, *words, **environment)
-        out, err = process.communicate(timeout=60)
+        out, err = process.communicate()
         return process.returncode, out, err
 
     def test_all_went_well(self):
@@ -64,14 +59,14 @@ class Reproduce(unittest.TestCase):
         self.assertTrue(err.startswith("hapbench: error: "), err)
 
     def test_a_signal_ends_its_parts(self):
-        process = self.start(f"#!/bin/sh\ntouch {self.root}/began\nexec sleep 50\n")
+        process = self.start(f"#!/bin/sh\ntouch {shlex.quote(str(self.root))}/began\nexec sleep 50\n")
         while not (self.root / "began").exists():
             time.sleep(0.02)
         process.send_signal(signal.SIGTERM)
         # Its pipes are closed when the parts are gone, too.
-        process.communicate(timeout=20)
+        process.communicate()
         self.assertEqual(process.returncode, 143)
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    main()

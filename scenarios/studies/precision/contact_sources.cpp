@@ -4,7 +4,7 @@
 
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/run_to_end.hpp"
+#include "scenarios/run/stop_signal.hpp"
 #include "scenarios/studies/precision/ideal_runs.hpp"
 #include "scenarios/studies/precision/measure.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/run_to_end.hpp"
+#include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 namespace {

@@ -18,7 +18,7 @@ struct Way {
   const char* name;
   Skips skips;
 };
-constexpr Way kWays[] = {{"neighbour_list", Skips::taken}, {"every_point", Skips::off}};
+constexpr Way kWays[] = {{"neighbour_list", Skips::on}, {"every_point", Skips::off}};
 
 /// The straight way from the stroke's start through its farthest point.
 struct Push {

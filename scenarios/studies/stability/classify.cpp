@@ -4,7 +4,6 @@
 #include <array>
 
 #include "results/observe/metrics.hpp"
-#include "scenarios/run/run_to_end.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {

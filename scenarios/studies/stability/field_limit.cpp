@@ -14,9 +14,10 @@
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "device_model/theory/linear_loops.hpp"
 #include "results/observe/contact_forces.hpp"
-#include "scenarios/description/scenario_text.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/stability/device_loop.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
 #include "sim/core/bisection.hpp"
@@ -147,7 +148,9 @@ class Search {
 
   JudgedRun judged(const std::string& algorithm, double value) {
     const LoadedScenario loaded = at(algorithm, value);
-    return with_file(loaded, [&] { return judged_run(loaded, shells_.of(loaded), question_.most_vibration); });
+    return with_file(loaded, [&] {
+      return judged_run(loaded, make_shell(loaded.scenario, loaded.files), question_.most_vibration);
+    });
   }
 
   LoadedScenario at(const std::string& algorithm, double value) const {
@@ -201,7 +204,6 @@ class Search {
   const std::vector<std::string>& overrides_;
   const LimitQuestion& question_;
   FieldWay way_;
-  RecentShells shells_;
 };
 
 /// The scenario's own number at a path, or null.

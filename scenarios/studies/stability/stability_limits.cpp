@@ -7,7 +7,7 @@
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/run_to_end.hpp"
+#include "scenarios/run/stop_signal.hpp"
 #include "scenarios/studies/first_tensor.hpp"
 #include "sim/core/bisection.hpp"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "device_model/theory/stiffness_limits.hpp"
-#include "scenarios/batch/jobs.hpp"
+#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/studies/stability/classify.hpp"
 #include "scenarios/studies/stability/map_scenes.hpp"
 

@@ -112,7 +112,7 @@ Points on_the_surface(Random& random, const ContactSet& set, std::size_t n) {
 
 /// Walls on both sides of the axis: gradients of shortest_distance that cancel.
 Points across_the_axis(Random& random, const ContactSet& set, std::size_t n) {
-  const auto [e, f] = across(set.pose.axis);
+  const Vec3 e = across(set.pose.axis)[0];
   const Vec3 wall = set.tool.radius() * log_uniform(random, 1e-16, 1.0) * e;
   return fill(
       n, [&]() -> Vec3 { return set.pose.position - 0.5 * set.tool.length() * set.pose.axis + sign_of(random, wall); },

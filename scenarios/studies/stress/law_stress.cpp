@@ -4,9 +4,9 @@
 #include <cmath>
 #include <mutex>
 
-#include "algorithms/registry.hpp"
 #include "algorithms/depth/depth_model.hpp"
-#include "sim/contact/shell_query.hpp"
+#include "algorithms/registry.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 
 namespace hapbench {

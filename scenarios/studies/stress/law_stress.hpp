@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/jobs.hpp"
+#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/studies/stress/contact_sets.hpp"
 
 /// Sends random contact sets through every law and counts the answers that no law may give.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/run/run_trial.hpp"
@@ -29,7 +30,8 @@ class Bench {
     summary.duration = static_cast<double>(trial.result.rows) * scene_.scenario.time.step;
     summary.metrics = trial.metrics;
     summary.passivity = trial.passivity;
-    summary.energy = trial.energy;
+    const SectionObservers* sections[] = {&*trial.sections};
+    summary.sections = SectionObservers::summarised(sections);
     return summary;
   }
   /// Zero when it is not finite: a search cannot climb there.
@@ -125,6 +127,11 @@ void minimise(const Bench& bench, const TrajectoryDraws& draws, std::uint64_t mo
   }
 }
 
+/// A metric of the section "energy" [J], which every run of a search has; infinite when it is not finite.
+double energy(const RunSummary& run, const char* metric) {
+  return metric_of(run, metric).value_or(std::numeric_limits<double>::infinity());
+}
+
 const char* metric_name(Badness badness) {
   return badness == Badness::created ? "energy.created_sum_J" : "vibration_power_above_30Hz_m2_per_s2";
 }
@@ -134,7 +141,7 @@ ExpectFields expectation(Badness badness, const RunSummary& run) {
   ExpectFields expect;
   expect.outcomes = {run.result.outcome};
   const double value =
-      badness == Badness::created ? run.energy->created_sum : run.metrics.vibration_power.value_or(0.0);
+      badness == Badness::created ? energy(run, "energy.created_sum_J") : run.metrics.vibration_power.value_or(0.0);
   expect.metrics[metric_name(badness)] = MetricBound{kKept * value, std::nullopt};
   return expect;
 }
@@ -143,9 +150,9 @@ ExpectFields expectation(Badness badness, const RunSummary& run) {
 
 double badness_of(Badness badness, const RunSummary& run) {
   if (badness == Badness::vibration) return run.duration * run.metrics.vibration_power.value_or(0.0);
-  const EnergyBalance& balance = run.energy->balance;
-  const double put_in = std::max(0.0, balance.input) + std::max(0.0, balance.rotation) + kLeastWork;
-  return run.energy->created_sum / put_in;
+  const double put_in =
+      std::max(0.0, energy(run, "energy.input_J")) + std::max(0.0, energy(run, "energy.rotation_J")) + kLeastWork;
+  return energy(run, "energy.created_sum_J") / put_in;
 }
 
 SearchResult search_adversary(const Scenario& scenario, const SearchOptions& options) {

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "results/summary/summary.hpp"
-#include "scenarios/batch/jobs.hpp"
+#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/studies/worst_motion/trajectory.hpp"
 

@@ -12,7 +12,7 @@
 namespace hapbench {
 namespace {
 
-constexpr double kMostSteps = 1e5;  // of one run, or a search would take days
+constexpr double kMostSearchSteps = 1e5;  // of one run, or a search would take days
 
 bool is_hole(const Scenario& scenario) {
   return std::holds_alternative<Hole2d>(scenario.environment) ||
@@ -33,7 +33,7 @@ Vec3 nearest_point(const PointShell& shell, const Vec3& to) {
 Vec3 first_touch(const Vec3& from, const Vec3& to, double stride, const std::function<bool(const Vec3&)>& touches) {
   if (touches(from)) return from;
   const auto place = [&](double part) { return Vec3(from + part * (to - from)); };
-  const double strides = std::clamp(std::ceil((to - from).norm() / stride), 1.0, kMostSteps);
+  const double strides = std::clamp(std::ceil((to - from).norm() / stride), 1.0, kMostSearchSteps);
   double apart = 0.0, touching = 1.0;
   for (double i = 1.0; i < strides; ++i) {
     if (touches(place(i / strides))) {
@@ -100,7 +100,7 @@ void check_search_scene(const Scenario& scenario) {
     throw InputError(InputError::Kind::relation, "/environment/type",
                      "got \"springs\", which have no surface; allowed for --search: environments with a shell");
   }
-  const double least = TrajectoryBounds{}.duration / kMostSteps;
+  const double least = TrajectoryBounds{}.duration / kMostSearchSteps;
   if (scenario.time.step < least) {
     throw InputError(InputError::Kind::relation, "/time/step_s",
                      fmt::format("got {}; allowed for --search: at least {}", scenario.time.step, least));

@@ -5,7 +5,7 @@
 
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/studies/worst_motion/trajectory.hpp"
-#include "sim/core/box.hpp"
+#include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"
 
 namespace hapbench {

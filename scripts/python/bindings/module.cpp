@@ -7,13 +7,12 @@
 
 #include "algorithms/registry.hpp"
 #include "bindings/bindings.hpp"
-#include "results/io/io_error.hpp"
+#include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/program.hpp"
-#include "scenarios/program/shell_words.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 

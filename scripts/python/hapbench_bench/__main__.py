@@ -1,6 +1,5 @@
 """The command line of scripts/bench."""
 import json
-import os
 import re
 import signal
 import subprocess
@@ -8,11 +7,11 @@ import sys
 import tempfile
 from pathlib import Path
 
-from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Arguments, say_error
+from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Arguments, say_error, write
 
-from . import commit, peers
+from . import peers
 from .measure import performance
-from .program import ROOT, BenchError, build, listed
+from .program import ROOT, BenchError, build, built, listed
 from .table import BEGIN, END, MANUAL, RECORD, aligned, markdown, spliced
 
 DESCRIPTION = """Builds the program and its benchmarks and prints what they take as ratios, each to a benchmark that ran in the
@@ -56,17 +55,6 @@ def arguments(words):
     return chosen
 
 
-def replace(file, text):
-    """The file, complete or not at all."""
-    file.parent.mkdir(parents=True, exist_ok=True)
-    scratch = file.with_name(f".{file.name}.{os.getpid()}.tmp")
-    try:
-        scratch.write_text(text, encoding="utf-8")
-        scratch.replace(file)
-    finally:
-        scratch.unlink(missing_ok=True)
-
-
 def save(chosen, record, found, text, begin, end):
     """Writes what was found, and with --record also the file on record and its table, `text`, in the manual."""
     content = json.dumps(found, indent=1, ensure_ascii=False) + "\n"
@@ -74,7 +62,7 @@ def save(chosen, record, found, text, begin, end):
     if chosen.record:
         files |= {record: content, MANUAL: spliced(MANUAL.read_text(encoding="utf-8"), text, begin, end)}
     for file, written in files.items():
-        replace(file, written)
+        write(file, written)
 
 
 def measure(chosen):
@@ -105,14 +93,14 @@ def redraw():
         words = [ROOT / "scripts" / "figures", RECORD.parent, "--out", scratch, "--only", "growth"]
         if subprocess.run(words, stdout=subprocess.DEVNULL).returncode:
             raise BenchError(f"{name}: not drawn")
-        replace(RECORD.parent / "figures" / name, (Path(scratch) / name).read_text(encoding="utf-8"))
+        write(RECORD.parent / "figures" / name, (Path(scratch) / name).read_text(encoding="utf-8"))
 
 
 def compare(chosen):
     # Only here: numpy and scipy would count as memory of the programs that `measure` starts.
     from . import against
 
-    with commit.built(chosen.against) as old:
+    with built(chosen.against) as old:
         new = build(ROOT, ROOT / "build" / "release", "bin/hapbench_bench") / "hapbench_bench"
         by_group, only_old, only_new = against.groups(old, new, chosen.filter.search)
         found = against.comparisons(old, new, by_group, chosen.rounds)

@@ -40,10 +40,8 @@ def ratios(hapbench):
     for _ in range(ROUNDS):
         recorded.append((run(hapbench, [TASK])[1], run(hapbench, [TASK], UNRECORDED)[1]))
         tasks.append((run(hapbench, TASKS, UNRECORDED)[1], TASKS_SIMULATE))
-    return [
-        (f"`run {TASK}`", "unrecorded", 6.0, recorded),
-        ("`run` of tasks 1 to 3, unrecorded", f"the {TASKS_SIMULATE:g} s they simulate", 1 / 60, tasks),
-    ]
+    return [(f"`run {TASK}`", "unrecorded", 6.0, recorded),
+            ("`run` of tasks 1 to 3, unrecorded", f"the {TASKS_SIMULATE:g} s they simulate", 1 / 60, tasks)]
 
 
 def limits(hapbench):

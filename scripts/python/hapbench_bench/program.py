@@ -1,9 +1,13 @@
-"""Builds and runs the programs that are timed."""
+"""Builds and runs the programs that are timed: of this tree, and of another commit beside it."""
+import contextlib
+import io
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
+import tarfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -73,3 +77,36 @@ def measured(program, names, *options, seconds=0.02, repetitions=1, interleaved=
     for entries in found.values():
         entries.sort(key=lambda entry: entry.get("repetition_index", 0))
     return output["context"], found
+
+
+def git(*words):
+    return subprocess.run(["git", "-C", ROOT, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+def resolved(name):
+    found = git("rev-parse", "--verify", "--quiet", f"{name}^{{commit}}")
+    if found.returncode:
+        raise BenchError(f"--against {name}: no commit of that name in {ROOT}")
+    return found.stdout.decode().strip()
+
+
+@contextlib.contextmanager
+def built(name):
+    """Its hapbench_bench, in build/against/COMMIT, which stays for the next time; its sources are there only as long as
+    the program runs, which reads the scenarios in them. Files have the commit's date, so that nothing is built twice."""
+    commit = resolved(name)
+    folder = ROOT / "build" / "against" / commit[:12]
+    source = folder / "source"
+    archive = git("archive", "--format=tar", commit)
+    if archive.returncode:
+        raise BenchError(f"--against {name}: {archive.stderr.decode().strip()}")
+    shutil.rmtree(source, ignore_errors=True)  # of a run that was killed
+    try:
+        with tarfile.open(fileobj=io.BytesIO(archive.stdout)) as files:
+            files.extractall(source)
+        say(f"building {commit[:12]} in {os.path.relpath(folder)} (minutes, the first time)")
+        # Its build asks git for a commit: let it not find ours.
+        alone = {"GIT_CEILING_DIRECTORIES": str(folder)}
+        yield build(source, folder / "build", "bin/hapbench_bench", environment=alone) / "hapbench_bench"
+    finally:
+        shutil.rmtree(source, ignore_errors=True)

@@ -41,15 +41,10 @@ def met(value, at_most):
 def markdown(performance):
     """All of it: where it was measured, ratios, limits."""
     machine = performance["machine"]
-    lines = [
-        f"{machine['cpu']}, {machine['processors']} processors, {machine['instruction_set']}; {machine['compiler']},",
-        f"{machine['flags']};",
-        f"commit {performance['commit']}, {performance['date']}.",
-        f"Medians of {performance['repetitions']} interleaved repetitions, half their quartile range after ±.",
-        "",
-        "| what | over | ratio | target | met | takes |",
-        "|---|---|---|---|---|---|",
-    ]
+    lines = [f"{machine['cpu']}, {machine['processors']} processors, {machine['instruction_set']}; {machine['compiler']},",
+             f"{machine['flags']};", f"commit {performance['commit']}, {performance['date']}.",
+             f"Medians of {performance['repetitions']} interleaved repetitions, half their quartile range after ±.", "",
+             "| what | over | ratio | target | met | takes |", "|---|---|---|---|---|---|"]
     for row in performance["ratios"]:
         target = "" if row["at_most"] is None else f"≤ {number(row['at_most'])}"
         lines.append(f"| {row['what']} | {row['over']} | {number(row['ratio'])} {spread(row)} | {target} | {met(row['ratio'], row['at_most'])} | "

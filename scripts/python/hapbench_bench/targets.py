@@ -59,10 +59,8 @@ GROUPS = (
     [Row(f"step/{task}_mesh", f"step/{task}", 4.0) for task in ("T1", "T2", "T3")],
     [Row("shell/build", "search/brute_force/T1", 0.35, times=1000, wall=True)],
     [contacts_grow("step"), contacts_grow("law/shaped_stiffness")],
-    [
-        Row(f"skip/{what}/taken", f"skip/{what}/off")
-        for what in ("clearance", "no_contact", "reduction_of_one", "no_friction", "unwanted_records")
-    ],
+    [Row(f"skip/{what}/taken", f"skip/{what}/off")
+     for what in ("clearance", "no_contact", "reduction_of_one", "no_friction", "unwanted_records")],
 )
 
 # The step that 99.9 % of a run's are no longer than [s]; those of the three tasks leave the loop a twentieth.

@@ -1,19 +1,20 @@
 """The command line of scripts/docs."""
+import difflib
 import sys
 import tempfile
 from pathlib import Path
 
 from hapbench_bench import peers, table
-from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Arguments, say_error
-from hapbench_pictures.files import write
+from hapbench_command import BAD_INPUT, FAILED, INTERRUPTED, SUCCESS, Arguments, say_error, write
 from hapbench_report.json_input import InputError
 
-from . import blocks, ledger, sessions, studies
+from . import blocks, gallery, ledger, studies
 from .manuals import ROOT, Manual, manuals
 from .program import Program, ProgramError
 
 DESCRIPTION = """Renews what is generated in the manuals: sessions (commands with their output), the tables of the ledger,
-of its robustness and of speed, from results/reference, and, with --gallery, the pictures of scenes. Needs the built program."""
+of its robustness and of speed, from results/reference, and, with --gallery, the pictures of scenes. Needs the built program.
+Measured times are left as they are. Exit status 1 if --check finds something to renew."""
 
 
 def arguments(words):
@@ -22,6 +23,7 @@ def arguments(words):
                         help="default: build/release/bin/hapbench")
     parser.add_argument("--tables", action="store_true", help="the tables from results/reference only, which need no program")
     parser.add_argument("--gallery", action="store_true", help="the gallery of scenes, too: results/reference/gallery")
+    parser.add_argument("--check", action="store_true", help="write nothing; show what is not current")
     return parser.parse_args(words)
 
 
@@ -29,7 +31,7 @@ def renewed(manual, scratch, program):
     """The manual's text with its blocks made anew."""
     makers = dict(ledger.MAKERS)
     if program:
-        makers["session"] = lambda old: sessions.renewed(old, program, scratch)
+        makers["session"] = lambda old: blocks.session(old, program, scratch)
         makers["ideal_trajectory"] = lambda old: studies.ideal_trajectory(old, program, scratch)
         makers["contact_sources"] = lambda old: studies.contact_sources(old, program, scratch)
     text = blocks.renewed(manual.text, makers)
@@ -39,25 +41,38 @@ def renewed(manual, scratch, program):
     return table.spliced(text, peers.markdown(peers.record()), peers.BEGIN, peers.END)
 
 
+def differences(manual, text):
+    """A unified diff from the manual as it is to the given text."""
+    name = str(manual.file.relative_to(ROOT))
+    return "\n".join(difflib.unified_diff(manual.text.splitlines(), text.splitlines(), name, f"{name}, renewed", lineterm=""))
+
+
 def main(words=None):
     chosen = arguments(words)
+    status = SUCCESS
     try:
         program = None if chosen.tables else Program(chosen.program)
         with tempfile.TemporaryDirectory(prefix="hapbench-docs-") as scratch:
             if chosen.gallery and program:
-                from . import gallery  # only here: matplotlib takes a second
                 gallery.draw_all(program, Path(scratch))
             for manual in map(Manual, manuals()):
                 text = renewed(manual, Path(scratch), program)
-                if text != manual.text:
-                    write(manual.file, text.encode())
+                if text == manual.text:
+                    continue
+                if chosen.check:
+                    print(differences(manual, text))
+                    status = FAILED
+                else:
+                    write(manual.file, text)
                     print(f"renewed {manual.file.relative_to(ROOT)}")
     except (ProgramError, InputError, blocks.BlockError, OSError) as error:
         say_error(error)
         return BAD_INPUT
     except KeyboardInterrupt:
         return INTERRUPTED
-    return SUCCESS
+    if status == FAILED:
+        say_error("the manuals are not current; scripts/docs renews them")
+    return status
 
 
 if __name__ == "__main__":

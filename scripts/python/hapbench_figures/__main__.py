@@ -6,9 +6,10 @@ import time
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
-from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Arguments, say_error
+import hapbench_style as style
+from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Arguments, say_error, write
 
-from . import catalogue, style
+from . import catalogue
 from .drawing import attempts
 from .results import Results
 
@@ -16,19 +17,13 @@ NOTHING_DRAWN = KILLED = 1
 
 
 def arguments(argv):
-    parser = Arguments(
-        prog="scripts/figures",
-        description="Draws the figures of the thesis with our data, and ours, as "
-        "SVG, PDF and PNG. A figure whose data is missing is skipped, and said so.",
-    )
+    parser = Arguments(prog="scripts/figures", description="Draws the figures of the thesis with our data, and ours, as SVG, PDF and "
+                       "PNG. A figure whose data is missing is skipped, with a message.")
     parser.add_argument("results", nargs="?", metavar="RESULTS_DIR", help="results as scripts/reproduce leaves them")
     parser.add_argument("--out", metavar="DIR", help="directory of the figures and of figures.json")
-    parser.add_argument(
-        "--only", metavar="ID,…", help="draw these; an id stands for those that begin with it and a hyphen, too"
-    )
-    parser.add_argument(
-        "--jobs", type=int, metavar="N", default=len(os.sched_getaffinity(0)), help="figures at once (default: one per thread)"
-    )
+    parser.add_argument("--only", metavar="ID,…", help="draw these; an id stands for those that begin with it and a hyphen, too")
+    parser.add_argument("--jobs", type=int, metavar="N", default=len(os.sched_getaffinity(0)), help="figures at once (default: one per "
+                        "thread)")
     parser.add_argument("--list", action="store_true", help="list the figures")
     chosen = parser.parse_args(argv)
     if not chosen.list and not (chosen.results and chosen.out):
@@ -62,7 +57,7 @@ def write_index(directory, entries):
             pass  # not ours or damaged: written anew
     merged.update({entry["id"]: entry for entry in entries})
     known = [merged[f.id] for f in catalogue.FIGURES if f.id in merged and (directory / f"{f.stem}.svg").is_file()]
-    style.write(file, (json.dumps({"figures": known}, indent=2, ensure_ascii=False) + "\n").encode())
+    write(file, json.dumps({"figures": known}, indent=2, ensure_ascii=False) + "\n")
 
 
 def show_progress(done, total):

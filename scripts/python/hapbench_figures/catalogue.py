@@ -2,25 +2,8 @@
 from dataclasses import dataclass
 from typing import Callable, Optional
 
-from . import (
-    comparison,
-    corner,
-    damping,
-    devices,
-    experiments,
-    force_limit,
-    growth,
-    ideal_trajectory,
-    median_line,
-    peg_in_hole,
-    performance,
-    proxy,
-    springs,
-    stability,
-    stiffness_fields,
-    tasks,
-    torque,
-)
+from . import (comparison, corner, damping, devices, experiments, force_limit, growth, ideal_trajectory, median_line,
+               peg_in_hole, performance, proxy, springs, stability, stiffness_fields, tasks, torque)
 
 
 @dataclass(frozen=True)
@@ -77,10 +60,8 @@ FIGURES = (
     Figure("query-time", None, "Query time over penetration depth", performance.query_time),
     Figure("latency", None, "Latency of a step", performance.latency),
     Figure("growth", None, "How cost grows", growth.growth),
-    *(
-        Figure(f"stability-{name}", None, f"Stability over {name.replace('_', ' ')}", stability.stability_map(name))
-        for name in STABILITY_MAPS
-    ),
+    *(Figure(f"stability-{name}", None, f"Stability over {name.replace('_', ' ')}", stability.stability_map(name))
+      for name in STABILITY_MAPS),
     Figure("devices", None, "What each device renders with each algorithm", devices.of_all_devices),
     Figure("stability-integrators", None, "Stability under each integrator", stability.integrators),
 )

@@ -2,7 +2,9 @@
 import numpy as np
 from matplotlib.ticker import LogLocator
 
-from . import published, style
+import hapbench_style as style
+
+from . import published
 
 METRICS = (
     ("force_max_N", "force", "greatest [N]", 1),
@@ -69,18 +71,11 @@ def discussion(results):
 
 
 def draw_over_reduction(ax, results):
-    for name, colour, line, label in (
-        ("unreduced", style.AMBER, (0, (4, 1.2)), "all"),
-        ("reduced", style.PETROL, "-", "reduced"),
-    ):
+    for name, colour, line, label in (("unreduced", style.AMBER, (0, (4, 1.2)), "all"),
+                                      ("reduced", style.PETROL, "-", "reduced")):
         rows = results.table(f"thesis/over_reduction_{name}/trajectory.csv")
-        ax.plot(
-            -1e3 * rows["px_m"],
-            np.where(rows["rendered"] > 0, rows["rendered"], np.nan),
-            color=colour,
-            ls=line,
-            label=label,
-        )
+        ax.plot(-1e3 * rows["px_m"], np.where(rows["rendered"] > 0, rows["rendered"], np.nan), color=colour, ls=line,
+                label=label)
     ax.set(yscale="log", xlabel="way into the groove [mm]", ylabel="rendered contacts", title="over-reduction")
     ax.legend(loc="center right")
 
@@ -88,9 +83,7 @@ def draw_over_reduction(ax, results):
 def draw_pure_rotation(ax, results):
     rows = results.table("thesis/pure_rotation/energy.csv")
     ax.plot(rows["time_s"], 1e3 * rows["stored_J"], color=style.BLACK, label="stored")
-    ax.plot(
-        rows["time_s"], 1e3 * np.abs(rows["damping_J"]), color=style.PETROL, ls=(0, (4, 1.2)), label="taken by damping"
-    )
+    ax.plot(rows["time_s"], 1e3 * np.abs(rows["damping_J"]), color=style.PETROL, ls=(0, (4, 1.2)), label="taken by damping")
     ax.set(xlabel="time [s]", ylabel="energy [mJ]", title="pure rotation")
     ax.set_ylim(top=1.35 * 1e3 * rows["stored_J"].max())
     ax.legend(loc="upper left")

@@ -1,13 +1,11 @@
 """Normal projection at a corner of the hole (figure F.4)."""
 import numpy as np
 
-from . import style
+import hapbench_style as style
 
 # Directory, algorithm, name of its depth; the wide line shows below the one that covers it.
-STROKES = (
-    ("thesis/corner_normal_projection", "normal_projection", "normal projection", {"lw": 1.1}),
-    ("thesis/corner_shaped_stiffness", "shaped_stiffness", "shortest distance", {"lw": 3.2, "alpha": 0.35}),
-)
+STROKES = (("thesis/corner_normal_projection", "normal_projection", "normal projection", {"lw": 1.1}),
+           ("thesis/corner_shaped_stiffness", "shaped_stiffness", "shortest distance", {"lw": 3.2, "alpha": 0.35}))
 # Not of the thesis, so the figure is drawn without it too.
 CONTINUOUS = (
     "beyond/corner_continuous_normal_projection", "continuous_normal_projection", "continuous (ours)", {"lw": 1.1})

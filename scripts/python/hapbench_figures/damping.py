@@ -1,7 +1,9 @@
 """Directions of the damping forces under one and under distributed contact (figures B.4 and B.5)."""
 import numpy as np
 
-from . import scene, style
+import hapbench_style as style
+
+from . import scene
 
 DP, HS = "tilt_sweep_original_averaging", "tilt_sweep_shaped_stiffness"
 VELOCITY = np.array([0.006, -0.012])  # ours [m/s]
@@ -78,9 +80,7 @@ def wall_damping(ax, results):
     ax.plot(hs.tilt[pick], tensor["sxx"][pick], **line_of("shaped_stiffness"))
     ax.text(0.6, 1.06, "stiffness shaping", ha="right")
     ax.text(0.05, 0.3, "original", color=style.look("original_averaging").colour)
-    ax.set(
-        xlabel="tilt [rad]", ylabel="damping across the walls / B", ylim=(-0.03, 1.25), title="damping across the walls"
-    )
+    ax.set(xlabel="tilt [rad]", ylabel="damping across the walls / B", ylim=(-0.03, 1.25), title="damping across the walls")
 
 
 def implicit_plane(results):

@@ -1,8 +1,8 @@
 """The picture of `compare --devices`: the largest stable stiffness of each device, a panel for each scene."""
 import numpy as np
+from hapbench_style import BLACK, PUBLISHED_LINE, look, plt
 
 from .results import numbers
-from .style import BLACK, PUBLISHED_LINE, look, plt
 
 TABLE = "device_limits.csv"
 PANEL = 2.6  # [inch]

@@ -6,22 +6,23 @@ import signal
 import threading
 from concurrent.futures import ProcessPoolExecutor, as_completed
 
-from . import catalogue, style
+import hapbench_style as style
+from hapbench_command import write
+
+from . import catalogue
 from .results import BadResult, MissingResult
 
-# They go first, or a process would still be at one of them when the others are done.
-LONGEST = (
-    *("stability-integrators", "E.4", "stiffness", "stability-wedge", "E.3", "4", "growth", "precision"),
-    *("stability-contacts", "stability-device", "stability-time_step", "stability-mass", "stability-damping_ratio"),
-    *("C.3", "algorithms", "D.7", "D.8", "5", "C.4"),
-)
+FORMATS = ("svg", "pdf", "png")
 
 
 def draw(figure, results, directory):
     """Draws and saves one figure; returns its entry in figures.json."""
     results.start()
     drawing, caption = figure.draw(results)
-    files = style.save(drawing, figure.stem, directory)
+    files = [f"{figure.stem}.{kind}" for kind in FORMATS]
+    for kind, name in zip(FORMATS, files):
+        write(directory / name, style.picture(drawing, kind, salt=figure.stem))
+    style.plt.close(drawing)
     return {
         "id": figure.id,
         "title": figure.title,
@@ -53,8 +54,7 @@ def attempt(number, results, directory):
 def attempts(figures, results, directory, jobs):
     """Yields what `attempt` returns of each figure as they are finished, `jobs` at a time. Raises OSError when a file
     cannot be written, BrokenProcessPool when a process was killed."""
-    rank = {id_: i for i, id_ in enumerate(LONGEST)}
-    numbers = [catalogue.FIGURES.index(f) for f in sorted(figures, key=lambda f: rank.get(f.id, len(rank)))]
+    numbers = [catalogue.FIGURES.index(figure) for figure in figures]
     # Forked, the processes need not import matplotlib again.
     fork = multiprocessing.get_context("fork")
     pool = ProcessPoolExecutor(min(jobs, len(numbers)), fork, _begin, (results, directory))

@@ -4,7 +4,9 @@ import warnings
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from . import published, style
+import hapbench_style as style
+
+from . import published
 from .results import numbers
 
 MEASURES = (
@@ -102,12 +104,8 @@ def experiment(results, task, targets, what):
 
 
 def vertical(results):
-    return experiment(
-        results,
-        "vertical",
-        ((1, "D1", "side target (0.52 mm)"), (0, "D2", "central target")),
-        "Vertical peg-in-hole task",
-    )
+    return experiment(results, "vertical", ((1, "D1", "side target (0.52 mm)"), (0, "D2", "central target")),
+                      "Vertical peg-in-hole task")
 
 
 def rotational(results):

@@ -1,7 +1,9 @@
 """Displacement against measured force, with and without the limit of the input force (figure 6)."""
 import numpy as np
 
-from . import published, style
+import hapbench_style as style
+
+from . import published
 from .tasks import thin
 
 
@@ -24,9 +26,7 @@ def force_limit(results):
     ax.set(xlabel="measured force [N]", ylabel="displacement into the flat [mm]", xlim=(0.5, 5.8), ylim=(-0.01, 0.27))
     ax.text(4.0, 0.19, "without limit", color=style.AMBER, ha="right")
     ax.text(4.2, 0.113, "input force limited to 2 N", color=style.PETROL)
-    ax.text(
-        threshold + 0.05, 0.245, "published: 2.7 N measured = 2.0 N + 0.7 N weight", color=style.RED, fontsize=7
-    )
+    ax.text(threshold + 0.05, 0.245, "published: 2.7 N measured = 2.0 N + 0.7 N weight", color=style.RED, fontsize=7)
     return figure, (
         "Displacement of the tip into a flat against the measured force, without (amber triangles) and with (petrol "
         "circles) the limit of the input force; ours, a scripted hand that presses up to 5 N. Black: the ideal, "

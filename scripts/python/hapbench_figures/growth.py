@@ -1,7 +1,7 @@
 """How cost grows with contacts and with shell points, as scripts/bench has measured it."""
 import numpy as np
 
-from . import style
+import hapbench_style as style
 
 FILE = "performance.json"
 FITTED = 3  # the largest sizes, which a slope is fitted to

@@ -2,7 +2,9 @@
 import numpy as np
 from matplotlib.patches import Polygon
 
-from . import published, style
+import hapbench_style as style
+
+from . import published
 from .results import MissingResult
 
 RUN = "task2_rotate_signed_distance"
@@ -37,26 +39,12 @@ def ideal(rows_list):
 def draw_block(ax, environment):
     radius, depth = 500 * environment["hole_diameter_m"], 1e3 * environment["hole_depth_m"]
     wall = np.array(
-        [
-            [-2.2, 0],
-            [-radius, 0],
-            [-radius, -depth],
-            [radius, -depth],
-            [radius, 0],
-            [2.2, 0],
-            [2.2, -depth - 0.6],
-            [-2.2, -depth - 0.6],
-        ]
+        [[-2.2, 0], [-radius, 0], [-radius, -depth], [radius, -depth], [radius, 0], [2.2, 0], [2.2, -depth - 0.6],
+         [-2.2, -depth - 0.6]]
     )
     ax.add_patch(Polygon(wall, closed=True, facecolor=style.SAND, edgecolor=style.SOIL, lw=0.8))
-    ax.set(
-        xlim=(-1.65, 1.35),
-        xticks=[-1, 0, 1],
-        ylim=(-5.4, 0.8),
-        aspect="equal",
-        xlabel="x [mm]",
-        ylabel="height over the mouth [mm]",
-    )
+    ax.set(xlim=(-1.65, 1.35), xticks=[-1, 0, 1], ylim=(-5.4, 0.8), aspect="equal", xlabel="x [mm]",
+           ylabel="height over the mouth [mm]")
 
 
 def trajectory(results):

@@ -2,7 +2,9 @@
 import numpy as np
 from matplotlib.colors import ListedColormap
 
-from . import published, scene, style
+import hapbench_style as style
+
+from . import published, scene
 
 SHORTEST, NORMAL = "tilt_sweep_original_averaging", "tilt_sweep_shaped_stiffness"
 DEEP = 0.42  # tilt [rad] at which many points lie beyond the median line
@@ -83,9 +85,7 @@ def draw_flip_count(ax, sweep):
 def underestimation(results):
     figure, axes = style.panels(1, 3, 3.0, gridspec_kw={"width_ratios": [0.85, 0.85, 1.3]})
     for ax, name, title in ((axes[0, 0], SHORTEST, "shortest distance"), (axes[0, 1], NORMAL, "surface normal")):
-        draw_contacts(
-            ax, scene.Sweep(results, name), 0.3, (style.AMBER, style.PETROL)
-        )
+        draw_contacts(ax, scene.Sweep(results, name), 0.3, (style.AMBER, style.PETROL))
         ax.set_title(title)
     axes[0, 1].set_ylabel("")
     draw_error(axes[0, 2], scene.Sweep(results, NORMAL))
@@ -112,10 +112,5 @@ def draw_error(ax, sweep):
     ax.figure.colorbar(marks, ax=ax, label="tilt [rad]", shrink=0.9)
     ax.axvline(1e3 * published.entries()["G1.negligible"]["at_most"], **style.PUBLISHED_LINE)
     style.note(ax, 0.22, 0.98, "published: negligible\nup to 0.25 mm", style.RED)
-    ax.set(
-        xlabel="distance along the normal [mm]",
-        ylabel="depth too small by [mm]",
-        title="underestimation",
-        xlim=(0, 1.3),
-        ylim=(-0.02, 0.85),
-    )
+    ax.set(xlabel="distance along the normal [mm]", ylabel="depth too small by [mm]", title="underestimation", xlim=(0, 1.3),
+           ylim=(-0.02, 0.85))

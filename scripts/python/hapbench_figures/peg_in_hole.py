@@ -1,7 +1,9 @@
 """The planar peg-in-hole simulations (figures A.1, A.2, F.5 and B.3.3)."""
 import numpy as np
 
-from . import published, scene, style
+import hapbench_style as style
+
+from . import published, scene
 
 
 def simulation_view(results):
@@ -18,12 +20,8 @@ def simulation_view(results):
     ax.text(-3.4, -0.25, "point shell", color=style.PETROL, va="top")
     ax.text(0.75, -1.1, "contacts and depths", color=style.AMBER)
     head = scene.MM * peg.tip + 0.35 * force
-    ax.annotate(
-        f"rendered force, {np.linalg.norm(force):.1f} N",
-        xy=head,
-        xytext=(0.75, -1.9),
-        arrowprops={"arrowstyle": "-", "color": style.BLACK, "lw": 0.6},
-    )
+    ax.annotate(f"rendered force, {np.linalg.norm(force):.1f} N", xy=head, xytext=(0.75, -1.9),
+                arrowprops={"arrowstyle": "-", "color": style.BLACK, "lw": 0.6})
     ax.text(1.45, 1.35, "tool")
     return figure, (
         "The planar simulation: point shell (petrol), tool (outline), colliding points with their depths (amber) "
@@ -92,14 +90,8 @@ def draw_forces(ax, sweep, step, weight):
     forces = -k * (weight * contacts.depth)[:, None] * contacts.gradient
     out = contacts.gradient[:, 1] < -0.1  # with an upward component of the force
     for point, force, outward in zip(scene.MM * contacts.point, forces, out):
-        scene.draw_arrow(
-            ax,
-            point,
-            0.045 * force,
-            style.AMBER if outward else style.GREY,
-            lw=1.3 if outward else 0.7,
-            mutation_scale=6,
-        )
+        scene.draw_arrow(ax, point, 0.045 * force, style.AMBER if outward else style.GREY, lw=1.3 if outward else 0.7,
+                         mutation_scale=6)
     scene.frame(ax, (-2.4, 2.4), (-4.3, 2.0))
     return forces, out
 
@@ -110,23 +102,15 @@ def redistribution(results):
     contacts = sweep.contacts(step)
     figure, axes = style.panels(1, 2, 4.4, sharey=True)
     energies, outward = [], []
-    for ax, weight, title in (
-        (axes[0, 0], np.ones_like(contacts.weight), "before: all weights 1"),
-        (axes[0, 1], contacts.weight, "after: tandpasta's weights"),
-    ):
+    for ax, weight, title in ((axes[0, 0], np.ones_like(contacts.weight), "before: all weights 1"),
+                              (axes[0, 1], contacts.weight, "after: tandpasta's weights")):
         forces, out = draw_forces(ax, sweep, step, weight)
         energies.append((weight * contacts.depth**2).sum())
         total = forces.sum(axis=0)
         outward.append(total[1])
         ax.set_title(title)
-        style.note(
-            ax,
-            0.02,
-            0.02,
-            f"total force ({total[0]:.0f}, {total[1]:.0f}) N\nelastic energy ".replace("-", "−")
-            + f"{energies[-1] / energies[0]:.2f} of before",
-            va="bottom",
-        )
+        style.note(ax, 0.02, 0.02, f"total force ({total[0]:.0f}, {total[1]:.0f}) N\nelastic energy ".replace("-", "−")
+                   + f"{energies[-1] / energies[0]:.2f} of before", va="bottom")
     style.note(axes[0, 0], 0.02, 0.97, "pushing out", style.AMBER)
     style.note(axes[0, 0], 0.02, 0.91, "pushing sideways", style.GREY)
     axes[0, 1].set_ylabel("")
@@ -153,21 +137,11 @@ def turned_direction(results):
     # The thesis tells the sizes, 2n + 1 and 2n + 3, and that the direction turns round.
     size = np.array([published.value("B3.depth.before"), published.value("B3.depth.after")])
     sign = np.sign(-rows["fspring_x_N"][[0, -1]])
-    axes[0, 1].plot(
-        time[[0, -1]],
-        sign * size,
-        **{k: v for k, v in style.PUBLISHED.items() if k in ("marker", "mfc", "mec", "ms", "mew", "ls")},
-    )
+    axes[0, 1].plot(time[[0, -1]], sign * size,
+                    **{k: v for k, v in style.PUBLISHED.items() if k in ("marker", "mfc", "mec", "ms", "mew", "ls")})
     axes[0, 1].set(ylabel="signed depth / depth of a point", xlabel="time [ms]", title="rendered depth", ylim=(-30, 30))
-    style.note(
-        axes[0, 0],
-        0.98,
-        0.08,
-        "◇ in (b), published: 2n + 1 = 21, then\n2n + 3 = 23, turned by 180°",
-        style.RED,
-        ha="right",
-        va="bottom",
-    )
+    style.note(axes[0, 0], 0.98, 0.08, "◇ in (b), published: 2n + 1 = 21, then\n2n + 3 = 23, turned by 180°", style.RED,
+               ha="right", va="bottom")
     style.letter(axes[0])
     return figure, (
         "The original algorithm with ten contacts one way and eleven the other, then two more on the first side "

@@ -4,7 +4,9 @@ from textwrap import wrap
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from . import published, style
+import hapbench_style as style
+
+from . import published
 from .results import MissingResult, numbers
 
 # study, column of the error, its label and scale, column of the time and its label, title
@@ -40,11 +42,8 @@ def series(rows):
 def with_times(results, study):
     """Rows of a study, each with the time of its setting."""
     times = {row["setting"]: row for row in results.records(f"precision/precision_{study}_timing.csv")}
-    return [
-        {**row, **times[row["setting"]]}
-        for row in results.records(f"precision/precision_{study}.csv")
-        if row["setting"] in times
-    ]
+    return [{**row, **times[row["setting"]]} for row in results.records(f"precision/precision_{study}.csv")
+            if row["setting"] in times]
 
 
 def finished(rows, error, largest=np.inf):

@@ -1,11 +1,12 @@
 """The drill turned in the hole under a steady push: the proxy beside stiffness shaping."""
 import numpy as np
 
-from . import style
+import hapbench_style as style
+
 from .ideal_trajectory import draw_block
 
 ALGORITHMS = ("shaped_stiffness", "exact_shaping", "proxy")
-EVERY = 160  # rows: a drawn mark of every row could not be told from its neighbours
+EVERY = 320  # rows: a drawn mark of every row could not be told from its neighbours
 SETTLED = 0.5  # seconds: the drill starts above its place
 
 

@@ -69,10 +69,3 @@ class Results:
 def numbers(records, name):
     """A column of `records`, gaps as not-a-number."""
     return np.array([float(row[name]) if row[name] else np.nan for row in records])
-
-
-def envelope(time, values, bins):
-    """Least and greatest value in each of so many spans of time: what a plot of all rows would show."""
-    parts = [part for part in np.array_split(np.arange(len(time)), bins) if len(part)]
-    middle = np.array([time[part].mean() for part in parts])
-    return (middle, np.array([values[part].min() for part in parts]), np.array([values[part].max() for part in parts]))

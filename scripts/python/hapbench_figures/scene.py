@@ -4,7 +4,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.patches import Polygon
 
-from . import style
+import hapbench_style as style
 
 MM = 1e3
 
@@ -72,23 +72,14 @@ class Sweep:
     def contacts(self, step):
         own = self.all["step"] == self.rows["step"][step]
         pick = {name: column[own] for name, column in self.all.items()}
-        return Contacts(
-            np.stack([pick["x_m"], pick["y_m"]], 1),
-            np.stack([pick["nx"], pick["ny"]], 1),
-            pick["depth_m"],
-            np.stack([pick["gradient_x"], pick["gradient_y"]], 1),
-            pick["weight"],
-        )
+        return Contacts(np.stack([pick["x_m"], pick["y_m"]], 1), np.stack([pick["nx"], pick["ny"]], 1), pick["depth_m"],
+                        np.stack([pick["gradient_x"], pick["gradient_y"]], 1), pick["weight"])
 
     def peg(self, step):
         row = {name: column[step] for name, column in self.rows.items()}
         tool = self.scenario["tool"]
-        return Peg(
-            np.array([row["px_m"], row["py_m"]]),
-            np.array([row["axis_x"], row["axis_y"]]),
-            tool["diameter_m"],
-            tool["length_m"],
-        )
+        return Peg(np.array([row["px_m"], row["py_m"]]), np.array([row["axis_x"], row["axis_y"]]), tool["diameter_m"],
+                   tool["length_m"])
 
     def force(self, step, name="fspring_"):
         return np.array([self.rows[f"{name}x_N"][step], self.rows[f"{name}y_N"][step]])
@@ -102,29 +93,16 @@ def shell(environment):
     wall = np.arange(-depth, h / 2, h)
     floor = np.arange(-half, half + h / 2, h)
     return np.vstack(
-        [
-            np.stack([top, 0 * top], 1),
-            np.stack([-top, 0 * top], 1),
-            np.stack([0 * wall + half, wall], 1),
-            np.stack([0 * wall - half, wall], 1),
-            np.stack([floor, 0 * floor - depth], 1),
-        ]
+        [np.stack([top, 0 * top], 1), np.stack([-top, 0 * top], 1), np.stack([0 * wall + half, wall], 1),
+         np.stack([0 * wall - half, wall], 1), np.stack([floor, 0 * floor - depth], 1)]
     )
 
 
 def draw_hole(ax, environment, points=False):
     half, depth, mouth = environment["width_m"] / 2, environment["depth_m"], environment["mouth_m"]
     corners = np.array(
-        [
-            [-half - mouth, 0],
-            [-half, 0],
-            [-half, -depth],
-            [half, -depth],
-            [half, 0],
-            [half + mouth, 0],
-            [half + mouth, -depth - 0.5e-3],
-            [-half - mouth, -depth - 0.5e-3],
-        ]
+        [[-half - mouth, 0], [-half, 0], [-half, -depth], [half, -depth], [half, 0], [half + mouth, 0],
+         [half + mouth, -depth - 0.5e-3], [-half - mouth, -depth - 0.5e-3]]
     )
     ax.add_patch(Polygon(corners * MM, closed=True, facecolor=style.SAND, edgecolor="none", zorder=0))
     ax.plot(*(corners[:6] * MM).T, color=style.SOIL, lw=0.9, zorder=1)
@@ -153,15 +131,7 @@ def draw_segments(ax, contacts, colours, scale=1.0):
 def draw_arrow(ax, start, vector, colour, label=None, at=(3, 3), **keywords):
     """An arrow, both ends in the units of the axes; the label at its head."""
     head = np.asarray(start) + vector
-    style_ = {
-        "arrowstyle": "-|>",
-        "color": colour,
-        "lw": 1.8,
-        "shrinkA": 0,
-        "shrinkB": 0,
-        "mutation_scale": 9,
-        **keywords,
-    }
+    style_ = {"arrowstyle": "-|>", "color": colour, "lw": 1.8, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 9, **keywords}
     ax.annotate("", xy=head, xytext=start, arrowprops=style_, zorder=6)
     if label:
         ax.annotate(label, xy=head, xytext=at, textcoords="offset points", color=colour, fontsize=7.5, bbox=style.PLATE, zorder=7)

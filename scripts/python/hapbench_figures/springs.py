@@ -1,7 +1,7 @@
 """A mass on many springs, every algorithm (figures A.4 and A.5)."""
 import numpy as np
 
-from . import style
+import hapbench_style as style
 
 
 def draw_path(ax, rows, look):
@@ -23,7 +23,9 @@ def settling(rows):
 def paths(results, kind, published):
     figure, axes = style.panels(2, 4, 4.3, sharex=True, sharey=True)
     proposed = results.table(f"thesis/springs_{kind}_shaped_stiffness/trajectory.csv")
-    for ax, (name, look) in zip(axes.flat, ((name, style.look(name)) for name in style.OF_THE_THESIS)):
+    own = [name for name in style.ALGORITHMS if results.has(f"thesis/springs_{kind}_{name}/trajectory.csv")]
+    for ax, name in zip(axes.flat, own):
+        look = style.look(name)
         rows = results.table(f"thesis/springs_{kind}_{name}/trajectory.csv")
         outcome = results.json(f"thesis/springs_{kind}_{name}/summary.json")["outcome"]
         if name != "shaped_stiffness":
@@ -31,13 +33,7 @@ def paths(results, kind, published):
         draw_path(ax, rows, look)
         ax.set(xlim=(-6.5, 6.5), ylim=(-6.5, 6.5), aspect="equal", xticks=[-5, 0, 5], yticks=[-5, 0, 5])
         time = settling(rows)
-        text = (
-            "diverges"
-            if outcome == "diverges"
-            else f"settles in {time:.0f} ms"
-            if time is not None
-            else "has not settled"
-        )
+        text = ("diverges" if outcome == "diverges" else f"settles in {time:.0f} ms" if time is not None else "has not settled")
         # Above the frame: some curves fill it.
         ax.set_title(look.label, color=look.colour, pad=14)
         ax.text(0, 1.03, text, transform=ax.transAxes, fontsize=7)
@@ -53,15 +49,10 @@ def paths(results, kind, published):
 
 
 def unlimited(results):
-    return paths(
-        results, "unlimited", "not limited. Published: every algorithm reaches the origin; ours: what the panels say."
-    )
+    return paths(results, "unlimited", "not limited. Published: every algorithm reaches the origin; ours: what the panels say.")
 
 
 def limited(results):
-    return paths(
-        results,
-        "limited",
-        "limited to 100 N s/m and 30 N. Published: the proposed algorithm keeps its performance, others "
-        "become under-damped.",
-    )
+    return paths(results, "limited",
+                 "limited to 100 N s/m and 30 N. Published: the proposed algorithm keeps its performance, others "
+                 "become under-damped.")

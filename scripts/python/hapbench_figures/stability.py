@@ -8,7 +8,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
-from . import published, style
+import hapbench_style as style
+from hapbench_report.markup import column
+
+from . import published
 from .results import MissingResult, numbers
 
 CASES = (
@@ -101,11 +104,8 @@ AXES = {"contacts": "contacts [1]", "delay_samples": "delay [samples]", "damping
 
 def axis_label(name):
     """ "time_step_s" -> "time step [s]"."""
-    for ending, unit in (("_N_per_m", "N/m"), ("_N_s_per_m", "N s/m"), ("_rad", "rad"), ("_kg", "kg"), ("_s", "s"),
-                         ("_Hz", "Hz"), ("_m", "m")):
-        if name.endswith(ending):
-            return f"{name.removesuffix(ending).replace('_', ' ')} [{unit}]"
-    return AXES.get(name, name.replace("_", " "))
+    title, unit, _ = column(name)
+    return f"{title} [{unit}]" if unit else AXES.get(name, title)
 
 
 def is_geometric(values):

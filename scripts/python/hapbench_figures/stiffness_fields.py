@@ -6,13 +6,15 @@ from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon
 
-from . import published, scene, style
+import hapbench_style as style
+
+from . import published, scene
 
 SWEEP = "tilt_sweep_shaped_stiffness"
 # That sweep, and the wedge, under every algorithm.
 PEG, WEDGE = "stiffness/peg", "stiffness/wedge"
 TITLES = {"summation": "sum", "mean": "mean", "virtual_coupling": "coupling", "shaped_stiffness": "shaping"}
-DIRECTIONS = np.linspace(0, 2 * np.pi, 181)
+DIRECTIONS = np.linspace(0, 2 * np.pi, 121)
 # Half of a panel's side and the marks on it, in units of K.
 REACH, TICKS = 1.6, (-1, 0, 1)
 SUMMATION_REACH, SUMMATION_TICKS = 45, (-40, 0, 40)
@@ -180,11 +182,8 @@ def draw_scene_of(part, title, results, names, draw):
 
 def field_legend(figure):
     figure.legend(
-        [
-            Line2D([], [], color=style.BLACK, lw=0.8, ls=(0, (3, 2))),
-            Line2D([], [], color=style.RED, lw=1.1, ls=(0, (1, 1))),
-            Line2D([], [], color=style.AMBER, marker=".", ls="none"),
-        ],
+        [Line2D([], [], color=style.BLACK, lw=0.8, ls=(0, (3, 2))), Line2D([], [], color=style.RED, lw=1.1, ls=(0, (1, 1))),
+         Line2D([], [], color=style.AMBER, marker=".", ls="none")],
         ["K", "published: largest renderable, 4 K", "ratio along a contact"], loc="upper right", ncol=3, handlelength=2.2,
     )
 

@@ -1,8 +1,9 @@
 """The three evaluation tasks of 3.2 (figures 4, 5, C.2, C.4 and E.1 to E.4)."""
 import numpy as np
 
-from . import published, style
-from .results import envelope
+import hapbench_style as style
+
+from . import published
 
 TASKS = (
     ("T1", "task1_flat", "task 1: poke and drag"),
@@ -12,10 +13,8 @@ TASKS = (
 DENSITIES = (("signed_distance", "signed distance"), ("binary", "binary"))
 ITERATIONS = (1, 2, 3, 4, 5, 10, 20, 40, 80, 160)
 BINS = 240  # of a time axis: more cannot be told apart at column width
-HAND = (
-    "Hands and paths are ours, calibrated to the published mean and standard deviation of the raw points and to nothing "
-    "else."
-)
+HAND = ("Hands and paths are ours, calibrated to the published mean and standard deviation of the raw points and to nothing "
+        "else.")
 
 
 def trajectory(results, task, density="signed_distance"):
@@ -41,6 +40,11 @@ def published_count(ax, x, task, what):
     entry = published.entries()[id_]
     error = [[entry["std"]], [entry["std"]]] if "std" in entry else None
     ax.errorbar([x], [published.value(id_)], yerr=error, **style.PUBLISHED, clip_on=False)
+
+
+def span(time, values):
+    """Where each of so many spans of time begins, and the least and the greatest value in it."""
+    return style.reduced(time, values, values, BINS)
 
 
 PERIOD = 1 / 2048  # of the trainer's loop [s]
@@ -107,10 +111,8 @@ def count_distribution(results):
     figure, axes = style.panels(1, 2, 2.9, sharey=True)
     offsets = {"signed_distance": 0.2, "binary": 0.0}
     markers = {"signed_distance": "o", "binary": "s"}
-    for ax, column, what, title in (
-        (axes[0, 0], "colliding", "raw", "before the reduction"),
-        (axes[0, 1], "rendered", "reduced", "after the reduction"),
-    ):
+    for ax, column, what, title in ((axes[0, 0], "colliding", "raw", "before the reduction"),
+                                    (axes[0, 1], "rendered", "reduced", "after the reduction")):
         for place, (id_, task, _) in enumerate(TASKS):
             y = len(TASKS) - place
             for density, name in DENSITIES:
@@ -120,12 +122,8 @@ def count_distribution(results):
             for k, suffix in enumerate(("", ".C3")):
                 if f"{id_}.{what}{suffix}" in published.entries():
                     entry = published.entries()[f"{id_}.{what}{suffix}"]
-                    ax.errorbar(
-                        [published.value(entry["id"])],
-                        [y - 0.2 - 0.13 * k],
-                        xerr=[[entry.get("std", 0)]] * 2,
-                        **style.PUBLISHED,
-                    )
+                    ax.errorbar([published.value(entry["id"])], [y - 0.2 - 0.13 * k], xerr=[[entry.get("std", 0)]] * 2,
+                                **style.PUBLISHED)
         ax.set(title=title, xlabel="points in contact", xscale="log")
         ax.set_xlim((1, 1000) if what == "raw" else (0.8, 100))
         ax.set_ylim(0.5, 3.5)
@@ -175,9 +173,7 @@ def convergence_by_task(results):
         draw_quantiles(ax, least, style.AMBER, "s", 0)
         ax.axhline(bound[0], color=style.BLACK, ls="--", lw=0.8)
         ax.axhline(bound[1], **style.PUBLISHED_LINE)
-        ax.errorbar(
-            [0.8], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"}
-        )
+        ax.errorbar([0.8], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"})
         ax.set(xscale="log", title=task[2], xlabel="iterations", xlim=(0.7, 200), ylim=(0.4, 1.62))
         ax.set_xticks([1, 3, 10, 40, 160], ["1", "3", "10", "40", "160"])
         ax.minorticks_off()
@@ -202,25 +198,14 @@ def convergence(results):
         draw_quantiles(ax, greatest, style.PETROL, "o", 4)
         draw_quantiles(ax, least, style.AMBER, "s", 0)
         ax.axhline(1, color=style.BLACK, ls="--", lw=0.8)
-        ax.errorbar(
-            [0.85], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"}
-        )
-        ax.set(
-            xscale="log",
-            yscale="log",
-            title=f"density: {name}",
-            xlabel="iterations",
-            xlim=(0.75, 200),
-            ylim=(0.42, 1.6),
-        )
+        ax.errorbar([0.85], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"})
+        ax.set(xscale="log", yscale="log", title=f"density: {name}", xlabel="iterations", xlim=(0.75, 200), ylim=(0.42, 1.6))
         ax.set_xticks(ITERATIONS, [str(i) if i in (1, 2, 3, 5, 10, 20, 40, 80, 160) else "" for i in ITERATIONS])
         ticks = (0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.2, 1.4, 1.6)
         ax.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
         ax.minorticks_off()
     axes[0, 0].set_ylabel("stiffness ratio")
-    style.note(
-        axes[0, 0], 0.97, 0.95, "greatest: stays above 1 where\na contact's weight vanishes", style.PETROL, ha="right"
-    )
+    style.note(axes[0, 0], 0.97, 0.95, "greatest: stays above 1 where\na contact's weight vanishes", style.PETROL, ha="right")
     style.note(axes[0, 0], 0.97, 0.06, "least: tends to 1", style.AMBER, ha="right", va="bottom")
     style.letter(axes[0])
     return figure, (
@@ -245,33 +230,27 @@ def over_time(results, draw, label, height=2.6, rows=1, **keywords):
 
 
 def positions(results):
-    coordinates = (
-        ("px_m", "x", style.PETROL, "-"),
-        ("py_m", "y", style.AMBER, (0, (4, 1.5))),
-        ("pz_m", "z", style.BLACK, "-"),
-    )
+    coordinates = (("px_m", "x", style.PETROL, "-"), ("py_m", "y", style.AMBER, (0, (4, 1.5))), ("pz_m", "z", style.BLACK, "-"))
 
     def draw(ax, _, task):
         rows = trajectory(results, task)
         for column, name, colour, line in coordinates:
-            time, low, high = envelope(rows["time_s"], 1e3 * rows[column], BINS)
+            time, low, high = span(rows["time_s"], 1e3 * rows[column])
             ax.plot(time, (low + high) / 2, color=colour, ls=line, lw=1.1, label=name)
             ax.fill_between(time, low, high, color=colour, alpha=0.3, lw=0)
 
     figure, axes = over_time(results, draw, ["position of the tip [mm]"])
     figure.get_layout_engine().set(rect=(0, 0, 1, 0.92))
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="upper center", ncol=3, handlelength=2)
-    return figure, (
-        "Position of the tip over time in the three tasks, ours (signed-distance block). x and y span the top face "
-        f"of the block, whose height is z = 0; the bottom of the hole is at z = -5 mm. {HAND}"
-    )
+    return figure, ("Position of the tip over time in the three tasks, ours (signed-distance block). x and y span the top face "
+                    f"of the block, whose height is z = 0; the bottom of the hole is at z = -5 mm. {HAND}")
 
 
 def model_force(results):
     def draw(ax, _, task):
         rows = trajectory(results, task)
         size = np.sqrt(sum(rows[f"f{axis}_N"] ** 2 for axis in "xyz"))
-        time, low, high = envelope(rows["time_s"], size, BINS)
+        time, low, high = span(rows["time_s"], size)
         ax.fill_between(time, low, high, color=style.PETROL, alpha=0.45, lw=0)
         ax.plot(time, (low + high) / 2, color=style.PETROL, lw=0.9)
         ax.axhline(published.value("L1.threshold"), color=style.RED, ls="--", lw=0.9)
@@ -297,7 +276,7 @@ def _ratio_over_time(results, column, colour, word):
 
     def draw(ax, i, task):
         rows = ratios(results, task, ITERATIONS[i])
-        time, low, high = envelope(rows["time_s"], rows[column], BINS)
+        time, low, high = span(rows["time_s"], rows[column])
         ax.fill_between(time, low, high, color=colour, alpha=0.75, lw=0.4, edgecolor=colour)
         ax.axhline(1, color=style.BLACK, lw=0.7, ls="--")
         once = published.entries()["R1.once"]["at_most" if column == "ratio_max" else "at_least"]
@@ -312,15 +291,8 @@ def _ratio_over_time(results, column, colour, word):
     figure.supylabel("stiffness ratio after so many iterations", fontsize=8)
     for ax in axes.flat:
         ax.set_ylim((0.95, 1.4) if above else (0.4, 1.05))
-    style.note(
-        axes[0, 0],
-        0.98,
-        0.3 if above else 0.1,
-        f"published: {'1.3' if above else '0.8'}",
-        style.RED,
-        ha="right",
-        va="bottom",
-    )
+    style.note(axes[0, 0], 0.98, 0.3 if above else 0.1, f"published: {'1.3' if above else '0.8'}", style.RED, ha="right",
+               va="bottom")
     return figure, (
         f"The {word} stiffness ratio of a step's contacts over time, after {', '.join(labels[:-1])} and {labels[-1]} "
         f"shaping iterations (rows), ours (signed-distance block): range in each of {BINS} spans of time; numbers: the "

@@ -1,7 +1,7 @@
 """What the contacts of a turned drill would turn it back with, and a device of three degrees of freedom cannot render."""
 import numpy as np
 
-from . import style
+import hapbench_style as style
 
 ALGORITHMS = ("original_averaging", "shaped_stiffness")
 

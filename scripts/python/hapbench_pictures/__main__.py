@@ -1,8 +1,7 @@
 """python -m hapbench_pictures plot|report WORDS…; the program `hapbench` calls it."""
 import sys
 
-from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, say_error
-from hapbench_notice import Notice
+from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Notice, say_error
 from hapbench_report.json_input import InputError
 
 
@@ -11,9 +10,9 @@ def main(words):
     try:
         with Notice("drawing" if command == "plot" else "writing the report"):
             if command == "plot":
-                from .plot_command import plot as run
+                from .plot import plot as run
             else:
-                from .report_command import report as run
+                from .report import report as run
             run(rest)
         sys.stdout.flush()
     except InputError as error:
@@ -23,6 +22,9 @@ def main(words):
         # The reader of a pipe, such as `head`, has seen enough.
         sys.stderr.close()
         return SUCCESS
+    except OSError as error:
+        say_error(f"--out {error.filename}: {error.strerror}")
+        return BAD_INPUT
     except KeyboardInterrupt:
         print(f"hapbench: {command} stopped; nothing was written", file=sys.stderr)
         return INTERRUPTED

@@ -1,20 +1,17 @@
-"""Curves for a page: one drawing for each quantity, on light and on dark ground."""
+"""Curves for a page: one drawing for each quantity, on light and on dark ground; and how near a rendered force comes to the one
+that was measured with the stroke."""
 import base64
-import html
-import io
 
-import matplotlib
 import numpy as np
 
-from hapbench_figures.style import SETTINGS, fix_layout
+from hapbench_report.markup import in_colour, table, text
+from hapbench_style import SETTINGS, curve, picture, plt
 
 from .looks import DARK, LIGHT, looks, on_dark, settings
-from .panels import PATH_COLUMNS, draw_over_time, draw_path, projections
-from .quantities import SHORT, USUAL, Samples, tables_of
+from .panels import PATH_COLUMNS, SPANS, draw_over_time, draw_path, projections
+from .quantities import REFERENCE, SHORT, TRAJECTORY, USUAL, Samples, quantity, tables_of
 from .replay import surface_of
-
-matplotlib.use("agg")
-from matplotlib import pyplot as plt  # noqa: E402  (the backend comes first)
+from .sections import metric_rows
 
 SIZE, PATH_SIZE = (4.0, 2.0), (4.0, 2.9)  # [inch]: on a phone as legible as the text around it
 
@@ -32,8 +29,7 @@ def curves_section(runs, labels):
 
 
 def key(light):
-    return " ".join(f'<b class=run-name style="--light:{one.colour};--dark:{one.dark}">{html.escape(one.label)}</b>'
-                    for one in light)
+    return " ".join(f"<b>{in_colour(one, text(one.label))}</b>" for one in light)
 
 
 def spoken(quantity, samples, labels):
@@ -49,14 +45,52 @@ def spoken(quantity, samples, labels):
 def drawing(size, draw, light, title, words, **labels):
     images = []
     for paper, shown, name in ((LIGHT, light, "only-light"), (DARK, on_dark(light), "only-dark")):
-        with matplotlib.rc_context({**SETTINGS, **settings(paper), "svg.hashsalt": "hapbench"}):
+        with plt.rc_context({**SETTINGS, **settings(paper)}):
             figure, ax = plt.subplots(figsize=size)
             draw(ax, shown)
             ax.set(**labels)
-            picture = io.BytesIO()
-            fix_layout(figure)
-            figure.savefig(picture, format="svg", metadata={"Date": None})
+            data = base64.b64encode(picture(figure, "svg")).decode()
             plt.close(figure)
-        data = base64.b64encode(picture.getvalue()).decode()
-        images.append(f'<img class="{name}" src="data:image/svg+xml;base64,{data}" alt="{html.escape(f"{title}: {words}")}">')
-    return f"<figure><figcaption>{html.escape(title)}</figcaption>{''.join(images)}</figure>"
+        images.append(f'<img class="{name}" src="data:image/svg+xml;base64,{data}" alt="{text(f"{title}: {words}")}">')
+    return f"<figure><figcaption>{text(title)}</figcaption>{''.join(images)}</figure>"
+
+
+def fidelity_section(runs, labels):
+    """Empty without a run whose stroke has a measured force."""
+    known = [(run, label) for run, label in zip(runs, labels) if run.sections.get("fidelity")]
+    if not known:
+        return ""
+    runs, labels = zip(*known)
+    about = ("<b>Rendered against measured force</b> The normal is that of what is rendered, before damping and friction; "
+             "<code>hapbench describe</code> explains each")
+    return table(*metric_rows(runs, labels, "fidelity", list(runs[0].sections["fidelity"])), about, "sortable") + force_curves(runs, labels)
+
+
+def force_curves(runs, labels):
+    """Of those that recorded both forces."""
+    drawn = [(run, label) for run, label in zip(runs, labels) if {TRAJECTORY, REFERENCE} <= set(tables_of(run))]
+    if not drawn:
+        return "<p class=note>With --set record.force_reference=true the curves stand here.</p>"
+    runs, labels = zip(*drawn)
+    force, reference, error = (quantity(name, runs) for name in ("force", "reference", "force_error"))
+    samples, light = [Samples(run, (force, reference, error)) for run in runs], looks(runs, labels)
+
+    def both(ax, shown):
+        # One recording is behind all runs of a scene: its curve is drawn once, in the colour of the text.
+        time, _, measured = samples[0].of(reference)
+        ax.plot(*curve(time, measured, measured, SPANS), color=ax.xaxis.label.get_color(), lw=0.8, ls=":")
+        for s, one in zip(samples, shown):
+            time, _, rendered = s.of(force)
+            ax.plot(*curve(time, rendered, rendered, SPANS), color=one.colour, ls=one.line, lw=0.9)
+        ax.set_ylabel("force [N]")
+
+    def errors(ax, shown):
+        for s, one in zip(samples, shown):
+            time, _, off = s.of(error)
+            ax.plot(*curve(time, off, off, SPANS), color=one.colour, ls=one.line, lw=0.9)
+        ax.set_ylabel("||f - f_m|| [N]")
+
+    figures = [drawing(SIZE, both, light, "Rendered and measured force [N] over time", spoken(reference, samples, labels),
+                       xlabel="time [s]"),
+               drawing(SIZE, errors, light, "Their difference [N] over time", spoken(error, samples, labels), xlabel="time [s]")]
+    return f"<p>{key(light)} Dotted: the force measured with the stroke.</p><div class=curves>{''.join(figures)}</div>"

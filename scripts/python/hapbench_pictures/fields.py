@@ -1,7 +1,7 @@
 """Fields of scenarios: in which some differ, and how a field is written in a legend or on an axis."""
 import json
 
-from hapbench_report.units import column
+from hapbench_report.markup import column
 
 # What a field is called where its last name says too little, and in formulas.
 TITLES, SYMBOLS = {"time.step_s": "time step"}, {"rendering.stiffness_N_per_m": "K"}

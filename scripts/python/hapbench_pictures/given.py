@@ -5,11 +5,11 @@ import re
 from pathlib import Path
 
 from hapbench.columns import read_records
+from hapbench_command import nearest
 from hapbench_report.json_input import InputError
 from hapbench_report.runs import load_run, load_runs
 
 from .fields import differing, entry, leaves
-from .names import nearest
 
 SUMMARY, SWEEP = "summary.json", "sweep.csv"
 SEED_FOLDER = re.compile(r"seed_\d+")  # of a comparison with --seeds

@@ -3,21 +3,17 @@ which study a folder holds."""
 import copy
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 
 from hapbench_figures.devices import TABLE as DEVICES
 from hapbench_figures.devices import draw_devices
 from hapbench_figures.results import BadResult, MissingResult, Results, numbers
 from hapbench_figures.stability import CLASSES, MapFile, draw_stability_map, is_geometric, look_of_class
-from hapbench_figures.style import BLACK, PETROL, SETTINGS
 from hapbench_looks import look
 from hapbench_report.json_input import InputError
+from hapbench_style import BLACK, PETROL, SETTINGS, plt
 
 from .fields import axis
-
-matplotlib.use("agg")
-from matplotlib import pyplot as plt  # noqa: E402  (the backend comes first)
 
 MAP, LIMIT, LIMIT_RUNS = "stability_map_", "limit.csv", "limit_runs.csv"
 
@@ -38,7 +34,7 @@ def is_study(path):
 def study_figures(path):
     """Pairs of a name, to tell the files apart, and a figure."""
     try:
-        with matplotlib.rc_context(SETTINGS):
+        with plt.rc_context(SETTINGS):
             if (path / LIMIT_RUNS).is_file():
                 return [("", draw_limit(Results(path)))]
             if (path / DEVICES).is_file():

@@ -2,8 +2,9 @@
 import numpy as np
 from matplotlib.patches import Polygon
 
+from hapbench_style import curve, reduced
+
 from .quantities import range_of
-from .reduced import curve, reduced
 
 SPANS = 900  # of a curve: more than a page has pixels
 # Runs whose peaks are further apart than this share no linear axis.
@@ -144,7 +145,7 @@ def draw_path(ax, plane, samples, looks, surface=None):
         draw_surface(ax, plane, samples, surface)
 
 
-def corners(trajectory, spans=1000):
+def corners(trajectory, spans=300):
     """Rows that keep the shape of a way: the extremes along each axis in so many equal spans of rows."""
     n = len(trajectory["px_m"])
     if n <= 6 * spans:

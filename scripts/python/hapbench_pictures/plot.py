@@ -1,19 +1,24 @@
-"""The file of `hapbench plot`: quantities over time under each other, the tip's way beside them."""
+"""`hapbench plot`: a sketch in the terminal and a file, with quantities over time under each other and the tip's way beside
+them; or the picture of a sweep or a study."""
 import math
 from collections import Counter
+from pathlib import Path
 
-import matplotlib
+from hapbench_command import Arguments, write
+from hapbench_report.json_input import InputError, at
+from hapbench_report.recording import tool_profile
+from hapbench_style import SETTINGS, picture, plt
 
-from hapbench_figures.style import SETTINGS
-from hapbench_report.json_input import at
-from hapbench_report.replay_tool import tool_profile
-
+from .given import common_folder, given_runs, given_sweep, named
+from .looks import looks
+from .map_plot import given_study, study_figures
 from .panels import AXIS_COLUMNS, PATH_COLUMNS, draw_over_time, draw_path, draw_tool, projections
-from .quantities import Samples
+from .quantities import Samples, chosen
+from .replay import surface_of
+from .sketch import sketch, this_terminal
+from .sweep_plot import Sweep, draw_sweep, sketch_sweep
 
-matplotlib.use("agg")
-from matplotlib import pyplot as plt  # noqa: E402  (the backend comes first)
-
+KINDS = (".svg", ".png", ".pdf")
 PANEL_HEIGHT, WIDTH, PATH_WIDTH = 1.35, 7.0, 2.6  # [inch]
 LEGEND_COLUMNS = 4
 LETTER = 0.068  # width of a letter of the legend [inch]
@@ -22,13 +27,105 @@ SURFACE_SAID = ("dots: section of the surface through", "the middle of the way")
 TOOL_SAID = "outlines: tool on its way"
 
 
+def arguments(words):
+    parser = Arguments(prog="hapbench plot", description="Draws runs over time, or a sweep.")
+    parser.add_argument("runs", nargs="+", metavar="RUN")
+    parser.add_argument("--y", type=lambda text: [name.strip() for name in text.split(",") if name.strip()], default=[])
+    parser.add_argument("--metric")
+    parser.add_argument("--from", dest="start", metavar="T")
+    parser.add_argument("--to", dest="end", metavar="T")
+    parser.add_argument("--out", type=Path)
+    parser.add_argument("--no-sketch", action="store_true")
+    parser.add_argument("--quiet", action="store_true")
+    return parser.parse_args(words)
+
+
+def plot(words):
+    options = arguments(words)
+    sweep = given_sweep(options.runs)
+    study = given_study(options.runs)
+    if study:
+        refuse(options, ("--y", "--metric", "--from", "--to"), f"{study} holds stability maps or limits; allowed for it: --out")
+    folder = study.parent if study and study.is_file() else common_folder(options.runs)
+    file = options.out or folder / "plot.svg"
+    if file.suffix not in KINDS:
+        raise InputError(f"--out {file}: got \"{file.suffix}\"; allowed: {', '.join(KINDS)}")
+    if study:
+        write_all(study_figures(study), file, options.quiet)
+        return
+    if sweep:
+        figure, lines = of_sweep(sweep, options)
+    elif options.metric:
+        raise InputError("--metric: is for a sweep's folder; allowed for runs: --y")
+    else:
+        figure, lines = of_runs(options)
+    for line in lines:
+        print(line)
+    write_all([("", figure)], file, options.quiet)
+
+
+def refuse(options, names, why):
+    """Options that what is drawn has no use for."""
+    given = {"--y": options.y, "--metric": options.metric, "--from": options.start, "--to": options.end}
+    unused = next((name for name in names if given[name]), None)
+    if unused:
+        raise InputError(f"{unused}: {why}")
+
+
+def write_all(figures, file, quiet):
+    """Several of them beside each other, told apart by their names."""
+    for name, figure in figures:
+        to = file.with_stem(f"{file.stem}_{name}") if len(figures) > 1 else file
+        write(to, picture(figure, to.suffix[1:]))
+        if not quiet:
+            print(f"picture in {to}")
+
+
+def window_of(options):
+    """The times to draw [s]."""
+    window = (time_of("--from", options.start, -math.inf), time_of("--to", options.end, math.inf))
+    if not window[0] < window[1]:
+        raise InputError(f"--from {options.start} --to {options.end}: is no span of time; allowed: --from before --to")
+    return window
+
+
+def time_of(name, text, default):
+    if text is None:
+        return default
+    try:
+        time = float(text)
+    except ValueError:
+        time = math.nan
+    if not math.isfinite(time):
+        raise InputError(f"{name}: got \"{text}\"; allowed: a time in seconds")
+    return time
+
+
+def of_runs(options):
+    runs = given_runs(options.runs)
+    quantities, with_path = chosen(options.y, runs)
+    samples, shown = samples_of(runs, quantities, with_path, window_of(options)), looks(runs, *named(runs))
+    figure = draw(runs, shown, quantities, with_path, samples, surface_of(runs) if with_path else None)
+    if options.no_sketch or options.quiet:
+        return figure, []
+    if not quantities:
+        return figure, ["path: is in the picture only"]
+    return figure, sketch(quantities, samples, shown, this_terminal())
+
+
+def of_sweep(folder, options):
+    refuse(options, ("--y", "--from", "--to"), f"{folder} is a sweep; allowed for it: --metric")
+    sweep = Sweep(folder, options.metric)
+    return draw_sweep(sweep), [] if options.no_sketch or options.quiet else sketch_sweep(sweep, this_terminal())
+
+
 def samples_of(runs, quantities, with_path, window):
     return [Samples(run, quantities, (*PATH_COLUMNS, *AXIS_COLUMNS) if with_path else (), window) for run in runs]
 
 
 def draw(runs, shown, quantities, with_path, samples, surface=None):
     """The figure: a title with the runs' names, below it quantities on the left and ways on the right."""
-    with matplotlib.rc_context(SETTINGS):
+    with plt.rc_context(SETTINGS):
         ways, entries = projections(samples) if with_path else (), legend_of(shown)
         widths = [WIDTH, PATH_WIDTH] if quantities and ways else [WIDTH]
         body = PANEL_HEIGHT * max(len(quantities), len(ways) if quantities else 2 * len(ways))

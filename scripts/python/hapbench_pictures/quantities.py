@@ -1,13 +1,14 @@
-"""What can be drawn over time: short names, and every column of a run's tables by its own name."""
+"""What can be drawn over time: short names, and every column of a run's tables by its own name; with the range of an axis:
+that of settled contact, where the peak of a landing or a crash would squeeze it."""
 from dataclasses import dataclass
 
 import numpy as np
 
 from hapbench.columns import header, read_columns
-from hapbench_report.json_input import InputError
+from hapbench_report.json_input import InputError, at, number_or_none
+from hapbench_report.recording import SETTLING_S, settled_rows
 
-from .names import nearest
-from .settled import settled_of, settled_range
+from .given import nearest
 
 TRAJECTORY = "trajectory.csv"
 REFERENCE = "force_reference.csv"
@@ -18,6 +19,11 @@ SWITCH = {"energy.csv": "record.energy", "ideal_trajectory.csv": "record.ideal_t
           "stiffness_tensor.csv": "record.stiffness_tensor", REFERENCE: "record.force_reference", "tx_Nm": "record.torque"}
 # Unit by the end of a column's name -> shown unit, factor.
 UNITS = (("_Nm", "mN m", 1e3), ("_m_per_s", "m/s", 1.0), ("_J", "mJ", 1e3), ("_N", "N", 1.0), ("_m", "mm", 1e3), ("_s", "s", 1.0))
+# A peak of more than so many times the settled values is cut off.
+CUT_OFF = 3
+# If settled contact tells little of a run, as of one that hammers to the end, no range leaves out more of its rows.
+LARGEST_LEFT_OUT = 0.1
+BULK = (1, 99)  # percentiles of the settled rows
 
 
 @dataclass(frozen=True)
@@ -161,3 +167,28 @@ def range_of(quantity, samples):
     """The range that settled contact takes, where its peaks are cut off; else None."""
     drawn = [(s.settled[quantity.file], *s.of(quantity)[1:]) for s in samples if s.of(quantity) is not None]
     return settled_range(drawn)
+
+
+def settled_of(run, trajectory):
+    """These rows of a run, by the settings of its metrics."""
+    settling_s = number_or_none(at(run.scenario, "/metrics/settling_s"))
+    return settled_rows(trajectory["time_s"], trajectory["colliding"], SETTLING_S if settling_s is None else settling_s,
+                        number_or_none(at(run.scenario, "/metrics/from_s")))
+
+
+def settled_range(curves):
+    """The least and the greatest value of the bulk of settled contact with some air; None when all is to be shown. Each
+    curve: which rows are settled, and the lower and upper edge of every row."""
+    ends = [(np.nanpercentile(low[calm], BULK[0]), np.nanpercentile(high[calm], BULK[1])) for calm, low, high in curves
+            if np.isfinite(low[calm]).any() and np.isfinite(high[calm]).any()]
+    if not ends:
+        return None
+    low, high = min(a for a, _ in ends), max(b for _, b in ends)
+    size = max(abs(low), abs(high))
+    peak = max(np.nanmax(np.abs(edge), initial=0.0) for _, *edges in curves for edge in edges)
+    if not peak > CUT_OFF * size > 0:
+        return None
+    air = max(0.25 * (high - low), 0.05 * size)
+    bottom, top = float(low - air), float(high + air)
+    left_out = max(np.mean((lows < bottom) | (highs > top)) for _, lows, highs in curves if len(lows))
+    return (bottom, top) if left_out <= LARGEST_LEFT_OUT else None

@@ -11,9 +11,9 @@ import numpy as np
 
 from hapbench.columns import read_columns
 from hapbench_report.json_input import at
-from hapbench_report.replay_pack import MARGIN, SHELL_COLUMNS, packed_scene, radius_of, touched_box
-from hapbench_report.replay_read import Recording
-from hapbench_report.replay_sound import LONGEST
+from hapbench_report.recording import Recording
+from hapbench_report.replay import MARGIN, SHELL_COLUMNS, packed_scene, radius_of, touched_box, within
+from hapbench_report.sound import LONGEST
 
 # Points drawn: near the contacts, and with the rest.
 NEAR, ALL = 5000, 8000
@@ -60,8 +60,7 @@ def points_of(run, recordings):
 
 
 def thinned(points, box, margin):
-    low, high = (np.array(corner) for corner in box)
-    near = ((points[:, :3] >= low - margin) & (points[:, :3] <= high + margin)).all(axis=1)
+    near = within(points, box, margin)
     kept = some(points[near], NEAR)
     return np.concatenate([kept, some(points[~near], ALL - len(kept))])
 

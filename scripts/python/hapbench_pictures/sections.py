@@ -3,27 +3,16 @@ import json
 import shlex
 
 from hapbench_report.json_input import at, number_or_none
-from hapbench_report.markup import cell, command, heading_cell, number, number_cell, table, text
-from hapbench_report.section_runs import plugin_text, provenance_of, provenance_section
+from hapbench_report.markup import cell, columns, command, heading_cell, number, number_cell, table, text
+from hapbench_report.runs import plugin_text, provenance_of, provenance_section
 
 from .fields import differing
 
 MOST_CARDS = 6
-# Metric of summary.json -> heading, factor; shown where any run has it. What separates algorithms comes first.
-METRICS = (
-    ("landings", "Landings", 1),
-    ("landing_force_max_N", "Landing max, N", 1),
-    ("force_mean_in_contact_N", "Mean force, N", 1),
-    ("force_step_p99_N", "Force step p99, N", 1),
-    ("settled_force_step_max_N", "Force step max, N", 1),
-    ("force_rms_above_30Hz_N", "Force above 30 Hz rms, N", 1),
-    ("force_reversals_per_s", "Reversals per s", 1),
-    ("force_max_N", "Max force, N", 1),
-    ("velocity_total_variation_m_per_s", "Velocity TV, m/s", 1),
-    ("depth_max_m", "Max depth, mm", 1000),
-    ("ratio_min", "Ratio min", 1),
-    ("ratio_max", "Ratio max", 1),
-)
+# Of section "metrics" of summary.json, shown where any run has it. What separates algorithms comes first.
+METRICS = ("landings", "landing_force_max_N", "force_mean_in_contact_N", "force_step_p99_N", "settled_force_step_max_N",
+           "force_rms_above_30Hz_N", "force_reversals_per_s", "force_max_N", "velocity_total_variation_m_per_s", "depth_max_m",
+           "ratio_min", "ratio_max")
 
 
 def summary_section(runs, labels):
@@ -72,27 +61,32 @@ def warnings_section(runs, labels):
     return said and "<ul>" + "".join(f"<li><b>{text(label)}:</b> {text(warning)}</li>" for label, warning in said) + "</ul>"
 
 
+def metric_rows(runs, labels, section, names, *beside):
+    """Headings and rows of a table of metrics, a row for each run; `beside`: pairs of a heading and its cells."""
+    values = [[number_or_none(run.sections.get(section, {}).get(name)) for name in names] for run in runs]
+    headings, cells = columns(names, values)
+    rows = [[cell(text(label), classes="name"), *(of[i] for _, of in beside), *own] for i, (label, own) in enumerate(zip(labels, cells))]
+    return [heading_cell("Run"), *(heading for heading, _ in beside), *headings], rows
+
+
 def metrics_section(runs, labels):
-    shown = [entry for entry in METRICS if any(run.metric(entry[0]) is not None for run in runs)]
-    rows = [[cell(text(label), classes="name"), cell(text(run.outcome.replace("_", " "))), number_cell(at(run.summary, "/steps")),
-             cell(percent(contact_share(run)), contact_share(run) or 0, "number"),
-             *(number_cell(scaled(run.metric(key), factor), 3) for key, _, factor in shown)] for run, label in zip(runs, labels)]
-    headings = [heading_cell("Run"), heading_cell("Outcome"), heading_cell("Steps", True), heading_cell("Contact", True),
-                *(heading_cell(title, True) for _, title, _ in shown)]
-    return (table(headings, rows, "<b>What separates the runs</b> Click a heading to sort; <code>hapbench describe</code> and a "
-                  "metric's name explain it", "sortable", "runs-table")
+    shares = [contact_share(run) for run in runs]
+    shown = [name for name in METRICS if any(run.metric(name) is not None for run in runs)]
+    beside = ((heading_cell("Outcome"), [cell(text(run.outcome.replace("_", " "))) for run in runs]),
+              (heading_cell("Steps", True), [number_cell(at(run.summary, "/steps")) for run in runs]),
+              (heading_cell("Contact", True), [cell(percent(share), share or 0, "number") for share in shares]))
+    return (table(*metric_rows(runs, labels, "metrics", shown, *beside), "<b>What separates the runs</b> Click a heading to sort; "
+                  "<code>hapbench describe</code> and a metric's name explain it", "sortable", "runs-table")
             + f"<details><summary>All metrics</summary>{every_metric(runs, labels)}</details>")
 
 
-def scaled(value, factor):
-    return None if value is None else value * factor
-
-
 def every_metric(runs, labels):
-    names = list(dict.fromkeys(name for run in runs for name in run.summary.get("metrics") or {}))
-    rows = [[cell(f"<code>{text(name)}</code>"), *(metric_cell((run.summary.get("metrics") or {}).get(name)) for run in runs)]
-            for name in names]
-    return table([heading_cell("Metric"), *(heading_cell(text(label), True) for label in labels)], rows, "All metrics")
+    """All that the summaries measured, section by section."""
+    names = dict.fromkeys((section, name) for run in runs for section, values in run.sections.items() for name in values)
+    rows = [[cell(text(section)), cell(f"<code>{text(name)}</code>"),
+             *(metric_cell(run.sections.get(section, {}).get(name)) for run in runs)] for section, name in names]
+    headings = [heading_cell("Section"), heading_cell("Metric"), *(heading_cell(text(label), True) for label in labels)]
+    return table(headings, rows, "All metrics")
 
 
 def metric_cell(value):

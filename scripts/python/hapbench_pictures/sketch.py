@@ -1,17 +1,52 @@
 """Curves in a terminal: dots of braille where it knows them, else a letter for each run."""
-from dataclasses import replace
+import locale
+import os
+import shutil
+import sys
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hapbench_style import reduced
+
 from .panels import LARGEST_RATIO
 from .quantities import range_of
-from .reduced import reduced
-from .terminal import coloured
 
 HEIGHT, MARGIN = 6, 10  # characters of a panel, and of the numbers left of it
 BRAILLE = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))  # bits of the dots, by row and column
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
 SEVERAL = "+"  # where letters would hide each other
+WIDEST = 100
+
+
+@dataclass(frozen=True)
+class Terminal:
+    width: int
+    unicode: bool
+    colour: bool
+
+
+def this_terminal():
+    width = min(WIDEST, shutil.get_terminal_size((WIDEST, 24)).columns)
+    return Terminal(max(40, width), knows_unicode(),
+                    sys.stdout.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb")
+
+
+def knows_unicode():
+    """Of the user's locale. Python's own encoding does not tell: it takes UTF-8 where the locale has none."""
+    try:
+        locale.setlocale(locale.LC_CTYPE, "")
+    except locale.Error:
+        return False
+    return locale.nl_langinfo(locale.CODESET).replace("-", "").upper() == "UTF8"
+
+
+def coloured(text, colour):
+    """The text in a colour given as #rrggbb. Nearly black and nearly white stay as the terminal has its text."""
+    rgb = [int(colour[i:i + 2], 16) for i in (1, 3, 5)]
+    if max(rgb) < 70 or min(rgb) > 200:
+        return text
+    return f"\x1b[38;2;{rgb[0]};{rgb[1]};{rgb[2]}m{text}\x1b[0m"
 
 
 class Canvas:

@@ -1,19 +1,16 @@
 """A sweep's table as a picture: a metric over one varied field, or over two as curves or a heat map."""
-import matplotlib
 import numpy as np
+from matplotlib import colors
+from matplotlib.patches import Patch, Rectangle
 
 from hapbench.columns import read_records
 from hapbench_figures.stability import edges, is_geometric
-from hapbench_figures.style import SETTINGS
 from hapbench_looks import look
 from hapbench_report.json_input import InputError, at, load_object
+from hapbench_style import SETTINGS, plt
 
 from .fields import axis
-from .names import nearest
-
-matplotlib.use("agg")
-from matplotlib import colors, pyplot as plt  # noqa: E402  (the backend comes first)
-from matplotlib.patches import Patch, Rectangle  # noqa: E402
+from .given import nearest
 
 USUAL = ("force_rms_above_30Hz_N", "force_max_N")
 FAILURES = ("diverges", "error")
@@ -79,7 +76,7 @@ def spread_logarithmically(values):
 
 
 def draw_sweep(sweep):
-    with matplotlib.rc_context(SETTINGS):
+    with plt.rc_context(SETTINGS):
         figure, ax = plt.subplots(figsize=(6.0, 3.8))
         ax.set_title(sweep.name)
         columns = [sweep.column(field) for field in sweep.fields]

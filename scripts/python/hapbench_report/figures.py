@@ -1,9 +1,12 @@
-"""The drawn figures: figures.json tells what they show, their files are embedded as data URIs."""
+"""The drawn figures: figures.json tells what they show; each with its caption, the claims and runs it belongs to, and how to
+draw it again."""
 import base64
 from dataclasses import dataclass
 from pathlib import Path
 
 from .json_input import InputError, load_json, member, objects, shown
+from .links import figure_name
+from .markup import command, folded, listed, text, typeset
 
 MEDIA_TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
 # A vector drawing is preferred up to this size; beyond it the picture, if that is smaller. Forty figures must fit.
@@ -59,3 +62,26 @@ def chosen_file(files, file, place):
     if ".svg" in present and (".png" not in present or present[".svg"].stat().st_size <= LARGEST_SVG_BYTES):
         return present[".svg"]
     return min(present.values(), key=lambda path: path.stat().st_size)
+
+
+def figures_section(figures, links):
+    if not figures:
+        return '<p class="note">No figures were given (<code>--figures</code>).</p>'
+    shown = "\n".join(figure_markup(figure, links) for figure in figures)
+    return ("<p>Redrawn from the results above, published numbers as red hollow marks where the thesis gives them. A click "
+            "enlarges a figure. <span class=dark-only>On the dark page black and white have changed places; captions name the colours "
+            "of the light one. </span>To draw them "
+            f"again:</p>{command('scripts/figures results/out/reproduce --out results/out/figures')}<div class=figures>{shown}</div>")
+
+
+def figure_markup(figure, links):
+    name = f"{figure_name(figure)}: " if figure.thesis_figure else ""
+    claims, runs = links.of_figure(figure)
+    files = "<br>".join(links.of_source(source) for source in figure.sources)
+    data = listed("Runs", runs) + (f"<p><b>Files</b><br>{files}</p>" if files else "")
+    title = text(figure.title or figure.id)
+    return (f'<figure id="figure-{text(figure.id)}"><h3>{text(name)}{title}</h3>'
+            f'<button type="button" class="enlarge" aria-label="Enlarge {title}">'
+            f'<img src="{figure.data_uri()}" alt="{title}"></button>'
+            f"<figcaption>{typeset(figure.caption)}</figcaption>{listed('Claims', claims)}"
+            + (folded("Runs and files", data) if data else "") + "</figure>")

@@ -3,7 +3,7 @@ import re
 
 from .markup import text
 from .runs import find_run
-from .section_thesis import anchor, drawn, figure_labels, load_tables, thesis_figures
+from .thesis import anchor, drawn, figure_labels, load_tables, thesis_figures
 from .studies import LIMITS
 
 
@@ -109,8 +109,3 @@ def claim_link(claim):
 
 def run_link(run):
     return f'<a href="#{run.anchor}">{text(run.path.removeprefix("thesis/"))}</a>'
-
-
-def listed(title, links):
-    """A line of links; nothing where there are none."""
-    return f"<p class=links><b>{title}</b> {', '.join(links)}</p>" if links else ""

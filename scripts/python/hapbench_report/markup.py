@@ -3,10 +3,18 @@ import html
 import json
 import re
 from decimal import Decimal
+from pathlib import Path
+from statistics import median
+
+from hapbench.units import ending_of, unit_of
+from hapbench_looks import look
 
 from .json_input import number_or_none
 
 ABSENT = "–"
+ASSETS = Path(__file__).parent / "assets"
+PER = "seconds_per_"  # time of a step or of a call
+SMALL_M = 0.01  # lengths below are shown in millimetres
 
 
 def text(value):
@@ -104,3 +112,48 @@ def embedded_json(value):
     """JSON for a script element: it cannot end the element, nor hold what JSON does not know."""
     packed = json.dumps(value, separators=(",", ":"), allow_nan=False, ensure_ascii=False)
     return packed.replace("<", "\\u003c")
+
+
+def in_colour(one, shown):
+    """Ready HTML in the colour of a look, on light and on dark ground."""
+    return f'<span class=run-name style="--light:{one.colour};--dark:{one.dark}">{shown}</span>'
+
+
+def algorithm_name(algorithm):
+    return in_colour(look(algorithm), text(algorithm))
+
+
+def column(name, values=()):
+    """Title, unit (empty for numbers without one) and factor of a column with these numbers, by its name."""
+    if name.startswith(PER):
+        return f"time of a {name.removeprefix(PER)}", "µs", 1e6
+    ending = ending_of(name)
+    title, unit = (name.removesuffix("_" + ending) if ending else name).replace("_", " "), unit_of(name)
+    sizes = [abs(value) for value in values if value]
+    return (title, "mm", 1e3) if unit == "m" and sizes and median(sizes) < SMALL_M else (title, unit, 1)
+
+
+def columns(names, rows):
+    """Heading cells of numbers, and for each row its cells; `rows`: lists of numbers or None, of these names."""
+    heads = [column(name, [v for v in values if v is not None]) for name, values in zip(names, zip(*rows))]
+    return ([heading_cell(text(title), True, unit) for title, unit, _ in heads],
+            [[number_cell(None if v is None else v * factor, 3) for v, (_, _, factor) in zip(row, heads)] for row in rows])
+
+
+def fill(file, values):
+    """The file's text with values in the places of {{name}}."""
+    # In one pass, so that a value which looks like a placeholder stays what it is.
+    return re.sub(r"\{\{(\w+)\}\}", lambda match: values[match[1]], file.read_text(encoding="utf-8"))
+
+
+def listed(title, links):
+    """A line of links; nothing where there are none."""
+    return f"<p class=links><b>{title}</b> {', '.join(links)}</p>" if links else ""
+
+
+def filters(table_id, menus):
+    """Controls of a filtered table: a text and menus over columns."""
+    options = "".join(f'<label>{text(title)} <select data-column="{column}"><option value="">all</option></select></label>'
+                      for title, column in menus)
+    return (f'<div class="bar" data-filters="{table_id}"><label>Filter <input type="search" placeholder="words"></label>'
+            f"{options}<output></output></div>")

@@ -1,19 +1,14 @@
 """The page: its sections in order, with style and scripts inlined."""
-from pathlib import Path
-
-from .colours import colour_rules
+from .figures import figures_section
+from .ledger import choices_section, ledger_section, summary_section
 from .links import Links
-from .markup import command, text
-from .section_figures import figures_section
-from .section_ledger import choices_section, ledger_section, summary_section
-from .section_performance import FIGURE, performance_section
-from .section_replay import replay_section
-from .section_runs import parameters_section, provenance_of, provenance_section, runs_section
-from .section_studies import studies_section, timing_section
-from .section_thesis import index_section, limits_table, load_tables, parameter_tables, target_tables
-from .template import fill
+from .markup import ASSETS, command, fill, text
+from .performance import FIGURE, performance_section
+from .replay import replay_section
+from .runs import parameters_section, provenance_of, provenance_section, runs_section
+from .studies import studies_section, timing_section
+from .thesis import index_section, limits_table, load_tables, parameter_tables, target_tables
 
-ASSETS = Path(__file__).parent / "assets"
 STYLES = ("style.css", "replay.css")
 SCRIPTS = ("theme.js", "tables.js", "page.js", "replay_data.js", "replay_camera.js", "replay_scene.js", "replay_tool.js", "replay_field.js",
            "replay_tracks.js", "replay_sound.js", "replay_export.js", "replay_player.js", "replay_controls.js")
@@ -47,7 +42,7 @@ def report(runs, studies, claims, choices, figures, scenes, performance):
 def whole_page(sections, title="hapbench report", further_style=""):
     """The page of sections, each a key, a short title for the navigation, a title and its HTML."""
     return fill(ASSETS / "page.html", {
-        "style": "\n".join([colour_rules(), *((ASSETS / name).read_text(encoding="utf-8") for name in STYLES)]) + further_style,
+        "style": "\n".join((ASSETS / name).read_text(encoding="utf-8") for name in STYLES) + further_style,
         "title": text(title),
         "navigation": "".join(f'<a href="#{key}">{text(title)}</a>' for key, title, _, _ in sections),
         "sections": "\n".join(section(*entry) for entry in sections),

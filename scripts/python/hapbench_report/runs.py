@@ -1,12 +1,20 @@
-"""The runs in a results directory: every directory with a summary.json."""
+"""The runs in a results directory, which is every directory with a summary.json: their table, and parameters, provenance and
+command of each."""
+import json
+from functools import cached_property
 from pathlib import Path
 
 from hapbench import results
 
-from .json_input import member, number_or_none
+from .json_input import at, member, number_or_none
+from .markup import (algorithm_name, cell, columns, command, counted, filters, folded, heading_cell, listed, number_cell, table,
+                     text)
 
 # Written for the replay, not as results of their own.
 REPLAY_DIRECTORY = "replay"
+# Of summary.json, in the table of all runs.
+METRICS = ("force_max_N", "velocity_total_variation_m_per_s", "force_reversals", "depth_max_m", "ratio_min", "ratio_max",
+           "colliding_mean", "rendered_mean")
 
 
 class Run(results.Run):
@@ -42,6 +50,14 @@ class Run(results.Run):
         metrics = self.summary.get("metrics")
         return number_or_none(metrics.get(key)) if isinstance(metrics, dict) else None
 
+    @cached_property
+    def sections(self):
+        """The groups of metrics in summary.json, by their names: what columns.json documents."""
+        file = self.folder / "columns.json"
+        documented = {entry["name"] for entry in results.read_json(file).get("summary.json", ())} if file.is_file() else set()
+        return {name: value for name, value in self.summary.items()
+                if isinstance(value, dict) and (name == "metrics" or documented & set(value))}
+
 
 def load_runs(directory: Path):
     runs = []
@@ -65,3 +81,88 @@ def find_run(runs, name):
     """The first run of that name, the thesis's own before comparisons; None when there is none."""
     named = [run for run in runs if run.path.split("/")[-1] == name]
     return min(named, key=lambda run: (run.group != "thesis", run.path), default=None)
+
+
+def runs_section(runs):
+    numbers, cells = columns(METRICS, [[run.metric(name) for name in METRICS] for run in runs])
+    rows = []
+    for run, measured in zip(runs, cells):
+        outcome = text(run.outcome.replace("_", " ")) + ("" if run.expected else ' <b class="bad">✗ unexpected</b>')
+        rows.append([cell(text(part_of(run))), cell(f'<a href="#{run.anchor}">{text(run.name)}</a>', classes="name"),
+                     cell(algorithm_name(run.algorithm), classes="name"), cell(outcome), number_cell(at(run.summary, "/steps")), *measured])
+    headings = [*map(heading_cell, ("Part", "Scenario", "Algorithm", "Outcome")), heading_cell("Steps", True), *numbers]
+    return ("<p>Click a heading to sort; scenarios lead to parameters, provenance and the command.</p>"
+            + filters("runs-table", [("Part", 0), ("Algorithm", 2), ("Outcome", 3)])
+            + table(headings, rows, "<b>All runs</b> Ratio: combined stiffness along a contact in units of K; colliding, rendered: "
+                    "mean numbers of points before and after the reduction", "sortable", "runs-table"))
+
+
+def parameters_section(runs, links):
+    return ("<p>The full scenario of every run, defaults filled in; saved to a file and run again it gives the same "
+            "bytes.</p>" + "\n".join(folded(f"{text(part)} <span class=note>{counted(len(own), 'run')}</span>",
+                                          "".join(run_details(run, links) for run in own))
+                                   for part, own in by_part(runs).items()))
+
+
+def by_part(runs):
+    parts = {}
+    for run in runs:
+        parts.setdefault(part_of(run), []).append(run)
+    return parts
+
+
+def part_of(run):
+    return run.path.rpartition("/")[0] or run.group
+
+
+def run_details(run, links):
+    description = str(run.scenario.get("description", ""))
+    source = str(run.scenario.get("source", ""))
+    about = f"<p>{text(description)}" + (f" <span class=note>Thesis: {text(source)}</span>" if source else "") + "</p>"
+    claims, figures = links.of_run(run)
+    parts = [(title, run.scenario.get(title)) for title in run.scenario
+             if title not in ("name", "description", "source", "expect")]
+    return (f'<details id="{run.anchor}"><summary>{text(run.path)}</summary>{about}'
+            f"{listed('Claims', claims)}{listed('Figures', figures)}{command(rerun(run))}"
+            f"<pre>{text(compact(dict(parts)))}</pre>"
+            f"<p class=note>State hash {text(run.summary.get('state_hash', '–'))}, scenario hash "
+            f"{text(at(run.summary, '/provenance/scenario_hash') or '–')}{plugin_text(run)}.</p></details>")
+
+
+def rerun(run):
+    """The command of this very run. A comparison is one scenario through several algorithms."""
+    line = f"hapbench run {run.name} --out {run.path}"
+    return line + (f" --set rendering.algorithm={run.algorithm}" if run.compared else "")
+
+
+def compact(parts):
+    """One line per part."""
+    return "\n".join(f"{key}: {json.dumps(value, ensure_ascii=False)}" for key, value in parts.items())
+
+
+def plugin_text(run):
+    plugin = at(run.summary, "/provenance/plugin")
+    return f", law from {text(plugin['file'])} with hash {text(plugin['hash'])}" if plugin else ""
+
+
+def provenance_of(runs):
+    """Distinct builds and machines, with the number of their runs."""
+    found = {}
+    for run in runs:
+        # What is the scenario's or the law's own is no other build.
+        build = {k: v for k, v in (run.summary.get("provenance") or {}).items() if k not in ("scenario_hash", "plugin")}
+        key = json.dumps(build, sort_keys=True)
+        found[key] = found.get(key, 0) + 1
+    return [(json.loads(key), count) for key, count in sorted(found.items())]
+
+
+def provenance_section(provenance):
+    keys = sorted({key for build, _ in provenance for key in build})
+    rows = [[*(cell(text(build.get(key, "–"))) for key in keys), cell(str(count), classes="number")]
+            for build, count in provenance]
+    headings = [*(heading_cell(text(key.replace("_", " "))) for key in keys), heading_cell("Runs", True)]
+    mixed = ("<p><b class=bad>✗ These results come from more than one build or machine.</b></p>"
+             if len(provenance) > 1 else "")
+    dirty = any(str(build.get("commit", "")).endswith("-dirty") for build, _ in provenance)
+    note = ("<p class=note>A commit that ends in -dirty had changes that were not committed.</p>" if dirty else "")
+    return mixed + table(headings, rows, "<b>What produced the results</b>") + note

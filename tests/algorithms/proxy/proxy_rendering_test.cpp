@@ -7,7 +7,7 @@
 #include "algorithms/proxy/nearest_allowed.hpp"
 #include "algorithms/proxy/proxy_constraints.hpp"
 #include "algorithms/proxy/proxy_rendering.hpp"
-#include "sim/contact/shell_query.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/tool/cylinder.hpp"
@@ -50,7 +50,7 @@ TEST(SpringConstraints, OfAUnilateralSpringHoldFromOneSideAtAnyDistance) {
 TEST(ShellConstraints, AreThoseOfEveryPointWithinTheMargin) {
   const Cylinder tool;
   const PointShell shell(surface_points(Plane{0.004, 0.0001}), 0.0);
-  for (const Skips skips : {Skips::taken, Skips::off}) {
+  for (const Skips skips : {Skips::on, Skips::off}) {
     ShellConstraints constraints(shell, tool, skips);
     EXPECT_EQ(constraints.margin(), kProxyMargin * tool.radius());
     ContactBuffer contacts(constraints.capacity());

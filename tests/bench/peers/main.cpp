@@ -9,7 +9,7 @@
 #include "algorithms/peers/peer_source.hpp"
 #include "results/summary/provenance.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
-#include "scenarios/run/peer_contacts.hpp"
+#include "scenarios/run/assemble.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "tests/bench/peers/linked_peers.hpp"
 #include "tests/bench/task_scene.hpp"

@@ -2,10 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "scenarios/batch/journal.hpp"
-#include "scenarios/batch/sweep_row.hpp"
+#include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/shared_shells.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/batch/sweeps.hpp"
 #include "tests/scenarios/support/errors.hpp"
@@ -18,18 +19,34 @@ using test::minimal_scenario;
 using test::plan_of;
 using test::read_file;
 
-TEST(SharedShells, MakesEachOnceAndDropsItAfterItsLastRun) {
-  const SweepPlan plan = plan_of(minimal_scenario("plane"), {"environment.spacing_m=0.0005,0.0004"});
-  SharedShells shells({2, 1});
-  auto first = shells.take(0, scenario_of(plan, 0).scenario);
-  const auto other = shells.take(1, scenario_of(plan, 1).scenario);
-  EXPECT_NE(first, other);
-  EXPECT_EQ(other.use_count(), 1);
-  EXPECT_EQ(first.use_count(), 2);
-  const auto again = shells.take(0, scenario_of(plan, 0).scenario);
-  EXPECT_EQ(again, first);
-  EXPECT_EQ(first.use_count(), 2);  // the two here; the collection has let go of it
+using Numbers = std::vector<std::size_t>;
+
+TEST(RunsToDo, AreInOrderWhereTheEnvironmentStaysTheSame) {
+  const SweepPoints points({parse_axis("a=1,2"), parse_axis("b=1,2")});
+  EXPECT_EQ(runs_to_do(points, {}), (Numbers{0, 1, 2, 3}));
+  EXPECT_EQ(runs_to_do(points, {1, 3}), Numbers{1});
+  EXPECT_EQ(runs_to_do(points, {4, 5}), Numbers{});
 }
+
+TEST(RunsToDo, OfOneEnvironmentFollowEachOther) {
+  const SweepPoints points(
+      {parse_axis("a=1,2"), parse_axis("environment.spacing_m=1e-3,2e-3,3e-3"), parse_axis("environment.width_m=1,2")});
+  EXPECT_EQ(runs_to_do(points, {}), (Numbers{0, 6, 1, 7, 2, 8, 3, 9, 4, 10, 5, 11}));
+  EXPECT_EQ(runs_to_do(points, {1, 2}), (Numbers{1, 7, 3, 9, 5, 11}));
+}
+
+TEST(RunsToDo, OfASampleFollowEachOtherByTheListedFields) {
+  const SweepPoints points({parse_sampled_axis("environment.file=x.stl,y.stl"),
+                            parse_sampled_axis("environment.scale=1:2"), parse_sampled_axis("a=1:2")},
+                           {SamplingMethod::latin_hypercube, 40, 1});
+  const Numbers all = runs_to_do(points, {});
+  Numbers sorted = all;
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(sorted[i], i);
+  for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(points.value(all[i], 0), i < 20 ? "x.stl" : "y.stl");
+}
+
+// ---- Sweeps
 
 class RunSweep : public testing::Test {
  protected:
@@ -54,7 +71,7 @@ TEST_F(RunSweep, HasForEachRunWhatTheRunAloneHas) {
   EXPECT_EQ(report.counts.runs, 4u);
   for (std::size_t i = 0; i < 4; ++i) {
     const RunReport alone = run_scenario(scenario_of(plan, i), std::nullopt, false);
-    EXPECT_EQ(report.rows[i], sweep_row(plan, i, alone.summary));
+    EXPECT_EQ(row_text(plan, report.rows[i]), row_text(plan, sweep_row(plan, i, alone.summary)));
     EXPECT_GT(alone.summary.metrics.force_max, 0.0);
   }
 }
@@ -64,7 +81,7 @@ TEST_F(RunSweep, HasOneTableWhateverTheOrderOfTheRuns) {
   const SweepPlan plan = plan_of(minimal_scenario("plane"), {"time.steps=1:40:40", "environment.spacing_m=5e-4,4e-4"});
   const SweepReport report = run(plan, directory_.path());
   ASSERT_EQ(report.rows.size(), 80u);
-  for (std::size_t i = 0; i < 80; ++i) EXPECT_EQ(run_of_row(plan, report.rows[i]), i);
+  for (std::size_t i = 0; i < 80; ++i) EXPECT_EQ(report.rows[i].run, i);
 }
 
 TEST_F(RunSweep, OfManyRunsKeepsNoRows) {
@@ -75,7 +92,7 @@ TEST_F(RunSweep, OfManyRunsKeepsNoRows) {
   EXPECT_TRUE(report.rows.empty());
   const auto lines = test::lines_of(read_file(report.table));
   ASSERT_EQ(lines.size(), 10'002u);
-  for (std::size_t i = 0; i < 10'001; i += 100) EXPECT_EQ(run_of_row(plan, lines[1 + i]), i);
+  for (std::size_t i = 0; i < 10'001; i += 100) EXPECT_EQ(parse_row(plan, lines[1 + i]).value().run, i);
 }
 
 TEST_F(RunSweep, HasErrorRowsForRunsThatNobodyChecked) {
@@ -88,14 +105,15 @@ TEST_F(RunSweep, HasErrorRowsForRunsThatNobodyChecked) {
   ASSERT_TRUE(report.failed);
   EXPECT_EQ(report.failed->run, 4567u);
   EXPECT_NE(report.failed->problem.find("/seed: got -1"), std::string::npos) << report.failed->problem;
-  EXPECT_EQ(report.rows[4567], error_row(plan, 4567));
+  EXPECT_EQ(row_text(plan, report.rows[4567]), row_text(plan, error_row(plan, 4567)));
 }
 
 TEST_F(RunSweep, LeavesTheTableAndItsDescriptionOnly) {
   const SweepPlan plan = plan_of(minimal_scenario("plane"), {"time.steps=1,2"});
   const SweepReport report = run(plan, directory_.path());
   EXPECT_EQ(directory_.entries(), (std::vector<std::string>{"sweep.csv", "sweep.json"}));
-  EXPECT_EQ(read_file(report.table), sweep_header(plan) + "\n" + report.rows[0] + "\n" + report.rows[1] + "\n");
+  EXPECT_EQ(read_file(report.table),
+            sweep_header(plan) + "\n" + row_text(plan, report.rows[0]) + "\n" + row_text(plan, report.rows[1]) + "\n");
   const Json description = Json::parse(read_file(directory_ / "sweep.json"));
   EXPECT_EQ(description["definition"], plan.definition);
   EXPECT_EQ(description["vary"][0]["values"], (Json{"1", "2"}));
@@ -124,10 +142,10 @@ TEST_F(FailingSweep, HasErrorRowsForWhatFailsAndGoesOn) {
   ASSERT_TRUE(report.failed);
   EXPECT_EQ(report.failed->run, 0u);
   EXPECT_NE(report.failed->problem.find("a.csv"), std::string::npos);
-  EXPECT_EQ(report.rows[1], error_row(*plan_, 1));
-  EXPECT_EQ(report.rows[2].find("2,b.csv,1,completes,true,1,"), 0u) << report.rows[2];
-  for (const std::string& row : report.rows) {
-    EXPECT_EQ(test::cells_of(row).size(), test::cells_of(sweep_header(*plan_)).size());
+  EXPECT_EQ(row_text(*plan_, report.rows[1]), row_text(*plan_, error_row(*plan_, 1)));
+  EXPECT_EQ(row_text(*plan_, report.rows[2]).find("2,b.csv,1,completes,true,1,"), 0u);
+  for (const SweepRow& row : report.rows) {
+    EXPECT_EQ(test::cells_of(row_text(*plan_, row)).size(), test::cells_of(sweep_header(*plan_)).size());
   }
 }
 
@@ -153,7 +171,7 @@ TEST_F(FailingSweep, TriesWhatFailedAgainWhenItIsResumed) {
 TEST_F(RunSweep, TakesNoRowsFromItsJournalThatAreNotItsOwn) {
   const SweepPlan plan = plan_of(minimal_scenario("plane"), {"time.steps=1,2"});
   const std::string title = "definition " + plan.definition + ", shard 0/1, runs are not kept";
-  const std::string good = run(plan, directory_.path()).rows[0];
+  const std::string good = row_text(plan, run(plan, directory_.path()).rows[0]);
   for (const std::string& row : {std::string("2") + good.substr(1), "0,7" + good.substr(3), std::string("x"),
                                  std::string(","), good + ",", std::string("99999999999999999999,1")}) {
     Journal(directory_ / "sweep.journal", title, false).add(row);

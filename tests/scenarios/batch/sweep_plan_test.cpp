@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <set>
 
-#include "scenarios/batch/sweep_row.hpp"
+#include "scenarios/batch/sweep_table.hpp"
+#include "scenarios/description/metric_sections.hpp"
+#include "scenarios/run/run_scenario.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/batch/sweeps.hpp"
 #include "tests/scenarios/support/errors.hpp"
@@ -91,6 +93,30 @@ TEST(SweepPlan, HasTheColumnsOfWhateverSomeRunRecords) {
   EXPECT_EQ(header({"record.energy=false,true"}).find("ideal_trajectory"), std::string::npos);
 }
 
+TEST(SweepPlan, HasExactlyTheMetricsOfItsRuns) {
+  std::vector<test::NamedScenario> scenarios = test::rich_scenarios();
+  for (test::NamedScenario& minimal : test::minimal_scenarios()) scenarios.push_back(std::move(minimal));
+  Json prescribed = minimal_scenario("plane");
+  prescribed["motion"]["position"] = {{"type", "prescribed"}, {"x_m", 0}, {"y_m", 0}, {"z_m", 0}};
+  prescribed["reference_force"] = {{"z_N", 1.0}};
+  prescribed["perception"] = Json::object();
+  scenarios.push_back({"with_reference_force", prescribed});
+  Json block = minimal_scenario("block_with_hole");
+  block["record"] = {{"ideal_trajectory", true}};
+  scenarios.push_back({"with_ideal_trajectory", block});
+  std::set<std::string> all;
+  for (const auto& [name, json] : scenarios) {
+    const bool has_targets = json.contains("hand") && json["hand"]["type"] == "tracking";  // which take their time
+    const SweepPlan plan = plan_of(json, {has_targets ? "seed=1" : "time.steps=2"});
+    std::vector<std::string> names;
+    for (const Metric& metric : metric_list(run_scenario(scenario_of(plan, 0), std::nullopt, false).summary))
+      names.push_back(metric.name);
+    EXPECT_EQ(plan.metrics, names) << name;
+    all.insert(names.begin(), names.end());
+  }
+  for (const std::string& name : metric_names()) EXPECT_TRUE(all.contains(name)) << name;
+}
+
 TEST(SweepPlan, HasAnotherDefinitionForEveryOtherContent) {
   const Json plane = minimal_scenario("plane");
   Json other = plane;
@@ -128,6 +154,39 @@ TEST(SweepPlan, DefinesNamedFilesByTheirContents) {
   const std::string first = definition(points);
   EXPECT_EQ(definition(points), first);
   EXPECT_NE(definition(points.substr(0, points.rfind('\n', points.size() - 2) + 1)), first);
+}
+
+/// A plane, which names no file, under a tool that is a mesh.
+Json plane_under_mesh_tool() {
+  Json scenario = minimal_scenario("plane");
+  scenario["tool"] = {{"type", "mesh"}, {"file", "tool.obj"}, {"scale", 0.001}, {"grid_m", 0.0002}};
+  return scenario;
+}
+
+TEST(SweepPlan, DefinesAToolByItsMesh) {
+  const test::TemporaryDirectory directory;
+  const auto definition = [&](const std::string& contents) {
+    test::write_plainly(directory / "tool.obj", contents);
+    return plan_of(plane_under_mesh_tool(), {"time.steps=1,2"}, directory / "sweep.json").definition;
+  };
+  const std::string cube = test::read_file(test::data_directory() / "cube.obj");
+  const std::string first = definition(cube);
+  EXPECT_EQ(definition(cube), first);
+  EXPECT_NE(definition(cube + "# more\n"), first);
+}
+
+TEST(SweepPlan, RefusesBadMeshesOfToolsBeforeTheFirstRun) {
+  const test::TemporaryDirectory directory;
+  const std::string cube = test::read_file(test::data_directory() / "cube.obj");
+  test::write_plainly(directory / "tool.obj", cube);
+  test::write_plainly(directory / "open.obj", cube.substr(0, cube.rfind('f')));
+  for (const std::string bad : {"missing.obj", "open.obj"}) {
+    const auto error = test::input_error_of(
+        [&] { plan_of(plane_under_mesh_tool(), {"tool.file=tool.obj," + bad}, directory / "sweep.json"); });
+    ASSERT_TRUE(error) << bad;
+    EXPECT_NE(std::string(error->what()).find("sweep.json: /tool/file: "), std::string::npos) << error->what();
+    EXPECT_NE(std::string(error->what()).find(bad), std::string::npos) << error->what();
+  }
 }
 
 TEST(SweepPlan, RefusesBadNamedFilesOfAnyRun) {

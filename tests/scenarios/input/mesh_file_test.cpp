@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "scenarios/input/number_table.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "sim/mesh/mesh_from_triangles.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"

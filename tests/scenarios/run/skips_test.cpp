@@ -4,7 +4,7 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/scenario_text.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "tests/results/files.hpp"

@@ -11,7 +11,7 @@
 namespace hapbench::stability_map_test {
 namespace {
 
-constexpr JobOptions kTwoThreads{2, ""};
+const JobOptions kTwoThreads{2, ""};
 
 struct MapOfAlgorithm {
   const StabilityMap* map;

@@ -37,7 +37,8 @@ TEST(Adversary, FindsThatTheOriginalAlgorithmIsWorseThanStiffnessShaping) {
   const SearchResult shaped = search_adversary(scene("shaped_stiffness"), options(200));
   EXPECT_GT(original.badness, 2.0 * original.at_rest);
   EXPECT_GT(original.badness, 10.0 * shaped.badness);
-  EXPECT_GT(original.run.energy->created_sum, 0.1);  // [J]: a hundred times what a hand of 5 N puts in along 0.2 mm
+  EXPECT_GT(metric_of(original.run, "energy.created_sum_J").value(),
+            0.1);  // [J]: a hundred times what a hand of 5 N puts in along 0.2 mm
 }
 
 TEST(Adversary, KeepsNinetyPercentWhileMinimising) {

@@ -1,0 +1,136 @@
+"""The ledger: what the thesis claims, what it publishes, what we measure, and the verdict; with the choices on record and the
+summary of the page."""
+from .json_input import InputError, load_object, member, number_or_none, objects, shown
+from .links import claim_link
+from .markup import cell, command, counted, filters, folded, heading_cell, listed, table, text, typeset
+
+# Verdict -> (mark, tone). The mark tells verdicts apart without colour.
+VERDICTS = {
+    "reproduced": ("✓", "good"),
+    "reproduced in kind": ("≈", "fair"),
+    "not reproduced": ("✗", "bad"),
+    "refuted": ("⊘", "bad"),
+    "not reproducible": ("–", "none"),
+}
+
+
+def load_claims(file):
+    claims = objects(load_object(file), "claims", file)
+    for i, claim in enumerate(claims):
+        verdict = claim.get("verdict")
+        if verdict not in VERDICTS:
+            raise InputError(f"{file}: /claims/{i}/verdict: got {shown(verdict)}; allowed: {shown_verdicts()}")
+        if claim.get("robustness") is not None:
+            member(claim, "robustness", dict, file, f"/claims/{i}")
+    return claims
+
+
+def robustness_text(claim):
+    """How a claim's verdict fares over the choices on record, as the ledger's Markdown says it."""
+    robustness = claim.get("robustness")
+    if not robustness:
+        return "not sampled: times of one machine" if claim.get("timing") else ""
+    holds, judged, decided_by = (robustness.get(key) for key in ("holds", "judged", "decided_by"))
+    text = f"this verdict in {holds} of {judged} samples"
+    if isinstance(decided_by, dict):
+        return f"{text}; decided by {decided_by.get('choice')} (S = {number_or_none(decided_by.get('index')) or 0:.2f})"
+    return text if holds == judged else f"{text}; no single choice decides"
+
+
+def load_choices(file):
+    """What the thesis leaves open: results/reference/choices.json."""
+    return objects(load_object(file), "choices", file)
+
+
+def shown_verdicts():
+    return ", ".join(f'"{verdict}"' for verdict in VERDICTS)
+
+
+def verdict_counts(claims):
+    return {verdict: sum(claim["verdict"] == verdict for claim in claims) for verdict in VERDICTS}
+
+
+def verdict_mark(verdict):
+    mark, tone = VERDICTS[verdict]
+    return f'<span class="verdict {tone}">{mark} {text(verdict)}</span>'
+
+
+def summary_section(runs, claims, figures, provenance):
+    met = sum(run.expected for run in runs)
+    tiles = [(len(runs), "run" if len(runs) == 1 else "runs"), (f"{met}/{len(runs)}", "ended as their scenario expects")]
+    tiles += [(count, verdict_mark(verdict)) for verdict, count in verdict_counts(claims).items() if count]
+    if figures:
+        tiles.append((len(figures), '<a href="#figures">figures</a>'))
+    items = "".join(f"<li><b>{text(value)}</b><span>{label}</span></li>" for value, label in tiles)
+    commits = ", ".join(sorted({str(p.get("commit", "unknown")) for p, _ in provenance})) or "unknown"
+    return (
+        "<h1>hapbench: haptic rendering of object-to-object contact</h1>"
+        '<p class="lead">Scripted tool trajectories go through pluggable force algorithms; trajectories, stiffness ratios, '
+        "stability limits and the cost of a step come out. Everything here is compared with T. C. Lee, <cite>Rendering "
+        "6-DOF Object-to-Object Interaction with 3-DOF Haptic Interfaces</cite> (“the thesis”); numbers such as Fig. A.2 or "
+        f"3.3 are its figures and sections. Program of commit <code>{text(commits)}</code>.</p>"
+        f'<ul class="cards">{items}</ul>{warnings(runs)}{refusals(claims)}')
+
+
+def warnings(runs):
+    """The runs that ended otherwise than expected, by name: they must not hide in a long table."""
+    missed = [f'<a href="#{run.anchor}">{text(run.path)}</a> ({text(run.outcome)})' for run in runs if not run.expected]
+    return f'<p><b class="bad">✗ Not as expected:</b> {", ".join(missed)}.</p>' if missed else ""
+
+
+def refusals(claims):
+    """What the bench does not confirm, in the summary rather than somewhere below."""
+    items = "".join(f"<li>{verdict_mark(c['verdict'])} {claim_link(c)} ({text(c.get('place', ''))}): "
+                    f"{typeset(c.get('claim', ''))}</li>" for c in claims if VERDICTS[c["verdict"]][1] == "bad")
+    return f"<p>What these runs do not confirm:</p><ul>{items}</ul>" if items else ""
+
+
+def ledger_section(claims, links):
+    if not claims:
+        return '<p class="note">No ledger was given (<code>--claims</code>).</p>'
+    rows = [claim_row(claim, links) for claim in claims]
+    headings = [heading_cell(title) for title in ("Id", "Verdict", "Claim", "Published", "Measured", "Robustness")]
+    return ("<p>Each claim of the thesis, what it publishes, what the runs below give, and a verdict by a rule, which unfolds "
+            "with the figures and runs behind it. "
+            "Hands are calibrated to mean and standard deviation of the raw colliding points; all else is a prediction. "
+            "Robustness: how often the verdict is the same at points spread over the plausible ranges of everything the "
+            'thesis leaves open (<a href="#choices">choices on record</a>), '
+            "and the choice that decides it, if one does, "
+            "with its first-order Sobol index S.</p>"
+            + filters("ledger-table", [("Verdict", 1)])
+            + table(headings, rows, "<b>The ledger</b>", "sortable stack", "ledger-table"))
+
+
+def claim_row(claim, links):
+    id_ = text(claim.get("id", ""))
+    figures, runs = links.of_claim(claim)
+    more = (f"<p><b>Rule</b> {typeset(claim.get('rule', ''))}</p>" + listed("Figures", figures) + listed("Runs", runs)
+            + command(f"hapbench reproduce --only {claim.get('id', '')}"))
+    return [cell(f'<a id="claim-{id_}" href="#claim-{id_}">{id_}</a>', classes="id"), cell(verdict_mark(claim["verdict"])),
+            cell(f"{typeset(claim.get('claim', ''))}<p class=note>{links.place(str(claim.get('place', '')))}</p>"
+                 + folded("Rule, figures, runs", more, classes="printed"), classes="prose"),
+            cell(typeset(claim.get("published", ""))),
+            cell(f"{typeset(claim.get('measured', ''))}<p class=note>{typeset(claim.get('why', ''))}</p>", classes="prose"),
+            cell(text(robustness_text(claim)))]
+
+
+def choices_section(choices):
+    if not choices:
+        return '<p class="note">None were given (<code>--choices</code>).</p>'
+    rows = [[cell(text(c.get("id", ""))), cell(typeset(c.get("what", "")), classes="prose"),
+             cell(text(c.get("thesis", "")), classes="prose"), cell(text(f"{c.get('value', '')} {c.get('unit', '')}".strip())),
+             cell(text(plausible(c))), cell(text(c.get("chosen", ""))), cell(text(c.get("why", "")), classes="prose")]
+            for c in choices]
+    headings = [heading_cell(t) for t in ("Choice", "Of what", "The thesis", "Value", "Plausible", "Results seen", "Why")]
+    return ("<p>Everything the thesis leaves open and a scenario had to choose. A value without a unit that stands beside a "
+            "range around 1 multiplies what the scenarios have. “after” means that results had been seen when it was "
+            "chosen.</p>" + folded(f"All {counted(len(rows), 'choice')}", table(
+                headings, rows, "<b>Choices on record</b>", "sortable stack", "choices-table")))
+
+
+def plausible(choice):
+    """The values a choice could as well have had, as text."""
+    options, range_ = choice.get("options"), choice.get("range")
+    if isinstance(options, list):
+        return ", ".join(map(str, options))
+    return " to ".join(map(str, range_ if isinstance(range_, list) else [])) + (", log" if choice.get("scale") == "log" else "")

@@ -1,0 +1,166 @@
+"""A recorded run as the replay reads it: its tool, the rows that are shown, and the moments to jump to."""
+import math
+from pathlib import Path
+
+import numpy as np
+
+from hapbench.columns import read_columns
+
+from .json_input import InputError, at, load_object, number_or_none
+from .markup import number
+
+TENSOR_COLUMNS = ("sxx", "sxy", "sxz", "syy", "syz", "szz")
+# Per row: time, tip, axis, rendered force, ratio range, deepest point; with the tensor S where it was recorded.
+MEASURED_COLUMNS = ("time_s", "px_m", "py_m", "pz_m", "axis_x", "axis_y", "axis_z", "fx_N", "fy_N", "fz_N",
+                    "ratio_min", "ratio_max", "depth_max_m")
+CONTACT_COLUMNS = ("x_m", "y_m", "z_m", "depth_m", "gradient_x", "gradient_y", "gradient_z", "weight")
+NORMAL_COLUMNS = ("nx", "ny", "nz")
+ARC_POINTS = 48  # of a rounded tip: off the circle by 0.013 % of its radius
+SPANS = 500  # of a run; each keeps up to five rows
+SETTLING_S = 0.05
+LEAST_SETTLED_S = 1 / 30  # less tells nothing: the run hammers, and it has no metrics of settled contact
+
+
+def tool_profile(scenario, summary):
+    """The tool as a solid of revolution: pairs (s, r) in metres, at s along the axis, counted from the tip centre, the
+    radius r; from the far end to the tip. A cylinder's follows from the scenario, that of any other tool is in the run's
+    summary; of a mesh it is the silhouette. None if there is neither."""
+    outline = at(summary, "/tool/outline_m")
+    if outline is not None:
+        pairs = [[number_or_none(x) for x in pair] for pair in outline] if is_list_of_pairs(outline) else []
+        return pairs if len(pairs) > 1 and None not in sum(pairs, []) else None
+    diameter, length = (number_or_none(at(scenario, f"/tool/{key}")) for key in ("diameter_m", "length_m"))
+    if diameter is None or length is None:
+        return None
+    radius = diameter / 2
+    body = [[-length, 0.0], [-length, radius], [0.0, radius]]
+    if at(scenario, "/tool/tip") != "round":
+        return [*body, [0.0, 0.0]]
+    angles = [math.pi / 2 * i / ARC_POINTS for i in range(1, ARC_POINTS + 1)]
+    return body + [[radius * math.sin(a), radius * math.cos(a)] for a in angles]
+
+
+def is_list_of_pairs(value):
+    return isinstance(value, list) and all(isinstance(pair, list) and len(pair) == 2 for pair in value)
+
+
+def forces(columns):
+    """The rendered force in every row [N], n × 3."""
+    return np.column_stack([columns[f"f{axis}_N"] for axis in "xyz"])
+
+
+def force_steps(columns):
+    """Size of the change of the rendered force from the row before [N]; zero in the first."""
+    return np.append(0.0, np.linalg.norm(np.diff(forces(columns), axis=0), axis=1))
+
+
+def rows_to_show(columns):
+    """All rows of a short run. Of a long one, in equal spans of rows, those of the least and the greatest force, of the
+    greatest depth, and both ends of the largest step of the force: no peak is lost."""
+    n = len(columns["time_s"])
+    if n <= 4 * SPANS:
+        return np.arange(n)
+    size, step, depth = np.linalg.norm(forces(columns), axis=1), force_steps(columns), columns["depth_max_m"]
+    kept = [0, n - 1]
+    for rows in np.array_split(np.arange(n), SPANS):
+        jump = rows[step[rows].argmax()]
+        kept += [rows[size[rows].argmin()], rows[size[rows].argmax()], rows[depth[rows].argmax()], jump, max(0, jump - 1)]
+    return np.unique(kept)
+
+
+def settled_rows(time, colliding, settling_s, from_s):
+    """Which rows are in contact and no landing: not within the settling time after a first touch, which is a contact at the
+    start or after at least that time without one. `from_s`, if not None, replaces that rule."""
+    touching = np.flatnonzero(colliding > 0)
+    found = np.zeros(len(time), bool)
+    if from_s is not None:
+        found[touching] = time[touching] >= from_s
+        return found
+    when = time[touching]
+    first = np.diff(when, prepend=-np.inf) >= settling_s
+    found[touching] = when - np.maximum.accumulate(np.where(first, when, -np.inf)) >= settling_s
+    return found
+
+
+def worst_moments(columns, scenario):
+    """Where the settled force steps most (in a run that hardly settles: the force of all its rows), and where the tool is
+    deepest: title, time, value, unit."""
+    chosen = scenario.get("metrics") if isinstance(scenario.get("metrics"), dict) else {}
+    times, step, depth = columns["time_s"], force_steps(columns), columns["depth_max_m"]
+    rows = np.flatnonzero(settled_rows(times, columns["colliding"], chosen.get("settling_s", SETTLING_S), chosen.get("from_s")))
+    is_settled = len(times) > 1 and len(rows) * (times[1] - times[0]) >= LEAST_SETTLED_S
+    rows = rows if is_settled else np.arange(len(times))
+    jump, deepest = rows[step[rows].argmax()], depth.argmax()
+    return [{"title": "settled force step" if is_settled else "force step", "time": times[jump], "value": step[jump], "unit": "N"},
+            {"title": "depth", "time": times[deepest], "value": depth[deepest] * 1e3, "unit": "mm"}]
+
+
+def numbers(file, columns, steps=None):
+    """The named columns of a CSV file; with `steps`, of those rows whose step is among them."""
+    found = read_columns(file, [*columns, *({"step"} - set(columns) if steps is not None else ())], may_be_empty=True)
+    # Beyond single precision nothing can be drawn.
+    bad = next((name for name, values in found.items() if (np.abs(values) >= 1e38).any()), None)
+    if bad:
+        raise InputError(f"{file}: {bad}: holds numbers beyond 1e38; allowed: finite numbers")
+    without = np.flatnonzero(np.isnan(found.get("step", ())))
+    if without.size:
+        raise InputError(f"{file}: line {2 + without[0]}: step: got nan; allowed: a finite number")
+    kept = slice(None) if steps is None else np.isin(found["step"], np.fromiter(steps, float))
+    return {name: found[name][kept] for name in columns}
+
+
+class Recording:
+    """One algorithm's run through a scene."""
+
+    def __init__(self, directory: Path):
+        self.summary = load_object(directory / "summary.json")
+        self.scenario = load_object(directory / "scenario.effective.json")
+        self.tool = tool_profile(self.scenario, self.summary)
+        self.algorithm = str(self.summary.get("algorithm", directory.name))
+        # All rows, for the sound and the worst moments.
+        self.columns = numbers(directory / "trajectory.csv", ("step", *MEASURED_COLUMNS, "colliding"))
+        if not len(self.columns["step"]):
+            raise InputError(f"{directory / 'trajectory.csv'}: holds no row")
+        self.shown = rows_to_show(self.columns)
+        self.steps = self.columns["step"][self.shown].astype(int).tolist()
+        self.tensors = self.read_tensors(directory / "stiffness_tensor.csv")
+        self.contacts = self.read_contacts(directory / "contacts.csv")
+
+    def read_tensors(self, file):
+        """Of every shown row; None when they were not recorded."""
+        if not file.is_file():
+            return None
+        columns = numbers(file, ("step", *TENSOR_COLUMNS), set(self.steps))
+        of_step = {int(step): tensor for step, *tensor in np.column_stack(list(columns.values())).tolist()}
+        for step in self.steps:
+            if step not in of_step:
+                raise InputError(f"{file}: no row of step {step}")
+        return [of_step[step] for step in self.steps]
+
+    def read_contacts(self, file):
+        """Of every shown row, in the order of the file, with their normals; none when they were not recorded."""
+        rows = {step: [] for step in self.steps}
+        if file.is_file():
+            columns = numbers(file, ("step", *CONTACT_COLUMNS, *NORMAL_COLUMNS), set(self.steps))
+            for step, *contact in np.column_stack(list(columns.values())).tolist():
+                rows[int(step)].append(contact)
+        return [rows[step] for step in self.steps]
+
+    def rows(self):
+        """The shown rows as they are packed."""
+        measured = np.column_stack([self.columns[name][self.shown] for name in MEASURED_COLUMNS]).tolist()
+        return [row + tensor for row, tensor in zip(measured, self.tensors)] if self.tensors else measured
+
+    def tips(self, touching):
+        """Places of the tip in the shown rows; with `touching`, of those in contact."""
+        rows = self.shown[self.columns["colliding"][self.shown] > 0] if touching else self.shown
+        return np.column_stack([self.columns[f"p{axis}_m"][rows] for axis in "xyz"]).tolist()
+
+    def story(self):
+        """What became of it, in a few words."""
+        times = self.columns["time_s"]
+        touching = times[self.columns["colliding"] > 0]
+        contact = f"in contact until {number(touching[-1], 3)} s of {number(times[-1], 3)} s" if touching.size else "never in contact"
+        outcome = str(self.summary.get("outcome", "")).replace("_", " ")
+        force = number(at(self.summary, "/metrics/force_max_N"), 3)
+        return f"{self.algorithm.replace('_', ' ')}: {contact}, {outcome}, largest force {force} N"

@@ -1,0 +1,64 @@
+"""The rendered force above 30 Hz as a sound: what a hand feels as vibration."""
+import base64
+import math
+import sys
+from array import array
+
+import numpy as np
+
+CUTOFF_HZ = 30.0
+# Two minutes at 2 kHz; half a megabyte in the page.
+LONGEST = 1 << 18
+
+
+def base64_of(code, values):
+    """Numbers as text for a page: little endian, base64. Raises OverflowError for one that the type of array cannot hold."""
+    packed = array(code, values)
+    if sys.byteorder == "big":
+        packed.byteswap()
+    return base64.b64encode(packed.tobytes()).decode()
+
+
+def sound(columns):
+    """Samples for the page, None where too few rows a second were recorded. One direction is heard, that in which the
+    force above 30 Hz is strongest: its size alone would hide a force that turns round."""
+    times = columns["time_s"][:LONGEST]
+    if len(times) < 3 or not times[-1] > times[0]:
+        return None
+    rate = (len(times) - 1) / (times[-1] - times[0])
+    if rate < 4 * CUTOFF_HZ:
+        return None
+    filtered = np.array([high_passed(columns[f"f{axis}_N"][:LONGEST].tolist(), rate) for axis in "xyz"])
+    if not (np.abs(filtered) < 1e30).all():
+        return None
+    heard = strongest(filtered) @ filtered
+    peak = np.abs(heard).max()
+    if peak == 0:
+        return None
+    touching = heard[columns["colliding"][:LONGEST] > 0]
+    return {"rate": rate, "scale": peak / 32767, "start": times[0],
+            "rms": math.sqrt(np.mean(touching**2)) if touching.size else 0.0,
+            "samples": base64_of("h", map(round, (heard / peak * 32767).tolist()))}
+
+
+def high_passed(samples, rate):
+    """Butterworth of fourth order, as in results/observe/butterworth.hpp, at rest at the first sample."""
+    k = math.tan(math.pi * CUTOFF_HZ / rate)
+    for i, angle in enumerate((math.pi / 8, 3 * math.pi / 8)):
+        k_over_q = k * 2 * math.cos(angle)
+        n = 1 / (1 + k_over_q + k * k)
+        a1, a2 = 2 * n * (k * k - 1), n * (1 - k_over_q + k * k)
+        s1, s2 = (-n * samples[0], n * samples[0]) if i == 0 else (0.0, 0.0)
+        out = []
+        for x in samples:
+            bx = n * x
+            y = bx + s1
+            s1, s2 = s2 - 2 * bx - a1 * y, bx - a2 * y
+            out.append(y)
+        samples = out
+    return samples
+
+
+def strongest(signals):
+    """Unit vector along which the three signals have most power: the last eigenvector of their covariance."""
+    return np.linalg.eigh(signals @ signals.T)[1][:, -1]

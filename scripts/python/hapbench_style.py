@@ -1,0 +1,150 @@
+"""The base of every picture: one look (sizes, colours; those of algorithms are in hapbench_looks), fewer rows for curves
+that cannot show all of theirs, and how a figure becomes the bytes of a file."""
+import io
+import re
+
+import matplotlib
+import numpy as np
+
+from hapbench_looks import ALGORITHMS, look  # noqa: F401  (style.look is how figures name it)
+from hapbench_looks import PUBLISHED as PUBLISHED_COLOUR
+
+matplotlib.use("agg")
+from matplotlib import pyplot as plt  # noqa: E402  (the backend comes first)
+from matplotlib.transforms import Bbox  # noqa: E402
+
+WIDTH = 7.0  # of a page's text [inch]
+DPI = 150  # of a PNG
+
+# Lines and texts have a contrast of at least 4.5 to white. These colours are for readings, forces and contacts, not for
+# algorithms. Amber and petrol differ for every kind of colour vision; a third colour comes with a line style or marker of
+# its own. Red is for the thesis's numbers.
+BLACK, GREY, AMBER, PETROL, PLUM, RED = "#000000", "#5F5F5F", "#8A5600", "#00647D", "#8A3B75", PUBLISHED_COLOUR
+# For areas only.
+SAND, PALE = "#EFE8DC", "#CFE6F5"
+SOIL = "#8C7A58"  # the sand's border
+
+# Numbers of the thesis are hollow diamonds everywhere.
+PUBLISHED = {"marker": "D", "mfc": "white", "mec": RED, "ecolor": RED, "color": RED, "ms": 4.5, "mew": 1.2, "elinewidth": 1.2,
+             "capsize": 2.5, "ls": "none", "zorder": 5}
+PUBLISHED_LINE = {"color": RED, "lw": 1, "ls": (0, (1, 1.5))}
+
+# Behind a label that may stand on a line.
+PLATE = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8}
+
+SETTINGS = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 8,
+    "axes.titlesize": 8.5,
+    "axes.labelsize": 8,
+    "xtick.labelsize": 7.5,
+    "ytick.labelsize": 7.5,
+    "legend.fontsize": 7.5,
+    "legend.frameon": False,
+    "axes.titlelocation": "left",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.linewidth": 0.7,
+    "axes.grid": True,
+    "grid.color": "#E6E6E6",
+    "grid.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "lines.linewidth": 1.3,
+    "lines.markersize": 3.5,
+    "figure.facecolor": "white",
+    "svg.fonttype": "none",
+    "pdf.fonttype": 42,
+    "path.simplify": True,
+    "path.simplify_threshold": 0.5,
+    "figure.constrained_layout.use": True,
+    "agg.path.chunksize": 10000,
+}
+
+
+def panels(rows, columns, height, **keywords):
+    """Figure of the page's width with a grid of axes, always a 2-D array."""
+    return plt.subplots(rows, columns, figsize=(WIDTH, height), squeeze=False, **keywords)
+
+
+def letter(axes):
+    """Puts (a), (b), … before the titles."""
+    for i, ax in enumerate(axes):
+        ax.set_title(f"({chr(ord('a') + i)}) {ax.get_title(loc='left')}", loc="left")
+
+
+def note(ax, x, y, text, colour=BLACK, **keywords):
+    """A label inside the axes, at fractions of their sides, legible over lines."""
+    keywords.setdefault("ha", "left")
+    keywords.setdefault("va", "top")
+    return ax.text(x, y, text, transform=ax.transAxes, color=colour, fontsize=7, bbox=PLATE, **keywords)
+
+
+def fix_layout(figure):
+    """Finds the layout now and for good: matplotlib would find it again for every format. Its last digits differ from run
+    to run, with what lies where in memory, and would show in the identifiers of an SVG."""
+    engine = figure.get_layout_engine()
+    if engine is None:
+        return
+    engine.execute(figure)
+    for axes in figure.axes:
+        axes.set_position(Bbox(axes.get_position(original=True).get_points().round(12)))
+    # None at all: with any, matplotlib would go through the figure once more before it draws.
+    with matplotlib.rc_context({"figure.constrained_layout.use": False}):
+        figure.set_layout_engine(None)
+
+
+def picture(figure, kind, salt="hapbench", dpi=DPI):
+    """The bytes of the figure as "svg", "pdf" or "png". Same figure, same bytes: no dates, and identifiers in an SVG that
+    follow from `salt`."""
+    fix_layout(figure)
+    drawn = io.BytesIO()
+    undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {"Software": None}}[kind]
+    with matplotlib.rc_context({"svg.hashsalt": salt, "svg.fonttype": "none"}):
+        figure.savefig(drawn, format=kind, dpi=dpi, metadata=undated)
+    return thinned(drawn.getvalue().decode()).encode() if kind == "svg" else drawn.getvalue()
+
+
+# In an SVG: attributes that hold places, the shape of a marker, a mark, and a group of marks.
+PLACES = re.compile(r'( (?:d|x|y)=")([^"]*)')
+LONG_NUMBER = re.compile(r"-?\d+\.\d{3,}")
+MARKER = re.compile(r'<path id="(\w+)" d="[^"]*" style="([^"]*)"/>')
+MARK = re.compile(r'(<use xlink:href="#(\w+)"[^>]*?) style="([^"]*)"/>')
+MARKS = re.compile(r'<g( clip-path="[^"]*")?>\n((?:\s*<use [^>]*/>\n)+)')
+STYLE = re.compile(r' style="[^"]*"')
+
+
+def thinned(svg):
+    """The same drawing in fewer bytes: places to a hundredth of a point, and marks without the style of their marker or of all
+    marks of their group."""
+    styles = dict(MARKER.findall(svg))
+    svg = MARK.sub(lambda mark: f"{mark[1]}/>" if styles.get(mark[2]) == mark[3] else mark[0], svg)
+    svg = PLACES.sub(lambda place: place[1] + LONG_NUMBER.sub(lambda number: f"{round(float(number[0]), 2):.8g}", place[2]), svg)
+    return MARKS.sub(with_one_style, svg)
+
+
+def with_one_style(group):
+    clip, marks = group.groups(default="")
+    styles = STYLE.findall(marks)
+    if len(set(styles)) != 1 or len(styles) != marks.count("<use "):
+        return group[0]
+    return f"<g{clip}{styles[0]}>\n{STYLE.sub('', marks)}"
+
+
+def reduced(time, low, high, spans):
+    """The least of `low` and the greatest of `high` in each of so many equal spans of time that hold a row, and where
+    the span begins; the rows themselves if they are no more. NaN only where a span has nothing else."""
+    if len(time) <= 2 * spans:
+        return time, low, high
+    length = (time[-1] - time[0]) or 1.0
+    span = np.minimum(((time - time[0]) / length * spans).astype(int), spans - 1)
+    starts = np.flatnonzero(np.diff(span, prepend=-1))
+    return time[starts], np.fmin.reduceat(low, starts), np.fmax.reduceat(high, starts)
+
+
+def curve(time, low, high, spans):
+    """The same as one line: down and up within each span."""
+    t, least, most = reduced(time, low, high, spans)
+    if len(t) == len(time):
+        return time, low
+    return np.repeat(t, 2), np.column_stack([least, most]).ravel()
