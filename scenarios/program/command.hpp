@@ -14,7 +14,7 @@
 #include "scenarios/program/command_line.hpp"
 #include "sim/core/types.hpp"
 
-/// What commands share: exit status, output, common options, names, directories of results, other programs.
+/// Shared by all commands: exit status, output, common options, names, directories of results, other programs.
 namespace hapbench {
 
 /// Exit status of the program.
@@ -53,7 +53,7 @@ void print_error(std::string_view text);
 /// Prints each fault of bad input as an error.
 void print_errors(const InputError& error);
 
-/// What a command printed.
+/// The output of a command.
 struct CapturedOutput {
   std::string text;                           ///< of standard output
   std::vector<std::string> warnings, errors;  ///< notes are among the warnings
@@ -85,7 +85,7 @@ Json or_null(const std::optional<Value>& value) {
 
 /// The names of all registered algorithms.
 std::vector<std::string> all_algorithms();
-/// The same and "all", for completion.
+/// Their names and "all", for completion.
 std::vector<std::string> all_algorithms_and_all();
 /// The names of all integrators.
 std::vector<std::string> all_integrators();
@@ -132,7 +132,7 @@ void set_this_program(std::filesystem::path program);
 /// The options of a command line that load the plugins that this program has loaded.
 std::vector<std::string> plugin_words();
 
-/// What a program printed and how it ended.
+/// The output of a program and how it ended.
 struct ProgramOutput {
   int status = 0;    ///< exit status; 127 when there is no such program, 128 and more when a signal ended it
   std::string text;  ///< of standard output and standard error

@@ -20,7 +20,7 @@ namespace hapbench {
 
 inline constexpr const char* kProgramName = "hapbench";
 
-/// What the chosen command does; returns the exit status.
+/// Does the work of the chosen command; returns the exit status.
 using Action = std::function<int()>;
 
 /// Lists the words that an option or argument may take. Called only when a shell completes that option.
@@ -62,7 +62,7 @@ std::string manual_page(const std::vector<CommandText>& texts, const std::string
 /// the break. Empty where a file name is wanted or nothing is known.
 std::vector<std::string> completions(const std::vector<CommandText>& texts, const std::vector<std::string>& words);
 
-/// What all commands of a command line share.
+/// State that all commands of a command line share.
 struct CommandLineState {
   ChosenCommand chosen;
   std::map<const CLI::Option*, WordSource> words;  ///< of options that name theirs
@@ -114,7 +114,7 @@ class Command {
   CommandOption flag(const std::string& name, std::function<void()> when_given, const std::string& help);
   /// Text below the list of options: paragraphs, which are wrapped; a line that begins with blanks keeps them.
   void footer(const std::string& text);
-  /// What the command does when it is chosen, and what becomes of its results when Ctrl-C stops it.
+  /// Sets the work of the command, and a note on its results for when Ctrl-C stops it.
   void runs(Action action, std::string when_stopped = "incomplete results are removed");
 
  private:
@@ -147,7 +147,7 @@ class CommandLine {
   /// for a success during which the law of a plugin failed, kUnexpectedOutcome. Throws what the command throws, and
   /// InputError for a wrong usage and for plugins.
   int run(int argc, char** argv);
-  /// What the chosen command says of its results when it is stopped.
+  /// The chosen command's note on its results for when it is stopped.
   const std::string& when_stopped() const { return state_.chosen.when_stopped; }
   /// The program's own options and notes, then every command with its own, in the order in which they were added.
   std::vector<CommandText> texts() const;

@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include <limits>
 #include <map>
 #include <set>
 #include <span>
@@ -135,10 +134,6 @@ std::string letters(const std::vector<std::size_t>& scenarios) {
   return fmt::format("{}", fmt::join(texts, " "));
 }
 
-std::string number(const std::optional<double>& value, int digits) {
-  return significant(value.value_or(std::numeric_limits<double>::quiet_NaN()), digits);
-}
-
 /// The columns of a scenario in a table of standings: the rank, also the ratio to the best, also mean and spread.
 enum class Detail { rank, ratio, spread };
 
@@ -168,9 +163,9 @@ Table standings(const League& league, std::size_t metric, Detail detail) {
       const Standing& standing = league.at(s, a, metric);
       cells.push_back(rank_cell(standing, league.failures(s, a) > 0));
       if (detail == Detail::rank) continue;
-      cells.push_back(number(standing.ratio_to_best, 3));
+      cells.push_back(significant(standing.ratio_to_best, 3));
       if (detail == Detail::spread) {
-        cells.insert(cells.end(), {number(standing.mean, 4), number(standing.spread, 2)});
+        cells.insert(cells.end(), {significant(standing.mean, 4), significant(standing.spread, 2)});
       }
     }
     table.add(std::move(cells));
@@ -211,7 +206,7 @@ std::string laws_text(const League& league) {
   constexpr std::size_t kMostLetters = 12;
   Table table({{"algorithm", false}, {"mean rank"}, {"ratio"}, {"of"}, {"wins", false}, {"fails", false}});
   for (const LawStanding& law : league.laws) {
-    table.add({league.runs.algorithms[law.algorithm], number(law.mean_rank, 3), number(law.mean_ratio, 3),
+    table.add({league.runs.algorithms[law.algorithm], significant(law.mean_rank, 3), significant(law.mean_ratio, 3),
                std::to_string(law.ratios),
                law.wins.size() <= kMostLetters ? letters(law.wins) : std::to_string(law.wins.size()),
                fails_text(league, law)});

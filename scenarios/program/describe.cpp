@@ -11,6 +11,7 @@
 #include "scenarios/program/describe.hpp"
 #include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/table.hpp"
+#include "scenarios/studies/stability/classify.hpp"
 #include "scenarios/studies/stability/map_scenes.hpp"
 #include "scenarios/thesis_claims/choices_file.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
@@ -144,17 +145,8 @@ Description describe_stability() {
       wrapped(fmt::format(
           "A run of {} steps is judged by its motion alone, quarter by quarter; the amplitude is the largest speed.",
           kMapSteps)));
-  for (
-      const auto& [name, meaning] :
-      {std::pair{"diverged",
-                 "left its bounds, or oscillates with an amplitude that grows by 1 % from each quarter to the next"},
-       std::pair{"vibrating",
-                 "does not decay: oscillates in the last quarter with at least 1 % of the first quarter's amplitude"},
-       std::pair{
-           "dying_out",
-           "oscillates as much, but loses a tenth of its amplitude from the second quarter to the third and again to the last"},
-       std::pair{"stable", "all else: at rest, died out, creeping"}})
-    d.text += entry(name, meaning, 2, 13);
+  for (const MotionClass motion : kMotionClasses)
+    d.text += entry(motion_class_name(motion), text_of(motion).rule, 2, 13);
   for (
       const char* paragraph :
       {"Limits count stable and dying out as stable: the tool comes to rest if the run goes on.",

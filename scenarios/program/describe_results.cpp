@@ -12,6 +12,7 @@
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/program/table.hpp"
+#include "scenarios/studies/stability/judged_run.hpp"
 
 namespace hapbench {
 namespace {
@@ -106,7 +107,7 @@ std::vector<std::string> result_names() {
 namespace {
 
 struct Word {
-  const char* name;
+  std::string_view name;
   const char* kind;
   const char* meaning;
 };
@@ -128,13 +129,6 @@ constexpr Word kWords[] = {
      "all steps are done, but a freely moving tool ended further from the environment's box than the box is wide and the "
      "tool reaches together"},
     {"diverges", kOutcome, "a value stopped being finite or left its bound (describe bounds)"},
-    {"stable", kMotion, "at rest, died out or creeping"},
-    {"dying_out", kMotion, "still oscillates, but comes to rest if the run goes on"},
-    {"vibrating", kMotion, "oscillates and does not decay"},
-    {"diverged", kMotion, "left its bounds, or oscillates with a growing amplitude"},
-    {"thrown_out", kMotion,
-     "the tool left the hole, or ended without contact beyond the environment's box by more than it reaches"},
-    {"no_contact", kMotion, "the tool touched nothing in any row"},
     {"step_p50_s", kTime, "what half of the steps take at most, each by itself, without observers and recorders [s]"},
     {"step_p99_s", kTime, "what 99 % of the steps take at most, each by itself, without observers and recorders [s]"},
     {"reproduced", kVerdict, "the rule of the claim holds with the published numbers"},
@@ -143,6 +137,13 @@ constexpr Word kWords[] = {
     {"refuted", kVerdict, "it contradicts an exact result"},
     {"not reproducible", kVerdict, "no simulation can show it: people or the trainer are needed"},
 };
+
+std::vector<Word> all_words() {
+  std::vector<Word> all(std::begin(kWords), std::end(kWords));
+  for (const RunVerdict verdict : kRunVerdicts)
+    all.push_back({run_verdict_name(verdict), kMotion, run_verdict_meaning(verdict)});
+  return all;
+}
 
 /// A heading in lower case, without blanks and line breaks.
 std::string plain(std::string_view text) {
@@ -155,7 +156,7 @@ std::string plain(std::string_view text) {
 
 std::vector<Description> describe_word(const std::string& name) {
   std::vector<Description> found;
-  for (const Word& word : kWords) {
+  for (const Word& word : all_words()) {
     if (name != word.name) continue;
     std::string text = fmt::format("{}: {}\n{}", bold(stdout, word.name), word.kind, wrapped(word.meaning));
     if (word.kind == kMotion) text += "  in numbers: hapbench describe stability\n";
@@ -180,7 +181,7 @@ std::vector<Description> describe_heading(const std::string& name) {
 
 std::vector<std::string> described_words() {
   std::vector<std::string> names;
-  for (const Word& word : kWords) names.emplace_back(word.name);
+  for (const Word& word : all_words()) names.emplace_back(word.name);
   return names;
 }
 

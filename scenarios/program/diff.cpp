@@ -22,7 +22,7 @@ struct DiffOptions {
   OutputOptions output;
 };
 
-/// A value of a file, cut when it is long.
+/// A value of a file, cut if it is long.
 std::string cut_value(const std::string& text) {
   constexpr std::size_t kLongest = 24;
   if (text.empty()) return "-";
@@ -87,7 +87,7 @@ std::string run_text(const RunDifference& run, double tolerance) {
   return text;
 }
 
-/// Infinity, for which JSON has no number, is "no number" here too.
+/// A size; infinity, for which JSON has no number, becomes "no number" as in the text.
 Json size_json(double value) {
   return std::isinf(value) ? Json("no number") : Json(value);
 }
@@ -143,7 +143,7 @@ std::vector<std::string> run_cells(const fs::path& path, const RunDifference& ru
           run.trajectory && run.trajectory->first ? std::to_string(run.trajectory->first->row) : "-"};
 }
 
-/// What is gathered while the pairs are compared one by one.
+/// Collects the results while the pairs are compared one by one.
 struct Report {
   bool beyond = false;
   std::string text;

@@ -2,7 +2,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <optional>
 
@@ -67,7 +66,7 @@ std::string study_text(const PrecisionStudy& study, const PrecisionResult& resul
   Table table(columns);
   for (const PrecisionRow& row : result.rows) {
     std::vector<std::string> cells = {row.setting, row.outcome};
-    for (const auto& value : row.values) cells.push_back(significant(value.value_or(std::nan(""))));
+    for (const auto& value : row.values) cells.push_back(significant(value));
     cells.push_back(significant(1e6 * row.seconds, 3));
     table.add(std::move(cells));
   }

@@ -32,7 +32,7 @@ std::string short_time(double seconds) {
   return seconds < 9.95 ? fmt::format("{:.1f}s", seconds) : fmt::format("{:.0f}s", std::min(seconds, 999.0));
 }
 
-/// The same in a sentence.
+/// The same time with its unit, for a sentence.
 std::string time_text(double seconds) {
   const std::string text = short_time(seconds);
   return text.ends_with('s') ? text : text + " us";
@@ -140,7 +140,7 @@ std::string unsettled_text(std::span<const RunReport> reports) {
     landed = landed || m.contact.landing_max();
   }
   if (names.empty()) return "";
-  // Where nothing lands all contact counts already.
+  // In runs without landings all contact counts already.
   const std::string_view advice = landed ? "; --set metrics.from_s=0 takes all contact" : "";
   return fmt::format(
       "\n{}", wrapped(fmt::format("\"-\": under 1/30 s of settled contact ({}){}", fmt::join(names, ", "), advice), 0));

@@ -110,7 +110,7 @@ Box box_of(const std::vector<SurfacePoint>& points) {
   return box_of(places);
 }
 
-/// Of the points within `tolerance` of the top, the one nearest to their middle.
+/// The point nearest to the middle of those within `tolerance` of the top.
 Vec3 middle_of_the_top(const std::vector<SurfacePoint>& points, double top, double tolerance) {
   Vec3 middle = Vec3::Zero();
   double count = 0.0;
@@ -244,7 +244,7 @@ End end_along(const TriangleSoup& mesh, const Vec3& direction, const Vec3& middl
   return {middle + most * direction + aside / in_hundredth, thickness / in_tenth};
 }
 
-/// Where a tool's mesh seems to have its tip.
+/// The guessed tip of a tool's mesh.
 struct TipOfMesh {
   Vec3 place;      ///< the end of its longest direction where it is thinner [m]
   Vec3 direction;  ///< out of the tip, a unit vector

@@ -18,7 +18,7 @@ std::string chosen_metric(const SweepPlan& plan, const std::string& asked_for);
 /// fields the metric as a table and a map of characters. Tables of more than 100 runs or 400 cells are left out, and
 /// those of a shard or a sample of two fields. Precondition: `metric` is among the plan's.
 std::string summary_text(const SweepPlan& plan, const SweepReport& report, const std::string& metric);
-/// The same counts, and the rows that the report has.
+/// The counts, and the rows that the report has.
 Json summary_json(const SweepPlan& plan, const SweepReport& report);
 
 struct SlurmOptions {
@@ -30,7 +30,7 @@ struct SlurmOptions {
   bool keep_runs = false;
 };
 
-/// What was submitted to Slurm.
+/// A submission to Slurm.
 struct SlurmJobs {
   std::string definition;  ///< of the sweep
   std::size_t runs = 0;

@@ -39,8 +39,8 @@ std::string runs_text(const SweepPlan& plan, const std::vector<SweepRow>& rows) 
   for (const SweepRow& row : rows) {
     std::vector<std::string> cells = {plan.points.value(row.run, 0), row.outcome};
     for (const RunHeading& heading : metrics) {
-      const auto value = row.number(plan, heading.shows[0]);
-      cells.push_back(value ? significant(heading.factor * *value, 3) : "-");
+      const double value = row.number(plan, heading.shows[0]).value_or(std::numeric_limits<double>::quiet_NaN());
+      cells.push_back(significant(heading.factor * value, 3));
     }
     table.add(std::move(cells));
   }
@@ -52,7 +52,7 @@ bool holds_texts(const Axis& axis) {
                       [](const std::string& value) { return finite_number(value).has_value(); });
 }
 
-struct Cell {
+struct GridCell {
   std::optional<double> value;
   std::string failure;  ///< outcome of a run that failed
 };
@@ -72,17 +72,17 @@ class Grid {
 
   const Axis& across() const { return across_; }
   const Axis& down() const { return down_; }
-  const Cell& at(std::size_t i_across, std::size_t i_down) const {
+  const GridCell& at(std::size_t i_across, std::size_t i_down) const {
     const std::size_t first = first_down_ ? i_down : i_across, second = first_down_ ? i_across : i_down;
     return cells_[first * (first_down_ ? across_ : down_).size() + second];
   }
-  const std::vector<Cell>& cells() const { return cells_; }
+  const std::vector<GridCell>& cells() const { return cells_; }
 
  private:
   bool first_down_;
   const Axis& across_;
   const Axis& down_;
-  std::vector<Cell> cells_;
+  std::vector<GridCell> cells_;
 };
 
 std::string shown_value(const std::string& text) {
@@ -98,10 +98,8 @@ std::string table_text(const Grid& grid) {
   for (std::size_t j = 0; j < grid.down().size(); ++j) {
     std::vector<std::string> cells = {shown_value(grid.down().value(j))};
     for (std::size_t i = 0; i < grid.across().size(); ++i) {
-      const Cell& cell = grid.at(i, j);
-      cells.push_back(!cell.failure.empty()
-                          ? cell.failure
-                          : significant(cell.value.value_or(std::numeric_limits<double>::quiet_NaN())));
+      const GridCell& cell = grid.at(i, j);
+      cells.push_back(!cell.failure.empty() ? cell.failure : significant(cell.value));
     }
     table.add(std::move(cells));
   }
@@ -114,8 +112,8 @@ class Levels {
  public:
   static constexpr std::string_view kMarks = ".:-=+*%@";
 
-  explicit Levels(const std::vector<Cell>& cells) {
-    for (const Cell& cell : cells) {
+  explicit Levels(const std::vector<GridCell>& cells) {
+    for (const GridCell& cell : cells) {
       if (!cell.value) continue;
       least_ = std::min(least_, *cell.value);
       greatest_ = std::max(greatest_, *cell.value);
@@ -146,7 +144,7 @@ std::string map_text(const Grid& grid, std::string_view metric) {
   const Levels levels(grid.cells());
   if (levels.empty()) return "";
   const auto mark = [&](std::size_t i, std::size_t j) {
-    const Cell& cell = grid.at(i, j);
+    const GridCell& cell = grid.at(i, j);
     return !cell.failure.empty() ? '#' : cell.value ? levels.mark(*cell.value) : '?';
   };
   std::vector<std::string> labels;

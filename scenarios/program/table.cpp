@@ -187,6 +187,10 @@ std::string significant(double value, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
 }
 
+std::string significant(const std::optional<double>& value, int digits) {
+  return value ? significant(*value, digits) : "-";
+}
+
 std::string character_map(const MapColumns& columns, const std::string& row_name,
                           const std::vector<std::string>& row_labels,
                           const std::function<char(std::size_t column, std::size_t row)>& cell) {

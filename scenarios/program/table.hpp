@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -68,6 +69,8 @@ std::string entry(std::string_view name, std::string_view meaning, std::size_t i
 
 /// A number with `digits` significant digits; "-" for NaN and infinities.
 std::string significant(double value, int digits = 4);
+/// The same; "-" for none.
+std::string significant(const std::optional<double>& value, int digits = 4);
 
 /// The axis below a map: its name and ends.
 struct MapColumns {

@@ -18,10 +18,18 @@ constexpr double kFelt = 1e-3;  // [m/s]
 
 }  // namespace
 
-std::string_view motion_class_name(MotionClass motion) noexcept {
+const MotionClassText& text_of(MotionClass motion) noexcept {
   // In the order of the enumeration.
-  constexpr std::array<std::string_view, 4> kNames = {"stable", "dying_out", "vibrating", "diverged"};
-  return kNames[static_cast<std::size_t>(motion)];
+  static constexpr MotionClassText kTexts[] = {
+      {"stable", "at rest, died out or creeping", "all else: at rest, died out, creeping"},
+      {"dying_out", "still oscillates, but comes to rest if the run goes on",
+       "oscillates as much, but loses a tenth of its amplitude from the second quarter to the third and again to the "
+       "last"},
+      {"vibrating", "oscillates and does not decay",
+       "does not decay: oscillates in the last quarter with at least 1 % of the first quarter's amplitude"},
+      {"diverged", "left its bounds, or oscillates with a growing amplitude",
+       "left its bounds, or oscillates with an amplitude that grows by 1 % from each quarter to the next"}};
+  return kTexts[static_cast<std::size_t>(motion)];
 }
 
 MotionClassifier MotionClassifier::of_moved_tool(std::uint64_t steps, double time_step) {

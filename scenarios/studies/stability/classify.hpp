@@ -33,8 +33,17 @@ enum class MotionClass { stable, dying_out, vibrating, diverged };
 inline constexpr std::array kMotionClasses = {MotionClass::stable, MotionClass::dying_out, MotionClass::vibrating,
                                               MotionClass::diverged};
 
-/// "stable", "dying_out", "vibrating", "diverged"
-std::string_view motion_class_name(MotionClass motion) noexcept;
+/// A class of motion for people.
+struct MotionClassText {
+  std::string_view name;  ///< also in result files
+  const char* meaning;
+  const char* rule;  ///< by which a run belongs to it: see above
+};
+const MotionClassText& text_of(MotionClass motion) noexcept;
+
+inline std::string_view motion_class_name(MotionClass motion) noexcept {
+  return text_of(motion).name;
+}
 
 /// True of motion that comes to rest: stable, dying_out.
 inline bool comes_to_rest(MotionClass motion) noexcept {

@@ -102,7 +102,7 @@ MotionClassifier classifier_of(const Scenario& scenario) {
 }
 
 RunVerdict verdict_of(MotionClass motion, const SettledState& settled, std::optional<double> most_vibration) {
-  // Of the same names.
+  // Both enumerations begin with the same classes.
   if (!most_vibration || motion == MotionClass::diverged) return static_cast<RunVerdict>(motion);
   return settled.vibration && *settled.vibration <= *most_vibration ? RunVerdict::stable : RunVerdict::vibrating;
 }
@@ -114,6 +114,13 @@ std::string_view run_verdict_name(RunVerdict verdict) noexcept {
   if (verdict == RunVerdict::thrown_out) return "thrown_out";
   if (verdict == RunVerdict::no_contact) return "no_contact";
   return motion_class_name(static_cast<MotionClass>(verdict));
+}
+
+const char* run_verdict_meaning(RunVerdict verdict) noexcept {
+  if (verdict == RunVerdict::thrown_out)
+    return "the tool left the hole, or ended without contact beyond the environment's box by more than it reaches";
+  if (verdict == RunVerdict::no_contact) return "the tool touched nothing in any row";
+  return text_of(static_cast<MotionClass>(verdict)).meaning;
 }
 
 bool is_moved(const Scenario& scenario) {

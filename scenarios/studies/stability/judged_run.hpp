@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -11,17 +12,14 @@
 /// Judges whether a run of any scene is stable: by the classes of classify.hpp, and by where its tool ends.
 namespace hapbench {
 
-enum class RunVerdict {
-  stable,      ///< comes to rest
-  dying_out,   ///< comes to rest if the run goes on
-  vibrating,   ///< does not decay
-  diverged,    ///< left its bounds, or oscillates with a growing amplitude
-  thrown_out,  ///< left the hole, or ends without contact beyond the shell's box by more than the tool reaches
-  no_contact   ///< touched nothing in any row
-};
+/// The classes of motion, and two ends of a run that no motion tells. run_verdict_meaning() explains each.
+enum class RunVerdict { stable, dying_out, vibrating, diverged, thrown_out, no_contact };
+inline constexpr std::array kRunVerdicts = {RunVerdict::stable,   RunVerdict::dying_out,  RunVerdict::vibrating,
+                                            RunVerdict::diverged, RunVerdict::thrown_out, RunVerdict::no_contact};
 
-/// "stable", "dying_out", …
+/// "stable", "dying_out", ...
 std::string_view run_verdict_name(RunVerdict verdict) noexcept;
+const char* run_verdict_meaning(RunVerdict verdict) noexcept;
 
 /// True of what comes to rest in contact: stable, dying_out.
 inline bool is_stable(RunVerdict verdict) noexcept {
