@@ -1,4 +1,4 @@
-"""What the commands written in Python share: how they refuse, hints at names, how they write files, and a notice of what takes
+"""Shared by the commands written in Python: error messages, hints at names, writing of files, and a notice while work takes
 long."""
 import argparse
 import difflib
@@ -56,7 +56,7 @@ class Notice:
         self._thread = threading.Thread(target=self._show, daemon=True) if sys.stderr.isatty() else None
 
     def say(self, text):
-        """What is being done now."""
+        """Changes the text."""
         self._text = text
 
     def __enter__(self):

@@ -84,7 +84,7 @@ def make_results(directory):
 
 
 def performance():
-    """As scripts/bench writes it, as far as it is drawn: one size of a part is no line, and has no slope."""
+    """The drawn part of what scripts/bench writes. A part with a single size is no line and has no slope."""
     sizes = {"step": (10, 100, 1000, 10000), "reduction": (10, 100, 1000), "law/mean": (10, 100), "law/proxy": (10,)}
     growth = [{"part": part, "size": n, "seconds": 1e-9 * n} for part, of in sizes.items() for n in of]
     for part in ("shell", "list_rebuild", "search/grid", "search/neighbour_list", "search/brute_force"):

@@ -1,4 +1,4 @@
-"""What the tests of scripts share: the tree, the built program (their first argument), and commands to run."""
+"""Shared by the tests of scripts: the tree, the built program (their first argument), and commands to run."""
 import os
 import subprocess
 import sys

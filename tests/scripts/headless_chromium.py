@@ -122,7 +122,7 @@ class Chromium:
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
 
     def screenshot(self):
-        """What is in view, as PNG."""
+        """The visible part, as PNG."""
         return base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
 
     def pdf(self):
@@ -160,7 +160,7 @@ class Page(unittest.TestCase):
                        "const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; })()")
 
     def click(self, selector):
-        """By the mouse: browsers allow sound after nothing less."""
+        """Clicks by the mouse, because browsers allow sound only then."""
         x, y = self.centre(selector)
         for kind in ("mousePressed", "mouseReleased"):
             self.browser.mouse(kind, x, y, button="left", clickCount=1)

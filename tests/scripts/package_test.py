@@ -27,7 +27,7 @@ def has(level):
 
 
 def contents(folder):
-    """Of all results of a run. The scenario in full names files where each program has its own, timing.json the time."""
+    """Hashes of the results of a run, without the scenario in full, which names files of each program, and timing.json."""
     return {str(file.relative_to(folder)): hashlib.sha256(file.read_bytes()).hexdigest() for file in sorted(folder.rglob("*"))
             if file.is_file() and file.name not in ("scenario.effective.json", "timing.json")}
 

@@ -1,4 +1,4 @@
-"""What scripts/report writes, without a browser."""
+"""scripts/report, without a browser."""
 import base64
 import functools
 import json
@@ -83,7 +83,7 @@ class Page(WithResults):
                          ["claim-C1", "claim-C2", run, run, "thesis-a-3"])
         self.assertEqual(self.links_of(page, f'id="{run}"', "</details>"), ["claim-C1", "claim-C2", "figure-f1"])
         self.assertIn("<code>not_among_these</code>", self.part(page, 'id="claim-C2"', "</tr>"))
-        # What is not confirmed leads to its claim from the summary.
+        # The summary leads to the claims that are not confirmed.
         self.assertEqual(self.links_of(page, "do not confirm", "</ul>"), ["claim-C2", "claim-C3"])
 
     def test_numbers_are_typeset(self):

@@ -1,4 +1,4 @@
-"""What scripts/reproduce makes of its parts, with a program that does nothing in place of hapbench."""
+"""How scripts/reproduce runs its parts, with a program that does nothing in place of hapbench."""
 import os
 import shlex
 import shutil
