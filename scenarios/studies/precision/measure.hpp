@@ -1,16 +1,74 @@
 #pragma once
 
+#include <array>
 #include <chrono>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "algorithms/theory.hpp"
 #include "scenarios/description/scenario.hpp"
-#include "scenarios/studies/precision/study.hpp"
 #include "sim/loop/simulation.hpp"
 
-/// What the studies have in common: sampled runs, distances, fits and times.
+/// Run time against error: one row per setting of one thing (a time step, a number of iterations, an algorithm), with
+/// its error against a reference, or what it asks for, and the time it takes.
 namespace hapbench {
+
+/// One setting. Failures are rows like the others, with what failed as outcome.
+struct PrecisionRow {
+  std::string setting;
+  std::string outcome;
+  std::vector<std::optional<double>> values;  ///< one for each column of the study; none where there is none
+  double seconds = 0.0;  ///< of one step or call: the least of the repetitions, timed apart from the errors
+};
+
+/// A line log(error) = order log(x) + c fitted to the rows of one series.
+struct FittedOrder {
+  std::string series;
+  std::string error;  ///< name of the column
+  double order = 0.0;
+};
+
+struct PrecisionResult {
+  std::vector<std::string> columns;  ///< names with units
+  std::string timed;                 ///< what `seconds` are of: "step" or "call"
+  std::vector<PrecisionRow> rows;
+  std::vector<FittedOrder> orders;
+};
+
+struct PrecisionOptions {
+  int repetitions = 5;
+  std::function<void(std::size_t done, std::size_t all)> progress = [](std::size_t, std::size_t) {};
+};
+
+struct PrecisionStudy {
+  const char* name;
+  const char* summary;
+  const char* scenario;  ///< name of the bundled scenario it starts from
+  /// Throws InputError when the scenario is not of the kind the study needs.
+  PrecisionResult (*run)(const Scenario& scenario, const PrecisionOptions& options);
+};
+
+// The table. Each row is defined beside its study; adding one is its file and two lines here.
+extern const PrecisionStudy kIntegratorsStudy;
+extern const PrecisionStudy kTimeStepStudy;
+extern const PrecisionStudy kShapingStudy;
+extern const PrecisionStudy kSpacingStudy;
+extern const PrecisionStudy kReductionStudy;
+extern const PrecisionStudy kMergingStudy;
+extern const PrecisionStudy kAlgorithmsStudy;
+extern const PrecisionStudy kStiffnessStudy;
+extern const PrecisionStudy kQueryTimeStudy;
+extern const PrecisionStudy kContactSourcesStudy;
+
+inline constexpr std::array kPrecisionStudies = {
+    &kIntegratorsStudy, &kTimeStepStudy,   &kShapingStudy,   &kSpacingStudy,   &kReductionStudy,
+    &kMergingStudy,     &kAlgorithmsStudy, &kStiffnessStudy, &kQueryTimeStudy, &kContactSourcesStudy};
+
+/// What the studies have in common: sampled runs, distances, fits and times.
 
 /// Positions and rendered forces of every `stride`-th row of a run, and how it ended.
 struct SampledRun {
@@ -74,5 +132,29 @@ std::vector<ContactBuffer> contact_sets(Scenario scenario, std::uint64_t stride)
 
 /// The same after the point stages of the scenario.
 std::vector<ContactBuffer> rendered_contact_sets(const Scenario& scenario, std::uint64_t stride);
+
+/// What `ideal_row` measures.
+extern const std::vector<std::string> kIdealColumns;
+
+/// A row of kIdealColumns, and where the run led the tool.
+struct IdealRun {
+  PrecisionRow row;
+  std::vector<Vec3> positions;  ///< of every kContactSetStride-th row [m]
+};
+
+/// Errors of a run against the ideal trajectory, over the rows in which the hand is gentle, if it ever is; and the
+/// largest change of the force in a step of all rows. Precondition: the scenario is a `drill_in_hole`.
+IdealRun ideal_run(std::string setting, const Scenario& scenario, std::shared_ptr<const PointShell> shell,
+                   int repetitions);
+
+/// What is left of K where no contact normal points: the way out of a wedge.
+
+/// Closed form for a wedge with as many points on either face, all equally deep. None for algorithms that have none
+/// and for K = 0. The formulas are in the files of the algorithms.
+std::optional<WedgeStiffness> wedge_stiffness(const RenderingConfig& config, double half_angle, double points_per_face);
+
+/// A springs scenario with two groups of as many springs each, turned into the faces of a wedge. Throws InputError for
+/// other scenarios.
+Scenario with_wedge(Scenario scenario, double half_angle);
 
 }  // namespace hapbench

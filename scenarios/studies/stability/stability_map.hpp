@@ -1,16 +1,79 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "device_model/theory/stiffness_limits.hpp"
 #include "scenarios/batch/jobs.hpp"
+#include "scenarios/description/scenario.hpp"
 #include "scenarios/studies/stability/classify.hpp"
-#include "scenarios/studies/stability/map_scenes.hpp"
+
+/// The scenes behind `hapbench stability --map`: two numbers to vary, everything else as on the platform (M = 0.1 kg,
+/// step 0.5 ms, zeta = 0.7), and for the impedance device as stated in map_scenes.cpp.
+namespace hapbench {
+
+/// One of the two numbers of a map.
+struct MapAxis {
+  const char* name;  ///< with the unit, as a column of the CSV
+  double low, high;
+  enum class Scale { linear, logarithmic } scale;
+  bool whole = false;  ///< numbers, rounded
+
+  /// The i-th of n values, 0 <= i < n.
+  double at(std::size_t i, std::size_t n) const noexcept;
+};
+
+/// Which y the edge of a map is.
+enum class MapEdge {
+  largest_bounded,  ///< the largest whose run does not diverge
+  largest_at_rest,  ///< the largest whose run comes to rest
+  smallest_at_rest  ///< the smallest whose run comes to rest
+};
+
+struct StabilityMap {
+  const char* name;
+  const char* summary;
+  MapAxis x, y;
+  /// The scenario at (x, y) for an algorithm. Springs under an ideal device stay in contact, so that the step of the
+  /// integrator has a limit in theory; other devices have that of their loop (device_loop.hpp).
+  Scenario (*scene)(double x, double y, std::string_view algorithm);
+  MapEdge edge = MapEdge::largest_bounded;
+  /// Where it matters how far a run begins from rest, every cell has a second run from so many times as far.
+  std::optional<double> far = std::nullopt;
+  /// True where dry friction stops the handle for good: there what still moves in the end, however little, vibrates.
+  bool friction_stops = false;
+  /// True where the axes are in units of numbers of the device, which then cannot be other ones.
+  bool in_units_of_device = false;
+
+  /// True when y is the K of the wall, which limits of the stiffness are about.
+  bool has_stiffness_as_y() const noexcept { return std::string_view(y.name) == kStiffnessAxis; }
+  static constexpr std::string_view kStiffnessAxis = "stiffness_N_per_m";
+};
+
+/// Steps of one run of a map.
+inline constexpr std::int64_t kMapSteps = 8000;
+
+std::span<const StabilityMap> stability_maps();
+/// Null when there is no such map.
+const StabilityMap* find_stability_map(std::string_view name);
+
+/// A map of a device and a hand of one's own: overrides `path=value` (as of `--set`) of time.step_s and of the fields
+/// of `device` and `hand`, or of either as a whole, in every scene of a map of an impedance device. What an axis varies
+/// stays the axis's where the whole device is given.
+
+/// Throws InputError for a map without an impedance device or whose axes are in units of its own one, for a field that
+/// is none of these or that an axis varies, and for a value that the field does not take.
+void require_overridable(const StabilityMap& map, const std::vector<std::string>& overrides);
+
+/// A scene of the map with the overrides; only its time step, device and hand change. Precondition: require_overridable
+/// accepts them.
+Scenario with_overrides(const StabilityMap& map, Scenario scenario, const std::vector<std::string>& overrides);
 
 /// Maps of stable, dying, vibrating and diverged runs (classify.hpp), with the analytic limit where there is one.
-namespace hapbench {
 
 /// One run of a map.
 struct MapPoint {

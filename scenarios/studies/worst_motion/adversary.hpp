@@ -1,16 +1,92 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
 
 #include "results/summary/summary.hpp"
 #include "scenarios/batch/jobs.hpp"
 #include "scenarios/description/scenario.hpp"
-#include "scenarios/studies/worst_motion/trajectory.hpp"
+#include "sim/core/box.hpp"
+#include "sim/core/random.hpp"
+#include "sim/core/types.hpp"
+#include "sim/geometry/point_shell.hpp"
+
+namespace hapbench {
+
+/// Where the hand turns the tool and pushes it at a time; between two of them by cosines, at rest in each.
+struct Waypoint {
+  double time = 0.0;          ///< [s]
+  double tilt = 0.0;          ///< [rad]
+  double azimuth = 0.0;       ///< [rad]; 0 in planar scenes
+  Vec3 force = Vec3::Zero();  ///< [N]; in the plane in planar scenes
+};
+using Trajectory = std::vector<Waypoint>;
+
+/// What a hand may do. Every motion lies within, however it was found.
+struct TrajectoryBounds {
+  double duration = 0.5;  ///< [s]
+  std::size_t waypoints = 6;
+  double tilt = 0.6;   ///< largest [rad]
+  double rate = 2.0;   ///< largest mean rate of tilt and azimuth from one waypoint to the next [rad/s]
+  double force = 5.0;  ///< largest norm [N]
+};
+
+/// The trajectories a search may try: all within the bounds, all beginning with the same orientation, all with numbers
+/// that are short to write (1 ms, 0.1 mrad, 1 mN).
+class TrajectoryDraws {
+ public:
+  /// Planar: no azimuth, no force along z. `tilt`, `azimuth`: of the beginning [rad]; a tilt beyond the bounds is let
+  /// be until the first waypoint after it.
+  TrajectoryDraws(const TrajectoryBounds& bounds, bool planar, double tilt, double azimuth)
+      : bounds_(bounds), planar_(planar), tilt_(tilt), azimuth_(azimuth) {}
+
+  /// No motion and no force.
+  Trajectory at_rest() const;
+  Trajectory random(Random& random) const;
+  /// One to three numbers of `from` moved by about `step` of their ranges.
+  Trajectory changed(Trajectory from, double step, Random& random) const;
+
+  /// How many ways to simplify a trajectory there are: an end cut off, a waypoint left out, a number made zero.
+  std::size_t simplifications(const Trajectory& trajectory) const;
+  /// The i-th of them; none when it would change nothing.
+  std::optional<Trajectory> simplified(const Trajectory& trajectory, std::size_t i) const;
+
+ private:
+  Trajectory within_bounds(Trajectory trajectory) const;
+
+  TrajectoryBounds bounds_;
+  bool planar_;
+  double tilt_, azimuth_;
+};
+
+/// A scene as the search for the worst motion needs it: a tool at a surface, and a hand that stays there.
+struct SearchScene {
+  Scenario scenario;  ///< where the tool touches the surface from the start, or is where the scenario has it in a hole
+  std::shared_ptr<const PointShell> shell;
+  bool planar = false;  ///< all lies in z = 0
+  /// Where the hand may aim [m]: the box around the shell, one tool diameter wider. None in a hole, whose walls hold
+  /// the tool.
+  std::optional<Box> reach;
+};
+
+/// Throws InputError unless the scene has a shell, a free position and a time step that is not too fine.
+void check_search_scene(const Scenario& scenario);
+
+/// The scene of a search. A tool that starts apart from a surface that is no hole is set against it, on the straight
+/// way to the shell's nearest point. Throws as check_search_scene does, and for an empty shell.
+SearchScene search_scene(const Scenario& scenario);
+
+/// The scene with its orientation and hand replaced by the trajectory, on an ideal device, with energy recorded. In a
+/// hole the hand pushes with the trajectory's force. Elsewhere it does so where the tool starts and less further on, by
+/// a spring of 300 N/m whose end stays within reach, so that the tool does not get lost.
+Scenario with_trajectory(const SearchScene& scene, const Trajectory& trajectory);
 
 /// Looks for the motion of the hand that an algorithm renders worst: a seeded random search; then an evolution
 /// (1 + lambda), in which the best of several slightly changed copies replaces the motion if it is worse rendered; then
 /// a simplification that removes what the motion does not need.
-namespace hapbench {
 
 /// What "worst" means.
 enum class Badness {

@@ -11,7 +11,6 @@
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/program/schema_text.hpp"
-#include "scenarios/studies/stability/classify.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "sim/loop/integrators/integrator.hpp"
