@@ -17,7 +17,7 @@
 #include "scenarios/program/describe_words.hpp"
 #include "scenarios/program/schema_text.hpp"
 #include "scenarios/program/table.hpp"
-#include "scenarios/studies/stability/map_scenes.hpp"
+#include "scenarios/studies/stability/stability_map.hpp"
 #include "scenarios/thesis_claims/choices_file.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "sim/loop/integrators/table.hpp"

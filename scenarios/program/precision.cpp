@@ -17,7 +17,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/wait_notice.hpp"
-#include "scenarios/studies/precision/study.hpp"
+#include "scenarios/studies/precision/measure.hpp"
 
 namespace hapbench {
 namespace {

@@ -9,7 +9,6 @@
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/studies/worst_motion/adversary.hpp"
-#include "scenarios/studies/worst_motion/search_scene.hpp"
 
 namespace hapbench {
 namespace {

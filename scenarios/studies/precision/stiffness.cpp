@@ -7,8 +7,6 @@
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/studies/precision/measure.hpp"
-#include "scenarios/studies/precision/study.hpp"
-#include "scenarios/studies/precision/wedge_stiffness.hpp"
 
 namespace hapbench {
 
@@ -39,7 +37,7 @@ constexpr double kHalfAnglesDegrees[] = {5.0, 10.0, 20.0, 30.0, 45.0, 60.0, 80.0
 /// A tensor of springs is the same in every row in which both faces are touched.
 constexpr std::int64_t kSteps = 200;
 
-/// Keeps tensor and ratios of the last row.
+/// Keeps the tensor and the ratios of the last row.
 class LastTensor final : public Observer {
  public:
   bool wants_ratio() const noexcept override { return true; }
@@ -79,8 +77,8 @@ static PrecisionResult study_stiffness(const Scenario& scenario, const Precision
     for (const double degrees : kHalfAnglesDegrees) {
       Scenario run = with_wedge(scenario, degrees * std::numbers::pi / 180.0);
       run.time.steps = std::min(run.time.steps, kSteps);
-      result.rows.push_back(wedge_row(with_algorithm(run, algorithm.info->name), degrees, options.repetitions));
-      options.progress(result.rows.size(), algorithms().size() * std::size(kHalfAnglesDegrees));
+      result.add(wedge_row(with_algorithm(run, algorithm.info->name), degrees, options.repetitions), options,
+                 algorithms().size() * std::size(kHalfAnglesDegrees));
     }
   }
   return result;

@@ -9,12 +9,10 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_to_end.hpp"
 #include "scenarios/run/stop_signal.hpp"
-#include "scenarios/studies/stability/classify.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
-
 namespace {
 
 constexpr double kGrowth = 1.01;

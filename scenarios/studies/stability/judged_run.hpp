@@ -12,11 +12,13 @@
 #include "sim/loop/observer.hpp"
 #include "sim/loop/simulation.hpp"
 
-/// Judges whether a run is stable by its motion alone, without eigenvalues, tensors or knowledge of the law.
+/// Judges whether a run is stable: first by its motion alone, without eigenvalues, tensors or knowledge of the law
+/// (MotionClass), then also by where its tool ends (RunVerdict).
 ///
-/// The run is cut into quarters. Their amplitude is the largest speed of the tool in them (of the handle, where it
-/// moves the tool: an encoder makes jumps of it that nobody feels); a turn is a change of sign of a component of the
-/// velocity, two for each period of an oscillation, whether or not dry friction holds a handle at the turns.
+/// The run is cut into quarters. The amplitude of a quarter is the largest speed of the tool in it (of the handle where
+/// the handle moves the tool, because an encoder turns its motion into jumps that nobody feels); a turn is a change of
+/// sign of a component of the velocity, two for each period of an oscillation, whether or not dry friction holds a
+/// handle at the turns.
 ///
 ///   diverged   the run left its bounds, or it oscillates and its amplitude has grown by more than 1 % from each
 ///              quarter to the next
@@ -39,7 +41,7 @@ inline constexpr std::array kMotionClasses = {MotionClass::stable, MotionClass::
 /// "stable", "dying_out", "vibrating", "diverged"
 std::string_view motion_class_name(MotionClass motion) noexcept;
 
-/// True of motion that comes to rest: stable, dying_out.
+/// True for motion that comes to rest: stable and dying_out.
 inline bool comes_to_rest(MotionClass motion) noexcept {
   return motion == MotionClass::stable || motion == MotionClass::dying_out;
 }
@@ -49,9 +51,9 @@ class MotionClassifier final : public Observer {
  public:
   /// `steps`: rows the run will have. Precondition: steps >= 4.
   explicit MotionClassifier(std::uint64_t steps) : steps_(steps) {}
-  /// Of a tool that a script moves: only what its velocity has above 30 Hz counts (all of it when steps are longer than
-  /// a 60th of a second), and in the last quarter only beyond 1 mm/s, about what a hand can feel there. Such a tool is
-  /// never at rest.
+  /// For a tool that a script moves: only the part of its velocity above 30 Hz counts (all of it when steps are longer
+  /// than a 60th of a second), and in the last quarter only amplitudes beyond 1 mm/s, about what a hand can feel there.
+  /// Such a tool is never at rest.
   static MotionClassifier of_moved_tool(std::uint64_t steps, double time_step);
 
   void on_step(const StepRecord& record) noexcept override;
@@ -75,15 +77,13 @@ class MotionClassifier final : public Observer {
   bool is_moved_ = false;
   std::optional<HighPass> high_pass_;
   std::array<Quarter, 4> quarters_{};
-  Vec3 last_velocity_ = Vec3::Zero();  ///< of each component the last that was not zero
+  Vec3 last_velocity_ = Vec3::Zero();  ///< the last value of each component that was not zero
   double largest_speed_ = 0.0;
   int rows_at_rest_ = 0;
 };
 
 /// Steps the simulation, which `classifier` observes, until it ends or comes to rest. Throws Stopped (run_to_end.hpp).
 MotionClass classify(Simulation& simulation, const MotionClassifier& classifier);
-
-/// Judges whether a run of any scene is stable: by the classes of classify.hpp, and by where its tool ends.
 
 enum class RunVerdict {
   stable,      ///< comes to rest
@@ -97,7 +97,7 @@ enum class RunVerdict {
 /// "stable", "dying_out", …
 std::string_view run_verdict_name(RunVerdict verdict) noexcept;
 
-/// True of what comes to rest in contact: stable, dying_out.
+/// True for runs that come to rest in contact: stable and dying_out.
 inline bool is_stable(RunVerdict verdict) noexcept {
   return verdict == RunVerdict::stable || verdict == RunVerdict::dying_out;
 }
@@ -106,9 +106,9 @@ inline bool is_stable(RunVerdict verdict) noexcept {
 /// and 1 mm/s counts as motion.
 bool is_moved(const Scenario& scenario);
 
-/// What the last quarter of a run is like.
+/// The last quarter of a run.
 struct SettledState {
-  /// Root mean square of the handle's speed above 30 Hz [m/s]; none at sampling rates of 60 Hz or less.
+  /// Root mean square of the handle's speed above 30 Hz [m/s]; empty at sampling rates of 60 Hz or less.
   std::optional<double> vibration;
   double contacts = 0.0;    ///< mean number of rendered contacts of the rows in contact
   double lambda_max = 0.0;  ///< largest eigenvalue of their mean S: the stiffness rendered, in units of K
@@ -120,9 +120,9 @@ struct JudgedRun {
   std::uint64_t way = 0;  ///< a hash of all positions of the handle: runs that differ in it moved differently
 };
 
-/// Runs the scenario's first trial, without records, and judges it. With `most_vibration` [m/s] that decides between
-/// stable and vibrating, by the vibration of the settled state, whatever the class of the motion: a limit cycle that
-/// is too small to be felt is stable, and what is felt is not, though it may die out; nothing is stable where no
+/// Runs the scenario's first trial, without records, and judges it. With `most_vibration` [m/s], the vibration of the
+/// settled state decides between stable and vibrating, whatever the class of the motion: a limit cycle that is too
+/// small to be felt is stable, and motion that is felt is not, though it may die out; nothing is stable where no
 /// vibration is measured. `shell` is make_shell of the scenario. Throws Stopped when a signal ends it. Precondition:
 /// the position is free, and there are 4 steps or more.
 JudgedRun judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell,

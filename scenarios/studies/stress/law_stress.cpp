@@ -8,12 +8,10 @@
 
 #include "algorithms/registry.hpp"
 #include "algorithms/shell_source.hpp"
-#include "scenarios/studies/stress/contact_sets.hpp"
 #include "sim/contact/shell_query.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 
 namespace hapbench {
-
 namespace {
 
 /// A number whose logarithm is uniform.

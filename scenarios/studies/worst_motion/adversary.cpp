@@ -1,4 +1,4 @@
-#include "worst_motion/adversary.hpp"
+#include "scenarios/studies/worst_motion/adversary.hpp"
 
 #include <fmt/format.h>
 
@@ -10,12 +10,8 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_trial.hpp"
-#include "scenarios/studies/worst_motion/adversary.hpp"
-#include "scenarios/studies/worst_motion/search_scene.hpp"
-#include "scenarios/studies/worst_motion/trajectory_draws.hpp"
 
 namespace hapbench {
-
 namespace {
 
 constexpr double kMostSteps = 1e5;  // of one run, or a search would take days

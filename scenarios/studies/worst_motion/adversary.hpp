@@ -14,9 +14,12 @@
 #include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"
 
+/// Looks for the motion of the hand that an algorithm renders worst: a seeded random search; then an evolution
+/// (1 + lambda), in which the best of several slightly changed copies replaces the motion if it is rendered worse; then
+/// a simplification that removes what the motion does not need.
 namespace hapbench {
 
-/// Where the hand turns the tool and pushes it at a time; between two of them by cosines, at rest in each.
+/// The tool's orientation and the hand's force at a time. Between waypoints both follow cosines, at rest in each.
 struct Waypoint {
   double time = 0.0;          ///< [s]
   double tilt = 0.0;          ///< [rad]
@@ -25,7 +28,7 @@ struct Waypoint {
 };
 using Trajectory = std::vector<Waypoint>;
 
-/// What a hand may do. Every motion lies within, however it was found.
+/// The bounds of a hand. Every motion lies within them, however it was found.
 struct TrajectoryBounds {
   double duration = 0.5;  ///< [s]
   std::size_t waypoints = 6;
@@ -38,8 +41,8 @@ struct TrajectoryBounds {
 /// that are short to write (1 ms, 0.1 mrad, 1 mN).
 class TrajectoryDraws {
  public:
-  /// Planar: no azimuth, no force along z. `tilt`, `azimuth`: of the beginning [rad]; a tilt beyond the bounds is let
-  /// be until the first waypoint after it.
+  /// Planar: no azimuth, no force along z. `tilt`, `azimuth`: at the beginning [rad]; a tilt beyond the bounds may stay
+  /// until the first waypoint after it.
   TrajectoryDraws(const TrajectoryBounds& bounds, bool planar, double tilt, double azimuth)
       : bounds_(bounds), planar_(planar), tilt_(tilt), azimuth_(azimuth) {}
 
@@ -51,7 +54,7 @@ class TrajectoryDraws {
 
   /// How many ways to simplify a trajectory there are: an end cut off, a waypoint left out, a number made zero.
   std::size_t simplifications(const Trajectory& trajectory) const;
-  /// The i-th of them; none when it would change nothing.
+  /// The i-th of them; empty when it would change nothing.
   std::optional<Trajectory> simplified(const Trajectory& trajectory, std::size_t i) const;
 
  private:
@@ -67,8 +70,8 @@ struct SearchScene {
   Scenario scenario;  ///< where the tool touches the surface from the start, or is where the scenario has it in a hole
   std::shared_ptr<const PointShell> shell;
   bool planar = false;  ///< all lies in z = 0
-  /// Where the hand may aim [m]: the box around the shell, one tool diameter wider. None in a hole, whose walls hold
-  /// the tool.
+  /// Where the hand may aim [m]: the box around the shell, one tool diameter wider. Empty in a hole, whose walls
+  /// hold the tool.
   std::optional<Box> reach;
 };
 
@@ -84,11 +87,7 @@ SearchScene search_scene(const Scenario& scenario);
 /// a spring of 300 N/m whose end stays within reach, so that the tool does not get lost.
 Scenario with_trajectory(const SearchScene& scene, const Trajectory& trajectory);
 
-/// Looks for the motion of the hand that an algorithm renders worst: a seeded random search; then an evolution
-/// (1 + lambda), in which the best of several slightly changed copies replaces the motion if it is worse rendered; then
-/// a simplification that removes what the motion does not need.
-
-/// What "worst" means.
+/// The meaning of "worst".
 enum class Badness {
   created,   ///< energy that the rendering created, per energy that hand and rotation put in (and 1 mJ)
   vibration  ///< vibration power above 30 Hz times the run's duration [m^2/s]: a run gains nothing by ending early
@@ -104,10 +103,10 @@ struct SearchOptions {
 
 struct SearchResult {
   Trajectory trajectory;          ///< minimised
-  Scenario scenario;              ///< which shows it, with an `expect` block that holds
+  Scenario scenario;              ///< shows the motion, with an `expect` block that holds
   double found = 0.0;             ///< the badness before minimising
   double badness = 0.0;           ///< of the scenario; at least 90 % of `found`
-  double at_rest = 0.0;           ///< of the tool held as it starts, without force: what the scene alone does
+  double at_rest = 0.0;           ///< of the tool held as it starts, without force
   RunSummary run;                 ///< of the scenario; outcome, metrics and energy only
   std::uint64_t evaluations = 0;  ///< runs, all in all
 };
@@ -115,7 +114,7 @@ struct SearchResult {
 /// The badness of a finished run; needs its energy for `created`.
 double badness_of(Badness badness, const RunSummary& run);
 
-/// Searches in a scene, from where search_scene.hpp puts its tool. The same for the same seed, whatever the number of
+/// Searches in a scene, from where search_scene puts its tool. The same for the same seed, whatever the number of
 /// threads. Throws as search_scene does. Each evaluation costs a run of the scene, at most bounds.duration long.
 SearchResult search_adversary(const Scenario& scenario, const SearchOptions& options);
 
