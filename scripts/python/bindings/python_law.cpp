@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "algorithms/registry.hpp"
-#include "bindings/bindings.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {

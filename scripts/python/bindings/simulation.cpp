@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "bindings/bindings.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"

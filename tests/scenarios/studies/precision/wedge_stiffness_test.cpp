@@ -1,4 +1,4 @@
-#include "scenarios/studies/precision/wedge_stiffness.hpp"
+#include "scenarios/studies/precision/measure.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include "algorithms/registry.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/studies/precision/study.hpp"
 
 namespace hapbench::wedge_stiffness_test {
 namespace {
