@@ -38,7 +38,7 @@ constexpr double kHalfAnglesDegrees[] = {5.0, 10.0, 20.0, 30.0, 45.0, 60.0, 80.0
 constexpr std::int64_t kSteps = 200;
 
 /// Keeps the tensor and the ratios of the last row.
-class LastTensor final : public Observer {
+class LastRow final : public Observer {
  public:
   bool wants_ratio() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override {
@@ -54,7 +54,7 @@ PrecisionRow wedge_row(const Scenario& scenario, double degrees, int repetitions
   const double w = degrees * std::numbers::pi / 180.0;
   const auto& faces = std::get<SpringsEnvironment>(scenario.environment).groups;
   const auto formula = wedge_stiffness(config, w, static_cast<double>(faces.front().count));
-  LastTensor last;
+  LastRow last;
   const SampledRun run = sampled_run(scenario, nullptr, 1, {&last});
   const auto if_any = [&formula](double WedgeStiffness::*part) {
     return formula ? std::optional((*formula).*part) : std::nullopt;

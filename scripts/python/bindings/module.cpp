@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "algorithms/registry.hpp"
+#include "bindings/bindings.hpp"
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "algorithms/registry.hpp"
+#include "bindings/bindings.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {

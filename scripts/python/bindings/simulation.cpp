@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "bindings/bindings.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"

@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "bindings/bindings.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/run/progress_bar.hpp"
