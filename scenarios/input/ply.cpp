@@ -115,7 +115,7 @@ PlyHeader read_ply_header(LineReader& lines, const fs::path& file) {
 
 // ---- Surfaces
 
-/// What a property is used for.
+/// The use of a property.
 enum class Role { x, y, z, corners, nothing };
 
 struct Property {

@@ -64,7 +64,7 @@ TEST(Fuzz, ScenarioTextsAreReadOrRefused) {
   expect_mixture(fuzz(texts, test::cases(40'000), 1, [](const std::string& text) {
     const Json json = parse_json(text);
     const Json effective = effective_scenario(read_scenario(json, "").scenario, "");
-    // What was accepted is a scenario: its effective form reads as itself.
+    // An accepted text is a scenario: its effective form reads as itself.
     EXPECT_EQ(effective_scenario(read_scenario(effective, "").scenario, ""), effective) << text;
   }));
 }
