@@ -4,8 +4,8 @@
 
 namespace hapbench {
 
-/// The parameters of the rendering that the documentation of models names. The default of each is the member's in
-/// RenderingConfig.
+/// Parameters of the rendering, for the documentation of models and the description of scenarios. The defaults are
+/// those of the members of RenderingConfig.
 namespace parameter {
 
 inline constexpr NumberRange kSwitch = {0, 1, "1"};
@@ -26,7 +26,7 @@ inline constexpr Parameter kMuF = {"rendering.friction.mu_f_s_per_m", {0.0, 1e9,
 inline constexpr Parameter kMaxDamping = {"rendering.limits.max_damping_N_s_per_m", {0.0, 1e12, "N s/m"}};
 inline constexpr Parameter kMaxForce = {"rendering.limits.max_force_N", {0.0, 1e12, "N"}};
 inline constexpr Parameter kVirtualCoupling = {"rendering.virtual_coupling_N_per_m", {0.0, 1e12, "N/m", true}};
-/// Below 1e-9, the rounding of sum d_i u_i (1e-16 n d) over eps is no longer far below a depth.
+/// Below 1e-9, the rounding of sum d_i u_i (1e-16 n d) divided by eps would not be far below a depth.
 inline constexpr Parameter kRegularisation = {"rendering.regularisation", {1e-9, 1e6, "1"}};
 inline constexpr Parameter kPassivityController = {"rendering.passivity_controller", kSwitch};
 

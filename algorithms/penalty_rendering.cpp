@@ -3,13 +3,10 @@
 #include <Eigen/Geometry>
 #include <utility>
 
-#include "algorithms/stages/gradient_reduction.hpp"
-#include "algorithms/stages/local_average.hpp"
-
 namespace hapbench {
 namespace {
 
-/// Copied instead of made: zeros written one by one and read by pairs would stall the step.
+/// Copied in each step. Constructing it there would write zeros one by one, and reading them in pairs would stall.
 const RenderedForce kNoForce;
 
 }  // namespace
@@ -38,18 +35,18 @@ void PenaltyRendering::reset() noexcept {
 void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   out = kNoForce;
   in_contact_ = false;
-  if (contacts.empty() && skips_ == Skips::taken) return;
+  if (contacts.empty() && skips_ == Skips::on) return;
 
   out.depth_max = contacts.largest_depth();
   if (local_average_) local_average_->process(contacts);
   if (reduction_) reduce(contacts);
-  if (contacts.empty() && skips_ == Skips::taken) return;
+  if (contacts.empty() && skips_ == Skips::on) return;
 
   const LawForce& law = law_force_ = law_->evaluate(contacts);
-  // -K times an empty sum is -0; a step that evaluates nothing says 0.
+  // -K times an empty sum is -0, but a step that skips the law answers 0.
   out.spring = contacts.empty() ? Vec3(law.spring + Vec3::Zero()) : law.spring;
   out.S = law.S;
-  // Not a skip but what friction is: S of no contact is zero, and all velocity would count as tangential.
+  // Required by the model and no skip: S is zero without contacts, so the whole velocity would count as tangential.
   if (contacts.empty()) return;
   in_contact_ = true;
   out.rendered = damping_and_limits_.rendered_force(law.spring, law.S, velocity_at(contacts, tool));
@@ -65,7 +62,7 @@ ContactVelocity PenaltyRendering::velocity_at(const ContactBuffer& contacts, con
   return velocity;
 }
 
-/// A single contact has none that it could be similar to.
+/// A single contact cannot be similar to another one.
 void PenaltyRendering::reduce(ContactBuffer& contacts) noexcept {
   if (contacts.size() > 1 || skips_ == Skips::off) reduction_->process(contacts);
 }

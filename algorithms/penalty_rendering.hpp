@@ -12,8 +12,8 @@ namespace hapbench {
 ///
 ///   contacts with depths -> (local average) -> (reduction) -> force law -> damping, friction, limits
 ///
-/// One virtual call per stage and step; stages that the configuration does not ask for do not exist,
-/// and steps without contact, or with too few to reduce, pass over what would do nothing (Skips).
+/// One virtual call per stage and step. Stages that the configuration does not ask for do not exist. Steps without
+/// contacts, or with too few to reduce, skip the stages that would do nothing (Skips).
 class PenaltyRendering final : public ForceAlgorithm {
  public:
   PenaltyRendering(std::unique_ptr<ForceLaw> law, const RenderingConfig& config);
@@ -37,9 +37,9 @@ class PenaltyRendering final : public ForceAlgorithm {
   DampingAndLimits damping_and_limits_;
   Skips skips_;
   double K_;
-  std::optional<double> angular_velocity_cutoff_;  ///< none without angular damping
-  bool in_contact_ = false;                        ///< after the last step
-  LawForce law_force_;                             ///< of the last step with contacts
+  std::optional<double> angular_velocity_cutoff_;  ///< none: no angular damping
+  bool in_contact_ = false;                        ///< in the last step
+  LawForce law_force_;                             ///< answer of the law in the last step with contacts
 };
 
 }  // namespace hapbench

@@ -1,88 +1,34 @@
 #include "algorithms/registry.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <set>
 #include <stdexcept>
-#include <string>
 
-#include "algorithms/added_algorithm.hpp"
-#include "algorithms/depth/continuous_normal_projection_depth.hpp"
-#include "algorithms/depth/normal_projection_depth.hpp"
-#include "algorithms/depth/shortest_distance.hpp"
-#include "algorithms/depth/surface_normal.hpp"
-#include "algorithms/laws/laws.hpp"
 #include "algorithms/penalty_rendering.hpp"
-#include "algorithms/proxy/proxy_rendering.hpp"
-#include "algorithms/stages/damping_and_limits.hpp"
-#include "algorithms/stages/gradient_reduction.hpp"
-#include "algorithms/stages/local_average.hpp"
 #include "algorithms/stages/passivity_controller.hpp"
+#include "algorithms/stages/point_stage.hpp"
+
+/// The algorithms in the order of lists. For each row, a source file in laws/ or proxy/ defines
+/// `AlgorithmEntry <name>_entry()`.
+#define HAPBENCH_ALGORITHMS(row)                                                                                 \
+  row(original_averaging) row(summation) row(mean) row(virtual_coupling) row(shaped_stiffness) row(tandpasta)    \
+      row(normal_projection) row(exact_shaping) row(continuous_normal_projection) row(merged_shaping) row(proxy) \
+          row(least_squares) row(highest_depth) row(mcneely) row(static_coupling)
 
 namespace hapbench {
+
+#define HAPBENCH_DECLARE(name) AlgorithmEntry name##_entry();
+HAPBENCH_ALGORITHMS(HAPBENCH_DECLARE)
+#undef HAPBENCH_DECLARE
+
 namespace {
 
-/// A force law on the penalty pipeline.
-template <auto make_law>
-std::unique_ptr<ForceAlgorithm> penalty(const RenderingConfig& config) {
-  return std::make_unique<PenaltyRendering>(make_law(config), config);
-}
-
-std::deque<AlgorithmEntry> built_in() {
-  return {
-      {.info = &kOriginalAveragingInfo,
-       .make = penalty<make_original_averaging>,
-       .theory = &kOriginalAveragingTheory,
-       .fixed_depth_model = "shortest_distance",
-       .may_reduce = false,
-       .creates_energy = true},
-      {.info = &kSummationInfo, .make = penalty<make_summation>, .theory = &kSummationTheory, .creates_energy = true},
-      {.info = &kMeanInfo, .make = penalty<make_mean>, .theory = &kMeanTheory},
-      {.info = &kVirtualCouplingInfo, .make = penalty<make_virtual_coupling>, .theory = &kVirtualCouplingTheory},
-      {.info = &kShapedStiffnessInfo, .make = penalty<make_shaped_stiffness>, .theory = &kShapedStiffnessTheory},
-      {.info = &kTandpastaInfo, .make = penalty<make_tandpasta>, .theory = &kTandpastaTheory, .creates_energy = true},
-      {.info = &kNormalProjectionInfo,
-       .make = penalty<make_shaped_stiffness>,
-       .theory = &kShapedStiffnessTheory,
-       .fixed_depth_model = "normal_projection",
-       .creates_energy = true},
-      {.info = &kExactShapingInfo, .make = penalty<make_exact_shaping>, .theory = &kExactShapingTheory},
-      {.info = &kContinuousNormalProjectionInfo,
-       .make = penalty<make_shaped_stiffness>,
-       .theory = &kShapedStiffnessTheory,
-       .fixed_depth_model = "continuous_normal_projection"},
-      {.info = &kMergedShapingInfo,
-       .make = penalty<make_merged_shaping>,
-       .theory = &kExactShapingTheory,
-       .may_reduce = false},
-      {.info = &kProxyInfo,
-       .make = make_proxy,
-       .theory = &kProxyTheory,
-       .may_reduce = false,
-       .reported_depth_model = "surface_normal"},
-      {.info = &kLeastSquaresInfo,
-       .make = penalty<make_least_squares>,
-       .theory = &kLeastSquaresTheory,
-       .may_reduce = false},
-      {.info = &kHighestDepthInfo,
-       .make = penalty<make_highest_depth>,
-       .theory = &kHighestDepthTheory,
-       .may_reduce = false},
-      {.info = &kMcNeelyInfo,
-       .make = penalty<make_mcneely>,
-       .theory = &kMcNeelyTheory,
-       .may_reduce = false,
-       .creates_energy = true,
-       .own_parameters = kMcNeelyOwnParameters},
-      {.info = &kStaticCouplingInfo,
-       .make = penalty<make_static_coupling>,
-       .theory = &kStaticCouplingTheory,
-       .may_reduce = false,
-       .own_parameters = kStaticCouplingOwnParameters},
-  };
-}
-
-/// The table, built at the first use: others may ask before this file's variables are.
+/// The table, built at the first use because static variables of other files may ask for it.
 struct Table {
-  std::deque<AlgorithmEntry> entries = built_in();
+#define HAPBENCH_ENTRY(name) name##_entry(),
+  std::deque<AlgorithmEntry> entries = {HAPBENCH_ALGORITHMS(HAPBENCH_ENTRY)};
+#undef HAPBENCH_ENTRY
   std::size_t built_in_size = entries.size();
   std::vector<std::string> names;
   std::size_t additions = 0;
@@ -97,30 +43,92 @@ Table& table() {
   return the_one;
 }
 
-constexpr DepthModelEntry kDepthModels[] = {
-    {&kShortestDistanceInfo, make_shortest_distance},
-    {&kSurfaceNormalInfo, make_surface_normal},
-    {&kNormalProjectionDepthInfo, make_normal_projection_depth},
-    {&kContinuousNormalProjectionDepthInfo, make_continuous_normal_projection_depth},
-};
-
 constexpr const ModelInfo* kStages[] = {&kLocalAverageInfo, &kGradientReductionInfo, &kDampingAndLimitsInfo,
                                         &kPassivityControllerInfo};
 
-template <class Entries>
-auto* find(Entries& entries, std::string_view name) {
-  const auto found =
-      std::find_if(std::begin(entries), std::end(entries), [name](auto& e) { return e.info->name == name; });
-  return found == std::end(entries) ? nullptr : &*found;
+AlgorithmEntry* find(std::string_view name) {
+  std::deque<AlgorithmEntry>& entries = table().entries;
+  const auto found = std::find_if(entries.begin(), entries.end(), [name](auto& e) { return e.info->name == name; });
+  return found == entries.end() ? nullptr : &*found;
 }
 
-const AlgorithmEntry& algorithm_entry(const RenderingConfig& config) {
-  const AlgorithmEntry* entry = find_algorithm(config.algorithm);
-  if (entry == nullptr) throw std::invalid_argument("unknown algorithm " + config.algorithm);
-  return *entry;
+const AlgorithmEntry& algorithm_entry(std::string_view name) {
+  if (const AlgorithmEntry* entry = find_algorithm(name)) return *entry;
+  throw std::invalid_argument("unknown algorithm " + std::string(name));
 }
+
+[[noreturn]] void refuse(const std::string& problem) {
+  throw std::invalid_argument(problem);
+}
+
+/// True for a name that can be a field and a word of a list on the command line.
+bool is_name(const char* text) {
+  if (text == nullptr) return false;
+  const std::string_view name = text;
+  constexpr std::size_t kLongest = 64;
+  return !name.empty() && name.size() <= kLongest && name[0] >= 'a' && name[0] <= 'z' &&
+         name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") == name.npos;
+}
+
+void require_text(const char* text, const std::string& what) {
+  if (text == nullptr || *text == '\0') refuse(what + " is missing");
+}
+
+constexpr const char* kNames = "allowed: letters, digits and \"_\", a small letter first, at most 64";
+
+void check(const OwnParameter& p) {
+  if (!is_name(p.name)) refuse(std::string("a parameter is called \"") + (p.name ? p.name : "") + "\"; " + kNames);
+  const std::string which = "parameter \"" + std::string(p.name) + "\": ";
+  require_text(p.range.unit, which + "its unit");
+  require_text(p.meaning, which + "its meaning");
+  const auto& [min, max, unit, above_min] = p.range;
+  if (!(std::isfinite(min) && std::isfinite(max) && min < max))
+    refuse(which + "a range needs two finite ends, the lower first");
+  if (!(p.initial <= max && (above_min ? p.initial > min : p.initial >= min)))
+    refuse(which + "its default is out of its range");
+}
+
+/// Throws std::invalid_argument.
+void check(const AlgorithmEntry& entry) {
+  const ModelInfo& info = *entry.info;
+  if (!is_name(info.name))
+    refuse(std::string("an algorithm is called \"") + (info.name ? info.name : "") + "\"; " + kNames);
+  // `--algorithms all` means all of them.
+  if (info.name == std::string_view("all")) refuse("an algorithm is called \"all\", which means all of them");
+  for (const auto& [what, text] :
+       {std::pair{"its summary", info.summary}, std::pair{"its formula", info.formula},
+        std::pair{"its source", info.source}, std::pair{"its known failure", info.known_failure}}) {
+    require_text(text, what);
+  }
+  std::set<std::string_view> seen;
+  for (const OwnParameter& p : entry.own_parameters) {
+    check(p);
+    if (!seen.insert(p.name).second) refuse("parameter \"" + std::string(p.name) + "\" is there twice");
+  }
+}
+
+/// Owns the targets of `info` and `own_parameters` of an added algorithm.
+struct Texts {
+  std::deque<std::string> all;
+  ModelInfo info = {};
+  std::vector<ParameterInfo> parameters;
+  std::vector<OwnParameter> own;
+
+  const char* copy(const char* text) { return all.emplace_back(text).c_str(); }
+  NumberRange copy(NumberRange range) {
+    range.unit = copy(range.unit);
+    return range;
+  }
+};
 
 }  // namespace
+
+double own_value(const RenderingConfig& config, const char* algorithm, const OwnParameter& parameter) {
+  const auto own = config.parameters.find(algorithm);
+  if (own == config.parameters.end()) return parameter.initial;
+  const auto value = own->second.find(parameter.name);
+  return value == own->second.end() ? parameter.initial : value->second;
+}
 
 const std::deque<AlgorithmEntry>& algorithms() {
   return table().entries;
@@ -130,26 +138,40 @@ const std::vector<std::string>& algorithm_names() {
   return table().names;
 }
 
-std::span<const DepthModelEntry> depth_models() {
-  return kDepthModels;
-}
-
 std::span<const ModelInfo* const> stages() {
   return kStages;
 }
 
 const AlgorithmEntry* find_algorithm(std::string_view name) {
-  return find(table().entries, name);
+  return find(name);
 }
 
-const DepthModelEntry* find_depth_model(std::string_view name) {
-  return find(kDepthModels, name);
+AlgorithmEntry checked_copy(AlgorithmEntry entry) {
+  check(entry);
+  auto texts = std::make_shared<Texts>();
+  Texts& t = *texts;
+  const ModelInfo& info = *entry.info;
+  for (const auto& [parameter, meaning] : info.parameters)
+    t.parameters.push_back({{t.copy(parameter.field), t.copy(parameter.range)}, t.copy(meaning)});
+  for (const OwnParameter& p : entry.own_parameters)
+    t.own.push_back(
+        {.name = t.copy(p.name), .range = t.copy(p.range), .initial = p.initial, .meaning = t.copy(p.meaning)});
+  t.info = {.name = t.copy(info.name),
+            .summary = t.copy(info.summary),
+            .formula = t.copy(info.formula),
+            .source = t.copy(info.source),
+            .known_failure = t.copy(info.known_failure),
+            .parameters = t.parameters};
+  entry.info = &t.info;
+  entry.own_parameters = t.own;
+  entry.texts = std::move(texts);
+  return entry;
 }
 
 void add_algorithm(AlgorithmEntry entry) {
   entry = checked_copy(std::move(entry));
   auto& [entries, built_in_size, names, count] = table();
-  AlgorithmEntry* same = find(entries, entry.info->name);
+  AlgorithmEntry* same = find(entry.info->name);
   if (same == nullptr) {
     names.emplace_back(entry.info->name);
     entries.push_back(std::move(entry));
@@ -158,7 +180,7 @@ void add_algorithm(AlgorithmEntry entry) {
   }
   const auto first_added = entries.begin() + static_cast<std::ptrdiff_t>(built_in_size);
   if (std::none_of(first_added, entries.end(), [same](const AlgorithmEntry& e) { return &e == same; }))
-    throw std::invalid_argument("\"" + std::string(entry.info->name) + "\" is the name of a built-in algorithm");
+    refuse("\"" + std::string(entry.info->name) + "\" is the name of a built-in algorithm");
   *same = std::move(entry);
   ++count;
 }
@@ -181,15 +203,21 @@ RenderingConfig with_fixed_stages(RenderingConfig config) {
 }
 
 std::unique_ptr<DepthModel> make_depth_model(const RenderingConfig& config) {
-  const std::string_view reported = algorithm_entry(config).reported_depth_model;
-  const std::string name = reported.empty() ? with_fixed_stages(config).depth_model : std::string(reported);
-  const DepthModelEntry* entry = find_depth_model(name);
-  if (entry == nullptr) throw std::invalid_argument("unknown depth model " + name);
-  return entry->make();
+  const std::string_view reported = algorithm_entry(config.algorithm).reported_depth_model;
+  return make_depth_model(reported.empty() ? with_fixed_stages(config).depth_model : reported);
+}
+
+std::unique_ptr<ForceLaw> make_law(std::string_view name, const RenderingConfig& config) {
+  const AlgorithmEntry& entry = algorithm_entry(name);
+  if (!entry.make_law) refuse(std::string(name) + " is no force law");
+  return entry.make_law(config);
 }
 
 std::unique_ptr<ForceAlgorithm> make_algorithm(const RenderingConfig& config) {
-  auto algorithm = algorithm_entry(config).make(with_fixed_stages(config));
+  const AlgorithmEntry& entry = algorithm_entry(config.algorithm);
+  const RenderingConfig fixed = with_fixed_stages(config);
+  std::unique_ptr<ForceAlgorithm> algorithm =
+      entry.make_law ? std::make_unique<PenaltyRendering>(entry.make_law(fixed), fixed) : entry.make(fixed);
   if (!config.passivity_controller) return algorithm;
   return std::make_unique<PassivityController>(std::move(algorithm), config);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -9,77 +10,116 @@
 #include <vector>
 
 #include "algorithms/depth/depth_model.hpp"
-#include "algorithms/own_parameter.hpp"
+#include "algorithms/laws/force_law.hpp"
 #include "algorithms/rendering_config.hpp"
-#include "algorithms/theory.hpp"
 #include "sim/core/model_info.hpp"
-#include "sim/loop/force_algorithm.hpp"
 
-/// The one table of names. Adding an algorithm to the tree is one line in registry.cpp; `add_algorithm` adds one from
-/// outside while the program runs.
+/// The table of algorithms. An algorithm of this tree is a source file that defines its AlgorithmEntry and a row in
+/// registry.cpp; `add_algorithm` adds one from outside while the program runs.
 namespace hapbench {
 
-/// Where the code of an algorithm from outside comes from, for the provenance of results.
-struct AlgorithmOrigin {
-  std::string file;  ///< its name, without folders
-  std::string hash;  ///< of its content
+/// A parameter that belongs to one algorithm alone and is no member of RenderingConfig: a number, the field
+/// rendering.parameters.<algorithm>.<name> of a scenario.
+struct OwnParameter {
+  const char* name;
+  NumberRange range;
+  double initial;  ///< default
+  const char* meaning;
 };
 
+/// The value in `config`, or the default.
+double own_value(const RenderingConfig& config, const char* algorithm, const OwnParameter& parameter);
+
+/// Stiffness in a wedge, in units of K; both directions are axes of the tensor. Two faces stand at the half angle w
+/// [rad], 0 < w < pi/2, from the middle plane of the wedge; the way out is +y, across is x. The contact gradients
+/// (+-cos w, -sin w, 0) have the inner product -cos 2w.
+struct WedgeStiffness {
+  double along = 0.0;   ///< along the way out
+  double across = 0.0;  ///< from face to face
+};
+
+/// The wedge under weights that add up to `weight` on either face: S = weight (u1 u1^T + u2 u2^T).
+inline WedgeStiffness wedge_of_weight(double weight, double half_angle) {
+  return {2.0 * weight * std::pow(std::sin(half_angle), 2), 2.0 * weight * std::pow(std::cos(half_angle), 2)};
+}
+
+/// Known properties of an algorithm; null if unknown. Each derivation stands beside its algorithm.
+struct AlgorithmTheory {
+  /// The largest |f_spring| / K [m] that n contacts, the deepest of them by `depth` [m], may cause in one step.
+  double (*force_bound)(const RenderingConfig& config, const ToolShape& tool, std::size_t n, double depth) = nullptr;
+  /// Closed form for a wedge with as many points on either face, all equally deep. Precondition: K > 0.
+  WedgeStiffness (*wedge_stiffness)(const RenderingConfig& config, double half_angle, double points_per_face) = nullptr;
+};
+
+/// The file that an algorithm from outside was loaded from, for the provenance of results.
+struct AlgorithmOrigin {
+  std::string file;  ///< name without folders
+  std::string hash;  ///< hash of its content
+};
+
+/// An algorithm: documentation, how to make it, theory. Either `make_law` or `make` is given.
 struct AlgorithmEntry {
   const ModelInfo* info;
-  /// A new force algorithm for one run.
-  std::function<std::unique_ptr<ForceAlgorithm>(const RenderingConfig&)> make;
-  const AlgorithmTheory* theory = &kNoTheory;  ///< never null
-  /// The depth model that is part of the algorithm's definition; empty when the scenario chooses.
+  /// Makes a force law for one run, which PenaltyRendering uses.
+  std::function<std::unique_ptr<ForceLaw>(const RenderingConfig&)> make_law = {};
+  /// Makes an algorithm that is no force law for one run.
+  std::function<std::unique_ptr<ForceAlgorithm>(const RenderingConfig&)> make = {};
+  AlgorithmTheory theory = {};
+  /// The depth model that is part of the algorithm's definition; empty if the scenario chooses.
   std::string_view fixed_depth_model = {};
-  /// False when the algorithm's definition excludes the reduction.
+  /// False if the algorithm's definition excludes the reduction.
   bool may_reduce = true;
-  /// The depth model of contacts that an algorithm only reports the depths of; empty when it renders them.
+  /// The depth model of contacts whose depths the algorithm only reports; empty if it renders them.
   std::string_view reported_depth_model = {};
-  /// True when the algorithm creates energy as a peg sticks in a hole; the passivity controller leaves the others
-  /// alone.
+  /// True if the algorithm creates energy while a peg sticks in a hole; the passivity controller leaves others alone.
   bool creates_energy = false;
   std::span<const OwnParameter> own_parameters = {};
   AlgorithmOrigin origin = {};             ///< empty for a built-in algorithm
-  std::shared_ptr<const void> texts = {};  ///< what `info` and `own_parameters` of an added algorithm point to
+  std::shared_ptr<const void> texts = {};  ///< owns the targets of `info` and `own_parameters` of an added algorithm
 };
 
-struct DepthModelEntry {
-  const ModelInfo* info;
-  std::unique_ptr<DepthModel> (*make)();
-};
+/// AlgorithmEntry::make_law of a class that is constructed from the configuration.
+template <class Law>
+std::unique_ptr<ForceLaw> law_of(const RenderingConfig& config) {
+  return std::make_unique<Law>(config);
+}
 
 /// References stay valid when an algorithm is added.
 const std::deque<AlgorithmEntry>& algorithms();
-/// Their names, in the same order.
+/// Names of the algorithms, in the order of algorithms().
 const std::vector<std::string>& algorithm_names();
-std::span<const DepthModelEntry> depth_models();
-/// The other stages of the penalty pipeline, for the documentation.
+/// The optional stages of the penalty pipeline, for the documentation.
 std::span<const ModelInfo* const> stages();
 
-/// Null when the table has no such name.
+/// Null if there is no algorithm of that name.
 const AlgorithmEntry* find_algorithm(std::string_view name);
-const DepthModelEntry* find_depth_model(std::string_view name);
 
-/// Adds an algorithm from outside; one added earlier under the same name gives way to it. Texts are copied. Not while
-/// another thread reads the table. Throws std::invalid_argument, which says what is wrong, for the name of a built-in
-/// algorithm or one that a scenario cannot hold, for texts that are missing, and for parameters without a valid range.
+/// Returns the entry with copies of its texts, which it owns. Throws std::invalid_argument, which says what is wrong,
+/// for a name that a scenario cannot hold, missing texts, and parameters without a valid range.
+AlgorithmEntry checked_copy(AlgorithmEntry entry);
+
+/// Adds a checked copy of an algorithm from outside; it replaces one that was added earlier under the same name. Must
+/// not be called while another thread reads the table. Throws std::invalid_argument as checked_copy does, and for the
+/// name of a built-in algorithm.
 void add_algorithm(AlgorithmEntry entry);
 
-/// How often an algorithm has been added: what was made of the table holds until this changes.
+/// The number of add_algorithm calls. Data derived from the table is valid until it changes.
 std::size_t additions();
 
-/// The values of the own parameters of an algorithm, in the order of its table: those `config` gives, or defaults.
+/// Values of the algorithm's own parameters, in the order of its table: those in `config`, or the defaults.
 std::vector<double> own_values(const RenderingConfig& config, const AlgorithmEntry& entry);
 
-/// `config` with what its algorithm fixes put in place: depth model and reduction. Precondition: the name is known.
+/// `config` with the depth model and the reduction that its algorithm fixes. Precondition: the name is known.
 RenderingConfig with_fixed_stages(RenderingConfig config);
 
-/// The depth model of the contacts that the algorithm `config` names is given. Throws std::invalid_argument for unknown
+/// The depth model of the contacts that the algorithm of `config` receives. Throws std::invalid_argument for unknown
 /// names.
 std::unique_ptr<DepthModel> make_depth_model(const RenderingConfig& config);
 
-/// The algorithm `config` names, on the stages it fixes, in a passivity controller if asked for. Throws
+/// The force law of that name alone, without the stages around it. Throws std::invalid_argument if there is none.
+std::unique_ptr<ForceLaw> make_law(std::string_view name, const RenderingConfig& config);
+
+/// The algorithm of `config` with its fixed stages, in a passivity controller if the configuration asks for one. Throws
 /// std::invalid_argument for unknown names.
 std::unique_ptr<ForceAlgorithm> make_algorithm(const RenderingConfig& config);
 

@@ -8,25 +8,25 @@
 #include <optional>
 #include <string>
 
-#include "sim/core/skips.hpp"
+#include "sim/core/types.hpp"
 
 namespace hapbench {
 
 /// Gradient-based point reduction (thesis C.3, 2.8).
 struct ReductionConfig {
-  double threshold = 0.995;      ///< alpha_TH: a larger inner product of two gradients means "similar"
+  double threshold = 0.995;      ///< alpha_TH: gradients with a larger inner product are similar
   std::size_t max_points = 100;  ///< n_ext
-  /// Off: contacts are visited in ascending shell index. A seed: in a fixed random order of the shell points, to study
-  /// how the greedy filter depends on it (the thesis starts at a random point).
+  /// Without a seed, contacts are visited in ascending shell index. With one, in a fixed random order of the shell
+  /// points, to study how the greedy filter depends on it (the thesis starts at a random point).
   std::optional<std::uint64_t> shuffle_seed;
 };
 
-/// The contacts of our search and our depth models.
+/// The value of RenderingConfig::contact_source for the contacts of our search and depth models.
 inline constexpr const char* kOwnContacts = "own";
-/// Collision libraries whose contacts a run can take instead, each a module of its own (algorithms/peers).
+/// Collision libraries whose contacts a run can use instead, each in a module of its own (algorithms/peers).
 inline constexpr std::array kPeers = {"fcl", "bullet"};
 
-/// How contacts become a force. Names are those of registry.hpp; units N, m, s, kg.
+/// Parameters of the rendering: how contacts become a force. Names are those of registry.hpp. Units: N, m, s, kg.
 struct RenderingConfig {
   std::string algorithm = "shaped_stiffness";
   int iterations = 3;  ///< m of the shaping iteration, for the laws that iterate
@@ -38,31 +38,31 @@ struct RenderingConfig {
   double stiffness = 20000.0;              ///< K [N/m]
   double damping_ratio = 0.7;              ///< zeta
   double mass = 0.2;                       ///< M of the virtual tool [kg]
-  std::optional<double> damping;           ///< B [N s/m]; off: 2 zeta sqrt(K M)
+  std::optional<double> damping;           ///< B [N s/m]; none: 2 zeta sqrt(K M)
   double mu_s = 0.0;                       ///< viscous friction [N s/m]
   double mu_f = 0.0;                       ///< viscous friction per newton of spring force [s/m]
   std::optional<double> max_damping;       ///< B_max [N s/m]
   std::optional<double> max_force;         ///< F_max [N]
-  std::optional<double> virtual_coupling;  ///< K_vc [N/m]; off: K
+  std::optional<double> virtual_coupling;  ///< K_vc [N/m]; none: K
   double regularisation = 0.01;            ///< eps of least_squares
 
-  bool angular_damping = false;  ///< damping and friction see the velocity of the tool at each contact
-  std::optional<double> angular_velocity_cutoff = 20.0;  ///< of the low-pass of the angular velocity they see [Hz]
+  bool angular_damping = false;  ///< damping and friction act on the velocity of the tool at each contact
+  std::optional<double> angular_velocity_cutoff = 20.0;  ///< low-pass of that angular velocity [Hz]
 
   bool passivity_controller = false;  ///< around the algorithm
 
-  /// Of parameters that belong to one algorithm alone (OwnParameter), the values given: by algorithm, by name.
+  /// Given values of parameters that belong to one algorithm alone (OwnParameter), by algorithm and name.
   std::map<std::string, std::map<std::string, double>> parameters;
 
-  /// ForceAlgorithm::angular_velocity_cutoff of what damps like this.
+  /// ForceAlgorithm::angular_velocity_cutoff of an algorithm with this damping.
   std::optional<double> angular_velocity_read() const {
     if (!angular_damping) return std::nullopt;
     return angular_velocity_cutoff.value_or(std::numeric_limits<double>::infinity());
   }
 
-  /// Stages without contacts, the reduction of one, friction with coefficients of zero. The run that is made of this
-  /// takes the same for its search and its records.
-  Skips skips = Skips::taken;
+  /// Skipped: stages without contacts, the reduction of one contact, friction with coefficients of zero. The run uses
+  /// the same value for its search and its records.
+  Skips skips = Skips::on;
 };
 
 }  // namespace hapbench

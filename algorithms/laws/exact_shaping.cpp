@@ -1,35 +1,216 @@
 #include "algorithms/laws/exact_shaping.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
 
-#include "algorithms/laws/cone_projection.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
+#include "algorithms/registry.hpp"
+#include "sim/core/simd.hpp"
 
 namespace hapbench {
+
+/// The solver behind exact_shaping and merged_shaping: the projection of the identity onto a cone of tensors.
+namespace cone_projection {
 namespace {
 
-constexpr ParameterInfo kExactShapingParameters[] = {kStiffnessParameter};
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+
+/// epsilon of the definition.
+constexpr double kEps = kExactShapingEpsilon;
+/// Newton steps tried for the final epsilon; nearly all scenes need one or two.
+constexpr int kDirectSteps = 6;
+/// The sequence of epsilon if those are not enough (see solve).
+constexpr double kPath[] = {1e-2, 1e-4, kEps};
+constexpr int kMaxNewtonSteps = 1000;  ///< per epsilon; never reached in exact arithmetic
+constexpr int kMaxLineSearchSteps = 40;
+constexpr int kMaxRefinements = 5;
+/// A smaller residual of the optimality condition is rounding: S sums up to n terms of at most 1 in eight partial sums.
+constexpr double kResidualRounding = 1e-14;
+
+/// The identity tensor in the basis of TensorPack.
+const Vec6& identity6() {
+  static const Vec6 identity = (Vec6() << 1, 1, 1, 0, 0, 0).finished();
+  return identity;
+}
+
+/// Eight symmetric tensors in the orthonormal basis (xx, yy, zz, sqrt2 xy, sqrt2 xz, sqrt2 yz), in which the Frobenius
+/// product of two of them is a dot product: the six-vectors a_i of the solver.
+struct TensorPack {
+  simd::Pack a[6];
+
+  simd::Pack dot(const Vec6& w) const {
+    return ((a[0] * simd::Pack(w[0]) + a[1] * simd::Pack(w[1])) + (a[2] * simd::Pack(w[2]) + a[3] * simd::Pack(w[3]))) +
+           (a[4] * simd::Pack(w[4]) + a[5] * simd::Pack(w[5]));
+  }
+};
+
+// The functions below take the generators of the cone as
+//
+//   struct Tensors { std::size_t size, padded_size; double* weight; TensorPack pack(std::size_t i) const; };
+//
+// with tensors of trace 1, eight of which `pack(i)` returns from index i on, and one weight for each. Both are padded
+// to whole packs with zeros.
+
+/// The sums of one pass over the tensors.
+struct Pass {
+  Mat6 G;            ///< sum a a^T over the active tensors, c_i > 0
+  Vec6 S;            ///< sum c_i a_i
+  bool same_active;  ///< no tensor changed between active and inactive
+};
+
+/// Gives every tensor the weight c_i = max(0, weight_of(a_i, c_i before)).
+template <class Tensors, class WeightOf>
+Pass sweep(const Tensors& tensors, WeightOf weight_of) noexcept {
+  using simd::Pack;
+  Pack g[21], s[6];
+  std::fill(std::begin(g), std::end(g), Pack(0.0));
+  std::fill(std::begin(s), std::end(s), Pack(0.0));
+  const Pack zero(0.0), one(1.0);
+  bool same = true;
+  for (std::size_t i = 0; i < tensors.padded_size; i += simd::lanes) {
+    const TensorPack u = tensors.pack(i);
+    const Pack c_before = simd::load(tensors.weight + i);
+    const Pack t = weight_of(u, c_before);
+    const simd::Mask active = t > zero, before = c_before > zero;
+    same = same && !simd::any((active && !before) || (before && !active));
+    const Pack c = simd::select(active, t, zero), on = simd::select(active, one, zero);
+    simd::store(c, tensors.weight + i);
+    for (int j = 0, k = 0; j < 6; ++j) {
+      s[j] += c * u.a[j];
+      const Pack masked = on * u.a[j];
+      for (int l = 0; l <= j; ++l) g[k++] += masked * u.a[l];
+    }
+  }
+  Pass pass;
+  pass.same_active = same;
+  for (int j = 0, k = 0; j < 6; ++j) {
+    pass.S[j] = simd::sum(s[j]);
+    for (int l = 0; l <= j; ++l) pass.G(j, l) = pass.G(l, j) = simd::sum(g[k++]);
+  }
+  return pass;
+}
+
+/// The pass at the point w of the dual: c_i = max(0, a_i . w).
+template <class Tensors>
+Pass evaluate(const Tensors& tensors, const Vec6& w) noexcept {
+  return sweep(tensors, [&w](const TensorPack& u, const simd::Pack&) { return u.dot(w); });
+}
+
+/// (eps I + G)^-1 b
+Vec6 solve_step(const Mat6& G, double eps, const Vec6& b) noexcept {
+  return Eigen::LDLT<Mat6>(G + eps * Mat6::Identity()).solve(b);
+}
+
+/// Gradient of the convex dual ½|eps w - I|² / eps + ½ sum max(0, a_i . w)²: zero at the optimum.
+Vec6 dual_gradient(const Vec6& w, double eps, const Pass& pass) noexcept {
+  return eps * w - identity6() + pass.S;
+}
+
+/// Moves w towards `target` until the slope of the dual along the way has halved (bisection on a monotone slope). The
+/// dual is convex and piecewise quadratic, so this descends and Newton's method converges from anywhere. `pass` is
+/// evaluated at `target` on entry and at w on return. Returns false if the slope is lost in rounding.
+template <class Tensors>
+bool line_search(const Tensors& tensors, const Vec6& target, double eps, double slope_at_w, Vec6& w,
+                 Pass& pass) noexcept {
+  const Vec6 start = w, way = target - w;
+  w = target;
+  double low = 0.0, high = 1.0, fraction = 1.0;
+  for (int i = 0; i < kMaxLineSearchSteps; ++i) {
+    const double slope = dual_gradient(w, eps, pass).dot(way);
+    const bool still_descending_at_target = fraction == 1.0 && slope <= 0.0;
+    if (still_descending_at_target || std::abs(slope) <= 0.5 * std::abs(slope_at_w)) return true;
+    (slope > 0.0 ? high : low) = fraction;
+    fraction = 0.5 * (low + high);
+    w = start + fraction * way;
+    pass = evaluate(tensors, w);
+  }
+  return false;
+}
+
+/// Newton's method for one epsilon, started at w, where `pass` is evaluated; both are updated. Adds the number of steps
+/// to `steps`. Returns true if it has converged to rounding.
+template <class Tensors>
+bool newton(const Tensors& tensors, double eps, int max_steps, Vec6& w, Pass& pass, int& steps) noexcept {
+  const double n = static_cast<double>(tensors.size);
+  for (int step = 0; step < max_steps; ++step) {
+    ++steps;
+    // On a fixed active set the dual is quadratic; its minimum is where (eps I + G) w = identity.
+    const Vec6 target = solve_step(pass.G, eps, identity6());
+    const double slope = dual_gradient(w, eps, pass).dot(target - w);
+    pass = evaluate(tensors, target);
+    // A contact whose exact weight is zero may flicker between active and inactive by the rounding of a_i . target.
+    const double rounding = 1e-15 * (1.0 + n) * (1.0 + target.norm());
+    const bool flickers_only = pass.same_active || dual_gradient(target, eps, pass).norm() <= rounding;
+    // In exact arithmetic the slope is negative before the optimum; otherwise only rounding is left of it.
+    if (flickers_only || slope >= 0.0) {
+      w = target;
+      return true;
+    }
+    if (!line_search(tensors, target, eps, slope, w, pass)) return true;
+  }
+  return false;
+}
+
+/// Removes the rounding of the last solve, which the factor 1/eps has amplified: w += (eps I + G)^-1 R with the
+/// residual R of the optimality condition. The small a_i . correction is added to the weights, which keeps the digits
+/// that a_i . w loses.
+template <class Tensors>
+void refine(const Tensors& tensors, Vec6 w, Pass pass) noexcept {
+  const simd::Pack zero(0.0);
+  for (int round = 0; round < kMaxRefinements; ++round) {
+    const Vec6 residual = -dual_gradient(w, kEps, pass);
+    if (residual.norm() <= kResidualRounding) return;
+    const Vec6 correction = solve_step(pass.G, kEps, residual);
+    w += correction;
+    pass = sweep(tensors, [&](const TensorPack& u, const simd::Pack& c) {
+      return simd::select(c > zero, c + u.dot(correction), u.dot(w));
+    });
+  }
+}
+
+/// Computes the weights that minimise ½|S - I|²_F + (epsilon/2)|c|², c >= 0, S = sum c_i a_i, into `tensors` and
+/// returns the number of Newton steps. Precondition: all weights are 1. At the optimum <a_i, S> = 1 - epsilon c_i where
+/// c_i > 0 and >= 1 where c_i = 0, and tr S >= |S|²_F for any tensors of trace 1, hence lambda_max(S) <= (1 + sqrt
+/// 3)/2.
+template <class Tensors>
+int solve(const Tensors& tensors) noexcept {
+  // Every tensor is active at w = identity, because a_i . identity is its trace.
+  Vec6 w = identity6();
+  Pass pass = evaluate(tensors, w);
+  int steps = 0;
+  if (!newton(tensors, kEps, kDirectSteps, w, pass, steps)) {
+    // In dense clusters of nearly equal gradients the optimum keeps a few of hundreds, and Newton's method would find
+    // them one by one. Following the optimum from a large epsilon down takes a few steps for each epsilon: at most 32
+    // in all for 6e6 adversarial sets instead of a hundred, 135 for the worst of 1e6 mixtures of such sets.
+    double eps = kPath[0];
+    w = identity6() / eps;
+    pass = evaluate(tensors, w);
+    for (const double next : kPath) {
+      // The same Y = eps w at the next epsilon: weights scale, and the active set stays.
+      w *= eps / next;
+      pass.S *= eps / next;
+      eps = next;
+      newton(tensors, eps, kMaxNewtonSteps, w, pass, steps);
+    }
+  }
+  refine(tensors, w, pass);
+  return steps;
+}
 
 }  // namespace
-
-const ModelInfo kExactShapingInfo = {
-    .name = "exact_shaping",
-    .summary = "what the shaping iteration converges to, computed exactly",
-    .formula =
-        "c = argmin ½|S - I|²_F + (epsilon/2)|c|² over c >= 0, epsilon = 1e-6: the projection of the identity onto "
-        "the cone of contact tensors u u^T",
-    .source = "ours; the iteration is the multiplicative update of Sha, Lin, Saul, Lee, Neural Computation 2007",
-    .known_failure =
-        "as shaped_stiffness: ratios above 1 where the weight is zero; soft along the way out of a wedge, "
-        "2 sin^2 w / (1 + cos^2 2w) K for half angle w, about w^2 K",
-    .parameters = kExactShapingParameters,
-};
+}  // namespace cone_projection
 
 namespace {
 
 using simd::load, simd::Pack;
 
-/// u u^T of the contacts.
+/// The tensors u u^T of the contacts.
 struct GradientTensors {
   const ContactBuffer& contacts;
   std::size_t size, padded_size;
@@ -47,8 +228,6 @@ struct GradientTensors {
 
 }  // namespace
 
-static_assert(kExactShapingEpsilon == cone_projection::kEps);
-
 int solve_exact_shaping(ContactBuffer& contacts) noexcept {
   set_weights(contacts, 1.0);
   return cone_projection::solve(GradientTensors(contacts));
@@ -58,7 +237,7 @@ namespace {
 
 class ExactShaping final : public ForceLaw {
  public:
-  explicit ExactShaping(double stiffness) : ForceLaw(stiffness) {}
+  using ForceLaw::ForceLaw;
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     iterations_ += static_cast<std::uint64_t>(solve_exact_shaping(contacts));
@@ -66,23 +245,191 @@ class ExactShaping final : public ForceLaw {
   }
 };
 
-/// sum c: at the optimum tr S >= |S|^2_F >= (tr S)^2 / 3, so that tr S <= 3, and tr S = sum c.
+/// |f| / K <= sum c d = tr S d, and tr S <= 3 because at the optimum tr S >= |S|^2_F >= (tr S)^2 / 3.
 double exact_shaping_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
   return std::min(3.0, static_cast<double>(n)) * depth;
 }
 
-/// The limit of the iteration; epsilon = 1e-6 of it apart. Under merged_shaping each face is a group.
+/// The limit of the shaping iteration, but for epsilon = 1e-6. Under merged_shaping each face is a group.
 WedgeStiffness exact_shaping_wedge(const RenderingConfig&, double w, double) {
   return wedge_of_weight(shaped_wedge_weight(w), w);
 }
 
+/// Cells along an edge of each face of the cube of directions: 1350 cells of about 6 degrees, the angle that the
+/// reduction calls similar. Odd, so that the axes lie in the middle of cells.
+constexpr int kDirectionCells = 15;
+
+constexpr std::size_t kFaces = 6, kCells = kFaces * kDirectionCells * kDirectionCells;
+
+std::size_t step_of(double tangent) noexcept {
+  // Written so that a NaN gets a cell of the grid, too.
+  const double place = 0.5 * kDirectionCells * (tangent + 1.0);
+  if (!(place > 0.0)) return 0;
+  return place < kDirectionCells ? static_cast<std::size_t>(place) : kDirectionCells - 1;
+}
+
+/// The cell of a direction, by the face of the cube through which it leaves and its place there.
+std::size_t cell_of(double x, double y, double z) noexcept {
+  const double ax = std::abs(x), ay = std::abs(y), az = std::abs(z);
+  std::size_t face = 0;
+  double major = x, u = y, v = z;
+  if (ay > ax && ay >= az) {
+    face = 1;
+    major = y;
+    u = x;
+  } else if (az > ax && az > ay) {
+    face = 2;
+    major = z;
+    u = x;
+    v = y;
+  }
+  const double scale = 1.0 / std::abs(major);
+  const std::size_t side = 2 * face + (major < 0.0);
+  return (side * kDirectionCells + step_of(u * scale)) * kDirectionCells + step_of(v * scale);
+}
+
+using PerCell = std::array<double, simd::padded(kCells)>;
+
+/// The tensors of the groups divided by their traces, in the order of the cells, one column for each component.
+struct Groups {
+  std::size_t size = 0, padded_size = 0;
+  double* weight = nullptr;
+  alignas(64) std::array<PerCell, 6> component{};
+
+  cone_projection::TensorPack pack(std::size_t i) const {
+    cone_projection::TensorPack tensors;
+    for (std::size_t j = 0; j < 6; ++j) tensors.a[j] = simd::load(&component[j][i]);
+    return tensors;
+  }
+};
+
+/// Exact shaping of groups of contacts: a reduction that neither drops a contact nor depends on their order.
+///
+/// Contacts whose gradients lie in the same of 1350 fixed cells of the sphere of directions (gradients away from a
+/// cube's faces, kDirectionCells x kDirectionCells on each) form a group k and share a weight c_k. A group acts by its
+/// exact tensor T_k = sum u u^T and its exact depth vector g_k = sum d u:
+///
+///   S = sum c_k T_k,  f = -K sum c_k g_k,  c = argmin 1/2 |S - I|^2_F + (epsilon/2) |C|^2,  C_k = c_k tr T_k >= 0
+///
+/// which is the projection of the identity onto the cone of the groups' tensors. The mean stiffness ratio over a group
+/// with weight is 1 and lambda_max(S) <= (1 + sqrt 3)/2 as for exact_shaping (the proof needs tensors of trace 1, not
+/// of rank 1). With one contact in each group the law equals exact_shaping. A flat or gradually curved surface keeps
+/// all of its contacts. Contacts that the border of a cell divides form two groups, which share the weight. O(n) once,
+/// then O(groups) for each Newton step.
+class MergedShaping final : public ForceLaw {
+ public:
+  explicit MergedShaping(const RenderingConfig& config) : ForceLaw(config) { groups_.weight = weight_.data(); }
+
+  void prepare(std::size_t capacity) override {
+    cell_.resize(capacity);
+    touched_.reserve(kCells);
+  }
+
+  LawForce evaluate(ContactBuffer& contacts) noexcept override {
+    gather(contacts);
+    make_groups();
+    iterations_ += static_cast<std::uint64_t>(cone_projection::solve(groups_));
+    for (std::size_t k = 0; k < groups_.size; ++k) share_[touched_[k]] = weight_[k] / trace_[k];
+    for (std::size_t i = 0; i < contacts.size(); ++i) contacts.weight[i] = share_[cell_[i]];
+    contacts.pad();
+    return weighted_force(contacts, K_);
+  }
+
+ private:
+  /// Sums u u^T over each cell and lists the cells with contacts.
+  void gather(const ContactBuffer& contacts) noexcept {
+    touched_.clear();
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const double x = contacts.ux[i], y = contacts.uy[i], z = contacts.uz[i];
+      cell_[i] = static_cast<std::uint16_t>(cell_of(x, y, z));
+      CellSum& cell = cells_[cell_[i]];
+      if (!cell.touched) touched_.push_back(cell_[i]);
+      cell.touched = true;
+      cell.tensor[0] += x * x;
+      cell.tensor[1] += y * y;
+      cell.tensor[2] += z * z;
+      cell.tensor[3] += x * y;
+      cell.tensor[4] += x * z;
+      cell.tensor[5] += y * z;
+    }
+    // Sorted, so that the groups do not depend on the order of the contacts.
+    std::sort(touched_.begin(), touched_.end());
+  }
+
+  /// Makes one group of each listed cell and resets the sums of the cell.
+  void make_groups() noexcept {
+    groups_.size = touched_.size();
+    for (std::size_t k = 0; k < groups_.size; ++k) {
+      CellSum& cell = cells_[touched_[k]];
+      const double trace = cell.tensor[0] + cell.tensor[1] + cell.tensor[2];
+      // A cell that holds zero gradients only has a zero tensor, and its weight has no effect.
+      const double scale = trace > 0.0 ? 1.0 / trace : 0.0;
+      trace_[k] = trace > 0.0 ? trace : 1.0;
+      weight_[k] = 1.0;
+      for (std::size_t j = 0; j < 6; ++j) {
+        groups_.component[j][k] = cell.tensor[j] * scale * (j < 3 ? 1.0 : std::numbers::sqrt2);
+      }
+      cell = {};
+    }
+    groups_.padded_size = simd::padded(groups_.size);
+    for (std::size_t k = groups_.size; k < groups_.padded_size; ++k) {
+      weight_[k] = 0.0;
+      for (PerCell& column : groups_.component) column[k] = 0.0;
+    }
+  }
+
+  struct CellSum {
+    std::array<double, 6> tensor{};
+    bool touched = false;
+  };
+  std::vector<std::uint16_t> cell_;  ///< cell of each contact
+  std::vector<CellSum> cells_ = std::vector<CellSum>(kCells);
+  std::vector<std::uint16_t> touched_;  ///< cells of the groups, ascending
+  PerCell share_{};                     ///< c_k, by cell
+  PerCell trace_{};
+  alignas(64) PerCell weight_{};  ///< C_k
+  Groups groups_;
+};
+
+constexpr AlgorithmTheory kExactShapingTheory = {.force_bound = exact_shaping_bound,
+                                                 .wedge_stiffness = exact_shaping_wedge};
+
 }  // namespace
 
-const AlgorithmTheory kExactShapingTheory = {.force_bound = exact_shaping_bound,
-                                             .wedge_stiffness = exact_shaping_wedge};
+AlgorithmEntry exact_shaping_entry() {
+  static constexpr ModelInfo kInfo = {
+      .name = "exact_shaping",
+      .summary = "what the shaping iteration converges to, computed exactly",
+      .formula =
+          "c = argmin ½|S - I|²_F + (epsilon/2)|c|² over c >= 0, epsilon = 1e-6: the projection of the identity onto "
+          "the cone of contact tensors u u^T",
+      .source = "ours; the iteration is the multiplicative update of Sha, Lin, Saul, Lee, Neural Computation 2007",
+      .known_failure =
+          "as shaped_stiffness: ratios above 1 where the weight is zero; soft along the way out of a wedge, "
+          "2 sin^2 w / (1 + cos^2 2w) K for half angle w, about w^2 K",
+      .parameters = kStiffnessAlone,
+  };
+  return {.info = &kInfo, .make_law = law_of<ExactShaping>, .theory = kExactShapingTheory};
+}
 
-std::unique_ptr<ForceLaw> make_exact_shaping(const RenderingConfig& config) {
-  return std::make_unique<ExactShaping>(config.stiffness);
+AlgorithmEntry merged_shaping_entry() {
+  static constexpr ModelInfo kInfo = {
+      .name = "merged_shaping",
+      .summary =
+          "exact shaping of groups of contacts with similar gradients, each with its whole tensor and depth vector",
+      .formula =
+          "groups: 1350 fixed cells of directions; S = sum c_k T_k, T_k = sum u u^T, f = -K sum c_k sum d u; C_k = c_k "
+          "tr "
+          "T_k "
+          "= argmin ½|S - I|²_F + (epsilon/2)|C|² over C >= 0, epsilon = 1e-6",
+      .source = "ours, instead of the reduction of thesis C.3 and 4.1; takes no reduction",
+      .known_failure =
+          "contacts of a group share a weight, so single ratios stray from 1 by about the square of a cell's angle; a "
+          "cell's "
+          "border is a jump for a gradient that turns across it",
+      .parameters = kStiffnessAlone,
+  };
+  return {.info = &kInfo, .make_law = law_of<MergedShaping>, .theory = kExactShapingTheory, .may_reduce = false};
 }
 
 }  // namespace hapbench

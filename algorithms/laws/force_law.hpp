@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 
 #include "algorithms/parameters.hpp"
 #include "algorithms/rendering_config.hpp"
@@ -11,10 +10,11 @@
 
 namespace hapbench {
 
-/// The parameter all laws share, for their parameter blocks.
+/// The parameter that all laws share, and the parameter block of laws that have no other.
 inline constexpr ParameterInfo kStiffnessParameter = {parameter::kStiffness, "K of one penalty spring"};
+inline constexpr ParameterInfo kStiffnessAlone[] = {kStiffnessParameter};
 
-/// What a force law makes of the contacts.
+/// The answer of a force law.
 struct LawForce {
   Vec3 spring = Vec3::Zero();  ///< f_spring on the tool [N]
   Mat3 S = Mat3::Zero();       ///< stiffness tensor in units of K
@@ -22,25 +22,28 @@ struct LawForce {
 
 /// A force law: merges the penalty springs of all contacts into one force (thesis C.4). All laws but
 /// `original_averaging`, `highest_depth` and those with a coupling (virtual_coupling, static_coupling, least_squares)
-/// are f_spring = -K sum c_i d_i u_i and S = sum c_i u_i u_i^T and differ in the weights c_i only. Per-run state; one
-/// virtual call per step.
+/// are f_spring = -K sum c_i d_i u_i and S = sum c_i u_i u_i^T and differ in the weights c_i only. An object is the
+/// state of one run. One virtual call per step.
 class ForceLaw {
  public:
   explicit ForceLaw(double stiffness) : K_(stiffness) {}
+  explicit ForceLaw(const RenderingConfig& config) : K_(config.stiffness) {}
   virtual ~ForceLaw() = default;
   /// Before the first step; may allocate for up to `capacity` contacts.
   virtual void prepare(std::size_t capacity) { static_cast<void>(capacity); }
   virtual void reset() noexcept { iterations_ = 0; }
-  /// Precondition: contacts are padded; without any, the force is zero. Leaves the weights in the buffer.
+  /// Returns force and stiffness, zero for no contacts, and leaves the weights in the buffer. Precondition: the
+  /// contacts are padded.
   virtual LawForce evaluate(ContactBuffer& contacts) noexcept = 0;
-  /// The springs behind the last `evaluate`, whose contacts and spring force [N] are handed in: their elastic energy
-  /// and their moment about the tip centre `tip`. Of weighted springs: 1/2 K sum c_i d_i^2, and each force at its
-  /// colliding point.
+  /// Elastic energy of the springs behind the last `evaluate` and their moment about the tip centre `tip`. The
+  /// arguments are the contacts and the spring force [N] of that call. By default the springs are weighted: 1/2 K sum
+  /// c_i d_i^2, each force at its colliding point.
   virtual SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept;
-  /// What the tool's turning adds to the normal velocity S v of the last `evaluate`, whose contacts and S are handed in
-  /// [m/s]. Of weighted springs: sum c_i <omega x r_i, u_i> u_i, r_i from the tip centre to the colliding point. O(n).
+  /// The part that a turning tool adds to the normal velocity S v [m/s] of the last `evaluate`, whose contacts and S
+  /// are the arguments. By default that of weighted springs: sum c_i <omega x r_i, u_i> u_i, with r_i from the tip
+  /// centre to the colliding point. O(n).
   virtual Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept;
-  /// What went wrong in code from outside since the last reset; null for nothing. The force then is no number.
+  /// Describes the fault of external code since the last reset, or null. After a fault the force is NaN.
   virtual const char* fault() const noexcept { return nullptr; }
   /// Inner iterations since the last reset.
   std::uint64_t iterations() const noexcept { return iterations_; }
@@ -50,23 +53,31 @@ class ForceLaw {
   std::uint64_t iterations_ = 0;
 };
 
+/// A law that defines force and S but no springs. As its springs counts one of stiffness K along the force, which acts
+/// at the weighted mean of the contacts.
+class SingleSpringLaw : public ForceLaw {
+ public:
+  using ForceLaw::ForceLaw;
+
+  SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override;
+  Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override;
+
+ protected:
+  bool gives_weights_ = false;  ///< the last `evaluate` gave weighted springs after all, for laws that may do either
+};
+
 /// Gives every contact the weight c and keeps the padding at zero. O(n).
 void set_weights(ContactBuffer& contacts, double c) noexcept;
 
 /// Sum of the gradients u_i. O(n).
 Vec3 gradient_sum(const ContactBuffer& contacts) noexcept;
 
-/// Mean of the vectors from the tip centre `tip` to the colliding points, by the weights in the buffer [m]; zero
-/// without weights. O(n).
+/// Mean of the vectors from the tip centre `tip` to the colliding points [m], weighted by the weights in the buffer;
+/// zero if their sum is. O(n).
 Vec3 mean_arm(const ContactBuffer& contacts, const Vec3& tip) noexcept;
 
-/// What ForceLaw::spring_state and turning_velocity are of a law that gives force and S and no springs: one spring of
-/// stiffness K [N/m] along the force, at the mean of the contacts by their weights. O(n).
-SpringState spring_of_force(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip, double K) noexcept;
-Vec3 turning_velocity_of_force(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) noexcept;
-
-/// Energy and moment about `tip` of springs of stiffness K [N/m] and the weights in the buffer, whose ends have moved
-/// by `shift` [m]: the depths are d_i + <u_i, shift>. O(n).
+/// Energy and moment about `tip` of springs of stiffness K [N/m] with the weights in the buffer, whose ends have moved
+/// by `shift` [m], so the depths are d_i + <u_i, shift>. O(n).
 SpringState shifted_springs(const ContactBuffer& contacts, const Vec3& shift, const Vec3& tip, double K) noexcept;
 
 /// f_spring and S of the weights in the buffer. O(n).

@@ -4,50 +4,10 @@
 #include <cmath>
 
 #include "algorithms/parameters.hpp"
+#include "algorithms/registry.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
-namespace {
-
-constexpr ParameterInfo kShapedStiffnessParameters[] = {
-    kStiffnessParameter,
-    {parameter::kIterations, "m: updates of the weights; 0 is summation"},
-};
-
-}  // namespace
-
-const ModelInfo kShapedStiffnessInfo = {
-    .name = "shaped_stiffness",
-    .summary = "the thesis's stiffness shaping (HS): the combined stiffness along every contact is drawn to K",
-    .formula = "c = 1; m times: rho_i = sum_j c_j <u_i, u_j>^2 = u_i^T S u_i, c_i <- c_i / rho_i",
-    .source = "thesis 2.4, C.4.2; rho through the 3x3 tensor, Eq. 3 and 4",
-    .known_failure =
-        "rho_i stays above 1 where the weight dies out (it is a projection onto a cone); soft along the way out of a "
-        "wedge, because only ratios along contacts are regulated: 2 sin^2 w / (1 + cos^2 2w) K, about w^2 K, for half "
-        "angle w (10 degrees: 0.032 K), and in a cone 2 sin^2 w / (cos^4 w + 2 sin^4 w) K, about 2 w^2 K",
-    .parameters = kShapedStiffnessParameters,
-};
-
-const ModelInfo kNormalProjectionInfo = {
-    .name = "normal_projection",
-    .summary = "stiffness shaping on the depth model normal_projection",
-    .formula = "weights of shaped_stiffness; d_i = exit distance along -n_i (see depth model normal_projection)",
-    .source = "thesis F.1; always with depth model normal_projection",
-    .known_failure = "the force jumps when a point appears at a corner (Fig. F.4)",
-    .parameters = kShapedStiffnessParameters,
-};
-
-const ModelInfo kContinuousNormalProjectionInfo = {
-    .name = "continuous_normal_projection",
-    .summary = "stiffness shaping on the depth model continuous_normal_projection: no jump at corners",
-    .formula =
-        "weights of shaped_stiffness; d_i starts as the shortest distance and follows the tool along -n_i up to "
-        "its exit (see depth model continuous_normal_projection)",
-    .source = "ours, after thesis F.1; always with depth model continuous_normal_projection",
-    .known_failure =
-        "depends on the way: under a face that it slid in below sideways, the tool feels the shortest distance only",
-    .parameters = kShapedStiffnessParameters,
-};
 
 Mat3 update_shaped_weights(ContactBuffer& contacts, const Mat3& S) noexcept {
   using simd::load, simd::Pack;
@@ -78,7 +38,7 @@ namespace {
 
 class ShapedStiffness final : public ForceLaw {
  public:
-  ShapedStiffness(double stiffness, int iterations) : ForceLaw(stiffness), m_(iterations) {}
+  explicit ShapedStiffness(const RenderingConfig& config) : ForceLaw(config), m_(config.iterations) {}
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     iterations_ += static_cast<std::uint64_t>(m_);
@@ -102,13 +62,65 @@ WedgeStiffness shaped_stiffness_wedge(const RenderingConfig& config, double w, d
   return wedge_of_weight(config.iterations == 0 ? n : shaped_wedge_weight(w), w);
 }
 
+constexpr ParameterInfo kShapingParameters[] = {
+    kStiffnessParameter,
+    {parameter::kIterations, "m: updates of the weights; 0 is summation"},
+};
+
+/// The law, which several algorithms use on depth models of their own.
+AlgorithmEntry shaping_entry(const ModelInfo& info) {
+  return {.info = &info,
+          .make_law = law_of<ShapedStiffness>,
+          .theory = {.force_bound = shaped_stiffness_bound, .wedge_stiffness = shaped_stiffness_wedge}};
+}
+
 }  // namespace
 
-const AlgorithmTheory kShapedStiffnessTheory = {.force_bound = shaped_stiffness_bound,
-                                                .wedge_stiffness = shaped_stiffness_wedge};
+AlgorithmEntry shaped_stiffness_entry() {
+  static constexpr ModelInfo kInfo = {
+      .name = "shaped_stiffness",
+      .summary = "the thesis's stiffness shaping (HS): the combined stiffness along every contact is drawn to K",
+      .formula = "c = 1; m times: rho_i = sum_j c_j <u_i, u_j>^2 = u_i^T S u_i, c_i <- c_i / rho_i",
+      .source = "thesis 2.4, C.4.2; rho through the 3x3 tensor, Eq. 3 and 4",
+      .known_failure =
+          "rho_i stays above 1 where the weight dies out (it is a projection onto a cone); soft along the way out of a "
+          "wedge, because only ratios along contacts are regulated: 2 sin^2 w / (1 + cos^2 2w) K, about w^2 K, for half "
+          "angle w (10 degrees: 0.032 K), and in a cone 2 sin^2 w / (cos^4 w + 2 sin^4 w) K, about 2 w^2 K",
+      .parameters = kShapingParameters,
+  };
+  return shaping_entry(kInfo);
+}
 
-std::unique_ptr<ForceLaw> make_shaped_stiffness(const RenderingConfig& config) {
-  return std::make_unique<ShapedStiffness>(config.stiffness, config.iterations);
+AlgorithmEntry normal_projection_entry() {
+  static constexpr ModelInfo kInfo = {
+      .name = "normal_projection",
+      .summary = "stiffness shaping on the depth model normal_projection",
+      .formula = "weights of shaped_stiffness; d_i = exit distance along -n_i (see depth model normal_projection)",
+      .source = "thesis F.1; always with depth model normal_projection",
+      .known_failure = "the force jumps when a point appears at a corner (Fig. F.4)",
+      .parameters = kShapingParameters,
+  };
+  AlgorithmEntry entry = shaping_entry(kInfo);
+  entry.fixed_depth_model = "normal_projection";
+  entry.creates_energy = true;
+  return entry;
+}
+
+AlgorithmEntry continuous_normal_projection_entry() {
+  static constexpr ModelInfo kInfo = {
+      .name = "continuous_normal_projection",
+      .summary = "stiffness shaping on the depth model continuous_normal_projection: no jump at corners",
+      .formula =
+          "weights of shaped_stiffness; d_i starts as the shortest distance and follows the tool along -n_i up to "
+          "its exit (see depth model continuous_normal_projection)",
+      .source = "ours, after thesis F.1; always with depth model continuous_normal_projection",
+      .known_failure =
+          "depends on the way: under a face that it slid in below sideways, the tool feels the shortest distance only",
+      .parameters = kShapingParameters,
+  };
+  AlgorithmEntry entry = shaping_entry(kInfo);
+  entry.fixed_depth_model = "continuous_normal_projection";
+  return entry;
 }
 
 }  // namespace hapbench

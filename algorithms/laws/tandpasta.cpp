@@ -1,34 +1,18 @@
 #include <cmath>
 
-#include "algorithms/laws/laws.hpp"
+#include "algorithms/registry.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
-namespace {
-
-constexpr ParameterInfo kTandpastaParameters[] = {kStiffnessParameter};
-
-}  // namespace
-
-const ModelInfo kTandpastaInfo = {
-    .name = "tandpasta",
-    .summary = "elastic energy moved from springs that fight each other to those that do not",
-    .formula =
-        "beta_i = |sum_j <u_i,u_j>| / sum_j |<u_i,u_j>|, sigma_E = sum beta_i d_i^2 / sum d_i^2, "
-        "c_i = beta_i / sigma_E; zero force when sigma_E <= 1e-12",
-    .source = "thesis F.2",
-    .known_failure = "boosts the outward force until the tool jumps out; O(n^2)",
-    .parameters = kTandpastaParameters,
-};
 
 namespace {
 
-/// Below this scaled energy every spring is cancelled by another and the normalisation would divide by rounding noise.
+/// Below this scaled energy, every spring is cancelled by another and the normalisation would divide by rounding noise.
 constexpr double kNoEnergyBelow = 1e-12;
 
 class Tandpasta final : public ForceLaw {
  public:
-  explicit Tandpasta(double stiffness) : ForceLaw(stiffness) {}
+  using ForceLaw::ForceLaw;
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     const Vec3 total = gradient_sum(contacts);
@@ -51,8 +35,8 @@ class Tandpasta final : public ForceLaw {
   }
 
  private:
-  /// beta: 1 when no other gradient opposes u, 0 when all cancel. The sum of inner products is the inner product with
-  /// the sum; only the sum of their magnitudes needs the O(n) loop.
+  /// beta of the gradient u: 1 if no other gradient opposes it, 0 if all cancel. The sum of inner products is the inner
+  /// product with the sum of gradients; only the sum of magnitudes needs the O(n) loop.
   static double cancelling_ratio(const ContactBuffer& c, const Vec3& u, const Vec3& total) noexcept {
     using simd::load, simd::Pack;
     const Pack x(u.x()), y(u.y()), z(u.z());
@@ -71,17 +55,28 @@ double tandpasta_bound(const RenderingConfig&, const ToolShape&, std::size_t n, 
   return 1e6 * static_cast<double>(n) * depth;
 }
 
-/// On a wedge every spring has the same beta, and sigma_E cancels it.
+/// In a wedge every spring has the same beta, which sigma_E cancels.
 WedgeStiffness tandpasta_wedge(const RenderingConfig&, double w, double n) {
   return wedge_of_weight(n, w);
 }
 
 }  // namespace
 
-const AlgorithmTheory kTandpastaTheory = {.force_bound = tandpasta_bound, .wedge_stiffness = tandpasta_wedge};
-
-std::unique_ptr<ForceLaw> make_tandpasta(const RenderingConfig& config) {
-  return std::make_unique<Tandpasta>(config.stiffness);
+AlgorithmEntry tandpasta_entry() {
+  static constexpr ModelInfo kInfo = {
+      .name = "tandpasta",
+      .summary = "elastic energy moved from springs that fight each other to those that do not",
+      .formula =
+          "beta_i = |sum_j <u_i,u_j>| / sum_j |<u_i,u_j>|, sigma_E = sum beta_i d_i^2 / sum d_i^2, "
+          "c_i = beta_i / sigma_E; zero force when sigma_E <= 1e-12",
+      .source = "thesis F.2",
+      .known_failure = "boosts the outward force until the tool jumps out; O(n^2)",
+      .parameters = kStiffnessAlone,
+  };
+  return {.info = &kInfo,
+          .make_law = law_of<Tandpasta>,
+          .theory = {.force_bound = tandpasta_bound, .wedge_stiffness = tandpasta_wedge},
+          .creates_energy = true};
 }
 
 }  // namespace hapbench

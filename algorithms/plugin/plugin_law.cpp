@@ -1,14 +1,13 @@
 #include "algorithms/plugin/plugin_law.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <limits>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
-
-#include "algorithms/added_algorithm.hpp"
-#include "algorithms/penalty_rendering.hpp"
+#include <vector>
 
 namespace hapbench {
 namespace {
@@ -43,7 +42,7 @@ PluginFaults& faults() {
   return all;
 }
 
-/// May allocate: the run is over.
+/// May allocate, because the run is over.
 void note_fault(const char* text) {
   const std::lock_guard lock(faults_mutex);
   if (faults().count++ == 0) faults().first = text;
@@ -52,7 +51,9 @@ void note_fault(const char* text) {
 }  // namespace
 
 PluginLaw::PluginLaw(const HapbenchPlugin& plugin, double stiffness, std::vector<double> parameters)
-    : ForceLaw(stiffness), plugin_(plugin), parameters_(std::move(parameters)) {}
+    : SingleSpringLaw(stiffness), plugin_(plugin), parameters_(std::move(parameters)) {
+  gives_weights_ = plugin.gives == HAPBENCH_WEIGHTS;
+}
 
 PluginLaw::~PluginLaw() {
   if (law_ != nullptr && plugin_.destroy != nullptr) plugin_.destroy(law_);
@@ -71,7 +72,7 @@ void PluginLaw::reset() noexcept {
 
 LawForce PluginLaw::failed(const char* problem) noexcept {
   std::snprintf(fault_.data(), fault_.size(), "%s %s", plugin_.name, problem);
-  // Printed in one line and written as JSON, whatever the plugin says.
+  // The text is printed in one line and written as JSON, whatever the plugin answers.
   for (char& c : fault_) c = c == '\0' || (c >= ' ' && c <= '~') ? c : '?';
   note_fault(fault_.data());
   return {Vec3::Constant(kNaN), Mat3::Zero()};
@@ -89,15 +90,14 @@ LawForce PluginLaw::evaluate(ContactBuffer& contacts) noexcept {
   if (contacts.empty()) return {};
   if (fault() != nullptr) return {Vec3::Constant(kNaN), Mat3::Zero()};
   if (law_ == nullptr) return failed("could not be created with these parameters");
-  const bool gives_force = plugin_.gives == HAPBENCH_FORCE;
-  // What a law forgets to write is found as what is no number.
-  set_weights(contacts, gives_force ? 1.0 / static_cast<double>(contacts.size()) : kNaN);
+  // Pre-fills with NaN to detect outputs that the plugin did not write.
+  set_weights(contacts, gives_weights_ ? kNaN : 1.0 / static_cast<double>(contacts.size()));
   HapbenchForce answer{{kNaN, kNaN, kNaN}, {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}};
   const HapbenchContacts view = view_of(contacts);
   if (const int error = plugin_.evaluate(law_, &view, contacts.weight.data(), &answer); error != 0)
     return failed(error);
-  const LawForce force = gives_force ? force_of(answer) : weighted_force(contacts, K_);
-  // A weight that is not finite leaves a tensor that is not.
+  const LawForce force = gives_weights_ ? weighted_force(contacts, K_) : force_of(answer);
+  // A weight that is not finite makes the tensor not finite, too.
   if (!force.spring.allFinite()) return failed("gives a force that is not finite");
   if (!force.S.allFinite()) return failed("gives a stiffness that is not finite");
   return force;
@@ -111,13 +111,7 @@ SpringState PluginLaw::spring_state(const ContactBuffer& contacts, const Vec3& s
     plugin_.springs(law_, &view, tip.data(), &state.energy, state.moment.data());
     return state;
   }
-  if (plugin_.gives == HAPBENCH_WEIGHTS) return ForceLaw::spring_state(contacts, spring, tip);
-  return spring_of_force(contacts, spring, tip, K_);
-}
-
-Vec3 PluginLaw::turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept {
-  if (plugin_.gives == HAPBENCH_WEIGHTS) return ForceLaw::turning_velocity(contacts, S, tool);
-  return turning_velocity_of_force(contacts, S, tool);
+  return SingleSpringLaw::spring_state(contacts, spring, tip);
 }
 
 AlgorithmEntry plugin_entry(const HapbenchPlugin& plugin, AlgorithmOrigin origin) {
@@ -128,24 +122,21 @@ AlgorithmEntry plugin_entry(const HapbenchPlugin& plugin, AlgorithmOrigin origin
                                 "; allowed: HAPBENCH_WEIGHTS or HAPBENCH_FORCE");
   if (plugin.parameter_count > 0 && plugin.parameters == nullptr)
     throw std::invalid_argument("its table of parameters is missing");
-  static constexpr ParameterInfo kShared[] = {kStiffnessParameter};
   const ModelInfo info = {.name = plugin.name,
                           .summary = plugin.summary,
                           .formula = plugin.formula,
                           .source = plugin.source,
                           .known_failure = plugin.known_failure,
-                          .parameters = kShared};
+                          .parameters = kStiffnessAlone};
   std::vector<OwnParameter> parameters;
   for (std::size_t i = 0; i < plugin.parameter_count; ++i) {
     const HapbenchParameter& p = plugin.parameters[i];
-    parameters.push_back({p.name, {p.min, p.max, p.unit}, p.initial, p.meaning});
+    parameters.push_back({.name = p.name, .range = {p.min, p.max, p.unit}, .initial = p.initial, .meaning = p.meaning});
   }
-  const auto make = [&plugin](const RenderingConfig& config) -> std::unique_ptr<ForceAlgorithm> {
-    auto values = own_values(config, *find_algorithm(plugin.name));
-    return std::make_unique<PenaltyRendering>(std::make_unique<PluginLaw>(plugin, config.stiffness, std::move(values)),
-                                              config);
+  const auto make_law = [&plugin](const RenderingConfig& config) {
+    return std::make_unique<PluginLaw>(plugin, config.stiffness, own_values(config, *find_algorithm(plugin.name)));
   };
-  return checked_copy({.info = &info, .make = make, .own_parameters = parameters, .origin = std::move(origin)});
+  return checked_copy({.info = &info, .make_law = make_law, .own_parameters = parameters, .origin = std::move(origin)});
 }
 
 PluginFaults take_plugin_faults() {

@@ -5,17 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/laws/force_law.hpp"
 #include "algorithms/plugin/hapbench_plugin.h"
 #include "algorithms/registry.hpp"
 
 namespace hapbench {
 
-/// A law behind the C interface, on the contacts of the step as they lie. A step adds one indirect call and a check
+/// A law behind the C interface. It reads the contacts of the step in place. A step adds one indirect call and a check
 /// that the answer is finite; it does not allocate.
-class PluginLaw final : public ForceLaw {
+class PluginLaw final : public SingleSpringLaw {
  public:
-  /// `plugin` outlives the law; `parameters` are in its order.
+  /// `plugin` must outlive the law; `parameters` are in its order.
   PluginLaw(const HapbenchPlugin& plugin, double stiffness, std::vector<double> parameters);
   ~PluginLaw() override;
   PluginLaw(const PluginLaw&) = delete;
@@ -23,10 +22,9 @@ class PluginLaw final : public ForceLaw {
 
   void prepare(std::size_t capacity) override;
   void reset() noexcept override;
-  /// After a fault: no number, until the next reset.
+  /// After a fault the force is NaN until the next reset.
   LawForce evaluate(ContactBuffer& contacts) noexcept override;
   SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override;
-  Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override;
   const char* fault() const noexcept override { return fault_[0] == '\0' ? nullptr : fault_.data(); }
 
  private:
@@ -36,19 +34,19 @@ class PluginLaw final : public ForceLaw {
   const HapbenchPlugin& plugin_;
   std::vector<double> parameters_;
   void* law_ = nullptr;
-  std::array<char, 256> fault_{};  ///< empty: none
+  std::array<char, 256> fault_{};  ///< empty without a fault
 };
 
-/// The entry of the table for a law behind the C interface; `origin` as there. Throws std::invalid_argument for a
-/// plugin whose functions or documentation are missing.
+/// The entry of the table for a law behind the C interface, from the file `origin`. The plugin must outlive it. Throws
+/// std::invalid_argument for a plugin whose functions or documentation are missing.
 AlgorithmEntry plugin_entry(const HapbenchPlugin& plugin, AlgorithmOrigin origin);
 
 /// Faults of laws from outside, over all threads.
 struct PluginFaults {
   std::uint64_t count = 0;
-  std::string first;  ///< its text
+  std::string first;  ///< text of the first
 };
-/// Those since it was last asked.
+/// The faults since the last call.
 PluginFaults take_plugin_faults();
 
 }  // namespace hapbench

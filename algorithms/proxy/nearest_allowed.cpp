@@ -13,9 +13,9 @@ namespace {
 
 using simd::load, simd::Pack;
 
-/// Squared sine of the angle between a gradient and the span of others below which it counts as lying in it: those on
-/// one flat face of the tool, or along one line of its side, differ by rounding, 1e-15; other neighbours by far more
-/// than this 3e-8.
+/// Squared sine of the angle between a gradient and the span of others below which it counts as part of the span.
+/// Gradients on one flat face of the tool, or along one line of its side, differ by rounding, 1e-15; other neighbours
+/// by far more than this angle of 3e-8.
 constexpr double kInSpan = 1e-15;
 constexpr int kMostIterations = 100;
 
@@ -26,7 +26,7 @@ struct Violation {
   double amount = 0.0;  ///< d + <u, x> [m]
 };
 
-/// The first of equals; none, with amount 0, when all are within the tolerance.
+/// Returns the first of the largest violations, or amount 0 if all are within the tolerance.
 Violation largest_violation(const ContactBuffer& c, const Vec3& x, double tolerance) noexcept {
   const Pack x0(x.x()), x1(x.y()), x2(x.z());
   Pack largest(-kNever);
@@ -51,15 +51,15 @@ double largest_length(const ContactBuffer& c, const Vec3& wanted) noexcept {
   return simd::max_lane(largest);
 }
 
-/// A gradient as the combination of the active ones that comes nearest to it, and what that leaves.
+/// A gradient, split into the nearest combination of the active gradients and the remainder.
 struct Split {
   Vec3 inside = Vec3::Zero();  ///< its components along the orthonormal basis of their span
   Vec3 remainder;              ///< perpendicular to all of them
   Vec3 along = Vec3::Zero();   ///< its coefficients of the active gradients
 };
 
-/// The contacts that hold the tool back, at most three, with independent gradients. Keeps the orthonormal basis Q that
-/// Gram and Schmidt make of them, and R with gradients = Q R: for three rows a handful of operations.
+/// The contacts that hold the tool back, at most three, with independent gradients. Keeps their factorisation
+/// gradients = Q R by Gram and Schmidt, which takes a handful of operations for three rows.
 class ActiveSet {
  public:
   int size() const { return size_; }
@@ -71,7 +71,7 @@ class ActiveSet {
   }
   Split split(const Vec3& u) const {
     Split parts{.remainder = u};
-    // Twice: the second round takes out what rounding left of the first, which counts where the remainder is short.
+    // The second round removes the rounding of the first, which matters if the remainder is short.
     for (int round = 0; round < 2; ++round) {
       for (int k = 0; k < size_; ++k) {
         const double part = Q_.col(k).dot(parts.remainder);
@@ -86,7 +86,7 @@ class ActiveSet {
     }
     return parts;
   }
-  /// `parts` are those of the gradient; its remainder is not 0.
+  /// `parts` is the split of the gradient, with a remainder that is not 0.
   void add(std::size_t contact, const Vec3& gradient, const Split& parts, double lambda) {
     const auto k = static_cast<std::size_t>(size_);
     contact_[k] = contact;
@@ -121,7 +121,7 @@ class ActiveSet {
   Mat3 Q_, R_;  ///< the first size() columns
 };
 
-/// Makes contact `p` satisfied, letting go of active ones that no longer hold. False when that is impossible.
+/// Satisfies contact `p` and drops active contacts that no longer hold. Returns false if that is impossible.
 bool satisfy(std::size_t p, double violation, const Vec3& u, Vec3& x, ActiveSet& active) noexcept {
   double lambda = 0.0;
   for (;;) {
@@ -152,18 +152,19 @@ bool satisfy(std::size_t p, double violation, const Vec3& u, Vec3& x, ActiveSet&
   }
 }
 
-/// The method of Goldfarb and Idnani; false, with the weights untouched, when the contacts contradict each other.
+/// The method of Goldfarb and Idnani. Returns false and leaves the weights unchanged if the contacts contradict each
+/// other.
 bool solve_exactly(const Vec3& wanted, double tolerance, ContactBuffer& contacts, AllowedMove& out) noexcept {
   ActiveSet active;
   out.move = wanted;
   for (;;) {
     const Violation worst = largest_violation(contacts, out.move, tolerance);
-    // An active contact is satisfied but for rounding.
+    // An active contact is violated by rounding only.
     if (!(worst.amount > tolerance) || active.contains(worst.contact)) break;
     if (++out.iterations > kMostIterations) return false;
     if (!satisfy(worst.contact, worst.amount, contacts.gradient(worst.contact), out.move, active)) return false;
   }
-  // A contact that is only just reached holds nothing; whether it counts would be left to rounding.
+  // A contact that is only just reached holds nothing, and rounding would decide whether it counts.
   for (int k = active.size() - 1; k >= 0; --k) {
     if (active.lambda(k) <= tolerance) active.drop(k);
   }

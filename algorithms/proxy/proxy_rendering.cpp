@@ -7,48 +7,27 @@
 #include <limits>
 #include <span>
 
-#include "algorithms/laws/force_law.hpp"
+#include "algorithms/registry.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
 namespace {
 
-constexpr ParameterInfo kProxyParameters[] = {kStiffnessParameter};
-
-}  // namespace
-
-const ModelInfo kProxyInfo = {
-    .name = "proxy",
-    .summary = "a proxy of the tool that never enters the environment; a spring pulls the tool to it",
-    .formula =
-        "x = argmin |x - p|^2 with <m_i, x - x_proxy> <= g_i for all points within the margin (g_i signed distance of "
-        "the point to the tool, m_i the tool's normal there), and with the tool's foremost edge above the surface's "
-        "flat patch about each point; f_spring = K (x - p), S = projector onto the span of the active gradients",
-    .source = "ours; after Zilles and Salisbury 1995 (god-object) and Ruspini et al. 1997, which thesis 1.2 rejects",
-    .known_failure =
-        "a start in deep penetration and a hole that the turned tool does not fit into keep points inside the proxy, "
-        "which leaves them at 40 half widths of the tool a second; a flat face of the tool bumps on a surface whose "
-        "normals are off by more than 6 degrees; no depth model or reduction applies",
-    .parameters = kProxyParameters,
-};
-
-namespace {
-
-/// Squared length of what gradients leave of a direction below which they do not span it.
+/// Eigenvalue of sum u u^T below which the gradients do not span its eigenvector.
 constexpr double kNoSpan = 1e-6;
-/// A pass that moves the proxy less than this part of the margin is the last one. Its constraints were exact where it
-/// began, so where it ends they are off by the square of its length over the tool's width: 9 nm for a drill of 1 mm.
+/// A pass that moves the proxy by less than this share of the margin is the last one. Its constraints were exact at its
+/// start, so the error at its end is its length squared over the width of the tool: 9 nm for a drill of 1 mm.
 constexpr double kSettled = 0.03;
-/// Passes after which a circle of places has come round.
-constexpr std::size_t kLongestCircle = 4;
-/// Places nearer to each other than this part of the margin are the same.
+/// Longest cycle of places, in passes, that is recognised.
+constexpr std::size_t kLongestCycle = 4;
+/// Places nearer to each other than this share of the margin are the same.
 constexpr double kSame = 1e-3;
-/// How often a move of a proxy with points inside is shortened, at most: then it is as short as it should be but for a
-/// few per cent, or the tool itself draws the proxy away.
+/// Most times that a move of a proxy with points inside is shortened. Its length is then right to a few per cent,
+/// unless the tool itself draws the proxy away.
 constexpr int kSlowed = 3;
 
-/// Calls `use(i)` for each contact that holds the proxy back, in their order. Eight at a time, for of some hundreds
-/// near the proxy three hold it. Precondition: padded.
+/// Calls `use(i)` for each contact that holds the proxy back, in order. Tests eight at a time, because only about three
+/// of some hundred contacts near the proxy hold it. Precondition: padded.
 template <class Use>
 void for_each_holding(const ContactBuffer& contacts, const Use& use) {
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
@@ -86,7 +65,7 @@ void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, Ren
   out = {};
   out.depth_max = contacts.largest_depth();
   if (!placed_) place(tool.pose.position);
-  // A tool that jumps further than the proxy can follow, and touches nothing there, has been put there.
+  // A tool in free air that is too far away for the proxy to follow has been placed there.
   if (!follow(tool.pose) && contacts.empty()) place(tool.pose.position);
   hand_over_holding(contacts);
   out.spring = spring_ = K_ * (proxy_ - tool.pose.position);
@@ -129,14 +108,14 @@ void ProxyRendering::place(const Vec3& position) noexcept {
   near_contacts_->clear();
 }
 
-/// The move nearest to the wanted one that the constraints allow, or, with points inside the proxy, a slow one.
+/// The allowed move that is nearest to the wanted one, or a slow move out if points are inside the proxy.
 AllowedMove ProxyRendering::next_move(const Vec3& wanted) noexcept {
   slowed_ = 1.0;
   const double deepest = clear_ ? 0.0 : near_contacts_->largest_depth();
   if (!(deepest > recovery_)) return nearest_allowed(wanted, *near_contacts_);
   slow_down(recovery_ / deepest);
   AllowedMove allowed = nearest_allowed(wanted, *near_contacts_);
-  // Points between walls that nearly face each other leave by a long way. The move is nearly proportional to depths.
+  // Points between nearly opposite walls leave by a long way. The move is nearly proportional to the depths.
   for (int k = 0; k < kSlowed && allowed.move.norm() > recovery_; ++k) {
     slow_down(recovery_ / allowed.move.norm());
     allowed = nearest_allowed(wanted, *near_contacts_);
@@ -144,7 +123,7 @@ AllowedMove ProxyRendering::next_move(const Vec3& wanted) noexcept {
   return allowed;
 }
 
-/// Multiplies the depths of points inside the proxy.
+/// Scales the depths of points inside the proxy.
 void ProxyRendering::slow_down(double factor) noexcept {
   slowed_ *= factor;
   for (double& depth : std::span(near_contacts_->depth.data(), near_contacts_->size())) {
@@ -155,7 +134,7 @@ void ProxyRendering::slow_down(double factor) noexcept {
 bool ProxyRendering::follow(const ToolPose& tool) noexcept {
   const double margin = constraints_->margin();
   const double settled = kSettled * margin, same = kSame * margin;
-  std::array<Vec3, kLongestCircle> last;  // places
+  std::array<Vec3, kLongestCycle> last;  // places of the last passes
   last.fill(Vec3::Constant(std::numeric_limits<double>::infinity()));
   for (int pass = 0; pass < kProxyPasses; ++pass) {
     const ToolPose proxy{proxy_, tool.axis, tool.roll};
@@ -170,7 +149,7 @@ bool ProxyRendering::follow(const ToolPose& tool) noexcept {
     const bool arrives = length <= margin;
     proxy_ += arrives ? allowed.move : Vec3(margin / length * allowed.move);
     if (!feasible_ || slowed_ < 1.0) {
-      // What takes many steps is not worth more than one pass in each.
+      // Leaving takes many steps, so one pass in each step is enough.
       clear_ = false;
       return arrives;
     }
@@ -178,8 +157,8 @@ bool ProxyRendering::follow(const ToolPose& tool) noexcept {
       clear_ = true;
       if (allowed.iterations == 0) proxy_ = tool.position;
       if (allowed.iterations == 0 || length <= settled) return true;
-      // Patches of surface come into force and lapse as the proxy moves, so passes may go round in a circle of two or
-      // four places, each as allowed as the others: the nearest of them is taken when it comes again.
+      // Patches of the surface become active and inactive as the proxy moves, so passes may cycle through two or four
+      // places, all of them allowed. The place nearest to the tool is taken when it recurs.
       const double distance = (tool.position - proxy_).norm();
       bool again = false, nearest = true;
       for (const Vec3& place : last) {
@@ -198,8 +177,8 @@ double ProxyRendering::multiplier(std::size_t i) const noexcept {
   return near_contacts_->weight[i] + share_.dot(near_contacts_->gradient(i));
 }
 
-/// Replaces the colliding points by those that hold the proxy back, as far as there is room: in a compromise, points
-/// and their patches may be more than the points of the shell. Force and energy are of all.
+/// Replaces the colliding points by those that hold the proxy back, as far as there is room; in a compromise, points
+/// and patches may outnumber the points of the shell. Force and energy are those of all of them.
 void ProxyRendering::hand_over_holding(ContactBuffer& contacts) const noexcept {
   contacts.clear();
   for_each_holding(*near_contacts_, [&](std::size_t i) {
@@ -211,17 +190,17 @@ void ProxyRendering::hand_over_holding(ContactBuffer& contacts) const noexcept {
   contacts.pad();
 }
 
-/// One spring from tool to proxy. Each holding point pushes with its share on the proxy, whose tip centre takes the
-/// tool's place.
+/// One spring from tool to proxy. Each holding point pushes with its share on the proxy; moments are about the proxy's
+/// tip centre.
 SpringState ProxyRendering::spring_state(const ToolState&, const ContactBuffer&) const noexcept {
   if (K_ == 0.0) return {};
   SpringState state{spring_.squaredNorm() / (2.0 * K_), Vec3::Zero()};
   for_each_holding(*near_contacts_, [&](std::size_t i) {
     const double weight = near_contacts_->weight[i];
-    // In the compromise, what is violated is a store of its own.
+    // In the compromise, the violations store energy, too.
     if (!feasible_) state.energy += 0.5 * K_ * weight * weight;
     if (!constraints_->act_at_points()) return;
-    // A turn that takes a point deeper changes what is stored by as much less as the depth was scaled.
+    // The stored energy depends on the scaled depth, so the moment of the point is scaled, too.
     const double scale = near_contacts_->depth[i] > 0.0 ? slowed_ : 1.0;
     state.moment -= (near_contacts_->point(i) - proxy_).cross(scale * K_ * multiplier(i) * near_contacts_->gradient(i));
   });
@@ -239,8 +218,40 @@ AlgorithmWork ProxyRendering::work() const noexcept {
   return work;
 }
 
-std::unique_ptr<ForceAlgorithm> make_proxy(const RenderingConfig& config) {
-  return std::make_unique<ProxyRendering>(config);
+namespace {
+
+/// A proxy placed on the tool moves by at most one margin per pass, however deep the contacts are.
+double proxy_bound(const RenderingConfig&, const ToolShape& tool, std::size_t, double) {
+  return kProxyPasses * kProxyMargin * tool.half_width();
+}
+
+/// The projector onto the plane that the two gradients span.
+WedgeStiffness proxy_wedge(const RenderingConfig&, double, double) {
+  return {1.0, 1.0};
+}
+
+}  // namespace
+
+AlgorithmEntry proxy_entry() {
+  static constexpr ModelInfo kInfo = {
+      .name = "proxy",
+      .summary = "a proxy of the tool that never enters the environment; a spring pulls the tool to it",
+      .formula =
+          "x = argmin |x - p|^2 with <m_i, x - x_proxy> <= g_i for all points within the margin (g_i signed distance of "
+          "the point to the tool, m_i the tool's normal there), and with the tool's foremost edge above the surface's "
+          "flat patch about each point; f_spring = K (x - p), S = projector onto the span of the active gradients",
+      .source = "ours; after Zilles and Salisbury 1995 (god-object) and Ruspini et al. 1997, which thesis 1.2 rejects",
+      .known_failure =
+          "a start in deep penetration and a hole that the turned tool does not fit into keep points inside the proxy, "
+          "which leaves them at 40 half widths of the tool a second; a flat face of the tool bumps on a surface whose "
+          "normals are off by more than 6 degrees; no depth model or reduction applies",
+      .parameters = kStiffnessAlone,
+  };
+  return {.info = &kInfo,
+          .make = [](const RenderingConfig& config) { return std::make_unique<ProxyRendering>(config); },
+          .theory = {.force_bound = proxy_bound, .wedge_stiffness = proxy_wedge},
+          .may_reduce = false,
+          .reported_depth_model = "surface_normal"};
 }
 
 }  // namespace hapbench

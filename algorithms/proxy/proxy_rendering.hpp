@@ -1,24 +1,20 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "algorithms/proxy/nearest_allowed.hpp"
 #include "algorithms/proxy/proxy_constraints.hpp"
 #include "algorithms/stages/damping_and_limits.hpp"
-#include "algorithms/theory.hpp"
-#include "sim/core/model_info.hpp"
 #include "sim/loop/force_algorithm.hpp"
 
 namespace hapbench {
 
-extern const ModelInfo kProxyInfo;
-extern const AlgorithmTheory kProxyTheory;
-
-/// Most passes of a step: to bring the proxy near, and to make the constraints exact where it ends. Most steps take
-/// two.
+/// Most passes of a step; most steps take two. Passes bring the proxy near and make the constraints exact where it
+/// ends.
 inline constexpr int kProxyPasses = 64;
-/// How fast a proxy that starts with points inside it leaves them, in half widths of the tool a second: a drill of 1 mm
-/// at 0.02 m/s, as fast as the simulated subjects lead it at most.
+/// Speed at which a proxy leaves points that are inside it, in half widths of the tool per second. For a drill of 1 mm
+/// that is 0.02 m/s, the highest speed at which the simulated subjects lead it.
 inline constexpr double kRecoverySpeed = 40.0;
 
 /// Constraint-based rendering for a tool that cannot be turned back: a proxy of the tool that has its orientation and
@@ -26,24 +22,24 @@ inline constexpr double kRecoverySpeed = 40.0;
 /// point; the thesis's section 1.2 rejects it for whole bodies as too expensive). Orientation is scripted, so only the
 /// translation x of the proxy is free: three unknowns.
 ///
-/// Each pass asks for the constraints on the proxy (ProxyConstraints: one for each shell point within a margin of it)
-/// and moves the proxy to the allowed place nearest to the tool (nearest_allowed), at most by the margin; points
-/// further away cannot be reached by that.
+/// Each pass computes the constraints on the proxy (ProxyConstraints: one for each shell point within the margin) and
+/// moves the proxy to the allowed place nearest to the tool (nearest_allowed), at most by the margin, so that it cannot
+/// reach points further away.
 ///
-/// Guarantee: after a pass whose contacts do not contradict each other, and which was not cut short while points were
-/// inside the proxy, no shell point is inside the proxy, but for kViolationTolerance of the margin. For the constraints
-/// are conservative (the tool is convex), and those of a proxy without penetration still hold for a part of the move.
-/// When they contradict (a slot narrower than the tool) the proxy takes the least-squares compromise, and each wall
-/// that it enters counts as one more spring of stiffness K.
+/// Guarantee: after a pass whose contacts do not contradict each other, and which was not shortened because points were
+/// inside the proxy, no shell point is inside the proxy by more than kViolationTolerance of the margin. The reason is
+/// that the constraints are conservative (the tool is convex), and those of a proxy without penetration still hold for
+/// a part of the move. If they contradict (a slot narrower than the tool), the proxy takes the least-squares
+/// compromise, and each wall that it enters counts as one more spring of stiffness K.
 ///
-/// A proxy that has points inside it, since it was placed on them or walls leave no room, is not put where it belongs
-/// at once, which would throw the tool out: their depths are scaled so that the deepest point leaves at kRecoverySpeed.
-/// One that has none keeps its guarantee, however fast the tool turns. Planes of springs have no inside to start in.
+/// A proxy may have points inside if it was placed on them or if walls leave no room. Moving it out at once would throw
+/// the tool out. Instead, the depths are scaled so that the deepest point leaves at kRecoverySpeed. A proxy without
+/// points inside keeps the guarantee, however fast the tool turns. Planes of springs have no inside.
 ///
-/// f_spring = K (x - p), S = the projector onto the span of the gradients that hold the proxy back, so lambda_max(S) is
-/// 1 in contact. With angular damping v_n is S v and the shortest velocity in that span whose components along the u_i
-/// are those of the turning tool, <omega x r_i, u_i>. The rendered contacts are those, with depth lambda_i [m] and
-/// weight 1: f_spring = -K sum lambda_i u_i.
+/// f_spring = K (x - p). S is the projector onto the span of the gradients that hold the proxy back, so lambda_max(S)
+/// is 1 in contact. With angular damping v_n is S v plus the shortest velocity in that span whose components along the
+/// u_i are those of the turning tool, <omega x r_i, u_i>. The rendered contacts are those that hold the proxy, with
+/// depth lambda_i [m] and weight 1: f_spring = -K sum lambda_i u_i.
 class ProxyRendering final : public ForceAlgorithm {
  public:
   explicit ProxyRendering(const RenderingConfig& config);
@@ -60,7 +56,7 @@ class ProxyRendering final : public ForceAlgorithm {
 
  private:
   void place(const Vec3& position) noexcept;
-  /// False when the passes did not suffice.
+  /// Returns false if the passes did not suffice.
   bool follow(const ToolPose& tool) noexcept;
   AllowedMove next_move(const Vec3& wanted) noexcept;
   void slow_down(double factor) noexcept;
@@ -69,24 +65,22 @@ class ProxyRendering final : public ForceAlgorithm {
   ContactVelocity velocity_at(const ToolState& tool) const noexcept;
 
   double K_;
-  std::optional<double> angular_velocity_cutoff_;  ///< none without angular damping
+  std::optional<double> angular_velocity_cutoff_;  ///< none: no angular damping
   DampingAndLimits damping_and_limits_;
   Skips skips_;
   std::unique_ptr<ProxyConstraints> constraints_;
-  std::unique_ptr<ContactBuffer> near_contacts_;  ///< of the last pass, with its weights [m]
+  std::unique_ptr<ContactBuffer> near_contacts_;  ///< constraints of the last pass, with weights [m]
 
   bool placed_ = false;  ///< false before the first step
   Vec3 proxy_ = Vec3::Zero();
   Mat3 held_ = Mat3::Zero();
   bool feasible_ = true;
-  bool clear_ = false;         ///< no points inside the proxy, since the last pass kept them all out
-  double recovery_ = 0.0;      ///< how far the deepest point may leave in a step [m]
-  double slowed_ = 1.0;        ///< what the depths of points inside were multiplied by in the last pass
+  bool clear_ = false;         ///< no points are inside the proxy after the last pass
+  double recovery_ = 0.0;      ///< distance by which the deepest point may leave in a step [m]
+  double slowed_ = 1.0;        ///< factor of the depths of points inside in the last pass
   Vec3 share_ = Vec3::Zero();  ///< AllowedMove::share of the last pass [m]
   Vec3 spring_ = Vec3::Zero();
   AlgorithmWork work_;
 };
-
-std::unique_ptr<ForceAlgorithm> make_proxy(const RenderingConfig& config);
 
 }  // namespace hapbench

@@ -71,7 +71,7 @@ Vec3 DampingAndLimits::rendered_force(const Vec3& spring, const Mat3& S,
   if (mu_s_ != 0.0 || mu_f_ != 0.0) {
     force -= tangential();
   } else if (skips_ == Skips::off) {
-    force -= tangential() + Vec3::Zero();  // 0 and never -0, which would turn a -0 of the force into 0
+    force -= tangential() + Vec3::Zero();  // 0 and never -0: f - (-0) would turn a -0 of the force into 0
   }
   if (max_force_) {
     const double length = force.norm();

@@ -8,13 +8,13 @@ namespace hapbench {
 
 extern const ModelInfo kDampingAndLimitsInfo;
 
-/// The tool's velocity as its contacts feel it [m/s]: v and S v of a tool that does not turn.
+/// The velocity of the tool at its contacts [m/s]. For a tool that does not turn: v and S v.
 struct ContactVelocity {
-  Vec3 mean = Vec3::Zero();    ///< of the tool's material at the contacts
-  Vec3 normal = Vec3::Zero();  ///< v_n, what normal damping acts on
+  Vec3 mean = Vec3::Zero();    ///< mean velocity of the tool's material at the contacts
+  Vec3 normal = Vec3::Zero();  ///< v_n, on which normal damping acts
 };
 
-/// B of the normal damping [N s/m]: the one given, or 2 zeta sqrt(K M).
+/// B of the normal damping [N s/m]: `config.damping`, or 2 zeta sqrt(K M).
 double normal_damping(const RenderingConfig& config) noexcept;
 
 /// Damping, friction and limits, the same for every law (thesis 2.5, 2.6, A.2.1, B.2, C.4.3):
@@ -22,27 +22,28 @@ double normal_damping(const RenderingConfig& config) noexcept;
 ///   f_dn = -B v_n, v_n = S v, B = 2 zeta sqrt(K M);  v_t = v - v_n, f_dt = -(mu_s + mu_f |f_spring|) v_t
 ///
 /// With angular damping (thesis 4.4: a tool that only turns is not damped) v is the velocity of the tool's material,
-/// v_i = v + omega x r_i at the contact r_i from the tip centre, omega that of the step before, through a low-pass,
-/// because a hand that trembles turns the tool much faster than it moves it:
+/// v_i = v + omega x r_i at the contact r_i from the tip centre. omega is that of the step before, through a low-pass,
+/// because a trembling hand turns the tool much faster than it moves it:
 ///
 ///   v_n = sum c_i <v_i, u_i> u_i = S v + sum c_i <omega x r_i, u_i> u_i;  v_t = v + omega x r_mean - v_n
 ///
-/// with r_mean weighed by c_i; original_averaging and virtual_coupling as their springs (ForceLaw::turning_velocity).
-/// Guarantee: the dampers of weighted springs take B sum c_i <v_i, u_i>^2 >= 0 of power from the tool's motion. Where
-/// it loses: of that motion the device renders the translation only. A turn drives the tip sideways, with energy of the
-/// hand's turning, which the hand does not feel.
+/// with r_mean weighted by c_i; laws that are no weighted springs define v_n by ForceLaw::turning_velocity.
+/// Guarantee: the dampers of weighted springs take the power B sum c_i <v_i, u_i>^2 >= 0 from the motion of the tool.
+/// Known failure: the device renders the translation of that motion only. A turn drives the tip sideways with energy of
+/// the turning hand, which the hand does not feel.
 ///
 /// Max damping: the normal damping is scaled by B_max / lambda_max(B S) when that is below 1. Max force: f_render is
-/// scaled to norm F_max when it is longer. The friction coefficients are viscous, whatever the thesis calls them.
+/// scaled to norm F_max when it is longer. The friction coefficients are viscous, although the thesis calls them
+/// Coulomb friction.
 class DampingAndLimits {
  public:
   explicit DampingAndLimits(const RenderingConfig& config);
 
-  /// f_render [N] from f_spring [N], S and the tool's velocity. Eigenvalues are computed only when there is a limit,
-  /// friction that is none only when skips are off.
+  /// f_render [N] from f_spring [N], S and the velocity of the tool. Eigenvalues are computed only if damping is
+  /// limited. Zero friction is computed only with Skips::off.
   Vec3 rendered_force(const Vec3& spring, const Mat3& S, const ContactVelocity& velocity) const noexcept;
 
-  /// What multiplies minus v in it [N s/m]: B S + (mu_s + mu_f |f_spring|)(I - S); the force limit is left out.
+  /// -df_render/dv [N s/m] without the force limit: B S + (mu_s + mu_f |f_spring|)(I - S).
   Mat3 damping_matrix(const Vec3& spring, const Mat3& S) const noexcept;
 
   double damping() const { return B_; }  ///< B [N s/m]

@@ -1,9 +1,10 @@
 #include "algorithms/stages/passivity_controller.hpp"
-#include "algorithms/parameters.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "algorithms/parameters.hpp"
 
 namespace hapbench {
 namespace {
@@ -29,7 +30,7 @@ const ModelInfo kPassivityControllerInfo = {
 
 namespace {
 
-/// The largest s in [0, 1] with a s^2 + b s <= c, a >= 0; where there is none, the s that comes closest.
+/// The largest s in [0, 1] with a s^2 + b s <= c, a >= 0; if there is none, the s that comes closest.
 double largest_share(double a, double b, double c) noexcept {
   if (a + b <= c) return 1.0;
   const double discriminant = std::max(0.0, b * b + 4.0 * a * c);
@@ -47,6 +48,8 @@ PassivityController::PassivityController(std::unique_ptr<ForceAlgorithm> algorit
 void PassivityController::prepare(const Scene& scene) {
   algorithm_->prepare(scene);
   dt_ = scene.dt;
+  row_ = scene.row;
+  input_ = scene.input;
   observed_ = ObservedEnergy(dt_);
 }
 
@@ -56,23 +59,18 @@ void PassivityController::reset() noexcept {
   steps_controlled_ = 0;
   largest_change_ = 0.0;
   last_turn_.reset();
-  at_row_ = false;
-}
-
-void PassivityController::take_input(const Vec3& input) noexcept {
-  if (algorithm_->wants_input()) algorithm_->take_input(input);
-  input_ = input;
-  at_row_ = true;
+  last_row_.reset();
 }
 
 void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   algorithm_->compute(tool, contacts, out);
-  if (!std::exchange(at_row_, false)) {
-    // Within a step the row's answer holds: nobody observes.
+  if (row_ == nullptr || last_row_ == *row_) {
+    // A state within the step is not observed and keeps the row's share and damping.
     if (has_springs(contacts, out)) render(tool, out);
     return;
   }
 
+  last_row_ = *row_;
   observed_.move(tool);
   note_turn();
   share_ = spring_share_ = 1.0;
@@ -89,7 +87,7 @@ void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts
   observed_.answer(tool, out.rendered, springs_);
 }
 
-/// Rates of rotation change by what a hand makes of them: what it did once it may do again.
+/// Keeps the largest change of the turn so far. It predicts how much the hand may change the turn again.
 void PassivityController::note_turn() noexcept {
   if (observed_.first()) return;
   const Vec3 turn = observed_.turned();
@@ -97,14 +95,14 @@ void PassivityController::note_turn() noexcept {
   last_turn_ = turn;
 }
 
-/// Chooses share and damping.
+/// Computes share and damping for the step.
 void PassivityController::control(const ToolState& tool, const Vec3& force) noexcept {
-  // What the scripted rotation draws from the moment over the last step and, if it goes on like this, over the next.
+  // Energy that the scripted rotation draws from the moment over the last step and, at the same rate, over the next.
   const double drawn = springs_.moment.dot(observed_.turned());
   const double energy = observed_.energy();
   const double weakened = 0.5 * drawn > energy && drawn > 0.0 ? std::max(0.0, 2.0 * energy / drawn) : 1.0;
 
-  const Vec3 w = tool.velocity + input_ * (0.5 * dt_ / mass_);
+  const Vec3 w = tool.velocity + half_kick();
   const Vec3 u = w + force * (weakened * dt_ / mass_);
   const double unforeseen = springs_.moment.norm() * largest_change_;
   const double taken =
@@ -115,7 +113,7 @@ void PassivityController::control(const ToolState& tool, const Vec3& force) noex
   alpha_ = (1.0 - s) * mass_ / dt_;
   if (share_ == 1.0) return;
   ++steps_controlled_;
-  // A force cut short takes less in, which the moment then cannot have.
+  // A force that the limit cuts absorbs less energy, so less is left for the moment.
   const Vec3 whole = share_ * force - alpha_ * w;
   if (const Vec3 rendered = limited(whole); rendered != whole && taken > 0.0) {
     const Vec3 after = w + rendered * (dt_ / mass_);
@@ -124,7 +122,7 @@ void PassivityController::control(const ToolState& tool, const Vec3& force) noex
   }
 }
 
-/// Cut to the length of the force limit.
+/// The force, scaled down to the force limit.
 Vec3 PassivityController::limited(const Vec3& force) const noexcept {
   const double length = max_force_ ? force.norm() : 0.0;
   return max_force_ && length > *max_force_ ? Vec3(force * (*max_force_ / length)) : force;
@@ -134,7 +132,7 @@ void PassivityController::render(const ToolState& tool, RenderedForce& out) cons
   if (share_ == 1.0) return;
   out.spring *= share_;
   out.S *= share_;
-  out.rendered = limited(share_ * out.rendered - alpha_ * (tool.velocity + input_ * (0.5 * dt_ / mass_)));
+  out.rendered = limited(share_ * out.rendered - alpha_ * (tool.velocity + half_kick()));
 }
 
 SpringState PassivityController::spring_state(const ToolState&, const ContactBuffer&) const noexcept {

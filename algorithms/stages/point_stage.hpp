@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <memory>
 
+#include "algorithms/rendering_config.hpp"
 #include "sim/contact/contact_buffer.hpp"
+#include "sim/core/model_info.hpp"
 #include "sim/loop/force_algorithm.hpp"
 
 namespace hapbench {
@@ -12,10 +14,10 @@ namespace hapbench {
 class PointStage {
  public:
   virtual ~PointStage() = default;
-  /// The only call that may allocate; throws std::invalid_argument when the scene lacks what the stage needs.
+  /// The only call that may allocate. Throws std::invalid_argument if the scene lacks what the stage needs.
   virtual void prepare(const Scene& scene) = 0;
   virtual void reset() noexcept { dropped_ = 0; }
-  /// Reads padded contacts, leaves padded contacts, never more than before.
+  /// Takes and leaves padded contacts, never more than before.
   virtual void process(ContactBuffer& contacts) noexcept = 0;
   /// Contacts lost because a buffer was full, since the last reset.
   std::uint64_t dropped() const noexcept { return dropped_; }
@@ -23,5 +25,13 @@ class PointStage {
  protected:
   std::uint64_t dropped_ = 0;
 };
+
+extern const ModelInfo kLocalAverageInfo;
+extern const ModelInfo kGradientReductionInfo;
+
+/// The local average. Its `prepare` needs a shell with grid cells (PointShell::cell_size > 0).
+std::unique_ptr<PointStage> make_local_average();
+/// The gradient-based reduction.
+std::unique_ptr<PointStage> make_gradient_reduction(const ReductionConfig& config);
 
 }  // namespace hapbench

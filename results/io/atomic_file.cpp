@@ -1,11 +1,11 @@
 #include "results/io/atomic_file.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
 #include <cassert>
 #include <cerrno>
 #include <cstring>
@@ -133,6 +133,24 @@ std::size_t remove_stale_temporaries(const fs::path& directory) {
   }
   if (error) throw IoError("list", directory, error);
   return removed;
+}
+
+namespace fs = std::filesystem;
+
+void NewDirectories::create(const fs::path& directory, std::error_code& error) {
+  std::vector<fs::path> missing;
+  std::error_code unknown;
+  for (fs::path path = directory; !path.empty() && path != path.root_path() && !fs::exists(path, unknown);
+       path = path.parent_path()) {
+    missing.push_back(path);
+  }
+  made_.insert(made_.end(), missing.rbegin(), missing.rend());
+  fs::create_directories(directory, error);
+}
+
+NewDirectories::~NewDirectories() {
+  std::error_code not_empty;
+  for (auto path = made_.rbegin(); path != made_.rend(); ++path) fs::remove(*path, not_empty);
 }
 
 }  // namespace hapbench

@@ -3,11 +3,31 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
+#include <string>
 #include <string_view>
-
-#include "results/io/io_error.hpp"
+#include <system_error>
+#include <vector>
 
 namespace hapbench {
+
+/// A result file that could not be written: says what was tried, on which file, and why it failed.
+class IoError : public std::runtime_error {
+ public:
+  /// `attempt` completes "cannot …", e.g. "write".
+  IoError(const std::string& attempt, std::filesystem::path path, const std::error_code& reason)
+      : std::runtime_error("cannot " + attempt + " " + path.string() + ": " + reason.message()),
+        path_(std::move(path)),
+        reason_(reason) {}
+
+  /// The file as its reader knows it, not the temporary behind it.
+  const std::filesystem::path& path() const noexcept { return path_; }
+  const std::error_code& reason() const noexcept { return reason_; }
+
+ private:
+  std::filesystem::path path_;
+  std::error_code reason_;
+};
 
 /// A file that appears under its final name complete or not at all.
 ///
@@ -58,5 +78,21 @@ void write_file_atomically(const std::filesystem::path& target, std::string_view
 /// that are being written stay, and so does every other file. Call when a run starts to write there. A directory that
 /// does not exist has none; one that cannot be listed throws IoError. A file that cannot be removed is left.
 std::size_t remove_stale_temporaries(const std::filesystem::path& directory);
+
+/// Makes directories for results, and removes those of them that are still empty when it goes, so that work which was
+/// stopped or failed leaves none behind.
+class NewDirectories {
+ public:
+  NewDirectories() = default;
+  ~NewDirectories();
+  NewDirectories(const NewDirectories&) = delete;
+  NewDirectories& operator=(const NewDirectories&) = delete;
+
+  /// Makes a directory and its missing parents; `error` as of std::filesystem::create_directories.
+  void create(const std::filesystem::path& directory, std::error_code& error);
+
+ private:
+  std::vector<std::filesystem::path> made_;  ///< parents first
+};
 
 }  // namespace hapbench

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <utility>
 
-#include "results/io/number_text.hpp"
+#include "results/io/json_text.hpp"
 
 namespace hapbench {
 

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "results/io/number_text.hpp"
-
 namespace hapbench {
 namespace {
 

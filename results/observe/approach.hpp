@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "sim/core/box.hpp"
+#include "sim/core/types.hpp"
 #include "sim/loop/observer.hpp"
 
 namespace hapbench {

@@ -3,8 +3,28 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
 
 namespace hapbench {
+
+MagnitudeHistogram& MagnitudeHistogram::operator+=(const MagnitudeHistogram& other) noexcept {
+  std::transform(counts_.begin(), counts_.end(), other.counts_.begin(), counts_.begin(), std::plus<>());
+  return *this;
+}
+
+double MagnitudeHistogram::quantile(double p) const noexcept {
+  const std::uint64_t all = std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0});
+  const auto rank = static_cast<std::uint64_t>(std::ceil(p * static_cast<double>(all)));
+  std::size_t bin = 0;
+  for (std::uint64_t counted = counts_[0]; counted < rank; counted += counts_[bin]) ++bin;
+  if (bin == 0) return 0.0;
+  if (bin == kBins - 1) return std::numeric_limits<double>::infinity();
+  const auto edge = [](std::uint64_t bits) { return std::sqrt(std::bit_cast<double>(bits << kDroppedBits)); };
+  return 0.5 * (edge(kFirst + bin - 1) + edge(kFirst + bin));
+}
+
 namespace {
 
 std::uint64_t rows_in(double time, double dt) noexcept {
@@ -149,6 +169,40 @@ ContactForces ContactForceObserver::forces() const noexcept {
   ContactForces forces = forces_;
   forces.settled = static_cast<double>(forces.settled_rows) * dt_;
   return forces;
+}
+
+MetricList metric_list(const ContactForces& c) {
+  return {
+      Metric::count(
+          "landings",
+          "first touches: rows in contact after at least metrics.settling_s without contact, or since the start",
+          c.landings),
+      Metric::number("landing_force_max_N", "N",
+                     "largest ||f|| within metrics.settling_s after a first touch, or before metrics.from_s",
+                     c.landing_max()),
+      Metric::number("landing_force_step_max_N", "N", "largest ||f_k - f_(k-1)|| of those rows", c.landing_step_max()),
+      Metric::number(
+          "settled_s", "s",
+          "time in settled contact: rows in contact that belong to no landing, times the time step; below 1/30 s, a "
+          "period of the high-pass, the metrics of settled contact have no value",
+          c.settled),
+      Metric::number("force_mean_in_contact_N", "N", "mean ||f|| of the rows in settled contact", c.mean()),
+      Metric::number("settled_force_max_N", "N", "largest ||f|| of the rows in settled contact", c.max()),
+      Metric::number("force_step_p99_N", "N",
+                     "99 % of the rows in settled contact have at most this force step ||f_k - f_(k-1)||; within 0.8 %",
+                     c.step_p99()),
+      Metric::number("settled_force_step_max_N", "N",
+                     "largest force step ||f_k - f_(k-1)|| of the rows in settled contact", c.step_max()),
+      Metric::number(
+          "force_rms_above_30Hz_N", "N",
+          "vibration of the force, which the hand feels: root mean square of f behind a high-pass (Butterworth, "
+          "fourth order, 30 Hz, started at rest at the end of each landing) over the rows in settled contact; none at "
+          "sampling rates of 60 Hz or less",
+          c.rms_above_cutoff()),
+      Metric::number(
+          "force_reversals_per_s", "1/s",
+          "rows in settled contact whose f has a negative inner product with that of the row before, per settled_s",
+          c.reversals_per_second())};
 }
 
 }  // namespace hapbench

@@ -1,36 +1,71 @@
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <optional>
 
+#include "results/io/columns.hpp"
 #include "results/observe/butterworth.hpp"
-#include "results/observe/magnitude_histogram.hpp"
 
 namespace hapbench {
 
-/// Motion and force above this frequency count as vibration [Hz]: voluntary movement of the hand stays below about 10
-/// Hz, and the sense of touch is most alert to vibration well above.
+/// Counts numbers >= 0 by size, for quantiles in constant memory. A bin is the exponent and the first five bits of the
+/// mantissa of the number's square (norms come as squares): 32 bins to a factor of two. Adding costs a shift and an
+/// increment, histograms of several runs can be added, and the result does not depend on the order.
+class MagnitudeHistogram {
+ public:
+  /// A quantile between kLeast and kMost has at most this relative error: a bin is sqrt(33 / 32) - 1 = 1.55 % wide, and
+  /// its middle represents it.
+  static constexpr double kRelativeError = 0.0078;
+  static constexpr double kLeast = 0x1p-30;  ///< smaller numbers count as 0
+  static constexpr double kMost = 0x1p20;    ///< numbers from here on count as infinite
+
+  /// Counts the number whose square this is. Precondition: square >= 0; at most 2^32 - 1 numbers in all.
+  void add_square(double square) noexcept { ++counts_[bin_of(square)]; }
+  MagnitudeHistogram& operator+=(const MagnitudeHistogram& other) noexcept;
+
+  /// The nearest-rank quantile: the smallest number that at least the share p of all do not exceed. Precondition:
+  /// 0 < p <= 1 and not empty.
+  double quantile(double p) const noexcept;
+
+ private:
+  static constexpr int kDroppedBits = 52 - 5;
+  static constexpr std::uint64_t kFirst = std::bit_cast<std::uint64_t>(kLeast * kLeast) >> kDroppedBits;
+  static constexpr std::uint64_t kEnd = std::bit_cast<std::uint64_t>(kMost * kMost) >> kDroppedBits;
+  static constexpr std::size_t kBins = kEnd - kFirst + 2;  ///< including one for smaller and one for larger numbers
+
+  static std::size_t bin_of(double square) noexcept {
+    const std::uint64_t bits = std::bit_cast<std::uint64_t>(square) >> kDroppedBits;
+    return bits < kFirst ? 0 : bits < kEnd ? bits - kFirst + 1 : kBins - 1;
+  }
+
+  std::array<std::uint32_t, kBins> counts_{};
+};
+
+/// Motion and force above this frequency count as vibration [Hz]: voluntary hand movement stays below about 10 Hz, and
+/// the sense of touch is most sensitive well above.
 inline constexpr double kVibrationCutoff = 30.0;
 
-/// The high-pass at that frequency for one sample each `dt` seconds; none where the sampling rate is 60 Hz or less and
-/// cannot hold it.
+/// Returns the high-pass at kVibrationCutoff for one sample each `dt` seconds; nothing when the sampling rate is 60 Hz
+/// or less.
 std::optional<HighPass> vibration_filter(double dt);
 
-/// Settled contact shorter than this has no metrics [s]: one period of the cutoff, the longest that counts as
-/// vibration. Of less, no vibration is seen whole, and a run that hammers and so hardly settles would look the calmest.
+/// Settled contact shorter than this has no metrics [s]: one period of the cutoff, the slowest vibration. Otherwise a
+/// run that hammers, and so hardly settles, would look the calmest.
 inline constexpr double kLeastSettled = 1.0 / kVibrationCutoff;
 
-/// Tells a landing from the contact that follows. The blow of a first touch is set by the speed of arrival and by the
-/// stiffness, and is much the same under every algorithm; what separates them comes after. A first touch is a row in
-/// contact after at least the settling time without, or since the start; the rows within the settling time after it are
-/// its landing, the other rows in contact are settled. Times count in whole rows, rounded.
+/// Separates a landing from the contact that follows. The impact of a first touch depends on the speed of arrival and
+/// on the stiffness and is much the same under every algorithm; algorithms differ in what comes after. A first touch is
+/// a row in contact after at least the settling time without, or since the start; the rows within the settling time
+/// after it are its landing, the other rows in contact are settled. Times are rounded to whole rows.
 struct SettlingRule {
-  /// [s]; with it, all rows before are landing and all rows in contact from then on settled.
+  /// If given [s], all rows before are landing, and all rows in contact from then on are settled.
   std::optional<double> from;
   double time = 0.05;  ///< settling time [s]
 };
 
-/// f_render of landings and of settled contact, as sums and largest squares, so that runs add up.
+/// f_render of landings and of settled contact, as sums and largest squares, so that runs can be added.
 struct ContactForces {
   std::uint64_t landings = 0;  ///< first touches
   std::uint64_t landing_rows = 0;
@@ -38,38 +73,40 @@ struct ContactForces {
   double landing_step_max_squared = 0.0;  ///< largest ||f_k - f_(k-1)||^2 [N^2]
 
   std::uint64_t settled_rows = 0;
-  double settled = 0.0;  ///< their time [s]
+  double settled = 0.0;  ///< time of these rows [s]
   double sum = 0.0;      ///< of ||f|| [N]
   double max_squared = 0.0;
   double step_max_squared = 0.0;
   MagnitudeHistogram steps;                    ///< ||f_k - f_(k-1)||
-  std::optional<double> above_cutoff_squares;  ///< sum of ||high-passed f||^2 [N^2]; none at 60 Hz or less
+  std::optional<double> above_cutoff_squares;  ///< sum of ||high-passed f||^2 [N^2]; nothing at 60 Hz or less
   std::uint64_t reversals = 0;                 ///< f_k with a negative inner product with f_(k-1)
 
-  /// As if the other run's rows came after these, but for the seam.
+  /// Adds another run's rows; the step from one run to the next does not count.
   ContactForces& operator+=(const ContactForces& other) noexcept;
 
-  // What to report; nothing without such rows, of settled contact nothing below kLeastSettled.
-  std::optional<double> landing_max() const noexcept;       ///< [N]
-  std::optional<double> landing_step_max() const noexcept;  ///< [N]
-  std::optional<double> mean() const noexcept;              ///< [N]
-  std::optional<double> max() const noexcept;               ///< [N]
-  std::optional<double> step_max() const noexcept;          ///< [N]
-  /// 99 % of the steps are at most this [N], within MagnitudeHistogram::kRelativeError.
-  std::optional<double> step_p99() const noexcept;
+  // The metrics that metric_list documents; nothing without landing rows, or with less settled contact than
+  // kLeastSettled.
+  std::optional<double> landing_max() const noexcept;           ///< [N]
+  std::optional<double> landing_step_max() const noexcept;      ///< [N]
+  std::optional<double> mean() const noexcept;                  ///< [N]
+  std::optional<double> max() const noexcept;                   ///< [N]
+  std::optional<double> step_max() const noexcept;              ///< [N]
+  std::optional<double> step_p99() const noexcept;              ///< [N], within MagnitudeHistogram::kRelativeError
   std::optional<double> rms_above_cutoff() const noexcept;      ///< [N]
   std::optional<double> reversals_per_second() const noexcept;  ///< [1/s]
 };
 
-/// How a row's force differs from that of the row before.
+MetricList metric_list(const ContactForces& contact);
+
+/// The difference between a row's force and that of the row before.
 struct ForceChange {
   double squared = 0.0;   ///< ||f_k - f_(k-1)||^2 [N^2]; 0 in the first row
   bool reverses = false;  ///< their inner product is negative
 };
 
 /// Sorts the rows of a run into landing, settled contact and the rest, and adds up their forces. Constant memory; a few
-/// nanoseconds a row. The high-pass starts at the first settled row after each landing, at rest at its force, so that
-/// the blow does not ring on in it.
+/// nanoseconds a row. The high-pass starts at the first settled row after each landing, at rest at that row's force, so
+/// that the impact does not ring in it.
 class ContactForceObserver {
  public:
   enum class Phase { away, landing, settled };
@@ -77,7 +114,7 @@ class ContactForceObserver {
   /// `dt`: time from row to row [s], > 0.
   ContactForceObserver(double dt, const SettlingRule& rule);
 
-  /// The next row. Returns what it belongs to.
+  /// Adds the next row and returns its phase.
   Phase add(const Vec3& force, const ForceChange& change, bool in_contact) noexcept;
 
   ContactForces forces() const noexcept;
@@ -89,10 +126,10 @@ class ContactForceObserver {
   double dt_;
   std::uint64_t settling_rows_;
   std::optional<std::uint64_t> settled_from_;  ///< the rule's `from`, as a row
-  std::optional<HighPass> high_pass_;          ///< none when the sampling rate is too low
-  bool filtering_ = false;                     ///< it has started
+  std::optional<HighPass> high_pass_;          ///< nothing when the sampling rate is too low
+  bool filtering_ = false;                     ///< the high-pass has started
   std::uint64_t row_ = 0;
-  std::uint64_t landing_end_ = 0;  ///< the row behind the last landing
+  std::uint64_t landing_end_ = 0;  ///< the first row after the last landing
   std::uint64_t rows_away_;        ///< since the last contact
   ContactForces forces_;
 };

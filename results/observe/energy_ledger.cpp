@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
-#include "sim/tool/turn.hpp"
+#include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
 namespace {
@@ -141,6 +142,43 @@ EnergyMetrics EnergyLedger::metrics() const {
     if (event.created > 0.0) metrics.events.push_back(event);
   }
   return metrics;
+}
+
+MetricList metric_list(const EnergyMetrics& m) {
+  const EnergyBalance& b = m.balance;
+  return {Metric::number("created_sum_J", "J", "sum of created energy over the steps that created some", m.created_sum),
+          Metric::number("created_max_J", "J", "most energy that a single step created", m.created_max),
+          Metric::number(
+              "created_J", "J",
+              "what the springs store at the end beyond the work that translation and rotation did on them: made by "
+              "contacts that appear, vanish or change their weights",
+              b.created),
+          Metric::number("input_J", "J", "work of f_in on the tool", b.input),
+          Metric::number("spring_J", "J", "work of f_spring on the tool", b.spring),
+          Metric::number("damping_J", "J", "work of damping, friction and force limit: of f - f_spring", b.damping),
+          Metric::number("rotation_J", "J", "what the tool's turning put into the springs", b.rotation),
+          Metric::number("integration_J", "J", "energy made by the integrator", b.integration),
+          Metric::number("script_J", "J", "work of a prescribed motion", b.script),
+          Metric::number("hand_J", "J", "work of the hand on the handle", b.hand),
+          Metric::number("actuator_J", "J", "work of the device's actuators", b.actuator),
+          Metric::number("residual_max_J", "J",
+                         "largest |kinetic energy that the terms do not explain| of a row: rounding", m.residual_max)};
+}
+
+nlohmann::ordered_json events_json(const EnergyMetrics& energy) {
+  using nlohmann::ordered_json;
+  const auto number = [](double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); };
+  ordered_json events = ordered_json::array();
+  for (const EnergyEvent& e : energy.events) {
+    events.push_back({{"step", e.step},
+                      {"time_s", number(e.time)},
+                      {"created_J", number(e.created)},
+                      {"colliding", {e.colliding_before, e.colliding_after}},
+                      {"rendered", {e.rendered_before, e.rendered_after}},
+                      {"appeared", e.appeared},
+                      {"vanished", e.vanished}});
+  }
+  return events;
 }
 
 }  // namespace hapbench

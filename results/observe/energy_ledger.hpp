@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <vector>
 
+#include "results/io/columns.hpp"
 #include "sim/loop/integrators/table.hpp"
 #include "sim/loop/observer.hpp"
 
@@ -17,7 +19,7 @@ namespace hapbench {
 ///   device.stored = device.hand + device.actuator + device.dissipated   (when it has mechanics of its own)
 ///
 /// Where the handle of a device moves the tool, there is no virtual mass: kinetic, input and residual are zero, the
-/// work of a force is the row's, held, times the displacement between the rows, and script is what the handle does to
+/// work of a force is the row's force times the displacement to the next row, and script is the work of the handle on
 /// the rendering.
 ///
 /// If the integrator holds the row's force over the step (leapfrog), the work of a force is the row's force times dt
@@ -33,13 +35,13 @@ struct EnergyBalance {
   /// Work of damping, friction and the force limit: of f_render - f_spring. It includes angular damping, which may
   /// transfer energy from the tool's rotation, which has no balance of its own, to the tip's translation.
   double damping = 0.0;
-  double rotation = 0.0;  ///< what the tool's turning put into the springs: a torque that the device cannot render
-  /// Created energy: what the springs store beyond the work that translation and rotation did on them (trapezoidal
-  /// rule). It is zero for linear springs that stay in contact; contacts that appear, vanish or change their weight
-  /// create or destroy energy.
+  double rotation = 0.0;  ///< work of the tool's rotation on the springs: a torque that the device cannot render
+  /// Energy stored in the springs beyond the work that translation and rotation did on them (trapezoidal rule). It is
+  /// zero for linear springs that stay in contact; contacts that appear, vanish or change their weight create or
+  /// destroy energy.
   double created = 0.0;
-  /// Made by the integrator, or by holding a device's force: `spring` plus what translation put into the springs
-  /// (leapfrog and held forces).
+  /// Energy made by the integrator, or by holding a device's force: `spring` plus the work of translation on the
+  /// springs (leapfrog and held forces).
   double integration = 0.0;
   double script = 0.0;    ///< work of the prescribed motion, or of the handle that moves the tool
   double residual = 0.0;  ///< kinetic energy not explained by the terms above (free position): rounding errors
@@ -56,7 +58,7 @@ struct EnergyEvent {
   std::size_t colliding_before = 0, colliding_after = 0;
   std::size_t rendered_before = 0, rendered_after = 0;
   std::size_t appeared = 0;  ///< rendered contacts that were not rendered in the row before
-  std::size_t vanished = 0;  ///< and the other way round
+  std::size_t vanished = 0;  ///< contacts of the row before that are not rendered any more
 };
 
 /// The energies of a run that summary.json reports.
@@ -68,12 +70,18 @@ struct EnergyMetrics {
   std::vector<EnergyEvent> events;  ///< the steps that created the most energy, largest first
 };
 
+/// All but the events.
+MetricList metric_list(const EnergyMetrics& energy);
+/// The events for summary.json: a list of objects.
+nlohmann::ordered_json events_json(const EnergyMetrics& energy);
+
 /// Keeps the balance row by row. Allocates in the constructor only; about 100 ns a row.
 class EnergyLedger final : public Observer {
  public:
   static constexpr std::size_t kEvents = 10;
 
-  /// mass of the virtual tool [kg], time step [s], the most contacts a row can have, what moves a free position.
+  /// `mass` of the virtual tool [kg], `dt` time step [s], `capacity` the most contacts a row can have, `integrator` of
+  /// a free position.
   EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity,
                const IntegratorEntry& integrator = kLeapfrog);
 
@@ -84,7 +92,7 @@ class EnergyLedger final : public Observer {
   EnergyMetrics metrics() const;
 
  private:
-  /// What the next step needs of this row.
+  /// The part of a row that the next step needs.
   struct Row {
     ToolState tool;
     RenderedForce force;
@@ -95,13 +103,13 @@ class EnergyLedger final : public Observer {
     std::vector<std::uint32_t> rendered;  ///< sorted shell indices
   };
 
-  /// Works over the step before a row.
+  /// Work of each force over the step before a row [J].
   struct Works {
     double input = 0.0, hand = 0.0, actuator = 0.0;
     double spring = 0.0, damping = 0.0;
     double left = 0.0;  ///< change of kinetic energy that these works do not explain: the integrator's error
   };
-  /// Works of f_spring and f_render along the displacement `way`; f_in and the hand's force are held constant.
+  /// Works of f_spring and f_render along the displacement `way` [m]; f_in and the hand's force are held constant.
   Works works(const Vec3& spring, const Vec3& rendered, const Vec3& way) const noexcept;
   Works works_until(const StepRecord& now) const noexcept;
   void add_step(const StepRecord& now) noexcept;
@@ -112,7 +120,7 @@ class EnergyLedger final : public Observer {
   double mass_;
   double dt_;
   bool free_;
-  bool row_force_moves_;  ///< alone, for all of the step
+  bool row_force_moves_;  ///< the row's force acts during the whole step
   bool has_row_ = false;
   Row last_;
   std::vector<std::uint32_t> rendered_;  ///< sorted shell indices of this row
@@ -122,7 +130,7 @@ class EnergyLedger final : public Observer {
   double created_sum_ = 0.0;
   double created_max_ = 0.0;
   double residual_max_ = 0.0;
-  std::array<EnergyEvent, kEvents> events_{};  ///< largest first; created = 0 for none
+  std::array<EnergyEvent, kEvents> events_{};  ///< largest first; unused entries have created = 0
 };
 
 }  // namespace hapbench

@@ -2,8 +2,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace hapbench {
+
+ReferenceForce::ReferenceForce(std::vector<Sample> samples) {
+  if (samples.empty()) throw std::invalid_argument("a recorded force needs at least one sample");
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (!(samples[i - 1].time < samples[i].time))
+      throw std::invalid_argument("the times of a recorded force must increase strictly");
+  }
+  force_ = std::move(samples);
+}
+
+std::optional<Vec3> ReferenceForce::at(double t) const noexcept {
+  if (const Ideal* ideal = std::get_if<Ideal>(&force_)) return Vec3((*ideal)[0](t), (*ideal)[1](t), (*ideal)[2](t));
+  const std::vector<Sample>& samples = *std::get_if<std::vector<Sample>>(&force_);
+  if (!(t >= samples.front().time && t <= samples.back().time)) return std::nullopt;
+  const auto next = std::upper_bound(samples.begin(), samples.end(), t,
+                                     [](double time, const Sample& sample) { return time < sample.time; });
+  if (next == samples.end()) return samples.back().force;
+  const Sample& from = *(next - 1);
+  return from.force + (t - from.time) / (next->time - from.time) * (next->force - from.force);
+}
+
 namespace {
 
 /// More samples or finer lags would make the correlation, some 1e8 products as it is, take longer than the run.
@@ -117,6 +139,33 @@ ForceFidelity ForceFidelityObserver::metrics() const {
   found.direction_error /= static_cast<double>(std::max<std::uint64_t>(1, found.direction_rows));
   found.lag = lag_between(kept_reference_, kept_rendered_, dt_ * static_cast<double>(every_), kMostLag);
   return found;
+}
+
+MetricList metric_list(const ForceFidelity& f) {
+  const bool any = f.rows > 0;
+  return {
+      Metric::count("rows", "rows that have a reference force f_m: measured with the stroke, or ideal", f.rows),
+      Metric::number_if(any, "reference_force_rms_N", "N", "root mean square of ||f_m||", f.reference_rms),
+      Metric::number_if(any, "force_error_rms_N", "N", "root mean square of ||f - f_m||", f.error_rms),
+      Metric::number("force_error_relative", "1", "force_error_rms_N / reference_force_rms_N", f.relative()),
+      Metric::number_if(
+          any, "force_error_normal_rms_N", "N",
+          "root mean square of n n^T (f - f_m); n is f_spring / ||f_spring||, what is rendered before damping and "
+          "friction, or where nothing is rendered f_m / ||f_m||",
+          f.normal_rms),
+      Metric::number_if(any, "force_error_tangential_rms_N", "N",
+                        "root mean square of (I - n n^T) (f - f_m), with the same n", f.tangential_rms),
+      Metric::number("force_artefact_share", "1",
+                     "root mean square of the part of f across f_m, all of it where f_m is zero, over that of ||f||",
+                     f.artefact_share()),
+      Metric::count("direction_rows", "rows in which ||f|| and ||f_m|| are both above 0.1 N", f.direction_rows),
+      Metric::number_if(f.direction_rows > 0, "force_direction_error_rad", "rad",
+                        "mean angle between f and f_m of those rows", f.direction_error),
+      Metric::number(
+          "force_lag_s", "s",
+          "time by which f follows f_m: where their correlation (Pearson's, all components) is greatest, within "
+          "0.1 s; none where it is not or where a force does not vary",
+          f.lag)};
 }
 
 }  // namespace hapbench

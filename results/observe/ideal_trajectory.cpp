@@ -1,13 +1,137 @@
 #include "results/observe/ideal_trajectory.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <numbers>
 
-#include "results/observe/interpenetration.hpp"
-
 namespace hapbench {
+namespace {
+
+constexpr std::size_t kSamples = 64;
+constexpr double kStep = 2.0 * std::numbers::pi / kSamples;  // [rad]
+constexpr double kAngleTolerance = 1e-8;                     // [rad]
+
+struct Turn {
+  double cosine, sine;
+};
+
+const std::array<Turn, kSamples> kTurns = [] {
+  std::array<Turn, kSamples> turns{};
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const double angle = static_cast<double>(i) * kStep;
+    turns[i] = {std::cos(angle), std::sin(angle)};
+  }
+  return turns;
+}();
+
+/// The tool's side, one straight line for each angle about its axis.
+class Side {
+ public:
+  Side(const BlockWithHole& block, const Cylinder& tool, const ToolPose& pose)
+      : tip_(pose.position),
+        up_(-pose.axis),
+        e1_(tool.radius() * pose.axis.unitOrthogonal()),
+        e2_(pose.axis.cross(e1_)),
+        steepness_(up_.head<2>().squaredNorm() - up_.z() * up_.z()),
+        length_(tool.length()),
+        radius_(block.hole_diameter / 2),
+        block_(block) {}
+
+  /// Depth of the deepest point of a line [m], negative when all of it is outside.
+  double deepest(const Turn& turn) const {
+    const Vec3 end = tip_ + turn.cosine * e1_ + turn.sine * e2_;
+    const double deep = depth(end), up_to_cone = to_cone(end);
+    return up_to_cone > 0.0 ? std::max(deep, depth(end + std::min(up_to_cone, length_) * up_)) : deep;
+  }
+  double deepest(double angle) const { return deepest({std::cos(angle), std::sin(angle)}); }
+
+ private:
+  /// Depth below the block's surface, negative outside [m]. In the block it is the exact distance.
+  double depth(const Vec3& q) const {
+    const double out = std::sqrt(q.x() * q.x() + q.y() * q.y()) - radius_, below = -block_.hole_depth - q.z();
+    const double hole = out > 0.0 && below > 0.0 ? std::sqrt(out * out + below * below) : std::max(out, below);
+    return std::min({hole, -q.z(), q.z() + block_.size.z(), block_.size.x() / 2 - std::abs(q.x()),
+                     block_.size.y() / 2 - std::abs(q.y())});
+  }
+
+  /// How far up the line from its end in the tip the cone rho - R = -z is [m]; 0 when the end is not within the cone.
+  double to_cone(const Vec3& end) const {
+    // Squared, rho = R - z is steepness s^2 + 2 b s + c = 0; its smallest positive root is the one where R - z > 0.
+    const double height = radius_ - end.z();
+    const double c = end.head<2>().squaredNorm() - height * height;
+    if (height <= 0.0 || c >= 0.0) return 0.0;
+    const double b = end.head<2>().dot(up_.head<2>()) + height * up_.z();
+    const double root = std::sqrt(b * b - steepness_ * c);
+    return b < 0.0 ? (root - b) / steepness_ : -c / (b + root);  // no difference of near numbers
+  }
+
+  Vec3 tip_, up_, e1_, e2_;
+  double steepness_, length_, radius_;
+  const BlockWithHole& block_;
+};
+
+/// Largest value of f in [low, high], if it has one hill there, by Brent's method (R. P. Brent, Algorithms for
+/// Minimization without Derivatives, 1973, chapter 5): the vertex of the parabola through the three best points so far,
+/// or a golden section where that does not lie well inside. `best`: a point between, with its value `top`.
+template <class Function>
+double top_of_hill(const Function& f, double low, double high, double best, double top) {
+  constexpr double kGolden = 2.0 - std::numbers::phi;
+  double second = best, third = best, f_second = top, f_third = top;
+  double step = 0.0, last_step = 0.0;
+  for (;;) {
+    const double middle = 0.5 * (low + high);
+    if (std::abs(best - middle) + 0.5 * (high - low) <= 2.0 * kAngleTolerance) return top;
+    // The vertex lies p / q from the best point.
+    const double r = (best - second) * (top - f_third), s = (best - third) * (top - f_second);
+    const double p = std::copysign(1.0, r - s) * ((best - third) * s - (best - second) * r);
+    const double q = 2.0 * std::abs(s - r);
+    const bool parabola = std::abs(p) < std::abs(0.5 * q * last_step) && p > q * (low - best) && p < q * (high - best);
+    last_step = parabola ? step : (best < middle ? high : low) - best;
+    step = parabola ? p / q : kGolden * last_step;
+    if (parabola && std::min(best + step - low, high - best - step) < 2.0 * kAngleTolerance)
+      step = std::copysign(kAngleTolerance, middle - best);
+    if (std::abs(step) < kAngleTolerance) step = std::copysign(kAngleTolerance, step);
+    const double x = best + step, f_x = f(x);
+    if (f_x >= top) {
+      (x < best ? high : low) = best;
+      third = second, f_third = f_second;
+      second = best, f_second = top;
+      best = x, top = f_x;
+    } else {
+      (x < best ? low : high) = x;
+      if (f_x >= f_second || second == best) {
+        third = second, f_third = f_second;
+        second = x, f_second = f_x;
+      } else if (f_x >= f_third || third == best || third == second) {
+        third = x, f_third = f_x;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+double interpenetration(const BlockWithHole& block, const Cylinder& tool, const ToolPose& pose) {
+  assert(pose.axis.z() <= 0.0);
+  const Side side(block, tool, pose);
+  std::array<double, kSamples> depth{};
+  for (std::size_t i = 0; i < kSamples; ++i) depth[i] = side.deepest(kTurns[i]);
+  double largest = std::max(0.0, *std::max_element(depth.begin(), depth.end()));
+  // Neighbouring lines are at most radius * step apart, so their depths differ by no more.
+  const double reach = tool.radius() * kStep;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const double before = depth[(i + kSamples - 1) % kSamples], after = depth[(i + 1) % kSamples];
+    if (!(depth[i] > before && depth[i] >= after) || 0.5 * (depth[i] + std::max(before, after) + reach) <= largest)
+      continue;
+    const double angle = static_cast<double>(i) * kStep;
+    const auto at = [&side](double x) { return side.deepest(x); };
+    largest = std::max(largest, top_of_hill(at, angle - kStep, angle + kStep, angle, depth[i]));
+  }
+  return largest;
+}
 
 std::optional<TipPlace> ideal_place(const BlockWithHole& block, double tool_radius, double tilt) {
   if (!(tilt > 0.0 && tilt < std::numbers::pi / 2)) return std::nullopt;
@@ -71,6 +195,43 @@ IdealTrajectoryMetrics IdealTrajectoryObserver::metrics() const noexcept {
     errors->interpenetration_mean /= rows;
   }
   return metrics;
+}
+
+namespace {
+
+MetricList metric_list(const TrajectoryErrors& e) {
+  const bool any = e.rows > 0;
+  return {
+      Metric::count(
+          "rows",
+          "recorded rows at whose tilt the ideal trajectory exists, of a hand below 2 N (gentle) or from 2 N on (firm)",
+          e.rows),
+      Metric::number_if(any, "height_error_mean_m", "m", "mean of tip height - ideal height; negative: sunk in",
+                        e.height_mean),
+      Metric::number_if(any, "height_error_rms_m", "m", "root mean square of tip height - ideal height", e.height_rms),
+      Metric::number_if(any, "height_error_min_m", "m", "least tip height - ideal height", e.height_min),
+      Metric::number_if(any, "height_error_max_m", "m", "largest tip height - ideal height", e.height_max),
+      Metric::number_if(any, "lateral_error_mean_m", "m",
+                        "mean of lateral place of the tip - ideal one, towards the lean", e.lateral_mean),
+      Metric::number_if(any, "lateral_error_rms_m", "m", "root mean square of lateral place of the tip - ideal one",
+                        e.lateral_rms),
+      Metric::number_if(any, "lateral_error_max_m", "m", "largest |lateral place of the tip - ideal one|",
+                        e.lateral_max_abs),
+      Metric::number_if(any, "interpenetration_mean_m", "m", "mean true depth of the tool in the exact block",
+                        e.interpenetration_mean),
+      Metric::number_if(any, "interpenetration_max_m", "m", "largest true depth of the tool in the exact block",
+                        e.interpenetration_max)};
+}
+
+}  // namespace
+
+MetricList metric_list(const IdealTrajectoryMetrics& m) {
+  MetricList list;
+  append(list, "gentle", metric_list(m.gentle));
+  append(list, "firm", metric_list(m.firm));
+  list.push_back(Metric::count("rows_without_ideal", "recorded rows at whose tilt the ideal trajectory does not exist",
+                               m.rows_without_ideal));
+  return list;
 }
 
 }  // namespace hapbench

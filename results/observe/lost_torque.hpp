@@ -2,20 +2,23 @@
 
 #include <cstdint>
 
+#include "results/io/columns.hpp"
 #include "sim/loop/observer.hpp"
 
 namespace hapbench {
 
-/// What a run's contacts would have turned the tool with, had the device six degrees of freedom.
+/// The torque on the tool that a device of three degrees of freedom cannot render.
 struct LostTorqueMetrics {
   std::uint64_t rows_in_contact = 0;  ///< rows with a colliding point
   double mean = 0.0;                  ///< mean ||tau|| of these rows [N m]; 0 without any
   double max = 0.0;                   ///< largest ||tau|| of a row [N m]
 };
 
-/// The torque that is lost (thesis Fig. 1): tau = sum r_i x f_i about the tip centre, of the force f_i that each
-/// rendered contact contributes to f_spring at its place r_i from the tip centre. A device of three degrees of freedom
-/// renders sum f_i and no torque. What f_i is says SpringState::moment. Constant memory, a nanosecond a row.
+MetricList metric_list(const LostTorqueMetrics& torque);
+
+/// Observes the lost torque (thesis Fig. 1), tau = sum r_i x f_i about the tip centre, where f_i is the contribution of
+/// contact i to f_spring (SpringState::moment) and r_i its place relative to the tip centre. A device of three degrees
+/// of freedom renders sum f_i and no torque. Constant memory, a nanosecond a row.
 class LostTorqueObserver final : public Observer {
  public:
   bool wants_springs() const noexcept override { return true; }

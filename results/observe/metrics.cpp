@@ -3,8 +3,64 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <span>
+
+#include "sim/loop/integrators/spring_damper.hpp"
 
 namespace hapbench {
+
+std::optional<double> explicit_friction_limit(const IntegratorEntry& integrator, double mass, double dt, double mu_s,
+                                              double mu_f) {
+  if ((mu_s == 0.0 && mu_f == 0.0) || integrator.stability_limit == nullptr) return std::nullopt;
+  RaisedSpringDamper damper{.raised = StabilityCase::damping_alone, .given = {}, .damping = {}};
+  damper.given.M = mass;
+  damper.given.dt = dt;
+  damper.given.integrator = &integrator;
+  const std::optional<double> largest = integrator.stability_limit(damper);
+  if (!largest || !std::isfinite(*largest)) return std::nullopt;
+  if (mu_s >= *largest) return 0.0;
+  return mu_f > 0.0 ? std::optional((*largest - mu_s) / mu_f) : std::nullopt;
+}
+
+namespace {
+
+constexpr double kFarMore = 3.0;
+
+}  // namespace
+
+ReductionJumps& ReductionJumps::operator+=(const ReductionJumps& other) noexcept {
+  changes += other.changes;
+  step_max_squared = std::max(step_max_squared, other.step_max_squared);  // nothing is less than any number
+  step_max_squared_elsewhere = std::max(step_max_squared_elsewhere, other.step_max_squared_elsewhere);
+  return *this;
+}
+
+std::optional<double> ReductionJumps::step_max() const noexcept {
+  return step_max_squared ? std::optional(std::sqrt(*step_max_squared)) : std::nullopt;
+}
+
+double ReductionJumps::step_max_elsewhere() const noexcept {
+  return std::sqrt(step_max_squared_elsewhere);
+}
+
+bool ReductionJumps::stand_out() const noexcept {
+  return step_max().value_or(0.0) > kFarMore * step_max_elsewhere();
+}
+
+void ReductionJumpObserver::add(const ContactBuffer& kept, double step_squared, bool settled) noexcept {
+  const std::span now(kept.index.data(), kept.size());
+  const bool same = std::is_permutation(now.begin(), now.end(), last_.begin(), last_.end());
+  const bool changed = !same && !now.empty() && !last_.empty();
+  if (changed) ++jumps_.changes;
+  if (settled && changed) jumps_.step_max_squared = std::max(jumps_.step_max_squared.value_or(0.0), step_squared);
+  if (settled && !changed && !changed_) {
+    jumps_.step_max_squared_elsewhere = std::max(jumps_.step_max_squared_elsewhere, step_squared);
+  }
+  changed_ = changed;
+  assert(now.size() <= last_.capacity());
+  if (!same) last_.assign(now.begin(), now.end());
+}
+
 namespace {
 
 void add(Hash64& hash, const Vec3& v) noexcept {
@@ -150,6 +206,81 @@ Metrics merged(const std::vector<Metrics>& runs) noexcept {
   }
   all.state_hash = hash.value();
   return all;
+}
+
+namespace {
+
+MetricList reduction_list(const std::optional<ReductionJumps>& given) {
+  const ReductionJumps jumps = given.value_or(ReductionJumps{});
+  return {
+      Metric::count("reduction_changes",
+                    "rows in contact whose set of kept points is another than in the row before, in contact too; with "
+                    "rendering.reduction",
+                    given ? std::optional(jumps.changes) : std::nullopt),
+      Metric::number("reduction_force_step_max_N", "N",
+                     "largest force step ||f_k - f_(k-1)|| of such rows in settled contact; with rendering.reduction",
+                     jumps.step_max())};
+}
+
+}  // namespace
+
+MetricList metric_list(const Metrics& m) {
+  const bool any = m.rows > 0;
+  const auto ratio = m.ratio.value_or(RatioRange{});
+  const auto friction = m.explicit_friction.value_or(ExplicitFriction{});
+  MetricList list = {
+      Metric::number("force_max_N", "N", "largest ||f|| of a row", m.force_max),
+      Metric::number("force_step_max_N", "N", "largest force step ||f_k - f_(k-1)||, landings included",
+                     m.force_step_max),
+      Metric::number("velocity_total_variation_m_per_s", "m/s",
+                     "sum ||v_k - v_(k-1)|| over all rows: what a smooth motion has little of",
+                     m.velocity_total_variation),
+      Metric::count("force_reversals", "rows whose f has a negative inner product with that of the row before",
+                    m.force_reversals),
+      Metric::number(
+          "vibration_power_above_30Hz_m2_per_s2", "m2/s2",
+          "mean ||v||^2 of all rows behind a high-pass (Butterworth, fourth order, 30 Hz); none at sampling rates of "
+          "60 Hz or less",
+          m.vibration_power),
+      Metric::number("depth_max_m", "m", "largest penetration depth of a colliding point", m.depth_max),
+      Metric::number_if(
+          m.ratio.has_value(), "ratio_min", "1",
+          "smallest stiffness ratio rho = u^T S u of a rendered contact: the combined stiffness along it, in "
+          "units of K",
+          ratio.min),
+      Metric::number_if(m.ratio.has_value(), "ratio_max", "1", "largest such ratio", ratio.max),
+      Metric::number_if(any, "colliding_mean", "1", "colliding points per row, rows without contact included",
+                        m.colliding_mean),
+      Metric::count("colliding_max", "most colliding points of a row", m.colliding_max),
+      Metric::number_if(
+          any, "rendered_mean", "1",
+          "points that the force law saw (after local average and reduction) per row, rows without contact "
+          "included",
+          m.rendered_mean),
+      Metric::count("rendered_max", "most points that the force law saw in a row", m.rendered_max),
+      Metric::count("steps_in_contact", "rows with a colliding point", m.steps_in_contact),
+      Metric::number_if(any, "contact_share", "1", "steps_in_contact / steps",
+                        static_cast<double>(m.steps_in_contact) / static_cast<double>(m.rows)),
+      Metric::number("last_contact_s", "s", "time of the last row with a colliding point", m.last_contact),
+      Metric::number("speed_max_m_per_s", "m/s", "largest speed of the tip's centre", m.speed_max),
+      Metric::number_if(
+          m.explicit_friction.has_value(), "explicit_friction_limit_N", "N",
+          "largest ||f_spring|| whose friction the explicit integrator steps stably, (B_max - mu_s) / mu_f",
+          friction.limit),
+      Metric::count("explicit_friction_rows_beyond", "rows with a larger ||f_spring||",
+                    m.explicit_friction ? std::optional(friction.rows_beyond) : std::nullopt),
+      Metric::count("explicit_friction_first_step", "the first of those rows", friction.first_step)};
+  append(list, "", metric_list(m.contact));
+  append(list, "", reduction_list(m.reduction));
+  return list;
+}
+
+MetricList final_position_list(const Metrics& m) {
+  const bool any = m.rows > 0;
+  return {
+      Metric::number_if(any, "final_position_m.x", "m", "x of the tip's centre in the last row", m.final_position.x()),
+      Metric::number_if(any, "final_position_m.y", "m", "y of the tip's centre in the last row", m.final_position.y()),
+      Metric::number_if(any, "final_position_m.z", "m", "z of the tip's centre in the last row", m.final_position.z())};
 }
 
 }  // namespace hapbench

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "results/io/columns.hpp"
 #include "sim/loop/observed_energy.hpp"
 #include "sim/loop/observer.hpp"
 
@@ -16,6 +17,9 @@ struct PassivityMetrics {
   /// Energy that the rendering created, max(0, -energy_min) [J]; NaN if any rendered force was NaN.
   double net_created() const noexcept { return energy_min >= 0.0 ? 0.0 : -energy_min; }
 };
+
+/// The metrics have no value without rows.
+MetricList metric_list(const std::optional<PassivityMetrics>& passivity);
 
 /// Returns the metrics of the run that created the most energy, the first of equals; nothing if no run has rows.
 std::optional<PassivityMetrics> merged(const std::vector<std::optional<PassivityMetrics>>& runs) noexcept;

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include "sim/loop/observer.hpp"
 
 namespace hapbench {
 
@@ -22,9 +25,9 @@ class StepTimes {
   /// Ends a step. Precondition: fewer than `capacity` steps so far.
   void lap() noexcept;
 
-  /// Each step in their order [ns], the clock's own share subtracted.
+  /// Each step in their order [ns], the cost of reading the clock subtracted.
   std::span<const std::uint64_t> nanoseconds() const { return {times_.data(), size_}; }
-  /// The clock's own share: the median over steps that do nothing [ns].
+  /// Cost of reading the clock: the median over steps that do nothing [ns].
   std::uint64_t overhead() const { return overhead_; }
 
  private:
@@ -33,5 +36,85 @@ class StepTimes {
   std::uint64_t overhead_ = 0;
   Clock::time_point last_;
 };
+
+/// Samples the time that steps take by themselves, without observers and recorders: from after the last observer of a
+/// row to before the first one of the next row. That time covers the integrator's part of one step and hand, search,
+/// law and device of the next. Attach `first` before and `last` after all other observers.
+///
+/// Samples every step of a short run and at most kMostSamples of a long one, evenly spread: enough for a 99th
+/// percentile at a cost below a millisecond, as each takes two readings of the clock. Memory is allocated in the
+/// constructor.
+class StepSampler {
+ public:
+  static constexpr std::uint64_t kMostSamples = 1 << 13;
+
+  /// `steps`: the most rows the run can have.
+  explicit StepSampler(std::uint64_t steps);
+  StepSampler(const StepSampler&) = delete;
+  StepSampler& operator=(const StepSampler&) = delete;
+
+  Observer& first() { return first_; }
+  Observer& last() { return last_; }
+
+  /// [ns], in their order, the cost of reading the clock subtracted.
+  std::span<const std::uint64_t> nanoseconds() const { return times_.nanoseconds(); }
+
+ private:
+  class First final : public Observer {
+   public:
+    explicit First(StepSampler& sampler) : sampler_(sampler) {}
+    void on_step(const StepRecord&) noexcept override { sampler_.stop(); }
+
+   private:
+    StepSampler& sampler_;
+  };
+  class Last final : public Observer {
+   public:
+    explicit Last(StepSampler& sampler) : sampler_(sampler) {}
+    void on_step(const StepRecord& record) noexcept override { sampler_.start(record.step); }
+
+   private:
+    StepSampler& sampler_;
+  };
+
+  void start(std::uint64_t step) noexcept;
+  void stop() noexcept;
+
+  std::uint64_t every_;
+  StepTimes times_;
+  bool runs_ = false;
+  First first_{*this};
+  Last last_{*this};
+};
+
+/// Deadlines of a haptic loop [s]: the thesis's simulations step at 2 kHz, its device at 2048 Hz.
+inline constexpr std::array<double, 2> kStepDeadlines = {0.5e-3, 1.0 / 2048.0};
+
+/// Distribution of the step times of a run. The mean is not enough: a user feels a single late step of a haptic loop.
+struct StepLatency {
+  /// Steps from `from` to below `to` [ns].
+  struct Bin {
+    std::uint64_t from = 0;
+    std::uint64_t to = 0;
+    std::uint64_t steps = 0;
+  };
+
+  static constexpr std::size_t kSpans = 240;
+
+  std::uint64_t steps = 0;
+  /// Percentiles by nearest rank: the shortest time that at least so many percent of the steps do not exceed [ns].
+  std::uint64_t p50 = 0, p95 = 0, p99 = 0, p99_9 = 0;
+  std::uint64_t max = 0;                                         ///< [ns]
+  std::array<std::uint64_t, kStepDeadlines.size()> misses = {};  ///< steps longer than each deadline
+  /// Bins between powers of two, from the first to the last that is not empty.
+  std::vector<Bin> histogram;
+  /// Medians of up to kSpans consecutive spans of the run with equal numbers of steps [ns]: the load over time.
+  std::vector<std::uint64_t> over_time;
+  std::uint64_t overhead = 0;  ///< cost of reading the clock, already subtracted from each step [ns]
+};
+
+/// Computes the distribution of step times [ns] and stores `overhead` with it. All values are zero without steps.
+/// O(n log n).
+StepLatency step_latency(std::span<const std::uint64_t> nanoseconds, std::uint64_t overhead);
 
 }  // namespace hapbench

@@ -87,4 +87,35 @@ std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows) {
   return metrics;
 }
 
+namespace {
+
+MetricList metric_list(const SubjectMean& m, const char* unit, const char* meaning) {
+  const bool any = m.subjects > 0;
+  return {
+      Metric::number_if(any, "mean", unit, meaning, m.mean),
+      Metric::number_if(any, "standard_error", unit, "standard error of that mean, over subjects", m.standard_error),
+      Metric::count("subjects", "subjects that have a value", m.subjects)};
+}
+
+}  // namespace
+
+MetricList metric_list(const std::vector<PlaceMetrics>& places) {
+  MetricList list;
+  for (const PlaceMetrics& place : places) {
+    const std::string section = std::to_string(place.place);
+    append(list, section + ".success_rate",
+           metric_list(place.success_rate, "1",
+                       "share of the targets at this place that were removed, mean over subjects"));
+    append(list, section + ".completion_time_s",
+           metric_list(place.completion_time, "s",
+                       "time until a target at this place was removed or the limit was reached, mean over subjects"));
+    append(list, section + ".model_force_N",
+           metric_list(place.model_force, "N", "mean ||f|| of the rows on a target at this place, mean over subjects"));
+    append(list, section + ".speed_m_per_s",
+           metric_list(place.speed, "m/s",
+                       "mean speed of the handle in the rows on a target at this place, mean over subjects"));
+  }
+  return list;
+}
+
 }  // namespace hapbench

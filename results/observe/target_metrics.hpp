@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "results/io/columns.hpp"
 #include "sim/loop/observer.hpp"
 
 namespace hapbench {
@@ -23,7 +24,7 @@ struct TargetRow {
 /// Measures the targets of one trial while it runs.
 class TargetMetricsObserver final : public Observer {
  public:
-  /// Which trial it is; a scenario's runs of several trials have one observer each.
+  /// Numbers of subject and trial, from 0, and the number of targets.
   TargetMetricsObserver(std::size_t subject, std::size_t trial, std::size_t targets);
 
   /// Precondition: record.task is not null.
@@ -37,7 +38,7 @@ class TargetMetricsObserver final : public Observer {
   std::vector<TargetRow> rows_;
 };
 
-/// A mean over subjects and its standard error; none without subjects that have a value.
+/// A mean over subjects and its standard error; without meaning when `subjects` is 0.
 struct SubjectMean {
   std::size_t subjects = 0;
   double mean = 0.0;
@@ -45,7 +46,7 @@ struct SubjectMean {
 };
 
 /// One target place over all subjects. Each subject counts with the mean over its targets there, as in Table A.1; force
-/// and speed leave out targets the tip never was on.
+/// and speed leave out targets that the tip never was on.
 struct PlaceMetrics {
   std::size_t place = 0;
   SubjectMean success_rate;
@@ -54,7 +55,9 @@ struct PlaceMetrics {
   SubjectMean speed;            ///< [m/s]
 };
 
-/// The tables of thesis D.4, a line for each place that occurs.
+/// The tables of thesis D.4: one entry for each place that occurs.
 std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows);
+
+MetricList metric_list(const std::vector<PlaceMetrics>& places);
 
 }  // namespace hapbench

@@ -1,24 +1,91 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
 
-#include "results/io/io_error.hpp"
+#include "results/io/table_writer.hpp"
+#include "results/observe/energy_ledger.hpp"
+#include "results/observe/force_fidelity.hpp"
+#include "results/observe/ideal_trajectory.hpp"
+#include "results/observe/target_metrics.hpp"
+#include "sim/contact/contact_buffer.hpp"
 #include "sim/loop/observer.hpp"
 
+/// The tables that a run writes row by row. Everything is that before the integrator moves the tool.
 namespace hapbench {
 
-/// An observer that writes one table, to a file or into memory. A file's rows are written during the run through a
-/// buffer of fixed size; a run that is interrupted before `finish` leaves none.
-class Recorder : public Observer {
- public:
-  /// After the run: puts the file under its final name. Throws IoError, also for the errors of earlier rows.
-  virtual void finish() = 0;
+/// Makes the lines of a table from the rows of a run.
+struct RowSource {
+  std::span<const Column> columns;
+  /// Writes the lines of one row, perhaps none. Allocates nothing.
+  std::function<void(const StepRecord& record, TableWriter& table)> write;
+  bool wants_ratio = false, wants_roll = false, wants_springs = false;  ///< as those of Observer
 };
 
-/// Returns true for the rows that a recorder keeps: the first one and every `every`-th after it. Precondition: every >
-/// 0.
-inline bool is_recorded(const StepRecord& record, std::uint64_t every) noexcept {
-  return record.step % every == 0;
-}
+/// An observer that writes one table, to a file or into memory. A file's lines are written during the run through a
+/// buffer of fixed size; a run that is interrupted before `finish` leaves none.
+class Recorder final : public Observer {
+ public:
+  /// Keeps rows 0, every, 2 every, … Precondition: every > 0. Throws IoError.
+  Recorder(TableTarget target, RowSource source, std::uint64_t every = 1);
+
+  bool wants_ratio() const noexcept override { return source_.wants_ratio; }
+  bool wants_roll() const noexcept override { return source_.wants_roll; }
+  bool wants_springs() const noexcept override { return source_.wants_springs; }
+  void on_step(const StepRecord& record) noexcept override;
+
+  /// After the run: puts the file under its final name. Throws IoError, also for the errors of earlier rows.
+  void finish() { writer_.finish(); }
+
+ private:
+  RowSource source_;
+  TableWriter writer_;
+  std::uint64_t every_;
+};
+
+/// Optional columns of trajectory.csv.
+struct TrajectoryExtras {
+  bool pose = false;    ///< record.pose
+  bool torque = false;  ///< record.torque: SpringState::moment
+};
+
+/// trajectory.csv: one line per row.
+RowSource trajectory_rows(const TrajectoryExtras& extras = {});
+/// contacts.csv: one line per rendered contact, in the order in which the force law saw them.
+RowSource contact_rows();
+/// stiffness_tensor.csv: one line per row.
+RowSource stiffness_rows();
+
+/// Stiffness shaping as two operations on padded contacts. They are parameters because this folder knows no force law.
+struct ShapingOperations {
+  /// Sets all weights to 1; returns the stiffness tensor S.
+  Mat3 (*start)(ContactBuffer& contacts) noexcept = nullptr;
+  /// Updates the weights once, given the S of the present ones; returns the new S.
+  Mat3 (*update)(ContactBuffer& contacts, const Mat3& S) noexcept = nullptr;
+};
+
+/// ratios.csv: how the stiffness ratios of the rendered contacts converge with the number of shaping updates (thesis
+/// 3.4, Fig. 5), whatever law the run uses. For each row with contact, one line per requested number m of updates from
+/// equal weights 1. Works on a copy of the contacts. O(n) per update; as many updates as the largest m. `iterations`:
+/// the requested m >= 0 in any order, duplicates count once; `capacity`: the most contacts a row can have.
+RowSource ratio_rows(std::vector<int> iterations, ShapingOperations shaping, std::size_t capacity);
+
+/// energy.csv: the energy balance, one line per row. The recorder must observe after `ledger`.
+RowSource energy_rows(const EnergyLedger& ledger);
+/// ideal_trajectory.csv: one line per row that `observer` compares and at whose tilt the ideal trajectory exists
+/// (thesis Fig. 7). The recorder must observe after `observer` and keep every row.
+RowSource ideal_trajectory_rows(const IdealTrajectoryObserver& observer);
+/// force_reference.csv: the reference force beside the error of the rendered one, one line per row. The recorder must
+/// observe after `observer`.
+RowSource force_reference_rows(const ForceFidelityObserver& observer);
+
+/// targets.csv: the result of every target of every subject's trials, in that order. Throws IoError.
+void write_target_table(TableTarget target, const std::vector<TargetRow>& rows);
+
+/// The tables above with all their columns.
+extern const ResultTable kTrajectoryTable, kContactTable, kStiffnessTable, kRatioTable, kEnergyTable,
+    kIdealTrajectoryTable, kForceReferenceTable, kTargetTable;
 
 }  // namespace hapbench

@@ -1,7 +1,7 @@
 #include "results/summary/summary.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "results/io/json_text.hpp"
@@ -56,23 +56,6 @@ ordered_json metrics_json(const Metrics& m) {
   return json;
 }
 
-ordered_json event_json(const EnergyEvent& e) {
-  return {{"step", e.step},
-          {"time_s", number_or_null(e.time)},
-          {"created_J", number_or_null(e.created)},
-          {"colliding", {e.colliding_before, e.colliding_after}},
-          {"rendered", {e.rendered_before, e.rendered_after}},
-          {"appeared", e.appeared},
-          {"vanished", e.vanished}};
-}
-
-ordered_json energy_json(const EnergyMetrics& m) {
-  ordered_json json = metrics_json(metric_list(m));
-  json["events"] = ordered_json::array();
-  for (const EnergyEvent& event : m.events) json["events"].push_back(event_json(event));
-  return json;
-}
-
 ordered_json tool_json(const ToolSummary& tool) {
   ordered_json outline = ordered_json::array();
   for (const auto& [s, rho] : tool.outline) outline.push_back({s, rho});
@@ -117,29 +100,32 @@ ordered_json summary_json(const RunSummary& run) {
                        {"metrics", metrics_json(run.metrics)},
                        {"passivity", metrics_json(metric_list(run.passivity))}};
   if (run.tool) json["tool"] = tool_json(*run.tool);
-  if (run.energy) json["energy"] = energy_json(*run.energy);
-  if (run.ideal_trajectory) json["ideal_trajectory"] = metrics_json(metric_list(*run.ideal_trajectory));
-  if (run.fidelity) json["fidelity"] = metrics_json(metric_list(*run.fidelity));
-  if (run.torque) json["torque"] = metrics_json(metric_list(*run.torque));
-  if (run.perception) json["perception"] = metrics_json(metric_list(*run.perception));
-  if (run.targets) json["targets"] = metrics_json(metric_list(*run.targets));
+  for (const MetricSection& section : run.sections) {
+    json[section.name] = metrics_json(section.metrics);
+    json[section.name].update(section.more);
+  }
   json["state_hash"] = hash_text(run.metrics.state_hash);
   json["work"] = work_json(run.work);
   json["provenance"] = provenance_json(run.provenance, run.scenario_hash);
   return json;
 }
 
+const MetricSection* RunSummary::section(std::string_view section_name) const {
+  const auto found =
+      std::find_if(sections.begin(), sections.end(), [&](const MetricSection& s) { return s.name == section_name; });
+  return found == sections.end() ? nullptr : &*found;
+}
+
 MetricList metric_list(const RunSummary& run) {
   MetricList list = metric_list(run.metrics);
   append(list, "", final_position_list(run.metrics));
   append(list, "passivity", metric_list(run.passivity));
-  if (run.energy) append(list, "energy", metric_list(*run.energy));
-  if (run.ideal_trajectory) append(list, "ideal_trajectory", metric_list(*run.ideal_trajectory));
-  if (run.fidelity) append(list, "fidelity", metric_list(*run.fidelity));
-  if (run.torque) append(list, "torque", metric_list(*run.torque));
-  if (run.perception) append(list, "perception", metric_list(*run.perception));
-  if (run.targets) append(list, "targets", metric_list(*run.targets));
+  for (const MetricSection& section : run.sections) append(list, section.name, section.metrics);
   return list;
+}
+
+std::optional<double> metric_of(const RunSummary& run, std::string_view name) {
+  return number_of(value_of(metric_list(run), name));
 }
 
 std::string summary_text(const RunSummary& run) {

@@ -5,8 +5,43 @@
 #include "results/io/json_text.hpp"
 
 namespace hapbench {
+namespace {
 
 using nlohmann::ordered_json;
+
+double seconds(double nanoseconds) {
+  return nanoseconds / 1e9;  // unlike times 1e-9, the double nearest to the decimal
+}
+
+}  // namespace
+
+ordered_json step_latency_json(const StepLatency& latency) {
+  const auto if_any = [&latency](std::uint64_t ns) {
+    return latency.steps > 0 ? ordered_json(seconds(static_cast<double>(ns))) : ordered_json(nullptr);
+  };
+  ordered_json json = {{"steps", latency.steps},
+                       {"clock_overhead_s", seconds(static_cast<double>(latency.overhead))},
+                       {"p50_s", if_any(latency.p50)},
+                       {"p95_s", if_any(latency.p95)},
+                       {"p99_s", if_any(latency.p99)},
+                       {"p99_9_s", if_any(latency.p99_9)},
+                       {"max_s", if_any(latency.max)},
+                       {"deadline_misses", ordered_json::array()},
+                       {"histogram", ordered_json::array()},
+                       {"over_time_s", ordered_json::array()}};
+  for (std::size_t i = 0; i < kStepDeadlines.size(); ++i) {
+    json["deadline_misses"].push_back({{"deadline_s", kStepDeadlines[i]}, {"steps", latency.misses[i]}});
+  }
+  for (const StepLatency::Bin& bin : latency.histogram) {
+    json["histogram"].push_back({{"from_s", seconds(static_cast<double>(bin.from))},
+                                 {"to_s", seconds(static_cast<double>(bin.to))},
+                                 {"steps", bin.steps}});
+  }
+  for (const std::uint64_t median : latency.over_time) {
+    json["over_time_s"].push_back(seconds(static_cast<double>(median)));
+  }
+  return json;
+}
 
 ordered_json timing_json(const RunTiming& timing, const InstructionSet& instructions, const Provenance& provenance) {
   ordered_json mean = nullptr;

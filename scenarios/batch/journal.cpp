@@ -31,7 +31,7 @@ std::string line_of(std::string_view row) {
   return hash_text(hash_of(row)) + " " + std::string(row) + "\n";
 }
 
-/// The row of a line without its end, or nothing when it is damaged.
+/// The row in a line without its end; empty if the line is damaged.
 std::string_view row_in(std::string_view line) {
   if (line.size() <= kSumLength || line[kSumLength] != ' ') return {};
   const std::string_view row = line.substr(kSumLength + 1);
@@ -42,15 +42,14 @@ std::string_view row_in(std::string_view line) {
 
 Journal::Journal(std::filesystem::path file, const std::string& sweep, bool resume, const Found& found)
     : file_(std::move(file)) {
-  // Non-blocking, or a pipe would wait for its other end.
+  // Non-blocking, because opening a pipe would wait for its other end.
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
   if (descriptor_ < 0) throw IoError("create", file_, last_error());
   try {
     struct stat status {};
     if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) fail_in_file(file_, "is no file");
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
       fail_in_file(file_, "another sweep is writing to this directory; allowed: one at a time");
-    }
     const std::string first_line = title_line(sweep);
     if (resume) read(first_line, found);
     if (::ftruncate(descriptor_, static_cast<off_t>(end_)) != 0) throw IoError("write", file_, last_error());
@@ -68,7 +67,7 @@ Journal::~Journal() {
   try {
     flush();
   } catch (const IoError&) {
-    // The runs can be done again.
+    // The runs can be repeated.
   }
   ::close(descriptor_);
 }
@@ -94,11 +93,11 @@ std::size_t Journal::count_rows(const std::filesystem::path& file) {
   return static_cast<std::size_t>(std::max<std::ptrdiff_t>(lines - 1, 0));
 }
 
-/// Sets the end behind what is whole.
+/// Finds the end of the last intact row, and reports all rows before it.
 void Journal::read(const std::string& first_line, const Found& found) {
   std::ifstream in(file_, std::ios::binary);
   std::string line;
-  // A line that the end of the file cuts short does not count.
+  // A line without its end is torn.
   if (!std::getline(in, line) || in.eof()) return;
   if (line + "\n" != first_line) {
     fail_in_file(
@@ -121,7 +120,7 @@ Journal::Place Journal::add(std::string_view row) {
 }
 
 void Journal::flush() {
-  const std::string lines = std::exchange(unwritten_, {});  // which are written once, whatever comes of it
+  const std::string lines = std::exchange(unwritten_, {});  // are not written again after an error
   for (std::string_view text = lines; !text.empty();) {
     const ::ssize_t written = ::write(descriptor_, text.data(), text.size());
     if (written < 0 && errno != EINTR) throw IoError("write", file_, last_error());
@@ -130,18 +129,15 @@ void Journal::flush() {
   end_ += lines.size();
 }
 
-std::string Journal::row_at(Place place) const {
-  // As long as most lines are, so that one reading does.
-  for (std::string text(2048, '\0');; text.resize(2 * text.size())) {
-    const ::ssize_t length = ::pread(descriptor_, text.data(), text.size(), static_cast<off_t>(place));
-    if (length < 0 && errno == EINTR) continue;
-    if (length < 0) throw IoError("read", file_, last_error());
-    const std::size_t end = std::string_view(text.data(), static_cast<std::size_t>(length)).find('\n');
-    if (end != std::string_view::npos) return text.substr(kSumLength + 1, end - kSumLength - 1);
-    if (static_cast<std::size_t>(length) < text.size()) {
-      throw IoError("read", file_, std::make_error_code(std::errc::io_error));
-    }
-  }
+std::string Journal::row_at(Place place) {
+  if (!reader_.is_open()) reader_.open(file_, std::ios::binary);
+  reader_.clear();
+  std::string line;
+  const auto offset = static_cast<std::streamoff>(place);
+  if (reader_.tellg() != offset) reader_.seekg(offset);
+  // A row without its line end has not been flushed.
+  if (std::getline(reader_, line) && !reader_.eof()) return line.substr(kSumLength + 1);
+  throw IoError("read", file_, std::make_error_code(std::errc::io_error));
 }
 
 void Journal::remove() noexcept {

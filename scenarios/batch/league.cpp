@@ -5,18 +5,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
+#include "results/summary/outcome_names.hpp"
 #include "scenarios/batch/statistics.hpp"
+#include "scenarios/run/encounter.hpp"
 
 namespace hapbench {
 namespace {
 
 bool seeds_matter_in(const LeagueRuns& runs, std::size_t scenario) {
   for (std::size_t a = 0; a < runs.algorithms.size(); ++a) {
-    for (std::size_t k = 1; k < runs.seeds; ++k) {
+    for (std::size_t k = 1; k < runs.seeds; ++k)
       if (runs.run(scenario, a, k).state_hash != runs.run(scenario, a, 0).state_hash) return true;
-    }
   }
   return false;
 }
@@ -34,9 +36,8 @@ std::vector<std::optional<double>> values_of(const LeagueRuns& runs, std::size_t
 
 std::vector<double> known(const std::vector<std::optional<double>>& values) {
   std::vector<double> numbers;
-  for (const auto& value : values) {
+  for (const auto& value : values)
     if (value) numbers.push_back(*value);
-  }
   return numbers;
 }
 
@@ -44,7 +45,7 @@ bool is_same(double a, double b) {
   return std::abs(a - b) <= kSameRank * std::max(std::abs(a), std::abs(b));
 }
 
-/// By the seeds in which both have a value; none of fewer than two.
+/// Compares two algorithms by the seeds in which both have a value; none if these are fewer than two.
 std::optional<bool> differ_beyond_spread(const std::vector<std::optional<double>>& a,
                                          const std::vector<std::optional<double>>& b) {
   std::vector<double> of_a, of_b;
@@ -78,16 +79,16 @@ class ScenarioStandings {
   const std::vector<Standing>& standings() const { return standings_; }
 
  private:
-  /// Those without a failure in the order of their means, without a mean behind them, then those with failures by their
-  /// number. No ranks by a metric that nobody has.
+  /// Order: algorithms without failures by their means, a missing mean last; then the others by their number of
+  /// failures. There are no ranks for a metric that no algorithm has.
   void rank() {
     std::vector<std::size_t> order;
-    bool anybody = false;
+    bool any_mean = false;
     for (std::size_t a = 0; a < standings_.size(); ++a) {
-      anybody |= standings_[a].mean.has_value();
+      any_mean |= standings_[a].mean.has_value();
       if (failures_[a] == 0 && standings_[a].mean) order.push_back(a);
     }
-    if (!anybody) return;
+    if (!any_mean) return;
     std::stable_sort(order.begin(), order.end(),
                      [this](std::size_t a, std::size_t b) { return *standings_[a].mean < *standings_[b].mean; });
     std::size_t leader = 0;
@@ -110,19 +111,18 @@ class ScenarioStandings {
       if (failures_[a] > 0 || !standings_[a].mean) continue;
       if (!best || *standings_[a].mean < *standings_[*best].mean) best = a;
     }
-    if (!best) return;  // all failed, or none has the metric
+    if (!best) return;  // all failed, or no algorithm has the metric
     const double least = *standings_[*best].mean;
     for (std::size_t a = 0; a < standings_.size(); ++a) {
       Standing& standing = standings_[a];
       if (failures_[a] > 0 || !standing.mean) continue;
-      if (*standing.mean == least) {
+      if (*standing.mean == least)
         standing.ratio_to_best = 1.0;
-      } else if (least > 0.0) {
+      else if (least > 0.0)
         standing.ratio_to_best = *standing.mean / least;
-      }
       if (a == *best || !seeds_matter) continue;
       standing.beyond_spread = differ_beyond_spread(values_[a], values_[*best]);
-      // Rounding may differ the same way with every seed.
+      // Rounding errors may be the same with every seed, which makes t infinite.
       if (is_same(*standing.mean, least) && standing.beyond_spread) standing.beyond_spread = false;
     }
   }
@@ -134,9 +134,8 @@ class ScenarioStandings {
 
 std::optional<double> mean_rank(const League& league, std::size_t scenario, std::size_t algorithm) {
   std::vector<double> ranks;
-  for (std::size_t m = 0; m < league.runs.metrics.size(); ++m) {
+  for (std::size_t m = 0; m < league.runs.metrics.size(); ++m)
     if (const auto rank = league.at(scenario, algorithm, m).rank) ranks.push_back(static_cast<double>(*rank));
-  }
   return ranks.empty() ? std::nullopt : std::optional(mean_of(ranks));
 }
 
@@ -183,11 +182,10 @@ std::string League::outcomes(std::size_t scenario, std::size_t algorithm) const 
     const std::string& outcome = runs.run(scenario, algorithm, k).outcome;
     const auto known =
         std::find_if(counts.begin(), counts.end(), [&outcome](const auto& count) { return count.first == outcome; });
-    if (known == counts.end()) {
+    if (known == counts.end())
       counts.emplace_back(outcome, 1);
-    } else {
+    else
       ++known->second;
-    }
   }
   if (counts.size() == 1) return counts.front().first;
   std::vector<std::string> texts;
@@ -205,15 +203,48 @@ League make_league(LeagueRuns runs) {
     league.seeds_matter.push_back(seeds_matter_in(league.runs, s));
     for (std::size_t m = 0; m < metrics; ++m) {
       const ScenarioStandings column(league, s, m);
-      for (std::size_t a = 0; a < algorithms; ++a) {
+      for (std::size_t a = 0; a < algorithms; ++a)
         league.standings[(s * algorithms + a) * metrics + m] = column.standings()[a];
-      }
     }
   }
   for (std::size_t a = 0; a < algorithms; ++a) league.laws.push_back(law_standing(league, a));
   std::stable_sort(league.laws.begin(), league.laws.end(), [](const LawStanding& a, const LawStanding& b) {
     return a.mean_rank && (!b.mean_rank || *a.mean_rank < *b.mean_rank);
   });
+  return league;
+}
+
+std::string default_metrics_text() {
+  return fmt::format("{}", fmt::join(kDefaultMetrics, ","));
+}
+
+bool is_failure(std::string_view outcome) {
+  constexpr std::string_view kFailures[] = {"diverges", "not_dragged", "no_contact", "lost_contact"};
+  return std::find(std::begin(kFailures), std::end(kFailures), outcome) != std::end(kFailures);
+}
+
+LeagueRuns league_runs(const BatchPlan& plan, const BatchReport& report, const std::vector<std::string>& metrics) {
+  LeagueRuns league;
+  league.scenarios = plan.names;
+  league.algorithms = plan.definition.algorithms;
+  const bool all_have_reference = std::all_of(report.runs.begin(), report.runs.end(), [](const RunReport& run) {
+    return run.summary.section("fidelity") != nullptr;
+  });
+  const std::span<const std::string_view> usual =
+      all_have_reference ? std::span<const std::string_view>(kFidelityMetrics) : kDefaultMetrics;
+  league.metrics = metrics.empty() ? std::vector<std::string>(usual.begin(), usual.end()) : metrics;
+  league.seeds = plan.definition.seeds;
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    const RunSummary& summary = report.runs[i].summary;
+    const MetricList list = metric_list(summary);
+    LeagueRun run;
+    run.outcome = outcome_name(summary.result.outcome);
+    run.failed =
+        is_failure(run.outcome) || !outcome_is_expected(scenario_of(plan, i).scenario.expect, summary.result.outcome);
+    run.state_hash = summary.metrics.state_hash;
+    for (const std::string& name : league.metrics) run.metrics.push_back(number_of(value_of(list, name)));
+    league.runs.push_back(std::move(run));
+  }
   return league;
 }
 

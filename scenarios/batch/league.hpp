@@ -2,80 +2,112 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
+#include "scenarios/batch/run_batch.hpp"
+#include "scenarios/input/json_file.hpp"
 
-/// Which algorithm did best, scenario by scenario, and over all of them.
+/// Ranks algorithms by their metrics in each scenario and over all scenarios.
 namespace hapbench {
 
-/// What the league takes from one run.
+/// The data that the league takes from one run.
 struct LeagueRun {
   std::string outcome;
-  bool failed = false;           ///< its numbers say nothing about the algorithm
+  bool failed = false;           ///< its metrics do not count
   std::uint64_t state_hash = 0;  ///< equal for runs that a seed does not change
   std::vector<std::optional<double>> metrics;
 };
 
-/// The runs of a league and what they are called. Of every metric less is better.
+/// The runs of a league. A smaller value of any metric is better.
 struct LeagueRuns {
   std::vector<std::string> scenarios;
   std::vector<std::string> algorithms;
   std::vector<std::string> metrics;
   std::size_t seeds = 1;
-  std::vector<LeagueRun> runs;  ///< scenario by scenario, in there algorithm by algorithm, in there seed by seed
+  std::vector<LeagueRun> runs;  ///< by scenario, then by algorithm, then by seed
 
   const LeagueRun& run(std::size_t scenario, std::size_t algorithm, std::size_t seed) const {
     return runs[(scenario * algorithms.size() + algorithm) * seeds + seed];
   }
 };
 
-/// Means closer than this part of the larger share a rank: what a table of ratios with three digits can show. Rounding,
-/// which sets apart algorithms that do the same, is far below.
+/// Means whose relative difference is below this share a rank: the resolution of a table of ratios with three digits.
+/// Rounding errors, by which equivalent algorithms differ, are far smaller.
 inline constexpr double kSameRank = 1e-3;
 
-/// One algorithm in one scenario by one metric, over the seeds that did not fail.
+/// One algorithm in one scenario, judged by one metric over the seeds that did not fail.
 struct Standing {
-  std::optional<double> mean;    ///< none when all failed or none has the metric
-  std::optional<double> spread;  ///< sample standard deviation; none when seeds are one or change nothing
-  /// 1 + the number of algorithms that did better: those without a failure by their means, where the ones within
-  /// kSameRank of the first of a group share its rank, and those that have none behind (a tool that is thrown out at
-  /// once has no settled force); then those with failures, by the number of seeds. None where nobody has the metric.
+  std::optional<double> mean;    ///< none when all runs failed or no run has the metric
+  std::optional<double> spread;  ///< sample standard deviation; none for one seed or if seeds change nothing
+  /// 1 + the number of better algorithms. Those without failures come first, ordered by their means; means within
+  /// kSameRank of the first of a group share its rank, and algorithms without a mean come last of these (a tool that is
+  /// thrown out at once has no settled force). The others follow by their number of failed seeds. None if no algorithm
+  /// has the metric.
   std::optional<std::size_t> rank;
   std::optional<double> ratio_to_best;  ///< mean / best mean; none after a failure, and where the best is not > 0
-  /// The difference to the best is more than the spread: |t| of the differences seed by seed beyond the two-sided 5 %
-  /// quantile of Student's t (statistics.hpp). Each seed gives all algorithms the same start and noise, so differences
-  /// are taken in pairs. Never true within kSameRank of the best. None for the best itself, after a failure, and where
-  /// no spread is known.
+  /// The difference to the best is larger than the spread: |t| of the differences for each seed exceeds the two-sided
+  /// 5 % quantile of Student's t (statistics.hpp). Differences are paired, because each seed gives all algorithms the
+  /// same start and noise. Never true within kSameRank of the best. None for the best itself, after a failure, and
+  /// where no spread is known.
   std::optional<bool> beyond_spread;
 };
 
 /// One algorithm over all scenarios and metrics.
 struct LawStanding {
   std::size_t algorithm = 0;
-  std::optional<double> mean_rank;   ///< of its ranks, those for failures included
+  std::optional<double> mean_rank;   ///< mean of its ranks, including those for failures
   std::optional<double> mean_ratio;  ///< geometric mean of its ratios to the best
-  std::size_t ratios = 0;            ///< how many those are
-  std::vector<std::size_t> wins;     ///< scenarios in which nobody's ranks have a smaller mean, itself without failure
+  std::size_t ratios = 0;            ///< number of ratios in mean_ratio
+  std::vector<std::size_t> wins;     ///< scenarios without its failure in which no algorithm has a smaller mean rank
   std::vector<std::size_t> fails;    ///< scenarios in which at least one seed failed
 };
 
 struct League {
   LeagueRuns runs;
-  std::vector<bool> seeds_matter;  ///< for each scenario: another seed gives another run
+  std::vector<bool> seeds_matter;  ///< for each scenario: whether the seed changes the run
   std::vector<Standing> standings;
   std::vector<LawStanding> laws;  ///< best mean rank first
 
   const Standing& at(std::size_t scenario, std::size_t algorithm, std::size_t metric) const {
     return standings[(scenario * runs.algorithms.size() + algorithm) * runs.metrics.size() + metric];
   }
-  /// Seeds of an algorithm that failed in a scenario.
+  /// Number of seeds with which an algorithm failed in a scenario.
   std::size_t failures(std::size_t scenario, std::size_t algorithm) const;
-  /// How its runs ended: "completes", or of several ways "completes 3; diverges 2".
+  /// How its runs ended: "completes", or with counts "completes 3; diverges 2".
   std::string outcomes(std::size_t scenario, std::size_t algorithm) const;
 };
 
-/// Precondition: there are as many runs as the names and seeds say, each with all metrics.
+/// Precondition: there is a run for each scenario, algorithm and seed, each with all metrics.
 League make_league(LeagueRuns runs);
+
+/// Metrics that leagues and maps show by default: what the hand feels, and how deep the tool sinks in.
+inline constexpr std::string_view kDefaultMetrics[] = {"force_rms_above_30Hz_N", "force_step_p99_N", "depth_max_m"};
+/// Defaults if every run has a reference force to compare with: magnitude, direction, artefacts, noise.
+inline constexpr std::string_view kFidelityMetrics[] = {"fidelity.force_error_relative",
+                                                        "fidelity.force_direction_error_rad",
+                                                        "fidelity.force_artefact_share", "force_rms_above_30Hz_N"};
+/// kDefaultMetrics, separated by commas.
+std::string default_metrics_text();
+
+/// Returns true for an outcome after which a run's metrics say nothing about its algorithm: diverges, not_dragged,
+/// no_contact, lost_contact.
+bool is_failure(std::string_view outcome);
+
+/// The runs of a finished batch with the given metrics (names of metric_list). If `metrics` is empty, they are
+/// kFidelityMetrics if every run has a reference force, otherwise kDefaultMetrics. A run has failed if its outcome is a
+/// failure or is not one that its scenario expects.
+LeagueRuns league_runs(const BatchPlan& plan, const BatchReport& report, const std::vector<std::string>& metrics);
+
+/// Writes league.csv: a row for each scenario, algorithm and metric: scenario, algorithm, metric, seeds, failed,
+/// outcome, mean, spread, rank, ratio_to_best, beyond_spread; empty cells for missing values (see Standing).
+/// Throws IoError.
+void write_league(const std::filesystem::path& file, const League& league);
+
+/// The same rows as objects, null for missing values, and a summary of each algorithm.
+Json league_json(const League& league);
 
 }  // namespace hapbench

@@ -1,4 +1,4 @@
-#include "scenarios/batch/league_files.hpp"
+#include "scenarios/batch/league.hpp"
 
 #include <nlohmann/json.hpp>
 

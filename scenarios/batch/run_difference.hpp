@@ -1,34 +1,76 @@
 #pragma once
 
+#include <cstddef>
+#include <filesystem>
 #include <optional>
-
-#include "scenarios/batch/table_difference.hpp"
+#include <string>
+#include <vector>
 
 namespace hapbench {
 
-/// A value of two JSON files that is not the same.
-struct NamedDifference {
-  std::string name;  ///< dots lead into sections, as in --set
-  CellDifference values;
+/// The difference of a number or text in two results.
+struct CellDifference {
+  std::string a, b;       ///< as written; empty if missing
+  double largest = 0.0;   ///< |a - b|; infinite when not both are numbers
+  double relative = 0.0;  ///< |a - b| / max(|a|, |b|); infinite likewise
 };
 
-/// How the results of two runs differ.
-struct RunDifference {
-  std::vector<NamedDifference> fields;   ///< of scenario.effective.json; files that it names, by their contents
-  std::vector<NamedDifference> metrics;  ///< outcome, steps and numbers of summary.json
-  std::vector<std::string> unshared;     ///< metrics that one summary alone knows, "> name" of the second
-  std::string state_hash_a, state_hash_b;
-  std::optional<TableDifference> trajectory;  ///< when both recorded one
-  bool trajectory_missing = false;            ///< one alone recorded one
+/// Precondition: the cells differ. Numbers that are equal though written differently (0 and -0) differ by 0.
+CellDifference cell_difference(std::string a, std::string b);
 
-  /// The results, not the fields, differ by more than the tolerance: an outcome, a metric relative to the larger of the
-  /// two, the trajectory, or, with a tolerance of 0, the state hash. What one alone knows does not count, a trajectory
-  /// that one alone has does.
+/// The largest difference of a column of two tables.
+struct ColumnDifference {
+  std::string column;
+  double largest = 0.0;   ///< infinite when somewhere not both are numbers
+  std::size_t row = 0;    ///< the first row where it occurs, from 0
+  double relative = 0.0;  ///< largest / the column's largest magnitude in either table
+};
+
+/// The first cell in which two tables differ.
+struct FirstDifference {
+  std::size_t row = 0;  ///< from 0
+  std::string column;
+  std::string a, b;
+};
+
+/// The differences of two tables of results, in their common rows and columns.
+struct TableDifference {
+  std::size_t rows_a = 0, rows_b = 0;
+  std::vector<std::string> only_in_a, only_in_b;  ///< columns
+  std::optional<FirstDifference> first;
+  std::vector<ColumnDifference> columns;  ///< that differ, in order
+
+  /// Returns true if rows are missing or a column differs by more than the tolerance relative to its largest magnitude.
+  /// State hashes, which change with any bit, count only with a tolerance of 0.
   bool is_beyond(double tolerance) const;
 };
 
-/// Compares the folders of two runs. Provenance, times and counted work are no results and are not looked at. Throws
-/// InputError when a file cannot be used.
+/// Reads both files, comma-separated with a header. Throws InputError that names file and line.
+TableDifference compare_tables(const std::filesystem::path& a, const std::filesystem::path& b);
+
+/// A value that is different in two JSON files.
+struct NamedDifference {
+  std::string name;  ///< dotted path, as in --set
+  CellDifference values;
+};
+
+/// The differences between the results of two runs.
+struct RunDifference {
+  std::vector<NamedDifference> fields;   ///< of scenario.effective.json; named files are compared by their contents
+  std::vector<NamedDifference> metrics;  ///< outcome, steps and numbers of summary.json
+  std::vector<std::string> unshared;     ///< metrics in only one summary: "< name" in the first, "> name" in the second
+  std::string state_hash_a, state_hash_b;
+  std::optional<TableDifference> trajectory;  ///< if both runs recorded one
+  bool trajectory_missing = false;            ///< only one run recorded one
+
+  /// Returns true if the results differ by more than the tolerance: the outcome, a metric relative to the larger value,
+  /// the trajectory, or, with a tolerance of 0, the state hash. Fields of the scenario and unshared metrics do not
+  /// count; a trajectory that only one run has does.
+  bool is_beyond(double tolerance) const;
+};
+
+/// Compares the folders of two runs, except for provenance, times and counted work. Throws InputError when a file
+/// cannot be used.
 RunDifference compare_runs(const std::filesystem::path& a, const std::filesystem::path& b);
 
 }  // namespace hapbench

@@ -4,18 +4,15 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdint>
 #include <nlohmann/json.hpp>
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/parallel_for.hpp"
-#include "scenarios/batch/runs_to_do.hpp"
-#include "scenarios/batch/sweep_row.hpp"
 #include "scenarios/batch/sweep_table.hpp"
+#include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/run/recent_shells.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
@@ -24,7 +21,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The rows of the shard's runs: which there are, and where.
+bool is_of_environment(const Axis& axis) {
+  return axis.path == "environment" || axis.path.starts_with("environment.");
+}
+
+/// Journal offset of each finished row of the shard.
 class Rows {
  public:
   Rows(const SweepPlan& plan, const Shard& shard)
@@ -38,10 +39,10 @@ class Rows {
     places_[run / shard_.count] = place;
   }
   void set_failed(std::size_t run) { set(run, kFailed); }
-  /// Precondition: there is one, and the journal is written.
-  std::string row(std::size_t run, const Journal& journal) const {
+  /// Precondition: the run has a row, and the journal is flushed.
+  std::string row(std::size_t run, Journal& journal) const {
     const Journal::Place place = places_[run / shard_.count];
-    return place == kFailed ? error_row(plan_, run) : journal.row_at(place);
+    return place == kFailed ? row_text(plan_, error_row(plan_, run)) : journal.row_at(place);
   }
 
  private:
@@ -54,40 +55,39 @@ class Rows {
   std::size_t count_ = 0;
 };
 
-/// Notes a row that the journal holds. Its first line is right, but somebody may have written to it.
+/// Records a row that was found in the journal. Refuses rows that are not of this sweep, since somebody may have edited
+/// the file.
 void note(Rows& rows, const SweepPlan& plan, const Shard& shard, const fs::path& file, Journal::Place place,
           std::string_view row) {
-  const auto run = run_of_row(plan, row);
-  if (!run || !shard.has(*run)) {
+  const auto known = parse_row(plan, row);
+  if (!known || !shard.has(known->run))
     fail_in_file(file, fmt::format("got the row \"{}\"; allowed: rows of this sweep", row.substr(0, 60)));
-  }
-  rows.set(*run, place);
+  rows.set(known->run, place);
 }
 
-/// A run on its way from the threads to the journal.
+/// A finished run that is not yet in the journal.
 struct FinishedRun {
   std::string row;
   std::chrono::steady_clock::duration time;
 };
 
-FinishedRun compute(const SweepPlan& plan, const SweepOptions& options, RecentShells& shells, std::size_t run) {
+FinishedRun compute(const SweepPlan& plan, const SweepOptions& options, std::size_t run) {
   const auto start = std::chrono::steady_clock::now();
   const LoadedScenario loaded = scenario_of(plan, run);
-  const auto shell = shells.of(loaded, environment_of(plan.points, run));
+  const auto shell = make_shell(loaded.scenario, loaded.files);
   std::optional<fs::path> output;
   if (options.keep_runs) output = options.directory / "runs" / fmt::format("{:06}", run);
-  std::string row = sweep_row(plan, run, run_with_shell(loaded, shell, output, false).summary);
+  std::string row = row_text(plan, sweep_row(plan, run, run_with_shell(loaded, shell, output, false).summary));
   return {std::move(row), std::chrono::steady_clock::now() - start};
 }
 
-/// Does the runs that have no row yet.
+/// Computes the runs that have no row yet.
 void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& journal, Rows& rows,
                   SweepReport& report) {
-  // A file is written to after so much work, not after each run: that would take 1 % of a short one.
+  // The journal is flushed after this much work, because flushing after each run would take 1 % of a short one.
   constexpr std::chrono::milliseconds kMostUnwritten(10);
   std::chrono::steady_clock::duration unwritten{};
-  RunsToDo runs(plan.points, options.part());
-  RecentShells shells(options.jobs);
+  const std::vector<std::size_t> runs = runs_to_do(plan.points, options.part());
   ProgressBar bar("sweep", rows.size(), options.progress);
   bar.start_at(rows.count());
   const auto deliver = [&](std::size_t run, const FinishedRun& finished) {
@@ -103,16 +103,13 @@ void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& j
     rows.set_failed(run);
     if (!report.failed || run < report.failed->run) report.failed = FailedRun{run, problem};
   };
-  const auto next = [&]() -> std::optional<std::size_t> {
-    while (StopSignal::received() == 0) {
-      const auto run = runs.next();
-      if (!run || !rows.has(*run)) return run;
-    }
-    return std::nullopt;
+  const auto next = [&, run = runs.begin()]() mutable -> std::optional<std::size_t> {
+    while (run != runs.end() && rows.has(*run)) ++run;
+    return run == runs.end() || StopSignal::received() != 0 ? std::nullopt : std::optional(*run++);
   };
   const auto work = [&](std::size_t run) -> Delivery {
     try {
-      return [&deliver, run, finished = compute(plan, options, shells, run)] { deliver(run, finished); };
+      return [&deliver, run, finished = compute(plan, options, run)] { deliver(run, finished); };
     } catch (const Stopped&) {
       return {};  // --resume computes it
     } catch (const std::exception& error) {
@@ -126,6 +123,23 @@ void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& j
 }
 
 }  // namespace
+
+std::vector<std::size_t> runs_to_do(const SweepPoints& points, const Shard& shard) {
+  std::vector<std::size_t> runs;
+  for (std::size_t run = shard.index; run < points.size(); run += shard.count) runs.push_back(run);
+  // A number for each combination of listed values. Each point of a sampled range has a value of its own.
+  const auto environment = [&points](std::size_t run) {
+    std::size_t number = 0;
+    for (std::size_t a = 0; a < points.axes().size(); ++a) {
+      const Axis& axis = points.axes()[a];
+      if (is_of_environment(axis) && axis.size() > 0) number = number * axis.size() + points.place(run, a);
+    }
+    return number;
+  };
+  std::stable_sort(runs.begin(), runs.end(),
+                   [&](std::size_t a, std::size_t b) { return environment(a) < environment(b); });
+  return runs;
+}
 
 std::string stem_of(const std::optional<Shard>& shard) {
   return shard ? fmt::format("sweep_shard_{}_of_{}", shard->index, shard->count) : "sweep";
@@ -151,10 +165,11 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
   report.table = options.directory / (stem + ".csv");
   write_file_atomically(options.directory / (stem + ".json"), json_text(sweep_description(plan, options.part())));
   write_sweep_table(report.table, plan, options.shard, [&](std::size_t run) {
-    std::string row = rows.row(run, journal);
-    report.counts.add(plan, run, row);
-    if (rows.size() <= SweepReport::kMostRows) report.rows.push_back(row);
-    return row;
+    std::string text = rows.row(run, journal);
+    SweepRow row = parse_row(plan, text).value();
+    report.counts.add(row);
+    if (rows.size() <= SweepReport::kMostRows) report.rows.push_back(std::move(row));
+    return text;
   });
   journal.remove();
   return report;

@@ -5,13 +5,54 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/axis.hpp"
 #include "scenarios/batch/sampling.hpp"
 
+/// The points of a sweep: the fields it varies, and the values they take in each run.
 namespace hapbench {
 
-/// Most runs of a sweep.
+/// Maximum number of runs of a sweep.
 inline constexpr std::size_t kMostRuns = 1'000'000;
+
+/// An interval to sample, or to divide into equal steps or ratios.
+struct Range {
+  double from = 0.0;
+  double to = 0.0;
+  bool logarithmic = false;
+
+  /// The value at a fraction of the interval in [0, 1], measured in the logarithm if the range is logarithmic. Returns
+  /// both ends exactly and never a value outside.
+  double value_at(double part) const;
+};
+
+/// One field that a sweep varies and the values it takes: as in --set, numbers as shortest decimals, without characters
+/// that CSV would have to quote.
+struct Axis {
+  std::string path;                      ///< dotted, as in --set
+  std::vector<std::string> values = {};  ///< listed values, unless there is a range
+  std::optional<Range> range = {};       ///< replaces listed values
+  std::size_t steps = 0;                 ///< number of values of a range on a grid
+
+  /// Number of values; 0 for the range of a sample.
+  std::size_t size() const { return range ? steps : values.size(); }
+  /// Precondition: i < size().
+  std::string value(std::size_t i) const;
+};
+
+/// Reads "path=a:b:n" (n numbers from a to b, both exactly, in equal steps), "path=a:b:n:log" (in equal ratios) or
+/// "path=v,w,…" (numbers or texts). Throws InputError. Does not check whether the scenario has such a field and accepts
+/// the values.
+Axis parse_axis(const std::string& text);
+
+/// Reads an axis of a sample: "path=a:b", "path=a:b:log" or "path=v,w,…". Throws InputError.
+Axis parse_sampled_axis(const std::string& text);
+
+/// Index of the listed value at a coordinate in [0, 1): each value has an equal share of the interval. Precondition:
+/// the axis has listed values.
+std::size_t place_at(const Axis& axis, double coordinate);
+
+/// The value of a sampled axis at a coordinate in [0, 1): of a range the value at that fraction, of a list the value at
+/// place_at().
+std::string value_at(const Axis& axis, double coordinate);
 
 /// The points of a sweep, numbered from 0: all combinations of the values of several axes, the last one fastest, or a
 /// sample of them.
@@ -28,20 +69,20 @@ class SweepPoints {
   const std::vector<Axis>& axes() const { return axes_; }
   /// None for a grid.
   const std::optional<Sampling>& sampling() const { return sampling_; }
-  /// The number of the value that a run has of an axis. Precondition: the axis has a number of them (Axis::size).
+  /// Index of the value of an axis in a run. Precondition: Axis::size() > 0.
   std::size_t place(std::size_t run, std::size_t axis) const;
   /// The value itself, computed anew at each call. Precondition, here and below: run < size().
   std::string value(std::size_t run, std::size_t axis) const;
   /// One value for each axis.
   std::vector<std::string> values(std::size_t run) const;
-  /// The same as overrides "path=value".
+  /// The values as overrides "path=value".
   std::vector<std::string> overrides(std::size_t run) const;
 
  private:
   std::vector<Axis> axes_;
   std::optional<Sampling> sampling_;
   std::optional<UnitSample> sample_;
-  std::vector<std::size_t> strides_;  ///< of a grid: from run to run that has the next value of an axis
+  std::vector<std::size_t> strides_;  ///< of a grid: distance between runs with neighbouring values of an axis
   std::size_t size_ = 1;
 };
 

@@ -88,7 +88,7 @@ static void describe(Fields& f, ReductionConfig& reduction) {
 void describe(Fields& f, RenderingConfig& rendering) {
   static const std::vector<std::string> kDepthModels = depth_model_names();
   f.name("algorithm", rendering.algorithm, algorithm_names(), "algorithm", "force algorithm");
-  // What the algorithm fixes is the default of what follows.
+  // The stages that the algorithm fixes are the defaults of the fields below.
   if (f.reads()) rendering = with_fixed_stages(rendering);
   f.integer(key(parameter::kIterations), rendering.iterations, integers(parameter::kIterations),
             "m of the shaping iteration");
@@ -100,10 +100,7 @@ void describe(Fields& f, RenderingConfig& rendering) {
       "where the environment is a block_with_hole or a mesh and the tool a cylinder with a flat tip");
   f.boolean(key(parameter::kLocalAverage), rendering.local_average,
             "merge colliding points that share a grid cell of the shell");
-  f.field("reduction", "gradient-based reduction, whose kept points change in jumps; null: off", Presence::has_default,
-          [&rendering](Fields& value) {
-            value.nullable(rendering.reduction, [](Fields& r, ReductionConfig& reduction) { r.object(reduction); });
-          });
+  f.object("reduction", rendering.reduction, "gradient-based reduction, whose kept points change in jumps; null: off");
   number(f, parameter::kStiffness, rendering.stiffness, "K");
   number(f, parameter::kDampingRatio, rendering.damping_ratio, "zeta; B = 2 zeta sqrt(K M)");
   number(f, parameter::kDamping, rendering.damping, "B instead of the one from zeta; null: from zeta");

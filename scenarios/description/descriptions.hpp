@@ -2,15 +2,16 @@
 
 #include "scenarios/description/fields.hpp"
 #include "scenarios/description/scenario.hpp"
+#include "scenarios/input/json_file.hpp"
 
 /// The description of a scenario file: every field with its meaning, unit, range and default.
 namespace hapbench {
 
-/// Of parts of the scene.
+/// Range of the lengths in a scene.
 inline constexpr NumberRange kLength = {0.0, 1000.0, "m", true};
-/// Anything much shorter loses digits, or all, when it is squared.
+/// Shortest length of a direction: the square of a much shorter one would lose digits.
 inline constexpr double kShortestDirection = 1e-12;
-/// Throws InputError at `at` when a direction is shorter.
+/// Throws InputError at `at` when the direction is shorter than kShortestDirection.
 void require_direction(const Vec3& direction, const std::string& at);
 
 // Objects.
@@ -29,9 +30,6 @@ void describe(Fields& f, ToolFields& tool);
 void profile(Fields& f, std::string_view name, Profile& profile, const char* unit, const char* doc,
              Presence presence = Presence::has_default);
 
-/// The types of environments.
-std::vector<std::string> environment_names();
-
 /// The types of tools, in the variant's order.
 std::vector<std::string> tool_names();
 
@@ -41,5 +39,10 @@ void set_scene_defaults(Scenario& scenario);
 /// Throws InputError for fields of a scenario that contradict each other. `steps` is their number, which may be more
 /// than a scenario can hold.
 void check_relations(const Scenario& scenario, double steps);
+
+/// Warnings, each beginning with a JSON pointer, about values without effect in `json`, from which the scenario was
+/// read: a device's loop that no hand feels, and the first script of waypoints of hand and motion whose last leg begins
+/// only when the run is over. A shorter time step with the same number of steps does that unnoticed.
+std::vector<std::string> relation_warnings(const Scenario& scenario, const Json& json);
 
 }  // namespace hapbench

@@ -6,17 +6,106 @@
 
 #include "results/io/json_text.hpp"
 #include "results/summary/outcome_names.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/reader.hpp"
-#include "scenarios/description/scenario_text.hpp"
-#include "scenarios/description/schema_writer.hpp"
-#include "scenarios/description/unplayed_script.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
 namespace {
+
+namespace fs = std::filesystem;
+
+/// Fields of which an object has one or the other.
+constexpr std::pair<std::string_view, const char*> kEitherOr[] = {
+    {"steps", "duration_s"}, {"duration_s", "steps"}, {"path_m", "direction"}, {"direction", "path_m"}};
+
+/// Takes out of `object` the field that excludes the one of this name.
+void drop_alternative(Json& object, std::string_view field) {
+  for (const auto& [given, other] : kEitherOr) {
+    if (given == field) object.erase(other);
+  }
+}
+
+void merge(Json& base, const Json& more) {
+  const bool other_type =
+      more.contains(kTypeField) && (!base.contains(kTypeField) || base[kTypeField] != more[kTypeField]);
+  if (!base.is_object() || !more.is_object() || other_type) {
+    base = more;
+    return;
+  }
+  for (const auto& entry : more.items()) drop_alternative(base, entry.key());
+  for (const auto& entry : more.items()) merge(base[entry.key()], entry.value());
+}
+
+/// Lets the files named by relative paths start from `directory`.
+void keep_files(Json& json, const fs::path& directory) {
+  if (!json.is_structured()) return;
+  for (auto& entry : json.items()) {
+    Json& value = entry.value();
+    if (entry.key() == kFileField && value.is_string()) {
+      value = (directory / value.get<std::string>()).string();
+    } else {
+      keep_files(value, directory);
+    }
+  }
+}
+
+/// Refuses a chain in which the next file stands already.
+void check_chain(const std::vector<ScenarioLayer>& layers, const fs::path& next) {
+  std::error_code ignored;
+  std::string chain;
+  bool again = false;
+  for (const ScenarioLayer& layer : layers) {
+    chain += layer.file.string() + " -> ";
+    again = again || fs::equivalent(layer.file, next, ignored);
+  }
+  if (!again) return;
+  throw InputError(InputError::Kind::relation, fmt::format("/{}", kExtends),
+                   fmt::format("got a circle, {}{}; allowed: a chain that ends", chain, next.string()));
+}
+
+/// The file that `json`, read from `file`, extends.
+fs::path base_file(const Json& json, const fs::path& file, const std::vector<ScenarioLayer>& layers) {
+  const Json& name = json[kExtends];
+  const std::string at = fmt::format("/{}", kExtends);
+  if (!name.is_string()) {
+    throw InputError(InputError::Kind::shape, at,
+                     fmt::format("got {}; allowed: a scenario file or the name of a bundled scenario", shown(name)));
+  }
+  fs::path base;
+  try {
+    base = find_scenario(name.get<std::string>(), file.parent_path());
+  } catch (const InputError& error) {
+    throw InputError(InputError::Kind::relation, at, error.problem());
+  }
+  check_chain(layers, base);
+  return base;
+}
+
+/// Appends the file and those it extends to `layers`; returns the fields of all.
+Json read_extended(const fs::path& file, std::vector<ScenarioLayer>& layers) {
+  Json json;
+  fs::path base;
+  try {
+    json = parse_json(read_text_file(file, kLargestJsonFile));
+    layers.push_back({file, json});
+    if (json.contains(kExtends)) base = base_file(json, file, layers);
+    if (layers.size() > 1 && !json.is_object())
+      throw InputError(fmt::format("got {}; allowed: a scenario, which is an object", shown(json)));
+  } catch (const InputError& error) {
+    rethrow_with_file(error, file);
+  }
+  if (base.empty()) return json;
+  Json merged = read_extended(base, layers);
+  if (base.parent_path() != file.parent_path()) keep_files(merged, fs::current_path() / base.parent_path());
+  for (const char* own : {"name", "expect"}) merged.erase(own);
+  json.erase(kExtends);
+  merge(merged, json);
+  return merged;
+}
 
 /// Sets the field at a dotted path; a number in the path indexes a list. Of two fields that say the same, the other
 /// goes, as where a scenario extends another.
@@ -74,62 +163,11 @@ void expect_less(Json& expect) {
 }
 
 /// The absolute path with symlinks resolved first, because a lexical ".." is wrong behind a symlink.
-std::filesystem::path without_links(const std::filesystem::path& path) {
-  const auto absolute = std::filesystem::current_path() / path;  // fs::absolute refuses the empty path
+fs::path without_links(const fs::path& path) {
+  const auto absolute = fs::current_path() / path;  // fs::absolute refuses the empty path
   std::error_code error;
-  const auto canonical = std::filesystem::weakly_canonical(absolute, error);
+  const auto canonical = fs::weakly_canonical(absolute, error);
   return error ? absolute.lexically_normal() : canonical;
-}
-
-std::string* named_file(Scenario& scenario) {
-  if (auto* shell = std::get_if<PointShellEnvironment>(&scenario.environment)) return &shell->file;
-  if (auto* mesh = std::get_if<MeshEnvironment>(&scenario.environment)) return &mesh->file;
-  return nullptr;
-}
-
-std::string* named_motion(Scenario& scenario) {
-  if (auto* recorded = std::get_if<RecordedPosition>(&scenario.motion.position)) return &recorded->file;
-  return nullptr;
-}
-
-std::string* named_tool(Scenario& scenario) {
-  if (auto* mesh = std::get_if<MeshToolFields>(&scenario.tool)) return &mesh->file;
-  return nullptr;
-}
-
-/// Returns true if a part of what the schema allows is allowed, too.
-bool allows_parts(const Json& schema) {
-  if (!schema.is_structured()) return true;
-  if (schema.is_object() && (schema.contains("required") || schema.contains("oneOf"))) return false;
-  return std::all_of(schema.begin(), schema.end(), allows_parts);
-}
-
-/// For a file that extends another and so may leave out anything: only fields that mean something without the other
-/// file are checked. `full` is found at `at`.
-Json partial_schema(const Json& full, const std::string& at) {
-  Json schema = {{"type", "object"}, {"properties", Json::object()}, {"additionalProperties", false}};
-  for (const auto& field : full["properties"].items()) {
-    Json& part = schema["properties"][field.key()];
-    if (allows_parts(field.value())) {
-      part = {{"$ref", at + "/properties/" + field.key()}};
-    } else {
-      part = {{"description", field.value()["description"]}};
-    }
-  }
-  return schema;
-}
-
-void add_paths(std::vector<std::string>& paths, const std::string& prefix, const Json& schema) {
-  for (const char* choices : {"anyOf", "oneOf"}) {
-    if (!schema.contains(choices) || schema.contains("properties")) continue;
-    for (const Json& choice : schema[choices]) add_paths(paths, prefix, choice);
-  }
-  if (!schema.contains("properties")) return;
-  for (const auto& field : schema["properties"].items()) {
-    const std::string path = prefix + field.key();
-    if (std::find(paths.begin(), paths.end(), path) == paths.end()) paths.push_back(path);
-    add_paths(paths, path + ".", field.value());
-  }
 }
 
 std::string last_name(const std::string& path, char separator) {
@@ -153,7 +191,7 @@ std::string hint_elsewhere(const std::string& place) {
 }
 
 /// The fault in its file.
-InputError in_file(const InputError& fault, const std::filesystem::path& file) {
+InputError in_file(const InputError& fault, const fs::path& file) {
   std::string problem = fault.problem();
   if (problem.starts_with("unknown field") && problem.find("nearest valid name") == std::string::npos)
     problem += fault.place().starts_with("/rendering/parameters/") ? "; a law from outside brings its own with --plugin"
@@ -164,35 +202,17 @@ InputError in_file(const InputError& fault, const std::filesystem::path& file) {
   return {fault.kind(), place, problem};
 }
 
-/// Puts the hash of a file's contents in place of its path.
-void name_by_content(std::string* path, NamedFile* file) {
-  if (path != nullptr) *path = file->hash();
-}
-
-/// Of an admittance device under a hand that does not feel the handle, what is without effect. None where only sensor
-/// or limiter have other values than the usual ones: they work whatever the hand.
-std::optional<std::string> idle_device_warning(const Scenario& scenario) {
-  const bool scripted = std::visit(
-      [](const auto& hand) {
-        using Hand = std::decay_t<decltype(hand)>;
-        return std::is_same_v<Hand, NoHandFields> || std::is_same_v<Hand, ForceHandFields> ||
-               std::is_same_v<Hand, PushHandFields>;
-      },
-      scenario.hand);
-  if (!scripted || !std::holds_alternative<AdmittanceDeviceConfig>(scenario.device)) return std::nullopt;
-  const Json given = written(scenario.device), usual = written(DeviceFields(AdmittanceDeviceConfig{}));
-  const auto differs = [&](const char* part) { return given.at(part) != usual.at(part); };
-  const bool gives_loop = differs("servo") || differs("mechanics");
-  if (!gives_loop && (differs("sensor") || differs("force_limit_N"))) return std::nullopt;
-  return fmt::format(
-      "/device: servo and mechanics (lag, delay, structure) move the handle alone and have no effect on the tool and its "
-      "force: hand.type {} does not feel the handle; \"impedance\", \"drag\" and \"tracking\" do",
-      written(scenario.hand).at("type").dump());
+/// The scenario with the hashes of named files in place of their paths, of those in fields below `pointer`.
+Scenario with_contents(Scenario scenario, const NamedFiles& files, std::string_view pointer = "") {
+  for (const auto& [at, path, content] : files_named_in(scenario)) {
+    if (at.starts_with(pointer)) *path = files.at(at).hash();
+  }
+  return scenario;
 }
 
 }  // namespace
 
-void rethrow_with_file(const InputError& error, const std::filesystem::path& file) {
+void rethrow_with_file(const InputError& error, const fs::path& file) {
   std::vector<InputError> faults;
   for (const InputError& fault : error.faults()) faults.push_back(in_file(fault, file));
   throw InputError::all(faults);
@@ -204,26 +224,24 @@ void rethrow_with_file(const InputError& error, const LoadedScenario& loaded) {
   throw InputError::all(faults);
 }
 
-LoadedScenario read_scenario(const Json& json, const std::filesystem::path& directory) {
+LoadedScenario read_scenario(const Json& json, const fs::path& directory) {
   LoadedScenario loaded;
   loaded.scenario.directory = directory;
   Reader reader(json, "", &loaded.warnings);
   reader.object(loaded.scenario);
-  if (auto warning = idle_device_warning(loaded.scenario)) loaded.warnings.push_back(*warning);
-  for (std::string& warning : unplayed_script_warnings(json, loaded.scenario))
-    loaded.warnings.push_back(std::move(warning));
+  for (std::string& warning : relation_warnings(loaded.scenario, json)) loaded.warnings.push_back(std::move(warning));
   loaded.files = NamedFiles(loaded.scenario);
   return loaded;
 }
 
-ScenarioText read_scenario_text(const std::filesystem::path& file) {
+ScenarioText read_scenario_text(const fs::path& file) {
   auto layers = std::make_shared<std::vector<ScenarioLayer>>();
   ScenarioText text{file, read_extended(file, *layers)};
   if (layers->size() > 1) text.layers = std::move(layers);
   return text;
 }
 
-std::filesystem::path file_of(const LoadedScenario& loaded, const std::string& pointer) {
+fs::path file_of(const LoadedScenario& loaded, const std::string& pointer) {
   if (!loaded.layers || !pointer.starts_with('/')) return loaded.file;
   try {
     // What no file has, a default, is the business of the object around it.
@@ -266,57 +284,25 @@ LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::stri
   }
 }
 
-LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const std::string> overrides) {
+LoadedScenario load_scenario(const fs::path& file, std::span<const std::string> overrides) {
   return load_scenario(read_scenario_text(file), overrides);
 }
 
-Json effective_scenario(const Scenario& scenario, const std::filesystem::path& directory) {
+Json effective_scenario(const Scenario& scenario, const fs::path& directory) {
   Scenario effective = scenario;
-  for (std::string* file : {named_file(effective), named_tool(effective), named_motion(effective)}) {
-    if (file == nullptr) continue;
-    const auto target = without_links(resolve_path(scenario, *file));
-    *file = target.lexically_proximate(without_links(directory)).generic_string();
+  for (const FileReference& file : files_named_in(effective)) {
+    const auto target = without_links(resolve_path(scenario, *file.path));
+    *file.path = target.lexically_proximate(without_links(directory)).generic_string();
   }
   return written_object(effective);
 }
 
-Json full_scenario_schema() {
-  Scenario defaults;
-  SchemaWriter writer;
-  writer.object(defaults);
-  Json schema = {{"description", "SI units; every key carries its own. A profile is a scalar function of time."}};
-  schema.update(writer.schema());
-  return schema;
-}
-
-std::vector<std::string> scenario_field_paths() {
-  std::vector<std::string> paths;
-  add_paths(paths, "", full_scenario_schema());
-  return paths;
-}
-
-Json scenario_schema() {
-  Json full = full_scenario_schema();
-  Json partial = partial_schema(full, "#/else");
-  return {{"$schema", "http://json-schema.org/draft-07/schema#"},
-          {"title", "hapbench scenario"},
-          {"if", {{"required", {kExtends}}}},
-          {"then", std::move(partial)},
-          {"else", std::move(full)}};
-}
-
 Json environment_content(const Scenario& scenario, const NamedFiles& files) {
-  Scenario content = scenario;
-  name_by_content(named_file(content), files.environment());
-  return written(content.environment);
+  return written(with_contents(scenario, files, "/environment/").environment);
 }
 
 std::string scenario_hash(const Scenario& scenario, const NamedFiles& files) {
-  Scenario content = scenario;
-  name_by_content(named_file(content), files.environment());
-  name_by_content(named_tool(content), files.tool());
-  name_by_content(named_motion(content), files.motion());
-  return hash_text(hash_of(json_text(written_object(content))));
+  return hash_text(hash_of(json_text(written_object(with_contents(scenario, files)))));
 }
 
 }  // namespace hapbench

@@ -1,85 +1,230 @@
 #include "scenarios/description/named_files.hpp"
 
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <ctime>
+#include <map>
+#include <mutex>
+#include <thread>
+#include "scenarios/description/descriptions.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/motion_file.hpp"
-#include "scenarios/input/number_table.hpp"
-#include "scenarios/input/shell_file.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
 
+std::shared_ptr<const void> SharedCache::get_untyped(const std::string& key, const std::function<Made()>& make) {
+  const std::shared_ptr<Entry> entry = entry_of(key);
+  const std::lock_guard lock(entry->mutex);
+  if (entry->made.value) return entry->made.value;
+  // Isolated, or this thread might take up another run while it waits, and wait for itself at the lock.
+  Made made = tbb::this_task_arena::isolate(make);
+  const std::lock_guard list_lock(mutex_);
+  entry->made = std::move(made);
+  ++made_;
+  return entry->made.value;
+}
+
+std::shared_ptr<SharedCache::Entry> SharedCache::entry_of(const std::string& key) {
+  const std::lock_guard lock(mutex_);
+  const auto found =
+      std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) { return entry->key == key; });
+  if (found != entries_.end()) {
+    entries_.splice(entries_.begin(), entries_, found);
+  } else {
+    entries_.push_front(std::make_shared<Entry>());
+    entries_.front()->key = key;
+    drop_oldest();
+  }
+  return entries_.front();
+}
+
+void SharedCache::drop_oldest() {
+  const std::size_t fewest = 2 * std::max(1u, std::thread::hardware_concurrency());
+  std::size_t bytes = 0;
+  for (const auto& entry : entries_) bytes += entry->made.bytes;
+  while (entries_.size() > fewest && (entries_.size() > kMost || bytes > kMostBytes)) {
+    bytes -= entries_.back()->made.bytes;
+    entries_.pop_back();
+  }
+}
+
+std::size_t SharedCache::made() const {
+  const std::lock_guard lock(mutex_);
+  return made_;
+}
+
+SharedCache& shared_cache() {
+  static SharedCache cache;
+  return cache;
+}
+
+namespace {
+
+/// Walks through the values that an object holds and collects the names of files.
+class FileFinder final : public Fields {
+ public:
+  std::vector<FileReference> found;
+
+  void file(std::string& path, const FileContent& content) override { found.push_back({at_, &path, content}); }
+
+  void number(double&, NumberRange) override {}
+  void integer(std::int64_t&, IntegerRange) override {}
+  void boolean(bool&) override {}
+  void text(std::string&, std::size_t) override {}
+  void name(std::size_t&, const std::vector<std::string>&, const char*) override {}
+  void vector3(Vec3&, NumberRange) override {}
+  void pair(const char*, Body first, Body second) override {
+    within("0", first);
+    within("1", second);
+  }
+  void entries(std::size_t length, ListSize, FunctionRef<std::size_t>,
+               FunctionRef<Fields&, std::size_t> entry) override {
+    for (std::size_t i = 0; i < length; ++i) within(std::to_string(i), [&](Fields& f) { entry(f, i); });
+  }
+  void or_null(bool is_null, FunctionRef<>, Body value) override {
+    if (!is_null) value(*this);
+  }
+  void number_or_object(bool is_object, Body, Body object) override {
+    if (is_object) object(*this);
+  }
+  void one_or_list(bool is_list, Body one, Body list) override { (is_list ? list : one)(*this); }
+  void alternatives(const char*, std::span<const TypeName>, Untyped, std::size_t held,
+                    FunctionRef<Fields&, std::size_t> fields) override {
+    fields(*this, held);
+  }
+  void fields(Body body) override { body(*this); }
+  void field(std::string_view name, const char*, Presence presence, Body value) override {
+    if (presence != Presence::left_out) within(name, value);
+  }
+  void ignored(std::string_view, const char*) override {}
+  void exactly_one_of(const char*, const char*) override {}
+
+ private:
+  void within(std::string_view name, Body value) {
+    const std::size_t length = at_.size();
+    at_.append("/").append(name);
+    value(*this);
+    at_.resize(length);
+  }
+
+  std::string at_;  ///< JSON pointer of the value that is visited
+};
+
+}  // namespace
+
+std::vector<FileReference> files_named_in(Scenario& scenario) {
+  FileFinder finder;
+  finder.object(scenario);
+  return std::move(finder.found);
+}
+
+namespace {
+
+/// Hashes of regular files, which are not read again while they look unchanged.
+class KnownHashes {
+ public:
+  /// What tells that a file has changed; nothing for what is no regular file, and for one that changed so recently that
+  /// the clock of the file system might not tell another change.
+  static std::optional<std::string> stamp_of(const std::filesystem::path& file) {
+    struct stat s {};
+    if (::stat(file.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return std::nullopt;
+    constexpr std::time_t kSettled = 2;  // [s]
+    if (std::time(nullptr) < std::max(s.st_mtim.tv_sec, s.st_ctim.tv_sec) + kSettled) return std::nullopt;
+    return fmt::format("{} {} {} {} {} {} {} {}", s.st_dev, s.st_ino, s.st_size, s.st_mtim.tv_sec, s.st_mtim.tv_nsec,
+                       s.st_ctim.tv_sec, s.st_ctim.tv_nsec, file.string());
+  }
+  std::string find(const std::string& stamp) {
+    const std::lock_guard lock(mutex_);
+    const auto found = hashes_.find(stamp);
+    return found == hashes_.end() ? "" : found->second;
+  }
+  void add(const std::string& stamp, const std::string& hash) {
+    const std::lock_guard lock(mutex_);
+    if (hashes_.size() == kMost) hashes_.clear();
+    hashes_[stamp] = hash;
+  }
+
+ private:
+  static constexpr std::size_t kMost = 1000;
+  std::mutex mutex_;
+  std::map<std::string, std::string> hashes_;
+};
+
+KnownHashes& known_hashes() {
+  static KnownHashes hashes;
+  return hashes;
+}
+
+}  // namespace
+
 void NamedFile::read() {
-  if (!hash_.empty()) return;
+  const auto stamp = KnownHashes::stamp_of(path_);
   bytes_ = read_named_file(path_);
-  hash_ = hash_text(hash_of(bytes_));
+  std::string hash = hash_text(hash_of(bytes_));
+  if (!hash_.empty() && hash != hash_) fail_in_file(path_, "has changed since the scenario was loaded");
+  hash_ = std::move(hash);
+  if (stamp && stamp == KnownHashes::stamp_of(path_)) known_hashes().add(*stamp, hash_);
 }
 
 const std::string& NamedFile::hash() {
-  read();
+  if (!hash_.empty()) return hash_;
+  if (const auto stamp = KnownHashes::stamp_of(path_)) hash_ = known_hashes().find(*stamp);
+  if (hash_.empty()) read();
   return hash_;
 }
 
-const std::string& NamedFile::bytes() {
-  read();
-  return bytes_;
+const NamedFile::Contents& NamedFile::contents() {
+  if (contents_) return *contents_;
+  check_extension();
+  const std::string key =
+      fmt::format("file {} as {}, scale {}, spacing {}: {}", hash(), static_cast<int>(content_.kind),
+                  content_.sampling.scale, content_.sampling.spacing.value_or(0.0), path_.string());
+  const auto parse = [this] {
+    if (bytes_.empty()) read();
+    return std::make_shared<const Contents>(parsed());
+  };
+  // A parsed mesh takes some times the space of its text.
+  contents_ = shared_cache().get<Contents>(key, parse, [this](const Contents&) { return 4 * bytes_.size(); });
+  bytes_ = {};
+  return *contents_;
 }
 
-NamedFiles::NamedFiles(const Scenario& scenario) {
-  if (const auto* shell = std::get_if<PointShellEnvironment>(&scenario.environment))
-    environment_ = std::make_shared<EnvironmentFile>(EnvironmentFile{NamedFile(resolve_path(scenario, shell->file))});
-  if (const auto* mesh = std::get_if<MeshEnvironment>(&scenario.environment)) {
-    environment_ = std::make_shared<EnvironmentFile>(
-        EnvironmentFile{NamedFile(resolve_path(scenario, mesh->file)), {mesh->scale, mesh->spacing}});
+void NamedFile::check_extension() const {
+  if (content_.kind == FileContent::Kind::point_shell) shell_extension(path_);
+  if (content_.kind == FileContent::Kind::mesh) mesh_extension(path_);
+}
+
+NamedFile::Contents NamedFile::parsed() {
+  switch (content_.kind) {
+    case FileContent::Kind::point_shell:
+      return {.points = point_shell_in(bytes_, path_)};
+    case FileContent::Kind::mesh:
+      return {.mesh = MeshFile(bytes_, path_, content_.sampling)};
+    case FileContent::Kind::stroke:
+      return {.stroke = stroke_in(bytes_, path_)};
   }
-  if (const auto* tool = std::get_if<MeshToolFields>(&scenario.tool))
-    tool_ = std::make_shared<ToolFile>(ToolFile{NamedFile(resolve_path(scenario, tool->file)), tool->scale});
-  if (const auto* recorded = std::get_if<RecordedPosition>(&scenario.motion.position))
-    motion_ = std::make_shared<MotionFile>(MotionFile{NamedFile(resolve_path(scenario, recorded->file))});
+  return {};
 }
 
-const std::vector<SurfacePoint>& NamedFiles::shell_points() const {
-  auto& [file, sampling, points, mesh] = *environment_;
-  if (!points) {
-    shell_extension(file.path());  // refused unread if it is another
-    points = point_shell_in(file.bytes(), file.path());
-    file.drop_bytes();
-  }
-  return *points;
+std::vector<std::string> NamedFile::warnings() {
+  return content_.kind == FileContent::Kind::mesh ? mesh().warnings() : std::vector<std::string>();
 }
 
-const MeshFile& NamedFiles::mesh() const {
-  auto& [file, sampling, points, mesh] = *environment_;
-  if (!mesh) {
-    mesh_extension(file.path());  // refused unread if it is another
-    mesh.emplace(file.bytes(), file.path(), sampling);
-    file.drop_bytes();
-  }
-  return *mesh;
+NamedFiles::NamedFiles(Scenario scenario) {
+  for (const auto& [pointer, path, content] : files_named_in(scenario))
+    files_.push_back(std::make_shared<NamedFile>(pointer, resolve_path(scenario, *path), content));
 }
 
-const MeshFile& NamedFiles::tool_mesh() const {
-  auto& [file, scale, mesh] = *tool_;
-  if (!mesh) {
-    mesh_extension(file.path());  // refused unread if it is another
-    mesh.emplace(file.bytes(), file.path(), MeshSampling{scale, {}});
-    file.drop_bytes();
-  }
-  return *mesh;
-}
-
-const RecordedMotion& NamedFiles::recorded_motion() const {
-  auto& [file, motion, force] = *motion_;
-  if (!motion) {
-    Stroke stroke = stroke_in(file.bytes(), file.path());
-    motion = std::move(stroke.motion);
-    if (stroke.force) force = std::make_shared<const ReferenceForce>(*std::move(stroke.force));
-    file.drop_bytes();
-  }
-  return *motion;
-}
-
-std::shared_ptr<const ReferenceForce> NamedFiles::recorded_force() const {
-  recorded_motion();
-  return motion_->force;
+NamedFile* NamedFiles::find(std::string_view pointer) const {
+  const auto found =
+      std::find_if(files_.begin(), files_.end(), [pointer](const auto& file) { return file->pointer() == pointer; });
+  return found == files_.end() ? nullptr : found->get();
 }
 
 }  // namespace hapbench

@@ -1,84 +1,151 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <list>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "results/observe/reference_force.hpp"
+#include "results/observe/force_fidelity.hpp"
+#include "scenarios/description/fields.hpp"
 #include "scenarios/description/scenario.hpp"
-#include "scenarios/input/mesh_file.hpp"
+#include "scenarios/input/motion_file.hpp"
 #include "sim/geometry/point_shell.hpp"
-#include "sim/tool/motion.hpp"
 
 namespace hapbench {
 
-/// A file that a scenario names. It is read once, when something of it is first asked for.
-class NamedFile {
+/// Values that take long to make, shared by the runs of a process: parsed files, point shells, distance grids. For
+/// several threads.
+///
+/// The values used last are kept, up to 64 of them and 512 MB. Twice as many as the machine has threads are kept in any
+/// case, so that runs side by side do not take each other's away. A value that was dropped lives on while a run holds
+/// it.
+class SharedCache {
  public:
-  explicit NamedFile(std::filesystem::path path) : path_(std::move(path)) {}
+  /// The value of that key, which says all that the value depends on. It is made by `make`, which returns a
+  /// std::shared_ptr<const T>, unless it is there; `bytes` of the value says about how large it is. Waits while another
+  /// thread makes it. What `make` throws is passed on, and the next caller tries again.
+  template <class T, class Make, class Bytes>
+  std::shared_ptr<const T> get(const std::string& key, const Make& make, const Bytes& bytes) {
+    return std::static_pointer_cast<const T>(get_untyped(key, [&]() -> Made {
+      std::shared_ptr<const T> value = make();
+      const std::size_t size = bytes(*value);
+      return {std::move(value), size};
+    }));
+  }
 
-  const std::filesystem::path& path() const { return path_; }
-  /// FNV-1a of its bytes, as 16 hexadecimal digits. Throws InputError when it cannot be read.
-  const std::string& hash();
-  /// Its bytes, until they are dropped. Throws InputError when it cannot be read.
-  const std::string& bytes();
-  void drop_bytes() { bytes_ = {}; }
+  /// How many values have been made so far.
+  std::size_t made() const;
 
  private:
-  void read();
+  struct Made {
+    std::shared_ptr<const void> value;
+    std::size_t bytes = 0;
+  };
+  struct Entry {
+    std::string key;
+    std::mutex mutex;
+    Made made;
+  };
+  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMostBytes = std::size_t{512} << 20;
 
-  std::filesystem::path path_;
-  std::string hash_;  ///< empty until the file is read
-  std::string bytes_;
+  std::shared_ptr<const void> get_untyped(const std::string& key, const std::function<Made()>& make);
+  std::shared_ptr<Entry> entry_of(const std::string& key);
+  /// Precondition: the list is locked.
+  void drop_oldest();
+
+  mutable std::mutex mutex_;
+  std::list<std::shared_ptr<Entry>> entries_;  ///< the one used last first
+  std::size_t made_ = 0;
 };
 
-/// The files that a scenario names, each read and parsed once. Copies share what was read, and must
-/// not be used by two threads at once. Functions that return contents throw InputError if the file cannot be used.
+/// The one of this process.
+SharedCache& shared_cache();
+
+/// A field of a scenario that names a file.
+struct FileReference {
+  std::string pointer;  ///< JSON pointer of the field
+  std::string* path;    ///< the field's value, within the scenario that was asked
+  FileContent content;
+};
+
+/// Every file that the scenario names, in the order of its fields. This is the one list of them: what loads, checks,
+/// hashes or rewrites the files of a scenario goes through it.
+std::vector<FileReference> files_named_in(Scenario& scenario);
+
+// Pointers of the files that have a use of their own.
+inline constexpr std::string_view kEnvironmentFile = "/environment/file";
+inline constexpr std::string_view kToolFile = "/tool/file";
+inline constexpr std::string_view kMotionFile = "/motion/position/file";
+
+/// A file that a scenario names. It is read and parsed when something of it is first asked for, once for all scenarios
+/// of this process that take the same contents alike (SharedCache), and stays as it was then for this scenario. The
+/// functions that need its contents throw InputError when they cannot be used.
+class NamedFile {
+ public:
+  NamedFile(std::string pointer, std::filesystem::path path, const FileContent& content)
+      : pointer_(std::move(pointer)), path_(std::move(path)), content_(content) {}
+
+  const std::string& pointer() const { return pointer_; }
+  const std::filesystem::path& path() const { return path_; }
+
+  /// FNV-1a of its bytes, as 16 hexadecimal digits.
+  const std::string& hash();
+  /// Reads and parses the file.
+  void check() { contents(); }
+  /// What is odd about its contents, without the file's directory.
+  std::vector<std::string> warnings();
+
+  /// The points with normals. Precondition, here and below: the content is of that kind.
+  const std::vector<SurfacePoint>& points() { return contents().points; }
+  const MeshFile& mesh() { return *contents().mesh; }
+  /// It may be kept longer than the file.
+  std::shared_ptr<const Stroke> stroke() {
+    const Stroke& stroke = *contents().stroke;
+    return {contents_, &stroke};
+  }
+
+ private:
+  struct Contents {
+    std::vector<SurfacePoint> points = {};
+    std::optional<MeshFile> mesh = {};
+    std::optional<Stroke> stroke = {};
+  };
+
+  void check_extension() const;
+  void read();
+  const Contents& contents();
+  Contents parsed();
+
+  std::string pointer_;
+  std::filesystem::path path_;
+  FileContent content_;
+  std::string hash_;   ///< empty until it is known
+  std::string bytes_;  ///< from when the file is read until it is parsed
+  std::shared_ptr<const Contents> contents_;
+};
+
+/// The files that a scenario names. Copies share what was read, and must not be used by two threads at once.
 class NamedFiles {
  public:
   /// No files, for a scenario that names none.
   NamedFiles() = default;
-  explicit NamedFiles(const Scenario& scenario);
+  explicit NamedFiles(Scenario scenario);
 
-  /// The files; null when the scenario names none.
-  NamedFile* environment() const { return environment_ ? &environment_->file : nullptr; }
-  NamedFile* motion() const { return motion_ ? &motion_->file : nullptr; }
-  NamedFile* tool() const { return tool_ ? &tool_->file : nullptr; }
-
-  /// The points of an environment that is a point shell. Precondition: it is one.
-  const std::vector<SurfacePoint>& shell_points() const;
-  /// The surface of an environment that is a mesh. Precondition: it is one.
-  const MeshFile& mesh() const;
-  /// The surface of a tool that is a mesh. Precondition: it is one.
-  const MeshFile& tool_mesh() const;
-  /// Precondition: the motion is a recorded one.
-  const RecordedMotion& recorded_motion() const;
-  /// The force that was measured with it; null without one. Precondition: the motion is a recorded one.
-  std::shared_ptr<const ReferenceForce> recorded_force() const;
+  const std::vector<std::shared_ptr<NamedFile>>& all() const { return files_; }
+  /// The file that the field at a JSON pointer names; null when the scenario has no such field.
+  NamedFile* find(std::string_view pointer) const;
+  /// Precondition: the scenario has that field.
+  NamedFile& at(std::string_view pointer) const { return *find(pointer); }
 
  private:
-  struct EnvironmentFile {
-    NamedFile file;
-    MeshSampling sampling = {};  ///< of a mesh
-    std::optional<std::vector<SurfacePoint>> points = {};
-    std::optional<MeshFile> mesh = {};
-  };
-  struct ToolFile {
-    NamedFile file;
-    double scale;
-    std::optional<MeshFile> mesh = {};
-  };
-  struct MotionFile {
-    NamedFile file;
-    std::optional<RecordedMotion> motion = {};
-    std::shared_ptr<const ReferenceForce> force = {};
-  };
-
-  std::shared_ptr<EnvironmentFile> environment_;
-  std::shared_ptr<ToolFile> tool_;
-  std::shared_ptr<MotionFile> motion_;
+  std::vector<std::shared_ptr<NamedFile>> files_;
 };
 
 }  // namespace hapbench

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenarios/description/schema_writer.hpp"
+#include "scenarios/description/writer.hpp"
 
 namespace hapbench {
 namespace {
@@ -29,7 +29,7 @@ std::string Reader::at() const {
   return is_entry_ ? element(parent_->at(), index_) : member(parent_->at(), std::string(name_));
 }
 
-/// For who means what is in a file.
+/// Hint for users who passed the name of a file instead of its content.
 static std::string text_of_file_hint(const Json& given) {
   if (!given.is_string() || !given.get_ref<const std::string&>().ends_with(".json")) return "";
   return fmt::format("; on a command line \"$(cat {})\" is what is in the file", given.get_ref<const std::string&>());
@@ -150,11 +150,11 @@ void Reader::one_or_list(bool, Body one, Body list) {
   (json_.is_array() ? list : one)(*this);
 }
 
-void Reader::alternatives(const char* what, std::span<const char* const> names, Untyped untyped, std::size_t held,
+void Reader::alternatives(const char* what, std::span<const TypeName> choices, Untyped untyped, std::size_t held,
                           FunctionRef<Fields&, std::size_t> fields) {
   if (!json_.is_object())
-    refuse([&](Fields& f) { f.alternatives(what, names, untyped, held, fields); }, text_of_file_hint(json_));
-  const std::vector<std::string> types(names.begin(), names.end());
+    refuse([&](Fields& f) { f.alternatives(what, choices, untyped, held, fields); }, text_of_file_hint(json_));
+  const std::vector<std::string> types = names_of(choices);
   const auto type = json_.find(kTypeField);
   if (type == json_.end() && untyped == Untyped::refused) {
     throw InputError(InputError::Kind::shape, at(),
@@ -193,7 +193,7 @@ void Reader::field(std::string_view name, const char*, Presence presence, Body v
     Reader reader(*entry, *this, name);
     return collect([&] { value(reader); });
   }
-  // A misspelt one has been reported.
+  // A misspelt name of this field has been reported already.
   if (presence != Presence::required || contains(meant_, name)) return;
   SchemaWriter description;
   value(description);

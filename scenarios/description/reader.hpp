@@ -7,8 +7,8 @@
 namespace hapbench {
 
 /// Reads and checks a JSON value. Fields that the file does not have leave their members as they are. Throws
-/// InputError: of kind shape for what the schema refuses too, naming the place, the value and what is allowed. Behind a
-/// fault the other fields and entries are read, so that one error has the faults of all.
+/// InputError, of kind shape for what the schema refuses too, that names the place, the value and what is allowed.
+/// After a fault the remaining fields and entries are still read, so that one error reports the faults of all.
 class Reader final : public Fields {
  public:
   /// Reads `json`, found at the JSON pointer `at`; both must outlive the reader. Warnings are added to `warnings`, if
@@ -28,7 +28,7 @@ class Reader final : public Fields {
   void or_null(bool is_null, FunctionRef<> set_null, Body value) override;
   void number_or_object(bool is_object, Body number, Body object) override;
   void one_or_list(bool is_list, Body one, Body list) override;
-  void alternatives(const char* what, std::span<const char* const> names, Untyped untyped, std::size_t held,
+  void alternatives(const char* what, std::span<const TypeName> types, Untyped untyped, std::size_t held,
                     FunctionRef<Fields&, std::size_t> fields) override;
   void fields(Body body) override;
 
@@ -42,30 +42,30 @@ class Reader final : public Fields {
   void warn(const std::string& text) override;
 
  private:
-  /// The value of a field, or of an entry, of what another reader reads, which must outlive this one, as must the name.
-  /// Where it is, is put together when somebody asks: few do, and scenarios are read by the million.
+  /// Reads a field or an entry of the value that `parent` reads; both must outlive this reader, as must the name. The
+  /// JSON pointer is built lazily: only errors need it, and sweeps read scenarios by the million.
   Reader(const Json& json, const Reader& parent, std::string_view name) : json_(json), parent_(&parent), name_(name) {}
   Reader(const Json& json, const Reader& parent, std::size_t index)
       : json_(json), parent_(&parent), index_(index), is_entry_(true) {}
 
-  /// Refuses the value: "got VALUE; allowed: …", in the words the schema writer has for `what`.
+  /// Refuses the value: "got VALUE; allowed: ...", in the words that the schema writer has for `what`.
   [[noreturn]] void refuse(Body what, const std::string& hint = "") const;
-  /// Calls `read` and keeps the error it may throw.
+  /// Calls `read` and keeps the error that it may throw.
   void collect(FunctionRef<> read);
-  /// Keeps an error for `throw_errors`, which throws all that were kept, if any.
+  /// Keeps an error for `throw_errors`, which throws all that were kept.
   void keep(const InputError& error);
   void throw_errors() const;
   void read_fields(Body body, std::vector<std::string_view> names);
 
   const Json& json_;
-  std::string at_;  ///< without a parent
+  std::string at_;  ///< JSON pointer of the value, for a reader without a parent
   const Reader* parent_ = nullptr;
   std::string_view name_;
   std::size_t index_ = 0;
   bool is_entry_ = false;
   std::vector<std::string>* warnings_ = nullptr;
   bool null_allowed_ = false;
-  /// While not null, the body of an object is called for the names of its fields alone.
+  /// When not null, the body of an object is called only to collect the names of its fields.
   std::vector<std::string_view>* names_ = nullptr;
   std::vector<InputError> errors_;  ///< of the fields or entries that were read
   std::vector<std::string> meant_;  ///< valid names near to unknown fields

@@ -2,6 +2,8 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/description/descriptions.hpp"
+#include "scenarios/description/parts.hpp"
+#include "sim/core/random.hpp"
 
 namespace hapbench {
 
@@ -44,6 +46,15 @@ BurProfile profile_of(const BurFields& bur) {
 
 std::filesystem::path resolve_path(const Scenario& scenario, const std::string& file) {
   return scenario.directory / file;  // an absolute `file` replaces the directory
+}
+
+std::uint64_t derived_seed(const Scenario& scenario, Trial trial, RandomUse use) {
+  std::uint64_t seed = static_cast<std::uint64_t>(scenario.seed);
+  for (const std::uint64_t part :
+       {static_cast<std::uint64_t>(use), std::uint64_t{trial.subject}, std::uint64_t{trial.number}}) {
+    seed = Random::derive(seed ^ (seed >> 29), part);
+  }
+  return seed;
 }
 
 Scenario with_algorithm(Scenario scenario, std::string_view algorithm) {

@@ -16,16 +16,14 @@
 #include "device_model/hands/tracking_hand.hpp"
 #include "device_model/impedance_device.hpp"
 #include "results/observe/contact_forces.hpp"
-#include "results/summary/metric_list.hpp"
+#include "results/observe/perception.hpp"
 #include "sim/core/profile.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/analytic_shells.hpp"
-#include "sim/geometry/block_with_hole.hpp"
 #include "sim/loop/simulation.hpp"
-#include "sim/mesh/density.hpp"
+#include "sim/mesh/marching_cubes.hpp"
 #include "sim/tool/bur.hpp"
 #include "sim/tool/profile_point.hpp"
-#include "sim/tool/tip.hpp"
 
 /// A scenario file as plain structs, with every default in place: a default-constructed scenario is that of springs.
 /// Names, units and ranges of the file's fields: the functions `describe` of this folder.
@@ -253,21 +251,5 @@ std::filesystem::path resolve_path(const Scenario& scenario, const std::string& 
 /// The scenario with another algorithm and with what that fixes: depth model and reduction. Precondition: the name is
 /// known.
 Scenario with_algorithm(Scenario scenario, std::string_view algorithm);
-
-/// The sections of a summary that not every run has.
-struct MetricSections {
-  bool energy = true;
-  bool ideal_trajectory = true;
-  bool fidelity = true;
-  bool torque = true;
-  bool perception = true;
-  std::size_t places = 2;  ///< target places; the thesis's tasks have two
-};
-
-/// The metrics of runs with these sections without values, in the order of the summary; by default those `expect` may
-/// bound.
-MetricList metrics_without_values(const MetricSections& sections = {});
-/// Their names.
-std::vector<std::string> metric_names(const MetricSections& sections = {});
 
 }  // namespace hapbench

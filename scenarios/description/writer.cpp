@@ -1,8 +1,15 @@
 #include "scenarios/description/writer.hpp"
 
+#include <fmt/format.h>
+#include <algorithm>
+#include <deque>
+#include <mutex>
 #include <stdexcept>
 
-#include "scenarios/description/schema_writer.hpp"
+#include "algorithms/registry.hpp"
+#include "scenarios/description/descriptions.hpp"
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/input/input_error.hpp"
 
 namespace hapbench {
 
@@ -60,11 +67,11 @@ void Writer::one_or_list(bool is_list, Body one, Body list) {
   (is_list ? list : one)(*this);
 }
 
-void Writer::alternatives(const char*, std::span<const char* const> names, Untyped untyped, std::size_t held,
+void Writer::alternatives(const char*, std::span<const TypeName> types, Untyped untyped, std::size_t held,
                           FunctionRef<Fields&, std::size_t> fields) {
-  if (held >= names.size()) throw std::logic_error("a variant without a value");
+  if (held >= types.size()) throw std::logic_error("a variant without a value");
   json_ = Json::object();
-  if (untyped == Untyped::refused || held > 0) json_[kTypeField] = names[held];
+  if (untyped == Untyped::refused || held > 0) json_[kTypeField] = types[held].name;
   fields(*this, held);
 }
 
@@ -82,5 +89,230 @@ void Writer::field(std::string_view name, const char*, Presence presence, Body v
 void Writer::ignored(std::string_view, const char*) {}
 
 void Writer::exactly_one_of(const char*, const char*) {}
+
+std::vector<std::string> names_of(std::span<const TypeName> types) {
+  std::vector<std::string> names;
+  for (const TypeName& type : types) names.emplace_back(type.name);
+  return names;
+}
+
+Json FieldGuide::schema() const {
+  Json entry = value.schema;
+  // Draft 7 ignores what stands beside a reference.
+  if (entry.contains("$ref")) entry = {{"allOf", Json::array({std::move(entry)})}};
+  entry["description"] = meaning;
+  if (presence == Presence::has_default) entry["default"] = initial;
+  return entry;
+}
+
+ValueGuide SchemaWriter::guide_of(Body value) const {
+  SchemaWriter writer(definitions_);
+  value(writer);
+  return std::move(writer.guide_);
+}
+
+void SchemaWriter::number(double&, NumberRange range) {
+  guide_.schema = {
+      {"type", "number"}, {range.above_min ? "exclusiveMinimum" : "minimum", range.min}, {"maximum", range.max}};
+  const std::string unit = *range.unit == '\0' ? "" : fmt::format(" [{}]", range.unit);
+  guide_.allowed = fmt::format("a number {} {} and <= {}{}", range.above_min ? ">" : ">=", range.min, range.max, unit);
+}
+
+void SchemaWriter::integer(std::int64_t&, IntegerRange range) {
+  guide_.schema = {{"type", "integer"}, {"minimum", range.min}, {"maximum", range.max}};
+  guide_.allowed = fmt::format("an integer {} ... {}", range.min, range.max);
+}
+
+void SchemaWriter::boolean(bool&) {
+  guide_.schema = {{"type", "boolean"}};
+  guide_.allowed = "true or false";
+}
+
+void SchemaWriter::text(std::string&, std::size_t max_length) {
+  guide_.schema = {{"type", "string"}, {"maxLength", max_length}};
+  guide_.allowed = fmt::format("a text of at most {} characters", max_length);
+}
+
+void SchemaWriter::name(std::size_t&, const std::vector<std::string>& names, const char* what) {
+  guide_.schema = {{"type", "string"}, {"enum", names}};
+  guide_.allowed = fmt::format("{}: one of {}", what, quoted_list(names));
+}
+
+void SchemaWriter::vector3(Vec3& value, NumberRange component) {
+  const ValueGuide item = guide_of([&](Fields& f) { f.number(value.x(), component); });
+  guide_.schema = {{"type", "array"}, {"items", item.schema}, {"minItems", 3}, {"maxItems", 3}};
+  guide_.allowed = "three numbers [x, y, z], each " + item.allowed;
+}
+
+void SchemaWriter::pair(const char* allowed, Body first, Body second) {
+  const Json items = {guide_of(first).schema, guide_of(second).schema};
+  guide_.schema = {{"type", "array"}, {"items", items}, {"minItems", 2}, {"maxItems", 2}};
+  guide_.allowed = allowed;
+}
+
+void SchemaWriter::entries(std::size_t length, ListSize size, FunctionRef<std::size_t>,
+                           FunctionRef<Fields&, std::size_t> entry) {
+  const ValueGuide item = guide_of([&](Fields& f) { entry(f, length); });
+  guide_.schema = {{"type", "array"}, {"items", item.schema}, {"minItems", size.min}, {"maxItems", size.max}};
+  guide_.allowed = fmt::format("a list of {} ... {} entries, each {}", size.min, size.max, item.allowed);
+}
+
+void SchemaWriter::or_null(bool, FunctionRef<>, Body value) {
+  guide_ = guide_of(value);
+  guide_.schema = {{"anyOf", {{{"type", "null"}}, guide_.schema}}};
+  guide_.allowed = "null or " + guide_.allowed;
+}
+
+/// One of two values, of which the second may be an object.
+void SchemaWriter::any_of(ValueGuide first, ValueGuide second) {
+  guide_ = std::move(second);
+  guide_.schema = {{"anyOf", {first.schema, guide_.schema}}};
+  guide_.allowed = first.allowed + ", or " + guide_.allowed;
+}
+
+void SchemaWriter::number_or_object(bool, Body number, Body object) {
+  any_of(guide_of(number), guide_of(object));
+}
+
+void SchemaWriter::one_or_list(bool, Body one, Body list) {
+  any_of(guide_of(one), guide_of(list));
+}
+
+void SchemaWriter::alternatives(const char*, std::span<const TypeName> types, Untyped untyped, std::size_t,
+                                FunctionRef<Fields&, std::size_t> fields) {
+  Json schemas = Json::array();
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    SchemaWriter choice(definitions_);
+    choice.guide_.type = types[i].name;
+    choice.guide_.summary = types[i].summary;
+    choice.guide_.may_be_untyped = untyped == Untyped::first && i == 0;
+    choice.fields([&](Fields& f) { fields(f, i); });
+    schemas.push_back(choice.guide_.schema);
+    guide_.choices.push_back(std::move(choice.guide_));
+  }
+  guide_.schema = {{"oneOf", std::move(schemas)}};
+  guide_.allowed = fmt::format("an object whose \"{}\" is one of {}", kTypeField, quoted_list(names_of(types)));
+}
+
+void SchemaWriter::fields(Body body) {
+  guide_.schema = {
+      {"type", "object"}, {"properties", Json::object()}, {"additionalProperties", false}, {"required", Json::array()}};
+  if (!guide_.type.empty()) {
+    guide_.schema["properties"][kTypeField] = {{"const", guide_.type}};
+    if (!guide_.may_be_untyped) guide_.schema["required"].push_back(kTypeField);
+  }
+  body(*this);
+  if (guide_.schema["required"].empty()) guide_.schema.erase("required");
+  std::vector<std::string> names;
+  for (const FieldGuide& field : guide_.fields) names.push_back(field.name);
+  guide_.allowed = "an object with the fields " + quoted_list(names);
+}
+
+void SchemaWriter::shared(const char* name, Body value) {
+  guide_ = guide_of(value);
+  if (definitions_ == nullptr) return;
+  (*definitions_)[name] = std::move(guide_.schema);
+  guide_.schema = {{"$ref", std::string("#/definitions/") + name}};
+}
+
+void SchemaWriter::field(std::string_view name, const char* doc, Presence presence, Body value) {
+  FieldGuide field{
+      .name = std::string(name), .meaning = doc, .presence = presence, .initial = {}, .value = guide_of(value)};
+  if (presence == Presence::has_default) {
+    Writer writer(Writer::Which::with_default);
+    value(writer);
+    field.initial = writer.json();
+  }
+  guide_.schema["properties"][field.name] = field.schema();
+  if (presence == Presence::required) guide_.schema["required"].push_back(field.name);
+  guide_.fields.push_back(std::move(field));
+}
+
+void SchemaWriter::ignored(std::string_view name, const char* doc) {
+  guide_.schema["properties"][std::string(name)] = {{"description", doc}};
+  guide_.fields.push_back(
+      {.name = std::string(name), .meaning = doc, .presence = Presence::left_out, .initial = {}, .value = {}});
+}
+
+void SchemaWriter::exactly_one_of(const char* a, const char* b) {
+  Json& schema = guide_.schema;
+  if (schema.contains("oneOf")) throw std::logic_error("exactly_one_of twice in one object");
+  schema["oneOf"] = Json::array({Json{{"required", {a}}}, Json{{"required", {b}}}});
+}
+
+namespace {
+
+ValueGuide full_scenario(Json* definitions) {
+  Scenario defaults;
+  SchemaWriter writer(definitions);
+  writer.object(defaults);
+  ValueGuide guide = writer.guide();
+  Json schema = {{"description", "SI units; every key carries its own. A profile is a scalar function of time."}};
+  schema.update(guide.schema);
+  guide.schema = std::move(schema);
+  return guide;
+}
+
+/// Returns true if a part of what the schema allows is allowed, too.
+bool allows_parts(const Json& schema) {
+  if (!schema.is_structured()) return true;
+  if (schema.is_object() && (schema.contains("required") || schema.contains("oneOf"))) return false;
+  return std::all_of(schema.begin(), schema.end(), allows_parts);
+}
+
+/// For a file that extends another and so may leave out anything: only fields that mean something without the other
+/// file are checked. The schema of a file in full is found at `at`.
+Json partial_schema(const ValueGuide& full, const std::string& at) {
+  Json schema = {{"type", "object"}, {"properties", Json::object()}, {"additionalProperties", false}};
+  for (const FieldGuide& field : full.fields) {
+    Json& part = schema["properties"][field.name];
+    if (allows_parts(field.value.schema)) {
+      part = {{"$ref", at + "/properties/" + field.name}};
+    } else {
+      part = {{"description", field.meaning}};
+    }
+  }
+  return schema;
+}
+
+void add_paths(std::vector<std::string>& paths, const std::string& prefix, const ValueGuide& guide) {
+  for (const ValueGuide& choice : guide.choices) {
+    const std::string type = prefix + kTypeField;
+    if (std::find(paths.begin(), paths.end(), type) == paths.end()) paths.push_back(type);
+    add_paths(paths, prefix, choice);
+  }
+  for (const FieldGuide& field : guide.fields) {
+    const std::string path = prefix + field.name;
+    if (std::find(paths.begin(), paths.end(), path) == paths.end()) paths.push_back(path);
+    add_paths(paths, path + ".", field.value);
+  }
+}
+
+}  // namespace
+
+const ValueGuide& scenario_guide() {
+  static std::mutex mutex;
+  static std::deque<std::pair<std::size_t, ValueGuide>> built;  // with the number of additions before
+  const std::lock_guard lock(mutex);
+  if (built.empty() || built.back().first != additions()) built.emplace_back(additions(), full_scenario(nullptr));
+  return built.back().second;
+}
+
+std::vector<std::string> scenario_field_paths() {
+  std::vector<std::string> paths;
+  add_paths(paths, "", scenario_guide());
+  return paths;
+}
+
+Json scenario_schema() {
+  Json definitions = Json::object();
+  Json full = full_scenario(&definitions).schema;
+  return {{"$schema", "http://json-schema.org/draft-07/schema#"},
+          {"title", "hapbench scenario"},
+          {"definitions", std::move(definitions)},
+          {"if", {{"required", {kExtends}}}},
+          {"then", partial_schema(scenario_guide(), "#/else")},
+          {"else", std::move(full)}};
+}
 
 }  // namespace hapbench

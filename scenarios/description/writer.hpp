@@ -29,7 +29,7 @@ class Writer final : public Fields {
   void or_null(bool is_null, FunctionRef<> set_null, Body value) override;
   void number_or_object(bool is_object, Body number, Body object) override;
   void one_or_list(bool is_list, Body one, Body list) override;
-  void alternatives(const char* what, std::span<const char* const> names, Untyped untyped, std::size_t held,
+  void alternatives(const char* what, std::span<const TypeName> types, Untyped untyped, std::size_t held,
                     FunctionRef<Fields&, std::size_t> fields) override;
   void fields(Body body) override;
 
@@ -59,5 +59,85 @@ Json written_object(T value) {
   writer.object(value);
   return writer.json();
 }
+
+/// The names of the types.
+std::vector<std::string> names_of(std::span<const TypeName> types);
+
+struct FieldGuide;
+
+/// Which values are allowed: as a JSON Schema (draft 7), in words for messages and documentation, and by the fields of
+/// an object.
+struct ValueGuide {
+  Json schema;
+  std::string allowed;              ///< as in "a number > 0 and <= 10 [m]"
+  std::vector<FieldGuide> fields;   ///< of an object whose fields no type chooses, or that is of one type
+  std::vector<ValueGuide> choices;  ///< the objects among which a field "type" chooses
+  std::string type, summary;        ///< of such an object: its type, and what that is in a few words
+  bool may_be_untyped = false;      ///< of such an object: it may stand without its type
+};
+
+/// A field of an object.
+struct FieldGuide {
+  std::string name;
+  std::string meaning;
+  Presence presence;
+  Json initial;  ///< the default, with Presence::has_default
+  ValueGuide value;
+
+  /// The schema of the value with meaning and default.
+  Json schema() const;
+};
+
+/// Tells which values are allowed. Defaults are the values of the object it visits, which has to be a
+/// default-constructed one.
+class SchemaWriter final : public Fields {
+ public:
+  /// With `definitions`, values that are described alike in many places are put there once, by their names, and the
+  /// schema refers to "#/definitions/NAME".
+  explicit SchemaWriter(Json* definitions = nullptr) : definitions_(definitions) {}
+
+  const ValueGuide& guide() const { return guide_; }
+  const Json& schema() const { return guide_.schema; }
+  const std::string& allowed() const { return guide_.allowed; }
+
+  void number(double& value, NumberRange range) override;
+  void integer(std::int64_t& value, IntegerRange range) override;
+  void boolean(bool& value) override;
+  void text(std::string& value, std::size_t max_length) override;
+  void name(std::size_t& index, const std::vector<std::string>& names, const char* what) override;
+  void vector3(Vec3& value, NumberRange component) override;
+  void pair(const char* allowed, Body first, Body second) override;
+  void entries(std::size_t length, ListSize size, FunctionRef<std::size_t> resize,
+               FunctionRef<Fields&, std::size_t> entry) override;
+  void or_null(bool is_null, FunctionRef<> set_null, Body value) override;
+  void number_or_object(bool is_object, Body number, Body object) override;
+  void one_or_list(bool is_list, Body one, Body list) override;
+  void alternatives(const char* what, std::span<const TypeName> types, Untyped untyped, std::size_t held,
+                    FunctionRef<Fields&, std::size_t> fields) override;
+  void fields(Body body) override;
+  void shared(const char* name, Body value) override;
+
+  void field(std::string_view name, const char* doc, Presence presence, Body value) override;
+  void ignored(std::string_view name, const char* doc) override;
+  /// Throws std::logic_error for a second pair, for which the schema has no place.
+  void exactly_one_of(const char* a, const char* b) override;
+
+ private:
+  ValueGuide guide_of(Body value) const;
+  void any_of(ValueGuide first, ValueGuide second);
+
+  Json* definitions_;
+  ValueGuide guide_;
+};
+
+/// The whole JSON Schema (draft 7) that scenarios/scenario.schema.json holds.
+Json scenario_schema();
+
+/// What a scenario in full may be, with what it extends filled in. Built once, and again when an algorithm has been
+/// added; the reference holds until then. Not for several threads at once.
+const ValueGuide& scenario_guide();
+
+/// The dotted paths of all fields of objects, as "rendering.limits.max_force_N"; those of list entries aside.
+std::vector<std::string> scenario_field_paths();
 
 }  // namespace hapbench

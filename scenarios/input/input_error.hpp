@@ -9,10 +9,16 @@
 
 namespace hapbench {
 
+/// Largest sizes of a scenario. Larger requests are refused before they take memory or disk. They are doubles because a
+/// request may exceed every integer.
+inline constexpr double kMostPoints = 2e7;  ///< shell points or springs of an environment
+inline constexpr double kMostSteps = 1e9;   ///< steps of a run
+inline constexpr double kMostRows = 2e7;    ///< rows that a run may record
+
 /// `text` with a '?' in place of each control character (file names and values from outside may have some).
 std::string one_line(std::string text);
 
-/// Faults of one file that are reported at once; more nobody mends before trying again.
+/// Maximum number of errors reported per file.
 inline constexpr std::size_t kMostFaults = 20;
 
 /// Bad input: a file, an argument or a field the program refuses. Exit status 2. The message is one line that names the
@@ -22,7 +28,7 @@ class InputError : public std::runtime_error {
  public:
   enum class Kind {
     shape,     ///< one field by itself is wrong; the JSON Schema refuses it too
-    relation,  ///< fields contradict each other, or the world (a missing file); beyond what a schema can say
+    relation,  ///< fields contradict each other or the world (a missing file); a schema cannot express that
   };
 
   InputError(Kind kind, std::string place, const std::string& problem)
@@ -30,31 +36,31 @@ class InputError : public std::runtime_error {
         kind_(kind),
         place_(std::move(place)),
         problem_(problem) {}
-  /// A relation without a field of its own.
+  /// An error of kind `relation` that is not about a particular field.
   explicit InputError(const std::string& problem) : InputError(Kind::relation, "", problem) {}
-  /// Several faults, at most kMostFaults of them, those of a shape first. Precondition: there is one.
+  /// Several faults, at most kMostFaults of them, those of kind `shape` first. Precondition: there is at least one.
   static InputError all(const std::vector<InputError>& errors);
 
   Kind kind() const { return kind_; }
   /// JSON pointer of the field; empty for the whole file.
   const std::string& place() const { return place_; }
   const std::string& problem() const { return problem_; }
-  /// Each by itself; one, unless it was made by `all`.
+  /// The faults one by one; only one unless the error was made by `all`.
   std::vector<InputError> faults() const;
 
  private:
   Kind kind_;
   std::string place_;
   std::string problem_;
-  std::vector<InputError> more_;  ///< behind the first
+  std::vector<InputError> more_;  ///< all faults but the first
 };
 
 /// Throws an InputError (a relation) about a file, or about a line of it.
 [[noreturn]] void fail_in_file(const std::filesystem::path& file, const std::string& problem);
 [[noreturn]] void fail_in_line(const std::filesystem::path& file, std::size_t line, const std::string& problem);
 
-/// The valid name nearest to `given` in edit distance, or empty when none is near enough to suggest. A name may also be
-/// given without its unit or any other end behind an underscore, and its case does not matter.
+/// The valid name nearest to `given` in edit distance, or empty when none is near enough to suggest. Case does not
+/// matter, and an ending after an underscore, such as a unit, may be missing.
 std::string nearest_name(std::string_view given, std::span<const std::string> valid);
 
 /// `; nearest valid name: "x"`, or empty.
@@ -63,7 +69,7 @@ std::string nearest_name_hint(std::string_view given, std::span<const std::strin
 /// Throws an InputError, `got` before the name, when the name is not among the valid ones.
 void require_valid_name(std::string_view got, const std::string& name, std::span<const std::string> valid);
 
-/// "a", "b", "c"; of very many names the first ones and how many more there are.
+/// "a", "b", "c"; a long list ends with the number of names that are not shown.
 std::string quoted_list(std::span<const std::string> names);
 
 }  // namespace hapbench

@@ -2,15 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/mesh_formats.hpp"
-#include "scenarios/input/number_table.hpp"
-#include "scenarios/input/size_limits.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "sim/mesh/half_edge_mesh.hpp"
 #include "sim/mesh/mesh_from_triangles.hpp"
-#include "sim/mesh/resample.hpp"
 
 namespace hapbench {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -60,7 +61,8 @@ CheckedMesh connect(const TriangleSoup& soup, const fs::path& file) {
   }
 }
 
-/// With the file's name alone: they go into results, which do not depend on where the file lies.
+/// The warnings contain the file's name without its directory, because they go into results, which must not depend on
+/// where the file lies.
 std::vector<std::string> warnings_about(const MeshFindings& found, const fs::path& file) {
   std::vector<std::string> warnings;
   const auto warn = [&](std::size_t count, const char* text) {
@@ -91,7 +93,7 @@ std::vector<std::string> warnings_about(const MeshFindings& found, const fs::pat
   return warnings;
 }
 
-/// Precondition of resampling.
+/// Refuses a spacing for which refining the mesh would take too much memory.
 void check_spacing(const HalfEdgeMesh& mesh, double spacing, const fs::path& file) {
   // A triangle mesh has half as many vertices as faces, more only in so far as it is open.
   constexpr double kMostFaces = 2.0 * kMostPoints;
@@ -100,7 +102,7 @@ void check_spacing(const HalfEdgeMesh& mesh, double spacing, const fs::path& fil
                                  kMostPoints));
 }
 
-/// The surface in the file, all checks done.
+/// Reads the surface in a file and does all checks.
 CheckedMesh surface_in(std::string_view bytes, const fs::path& file, const MeshSampling& sampling) {
   TriangleSoup soup = triangles_in(bytes, file);
   check_indices(soup, file);
@@ -113,6 +115,61 @@ CheckedMesh surface_in(std::string_view bytes, const fs::path& file, const MeshS
     fail_in_file(file, "has no faces with an area; allowed: at least one");
   if (sampling.spacing) check_spacing(surface.mesh, *sampling.spacing, file);
   return surface;
+}
+
+constexpr const char* kCsvHeader = "x_m,y_m,z_m,nx,ny,nz";
+
+std::vector<SurfacePoint> csv_points_in(std::string_view text, const fs::path& file) {
+  const NumberTable table = number_table_in(text, file, kCsvHeader, static_cast<std::size_t>(kMostPoints));
+  std::vector<SurfacePoint> points;
+  points.reserve(table.rows());
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    const auto row = table.row(i);
+    points.push_back({{row[0], row[1], row[2]}, {row[3], row[4], row[5]}});
+  }
+  return points;
+}
+
+void check_and_normalise(std::vector<SurfacePoint>& points, const fs::path& file) {
+  if (points.empty()) fail_in_file(file, "has no points; allowed: at least one");
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    SurfacePoint& point = points[i];
+    const double largest = point.position.cwiseAbs().maxCoeff();
+    if (!(largest <= 1000.0))
+      fail_in_file(file, fmt::format("point {}: got coordinate {}; allowed: finite, at most 1000 m", i, largest));
+    const double length = point.normal.norm();
+    if (!(std::abs(length - 1.0) <= 1e-3))
+      fail_in_file(file, fmt::format("point {}: got a normal of length {}; allowed: unit normals", i, length));
+    // Unit to rounding is left alone, so that an exported shell reads back bit for bit.
+    if (std::abs(length - 1.0) > 1e-12) point.normal /= length;
+  }
+}
+
+std::string csv_text(const std::vector<SurfacePoint>& points) {
+  std::string text = fmt::format("{}\n", kCsvHeader);
+  for (const SurfacePoint& p : points) {
+    fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{}\n", p.position.x(), p.position.y(), p.position.z(),
+                   p.normal.x(), p.normal.y(), p.normal.z());
+  }
+  return text;
+}
+
+std::string ply_text(const std::vector<SurfacePoint>& points) {
+  std::string text = fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float nx\nproperty float ny\nproperty float nz\nelement face 0\n"
+      "property list uchar int vertex_indices\nend_header\n",
+      points.size());
+  // Nine digits are all that single precision holds.
+  const auto add = [&text](const Vec3& v, char end) {
+    fmt::format_to(std::back_inserter(text), "{:.9g} {:.9g} {:.9g}{}", static_cast<float>(v.x()),
+                   static_cast<float>(v.y()), static_cast<float>(v.z()), end);
+  };
+  for (const SurfacePoint& p : points) {
+    add(p.position, ' ');
+    add(p.normal, '\n');
+  }
+  return text;
 }
 
 }  // namespace
@@ -158,6 +215,22 @@ std::vector<SurfacePoint> MeshFile::points() const {
   HalfEdgeMesh mesh = surface_->mesh;
   refine(mesh, *sampling_.spacing);
   return thinned(vertices_with_normals(mesh), *sampling_.spacing);
+}
+
+std::string shell_extension(const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  if (extension != ".csv" && extension != ".ply") fail_in_file(file, "has another extension; allowed: .csv or .ply");
+  return extension;
+}
+
+std::vector<SurfacePoint> point_shell_in(std::string_view text, const std::filesystem::path& file) {
+  auto points = shell_extension(file) == ".csv" ? csv_points_in(text, file) : ply_points_in(text, file);
+  check_and_normalise(points, file);
+  return points;
+}
+
+std::string point_shell_text(const std::vector<SurfacePoint>& points, const std::filesystem::path& file) {
+  return shell_extension(file) == ".csv" ? csv_text(points) : ply_text(points);
 }
 
 }  // namespace hapbench

@@ -10,6 +10,7 @@
 #include "sim/geometry/point_shell.hpp"
 #include "sim/mesh/triangle_soup.hpp"
 
+/// Files that hold the surface of an environment or a tool: triangle meshes, and point shells.
 namespace hapbench {
 
 struct CheckedMesh;
@@ -17,12 +18,12 @@ struct CheckedMesh;
 /// How a mesh becomes a point shell.
 struct MeshSampling {
   double scale = 1.0;             ///< [m] for each unit of the file
-  std::optional<double> spacing;  ///< [m]; none: the mesh's own vertices
+  std::optional<double> spacing;  ///< [m]; none: take the mesh's own vertices
 };
 
-/// Returns true for a file name with the extension of a mesh format that is read.
+/// Returns true if the file's extension is that of a supported mesh format.
 bool is_mesh_name(const std::filesystem::path& file);
-/// The extension of a mesh file, in lower case. Throws InputError when it is that of no format that is read.
+/// The extension of a mesh file, in lower case. Throws InputError if the format is not supported.
 std::string mesh_extension(const std::filesystem::path& file);
 
 /// The surface in a mesh file (.obj, .ply, .stl, .off; text or binary). Copies share it.
@@ -32,17 +33,17 @@ class MeshFile {
   /// file and says why it is refused.
   MeshFile(std::string_view bytes, const std::filesystem::path& file, const MeshSampling& sampling);
 
-  /// What is odd about the mesh: it is open, or its winding had to be changed. Each names the file, without
-  /// its directory.
+  /// Peculiarities of the mesh: it is open, or its winding had to be changed. Each warning names the file, without its
+  /// directory.
   const std::vector<std::string>& warnings() const { return warnings_; }
-  /// Middles of the edges where the surface ends [m]; none when it is closed.
+  /// Midpoints of the edges where the surface ends [m]; empty when it is closed.
   const std::vector<Vec3>& open_edges() const;
 
   /// Its triangles, all wound alike and outwards where the surface is closed [m].
   TriangleSoup triangles() const;
 
-  /// Points with normals: the mesh's vertices, or with a spacing those of the same surface refined until no edge is
-  /// longer, thinned where there are more than one point in a cube of that size.
+  /// Points with normals: the vertices of the mesh. With a spacing, the mesh is first refined until no edge is longer
+  /// than it, and then at most one point is kept in each cube of that size.
   std::vector<SurfacePoint> points() const;
 
  private:
@@ -50,5 +51,17 @@ class MeshFile {
   std::shared_ptr<const CheckedMesh> surface_;
   std::vector<std::string> warnings_;
 };
+
+/// The extension of a point shell's file. Throws InputError when it is neither .csv nor .ply.
+std::string shell_extension(const std::filesystem::path& file);
+
+/// The point shell in the contents of a file: CSV with header x_m,y_m,z_m,nx,ny,nz, or PLY with vertex normals. Normals
+/// must be unit to 1e-3 and are normalised unless they are unit to rounding; coordinates must be finite and within
+/// 1 km. Throws InputError that names file and point.
+std::vector<SurfacePoint> point_shell_in(std::string_view text, const std::filesystem::path& file);
+
+/// The shell as the text of a .csv (shortest round-trip numbers) or .ply file (single precision, for viewers), by the
+/// file's extension. Throws InputError for another extension.
+std::string point_shell_text(const std::vector<SurfacePoint>& points, const std::filesystem::path& file);
 
 }  // namespace hapbench

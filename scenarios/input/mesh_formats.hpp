@@ -1,32 +1,99 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include "scenarios/input/text_lines.hpp"
+#include "sim/geometry/point_shell.hpp"
 #include "sim/mesh/triangle_soup.hpp"
 
-/// The mesh formats. Each reader takes the contents of a file, whose name is for messages, and returns vertices and
-/// faces in the file's unit: numbers of text in double precision, those of binary files as they are stored. Vertex
-/// indices are not compared with the number of vertices, and coordinates of binary files may be no finite numbers:
-/// MeshFile checks both for all formats. Files come from outside: each word is checked, and memory grows with
-/// what a file holds, never with what it declares. Throws InputError that names the file, and the line of a text.
+/// Readers of the mesh formats, for mesh_file.hpp. Each takes the contents of a file, whose name is for messages, and
+/// returns vertices and faces in the file's unit. Numbers of a text are read in double precision, those of binary files
+/// as they are stored. Vertex indices are not compared with the number of vertices, and coordinates of binary files may
+/// be infinite or NaN: MeshFile checks both for all formats. Files come from outside: each word is checked, and memory
+/// grows with what a file holds, never with what it declares. Throws InputError that names the file, and the line of a
+/// text.
 namespace hapbench {
 
-/// Wavefront OBJ: the lines "v" and "f"; other lines are passed over.
+/// Wavefront OBJ: the lines "v" and "f"; other lines are ignored.
 TriangleSoup read_obj(std::string_view text, const std::filesystem::path& file);
 
-/// OFF with or without normals, colours and texture coordinates; the binary form that OpenMesh writes, too: "OFF
+/// OFF with or without normals, colours and texture coordinates. Also the binary form that OpenMesh writes: "OFF
 /// BINARY", 32-bit numbers, little endian.
 TriangleSoup read_off(std::string_view text, const std::filesystem::path& file);
 
 /// STL, text or binary.
 TriangleSoup read_stl(std::string_view text, const std::filesystem::path& file);
 
-/// PLY, text or binary of either byte order. Elements and properties that are no part of the surface are passed over.
+/// PLY, text or binary of either byte order. Elements and properties that are not part of the surface are ignored.
 TriangleSoup read_ply(std::string_view text, const std::filesystem::path& file);
+
+/// The vertices of a PLY file, ASCII or binary of either byte order: `vertex` must be the first element and have the
+/// properties x, y, z [m], nx, ny, nz among its scalar ones; everything after the vertices, such as faces, is ignored.
+/// Throws InputError that names file and line or vertex.
+std::vector<SurfacePoint> ply_points_in(std::string_view text, const std::filesystem::path& file);
 
 /// Cuts a polygon into a fan of triangles from its first corner.
 void add_polygon(std::span<const std::uint32_t> corners, TriangleSoup& soup);
+
+/// The lines of a mesh file in text form, each as its words. Comments (from '#' to the end of the line) and blank lines
+/// are skipped. Every function throws an InputError that names file and line when a word is not what it should be.
+class MeshLines {
+ public:
+  MeshLines(LineReader lines, const std::filesystem::path& file) : lines_(lines), file_(file) {}
+
+  /// Goes to the next line that has words; false at the end of the text.
+  bool next();
+  const Words& words() const { return words_; }
+  /// The text after the current line.
+  std::string_view rest() const { return lines_.rest(); }
+
+  /// The word as a finite number. Precondition: there is such a word.
+  double number(std::size_t word) const;
+  /// Three coordinates from that word on.
+  Vec3 position(std::size_t first) const;
+  /// The word as a count or an index, within 31 bits; `what` it counts is for the message.
+  std::size_t count(std::size_t word, const char* what) const;
+  /// Adds face `index` of the file, described by the words from `first` on: the number of corners, then their vertices.
+  void add_face(std::size_t index, std::size_t first, TriangleSoup& soup) const;
+
+  [[noreturn]] void fail(const std::string& problem) const;
+
+ private:
+  LineReader lines_;
+  const std::filesystem::path& file_;
+  Words words_;  ///< of the current line
+};
+
+/// Takes the numbers of a binary file one after another. The bytes must outlive it.
+class ByteReader {
+ public:
+  ByteReader(std::string_view bytes, std::endian order) : bytes_(bytes), order_(order) {}
+
+  /// Number of bytes that have not been taken yet.
+  std::size_t left() const { return bytes_.size(); }
+  void skip(std::size_t bytes) { bytes_.remove_prefix(bytes); }
+
+  /// Precondition: at least sizeof(T) bytes are left.
+  template <class T>
+  T take() {
+    std::array<char, sizeof(T)> number;
+    std::copy_n(bytes_.begin(), sizeof(T), number.begin());
+    bytes_.remove_prefix(sizeof(T));
+    if (order_ != std::endian::native) std::reverse(number.begin(), number.end());
+    return std::bit_cast<T>(number);
+  }
+
+ private:
+  std::string_view bytes_;
+  std::endian order_;
+};
 
 }  // namespace hapbench

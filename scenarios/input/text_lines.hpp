@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-/// Text files taken apart: lines, words, numbers.
+/// Text files taken apart: lines, words, numbers, and tables of comma-separated values.
 namespace hapbench {
 
 using Words = std::vector<std::string_view>;
@@ -26,24 +29,75 @@ std::optional<std::size_t> whole_number(std::string_view word);
 /// The word as an error message shows it: in quotes, control characters escaped, cut when long.
 std::string quoted_word(std::string_view word);
 
-/// ASCII letters in lower case.
+/// The text with its ASCII letters in lower case.
 std::string lower_case(std::string_view text);
 
-/// Gives the lines of a text, which must outlive it, one by one.
+/// Returns the lines of a text one by one. The text must outlive it.
 class LineReader {
  public:
   explicit LineReader(std::string_view text) : rest_(text) {}
 
   /// The next line without its end; none at the end of the text.
   std::optional<std::string_view> next();
-  /// Number, from 1, of the last line given.
+  /// Number, from 1, of the last line returned.
   std::size_t line() const { return line_; }
-  /// What has not been given yet.
+  /// The text after the last line returned.
   std::string_view rest() const { return rest_; }
 
  private:
   std::string_view rest_;
   std::size_t line_ = 0;
 };
+
+/// The rows of a comma-separated table, one by one. Cells have no quotes; white space around them, a carriage return at
+/// the end of the line included, does not belong to them.
+class CsvReader {
+ public:
+  /// Takes the next line for the header; an empty one when there is none. The text and the path must outlive the
+  /// reader.
+  CsvReader(LineReader lines, const std::filesystem::path& file);
+
+  /// The header's line.
+  std::string_view header() const { return header_; }
+  const Words& columns() const { return columns_; }
+
+  /// Goes to the next row; false at the end. Throws InputError when it has more or fewer cells than there are columns.
+  bool next();
+  /// Same as next(), but skips blank lines.
+  bool next_not_blank();
+  const Words& cells() const { return cells_; }
+  /// Number, from 1, of the row's line in the file.
+  std::size_t line() const { return lines_.line(); }
+
+ private:
+  LineReader lines_;
+  const std::filesystem::path& file_;
+  std::string_view header_;
+  Words columns_, cells_;
+};
+
+/// Largest table read [bytes].
+inline constexpr std::uintmax_t kLargestTable = std::uintmax_t{4} << 30;
+
+/// The bytes of a file that a scenario names. Throws InputError that names the file.
+std::string read_named_file(const std::filesystem::path& file);
+
+/// The numbers of a CSV file.
+struct NumberTable {
+  std::size_t columns = 0;
+  std::vector<double> values;  ///< row by row
+
+  std::size_t rows() const { return columns == 0 ? 0 : values.size() / columns; }
+  std::span<const double> row(std::size_t i) const { return {values.data() + i * columns, columns}; }
+};
+
+/// Reads the contents of a CSV file of numbers. The first line must be exactly one of `headers`; blank lines are
+/// skipped, and lines may end with CR LF. Throws InputError that names file, line and column for another header, a
+/// wrong number of cells, a cell that is not a finite number, or more than `most_rows` rows.
+NumberTable number_table_in(std::string_view text, const std::filesystem::path& file,
+                            std::span<const std::string_view> headers, std::size_t most_rows);
+/// Same as above, with only one allowed header.
+NumberTable number_table_in(std::string_view text, const std::filesystem::path& file, std::string_view header,
+                            std::size_t most_rows);
 
 }  // namespace hapbench

@@ -1,19 +1,27 @@
 #include "scenarios/program/command.hpp"
 
 #include <fmt/format.h>
+#include <sys/wait.h>
 #include <unistd.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 
 #include "algorithms/registry.hpp"
+#include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
-#include "results/io/new_directories.hpp"
+#include "scenarios/batch/parallel_for.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/program/terminal.hpp"
-#include "scenarios/run/quantity_text.hpp"
+#include "scenarios/plugins/load_plugin.hpp"
+#include "scenarios/program/fields_text.hpp"
+#include "scenarios/program/table.hpp"
+#include "scenarios/run/scene_facts.hpp"
+#include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
 
@@ -22,6 +30,15 @@ namespace fs = std::filesystem;
 namespace {
 
 thread_local CapturedOutput* captured = nullptr;
+std::filesystem::path given_program;
+
+std::string shell_word(std::string_view word) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:=,+@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string_view::npos) return std::string(word);
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
 
 }  // namespace
 
@@ -30,15 +47,23 @@ void capture_output(CapturedOutput* output) noexcept {
 }
 
 void add_output_options(Command& command, OutputOptions& options) {
-  command.flag("--quiet", options.quiet, "nothing on standard output, no progress bar");
-  command.flag("--json", options.json, "JSON on standard output instead of a table");
-  command.flag("--wide", output_in_full, "tables in full, however narrow the terminal");
+  command.flag("--quiet", options.quiet, "print nothing on standard output, and no progress bar");
+  command.flag("--json", options.json, "print JSON instead of tables");
+  command.flag("--wide", output_in_full, "print tables at full width, however narrow the terminal is");
 }
 
 void add_skip_option(Command& command, Skips& skips) {
   command.flag(
       "--no-skip", [&skips] { skips = Skips::off; },
-      "compute everything, also what cannot change the results, by brute force");
+      "compute everything by brute force, even what cannot change the results");
+}
+
+void add_overrides(Command& command, std::vector<std::string>& overrides, const std::string& help) {
+  command.add("--set", overrides, help).words(field_assignments).repeatable();
+}
+
+void add_jobs(Command& command, unsigned& jobs, const std::string& help) {
+  command.add("--jobs", jobs, help).range(1, 1024);
 }
 
 void print(const OutputOptions& options, const std::string& text, const Json& json) {
@@ -56,7 +81,7 @@ void print_warnings(const std::vector<std::string>& warnings) {
     captured->warnings.insert(captured->warnings.end(), warnings.begin(), warnings.end());
     return;
   }
-  std::fflush(stdout);  // where both go to one pipe, in the order of printing
+  std::fflush(stdout);  // keeps the order of printing where both streams go to one pipe
   for (const std::string& warning : warnings) fmt::print(stderr, "hapbench: warning: {}\n", warning);
 }
 
@@ -65,7 +90,7 @@ void print_note(std::string_view text) {
     captured->warnings.emplace_back(text);
     return;
   }
-  std::fflush(stdout);  // what it is about comes first, where both go to one pipe
+  std::fflush(stdout);
   fmt::print(stderr, "hapbench: {}\n", text);
 }
 
@@ -94,6 +119,37 @@ std::vector<std::string> all_algorithms() {
   return algorithm_names();
 }
 
+std::vector<std::string> all_algorithms_and_all() {
+  return with_all(all_algorithms());
+}
+
+std::vector<std::string> all_integrators() {
+  return names_of(kIntegrators, [](const IntegratorEntry* entry) { return entry->info.name; });
+}
+
+std::vector<std::string> all_scenarios() {
+  return names_of(bundled_scenarios(), &BundledScenario::name);
+}
+
+std::vector<std::string> field_assignments() {
+  std::vector<std::string> words;
+  for (const std::string& path : scenario_field_paths()) {
+    words.push_back(path + "=");
+    const FieldGuide* field = find_field(path);
+    if (field == nullptr || !field->value.schema.is_object()) continue;
+    const Json& schema = field->value.schema;
+    if (schema.value("type", "") == "boolean") words.insert(words.end(), {path + "=true", path + "=false"});
+    for (const Json& value : schema.value("enum", Json::array()))
+      words.push_back(path + "=" + value.get<std::string>());
+  }
+  return words;
+}
+
+std::vector<std::string> with_all(std::vector<std::string> words) {
+  words.emplace_back("all");
+  return words;
+}
+
 void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid) {
   std::set<std::string> seen;
   for (const std::string& name : names) {
@@ -113,8 +169,8 @@ std::vector<std::string> chosen_names(std::string_view got, const std::vector<st
   return given;
 }
 
-void require_algorithms(const std::vector<std::string>& names) {
-  require_names("--algorithms: got", names, all_algorithms());
+fs::path results_directory(const std::string& out, const std::string& name) {
+  return out.empty() ? fs::path("results") / "out" / name : fs::path(out);
 }
 
 std::vector<fs::path> output_directories(const std::string& out, const std::vector<LoadedScenario>& scenarios,
@@ -127,15 +183,14 @@ std::vector<fs::path> output_directories(const std::string& out, const std::vect
       throw InputError(
           fmt::format("{}: a second scenario named \"{}\"; allowed: {}", scenario.file.string(), stem, allowed));
     }
-    directories.push_back(out.empty()             ? fs::path("results") / "out" / (prefix + stem)
-                          : scenarios.size() == 1 ? fs::path(out)
-                                                  : fs::path(out) / stem);
+    const fs::path directory = results_directory(out, prefix + stem);
+    directories.push_back(out.empty() || scenarios.size() == 1 ? directory : directory / stem);
   }
   return directories;
 }
 
 void require_writable_directory(const fs::path& directory) {
-  static NewDirectories directories;  // until the program ends, with or without results
+  static NewDirectories directories;  // lives until the program ends, which removes empty ones
   std::error_code error;
   directories.create(directory, error);
   if (error) throw InputError(fmt::format("--out {}: cannot be created: {}", directory.string(), error.message()));
@@ -143,6 +198,48 @@ void require_writable_directory(const fs::path& directory) {
   if (access(directory.c_str(), W_OK | X_OK) != 0) {
     throw InputError(fmt::format("--out {}: cannot be written to", directory.string()));
   }
+}
+
+void require_writable_file(const fs::path& file) {
+  std::error_code ignored;
+  if (fs::is_directory(file, ignored)) throw InputError(fmt::format("--out {}: is a directory", file.string()));
+  require_writable_directory(file.has_parent_path() ? file.parent_path() : ".");
+}
+
+JobOptions job_options(unsigned jobs, const OutputOptions& output, const std::string& label) {
+  return {jobs == 0 ? static_cast<unsigned>(available_threads()) : jobs, output.quiet ? "" : label};
+}
+
+std::string shell_line(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words) line += (line.empty() ? "" : " ") + shell_word(word);
+  return line;
+}
+
+std::filesystem::path this_program() {
+  std::error_code ignored;
+  return given_program.empty() ? std::filesystem::read_symlink("/proc/self/exe", ignored) : given_program;
+}
+
+std::vector<std::string> plugin_words() {
+  std::vector<std::string> words;
+  for (const LoadedPlugin& plugin : loaded_plugins()) words.insert(words.end(), {"--plugin", plugin.file.string()});
+  return words;
+}
+
+ProgramOutput output_of(const std::vector<std::string>& words) {
+  ProgramOutput output;
+  std::FILE* pipe = ::popen((shell_line(words) + " 2>&1").c_str(), "r");
+  if (pipe == nullptr) throw IoError("run", words[0], std::error_code(errno, std::generic_category()));
+  char piece[4096];
+  for (std::size_t n; (n = std::fread(piece, 1, sizeof piece, pipe)) > 0;) output.text.append(piece, n);
+  const int status = ::pclose(pipe);
+  output.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return output;
+}
+
+void set_this_program(std::filesystem::path program) {
+  given_program = std::move(program);
 }
 
 }  // namespace hapbench

@@ -1,17 +1,20 @@
 #pragma once
 
 #include <filesystem>
-#include <span>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/program/command_line.hpp"
-#include "sim/core/skips.hpp"
+#include "sim/core/types.hpp"
 
-/// The command line: each command adds its options to the parser and says what to do when it is chosen.
+/// Shared by all commands: exit status, output, common options, names, directories of results, other programs.
 namespace hapbench {
 
 /// Exit status of the program.
@@ -20,7 +23,7 @@ enum ExitStatus : int {
   kInternalFault = 1,
   kBadInput = 2,
   kUnexpectedOutcome = 3,  ///< a simulation diverged, or missed another expectation of its scenario
-  kStopped = 128,          ///< plus the number of the signal, as shells say it: 130 for Ctrl-C, 143 for SIGTERM
+  kStopped = 128,          ///< plus the number of the signal, as shells do: 130 for Ctrl-C, 143 for SIGTERM
 };
 
 /// Options every command understands.
@@ -29,83 +32,113 @@ struct OutputOptions {
   bool json = false;   ///< JSON instead of tables on standard output
 };
 
-void add_run(CommandLine& line);
-void add_compare(CommandLine& line);
-void add_stability(CommandLine& line);
-void add_limit(CommandLine& line);
-void add_precision(CommandLine& line);
-void add_reproduce(CommandLine& line);
-void add_diff(CommandLine& line);
-void add_sweep(CommandLine& line);
-void add_merge(CommandLine& line);
-void add_new(CommandLine& line);
-void add_import(CommandLine& line);
-void add_plot(CommandLine& line);
-void add_report(CommandLine& line);
-void add_shell(CommandLine& line);
-void add_list(CommandLine& line);
-void add_describe(CommandLine& line);
-void add_validate(CommandLine& line);
-void add_completion(CommandLine& line);
-void add_man(CommandLine& line);
-
 /// Adds --quiet, --json and --wide.
 void add_output_options(Command& command, OutputOptions& options);
-
 /// Adds --no-skip.
 void add_skip_option(Command& command, Skips& skips);
+/// Adds --set, repeatable and completed by the fields of scenarios.
+void add_overrides(Command& command, std::vector<std::string>& overrides,
+                   const std::string& help = "override a field: path=value");
+/// Adds --jobs, at least 1. Zero means not given.
+void add_jobs(Command& command, unsigned& jobs, const std::string& help);
 
 /// Prints `text`, as wide as the output is, or `json` under --json, or nothing under --quiet.
 void print(const OutputOptions& options, const std::string& text, const Json& json);
+/// Prints warnings, one line each, on standard error.
+void print_warnings(const std::vector<std::string>& warnings);
+/// Prints "hapbench: TEXT" on standard error.
+void print_note(std::string_view text);
+/// Prints "hapbench: error: TEXT" on standard error.
+void print_error(std::string_view text);
+/// Prints each fault of bad input as an error.
+void print_errors(const InputError& error);
 
-/// What a command says.
+/// The output of a command.
 struct CapturedOutput {
   std::string text;                           ///< of standard output
   std::vector<std::string> warnings, errors;  ///< notes are among the warnings
 };
 
-/// From now on what the commands of this thread say goes there; null: to the terminal. For a host that is no terminal.
+/// Redirects what the commands of this thread print into `output`, for a host that is no terminal; null ends that.
 void capture_output(CapturedOutput* output) noexcept;
 
-/// Prints warnings, one line each, on standard error.
-void print_warnings(const std::vector<std::string>& warnings);
-
-/// Prints "hapbench: TEXT" on standard error.
-void print_note(std::string_view text);
-
-/// Prints "hapbench: error: TEXT" on standard error.
-void print_error(std::string_view text);
-/// Prints the faults of bad input so, a line each.
-void print_errors(const InputError& error);
-
-/// The page that `report` writes of the runs in a folder. Throws IoError when it cannot be made; what is missing has
-/// then been said on standard error.
+/// Writes the page that `report` makes of the runs in a folder. Throws IoError when it cannot be made, after the Python
+/// tool has explained why on standard error.
 void write_report(const std::filesystem::path& folder, bool quiet);
 
-/// Says on standard error when results are going to be large: more than 100 MB.
+/// Warns on standard error of results of more than 100 MB.
 void announce_large_output(double bytes);
+
+/// The names of a table's entries, or of what its pointers point to.
+template <class Table, class Name>
+std::vector<std::string> names_of(const Table& table, Name name) {
+  std::vector<std::string> names;
+  for (const auto& entry : table) names.emplace_back(std::invoke(name, entry));
+  return names;
+}
+
+/// A value as JSON; null for none.
+template <class Value>
+Json or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
 
 /// The names of all registered algorithms.
 std::vector<std::string> all_algorithms();
+/// Their names and "all", for completion.
+std::vector<std::string> all_algorithms_and_all();
+/// The names of all integrators.
+std::vector<std::string> all_integrators();
+/// The names of all bundled scenarios. Throws InputError.
+std::vector<std::string> all_scenarios();
+/// "path=" for each field of scenarios, and "path=value" for each value that has a name. For completion.
+std::vector<std::string> field_assignments();
+/// Adds "all" to the words.
+std::vector<std::string> with_all(std::vector<std::string> words);
 
-/// Makes sure the names given are among the valid ones, each once; throws InputError otherwise, in whose message `got`
-/// stands before the name, as in "--only: got".
+/// Throws InputError unless each name is among the valid ones and given once; `got` stands before the name in its
+/// message, as in "--only: got".
 void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid);
-/// The same where "all" may be given instead of names, and stands for all of them; returns the names.
+/// Checks the same way and returns the names, where "all" alone stands for all of them.
 std::vector<std::string> chosen_names(std::string_view got, const std::vector<std::string>& given,
                                       const std::vector<std::string>& all);
-/// The same for the names given to --algorithms.
-void require_algorithms(const std::vector<std::string>& names);
 
-/// One directory a scenario: `out` itself for a single one, a subdirectory named after the file for several; without
+/// `out`, or results/out/`name` when it is empty.
+std::filesystem::path results_directory(const std::string& out, const std::string& name);
+/// One directory per scenario: `out` itself for a single one, a subdirectory named after the file for several; without
 /// `out`, one of results/out, named after the file behind `prefix`. Throws InputError when two files have the same
 /// name; `allowed` is for its message.
 std::vector<std::filesystem::path> output_directories(const std::string& out,
                                                       const std::vector<LoadedScenario>& scenarios,
                                                       const std::string& prefix, const std::string& allowed);
 
-/// Makes sure results can be written to `directory`; throws InputError otherwise. Creates it; if it is still empty when
-/// the program ends, it is removed again.
+/// Throws InputError unless results can be written to `directory`. Creates it, and removes it again if it is still
+/// empty when the program ends.
 void require_writable_directory(const std::filesystem::path& directory);
+/// Throws InputError unless a file can be written at the path given to --out; creates its directory likewise.
+void require_writable_file(const std::filesystem::path& file);
+
+/// `jobs` threads, or as many as this process may use when it is 0, and a progress bar behind `label` unless quiet.
+JobOptions job_options(unsigned jobs, const OutputOptions& output, const std::string& label);
+
+/// Quotes words for a POSIX shell: those with anything but letters, digits and "_-./:=,+@%" in single quotes.
+std::string shell_line(const std::vector<std::string>& words);
+
+/// The file of this program, or what set_this_program gave.
+std::filesystem::path this_program();
+/// Sets the answer of this_program, for a host that is another program.
+void set_this_program(std::filesystem::path program);
+
+/// The options of a command line that load the plugins that this program has loaded.
+std::vector<std::string> plugin_words();
+
+/// The output of a program and how it ended.
+struct ProgramOutput {
+  int status = 0;    ///< exit status; 127 when there is no such program, 128 and more when a signal ended it
+  std::string text;  ///< of standard output and standard error
+};
+
+/// Runs a program and waits for it. Throws IoError when no process can be started.
+ProgramOutput output_of(const std::vector<std::string>& words);
 
 }  // namespace hapbench

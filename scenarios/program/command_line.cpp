@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "algorithms/plugin/plugin_law.hpp"
+#include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/program/command.hpp"
@@ -30,28 +31,19 @@ CommandOption& CommandOption::comma_separated() {
   return *this;
 }
 
-namespace {
-
-/// CLI11's own check says the same in other words, and shows in the help.
-template <class Number>
-CLI::Validator within(Number least, Number greatest) {
+CommandOption& CommandOption::range(std::int64_t least, std::int64_t greatest) {
+  // CLI11's own check words the error differently, and shows in the help.
   const auto problem = [least, greatest](const std::string& word) -> std::string {
-    Number number{};
+    std::int64_t number = 0;
     if (CLI::detail::lexical_cast(word, number) && number >= least && number <= greatest) return "";
     return fmt::format("got {}; allowed: {} ... {}", word, least, greatest);
   };
-  return CLI::Validator(problem, "");
-}
-
-}  // namespace
-
-CommandOption& CommandOption::range(int least, int greatest) {
-  option_->check(within(least, greatest));
+  option_->check(CLI::Validator(problem, ""));
   return *this;
 }
 
-CommandOption& CommandOption::range(std::uint64_t least, std::uint64_t greatest) {
-  option_->check(within(least, greatest));
+CommandOption& CommandOption::words(WordSource source) {
+  state_->words[option_] = std::move(source);
   return *this;
 }
 
@@ -61,7 +53,7 @@ CommandOption& CommandOption::one_of(const std::vector<std::string>& words) {
     return fmt::format("got \"{}\"; allowed: {}{}", word, quoted_list(words), nearest_name_hint(word, words));
   };
   option_->check(CLI::Validator(problem, ""));
-  return *this;
+  return this->words([words] { return words; });
 }
 
 CommandOption& CommandOption::value_if_none(const std::string& value) {
@@ -79,40 +71,16 @@ CommandOption& CommandOption::excludes(const CommandOption& other) {
   return *this;
 }
 
-CommandOption Command::add(const std::string& name, std::string& value, const std::string& help) {
-  return CommandOption(app_->add_option(name, value, help));
-}
-
-CommandOption Command::add(const std::string& name, std::vector<std::string>& value, const std::string& help) {
-  return CommandOption(app_->add_option(name, value, help));
-}
-
-CommandOption Command::add(const std::string& name, int& value, const std::string& help) {
-  return CommandOption(app_->add_option(name, value, help));
-}
-
-CommandOption Command::add(const std::string& name, std::int64_t& value, const std::string& help) {
-  return CommandOption(app_->add_option(name, value, help));
-}
-
-CommandOption Command::add(const std::string& name, unsigned& value, const std::string& help) {
-  return CommandOption(app_->add_option(name, value, help));
-}
-
-CommandOption Command::add(const std::string& name, double& value, const std::string& help) {
-  return CommandOption(app_->add_option(name, value, help));
-}
-
-CommandOption Command::add(const std::string& name, std::uint64_t& value, const std::string& help) {
-  return CommandOption(app_->add_option(name, value, help));
+CommandOption Command::add_variable(const std::string& name, Variable variable, const std::string& help) {
+  return {std::visit([&](auto* value) { return app_->add_option(name, *value, help); }, variable), state_};
 }
 
 CommandOption Command::flag(const std::string& name, bool& value, const std::string& help) {
-  return CommandOption(app_->add_flag(name, value, help));
+  return {app_->add_flag(name, value, help), state_};
 }
 
 CommandOption Command::flag(const std::string& name, std::function<void()> when_given, const std::string& help) {
-  return CommandOption(app_->add_flag_callback(name, std::move(when_given), help));
+  return {app_->add_flag_callback(name, std::move(when_given), help), state_};
 }
 
 void Command::footer(const std::string& text) {
@@ -121,18 +89,18 @@ void Command::footer(const std::string& text) {
 
 void Command::runs(Action action, std::string when_stopped) {
   ChosenCommand command{std::move(action), std::move(when_stopped)};
-  app_->callback([&chosen = chosen_, command = std::move(command)] { chosen = command; });
+  app_->callback([&state = state_, command = std::move(command)] { state.chosen = command; });
 }
 
 CommandLine::CommandLine(const std::string& version, std::function<std::string()> version_json)
     : app_(std::make_unique<CLI::App>("an offline bench for haptic rendering", kProgramName)) {
   CLI::Option* json = app_->add_flag("--json");
-  json->description("commit, compiler, instruction set and what is promised");
+  json->description("commit, compiler, instruction set and what the version promises");
   json->needs(app_->set_version_flag("--version", [=, version_json = std::move(version_json)] {
     return json->count() > 0 ? version_json() : version;
   }));
-  app_->get_option("--version")->description("print the version, and with --json what it is made of");
-  app_->get_option("--help")->description("print this, and with a command its help");
+  app_->get_option("--version")->description("print the version; with --json also what it was built from");
+  app_->get_option("--help")->description("print this help; with a command, that command's help");
   add_plugin_option(*app_);
   app_->require_subcommand(1);
   app_->footer(
@@ -142,33 +110,35 @@ CommandLine::CommandLine(const std::string& version, std::function<std::string()
 
 CommandLine::~CommandLine() = default;
 
-/// The program and each command have it, so that it may stand anywhere.
+/// The program and each command have this option, so that it may stand before or behind the command.
 void CommandLine::add_plugin_option(CLI::App& app) {
   const auto add = [this](const std::vector<std::string>& files) {
     plugins_.insert(plugins_.end(), files.begin(), files.end());
   };
   app.add_option_function<std::vector<std::string>>(
-         "--plugin", add, "FILE.so with a law of your own; HAPBENCH_PLUGIN_PATH names folders of such files")
+         "--plugin", add,
+         "load FILE.so, which holds a force law of your own; HAPBENCH_PLUGIN_PATH names folders of such files")
       ->allow_extra_args(false)
       ->take_all();
 }
 
 Command CommandLine::command(const std::string& name, const std::string& summary) {
   CLI::App* app = app_->add_subcommand(name, summary);
-  app->get_option("--help")->description("print this");
+  app->get_option("--help")->description("print this help");
   add_plugin_option(*app);
-  return Command(app, chosen_);
+  return Command(app, state_);
 }
 
 namespace {
 
-OptionText text_of(const CLI::Option& option) {
+OptionText text_of(const CLI::Option& option, const WordSource& words) {
   OptionText text{.name = option.get_name(option.get_positional(), true),
                   .value = "",
                   .help = option.get_description(),
                   .is_argument = option.get_positional(),
                   .is_required = option.get_required(),
-                  .takes_a_list = option.get_delimiter() == ','};
+                  .takes_a_list = option.get_delimiter() == ',',
+                  .words = words};
   if (option.get_type_size() != 0 && !option.get_type_name().empty()) {
     text.value = option.get_type_name();
     if (option.get_expected_min() == 0) text.value = "[" + text.value + "]";
@@ -180,9 +150,12 @@ OptionText text_of(const CLI::Option& option) {
   return text;
 }
 
-CommandText text_of(const CLI::App& app) {
+CommandText text_of(const CLI::App& app, const CommandLineState& state) {
   CommandText text{app.get_name(), app.get_description(), app.get_footer(), {}};
-  for (const CLI::Option* option : app.get_options()) text.options.push_back(text_of(*option));
+  for (const CLI::Option* option : app.get_options()) {
+    const auto words = state.words.find(option);
+    text.options.push_back(text_of(*option, words == state.words.end() ? WordSource() : words->second));
+  }
   return text;
 }
 
@@ -200,7 +173,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
-/// For an option named like a field of scenarios: how a field is given.
+/// Tells a user who wrote a field of scenarios as an option how fields are given.
 std::string field_hint(const std::string& option, const std::vector<std::string>& known) {
   if (nearest_name(option.substr(option.find_first_not_of('-')), scenario_field_paths()).empty()) return "";
   const auto has = [&known](const char* name) { return std::find(known.begin(), known.end(), name) != known.end(); };
@@ -208,7 +181,7 @@ std::string field_hint(const std::string& option, const std::vector<std::string>
   return has("--set") ? "; fields are set by --set FIELD=VALUE" : "";
 }
 
-/// What is wrong with a word that nothing takes.
+/// Explains a word that no option or argument takes.
 std::string problem_of(const std::string& word, const CLI::App& program, const CLI::App* command) {
   if (word.starts_with("-")) {
     const std::string name = word.substr(0, word.find('='));
@@ -222,7 +195,7 @@ std::string problem_of(const std::string& word, const CLI::App& program, const C
   return fmt::format("unknown command \"{}\"{}", word, nearest_name_hint(word, names));
 }
 
-/// What is wrong with the command line, in one line.
+/// Explains in one line why the command line was refused.
 std::string problem_of(const CLI::ParseError& error, const CLI::App& program) {
   const std::vector<CLI::App*> chosen = program.get_subcommands();
   const CLI::App* command = chosen.empty() ? nullptr : chosen.front();
@@ -230,7 +203,7 @@ std::string problem_of(const CLI::ParseError& error, const CLI::App& program) {
   const std::string help = fmt::format("; \"{} {}--help\" explains", kProgramName, words);
   std::vector<std::string> extra = program.remaining(true);
   std::erase(extra, "--");
-  // An option that is not known leaves its value behind: the option is what is wrong.
+  // An unknown option leaves its value behind as an extra word; the option is the mistake to report.
   std::stable_partition(extra.begin(), extra.end(), [](const std::string& word) { return word.starts_with("-"); });
   if (!extra.empty()) return name + problem_of(extra.front(), program, command) + help;
   if (command == nullptr && error.get_name() == "RequiredError") return "a command is missing" + help;
@@ -240,8 +213,8 @@ std::string problem_of(const CLI::ParseError& error, const CLI::App& program) {
 }  // namespace
 
 std::vector<CommandText> CommandLine::texts() const {
-  std::vector<CommandText> texts = {text_of(*app_)};
-  for (const CLI::App* command : app_->get_subcommands({})) texts.push_back(text_of(*command));
+  std::vector<CommandText> texts = {text_of(*app_, state_)};
+  for (const CLI::App* command : app_->get_subcommands({})) texts.push_back(text_of(*command, state_));
   return texts;
 }
 
@@ -252,7 +225,8 @@ void load_plugins(const std::vector<std::string>& files) {
   if (const char* folders = std::getenv("HAPBENCH_PLUGIN_PATH")) load_plugins_in("HAPBENCH_PLUGIN_PATH", folders);
 }
 
-/// Takes the plugins out of words that may be no command line yet, the last of which is being typed.
+/// Removes "--plugin FILE" from an unfinished command line, whose last word is still being typed, and returns the
+/// files.
 std::vector<std::string> take_plugins(std::vector<std::string>& words) {
   std::vector<std::string> plugins;
   for (std::size_t i = 0; i + 2 < words.size();) {
@@ -266,18 +240,18 @@ std::vector<std::string> take_plugins(std::vector<std::string>& words) {
   return plugins;
 }
 
-/// Asked by a shell at each press of the tab key.
+/// "hapbench complete WORDS": a shell runs this at each press of the tab key.
 int complete(const std::vector<CommandText>& texts, std::vector<std::string> words) {
   try {
     load_plugins(take_plugins(words));
   } catch (const InputError&) {
-    // The command itself will say so.
+    // The command itself will report it.
   }
   for (const std::string& word : completions(texts, words)) fmt::print("{}\n", word);
   return kSuccess;
 }
 
-/// Runs that a law from outside ended count as diverged; where that is no failure by itself, this is.
+/// Makes a success fail when a plugin's law failed: its runs count as diverged, which by itself need not be a failure.
 int status_with_faults(int status) {
   const PluginFaults faults = take_plugin_faults();
   if (faults.count == 0) return status;
@@ -304,8 +278,8 @@ int CommandLine::run(int argc, char** argv) {
     throw InputError(problem_of(error, *app_));
   }
   load_plugins(plugins_);
-  take_plugin_faults();  // of an earlier command of this process
-  return status_with_faults(chosen_.action());
+  take_plugin_faults();  // forgets those of an earlier command of this process
+  return status_with_faults(state_.chosen.action());
 }
 
 }  // namespace hapbench

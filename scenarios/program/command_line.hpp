@@ -2,33 +2,76 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
-
-#include "scenarios/program/command_text.hpp"
 
 namespace CLI {
 class App;
 class Option;
 }  // namespace CLI
 
-/// The command line. A thin front of CLI11, so that command_line.cpp alone compiles that header.
+/// The command line: a thin front of CLI11, so that command_line.cpp alone compiles that header, and the texts made of
+/// what commands declare: help, manual page, completions.
 namespace hapbench {
 
-/// What the chosen command does; returns the exit status.
+inline constexpr const char* kProgramName = "hapbench";
+
+/// Does the work of the chosen command; returns the exit status.
 using Action = std::function<int()>;
 
-/// The command that the words of the command line name.
+/// Lists the words that an option or argument may take. Called only when a shell completes that option.
+using WordSource = std::function<std::vector<std::string>()>;
+
+/// The command that the user chose.
 struct ChosenCommand {
   Action action;
   std::string when_stopped;  ///< what becomes of its results when a signal stops it
 };
 
+/// An option, or an argument known by its place.
+struct OptionText {
+  std::string name;   ///< "--out"; all names, as in "-h,--help"
+  std::string value;  ///< the kind of value, as in "TEXT ..."; empty for a flag
+  std::string help;   ///< including what it needs and excludes
+  bool is_argument;   ///< has no dashes
+  bool is_required;
+  bool takes_a_list;  ///< several values in a word, separated by commas
+  WordSource words;   ///< null when the value may be anything, such as a file
+};
+
+/// A command; the program itself is the one that is called "hapbench".
+struct CommandText {
+  std::string name;
+  std::string summary;
+  std::string footer;
+  std::vector<OptionText> options;
+};
+
+/// The help of a command, as wide as prose is; that of the program, which is the first of `texts`, lists the others.
+std::string help_text(const std::vector<CommandText>& texts, const std::string& command);
+
+/// The manual page of the program with all its commands, in the language of man(7). `version` stands below it.
+std::string manual_page(const std::vector<CommandText>& texts, const std::string& version);
+
+/// Completes the last of `words`, the words of a command line behind the program's name up to the cursor; the last one
+/// may be empty. Words that a shell broke at "=" and ":", as bash does, count as one, and the answer is the part behind
+/// the break. Empty where a file name is wanted or nothing is known.
+std::vector<std::string> completions(const std::vector<CommandText>& texts, const std::vector<std::string>& words);
+
+/// State that all commands of a command line share.
+struct CommandLineState {
+  ChosenCommand chosen;
+  std::map<const CLI::Option*, WordSource> words;  ///< of options that name theirs
+};
+
 /// An option or an argument of a command. All functions return the option itself, for chaining.
 class CommandOption {
  public:
-  explicit CommandOption(CLI::Option* option) : option_(option) {}
+  CommandOption(CLI::Option* option, CommandLineState& state) : option_(option), state_(&state) {}
 
   CommandOption& required();
   /// May be given several times, each time with one value.
@@ -36,9 +79,10 @@ class CommandOption {
   /// Takes several values in one word, separated by commas; white space around them does not count.
   CommandOption& comma_separated();
   /// Refuses numbers outside [least, greatest].
-  CommandOption& range(int least, int greatest);
-  CommandOption& range(std::uint64_t least, std::uint64_t greatest);
-  /// Refuses other words.
+  CommandOption& range(std::int64_t least, std::int64_t greatest);
+  /// Names the words for completion. The command itself checks what it is given.
+  CommandOption& words(WordSource source);
+  /// Refuses other words, and completes these.
   CommandOption& one_of(const std::vector<std::string>& words);
   /// May be given without a value, which then is this.
   CommandOption& value_if_none(const std::string& value);
@@ -47,33 +91,37 @@ class CommandOption {
 
  private:
   CLI::Option* option_;
+  CommandLineState* state_;
 };
 
 /// A subcommand that takes its options. The variables bound here are written while the command line is parsed and must
 /// live until then.
 class Command {
  public:
-  Command(CLI::App* app, ChosenCommand& chosen) : app_(app), chosen_(chosen) {}
+  /// The variable that an option writes.
+  using Variable =
+      std::variant<std::string*, std::vector<std::string>*, int*, unsigned*, std::int64_t*, std::uint64_t*, double*>;
+
+  Command(CLI::App* app, CommandLineState& state) : app_(app), state_(state) {}
 
   /// A name that begins with "--" is an option, another one an argument known by its place.
-  CommandOption add(const std::string& name, std::string& value, const std::string& help);
-  CommandOption add(const std::string& name, std::vector<std::string>& value, const std::string& help);
-  CommandOption add(const std::string& name, int& value, const std::string& help);
-  CommandOption add(const std::string& name, std::int64_t& value, const std::string& help);
-  CommandOption add(const std::string& name, unsigned& value, const std::string& help);
-  CommandOption add(const std::string& name, double& value, const std::string& help);
-  CommandOption add(const std::string& name, std::uint64_t& value, const std::string& help);
+  template <class Value>
+  CommandOption add(const std::string& name, Value& value, const std::string& help) {
+    return add_variable(name, &value, help);
+  }
   CommandOption flag(const std::string& name, bool& value, const std::string& help);
   /// Calls `when_given` if the flag is.
   CommandOption flag(const std::string& name, std::function<void()> when_given, const std::string& help);
   /// Text below the list of options: paragraphs, which are wrapped; a line that begins with blanks keeps them.
   void footer(const std::string& text);
-  /// What the command does when it is chosen, and what becomes of its results when Ctrl-C stops it.
-  void runs(Action action, std::string when_stopped = "what was not complete is removed");
+  /// Sets the work of the command, and a note on its results for when Ctrl-C stops it.
+  void runs(Action action, std::string when_stopped = "incomplete results are removed");
 
  private:
+  CommandOption add_variable(const std::string& name, Variable variable, const std::string& help);
+
   CLI::App* app_;
-  ChosenCommand& chosen_;
+  CommandLineState& state_;
 };
 
 /// The program's command line: every command adds itself, then `run` parses and runs the one that was chosen.
@@ -83,13 +131,24 @@ class CommandLine {
   CommandLine(const std::string& version, std::function<std::string()> version_json);
   ~CommandLine();
 
+  /// Adds a command. One with options of its own also gets them: they live as long as the command line, and `action` is
+  /// called with them when the command is chosen (Command::runs).
   Command command(const std::string& name, const std::string& summary);
-  /// Loads the plugins that the words and HAPBENCH_PLUGIN_PATH name, then runs the command. Returns its exit status; for
-  /// a success during which the law of a plugin failed, kUnexpectedOutcome. Throws what the command throws, and
+  template <class Options>
+  std::pair<Command, Options&> command(const std::string& name, const std::string& summary,
+                                       int (*action)(const Options&),
+                                       const std::string& when_stopped = "incomplete results are removed") {
+    auto options = std::make_shared<Options>();
+    Command command = this->command(name, summary);
+    command.runs([options, action] { return action(*options); }, when_stopped);
+    return {command, *options};
+  }
+  /// Loads the plugins that the words and HAPBENCH_PLUGIN_PATH name, then runs the command. Returns its exit status;
+  /// for a success during which the law of a plugin failed, kUnexpectedOutcome. Throws what the command throws, and
   /// InputError for a wrong usage and for plugins.
   int run(int argc, char** argv);
-  /// What the chosen command says of its results when it is stopped.
-  const std::string& when_stopped() const { return chosen_.when_stopped; }
+  /// The chosen command's note on its results for when it is stopped.
+  const std::string& when_stopped() const { return state_.chosen.when_stopped; }
   /// The program's own options and notes, then every command with its own, in the order in which they were added.
   std::vector<CommandText> texts() const;
 
@@ -97,7 +156,7 @@ class CommandLine {
   void add_plugin_option(CLI::App& app);
 
   std::unique_ptr<CLI::App> app_;
-  ChosenCommand chosen_;
+  CommandLineState state_;
   std::vector<std::string> plugins_;
 };
 

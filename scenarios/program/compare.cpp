@@ -2,27 +2,23 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include <cmath>
-#include <memory>
+#include <map>
 #include <set>
 #include <span>
 
 #include "algorithms/registry.hpp"
 #include "results/summary/outcome_names.hpp"
-#include "scenarios/batch/earlier_results.hpp"
-#include "scenarios/batch/league_files.hpp"
-#include "scenarios/batch/league_runs.hpp"
+#include "scenarios/batch/league.hpp"
 #include "scenarios/batch/parallel_for.hpp"
+#include "scenarios/batch/result_folders.hpp"
 #include "scenarios/batch/run_batch.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/program/compare_devices.hpp"
-#include "scenarios/program/comparison_table.hpp"
-#include "scenarios/program/device_limits_text.hpp"
-#include "scenarios/program/league_text.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/program/table.hpp"
-#include "scenarios/run/expectation.hpp"
-#include "scenarios/run/expected_output.hpp"
+#include "scenarios/run/encounter.hpp"
+#include "scenarios/run/recorders.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
@@ -31,30 +27,15 @@ namespace {
 namespace fs = std::filesystem;
 
 struct CompareOptions {
-  std::vector<std::string> scenarios;
-  std::vector<std::string> algorithms;
   std::vector<std::string> metrics;
   unsigned seeds = 1;
   double jitter = 0.0;
-  unsigned jobs = 0;  ///< 0: not given
-  std::string out;
-  std::vector<std::string> overrides;
   bool html = false;
-  Skips skips = Skips::taken;
-  OutputOptions output;
-  std::vector<std::string> devices;
-  std::string vibration;
-  std::string resolution;
+  Skips skips = Skips::on;
+  CompareDevicesOptions common;  ///< all others, most of which a comparison of algorithms has, too
 };
 
-/// --devices asks for something else: the largest stiffness that each of them renders.
-CompareDevicesOptions device_options(const CompareOptions& options) {
-  if (options.skips == Skips::off) throw InputError("--no-skip: got it beside --devices; allowed: without");
-  return {options.devices,    options.scenarios, options.algorithms, options.overrides, options.vibration,
-          options.resolution, options.jobs,      options.out,        options.output};
-}
-
-/// There is something to rank over, or by.
+/// True when there are several scenarios or seeds to rank over, or metrics to rank by.
 bool wants_league(const CompareOptions& options, const BatchPlan& plan) {
   return plan.scenarios.size() > 1 || options.seeds > 1 || !options.metrics.empty();
 }
@@ -66,13 +47,11 @@ BatchPlan plan_of(const CompareOptions& options) {
     throw InputError(fmt::format("--jitter: got {}; allowed: 0 ... {} m", options.jitter, kMostJitter));
   }
   BatchDefinition definition;
-  if (!options.algorithms.empty()) {
-    definition.algorithms = chosen_names("--algorithms: got", options.algorithms, all_algorithms());
-  } else {
-    definition.algorithms = all_algorithms();
-  }
-  definition.scenarios = find_scenarios(options.scenarios);
-  definition.overrides = options.overrides;
+  const std::vector<std::string>& algorithms = options.common.algorithms;
+  definition.algorithms =
+      algorithms.empty() ? all_algorithms() : chosen_names("--algorithms: got", algorithms, all_algorithms());
+  definition.scenarios = find_scenarios(options.common.scenarios);
+  definition.overrides = options.common.overrides;
   definition.seeds = options.seeds;
   definition.jitter = options.jitter;
   definition.skips = options.skips;
@@ -80,11 +59,10 @@ BatchPlan plan_of(const CompareOptions& options) {
 }
 
 fs::path directory_of(const CompareOptions& options, const BatchPlan& plan) {
-  if (!options.out.empty()) return options.out;
-  return fs::path("results") / "out" / (plan.names.size() > 1 ? "compare" : "compare_" + plan.names[0]);
+  return results_directory(options.common.out, plan.names.size() > 1 ? "compare" : "compare_" + plan.names[0]);
 }
 
-/// Makes the directories and takes out of them what an earlier comparison left.
+/// Makes the directories and removes the results of an earlier comparison from them.
 void prepare(const fs::path& out, const BatchPlan& plan, bool league) {
   ResultList results;
   for (std::size_t i = 0; i < plan.size(); ++i) results.runs.push_back(run_directory(plan, i));
@@ -107,9 +85,9 @@ double expected_bytes(const BatchPlan& plan) {
 BatchOptions batch_options(const CompareOptions& options, const BatchPlan& plan, const fs::path& out) {
   BatchOptions batch;
   batch.directory = out;
-  // The table of a single comparison shows times, which runs beside each other would lengthen.
-  batch.jobs = options.jobs > 0 ? options.jobs : wants_league(options, plan) ? available_threads() : 1;
-  batch.progress = !options.output.quiet;
+  // The table of a single comparison shows times, which concurrent runs would lengthen.
+  batch.jobs = options.common.jobs > 0 ? options.common.jobs : wants_league(options, plan) ? available_threads() : 1;
+  batch.progress = !options.common.output.quiet;
   return batch;
 }
 
@@ -119,22 +97,16 @@ std::span<const RunReport> reports_of(const BatchPlan& plan, const BatchReport& 
   return std::span(report.runs).subspan(scenario * each, each);
 }
 
-/// What one scenario's runs came to, for the terminal.
+/// The table of one scenario's runs.
 std::string comparison_text(std::span<const RunReport> reports) {
-  std::vector<Table::Column> columns = run_columns();
-  columns.insert(columns.begin(), {"algorithm", false});
-  Table table(columns, kRunGap);
-  for (const RunReport& report : reports) {
-    std::vector<std::string> cells = run_cells(report);
-    cells.insert(cells.begin(), report.summary.algorithm);
-    table.add(std::move(cells));
-  }
+  RunTable table({"algorithm"});
+  for (const RunReport& report : reports) table.add({report.summary.algorithm}, report);
   return fmt::format("{}\n\n{}{}{}", reports.front().summary.name, table.text(), unsettled_text(reports),
                      step_time_text(reports));
 }
 
-/// Which algorithms of a single scenario are defined with a depth model other than the one that others have. A run of
-/// theirs would warn of it.
+/// Names the algorithms of a single scenario whose definition fixes a depth model, if others use another one. Each of
+/// their runs would warn of it.
 std::string own_depth_models_text(const BatchPlan& plan) {
   std::vector<std::string> own;
   std::set<std::string> models;
@@ -148,6 +120,138 @@ std::string own_depth_models_text(const BatchPlan& plan) {
   }
   if (models.size() < 2) return "";
   return wrapped(fmt::format("defined with a depth model of their own: {}", fmt::join(own, ", ")), 0);
+}
+
+/// "A" ... "Z", "AA", "AB", ...: short names for scenarios.
+std::string letter(std::size_t scenario) {
+  const std::string last(1, static_cast<char>('A' + scenario % 26));
+  return scenario < 26 ? last : letter(scenario / 26 - 1) + last;
+}
+
+std::string letters(const std::vector<std::size_t>& scenarios) {
+  std::vector<std::string> texts;
+  for (const std::size_t scenario : scenarios) texts.push_back(letter(scenario));
+  return fmt::format("{}", fmt::join(texts, " "));
+}
+
+/// The columns of a scenario in a table of standings: the rank, also the ratio to the best, also mean and spread.
+enum class Detail { rank, ratio, spread };
+
+/// The rank and a sign for: failed, beyond the spread, within it, or unknown.
+std::string rank_cell(const Standing& standing, bool failed) {
+  const char sign = failed ? 'x' : !standing.beyond_spread ? ' ' : *standing.beyond_spread ? '*' : '~';
+  return standing.rank ? fmt::format("{}{}", *standing.rank, sign) : "- ";
+}
+
+std::vector<Table::Column> standing_columns(const League& league, Detail detail) {
+  const std::size_t scenarios = league.runs.scenarios.size();
+  std::vector<Table::Column> columns = {{"algorithm", false}};
+  for (std::size_t s = 0; s < scenarios; ++s) {
+    columns.push_back({scenarios > 1 ? letter(s) + " " : "rank "});
+    if (detail == Detail::rank) continue;
+    columns.push_back({"ratio"});
+    if (detail == Detail::spread) columns.insert(columns.end(), {{"mean"}, {"spread"}});
+  }
+  return columns;
+}
+
+Table standings(const League& league, std::size_t metric, Detail detail) {
+  Table table(standing_columns(league, detail));
+  for (std::size_t a = 0; a < league.runs.algorithms.size(); ++a) {
+    std::vector<std::string> cells = {league.runs.algorithms[a]};
+    for (std::size_t s = 0; s < league.runs.scenarios.size(); ++s) {
+      const Standing& standing = league.at(s, a, metric);
+      cells.push_back(rank_cell(standing, league.failures(s, a) > 0));
+      if (detail == Detail::rank) continue;
+      cells.push_back(significant(standing.ratio_to_best, 3));
+      if (detail == Detail::spread) {
+        cells.insert(cells.end(), {significant(standing.mean, 4), significant(standing.spread, 2)});
+      }
+    }
+    table.add(std::move(cells));
+  }
+  return table;
+}
+
+std::string standings_text(const League& league, std::size_t metric) {
+  for (const Detail detail : {Detail::spread, Detail::ratio}) {
+    const Table table = standings(league, metric, detail);
+    if (table.width() <= prose_width()) return table.text();
+  }
+  return standings(league, metric, Detail::rank).text(prose_width());
+}
+
+/// "diverges B D; leaves_hole A"; where that is long, with counts: "diverges 12; leaves_hole 7".
+std::string fails_text(const League& league, const LawStanding& law) {
+  std::map<std::string, std::vector<std::size_t>> scenarios;
+  for (const std::size_t s : law.fails) {
+    for (std::size_t k = 0; k < league.runs.seeds; ++k) {
+      const LeagueRun& run = league.runs.run(s, law.algorithm, k);
+      auto& known = scenarios[run.outcome];
+      if (run.failed && (known.empty() || known.back() != s)) known.push_back(s);
+    }
+  }
+  std::vector<std::string> texts, counts;
+  for (const auto& [outcome, where] : scenarios) {
+    if (where.empty()) continue;
+    texts.push_back(fmt::format("{} {}", outcome, letters(where)));
+    counts.push_back(fmt::format("{} {}", outcome, where.size()));
+  }
+  constexpr std::size_t kLongest = 30;
+  const std::string text = fmt::format("{}", fmt::join(texts, "; "));
+  return text.size() <= kLongest ? text : fmt::format("{}", fmt::join(counts, "; "));
+}
+
+std::string laws_text(const League& league) {
+  constexpr std::size_t kMostLetters = 12;
+  Table table({{"algorithm", false}, {"mean rank"}, {"ratio"}, {"of"}, {"wins", false}, {"fails", false}});
+  for (const LawStanding& law : league.laws) {
+    table.add({league.runs.algorithms[law.algorithm], significant(law.mean_rank, 3), significant(law.mean_ratio, 3),
+               std::to_string(law.ratios),
+               law.wins.size() <= kMostLetters ? letters(law.wins) : std::to_string(law.wins.size()),
+               fails_text(league, law)});
+  }
+  return table.text();
+}
+
+/// Explains the signs of the spread and their rule.
+std::string spread_text(const League& league) {
+  if (league.runs.seeds < 2) return "one seed: no spread is known; --seeds K gives one\n";
+  std::vector<std::size_t> alike;
+  for (std::size_t s = 0; s < league.seeds_matter.size(); ++s) {
+    if (!league.seeds_matter[s]) alike.push_back(s);
+  }
+  std::string text;
+  if (alike.size() < league.seeds_matter.size()) {
+    text = fmt::format(
+        "* differs from the best by more than the spread over {} seeds, ~ does not: t of the differences\n"
+        "seed by seed (each seed gives all the same start and noise) against its 5 % quantile, two-sided\n",
+        league.runs.seeds);
+  }
+  if (!alike.empty()) {
+    text += fmt::format(
+        "nothing is random in {}: all seeds are one run, no spread is known; --jitter METRES shifts the start\n",
+        letters(alike));
+  }
+  return text;
+}
+
+/// For each metric a table of algorithms and scenarios, with as much of rank, ratio to the best, mean and spread as
+/// fits into kTableWidth, then a line for each algorithm, then the signs and the rule by which a difference counts.
+std::string league_text(const League& league) {
+  std::string text;
+  const std::size_t scenarios = league.runs.scenarios.size();
+  for (std::size_t s = 0; s < scenarios; ++s) text += fmt::format("{}  {}\n", letter(s), league.runs.scenarios[s]);
+  for (std::size_t m = 0; m < league.runs.metrics.size(); ++m) {
+    text += fmt::format("\n{}, less is better\n\n{}", league.runs.metrics[m], standings_text(league, m));
+  }
+  return text +
+         fmt::format(
+             "\nall metrics and scenarios\n\n{}\n"
+             "ratio: to the best; in the last table the geometric mean of so many. wins: no other has a better\nmean rank "
+             "there. Closer than {} % share a rank. x: a run failed; it ranks behind all that did not,\nand of "
+             "those the ones without such a number last.\n{}",
+             laws_text(league), 100.0 * kSameRank, spread_text(league));
 }
 
 Json summaries_json(const BatchPlan& plan, const BatchReport& report, bool league) {
@@ -165,8 +269,8 @@ Json summaries_json(const BatchPlan& plan, const BatchReport& report, bool leagu
   return summaries;
 }
 
-/// Tells of runs that diverge although their scenario does not expect it, the only expectation that concerns every
-/// algorithm: each of a single comparison, of a batch the first. Returns the exit status.
+/// Reports runs that diverge although their scenario does not expect it, the only expectation that concerns every
+/// algorithm: all of a single comparison, the first of a batch. Returns the exit status.
 int verdict(const BatchPlan& plan, const BatchReport& report, bool league) {
   std::size_t count = 0;
   std::string first;
@@ -190,8 +294,11 @@ int verdict(const BatchPlan& plan, const BatchReport& report, bool league) {
 }
 
 int compare(const CompareOptions& options) {
-  if (!options.devices.empty()) return compare_devices(device_options(options));
-  if (options.scenarios.empty())
+  if (!options.common.devices.empty()) {
+    if (options.skips == Skips::off) throw InputError("--no-skip: got it beside --devices; allowed: without");
+    return compare_devices(options.common);
+  }
+  if (options.common.scenarios.empty())
     throw InputError("compare: scenarios is required; \"hapbench compare --help\" explains");
   // All input is checked before anything runs or is written.
   const BatchPlan plan = plan_of(options);
@@ -219,79 +326,84 @@ int compare(const CompareOptions& options) {
     write_league(out / "league.csv", league);
     Json batch = {{"runs", std::move(json)}};
     batch.update(league_json(league));
-    print(options.output, league_text(league) + where, batch);
+    print(options.common.output, league_text(league) + where, batch);
   } else {
-    print(options.output, comparison_text(report.runs) + own_depth_models_text(plan) + where, json);
+    print(options.common.output, comparison_text(report.runs) + own_depth_models_text(plan) + where, json);
   }
-  if (options.html) write_report(out, options.output.quiet || options.output.json);
+  if (options.html) write_report(out, options.common.output.quiet || options.common.output.json);
   return verdict(plan, report, wants_league(options, plan));
 }
 
 }  // namespace
 
 void add_compare(CommandLine& line) {
-  auto options = std::make_shared<CompareOptions>();
-  Command command =
-      line.command("compare", "Run scenarios through several algorithms, side by side; of several, a league table");
-  command.add("scenarios", options->scenarios,
-              "scenario files, names of bundled scenarios, or of groups of them (with --devices default: " +
-                  fmt::format("{}", fmt::join(default_device_scenes(), " ")) + ")");
+  auto [command, options] =
+      line.command("compare", "Run scenarios through several algorithms side by side; several scenarios give a league",
+                   compare, "the folders of finished runs are kept, but no table is written");
+  CompareDevicesOptions& common = options.common;
   command
-      .add("--algorithms", options->algorithms,
+      .add("scenarios", common.scenarios,
+           fmt::format("scenario files, names of bundled scenarios, or of groups of them (with --devices default: {})",
+                       fmt::join(default_device_scenes(), " ")))
+      .words(all_scenarios);
+  command
+      .add("--algorithms", common.algorithms,
            "names, separated by commas, or all (default: all; with --devices shaped_stiffness,summation)")
+      .words(all_algorithms_and_all)
       .comma_separated();
   const CommandOption devices =
       command
           .add(
-              "--devices", options->devices,
-              "instead: the largest stiffness that each of these devices renders stably and quietly: ideal, admittance, "
-              "presets of \"hapbench list presets\", impedance for all of these, or all; NAME.json is a file with a device of "
-              "your own")
+              "--devices", common.devices,
+              "instead of algorithms compare devices by the largest stiffness that each renders stably and quietly: "
+              "ideal, admittance, presets of \"hapbench list presets\", impedance for all presets, or all; NAME.json is "
+              "a file with a device of your own")
+          .words(device_names)
           .comma_separated();
   command
-      .add("--vibration", options->vibration,
+      .add("--vibration", common.vibration,
            fmt::format("with --devices: most vibration of the handle above 30 Hz [m/s rms] (default: {})",
                        kMostVibration))
       .needs(devices);
-  command.add("--resolution", options->resolution, "with --devices: relative width of a limit (default: 0.01)")
+  command.add("--resolution", common.resolution, "with --devices: relative width of a limit (default: 0.01)")
       .needs(devices);
-  command.add("--seeds", options->seeds, "run each K times, time k with the scenario's seed + k (default: 1)")
+  command.add("--seeds", options.seeds, "run each K times, time k with the scenario's seed + k (default: 1)")
       .range(1, 10'000)
       .excludes(devices);
   command
-      .add("--jitter", options->jitter,
-           "shift the start by a vector of this length [m] whose direction the seed gives, the same for all "
-           "algorithms: a spread where nothing else is random")
+      .add("--jitter", options.jitter,
+           "shift the start by a vector of this length [m] whose direction depends on the seed and is the same for all "
+           "algorithms: gives a spread where nothing else is random")
       .excludes(devices);
   command
-      .add("--by", options->metrics,
+      .add("--by", options.metrics,
            "metrics of the league, less is better: names of summary.json, separated by commas (default: " +
                default_metrics_text() + "; fidelity where every scene has a reference force)")
+      .words([] { return metric_names(); })
       .comma_separated()
       .excludes(devices);
-  command.add("--jobs", options->jobs, "runs at once (default: one per thread; 1 where the table shows times)")
-      .range(1, 1024);
-  command.add(
-      "--out", options->out,
-      "directory of the results (default: results/out/compare_NAME, of several scenarios results/out/compare, of "
-      "devices results/out/compare_devices)");
-  command.add("--set", options->overrides, "override a field: path=value").repeatable();
-  command.flag("--html", options->html, "write OUT/report.html as well: curves, replay, metrics, commands")
+  add_jobs(command, common.jobs, "runs at once (default: one per thread; 1 where the table shows times)");
+  command.add("--out", common.out,
+              "directory of the results (default: results/out/compare_NAME, for several scenarios results/out/compare, "
+              "for devices results/out/compare_devices)");
+  add_overrides(command, common.overrides);
+  command.flag("--html", options.html, "also write OUT/report.html: curves, replay, metrics, commands")
       .excludes(devices);
-  add_skip_option(command, options->skips);
-  add_output_options(command, options->output);
+  add_skip_option(command, options.skips);
+  add_output_options(command, common.output);
   command.footer(
-      "Files go to OUT/[SCENARIO/]ALGORITHM[/seed_K], the parts in brackets where there are several; comparison.csv "
-      "for each scenario. With several scenarios or seeds, or --by, a league: rank, ratio to the best, mean and spread "
-      "over the seeds, whether a difference is more than the spread, and where each algorithm wins and fails; all of "
-      "it in league.csv. A run fails that diverges, has no contact or loses it, is not dragged, or ends otherwise than its scenario "
-      "allows; it ranks behind all others. What an earlier comparison left in OUT is removed, other files are not.\n"
-      "With --devices K is bisected as \"hapbench limit\" does it, for each device, scene and algorithm; the published "
-      "stiffness stands beside it, and below it each K over that of the first scene with the first algorithm, beside 1 / "
-      "lambda_max(S) and the contacts of the run at that K. Other fields stay those of the scene, also the rule by which B follows K, and --set "
-      "changes them for all devices. A hand with a mass loses it on ideal and admittance, where the virtual mass stands for it. Files: "
-      "device_limits.csv and device_runs.csv; \"hapbench plot OUT\" draws them.");
-  command.runs([options] { return compare(*options); }, "the folders of finished runs are kept, no table is written");
+      "Files go to OUT/[SCENARIO/]ALGORITHM[/seed_K], the parts in brackets where there are several, and "
+      "comparison.csv of each scenario beside them. Several scenarios or seeds, or --by, give a league: rank, ratio to "
+      "the best, mean and spread over the seeds, whether a difference exceeds the spread, and where each algorithm wins "
+      "and fails; league.csv has all of it. A run fails when it diverges, has no contact or loses it, is not dragged, or "
+      "ends otherwise than its scenario allows; it ranks behind all others. The results of an earlier comparison in OUT "
+      "are removed, other files are not.\n"
+      "With --devices the stiffness K is bisected as \"hapbench limit\" does it, for each device, scene and algorithm; the "
+      "published stiffness stands beside it. A second table shows each K over that of the first scene with the first "
+      "algorithm, beside 1 / lambda_max(S) and the contacts of the run at that K. Other fields stay those of the scene, "
+      "also the rule by which B follows K; --set changes them for all devices. A hand with a mass loses it on ideal and "
+      "admittance, where the virtual mass stands for it. Files: device_limits.csv and device_runs.csv; \"hapbench plot "
+      "OUT\" draws them.");
 }
 
 }  // namespace hapbench

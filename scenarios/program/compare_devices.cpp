@@ -1,20 +1,23 @@
 #include "scenarios/program/compare_devices.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "results/io/csv_writer.hpp"
-#include "scenarios/batch/parallel_for.hpp"
+#include "results/observe/contact_forces.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/device_limits_text.hpp"
 #include "scenarios/program/result_tables.hpp"
+#include "scenarios/program/table.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/studies/stability/device_limits.hpp"
 
 namespace hapbench {
 namespace {
@@ -25,15 +28,17 @@ bool is_file(const std::string& name) {
   return name.ends_with(".json");
 }
 
-constexpr const char* kPresets = "impedance";  ///< all of the program with that type
+constexpr const char* kPresets = "impedance";  ///< stands for all presets, which have that type
 
-/// Those of the program by their names or type, and files. Each name once, since it is all that tells the rows apart.
+/// Finds devices by name or type, or reads their files. Each name may appear once: it alone tells rows apart.
 std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given) {
   const std::vector<ComparedDevice> all = compared_devices();
-  std::vector<std::string> known = {kPresets}, named;
-  for (const ComparedDevice& device : all) known.push_back(device.name);
+  std::vector<std::string> named;
   std::remove_copy_if(given.begin(), given.end(), std::back_inserter(named), is_file);
-  if (!named.empty()) chosen_names("--devices: got", named, known);
+  if (!named.empty()) {
+    const std::vector<std::string> names = device_names();
+    chosen_names("--devices: got", named, {names.begin() + 1, names.end()});
+  }
 
   std::vector<ComparedDevice> chosen;
   for (const std::string& name : given) {
@@ -53,7 +58,7 @@ std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given
   return chosen;
 }
 
-/// Another device for all rows would leave them their names alone.
+/// Refuses overrides that replace the device, after which the names of the rows would be wrong.
 void require_fields_alone(const std::vector<std::string>& overrides) {
   for (const std::string& override : overrides) {
     const std::string_view path = overridden_path(override);
@@ -93,7 +98,7 @@ DeviceQuestion question_of(const CompareDevicesOptions& options) {
   return question;
 }
 
-/// The scene on the device. A fault is one of the device that is named, since the overrides are for all.
+/// Loads the scene on the device. Errors name the device, since the overrides hold for all devices.
 LoadedScenario load_on(const ComparedDevice& device, const ScenarioText& scene,
                        const std::vector<std::string>& overrides) {
   try {
@@ -109,31 +114,226 @@ LoadedScenario load_on(const ComparedDevice& device, const ScenarioText& scene,
   }
 }
 
-/// Each once.
+/// Appends a text unless it is there already.
+void add_once(std::vector<std::string>& texts, const std::string& text) {
+  if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
+}
+
+/// Prints the warnings of all runs, each once.
 void print_all_warnings(const DeviceQuestion& question) {
   std::vector<std::string> warnings;
   for (const ComparedDevice& device : question.devices) {
     for (const ScenarioText& scene : question.scenes) {
       const LoadedScenario loaded = load_on(device, scene, question.overrides);
-      for (const auto& some : {loaded.warnings, check_named_files(loaded)}) {
-        for (const std::string& warning : some) {
-          if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) warnings.push_back(warning);
-        }
-      }
+      for (const std::string& warning : loaded.warnings) add_once(warnings, warning);
+      for (const std::string& warning : check_named_files(loaded)) add_once(warnings, warning);
     }
   }
   print_warnings(warnings);
 }
 
+constexpr std::size_t kDeviceGap = 1;  // three scenes and two algorithms then fit into kTableWidth
+
+/// Three digits, without an exponent.
+std::string stiffness_text(double K) {
+  const double unit = std::pow(10.0, std::floor(std::log10(K)) - 2.0);
+  return unit < 1.0 ? significant(K, 3) : fmt::format("{:.0f}", std::round(K / unit) * unit);
+}
+
+std::string limit_text(const FieldLimit& limit) {
+  if (!limit.value) return "none";
+  return fmt::format("{}{}{}", limit.beyond ? "" : "> ", stiffness_text(*limit.value),
+                     limit.astray.empty() ? "" : " ~");
+}
+
+std::string damping_text(const RenderingConfig& rendering) {
+  if (rendering.damping) return fmt::format("B = {} N s/m", significant(*rendering.damping));
+  if (rendering.damping_ratio == 0.0) return "no damping is rendered (damping_ratio 0): B = 0 at every K";
+  return fmt::format("B = 2 zeta sqrt(K m) with damping_ratio zeta = {} and rendering.mass_kg m = {}",
+                     significant(rendering.damping_ratio), significant(rendering.mass));
+}
+
+/// States the question, what "stable" means here, and how B follows K.
+std::string question_text(const DeviceQuestion& question) {
+  std::string text = fmt::format(
+      "largest stable rendering.stiffness_N_per_m, to {:.3g} %\n"
+      "stable: at most {} m/s rms above {:.0f} Hz at the handle in the last quarter of a run, and not diverged, "
+      "thrown_out or no_contact\n",
+      100.0 * question.resolution, significant(question.most_vibration), kVibrationCutoff);
+  std::vector<std::string> rules;
+  for (const ScenarioText& scene : question.scenes) {
+    const Scenario scenario =
+        load_scenario(scene, overrides_on(question.devices.front(), scene, question.overrides)).scenario;
+    add_once(rules, fmt::format("{} steps of {} s; {}\n", scenario.time.steps, significant(scenario.time.step),
+                                damping_text(scenario.rendering)));
+  }
+  return text + fmt::format("{}", fmt::join(rules, ""));
+}
+
+/// "0.8 ... 1.2, median 1"
+std::string spread_text(std::vector<double> values) {
+  if (values.empty()) return "none";
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  const double median = values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+  return fmt::format("{} ... {}, median {}", significant(values.front(), 2), significant(values.back(), 2),
+                     significant(median, 2));
+}
+
+/// The delay of the force of each impedance device, as "0 of touch, omega.3; 1 of mine"; empty when all are equal.
+std::string delays_text(const DeviceQuestion& question) {
+  std::map<double, std::vector<std::string>> names;
+  for (const ComparedDevice& device : question.devices) {
+    const LoadedScenario loaded =
+        load_scenario(question.scenes.front(), overrides_on(device, question.scenes.front(), question.overrides));
+    if (const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&loaded.scenario.device))
+      names[impedance->delay_samples].push_back(device.name);
+  }
+  if (names.size() < 2) return "";
+  std::vector<std::string> parts;
+  for (const auto& [delay, having] : names)
+    parts.push_back(fmt::format("{} of {}", significant(delay), fmt::join(having, ", ")));
+  return wrapped(fmt::format("delay_samples: {}; none of a preset is published", fmt::join(parts, "; ")), 0);
+}
+
+/// A limit over its device's reference; none where either has no value.
+struct DeviceRatio {
+  std::optional<double> stiffness;  ///< K over that of the reference
+  std::optional<double> rendered;   ///< K lambda_max(S), the stiffness that the hand meets, over that of the reference
+};
+
+/// The limits of all devices, a row for each, by columns: each scene with each algorithm. The first column is a
+/// device's reference.
+class Answers {
+ public:
+  Answers(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits)
+      : question_(question), limits_(limits) {}
+
+  std::size_t columns() const { return question_.scenes.size() * question_.algorithms.size(); }
+  std::string scene(std::size_t column) const { return scene_name(column / question_.algorithms.size()); }
+  const std::string& algorithm(std::size_t column) const {
+    return question_.algorithms[column % question_.algorithms.size()];
+  }
+  /// The name of a scene is that of its file.
+  std::string scene_name(std::size_t scene) const { return question_.scenes[scene].file.stem().string(); }
+  const FieldLimit& at(std::size_t device, std::size_t column) const {
+    return limits_[device * columns() + column].limit;
+  }
+  DeviceRatio ratio(std::size_t device, const FieldLimit& limit) const {
+    const FieldLimit& reference = at(device, 0);
+    if (!limit.value || !reference.value) return {};
+    const double stiffness = *limit.value / *reference.value, lambda = reference.settled.lambda_max;
+    return {stiffness, lambda > 0.0 ? std::optional(stiffness * limit.settled.lambda_max / lambda) : std::nullopt};
+  }
+
+  std::string text() const {
+    std::string text = question_text(question_) + "\n" + stiffness_table().text();
+    text += "published: largest stable stiffness of a wall; \"hapbench describe DEVICE\" names its source\n";
+    if (std::ranges::any_of(question_.devices, [](const auto& device) { return device.name.ends_with('*'); }))
+      text += "*: a preset with numbers of --set, of which nothing is published\n";
+    text += delays_text(question_);
+    if (std::ranges::any_of(limits_, [](const DeviceLimit& limit) { return !limit.limit.astray.empty(); }))
+      text += "~: some values below it are unstable, or some beyond it are stable: device_runs.csv\n";
+    if (columns() == 1) return text;
+    const std::string reference = fmt::format("{} in {}", algorithm(0), scene(0));
+    text += fmt::format("\nover the device's K of {} (in brackets 1 / lambda_max(S), and contacts, at the limit)\n\n",
+                        reference);
+    text += ratio_table().text() + fmt::format("\nleast ... largest of the devices, over {}:\n", reference);
+    for (std::size_t c = 1; c < columns(); ++c) text += spreads_text(c);
+    return text;
+  }
+
+ private:
+  std::string title(std::size_t column) const { return scene(column) + "\n" + algorithm(column); }
+
+  Table stiffness_table() const {
+    std::vector<Table::Column> columns = {{"device", false}, {"pub-\nlished"}};
+    for (std::size_t c = 0; c < this->columns(); ++c) columns.push_back({title(c)});
+    Table table(columns, kDeviceGap);
+    for (std::size_t d = 0; d < question_.devices.size(); ++d) {
+      const auto& [name, json, has_place, published] = question_.devices[d];
+      std::vector<std::string> cells = {name, published ? stiffness_text(*published) : "-"};
+      for (std::size_t c = 0; c < this->columns(); ++c) cells.push_back(limit_text(at(d, c)));
+      table.add(std::move(cells));
+    }
+    return table;
+  }
+
+  /// The ratios of all columns but the reference.
+  Table ratio_table() const {
+    std::vector<Table::Column> columns = {{"device", false}};
+    for (std::size_t c = 1; c < this->columns(); ++c) columns.push_back({title(c)});
+    Table table(columns);
+    for (std::size_t d = 0; d < question_.devices.size(); ++d) {
+      std::vector<std::string> cells = {question_.devices[d].name};
+      for (std::size_t c = 1; c < this->columns(); ++c) {
+        const auto stiffness = ratio(d, at(d, c)).stiffness;
+        const auto& [vibration, contacts, lambda_max] = at(d, c).settled;
+        cells.push_back(stiffness ? fmt::format("{} ({}, {:.0f})", significant(*stiffness, 2),
+                                                lambda_max > 0.0 ? significant(1.0 / lambda_max, 2) : "-", contacts)
+                                  : "-");
+      }
+      table.add(std::move(cells));
+    }
+    return table;
+  }
+
+  /// How the ratios of a column spread over the devices, of K and of the rendered stiffness.
+  std::string spreads_text(std::size_t column) const {
+    std::vector<double> stiffness, rendered;
+    for (std::size_t d = 0; d < question_.devices.size(); ++d) {
+      const DeviceRatio ratio = this->ratio(d, at(d, column));
+      if (ratio.stiffness) stiffness.push_back(*ratio.stiffness);
+      if (ratio.rendered) rendered.push_back(*ratio.rendered);
+    }
+    const std::size_t none = question_.devices.size() - stiffness.size();
+    return fmt::format("{} in {}: {}; K lambda_max: {}{}\n", algorithm(column), scene(column), spread_text(stiffness),
+                       spread_text(rendered), none > 0 ? fmt::format("; none on {} devices", none) : "");
+  }
+
+  const DeviceQuestion& question_;
+  const std::vector<DeviceLimit>& limits_;
+};
+
+Json device_limits_json(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
+  const Answers answers(question, limits);
+  Json rows = Json::array();
+  for (const DeviceLimit& found : limits) {
+    const FieldLimit& limit = found.limit;
+    const DeviceRatio ratio = answers.ratio(found.device, limit);
+    const auto settled = [&limit](double value) { return limit.value ? Json(value) : Json(nullptr); };
+    rows.push_back({{"device", question.devices[found.device].name},
+                    {"scenario", answers.scene_name(found.scene)},
+                    {"algorithm", limit.algorithm},
+                    {"limit_N_per_m", or_null(limit.value)},
+                    {"beyond_N_per_m", limit.beyond ? Json(limit.beyond->value) : Json(nullptr)},
+                    {"class_beyond", beyond_text(limit)},
+                    {"published_N_per_m", or_null(question.devices[found.device].published_stiffness)},
+                    {"vibration_m_per_s", limit.value ? or_null(limit.settled.vibration) : Json(nullptr)},
+                    {"contacts", settled(limit.settled.contacts)},
+                    {"lambda_max", settled(limit.settled.lambda_max)},
+                    {"stiffness_ratio", or_null(ratio.stiffness)},
+                    {"rendered_ratio", or_null(ratio.rendered)},
+                    {"unstable_without_contact", limit.unstable_alone},
+                    {"runs", limit.runs.size()},
+                    {"astray", limit.astray.size()}});
+  }
+  return {{"most_vibration_m_per_s", question.most_vibration},
+          {"resolution", question.resolution},
+          {"reference", {{"scenario", answers.scene_name(0)}, {"algorithm", question.algorithms.front()}}},
+          {"limits", std::move(rows)}};
+}
+
 void write(const fs::path& directory, const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
+  const Answers answers(question, limits);
   CsvWriter table(directory / "device_limits.csv", kDeviceLimitColumns);
   CsvWriter runs(directory / "device_runs.csv", kDeviceRunColumns);
   for (const DeviceLimit& found : limits) {
     const ComparedDevice& device = question.devices[found.device];
-    const std::string scene = scene_name(question, found.scene);
+    const std::string scene = answers.scene_name(found.scene);
     const FieldLimit& limit = found.limit;
     const auto settled = [&limit](double value) { return limit.value ? std::optional(value) : std::nullopt; };
-    const DeviceRatio ratio = ratio_of(found, limits.at(reference_of(question, found.device)));
+    const DeviceRatio ratio = answers.ratio(found.device, limit);
     table.row(std::string_view(device.name), std::string_view(scene), std::string_view(limit.algorithm), limit.value,
               limit.beyond ? std::optional(limit.beyond->value) : std::nullopt, std::string_view(beyond_text(limit)),
               device.published_stiffness, limit.value ? limit.settled.vibration : std::nullopt,
@@ -156,6 +356,21 @@ double number_between(const char* option, const std::string& text, double least,
 
 }  // namespace
 
+std::vector<std::string> device_names() {
+  std::vector<std::string> names = {"all", kPresets};
+  for (const ComparedDevice& device : compared_devices()) names.push_back(device.name);
+  return names;
+}
+
+std::vector<std::string> default_device_scenes() {
+  return {"tap_wall", "tap_corner", "tap_hole"};
+}
+
+std::string beyond_text(const FieldLimit& limit) {
+  if (limit.beyond) return std::string(run_verdict_name(limit.beyond->verdict));
+  return limit.value ? "end of the range" : std::string(run_verdict_name(limit.runs.front().verdict));
+}
+
 double vibration_of(const std::string& text) {
   return number_between("--vibration", text, 1e-9, 1e3);
 }
@@ -167,13 +382,11 @@ double resolution_of(const std::string& text) {
 int compare_devices(const CompareDevicesOptions& options) {
   const DeviceQuestion question = question_of(options);
   print_all_warnings(question);
-  const fs::path out = options.out.empty() ? fs::path("results") / "out" / "compare_devices" : fs::path(options.out);
+  const fs::path out = results_directory(options.out, "compare_devices");
   require_writable_directory(out);
-  const JobOptions jobs{options.jobs == 0 ? static_cast<unsigned>(available_threads()) : options.jobs,
-                        options.output.quiet ? "" : "compare"};
-  const std::vector<DeviceLimit> limits = device_limits(question, jobs);
+  const std::vector<DeviceLimit> limits = device_limits(question, job_options(options.jobs, options.output, "compare"));
   write(out, question, limits);
-  print(options.output, device_limits_text(question, limits) + fmt::format("\nresults in {}\n", out.string()),
+  print(options.output, Answers(question, limits).text() + fmt::format("\nresults in {}\n", out.string()),
         device_limits_json(question, limits));
   return kSuccess;
 }

@@ -4,27 +4,34 @@
 #include <vector>
 
 #include "scenarios/program/command.hpp"
+#include "scenarios/studies/stability/field_limit.hpp"
 
 namespace hapbench {
 
-/// What `compare --devices` is asked.
+/// The question of `compare --devices`.
 struct CompareDevicesOptions {
-  std::vector<std::string> devices;     ///< names, or all, and files NAME.json
-  std::vector<std::string> scenarios;   ///< none: those of a hand that taps on a wall, in a corner and in a hole
-  std::vector<std::string> algorithms;  ///< none: shaped_stiffness and summation
+  std::vector<std::string> devices;     ///< names, "all", and files NAME.json
+  std::vector<std::string> scenarios;   ///< empty: default_device_scenes
+  std::vector<std::string> algorithms;  ///< empty: shaped_stiffness and summation
   std::vector<std::string> overrides;
-  std::string vibration;   ///< most of it [m/s rms]
-  std::string resolution;  ///< of a limit, relative
+  std::string vibration;   ///< largest allowed [m/s rms]; empty: kMostVibration
+  std::string resolution;  ///< relative width of a limit; empty: the default of DeviceQuestion
   unsigned jobs = 0;       ///< 0: as many as the machine has threads
   std::string out;
   OutputOptions output;
 };
 
-/// Most vibration of the handle where none is given [m/s rms above 30 Hz]. Of hand-transmitted vibration from 16 to
-/// 400 Hz equal speeds are about equally unpleasant (Griffin, "Frequency-dependence of psychophysical and physiological
-/// responses to hand-transmitted vibration", Industrial Health 50, 2012), so that it is a speed; its value is ours,
-/// that of the classes of motion (classify.hpp). A cylinder in the hand lets one feel less than a hundredth of it at
-/// 150 to 200 Hz (Brisben, Hsiao and Johnson, Journal of Neurophysiology 81, 1999).
+/// The names that --devices takes besides files: "all", "impedance", and every device of the program.
+std::vector<std::string> device_names();
+
+/// The bundled scenes of a hand that taps on a flat wall, in a corner and in a hole.
+std::vector<std::string> default_device_scenes();
+
+/// The default of --vibration [m/s rms of the handle above 30 Hz]. It is a speed because hand-transmitted vibrations
+/// from 16 to 400 Hz of equal speed are about equally unpleasant (Griffin, "Frequency-dependence of psychophysical and
+/// physiological responses to hand-transmitted vibration", Industrial Health 50, 2012). Its value is our choice, the
+/// same as that of the classes of motion (classify.hpp); a hand that holds a cylinder feels less than a hundredth of it
+/// at 150 to 200 Hz (Brisben, Hsiao and Johnson, Journal of Neurophysiology 81, 1999).
 inline constexpr double kMostVibration = 1e-3;
 
 /// The number given to --vibration [m/s]. Throws InputError.
@@ -32,7 +39,11 @@ double vibration_of(const std::string& text);
 /// The number given to --resolution. Throws InputError.
 double resolution_of(const std::string& text);
 
-/// Finds the largest stable stiffness on each device, prints and writes the table. Returns the exit status.
+/// Names what lies beyond a limit: a class of motion or "end of the range"; without a limit, the class at the range's
+/// low end.
+std::string beyond_text(const FieldLimit& limit);
+
+/// Finds the largest stable stiffness on each device, prints and writes the tables. Returns the exit status.
 int compare_devices(const CompareDevicesOptions& options);
 
 }  // namespace hapbench

@@ -1,23 +1,18 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <memory>
-
 #include "algorithms/registry.hpp"
 #include "device_model/device_presets.hpp"
 #include "device_model/theory/stiffness_limits.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/description/scenario_text.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/describe.hpp"
-#include "scenarios/program/describe_results.hpp"
-#include "scenarios/program/describe_thesis.hpp"
-#include "scenarios/program/describe_words.hpp"
-#include "scenarios/program/schema_text.hpp"
+#include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/table.hpp"
-#include "scenarios/studies/stability/map_scenes.hpp"
+#include "scenarios/studies/stability/judged_run.hpp"
+#include "scenarios/studies/stability/stability_map.hpp"
 #include "scenarios/thesis_claims/choices_file.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "sim/loop/integrators/table.hpp"
@@ -25,11 +20,11 @@
 namespace hapbench {
 namespace {
 
-/// Adds the card of a parameter to the model's.
+/// Appends the card of a parameter to the model's.
 void add_parameter(Description& d, const std::string& path, const char* unit, const char* meaning) {
-  const Json& field = *find_in_schema(scenario_schema_once(), path);
-  const std::string initial = default_text(field), range = allowed_text(field);
-  d.text += card({path, unit, initial, range, meaning}, 4);
+  const FieldGuide& field = *find_field(path);
+  const std::string initial = default_text(field), range = field.value.allowed;
+  d.text += card({.name = path, .initial = initial, .allowed = range, .meaning = meaning}, 4);
   d.json["parameters"].push_back(
       {{"name", path}, {"unit", unit}, {"default", initial}, {"range", range}, {"meaning", meaning}});
 }
@@ -62,7 +57,7 @@ Description describe_model(const char* kind, const ModelInfo& info, std::span<co
   return d;
 }
 
-/// A field that is a function of time.
+/// A field whose value is a function of time, from which `describe profile` takes its schema.
 constexpr const char* kSomeProfile = "motion.orientation.tilt_rad";
 
 const ModelInfo* find_stage(const std::string& name) {
@@ -72,7 +67,7 @@ const ModelInfo* find_stage(const std::string& name) {
   return nullptr;
 }
 
-/// "time.steps=2000" for each value that a scenario's text has, objects by their fields.
+/// Appends a line "time.steps=2000" for each value in a scenario's text.
 void add_assignments(std::string& text, const std::string& path, const Json& value) {
   if (!value.is_object()) {
     text += wrapped(fmt::format("{}={}", path, shown(value)), 6).erase(4, 2);
@@ -98,13 +93,13 @@ Description describe_scenario(const std::filesystem::path& file) {
 }
 
 Description describe_profile() {
-  Json profile = *find_in_schema(scenario_schema_once(), kSomeProfile);
-  profile["description"] = "a function of time: a number that does not change, or an object";
-  profile.erase("default");
-  return {fields_text("profile", profile), profile};
+  FieldGuide profile = *find_field(kSomeProfile);
+  profile.meaning = "a function of time: a number that does not change, or an object";
+  profile.presence = Presence::no_default;
+  return {fields_text("profile", profile), profile.schema()};
 }
 
-/// The numbers of a published device, each with its source.
+/// Shows the numbers of a published device, each with its source.
 Description describe_preset(const DevicePreset& preset) {
   Description d;
   d.text = fmt::format("preset {}: {}\n{}", bold(stdout, preset.name), preset.device,
@@ -129,7 +124,7 @@ Description describe_preset(const DevicePreset& preset) {
   return d;
 }
 
-/// The maps of "hapbench stability --map" and how their runs are judged.
+/// Explains the maps of "hapbench stability --map" and how their runs are judged.
 Description describe_stability() {
   std::string maps;
   Description d;
@@ -146,40 +141,55 @@ Description describe_stability() {
         {{"name", limit.name}, {"formula", limit.formula}, {"applies", limit.applies}, {"source", limit.source}});
   }
   d.text = fmt::format(
-      "stability maps\n"
-      "  A run of {} steps is judged by its motion alone, quarter by quarter; the amplitude is the largest speed.\n\n"
-      "  diverged   left its bounds, or oscillates with an amplitude that grows by 1 % from each quarter to the next\n"
-      "  vibrating  does not decay: oscillates in the last quarter with at least 1 % of the first quarter's\n"
-      "             amplitude\n"
-      "  dying_out  oscillates so, but loses a tenth of its amplitude from the second quarter to the third and\n"
-      "             again to the last\n"
-      "  stable     all else: at rest, died out, creeping\n\n"
-      "  Limits count what is stable or dying out as stable: it comes to rest if the run goes on.\n\n"
-      "  The analytic limit, under leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = "
-      "lambda_max(S),\n"
-      "  is given where the tool is alone with springs that stay in contact and the force is -K S p. Under "
-      "velocity_verlet\n"
-      "  and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. With a device in the loop "
-      "it is\n"
-      "  where the first eigenvalue of the loop of hand, handle and wall leaves the unit circle: the loop while nothing\n"
-      "  saturates and the contact lasts. The edge by bisection is that of \"diverged\"; that of runs that come to rest "
-      "in the\n"
-      "  maps of the admittance device and of Coulomb friction, which stops a handle for good: there what still moves "
-      "in the\n  end, however little, vibrates.\n\n{}\n"
-      "limits of the stiffness K of a wall on an impedance device\n"
-      "  b is the handle's damping, c its Coulomb friction, q the encoder's step, m the moving mass, T the period, t_d = "
-      "d T\n  the delay. Written beside the edge where they apply.\n{}",
-      kMapSteps, maps, limits);
+      "stability maps\n{}\n",
+      wrapped(fmt::format(
+          "A run of {} steps is judged by its motion alone, quarter by quarter; the amplitude is the largest speed.",
+          kMapSteps)));
+  for (const MotionClass motion : kMotionClasses)
+    d.text += entry(motion_class_name(motion), text_of(motion).rule, 2, 13);
+  for (
+      const char* paragraph :
+      {"Limits count stable and dying out as stable: the tool comes to rest if the run goes on.",
+       "The analytic limit, under leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = lambda_max(S), is "
+       "given where the tool is alone with springs that stay in contact and the force is -K S p. Under "
+       "velocity_verlet and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. With a "
+       "device in the loop it is where the first eigenvalue of the loop of hand, handle and wall leaves the unit "
+       "circle, as long as nothing saturates and the contact lasts. The edge by bisection is that of \"diverged\". "
+       "Only in the maps of the admittance device and of Coulomb friction, which stops a handle for good, it is that "
+       "of runs that come to rest: there whatever still moves in the end, however little, counts as vibrating."})
+    d.text += "\n" + wrapped(paragraph);
+  d.text += "\n" + maps + "\nlimits of the stiffness K of a wall on an impedance device\n";
+  d.text += wrapped(
+      "b is the handle's damping, c its Coulomb friction, q the encoder's step, m the moving mass, T the period, t_d = d T "
+      "the delay. Each is written beside the edge where it applies.");
+  d.text += limits;
   return d;
 }
 
-/// Names without a thing of their own.
-constexpr const char* kSections[] = {"choices_schema", "profile", "scenario", "schema", "stability"};
+/// Names that stand for no single thing of a list.
+constexpr struct {
+  const char* name;
+  Description (*describe)();
+} kSections[] = {{"choices_schema",
+                  [] {
+                    return Description{json_text(choices_schema()), choices_schema()};
+                  }},
+                 {"profile", describe_profile},
+                 {"scenario",
+                  [] {
+                    return Description{fields_text("scenario", scenario_guide()), scenario_guide().schema};
+                  }},
+                 {"schema",
+                  [] {
+                    return Description{json_text(scenario_schema()), scenario_schema()};
+                  }},
+                 {"stability", describe_stability}};
 
 }  // namespace
 
 std::vector<std::string> described_names() {
-  std::vector<std::string> names(std::begin(kSections), std::end(kSections));
+  std::vector<std::string> names;
+  for (const auto& section : kSections) names.emplace_back(section.name);
   for (const AlgorithmEntry& entry : algorithms()) names.emplace_back(entry.info->name);
   for (const DepthModelEntry& entry : depth_models()) names.emplace_back(entry.info->name);
   for (const ModelInfo* stage : stages()) names.emplace_back(stage->name);
@@ -209,20 +219,20 @@ Description joined(const std::vector<Description>& meanings) {
   return all;
 }
 
-/// The field at that path, once for each of the types that have one of their own.
+/// Explains the field at that path, once for each group of types that share it.
 std::vector<Description> describe_field(const std::string& path) {
+  if (const std::string values = types_text(path); !values.empty())
+    return {{values, {{"field", path}, {"types", type_names(path.substr(0, path.rfind('.')))}}}};
   std::vector<Description> meanings;
-  for (const auto& [types, field] : typed_fields(scenario_schema_once(), path)) {
-    const std::string values = types_text(path);
-    if (!values.empty()) return {{values, {{"field", path}, {"types", type_names(path.substr(0, path.rfind('.')))}}}};
-    Json json = *field;
+  for (const auto& [types, field] : typed_fields(path)) {
+    Json json = field->schema();
     if (!types.empty()) json["of"] = types;
     meanings.push_back({fields_text(path, *field, types), std::move(json)});
   }
   return meanings;
 }
 
-/// Fields of that name in any section: "torque" for record.torque.
+/// Explains the fields of that name in any section: "torque" for record.torque.
 std::vector<Description> describe_fields_called(const std::string& name) {
   std::vector<Description> meanings;
   for (const std::string& path : scenario_field_paths()) {
@@ -233,9 +243,6 @@ std::vector<Description> describe_fields_called(const std::string& name) {
 }
 
 Description describe_name(const std::string& name) {
-  if (name == "stability") return describe_stability();
-  if (name == "choices_schema") return {json_text(choices_schema()), choices_schema()};
-  if (name == "schema") return {json_text(scenario_schema()), scenario_schema()};
   std::vector<Description> meanings;
   const auto add = [&meanings](Description more) { meanings.push_back(std::move(more)); };
   // A name may mean two things: normal_projection is an algorithm and a depth model.
@@ -252,13 +259,14 @@ Description describe_name(const std::string& name) {
   for (Description& result : describe_results(name)) add(std::move(result));
   const std::vector<Description> fields = describe_field(name);
   for (const Description& field : fields) add(field);
-  if (name == "scenario") add({fields_text(name, scenario_schema_once()), scenario_schema_once()});
-  if (fields.empty()) {
-    const std::vector<TypedField> types = types_called(scenario_schema_once(), name);
-    for (const TypedField& type : types)
-      add({fields_text(name, *type.schema, types.size() > 1 ? type.types : ""), *type.schema});
+  for (const auto& section : kSections) {
+    if (name == section.name) add(section.describe());
   }
-  if (name == "profile") add(describe_profile());
+  if (fields.empty()) {
+    const auto types = types_called(name);
+    for (const auto& [field, type] : types)
+      add({fields_text(name, *type, types.size() > 1 ? field : ""), type->schema});
+  }
   for (Description& word : describe_word(name)) add(std::move(word));
   if (meanings.empty()) meanings = describe_heading(name);
   if (meanings.empty()) meanings = describe_thesis(name);
@@ -275,32 +283,34 @@ Description describe_name(const std::string& name) {
                   name, nearest_name_hint(name, described_names())));
 }
 
+struct DescribeOptions {
+  std::string name;
+  OutputOptions output;
+};
+
+int describe(const DescribeOptions& options) {
+  const Description d = describe_name(options.name);
+  print(options.output, d.text, d.json);
+  return kSuccess;
+}
+
 }  // namespace
 
 void add_describe(CommandLine& line) {
-  struct Options {
-    std::string name;
-    OutputOptions output;
-  };
-  auto options = std::make_shared<Options>();
-  Command command = line.command("describe",
-                                 "Explain an algorithm, a depth model, an integrator, an environment, a field, a "
-                                 "scenario, a metric, a column or file of the results, a word or heading "
-                                 "that the program prints, a claim or a place of the thesis");
+  auto [command, options] = line.command(
+      "describe",
+      "Explain an algorithm, a depth model, an integrator, an environment, a field, a scenario, a metric, a column or "
+      "file of the results, a word or heading that the program prints, a claim or a place of the thesis",
+      describe);
   command
-      .add(
-          "name", options->name,
-          "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
-          "\"choices_schema\", \"stability\"; a metric or a column, \"metrics\" or \"columns\" for all of "
-          "them, a heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5 or a place such "
-          "as \"Fig. A.2\"")
+      .add("name", options.name,
+           "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
+           "\"choices_schema\", \"stability\"; a metric or a column, \"metrics\" or \"columns\" for all of them, a "
+           "heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5 or a place such as "
+           "\"Fig. A.2\"")
+      .words(described_names)
       .required();
-  add_output_options(command, options->output);
-  command.runs([options] {
-    const Description d = describe_name(options->name);
-    print(options->output, d.text, d.json);
-    return kSuccess;
-  });
+  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

@@ -1,13 +1,18 @@
-#include "scenarios/program/describe_results.hpp"
-
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 
-#include "results/summary/columns_json.hpp"
+#include "results/io/columns.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/describe.hpp"
 #include "scenarios/program/result_tables.hpp"
+#include "scenarios/program/run_table.hpp"
 #include "scenarios/program/table.hpp"
+#include "scenarios/studies/stability/judged_run.hpp"
 
 namespace hapbench {
 namespace {
@@ -16,7 +21,7 @@ std::string titled(std::string_view name, std::string_view unit) {
   return unit.empty() ? std::string(name) : fmt::format("{} [{}]", name, unit);
 }
 
-/// Of columns or metrics.
+/// Explains columns or metrics.
 template <class Entries>
 std::string entries_text(const Entries& entries) {
   std::string text;
@@ -41,11 +46,10 @@ Description describe_table(const DescribedTable& table) {
           {{"kind", "file"}, {"name", table.file}, {"holds", table.holds}, {"columns", columns_json(table.columns)}}};
 }
 
-/// A column as one or several files have it.
+/// Explains a column that one or several files have.
 Description describe_column(const Column& column, const std::vector<std::string>& files) {
-  std::string in;
-  for (const std::string& file : files) in += (in.empty() ? "" : ", ") + file;
-  return {fmt::format("column {} of {}\n{}", titled(column.name, column.unit), in, wrapped(column.meaning)),
+  return {fmt::format("column {} of {}\n{}", titled(column.name, column.unit), fmt::join(files, ", "),
+                      wrapped(column.meaning)),
           {{"kind", "column"},
            {"name", column.name},
            {"unit", column.unit},
@@ -97,6 +101,87 @@ std::vector<std::string> result_names() {
     names.push_back(table.file);
     for (const Column& column : table.columns) names.emplace_back(column.name);
   }
+  return names;
+}
+
+namespace {
+
+struct Word {
+  std::string_view name;
+  const char* kind;
+  const char* meaning;
+};
+
+constexpr const char* kOutcome = "outcome of a run";
+constexpr const char* kMotion = "class of motion, of limit and stability";
+constexpr const char* kTime = "number of timing.json";
+constexpr const char* kVerdict = "verdict on a claim";
+
+constexpr Word kWords[] = {
+    {"completes", kOutcome, "all steps are done, or the hand has finished its task"},
+    {"leaves_hole", kOutcome, "the tip centre rose above height 0"},
+    {"tool_horizontal", kOutcome, "the tool's axis reached the horizontal plane"},
+    {"not_dragged", kOutcome,
+     "all steps are done, but a tool that a hand of type drag was to lead further than two of its widths came less than "
+     "one along the path"},
+    {"no_contact", kOutcome, "all steps are done, and the tool never touched the environment"},
+    {"lost_contact", kOutcome,
+     "all steps are done, but a freely moving tool ended further from the environment's box than the box is wide and the "
+     "tool reaches together"},
+    {"diverges", kOutcome, "a value stopped being finite or left its bound (describe bounds)"},
+    {"step_p50_s", kTime, "what half of the steps take at most, each by itself, without observers and recorders [s]"},
+    {"step_p99_s", kTime, "what 99 % of the steps take at most, each by itself, without observers and recorders [s]"},
+    {"reproduced", kVerdict, "the rule of the claim holds with the published numbers"},
+    {"reproduced in kind", kVerdict, "direction or mechanism are the published ones, the numbers are not"},
+    {"not reproduced", kVerdict, "neither, in this model of the device and the hand"},
+    {"refuted", kVerdict, "it contradicts an exact result"},
+    {"not reproducible", kVerdict, "no simulation can show it: people or the trainer are needed"},
+};
+
+std::vector<Word> all_words() {
+  std::vector<Word> all(std::begin(kWords), std::end(kWords));
+  for (const RunVerdict verdict : kRunVerdicts)
+    all.push_back({run_verdict_name(verdict), kMotion, run_verdict_meaning(verdict)});
+  return all;
+}
+
+/// A heading in lower case, without blanks and line breaks.
+std::string plain(std::string_view text) {
+  std::string plain = lower_case(text);
+  std::erase_if(plain, [](unsigned char c) { return std::isspace(c); });
+  return plain;
+}
+
+}  // namespace
+
+std::vector<Description> describe_word(const std::string& name) {
+  std::vector<Description> found;
+  for (const Word& word : all_words()) {
+    if (name != word.name) continue;
+    std::string text = fmt::format("{}: {}\n{}", bold(stdout, word.name), word.kind, wrapped(word.meaning));
+    if (word.kind == kMotion) text += "  in numbers: hapbench describe stability\n";
+    found.push_back({text, {{"kind", word.kind}, {"name", word.name}, {"meaning", word.meaning}}});
+  }
+  return found;
+}
+
+std::vector<Description> describe_heading(const std::string& name) {
+  std::vector<Description> found;
+  for (const RunHeading& heading : kRunHeadings) {
+    const std::string_view title = heading.title, first = title.substr(0, title.find('\n'));
+    if (plain(name) != plain(title) && plain(name) != plain(first)) continue;
+    for (const char* shown : heading.shows) {
+      if (shown == nullptr) continue;
+      const std::vector<Description> results = describe_results(shown), words = describe_word(shown);
+      found.push_back(results.empty() ? words.front() : results.front());  // of a metric, before columns
+    }
+  }
+  return found;
+}
+
+std::vector<std::string> described_words() {
+  std::vector<std::string> names;
+  for (const Word& word : all_words()) names.emplace_back(word.name);
   return names;
 }
 

@@ -1,5 +1,3 @@
-#include "scenarios/program/describe_thesis.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -12,6 +10,7 @@
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/describe.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/thesis_claims/ledger.hpp"
 
@@ -46,13 +45,13 @@ std::string place_kind(const std::string& word) {
   return lower == "section" ? "section" : "";
 }
 
-/// The places that a source names, as in "3.3, Fig. 4, C.2a": a kind holds until another word comes. Numbers that are
-/// none of a place may be among them.
+/// The places that a source names, as in "3.3, Fig. 4, C.2a": a kind holds until another word comes. Other numbers in
+/// the source are taken for places, too.
 std::vector<Place> places_in(const std::string& source) {
-  static const std::regex kWords(R"(([A-F]\.\d+|\d+)(\.\d+)*[a-d]?\b|[A-Za-z]+)");
+  static const std::regex kParts(R"(([A-F]\.\d+|\d+)(\.\d+)*[a-d]?\b|[A-Za-z]+)");
   std::vector<Place> places;
   std::string kind = "section";
-  for (std::sregex_iterator word(source.begin(), source.end(), kWords), end; word != end; ++word) {
+  for (std::sregex_iterator word(source.begin(), source.end(), kParts), end; word != end; ++word) {
     if ((*word)[1].matched) {
       places.push_back({kind, word->str()});
     } else if (word->str() != "and") {
@@ -63,8 +62,8 @@ std::vector<Place> places_in(const std::string& source) {
   return places;
 }
 
-/// The place that is asked for, of any kind where none is said, or that a figure's file is called after, such as
-/// figure_A.4_springs.svg; nothing when the name is that of no place.
+/// Reads a place, of any kind where none is given, also from the name of a figure's file such as
+/// figure_A.4_springs.svg. None when the name is not a place's.
 std::optional<Place> asked_place(const std::string& name) {
   static const std::regex kPlace(
       R"((?:(fig|figs|figure|table|section)[._ ]*)?((?:[a-f]\.)?\d+(?:\.\d+)*[a-d]?)(?:_[a-z_]+)?(?:\.(?:svg|png|pdf))?)",
@@ -72,7 +71,7 @@ std::optional<Place> asked_place(const std::string& name) {
   std::smatch parts;
   if (!std::regex_match(name, parts, kPlace)) return std::nullopt;
   Place place{parts[1].matched ? place_kind(parts[1]) : "", parts[2]};
-  // A number alone may be anything.
+  // A plain number could mean anything.
   if (place.kind.empty() && place.number.find('.') == std::string::npos) return std::nullopt;
   if (place.number.find('.') == 1) place.number[0] = static_cast<char>(std::toupper(place.number[0]));
   return place;

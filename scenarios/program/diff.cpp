@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "scenarios/batch/result_folders.hpp"
 #include "scenarios/batch/run_difference.hpp"
@@ -23,7 +22,7 @@ struct DiffOptions {
   OutputOptions output;
 };
 
-/// A value of a file, cut when it is long.
+/// A value of a file, cut if it is long.
 std::string cut_value(const std::string& text) {
   constexpr std::size_t kLongest = 24;
   if (text.empty()) return "-";
@@ -88,7 +87,7 @@ std::string run_text(const RunDifference& run, double tolerance) {
   return text;
 }
 
-/// Infinity, for which JSON has no number, is "no number" here too.
+/// A size; infinity, for which JSON has no number, becomes "no number" as in the text.
 Json size_json(double value) {
   return std::isinf(value) ? Json("no number") : Json(value);
 }
@@ -144,7 +143,7 @@ std::vector<std::string> run_cells(const fs::path& path, const RunDifference& ru
           run.trajectory && run.trajectory->first ? std::to_string(run.trajectory->first->row) : "-"};
 }
 
-/// What is gathered while the pairs are compared one by one.
+/// Collects the results while the pairs are compared one by one.
 struct Report {
   bool beyond = false;
   std::string text;
@@ -208,22 +207,20 @@ int diff(const DiffOptions& options) {
 }  // namespace
 
 void add_diff(CommandLine& line) {
-  auto options = std::make_shared<DiffOptions>();
-  Command command =
-      line.command("diff", "Compare the results of two runs, or of two folders of runs: a regression test");
-  command.add("run_a", options->a, "folder of a run, or of run, compare or sweep with several").required();
-  command.add("run_b", options->b, "another; runs are paired by their paths in the folders").required();
-  command.add("--tolerance", options->tolerance,
+  auto [command, options] =
+      line.command("diff", "Compare the results of two runs, or of two folders of runs: a regression test", diff);
+  command.add("run_a", options.a, "folder of a run, or of run, compare or sweep with several").required();
+  command.add("run_b", options.b, "another; runs are paired by their paths in the folders").required();
+  command.add("--tolerance", options.tolerance,
               "largest relative difference that counts as equal: of a metric to the larger of the two, of a column of "
               "trajectory.csv to its largest magnitude (default: 0, the same digits)");
-  add_output_options(command, options->output);
+  add_output_options(command, options.output);
   command.footer(
       "For a regression test keep the results of a good version and compare every new one with them. Results are the "
       "outcome, the metrics of summary.json and trajectory.csv; without a tolerance the state hash, too. Fields of the "
       "scenario are shown where they differ but do not count; provenance, times and counted work are not looked at. Of "
       "a sweep whose runs were not kept, the rows of sweep.csv are compared.\n"
       "Exit status: 0 equal, 2 not the results of runs, 3 not equal.");
-  command.runs([options] { return diff(*options); });
 }
 
 }  // namespace hapbench

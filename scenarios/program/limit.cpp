@@ -2,16 +2,13 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <memory>
 
 #include "results/io/csv_writer.hpp"
-#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/scenario_text.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/compare_devices.hpp"
-#include "scenarios/program/device_limits_text.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
@@ -61,7 +58,7 @@ const char* side(const LimitQuestion& question) {
   return question.smallest ? "smallest" : "largest";
 }
 
-/// What is asked, and what "stable" means here.
+/// States the question and what "stable" means here.
 std::string question_text(const LimitQuestion& question, const Scenario& scenario) {
   const std::string width = question.whole ? "1"
                             : question.range.logarithmic
@@ -98,8 +95,8 @@ Table table_of(const std::vector<FieldLimit>& limits) {
   return table;
 }
 
-/// What a limit alone would hide: lines for algorithms whose stable values are not all on one side of it, or whose hand
-/// and device are to blame.
+/// Remarks on algorithms whose stable values are not all on one side of the limit, or whose hand and device cause the
+/// instability.
 std::string remarks_text(const std::vector<FieldLimit>& limits, const LimitQuestion& question) {
   constexpr std::size_t kMost = 4;
   std::string text;
@@ -147,7 +144,6 @@ void write_limits(const fs::path& directory, const std::vector<FieldLimit>& limi
 }
 
 Json limits_json(const std::vector<FieldLimit>& limits, const LimitQuestion& question) {
-  const auto or_null = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   Json rows = Json::array();
   for (const FieldLimit& limit : limits) {
     Json astray = Json::array();
@@ -181,13 +177,11 @@ int limit(const LimitOptions& options) {
   const LimitQuestion question = question_of(options, scenario);
   print_warnings(question.warnings);
   print_warnings(check_named_files(loaded));
-  const fs::path out =
-      options.out.empty() ? fs::path("results") / "out" / ("limit_" + file.stem().string()) : fs::path(options.out);
+  const fs::path out = results_directory(options.out, "limit_" + file.stem().string());
   require_writable_directory(out);
 
-  const JobOptions jobs{options.jobs == 0 ? static_cast<unsigned>(available_threads()) : options.jobs,
-                        options.output.quiet ? "" : "limit"};
-  const std::vector<FieldLimit> limits = field_limits(scenario, options.overrides, algorithms, question, jobs);
+  const std::vector<FieldLimit> limits = field_limits(scenario, options.overrides, algorithms, question,
+                                                      job_options(options.jobs, options.output, "limit"));
   write_limits(out, limits, question);
   print(options.output,
         question_text(question, loaded.scenario) + table_of(limits).text() + remarks_text(limits, question) +
@@ -199,35 +193,39 @@ int limit(const LimitOptions& options) {
 }  // namespace
 
 void add_limit(CommandLine& line) {
-  auto options = std::make_shared<LimitOptions>();
-  Command command = line.command("limit", "The largest stable value of any field, by bisection on runs of any scene");
-  command.add("scenario", options->scenario, "scenario file, or name of a bundled scenario").required();
-  command.add("--vary", options->field, "the field, as in rendering.stiffness_N_per_m").required();
-  command.add("--between", options->between,
-              "a:b, where to look (default: a thousandth to a thousandfold of the scenario's value)");
-  command.flag("--smallest", options->smallest, "the smallest stable value instead, as of a mass");
-  command.add("--algorithms", options->algorithms, "names separated by commas, or all (default: the scenario's own)")
+  auto [command, options] =
+      line.command("limit", "Find the largest stable value of any field, by bisection on runs of any scene", limit,
+                   "no limit is written");
+  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario")
+      .words(all_scenarios)
+      .required();
+  command.add("--vary", options.field, "the field, as in rendering.stiffness_N_per_m")
+      .words(scenario_field_paths)
+      .required();
+  command.add("--between", options.between,
+              "a:b, the range to search (default: a thousandth to a thousandfold of the scenario's value)");
+  command.flag("--smallest", options.smallest, "find the smallest stable value instead, as of a mass");
+  command.add("--algorithms", options.algorithms, "names separated by commas, or all (default: the scenario's own)")
+      .words(all_algorithms_and_all)
       .comma_separated();
-  command.add("--resolution", options->resolution,
-              "relative width of the answer (default: 0.001; of the range when it reaches 0 or below)");
-  command.add("--vibration", options->vibration,
-              "most vibration of the handle above 30 Hz [m/s rms], which then decides what is stable");
-  command.add("--jobs", options->jobs, "algorithms at once (default: as many as the machine has threads)")
-      .range(1, 1024);
-  command.add("--out", options->out, "directory of the results (default: results/out/limit_NAME)");
-  command.add("--set", options->overrides, "override a field of all runs: path=value").repeatable();
-  add_output_options(command, options->output);
+  command.add("--resolution", options.resolution,
+              "relative width of the answer (default: 0.001); of the range when the range reaches 0 or below");
+  command.add("--vibration", options.vibration,
+              "judge stability by the handle's vibration: the largest allowed above 30 Hz [m/s rms]");
+  add_jobs(command, options.jobs, "algorithms at once (default: as many as the machine has threads)");
+  command.add("--out", options.out, "directory of the results (default: results/out/limit_NAME)");
+  add_overrides(command, options.overrides, "override a field of all runs: path=value");
+  add_output_options(command, options.output);
   command.footer(
-      "A run is stable when it comes to rest or dies out, the classes of \"hapbench describe stability\"; it is not when "
-      "it vibrates, diverges, is thrown out (leaves the hole, or ends without contact beyond the shell's box by more "
-      "than the tool reaches) or touches nothing. Oscillations slower than a quarter of the run are not seen. The range "
-      "is tried at 17 values; the first edge from the scenario's own value on (if that is not stable, from the first "
-      "stable one of the low end; with --smallest downwards, from the high end) is bisected, and three values tried on "
-      "either side, which may show an earlier edge. Unstable values on the stable side and stable ones beyond are "
-      "counted as astray. Where the hand is an impedance, a run without environment tells whether hand and device alone are "
-      "unstable beyond the edge. Where the springs stay in contact, the limit in theory stands beside it. limit_runs.csv has "
-      "every run.");
-  command.runs([options] { return limit(*options); }, "a limit is lost with the runs it needs");
+      "A run is stable when it comes to rest or dies out, the classes of \"hapbench describe stability\". It is not "
+      "stable when it vibrates, diverges, is thrown out (leaves the hole, or ends without contact beyond the shell's box "
+      "by more than the tool reaches) or touches nothing. Oscillations slower than a quarter of the run are not seen. "
+      "The range is tried at 17 values. The first edge upwards of the scenario's own value (of the first stable value, "
+      "if that one is not stable; with --smallest downwards, from the high end) is bisected, and three values are tried "
+      "on either side of it, which may reveal an earlier edge. The column astray counts unstable values on the stable "
+      "side and stable ones beyond the edge. Where the hand is an impedance, a run without environment tells whether "
+      "hand and device alone are unstable beyond the edge. Where the springs stay in contact, the theoretical limit "
+      "stands beside the edge. limit_runs.csv has every run.");
 }
 
 }  // namespace hapbench

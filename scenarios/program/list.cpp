@@ -2,18 +2,18 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "algorithms/registry.hpp"
 #include "device_model/device_presets.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
-#include "scenarios/program/describe_thesis.hpp"
-#include "scenarios/program/schema_text.hpp"
+#include "scenarios/program/describe.hpp"
+#include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/table.hpp"
 #include "sim/loop/integrators/table.hpp"
 
@@ -22,17 +22,13 @@ namespace {
 
 /// A thing that has a name.
 struct Listed {
-  std::string kind;  ///< "algorithm", …
+  std::string kind;  ///< such as "algorithm"
   std::string name;
   std::string summary;
   std::string group = {};    ///< of a scenario
-  std::string source = {};   ///< of a scenario or a claim: where in the thesis it is, or its numbers come from
+  std::string source = {};   ///< of a scenario or a claim: its place in the thesis, or the source of its numbers
   std::string verdict = {};  ///< of a claim
 };
-
-void add_models(std::vector<Listed>& all, const char* kind, const ModelInfo& info) {
-  all.push_back({kind, info.name, info.summary});
-}
 
 Listed listed_scenario(const BundledScenario& bundled) {
   try {
@@ -45,22 +41,29 @@ Listed listed_scenario(const BundledScenario& bundled) {
 
 std::vector<Listed> everything() {
   std::vector<Listed> all;
-  for (const AlgorithmEntry& entry : algorithms()) add_models(all, "algorithm", *entry.info);
-  for (const DepthModelEntry& entry : depth_models()) add_models(all, "depth model", *entry.info);
-  for (const ModelInfo* stage : stages()) add_models(all, "stage", *stage);
-  for (const IntegratorEntry* entry : kIntegrators) add_models(all, "integrator", entry->info);
+  const auto add = [&all](const char* kind, const ModelInfo& info) { all.push_back({kind, info.name, info.summary}); };
+  for (const AlgorithmEntry& entry : algorithms()) add("algorithm", *entry.info);
+  for (const DepthModelEntry& entry : depth_models()) add("depth model", *entry.info);
+  for (const ModelInfo* stage : stages()) add("stage", *stage);
+  for (const IntegratorEntry* entry : kIntegrators) add("integrator", entry->info);
   for (const char* field : {"environment", "tool", "hand", "device"}) {
-    for (const std::string& type : type_names(field)) all.push_back({field, type, type_summary(type, field)});
+    for (const ValueGuide& type : types_of(field)) all.push_back({field, type.type, type.summary});
   }
   for (const DevicePreset& preset : device_presets()) all.push_back({"preset", preset.name, preset.device});
   for (const BundledScenario& bundled : bundled_scenarios()) all.push_back(listed_scenario(bundled));
   for (const auto& [name, unit, meaning, value] : metrics_without_values()) all.push_back({"metric", name, meaning});
-  for (const Json& claim : claims_on_record())
-    all.push_back({"claim", claim.at("id"), claim.at("claim"), "", claim.at("place"), claim.at("verdict")});
+  for (const Json& claim : claims_on_record()) {
+    all.push_back({.kind = "claim",
+                   .name = claim.at("id"),
+                   .summary = claim.at("claim"),
+                   .group = "",
+                   .source = claim.at("place"),
+                   .verdict = claim.at("verdict")});
+  }
   return all;
 }
 
-/// What can be asked for: kinds, and groups of scenarios.
+/// The kinds, and the groups of scenarios.
 std::vector<std::string> sections_of(const std::vector<Listed>& all) {
   std::vector<std::string> names;
   for (const Listed& thing : all) {
@@ -71,10 +74,21 @@ std::vector<std::string> sections_of(const std::vector<Listed>& all) {
   return names;
 }
 
+/// The sections as users write them: "depth_models", "thesis".
+std::vector<std::string> words_for_sections() {
+  const std::vector<Listed> all = everything();
+  std::vector<std::string> words = sections_of(all);
+  for (std::string& word : words) {
+    if (std::any_of(all.begin(), all.end(), [&word](const Listed& thing) { return thing.kind == word; })) word += 's';
+    std::replace(word.begin(), word.end(), ' ', '_');
+  }
+  return words;
+}
+
 constexpr std::size_t kColumn = 34;  // of the summaries
 
-/// What a thing is: the first sentence, up to a semicolon or a colon that is not near its beginning; and no more than
-/// the line holds.
+/// The first sentence of a summary, up to a semicolon or a colon that is not near its beginning, cut to what the line
+/// holds.
 std::string short_summary(const std::string& text) {
   std::size_t end = std::min(text.find("; "), text.find(": ", 20));
   for (std::size_t dot = text.find('.'); dot < end; dot = text.find('.', dot + 1)) {
@@ -87,7 +101,7 @@ std::string short_summary(const std::string& text) {
   return sentence.substr(0, sentence.rfind(' ', room - 4)) + " ...";
 }
 
-/// The name without the algorithm at its end: what scenarios of one scene have in common.
+/// A scenario's name without the algorithm at its end, which scenarios of one scene have in common.
 std::string scene_of(const std::string& name) {
   std::size_t longest = 0;
   for (const AlgorithmEntry& entry : algorithms()) {
@@ -97,7 +111,7 @@ std::string scene_of(const std::string& name) {
   return name.substr(0, name.size() - longest);
 }
 
-/// Those that are one scene under several algorithms stand together, where the first of them would.
+/// The line of a thing. Scenarios that are one scene under several algorithms share the line of the first.
 std::string entry_of(const std::vector<Listed>& all, const Listed& first) {
   if (!first.verdict.empty())
     return entry(fmt::format("{:<5}{}", first.name, first.verdict), first.summary, 2, kColumn, output_width());
@@ -109,7 +123,7 @@ std::string entry_of(const std::vector<Listed>& all, const Listed& first) {
   }
   if (first.kind != "scenario" || first.name == scene || algorithms.size() < 2)
     return entry(first.name, short_summary(first.summary), 2, kColumn, output_width());
-  if (!first.name.ends_with("_" + algorithms.front())) return "";  // stands there already
+  if (!first.name.ends_with("_" + algorithms.front())) return "";  // on the line of the first
   return entry(scene + "_*", short_summary(first.summary), 2, kColumn, output_width()) +
          wrapped(fmt::format("*: {}", fmt::join(algorithms, ", ")), kColumn);
 }
@@ -134,7 +148,7 @@ struct ListOptions {
 int list(const ListOptions& options) {
   std::vector<Listed> all = everything();
   if (!options.what.empty()) {
-    // "scenarios" and "depth_models" are as good as "scenario" and "depth model".
+    // "scenario" and "depth model" are accepted like "scenarios" and "depth_models".
     std::string what = options.what;
     std::replace(what.begin(), what.end(), '_', ' ');
     const std::vector<std::string> sections = sections_of(all);
@@ -144,7 +158,7 @@ int list(const ListOptions& options) {
     require_valid_name("got", what, sections);
     std::erase_if(all, [&what](const Listed& thing) { return thing.kind != what && thing.group != what; });
   }
-  // Of these there are so many that they are shown to those who ask.
+  // There are so many metrics and claims that they are only shown on request.
   const bool of_everything = options.what.empty() && options.grep.empty();
   if (of_everything)
     std::erase_if(all, [](const Listed& thing) { return thing.kind == "metric" || thing.kind == "claim"; });
@@ -167,16 +181,17 @@ int list(const ListOptions& options) {
 }  // namespace
 
 void add_list(CommandLine& line) {
-  auto options = std::make_shared<ListOptions>();
-  Command command =
-      line.command("list", "List algorithms, models, integrators, environments, hands, scenarios, metrics and claims");
-  command.add(
-      "what", options->what,
-      "one kind alone: algorithms, depth_models, stages, integrators, environments, hands, devices, scenarios, or "
-      "a group of those: thesis, limits, beyond, quality, examples; or metrics, or claims");
-  command.add("--grep", options->grep, "only what has this text in its name, its description or its source");
-  add_output_options(command, options->output);
-  command.runs([options] { return list(*options); });
+  auto [command, options] = line.command(
+      "list",
+      "List algorithms, models, integrators, environments, tools, hands, devices, scenarios, metrics and claims", list);
+  command
+      .add(
+          "what", options.what,
+          "one kind alone, such as algorithms, depth_models, hands, metrics or claims, or one group of scenarios, such "
+          "as thesis")
+      .words(words_for_sections);
+  command.add("--grep", options.grep, "only things with this text in their name, description or source");
+  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

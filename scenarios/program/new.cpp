@@ -1,14 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "results/io/atomic_file.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/scenario_start.hpp"
-#include "scenarios/program/schema_text.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/assemble.hpp"
 
@@ -25,9 +24,7 @@ struct NewOptions {
 };
 
 std::vector<std::string> kind_names() {
-  std::vector<std::string> names;
-  for (const StartKind& kind : start_kinds()) names.emplace_back(kind.name);
-  return names;
+  return names_of(start_kinds(), &StartKind::name);
 }
 
 const StartKind& kind_named(const std::string& name) {
@@ -92,13 +89,11 @@ int write_new(const NewOptions& options) {
 }  // namespace
 
 void add_new(CommandLine& line) {
-  auto options = std::make_shared<NewOptions>();
-  Command command = line.command("new", "Write a scenario to start from and explain its fields");
-  command.add("kind", options->kind, "what to start with; without, the kinds are listed");
-  command.add("--from", options->from, "the mesh, shell or stroke that it is about");
-  command.add("--out", options->out, "the file to write, a new one (default: KIND.json, behind the name of --from)");
-  add_output_options(command, options->output);
-  command.runs([options] { return write_new(*options); });
+  auto [command, options] = line.command("new", "Write a scenario to start from and explain its fields", write_new);
+  command.add("kind", options.kind, "the kind of scenario; without it, the kinds are listed").words(kind_names);
+  command.add("--from", options.from, "the file of the mesh, shell or stroke to start from");
+  command.add("--out", options.out, "the file to write, which must not exist (default: [FROM_]KIND.json)");
+  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

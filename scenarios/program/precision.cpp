@@ -2,9 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <memory>
 #include <optional>
 
 #include "results/io/atomic_file.hpp"
@@ -16,8 +14,7 @@
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/run/wait_notice.hpp"
-#include "scenarios/studies/precision/study.hpp"
+#include "scenarios/studies/precision/measure.hpp"
 
 namespace hapbench {
 namespace {
@@ -33,9 +30,12 @@ struct PrecisionCommandOptions {
   OutputOptions output;
 };
 
+std::vector<std::string> study_names() {
+  return names_of(kPrecisionStudies, &PrecisionStudy::name);
+}
+
 std::vector<const PrecisionStudy*> chosen_studies(const std::vector<std::string>& given) {
-  std::vector<std::string> all;
-  for (const PrecisionStudy* study : kPrecisionStudies) all.emplace_back(study->name);
+  const std::vector<std::string> all = study_names();
   std::vector<const PrecisionStudy*> studies;
   for (const std::string& name : chosen_names("got study", given, all)) {
     const auto study = std::find(all.begin(), all.end(), name) - all.begin();
@@ -44,7 +44,7 @@ std::vector<const PrecisionStudy*> chosen_studies(const std::vector<std::string>
   return studies;
 }
 
-/// Errors and times apart: the errors are the same bytes in every run.
+/// Writes errors and times into separate files: the errors are the same bytes in every run.
 void write_study(const fs::path& directory, const PrecisionStudy& study, const PrecisionResult& result) {
   std::string errors = "setting,outcome", times = fmt::format("setting,seconds_per_{}\n", result.timed);
   for (const std::string& column : result.columns) errors += "," + column;
@@ -66,7 +66,7 @@ std::string study_text(const PrecisionStudy& study, const PrecisionResult& resul
   Table table(columns);
   for (const PrecisionRow& row : result.rows) {
     std::vector<std::string> cells = {row.setting, row.outcome};
-    for (const auto& value : row.values) cells.push_back(significant(value.value_or(std::nan(""))));
+    for (const auto& value : row.values) cells.push_back(significant(value));
     cells.push_back(significant(1e6 * row.seconds, 3));
     table.add(std::move(cells));
   }
@@ -82,7 +82,7 @@ Json study_json(const PrecisionStudy& study, const PrecisionResult& result) {
   for (const PrecisionRow& row : result.rows) {
     Json json = {{"setting", row.setting}, {"outcome", row.outcome}};
     for (std::size_t i = 0; i < result.columns.size(); ++i) {
-      json[result.columns[i]] = row.values[i] ? Json(*row.values[i]) : Json(nullptr);
+      json[result.columns[i]] = or_null(row.values[i]);
     }
     json["seconds_per_" + result.timed] = row.seconds;
     rows.push_back(std::move(json));
@@ -102,10 +102,8 @@ int precision(const PrecisionCommandOptions& options) {
     scenarios.push_back(load_scenario(find_scenario(given.empty() ? study->scenario : given), options.overrides));
     print_warnings(check_named_files(scenarios.back()));
   }
-  const fs::path out = !options.out.empty() ? fs::path(options.out)
-                       : options.scenario.empty()
-                           ? fs::path("results") / "out" / "precision"
-                           : fs::path("results") / "out" / ("precision_" + scenarios.front().file.stem().string());
+  const fs::path out = results_directory(
+      options.out, options.scenario.empty() ? "precision" : "precision_" + scenarios.front().file.stem().string());
   require_writable_directory(out);
 
   std::string text;
@@ -113,7 +111,7 @@ int precision(const PrecisionCommandOptions& options) {
   for (std::size_t i = 0; i < studies.size(); ++i) {
     PrecisionOptions settings;
     settings.repetitions = options.repetitions;
-    // Most of a study's time can pass before its first row: in the ideal to which the rows are compared.
+    // Most of a study's time may pass before its first row, in computing the reference of all rows.
     std::optional<WaitNotice> notice(std::in_place, studies[i]->name, !options.output.quiet);
     std::optional<ProgressBar> bar;
     settings.progress = [&](std::size_t done, std::size_t all) {
@@ -134,22 +132,25 @@ int precision(const PrecisionCommandOptions& options) {
 }  // namespace
 
 void add_precision(CommandLine& line) {
-  auto options = std::make_shared<PrecisionCommandOptions>();
-  Command command = line.command("precision", "Run time against error: one row per setting");
+  auto [command, options] = line.command("precision", "Measure run time against error, one row per setting", precision,
+                                         "complete studies are kept");
   std::string studies = "The studies:";
   for (const PrecisionStudy* study : kPrecisionStudies)
     studies += fmt::format("\n  {}: {}", study->name, study->summary);
-  command.add("studies", options->studies, "names of studies (below), or all").required();
+  command.add("studies", options.studies, "names of studies (below), or all")
+      .words([] { return with_all(study_names()); })
+      .required();
   command.footer(studies);
-  command.add("--scenario", options->scenario,
-              "scenario to start from, instead of the study's own: any with time_step");
-  command.add("--out", options->out,
+  command
+      .add("--scenario", options.scenario,
+           "scenario to start from instead of the study's own: any scenario for time_step")
+      .words(all_scenarios);
+  command.add("--out", options.out,
               "directory of the results (default: results/out/precision, with --scenario results/out/precision_NAME)");
-  command.add("--set", options->overrides, "override a field: path=value").repeatable();
-  command.add("--repetitions", options->repetitions, "of every timing, of which the least counts (default: 5)")
+  add_overrides(command, options.overrides);
+  command.add("--repetitions", options.repetitions, "repetitions of every timing; the least counts (default: 5)")
       .range(1, 1000);
-  add_output_options(command, options->output);
-  command.runs([options] { return precision(*options); }, "studies that were complete are kept");
+  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

@@ -6,21 +6,29 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "results/io/io_error.hpp"
+#include "results/io/atomic_file.hpp"
 #include "results/summary/provenance.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
+
+using AddCommand = void(CommandLine& line);
+
+/// Every command, each defined in a source file of its own subject. The second list is in the order of the help.
+AddCommand add_compare, add_completion, add_describe, add_diff, add_import, add_limit, add_list, add_man, add_merge,
+    add_new, add_plot, add_precision, add_report, add_reproduce, add_run, add_shell, add_stability, add_sweep,
+    add_validate;
+
 namespace {
 
-int fail(std::string_view what, int status) {
-  print_error(what);
-  return status;
-}
+constexpr AddCommand* kCommands[] = {add_run,       add_compare,  add_stability,  add_limit, add_precision,
+                                     add_reproduce, add_diff,     add_sweep,      add_merge, add_new,
+                                     add_import,    add_plot,     add_report,     add_shell, add_list,
+                                     add_describe,  add_validate, add_completion, add_man};
 
-/// What a version stands for.
+/// The promise of a version.
 constexpr const char* kPromise =
     "Within a major version (before 1.0: a minor one) no field of scenarios, no file or column of results, no command, "
     "option or exit status goes away or changes its meaning; there may be more of them. Computed numbers may change with "
@@ -39,30 +47,17 @@ std::string version_json() {
       .dump(2);
 }
 
+int fail(std::string_view what) {
+  print_error(what);
+  return kInternalFault;
+}
+
 }  // namespace
 
 int run_program(int argc, char** argv) {
   const Provenance program = provenance();
   CommandLine line(fmt::format("hapbench {} ({})", program.version, program.commit), version_json);
-  add_run(line);
-  add_compare(line);
-  add_stability(line);
-  add_limit(line);
-  add_precision(line);
-  add_reproduce(line);
-  add_diff(line);
-  add_sweep(line);
-  add_merge(line);
-  add_new(line);
-  add_import(line);
-  add_plot(line);
-  add_report(line);
-  add_shell(line);
-  add_list(line);
-  add_describe(line);
-  add_validate(line);
-  add_completion(line);
-  add_man(line);
+  for (AddCommand* add_command : kCommands) add_command(line);
   try {
     return line.run(argc, argv);
   } catch (const Stopped& stop) {
@@ -78,11 +73,11 @@ int run_program_to_exit(int argc, char** argv) {
     print_errors(error);
     return kBadInput;
   } catch (const IoError& error) {
-    return fail(error.what(), kInternalFault);
+    return fail(error.what());
   } catch (const std::bad_alloc&) {
-    return fail("out of memory", kInternalFault);
+    return fail("out of memory");
   } catch (const std::exception& error) {
-    return fail(one_line(fmt::format("internal fault: {}", error.what())), kInternalFault);
+    return fail(one_line(fmt::format("internal fault: {}", error.what())));
   }
 }
 

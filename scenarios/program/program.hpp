@@ -2,12 +2,12 @@
 
 namespace hapbench {
 
-/// Runs the command that the words of the command line name, the first one aside, and returns the program's exit
-/// status; work that stop_signal.hpp stopped is told of on standard error. Throws InputError, also for words that are
-/// no command, and IoError.
+/// Runs the command that argv[1], argv[2], ... name and returns the program's exit status. Reports on standard error
+/// when a signal (stop_signal.hpp) stopped the work. Throws InputError, also for words that are no command, and
+/// IoError.
 int run_program(int argc, char** argv);
 
-/// The same, with what it throws said on standard error: exit status 2 for InputError, 1 for all else.
+/// Does the same, but reports exceptions on standard error: exit status 2 for InputError, 1 for all others.
 int run_program_to_exit(int argc, char** argv);
 
 }  // namespace hapbench

@@ -2,7 +2,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <memory>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -38,11 +37,14 @@ struct ReproduceOptions {
   OutputOptions output;
 };
 
+std::vector<std::string> claim_ids() {
+  return names_of(all_claims(), &Claim::id);
+}
+
 std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
   std::vector<Claim> claims = all_claims();
   if (ids.empty()) return claims;
-  std::vector<std::string> valid;
-  for (const Claim& claim : claims) valid.emplace_back(claim.id);
+  const std::vector<std::string> valid = claim_ids();
   std::set<std::string> chosen;
   for (const std::string& id : ids) {
     const auto same = [&id](const std::string& other) { return lower_case(other) == lower_case(id); };
@@ -66,7 +68,7 @@ bool is_current(const fs::path& directory, const LoadedScenario& loaded) {
   }
 }
 
-/// Runs the thesis's scenarios into subdirectories, those apart whose results are current.
+/// Runs the thesis's scenarios into subdirectories, except those whose results are current.
 class ThesisRuns {
  public:
   ThesisRuns(const ReproduceOptions& options) : directory_(fs::path(options.out) / "thesis"), anew_(options.anew) {
@@ -77,7 +79,7 @@ class ThesisRuns {
 
   const fs::path& directory() const { return directory_; }
 
-  /// All of them, on several threads.
+  /// Runs all of them on several threads.
   void run_all(std::size_t jobs, bool progress) {
     std::vector<std::size_t> runs(scenarios_.size());
     std::iota(runs.begin(), runs.end(), std::size_t{0});
@@ -93,7 +95,7 @@ class ThesisRuns {
     parallel_for(runs, jobs, work, [] { return false; });
   }
 
-  /// One of them, unless that has been done.
+  /// Runs one of them unless that has been done.
   void provide(const std::string& name) {
     for (const BundledScenario& bundled : scenarios_) {
       if (bundled.name == name && !done_.contains(name)) tell(bundled, run(bundled));
@@ -121,20 +123,18 @@ class ThesisRuns {
   bool as_expected_ = true;
 };
 
-/// Judges the claims by the thesis's runs, and notes in `read` what of their results that takes.
+/// Judges the claims by the thesis's runs, and notes in `read` which results that needs.
 std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const PublishedNumbers& published, ThesisRuns& runs,
                                ResultsRead& read, bool progress) {
-  std::set<std::string> used;  // by the claim in turn
+  std::set<std::string> used;  // scenarios of the current claim
   const auto provide = [&](const std::string& scenario, const std::string& part) {
     used.insert(scenario);
     read[scenario].insert(part);
     runs.provide(scenario);
   };
-  RecentShells shells;
-  const Evidence evidence{
-      published, ResultFiles(runs.directory(), provide), {}, &shells, [&](const std::string& scenario) {
-        used.insert(scenario);
-      }};
+  const Evidence evidence{published, ResultFiles(runs.directory(), provide), {}, [&](const std::string& scenario) {
+                            used.insert(scenario);
+                          }};
   std::vector<JudgedClaim> judged;
   ProgressBar bar("claims", claims.size(), progress);
   for (const Claim& claim : claims) {
@@ -146,7 +146,7 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
   return judged;
 }
 
-/// What a sample can judge: claims that a simulation can show, and that are not about this machine's times.
+/// The claims that samples can judge: those that a simulation can show and that do not concern run times.
 std::vector<JudgedClaim> to_judge_again(std::vector<JudgedClaim> judged) {
   std::erase_if(judged,
                 [](const JudgedClaim& j) { return j.claim.timing || j.finding.verdict == Verdict::not_reproducible; });
@@ -162,7 +162,7 @@ void print_problems(const std::vector<std::string>& problems) {
   if (problems.size() > kMost) print_error(fmt::format("{} more like these", problems.size() - kMost));
 }
 
-/// What the samples say, as robustness.json does, and the signal that stopped them before, or 0.
+/// The content of robustness.json, and the signal that stopped the samples, or 0.
 struct SampledRobustness {
   Json record;
   int signal = 0;
@@ -175,7 +175,7 @@ SampledRobustness sample_robustness(const ReproduceOptions& options, const Robus
   RobustnessReport report = run_robustness(plan, {options.out, options.jobs, options.anew, !options.output.quiet});
   print_problems(report.problems);
   if (report.signal != 0) {
-    fmt::print(stderr, "hapbench: stopped after {} of {} samples; the same command goes on from there\n", report.done,
+    fmt::print(stderr, "hapbench: stopped after {} of {} samples; the same command continues from there\n", report.done,
                plan.samples());
     return {{}, report.signal};
   }
@@ -191,14 +191,15 @@ SampledRobustness sample_robustness(const ReproduceOptions& options, const Robus
   return {record};
 }
 
-/// Where the ledger goes. Nowhere for single claims unless it is said: they would replace the ledger of all.
+/// The file of the ledger. None for single claims unless --ledger is given: they would replace the ledger of all
+/// claims.
 std::optional<fs::path> ledger_file(const ReproduceOptions& options) {
   if (!options.ledger.empty()) return options.ledger;
   if (!options.only.empty()) return {};
   return fs::path(options.out) / "claims.json";
 }
 
-/// Each claim in words, and why it got its verdict.
+/// States each claim and the reason for its verdict.
 std::string claims_text(const std::vector<JudgedClaim>& judged) {
   std::string text;
   for (const JudgedClaim& j : judged) {
@@ -215,7 +216,7 @@ int reproduce(const ReproduceOptions& options) {
   const Choices choices(reference / "choices.json");
   require_writable_directory(options.out);
   ThesisRuns runs(options);
-  // Single claims run what they ask for.
+  // Single claims run only the scenarios they need.
   if (options.only.empty()) runs.run_all(options.jobs, !options.output.quiet);
 
   ResultsRead read;
@@ -257,29 +258,29 @@ int reproduce(const ReproduceOptions& options) {
 }  // namespace
 
 void add_reproduce(CommandLine& line) {
-  auto options = std::make_shared<ReproduceOptions>();
-  Command command = line.command("reproduce", "Run the thesis's experiments and judge its claims");
-  command.add("--only", options->only, "ids of claims, separated by commas; \"hapbench list claims\" shows them")
+  auto [command, options] = line.command("reproduce", "Run the thesis's experiments and judge its claims", reproduce,
+                                         "finished runs are kept, and the same command continues from there");
+  command.add("--only", options.only, "ids of claims, separated by commas; \"hapbench list claims\" shows them")
+      .words(claim_ids)
       .comma_separated();
-  command.add("--out", options->out, "directory of the results (default: results/out/reproduce)");
-  command.add("--ledger", options->ledger,
-              "the ledger, JSON; a Markdown table beside it (default: OUT/claims.json, with --only none)");
-  command.flag("--anew", options->anew, "run every scenario and judge every sample, current results or not");
-  command.add("--jobs", options->jobs, "runs at once (default: one for each processor)").range(1, 1024);
+  command.add("--out", options.out, "directory of the results (default: results/out/reproduce)");
+  command.add("--ledger", options.ledger,
+              "file of the ledger, JSON, with a Markdown table beside it (default: OUT/claims.json; with --only none)");
+  command.flag("--anew", options.anew,
+               "run every scenario and judge every sample again, even where results are current");
+  command.add("--jobs", options.jobs, "runs at once (default: one for each processor)").range(1, 1024);
   command
       .add(
-          "--robustness", options->samples,
-          "judge every claim again at so many samples of the choices on record (default: 256), appendix D at a quarter "
+          "--robustness", options.samples,
+          "judge every claim again at this many samples of the choices on record (default: 256), appendix D at a quarter "
           "of them; writes robustness.csv, .json and .md beside the ledger, if there is one")
       .value_if_none("256")
       .range(4, 100'000);
-  add_output_options(command, options->output);
+  add_output_options(command, options.output);
   command.footer(
       "choices.md beside the ledger lists what the thesis leaves open (results/reference/choices.json). Ctrl-C stops "
-      "--robustness after the samples in flight; the same command goes on from there.\n"
+      "--robustness after the samples under way; the same command continues from there.\n"
       "Exit status: 0 success, 2 bad input or usage, 3 a run did not end as its scenario expects, 130 stopped by Ctrl-C.");
-  command.runs([options] { return reproduce(*options); },
-               "finished runs are kept, and the same command goes on from there");
 }
 
 }  // namespace hapbench

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include "device_model/theory/stiffness_limits.hpp"
-#include "results/record/target_table.hpp"
+#include "results/record/recorder.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
-#include "scenarios/program/comparison_table.hpp"
+#include "scenarios/program/run_table.hpp"
 #include "scenarios/run/recorders.hpp"
 
 namespace hapbench {

@@ -2,16 +2,14 @@
 #include <nlohmann/json.hpp>
 
 #include <memory>
-
-#include "results/io/io_error.hpp"
+#include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/program/command.hpp"
-#include "scenarios/program/latency_table.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/expected_output.hpp"
+#include "scenarios/run/recorders.hpp"
 
 namespace hapbench {
 namespace {
@@ -22,12 +20,12 @@ struct RunOptions {
   std::vector<std::string> scenarios;
   std::string out;
   std::vector<std::string> overrides;
-  Skips skips = Skips::taken;
+  Skips skips = Skips::on;
   bool latency = false;
   OutputOptions output;
 };
 
-/// Whoever tries values of a field may not mean to lose the run of the last one.
+/// Tells users who try values of a field when the results of the previous value are about to be replaced.
 void note_replaced_run(const LoadedScenario& loaded, const fs::path& directory) {
   const fs::path earlier = directory / "scenario.effective.json";
   std::error_code ignored;
@@ -59,24 +57,20 @@ int run(const RunOptions& options) {
   for (const LoadedScenario& loaded : scenarios) bytes += expected_output_bytes(loaded.scenario);
   announce_large_output(bytes);
 
-  std::vector<Table::Column> columns = run_columns();
-  columns.insert(columns.begin(), {{"scenario", false}, {"algorithm", false}});
-  Table table(columns, kRunGap);
-  LatencyTable latencies;
+  RunTable table({"scenario", "algorithm"});
+  Table latencies = latency_table();
   std::vector<RunReport> reports;
   Json summaries = Json::array();
   std::string targets;
   int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
     const RunReport& report = reports.emplace_back(run_scenario(scenarios[i], directories[i], !options.output.quiet));
-    std::vector<std::string> cells = run_cells(report);
-    cells.insert(cells.begin(), {report.summary.name, report.summary.algorithm});
-    table.add(std::move(cells));
+    table.add({report.summary.name, report.summary.algorithm}, report);
     targets += targets_text(report);
     print_warnings(run_warnings({&report, 1}));
     summaries.push_back(summary_json(report.summary));
     if (options.latency) {
-      latencies.add(report.summary.name, *report.timing.latency);
+      latencies.add(latency_cells(report.summary.name, *report.timing.latency));
       summaries.back()["step_latency"] = step_latency_json(*report.timing.latency);
     }
     for (const std::string& unmet : report.unmet) {
@@ -96,18 +90,18 @@ int run(const RunOptions& options) {
 }  // namespace
 
 void add_run(CommandLine& line) {
-  auto options = std::make_shared<RunOptions>();
-  Command command = line.command("run", "Run scenarios and write their results");
-  command.add("scenarios", options->scenarios, "scenario files, names of bundled scenarios, or of groups of them")
+  auto [command, options] = line.command("run", "Run scenarios and write their results", run,
+                                         "nothing of the unfinished run is written; finished runs are kept");
+  command.add("scenarios", options.scenarios, "scenario files, names of bundled scenarios, or of groups of them")
+      .words(all_scenarios)
       .required();
-  command.add("--out", options->out,
+  command.add("--out", options.out,
               "directory of the results; several scenarios get a subdirectory each (default: results/out/NAME)");
-  command.add("--set", options->overrides, "override a field: path=value, as in time.steps=100").repeatable();
-  command.flag("--latency", options->latency,
-               "time every step (as record.timing does) and print percentiles and deadline misses");
-  add_skip_option(command, options->skips);
-  add_output_options(command, options->output);
-  command.runs([options] { return run(*options); }, "nothing of the unfinished run is written, finished ones are kept");
+  add_overrides(command, options.overrides, "override a field: path=value, as in time.steps=100");
+  command.flag("--latency", options.latency,
+               "time every step, as record.timing does, and print percentiles and missed deadlines");
+  add_skip_option(command, options.skips);
+  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

@@ -8,18 +8,37 @@
 #include <limits>
 #include <string_view>
 
+#include "results/io/atomic_file.hpp"
 #include "results/summary/outcome_names.hpp"
+#include "scenarios/description/metric_sections.hpp"
+#include "scenarios/description/scenario.hpp"
 
 namespace hapbench {
 namespace {
 
-/// As narrow as it gets: "1440" in place of "1.44e+03".
+/// A number of few characters: "1440" in place of "1.44e+03", and never "-0".
 std::string cell(std::optional<double> value, int digits = 3) {
   if (value && std::abs(*value) >= 100.0 && std::abs(*value) < 1e6) return fmt::format("{:.0f}", *value);
-  return significant(value.value_or(std::numeric_limits<double>::quiet_NaN()) + 0.0, digits);  // no "-0"
+  return significant(value.value_or(std::numeric_limits<double>::quiet_NaN()) + 0.0, digits);
 }
 
-/// Equal for warnings that say the same of different runs.
+/// A time in microseconds of at most four characters, so that tables are as wide on a slow machine as on a fast one:
+/// "0.94", "1440", "23ms", "1.2s".
+std::string short_time(double seconds) {
+  const double us = 1e6 * seconds;
+  if (us < 0.995) return fmt::format("{:.2f}", us);
+  if (us < 9999.5) return cell(us, 2);
+  if (us < 99.5e3) return fmt::format("{:.0f}ms", 1e-3 * us);
+  return seconds < 9.95 ? fmt::format("{:.1f}s", seconds) : fmt::format("{:.0f}s", std::min(seconds, 999.0));
+}
+
+/// The same time with its unit, for a sentence.
+std::string time_text(double seconds) {
+  const std::string text = short_time(seconds);
+  return text.ends_with('s') ? text : text + " us";
+}
+
+/// A warning without its numbers: equal for warnings that say the same of different runs.
 std::string without_numbers(std::string text) {
   std::erase_if(text, [](char c) { return std::string_view("0123456789.+-e").find(c) != std::string_view::npos; });
   return text;
@@ -31,28 +50,34 @@ std::string distinct_name(const RunReport& report, std::span<const RunReport> re
   return one_scenario ? report.summary.algorithm : report.summary.name;
 }
 
-}  // namespace
-
-std::vector<Table::Column> run_columns() {
+std::vector<Table::Column> columns_behind(const std::vector<std::string>& names) {
   std::vector<Table::Column> columns;
+  for (const std::string& name : names) columns.push_back({name, false});
   for (const RunHeading& heading : kRunHeadings) columns.push_back({heading.title, heading.number});
   return columns;
 }
 
-std::vector<std::string> run_cells(const RunReport& report) {
-  const Metrics& m = report.summary.metrics;
-  const ContactForces& contact = m.contact;
-  const auto rows = static_cast<double>(report.summary.result.rows);
-  return {std::string(outcome_name(report.summary.result.outcome)),
-          cell(100.0 * static_cast<double>(m.steps_in_contact) / rows),
-          cell(contact.landing_max()),
-          cell(contact.mean()),
-          cell(contact.step_p99()),
-          cell(contact.rms_above_cutoff()),
-          cell(contact.reversals_per_second()),
-          cell(1e3 * m.depth_max),
-          m.ratio ? fmt::format("{}..{}", cell(m.ratio->min, 2), cell(m.ratio->max, 2)) : "-",
-          report.timing.step_p50 ? cell(1e6 * *report.timing.step_p50, 2) : "-"};
+std::string cell_below(const RunHeading& heading, const RunReport& report, const MetricList& metrics) {
+  const std::string_view first = heading.shows[0];
+  if (first == "outcome") return std::string(outcome_name(report.summary.result.outcome));
+  if (first == "step_p50_s") return report.timing.step_p50 ? short_time(*report.timing.step_p50) : "-";
+  const auto value = number_of(value_of(metrics, first));
+  if (heading.shows[1] == nullptr) return cell(value ? std::optional(heading.factor * *value) : std::nullopt);
+  const auto other = number_of(value_of(metrics, heading.shows[1]));
+  return value && other ? fmt::format("{}..{}", cell(value, 2), cell(other, 2)) : "-";
+}
+
+/// The names of all algorithms fit into kTableWidth with it.
+constexpr std::size_t kNarrowGap = 1;
+
+}  // namespace
+
+RunTable::RunTable(const std::vector<std::string>& names) : table_(columns_behind(names), kNarrowGap) {}
+
+void RunTable::add(std::vector<std::string> names, const RunReport& report) {
+  const MetricList metrics = metric_list(report.summary.metrics);
+  for (const RunHeading& heading : kRunHeadings) names.push_back(cell_below(heading, report, metrics));
+  table_.add(std::move(names));
 }
 
 std::vector<std::string> run_warnings(std::span<const RunReport> reports) {
@@ -67,7 +92,7 @@ std::vector<std::string> run_warnings(std::span<const RunReport> reports) {
       auto known = std::find_if(warnings.begin(), warnings.end(), [&](const Warning& w) { return w.kind == kind; });
       if (known == warnings.end()) known = warnings.insert(known, {kind, report.summary.name + ": " + text, {}});
       auto& algorithms = known->algorithms;
-      // Several seeds of an algorithm come one after the other; the first tells.
+      // The seeds of an algorithm follow each other.
       if (algorithms.empty() || algorithms.back() != report.summary.algorithm)
         algorithms.push_back(report.summary.algorithm);
     }
@@ -92,14 +117,17 @@ std::string step_time_text(std::span<const RunReport> reports) {
   const RunReport& quickest = *std::ranges::min_element(reports, {}, p99_or(std::numeric_limits<double>::infinity()));
   const RunReport& slowest = *std::ranges::max_element(reports, {}, p99_or(0.0));
   if (!slowest.timing.step_p99) return "";
-  const auto us = [](const RunReport& report) { return cell(1e6 * *report.timing.step_p99, 2); };
   const std::string quick = distinct_name(quickest, reports), slow = distinct_name(slowest, reports);
-  if (quick == slow) {
-    const std::string whose = reports.size() == 1 ? "" : fmt::format(" ({})", slow);
-    return fmt::format("\n99 % of the steps take at most {} us{}\n", us(slowest), whose);
+  const auto of = [](const RunReport& report, const std::string& name) {
+    return fmt::format("{} ({})", time_text(*report.timing.step_p99), name);
+  };
+  std::string text = "99 % of the steps take at most ";
+  if (reports.size() == 1) {
+    text += time_text(*slowest.timing.step_p99);
+  } else {
+    text += quick == slow ? of(slowest, slow) : of(quickest, quick) + " to " + of(slowest, slow);
   }
-  return fmt::format("\n99 % of the steps take at most {} us ({}) to {} us ({})\n", us(quickest), quick, us(slowest),
-                     slow);
+  return "\n" + wrapped(text, 0);
 }
 
 std::string unsettled_text(std::span<const RunReport> reports) {
@@ -112,20 +140,20 @@ std::string unsettled_text(std::span<const RunReport> reports) {
     landed = landed || m.contact.landing_max();
   }
   if (names.empty()) return "";
-  // Without landings all contact counts already.
+  // In runs without landings all contact counts already.
   const std::string_view advice = landed ? "; --set metrics.from_s=0 takes all contact" : "";
   return fmt::format(
       "\n{}", wrapped(fmt::format("\"-\": under 1/30 s of settled contact ({}){}", fmt::join(names, ", "), advice), 0));
 }
 
 std::string targets_text(const RunReport& report) {
-  if (!report.summary.targets) return "";
+  if (report.summary.section("targets") == nullptr) return "";
   const auto cell = [](const SubjectMean& m, int digits) {
     return m.subjects == 0 ? "-"
                            : fmt::format("{} +- {}", significant(m.mean, digits), significant(m.standard_error, 2));
   };
   Table table({{"place"}, {"success rate"}, {"completion s"}, {"model force N"}, {"speed mm/s"}});
-  for (const PlaceMetrics& place : *report.summary.targets) {
+  for (const PlaceMetrics& place : place_metrics(report.targets)) {
     SubjectMean speed = place.speed;
     speed.mean *= 1e3;
     speed.standard_error *= 1e3;
@@ -133,6 +161,76 @@ std::string targets_text(const RunReport& report) {
                cell(place.model_force, 3), cell(speed, 3)});
   }
   return fmt::format("\n{}: targets, mean +- standard error over subjects\n\n{}", report.summary.name, table.text());
+}
+
+Table latency_table() {
+  std::vector<Table::Column> columns = {
+      {"step latency", false}, {"steps"}, {"p50 us"}, {"p95 us"}, {"p99 us"}, {"p99.9 us"}, {"max us"}};
+  for (const double deadline : kStepDeadlines) columns.push_back({fmt::format("> {:.3f} ms", 1e3 * deadline)});
+  columns.push_back({"clock us"});
+  return Table(columns);
+}
+
+std::vector<std::string> latency_cells(const std::string& name, const StepLatency& latency) {
+  std::vector<std::string> cells = {name, std::to_string(latency.steps)};
+  const auto add_time = [&](std::uint64_t ns) {
+    cells.push_back(latency.steps > 0 ? fmt::format("{:.3f}", static_cast<double>(ns) / 1e3) : "-");
+  };
+  for (const std::uint64_t ns : {latency.p50, latency.p95, latency.p99, latency.p99_9, latency.max}) add_time(ns);
+  for (const std::uint64_t misses : latency.misses) cells.push_back(std::to_string(misses));
+  add_time(latency.overhead);
+  return cells;
+}
+
+namespace {
+
+/// Programs may read these by their place: append new ones.
+constexpr const char* kComparedMetrics[] = {"force_max_N",
+                                            "velocity_total_variation_m_per_s",
+                                            "force_reversals",
+                                            "vibration_power_above_30Hz_m2_per_s2",
+                                            "depth_max_m",
+                                            "ratio_min",
+                                            "ratio_max",
+                                            "steps_in_contact",
+                                            "contact_share",
+                                            "landings",
+                                            "landing_force_max_N",
+                                            "landing_force_step_max_N",
+                                            "settled_s",
+                                            "force_mean_in_contact_N",
+                                            "settled_force_max_N",
+                                            "force_step_p99_N",
+                                            "settled_force_step_max_N",
+                                            "force_rms_above_30Hz_N",
+                                            "force_reversals_per_s",
+                                            "reduction_changes",
+                                            "reduction_force_step_max_N"};
+
+}  // namespace
+
+std::vector<Column> comparison_columns() {
+  std::vector<Column> columns = {
+      {"algorithm", "", "force algorithm"}, {"outcome", "", "how the run ended"}, {"steps", "1", "rows of the run"}};
+  const MetricList metrics = metrics_without_values();
+  for (const char* name : kComparedMetrics) {
+    const auto& metric = *std::ranges::find(metrics, name, &Metric::name);
+    columns.push_back({name, metric.unit, metric.meaning});
+  }
+  return columns;
+}
+
+void write_comparison(const std::filesystem::path& file, std::span<const RunReport> reports, std::size_t seeds) {
+  std::string text = (seeds > 1 ? "seed," : "") + header_of(comparison_columns()) + "\n";
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    const RunSummary& run = reports[i].summary;
+    if (seeds > 1) text += fmt::format("{},", i % seeds);
+    text += fmt::format("{},{},{}", run.algorithm, outcome_name(run.result.outcome), run.result.rows);
+    const MetricList metrics = metric_list(run);
+    for (const char* name : kComparedMetrics) text += "," + cell_text(value_of(metrics, name));
+    text += "\n";
+  }
+  write_file_atomically(file, text);
 }
 
 }  // namespace hapbench

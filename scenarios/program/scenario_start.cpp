@@ -2,18 +2,23 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <span>
 
+#include "device_model/hands/drag_hand.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/program/drag_start.hpp"
-#include "scenarios/program/tool_start.hpp"
-#include "scenarios/run/make_shell.hpp"
-#include "scenarios/run/quantity_text.hpp"
-#include "scenarios/run/tool_warnings.hpp"
-#include "sim/core/box.hpp"
+#include "scenarios/description/parts.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/encounter.hpp"
+#include "scenarios/run/scene_facts.hpp"
+#include "sim/core/types.hpp"
+#include "sim/geometry/point_shell.hpp"
+#include "sim/mesh/triangle_soup.hpp"
 
 namespace hapbench {
 namespace {
@@ -85,10 +90,10 @@ constexpr double kClearance = 0.001;      ///< between tool and surface at the s
 constexpr double kDragSpeed = 5.0;        ///< in diameters of the tool [1/s]
 constexpr double kPressedBelow = 0.0035;  ///< the hand's target, 1 N below the surface with kPress [m]
 
-/// What stands for @name@.
+/// The values by their names @name@ in the templates.
 using Values = std::map<std::string, Json>;
 
-/// Two significant digits, as people write lengths.
+/// Rounds to two significant digits, as people write lengths.
 double rounded(double value) {
   return std::stod(fmt::format("{:.2g}", value));
 }
@@ -105,7 +110,7 @@ Box box_of(const std::vector<SurfacePoint>& points) {
   return box_of(places);
 }
 
-/// The point nearest to the middle of those that are as high as any, to within `tolerance`.
+/// The point nearest to the middle of those within `tolerance` of the top.
 Vec3 middle_of_the_top(const std::vector<SurfacePoint>& points, double top, double tolerance) {
   Vec3 middle = Vec3::Zero();
   double count = 0.0;
@@ -125,8 +130,8 @@ Vec3 middle_of_the_top(const std::vector<SurfacePoint>& points, double top, doub
   return nearest->position;
 }
 
-/// The highest of the points that lie above or below the box's middle, to within `aside`; where there are none, as in a
-/// ring, the middle.
+/// The highest of the points above or below the box's middle, to within `aside`; where there are none, as in a ring,
+/// the middle.
 Vec3 top_of_the_middle(const std::vector<SurfacePoint>& points, const Box& box, double aside) {
   const Vec3 middle = 0.5 * (box.min + box.max);
   Vec3 top(middle.x(), middle.y(), box.min.z());
@@ -145,12 +150,118 @@ double guessed_scale(double longest) {
   return best;
 }
 
-/// To the micrometre, as people write places.
+/// Rounds to the micrometre, as people write places.
 double to_micrometres(double metres) {
   return std::round(1e6 * metres) / 1e6;
 }
 
-/// A start that is being made: the values are found out one after the other.
+/// A way over a surface for a hand that drags.
+struct DragStart {
+  Vec3 position = Vec3::Zero();    ///< initial.position_m [m]
+  Vec3 direction = Vec3::UnitX();  ///< hand.direction
+  double smoothing = 0.0;          ///< hand.smoothing_m [m]
+  double room = 0.0;               ///< length of the way to where the surface ends or turns back [m]
+};
+
+/// Tries along x and y, forwards and back, from each of `positions`, then with twice and four times `smoothing`, until
+/// a way is at least `enough` long; else takes the longest. A later direction or place has to lead a tenth further, so
+/// that the choice does not depend on rounding. Makes a walk of some 10 ms for each combination. Preconditions: a point
+/// in the shell, a position.
+DragStart choose_drag(const PointShell& shell, std::span<const Vec3> positions, double smoothing, double enough) {
+  constexpr double kFurther = 1.1;
+  const Box box = shell.bounds();
+  const double furthest = (box.max - box.min).norm();
+  DragStart best{positions.front(), Vec3::UnitX(), smoothing, 0.0};
+  for (const double radius : {smoothing, 2.0 * smoothing, 4.0 * smoothing}) {
+    const SmoothedSurface surface(shell, radius);
+    for (const Vec3& position : positions) {
+      for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, -1, 0)}) {
+        const double room = SurfacePath::along(surface, position, direction, furthest).length();
+        if (room > kFurther * best.room) best = {position, direction, radius, room};
+      }
+      if (best.room >= enough) return best;
+    }
+  }
+  return best;
+}
+
+/// Mean and variance of a surface.
+struct Spread {
+  Vec3 middle;
+  Mat3 variance;  ///< about the middle [m^2]
+};
+
+Spread spread_of(const TriangleSoup& mesh) {
+  double area = 0.0;
+  Vec3 sum = Vec3::Zero();
+  Mat3 second = Mat3::Zero();
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
+    const double weight = (q - p).cross(r - p).norm();
+    // The mean of a quadratic over a triangle is its mean over the middles of the sides.
+    for (const Vec3& place : {Vec3(0.5 * (p + q)), Vec3(0.5 * (q + r)), Vec3(0.5 * (r + p))}) {
+      sum += weight / 3.0 * place;
+      second += weight / 3.0 * place * place.transpose();
+    }
+    area += weight;
+  }
+  const Vec3 middle = sum / area;
+  return {middle, second / area - middle * middle.transpose()};
+}
+
+/// The direction along which a surface is clearly longest; a coordinate axis when it is near one.
+std::optional<Vec3> longest_direction(const Mat3& variance) {
+  constexpr double kStandsOut = 2.0;  // ratio of variances
+  // Cosine of 6 degrees: tools are modelled along an axis, but are seldom exactly symmetric about it.
+  constexpr double kNearAxis = 0.995;
+  const Eigen::SelfAdjointEigenSolver<Mat3> principal(variance);
+  if (principal.eigenvalues()[2] < kStandsOut * principal.eigenvalues()[1]) return std::nullopt;
+  const Vec3 direction = principal.eigenvectors().col(2);
+  Eigen::Index nearest = 0;
+  return direction.cwiseAbs().maxCoeff(&nearest) > kNearAxis ? Vec3(-Vec3::Unit(nearest)) : direction;
+}
+
+/// The end of a mesh along a direction.
+struct End {
+  Vec3 place;        ///< the middle of the last hundredth's vertices, moved to the very end
+  double thickness;  ///< mean distance of the last tenth's vertices from the line through the mesh's middle
+};
+
+End end_along(const TriangleSoup& mesh, const Vec3& direction, const Vec3& middle) {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const Vec3& vertex : mesh.vertices) {
+    least = std::min(least, direction.dot(vertex - middle));
+    most = std::max(most, direction.dot(vertex - middle));
+  }
+  Vec3 aside = Vec3::Zero();
+  double thickness = 0.0, in_tenth = 0.0, in_hundredth = 0.0;
+  for (const Vec3& vertex : mesh.vertices) {
+    const double along = direction.dot(vertex - middle), from_end = (most - along) / (most - least);
+    const Vec3 across = vertex - middle - along * direction;
+    if (from_end <= 0.1) thickness += across.norm(), in_tenth += 1.0;
+    if (from_end <= 0.01) aside += across, in_hundredth += 1.0;
+  }
+  return {middle + most * direction + aside / in_hundredth, thickness / in_tenth};
+}
+
+/// The guessed tip of a tool's mesh.
+struct TipOfMesh {
+  Vec3 place;      ///< the end of its longest direction where it is thinner [m]
+  Vec3 direction;  ///< out of the tip, a unit vector
+};
+
+/// Guesses a tool's tip. A mesh without a longest direction has it at its lowest place, along -z. Precondition: it has
+/// triangles.
+TipOfMesh guess_tip(const TriangleSoup& mesh) {
+  const auto [middle, variance] = spread_of(mesh);
+  const std::optional<Vec3> longest = longest_direction(variance);
+  const Vec3 direction = longest.value_or(-Vec3::UnitZ());
+  const End end = end_along(mesh, direction, middle), other = end_along(mesh, -direction, middle);
+  if (longest && other.thickness < end.thickness) return {other.place, -direction};
+  return {end.place, direction};
+}
+
+/// A start that is being made: its values are determined one after the other.
 class Start {
  public:
   Start(const StartKind& kind, const std::optional<fs::path>& source, const fs::path& directory)
@@ -158,7 +269,7 @@ class Start {
     if (kind.source == StartSource::mesh && !kind.needs_source && source) sections_.replace(0, kPlane.size(), kMesh);
     values_["steps"] = kind.steps;
     if (source) values_["file"] = fs::proximate(*source, directory.empty() ? "." : directory).generic_string();
-    if (has("@scale@")) choose_scale();
+    if (has("@scale@")) scale_environment();
     if (has("@tool_scale@")) {
       place_mesh_tool();
     } else if (has("@x@")) {
@@ -191,16 +302,21 @@ class Start {
     return make_shell(loaded.scenario, loaded.files)->points();
   }
 
-  /// From the mesh's own vertices, taken for millimetres.
-  void choose_scale() {
-    const Box box = box_of(points());
+  /// The scale that makes an object, first read as millimetres, about as long as a tooth.
+  double choose_scale(const Box& box, const char* object, const char* field) {
     const double longest = (box.max - box.min).maxCoeff() / 0.001, scale = guessed_scale(longest);
+    notes_.push_back(
+        fmt::format("longest edge of the {}'s box: {:.4g}, with scale {} {:.4g} mm; if it is not, change {}", object,
+                    longest, scale, 1e3 * longest * scale, field));
+    return scale;
+  }
+
+  void scale_environment() {
+    const Box box = box_of(points());
+    const double scale = choose_scale(box, "mesh", "environment.scale");
     values_["scale"] = scale;
-    choose_tool(longest * scale);
+    choose_tool((box.max - box.min).maxCoeff() / 0.001 * scale);
     values_["spacing"] = rounded(diameter_ / 10.0);
-    notes_.push_back(fmt::format(
-        "longest edge of the mesh's box: {:.4g}, with scale {} {:.4g} mm; if it is not, change environment.scale",
-        longest, scale, 1e3 * longest * scale));
   }
 
   void choose_tool(double longest) {
@@ -225,7 +341,7 @@ class Start {
                                  shell.size(), 1e3 * top.x(), 1e3 * top.y()));
   }
 
-  /// Where the tool starts whose round tip is to land at `place`.
+  /// The start of a tool whose round tip is to land at `place`.
   Vec3 start_above(const Vec3& place) const {
     return {to_micrometres(place.x()), to_micrometres(place.y()),
             to_micrometres(place.z() + 0.5 * diameter_ + kClearance)};
@@ -237,23 +353,19 @@ class Start {
     values_["z"] = place.z();
   }
 
-  /// Above the plane's middle. Tools are about as long as the teeth they work on.
+  /// Places the tool above the plane's middle, at a scale that makes it about as long as a tooth.
   void place_mesh_tool() {
-    TriangleSoup surface = scenario().files.tool_mesh().triangles();  // taken for millimetres
-    const Box given = box_of(surface.vertices);
-    const double longest = (given.max - given.min).maxCoeff() / 0.001, scale = guessed_scale(longest);
+    TriangleSoup surface = scenario().files.at(kToolFile).mesh().triangles();  // taken for millimetres
+    const double scale = choose_scale(box_of(surface.vertices), "tool", "tool.scale");
     values_["tool_scale"] = scale;
-    notes_.push_back(
-        fmt::format("longest edge of the tool's box: {:.4g}, with scale {} {:.4g} mm; if it is not, change tool.scale",
-                    longest, scale, 1e3 * longest * scale));
     for (Vec3& vertex : surface.vertices) vertex *= scale / 0.001;
     const double touching = find_tip(surface);
     values_["z"] = to_micrometres(touching + kClearance);
     values_["z_pressed"] = to_micrometres(touching - kPressedBelow);
   }
 
-  /// Its origin is taken for the tip centre and -z for its axis unless it lies oddly to them. Returns how far the tool
-  /// reaches beyond its tip centre [m].
+  /// Takes the file's origin for the tip centre and -z for the tip's direction unless the tool then lies oddly; then
+  /// guesses both. Returns how far the tool reaches beyond its tip centre [m].
   double find_tip(const TriangleSoup& surface) {
     const Box box = box_of(surface.vertices);
     const std::string odd = odd_frame(box);
@@ -279,7 +391,7 @@ class Start {
     return 0.0;  // the place is on the plane that touches the tool
   }
 
-  /// Four fifths of the way to where the surface ends: the edge is another scene.
+  /// Drags over four fifths of the way to where the surface ends.
   void choose_way(const std::vector<SurfacePoint>& points, const std::vector<Vec3>& starts) {
     const DragStart drag = choose_drag(PointShell(points, 0.0), starts, 0.5 * diameter_, 0.25 * longest_);
     const double way = 0.8 * drag.room, speed = kDragSpeed * diameter_;
@@ -306,7 +418,8 @@ class Start {
 
   void choose_stroke_steps() {
     const LoadedScenario loaded = scenario();
-    const auto samples = loaded.files.recorded_motion().samples();
+    const auto stroke = loaded.files.at(kMotionFile).stroke();
+    const auto samples = stroke->motion.samples();
     const auto lower = [](const auto& a, const auto& b) { return a.position.z() < b.position.z(); };
     const double lowest = std::min_element(samples.begin(), samples.end(), lower)->position.z();
     const double last = samples.back().time;

@@ -3,19 +3,21 @@
 
 #include <array>
 #include <cmath>
-#include <memory>
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/csv_writer.hpp"
 #include "results/io/json_text.hpp"
-#include "scenarios/batch/parallel_for.hpp"
+#include "results/summary/outcome_names.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
-#include "scenarios/run/wait_notice.hpp"
+#include "scenarios/run/progress_bar.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
+#include "scenarios/studies/stability/stability_map.hpp"
+#include "scenarios/studies/stress/law_stress.hpp"
+#include "scenarios/studies/worst_motion/adversary.hpp"
 
 namespace hapbench {
 namespace {
@@ -23,10 +25,9 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string_view case_name(StabilityCase which) {
-  // In the order of the enumeration.
   constexpr std::array<std::string_view, 4> kNames = {"stiffness_undamped", "damping_alone", "stiffness_damped",
                                                       "time_step"};
-  return kNames[static_cast<std::size_t>(which)];
+  return kNames[static_cast<std::size_t>(which)];  // in the order of the enumeration
 }
 
 void write_limits(const fs::path& file, const std::vector<StabilityLimit>& limits) {
@@ -52,7 +53,7 @@ Json limits_json(const LoadedScenario& loaded, const std::vector<StabilityLimit>
   for (const StabilityLimit& limit : limits) {
     rows.push_back({{"case", case_name(limit.which)},
                     {"unit", limit.unit},
-                    {"analytic", limit.analytic ? Json(*limit.analytic) : Json(nullptr)},
+                    {"analytic", or_null(limit.analytic)},
                     {"eigenvalue", limit.eigenvalue},
                     {"simulation", limit.simulation},
                     {"damping_at_limit_N_s_per_m", limit.damping_at_limit},
@@ -64,7 +65,7 @@ Json limits_json(const LoadedScenario& loaded, const std::vector<StabilityLimit>
           {"limits", std::move(rows)}};
 }
 
-/// Warning for limits in which theory and runs disagree by more than 1 %: the theory assumes a constant stiffness.
+/// Explains why the runs differ from the theory, which assumes a constant stiffness, by more than 1 %; else empty.
 std::string disagreement_text(const std::vector<StabilityLimit>& limits) {
   for (const StabilityLimit& limit : limits) {
     if (std::abs(limit.simulation / limit.limit() - 1.0) <= 0.01 || limit.simulation == limit.limit()) continue;
@@ -73,7 +74,7 @@ std::string disagreement_text(const std::vector<StabilityLimit>& limits) {
   return "";
 }
 
-/// "none" where nothing is unstable.
+/// A limit for people; "none" where nothing is unstable.
 std::string limit_text(double limit) {
   return std::isinf(limit) ? "none" : significant(limit, 6);
 }
@@ -100,7 +101,7 @@ int limits(const StabilityOptions& options) {
   for (const std::string& argument : options.scenarios) {
     scenarios.push_back(load_scenario(find_scenario(argument), options.overrides));
   }
-  // All of it is found before anything is written.
+  // Everything is computed before anything is written.
   std::vector<std::vector<StabilityLimit>> all_limits;
   for (const LoadedScenario& loaded : scenarios) {
     const WaitNotice notice(loaded.scenario.name + ": limits", !options.output.quiet);
@@ -127,8 +128,149 @@ int limits(const StabilityOptions& options) {
   return kSuccess;
 }
 
+void write_counts(const fs::path& file, const std::vector<StressCounts>& all) {
+  CsvWriter csv(file, kStressColumns);
+  for (const StressCounts& c : all) {
+    csv.row(std::string_view(c.algorithm), c.sets, c.in_contact, c.non_finite, c.out_of_bound, c.points_dropped,
+            c.largest_force, c.largest_share);
+  }
+  csv.finish();
+}
+
+bool is_bad(const StressCounts& counts) {
+  return counts.non_finite + counts.out_of_bound > 0;
+}
+
+Json counts_json(const StressCounts& c) {
+  Json json = {{"algorithm", c.algorithm},
+               {"sets", c.sets},
+               {"in_contact", c.in_contact},
+               {"non_finite", c.non_finite},
+               {"out_of_bound", c.out_of_bound},
+               {"points_dropped", c.points_dropped},
+               {"largest_force_per_K_d", c.largest_force},
+               {"largest_share_of_bound", or_null(c.largest_share)}};
+  json["first_bad_set"] = is_bad(c) ? Json(c.first_bad) : Json(nullptr);
+  return json;
+}
+
+int stress(const StabilityOptions& options) {
+  const fs::path out = results_directory(options.out, "stability_stress");
+  require_writable_directory(out);
+  const std::vector<StressCounts> all = stress_laws(options.count, options.seed, options.job_options("stress"));
+  write_counts(out / "stability_stress.csv", all);
+
+  Table table({{"algorithm", false},
+               {"sets"},
+               {"in contact"},
+               {"non-finite"},
+               {"out of bound"},
+               {"points dropped"},
+               {"largest |f|/(K d)"},
+               {"of its bound"}});
+  Json json = Json::array();
+  int status = kSuccess;
+  for (const StressCounts& c : all) {
+    table.add({c.algorithm, std::to_string(c.sets), std::to_string(c.in_contact), std::to_string(c.non_finite),
+               std::to_string(c.out_of_bound), std::to_string(c.points_dropped), significant(c.largest_force),
+               c.largest_share ? significant(*c.largest_share, 3) : "none"});
+    json.push_back(counts_json(c));
+    if (!is_bad(c)) continue;
+    print_error(fmt::format("{}: {} of {} forces are not finite, {} out of bound; the first in set {} of seed {}",
+                            c.algorithm, c.non_finite, c.sets, c.out_of_bound, c.first_bad, options.seed));
+    status = kUnexpectedOutcome;
+  }
+  print(options.output, table.text(), json);
+  return status;
+}
+
+std::vector<LoadedScenario> scenes_of(const StabilityOptions& options) {
+  if (options.scenarios.size() != 1) {
+    throw InputError(
+        fmt::format("--search: got {} scenarios; allowed: one, whose scene is searched", options.scenarios.size()));
+  }
+  const fs::path file = find_scenario(options.scenarios.front());
+  std::vector<LoadedScenario> scenes;
+  if (options.algorithms.empty()) scenes.push_back(load_scenario(file, options.overrides));
+  for (const std::string& algorithm : options.algorithms) {
+    std::vector<std::string> overrides = options.overrides;
+    overrides.push_back("rendering.algorithm=" + algorithm);
+    scenes.push_back(load_scenario(file, overrides));
+  }
+  for (const LoadedScenario& scene : scenes) with_file(scene, [&] { check_search_scene(scene.scenario); });
+  return scenes;
+}
+
+SearchOptions search_options(const StabilityOptions& options, const std::string& label) {
+  SearchOptions search;
+  search.badness = options.objective == "created" ? Badness::created : Badness::vibration;
+  search.seed = options.seed;
+  search.evaluations = options.evaluations;
+  search.jobs = options.job_options(label);
+  return search;
+}
+
+/// Gives the found scenario a name, a source and a description.
+void name_found(const StabilityOptions& options, const std::string& name, const SearchResult& found,
+                Scenario& scenario) {
+  const std::string scene = scenario.name;
+  scenario.name = name;
+  scenario.source = "hapbench stability --search";
+  scenario.description = fmt::format(
+      "The worst motion of the hand found for {} in {}: objective {} {}, against {} of the tool at rest (seed {}, {} "
+      "evaluations, then minimised).",
+      scenario.rendering.algorithm, scene, options.objective, significant(found.badness), significant(found.at_rest),
+      options.seed, options.evaluations);
+}
+
+Json found_json(const std::string& algorithm, const StabilityOptions& options, const SearchResult& found,
+                const fs::path& file) {
+  return {{"algorithm", algorithm},
+          {"objective", options.objective},
+          {"at_rest", found.at_rest},
+          {"found", found.found},
+          {"minimised", found.badness},
+          {"waypoints", found.trajectory.size()},
+          {"duration_s", found.trajectory.back().time},
+          {"outcome", outcome_name(found.run.result.outcome)},
+          {"evaluations", found.evaluations},
+          {"scenario", file.string()}};
+}
+
+int search(const StabilityOptions& options) {
+  const std::vector<LoadedScenario> scenes = scenes_of(options);
+  const fs::path out = results_directory(options.out, "stability_search");
+  require_writable_directory(out);
+
+  Table table({{"algorithm", false},
+               {"at rest"},
+               {"found"},
+               {"minimised"},
+               {"waypoints"},
+               {"duration s"},
+               {"outcome", false},
+               {"runs"},
+               {"scenario", false}});
+  Json json = Json::array();
+  for (const LoadedScenario& scene : scenes) {
+    const std::string& algorithm = scene.scenario.rendering.algorithm;
+    SearchResult found =
+        with_file(scene, [&] { return search_adversary(scene.scenario, search_options(options, algorithm)); });
+    const std::string name = fmt::format("worst_{}_{}", options.objective, algorithm);
+    const fs::path file = out / (name + ".json");
+    name_found(options, name, found, found.scenario);
+    write_file_atomically(file, json_text(effective_scenario(found.scenario, out)));
+    table.add({algorithm, significant(found.at_rest), significant(found.found), significant(found.badness),
+               std::to_string(found.trajectory.size()), significant(found.trajectory.back().time),
+               std::string(outcome_name(found.run.result.outcome)), std::to_string(found.evaluations), file.string()});
+    json.push_back(found_json(algorithm, options, found, file));
+  }
+  print(options.output, table.text(), json);
+  return kSuccess;
+}
+
 int stability(const StabilityOptions& options) {
-  require_algorithms(options.algorithms);
+  require_names("--algorithms: got", options.algorithms, all_algorithms());
   const bool has_algorithms = !options.maps.empty() || options.search;
   if (!options.algorithms.empty() && !has_algorithms) {
     throw InputError("--algorithms: got names; allowed: with --map and --search only");
@@ -136,46 +278,52 @@ int stability(const StabilityOptions& options) {
   if (!options.overrides.empty() && options.stress)
     throw InputError("--set: got an override; allowed: with scenarios and --map only");
   if (!options.maps.empty()) return stability_maps_command(options);
-  if (options.stress) return stability_stress_command(options);
-  if (options.search) return stability_search_command(options);
+  if (options.stress) return stress(options);
+  if (options.search) return search(options);
   return limits(options);
 }
 
-/// What is asked for is said by exactly one of these; each has options of its own.
+/// The four experiments exclude each other, and each has options of its own.
 void add_experiments(Command& command, StabilityOptions& options) {
-  CommandOption scenarios =
-      command.add("scenarios", options.scenarios,
-                  "springs scenarios, for their limits; with --search the scene: files, or names of bundled ones");
+  CommandOption scenarios = command.add(
+      "scenarios", options.scenarios,
+      "springs scenarios whose limits are wanted, or with --search the scene to search: files, or names of bundled ones");
   CommandOption map = command.add("--map", options.maps,
-                                  "maps of stable, dying, vibrating and diverged runs: names separated by commas, or "
-                                  "all (see \"hapbench describe stability\")");
-  map.comma_separated();
-  CommandOption stress = command.flag("--stress", options.stress, "random contact sets through every algorithm");
-  CommandOption search =
-      command.flag("--search", options.search, "the hand's motion that an algorithm renders worst in a scene");
+                                  "draw maps of stable, dying, vibrating and diverged runs: names separated by commas, "
+                                  "or all (see \"hapbench describe stability\")");
+  scenarios.words(all_scenarios);
+  map.words([] { return with_all(names_of(stability_maps(), &StabilityMap::name)); }).comma_separated();
+  CommandOption stress = command.flag("--stress", options.stress, "pass random contact sets through every algorithm");
+  CommandOption search = command.flag("--search", options.search,
+                                      "search for the motion of the hand that an algorithm renders worst in a scene");
   map.excludes(stress).excludes(search).excludes(scenarios);
   stress.excludes(search).excludes(scenarios);
 
+  constexpr std::int64_t kMostCount = 1'000'000'000;
   command.add("--size", options.size, "points of a map along each side (default: 17)").range(2, 101).needs(map);
-  command.add("--integrators", options.integrators, "of --map: names separated by commas, or all (default: leapfrog)")
+  command
+      .add("--integrators", options.integrators,
+           "integrators of the maps: names separated by commas, or all (default: leapfrog)")
+      .words([] { return with_all(all_integrators()); })
       .comma_separated()
       .needs(map);
   command.add("--count", options.count, "contact sets of --stress (default: 100000)")
-      .range(std::uint64_t{1}, std::uint64_t{1'000'000'000})
+      .range(1, kMostCount)
       .needs(stress);
-  command.add("--objective", options.objective, "what --search makes large: created energy (default), vibration")
+  command.add("--objective", options.objective, "what --search makes large: created (energy, the default) or vibration")
       .one_of({"created", "vibration"})
       .needs(search);
   command.add("--evaluations", options.evaluations, "runs of --search before minimising (default: 400)")
-      .range(std::uint64_t{1}, std::uint64_t{1'000'000'000})
+      .range(1, kMostCount)
       .needs(search);
-  command.add("--seed", options.seed, "of --stress and --search (default: 1)")
-      .range(std::uint64_t{0}, std::uint64_t{1} << 53)
+  command.add("--seed", options.seed, "seed of --stress and --search (default: 1)")
+      .range(0, std::int64_t{1} << 53)
       .excludes(map);
-  command.add("--jobs", options.jobs, "threads (default: as many as the machine has)").range(1, 1024);
+  add_jobs(command, options.jobs, "threads (default: as many as the machine has)");
   command
       .add("--algorithms", options.algorithms,
-           "of --map and --search: names separated by commas (default: all, of --search the scene's own)")
+           "algorithms of --map and --search: names separated by commas (default: all; of --search the scene's own)")
+      .words(all_algorithms)
       .comma_separated();
 }
 
@@ -185,27 +333,21 @@ std::vector<std::string> StabilityOptions::chosen_algorithms() const {
   return algorithms.empty() ? all_algorithms() : algorithms;
 }
 
-fs::path StabilityOptions::directory(const std::string& name) const {
-  return out.empty() ? fs::path("results") / "out" / name : fs::path(out);
-}
-
 JobOptions StabilityOptions::job_options(const std::string& label) const {
-  return {jobs == 0 ? static_cast<unsigned>(available_threads()) : jobs, output.quiet ? "" : label};
+  return hapbench::job_options(jobs, output, label);
 }
 
 void add_stability(CommandLine& line) {
-  auto options = std::make_shared<StabilityOptions>();
-  Command command = line.command(
+  auto [command, options] = line.command(
       "stability",
-      "Stability limits of springs (thesis A.3), stability maps, stress test, search for the worst motion");
-  add_experiments(command, *options);
-  command.add("--out", options->out, "directory of the results (default: results/out/stability_NAME)");
-  command
-      .add("--set", options->overrides,
-           "override a field: path=value; with --map time.step_s and those of device and hand")
-      .repeatable();
-  add_output_options(command, options->output);
-  command.runs([options] { return stability(*options); }, "maps and searches that were complete are kept");
+      "Find stability limits of springs (thesis A.3), draw stability maps, stress algorithms, search for the worst "
+      "motion",
+      stability, "maps and searches that were complete are kept");
+  add_experiments(command, options);
+  command.add("--out", options.out, "directory of the results (default: results/out/stability_NAME)");
+  add_overrides(command, options.overrides,
+                "override a field: path=value; with --map only time.step_s and fields of device and hand");
+  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

@@ -1,14 +1,14 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/jobs.hpp"
+#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/program/command.hpp"
 
-/// The experiments of `hapbench stability`; the limits of A.3 are in stability.cpp itself.
+/// The experiments of `hapbench stability`: limits of A.3, stress test and search in stability.cpp, maps in
+/// stability_map.cpp.
 namespace hapbench {
 
 struct StabilityOptions {
@@ -16,8 +16,8 @@ struct StabilityOptions {
   std::vector<std::string> maps;
   bool stress = false;
   bool search = false;
-  std::vector<std::string> algorithms;   ///< none: all
-  std::vector<std::string> integrators;  ///< none: leapfrog
+  std::vector<std::string> algorithms;   ///< empty: all
+  std::vector<std::string> integrators;  ///< empty: leapfrog
   std::size_t size = 17;
   std::uint64_t count = 100'000;
   std::string objective = "created";
@@ -28,16 +28,13 @@ struct StabilityOptions {
   std::vector<std::string> overrides;
   OutputOptions output;
 
-  /// The algorithms asked for, all of them without --algorithms.
+  /// The algorithms given, or all.
   std::vector<std::string> chosen_algorithms() const;
-  /// --out, or results/out/`name`.
-  std::filesystem::path directory(const std::string& name) const;
   /// Threads, and a progress bar with `label` unless --quiet.
   JobOptions job_options(const std::string& label) const;
 };
 
+/// Draws, prints and writes the maps. Returns the exit status.
 int stability_maps_command(const StabilityOptions& options);
-int stability_stress_command(const StabilityOptions& options);
-int stability_search_command(const StabilityOptions& options);
 
 }  // namespace hapbench

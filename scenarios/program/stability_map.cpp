@@ -9,11 +9,9 @@
 
 #include "results/io/csv_writer.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/program/character_map.hpp"
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
-#include "scenarios/studies/stability/map_overrides.hpp"
 
 namespace hapbench {
 namespace {
@@ -21,8 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<const StabilityMap*> chosen_maps(const StabilityOptions& options) {
-  std::vector<std::string> names;
-  for (const StabilityMap& map : stability_maps()) names.emplace_back(map.name);
+  const std::vector<std::string> names = names_of(stability_maps(), &StabilityMap::name);
   std::vector<const StabilityMap*> maps;
   for (const std::string& name : chosen_names("--map: got", options.maps, names)) {
     maps.push_back(find_stability_map(name));
@@ -33,10 +30,8 @@ std::vector<const StabilityMap*> chosen_maps(const StabilityOptions& options) {
 
 std::vector<const IntegratorEntry*> chosen_integrators(const StabilityOptions& options) {
   if (options.integrators.empty()) return {MapSubject{}.integrator};
-  std::vector<std::string> names;
-  for (const IntegratorEntry* entry : kIntegrators) names.emplace_back(entry->info.name);
   std::vector<const IntegratorEntry*> integrators;
-  for (const std::string& name : chosen_names("--integrators: got", options.integrators, names)) {
+  for (const std::string& name : chosen_names("--integrators: got", options.integrators, all_integrators())) {
     integrators.push_back(find_integrator(name));
   }
   return integrators;
@@ -58,7 +53,7 @@ std::string label(const MapSubject& subject) {
              : fmt::format("{} {}", subject.algorithm, subject.integrator->info.name);
 }
 
-/// As --set takes them, on one line.
+/// The overrides of a subject on one line, as --set takes them.
 std::string overrides_text(const MapSubject& subject) {
   std::vector<std::string> texts;
   for (const std::string& override : subject.overrides) {
@@ -112,11 +107,10 @@ std::size_t count_of(const MapResult& result, MotionClass motion) {
                                                 [motion](const MapPoint& p) { return p.motion == motion; }));
 }
 
-/// The classes of the runs, or of those from far. The analytic limit is drawn where the runs confirm it: '=' is the
-/// first run beyond.
+/// Draws the classes of the runs, or of the runs from far. '=' marks the analytic limit: the first diverged run beyond
+/// it.
 std::string drawn_classes(const MapResult& result, bool from_far) {
-  // In the order of the enumeration.
-  constexpr std::array<char, 4> kMarks = {'.', ':', '~', '#'};
+  constexpr std::array<char, 4> kMarks = {'.', ':', '~', '#'};  // in the order of the enumeration
   const std::size_t n = result.size;
   const MapAxis &x = result.map->x, &y = result.map->y;
   const auto cell = [&](std::size_t column, std::size_t row) {
@@ -140,7 +134,7 @@ std::string drawing(const MapResult& result) {
   return text + "  . stable  : dying out  ~ vibrating  # diverged  = diverged, first beyond the analytic limit\n\n";
 }
 
-/// More are a flood; one algorithm's are all drawn.
+/// More drawings are too many to read; those of a single algorithm are all drawn.
 constexpr std::size_t kMostDrawn = 4;
 
 bool are_alike(const MapResult& a, const MapResult& b) {
@@ -152,7 +146,7 @@ bool are_alike(const MapResult& a, const MapResult& b) {
          std::equal(a.boundary.begin(), a.boundary.end(), b.boundary.begin(), b.boundary.end(), same_edge);
 }
 
-/// The drawings of one map, or one alone where all are the same, which is said.
+/// The drawings of one map; where all are the same, the first one and a remark.
 std::string drawings_of(const std::vector<MapResult>& results, bool draw) {
   const MapResult& first = results.front();
   const bool alike =
@@ -169,7 +163,6 @@ std::string drawings_of(const std::vector<MapResult>& results, bool draw) {
 
 Json result_json(const MapResult& result) {
   Json rows = Json::array();
-  const auto or_null = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   for (const BoundaryPoint& p : result.boundary) {
     Json limits = Json::object();
     for (std::size_t i = 0; i < p.limits.size(); ++i) limits[stiffness_limits()[i].name] = or_null(p.limits[i]);
@@ -210,7 +203,7 @@ std::vector<std::string> cells_of(const MapResult& result) {
 int stability_maps_command(const StabilityOptions& options) {
   const std::vector<const StabilityMap*> maps = chosen_maps(options);
   const std::vector<MapSubject> subjects = chosen_subjects(options);
-  const fs::path out = options.directory("stability_maps");
+  const fs::path out = results_directory(options.out, "stability_maps");
   require_writable_directory(out);
 
   Table table({{"map", false},

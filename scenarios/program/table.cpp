@@ -1,23 +1,25 @@
 #include "scenarios/program/table.hpp"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <sstream>
 
 namespace hapbench {
-
-Table::Table(std::vector<Column> columns, std::size_t gap) : columns_(std::move(columns)), gap_(gap) {}
-
-void Table::add(std::vector<std::string> cells) {
-  rows_.push_back(std::move(cells));
-}
-
 namespace {
 
-/// The upper and the lower line of a title; one line is the lower.
+/// A narrower output would not hold a name and its meaning.
+constexpr std::size_t kNarrowest = 40;
+
+bool in_full = false;
+
+/// The upper and the lower line of a title; a single line is the lower one.
 std::array<std::string, 2> title_lines(const std::string& title) {
   const std::size_t end = title.find('\n');
   return end == std::string::npos ? std::array<std::string, 2>{"", title}
@@ -25,6 +27,56 @@ std::array<std::string, 2> title_lines(const std::string& title) {
 }
 
 }  // namespace
+
+std::size_t output_width() {
+  if (in_full) return std::string::npos;
+  const char* columns = std::getenv("COLUMNS");
+  if (const long given = columns == nullptr ? 0 : std::atol(columns); given > 0)
+    return std::max(kNarrowest, static_cast<std::size_t>(given));
+  winsize size{};
+  if (isatty(STDOUT_FILENO) != 1 || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
+    return std::string::npos;
+  return std::max<std::size_t>(kNarrowest, size.ws_col);
+}
+
+std::size_t prose_width() {
+  return std::min(output_width(), kTableWidth);
+}
+
+void output_in_full() {
+  in_full = true;
+}
+
+std::string fitted(std::string_view text, std::size_t width) {
+  std::string all;
+  while (!text.empty()) {
+    const std::size_t length = std::min(text.find('\n'), text.size());
+    std::string line(text.substr(0, length));
+    text.remove_prefix(std::min(text.size(), length + 1));
+    const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
+    while (line.size() > width) {
+      const std::size_t blank = line.rfind(' ', width);
+      if (blank == std::string::npos || blank <= indent + 2) break;
+      all.append(line, 0, line.find_last_not_of(' ', blank) + 1).append("\n");
+      line = std::string(indent + 2, ' ') + line.substr(blank + 1);
+    }
+    all += line + "\n";
+  }
+  return all;
+}
+
+std::string bold(std::FILE* stream, std::string_view text) {
+  const char *no_color = std::getenv("NO_COLOR"), *term = std::getenv("TERM");
+  const bool plain = (no_color != nullptr && *no_color != '\0') || (term != nullptr && std::strcmp(term, "dumb") == 0);
+  if (plain || isatty(fileno(stream)) != 1) return std::string(text);
+  return fmt::format("\033[1m{}\033[0m", text);
+}
+
+Table::Table(std::vector<Column> columns, std::size_t gap) : columns_(std::move(columns)), gap_(gap) {}
+
+void Table::add(std::vector<std::string> cells) {
+  rows_.push_back(std::move(cells));
+}
 
 std::vector<std::size_t> Table::widths() const {
   std::vector<std::size_t> widths;
@@ -79,7 +131,7 @@ std::string Table::text(std::size_t most_width) const {
   const std::size_t full = width();
   if (full > most_width && columns_.size() > 1 && !columns_.back().number) {
     const std::size_t others = full - width_of.back();
-    // In a block of its own it stands beside the first column.
+    // In a block of its own the last column stands beside the first.
     const std::size_t beside = others + kNarrowestProse <= most_width ? others : width_of[0] + gap_;
     const std::size_t rest = std::max(kNarrowestProse, most_width - std::min(most_width, beside));
     width_of.back() = std::min(width_of.back(), rest);
@@ -133,6 +185,24 @@ std::string entry(std::string_view name, std::string_view meaning, std::size_t i
 
 std::string significant(double value, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
+}
+
+std::string significant(const std::optional<double>& value, int digits) {
+  return value ? significant(*value, digits) : "-";
+}
+
+std::string character_map(const MapColumns& columns, const std::string& row_name,
+                          const std::vector<std::string>& row_labels,
+                          const std::function<char(std::size_t column, std::size_t row)>& cell) {
+  std::size_t width = 9;
+  for (const std::string& label : row_labels) width = std::max(width, label.size());
+  std::string text;
+  for (std::size_t row = row_labels.size(); row-- > 0;) {
+    text += fmt::format("  {:>{}}  ", row_labels[row], width);
+    for (std::size_t column = 0; column < columns.count; ++column) text += {' ', cell(column, row)};
+    text += row + 1 == row_labels.size() ? fmt::format("  {}\n", row_name) : "\n";
+  }
+  return text + fmt::format("{:{}}{} ... {}  {}\n", "", width + 4, columns.low, columns.high, columns.name);
 }
 
 }  // namespace hapbench

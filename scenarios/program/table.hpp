@@ -1,15 +1,38 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdio>
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "scenarios/program/terminal.hpp"
-
+/// Text for the terminal: the width of the output, tables, wrapped prose, maps of characters.
 namespace hapbench {
 
-/// A table for the terminal: columns as wide as their widest cell, a rule under the header. Numbers to the right, text
-/// to the left. A title may have two lines.
+/// Tables aim at this width, and prose is never wider [characters].
+inline constexpr std::size_t kTableWidth = 100;
+
+/// The width of standard output: COLUMNS of the environment, else that of the terminal; unbounded in a pipe or a file,
+/// and after `output_in_full`.
+std::size_t output_width();
+
+/// The width of prose: that of the output, but at most kTableWidth.
+std::size_t prose_width();
+
+/// Makes the output unbounded (--wide).
+void output_in_full();
+
+/// Breaks lines that are wider than the output at blanks; continuations are indented by two more blanks. A word is
+/// never broken.
+std::string fitted(std::string_view text, std::size_t width = output_width());
+
+/// The text in bold where the stream is a terminal, unless NO_COLOR is set or TERM is "dumb".
+std::string bold(std::FILE* stream, std::string_view text);
+
+/// A table for the terminal: columns as wide as their widest cell, a rule under the header. Numbers are aligned right,
+/// text left. A title may have two lines.
 class Table {
  public:
   /// One column: its title, and whether its cells are numbers.
@@ -40,11 +63,27 @@ class Table {
 /// Prose of at most `width` characters a line, each behind `indent` blanks; line breaks stay.
 std::string wrapped(std::string_view text, std::size_t indent = 2, std::size_t width = prose_width());
 
-/// A name behind `indent` blanks and what it means beside it, from `column` on; below it where the name is too long.
+/// A name behind `indent` blanks with its meaning beside it, from `column` on, or below it where the name is too long.
 std::string entry(std::string_view name, std::string_view meaning, std::size_t indent = 2, std::size_t column = 26,
                   std::size_t width = prose_width());
 
-/// A number for people: `digits` significant ones, "-" for none.
+/// A number with `digits` significant digits; "-" for NaN and infinities.
 std::string significant(double value, int digits = 4);
+/// The same; "-" for none.
+std::string significant(const std::optional<double>& value, int digits = 4);
+
+/// The axis below a map: its name and ends.
+struct MapColumns {
+  std::string name;
+  std::size_t count = 0;
+  std::string low;
+  std::string high;
+};
+
+/// A map for the terminal, a character for each cell, rows upwards: row 0 is the lowest. `row_labels` has a text, which
+/// may be empty, for each row.
+std::string character_map(const MapColumns& columns, const std::string& row_name,
+                          const std::vector<std::string>& row_labels,
+                          const std::function<char(std::size_t column, std::size_t row)>& cell);
 
 }  // namespace hapbench

@@ -3,16 +3,18 @@
 
 #include <cmath>
 #include <cstdio>
-#include <memory>
 
+#include "results/io/atomic_file.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/parts.hpp"
+#include "scenarios/input/mesh_file.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/expected_output.hpp"
-#include "scenarios/run/quantity_text.hpp"
+#include "scenarios/run/progress_bar.hpp"
+#include "scenarios/run/recorders.hpp"
 #include "scenarios/run/scene_facts.hpp"
-#include "scenarios/run/wait_notice.hpp"
+#include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 namespace {
@@ -117,13 +119,54 @@ int validate(const ValidateOptions& options) {
 }  // namespace
 
 void add_validate(CommandLine& line) {
-  auto options = std::make_shared<ValidateOptions>();
-  Command command = line.command(
-      "validate", "Check scenario files and the files they name, without running them, and say what is in them");
-  command.add("files", options->files, "scenario files").required();
-  command.add("--set", options->overrides, "override a field of all: path=value").repeatable();
-  add_output_options(command, options->output);
-  command.runs([options] { return validate(*options); });
+  auto [command, options] = line.command(
+      "validate", "Check scenario files and the files they name, without running them, and say what is in them",
+      validate);
+  command.add("files", options.files, "scenario files, or names of bundled scenarios").words(all_scenarios).required();
+  add_overrides(command, options.overrides, "override a field of all: path=value");
+  add_output_options(command, options.output);
+}
+
+namespace {
+
+struct ShellOptions {
+  std::string scenario;
+  std::string out;
+  std::vector<std::string> overrides;
+  OutputOptions output;
+};
+
+int shell(const ShellOptions& options) {
+  const LoadedScenario loaded = load_scenario(find_scenario(options.scenario), options.overrides);
+  if (std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment)) {
+    throw InputError(loaded.file.string() + ": /environment/type: got \"springs\", which have no point shell");
+  }
+  const std::vector<SurfacePoint> points = [&] {
+    const WaitNotice notice("building the shell", !options.output.quiet);
+    print_warnings(check_named_files(loaded));
+    const auto made = make_shell(loaded.scenario, loaded.files);
+    throw_if_stopped();  // that may have taken seconds
+    return made->points();
+  }();
+  const std::filesystem::path file = options.out;
+  const std::string text = point_shell_text(points, file);
+  require_writable_file(file);
+  write_file_atomically(file, text);
+  print(options.output, fmt::format("{} points in {}\n", points.size(), file.string()),
+        {{"points", points.size()}, {"file", file.string()}});
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_shell(CommandLine& line) {
+  auto [command, options] = line.command("shell", "Write the environment's point shell: positions and normals", shell);
+  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario")
+      .words(all_scenarios)
+      .required();
+  command.add("--out", options.out, "FILE.csv (exact) or FILE.ply (single precision, for viewers)").required();
+  add_overrides(command, options.overrides);
+  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

@@ -1,138 +1,74 @@
 #include "scenarios/run/assemble.hpp"
 
 #include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
 
+#include "algorithms/depth/depth_model.hpp"
 #include "algorithms/registry.hpp"
-#include "algorithms/shell_source.hpp"
 #include "device_model/admittance_device.hpp"
 #include "device_model/hands/drag_hand.hpp"
-#include "device_model/hands/impedance_hand.hpp"
 #include "device_model/hands/scripted_hands.hpp"
 #include "device_model/hands/tracking_hand.hpp"
 #include "device_model/ideal_device.hpp"
 #include "device_model/impedance_device.hpp"
-#include "scenarios/run/peer_contacts.hpp"
-#include "sim/contact/spring_source.hpp"
+#include "scenarios/plugins/load_plugin.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/core/random.hpp"
-#include "sim/loop/stop_rules.hpp"
+#include "sim/loop/simulation.hpp"
+#include "sim/mesh/marching_cubes.hpp"
 
 namespace hapbench {
 namespace {
 
-SpringSet make_springs(const SpringsEnvironment& fields, std::uint64_t seed) {
-  SpringSet springs;
-  springs.bilateral = fields.bilateral;
-  springs.signed_depths = fields.signed_depths;
-  for (const SpringGroup& group : fields.groups) {
-    const double length = group.direction.norm();
-    // Unit to rounding is left alone: dividing would change last digits.
-    const Vec3 unit = std::abs(length - 1.0) <= 1e-12 ? group.direction : Vec3(group.direction / length);
-    springs.gradients.insert(springs.gradients.end(), static_cast<std::size_t>(group.count), unit);
-  }
-  Random random(seed);
-  for (std::int64_t i = 0; i < fields.random.count; ++i) {
-    springs.gradients.push_back(fields.random.planar ? random.direction_in_plane() : random.direction());
-  }
-  return springs;
+void add(std::vector<double>& numbers, const Vec3& p) {
+  numbers.insert(numbers.end(), {p.x(), p.y(), p.z()});
 }
 
-Orientation make_orientation(const OrientationFields& fields) {
-  return {fields.up.normalized(), fields.lean.normalized(), fields.tilt, fields.azimuth, fields.roll};
+const HapbenchContactSource& peer_of(const Scenario& scenario) {
+  const std::string& name = scenario.rendering.contact_source;
+  if (const HapbenchContactSource* library = find_peer(name)) return *library;
+  throw InputError(
+      InputError::Kind::relation, "/rendering/contact_source",
+      fmt::format("got \"{}\", which is not built here; allowed: \"{}\", or install {} and build the target "
+                  "contact_sources",
+                  name, kOwnContacts, peer_package(name)));
 }
 
-std::unique_ptr<Motion> make_motion(const Scenario& scenario, const NamedFiles& files) {
-  if (std::holds_alternative<RecordedPosition>(scenario.motion.position))
-    return std::make_unique<RecordedMotion>(files.recorded_motion());
-  std::optional<std::array<Profile, 3>> position;
-  if (const auto* prescribed = std::get_if<PrescribedPosition>(&scenario.motion.position)) {
-    position = prescribed->coordinates;
-  }
-  return std::make_unique<ScriptedMotion>(make_orientation(*scenario.motion.orientation), std::move(position));
-}
+}  // namespace
 
-/// A seed of its own for each use of randomness in each trial: far apart in the 64 bits, whatever the scenario's seed.
-std::uint64_t derived_seed(const Scenario& scenario, Trial trial, std::uint64_t use) {
-  std::uint64_t seed = static_cast<std::uint64_t>(scenario.seed);
-  for (const std::uint64_t part : {use, std::uint64_t{trial.subject}, std::uint64_t{trial.number}}) {
-    seed = Random::derive(seed ^ (seed >> 29), part);
-  }
-  return seed;
-}
-
-constexpr std::uint64_t kSensorNoise = 1, kMotorNoise = 2, kTargetOrder = 3;
-
-std::unique_ptr<TrackingHand> make_tracking_hand(const Scenario& scenario, const TrackingHandFields& fields,
-                                                 Trial trial) {
-  // The same subject gets the same order of targets with every algorithm, as the scenario's seed is the same.
-  return std::make_unique<TrackingHand>(
-      fields.subjects[trial.subject], TargetTask(fields.task, derived_seed(scenario, trial, kTargetOrder)),
-      scenario.motion.orientation->tilt(0.0), scenario.time.step, derived_seed(scenario, trial, kMotorNoise));
-}
-
-/// Precondition: the shell is there.
-void add_drag(const Scenario& scenario, const DragHandFields& fields, const NamedFiles& files, SimulationParts& parts) {
-  const SmoothedSurface surface(*parts.shell, fields.smoothing);
-  const double length = fields.drag.speed * static_cast<double>(scenario.time.steps) * scenario.time.step;
-  const auto path = std::make_shared<const SurfacePath>(
-      fields.path ? SurfacePath::over(surface, *fields.path)
-                  : SurfacePath::along(surface, scenario.initial.position, *fields.direction, length));
-  parts.hand = std::make_unique<DragHand>(fields.drag, path);
-  if (fields.tilt) {
-    parts.motion = std::make_unique<DragOrientation>(path, fields.drag.speed, *fields.tilt, fields.azimuth);
+PeerSurface peer_surface(const Scenario& scenario, const NamedFiles& files) {
+  PeerSurface surface;
+  const auto take = [&surface](const auto& triangles) {
+    for (const auto& triangle : triangles)
+      surface.triangles.insert(surface.triangles.end(), triangle.begin(), triangle.end());
+  };
+  if (const auto* block = std::get_if<BlockEnvironment>(&scenario.environment)) {
+    const IsoSurface mesh =
+        marching_cubes(density_field(block->block, block->grid, block->density), {.triangles = true});
+    for (const SurfacePoint& vertex : mesh.vertices) add(surface.vertices, vertex.position);
+    take(mesh.triangles);
   } else {
-    parts.motion = make_motion(scenario, files);
+    const TriangleSoup mesh = files.at(kEnvironmentFile).mesh().triangles();
+    for (const Vec3& vertex : mesh.vertices) add(surface.vertices, vertex);
+    take(mesh.triangles);
   }
+  return surface;
 }
 
-/// The hand, and the motion, which some hands steer.
-void add_hand_and_motion(const Scenario& scenario, const NamedFiles& files, Trial trial, SimulationParts& parts) {
-  if (const auto* fields = std::get_if<TrackingHandFields>(&scenario.hand)) {
-    auto hand = make_tracking_hand(scenario, *fields, trial);
-    if (fields->task.display == TargetDisplay::height) {
-      parts.motion = std::make_unique<HeldOrientation>(make_orientation(*scenario.motion.orientation), *hand);
-    } else {
-      parts.motion = make_motion(scenario, files);
-    }
-    parts.hand = std::move(hand);
-    return;
-  }
-  if (const auto* drag = std::get_if<DragHandFields>(&scenario.hand)) return add_drag(scenario, *drag, files, parts);
-  parts.motion = make_motion(scenario, files);
-  if (const auto* force = std::get_if<ForceHandFields>(&scenario.hand)) {
-    parts.hand = std::make_unique<ForceHand>(force->force);
-  } else if (const auto* push = std::get_if<PushHandFields>(&scenario.hand)) {
-    parts.hand = std::make_unique<PushHand>(push->force, push_direction(push->angle, push->azimuth));
-  } else if (const ImpedanceHandFields* spring = spring_of(scenario.hand)) {
-    parts.hand = std::make_unique<ImpedanceHand>(spring->stiffness, spring->damping, spring->target);
-  } else {
-    parts.hand = std::make_unique<NoHand>();
-  }
+void require_contact_source(const Scenario& scenario) {
+  if (scenario.rendering.contact_source != kOwnContacts) peer_of(scenario);
 }
 
-/// What a hand does between its samples: nothing, unless it is fixed to the handle.
-AttachedHand attached_hand(const HandFields& hand) {
-  const auto* fields = std::get_if<MassSpringDamperHandFields>(&hand);
-  return fields == nullptr ? AttachedHand{}
-                           : AttachedHand{fields->mass, fields->spring.stiffness, fields->spring.damping};
+std::unique_ptr<ContactSource> make_peer_source(const Scenario& scenario, const NamedFiles& files) {
+  const Cylinder drill = make_cylinder(scenario.tool);
+  return std::make_unique<PeerSource>(peer_of(scenario), peer_surface(scenario, files),
+                                      HapbenchCylinder{.radius = drill.radius(), .length = drill.length()});
 }
 
-std::unique_ptr<Device> make_device(const Scenario& scenario, Trial trial) {
-  if (const auto* ideal = std::get_if<IdealDeviceFields>(&scenario.device)) {
-    return std::make_unique<IdealDevice>(ideal->force_limit);
-  }
-  if (const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
-    return std::make_unique<ImpedanceDevice>(*impedance, scenario.time.step, attached_hand(scenario.hand));
-  }
-  AdmittanceDeviceConfig config = std::get<AdmittanceDeviceConfig>(scenario.device);
-  if (scenario.motion.orientation) config.sensor.down = -scenario.motion.orientation->up.normalized();
-  config.sensor.seed = derived_seed(scenario, trial, kSensorNoise);
-  return std::make_unique<AdmittanceDevice>(config);
-}
+namespace {
 
-/// In one order whatever the scenario's is, since the first that holds gives the run its outcome.
+/// The rules in a fixed order, whatever order the scenario names them in: the first that holds gives the run its
+/// outcome.
 std::vector<StopRule> stop_rules(const Scenario& scenario) {
   const auto& wanted = scenario.time.stop_when;
   const auto wants = [&wanted](StopCondition c) { return std::find(wanted.begin(), wanted.end(), c) != wanted.end(); };
@@ -148,22 +84,20 @@ std::vector<StopRule> stop_rules(const Scenario& scenario) {
 std::vector<std::string> named_file_warnings(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
   std::vector<std::string> warnings;
-  const auto add = [&warnings](const char* pointer, const std::vector<std::string>& about) {
-    for (const std::string& warning : about) warnings.push_back(fmt::format("{}: {}", pointer, warning));
-  };
-  if (std::holds_alternative<MeshEnvironment>(scenario.environment))
-    add("/environment/file", loaded.files.mesh().warnings());
-  if (std::holds_alternative<MeshToolFields>(scenario.tool)) add("/tool/file", loaded.files.tool_mesh().warnings());
-  if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
-    const RecordedMotion& stroke = loaded.files.recorded_motion();
-    const double start = stroke.samples().front().time, stop = stroke.samples().back().time;
+  for (const auto& file : loaded.files.all()) {
+    for (const std::string& warning : file->warnings())
+      warnings.push_back(fmt::format("{}: {}", file->pointer(), warning));
+  }
+  if (NamedFile* file = loaded.files.find(kMotionFile)) {
+    const auto recorded = file->stroke();
+    const auto stroke = recorded->motion.samples();
+    const double start = stroke.front().time, stop = stroke.back().time;
     const double end = scenario.time.step * static_cast<double>(scenario.time.steps - 1);
     if (start > end || stop < 0.0) {
-      add("/motion/position/file",
-          {fmt::format(
-              "the stroke's clock runs from {:.6g} to {:.6g} s and the run's from 0 to {:.6g} s: the tool stays "
-              "at the {} sample; let the stroke begin at 0 or adapt time",
-              start, stop, end, start > end ? "first" : "last")});
+      warnings.push_back(
+          fmt::format("{}: the stroke's clock runs from {:.6g} to {:.6g} s and the run's from 0 to {:.6g} s: the tool "
+                      "stays at the {} sample; let the stroke begin at 0 or adapt time",
+                      kMotionFile, start, stop, end, start > end ? "first" : "last"));
     }
   }
   return warnings;
@@ -171,27 +105,21 @@ std::vector<std::string> named_file_warnings(const LoadedScenario& loaded) {
 
 std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
-  const auto at = [&loaded](const char* pointer, auto read) {
-    try {
-      read();
-    } catch (const InputError& error) {
-      throw InputError(InputError::Kind::relation, file_of(loaded, pointer).string() + ": " + pointer, error.what());
-    }
-  };
   with_file(loaded, [&] { require_contact_source(scenario); });
-  if (std::holds_alternative<PointShellEnvironment>(scenario.environment))
-    at("/environment/file", [&] { loaded.files.shell_points(); });
-  if (std::holds_alternative<MeshEnvironment>(scenario.environment))
-    at("/environment/file", [&] { loaded.files.mesh(); });
-  if (std::holds_alternative<MeshToolFields>(scenario.tool))
-    at("/tool/file", [&] { make_tool(scenario, loaded.files); });
-  if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
-    at("/motion/position/file", [&] { loaded.files.recorded_motion(); });
-    if (scenario.record.force_reference && !scenario.reference_force && !loaded.files.recorded_force())
-      throw InputError(InputError::Kind::relation,
-                       file_of(loaded, "/record/force_reference").string() + ": /record/force_reference",
-                       fmt::format("got true; allowed: false, because {} has no columns mfx_N,mfy_N,mfz_N",
-                                   loaded.files.motion()->path().string()));
+  for (const auto& file : loaded.files.all()) {
+    try {
+      file->check();
+      if (file->pointer() == kToolFile) make_tool(scenario, loaded.files);  // it must be closed, too
+    } catch (const InputError& error) {
+      const std::string place = file_of(loaded, file->pointer()).string() + ": " + file->pointer();
+      throw InputError(InputError::Kind::relation, place, error.what());
+    }
+  }
+  if (NamedFile* file = loaded.files.find(kMotionFile);
+      file != nullptr && scenario.record.force_reference && !scenario.reference_force && !file->stroke()->force) {
+    throw InputError(
+        InputError::Kind::relation, file_of(loaded, "/record/force_reference").string() + ": /record/force_reference",
+        fmt::format("got true; allowed: false, because {} has no columns mfx_N,mfy_N,mfz_N", file->path().string()));
   }
   std::vector<std::string> warnings = named_file_warnings(loaded);
   for (std::string& warning : warnings) {
@@ -221,9 +149,8 @@ SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std:
   parts.tool = make_tool(scenario, files);
   parts.shell = std::move(shell);
   const RenderingConfig& rendering = scenario.rendering;
-  if (const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment)) {
-    const auto seed = static_cast<std::uint64_t>(scenario.seed);
-    parts.springs = std::make_shared<const SpringSet>(make_springs(*springs, seed));
+  if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) {
+    parts.springs = std::make_shared<const SpringSet>(make_springs(scenario));
     parts.source = std::make_unique<SpringSource>(parts.springs);
   } else if (rendering.contact_source != kOwnContacts) {
     parts.source = make_peer_source(scenario, files);

@@ -1,33 +1,27 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "algorithms/peers/peer_source.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/run/make_shell.hpp"
-#include "scenarios/run/make_tool.hpp"
-#include "sim/loop/simulation.hpp"
+#include "scenarios/description/parts.hpp"
 
 namespace hapbench {
 
-/// Reads and parses the files the scenario names, so that what is wrong with them is found before anything is written;
-/// `loaded.files` keeps them for the run. Returns warnings about what is odd, each with file and pointer. Throws
-/// InputError.
+/// Reads and parses the files that the scenario names, so that faults in them are found before anything is written;
+/// `loaded.files` keeps them for the run. Returns warnings about what is odd in them, each with file and pointer.
+/// Throws InputError.
 std::vector<std::string> check_named_files(const LoadedScenario& loaded);
 
 /// The same warnings with the pointer alone in front, as results keep them: equal wherever the files lie. Precondition:
 /// the files can be used.
 std::vector<std::string> named_file_warnings(const LoadedScenario& loaded);
 
-/// Numbers of the run.
+/// The numbers of the run: steps, start, integrator, bounds.
 SimulationConfig simulation_config(const Scenario& scenario);
 
-/// One run of a scenario that has several: a simulated subject's trial. Both count from 0.
-struct Trial {
-  std::size_t subject = 0;
-  std::size_t number = 0;
-};
-
-/// Everything the run is made of. Precondition: `shell` is make_shell of this scenario. Throws InputError when a named
+/// All parts of the run. Precondition: `shell` is make_shell of this scenario. Throws InputError when a named
 /// file cannot be used. With skips off (RenderingConfig), every step compares every point with the tool.
 SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std::shared_ptr<const PointShell> shell,
                          Trial trial);
@@ -35,5 +29,16 @@ SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std:
 SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial);
 /// The only or first run, with a shell of its own.
 SimulationParts assemble(const Scenario& scenario);
+
+/// The scenario's environment as triangles: those whose vertices our shell has, or those of its mesh file.
+/// Precondition: it is a block_with_hole or a mesh. Throws InputError when the file cannot be used.
+PeerSurface peer_surface(const Scenario& scenario, const NamedFiles& files);
+
+/// Loads the module of rendering.contact_source. Throws InputError, which says how to have it, when it is not there.
+void require_contact_source(const Scenario& scenario);
+
+/// The contacts of rendering.contact_source. Building the library's tree over the triangles takes seconds for millions.
+/// Precondition: it is not kOwnContacts. Throws InputError.
+std::unique_ptr<ContactSource> make_peer_source(const Scenario& scenario, const NamedFiles& files);
 
 }  // namespace hapbench

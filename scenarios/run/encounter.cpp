@@ -1,14 +1,130 @@
 #include "scenarios/run/encounter.hpp"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "scenarios/run/quantity_text.hpp"
+#include "results/observe/contact_forces.hpp"
+#include "results/summary/outcome_names.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/run/scene_facts.hpp"
+#include "sim/contact/grid_index.hpp"
+#include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
+
+double way_to_cover(const DragHandFields& hand, double duration) {
+  const double way = hand.drag.speed * duration;
+  if (!hand.path) return way;
+  double legs = 0.0;
+  for (std::size_t i = 1; i < hand.path->size(); ++i) legs += ((*hand.path)[i] - (*hand.path)[i - 1]).norm();
+  return std::min(way, legs);
+}
+
+std::optional<std::string> short_path_warning(const DragHandFields& hand, double path, double to_cover, double width) {
+  // By less than the tool is wide it is the edge that ends the way.
+  if (to_cover <= path + width) return std::nullopt;
+  const std::string ends =
+      fmt::format("the path of the drag ends after {} of {}: ", length_text(path), length_text(to_cover));
+  return ends + (hand.path ? "hand.path_m leads no further over the surface; let its points lie on it"
+                           : "beyond, the surface ends or turns against hand.direction; another initial.position_m, a "
+                             "larger hand.smoothing_m or hand.path_m leads further");
+}
+
+DragCourseObserver::DragCourseObserver(const DragHand& hand, const DragHandFields& fields, double half_width)
+    : hand_(hand), fields_(fields), half_width_(half_width) {
+  course_.width = 2.0 * half_width;
+}
+
+void DragCourseObserver::on_step(const StepRecord& record) noexcept {
+  const SurfacePath& path = hand_.path();
+  DragCourse& c = course_;
+  time_ = record.time;
+  c.asked = std::min(hand_.drag().speed * record.time, path.length());
+  if (hand_.nearest() >= c.way + path.spacing()) {
+    c.way = hand_.nearest();
+    c.still_since = record.time;
+    asked_at_way_ = c.asked;
+  }
+  c.place = record.tool.pose.position;
+  if (!c.through && record.force.depth_max >= half_width_) c.through = record.time;
+  if (record.colliding > 0) last_contact_ = record.time;
+}
+
+DragCourse DragCourseObserver::course() const {
+  DragCourse course = course_;
+  course.asked_since = course.asked - asked_at_way_;
+  const SurfacePoint foot = hand_.path().at(hand_.nearest());
+  course.height = foot.normal.dot(course.place - foot.position);
+  course.path = hand_.path().length();
+  course.to_cover = way_to_cover(fields_, time_);
+  course.short_path = short_path_warning(fields_, course.path, course.to_cover, course.width);
+  const bool presses = hand_.drag().force(time_) > 0.0;
+  if (presses && last_contact_ && time_ - *last_contact_ >= SettlingRule().time) course.lost = last_contact_;
+  return course;
+}
+
+std::vector<std::string> drag_warnings(const DragCourse& c) {
+  std::vector<std::string> warnings;
+  if (c.through)
+    warnings.push_back(
+        fmt::format("the dragged tool has gone through the surface at {:.4g} s: the depth reached its half width, {}",
+                    *c.through, length_text(0.5 * c.width)));
+  if (c.lost) {
+    const std::string where = c.height < 0.0 ? "below it: it went through, or past an edge" : "above it";
+    warnings.push_back(fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *c.lost,
+                                   length_text(std::abs(c.height)), where));
+  } else if (c.stands_still()) {
+    warnings.push_back(
+        fmt::format("the dragged tool stood still since {:.4g} s, {} along the path of {} asked, at [{:.4g}, {:.4g}, "
+                    "{:.4g}] m in the end",
+                    c.still_since, length_text(c.way), length_text(c.asked), c.place.x(), c.place.y(), c.place.z()));
+  }
+  if (c.short_path) {
+    warnings.push_back(fmt::format("{}; the tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end", *c.short_path,
+                                   c.place.x(), c.place.y(), c.place.z()));
+  }
+  return warnings;
+}
+
+OpenEdgeObserver::OpenEdgeObserver(const PointShell& shell, const std::vector<Vec3>& edges, double reach)
+    : reach_(reach), is_near_edge_(shell.size(), false) {
+  const GridIndex grid(shell);
+  const Vec3 half = Vec3::Constant(reach);
+  for (const Vec3& edge : edges) {
+    const Box box{edge - half, edge + half};
+    grid.for_each_run(box, [&](std::uint32_t first, std::uint32_t last) {
+      for (std::uint32_t i = first; i < last; ++i) {
+        const Vec3 point(grid.x()[i], grid.y()[i], grid.z()[i]);
+        if (distance_to(box, point) == 0.0) is_near_edge_[grid.shell_index(i)] = true;
+      }
+    });
+  }
+}
+
+void OpenEdgeObserver::on_step(const StepRecord& record) noexcept {
+  const ContactBuffer& contacts = *record.rendered;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (!is_near_edge_[contacts.index[i]]) continue;
+    if (rows_ == 0) {
+      first_time_ = record.time;
+      first_place_ = contacts.point(i);
+    }
+    ++rows_;
+    return;
+  }
+}
+
+std::optional<std::string> OpenEdgeObserver::warning() const {
+  if (rows_ == 0) return std::nullopt;
+  const Vec3 p = 1e3 * first_place_;
+  return fmt::format(
+      "touched the mesh within {} of where it is open in {} rows, first at {:.4g} s near ({:.3g}, {:.3g}, {:.3g}) mm: "
+      "beyond the edge there is no surface",
+      length_text(reach_), rows_, first_time_, p.x(), p.y(), p.z());
+}
+
 namespace {
 
 /// An environment this much smaller than the tool is thick, or larger than it is long, is suspect: scenes are made of
@@ -103,6 +219,94 @@ std::optional<std::string> warning_about(const Scenario& scenario, Outcome outco
   return fmt::format("in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the environment ({}){}",
                      100.0 * share, e.metrics.last_contact.value_or(0.0), length_text(e.approach.last),
                      size_and_place(e.environment), likely_cause(scenario, outcome, e));
+}
+
+namespace {
+
+std::string divergence_text(const SimulationResult& result) {
+  if (result.outcome != Outcome::diverges) return "";
+  const Divergence& d = result.divergence;
+  if (!d.fault.empty()) return fmt::format(" ({}, at step {})", d.fault, d.step);
+  return fmt::format(" ({} reached {:.4g} at step {}, beyond {:.4g})", d.quantity, d.magnitude, d.step, d.bound);
+}
+
+std::vector<std::string> names_of(const std::vector<Outcome>& outcomes) {
+  std::vector<std::string> names;
+  for (const Outcome outcome : outcomes) names.emplace_back(outcome_name(outcome));
+  return names;
+}
+
+}  // namespace
+
+bool outcome_is_expected(const ExpectFields& expect, Outcome outcome) {
+  return std::find(expect.outcomes.begin(), expect.outcomes.end(), outcome) != expect.outcomes.end();
+}
+
+std::vector<std::string> unmet_expectations(const ExpectFields& expect, const RunSummary& run) {
+  std::vector<std::string> unmet;
+  if (!outcome_is_expected(expect, run.result.outcome)) {
+    unmet.push_back(fmt::format("outcome is \"{}\"{}; expected {}", outcome_name(run.result.outcome),
+                                divergence_text(run.result), quoted_list(names_of(expect.outcomes))));
+  }
+  const MetricList metrics = metric_list(run);
+  for (const auto& [name, bound] : expect.metrics) {
+    const auto number = number_of(value_of(metrics, name));
+    if (!number) {
+      unmet.push_back(fmt::format("{} has no value; expected one", name));
+      continue;
+    }
+    if (bound.min && *number < *bound.min)
+      unmet.push_back(fmt::format("{} is {}; expected at least {}", name, *number, *bound.min));
+    if (bound.max && *number > *bound.max)
+      unmet.push_back(fmt::format("{} is {}; expected at most {}", name, *number, *bound.max));
+  }
+  return unmet;
+}
+
+std::vector<std::string> force_warnings(const Metrics& metrics) {
+  std::vector<std::string> warnings;
+  if (const auto& friction = metrics.explicit_friction; friction && friction->first_step) {
+    warnings.push_back(fmt::format(
+        "beyond {:.3g} N of spring force, in {} of {} rows, first in step {}, the explicit step of friction is unstable; "
+        "what follows is the integrator's doing, not the law's",
+        friction->limit, friction->rows_beyond, metrics.rows, *friction->first_step));
+  }
+  if (const auto& jumps = metrics.reduction; jumps && jumps->stand_out()) {
+    warnings.push_back(fmt::format(
+        "reduction: kept points change in {} of {} steps, force steps up to {:.2g} N there and {:.2g} N elsewhere; "
+        "rendering.reduction=null keeps them all",
+        jumps->changes, metrics.rows, jumps->step_max().value_or(0.0), jumps->step_max_elsewhere()));
+  }
+  return warnings;
+}
+
+std::string odd_frame(const Box& tool) {
+  constexpr double kOdd = 2.0;  // as far this way as the other, or further, is no accident
+  const Vec3 size = tool.max - tool.min;
+  const double gap = distance_to(tool, Vec3::Zero());
+  if (gap > 0.0) return fmt::format("lies {} away from its tip centre", length_text(gap));
+  const auto [short_side, long_side] = std::minmax(size.x(), size.y());
+  if (long_side > kOdd * std::max(short_side, size.z())) return "lies across its axis";
+  if (-tool.min.z() > kOdd * tool.max.z()) return "lies before its tip centre, not behind";
+  return "";
+}
+
+std::vector<std::string> tool_warnings(const RenderingConfig& rendering, const ToolShape& tool) {
+  std::vector<std::string> warnings;
+  if (rendering.algorithm == "proxy" && !tool.convex()) {
+    warnings.push_back(
+        "the tool is not convex: the proxy's guarantee that no point enters it is lost, points may enter where it is concave, "
+        "as at the neck of a bur; a convex tool, or another algorithm, has no such gap");
+  }
+  if (const auto* mesh = dynamic_cast<const MeshTool*>(&tool)) {
+    const Box box{mesh->grid().low(), mesh->grid().high()};
+    if (const std::string odd = odd_frame(box); !odd.empty()) {
+      warnings.push_back(fmt::format(
+          "the tool {} (from there {}): are tool.tip_m and tool.tip_axis right? \"hapbench new tool\" guesses them",
+          odd, place_text(box)));
+    }
+  }
+  return warnings;
 }
 
 }  // namespace hapbench

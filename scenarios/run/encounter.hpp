@@ -1,15 +1,100 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "algorithms/rendering_config.hpp"
+#include "device_model/hands/drag_hand.hpp"
 #include "results/observe/approach.hpp"
 #include "results/observe/metrics.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/description/scenario.hpp"
-#include "scenarios/run/drag_course.hpp"
+#include "sim/core/types.hpp"
+#include "sim/geometry/point_shell.hpp"
+#include "sim/loop/observer.hpp"
 #include "sim/tool/tool_shape.hpp"
 
+/// What a run had to do with its environment: its outcome, whether that was expected, and warnings about what may
+/// mislead a reader of its results.
 namespace hapbench {
+
+/// How far a scenario has the tool dragged in `duration` [s]: on and on along a direction, of points to the last [m].
+double way_to_cover(const DragHandFields& hand, double duration);
+
+/// For a path over the surface that falls short of `to_cover`, that way [m], by more than the tool's `width` [m], how
+/// long it is and what to change; known before the run.
+std::optional<std::string> short_path_warning(const DragHandFields& hand, double path, double to_cover, double width);
+
+/// How far a dragged tool came on the path it was led along.
+struct DragCourse {
+  double to_cover = 0.0;      ///< way_to_cover up to the last row [m]
+  double asked = 0.0;         ///< way of the point that leads it [m]
+  double path = 0.0;          ///< length of the path [m]
+  double way = 0.0;           ///< furthest place on the path that the tool came to [m]
+  double still_since = 0.0;   ///< when it last came further by a spacing of the path [s]
+  double asked_since = 0.0;   ///< way of the point since then [m]
+  Vec3 place = Vec3::Zero();  ///< of the tip, in the last row [m]
+  double height = 0.0;        ///< of the tip over the path where that is nearest, in the last row [m]
+  double width = 0.0;         ///< the tool's [m]
+  /// When the depth first reached the tool's half width: its axis is then in the surface.
+  std::optional<double> through;
+  /// Time of the last contact, if the tool was without for the default settling time up to the end although the hand
+  /// pressed: after as long the next touch would be a landing.
+  std::optional<double> lost;
+
+  std::optional<std::string> short_path;  ///< short_path_warning
+
+  /// The point has left it behind by more than the tool is wide. A tool that follows comes on as far as the point.
+  bool stands_still() const { return asked_since > width; }
+  /// It came nowhere, less than its width, although the way was longer than two: the spring that leads it lags by less.
+  bool not_dragged() const { return way < width && to_cover > 2.0 * width; }
+};
+
+/// Follows a dragged tool; a few look-ups in the path's table, no allocation.
+class DragCourseObserver final : public Observer {
+ public:
+  /// The hand and its fields must outlive the observer. `half_width`: the tool's [m].
+  DragCourseObserver(const DragHand& hand, const DragHandFields& fields, double half_width);
+
+  void on_step(const StepRecord& record) noexcept override;
+
+  DragCourse course() const;
+
+ private:
+  const DragHand& hand_;
+  const DragHandFields& fields_;
+  double half_width_;
+  double asked_at_way_ = 0.0;  ///< way of the point when the tool last came further
+  double time_ = 0.0;          ///< of the last row
+  std::optional<double> last_contact_;
+  DragCourse course_;
+};
+
+/// What a reader of the results must know: that the tool stood still, has gone through the surface or has lost it.
+std::vector<std::string> drag_warnings(const DragCourse& course);
+
+/// Notes when the tool touches an open mesh where it ends. Beyond such an edge there is nothing to touch, and a tool
+/// that reaches past it is held by too few points or by none.
+class OpenEdgeObserver final : public Observer {
+ public:
+  /// A point of the shell counts as near an edge if it lies within `reach` [m] of one of `edges`, the middles of the
+  /// boundary edges, along each coordinate. O(n) and the points near edges.
+  OpenEdgeObserver(const PointShell& shell, const std::vector<Vec3>& edges, double reach);
+
+  void on_step(const StepRecord& record) noexcept override;
+
+  /// What a reader of the results must know; none when no such point was touched.
+  std::optional<std::string> warning() const;
+
+ private:
+  double reach_;
+  std::vector<bool> is_near_edge_;  ///< of each point of the shell
+  std::uint64_t rows_ = 0;          ///< with such a contact
+  double first_time_ = 0.0;         ///< [s]
+  Vec3 first_place_ = Vec3::Zero();
+};
 
 /// What a run that did all its steps had to do with the environment.
 struct Encounter {
@@ -33,5 +118,24 @@ std::optional<std::string> scale_warning(const Scenario& scenario, const ToolSha
 /// For those two outcomes, what happened and what the likely cause is; none for others, and none for a dragged tool
 /// that lost the surface within the environment's box, of which drag_warnings tells.
 std::optional<std::string> warning_about(const Scenario& scenario, Outcome outcome, const Encounter& encounter);
+
+/// What the run does not show although the scenario expects it, one sentence each; empty when all is as expected.
+std::vector<std::string> unmet_expectations(const ExpectFields& expect, const RunSummary& run);
+
+/// True when `outcome` is among those the scenario expects.
+bool outcome_is_expected(const ExpectFields& expect, Outcome outcome);
+
+/// What to know before the forces of a run are believed, a sentence each: it passed the limit of explicit friction
+/// (results/observe/explicit_friction.hpp), or the reduction makes its force jump
+/// (results/observe/reduction_jumps.hpp).
+std::vector<std::string> force_warnings(const Metrics& metrics);
+
+/// How a tool within the box, in its own frame, lies otherwise than tools do, whose tip centre is the origin and whose
+/// tip points along -z: the rest of a sentence about it, such as "lies across its axis"; empty when nothing is odd.
+std::string odd_frame(const Box& tool);
+
+/// What to know of a tool before its run is believed, a sentence each: a proxy keeps points out of convex tools only,
+/// and a mesh may lie oddly in its frame.
+std::vector<std::string> tool_warnings(const RenderingConfig& rendering, const ToolShape& tool);
 
 }  // namespace hapbench

@@ -8,22 +8,17 @@
 #include <vector>
 
 #include "results/io/columns.hpp"
-#include "results/io/memory_table.hpp"
-#include "results/observe/energy_ledger.hpp"
-#include "results/observe/force_fidelity.hpp"
-#include "results/observe/ideal_trajectory.hpp"
+#include "results/io/table_writer.hpp"
 #include "results/record/recorder.hpp"
-#include "scenarios/description/scenario.hpp"
+#include "scenarios/description/metric_sections.hpp"
 
 namespace hapbench {
 
 /// What the recorders of a trial are made from.
 struct RecordedTrial {
   const RecordFields& fields;
-  std::size_t contact_capacity;           ///< the most contacts a row can have
-  const EnergyLedger* ledger;             ///< null unless the scenario asks for energy
-  const IdealTrajectoryObserver* ideal;   ///< null unless it asks for the ideal trajectory
-  const ForceFidelityObserver* fidelity;  ///< null without a measured force
+  std::size_t contact_capacity;  ///< the most contacts a row can have
+  const SectionObservers& sections;
 };
 
 /// The tables of a trial in memory, by the names that their files would have.
@@ -39,5 +34,10 @@ std::vector<std::unique_ptr<Recorder>> make_recorders(const RecordedTrial& trial
 std::vector<ResultTable> record_tables();
 /// Those that a run with these fields writes.
 std::vector<ResultTable> record_tables(const RecordFields& fields);
+
+/// About how many bytes a run of the scenario will write [bytes]: rows times columns times 12 of what it records, all
+/// trials together. An upper estimate of the rows: every step is done, and for contacts.csv 30 contacts are in each of
+/// them. Sizes known beforehand are within a factor of two; that of contacts.csv is a guess. O(1).
+double expected_output_bytes(const Scenario& scenario);
 
 }  // namespace hapbench

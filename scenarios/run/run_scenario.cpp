@@ -6,16 +6,13 @@
 
 #include "algorithms/registry.hpp"
 #include "results/io/atomic_file.hpp"
+#include "results/io/columns.hpp"
 #include "results/io/json_text.hpp"
-#include "results/io/new_directories.hpp"
-#include "results/record/target_table.hpp"
-#include "results/summary/columns_json.hpp"
-#include "scenarios/run/expectation.hpp"
-#include "scenarios/run/force_warnings.hpp"
+#include "results/record/recorder.hpp"
+#include "scenarios/run/encounter.hpp"
+#include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/recorders.hpp"
 #include "scenarios/run/run_trial.hpp"
-#include "scenarios/run/tool_warnings.hpp"
-#include "scenarios/run/wait_notice.hpp"
 
 namespace hapbench {
 namespace {
@@ -94,13 +91,14 @@ std::vector<std::string> merged_warnings(const std::vector<TrialResult>& trials)
   return warnings;
 }
 
-RunSummary summarise(const Scenario& scenario, const std::vector<TrialResult>& trials,
-                     const std::vector<TargetRow>& targets) {
+RunSummary summarise(const Scenario& scenario, const std::vector<TrialResult>& trials) {
   std::vector<Metrics> metrics;
   std::vector<std::optional<PassivityMetrics>> passivity;
+  std::vector<const SectionObservers*> sections;
   for (const TrialResult& trial : trials) {
     metrics.push_back(trial.metrics);
     passivity.push_back(trial.passivity);
+    sections.push_back(&*trial.sections);
   }
   RunSummary summary;
   summary.name = scenario.name;
@@ -109,14 +107,7 @@ RunSummary summarise(const Scenario& scenario, const std::vector<TrialResult>& t
   summary.duration = static_cast<double>(summary.result.rows) * scenario.time.step;
   summary.metrics = merged(metrics);
   summary.passivity = merged(passivity);
-  if (trials.size() == 1) {
-    summary.energy = trials.front().energy;
-    summary.ideal_trajectory = trials.front().ideal_trajectory;
-    summary.fidelity = trials.front().fidelity;
-    summary.torque = trials.front().torque;
-    summary.perception = trials.front().perception;
-  }
-  if (std::holds_alternative<TrackingHandFields>(scenario.hand)) summary.targets = place_metrics(targets);
+  summary.sections = SectionObservers::summarised(sections);
   for (const TrialResult& trial : trials) summary.work += trial.work;
   summary.warnings = merged_warnings(trials);
   const ToolShape& tool = *trials.front().tool;
@@ -145,9 +136,13 @@ void finish_recorders(const std::vector<TrialResult>& trials) {
   }
 }
 
+bool has_targets(const RunReport& report) {
+  return report.summary.section("targets") != nullptr;
+}
+
 void finish_tables(RunTables& tables, const RunReport& report, const std::vector<TrialResult>& trials) {
   finish_recorders(trials);
-  if (report.summary.targets) write_target_table(&tables.targets.emplace(kTargetColumns), report.targets);
+  if (has_targets(report)) write_target_table(&tables.targets.emplace(kTargetTable.columns), report.targets);
 }
 
 void write_results(const fs::path& directory, const Scenario& scenario, const RunReport& report,
@@ -156,7 +151,7 @@ void write_results(const fs::path& directory, const Scenario& scenario, const Ru
   finish_recorders(trials);
   write_file_atomically(directory / "scenario.effective.json", json_text(effective_scenario(scenario, directory)));
   std::vector<ResultTable> tables = record_tables(scenario.record);
-  if (report.summary.targets) {
+  if (has_targets(report)) {
     write_target_table(directory / kTargetTable.file, report.targets);
     tables.push_back(kTargetTable);
   }
@@ -221,14 +216,15 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
   }
 
   for (const TrialResult& result : results) {
-    report.targets.insert(report.targets.end(), result.targets.begin(), result.targets.end());
+    if (const auto* targets = result.sections->find<TargetMetricsObserver>())
+      report.targets.insert(report.targets.end(), targets->rows().begin(), targets->rows().end());
     report.timing.loop += result.loop_seconds;
     report.timing.steps += result.result.rows;
     report.timing.preemptions += result.preemptions;
   }
   add_step_times(results, report.timing);
   if (times) report.timing.latency = step_latency(times->nanoseconds(), times->overhead());
-  report.summary = summarise(scenario, results, report.targets);
+  report.summary = summarise(scenario, results);
   report.summary.file_warnings = named_file_warnings(loaded);
   if (output || tables != nullptr) {
     report.summary.provenance = provenance();

@@ -5,13 +5,10 @@
 #include <chrono>
 
 #include "results/allocations/allocations.hpp"
-#include "results/observe/step_sampler.hpp"
+#include "results/observe/step_times.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/run/drag_course.hpp"
 #include "scenarios/run/encounter.hpp"
-#include "scenarios/run/open_edges.hpp"
-#include "scenarios/run/progress.hpp"
-#include "scenarios/run/run_to_end.hpp"
+#include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
@@ -33,46 +30,40 @@ MetricsConfig metrics_config(const Scenario& scenario, const SimulationParts& pa
   return config;
 }
 
+/// The force that the rendered one is compared with: ideal, or measured with a stroke; null without.
+std::shared_ptr<const ReferenceForce> reference_force(const Scenario& scenario, const NamedFiles& files) {
+  if (scenario.reference_force) return std::make_shared<const ReferenceForce>(scenario.reference_force->force);
+  if (!std::holds_alternative<RecordedPosition>(scenario.motion.position)) return nullptr;
+  const auto stroke = files.at(kMotionFile).stroke();
+  if (stroke->force) return {stroke, &*stroke->force};
+  if (scenario.record.force_reference)
+    throw InputError("/record/force_reference: got true; allowed: false, because the stroke has no measured force");
+  return nullptr;
+}
+
 /// The observers of a trial: only those that the scenario asks for.
 class TrialObservers {
  public:
   TrialObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts, Trial trial)
       : tool_(parts.tool),
         metrics_(scenario.time.step, metrics_config(scenario, parts)),
-        passivity_(scenario.time.step) {
+        passivity_(scenario.time.step),
+        sections_({.scenario = scenario,
+                   .simulation = parts,
+                   .reference = reference_force(scenario, files),
+                   .subject = trial.subject,
+                   .trial = trial.number}) {
     observers_.push_back(&metrics_);
     observers_.push_back(&passivity_);
-    if (scenario.record.energy) {
-      ledger_.emplace(scenario.rendering.mass, scenario.time.step, parts.motion->position_is_free(),
-                      parts.source->capacity(), *scenario.integrator.type);
-      observers_.push_back(&*ledger_);
-    }
-    if (scenario.record.ideal_trajectory) {
-      ideal_.emplace(std::get<BlockEnvironment>(scenario.environment).block, make_cylinder(scenario.tool),
-                     static_cast<std::uint64_t>(scenario.record.every));
-      observers_.push_back(&*ideal_);
-    }
-    if (scenario.reference_force) {
-      force_ = std::make_shared<const ReferenceForce>(scenario.reference_force->force);
-    } else if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
-      force_ = files.recorded_force();
-      if (!force_ && scenario.record.force_reference)
-        throw InputError("/record/force_reference: got true; allowed: false, because the stroke has no measured force");
-    }
-    if (force_) {
-      fidelity_.emplace(*force_, scenario.time.step, static_cast<std::uint64_t>(scenario.time.steps));
-      observers_.push_back(&*fidelity_);
-    }
-    if (scenario.record.torque) observers_.push_back(&torque_.emplace());
-    if (scenario.perception)
-      observers_.push_back(&perception_.emplace(*scenario.perception, force_.get(), scenario.time.step));
+    for (const auto& observer : sections_.all()) observers_.push_back(observer.get());
     if (parts.shell && parts.shell->size() > 0) {
       approach_.emplace(parts.shell->bounds());
       observers_.push_back(&*approach_);
-      // It knows points of the shell, and a peer's contacts are none.
+      // Needs shell indices; FCL and Bullet contacts have none.
       if (std::holds_alternative<MeshEnvironment>(scenario.environment) &&
-          scenario.rendering.contact_source == kOwnContacts && !files.mesh().open_edges().empty()) {
-        open_edges_.emplace(*parts.shell, files.mesh().open_edges(), parts.tool->half_width());
+          scenario.rendering.contact_source == kOwnContacts &&
+          !files.at(kEnvironmentFile).mesh().open_edges().empty()) {
+        open_edges_.emplace(*parts.shell, files.at(kEnvironmentFile).mesh().open_edges(), parts.tool->half_width());
         observers_.push_back(&*open_edges_);
       }
     }
@@ -80,17 +71,11 @@ class TrialObservers {
       drag_.emplace(*hand, std::get<DragHandFields>(scenario.hand), parts.tool->half_width());
       observers_.push_back(&*drag_);
     }
-    if (const TargetTask* task = parts.hand->task()) {
-      targets_.emplace(trial.subject, trial.number, task->targets());
-      observers_.push_back(&*targets_);
-    }
   }
 
   /// Adds recorders for what the scenario asks for. Throws IoError.
   void record(const RecordFields& fields, const RecordTarget& target, std::size_t contact_capacity) {
-    recorders_ = make_recorders({fields, contact_capacity, ledger_ ? &*ledger_ : nullptr, ideal_ ? &*ideal_ : nullptr,
-                                 fidelity_ ? &*fidelity_ : nullptr},
-                                target);
+    recorders_ = make_recorders({fields, contact_capacity, sections_}, target);
     for (const auto& recorder : recorders_) observers_.push_back(recorder.get());
   }
 
@@ -115,12 +100,7 @@ class TrialObservers {
     }
     if (open_edges_ && open_edges_->warning()) out.warnings.push_back(*open_edges_->warning());
     out.passivity = passivity_.metrics();
-    if (ledger_) out.energy = ledger_->metrics();
-    if (ideal_) out.ideal_trajectory = ideal_->metrics();
-    if (fidelity_) out.fidelity = fidelity_->metrics();
-    if (torque_) out.torque = torque_->metrics();
-    if (perception_) out.perception = perception_->metrics();
-    if (targets_) out.targets = targets_->rows();
+    out.sections = std::move(sections_);
     out.recorders = std::move(recorders_);
   }
 
@@ -128,16 +108,10 @@ class TrialObservers {
   std::shared_ptr<const ToolShape> tool_;
   MetricsObserver metrics_;
   PassivityObserver passivity_;
-  std::optional<EnergyLedger> ledger_;
-  std::optional<IdealTrajectoryObserver> ideal_;
-  std::shared_ptr<const ReferenceForce> force_;
-  std::optional<ForceFidelityObserver> fidelity_;
-  std::optional<LostTorqueObserver> torque_;
-  std::optional<PerceptionObserver> perception_;
+  SectionObservers sections_;
   std::optional<ApproachObserver> approach_;
   std::optional<OpenEdgeObserver> open_edges_;
   std::optional<DragCourseObserver> drag_;
-  std::optional<TargetMetricsObserver> targets_;
   std::vector<std::unique_ptr<Recorder>> recorders_;
   std::vector<Observer*> observers_;
 };

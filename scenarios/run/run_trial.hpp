@@ -7,6 +7,7 @@
 
 #include "results/observe/step_times.hpp"
 #include "results/summary/summary.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/recorders.hpp"
 
@@ -18,13 +19,8 @@ struct TrialResult {
   std::shared_ptr<const ToolShape> tool;
   Metrics metrics;
   std::optional<PassivityMetrics> passivity;
-  std::optional<EnergyMetrics> energy;
-  std::optional<IdealTrajectoryMetrics> ideal_trajectory;
-  std::optional<ForceFidelity> fidelity;
-  std::optional<LostTorqueMetrics> torque;
-  std::optional<PerceptionMetrics> perception;
-  std::vector<TargetRow> targets;     ///< of a tracking hand
-  std::vector<std::string> warnings;  ///< what may make the numbers mislead
+  std::optional<SectionObservers> sections;  ///< never empty in what run_trial returns
+  std::vector<std::string> warnings;         ///< what may make the numbers mislead
   RunWork work;
   double loop_seconds = 0.0;                    ///< wall time of the step loop
   std::vector<std::uint64_t> step_nanoseconds;  ///< samples of what steps take by themselves (StepSampler)

@@ -1,13 +1,15 @@
 #include "scenarios/run/scene_facts.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/drag_course.hpp"
 #include "scenarios/run/encounter.hpp"
-#include "scenarios/run/tool_warnings.hpp"
+#include "scenarios/run/stop_signal.hpp"
 #include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
@@ -44,7 +46,7 @@ ToolFacts tool_facts(const Scenario& scenario, const NamedFiles& files, const To
   const auto* mesh = dynamic_cast<const MeshTool*>(&tool);
   if (mesh == nullptr) return facts;
   const SignedDistanceGrid& grid = mesh->grid();
-  facts.mesh = {files.tool_mesh().triangles().triangles.size(),
+  facts.mesh = {files.at(kToolFile).mesh().triangles().triangles.size(),
                 {grid.low(), grid.high()},
                 grid.nodes().spacing,
                 grid.error_bound()};
@@ -62,9 +64,10 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   facts.tool = tool_facts(scenario, loaded.files, *tool);
   facts.warnings = tool_warnings(scenario.rendering, *tool);
   const auto shell = make_shell(scenario, loaded.files);
+  throw_if_stopped();  // that may have taken seconds
   if (!shell || shell->size() == 0) return facts;
   if (std::holds_alternative<MeshEnvironment>(scenario.environment))
-    facts.is_closed = loaded.files.mesh().open_edges().empty();
+    facts.is_closed = loaded.files.at(kEnvironmentFile).mesh().open_edges().empty();
   const SimulationParts parts = assemble(scenario, loaded.files, shell, {});
   SceneFacts::Surface& surface = facts.surface.emplace(SceneFacts::Surface{});
   surface.box = shell->bounds();
@@ -78,6 +81,45 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   }
   place_tool(*tool, first_pose(scenario, parts), *shell, surface);
   return facts;
+}
+
+namespace {
+
+struct Unit {
+  double per_metre;
+  const char* name;
+};
+
+Unit unit_for(double metres) {
+  const double size = std::abs(metres);
+  if (size >= 1.0 || size == 0.0) return {1.0, "m"};
+  return size >= 1e-4 ? Unit{1e3, "mm"} : Unit{1e6, "um"};
+}
+
+}  // namespace
+
+std::string length_text(double metres) {
+  const Unit unit = unit_for(metres);
+  return fmt::format("{:.3g} {}", metres * unit.per_metre, unit.name);
+}
+
+std::string size_text(const Box& box) {
+  const Vec3 size = box.max - box.min;
+  const Unit unit = unit_for(size.maxCoeff());
+  const Vec3 n = size * unit.per_metre;
+  return fmt::format("{:.3g} x {:.3g} x {:.3g} {}", n.x(), n.y(), n.z(), unit.name);
+}
+
+std::string place_text(const Box& box) {
+  const Unit unit = unit_for(std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()));
+  const Vec3 a = box.min * unit.per_metre, b = box.max * unit.per_metre;
+  return fmt::format("x {:.3g} ... {:.3g}, y {:.3g} ... {:.3g}, z {:.3g} ... {:.3g} {}", a.x(), b.x(), a.y(), b.y(),
+                     a.z(), b.z(), unit.name);
+}
+
+std::string bytes_text(double bytes) {
+  if (bytes < 1e6) return fmt::format("{:.0f} kB", std::ceil(1e-3 * bytes));
+  return bytes < 1e9 ? fmt::format("{:.3g} MB", 1e-6 * bytes) : fmt::format("{:.3g} GB", 1e-9 * bytes);
 }
 
 }  // namespace hapbench

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scenarios/description/load_scenario.hpp"
-#include "sim/core/box.hpp"
+#include "sim/core/types.hpp"
 
 namespace hapbench {
 
@@ -46,5 +46,18 @@ struct SceneFacts {
 
 /// Builds the environment and places the tool. Throws InputError when a named file cannot be used.
 SceneFacts scene_facts(const LoadedScenario& loaded);
+
+// ---- Quantities as people read them. ----
+
+/// A length as people read it, with three significant digits and the unit that fits, as in "13.5 mm" or "17.5 m".
+std::string length_text(double metres);
+
+/// The edges of a box in one unit, as in "13.5 x 16.7 x 6.6 mm".
+std::string size_text(const Box& box);
+/// Where it lies in that unit, as in "x -6.74 ... 6.76, y -7.3 ... 9.4, z -3.3 ... 3.3 mm".
+std::string place_text(const Box& box);
+
+/// An amount of data, as in "271 MB".
+std::string bytes_text(double bytes);
 
 }  // namespace hapbench

@@ -3,6 +3,7 @@
 #include <atomic>
 
 namespace hapbench {
+
 namespace {
 
 constexpr int kSignals[] = {SIGINT, SIGTERM};
@@ -42,6 +43,14 @@ void stop_work(int signal) noexcept {
 
 void throw_if_stopped() {
   if (const int signal = StopSignal::received(); signal != 0) throw Stopped{signal};
+}
+
+SimulationResult run_to_end(Simulation& simulation) {
+  do {
+    throw_if_stopped();
+  } while (simulation.advance(kAskEvery));
+  throw_if_stopped();  // a force law may have ended the run by a force that is none, because the work is to stop
+  return simulation.result();
 }
 
 }  // namespace hapbench

@@ -2,6 +2,8 @@
 
 #include <csignal>
 
+#include "sim/loop/simulation.hpp"
+
 /// Ctrl-C and SIGTERM: the program notes them, work asks for them between steps and ends itself by an exception, and
 /// destructors remove what is unfinished.
 namespace hapbench {
@@ -34,5 +36,12 @@ void stop_work(int signal) noexcept;
 
 /// Throws Stopped if a signal has been received.
 void throw_if_stopped();
+
+/// Steps from one question whether to stop to the next: some milliseconds of the slowest there are.
+inline constexpr std::uint64_t kAskEvery = 512;
+
+/// Steps a simulation to its end. Asks every kAskEvery steps whether a signal wants the program to stop, and then
+/// throws Stopped (stop_signal.hpp). Allocates nothing.
+SimulationResult run_to_end(Simulation& simulation);
 
 }  // namespace hapbench

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "algorithms/laws/laws.hpp"
+#include "algorithms/registry.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/contacts_by_hand.hpp"
 #include "scenarios/thesis_claims/swing_decay.hpp"
@@ -19,7 +19,7 @@ namespace {
 Measured measure_flipped_gradient(const Evidence&) {
   const auto force_along_normal = [](const char* depth_model) {
     ContactBuffer contacts = wall_point(0.0001, depth_model);
-    return make_original_averaging({})->evaluate(contacts).spring.x();
+    return make_law("original_averaging", {})->evaluate(contacts).spring.x();
   };
   return {{"",
            {{"with_shortest_distance", {force_along_normal("shortest_distance")}},
@@ -96,7 +96,7 @@ Measured measure_added_points(const Evidence&) {
     contacts.pad();
     RenderingConfig config;
     config.stiffness = 1.0;
-    return make_original_averaging(config)->evaluate(contacts).spring;
+    return make_law("original_averaging", config)->evaluate(contacts).spring;
   };
   const Vec3 before = merged(kPoints), after = merged(kPoints + 2);
   return {{"",

@@ -161,7 +161,7 @@ std::vector<double> success_rates(const Evidence& e, const Pilot& pilot, const s
     const std::string overrides[] = {fmt::format("hand.task.places_m=[[{},{},{}]]", p.x(), p.y(), p.z()),
                                      "hand.task.targets_per_place=4", "hand.trials=1"};
     const RunReport report = e.run(std::string(pilot.task) + "_" + algorithm, overrides);
-    rates.push_back(report.summary.targets.value().at(0).success_rate.mean);
+    rates.push_back(place_metrics(report.targets).at(0).success_rate.mean);
   }
   return rates;
 }

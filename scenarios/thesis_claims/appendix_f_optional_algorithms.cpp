@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algorithms/laws/laws.hpp"
+#include "algorithms/registry.hpp"
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/wording.hpp"
@@ -53,9 +53,9 @@ constexpr double kBoostTilts[] = {0.08, 0.12, 0.2, 0.4};
 /// The ratio farthest from 1 of all contact sets that give a force at all.
 double tandpasta_energy_ratio(const Evidence& e) {
   const Scenario scenario = drill_in_hole(e.load("task2_rotate_signed_distance").scenario);
-  const auto law = make_tandpasta({});
+  const auto law = make_law("tandpasta", {});
   double ratio = 1.0;
-  for (ContactBuffer& set : contact_sets(scenario, 64)) {
+  for (ContactBuffer& set : rendered_contact_sets(scenario, 64)) {
     law->prepare(set.capacity());
     law->evaluate(set);
     double weighed = 0.0, unweighed = 0.0;

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "results/summary/metric_list.hpp"
+#include "results/io/columns.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/firm_hand.hpp"
 #include "scenarios/thesis_claims/wording.hpp"
@@ -40,7 +40,7 @@ MeasuredCase errors(const std::string& name, Number number) {
 /// Of task 2 with a firm hand.
 MeasuredCase firm_errors(const Evidence& e, const std::string& name, const std::vector<std::string>& overrides) {
   const RunSummary summary = e.run("task2_rotate_signed_distance", overrides).summary;
-  const MetricList metrics = metric_list(summary.ideal_trajectory.value());
+  const MetricList& metrics = summary.section("ideal_trajectory")->metrics;
   return errors(name, [&metrics](const std::string& key) {
     return number_of(value_of(metrics, key)).value_or(std::numeric_limits<double>::quiet_NaN());
   });

@@ -9,7 +9,7 @@
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/contacts_by_hand.hpp"
 #include "scenarios/thesis_claims/wording.hpp"
-#include "sim/contact/shell_query.hpp"
+#include "sim/contact/contact_query.hpp"
 
 /// Claims of 4.2: the depths and gradients of the thesis's two depth models.
 namespace hapbench {

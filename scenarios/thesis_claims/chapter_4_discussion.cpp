@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scenarios/run/make_tool.hpp"
+#include "scenarios/run/assemble.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/vibration.hpp"
 #include "scenarios/thesis_claims/wording.hpp"

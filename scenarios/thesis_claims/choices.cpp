@@ -7,8 +7,7 @@
 #include <algorithm>
 
 #include "results/io/json_text.hpp"
-#include "results/io/number_text.hpp"
-#include "scenarios/batch/axis.hpp"
+#include "scenarios/batch/sweep_points.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/thesis_claims/choices_file.hpp"
 #include "sim/core/hash.hpp"

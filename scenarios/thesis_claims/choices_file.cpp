@@ -6,7 +6,7 @@
 #include <set>
 
 #include "scenarios/description/reader.hpp"
-#include "scenarios/description/schema_writer.hpp"
+#include "scenarios/description/writer.hpp"
 
 namespace hapbench {
 namespace {

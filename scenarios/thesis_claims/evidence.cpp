@@ -8,13 +8,12 @@
 #include <cmath>
 
 #include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/scenario_text.hpp"
-#include "scenarios/input/csv_reader.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/input/number_table.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/run_to_end.hpp"
+#include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 namespace {
@@ -125,7 +124,6 @@ RunReport Evidence::run(const std::string& name, std::span<const std::string> mo
 }
 
 std::shared_ptr<const PointShell> Evidence::shell(const LoadedScenario& loaded) const {
-  if (shells != nullptr) return shells->of(loaded);
   return make_shell(loaded.scenario, loaded.files);
 }
 

@@ -11,7 +11,6 @@
 
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/run/recent_shells.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/thesis_claims/finding.hpp"
 #include "sim/loop/observer.hpp"
@@ -69,9 +68,6 @@ struct Evidence {
   ResultFiles results;
   /// What to change in a bundled scenario, as for load_scenario; empty for nothing.
   std::function<std::vector<std::string>(const Scenario&)> overrides = {};
-
-  /// Environments that several runs share; null: each makes its own.
-  RecentShells* shells = nullptr;
 
   /// Told the name of every bundled scenario that a claim computes something with by itself; empty for nobody.
   std::function<void(const std::string& scenario)> used = {};

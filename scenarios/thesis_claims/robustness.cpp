@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <iterator>
 
-#include "results/io/io_error.hpp"
+#include "results/io/atomic_file.hpp"
 #include "scenarios/batch/sampling.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/thesis_claims/sensitivity.hpp"
 #include "sim/core/hash.hpp"
@@ -53,15 +54,14 @@ void record_only(const std::set<std::string>& parts, RecordFields& record) {
 /// The results of one sample, run when they are asked for.
 class SampleRuns {
  public:
-  SampleRuns(const RobustnessPlan& plan, RecentShells& shells, std::size_t sample, const fs::path& directory)
-      : shells_(shells),
-        directory_(directory),
+  SampleRuns(const RobustnessPlan& plan, std::size_t sample, const fs::path& directory)
+      : directory_(directory),
         read_(plan.read),
-        evidence_{
-            plan.published,
-            ResultFiles(directory, [this](const auto& scenario, const auto& part) { provide(scenario, part); }),
-            [&plan, sample](const Scenario& scenario) { return plan.choices.overrides(scenario, plan.values[sample]); },
-            &shells} {}
+        evidence_{plan.published,
+                  ResultFiles(directory, [this](const auto& scenario, const auto& part) { provide(scenario, part); }),
+                  [&plan, sample](const Scenario& scenario) {
+                    return plan.choices.overrides(scenario, plan.values[sample]);
+                  }} {}
   SampleRuns(const SampleRuns&) = delete;
   SampleRuns& operator=(const SampleRuns&) = delete;
 
@@ -87,7 +87,8 @@ class SampleRuns {
     try {
       LoadedScenario loaded = evidence_.load(name);
       if (parts != nullptr) record_only(*parts, loaded.scenario.record);
-      const RunReport report = run_with_shell(loaded, shells_.of(loaded), directory_ / name, false);
+      const RunReport report =
+          run_with_shell(loaded, make_shell(loaded.scenario, loaded.files), directory_ / name, false);
       const std::vector<Outcome>& expected = loaded.scenario.expect.outcomes;
       // A subject who loses the drill misses the targets that are left, which is a result.
       const bool diverged = report.summary.result.outcome == Outcome::diverges &&
@@ -99,7 +100,6 @@ class SampleRuns {
     }
   }
 
-  RecentShells& shells_;
   fs::path directory_;
   const ResultsRead& read_;
   Evidence evidence_;
@@ -151,10 +151,9 @@ RobustnessPlan plan_robustness(Choices choices, PublishedNumbers published, std:
   return plan;
 }
 
-SampleVerdicts judge_sample(const RobustnessPlan& plan, RecentShells& shells, std::size_t sample,
-                            const fs::path& directory) {
+SampleVerdicts judge_sample(const RobustnessPlan& plan, std::size_t sample, const fs::path& directory) {
   const ScratchDirectory scratch(directory);
-  const SampleRuns runs(plan, shells, sample, directory);
+  const SampleRuns runs(plan, sample, directory);
   SampleVerdicts judged;
   for (const Claim& claim : plan.claims) {
     if (claim.costly && sample >= plan.costly_samples()) {

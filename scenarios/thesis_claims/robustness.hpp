@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/run/recent_shells.hpp"
 #include "scenarios/thesis_claims/choices.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 
@@ -51,8 +50,7 @@ struct SampleVerdicts {
 
 /// Judges the claims under a sample's choices. Scenarios run when a claim asks, once, into `directory`, which is
 /// removed afterwards. For several threads, with a directory each. Throws IoError.
-SampleVerdicts judge_sample(const RobustnessPlan& plan, RecentShells& shells, std::size_t sample,
-                            const std::filesystem::path& directory);
+SampleVerdicts judge_sample(const RobustnessPlan& plan, std::size_t sample, const std::filesystem::path& directory);
 
 /// Robustness of one claim's verdict.
 struct ClaimRobustness {

@@ -3,7 +3,7 @@
 namespace hapbench {
 
 ContactBuffer::ContactBuffer(std::size_t capacity) : capacity_(capacity) {
-  // Points are written by whole packs wherever the last one ended.
+  // Searches write whole packs behind the last contact.
   const std::size_t padded = simd::padded(capacity) + simd::lanes;
   index.assign(padded, 0);
   for (AlignedDoubles* column : {&x, &y, &z, &nx, &ny, &nz, &depth, &ux, &uy, &uz, &weight})
@@ -42,22 +42,12 @@ void ContactBuffer::copy(std::size_t from, std::size_t to) {
     (*column)[to] = (*column)[from];
 }
 
-void ContactBuffer::shrink(std::size_t n) {
-  size_ = n;
-}
-
 void ContactBuffer::pad() {
   simd::zero_pack(&depth[size_]);
   simd::zero_pack(&ux[size_]);
   simd::zero_pack(&uy[size_]);
   simd::zero_pack(&uz[size_]);
   simd::zero_pack(&weight[size_]);
-}
-
-void ContactBuffer::set_gradient(std::size_t i, const Vec3& u) {
-  ux[i] = u.x();
-  uy[i] = u.y();
-  uz[i] = u.z();
 }
 
 }  // namespace hapbench

@@ -4,12 +4,11 @@
 #include <vector>
 
 #include "sim/core/aligned.hpp"
-#include "sim/core/lanes.hpp"
 #include "sim/core/types.hpp"
 
 namespace hapbench {
 
-/// What contacts are copied from: points of a shell with their numbers and normals, one array per quantity, aligned and
+/// Points of a shell from which contacts are copied, with numbers and normals: one array per quantity, aligned and
 /// padded to whole packs.
 struct PointColumns {
   const std::uint32_t* index;
@@ -17,49 +16,53 @@ struct PointColumns {
 };
 
 /// The contacts of one step, one array per quantity, reused from step to step. The contact search fills index, point
-/// and normal; the depth model fills depth and gradient; point stages compact it in place; a force law that weighs its
-/// springs leaves the weights.
+/// and normal; the depth model fills depth and gradient; point stages compact the buffer in place; a force law fills
+/// the weights of its springs.
 ///
-/// Penetration depth d_i >= 0 (springs may have negative ones); gradient u_i: unit vector from the colliding point to
-/// where it would leave the tool, so moving the tool along +u_i makes the penetration deeper and the penalty force on
-/// the tool is -K d_i u_i.
+/// Penetration depth d_i >= 0 (springs may have negative ones). Gradient u_i: unit vector from the colliding point to
+/// where it would leave the tool, so that moving the tool along +u_i makes the penetration deeper and the penalty force
+/// on the tool is -K d_i u_i.
 ///
 /// Arrays have room for whole packs and one more (see simd.hpp). After `pad`, depth, gradient and weight are zero
-/// beyond size(), the neutral element of every sum, so that no loop has a tail.
+/// beyond size(), the neutral element of every sum, so that no loop needs a tail.
 class ContactBuffer {
  public:
-  /// The only place that allocates. No contact search may return more than `capacity` contacts.
+  /// Allocates; nothing else does. No contact search may return more than `capacity` contacts.
   explicit ContactBuffer(std::size_t capacity);
 
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
   std::size_t capacity() const { return capacity_; }
-  /// Inline, or every loop that ends by it would spill its registers around the call.
+  /// Inline, because loops that end by it would otherwise spill their registers around the call.
   std::size_t padded_size() const { return simd::padded(size_); }
 
   void clear() { size_ = 0; }
   /// Appends a contact with zero depth, gradient and weight. Precondition: size() < capacity().
   void push(std::uint32_t index, const Vec3& point, const Vec3& normal);
-  /// Makes the n contacts behind the last one, already written, part of the buffer. Precondition: there is room.
+  /// Includes the n contacts already written behind the last one. Precondition: there is room.
   void extend(std::size_t n) { size_ += n; }
   /// Appends a copy of contact `from` of another buffer. Precondition: size() < capacity().
   void push_copy_of(const ContactBuffer& other, std::size_t from);
-  /// Holds the contacts of another buffer, padded. Precondition: other.size() <= capacity().
+  /// Replaces the contents by the contacts of another buffer, padded. Precondition: other.size() <= capacity().
   void assign(const ContactBuffer& other);
   /// Overwrites contact `to` with contact `from`.
   void copy(std::size_t from, std::size_t to);
   /// Keeps the first n contacts. Precondition: n <= size().
-  void shrink(std::size_t n);
+  void shrink(std::size_t n) { size_ = n; }
   /// Zeroes depth, gradient and weight beyond size(), at least to the end of the last pack.
   void pad();
 
-  /// The largest depth, perhaps negative; 0 without contacts.
+  /// The largest depth, possibly negative; 0 without contacts. O(n).
   double largest_depth() const noexcept;
 
   Vec3 point(std::size_t i) const { return {x[i], y[i], z[i]}; }
   Vec3 normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }
   Vec3 gradient(std::size_t i) const { return {ux[i], uy[i], uz[i]}; }
-  void set_gradient(std::size_t i, const Vec3& u);
+  void set_gradient(std::size_t i, const Vec3& u) {
+    ux[i] = u.x();
+    uy[i] = u.y();
+    uz[i] = u.z();
+  }
 
   std::vector<std::uint32_t> index;  ///< of the shell point or spring
   AlignedDoubles x, y, z;            ///< colliding point, world [m]

@@ -1,6 +1,7 @@
 #include "sim/contact/grid_index.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -8,13 +9,13 @@
 namespace hapbench {
 namespace {
 
-/// Edge of a cell in distances of neighbouring points.
+/// Edge of a cell, in distances between neighbouring points.
 constexpr double kSpacingsPerCell = 2.5;
-/// Cells per point at most; shells are surfaces, so most cells of their box are empty anyway.
+/// Maximum number of cells per point; most of them are empty anyway, because shells are surfaces.
 constexpr double kCellsPerPoint = 8.0;
 constexpr double kFewestCells = 4096.0;
 
-/// Distance of neighbours if the points were spread evenly over the faces of their box.
+/// Distance between neighbours if the points were spread evenly over the faces of their box [m].
 double even_spacing(const Box& bounds, std::size_t n) {
   const Vec3 extent = bounds.max - bounds.min;
   const double points = static_cast<double>(std::max<std::size_t>(1, n));
@@ -22,25 +23,32 @@ double even_spacing(const Box& bounds, std::size_t n) {
   return area > 0.0 ? std::sqrt(area / points) : extent.maxCoeff() / points;
 }
 
-/// Numbers 0 … n - 1 of points sorted by cell; those of a cell keep their order.
+/// Indices 0 … n - 1 of points sorted by cell; points of one cell keep their order.
 struct SortedByCell {
-  std::vector<std::uint32_t> start;  ///< first place of each cell, one more at the end
+  std::vector<std::uint32_t> start;  ///< where each cell begins in `order`, and the end
   std::vector<std::uint32_t> order;
 };
 
-/// Counting sort. `position(i)` is that of point i.
+/// Counting sort; `position(i)` returns the position of point i.
 template <class Position>
 SortedByCell sorted_by_cell(const GridCells& cells, std::size_t n, Position position) {
   SortedByCell sorted;
   sorted.start.assign(cells.count() + 1, 0);
   sorted.order.resize(n);
-  // Cells are found twice instead of kept: millions of points have no memory to spare.
+  // Computes cells twice instead of storing them, to save memory for millions of points.
   for (std::size_t i = 0; i < n; ++i) ++sorted.start[cells.cell_of(position(i))];
-  // Each cell's end; taking places from the back leaves its start.
+  // The sums are each cell's end; filling each cell from the back turns them into its start.
   std::partial_sum(sorted.start.begin(), sorted.start.end(), sorted.start.begin());
   for (std::size_t i = n; i-- > 0;)
     sorted.order[--sorted.start[cells.cell_of(position(i))]] = static_cast<std::uint32_t>(i);
   return sorted;
+}
+
+/// Replaces each of `count` numbers, `stride` apart, by the sum of `window` numbers starting with it.
+void sum_windows(std::uint32_t* first, std::size_t count, std::size_t stride, std::size_t window) {
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 1; k < window && i + k < count; ++k) first[i * stride] += first[(i + k) * stride];
+  }
 }
 
 }  // namespace
@@ -72,7 +80,7 @@ std::uint32_t GridCells::cell_of(const Vec3& point) const {
 }
 
 GridCells::Range GridCells::range(double low, double high, int axis) const {
-  // The same expression as cell_of, which is monotone in the coordinate: no point in the box can be in a cell outside.
+  // The expression of cell_of, which is monotone in the coordinate, so no point in the box is in a cell outside.
   const double first = std::floor((low - origin_[axis]) / size_), last = std::floor((high - origin_[axis]) / size_);
   const auto end = static_cast<double>(count_[axis] - 1);
   if (!(last >= 0.0 && first <= end)) return {};
@@ -110,6 +118,56 @@ std::vector<SurfacePoint> in_grid_order(const std::vector<SurfacePoint>& points,
   ordered.reserve(points.size());
   for (const std::uint32_t i : grid_order(points, cell_size)) ordered.push_back(points[i]);
   return ordered;
+}
+
+// A run of n points meets at most n / 8 + 2 packs.
+GridScan::GridScan(const GridIndex& grid)
+    : grid_(&grid), packs_(grid.columns()), marks_(grid.size() / simd::lanes + 2 * grid.columns()) {}
+
+std::size_t GridScan::select(const Box& box) noexcept {
+  std::size_t points = 0;
+  runs_ = 0;
+  grid_->for_each_run(box, [&](std::uint32_t first, std::uint32_t last) {
+    const std::size_t end = (last + simd::lanes - 1) / simd::lanes;
+    // The first and the last pack may reach into neighbouring columns.
+    packs_[runs_++] = {first / simd::lanes, end, static_cast<std::uint8_t>(0xffu << first % simd::lanes),
+                       static_cast<std::uint8_t>(0xffu >> (end * simd::lanes - last))};
+    points += last - first;
+  });
+  return points;
+}
+
+bool GridScan::any_hit() const {
+  std::size_t packs = 0;
+  for (const PackRange& run : this->packs()) packs += run.last - run.first;
+  return std::any_of(marks_.begin(), marks_.begin() + static_cast<std::ptrdiff_t>(packs),
+                     [](std::uint8_t hits) { return hits != 0; });
+}
+
+std::size_t GridScan::list_hits(std::uint32_t* indices) const {
+  std::uint32_t* end = indices;
+  for_each_hit([&](std::uint8_t hits, std::size_t i) {
+    for (unsigned rest = hits; rest != 0; rest &= rest - 1)
+      *end++ = grid_->shell_index(i + static_cast<std::size_t>(std::countr_zero(rest)));
+  });
+  std::sort(indices, end);
+  return static_cast<std::size_t>(end - indices);
+}
+
+std::size_t most_points_in(const PointShell& shell, const ToolShape::Cover& cover) {
+  if (shell.size() == 0) return 0;
+  // Slightly larger than the radius, so that an interval as long as the ball's diameter meets at most three cells.
+  const GridCells cells = GridCells::of_edge(shell.bounds(), shell.size(), cover.radius * (1.0 + 1e-6));
+  const auto window = static_cast<std::size_t>(std::floor(2.0 * cover.radius / cells.size())) + 2;
+  std::vector<std::uint32_t> points(cells.count());
+  for (std::size_t i = 0; i < shell.size(); ++i) ++points[cells.cell_of(shell.point(i).position)];
+  const std::size_t nx = cells.count(0), ny = cells.count(1), nz = cells.count(2);
+  for (std::size_t column = 0; column < nx * ny; ++column) sum_windows(&points[column * nz], nz, 1, window);
+  for (std::size_t i = 0; i < nx; ++i) {
+    for (std::size_t k = 0; k < nz; ++k) sum_windows(&points[i * ny * nz + k], ny, nz, window);
+  }
+  for (std::size_t k = 0; k < ny * nz; ++k) sum_windows(&points[k], nx, ny * nz, window);
+  return std::min(shell.size(), cover.balls * *std::max_element(points.begin(), points.end()));
 }
 
 }  // namespace hapbench

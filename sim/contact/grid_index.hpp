@@ -1,21 +1,23 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sim/core/aligned.hpp"
-#include "sim/core/box.hpp"
+#include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"
+#include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {
 
-/// Cells of a uniform grid around points, a few points wide: for shells spaced by 0.1 mm, 0.25 mm was the fastest size
-/// measured. Their number is bounded by a few times the number of points, whatever the extent.
+/// Cells of a uniform grid around points, 2.5 point spacings wide, the fastest size measured (0.25 mm for shells spaced
+/// by 0.1 mm). Their number is at most a few times the number of points, whatever the extent.
 class GridCells {
  public:
-  /// `spacing` of neighbouring points [m]; 0 when it is not known.
+  /// `spacing` of neighbouring points [m]; 0 if it is unknown.
   GridCells(const Box& bounds, std::size_t points, double spacing);
-  /// Cells of this edge [m] or, where they would be too many, larger ones.
+  /// Cells of the given edge [m], or larger ones if they would be too many.
   static GridCells of_edge(const Box& bounds, std::size_t points, double edge);
 
   struct Range {
@@ -42,9 +44,9 @@ class GridCells {
   std::size_t count_[3];
 };
 
-/// The points of a shell sorted by the cells of a uniform grid, in compressed sparse rows: the points of the cells
+/// The points of a shell sorted by the cells of a uniform grid, in compressed sparse rows. The points of the cells
 /// (i, j, k0 … k1) are one contiguous range of a copy of the shell, so that a search in a box reads one run of memory
-/// per column.
+/// per column of cells.
 class GridIndex {
  public:
   /// O(n).
@@ -72,13 +74,12 @@ class GridIndex {
   const double* z() const { return z_.data(); }
   std::uint32_t shell_index(std::size_t sorted) const { return shell_index_[sorted]; }
   const std::uint32_t* shell_indices() const { return shell_index_.data(); }
-  /// True when sorting changed nothing, so that runs come in ascending shell index.
+  /// True if sorting changed nothing, so that runs come in ascending shell index.
   bool keeps_order() const { return keeps_order_; }
   double cell_size() const { return cells_.size(); }
   std::size_t size() const { return shell_size_; }
-  /// The most runs that for_each_run visits.
+  /// Upper bound of the number of runs that for_each_run visits.
   std::size_t columns() const { return cells_.count(0) * cells_.count(1); }
-  /// The box of all points.
   const Box& bounds() const { return bounds_; }
 
  private:
@@ -91,10 +92,51 @@ class GridIndex {
   bool keeps_order_ = true;
 };
 
-/// The numbers of the points in the order of the grid a shell of them would have. `cell_size` as for PointShell. O(n).
+/// Indices of the points in the order of the GridIndex of their shell. `cell_size` as for PointShell. O(n).
 std::vector<std::uint32_t> grid_order(const std::vector<SurfacePoint>& points, double cell_size);
-/// The points in the order of the grid a shell of them would have, so that the grid keeps it and no search has to sort.
-/// `cell_size` as for PointShell.
+/// The points in that order: searches in a shell of them need not sort (GridIndex::keeps_order).
 std::vector<SurfacePoint> in_grid_order(const std::vector<SurfacePoint>& points, double cell_size);
+
+/// The points of a grid in a box, as ranges of packs for one call of a ToolShape, with the marks it writes.
+class GridScan {
+ public:
+  /// Allocates for the largest box. The grid must outlive the scan.
+  explicit GridScan(const GridIndex& grid);
+  GridScan(const GridScan&) = delete;
+  GridScan& operator=(const GridScan&) = delete;
+
+  /// Lists the points in the cells that meet the box and returns their number. Allocates nothing.
+  std::size_t select(const Box& box) noexcept;
+
+  PointArrays points() const noexcept { return {grid_->x(), grid_->y(), grid_->z()}; }
+  std::span<const PackRange> packs() const noexcept { return {packs_.data(), runs_}; }
+  std::uint8_t* marks() noexcept { return marks_.data(); }
+
+  /// True if some point is marked.
+  bool any_hit() const;
+  /// Calls `take(hits, i)` where some of the eight points from i on are marked, in ascending order of the grid.
+  template <class Take>
+  void for_each_hit(Take take) const {
+    const std::uint8_t* marks = marks_.data();
+    for (const PackRange& run : packs()) {
+      for (std::size_t pack = run.first; pack < run.last; ++pack) {
+        if (const std::uint8_t hits = *marks++; hits != 0) take(hits, pack * simd::lanes);
+      }
+    }
+  }
+  /// Writes the shell indices of the marked points in ascending order and returns their number.
+  std::size_t list_hits(std::uint32_t* indices) const;
+
+ private:
+  const GridIndex* grid_;
+  std::size_t runs_ = 0;
+  std::vector<PackRange> packs_;
+  std::vector<std::uint8_t> marks_;
+};
+
+/// Upper bound of the number of shell points that can lie in the balls at once, wherever the balls are; it determines
+/// the capacity of buffers. It is the number of balls times the points in the fullest cube that holds such a ball, grid
+/// cells rounded up: for the thesis's drill a sixth of the block's points. O(shell size).
+std::size_t most_points_in(const PointShell& shell, const ToolShape::Cover& cover);
 
 }  // namespace hapbench

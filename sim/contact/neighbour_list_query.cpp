@@ -1,23 +1,47 @@
 #include "sim/contact/neighbour_list_query.hpp"
 
 #include <algorithm>
-#include <bit>
 
-#include "sim/contact/most_points.hpp"
 #include "sim/contact/push_hits.hpp"
 
 namespace hapbench {
+
+GridQuery::GridQuery(const PointShell& shell, const ToolShape& tool)
+    : shell_(&shell), tool_(&tool), grid_(shell), scan_(grid_), found_(shell.size()) {}
+
+void GridQuery::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
+  ++work_.queries;
+  contacts.clear();
+  // Far above the rounding of the box and of the test, and far below the size of a cell.
+  const double reach = tool_->reach();
+  const double margin = 1e-9 * reach + 1e-12 * (pose.position.cwiseAbs().maxCoeff() + reach);
+  work_.points_tested += scan_.select(tool_->box_near(pose, margin, grid_.bounds()));
+  if (!grid_.keeps_order()) return push_sorted(pose, contacts);
+  const PointColumns points{grid_.shell_indices(), shell_->x(),  shell_->y(), shell_->z(),
+                            shell_->nx(),          shell_->ny(), shell_->nz()};
+  tool_->push_inside(pose, points, scan_.packs(), contacts);
+}
+
+void GridQuery::push_sorted(const ToolPose& pose, ContactBuffer& contacts) noexcept {
+  tool_->mark_inside(pose, scan_.points(), scan_.packs(), scan_.marks());
+  const std::size_t found = scan_.list_hits(found_.data());
+  for (std::size_t k = 0; k < found; ++k) {
+    const SurfacePoint point = shell_->point(found_[k]);
+    contacts.push(found_[k], point.position, point.normal);
+  }
+}
+
 namespace {
 
-/// Skin in half widths of the tool: thicker, and every step tests more points; thinner, and lists are made more often.
+/// Skin in half widths of the tool. A thicker skin makes every step test more points, a thinner one makes more lists.
 constexpr double kSkinPerHalfWidth = 0.2;
-/// How often an empty skin is doubled when the tool is in free air.
+/// Maximum number of doublings of an empty skin while the tool is in free air.
 constexpr int kMostDoublings = 12;
-/// Relative slack for the rounding of how far the tool has moved and of the search itself, far above both.
+/// Relative slack, far above the rounding of the tool's motion and of the search.
 constexpr double kSlack = 1e-9;
 
-/// The largest coordinate of a tool that has points of the shell within twice its reach; one further away has none to
-/// list.
+/// Upper bound of the coordinates [m] of a tool with points of the shell within twice its reach; a tool further away
+/// has no points to list.
 double largest_scale(const PointShell& shell, const ToolShape& tool) {
   const Box& box = shell.bounds();
   return std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()) + 4.0 * tool.reach();
@@ -45,7 +69,7 @@ void NeighbourListQuery::reset() noexcept {
 void NeighbourListQuery::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
   ++work_.queries;
   contacts.clear();
-  // Written so that a pose that is not finite asks for a new list instead of trusting the old one.
+  // The comparison fails for a pose that is not finite, which then makes a new list.
   const bool list_holds = has_list_ && tool_->moved_at_most(list_pose_, pose) * (1.0 + kSlack) <= skin_;
   if (!list_holds) rebuild(pose);
   if (list_size_ > 0) {
@@ -65,12 +89,12 @@ void NeighbourListQuery::rebuild(const ToolPose& pose) noexcept {
   for (int i = 0; i < kMostDoublings && is_empty(pose, 2.0 * skin_); ++i) skin_ *= 2.0;
 }
 
-/// How far a search must look so that rounding loses no point within the skin; `scale` is the largest coordinate.
+/// Search margin [m] that covers rounding, so that no point within the skin is lost; `scale` is the largest coordinate.
 double NeighbourListQuery::margin_of(double skin, double scale) const noexcept {
   return skin + kSlack * (skin + tool_->reach()) + 1e-12 * scale;
 }
 
-/// Marks the points within `skin` of the tool (and some just beyond).
+/// Marks the points within `skin` of the tool, and some just beyond.
 void NeighbourListQuery::mark_near(const ToolPose& pose, double skin) noexcept {
   const double margin = margin_of(skin, pose.position.cwiseAbs().maxCoeff() + tool_->reach());
   work_.points_tested += scan_.select(tool_->box_near(pose, margin, grid_.bounds()));
@@ -82,7 +106,7 @@ bool NeighbourListQuery::is_empty(const ToolPose& pose, double skin) noexcept {
   return !scan_.any_hit();
 }
 
-/// Fills the list with the points within `skin` of the tool (and some just beyond).
+/// Fills the list with the points within `skin` of the tool, and some just beyond.
 void NeighbourListQuery::collect(const ToolPose& pose, double skin) noexcept {
   mark_near(pose, skin);
   if (grid_.keeps_order()) {
@@ -94,7 +118,7 @@ void NeighbourListQuery::collect(const ToolPose& pose, double skin) noexcept {
     list_.x[k] = list_.y[k] = list_.z[k] = PointShell::kFarAway;
 }
 
-/// The grid's order is the shell's: whole packs at a time.
+/// Takes whole packs at a time. Precondition: the grid keeps the shell's order.
 void NeighbourListQuery::take_marked() noexcept {
   const PointColumns points{grid_.shell_indices(), shell_->x(),  shell_->y(), shell_->z(),
                             shell_->nx(),          shell_->ny(), shell_->nz()};
@@ -104,13 +128,7 @@ void NeighbourListQuery::take_marked() noexcept {
 }
 
 void NeighbourListQuery::take_marked_sorted() noexcept {
-  list_size_ = 0;
-  scan_.for_each_hit([this](std::uint8_t hits, std::size_t i) {
-    for (; hits != 0; hits &= static_cast<std::uint8_t>(hits - 1)) {
-      list_.index[list_size_++] = grid_.shell_index(i + static_cast<std::size_t>(std::countr_zero(hits)));
-    }
-  });
-  std::sort(list_.index.begin(), list_.index.begin() + static_cast<std::ptrdiff_t>(list_size_));
+  list_size_ = scan_.list_hits(list_.index.data());
   for (std::size_t k = 0; k < list_size_; ++k) {
     const std::uint32_t i = list_.index[k];
     list_.x[k] = shell_->x()[i];

@@ -1,21 +1,44 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "sim/contact/contact_query.hpp"
-#include "sim/contact/grid_scan.hpp"
-#include "sim/geometry/point_shell.hpp"
+#include "sim/contact/grid_index.hpp"
 
 namespace hapbench {
 
+/// Compares the points of the grid cells around the tool with the tool, anew at each pose. The cost does not depend on
+/// the tool's motion, so the worst case is the best of all searches. The answers are those of ShellQuery, bit by bit.
+/// O(points in the box around the tool).
+class GridQuery final : public ContactQuery {
+ public:
+  /// Shell and tool must outlive the query. Builds the grid: O(n).
+  GridQuery(const PointShell& shell, const ToolShape& tool);
+
+  void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
+  std::size_t capacity() const noexcept override { return shell_->size(); }
+  void reset() noexcept override { work_ = {}; }
+
+ private:
+  void push_sorted(const ToolPose& pose, ContactBuffer& contacts) noexcept;
+
+  const PointShell* shell_;
+  const ToolShape* tool_;
+  GridIndex grid_;
+  GridScan scan_;
+  std::vector<std::uint32_t> found_;  ///< shell indices of the colliding points, if they have to be sorted
+};
+
 /// The contact search of a run: a list of the points within a skin around the tool, taken from a uniform grid and used
-/// until the tool has moved or turned further than the skin. Its answers are those of ShellQuery, point by point and
-/// bit by bit.
+/// until the tool has moved or turned further than the skin. The answers are those of ShellQuery, bit by bit.
 ///
-/// Why nothing is lost. Every point of the tool lies within ToolShape::moved_at_most of where the tool was when the
-/// list was made, so a shell point the tool touches is in the list as long as that is no more than the skin. The list
-/// is made anew when that fails, so the slow loop of thesis 2.2 only skips work here and never misses a point.
+/// Why no point is missed: every point of the tool lies within ToolShape::moved_at_most of where it was when the list
+/// was made, so a shell point that the tool touches is in the list as long as that distance is at most the skin. When
+/// it exceeds the skin, the list is made anew. The slow loop of thesis 2.2 thus only saves work here.
 ///
-/// Clearance. When a search finds no point near, it looks in ever larger skins, and the largest empty one tells how far
-/// the tool may go before anything has to be searched again: in free air a step costs one comparison.
+/// Clearance: if a search finds no point near, it looks in ever larger skins. The largest empty one tells how far the
+/// tool may go before the next search: in free air a step costs one comparison.
 class NeighbourListQuery final : public ContactQuery {
  public:
   /// Shell and tool must outlive the query. Builds the grid: O(n).
@@ -47,7 +70,7 @@ class NeighbourListQuery final : public ContactQuery {
   ToolPose list_pose_;
   double skin_ = 0.0;
   std::size_t list_size_ = 0;
-  /// Has room for whole packs and one more: points are written by packs wherever the last one ended.
+  /// Has room for one pack more, because searches write whole packs behind the last point.
   struct List {
     explicit List(std::size_t room);
     std::vector<std::uint32_t> index;

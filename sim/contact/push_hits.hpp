@@ -7,11 +7,12 @@
 
 namespace hapbench {
 
-/// Copies those of the eight points from i on whose bit is set in `hits` to place k and those behind it of columns with
-/// the same names, a column at a time: one by one takes longer than the search. Returns how many they are. For source
-/// files only (see simd.hpp). Precondition: i is a multiple of eight, and there is room for eight.
+/// Copies the hits among the eight points from i on (bit k of `hits` stands for point i + k) to the places from k on of
+/// columns with the same names, and returns their number. Copies column by column, because point by point takes longer
+/// than the search. For source files only (see simd.hpp). Precondition: i is a multiple of eight, and there is room for
+/// eight.
 ///
-/// Always inline: around a call, every search would save and restore the packs it holds in registers.
+/// Always inline: searches would otherwise save and restore the packs in their registers around the call.
 template <class Columns>
 [[gnu::always_inline]] inline std::size_t copy_hits(std::uint8_t hits, const PointColumns& points, std::size_t i,
                                                     Columns& to, std::size_t k) {
@@ -25,7 +26,7 @@ template <class Columns>
   return static_cast<std::size_t>(std::popcount(hits));
 }
 
-/// Appends the hits to the contacts. Depth, gradient and weight are left to depth model and law.
+/// Appends the hits to the contacts. Depth, gradient and weight are left to the depth model and the law.
 [[gnu::always_inline]] inline void push_hits(std::uint8_t hits, const PointColumns& points, std::size_t i,
                                              ContactBuffer& contacts) {
   contacts.extend(copy_hits(hits, points, i, contacts, contacts.size()));

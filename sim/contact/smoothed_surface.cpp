@@ -11,10 +11,6 @@ Box box_around(const Vec3& centre, double half) {
   return {centre - Vec3::Constant(half), centre + Vec3::Constant(half)};
 }
 
-double distance(const Vec3& point, const Box& box) {
-  return (point - point.cwiseMax(box.min).cwiseMin(box.max)).norm();
-}
-
 }  // namespace
 
 SmoothedSurface::SmoothedSurface(const PointShell& shell, double radius)
@@ -23,8 +19,8 @@ SmoothedSurface::SmoothedSurface(const PointShell& shell, double radius)
 std::size_t SmoothedSurface::nearest_point(const Vec3& at) const {
   std::size_t nearest = 0;
   double least2 = std::numeric_limits<double>::infinity();
-  // A box as wide as the distance to what was found in it holds everything that is as near.
-  for (double half = distance(at, grid_.bounds()) + grid_.cell_size(); least2 > half * half; half *= 2.0) {
+  // Ends when the box contains the whole ball around `at` that has the nearest point found on its surface.
+  for (double half = distance_to(grid_.bounds(), at) + grid_.cell_size(); least2 > half * half; half *= 2.0) {
     grid_.for_each_run(box_around(at, half), [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {
         const double distance2 = (Vec3(grid_.x()[i], grid_.y()[i], grid_.z()[i]) - at).squaredNorm();

@@ -50,10 +50,10 @@ RatioRange ratio_range(const ContactBuffer& contacts, const Mat3& S) {
   Pack smallest(never), largest(-never);
   for (std::size_t i = 0; i < contacts.size(); i += simd::lanes) {
     const Pack x = load(&contacts.ux[i]), y = load(&contacts.uy[i]), z = load(&contacts.uz[i]);
-    // Row by row in the order of Eigen's inner products, a + (b + c).
+    // Adds in the order of Eigen's inner products, a + (b + c).
     const auto along = [&](int row) { return Pack(S(row, 0)) * x + (Pack(S(row, 1)) * y + Pack(S(row, 2)) * z); };
     const Pack rho = x * along(0) + (y * along(1) + z * along(2));
-    const simd::Mask counts = simd::lanes_between(0, contacts.size() - i);  // not the padding
+    const simd::Mask counts = simd::lanes_between(0, contacts.size() - i);  // excludes the padding
     smallest = simd::min(smallest, simd::select(counts, rho, Pack(never)));
     largest = simd::max(largest, simd::select(counts, rho, Pack(-never)));
   }
@@ -62,6 +62,20 @@ RatioRange ratio_range(const ContactBuffer& contacts, const Mat3& S) {
 
 double lambda_max(const Mat3& S) {
   return Eigen::SelfAdjointEigenSolver<Mat3>(S, Eigen::EigenvaluesOnly).eigenvalues()[2];
+}
+
+// Here because it is a kernel, unlike the rest of ContactBuffer.
+double ContactBuffer::largest_depth() const noexcept {
+  if (empty()) return 0.0;
+  const Pack least(-std::numeric_limits<double>::infinity());
+  Pack largest = least;
+  const std::size_t whole = size_ / simd::lanes * simd::lanes;
+  for (std::size_t i = 0; i < whole; i += simd::lanes) largest = simd::max(largest, simd::load(&depth[i]));
+  if (whole < size_) {
+    const simd::Mask own = simd::lanes_between(0, size_ - whole);
+    largest = simd::max(largest, simd::select(own, simd::load(&depth[whole]), least));
+  }
+  return simd::max_lane(largest);
 }
 
 }  // namespace hapbench

@@ -2,9 +2,9 @@
 
 #include "sim/contact/contact_buffer.hpp"
 
-/// The stiffness tensor S = sum c_i u_i u_i^T in units of K, and the stiffness ratios rho_i = u_i^T S u_i it gives
-/// (thesis Eq. 3 and 4). S has six independent entries, so ratios cost O(n); the thesis's n x n matrix of squared inner
-/// products is never built. All functions read contacts that are padded (ContactBuffer::pad).
+/// The stiffness tensor S = sum c_i u_i u_i^T in units of K and the stiffness ratios rho_i = u_i^T S u_i (thesis Eq. 3
+/// and 4). S has six independent entries, so ratios cost O(n); the thesis's n x n matrix of squared inner products is
+/// never built. Precondition of all functions: the contacts are padded (ContactBuffer::pad).
 namespace hapbench {
 
 /// S from the buffer's weights. O(n).
@@ -18,11 +18,11 @@ struct RatioRange {
   double max = 0.0;
 };
 
-/// Smallest and largest ratio u_i^T S u_i over the contacts; zeros when there is none. O(n).
+/// Smallest and largest ratio u_i^T S u_i over the contacts; zeros without contacts. O(n).
 RatioRange ratio_range(const ContactBuffer& contacts, const Mat3& S);
 
-/// Largest eigenvalue of a symmetric matrix, to rounding (iterative, about 0.3 us; the closed form loses half of the
-/// digits when the largest eigenvalue is double, which is what a well-shaped tensor has).
+/// Largest eigenvalue of a symmetric matrix, to rounding. Iterative, about 0.3 us: the closed form loses half of the
+/// digits if the largest eigenvalue is double, as it is for a well-shaped tensor.
 double lambda_max(const Mat3& S);
 
 }  // namespace hapbench

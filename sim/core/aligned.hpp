@@ -1,13 +1,32 @@
 #pragma once
 
 #include <cstddef>
+#include <cstring>
 #include <new>
 #include <utility>
 #include <vector>
 
+/// Memory for loops that take eight doubles at a time. The packs themselves are in simd.hpp, which headers must not
+/// include.
 namespace hapbench {
+namespace simd {
 
-/// Allocator on 64-byte boundaries, so that a pack of eight doubles never straddles a cache line.
+/// Number of doubles in a pack.
+inline constexpr std::size_t lanes = 8;
+
+/// n rounded up to whole packs.
+constexpr std::size_t padded(std::size_t n) {
+  return (n + lanes - 1) / lanes * lanes;
+}
+
+/// Zeroes the eight doubles from p on, aligned or not, without the branches of a loop to the end of the last pack.
+inline void zero_pack(double* p) {
+  std::memset(p, 0, lanes * sizeof(double));
+}
+
+}  // namespace simd
+
+/// Allocates on 64-byte boundaries, so that a pack of eight doubles never straddles a cache line.
 template <class T>
 struct CacheLineAllocator {
   using value_type = T;
@@ -24,8 +43,8 @@ struct CacheLineAllocator {
 
 using AlignedDoubles = std::vector<double, CacheLineAllocator<double>>;
 
-/// The same, but what `resize` adds holds no value yet: for large columns that several threads fill at once, each the
-/// pages it touches first.
+/// The same allocator, but `resize` leaves new elements uninitialised: several threads then fill a large column, and
+/// each touches the pages it fills first.
 template <class T>
 struct UnsetCacheLineAllocator : CacheLineAllocator<T> {
   template <class U>

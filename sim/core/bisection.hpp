@@ -5,11 +5,11 @@
 
 namespace hapbench {
 
-/// Values beyond this are taken for "never unstable".
+/// A system that is stable up to this value is taken to be stable at every value.
 inline constexpr double kLargestProbe = 1e15;
 
-/// Moves `low` and `high` together, `low` where `stable` holds of the middle and `high` where it does not, while
-/// `apart(low, high)`; `middle(low, high)` lies between them. Precondition: it holds at `low` and not at `high`.
+/// Bisects while `apart(low, high)`: `middle(low, high)` replaces `low` if `stable` holds there, else `high`.
+/// Precondition: `stable` holds at `low` and not at `high`.
 template <class Stable, class Middle, class Apart>
 void bisect(double& low, double& high, Stable stable, Middle middle, Apart apart) {
   while (apart(low, high)) {
@@ -18,10 +18,10 @@ void bisect(double& low, double& high, Stable stable, Middle middle, Apart apart
   }
 }
 
-/// The largest value below which `stable` holds, by powers of `factor` from `start` and bisection of the logarithm down
-/// to the relative width `precision`. Where the stable values are not one interval (velocity Verlet with damping is
-/// stable again beyond its first edge) it is the first edge, unless that is the beginning of a gap narrower than a
-/// `factor`. Zero when nothing is stable, infinite when everything up to `largest` is. About log2(1 / precision) calls
+/// Returns the largest value below which `stable` holds, found by powers of `factor` from `start` and bisection of the
+/// logarithm down to the relative width `precision`. If the stable values are not one interval (velocity Verlet with
+/// damping is stable again beyond its first edge), it is the first edge, unless a gap narrower than `factor` begins
+/// there. Zero if nothing is stable, infinite if everything up to `largest` is. Takes about log2(1 / precision) calls
 /// besides one for each power.
 template <class Stable>
 double largest_stable(double start, double precision, Stable stable, double largest = kLargestProbe,

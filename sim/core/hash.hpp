@@ -8,16 +8,16 @@
 
 namespace hapbench {
 
-/// FNV-1a, 64 bits (Fowler, Noll, Vo; draft-eastlake-fnv). Identifies contents; it is not a cryptographic hash. The
-/// value does not depend on the machine's byte order.
+/// FNV-1a, 64 bits (Fowler, Noll, Vo; draft-eastlake-fnv). Identifies contents; not a cryptographic hash. The value
+/// does not depend on the machine's byte order.
 class Hash64 {
  public:
   /// Plain FNV-1a, byte by byte.
   constexpr void bytes(std::string_view text) noexcept {
     for (const char c : text) mix(static_cast<unsigned char>(c));
   }
-  /// Mixes in a whole word in one round, eight times cheaper than byte by byte. Multiplication carries upwards only, so
-  /// the upper half is folded into the lower one; otherwise two flipped sign bits, as in a mirrored run, would cancel.
+  /// Mixes in a whole word in one round, eight times cheaper than byte by byte. Multiplication carries upwards only;
+  /// without folding the upper half into the lower one, two flipped sign bits, as in a mirrored run, would cancel.
   constexpr void word(std::uint64_t value) noexcept {
     mix(value);
     state_ ^= state_ >> 32;

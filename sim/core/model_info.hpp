@@ -2,9 +2,16 @@
 
 #include <span>
 
-#include "sim/core/number_range.hpp"
-
 namespace hapbench {
+
+/// Allowed values of a number given by a user; bounds are included unless stated otherwise. The unit is shown to
+/// people: an SI unit, "1" for a dimensionless number, empty if it is the unit of another number.
+struct NumberRange {
+  double min;
+  double max;
+  const char* unit = "";
+  bool above_min = false;  ///< min itself is excluded
+};
 
 /// A parameter: the scenario field that sets it, with unit and range.
 struct Parameter {
@@ -12,7 +19,7 @@ struct Parameter {
   NumberRange range;
 };
 
-/// What a parameter means to a model.
+/// The meaning of a parameter in a model.
 struct ParameterInfo {
   Parameter parameter;
   const char* meaning;

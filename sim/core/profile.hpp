@@ -33,11 +33,11 @@ class Profile {
   using Shape = std::variant<Constant, Ramp, Sine, Waypoints>;
 
   Profile() = default;
-  Profile(double value) : shape_(Constant{value}) {}  // NOLINT: a number is a profile
-  Profile(Shape shape) : shape_(std::move(shape)) {}  // NOLINT: so is every shape
+  Profile(double value) : shape_(Constant{value}) {}  // NOLINT: implicit, a number is a profile
+  Profile(Shape shape) : shape_(std::move(shape)) {}  // NOLINT: implicit, a shape is a profile
 
   double operator()(double t) const noexcept;
-  /// Time derivative at t [unit of the value / s]; at a corner of waypoints that of the leg that begins there.
+  /// Time derivative at t [unit of the value / s]; at a waypoint, that of the leg that begins there.
   double rate(double t) const noexcept;
   const Shape& shape() const { return shape_; }
   bool is_constant() const { return std::holds_alternative<Constant>(shape_); }

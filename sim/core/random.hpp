@@ -11,14 +11,13 @@
 
 namespace hapbench {
 
-/// Seeded random numbers that are identical with every standard library. The engine is std::mt19937_64, whose output
-/// the standard specifies; the distributions are our own, because the standard does not specify the results of its own.
+/// Seeded random numbers that are identical with every standard library. The standard specifies the output of the
+/// engine, std::mt19937_64, but not that of its distributions, so the distributions are our own.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
 
-  /// A seed of its own for each number in a stream of random uses; seeds of neighbouring numbers and streams lie far
-  /// apart in the 64 bits.
+  /// A separate seed for each number in a stream of random uses; seeds of neighbouring streams lie far apart.
   static constexpr std::uint64_t derive(std::uint64_t stream, std::uint64_t number) {
     return stream * 0x9e3779b97f4a7c15 + number;  // 2^64 / golden ratio
   }
@@ -29,7 +28,7 @@ class Random {
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// Uniform integer in [0, n); n > 0. The modulo bias is below n / 2^64.
   std::uint64_t below(std::uint64_t n) { return engine_() % n; }
-  /// Normal with mean 0 and standard deviation 1 (Box-Muller). The second number of each pair is discarded, so that the
+  /// Normal with mean 0 and standard deviation 1 (Box-Muller). Discards the second number of each pair, so that the
   /// stream does not depend on earlier calls.
   double normal() {
     const double r = std::sqrt(-2.0 * std::log(1.0 - uniform()));

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 
-#include "sim/core/lanes.hpp"
+#include "sim/core/aligned.hpp"
 
 #ifndef HAPBENCH_SIMD
-#error "sim/core/simd.hpp, and what includes it, is for hapbench's own sources; see sim/core/lanes.hpp for yours"
+#error "sim/core/simd.hpp, and what includes it, is for hapbench's own sources; see sim/core/aligned.hpp for yours"
 #endif
 
 #if HAPBENCH_SIMD
@@ -37,9 +38,15 @@ inline void store(const Pack& a, double* p) {
   a.copy_to(p, std::experimental::overaligned<64>);
 }
 inline Pack select(const Mask& m, const Pack& yes, const Pack& no) {
+#ifdef __AVX512VL__
+  // Compiled by clang, `where` of libstdc++ 12 selects the wrong lanes here.
+  const auto mask = static_cast<__mmask8>(m.__to_bitset().to_ulong());
+  return Pack(_mm512_mask_blend_pd(mask, static_cast<__m512d>(no), static_cast<__m512d>(yes)));
+#else
   Pack r = no;
   std::experimental::where(m, r) = yes;
   return r;
+#endif
 }
 inline Pack sqrt(const Pack& a) {
   return std::experimental::sqrt(a);
@@ -53,70 +60,49 @@ inline bool lane(const Mask& m, std::size_t i) {
 
 #else
 
+/// The reference: plain loops over eight lanes.
 struct Mask {
   std::array<bool, lanes> v;
-};
 
-/// The reference: plain loops over eight lanes.
-struct Pack {
-  std::array<double, lanes> v;
-
-  Pack() = default;
-  Pack(double a) { v.fill(a); }  // NOLINT: broadcasts implicitly, as the library type does
-
-  template <class F>
-  static Pack map(const Pack& a, const Pack& b, F f) {
-    Pack r;
-    for (std::size_t i = 0; i < lanes; ++i) r.v[i] = f(a.v[i], b.v[i]);
-    return r;
-  }
-  template <class F>
-  static Mask test(const Pack& a, const Pack& b, F f) {
+  template <class Arg, class F>
+  static Mask of(const Arg& a, const Arg& b, F f) {
     Mask r;
     for (std::size_t i = 0; i < lanes; ++i) r.v[i] = f(a.v[i], b.v[i]);
     return r;
   }
-  friend Pack operator+(const Pack& a, const Pack& b) {
-    return map(a, b, [](double x, double y) { return x + y; });
+  friend Mask operator&&(const Mask& a, const Mask& b) { return of(a, b, std::logical_and()); }
+  friend Mask operator||(const Mask& a, const Mask& b) { return of(a, b, std::logical_or()); }
+  friend Mask operator!(const Mask& a) {
+    return of(a, a, [](bool x, bool) { return !x; });
   }
-  friend Pack operator-(const Pack& a, const Pack& b) {
-    return map(a, b, [](double x, double y) { return x - y; });
+};
+
+struct Pack {
+  std::array<double, lanes> v;
+
+  Pack() = default;
+  Pack(double a) { v.fill(a); }  // NOLINT: implicit, as for the library type
+
+  template <class F>
+  static Pack of(const Pack& a, const Pack& b, F f) {
+    Pack r;
+    for (std::size_t i = 0; i < lanes; ++i) r.v[i] = f(a.v[i], b.v[i]);
+    return r;
   }
-  friend Pack operator*(const Pack& a, const Pack& b) {
-    return map(a, b, [](double x, double y) { return x * y; });
-  }
-  friend Pack operator/(const Pack& a, const Pack& b) {
-    return map(a, b, [](double x, double y) { return x / y; });
-  }
+  friend Pack operator+(const Pack& a, const Pack& b) { return of(a, b, std::plus()); }
+  friend Pack operator-(const Pack& a, const Pack& b) { return of(a, b, std::minus()); }
+  friend Pack operator*(const Pack& a, const Pack& b) { return of(a, b, std::multiplies()); }
+  friend Pack operator/(const Pack& a, const Pack& b) { return of(a, b, std::divides()); }
   friend Pack operator-(const Pack& a) {
-    return map(a, a, [](double x, double) { return -x; });
+    return of(a, a, [](double x, double) { return -x; });
   }
   Pack& operator+=(const Pack& b) { return *this = *this + b; }
-  friend Mask operator<(const Pack& a, const Pack& b) {
-    return test(a, b, [](double x, double y) { return x < y; });
-  }
-  friend Mask operator<=(const Pack& a, const Pack& b) {
-    return test(a, b, [](double x, double y) { return x <= y; });
-  }
+  friend Mask operator<(const Pack& a, const Pack& b) { return Mask::of(a, b, std::less()); }
+  friend Mask operator<=(const Pack& a, const Pack& b) { return Mask::of(a, b, std::less_equal()); }
   friend Mask operator>(const Pack& a, const Pack& b) { return b < a; }
   friend Mask operator>=(const Pack& a, const Pack& b) { return b <= a; }
 };
 
-inline Mask operator&&(const Mask& a, const Mask& b) {
-  Mask r;
-  for (std::size_t i = 0; i < lanes; ++i) r.v[i] = a.v[i] && b.v[i];
-  return r;
-}
-inline Mask operator||(const Mask& a, const Mask& b) {
-  Mask r;
-  for (std::size_t i = 0; i < lanes; ++i) r.v[i] = a.v[i] || b.v[i];
-  return r;
-}
-inline Mask operator!(const Mask& a) {
-  Mask r;
-  for (std::size_t i = 0; i < lanes; ++i) r.v[i] = !a.v[i];
-  return r;
-}
 inline Pack load(const double* p) {
   Pack r;
   for (std::size_t i = 0; i < lanes; ++i) r.v[i] = p[i];
@@ -131,7 +117,7 @@ inline Pack select(const Mask& m, const Pack& yes, const Pack& no) {
   return r;
 }
 inline Pack sqrt(const Pack& a) {
-  return Pack::map(a, a, [](double x, double) { return std::sqrt(x); });
+  return Pack::of(a, a, [](double x, double) { return std::sqrt(x); });
 }
 inline bool any(const Mask& m) {
   bool r = false;
@@ -147,7 +133,7 @@ inline bool lane(const Mask& m, std::size_t i) {
 /// Bit i of the result is lane i of the mask.
 inline std::uint8_t bits(const Mask& m) {
 #if HAPBENCH_SIMD
-  return static_cast<std::uint8_t>(m.__to_bitset().to_ulong());  // libstdc++'s name of what C++26 calls to_bitset
+  return static_cast<std::uint8_t>(m.__to_bitset().to_ulong());  // libstdc++'s name for C++26's to_bitset
 #else
   unsigned b = 0;
   for (std::size_t i = 0; i < lanes; ++i) b |= static_cast<unsigned>(m.v[i]) << i;
@@ -155,8 +141,8 @@ inline std::uint8_t bits(const Mask& m) {
 #endif
 }
 
-/// Moves those of eight aligned elements whose bit is set to `to`, in their order and without gaps. May write eight
-/// elements, whatever is selected.
+/// Writes the elements whose bit is set, of eight aligned ones, to `to`, in their order and without gaps. May write
+/// eight elements, however few are selected.
 #if HAPBENCH_SIMD && defined(__AVX512VL__)
 inline void store_selected(std::uint8_t selected, const double* from, double* to) {
   _mm512_storeu_pd(to, _mm512_maskz_compress_pd(selected, _mm512_load_pd(from)));
@@ -192,9 +178,10 @@ inline std::size_t first(const Mask& m) {
 inline Pack abs(const Pack& a) {
   return select(a < Pack(0.0), -a, a);
 }
-// g++ 12 warns of the instructions of `min` and `max` unless they come with a mask (GCC bug 105593), here that of all.
 
-/// b < a ? b : a, which is a when they are equal or one is NaN; that is what the instruction does, too.
+// The masks of all lanes in `min` and `max` avoid a false warning of g++ 12 (GCC bug 105593).
+
+/// b < a ? b : a, hence a if they are equal or one is NaN, exactly as the instruction does.
 inline Pack min(const Pack& a, const Pack& b) {
 #if HAPBENCH_SIMD && defined(__AVX512VL__)
   return Pack(_mm512_maskz_min_pd(0xff, static_cast<__m512d>(b), static_cast<__m512d>(a)));

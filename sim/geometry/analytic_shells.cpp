@@ -7,7 +7,7 @@
 namespace hapbench {
 namespace {
 
-/// Number of equal intervals, none longer than the spacing; 1e-9 forgives lengths that are a multiple but for rounding.
+/// Number of equal intervals, none longer than the spacing; 1e-9 covers the rounding of lengths that are a multiple.
 double intervals(double length, double spacing) {
   return std::max(1.0, std::ceil(length / spacing - 1e-9));
 }
@@ -17,7 +17,7 @@ double between(double a, double b, double k, double n) {
   return k == n ? b : a + (b - a) * (k / n);
 }
 
-/// Points strictly between a and b.
+/// Adds the points strictly between a and b.
 void add_face(std::vector<SurfacePoint>& points, const Vec3& a, const Vec3& b, const Vec3& normal, double spacing) {
   const double n = intervals((b - a).norm(), spacing);
   for (double k = 1; k < n; ++k) {
@@ -25,7 +25,7 @@ void add_face(std::vector<SurfacePoint>& points, const Vec3& a, const Vec3& b, c
   }
 }
 
-/// A cone's wall from apex to mouth.
+/// Length of a cone's wall from apex to mouth [m].
 double slant(const ConicalHole& cone) {
   return cone.depth / std::cos(cone.half_angle);
 }
@@ -92,7 +92,7 @@ std::vector<SurfacePoint> surface_points(const Slot& slot) {
   return points;
 }
 
-/// The sum over the rings of their circumference over the spacing, and four for the rounding of each.
+/// Sums the rings' circumferences over the spacing, plus four points for the rounding of each.
 double point_count(const ConicalHole& cone) {
   const double rings = intervals(slant(cone), cone.spacing);
   const double mouth = std::sin(cone.half_angle) * slant(cone);
@@ -108,7 +108,7 @@ std::vector<SurfacePoint> surface_points(const ConicalHole& cone) {
     const double radius = along * sine, z = k == rings ? 0.0 : along * cosine - cone.depth;
     const double quarter = intervals(std::numbers::pi / 2 * radius, cone.spacing);
     for (double i = 0; i < quarter; ++i) {
-      // Turned by swapping coordinates and not computed anew, so that images agree to the bit.
+      // Quarter turns swap coordinates instead of computing them anew, so that they agree to the bit.
       const double angle = (i + 0.5) / quarter * std::numbers::pi / 2;
       const double c = std::cos(angle), s = std::sin(angle);
       for (const auto& [x, y] : {std::pair(c, s), std::pair(-s, c), std::pair(-c, -s), std::pair(s, -c)}) {
@@ -117,6 +117,25 @@ std::vector<SurfacePoint> surface_points(const ConicalHole& cone) {
     }
   }
   return points;
+}
+
+double signed_distance(const BlockWithHole& block, const Vec3& q) {
+  const auto length = [](double a, double b) { return std::sqrt(a * a + b * b); };
+  const double R = block.hole_diameter / 2, H = block.hole_depth, z = q.z();
+  // Distances beyond the faces; negative between them.
+  const double x = std::abs(q.x()) - block.size.x() / 2, y = std::abs(q.y()) - block.size.y() / 2;
+  const double below = -z - block.size.z();
+  const double rho = length(q.x(), q.y());
+
+  if (std::max({x, y, z, below}) > 0.0) {
+    // Above the mouth the nearest point of the top face is on the rim.
+    if (rho < R && z > 0.0) return length(z, R - rho);
+    const double beyond_sides = length(std::max(x, 0.0), std::max(y, 0.0));
+    return length(beyond_sides, std::max({z, below, 0.0}));
+  }
+  if (rho < R && z > -H) return std::min(R - rho, z + H);  // in the hole: to its wall or bottom
+  const double to_hole = length(std::max(rho - R, 0.0), std::max(-H - z, 0.0));
+  return -std::min({-x, -y, -z, -below, to_hole});
 }
 
 }  // namespace hapbench

@@ -4,9 +4,10 @@
 
 #include "sim/geometry/point_shell.hpp"
 
-/// Point shells of surfaces known in closed form. Every edge is divided into equal intervals no longer than the
-/// spacing, so that both of its ends carry a point; a point on an edge carries the normalised mean of the two faces'
-/// normals. `point_count` tells the size beforehand, as a double because absurd sizes are to be refused, not computed.
+/// Surfaces known in closed form, as point shells and as a signed distance. Every edge is divided into equal intervals
+/// no longer than the spacing, so that both of its ends carry a point; a point on an edge carries the normalised mean
+/// of the two faces' normals. `point_count` returns the size in advance, as a double, so that absurd sizes can be
+/// refused.
 namespace hapbench {
 
 /// The planar peg-in-hole scene of thesis A.1.1, in the plane z = 0 with y up and the mouth at y = 0, centred at x = 0.
@@ -53,5 +54,16 @@ std::vector<SurfacePoint> surface_points(const Hole2d& hole);
 std::vector<SurfacePoint> surface_points(const Plane& plane);
 std::vector<SurfacePoint> surface_points(const Slot& slot);
 std::vector<SurfacePoint> surface_points(const ConicalHole& cone);
+
+/// The validation object of thesis 3.2: a cuboid centred at x = y = 0 with its top face in z = 0, and a round blind
+/// hole down its middle.
+struct BlockWithHole {
+  Vec3 size = {0.015, 0.015, 0.01};  ///< [m]
+  double hole_diameter = 0.002;      ///< [m]
+  double hole_depth = 0.005;         ///< [m]
+};
+
+/// Exact signed distance to the block's surface [m], negative inside the material.
+double signed_distance(const BlockWithHole& block, const Vec3& point);
 
 }  // namespace hapbench

@@ -6,10 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "sim/core/lanes.hpp"
-
 namespace hapbench {
-
 namespace {
 
 ShellColumns columns_of(const std::vector<SurfacePoint>& points) {

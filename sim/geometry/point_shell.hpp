@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "sim/core/aligned.hpp"
-#include "sim/core/box.hpp"
 #include "sim/core/types.hpp"
 
 namespace hapbench {
@@ -15,18 +14,18 @@ struct SurfacePoint {
   Vec3 normal = {0.0, 0.0, 1.0};
 };
 
-/// The box of all points; at the origin when there are none.
+/// The bounding box of the points; zero at the origin if there are none.
 Box bounds_of(const std::vector<SurfacePoint>& points);
 
-/// The points of a shell, and the grid cells they were listed by.
+/// The points of a shell and the grid cells that list them.
 struct ShellPoints {
   std::vector<SurfacePoint> points;
-  /// Number of each point's grid cell, 0 … cells - 1 in order of first appearance; empty when the cells follow from the
+  /// Number of each point's grid cell, 0 … cells - 1 in order of first appearance; empty if the cells follow from the
   /// positions.
   std::vector<std::uint32_t> cells;
 };
 
-/// Coordinates and normals of points, each column as long as whole packs (simd::padded). Holds no values at first.
+/// Coordinates and normals of points, each column padded to whole packs (simd::padded). Initially without values.
 struct ShellColumns {
   UnsetDoubles x, y, z, nx, ny, nz;
 
@@ -42,23 +41,23 @@ struct ShellColumns {
 };
 
 /// The environment object as points with normals, laid out for the contact search: one array per coordinate, 64-byte
-/// aligned, padded to whole packs with points far outside any scene, so that no loop has a tail.
+/// aligned and padded to whole packs with points far outside any scene, so that no loop needs a tail.
 class PointShell {
  public:
-  /// Coordinate of the padding points [m]: finite, because infinities breed NaN, and beyond every tool.
+  /// Coordinate of the padding points [m], beyond every tool; finite, because infinities would produce NaN.
   static constexpr double kFarAway = 1e9;
 
-  /// cell_size is the edge [m] of the grid cells in which the local average merges points; 0 when there is no grid.
-  /// `cells` is empty, or says which cell lists each point, as in ShellPoints.
+  /// cell_size is the edge [m] of the grid cells in which the local average merges points; 0 if there is no grid.
+  /// `cells` is as in ShellPoints.
   PointShell(const std::vector<SurfacePoint>& points, double cell_size, std::vector<std::uint32_t> cells = {});
 
-  /// Takes columns of which the first `size` values are set; `bounds` is the box of these points.
+  /// Takes columns whose first `size` values are set; `bounds` is the box of these points.
   PointShell(ShellColumns columns, std::size_t size, const Box& bounds, double cell_size);
 
   std::size_t size() const { return size_; }
   std::size_t padded_size() const { return columns_.x.size(); }
   double cell_size() const { return cell_size_; }
-  /// Of all points; at the origin when there are none.
+  /// The box of all points; zero at the origin if there are none.
   const Box& bounds() const { return bounds_; }
 
   const double* x() const { return columns_.x.data(); }
@@ -71,9 +70,9 @@ class PointShell {
   SurfacePoint point(std::size_t i) const;
   std::vector<SurfacePoint> points() const;
 
-  /// Number of each point's grid cell, 0 … cells - 1 in order of first appearance: the cells the shell was made with,
-  /// else the cubes between half-integer multiples of cell_size, so that a shell spaced by cell_size from the origin
-  /// has one point in each. O(size log size); call it in preparation, not in a step.
+  /// Number of each point's grid cell, 0 … cells - 1 in order of first appearance. The cells are those the shell was
+  /// made with, or else the cubes between half-integer multiples of cell_size: a shell spaced by cell_size from the
+  /// origin has one point in each. O(size log size); call it in preparation, not in a step.
   std::vector<std::uint32_t> cell_of_points() const;
 
  private:

@@ -9,8 +9,9 @@ namespace hapbench {
 
 /// The hand's force in one step, as the device measures and limits it [N].
 struct MeasuredForce {
-  Vec3 measured = Vec3::Zero();  ///< f_meas: what the sensor reads
-  Vec3 input = Vec3::Zero();  ///< f_meas*: what drives the virtual mass, after the input-force limiter; 0 without one
+  Vec3 measured = Vec3::Zero();  ///< f_meas: reading of the sensor
+  Vec3 input =
+      Vec3::Zero();  ///< f_meas*: drives the virtual mass, after the input-force limiter; 0 without such a mass
 };
 
 /// Energy balance of a device's moving parts since its last reset [J]. Up to rounding, stored = hand + actuator +
@@ -22,12 +23,12 @@ struct DeviceEnergy {
   double stored = 0.0;      ///< kinetic and elastic energy of the parts, above that at the reset
 };
 
-/// The haptic device: it measures the hand's force and moves the handle after the tool, which is a virtual mass; or its
-/// handle moves the tool (`moves_tool`), and there is no such mass.
+/// The haptic device. Either it measures the hand's force and moves the handle after the tool, which is a virtual mass,
+/// or its handle moves the tool (`moves_tool`) and there is no virtual mass.
 class Device {
  public:
   virtual ~Device() = default;
-  /// Back to t = 0 with the handle on the tool.
+  /// Returns to t = 0 with the handle on the tool.
   virtual void reset(const ToolState& tool) noexcept = 0;
   virtual MeasuredForce measure(const Vec3& hand_force) noexcept = 0;
   /// Follows the tool's motion over one step of dt seconds, while the hand pushes on the handle.
@@ -36,13 +37,13 @@ class Device {
   /// Returns nothing if the handle is the tool itself and has no mass or friction of its own.
   virtual std::optional<DeviceEnergy> energy() const noexcept { return std::nullopt; }
 
-  /// True of a device whose handle moves the tool. `drive` then takes the place of the integrator and of `advance`.
+  /// True if the handle moves the tool. `drive` then replaces the integrator and `advance`.
   virtual bool moves_tool() const noexcept { return false; }
-  /// From row k to row k + 1, with f_render and the hand's force of row k [N].
+  /// Moves on from row k to row k + 1, with f_render and the hand's force of row k [N].
   virtual void drive(const Vec3& rendered, const Vec3& hand_force) noexcept {
     static_cast<void>(rendered), static_cast<void>(hand_force);
   }
-  /// Where, and how fast, such a device takes its handle to be, and puts the tool.
+  /// Position and velocity of the handle as measured by such a device; those of the tool.
   virtual HandleState sampled() const noexcept { return handle(); }
 };
 

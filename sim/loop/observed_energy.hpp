@@ -1,30 +1,30 @@
 #pragma once
 
 #include "sim/loop/force_algorithm.hpp"
-#include "sim/tool/turn.hpp"
+#include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
 
-/// The time-domain passivity observer (Hannaford and Ryu, 2002): the energy that a rendering has taken in and can still
-/// give back, with the tool's translation as one port and its scripted rotation as the other,
+/// The time-domain passivity observer (Hannaford and Ryu, 2002): the energy that a rendering has absorbed and can still
+/// return, with the tool's translation as one port and its scripted rotation as the other,
 ///
 ///   E_0 = E_spring(0),  E_(k+1) = E_k - f_render_k . (v_k + v_(k+1))/2 dt - (m_k + m_(k+1))/2 . turn_k
 ///
-/// m: moment of the springs, turn_k: rotation vector from pose k to pose k + 1. The works are those of the energy
-/// ledger. A rendering that stores in springs and dissipates never has E_k < 0; max(0, -min E_k) is energy from
-/// nothing. Dissipation counts as taken in, so it can hide what is created later.
+/// with m the moment of the springs and turn_k the rotation vector from pose k to pose k + 1. The works are those of
+/// the energy ledger. A rendering that only stores energy in springs and dissipates never has E_k < 0; max(0, -min E_k)
+/// is created energy. Dissipation counts as absorbed, so it can hide energy created later.
 ///
 /// A row is `move`, then `answer`. Observer and controller share this code, so that they agree to the last bit.
-/// Without force and moment a row costs a few comparisons and the copy of an axis.
+/// Without force and moment a row costs a few comparisons and the copy of a pose.
 ///
-/// Where the handle of a device moves the tool, the work is that of the force that is held while the tool moves on,
-/// f_render_k . (p_(k+1) - p_k), and E that of the display (Hannaford and Ryu): what sampling and holding create is in
-/// it.
+/// If the handle of a device moves the tool, the work is that of the force held while the tool moves on,
+/// f_render_k . (p_(k+1) - p_k), and E is that of the display (Hannaford and Ryu), including the energy created by
+/// sampling and holding.
 class ObservedEnergy {
  public:
   explicit ObservedEnergy(double dt) : dt_(dt) {}
 
-  /// Back to t = 0.
+  /// Returns to t = 0.
   void reset() noexcept { *this = ObservedEnergy(dt_); }
 
   /// Starts the next row; `tool` is the tool's state in it.
@@ -51,7 +51,7 @@ class ObservedEnergy {
     }
   }
 
-  /// Returns true if neither the last row nor this one renders a force or a moment.
+  /// True if neither the last row nor this one renders a force or a moment.
   bool rests(const Vec3& rendered, const SpringState& springs) const noexcept {
     return begun_ && !force_acts_ && !moment_acts_ && is_zero(rendered) && is_zero(springs.moment);
   }
@@ -66,7 +66,7 @@ class ObservedEnergy {
   double energy() const { return energy_; }
   /// True in the first row, which starts from the springs' energy.
   bool first() const { return first_; }
-  /// The turn from the row before to this one [rad].
+  /// The turn from the previous row to this one [rad].
   const Vec3& turned() noexcept {
     if (!turn_is_known_) turn_ = first_ ? Vec3(Vec3::Zero()) : turn(pose_[!now_], pose_[now_]);
     turn_is_known_ = true;
@@ -74,7 +74,7 @@ class ObservedEnergy {
   }
 
  private:
-  /// Of this row from the one before, whose force acts.
+  /// Displacement since the previous row over which its force acts [m].
   Vec3 way_to(const ToolState& tool, bool handle_moves_tool) const noexcept {
     if (handle_moves_tool) return tool.pose.position - pose_[!now_].position;
     return 0.5 * (velocity_ + tool.velocity) * dt_;
@@ -94,8 +94,8 @@ class ObservedEnergy {
   bool force_acts_ = false;
   bool moment_acts_ = false;
   bool turn_is_known_ = false;
-  bool now_ = false;              ///< which of the two poses is that of this row
-  ToolPose pose_[2];              ///< this row's and the one before
+  bool now_ = false;              ///< index of this row's pose
+  ToolPose pose_[2];              ///< of this row and the previous one
   Vec3 velocity_ = Vec3::Zero();  ///< of the last row with force
   Vec3 turn_ = Vec3::Zero();
   Vec3 force_ = Vec3::Zero();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/loop/device.hpp"
@@ -13,20 +14,20 @@ struct StepRecord {
   std::uint64_t step = 0;
   double time = 0.0;  ///< t_k = k dt [s]
   ToolState tool;
-  double roll = 0.0;  ///< the tool's, also of a solid of revolution, whose pose leaves it out; filled only if wanted
+  double roll = 0.0;  ///< of the tool, even if round, in which case its pose omits it; filled only if wanted
   RenderedForce force;
-  Vec3 hand_force = Vec3::Zero();  ///< what the hand pushes with [N]
-  MeasuredForce hand;              ///< what the device makes of it
+  Vec3 hand_force = Vec3::Zero();  ///< of the hand on the handle [N]
+  MeasuredForce hand;              ///< hand_force as measured by the device
   HandleState handle;
-  bool handle_moves_tool = false;           ///< the tool is where its device measures the handle; no virtual mass
-  const TargetTask* task = nullptr;         ///< what the hand works on at this row; null without such a task
+  bool handle_moves_tool = false;           ///< the tool follows the measured handle; there is no virtual mass
+  const TargetTask* task = nullptr;         ///< of the hand at this row; null without such a task
   std::size_t colliding = 0;                ///< colliding points before any point stage
-  const ContactBuffer* rendered = nullptr;  ///< contacts the law saw; valid during on_step only
+  const ContactBuffer* rendered = nullptr;  ///< contacts seen by the law; valid during on_step only
   RatioRange ratio;                         ///< over the rendered contacts; filled only if an observer wants it
   SpringState springs;                      ///< filled only if an observer wants springs or energy
   std::optional<DeviceEnergy> device;       ///< filled only if an observer wants energy
 
-  /// Of the body that moves, virtual mass or handle [m/s]: not what encoder and filter make of it.
+  /// True velocity of the moving body, virtual mass or handle [m/s], without the effects of encoder and filter.
   const Vec3& body_velocity() const noexcept { return handle_moves_tool ? handle.velocity : tool.velocity; }
 };
 
@@ -34,13 +35,13 @@ struct StepRecord {
 class Observer {
  public:
   virtual ~Observer() = default;
-  /// True when on_step reads `ratio`; otherwise nobody computes it.
+  /// True if on_step reads `ratio`, which is otherwise not computed.
   virtual bool wants_ratio() const noexcept { return false; }
-  /// True when on_step reads `roll`; otherwise nobody computes it.
+  /// True if on_step reads `roll`, which is otherwise not computed.
   virtual bool wants_roll() const noexcept { return false; }
-  /// True when on_step reads `springs` and `device`; otherwise nobody computes them.
+  /// True if on_step reads `springs` and `device`, which are otherwise not computed.
   virtual bool wants_energy() const noexcept { return false; }
-  /// True when on_step reads `springs`.
+  /// True if on_step reads `springs`.
   virtual bool wants_springs() const noexcept { return wants_energy(); }
   virtual void on_step(const StepRecord& record) noexcept = 0;
 };

@@ -5,23 +5,23 @@
 #include <numbers>
 #include <utility>
 
-#include "sim/tool/turn.hpp"
+#include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
 namespace {
 
-/// True of a solid of revolution.
+/// True for a solid of revolution.
 bool is_round(const ToolShape& tool) {
   return tool.moved_at_most(ToolPose{}, ToolPose{.roll = 1.0}) == 0.0;
 }
 
 }  // namespace
 
-/// What an integrator may ask about the step from row k to row k + 1. Reuses the contact buffer, which nobody reads
-/// any more after the observers.
-class Simulation::Surroundings final : public ForceField {
+/// The force between row k and row k + 1, for the integrator. Reuses the contact buffer, which is not read any more
+/// once the observers have seen the row.
+class Simulation::ForceWithinStep final : public ForceField {
  public:
-  explicit Surroundings(Simulation& simulation) : s_(simulation) {}
+  explicit ForceWithinStep(Simulation& simulation) : s_(simulation) {}
 
   Vec3 force_at(double part, const Vec3& position, const Vec3& velocity) noexcept override {
     const double t = (static_cast<double>(s_.row_) + part) * s_.config_.dt;
@@ -53,15 +53,19 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
     roll_wanted_ |= observer->wants_roll();
   }
   position_is_free_ = parts_.motion->position_is_free();
-  input_wanted_ = parts_.algorithm->wants_input();
   handle_is_apart_ = parts_.device->energy().has_value();
   handle_moves_tool_ = position_is_free_ && parts_.device->moves_tool();
   angular_velocity_cutoff_ = parts_.algorithm->angular_velocity_cutoff();
   tool_rolls_ = parts_.tool && !is_round(*parts_.tool);
   turn_rolls_ = tool_rolls_ || parts_.motion->scripts_roll();
   roll_wanted_ |= tool_rolls_ || (turn_rolls_ && angular_velocity_cutoff_);
-  parts_.algorithm->prepare(
-      {parts_.source->capacity(), parts_.tool.get(), parts_.shell.get(), parts_.springs.get(), config_.dt});
+  parts_.algorithm->prepare({.capacity = parts_.source->capacity(),
+                             .tool = parts_.tool.get(),
+                             .shell = parts_.shell.get(),
+                             .springs = parts_.springs.get(),
+                             .dt = config_.dt,
+                             .row = &record_.step,
+                             .input = &record_.hand.input});
   reset();
 }
 
@@ -72,7 +76,7 @@ void Simulation::reset() noexcept {
   record_ = {};
   record_.handle_moves_tool = handle_moves_tool_;
   tool_ = {{config_.position, Vec3::Zero()}, config_.velocity};
-  parts_.hand->reset();  // first, because a hand may steer the orientation
+  parts_.hand->reset();  // first, because a hand may determine the orientation
   move_tool_by_script();
   parts_.source->reset();
   parts_.algorithm->reset();
@@ -85,8 +89,8 @@ double Simulation::roll_at(double t) const noexcept {
   return roll_wanted_ ? parts_.motion->roll_at(t) : 0.0;
 }
 
-/// The turn from the row's orientation to this one, a part of a step later, as an angular velocity through a
-/// first-order low-pass: 1 - e^(-2 pi f t) of what is new.
+/// Angular velocity from the row's orientation to the given one, `part` of a step later, through a first-order low-pass
+/// that takes the fraction 1 - e^(-2 pi f t) of the new value.
 Vec3 Simulation::angular_velocity_after(double part, const Vec3& axis, double roll) const noexcept {
   const double time = part * config_.dt;
   const double taken = -std::expm1(-2.0 * std::numbers::pi * *angular_velocity_cutoff_ * time);
@@ -95,15 +99,15 @@ Vec3 Simulation::angular_velocity_after(double part, const Vec3& axis, double ro
   return (1.0 - taken) * tool_.angular_velocity + taken * turn(from, to) / time;
 }
 
-/// Orientation always follows the script, omega_k from the turn of the last step, omega_0 = 0; a prescribed position
-/// also gives the velocity, (p_k - p_{k-1}) / dt, v_0 = 0.
+/// The orientation always follows the script, with omega_k from the turn of the last step and omega_0 = 0. A prescribed
+/// position also gives the velocity, (p_k - p_{k-1}) / dt with v_0 = 0.
 void Simulation::move_tool_by_script() noexcept {
   const double t = static_cast<double>(row_) * config_.dt;
   const Vec3 axis = parts_.motion->axis_at(t);
   const double roll = roll_at(t);
   if (angular_velocity_cutoff_ && row_ > 0) tool_.angular_velocity = angular_velocity_after(1.0, axis, roll);
   tool_.pose.axis = axis;
-  // Left out of a solid of revolution's pose, so that nothing that is computed for it can depend on it.
+  // The pose of a solid of revolution omits the roll, so that no result can depend on it.
   if (tool_rolls_) tool_.pose.roll = roll;
   roll_ = roll;
   if (position_is_free_) return;
@@ -113,8 +117,8 @@ void Simulation::move_tool_by_script() noexcept {
 }
 
 void Simulation::move_tool_by_force() noexcept {
-  Surroundings surroundings(*this);
-  integrator_->step(tool_, record_.hand.input + record_.force.rendered, config_.mass, config_.dt, surroundings);
+  ForceWithinStep field(*this);
+  integrator_->step(tool_, record_.hand.input + record_.force.rendered, config_.mass, config_.dt, field);
 }
 
 void Simulation::put_tool_on_handle() noexcept {
@@ -144,7 +148,6 @@ bool Simulation::step() noexcept {
     return true;
   }
   r.colliding = contacts_.size();
-  if (input_wanted_) parts_.algorithm->take_input(r.hand.input);
   parts_.algorithm->compute(tool_, contacts_, r.force);
   if (!check_bounds()) return true;
 
@@ -203,7 +206,7 @@ bool Simulation::check_bounds() noexcept {
                             within("handle velocity", record_.handle.velocity, bounds.speed) &&
                             within("measured force", record_.hand.measured, bounds.force)));
   };
-  // Well inside, as nearly every step is, nothing needs a square root; what is not finite is not inside.
+  // Nearly every step takes this fast path on squares; NaN fails the comparison.
   const auto well_inside = [](const char*, const Vec3& v, double bound) {
     return v.squaredNorm() <= 0.5 * bound * bound;
   };
@@ -233,6 +236,14 @@ bool Simulation::check_stop_rules() noexcept {
 void Simulation::end(Outcome outcome) noexcept {
   ended_ = true;
   result_.outcome = outcome;
+}
+
+StopRule when_tool_leaves_hole(const Vec3& up) {
+  return {Outcome::leaves_hole, [up](const ToolState& tool) { return tool.pose.position.dot(up) > 0.0; }};
+}
+
+StopRule when_tool_is_horizontal(const Vec3& up) {
+  return {Outcome::tool_horizontal, [up](const ToolState& tool) { return tool.pose.axis.dot(up) >= 0.0; }};
 }
 
 }  // namespace hapbench

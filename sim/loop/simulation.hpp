@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/contact/contact_source.hpp"
-#include "sim/core/skips.hpp"
+#include "sim/core/types.hpp"
 #include "sim/loop/device.hpp"
 #include "sim/loop/force_algorithm.hpp"
 #include "sim/loop/hand.hpp"
@@ -18,15 +18,15 @@
 
 namespace hapbench {
 
-/// How a run ended, from the best to the worst: several trials end as the worst of them does.
+/// The end of a run, from the best to the worst; the outcome of several trials is that of the worst.
 enum class Outcome {
   completes,        ///< all steps done, or the hand has finished its task
-  leaves_hole,      ///< the tip centre rose above height 0 (stop_rules.hpp)
-  tool_horizontal,  ///< the axis reached the horizontal plane (stop_rules.hpp)
-  not_dragged,      ///< all steps done, but a hand that drags led the tool nowhere (scenarios/run/encounter.hpp)
-  no_contact,       ///< all steps done, and the tool never touched the environment (there, too)
-  lost_contact,     ///< all steps done, but the tool left the environment behind (there, too)
-  diverges          ///< a value stopped being finite or left its bound
+  leaves_hole,      ///< when_tool_leaves_hole
+  tool_horizontal,  ///< when_tool_is_horizontal
+  not_dragged,      ///< all steps done, but a dragging hand did not move the tool (judged by scenarios/run)
+  no_contact,       ///< all steps done, but the tool never touched the environment (judged by scenarios/run)
+  lost_contact,     ///< all steps done, but the tool left the environment (judged by scenarios/run)
+  diverges          ///< a value was not finite or left its bound
 };
 
 /// Ends a run early: after the first row for whose tool `holds` is true.
@@ -35,67 +35,77 @@ struct StopRule {
   std::function<bool(const ToolState& tool)> holds;
 };
 
-/// A run beyond these is stopped as diverged: absurd for a dental drill, still far from overflow.
+// The ends of the thesis's peg-in-hole runs (A.1.2). `up` is the unit vector against gravity.
+
+/// The tip centre has risen above height 0, where the hole's mouth is.
+StopRule when_tool_leaves_hole(const Vec3& up);
+/// The tool's axis, which points down at first, has reached the plane perpendicular to `up`.
+StopRule when_tool_is_horizontal(const Vec3& up);
+
+/// A run beyond these bounds is stopped as diverged. They are absurd for a dental drill, but far from overflow.
 struct DivergenceBounds {
   double position = 1e3;  ///< of tool and handle [m]
   double speed = 1e6;     ///< of tool and handle [m/s]
   double force = 1e12;    ///< f_render and f_meas [N]
 };
 
-/// Numbers of one run.
+/// Parameters of one run.
 struct SimulationConfig {
   double dt = 0.0005;                              ///< [s]
   std::uint64_t steps = 0;                         ///< rows 0 … steps - 1
   double mass = 0.2;                               ///< of the virtual tool, if there is one [kg]
   const IntegratorEntry* integrator = &kLeapfrog;  ///< of a virtual tool whose position is free; never null
-  Vec3 position = Vec3::Zero();     ///< of the tip centre at t = 0 [m]; ignored when the motion prescribes it
-  Vec3 velocity = Vec3::Zero();     ///< [m/s]
-  std::vector<StopRule> stop_when;  ///< if several hold, the first one counts
+  Vec3 position = Vec3::Zero();     ///< of the tip centre at t = 0 [m]; ignored if the motion prescribes it
+  Vec3 velocity = Vec3::Zero();     ///< at t = 0 [m/s]
+  std::vector<StopRule> stop_when;  ///< the first one that holds counts
   DivergenceBounds bounds;
-  Skips skips = Skips::taken;  ///< ratios and energies that no observer wants
+  Skips skips = Skips::on;  ///< of ratios and energies that no observer wants
 };
 
-/// The parts a run is made of; the simulation owns them.
+/// The parts of a run; the simulation owns them.
 struct SimulationParts {
   std::shared_ptr<const ToolShape> tool;
   std::shared_ptr<const PointShell> shell;   ///< null for springs
   std::shared_ptr<const SpringSet> springs;  ///< null for a shell
-  std::unique_ptr<ContactSource> source;     ///< of contacts with either
+  std::unique_ptr<ContactSource> source;     ///< of contacts with the shell or the springs
   std::unique_ptr<ForceAlgorithm> algorithm;
   std::unique_ptr<Motion> motion;
   std::unique_ptr<Hand> hand;
   std::unique_ptr<Device> device;
 };
 
-/// Where a diverged run left its bounds; the row is not passed to observers.
+/// The row at which a run diverged, which observers do not see.
 struct Divergence {
   std::uint64_t step = 0;
   double time = 0.0;          ///< [s]
   const char* quantity = "";  ///< as in "position", "handle velocity" or "rendered force"
-  double magnitude = 0.0;     ///< its norm, possibly not finite
+  double magnitude = 0.0;     ///< norm of the quantity, possibly not finite
   double bound = 0.0;
-  std::string fault = {};  ///< the reason, where the source of contacts or the algorithm knows it; mostly empty
+  std::string fault = {};  ///< reason reported by the contact source or the algorithm; mostly empty
 };
 
 struct SimulationResult {
   Outcome outcome = Outcome::completes;
   std::uint64_t rows = 0;  ///< rows observed
-  Divergence divergence;   ///< meaningful when the outcome is `diverges`
+  Divergence divergence;   ///< if the outcome is `diverges`
 };
 
-/// The step loop: hand -> device -> contacts -> force algorithm -> observers -> integrator, or device again where its
+/// The step loop: hand -> device -> contacts -> force algorithm -> observers -> integrator, or the device again if its
 /// handle moves the tool. Owns the contact buffer and allocates only in the constructor.
 class Simulation {
  public:
   /// Prepares the algorithm. Observers must outlive the simulation. Throws what `prepare` throws.
   Simulation(SimulationConfig config, SimulationParts parts, std::vector<Observer*> observers);
+  // The algorithm has pointers to the row (Scene).
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
 
-  /// Back to t = 0, bit for bit (observers keep what they saw).
+  /// Returns to t = 0, bit for bit; does not reset the observers.
   void reset() noexcept;
-  /// Evaluates row k, shows it to the observers and moves on to row k + 1. Returns false, and does nothing, once the
-  /// run has ended. Allocates nothing.
+  /// Evaluates row k, passes it to the observers and moves on to row k + 1. Once the run has ended, does nothing and
+  /// returns false. Allocates nothing.
   bool step() noexcept;
-  /// Takes up to so many steps; returns false once the run has ended.
+  /// Takes up to `steps` steps; returns false once the run has ended.
   bool advance(std::uint64_t steps) noexcept;
   /// Steps to the end.
   SimulationResult run() noexcept;
@@ -107,7 +117,7 @@ class Simulation {
   const ForceAlgorithm& algorithm() const { return *parts_.algorithm; }
 
  private:
-  class Surroundings;
+  class ForceWithinStep;
 
   void move_tool_by_force() noexcept;
   void move_tool_by_script() noexcept;
@@ -127,13 +137,12 @@ class Simulation {
   bool springs_wanted_ = false;
   bool energy_wanted_ = false;
   bool position_is_free_ = false;
-  bool tool_rolls_ = false;   ///< it is no solid of revolution
-  bool turn_rolls_ = false;   ///< the turn about its axis belongs to its angular velocity
-  bool roll_wanted_ = false;  ///< somebody reads it
-  bool input_wanted_ = false;
-  bool handle_is_apart_ = false;                   ///< the handle is a body of its own
-  bool handle_moves_tool_ = false;                 ///< and there is no virtual mass
-  std::optional<double> angular_velocity_cutoff_;  ///< none: nobody wants it
+  bool tool_rolls_ = false;                        ///< the tool is not round, so its pose has the roll
+  bool turn_rolls_ = false;                        ///< the angular velocity includes the turn about the tool's axis
+  bool roll_wanted_ = false;                       ///< something reads the roll
+  bool handle_is_apart_ = false;                   ///< the handle is a separate body
+  bool handle_moves_tool_ = false;                 ///< there is no virtual mass
+  std::optional<double> angular_velocity_cutoff_;  ///< nullopt if nothing reads the angular velocity
   ContactBuffer contacts_;
 
   std::uint64_t row_ = 0;
@@ -141,8 +150,8 @@ class Simulation {
   ToolState tool_;
   double roll_ = 0.0;  ///< of the row; 0 unless wanted
   StepRecord record_;
-  RenderedForce within_step_;   ///< of the last state an integrator asked about
-  bool springs_noted_ = false;  ///< record_.springs are not zero
+  RenderedForce within_step_;   ///< result of the last ForceWithinStep::force_at
+  bool springs_noted_ = false;  ///< record_.springs may be nonzero
   SimulationResult result_;
 };
 

@@ -6,7 +6,7 @@
 namespace hapbench {
 namespace {
 
-constexpr int kEdgeNumbers = 24;  // 3 c + axis; 12 of them are edges
+constexpr int kEdgeNumbers = 24;  ///< values of 3 c + axis, of which 12 are edges
 
 int edge_between(int a, int b) {
   const int axis = (a ^ b) == 1 ? 0 : (a ^ b) == 2 ? 1 : 2;
@@ -20,8 +20,8 @@ std::array<int, 4> face_corners(int axis, int side) {
                    : std::array{base, base | v, base | u | v, base | u};
 }
 
-/// True when the two edges lie on one face of the cell: a diagonal between them would lie in that face and might meet
-/// the neighbour's.
+/// True if both edges lie on one face of the cell: a diagonal between them would lie in that face and might cross the
+/// neighbour's.
 bool share_a_face(int first, int second) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto side = [axis](int edge) { return edge % 3 == axis ? -1 : (edge / 3 >> axis) & 1; };
@@ -30,7 +30,7 @@ bool share_a_face(int first, int second) {
   return false;
 }
 
-/// Cuts ears off the polygon with diagonals through the inside of the cell; false when there is no such way.
+/// Cuts ears off the polygon with diagonals through the inside of the cell; returns false if that is impossible.
 bool triangulate(const std::vector<int>& polygon, std::vector<CubeTriangle>& triangles) {
   const std::size_t n = polygon.size();
   if (n == 3) {
@@ -50,9 +50,9 @@ bool triangulate(const std::vector<int>& polygon, std::vector<CubeTriangle>& tri
   return false;
 }
 
-/// On each face, each run of inside corners is cut off by a segment from the edge where going round enters the run to
-/// the edge where it leaves it. Every crossed edge is entered on one of its two faces and left on the other, so the
-/// segments chain into closed polygons.
+/// Derives the triangles of a case. On each face, a segment cuts off each run of inside corners: it leads from the edge
+/// where a walk around the face enters the run to the edge where it leaves the run. Every crossed edge is entered on
+/// one of its two faces and left on the other, so the segments form closed polygons.
 std::vector<CubeTriangle> derive(unsigned inside) {
   const auto is_inside = [inside](int corner) { return (inside >> corner & 1u) != 0; };
   std::array<int, kEdgeNumbers> next{};
@@ -74,7 +74,7 @@ std::vector<CubeTriangle> derive(unsigned inside) {
       edge = std::exchange(next[static_cast<std::size_t>(edge)], -1);
     }
     if (polygon.empty() || triangulate(polygon, triangles)) continue;
-    // Only a polygon that goes through one face twice has no other diagonals.
+    // Only a polygon that crosses one face twice has no diagonals through the inside.
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i) triangles.push_back({polygon[0], polygon[i], polygon[i + 1]});
   }
   return triangles;

@@ -5,26 +5,32 @@
 #include <functional>
 #include <vector>
 
+#include "sim/geometry/analytic_shells.hpp"
 #include "sim/geometry/point_shell.hpp"
-#include "sim/mesh/density.hpp"
 
 namespace hapbench {
+
+/// What a density grid stores at its nodes.
+enum class Density {
+  signed_distance,  ///< minus the signed distance, iso value 0
+  binary            ///< 1 inside and 0 outside, iso value 0.5: the "raw density field" of thesis 2.1 taken literally
+};
 
 /// A solid sampled on a grid whose nodes lie at half-integer multiples of the spacing.
 struct DensityField {
   std::function<double(const Vec3&)> signed_distance;  ///< exact, negative inside [m]; called by several threads
-  Vec3 min = Vec3::Zero();                             ///< a box that holds the solid [m]
+  Vec3 min = Vec3::Zero();                             ///< corners of a box that contains the solid [m]
   Vec3 max = Vec3::Zero();
   double spacing = 0.0001;  ///< [m], > 0
   Density density = Density::signed_distance;
 };
 
-/// The cells of the grid that the surface cuts, and the vertices on the edges of each: a vertex belongs to all of the
-/// up to four cells around its edge. Thesis 2.1 keeps its points so: "up to 4 points contained by a single grid cell".
+/// The cells of the grid that the surface cuts, each with the vertices on its edges; a vertex belongs to all of the up
+/// to four cells around its edge. Thesis 2.1 stores points this way: "up to 4 points contained by a single grid cell".
 struct CutCells {
   std::vector<Vec3> centres;                ///< [m]
-  std::vector<std::uint32_t> starts = {0};  ///< where each cell's vertices start, one more at the end
-  std::vector<std::uint32_t> vertices;      ///< their numbers, by cell and, in a cell, by edge
+  std::vector<std::uint32_t> starts = {0};  ///< where each cell begins in `vertices`, and the end
+  std::vector<std::uint32_t> vertices;      ///< numbers of the vertices, by cell and, in a cell, by edge
 };
 
 /// The surface of a solid as triangles with shared vertices.
@@ -36,19 +42,33 @@ struct IsoSurface {
   CutCells cells;
 };
 
-/// What of a surface is kept beside its vertices.
+/// Parts of an IsoSurface to keep besides its vertices.
 struct KeptOfSurface {
   bool triangles = false;
   bool cells = false;
 };
 
 /// The surface of the solid by marching cubes with linear interpolation along the edges of the grid: closed and
-/// manifold. Where a cell's face is ambiguous the inside corners are separated, on both sides of the face alike.
+/// manifold. On an ambiguous face of a cell the inside corners are separated, identically from both sides.
 ///
-/// Evaluates the field near the surface only: squares of nodes in a layer that the distance at their middle shows to be
-/// all inside or all outside are not looked into. Cost and memory grow with the surface (some 100 ns and, beside the
-/// result, 40 bytes a vertex), but for a few layers of the grid and a few operations for every 64 nodes. Layers are
-/// shared out among the threads that oneTBB gives; the result does not depend on their number.
+/// Evaluates the field near the surface only: squares of nodes in a layer are skipped if the distance at their middle
+/// shows that they are all inside or all outside. Cost and memory grow with the surface (some 100 ns and, besides the
+/// result, 40 bytes a vertex), apart from a few layers of the grid and a few operations for every 64 nodes. Runs on
+/// oneTBB's threads; the result does not depend on their number.
 IsoSurface marching_cubes(const DensityField& field, KeptOfSurface kept = {});
+
+/// The block as a density field for marching cubes, with the spacing of its grid [m], > 0.
+DensityField density_field(const BlockWithHole& block, double spacing, Density density);
+
+/// The vertices of marching_cubes, without those that have no normal, as a shell in the order of its grid
+/// (in_grid_order). O(vertices); some 92 bytes a point are in use at the end, 48 of them for the shell. Runs on
+/// oneTBB's threads; the result does not depend on their number.
+PointShell surface_shell(const DensityField& field);
+
+/// The vertices of a surface as the thesis stores them (2.1, C.2): repeated for each cell that has them on an edge,
+/// four times on average, so that each point belongs to one cell. Cells come in the order of grid_order, the points of
+/// a cell in that of its edges. Omits vertices without a normal. `spacing` of the grid [m]. O(vertices). Precondition:
+/// the surface was made with its cells.
+ShellPoints points_by_cell(const IsoSurface& surface, double spacing);
 
 }  // namespace hapbench

@@ -2,18 +2,157 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <sstream>
-
-#include "sim/mesh/mesh_parts.hpp"
 
 namespace hapbench {
 namespace {
 
 using Triangle = TriangleSoup::Triangle;
 
-/// More around one vertex than any sensible mesh has; finding an edge takes time in proportion.
+/// Two triangles with a common edge.
+struct Hinge {
+  std::array<std::uint32_t, 2> triangles;
+  std::array<std::uint32_t, 2> corners;  ///< where the edge starts in each
+  bool opposed;                          ///< they run along the edge in opposite directions, as neighbours should
+};
+
+constexpr std::uint32_t kNone = 0xffffffffu;
+/// Maximum number of parts in which each part is searched for; without it a million crumbs would take minutes.
+constexpr std::size_t kMostHolders = 1000;
+
+/// Indices of the hinges of each triangle, by corner.
+std::vector<std::array<std::uint32_t, 3>> hinges_at_triangles(std::size_t triangles, const std::vector<Hinge>& hinges) {
+  std::vector<std::array<std::uint32_t, 3>> at(triangles, {kNone, kNone, kNone});
+  for (std::uint32_t h = 0; h < hinges.size(); ++h) {
+    for (std::size_t side = 0; side < 2; ++side) at[hinges[h].triangles[side]][hinges[h].corners[side]] = h;
+  }
+  return at;
+}
+
+/// The properties of a part that decide whether to turn it.
+struct Shape {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());  ///< bounding box
+  Vec3 high = -low;
+  double volume = 0.0;  ///< enclosed; negative if normals point inwards
+
+  double size() const { return (high - low).norm(); }
+  bool holds(const Shape& other) const {
+    return (other.low.array() >= low.array()).all() && (other.high.array() <= high.array()).all();
+  }
+  /// The threshold exceeds rounding, because two sheets back to back enclose nothing.
+  bool is_inside_out() const { return volume < -1e-12 * size() * size() * size(); }
+};
+
+/// The connected parts of a surface, and the triangles to turn so that each part is wound consistently.
+class MeshParts {
+ public:
+  /// Turns triangles until neighbours agree, but not the first triangle of each part. O(triangles).
+  MeshParts(std::size_t triangles, const std::vector<Hinge>& hinges)
+      : hinges_(hinges), part_(triangles, kNone), turned_(triangles, false) {
+    const auto at = hinges_at_triangles(triangles, hinges);
+    std::vector<std::uint32_t> open;
+    for (std::uint32_t first = 0; first < triangles; ++first) {
+      if (part_[first] != kNone) continue;
+      const auto part = static_cast<std::uint32_t>(count());
+      closed_.push_back(true);
+      part_[first] = part;
+      open.push_back(first);
+      while (!open.empty()) {
+        const std::uint32_t t = open.back();
+        open.pop_back();
+        for (const std::uint32_t h : at[t]) {
+          if (h == kNone) {
+            closed_[part] = false;
+            continue;
+          }
+          const Hinge& hinge = hinges[h];
+          const std::uint32_t neighbour = hinge.triangles[hinge.triangles[0] == t ? 1 : 0];
+          if (part_[neighbour] != kNone) continue;
+          part_[neighbour] = part;
+          turned_[neighbour] = hinge.opposed ? turned_[t] : !turned_[t];
+          open.push_back(neighbour);
+        }
+      }
+    }
+  }
+
+  /// Returns a hinge whose triangles cannot agree, in a surface with one side only.
+  std::optional<Hinge> contradiction() const {
+    for (const Hinge& hinge : hinges_) {
+      const bool alike = turned_[hinge.triangles[0]] == turned_[hinge.triangles[1]];
+      if (alike != hinge.opposed) return hinge;
+    }
+    return std::nullopt;
+  }
+
+  /// Turns the parts in which most triangles were turned, so that most keep their winding. Returns how many do not.
+  std::size_t follow_majority() {
+    std::vector<std::int64_t> balance(count(), 0);  // turned minus kept
+    for (std::size_t t = 0; t < part_.size(); ++t) balance[part_[t]] += turned_[t] ? 1 : -1;
+    std::vector<bool> mostly_turned;
+    mostly_turned.reserve(count());
+    for (const std::int64_t b : balance) mostly_turned.push_back(b > 0);
+    turn(mostly_turned);
+    return static_cast<std::size_t>(std::count(turned_.begin(), turned_.end(), true));
+  }
+
+  /// Turns closed parts that enclose a negative volume, along with the parts in their bounding boxes (for the thousand
+  /// largest). Returns the number of turned parts.
+  std::size_t turn_outwards(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+    std::vector<Shape> shapes(count());
+    for (std::size_t t = 0; t < part_.size(); ++t) {
+      Shape& shape = shapes[part_[t]];
+      for (const std::uint32_t corner : triangles[t]) {
+        shape.low = shape.low.cwiseMin(vertices[corner]);
+        shape.high = shape.high.cwiseMax(vertices[corner]);
+      }
+    }
+    for (std::size_t t = 0; t < part_.size(); ++t) {
+      Shape& shape = shapes[part_[t]];
+      // The tetrahedra have their tip at the part, because cancellation would spoil a sum about a distant origin.
+      const auto& [i, j, k] = triangles[t];
+      const Vec3 a = vertices[i] - shape.low, b = vertices[j] - shape.low, c = vertices[k] - shape.low;
+      shape.volume += (turned_[t] ? -1.0 : 1.0) * a.dot(b.cross(c)) / 6.0;
+    }
+
+    std::vector<std::uint32_t> largest_first(count()), outermost;
+    std::iota(largest_first.begin(), largest_first.end(), 0u);
+    std::stable_sort(largest_first.begin(), largest_first.end(),
+                     [&](std::uint32_t p, std::uint32_t q) { return shapes[p].size() > shapes[q].size(); });
+    std::vector<bool> inside_out(count(), false);
+    for (const std::uint32_t p : largest_first) {
+      if (!closed_[p]) continue;
+      const auto outer =
+          std::find_if(outermost.begin(), outermost.end(), [&](std::uint32_t q) { return shapes[q].holds(shapes[p]); });
+      inside_out[p] = outer == outermost.end() ? shapes[p].is_inside_out() : inside_out[*outer];
+      if (outer == outermost.end() && outermost.size() < kMostHolders) outermost.push_back(p);
+    }
+    turn(inside_out);
+    return static_cast<std::size_t>(std::count(inside_out.begin(), inside_out.end(), true));
+  }
+
+  /// True for each triangle whose winding must be reversed.
+  const std::vector<bool>& turned() const { return turned_; }
+
+ private:
+  std::size_t count() const { return closed_.size(); }
+  void turn(const std::vector<bool>& parts) {
+    for (std::size_t t = 0; t < part_.size(); ++t) {
+      if (parts[part_[t]]) turned_[t] = !turned_[t];
+    }
+  }
+
+  const std::vector<Hinge>& hinges_;
+  std::vector<std::uint32_t> part_;  ///< of each triangle
+  std::vector<bool> turned_;
+  std::vector<bool> closed_;  ///< whether every edge of each part has two triangles
+};
+
+/// More than in any sensible mesh; the time to find an edge is proportional to it.
 constexpr std::size_t kMostTrianglesAtVertex = 10'000;
 
 std::string text(const Vec3& p) {
@@ -28,7 +167,7 @@ void require_finite(const TriangleSoup& soup) {
   }
 }
 
-/// For each vertex the first one at its position.
+/// Returns for each vertex the first one at its position.
 std::vector<std::uint32_t> first_at_position(const std::vector<Vec3>& vertices) {
   std::vector<std::uint32_t> order(vertices.size()), first(vertices.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -44,7 +183,7 @@ std::vector<std::uint32_t> first_at_position(const std::vector<Vec3>& vertices) 
   return first;
 }
 
-/// The triangles with equal positions welded, without those that have an edge of no length.
+/// The triangles with vertices at equal positions merged, without those that have two equal corners.
 std::vector<Triangle> welded_triangles(const TriangleSoup& soup) {
   const std::vector<std::uint32_t> first = first_at_position(soup.vertices);
   std::vector<Triangle> welded;
@@ -56,7 +195,7 @@ std::vector<Triangle> welded_triangles(const TriangleSoup& soup) {
   return welded;
 }
 
-/// Each triangle's side i runs from corner i to the next; the sides of one edge lie side by side.
+/// A side of a triangle, from corner i to the next one.
 struct Side {
   std::uint32_t low, high;  ///< vertices, low < high
   std::uint32_t triangle;
@@ -64,6 +203,7 @@ struct Side {
   bool forward;          ///< from low to high
 };
 
+/// All sides, sorted by edge.
 std::vector<Side> sides_by_edge(const std::vector<Triangle>& triangles) {
   std::vector<Side> sides;
   sides.reserve(3 * triangles.size());
@@ -79,7 +219,7 @@ std::vector<Side> sides_by_edge(const std::vector<Triangle>& triangles) {
   return sides;
 }
 
-/// Pairs of triangles at the edges that have two; notes the other edges.
+/// The pairs of triangles at edges with two; adds the other edges to the findings.
 std::vector<Hinge> hinges_of(const std::vector<Side>& sides, const std::vector<Vec3>& vertices, MeshFindings& found) {
   std::vector<Hinge> hinges;
   for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
@@ -98,10 +238,9 @@ std::vector<Hinge> hinges_of(const std::vector<Side>& sides, const std::vector<V
   return hinges;
 }
 
-/// Corners of triangles as classes of those that are one vertex of the surface: corner 3 t + i is corner i of triangle
-/// t. Corners are joined across hinges, so that every class is one fan: a half-edge mesh holds any such surface,
-/// because at most two sides of an edge, the ends of an open fan, have the same vertices, and they run in opposite
-/// directions.
+/// Partition of the triangles' corners into vertices of the surface: corner 3 t + i is corner i of triangle t. Corners
+/// are joined across hinges, so that every vertex is one fan. A half-edge mesh can represent any such surface, because
+/// at most two sides have the same vertices, the ends of an open fan, and they run in opposite directions.
 class Fans {
  public:
   explicit Fans(std::size_t triangles) : parent_(3 * triangles) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -129,7 +268,7 @@ class Fans {
   std::vector<std::uint32_t> parent_;
 };
 
-/// The mesh's vertex of each corner; adds the vertices, in the order of the file's.
+/// Adds the vertices, in the order of the soup, and returns the vertex of each corner.
 std::vector<OpenMesh::VertexHandle> add_vertices(HalfEdgeMesh& mesh, const std::vector<Vec3>& vertices,
                                                  const std::vector<Triangle>& triangles, Fans& fans) {
   std::vector<std::uint32_t> order(3 * triangles.size());

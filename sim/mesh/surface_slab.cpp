@@ -5,17 +5,143 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstdint>
+#include <cmath>
+#include <memory>
+#include <numbers>
 
 #include "sim/mesh/cube_cases.hpp"
-#include "sim/mesh/grid_layer.hpp"
-#include "sim/mesh/triangle_normal.hpp"
+#include "sim/mesh/triangle_soup.hpp"
 
 namespace hapbench {
+
+NodeGrid::NodeGrid(const DensityField& field) : spacing_(field.spacing) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<Eigen::Index>(axis);
+    // One more cell on each side, so that the surface cuts no cell at the border.
+    first_[axis] = static_cast<std::int64_t>(std::floor(field.min[a] / spacing_)) - 1;
+    const auto last = static_cast<std::int64_t>(std::ceil(field.max[a] / spacing_)) + 2;
+    count_[axis] = static_cast<std::size_t>(last - first_[axis] + 1);
+  }
+}
+
 namespace {
 
-/// Layers are shared out in so many slabs at most, whatever the number of threads, because a normal that is summed in
-/// two slabs depends in its last digits on where they meet.
+/// One layer of the nodes of a grid, of equal z: the nodes inside, the crossed edges that start in them, and the
+/// numbers of the vertices there. Each node is a bit: word w of row j holds the nodes (64 w …, j).
+class GridLayer {
+ public:
+  /// The crossed edges that start in the nodes of a word, one bit each. Their vertices are numbered node by node, those
+  /// along x and y together (x first), those along z separately.
+  struct Edges {
+    std::uint64_t x, y, z;
+    std::uint32_t first_in_layer, first_along_z;
+  };
+
+  /// Field and grid must outlive the layer.
+  GridLayer(const DensityField& field, const NodeGrid& grid)
+      : field_(field),
+        grid_(grid),
+        words_((grid.count(0) + 63) / 64),
+        starting_in_last_((std::uint64_t{1} << (grid.count(0) - 1) % 64) - 1),
+        inside_(words_ * grid.count(1)),
+        known_(words_ * grid.count(1)),
+        edges_(words_ * grid.count(1)),
+        density_(std::make_unique_for_overwrite<double[]>(64 * words_ * grid.count(1))) {}
+
+  /// Becomes layer k: finds the nodes inside and the crossed edges along x and y. Returns the number of these edges.
+  /// Cost: a few evaluations for each node next to the surface, and a few word operations for every 64 nodes.
+  std::size_t evaluate(std::size_t k) {
+    k_ = k;
+    std::fill(inside_.begin(), inside_.end(), 0);
+    std::fill(known_.begin(), known_.end(), 0);
+    for (std::size_t j = 0; j < grid_.count(1); j += 64) {
+      for (std::size_t i = 0; i < grid_.count(0); i += 64) find_inside(i, j, 64);
+    }
+    std::size_t count = 0;
+    for (std::size_t j = 0; j < grid_.count(1); ++j) {
+      for (std::size_t w = 0; w < words_; ++w) {
+        Edges& crossed = edges(w, j);
+        crossed.x = (inside(w, j) ^ next_inside(w, j)) & starting(w);
+        crossed.y = j + 1 < grid_.count(1) ? inside(w, j) ^ inside(w, j + 1) : 0;
+        count += static_cast<std::size_t>(std::popcount(crossed.x) + std::popcount(crossed.y));
+      }
+    }
+    return count;
+  }
+  /// Finds the crossed edges along z to the layer above. Returns their number.
+  std::size_t cross_to(const GridLayer& above) {
+    std::size_t count = 0;
+    for (std::size_t word = 0; word < edges_.size(); ++word) {
+      edges_[word].z = inside_[word] ^ above.inside_[word];
+      count += static_cast<std::size_t>(std::popcount(edges_[word].z));
+    }
+    return count;
+  }
+
+  std::size_t words() const { return words_; }
+  std::uint64_t inside(std::size_t w, std::size_t j) const { return inside_[j * words_ + w]; }
+  /// The same for the next nodes along x.
+  std::uint64_t next_inside(std::size_t w, std::size_t j) const {
+    return inside(w, j) >> 1u | (w + 1 < words_ ? inside(w + 1, j) << 63u : 0);
+  }
+  /// The nodes of word w at which an edge along x starts: all but the row's last.
+  std::uint64_t starting(std::size_t w) const { return w + 1 < words_ ? ~std::uint64_t{0} : starting_in_last_; }
+
+  /// Positive inside. Evaluated on first use.
+  double density(std::size_t i, std::size_t j) {
+    if ((known_[j * words_ + i / 64] >> i % 64 & 1u) != 0) return density_[j * 64 * words_ + i];
+    return set_density(i, j, field_.signed_distance(grid_.node(i, j, k_)));
+  }
+
+  Edges& edges(std::size_t w, std::size_t j) { return edges_[j * words_ + w]; }
+  /// Number of the vertex on the crossed edge that starts at the node and runs along the axis.
+  std::uint32_t vertex(std::size_t i, std::size_t j, std::size_t axis) const {
+    const Edges& edges = edges_[j * words_ + i / 64];
+    const std::uint64_t below = (std::uint64_t{1} << i % 64) - 1;
+    const auto count = [](std::uint64_t bits) { return static_cast<std::uint32_t>(std::popcount(bits)); };
+    if (axis == 2) return edges.first_along_z + count(edges.z & below);
+    const bool along_x = axis == 1 && (edges.x >> i % 64 & 1u) != 0;
+    return edges.first_in_layer + count(edges.x & below) + count(edges.y & below) + along_x;
+  }
+
+ private:
+  double set_density(std::size_t i, std::size_t j, double distance) {
+    known_[j * words_ + i / 64] |= std::uint64_t{1} << i % 64;
+    return density_[j * 64 * words_ + i] =
+               field_.density == Density::signed_distance ? -distance : (distance < 0.0 ? 0.5 : -0.5);
+  }
+
+  /// Finds the nodes inside among the square of `size` x `size` nodes from (i, j), which lies in one word of each row.
+  void find_inside(std::size_t i, std::size_t j, std::size_t size) {
+    const double half = 0.5 * grid_.spacing() * static_cast<double>(size - 1);
+    const double distance = field_.signed_distance(grid_.node(i, j, k_) + Vec3(half, half, 0.0));
+    // The square is all inside or all outside if the surface is further from its middle than its corners are. The slack
+    // of 1e-9 covers the rounding of the distance.
+    if (size > 1 && std::abs(distance) <= std::numbers::sqrt2 * half * (1.0 + 1e-9)) {
+      for (const std::size_t y : {j, j + size / 2}) {
+        for (const std::size_t x : {i, i + size / 2}) {
+          if (x < grid_.count(0) && y < grid_.count(1)) find_inside(x, y, size / 2);
+        }
+      }
+      return;
+    }
+    if (size == 1) set_density(i, j, distance);
+    if (!(distance < 0.0)) return;
+    const std::uint64_t bits = (size < 64 ? (std::uint64_t{1} << size) - 1 : ~std::uint64_t{0}) << i % 64;
+    for (std::size_t y = j; y < std::min(j + size, grid_.count(1)); ++y) inside_[y * words_ + i / 64] |= bits;
+  }
+
+  const DensityField& field_;
+  const NodeGrid& grid_;
+  std::size_t words_, k_ = 0;
+  std::uint64_t starting_in_last_;
+  std::vector<std::uint64_t> inside_, known_;
+  std::vector<Edges> edges_;
+  std::unique_ptr<double[]> density_;  ///< of the known nodes
+};
+
+/// Maximum number of slabs, whatever the number of threads: the last digits of a normal that is summed in two slabs
+/// depend on where they meet.
 constexpr std::size_t kMostSlabs = 16;
 
 /// Calls visit(i) for each set bit of the word that starts with node 64 w.
@@ -27,10 +153,10 @@ void for_each_node(std::uint64_t bits, std::size_t w, Visit visit) {
 /// A case of marching cubes, laid out for the loop over cells.
 struct CutCase {
   struct Edge {
-    std::uint8_t x, y, z, axis;  ///< of the corner where it starts, 0 or 1 each
+    std::uint8_t x, y, z, axis;  ///< x, y, z: corner where it starts, 0 or 1 each
   };
-  std::vector<Edge> edges;                             ///< that are crossed, in the order of their numbers
-  std::vector<std::array<std::uint8_t, 3>> triangles;  ///< of places in `edges`
+  std::vector<Edge> edges;                             ///< the crossed ones, in the order of their numbers
+  std::vector<std::array<std::uint8_t, 3>> triangles;  ///< indices in `edges`
 
   explicit CutCase(unsigned inside) {
     const std::vector<CubeTriangle>& all = cube_triangles(inside);
@@ -59,19 +185,19 @@ const std::vector<CutCase>& cut_cases() {
   return cases;
 }
 
-/// Two neighbouring layers of nodes, which a thread uses for slab after slab.
+/// Two neighbouring layers of nodes, which a thread reuses for its slabs.
 struct LayerPair {
   GridLayer low, high;
   LayerPair(const DensityField& field, const NodeGrid& grid) : low(field, grid), high(field, grid) {}
 };
 
-/// Makes a slab with the vertices in both layers of nodes at its ends, and sums of normals.
+/// Makes a slab including the vertices in the layers of nodes at both ends, with sums of normals.
 class SlabBuilder {
  public:
   SlabBuilder(const NodeGrid& grid, KeptOfSurface kept, LayerPair& layers, SurfaceSlab& slab)
       : grid_(grid), kept_(kept), low_(&layers.low), high_(&layers.high), slab_(slab) {}
 
-  /// Cells between the layers of nodes first < last. Returns how many vertices lie in the last.
+  /// Adds the cells between the layers of nodes first < last. Returns the number of vertices in layer `last`.
   std::size_t build(std::size_t first, std::size_t last) {
     slab_.layers.resize(1 + last - first);
     above_ = slab_.layers.data();
@@ -92,13 +218,13 @@ class SlabBuilder {
   }
 
  private:
-  /// For all vertices of the layer above: memory would hold many twice if it grew with them.
+  /// Reserves room for all vertices of the layer above, because growing would hold many of them in memory twice.
   void make_room(std::size_t vertices) {
     above_->vertices.reserve(vertices);
     above_->normals.assign(vertices, Vec3::Zero());
   }
 
-  /// The vertex on the edge from a node of density a to the next one along the axis, of density b.
+  /// Adds the vertex on the edge from a node of density a to the next one along the axis, of density b.
   void add_vertex(std::size_t i, std::size_t j, std::size_t k, unsigned axis, double a, double b) {
     const std::size_t node = std::array{i, j, k}[axis];
     const double p = grid_.coordinate(node, axis), q = grid_.coordinate(node + 1, axis);
@@ -106,7 +232,7 @@ class SlabBuilder {
                                 static_cast<std::uint32_t>(k) & 0x3fffffffu, axis & 3u});
   }
 
-  /// Number in its layer of the next vertex.
+  /// Number of the next vertex in its layer.
   std::uint32_t next_vertex() const { return static_cast<std::uint32_t>(above_->vertices.size()); }
 
   void add_vertices_in(GridLayer& layer, std::size_t k) {
@@ -134,12 +260,12 @@ class SlabBuilder {
     }
   }
 
-  /// Of the cells whose lowest corners are in layer k, those that the surface cuts.
+  /// Adds the cells that the surface cuts among those whose lowest corners are in layer k.
   void add_cells(std::size_t k) {
     const std::vector<CutCase>& cases = cut_cases();
     for (std::size_t j = 0; j + 1 < grid_.count(1); ++j) {
       for (std::size_t w = 0; w < low_->words(); ++w) {
-        // Bits of corner c, as numbered in cube_cases.hpp.
+        // Element c is the word of corners c, numbered as in cube_cases.hpp.
         const std::array<std::uint64_t, 8> corners{
             low_->inside(w, j),  low_->next_inside(w, j),  low_->inside(w, j + 1),  low_->next_inside(w, j + 1),
             high_->inside(w, j), high_->next_inside(w, j), high_->inside(w, j + 1), high_->next_inside(w, j + 1)};
@@ -195,7 +321,7 @@ class SlabBuilder {
   SurfaceSlab& slab_;
   SurfaceLayer* below_ = nullptr;
   SurfaceLayer* above_ = nullptr;
-  std::size_t first_below_ = 0;  ///< number in the slab of the first vertex of the layer below
+  std::size_t first_below_ = 0;  ///< number in the slab of the layer below's first vertex
 };
 
 void normalise(Vec3& normal) {
@@ -203,7 +329,7 @@ void normalise(Vec3& normal) {
   if (length > 0.0) normal /= length;
 }
 
-/// Gives the vertices that two slabs share to the upper one, `in_last` of each, and all normals length one.
+/// Moves the vertices that two slabs share, `in_last` of each, to the upper one, and normalises all normals.
 void finish(std::vector<SurfaceSlab>& slabs, const std::vector<std::size_t>& in_last) {
   for (std::size_t s = 0; s + 1 < slabs.size(); ++s) {
     SurfaceLayer& last = slabs[s].layers.back();

@@ -7,7 +7,7 @@
 namespace hapbench {
 namespace {
 
-/// What a first-order low-pass takes over of a value that is held for dt seconds.
+/// Fraction of a value held for dt seconds that a first-order low-pass takes over.
 double low_pass_share(double cutoff, double dt) noexcept {
   return -std::expm1(-2.0 * std::numbers::pi * cutoff * dt);
 }
@@ -18,9 +18,7 @@ TargetTask::TargetTask(TargetRules rules, std::uint64_t seed) : rules_(std::move
   for (std::size_t place = 0; place < rules_.places.size(); ++place) {
     order_.insert(order_.end(), rules_.targets_per_place, place);
   }
-  // Fisher and Yates; std::shuffle may differ between standard libraries.
-  Random random(seed);
-  for (std::size_t i = order_.size(); i > 1; --i) std::swap(order_[i - 1], order_[random.below(i)]);
+  Random(seed).shuffle(order_);
   results_.reserve(order_.size());
 }
 
@@ -53,7 +51,7 @@ void TargetTask::advance(const Vec3& tip, double press, double dt) noexcept {
   }
 }
 
-/// The reading is enough or, while a target is active, was enough within the grace.
+/// True if the reading is at least least_press or, while a target is active, was so within the grace.
 bool TargetTask::is_pressed(double dt) noexcept {
   if (reading_ >= rules_.least_press) {
     low_for_ = 0.0;

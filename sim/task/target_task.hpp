@@ -15,12 +15,11 @@ enum class TargetDisplay {
   height  ///< z
 };
 
-/// A force gauge as a display, from which a person reads no single samples: the spring force along +z through a
-/// first-order low-pass. The thesis asks to keep
-/// pressing; a dip of the reading that is short does not count as letting go.
+/// A force gauge as a display, on which a person cannot read single samples: the spring force along +z through a
+/// first-order low-pass. The thesis asks the subject to keep pressing; a short dip of the reading is tolerated.
 struct Gauge {
   double cutoff = 30.0;  ///< of the low-pass [Hz]
-  double grace = 0.1;    ///< how long the reading may stay below the least press without a break of the hold [s]
+  double grace = 0.1;    ///< time for which the reading may stay below least_press without breaking the hold [s]
 };
 
 /// The rules of the man-machine experiments (thesis D.2.2, D.3.2).
@@ -30,35 +29,35 @@ struct TargetRules {
   std::uint64_t targets_per_place = 5;  ///< in one trial
   double tolerance = 0.0002;            ///< the tip is on the target within this distance [m]
   double least_press = 1.0;             ///< reading of the gauge that activates the task [N]
-  std::optional<Gauge> gauge = {};      ///< none: reads the rendered force along +z, and every sample counts
+  std::optional<Gauge> gauge = {};      ///< without one, every sample of the rendered force along +z counts
   double hold = 1.0;                    ///< time on the target, without a break, that removes it [s]
   double time_limit = 10.0;             ///< from the activation until the target disappears [s]
 };
 
-/// How one target ended.
+/// The end of one target.
 struct TargetResult {
-  std::size_t place = 0;  ///< index of its place
+  std::size_t place = 0;  ///< index in TargetRules::places
   bool removed = false;   ///< in time
-  double time = 0.0;      ///< from the activation to the end [s]; the time limit when it disappeared
+  double time = 0.0;      ///< from the activation to the end [s]; the time limit if it disappeared
 };
 
 /// One trial: targets appear one at a time in a pseudo-random order, every place equally often. A target waits until
-/// the subject presses; from this activation on it has the time limit. It is removed when the tip stays on it, pressed
-/// all the while, for the holding time, dips of the reading within the gauge's grace included. A target that nobody
-/// activates disappears after the time limit as well, so that a trial ends (ours; the thesis does not say). Allocates
-/// in the constructor only.
+/// the subject presses, which activates it and starts the time limit. It is removed when the tip has stayed on it and
+/// pressed for the holding time, apart from dips of the reading within the gauge's grace. A target that is not
+/// activated also disappears after the time limit, so that a trial ends (our choice; the thesis does not say).
+/// Allocates in the constructor only.
 class TargetTask {
  public:
   /// Preconditions: at least one place, targets_per_place > 0. The order is a function of the seed.
   TargetTask(TargetRules rules, std::uint64_t seed);
 
-  /// Back to the first target.
+  /// Returns to the first target.
   void reset() noexcept;
-  /// Judges one sampling interval of dt seconds, at whose end the tip is at `tip` and `press` is the force along +z
-  /// that the gauge measures [N]: the spring force, or without a gauge the rendered force. Once the trial is finished,
-  /// only the gauge moves.
+  /// Judges one sampling interval of dt seconds. At its end the tip is at `tip`, and `press` is the force along +z that
+  /// the gauge measures [N]: the spring force, or without a gauge the rendered force. Once the trial is finished, only
+  /// the gauge moves.
   void advance(const Vec3& tip, double press, double dt) noexcept;
-  /// What the gauge shows [N].
+  /// Reading of the gauge [N].
   double reading() const noexcept { return reading_; }
 
   bool finished() const noexcept { return results_.size() == order_.size(); }
@@ -87,7 +86,7 @@ class TargetTask {
   double shown_ = 0.0;    ///< time since the target appeared or, once active, since its activation [s]
   double held_ = 0.0;     ///< time on the target without a break [s]
   double reading_ = 0.0;  ///< of the gauge [N]
-  double low_for_ = 0.0;  ///< time since the reading was last enough [s]
+  double low_for_ = 0.0;  ///< time since the reading was last at least least_press [s]
 };
 
 }  // namespace hapbench

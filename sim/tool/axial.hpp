@@ -1,20 +1,27 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <span>
 
+#include "sim/contact/push_hits.hpp"
 #include "sim/core/simd.hpp"
+#include "sim/tool/axial.hpp"
+#include "sim/tool/tool_shape.hpp"
 #include "sim/tool/tool_state.hpp"
 
+/// Solids of revolution in packs of eight points. For source files only (see simd.hpp).
 namespace hapbench {
 
-/// Relative to the largest radius: nearer to the axis than this, the direction away from it is rounding.
+/// Distance from the axis, relative to the largest radius, below which the direction away from the axis is rounding.
 inline constexpr double kOnAxis = 1e-12;
-/// The way out of a tool along a ray that never leaves it [m].
+/// Exit distance along a ray that does not meet a surface [m].
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Eight points in the tool's axial coordinates: x is relative to the tip centre, s its component along the axis,
-/// rho = x - s * axis the radial vector. All that a solid of revolution computes of points starts from these, so that a
-/// point that counts as colliding never gets a negative depth. For source files only (see simd.hpp).
+/// rho = x - s * axis the radial vector. Search and depths of solids of revolution both start from these numbers, so
+/// that a colliding point never gets a negative depth.
 struct AxialPack {
   simd::Pack x, y, z;
   simd::Pack s;
@@ -35,5 +42,116 @@ struct AxialPack {
 
   simd::Pack distance2() const { return x * x + y * y + z * z; }
 };
+
+/// Eight vectors.
+struct PackVector {
+  simd::Pack x, y, z;
+
+  explicit PackVector(const Vec3& v) : x(v.x()), y(v.y()), z(v.z()) {}
+  PackVector(const simd::Pack& px, const simd::Pack& py, const simd::Pack& pz) : x(px), y(py), z(pz) {}
+  PackVector(const double* px, const double* py, const double* pz)
+      : x(simd::load(px)), y(simd::load(py)), z(simd::load(pz)) {}
+
+  simd::Pack dot(const PackVector& o) const { return x * o.x + y * o.y + z * o.z; }
+  void store(double* px, double* py, double* pz) const {
+    simd::store(x, px);
+    simd::store(y, py);
+    simd::store(z, pz);
+  }
+};
+
+inline PackVector select(const simd::Mask& mask, const PackVector& yes, const PackVector& no) {
+  return {simd::select(mask, yes.x, no.x), simd::select(mask, yes.y, no.y), simd::select(mask, yes.z, no.z)};
+}
+
+/// a p + b q.
+inline PackVector combined(const simd::Pack& a, const PackVector& p, const simd::Pack& b, const PackVector& q) {
+  return {a * p.x + b * q.x, a * p.y + b * q.y, a * p.z + b * q.z};
+}
+
+/// v / length where `defined`, else `other`.
+inline PackVector unit_or(const simd::Mask& defined, const PackVector& v, const simd::Pack& length,
+                          const PackVector& other) {
+  const simd::Pack scale = simd::Pack(1.0) / simd::select(defined, length, simd::Pack(1.0));
+  return select(defined, {v.x * scale, v.y * scale, v.z * scale}, other);
+}
+
+/// Writes the marks of the packs of all ranges; `test` returns the mask of one pack. Takes pose and points by value,
+/// because the compiler would otherwise read them again after each mark, whose byte may alias them.
+template <class Test>
+void mark(const ToolPose pose, const PointArrays points, std::span<const PackRange> ranges, std::uint8_t* marks,
+          const Test& test) {
+  for (const PackRange range : ranges) {
+    std::uint8_t* const first = marks;
+    for (std::size_t i = range.first * simd::lanes; i < range.last * simd::lanes; i += simd::lanes) {
+      *marks++ = simd::bits(test(AxialPack(pose, points.x + i, points.y + i, points.z + i)));
+    }
+    if (marks == first) continue;
+    *first &= range.own_in_first;
+    *(marks - 1) &= range.own_in_last;
+  }
+}
+
+/// Appends the points of the ranges that pass the test. By value for the same reason.
+template <class Test>
+void push(const ToolPose pose, const PointColumns points, std::span<const PackRange> ranges, ContactBuffer& contacts,
+          const Test test) {
+  std::size_t size = contacts.size();
+  for (const PackRange range : ranges) {
+    for (std::size_t pack = range.first; pack < range.last; ++pack) {
+      const std::size_t i = pack * simd::lanes;
+      const std::uint8_t hits = simd::bits(test(AxialPack(pose, points.x + i, points.y + i, points.z + i)));
+      if (hits == 0) continue;
+      if (const std::uint8_t own = range.own(hits, pack); own != 0) size += copy_hits(own, points, i, contacts, size);
+    }
+  }
+  contacts.extend(size - contacts.size());
+}
+
+/// The part of the axis with low <= s <= high, measured from the tip centre [m]; empty if low > high.
+struct AxisPart {
+  double low, high;
+};
+
+/// Restricts the part of a body within `radius` of its axis to what is near `bounds`: projections on the axis of points
+/// in `bounds` lie in `bounds` grown by the radius. Comparisons with NaN leave the part as it is.
+inline AxisPart part_near(AxisPart part, const ToolPose& pose, double radius, const Box& bounds) noexcept {
+  for (int k = 0; k < 3; ++k) {
+    const double a = pose.axis[k];
+    const double from = bounds.min[k] - radius - pose.position[k], to = bounds.max[k] + radius - pose.position[k];
+    if (a == 0.0) {
+      if (from > 0.0 || to < 0.0) return {1.0, -1.0};
+      continue;
+    }
+    part.low = std::max(part.low, (a > 0.0 ? from : to) / a);
+    part.high = std::min(part.high, (a > 0.0 ? to : from) / a);
+  }
+  return part;
+}
+
+/// The box around discs of this radius along a part of the axis; empty if the part is.
+inline Box box_around(const AxisPart& part, const ToolPose& pose, double radius) noexcept {
+  if (part.low > part.high) return {Vec3::Ones(), -Vec3::Ones()};
+  const Vec3 tip = pose.position + part.high * pose.axis;
+  const Vec3 bottom = pose.position + part.low * pose.axis;
+  // A disc with normal a has the half extent radius sqrt(1 - <a, e>^2) along e.
+  const Vec3 disc = radius * (Vec3::Ones() - pose.axis.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
+  return {tip.cwiseMin(bottom) - disc, tip.cwiseMax(bottom) + disc};
+}
+
+/// A row of balls that contains a cylinder: each ball contains a slice as long as the cylinder is wide.
+inline ToolShape::Cover row_of_balls(double radius, double length) {
+  const double balls = std::ceil(length / (2.0 * radius));
+  return {static_cast<std::size_t>(balls), (1.0 + 1e-9) * std::hypot(radius, length / balls / 2.0)};
+}
+
+/// ToolShape::moved_at_most of a solid of revolution. The shortest rotation from one axis to the other moves a point by
+/// at most |a' - a| times its distance from the tip centre; a turn about the axis maps the body to itself.
+inline double axis_moved_at_most(const ToolPose& from, const ToolPose& to, double reach) noexcept {
+  const double moved = (to.position - from.position).norm();
+  // Most steps of most scenes do not turn the tool; adding a turn of zero would change no bit.
+  if (to.axis == from.axis) return moved;
+  return moved + (to.axis - from.axis).norm() * reach;
+}
 
 }  // namespace hapbench

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSagittaPerDiameter = 1e-3;
 constexpr double kShankPerDiameter = 10.0;
-constexpr double kNarrowEnd = 0.6;  ///< of tapered and inverted cones, as a share of the diameter
+constexpr double kNarrowEnd = 0.6;  ///< narrow end of tapered and inverted cones, relative to the diameter
 constexpr double kRearOfFlame = 1.0 / 3.0;
 
 [[noreturn]] void refuse(const char* what, double is, const char* has_to, double bound) {
@@ -27,13 +27,13 @@ class Outline {
     points_ = {{head_begins - 2.0 * kShankPerDiameter * shank_radius, shank_radius}, {head_begins, shank_radius}};
   }
 
-  /// A line to this place, if it is another.
+  /// Adds a line to this place unless the profile is already there.
   void line_to(double s, double rho) {
     if (points_.back() != ProfilePoint{s, rho}) points_.push_back({s, rho});
   }
 
-  /// Along the circle about (centre_s, centre_rho), from the angle `from` to the smaller one `to`, both measured from
-  /// the axis; ends exactly at the place given.
+  /// Adds an arc about (centre_s, centre_rho), from the angle `from` to the smaller one `to`, both measured from the
+  /// axis; ends exactly at `end`.
   void arc_to(double centre_s, double centre_rho, double radius, double from, double to, const ProfilePoint& end) {
     // A chord over the angle a has the sagitta r (1 - cos(a / 2)).
     const double widest = 2.0 * std::acos(std::max(0.0, 1.0 - sagitta_ / radius));
@@ -52,7 +52,7 @@ class Outline {
   std::vector<ProfilePoint> points_;
 };
 
-constexpr double kAbreast = 0.5 * std::numbers::pi;  ///< of a circle's centre
+constexpr double kAbreast = 0.5 * std::numbers::pi;  ///< angle of the place beside a circle's centre
 
 BurProfile ball(double radius, double neck) {
   const double begins = -std::sqrt((radius - neck) * (radius + neck));
@@ -61,7 +61,7 @@ BurProfile ball(double radius, double neck) {
   return {std::move(outline).points(), Tip::round};
 }
 
-/// A frustum with these radii at its rear and front.
+/// A frustum with the radii `rear` and `front` at its ends.
 BurProfile frustum(double diameter, double length, double rear, double front, double shank) {
   Outline outline(diameter, shank, -length);
   outline.line_to(-length, rear);
@@ -76,8 +76,8 @@ BurProfile round_cylinder(double radius, double length, double shank) {
   return {std::move(outline).points(), Tip::round};
 }
 
-/// The line from the shank's (begins, neck) touches the ball where its normal leans back by `lean`: the normal n =
-/// (-sin lean, cos lean) has <n, (begins, neck)> = radius.
+/// The line from the shank at (begins, neck) touches the ball at the angle `touches` from the axis: the line's unit
+/// normal n = (cos touches, sin touches) has <n, (begins, neck)> = radius.
 BurProfile pear(double radius, double length, double neck) {
   const double begins = radius - length;
   const double distance = std::hypot(begins, neck);

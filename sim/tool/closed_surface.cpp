@@ -1,16 +1,19 @@
 #include "sim/tool/closed_surface.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
 namespace hapbench {
 namespace {
 
-/// A closed surface that encloses less than this share of its bounding cube is flat up to rounding.
+/// A closed surface that encloses less than this fraction of its bounding cube is flat up to rounding.
 constexpr double kFlat = 1e-12;
 
 bool before(const Vec3& a, const Vec3& b) {
@@ -106,6 +109,87 @@ void ClosedSurface::measure() {
     return;
   }
   throw std::invalid_argument(message.str());
+}
+
+namespace {
+
+/// A crossing of the ray and a triangle, at which the winding number of the points above changes by `step`.
+struct Crossing {
+  double z;
+  int step;
+};
+
+/// Twice the area of the triangle of the edge from a to b and the ray at (x, y), positive to the left of the edge. The
+/// opposite edge gives exactly the negative number.
+double side_of_edge(const Vec3& a, const Vec3& b, double x, double y) {
+  const auto area = [x, y](const Vec3& from, const Vec3& to) {
+    return (to.x() - from.x()) * (y - from.y()) - (to.y() - from.y()) * (x - from.x());
+  };
+  return before(a, b) ? area(a, b) : -area(b, a);
+}
+
+/// Tests whether the ray passes to the left of the edge. A ray on the edge counts as moved slightly in x, and far less
+/// in y.
+bool left_of_edge(double side, const Vec3& a, const Vec3& b) {
+  if (side != 0.0) return side > 0.0;
+  return a.y() != b.y() ? b.y() < a.y() : b.x() > a.x();
+}
+
+std::optional<Crossing> crossing(const std::array<Vec3, 3>& t, double x, double y) {
+  const double a = side_of_edge(t[1], t[2], x, y), b = side_of_edge(t[2], t[0], x, y),
+               c = side_of_edge(t[0], t[1], x, y);
+  const bool left = left_of_edge(a, t[1], t[2]);
+  if (left_of_edge(b, t[2], t[0]) != left || left_of_edge(c, t[0], t[1]) != left) return {};
+  const double whole = a + b + c;
+  const double z = whole != 0.0 ? (a * t[0].z() + b * t[1].z() + c * t[2].z()) / whole : t[0].z();
+  // Seen from above, triangles that face up are counter-clockwise; there the ray leaves the solid.
+  return Crossing{z, left ? -1 : 1};
+}
+
+/// The range of nodes of a row within [low, high].
+std::pair<std::size_t, std::size_t> nodes_within(const GridNodes& nodes, int axis, double low, double high) {
+  // One more on each side covers the rounding of the division.
+  const double first = std::floor((low - nodes.origin[axis]) / nodes.spacing) - 1.0;
+  const double last = std::ceil((high - nodes.origin[axis]) / nodes.spacing) + 1.0;
+  const auto count = static_cast<double>(nodes.count[static_cast<std::size_t>(axis)]);
+  return {static_cast<std::size_t>(std::clamp(first, 0.0, count)),
+          static_cast<std::size_t>(std::clamp(last + 1.0, 0.0, count))};
+}
+
+}  // namespace
+
+std::vector<std::int8_t> winding_numbers(const ClosedSurface& surface, const GridNodes& nodes) {
+  // The triangles met by each layer of columns.
+  std::vector<std::vector<std::uint32_t>> layers(nodes.count[0]);
+  for (std::uint32_t t = 0; t < surface.triangles().size(); ++t) {
+    const auto [a, b, c] = surface.corners(surface.triangles()[t]);
+    const auto [first, last] = nodes_within(nodes, 0, std::min({a.x(), b.x(), c.x()}), std::max({a.x(), b.x(), c.x()}));
+    for (std::size_t i = first; i < last; ++i) layers[i].push_back(t);
+  }
+  std::vector<std::int8_t> numbers(nodes.size());
+  tbb::parallel_for(std::size_t{0}, nodes.count[0], [&](std::size_t i) {
+    std::vector<std::vector<Crossing>> columns(nodes.count[1]);
+    const double x = nodes.coordinate(0, i);
+    for (const std::uint32_t t : layers[i]) {
+      const std::array<Vec3, 3> corners = surface.corners(surface.triangles()[t]);
+      const auto [low, high] = std::minmax({corners[0].y(), corners[1].y(), corners[2].y()});
+      const auto [first, last] = nodes_within(nodes, 1, low, high);
+      for (std::size_t j = first; j < last; ++j) {
+        if (const auto met = crossing(corners, x, nodes.coordinate(1, j))) columns[j].push_back(*met);
+      }
+    }
+    for (std::size_t j = 0; j < nodes.count[1]; ++j) {
+      std::sort(columns[j].begin(), columns[j].end(), [](const Crossing& a, const Crossing& b) { return a.z < b.z; });
+      auto next = columns[j].cbegin();
+      int number = 0;
+      for (std::size_t k = 0; k < nodes.count[2]; ++k) {
+        for (const double z = nodes.coordinate(2, k); next != columns[j].cend() && next->z <= z; ++next)
+          number += next->step;
+        numbers[nodes.index(i, j, k)] = static_cast<std::int8_t>(std::clamp(number, -128, 127));
+      }
+    }
+  });
+  return numbers;
 }
 
 }  // namespace hapbench

@@ -1,11 +1,88 @@
 #include "sim/tool/cylinder.hpp"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
-#include "sim/tool/axial_search.hpp"
+#include "sim/tool/axial.hpp"
 
 namespace hapbench {
+namespace {
+
+using simd::Mask, simd::Pack, simd::select;
+
+/// Cosine to the axis below which a surface runs along the side, so that all of the side is foremost.
+constexpr double kAlongSide = 1e-9;
+
+Vec3 shortest_gradient(const Cylinder& tool, const ToolPose& pose, const ContactBuffer& contacts, std::size_t i) {
+  // The operations and their order are those of AxialPack, so that depth and gradient choose the same surface.
+  const Vec3 x = contacts.point(i) - pose.position;
+  const double s = x.x() * pose.axis.x() + x.y() * pose.axis.y() + x.z() * pose.axis.z();
+  const bool in_ball = tool.tip() == Tip::round && s > 0.0;
+  const Vec3 radial = in_ball ? x : Vec3(x - s * pose.axis);
+  const double length = std::sqrt(radial.x() * radial.x() + radial.y() * radial.y() + radial.z() * radial.z());
+  const double d_radial = tool.radius() - length;
+  if (!in_ball) {
+    const double d_tip = tool.tip() == Tip::flat ? -s : d_radial;
+    const double d_bottom = tool.length() + s;
+    if (d_tip < d_radial && d_tip <= d_bottom) return pose.axis;
+    if (d_bottom < d_radial && d_bottom < d_tip) return -pose.axis;
+  }
+  return length < kOnAxis * tool.radius() ? Vec3(-contacts.normal(i)) : Vec3(radial / length);
+}
+
+/// Only positive exits count, following the thesis ("the minimal positive value"): a point exactly on one surface whose
+/// ray points outwards there takes the next surface, or depth 0 if none is within reach.
+double if_positive(double d) {
+  return d > 0.0 ? d : kNever;
+}
+
+/// The larger root d >= 0 of a d^2 + 2 b d - c = 0 with a > 0, c >= 0, without cancellation for b > 0.
+double exit_root(double a, double b, double c) {
+  const double root = std::sqrt(b * b + a * c);
+  return b > 0.0 ? c / (b + root) : (root - b) / a;
+}
+
+/// Exit through the side wall (F.7); kNever if the ray runs along the axis.
+double exit_side(double radius, const Vec3& rho, const Vec3& radial_u) {
+  const double a = radial_u.squaredNorm();
+  const double c = std::max(0.0, radius * radius - rho.squaredNorm());
+  return a == 0.0 ? kNever : if_positive(exit_root(a, rho.dot(radial_u), c));
+}
+
+/// Exit through the half ball beyond the tip plane; kNever if the ray misses the ball or leaves it behind the plane.
+double exit_half_ball(double radius, const Vec3& x, const Vec3& u, double s, double slope) {
+  const double b = x.dot(u);
+  const double c = radius * radius - x.squaredNorm();
+  const double discriminant = b * b + c;
+  if (discriminant < 0.0) return kNever;
+  const double d = c >= 0.0 ? exit_root(1.0, b, c) : std::sqrt(discriminant) - b;
+  return s + d * slope >= 0.0 ? if_positive(d) : kNever;
+}
+
+/// Distance to where the ray from `point` along u first leaves the body: through the side (thesis F.7), the tip (F.9)
+/// or the bottom (F.12).
+double exit_distance(const Cylinder& tool, const ToolPose& pose, const Vec3& point, const Vec3& u) {
+  const Vec3 x = point - pose.position;
+  const double s = x.dot(pose.axis);
+  const double slope = u.dot(pose.axis);
+  double d = exit_side(tool.radius(), x - s * pose.axis, u - slope * pose.axis);
+  // A ray leaves through the tip only forwards and through the bottom only backwards. For points inside, "positive"
+  // implies that; for a point on such a surface, s is known only up to rounding and its sign is meaningless.
+  if (tool.tip() == Tip::round) {
+    d = std::min(d, exit_half_ball(tool.radius(), x, u, s, slope));
+  } else if (slope > 0.0) {
+    d = std::min(d, if_positive(-s / slope));
+  }
+  if (slope < 0.0) d = std::min(d, if_positive(-(tool.length() + s) / slope));
+  // An exit further away than the longest way through the body lies on the continuation of a surface beyond the body:
+  // the point is on another surface, and the ray points almost along it. Such depths would have no bound.
+  return d > tool.longest_exit() ? 0.0 : d;
+}
+
+}  // namespace
 
 double largest_square_within(double r) {
   constexpr double up = std::numeric_limits<double>::infinity();
@@ -32,10 +109,10 @@ std::vector<ProfilePoint> Cylinder::outline() const {
   return outline;
 }
 
-/// Calls `use` with the test of a pack of points for the body.
+/// Calls `use` with a function that tests which points of a pack lie in the body.
 template <class Use>
 void Cylinder::with_test(const Use& use) const {
-  const simd::Pack bottom(-length_), radius2(radius2_), zero(0.0);
+  const Pack bottom(-length_), radius2(radius2_), zero(0.0);
   const auto in_cylinder = [=](const AxialPack& q) { return q.s <= zero && q.s >= bottom && q.rho2 <= radius2; };
   if (tip_ == Tip::flat) return use(in_cylinder);
   use([=](const AxialPack& q) { return in_cylinder(q) || (q.s > zero && q.distance2() <= radius2); });
@@ -54,7 +131,7 @@ void Cylinder::push_inside(const ToolPose& pose, const PointColumns& points, std
 void Cylinder::mark_near(const ToolPose& pose, double margin, const PointArrays& points,
                          std::span<const PackRange> ranges, std::uint8_t* marks) const noexcept {
   const double radius = radius_ + margin;
-  const simd::Pack radius2(radius * radius), low(-length_ - margin), high(tip_ == Tip::round ? radius : margin);
+  const Pack radius2(radius * radius), low(-length_ - margin), high(tip_ == Tip::round ? radius : margin);
   mark(pose, points, ranges, marks, [&](const AxialPack& q) { return q.s <= high && q.s >= low && q.rho2 <= radius2; });
 }
 
@@ -78,6 +155,108 @@ ToolShape::Grown Cylinder::grown(double margin) const {
   const bool flat = tip_ == Tip::flat;  // a round tip grows with the radius
   const double ends = flat ? 2.0 * margin : margin;
   return {std::make_unique<Cylinder>(radius_ + margin, length_ + ends, tip_), flat ? margin : 0.0};
+}
+
+void Cylinder::shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept {
+  const Pack radius(radius_), length(length_), zero(0.0);
+  const bool round = tip_ == Tip::round;
+  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
+    const Pack side = radius - simd::sqrt(q.rho2);
+    const Pack bottom = length + q.s;
+    Pack d = simd::min(side, bottom);
+    d = round ? select(q.s > zero, radius - simd::sqrt(q.distance2()), d) : simd::min(d, -q.s);
+    simd::store(d, &contacts.depth[i]);
+  }
+}
+
+void Cylinder::shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    contacts.set_gradient(i, shortest_gradient(*this, pose, contacts, i));
+  }
+}
+
+void Cylinder::exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    exits[i] = exit_distance(*this, pose, contacts.point(i), contacts.gradient(i));
+  }
+}
+
+void Cylinder::surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
+                                   ContactBuffer& contacts) const noexcept {
+  const bool round = tip_ == Tip::round;
+  const Pack radius(radius_), length(length_), zero(0.0), one(1.0);
+  const Pack on_axis(kOnAxis * radius_), in_reach(-slack), flush(kFlush);
+  const PackVector axis(pose.axis), any(pose.axis.unitOrthogonal()), move(wanted);
+  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
+    const Pack from_axis = simd::sqrt(q.rho2);
+    // On the axis any direction away from it will do.
+    const PackVector out = unit_or(!(from_axis <= on_axis), {q.rho_x, q.rho_y, q.rho_z}, from_axis, any);
+    const Pack side = from_axis - radius;
+    const Pack bottom = -q.s - length;
+    const Mask tip_nearer = q.s >= bottom;
+    const Pack end = round ? bottom : simd::max(q.s, bottom);
+    const Pack forward = round ? -one : select(tip_nearer, one, -one);
+
+    const Mask side_wins = side >= end;
+    Pack distance = select(side_wins, side, end);
+    Pack outwards = select(side_wins, one, zero);
+    Pack along = forward * select(side_wins, zero, one);
+    if (const Mask at_edge = side > in_reach && end > in_reach; simd::any(at_edge)) {
+      // Beyond side and end the nearest place is the edge between them.
+      const Mask beyond_both = side > zero && end > zero;
+      const Pack to_edge = simd::sqrt(side * side + end * end);
+      const Pack edge_scale = one / select(beyond_both, to_edge, one);
+      distance = select(beyond_both, to_edge, distance);
+      outwards = select(beyond_both, side * edge_scale, outwards);
+      along = select(beyond_both, forward * (end * edge_scale), along);
+
+      const PackVector n(&contacts.nx[i], &contacts.ny[i], &contacts.nz[i]);
+      const Pack faces_side = -out.dot(n), faces_end = -forward * axis.dot(n);
+      const Mask bumps = at_edge && outwards * out.dot(move) + along * axis.dot(move) > distance;
+      const Mask along_end = bumps && faces_end > flush, along_side = bumps && faces_side > flush;
+      distance = select(along_end, end, select(along_side, side, distance));
+      outwards = select(along_end, zero, select(along_side, one, outwards));
+      along = select(along_end, forward, select(along_side, zero, along));
+    }
+    PackVector normal = combined(outwards, out, along, axis);
+    if (round) {
+      const Pack from_centre = simd::sqrt(q.distance2());
+      // In a tool shorter than its radius the bottom may be nearer than the ball.
+      const Mask at_ball = q.s > zero && from_centre - radius >= bottom;
+      distance = select(at_ball, from_centre - radius, distance);
+      normal = unit_or(at_ball, {q.x, q.y, q.z}, from_centre, normal);
+    }
+    simd::store(-distance, &contacts.depth[i]);
+    normal.store(&contacts.ux[i], &contacts.uy[i], &contacts.uz[i]);
+  }
+  contacts.pad();
+}
+
+void Cylinder::foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
+                               const PlaceArrays& places) const noexcept {
+  const Pack radius(radius_), length(length_), zero(0.0), one(1.0), along_side(kAlongSide);
+  // `forward` is at most 1, so a flat tip has no ball.
+  const Pack ball_from(tip_ == Tip::round ? kAlongSide : 2.0);
+  const Pack px(pose.position.x()), py(pose.position.y()), pz(pose.position.z());
+  const Pack ax(pose.axis.x()), ay(pose.axis.y()), az(pose.axis.z());
+  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    const Pack nx = simd::load(&contacts.nx[i]), ny = simd::load(&contacts.ny[i]), nz = simd::load(&contacts.nz[i]);
+    const Pack forward = -(nx * ax + ny * ay + nz * az);
+    const Pack x = -nx - forward * ax, y = -ny - forward * ay, z = -nz - forward * az;
+    const Pack outwards = simd::sqrt(x * x + y * y + z * z);
+    const Mask on_axis = outwards <= zero;
+    const Pack scale = select(on_axis, zero, radius / select(on_axis, one, outwards));
+    const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
+    const Pack abreast = simd::max(-length, simd::min(q.s, zero));
+    Pack s = select(forward > zero, zero, -length);
+    s = select(simd::abs(forward) < along_side, abreast, s);
+    const Mask at_ball = forward > ball_from;
+    simd::store(px + select(at_ball, -radius * nx, s * ax + scale * x), &places.x[i]);
+    simd::store(py + select(at_ball, -radius * ny, s * ay + scale * y), &places.y[i]);
+    simd::store(pz + select(at_ball, -radius * nz, s * az + scale * z), &places.z[i]);
+  }
 }
 
 }  // namespace hapbench

@@ -1,6 +1,8 @@
 #pragma once
 
-#include "sim/tool/tip.hpp"
+#include <span>
+
+#include "sim/tool/profile_point.hpp"
 #include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {
@@ -12,17 +14,16 @@ namespace hapbench {
 ///     |  bottom, s = -L                  p --> axis  the body has -L <= s <= 0 and radial distance <= radius
 ///     +----------------------------------+
 ///
-/// The arithmetic of search and depths works on the axial coordinates of sim/tool/axial.hpp. A turn about the axis
-/// changes nothing.
+/// Search and depths use the axial coordinates of sim/tool/axial.hpp. A turn about the axis changes nothing.
 class Cylinder final : public ToolShape {
  public:
-  /// Radius and length [m], both > 0; the length is that from the tip plane to the bottom.
+  /// Radius and length [m], both > 0; the length is measured from the tip plane to the bottom.
   Cylinder(double radius = 0.0005, double length = 0.01, Tip tip = Tip::flat);
 
   double radius() const noexcept { return radius_; }
   double length() const noexcept { return length_; }
   Tip tip() const noexcept { return tip_; }
-  /// No exit distance is larger: an upper bound of the longest way through the body.
+  /// Upper bound of the exit distances [m].
   double longest_exit() const noexcept { return length_ + 3.0 * radius_; }
 
   bool convex() const noexcept override { return true; }
@@ -31,11 +32,11 @@ class Cylinder final : public ToolShape {
                    std::uint8_t* marks) const noexcept override;
   void push_inside(const ToolPose& pose, const PointColumns& points, std::span<const PackRange> ranges,
                    ContactBuffer& contacts) const noexcept override;
-  /// Not rounded: at the edges of a flat tip and of the bottom it reaches sqrt(2) margin, as `grown` does.
+  /// Marks up to sqrt(2) margin at the edges of a flat tip and of the bottom, as `grown` does.
   void mark_near(const ToolPose& pose, double margin, const PointArrays& points, std::span<const PackRange> ranges,
                  std::uint8_t* marks) const noexcept override;
   Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept override;
-  /// In a row along the axis, as far apart as they are wide.
+  /// A row of balls along the axis.
   Cover cover(double margin) const override;
   double moved_at_most(const ToolPose& from, const ToolPose& to) const noexcept override;
   /// d = min(r - |rho|, -s, L + s), u = rho / |rho|, axis, -axis (B.1); with a round tip, for s > 0, d = r - |x| and
@@ -49,7 +50,7 @@ class Cylinder final : public ToolShape {
                            ContactBuffer& contacts) const noexcept override;
   void foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
                        const PlaceArrays& places) const noexcept override;
-  /// The grown cylinder reaches further beyond a flat tip, so its tip centre lies `margin` ahead.
+  /// The grown cylinder extends beyond a flat tip, so its tip centre lies `margin` ahead.
   Grown grown(double margin) const override;
 
  private:
@@ -62,8 +63,8 @@ class Cylinder final : public ToolShape {
   double radius2_;  ///< largest_square_within(radius)
 };
 
-/// The largest double whose square root does not exceed r: lets the search compare squares and still agree with the
-/// depths, which take the root, about every point on the surface.
+/// The largest double whose square root does not exceed r. With it the search compares squares and still agrees with
+/// the depths, which take the root, about every point on the surface.
 double largest_square_within(double r);
 
 }  // namespace hapbench

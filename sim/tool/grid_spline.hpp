@@ -8,10 +8,10 @@
 #include "sim/tool/signed_distance_grid.hpp"
 #include "sim/tool/tool_state.hpp"
 
-/// The field of a SignedDistanceGrid at points of the world. For source files only (see simd.hpp).
+/// Evaluates the field of a SignedDistanceGrid at points of the world. For source files only (see simd.hpp).
 namespace hapbench {
 
-/// Weights of the three nodes along an axis at t in [-1/2, 1/2] from the middle one, never negative.
+/// Weights of the three nodes along an axis at t in [-1/2, 1/2] from the middle one; never negative.
 struct QuadraticWeights {
   simd::Pack below, here, above;
   explicit QuadraticWeights(const simd::Pack& t)
@@ -20,13 +20,13 @@ struct QuadraticWeights {
         above(simd::Pack(0.5) * (simd::Pack(0.5) + t) * (simd::Pack(0.5) + t)) {}
 };
 
-/// From the world to the coordinates of a grid's nodes, at one pose: u = turn (x - position) + shift.
+/// Maps the world to the coordinates of a grid's nodes at one pose: u = turn (x - position) + shift.
 struct GridFrame {
   Mat3 turn;
   Vec3 position, shift;
-  Vec3 last;  ///< of the coordinates at which 27 nodes are around the nearest one; the first are 1
+  Vec3 last;  ///< largest coordinates with 27 nodes around the nearest one; the smallest are 1
   double spacing;
-  double row, layer;  ///< from one node to the next along y and x
+  double row, layer;  ///< difference between the indices of neighbours along y and x
 
   GridFrame(const SignedDistanceGrid& grid, const ToolPose& pose)
       : turn(pose.rotation().transpose() / grid.nodes().spacing),
@@ -42,7 +42,7 @@ struct GridFrame {
 /// Eight points in the coordinates of the nodes.
 struct GridPack {
   simd::Pack u, v, w;
-  simd::Mask within;  ///< in the grid; never true of what is not finite
+  simd::Mask within;  ///< in the grid; false for coordinates that are not finite
 
   GridPack(const GridFrame& f, const double* px, const double* py, const double* pz) {
     using simd::Pack;
@@ -59,8 +59,8 @@ struct GridPack {
         u >= one && u <= Pack(f.last.x()) && v >= one && v <= Pack(f.last.y()) && w >= one && w <= Pack(f.last.z());
   }
 
-  /// Moves the points to the nearest places in the grid, what is not a number to its first corner; the squares of the
-  /// ways [spacings].
+  /// Moves the points to the nearest places in the grid, NaN to its first corner. Returns the squared distances
+  /// [spacings^2].
   simd::Pack clamp(const GridFrame& f) {
     using simd::Pack;
     Pack out2(0.0);
@@ -77,20 +77,20 @@ struct GridPack {
   }
 };
 
-/// The number nearest to each of eight in [0, 2^51], even ones of two: adding 1.5 * 2^52 leaves no bit for a fraction.
+/// Rounds numbers in [0, 2^51] to the nearest integer, halves to even: adding 1.5 * 2^52 leaves no bit for a fraction.
 inline simd::Pack nearest_whole(const simd::Pack& a) {
   const simd::Pack big(0x1.8p52);
   return (a + big) - big;
 }
 
-/// Which nodes eight points are nearest to; those of points that are not `within` the grid are its first.
+/// The nodes nearest to eight points; the grid's first node for points that are not `within` it.
 struct NearestNodes {
   simd::Pack i, j, k;
 
   NearestNodes(const GridFrame& f, const GridPack& q)
       : i(nearest_whole(q.u)), j(nearest_whole(q.v)), k(nearest_whole(q.w)) {
     const simd::Pack number = i * simd::Pack(f.layer) + j * simd::Pack(f.row) + k;
-    // Above 2^52 the low bits of a double are a whole number: no conversion.
+    // The low bits of a double above 2^52 are the integer itself, which saves a conversion.
     simd::store(simd::select(q.within, number, simd::Pack(0.0)) + simd::Pack(0x1p52), numbers_);
   }
   std::size_t operator[](std::size_t lane) const {
@@ -103,11 +103,12 @@ struct NearestNodes {
 
 struct FieldValue {
   double value;   ///< phi_h [m]
-  Vec3 gradient;  ///< by the coordinates of the nodes [m]
+  Vec3 gradient;  ///< with respect to the coordinates of the nodes [m]
 };
 
-/// phi_h at eight points within the grid, one at a time from weights of all: the numbers of a row of three nodes lie
-/// side by side, so that nine loads of four do for a point, where gathering 27 nodes for eight points would take 216.
+/// phi_h at eight points within the grid. Computes the weights of all points at once and the sums point by point: rows
+/// of three nodes are contiguous, so nine loads of four suffice for a point, while a gather would load all 27 nodes of
+/// the eight points one by one.
 class GridSpline {
  public:
   GridSpline(const SignedDistanceGrid& grid, const GridPack& q, const NearestNodes& nearest)
@@ -122,7 +123,7 @@ class GridSpline {
     }
   }
 
-  /// `node` is the one nearest to the point.
+  /// phi_h [m]; `node` is the one nearest to the point.
   double value(std::size_t lane, std::size_t node) const {
     const double* const corner = values_ + node - layer_ - row_ - 1;
     Four sum = {};
@@ -160,7 +161,7 @@ class GridSpline {
   }
 
  private:
-  /// Four numbers side by side, added and multiplied one by one in every build.
+  /// Four numbers, added and multiplied element by element in every build.
   using Four [[gnu::vector_size(4 * sizeof(double))]] = double;
 
   double along_row(std::size_t lane, const Four& row) const {

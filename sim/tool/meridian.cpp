@@ -1,16 +1,15 @@
-#include "sim/tool/meridian.hpp"
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
 
+#include "sim/tool/revolved.hpp"
+
 namespace hapbench {
 namespace {
 
-/// Sine of the angle by which a corner may turn inwards and still count as straight.
+/// Sine of the angle up to which a corner that turns inwards counts as straight.
 constexpr double kStraight = 1e-12;
 
 double cross(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c) {
@@ -21,13 +20,13 @@ double dot(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c) 
   return (b.s - a.s) * (c.s - b.s) + (b.rho - a.rho) * (c.rho - b.rho);
 }
 
-/// Whether c, in line with a and b, lies between them.
+/// Tests whether c, which is in line with a and b, lies between them.
 bool between(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c) {
   return std::min(a.s, b.s) <= c.s && c.s <= std::max(a.s, b.s) && std::min(a.rho, b.rho) <= c.rho &&
          c.rho <= std::max(a.rho, b.rho);
 }
 
-/// Whether the lines a b and c d have a place in common.
+/// Tests whether the lines a b and c d have a place in common.
 bool meet(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c, const ProfilePoint& d) {
   const double abc = cross(a, b, c), abd = cross(a, b, d), cda = cross(c, d, a), cdb = cross(c, d, b);
   const auto apart = [](double x, double y) { return (x > 0.0 && y < 0.0) || (x < 0.0 && y > 0.0); };
@@ -36,7 +35,7 @@ bool meet(const ProfilePoint& a, const ProfilePoint& b, const ProfilePoint& c, c
          (cdb == 0.0 && between(c, d, b));
 }
 
-/// Looks at a profile as a user wrote it.
+/// Checks a profile given by a user.
 class Checker {
  public:
   Checker(const std::vector<ProfilePoint>& points, Tip tip) : points_(points), tip_(tip) {}
@@ -81,7 +80,7 @@ class Checker {
     std::vector<Edge> all;
     if (points_.front().rho > 0.0) all.push_back({-1, 0});
     for (std::ptrdiff_t i = 0; i + 1 < n; ++i) all.push_back({i, i + 1});
-    // The half ball of a round tip may be wider than what it sits on.
+    // The half ball of a round tip may be wider than the body behind it.
     const bool overhangs = tip_ == Tip::round && points_[points_.size() - 2].s == 0.0 &&
                            points_[points_.size() - 2].rho < points_.back().rho;
     if (points_.back().rho > 0.0) all.push_back({overhangs ? n - 2 : n - 1, n});
@@ -168,14 +167,14 @@ void Meridian::add_lines() {
   if (first.rho > 0.0) lines.push_back(line_between({first.s, 0.0}, first));
 }
 
-/// Cuts the section into the trapezoids between neighbouring corners and joins those that are convex together: a
-/// trapezoid that goes on where a part ends, below a line that goes on where the part's last one ends or below the
-/// same.
+/// Cuts the section into the trapezoids between neighbouring corners and joins neighbours that are convex together: a
+/// trapezoid continues a part that ends where it begins if its upper line is the part's last upper line or follows that
+/// line without turning inwards.
 void Meridian::add_parts() {
   struct Built {
     double low, high;
-    std::optional<std::size_t> below;  ///< the line that it lies above, if it does not lie on the axis
-    std::vector<std::size_t> above;    ///< the lines that it lies below
+    std::optional<std::size_t> below;  ///< its lower line; none if it lies on the axis
+    std::vector<std::size_t> above;    ///< its upper lines
   };
   std::vector<double> levels;
   for (const ProfilePoint& p : profile) levels.push_back(p.s);
@@ -240,7 +239,7 @@ GrownProfile grown_profile(const Meridian& meridian, double margin) {
     if (!round) corners.push_back({s + margin, rho + margin});
   };
   for (const ProfilePoint& p : meridian.profile) add_square(p.s, p.rho);
-  // Nothing is wider than the ball, so everything behind its centre lies below the squares' rear corners.
+  // Nothing is wider than the ball, so everything behind its centre is below the squares' rear corners.
   if (round) corners.push_back({0.0, meridian.ball + margin});
   if (!round && meridian.tip == Tip::round) add_square(meridian.ball, meridian.ball);
 
@@ -249,7 +248,7 @@ GrownProfile grown_profile(const Meridian& meridian, double margin) {
   GrownProfile grown{{}, round ? Tip::round : Tip::flat};
   std::vector<ProfilePoint>& hull = grown.points;
   for (const ProfilePoint& p : corners) {
-    // Of several at one s the widest; a round tip's last point is beside the centre whatever lies there.
+    // Keeps the widest point at each s.
     while (!hull.empty() && hull.back().s == p.s) hull.pop_back();
     while (hull.size() >= 2 && cross(hull[hull.size() - 2], hull.back(), p) >= 0.0) hull.pop_back();
     hull.push_back(p);

@@ -1,6 +1,5 @@
 #include "sim/tool/motion.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -19,7 +18,7 @@ Vec3 tool_axis(const Orientation& orientation, double tilt, double azimuth) noex
 double tool_roll(const Orientation& orientation, double tilt, double azimuth, double roll) noexcept {
   const Vec3 sideways = orientation.up.cross(orientation.lean);
   const Vec3 lean = std::cos(azimuth) * orientation.lean + std::sin(azimuth) * sideways;
-  const Vec3 side = std::cos(tilt) * lean - std::sin(tilt) * orientation.up;  // turned with up -> -axis
+  const Vec3 side = std::cos(tilt) * lean - std::sin(tilt) * orientation.up;  // lean, turned as up is to -axis
   return roll_towards(tool_axis(orientation, tilt, azimuth), side) + roll;
 }
 
@@ -81,7 +80,7 @@ Vec3 RecordedMotion::axis_at(double t) const noexcept {
   if (leg.from->orientation) return axis_of(orientation_in(leg));
   const Vec3 axis = leg.from->axis + leg.fraction * (leg.to->axis - leg.from->axis);
   const double norm = axis.norm();
-  // Opposite neighbours pass through zero half-way: keep the last direction there.
+  // Opposite neighbours pass through zero half-way; keeps the last direction there.
   return norm > 0.0 ? Vec3(axis / norm) : leg.from->axis;
 }
 

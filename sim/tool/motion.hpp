@@ -11,28 +11,28 @@
 
 namespace hapbench {
 
-/// The scripted part of the tool's motion: always its orientation, and its position too when it is prescribed.
+/// The scripted part of the tool's motion: always its orientation, and its position too if that is prescribed.
 class Motion {
  public:
   virtual ~Motion() = default;
   /// Unit vector out of the tip at time t [s].
   virtual Vec3 axis_at(double t) const noexcept = 0;
-  /// ToolPose::roll at time t [rad]; asked only where somebody reads it.
+  /// ToolPose::roll at time t [rad]; called only if something reads the roll.
   virtual double roll_at(double t) const noexcept {
     static_cast<void>(t);
     return 0.0;
   }
-  /// True when the script turns the tool about its axis, so that this turn belongs to the angular velocity of a solid
-  /// of revolution too; that of any other tool always has it.
+  /// True if the script turns the tool about its axis, so that the angular velocity even of a solid of revolution
+  /// includes this turn; that of any other tool always does.
   virtual bool scripts_roll() const noexcept { return false; }
-  /// True when the tip centre is integrated, false when position_at prescribes it.
+  /// True if the tip centre is integrated, false if position_at prescribes it.
   virtual bool position_is_free() const noexcept = 0;
-  /// Tip centre at time t [m]; called only when the position is not free.
+  /// Tip centre at time t [m]; called only if the position is not free.
   virtual Vec3 position_at(double t) const noexcept = 0;
 };
 
-/// The tool leans by `tilt` from `up` towards `lean` turned by `azimuth` about `up`:
-/// axis = -(cos(tilt) up + sin(tilt) lean'), so at tilt 0 the tip points down. Where all three angles are 0, the tool's
+/// The tool leans by `tilt` from `up` towards lean', which is `lean` turned by `azimuth` about `up`:
+/// axis = -(cos(tilt) up + sin(tilt) lean'), so at tilt 0 the tip points down. If all three angles are 0, the tool's
 /// own x points along lean and its z along up; the roll turns it about its axis.
 struct Orientation {
   Vec3 up = {0.0, 0.0, 1.0};    ///< unit
@@ -42,9 +42,9 @@ struct Orientation {
   Profile roll = {};            ///< [rad], right-handed about the axis
 };
 
-/// The tool's axis at a tilt and an azimuth [rad] of its own, whatever the profiles say.
+/// The tool's axis at the given tilt and azimuth [rad] in place of the orientation's.
 Vec3 tool_axis(const Orientation& orientation, double tilt, double azimuth) noexcept;
-/// The same of the pose's roll, with a roll of its own.
+/// The pose's roll at the given angles [rad] in place of the orientation's.
 double tool_roll(const Orientation& orientation, double tilt, double azimuth, double roll) noexcept;
 
 /// Orientation from profiles; position free, or three profiles [m].
@@ -60,24 +60,24 @@ class ScriptedMotion final : public Motion {
 
  private:
   Orientation orientation_;
-  std::optional<Vec3> held_axis_;  ///< when neither tilt nor azimuth changes
+  std::optional<Vec3> held_axis_;  ///< if neither tilt nor azimuth changes
   std::optional<std::array<Profile, 3>> position_;
 };
 
 /// A recorded stroke played back: linear interpolation between the samples, held constant outside. Orientations are
-/// interpolated at constant angular velocity the short way round (slerp); axes alone linearly and normalised, with a
-/// roll of 0.
+/// interpolated at constant angular velocity the short way round (slerp), axes without orientations linearly and
+/// normalised, with a roll of 0.
 class RecordedMotion final : public Motion {
  public:
   struct Sample {
     double time = 0.0;  ///< [s], strictly increasing from sample to sample
     Vec3 position = Vec3::Zero();
     Vec3 axis = {0.0, 0.0, -1.0};
-    /// From the tool's frame to the world's, unit; the axis becomes that of it. All samples have one, or none has.
+    /// From the tool's frame to the world's, unit; determines the axis. Either all samples have one or none has.
     std::optional<Eigen::Quaterniond> orientation = {};
   };
 
-  /// Throws std::invalid_argument when there is no sample, times do not increase or only some samples have an
+  /// Throws std::invalid_argument if there is no sample, times do not increase or only some samples have an
   /// orientation.
   explicit RecordedMotion(std::vector<Sample> samples);
 

@@ -6,6 +6,9 @@
 
 namespace hapbench {
 
+/// The end of a solid of revolution: a plane, or beyond that plane half a ball of the same radius about the tip centre.
+enum class Tip { flat, round };
+
 /// A point of a solid of revolution's profile in the axial half plane [m].
 struct ProfilePoint {
   double s;    ///< along the axis from the tip centre, <= 0 towards the shank
@@ -14,8 +17,8 @@ struct ProfilePoint {
   bool operator==(const ProfilePoint&) const = default;
 };
 
-/// Continues an outline that has come to {0, radius} with a quarter of a circle about the tip centre, as a polyline
-/// that is off the circle by 0.013 % of its radius at most.
+/// Continues an outline that ends at {0, radius} with a quarter of a circle about the tip centre, as a polyline within
+/// 0.013 % of the radius.
 inline void add_round_tip(double radius, std::vector<ProfilePoint>& outline) {
   constexpr int kLegs = 48;
   for (int i = 1; i < kLegs; ++i) {

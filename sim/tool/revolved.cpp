@@ -1,16 +1,207 @@
 #include "sim/tool/revolved.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 
-#include "sim/tool/axial_search.hpp"
+#include "sim/tool/axial.hpp"
 #include "sim/tool/cylinder.hpp"
-#include "sim/tool/revolved_body.hpp"
 
-/// What a contact search asks of a solid of revolution.
 namespace hapbench {
+namespace {
 
-using simd::Mask, simd::Pack;
+using simd::Mask, simd::Pack, simd::select;
+
+Pack slack(const HalfPlane& plane, const Pack& s, const Pack& rho) {
+  return Pack(plane.offset) - Pack(plane.ns) * s - Pack(plane.nr) * rho;
+}
+
+/// Tests which points of `all`, with axial coordinate s and squared distance from the axis rho2, lie in the section
+/// with s <= 0. Compares squares of heights, because a root costs as much as four lines.
+Mask in_section(const Meridian& meridian, const Mask& all, const Pack& s, const Pack& rho2) {
+  const auto height = [&](std::size_t k) {
+    return Pack(meridian.heights[k].at_tip) + Pack(meridian.heights[k].slope) * s;
+  };
+  Mask in = all && !all;
+  for (const Meridian::Part& part : meridian.parts) {
+    Mask here = all && s >= Pack(part.low) && s <= Pack(part.high);
+    if (!simd::any(here)) continue;
+    const std::size_t end = part.above_last ? part.last - 1 : part.last;
+    Pack below = height(part.first);
+    for (std::size_t k = part.first + 1; k < end; ++k) below = simd::min(below, height(k));
+    here = here && rho2 <= below * below;
+    if (part.above_last) here = here && rho2 >= height(end) * height(end);
+    in = in || here;
+  }
+  return in;
+}
+
+/// Depth of points in a convex body's section, without the ball of a round tip: the distance to the nearest line. For a
+/// point outside, minus the distance to the half plane that it misses by most.
+Pack convex_depth(const Meridian& meridian, const Pack& s, const Pack& rho) {
+  Pack d = s - Pack(meridian.low);
+  if (meridian.tip == Tip::flat) d = simd::min(d, Pack(meridian.high) - s);
+  for (const HalfPlane& plane : meridian.planes) d = simd::min(d, slack(plane, s, rho));
+  return d;
+}
+
+/// The place on the profile's lines and discs that is nearest to a point.
+struct NearestPlace {
+  Pack distance2;
+  Pack vs, vr;  ///< normal of the line it lies on; at a corner, the vector from the point to the corner
+  Mask at_corner;
+};
+
+NearestPlace nearest_place(const Meridian& meridian, const Pack& s, const Pack& rho) {
+  const Pack zero(0.0);
+  // Nearer to a corner, the direction to it is rounding; the line's normal is one of the possible directions.
+  const Pack at_line(1e-12 * meridian.widest);
+  NearestPlace nearest{Pack(std::numeric_limits<double>::infinity()), zero, zero, zero < zero};
+  for (const Meridian::Line& line : meridian.lines) {
+    const Pack ns(line.ns), nr(line.nr);
+    const Pack inwards = slack(line, s, rho);
+    const Pack along = nr * s - ns * rho - Pack(line.start);
+    const Pack beyond = along - simd::max(zero, simd::min(along, Pack(line.length)));
+    const Pack distance2 = inwards * inwards + beyond * beyond;
+    const Mask nearer = distance2 < nearest.distance2;
+    const Mask corner = simd::abs(beyond) > at_line;
+    nearest.distance2 = select(nearer, distance2, nearest.distance2);
+    nearest.vs = select(nearer, select(corner, inwards * ns - beyond * nr, ns), nearest.vs);
+    nearest.vr = select(nearer, select(corner, inwards * nr + beyond * ns, nr), nearest.vr);
+    nearest.at_corner = (nearer && corner) || (nearest.at_corner && !nearer);
+  }
+  return nearest;
+}
+
+/// Distance to that place.
+Pack nearest_distance(const Meridian& meridian, const Pack& s, const Pack& rho) {
+  const Pack zero(0.0);
+  Pack nearest2(std::numeric_limits<double>::infinity());
+  for (const Meridian::Line& line : meridian.lines) {
+    const Pack inwards = slack(line, s, rho);
+    const Pack along = Pack(line.nr) * s - Pack(line.ns) * rho - Pack(line.start);
+    const Pack beyond = along - simd::max(zero, simd::min(along, Pack(line.length)));
+    nearest2 = simd::min(nearest2, inwards * inwards + beyond * beyond);
+  }
+  return simd::sqrt(nearest2);
+}
+
+/// A ray x + d u in axial coordinates: s + d slope along the axis and the vector rho + d u across it.
+struct AxialRay {
+  double s, slope;
+  Vec3 rho, u;
+  double rho_length, u_length;
+  double sine2;  ///< |u x rho|^2
+
+  AxialRay(const ToolPose& pose, const Vec3& x, const Vec3& direction)
+      : s(x.dot(pose.axis)),
+        slope(direction.dot(pose.axis)),
+        rho(x - s * pose.axis),
+        u(direction - slope * pose.axis),
+        rho_length(rho.norm()),
+        u_length(u.norm()),
+        sine2(u.cross(rho).squaredNorm()) {}
+};
+
+/// Intersections of a ray with the cone <n, (s, |rho|)> = offset. With k = offset - ns s and m = ns slope they are the
+/// roots of
+///
+///   nr^2 |rho + d u|^2 = (k - m d)^2,   a d^2 + 2 b d + c = 0 with a = nr^2 |u|^2 - m^2, b = nr^2 <rho, u> + k m,
+///   c = nr^2 |rho|^2 - k^2 and the discriminant b^2 - a c = nr^2 (|k u + m rho|^2 - nr^2 |u x rho|^2),
+///
+/// computed without cancellation near the axis and the cone.
+struct ConeCrossing {
+  double k, m, a, b, c, root;
+  bool meets;  ///< ignored for a ray from within a convex cone, which meets it whatever rounding says
+
+  ConeCrossing(const HalfPlane& cone, const AxialRay& ray) : k(cone.offset - cone.ns * ray.s), m(cone.ns * ray.slope) {
+    const double nr = cone.nr;
+    a = (nr * ray.u_length - m) * (nr * ray.u_length + m);
+    b = nr * nr * ray.rho.dot(ray.u) + k * m;
+    c = (nr * ray.rho_length - k) * (nr * ray.rho_length + k);
+    const double discriminant = (k * ray.u + m * ray.rho).squaredNorm() - nr * nr * ray.sine2;
+    meets = discriminant >= 0.0;
+    root = std::abs(nr) * std::sqrt(std::max(0.0, discriminant));
+  }
+};
+
+/// Distance to where the ray from a point in the half plane's cone, a convex set, leaves it.
+double exit_of_convex(const HalfPlane& plane, const AxialRay& ray) {
+  const double outwards = plane.ns * ray.slope + plane.nr * ray.u_length;  // far along the ray
+  if (outwards <= 0.0) return kNever;
+  if (plane.nr == 0.0) return std::max(0.0, plane.slack(ray.s, 0.0) / outwards);
+  const ConeCrossing q(plane, ray);
+  const double c = std::min(0.0, q.c);
+  if (q.b > 0.0) return -c / (q.b + q.root);
+  return q.a > 0.0 ? (q.root - q.b) / q.a : 0.0;
+}
+
+/// Tolerances relative to the reach: an outgoing crossing this little behind the ray's start counts as a start on the
+/// surface; a crossing this little beyond a line's end counts, so that no ray slips through between two lines.
+constexpr double kAtStart = 1e-12, kAtEnd = 1e-9;
+
+/// Distance to where the ray first goes out through the line.
+double exit_through(const Meridian::Line& line, const AxialRay& ray, double reach) {
+  const double at_start = kAtStart * reach, at_end = kAtEnd * reach;
+  const auto on_line = [&](double d, double rho) {
+    const double along = line.nr * (ray.s + d * ray.slope) - line.ns * rho - line.start;
+    return d >= -at_start && along >= -at_end && along <= line.length + at_end;
+  };
+  if (line.nr == 0.0) {
+    const double outwards = line.ns * ray.slope;
+    if (outwards <= 0.0) return kNever;
+    const double d = line.slack(ray.s, 0.0) / outwards;
+    return on_line(d, (ray.rho + d * ray.u).norm()) ? std::max(0.0, d) : kNever;
+  }
+  const ConeCrossing q(line, ray);
+  if (!q.meets) return kNever;
+  const double sum = -(q.b + std::copysign(q.root, q.b));
+  double first = kNever;
+  for (const double d : {sum / q.a, q.c / sum}) {
+    const double rho = (q.k - q.m * d) / line.nr;
+    if (!(rho >= -at_start) || !on_line(d, rho)) continue;
+    const double outwards = rho <= at_start ? q.m + line.nr * ray.u_length
+                                            : q.m * rho + line.nr * (ray.rho.dot(ray.u) + d * ray.u.squaredNorm());
+    if (outwards > 0.0) first = std::min(first, std::max(0.0, d));
+  }
+  return first;
+}
+
+/// Distance to where the ray goes out through the half ball beyond the tip plane.
+double exit_through_ball(double radius, const Vec3& x, const Vec3& u, const AxialRay& ray, double reach) {
+  const double b = x.dot(u), c = (radius - x.norm()) * (radius + x.norm());
+  if (b * b + c < 0.0) return kNever;
+  const double root = std::sqrt(b * b + c);
+  const double d = b > 0.0 ? c / (b + root) : root - b;
+  const bool there = d >= -kAtStart * reach && ray.s + d * ray.slope >= -kAtStart * reach;
+  return there ? std::max(0.0, d) : kNever;
+}
+
+double exit_distance(const Meridian& meridian, const ToolPose& pose, const Vec3& point, const Vec3& u) {
+  const Vec3 x = point - pose.position;
+  const AxialRay ray(pose, x, u);
+  double d = kNever;
+  for (const Meridian::Line& line : meridian.lines) {
+    d = std::min(d, meridian.convex ? exit_of_convex(line, ray) : exit_through(line, ray, meridian.reach));
+  }
+  if (meridian.tip == Tip::round) d = std::min(d, exit_through_ball(meridian.ball, x, u, ray, meridian.reach));
+  return d < kNever ? d : 0.0;
+}
+
+/// Sine of the angle to a line below which a surface runs along it, so that all of the line is foremost.
+constexpr double kAlongLine = 1e-9;
+
+/// The unit vector from the axis to the points, perpendicular to the axis however near they are; `any` where undefined.
+PackVector away_from_axis(const AxialPack& q, const PackVector& axis, const Mask& defined, const PackVector& any) {
+  const PackVector rho{q.rho_x, q.rho_y, q.rho_z};
+  // Rounding of s gives a small radial vector a large axial component.
+  const PackVector across = combined(Pack(1.0), rho, -rho.dot(axis), axis);
+  return unit_or(defined, across, simd::sqrt(across.dot(across)), any);
+}
+
+}  // namespace
 
 Revolved::Revolved(std::vector<ProfilePoint> profile, Tip tip) : Revolved(Meridian(std::move(profile), tip)) {}
 
@@ -20,7 +211,7 @@ Revolved::Revolved(Meridian meridian)
       widest2_(largest_square_within(meridian_.widest)),
       ball2_(largest_square_within(meridian_.ball)) {}
 
-/// Calls `use` with the test of a pack of points for the body.
+/// Calls `use` with a function that tests which points of a pack lie in the body.
 template <class Use>
 void Revolved::with_test(const Use& use) const {
   const Pack low(meridian_.low), high(meridian_.high), widest2(widest2_), ball2(ball2_), zero(0.0);
@@ -61,7 +252,7 @@ void Revolved::mark_near(const ToolPose& pose, double margin, const PointArrays&
 Box Revolved::box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept {
   const AxisPart whole{meridian_.low - margin, std::max(meridian_.high, meridian_.ball) + margin};
   const AxisPart part = part_near(whole, pose, meridian_.widest + margin, bounds);
-  // Points in `bounds` have their s in the part, and the places of the body near them theirs within the margin.
+  // Points in `bounds` have their s in the part, and places of the body near them theirs within the margin of it.
   double widest = part.high + margin >= 0.0 ? meridian_.ball : 0.0;
   for (std::size_t i = 0; i + 1 < meridian_.profile.size(); ++i) {
     const auto [a, b] = std::pair(meridian_.profile[i], meridian_.profile[i + 1]);
@@ -96,6 +287,151 @@ ToolShape::Grown Revolved::grown(double margin) const {
   const double forward = grown.points.back().s;
   for (ProfilePoint& p : grown.points) p.s -= forward;
   return {std::make_unique<Revolved>(std::move(grown.points), grown.tip), forward};
+}
+
+void Revolved::shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept {
+  const Pack ball(meridian_.ball), zero(0.0);
+  const bool convex = meridian_.convex, round = meridian_.tip == Tip::round;
+  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
+    const Pack rho = simd::sqrt(q.rho2);
+    Pack d = convex ? convex_depth(meridian_, q.s, rho) : nearest_distance(meridian_, q.s, rho);
+    if (round) d = select(q.s > zero, simd::min(d, ball - simd::sqrt(q.distance2())), d);
+    // In the ball, rounding may put a point beyond a line that touches the ball.
+    simd::store(simd::max(d, zero), &contacts.depth[i]);
+  }
+}
+
+void Revolved::shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept {
+  const Pack ax(pose.axis.x()), ay(pose.axis.y()), az(pose.axis.z());
+  const Pack ball(meridian_.ball), zero(0.0), one(1.0), sideways(1e-6);
+  const Pack undefined_rho(kOnAxis * meridian_.widest), undefined_x(kOnAxis * meridian_.ball);
+  const bool round = meridian_.tip == Tip::round;
+  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
+    const Pack rho = simd::sqrt(q.rho2);
+    const NearestPlace nearest = nearest_place(meridian_, q.s, rho);
+    const Pack scale = one / simd::sqrt(nearest.vs * nearest.vs + nearest.vr * nearest.vr);
+    const Pack vs = nearest.vs * scale, vr = nearest.vr * scale;
+    const Mask on_axis = rho < undefined_rho;
+    const Pack radial = select(on_axis, zero, vr / select(on_axis, one, rho));
+    Pack x = vs * ax + radial * q.rho_x, y = vs * ay + radial * q.rho_y, z = vs * az + radial * q.rho_z;
+    Mask undefined = on_axis && simd::abs(vr) > sideways;
+    if (round) {
+      const Pack from_centre = simd::sqrt(q.distance2());
+      const Pack to_ball = ball - from_centre;
+      const Mask at_ball = q.s > zero && (to_ball <= zero || to_ball * to_ball <= nearest.distance2);
+      x = select(at_ball, q.x, x);
+      y = select(at_ball, q.y, y);
+      z = select(at_ball, q.z, z);
+      undefined = (at_ball && from_centre < undefined_x) || (undefined && !at_ball);
+    }
+    // Normalises again, because rounding of s gives a small radial vector a large axial component.
+    const Pack length = simd::sqrt(x * x + y * y + z * z);
+    const Pack unit = one / select(undefined, one, length);
+    simd::store(select(undefined, -simd::load(&contacts.nx[i]), x * unit), &contacts.ux[i]);
+    simd::store(select(undefined, -simd::load(&contacts.ny[i]), y * unit), &contacts.uy[i]);
+    simd::store(select(undefined, -simd::load(&contacts.nz[i]), z * unit), &contacts.uz[i]);
+  }
+}
+
+void Revolved::exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    exits[i] = exit_distance(meridian_, pose, contacts.point(i), contacts.gradient(i));
+  }
+}
+
+void Revolved::surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack_wanted,
+                                   ContactBuffer& contacts) const noexcept {
+  const Meridian& m = meridian_;
+  const Pack low(m.low), high(m.high), ball(m.ball), zero(0.0), one(1.0), on_axis(kOnAxis * m.widest), flush(kFlush);
+  const Pack in_reach(slack_wanted);
+  const PackVector axis(pose.axis), any(pose.axis.unitOrthogonal()), move(wanted);
+  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
+    const Pack rho = simd::sqrt(q.rho2);
+    const PackVector out = away_from_axis(q, axis, rho > on_axis, any);
+    const Pack from_centre = simd::sqrt(q.distance2());
+    const Mask in_tip = q.s > zero && from_centre <= ball;
+    const Mask inside = in_section(m, q.s >= low && q.s <= high, q.s, q.rho2) || in_tip;
+
+    const NearestPlace nearest = nearest_place(m, q.s, rho);
+    // Outside, the vector to a corner is opposite to the normal.
+    const Pack length = simd::sqrt(nearest.vs * nearest.vs + nearest.vr * nearest.vr);
+    const Pack scale = select(nearest.at_corner && !inside, -one, one) / length;
+    Pack distance = simd::sqrt(nearest.distance2);
+    distance = select(inside, -distance, distance);
+    PackVector normal = combined(nearest.vs * scale, axis, nearest.vr * scale, out);
+
+    const PackVector surface(&contacts.nx[i], &contacts.ny[i], &contacts.nz[i]);
+    const Mask bumps = normal.dot(move) > distance;
+    if (m.convex && simd::any(bumps)) {
+      Pack furthest = -in_reach;
+      for (const Meridian::Line& line : m.lines) {
+        const Pack beyond = -slack(line, q.s, rho);
+        const PackVector face = combined(Pack(line.ns), axis, Pack(line.nr), out);
+        const Mask takes = bumps && beyond > furthest && -face.dot(surface) > flush;
+        furthest = select(takes, beyond, furthest);
+        distance = select(takes, beyond, distance);
+        normal = select(takes, face, normal);
+      }
+    }
+    if (m.tip == Tip::round) {
+      const Pack beyond = from_centre - ball;
+      const Mask at_ball = q.s > zero && beyond * beyond <= nearest.distance2;
+      distance = select(at_ball, beyond, distance);
+      normal = select(at_ball, unit_or(from_centre > zero, {q.x, q.y, q.z}, from_centre, axis), normal);
+    }
+    simd::store(-distance, &contacts.depth[i]);
+    normal.store(&contacts.ux[i], &contacts.uy[i], &contacts.uz[i]);
+  }
+  contacts.pad();
+}
+
+void Revolved::foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
+                               const PlaceArrays& places) const noexcept {
+  const Meridian& m = meridian_;
+  const Pack zero(0.0), one(1.0), along_line(kAlongLine), ball(m.ball);
+  const PackVector position(pose.position), axis(pose.axis);
+  // If the surface is perpendicular to the axis, any place of a rim is foremost, and the rim's centre if convex.
+  const PackVector none(m.convex ? Vec3(Vec3::Zero()) : pose.axis.unitOrthogonal());
+  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    const PackVector n(&contacts.nx[i], &contacts.ny[i], &contacts.nz[i]);
+    const Pack forward = -n.dot(axis);
+    const PackVector across = combined(-one, n, -forward, axis);
+    const Pack outward = simd::sqrt(across.dot(across));
+    const PackVector out = unit_or(outward > zero, across, outward, none);
+
+    Pack best(-std::numeric_limits<double>::infinity()), s = zero, rho = zero;
+    for (const ProfilePoint& p : m.profile) {
+      const Pack ahead = forward * Pack(p.s) + outward * Pack(p.rho);
+      const Mask further = ahead > best;
+      best = select(further, ahead, best);
+      s = select(further, Pack(p.s), s);
+      rho = select(further, Pack(p.rho), rho);
+    }
+    const Pack enough = best - Pack(2.0 * kAlongLine * m.reach);
+    // All of a line that the surface runs along is foremost: takes the place abreast of the contact.
+    const AxialPack q(pose, &contacts.x[i], &contacts.y[i], &contacts.z[i]);
+    const Pack beside = q.rho_x * out.x + q.rho_y * out.y + q.rho_z * out.z;
+    Pack aside2(std::numeric_limits<double>::infinity());
+    for (std::size_t k = 0; k + 1 < m.profile.size(); ++k) {
+      const Meridian::Line& line = m.lines[k];
+      const Pack us(line.nr), ur(-line.ns), a(m.profile[k].s), b(m.profile[k].rho);
+      const Pack along = simd::max(zero, simd::min(us * q.s + ur * beside - Pack(line.start), Pack(line.length)));
+      const Pack there_s = a + along * us, there_rho = b + along * ur;
+      const Pack off_s = q.s - there_s, off_rho = beside - there_rho, off2 = off_s * off_s + off_rho * off_rho;
+      const Mask foremost = simd::abs(forward * us + outward * ur) < along_line && forward * a + outward * b >= enough;
+      const Mask takes = foremost && outward > zero && off2 < aside2;
+      aside2 = select(takes, off2, aside2);
+      s = select(takes, there_s, s);
+      rho = select(takes, there_rho, rho);
+    }
+    const Mask at_ball = m.tip == Tip::round ? forward > along_line && ball >= best : zero > one;
+    simd::store(select(at_ball, -ball * n.x, s * axis.x + rho * out.x) + position.x, &places.x[i]);
+    simd::store(select(at_ball, -ball * n.y, s * axis.y + rho * out.y) + position.y, &places.y[i]);
+    simd::store(select(at_ball, -ball * n.z, s * axis.z + rho * out.z) + position.z, &places.z[i]);
+  }
 }
 
 }  // namespace hapbench

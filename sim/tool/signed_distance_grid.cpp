@@ -5,29 +5,137 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
-#include "sim/core/lanes.hpp"
+#include "sim/core/aligned.hpp"
 #include "sim/tool/triangle_tree.hpp"
-#include "sim/tool/winding_number.hpp"
 
 namespace hapbench {
 namespace {
 
-/// Nodes between the mesh and the border on each side: three, so that the 27 around any point of the border are
-/// outside.
+constexpr std::size_t kEdge = 16;  ///< cells along an edge of the cube
+constexpr std::size_t kCells = 6 * kEdge * kEdge;
+/// Distances below this, relative to the size of the body, are rounding.
+constexpr double kTie = 1e-9;
+
+std::size_t cell_along(double coordinate) {
+  return std::min(kEdge - 1, static_cast<std::size_t>(0.5 * (coordinate + 1.0) * static_cast<double>(kEdge)));
+}
+
+/// The cell of a direction; an arbitrary cell for one that is zero or not finite.
+std::size_t cell_of(const Vec3& u) {
+  Eigen::Index axis = 0;
+  const double largest = u.cwiseAbs().maxCoeff(&axis);
+  if (!(largest > 0.0 && largest < std::numeric_limits<double>::infinity())) return 0;
+  const std::size_t side = 2 * static_cast<std::size_t>(axis) + (u[axis] < 0.0 ? 1 : 0);
+  return (side * kEdge + cell_along(u[(axis + 1) % 3] / largest)) * kEdge + cell_along(u[(axis + 2) % 3] / largest);
+}
+
+/// The unit direction at (a, b) in the cell, which a and b cross from 0 to 1.
+Vec3 direction_in(std::size_t cell, double a, double b) {
+  const auto along = [](std::size_t i, double t) {
+    return 2.0 * (static_cast<double>(i) + t) / static_cast<double>(kEdge) - 1.0;
+  };
+  const std::size_t side = cell / (kEdge * kEdge);
+  const auto axis = static_cast<Eigen::Index>(side / 2);
+  Vec3 u;
+  u[axis] = side % 2 == 0 ? 1.0 : -1.0;
+  u[(axis + 1) % 3] = along(cell / kEdge % kEdge, a);
+  u[(axis + 2) % 3] = along(cell % kEdge, b);
+  return u.normalized();
+}
+
+std::vector<std::uint32_t> foremost_in_cell(const std::vector<Vec3>& points, std::size_t cell, double tie) {
+  const Vec3 middle = direction_in(cell, 0.5, 0.5);
+  // Great circles bound a cell, so its corners are furthest from its middle.
+  double radius = 0.0;
+  for (const double a : {0.0, 1.0}) {
+    for (const double b : {0.0, 1.0}) radius = std::max(radius, (direction_in(cell, a, b) - middle).norm());
+  }
+  const auto behind = [&](const Vec3& a, const Vec3& b) { return a.dot(middle) < b.dot(middle); };
+  const Vec3& first = *std::max_element(points.begin(), points.end(), behind);
+  std::vector<std::uint32_t> found;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (middle.dot(first - points[i]) <= radius * (points[i] - first).norm() + tie)
+      found.push_back(static_cast<std::uint32_t>(i));
+  }
+  return found;
+}
+
+}  // namespace
+
+SupportTable::SupportTable(std::vector<Vec3> points) : points_(std::move(points)), starts_{0} {
+  Vec3 low = points_.front(), high = low;
+  for (const Vec3& p : points_) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  tie_ = kTie * (high - low).norm();
+  std::vector<std::vector<std::uint32_t>> cells(kCells);
+  tbb::parallel_for(std::size_t{0}, kCells,
+                    [&](std::size_t i) { cells[i] = foremost_in_cell(points_, i, 2.0 * tie_); });
+  for (const auto& cell : cells) {
+    listed_.insert(listed_.end(), cell.begin(), cell.end());
+    starts_.push_back(static_cast<std::uint32_t>(listed_.size()));
+  }
+}
+
+std::span<const std::uint32_t> SupportTable::candidates(const Vec3& direction) const noexcept {
+  const std::size_t cell = cell_of(direction);
+  return {listed_.data() + starts_[cell], listed_.data() + starts_[cell + 1]};
+}
+
+double SupportTable::support(const Vec3& direction) const noexcept {
+  double most = -std::numeric_limits<double>::infinity();
+  for (const std::uint32_t i : candidates(direction)) most = std::max(most, direction.dot(points_[i]));
+  return most;
+}
+
+Vec3 SupportTable::foremost(const Vec3& direction, const Vec3& abreast) const noexcept {
+  const double least = support(direction) - tie_;
+  const Vec3* nearest = nullptr;
+  double distance2 = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t i : candidates(direction)) {
+    if (direction.dot(points_[i]) < least) continue;
+    const double d2 = (points_[i] - abreast).squaredNorm();
+    if (nearest == nullptr || d2 < distance2) {
+      nearest = &points_[i];
+      distance2 = d2;
+    }
+  }
+  if (nearest == nullptr) return points_.front();  // a direction that is not finite
+  // Approaches the other foremost points as long as that comes nearer to `abreast`, twice for faces. Means of foremost
+  // places are foremost, too.
+  Vec3 place = *nearest;
+  for (int pass = 0; pass < 2; ++pass) {
+    for (const std::uint32_t i : candidates(direction)) {
+      if (direction.dot(points_[i]) < least) continue;
+      const Vec3 way = points_[i] - place;
+      const double length2 = way.squaredNorm();
+      if (length2 > 0.0) place += std::clamp((abreast - place).dot(way) / length2, 0.0, 1.0) * way;
+    }
+  }
+  return place;
+}
+
+namespace {
+
+/// Nodes between the mesh and the border on each side; with three, the 27 nodes around any border point are outside.
 constexpr double kBorder = 3.0;
 constexpr double kMostBytes = 1024.0 * 1024.0 * 1024.0;
 constexpr double kBytesPerNode = sizeof(double) + sizeof(std::uint8_t);
 constexpr double kMostThin = 0.1;
-/// Of the spacing: a vertex this far before a plane makes no body concave. Files in single precision round away less.
+/// A vertex this far in front of a plane, in spacings, does not make a body concave. It exceeds the rounding of files
+/// in single precision.
 constexpr double kConvexWithin = 0.01;
-/// Normals that differ by less are one.
+/// Normals that differ by less count as equal.
 constexpr double kSameNormal = 1e-6;
-/// Faces that a flat tool slides on are few; those of a round one need no special treatment.
+/// A flat tool slides on few faces, and the faces of a round one need no special treatment.
 constexpr std::size_t kMostFaces = 64;
 
 [[noreturn]] void refuse(const std::ostringstream& message) {
@@ -45,7 +153,7 @@ GridNodes nodes_around(const ClosedSurface& surface, double spacing) {
     refuse(message);
   }
   const Vec3 extent = surface.high() - surface.low();
-  // In double first: a spacing off by 1000 asks for more nodes than can be counted.
+  // As doubles, because a spacing that is wrong by a factor of 1000 asks for more nodes than integers can count.
   const Vec3 wanted = (extent / spacing).array().ceil() + 2.0 * kBorder + 1.0;
   if (const double bytes = kBytesPerNode * wanted.prod(); !(bytes <= kMostBytes)) {
     message << "a grid of " << wanted.x() << " x " << wanted.y() << " x " << wanted.z() << " nodes, " << spacing
@@ -56,7 +164,7 @@ GridNodes nodes_around(const ClosedSurface& surface, double spacing) {
   }
   GridNodes nodes{surface.low() - Vec3::Constant(kBorder * spacing), spacing, {}};
   for (int k = 0; k < 3; ++k) nodes.count[static_cast<std::size_t>(k)] = static_cast<std::size_t>(wanted[k]);
-  // In the middle of what was rounded up. The nodes of a symmetric mesh are symmetric, too.
+  // Centred, so that the nodes of a symmetric mesh are symmetric.
   for (int k = 0; k < 3; ++k)
     nodes.origin[k] = 0.5 * (surface.low()[k] + surface.high()[k] - (wanted[k] - 1.0) * spacing);
   return nodes;
@@ -73,7 +181,7 @@ Vec3 area_vector(const ClosedSurface& surface, const TriangleCorners& t) {
   return 0.5 * (b - a).cross(c - a);
 }
 
-/// The vertices without those in the middle of flat triangles, which are not foremost alone in any direction.
+/// The vertices, without those amid coplanar triangles, which are in no direction the only foremost ones.
 std::vector<Vec3> corners_of(const ClosedSurface& surface) {
   std::vector<Vec3> sums(surface.vertices().size(), Vec3::Zero());
   std::vector<double> counts(sums.size(), 0.0);
@@ -92,7 +200,7 @@ std::vector<Vec3> corners_of(const ClosedSurface& surface) {
   return corners;
 }
 
-/// A node that is inside more than once, or less than not at all.
+/// Refuses a surface that winds around a node neither once nor not at all.
 void check_winding(const std::vector<std::int8_t>& numbers, const GridNodes& nodes) {
   std::size_t wrong = 0;
   std::ostringstream message;
@@ -108,7 +216,7 @@ void check_winding(const std::vector<std::int8_t>& numbers, const GridNodes& nod
   refuse(message);
 }
 
-/// The share of the area from which less than `thickness` leads inwards to another triangle.
+/// Fraction of the area from which another triangle lies inwards within less than `thickness`; refuses too much.
 double thin_share(const ClosedSurface& surface, const TriangleTree& tree, double thickness) {
   std::vector<double> thin(surface.triangles().size(), -1.0);
   std::vector<double> areas(thin.size());
@@ -116,7 +224,7 @@ double thin_share(const ClosedSurface& surface, const TriangleTree& tree, double
     const auto [a, b, c] = surface.corners(surface.triangles()[i]);
     const Vec3 area = area_vector(surface, surface.triangles()[i]);
     areas[i] = area.norm();
-    // Beyond the rounding of its own plane.
+    // Starts beyond the rounding of the triangle's own plane.
     if (areas[i] > 0.0) thin[i] = tree.first_hit((a + b + c) / 3.0, -area / areas[i], 1e-6 * thickness);
   });
   double all = 0.0, too_thin = 0.0, thinnest = thickness;
@@ -168,8 +276,8 @@ double SignedDistanceGrid::suggested_spacing(std::span<const Vec3> vertices) {
     low = low.cwiseMin(v);
     high = high.cwiseMax(v);
   }
-  // Of the 128 nodes along an edge of a cube, 7 lie beyond it. A flat box has more nodes for that, but not many times
-  // as many.
+  // Of the 128 nodes along an edge of a cube, 7 lie beyond it. The minimum extent limits the number of nodes of a flat
+  // box, most of which lie beyond it.
   const Vec3 extent = (high - low).cwiseMax(0.01 * (high - low).maxCoeff());
   return std::cbrt(extent.prod()) / 121.0;
 }
@@ -185,7 +293,7 @@ std::size_t SignedDistanceGrid::bytes() const noexcept {
 void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& tree) {
   const std::vector<std::int8_t> numbers = winding_numbers(surface, nodes_);
   check_winding(numbers, nodes_);
-  // Rows of three nodes are read as four.
+  // One more, because kernels read rows of three nodes as four.
   values_.assign(nodes_.size() + 1, 0.0);
   tbb::parallel_for(std::size_t{0}, nodes_.count[0] * nodes_.count[1], [&](std::size_t column) {
     alignas(64) std::array<double, simd::lanes> x, y, z, distances2;
@@ -195,7 +303,7 @@ void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& 
     for (std::size_t k = 0; k < nodes_.count[2]; k += simd::lanes) {
       for (std::size_t n = 0; n < simd::lanes; ++n) {
         z[n] = nodes_.coordinate(2, k + n);
-        // A node is at most as much further away than the last one of before as it is from that.
+        // The distance grows along the column by at most the distance between the nodes.
         const double at_most = last + static_cast<double>(n + 1) * nodes_.spacing;
         distances2[n] = (1.0 + 1e-9) * at_most * at_most;
       }
@@ -234,10 +342,10 @@ void SignedDistanceGrid::classify() {
   });
 }
 
-/// Whether the body is convex and, if so, its largest flat faces.
+/// Finds out whether the body is convex and, if so, its largest flat faces.
 void SignedDistanceGrid::find_faces(const ClosedSurface& surface) {
   const double tolerance = kConvexWithin * nodes_.spacing;
-  // Of a convex body triangles with the same normal lie in the same plane.
+  // Triangles of a convex body with the same normal lie in the same plane.
   std::map<std::array<long, 3>, Vec3> areas;
   convex_ = true;
   for (const TriangleCorners& t : surface.triangles()) {

@@ -6,30 +6,30 @@
 #include <vector>
 
 #include "sim/contact/contact_buffer.hpp"
-#include "sim/core/box.hpp"
+#include "sim/core/types.hpp"
 #include "sim/tool/profile_point.hpp"
 #include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
 
-/// Points as arrays of one coordinate each, aligned and padded to whole packs of eight (sim/core/simd.hpp).
+/// Points as one array per coordinate, aligned and padded to whole packs of eight (sim/core/simd.hpp).
 struct PointArrays {
   const double *x, *y, *z;
 };
 
-/// The same to write to.
+/// The same, for output.
 struct PlaceArrays {
   double *x, *y, *z;
 };
 
-/// A run of points in such arrays: packs first … last - 1, of the first and the last of which it may own but some
-/// points.
+/// A run of points in such arrays: packs first … last - 1. Some points of the first and the last pack may not belong to
+/// the run.
 struct PackRange {
   std::size_t first, last;
   std::uint8_t own_in_first = 0xff;  ///< bit k: point k of the first pack belongs to the run
-  std::uint8_t own_in_last = 0xff;   ///< the same of the last pack
+  std::uint8_t own_in_last = 0xff;   ///< the same for the last pack
 
-  /// Those of the marks of a pack that are about the run's own points.
+  /// Clears the marks of a pack's points that do not belong to the run.
   std::uint8_t own(std::uint8_t marks, std::size_t pack) const noexcept {
     if (pack == first) marks &= own_in_first;
     if (pack + 1 == last) marks &= own_in_last;
@@ -37,111 +37,106 @@ struct PackRange {
   }
 };
 
-/// Cosine of the angle up to which a flat face of a tool counts as flush with a surface, 6 degrees: normals of shells are
-/// off by a few, and a face that leans by more holds an edge up too early.
+/// Cosine of the angle, 6 degrees, up to which a flat face of a tool counts as flush with a surface: normals of shells
+/// are off by a few degrees, and a face that leans by more would hold an edge up too early.
 inline constexpr double kFlush = 0.9945;
 
-/// The solid that touches the environment: everything that contact search, depth models, the proxy and metrics ask of
-/// its geometry. What lies beyond this interface knows neither a radius nor a tip. A new shape is a class derived from
-/// this one, a line in sim/CMakeLists.txt and the place where a scenario's tool is made; sim/tool/cylinder.hpp is the
-/// model to follow.
+/// The solid that touches the environment: the geometry that contact search, depth models, the proxy and metrics need.
+/// Code outside the shapes uses this interface alone and knows neither a radius nor a tip. README.md says how to add a
+/// shape; sim/tool/cylinder.hpp is the model to follow.
 ///
 /// Frames and units. Poses and points are given in the world frame, lengths in metres. The pose's position is the tip
-/// centre. A shape that is no solid of revolution reads the pose's rotation().
+/// centre. A shape that is not a solid of revolution uses the pose's rotation().
 ///
-/// Cost. Each call answers for many points, so that its virtual dispatch is paid once for a query or a step and never
-/// for a point. All of them but `outline`, `grown` and `cover` are called in the step loop and allocate nothing. Shapes
-/// are immutable, and may be shared between runs and threads.
+/// Cost. Each call handles many points, so that its virtual dispatch is paid once per query or step and never per
+/// point. All functions except `outline`, `grown` and `cover` are called in the step loop and allocate nothing. Shapes
+/// are immutable and may be shared between runs and threads.
 ///
 /// Rounding. Search and depths must agree about points on the surface: a point that `mark_inside` marks has a depth >=
-/// 0 up to rounding, so both should compute with the same operations in the same order.
+/// 0 up to rounding, so both should use the same operations in the same order.
 class ToolShape {
  public:
   virtual ~ToolShape() = default;
 
-  /// The unit of skins and margins: half of how thick the body is.
+  /// Half the thickness of the body [m]; skins and margins are multiples of it.
   double half_width() const noexcept { return half_width_; }
   /// Distance of the body's furthest point from the tip centre.
   double reach() const noexcept { return reach_; }
-  /// Whether the body holds the straight line between any two of its points. A proxy keeps every point out of a convex
-  /// body only.
+  /// A proxy keeps every point out of a convex body only.
   virtual bool convex() const noexcept = 0;
-  /// What drawings show of the body: its outline in the axial half plane, from the far end on the axis to the foremost
-  /// point on the axis, curves as polylines. Of a body that is no solid of revolution the silhouette: the largest rho
-  /// over s. Allocates.
+  /// The outline for drawings, in the axial half plane: from the far end on the axis to the foremost point on the axis,
+  /// curves as polylines. For a body that is not a solid of revolution it is the largest rho at each s. Allocates.
   virtual std::vector<ProfilePoint> outline() const = 0;
 
   // Contact search.
 
-  /// Tells which points of the ranges lie in the body or on its surface: bit k of a mark says so of point k of a pack.
-  /// Writes a mark for each pack of the ranges, one range after the other. Marks of a pose that is not finite are zero.
+  /// Marks the points of the ranges that lie in the body or on its surface: bit k of a mark stands for point k of a
+  /// pack. Writes a mark for each pack of the ranges, range after range. For a pose that is not finite all marks are 0.
   virtual void mark_inside(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges,
                            std::uint8_t* marks) const noexcept = 0;
-  /// Appends the points that `mark_inside` would mark, in their order: in one pass, since this is what most steps ask.
+  /// Appends the points that `mark_inside` would mark, in order and in one pass, because most steps need just this.
   /// Precondition: `contacts` has room.
   virtual void push_inside(const ToolPose& pose, const PointColumns& points, std::span<const PackRange> ranges,
                            ContactBuffer& contacts) const noexcept = 0;
-  /// Marks every point of the ranges within `margin` >= 0 of the body, and perhaps some a little further away.
+  /// Marks every point of the ranges within `margin` >= 0 of the body, and possibly some a little further away.
   virtual void mark_near(const ToolPose& pose, double margin, const PointArrays& points,
                          std::span<const PackRange> ranges, std::uint8_t* marks) const noexcept = 0;
-  /// A box that holds every point of `bounds` that lies within `margin` of the body: best the box around the part of it
-  /// that is near `bounds`, since most of a tool sticks out of what it works on. Empty when no part is near.
+  /// A box that contains every point of `bounds` within `margin` of the body; ideally the box around the part of the
+  /// body near `bounds`, because most of a tool sticks out of the environment. Empty if no part is near.
   virtual Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept = 0;
-  /// Balls that together hold the body and what `mark_near` marks with this margin: how many, of which radius [m]. Many
-  /// small ones bound the number of points that the body can touch (sim/contact/most_points.hpp) tighter than the
-  /// one given here, which suits a `mark_near` that reaches no further than twice the margin.
+  /// Number and radius [m] of balls that together contain the body and everything that `mark_near` marks with this
+  /// margin. Many small balls bound the number of points that the body can touch (most_points_in, grid_index.hpp) more
+  /// tightly than the one ball of this default, which suits a `mark_near` that reaches at most twice the margin.
   struct Cover {
     std::size_t balls;
     double radius;
   };
   virtual Cover cover(double margin) const { return {1, (1.0 + 1e-9) * (reach_ + 2.0 * margin)}; }
-  /// No point of the body has moved further than this when the tool has gone from one pose to the other.
+  /// Upper bound of the distance by which a move from one pose to the other moves any point of the body [m].
   virtual double moved_at_most(const ToolPose& from, const ToolPose& to) const noexcept = 0;
 
-  // Depth models. The contacts are points in the body (closed set).
+  // Depth models. Precondition: the contacts lie in the body or on its surface.
 
-  /// Writes how far each contact lies from the nearest place of the surface as its depth. Touches nothing else, and may
-  /// write the whole last pack.
+  /// Writes each contact's distance to the nearest place of the surface as its depth. Changes nothing else; may write
+  /// the whole last pack.
   virtual void shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept = 0;
-  /// Writes the unit vector to that nearest place as each contact's gradient; the contact's inverse normal where no
-  /// place is nearest, as on a cylinder's axis. May write the whole last pack.
+  /// Writes the unit vector to that place as each contact's gradient; the contact's inverse normal if no single place
+  /// is nearest, as on a cylinder's axis. May write the whole last pack.
   virtual void shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept = 0;
-  /// Writes to exits[i] how far contact i lies from where the ray along its gradient leaves the body, for i < size().
-  /// Finite and >= 0, for points on the surface too.
+  /// Writes to exits[i], i < size(), the distance from contact i to where the ray along its gradient leaves the body.
+  /// Finite and >= 0, also for points on the surface.
   virtual void exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept = 0;
 
-  // The proxy. Its guarantee is for a convex body; a shape that is not says what it answers instead.
+  // The proxy. Its guarantee holds for a convex body; a shape that is not convex documents what it returns instead.
 
-  /// What keeps the body out of points near it: for each contact the signed distance g_i of the point to the body's
-  /// surface, negative inside, as depth d_i = -g_i, and the outward normal at the nearest place of the surface as
-  /// gradient m_i. Pads.
+  /// Constraints that keep the body out of points near it: for each contact the signed distance g_i of the point to the
+  /// body's surface, negative inside, as depth d_i = -g_i, and the outward normal at the nearest place of the surface
+  /// as gradient m_i. Pads.
   ///
   /// The signed distance to a convex body is a convex function of the point and m_i one of its subgradients. Moved by
   /// x, the body is at least g_i - <m_i, x> away from the point, hence
   ///
   ///     d_i + <m_i, x> <= 0   =>   the point is not inside the moved body,
   ///
-  /// for moves of any length. Where the nearest place is not unique, any of the nearest ones has that property.
+  /// for moves of any length. If the nearest place is not unique, any of the nearest ones has that property.
   ///
-  /// A flat face that slides along a surface would bump into the points ahead: they lie in its plane, and the nearest
-  /// place of the body is its edge. A point beyond (or within `slack` of) both faces of an edge is kept out by either,
-  /// so when the move `wanted` violates the nearest one, the face that is flush with the contact's normal takes its
-  /// place, if one is.
+  /// A flat face that slides along a surface would bump into the points ahead, which lie in its plane and whose nearest
+  /// place is its edge. Either face of an edge keeps out a point beyond (or within `slack` of) both faces. Therefore,
+  /// if the move `wanted` violates the nearest one, a face that is flush with the contact's normal replaces it.
   virtual void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                                    ContactBuffer& contacts) const noexcept = 0;
-  /// Writes the place of the body that is foremost against the normal of each contact, argmin <q, n_i> over the body:
-  /// its support point in direction -n_i. Where there are several, the one abreast of the contact. May write the whole
+  /// Writes the place of the body that is foremost against each contact's normal: the support point in the direction
+  /// -n_i, argmin <q, n_i> over the body. If there are several, the one abreast of the contact. May write the whole
   /// last pack.
   virtual void foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
                                const PlaceArrays& places) const noexcept = 0;
 
-  /// The body grown on all sides, at a pose whose position lies `forward` ahead along the axis.
+  /// The body grown on all sides; its tip centre lies `forward` [m] ahead along the axis.
   struct Grown {
     std::unique_ptr<const ToolShape> shape;
     double forward;
   };
-  /// A shape that holds every point within `margin` >= 0 of this one, and perhaps some a little further away.
-  /// Allocates.
+  /// A shape that contains every point within `margin` >= 0 of this one, and possibly a little more. Allocates.
   virtual Grown grown(double margin) const = 0;
 
  protected:

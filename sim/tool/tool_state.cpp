@@ -1,15 +1,10 @@
 #include "sim/tool/tool_state.hpp"
 
-#include <Eigen/Geometry>
-#include <cmath>
-
-#include "sim/tool/turn.hpp"
-
 namespace hapbench {
 namespace {
 
-/// The matrix of the shortest turn of -z to a unit vector, by Rodrigues' formula I + [v] + [v]^2 (1 - c) / |v|^2, whose
-/// v = -z x axis and c = <-z, axis> are the turn's sine times its axis and its cosine.
+/// The matrix of the shortest turn of -z to a unit vector, by Rodrigues' formula I + [v] + [v]^2 (1 - c) / |v|^2 with
+/// v = -z x axis, the turn's axis times its sine, and its cosine c = <-z, axis>.
 Mat3 shortest_turn(const Vec3& axis) noexcept {
   const Vec3 v(axis.y(), -axis.x(), 0.0);
   const double sine2 = v.squaredNorm(), cosine = -axis.z();

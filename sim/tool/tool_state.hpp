@@ -1,34 +1,54 @@
 #pragma once
 
+#include <Eigen/Geometry>
+#include <cmath>
+
 #include "sim/core/types.hpp"
 
 namespace hapbench {
 
-/// Where the tool is, in the world frame: three numbers of position, two of axis, one of roll.
+/// The tool's position, axis and roll in the world frame.
 ///
-/// The axis is stored and not computed from an orientation, because it is what scripts give and what solids of
-/// revolution read; the roll completes it to a rotation. The tool's own frame has its origin at the tip centre and its
-/// axis along -z.
+/// The axis is stored rather than computed from an orientation, because scripts give it and solids of revolution read
+/// it; the roll completes it to a rotation. The tool's own frame has its origin at the tip centre and its axis along
+/// -z.
 struct ToolPose {
   Vec3 position = Vec3::Zero();  ///< centre of the tip [m]
   Vec3 axis = {0.0, 0.0, -1.0};  ///< unit vector out of the tip
   double roll = 0.0;             ///< turn about the axis, right-handed [rad]; see rotation()
 
-  /// From the tool's frame to the world's: the shortest turn of -z to the axis (half a turn about x when the axis is
-  /// +z), and after that the turn by `roll` about the axis.
+  /// From the tool's frame to the world's: the shortest turn of -z to the axis (half a turn about x if the axis is +z),
+  /// followed by the turn by `roll` about the axis.
   Mat3 rotation() const noexcept;
 };
-
-/// The roll of a pose with this axis whose own x axis lies along `side`, in (-pi, pi]. Unit vectors, perpendicular.
-double roll_towards(const Vec3& axis, const Vec3& side) noexcept;
 
 /// Pose and velocity. The orientation is scripted, so the angular velocity is known and not integrated.
 struct ToolState {
   ToolPose pose;
   Vec3 velocity = Vec3::Zero();  ///< of the tip centre [m/s]
-  /// Over the step before, perhaps low-passed [rad/s]; zero unless wanted. With the turn about the axis where the pose
-  /// or the script (Motion::scripts_roll) has one.
+  /// Over the previous step, low-passed if the algorithm asks for that [rad/s]; zero unless an algorithm reads it.
+  /// Includes the turn about the axis if the pose or the script (Motion::scripts_roll) has one.
   Vec3 angular_velocity = Vec3::Zero();
 };
+
+/// The roll of the pose with this axis whose own x axis lies along `side`, in (-pi, pi]. Unit vectors, perpendicular.
+double roll_towards(const Vec3& axis, const Vec3& side) noexcept;
+
+/// The rotation vector of the shortest turn from unit vector a to unit vector b [rad]; zero for opposite ones.
+inline Vec3 turn(const Vec3& a, const Vec3& b) noexcept {
+  const Vec3 cross = a.cross(b);
+  const double sine = cross.norm();
+  return sine > 0.0 ? Vec3(cross * (std::atan2(sine, a.dot(b)) / sine)) : Vec3::Zero();
+}
+
+/// The rotation vector that turns one pose to the other, roll included [rad].
+Vec3 whole_turn(const ToolPose& from, const ToolPose& to) noexcept;
+
+/// The same. If neither pose has a roll, it is the shortest turn of the axis, because a solid of revolution, whose pose
+/// omits the roll, feels no other turn.
+inline Vec3 turn(const ToolPose& from, const ToolPose& to) noexcept {
+  if (from.roll == 0.0 && to.roll == 0.0) return turn(from.axis, to.axis);
+  return whole_turn(from, to);
+}
 
 }  // namespace hapbench

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -13,21 +12,21 @@
 namespace hapbench {
 namespace {
 
-constexpr std::uint32_t kLeaf = 4;
-/// Halving 2^32 triangles takes 32 levels, and a search keeps one box a level.
+constexpr std::uint32_t kLeaf = 4;  ///< maximum number of triangles
+/// Halving 2^32 triangles takes 32 levels, and a search keeps one box per level.
 constexpr std::size_t kStack = 64;
 constexpr double kFarthest = std::numeric_limits<double>::infinity();
 
 using simd::Mask, simd::Pack;
 
-/// Eight points, or eight ways.
+/// Eight points or vectors.
 struct Packs {
   Pack x, y, z;
   Packs operator-(const Vec3& from) const { return {x - Pack(from.x()), y - Pack(from.y()), z - Pack(from.z())}; }
   Pack dot(const Vec3& v) const { return x * Pack(v.x()) + y * Pack(v.y()) + z * Pack(v.z()); }
 };
 
-/// From a place of a side; `along` is its product with the side.
+/// `from`: the points relative to an end of the side; `along`: their products with the side.
 Pack squared_distance_to_side(const Packs& from, const Vec3& side, const Pack& along, double per_length2) {
   const Pack t = simd::min(simd::max(along * Pack(per_length2), Pack(0.0)), Pack(1.0));
   const Pack dx = from.x - t * Pack(side.x()), dy = from.y - t * Pack(side.y()), dz = from.z - t * Pack(side.z());
@@ -67,11 +66,11 @@ TriangleTree::TriangleTree(const ClosedSurface& surface) {
     triangles_.emplace_back(a, b, c);
   }
   nodes_.push_back({Vec3::Zero(), Vec3::Zero(), 0, static_cast<std::uint32_t>(triangles_.size())});
-  // Children are appended, so this reaches them all.
+  // Visits appended children, too.
   for (std::size_t node = 0; node < nodes_.size(); ++node) split(node);
 }
 
-/// Halves the triangles of a node across their longest extent, unless they are few.
+/// Halves the triangles of a node across their longest extent, unless a leaf holds them.
 void TriangleTree::split(std::size_t node) {
   const auto [first, count] = std::pair(nodes_[node].first, nodes_[node].count);
   const auto begin = triangles_.begin() + first, end = begin + count;
@@ -96,8 +95,7 @@ void TriangleTree::split(std::size_t node) {
 
 void TriangleTree::lower_to_squared_distances(const double* x, const double* y, const double* z,
                                               double* distances2) const noexcept {
-  // Where the foot of the perpendicular, a + u ab + v ac, is within the triangle it is nearest, elsewhere a place of
-  // its sides.
+  // The foot of the perpendicular, a + u ab + v ac, is nearest if it is within the triangle, else a place of its sides.
   const auto squared_distance = [](const Triangle& t, const Packs& points) {
     const Packs p = points - t.a;
     const Pack along_ab = p.dot(t.ab), along_ac = p.dot(t.ac), height = p.dot(t.normal);
@@ -146,7 +144,7 @@ double TriangleTree::first_hit(const Vec3& origin, const Vec3& direction, double
     const Node& node = nodes_[stack[--size]];
     double enter = from, leave = best;
     for (int k = 0; k < 3; ++k) {
-      // A ray along a face of the box divides 0 by 0; the comparisons below then leave the interval as it is.
+      // A ray along a face of the box divides 0 by 0; the comparisons then leave the interval as it is.
       const double a = (node.low[k] - origin[k]) / direction[k], b = (node.high[k] - origin[k]) / direction[k];
       if (std::min(a, b) > enter) enter = std::min(a, b);
       if (std::max(a, b) < leave) leave = std::max(a, b);

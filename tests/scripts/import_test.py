@@ -1,6 +1,9 @@
 """`hapbench import` and the metrics of fidelity against numpy and scipy. Arguments: the built program, the source tree."""
 import json
+import math
 import os
+import random
+import struct
 import subprocess
 import sys
 import tempfile
@@ -12,16 +15,36 @@ from scipy import signal
 from scipy.spatial.transform import Rotation, Slerp
 
 PROGRAM, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+sys.path.insert(0, str(SOURCE / "scripts" / "python"))
+sys.dont_write_bytecode = True
+from hapbench_import.faults import Faults  # noqa: E402
+from hapbench_import.options import options_of  # noqa: E402
+from hapbench_import.recording import open_recording  # noqa: E402
+from hapbench_import.stroke import import_stroke, number_text, resolution_of, stroke_text  # noqa: E402
+
 DATA = SOURCE / "scenarios" / "examples" / "data"
+PRESETS = SOURCE / "scenarios" / "import" / "presets"
 LOG = DATA / "wipe.hapi.txt"
 Y_UP = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]], float)  # x, -z, y
 
 
+def run(*words, **environment):
+    return subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, stdin=subprocess.DEVNULL,
+                          env={**os.environ, "HAPBENCH_PYTHON": sys.executable, **environment})
+
+
 def hapbench(*words):
-    done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, stdin=subprocess.DEVNULL,
-                          env={**os.environ, "HAPBENCH_PYTHON": sys.executable})
+    done = run(*words)
     assert done.returncode == 0, (words, done.stderr)
     return done.stdout
+
+
+STRAIGHT = "0,0,0,0\n0.01,0.001,0,0\n0.02,0.002,0,0\n0.03,0.003,0,0\n"
+
+
+def log(names, samples, number="d"):
+    """A binary log of HAPI."""
+    return b"".join(name.encode() + b"\0" for name in names) + b"\0" + b"".join(struct.pack(f"<{len(s)}{number}", *s) for s in samples)
 
 
 def columns(file):
@@ -35,6 +58,28 @@ class Given(unittest.TestCase):
         scratch = tempfile.TemporaryDirectory(prefix="hapbench-import-")
         self.addCleanup(scratch.cleanup)
         self.root = Path(scratch.name)
+
+    def write(self, data, name="rec.csv"):
+        (self.root / name).write_bytes(data if isinstance(data, bytes) else data.encode())
+        return str(self.root / name)
+
+    def report(self, data, columns="time=1,position=2", **options):
+        """The report of a recording with these contents, by the package that the command starts."""
+        given = {"presets": [str(PRESETS)], "file": [self.write(data)], "columns": columns.split(",") if columns else []}
+        given |= {name.replace("_", "-"): str(value).split(",") for name, value in options.items()}
+        chosen = options_of(given)
+        return import_stroke(open_recording(given["file"][0], chosen), chosen)
+
+    def stroke(self, data, columns="time=1,position=2", **options):
+        return self.report(data, columns, **options).stroke
+
+    def refusal(self, data, columns="time=1,position=2", **options):
+        """What is refused, without the folder; empty when nothing is."""
+        try:
+            self.report(data, columns, **options)
+            return ""
+        except Faults as faults:
+            return "\n".join(f"{place}: {problem}" if place else problem for place, problem in faults.list).replace(f"{self.root}/", "")
 
     def imported(self, *words):
         report = json.loads(hapbench("import", LOG, "--preset", "hapi", "--out", self.root / "stroke.csv", "--json", *words))
@@ -74,6 +119,228 @@ class Import(Given):
         pressed = np.maximum(0, 2000 * (0.001 - stroke[:, 3]))
         # Rounding to 10 um alone may be off by 5 um, that is 10 mN, and the sensor by three of its 5 mN, five for all.
         self.assertLess(np.abs(stroke[:, 10] - pressed).max(), 0.01 + 0.025)
+
+
+class Recordings(Given):
+    def test_columns_are_taken_by_number_name_and_alone(self):
+        rows, fast = "7,0,1,2,3\n8,1,1.5,2,3\n", {"max_speed": 10}
+        named = "n,t,x,y,z\n" + rows
+        for data, columns, place in ((rows, "time=2,position=3", [1.5, 2, 3]), (named, "time=t,position=x", [1.5, 2, 3]),
+                                     (named.replace(",", ";"), "time=t,px=z,py=x,pz=4", [3, 1.5, 2])):
+            self.assertEqual(self.stroke(data, columns, **fast).position[1].tolist(), place)
+        header = "t,tip_x,tip_yy,tip_z\n0,0,0,0\n1,0,0,0\n"
+        self.assertRegex(self.refusal(header, "time=t,position=tap_x"), 'rec.csv: columns: position: got "tap_x"; nearest valid name: '
+                         '"tip_x"; the file has 1 t, 2 tip_x, 3 tip_yy, 4 tip_z$')
+        self.assertEqual(self.refusal(STRAIGHT, "time=1,position=3"),
+                         "rec.csv: columns: position: takes columns 3 ... 5; the file has 1, 2, 3, 4")
+
+    def test_units_and_frames_are_put_right(self):
+        report = self.report("5e6,1,2,3,1,0,2\n5.1e6,1,2,4,1,0,2\n", "time=1,position=2,force=5", frame="x,-z,y", shift="0.5,0,0",
+                             scale="time=1e-6,position=1e-3,force=9.81", force_by_tool=True)
+        np.testing.assert_allclose(report.stroke.position[1], [0.501, -0.004, 0.002], atol=1e-15)
+        np.testing.assert_allclose(report.stroke.force[0], [-9.81, 19.62, 0], atol=1e-14)
+        np.testing.assert_allclose(report.stroke.time, [0, 0.1], atol=1e-12)
+        self.assertEqual(report.clock.first, 5.0)
+
+    def test_every_way_to_write_an_orientation_is_the_same_turn(self):
+        noise = np.random.default_rng(2)
+        for _ in range(20):
+            turn, tip = Rotation.random(random_state=noise.integers(1 << 30)), noise.normal(size=3)
+            x, y, z, w = turn.as_quat()
+            vector = turn.as_rotvec()
+            angle = np.linalg.norm(vector)
+            written = {"quat_wxyz": (w, x, y, z), "quat_xyzw": (-x, -y, -z, -w), "axis_angle": (*vector / angle, angle),
+                       "matrix": turn.as_matrix().ravel(), "axis": turn.apply(tip)}
+            for kind, numbers in written.items():
+                cells = "".join(f",{number!r}" for number in map(float, numbers))
+                found = self.stroke(f"0,0,0,0{cells}\n0.4,0,0,0{cells}\n", "time=1,position=2,orientation=5", orientation=kind,
+                                    tip_axis=",".join(map(repr, map(float, tip)))).turn[1]
+                np.testing.assert_allclose(found.apply([0, 0, -1]), turn.apply(tip) / np.linalg.norm(tip), atol=1e-7, err_msg=kind)
+
+    def test_bad_rows_are_refused_with_their_lines(self):
+        start, line = "t,x,y,z\n0,0,0,0\n", "rec.csv, line 3: "
+        number = "; allowed: a finite number"
+        for rows, problem in (
+                ("0.1,nan,0,0\n", line + f'column 2 x: got "nan"{number}'), ("0.1,,0,0\n", line + f'column 2 x: got ""{number}'),
+                ("0.1,1_0,0,0\n", line + f'column 2 x: got "1_0"{number}'), ("0.1,0,+1,0\n", line + f'column 3 y: got "+1"{number}'),
+                ("0.1,0,0,1e999\n", line + f'column 4 z: got "1e999"{number}'), ("0.1,0,0\n", line + "got 3 values; allowed: 4"),
+                ("0,0,0,0\n", line + "got time 0 s after 0 s; allowed: increasing times"),
+                ("-1,0,0,0\n", line + "got time -1 s after 0 s; allowed: increasing times"),
+                ("0.1,1,0,0\n", line + "got a jump of 1000 mm in 100 ms, 10 m/s; allowed: 5 m/s (is the scale right?)"),
+                ("0.1,0,0,0\n0.2,0,0,0\n0.3,0,0,0\n1.5,0,0,0\n", "rec.csv, line 5: a gap of 1.2 s follows; allowed: 0.5 s (--max-gap)"),
+                ("0.1,2e6,0,0\n", line + "too large a number; allowed: positions below 1e6 m, forces below 1e9 N, times below 1e12 s")):
+            self.assertEqual(self.refusal(start + rows, "time=t,position=x"), problem)
+        self.assertEqual(self.refusal(start + "x,0,0,0\n0,0,0\n", "time=t,position=x").count("\n"), 1, "each with its line")
+        self.assertEqual(self.refusal("0,0,0,0\n"), "rec.csv: 1 usable samples of 1; allowed: at least 2")
+        self.assertEqual(self.refusal(""), "rec.csv: no samples; allowed: a line for each")
+
+    def test_orientations_that_are_none_are_refused(self):
+        for kind, cells, problem in (
+                ("quat_wxyz", "0.9,0,0,0", "line 1: got a quaternion of norm 0.9; allowed: 1 within 0.001"), ("quat_wxyz", "0.9991,0,0,0", None),
+                ("axis_angle", "0,0,0,1", "got a turn's axis of norm 0"), ("axis_angle", "0,0,0,0", None),
+                ("matrix", "1,0,0,0,1,0,0,0,-1", "no rotation"), ("axis", "0,0,0", "axis of length 0")):
+            found = self.refusal(f"0,0,0,0,{cells}\n0.1,0,0,0,{cells}\n", "time=1,position=2,orientation=5", orientation=kind)
+            self.assertTrue(problem in found if problem else found == "", (kind, cells, found))
+
+    def test_options_are_refused_by_name(self):
+        for options, problem in (
+                ({"smooth": "window=4,order=2"}, "smooth: got a window of 4 samples; allowed: odd, 3 ... 4"), ({"smooth": "window=3,order=3"}, "order 3"),
+                ({"smooth": "window=x"}, '--smooth: window: got "x"'), ({"scale": "time=0"}, "scale: time: got 0; allowed: > 0"),
+                ({"scale": "tyme=1"}, 'nearest valid name: "time"'), ({"frame": "x,y,-z"}, "right-handed"), ({"frame": "x,y,y"}, "each once"),
+                ({"tip_axis": "0,0,0"}, "tip_axis: allowed: a direction"), ({"shift": "1,2"}, "--shift: got 2 numbers; allowed: three"),
+                ({"rate": "0"}, "rate: got 0 Hz"), ({"columns": "position"}, '--columns: got "position"; allowed: NAME=VALUE')):
+            self.assertIn(problem, self.refusal(STRAIGHT, **options))
+
+    def test_bad_rows_are_left_out_where_asked(self):
+        report = self.report("0,0,0,0\n0.01,x,0,0\n0.02,0.002,0,0\n0.015,0,0,0\n0.03,9,0,0\n0.04,0.004,0,0\n", skip_bad_rows=True)
+        self.assertEqual(report.stroke.position[:, 0].tolist(), [0, 0.002, 0.004])
+        self.assertEqual([place.rpartition(" ")[2] for place, _ in report.read.left_out], ["2", "4", "5"])
+
+    def test_a_regular_clock_is_kept_and_an_irregular_one_evened(self):
+        report = self.report(STRAIGHT)
+        self.assertFalse(report.resampled)
+        self.assertAlmostEqual(report.rate, 100, delta=1e-9)
+        report = self.report("1,0,0,0\n1.008,0.0008,0,0\n1.02,0.002,0,0\n1.03,0.003,0,0\n1.04,0.004,0,0\n")
+        self.assertTrue(report.resampled)
+        self.assertEqual(report.rate, 100)
+        np.testing.assert_allclose(report.stroke.time, np.arange(5) / 100, atol=1e-15)
+        np.testing.assert_allclose(report.stroke.position[:, 0], 0.1 * report.stroke.time, atol=1e-12)
+        turn = self.stroke("0,0,0,0,0,1,0,0\n1,0,0,0,0,1,0,1.2\n", "time=1,position=2,orientation=5", orientation="axis_angle", rate=8,
+                           max_gap=2).turn
+        np.testing.assert_allclose((turn[0].inv() * turn).magnitude(), 0.15 * np.arange(9), atol=1e-12)
+
+    def test_smoothing_keeps_polynomials_even_of_high_order(self):
+        x = np.linspace(-1, 1, 60)
+        for order, window in ((3, 7), (20, 41)):
+            y = 0.001 * np.polynomial.chebyshev.chebval(x, [0] * order + [1])
+            report = self.report("".join(f"{0.01 * i!r},{float(v)!r},0,0\n" for i, v in enumerate(y)), max_speed=100,
+                                 smooth=f"window={window},order={order}")
+            self.assertLess(report.smoothing["position_largest_m"], 1e-14)
+
+    def test_the_resolution_is_the_step_of_rounded_numbers(self):
+        noise = random.Random(1)
+        for step in (1e-3, 1e-5, 5.5e-5, 1e-6, 1e-8):
+            for offset in (0.0, -0.03, 7.0):
+                found = resolution_of(np.array([step * round((offset + 0.1 * noise.random()) / step) for _ in range(1000)]))
+                if step < 2e-9 * abs(offset):
+                    self.assertIsNone(found, "rounding hides it")
+                else:
+                    self.assertAlmostEqual(found / step, 1, delta=1e-6)
+        self.assertAlmostEqual(resolution_of(np.array([0.0, 6e-5, 15e-5, 25e-5])), 1e-5, delta=1e-15, msg="no neighbours are a step apart")
+        for full in ([noise.random() for _ in range(1000)], [0.25, 0.25]):
+            self.assertIsNone(resolution_of(np.array(full)))
+
+    def test_numbers_are_written_short_and_read_back(self):
+        for value, text in ((0.0, "0"), (-0.0, "-0"), (0.1, "0.1"), (1e-4, "1e-04"), (1.2e-4, "0.00012"), (1e5, "1e+05"), (120000.0, "120000"),
+                            (-123456.5, "-123456.5"), (1e-300, "1e-300")):
+            self.assertEqual(number_text(value), text)
+
+    def test_text_and_binary_logs_are_the_same_stroke(self):
+        names, samples = ["TIME", "POSITION", "ORIENTATION", "FORCE"], [[0.5, 0.001, 0.002, 0.003, 0, 1, 0, 0.25, 1, 2, 3],
+                                                                      [0.51, 0.001, 0.002, 0.004, 0, 1, 0, 0.5, 1, 2, 4]]
+        text = " ".join(names) + "\n" + "".join(" ".join(map(repr, sample)) + " \r\n" for sample in samples)
+        expected = self.stroke(text, "", preset="hapi")
+        np.testing.assert_allclose(expected.position[1], [0.001, -0.004, 0.002], atol=1e-15)
+        self.assertEqual(expected.force[1].tolist(), [1, -4, 2])
+        self.assertEqual(stroke_text(self.stroke(log(names, samples), "", preset="hapi_binary")), stroke_text(expected))
+        floats = self.stroke(log(names, samples, "f"), "", preset="hapi_binary", floats=True)
+        np.testing.assert_allclose(floats.position, expected.position, atol=1e-9)
+        buttons = b"BUTTONS\0" + log(["TIME", "POSITION"], []) + b"".join(struct.pack("<idddd", 3, t, 0.001 * t, 0.002, 0.003) for t in (1, 1.25))
+        report = self.report(buttons, "", preset="hapi_binary")
+        self.assertEqual((report.stroke.time[1], report.stroke.force, report.stroke.has_roll), (0.25, None, False))
+        self.assertEqual(len(report.read.notes), 2, "neither orientation nor force")
+        cut = self.report(log(["TIME", "POSITION"], [[0, 0, 0, 0], [0.1, 0, 0, 0], [0.2, 0, 0, 0]])[:-3], "", preset="hapi_binary")
+        self.assertEqual(len(cut.stroke.time), 2)
+        self.assertIn("behind sample 2 are 29 bytes", cut.read.notes[2])
+
+    def test_what_is_no_log_is_refused(self):
+        for data, preset, problem in (("TIME POSITON\n0 0 0 0\n", "hapi", 'rec.csv, line 1: unknown field "POSITON"'),
+                                      ("TIME TIME\n0 0\n", "hapi", 'rec.csv, line 1: field "TIME" twice; allowed: once'),
+                                      ("TIME POSITION\n" + "0 0 0 0\n" * 8, "hapi_binary", "--format hapi"), (b"\0", "hapi_binary", "no field names")):
+            self.assertIn(problem, self.refusal(data, "", preset=preset))
+
+    def test_of_two_names_in_a_preset_the_one_in_the_file_counts(self):
+        self.assertEqual(self.stroke("h_pos_x,h_pos_y,h_pos_z\n0,0,0\n0.001,0,0\n", "", preset="falcon_traces").time[1], 0.001)
+
+    def test_whatever_the_bytes_have_become_they_are_read_or_refused(self):
+        noise = random.Random(4)
+        text = LOG.read_bytes()[:2000]
+        binary = log(["TIME", "POSITION", "ORIENTATION", "FORCE"], [[0.01 * i, 0, 0, 0.001, 0, 1, 0, 0.5, 1, 2, 3] for i in range(9)])
+        for i in range(120):
+            for data, preset in ((text, "hapi"), (binary, "hapi_binary"), (noise.randbytes(noise.randrange(300)), "traj")):
+                data = bytearray(data)
+                for _ in range(noise.randrange(4)):
+                    at = noise.randrange(len(data) + 1)
+                    data[at:at + noise.randrange(3)] = noise.choice([b"", b"\0", b"\xff", b" ", b"\n", b"e", b"-", b"9" * 400, b"nan", bytes(data[at:at + 30])])
+                try:
+                    stroke = self.stroke(bytes(data), "", preset=preset, max_gap=1e9, **({"skip_bad_rows": True} if i % 2 else {}),
+                                         **({"smooth": "window=3,order=1"} if i % 3 == 0 else {}))
+                    self.assertTrue((np.diff(stroke.time) > 0).all() and np.isfinite(stroke.position).all() and len(stroke_text(stroke)) > 50)
+                except Faults as faults:
+                    self.assertLess(len(str(faults)), 8000)
+
+
+class Command(Given):
+    def test_makes_a_stroke_that_runs_at_once_and_is_compared_with_its_force(self):
+        report, _, _ = self.imported("--shift", "0,0,-0.001")
+        self.assertEqual((report["rate_Hz"], report["resampled"], report["has_roll"]), (99, True, True))
+        self.assertAlmostEqual(report["quantum_force_N"], 0.2, delta=1e-7)
+        hapbench("new", "stroke", "--from", self.root / "stroke.csv", "--out", self.root / "stroke.json")
+        hapbench("validate", self.root / "stroke.json")
+        done = json.loads(hapbench("run", self.root / "stroke.json", "--set", "record.force_reference=true", "--out", self.root / "run", "--json"))
+        self.assertGreater(done[0]["fidelity"]["rows"], 100)
+        self.assertEqual(columns(self.root / "run" / "force_reference.csv")[0],
+                         "step time_s mfx_N mfy_N mfz_N force_error_x_N force_error_y_N force_error_z_N".split())
+
+    def test_says_what_it_found(self):
+        text = hapbench("import", LOG, "--preset", "hapi", "--smooth", "window=11,order=3", "--out", self.root / "stroke.csv")
+        for words in ("99 Hz, resampled", "x 10 um, y 10 um, z 10 um", "K q = 0.2 N", "smoothing", "um rms", "next: hapbench new stroke --from"):
+            self.assertIn(words, text)
+
+    def test_writes_nothing_of_a_bad_recording_and_never_over_it(self):
+        rec = self.write("t,x,y,z\n0,0,0,0\n1,0,0\n0.5,nan,0,0\n")
+        done = run("import", rec, "--columns", "time=t,position=x", "--out", self.root / "new" / "stroke.csv")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("line 3: got 3 values; allowed: 4", done.stderr)
+        self.assertIn('line 4: column 2 x: got "nan"', done.stderr)
+        done = run("import", rec, "--columns", "time=t,position=x", "--out", rec)
+        self.assertIn("is the recording itself", done.stderr)
+        self.assertEqual(os.listdir(self.root), ["rec.csv"])
+
+    def test_does_not_depend_on_the_locale(self):
+        rec = self.write("zeit,größe,y,z\n0,0,0,0\n0.5,0.001,0,0\n", "prüfung.csv")
+        for locale in ("C", "C.UTF-8", "de_DE.ISO-8859-1"):
+            done = run("import", rec, "--columns", "time=zeit,position=größe", "--out", self.root / "ö.csv", LC_ALL=locale)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("ö.csv", done.stdout)
+            self.assertIn("prüfung.csv: columns: position", run("import", rec, "--columns", "time=zeit,position=no", LC_ALL=locale).stderr)
+
+    def test_names_the_packages_that_are_missing(self):
+        bare = self.root / "python"
+        bare.write_text(f"#!/bin/sh\nexec {sys.executable} -S -I \"$@\"\n")
+        bare.chmod(0o755)
+        launch = (SOURCE / "scripts" / "python" / "launch").read_text().replace("/usr/bin/python3 python3;", f"{bare};")
+        done = subprocess.run(["bash", self.write(launch, "launch"), "hapbench_import"], capture_output=True, text=True,
+                              env={"PATH": os.environ["PATH"]})
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, "^hapbench: error: import needs a python3 with numpy, scipy, .*\n$")
+
+    def test_lists_presets_that_can_be_copied(self):
+        presets = json.loads(hapbench("import", "--list", "--json"))
+        self.assertEqual([preset["preset"] for preset in presets], sorted(file.stem for file in PRESETS.iterdir()))
+        for preset in presets:
+            copy = self.write(Path(preset["file"]).read_bytes(), "copy.json")
+            self.assertIn("missing: cannot be read", self.refusal_of("import", self.root / "missing", "--preset", copy), "the preset is right")
+        self.assertIn('nearest valid name: "hapi"', self.refusal_of("import", LOG, "--preset", "hapy"))
+        for text, problem in (("{,}", "is not JSON: syntax error at line 1, column 2"), ("[1]", "got [1]; allowed: an object"),
+                              ('{"colums": {}}', 'nearest valid name: "columns"'), ('{"floats": 1}', "floats: got 1; allowed: true, false")):
+            self.assertIn("bad.json: ", found := self.refusal_of("import", LOG, "--preset", self.write(text, "bad.json")))
+            self.assertIn(problem, found)
+
+    def refusal_of(self, *words):
+        done = run(*words, "--out", self.root / "out.csv")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        return done.stderr
 
 
 class Fidelity(Given):

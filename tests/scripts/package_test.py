@@ -78,7 +78,7 @@ class Package(unittest.TestCase):
         build = self.folder / "build"
         must("cmake", "-G", "Ninja", "-S", CONSUMER, "-B", build, f"-DCMAKE_PREFIX_PATH={self.usr}")
         must("cmake", "--build", build)
-        file, _ = must(build / "own_law", LD_LIBRARY_PATH=str(self.library)).split()
+        file, _ = must(build / "own_law", LD_LIBRARY_PATH=str(self.library)).splitlines()
         self.assertTrue(Path(file).is_relative_to(self.usr / "share" / "hapbench"), file)
 
 

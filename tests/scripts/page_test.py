@@ -1,7 +1,9 @@
 """The pages of `hapbench report`."""
 import functools
+import html
 import json
 import re
+import shlex
 
 from fixture import hapbench, main
 from pictures_fixture import Given, make_runs
@@ -48,9 +50,9 @@ class Page(Given):
 
     def test_the_commands_repeat_the_run(self):
         page = self.page(self.root / "springs")
-        command = re.search(r"hapbench (run [^\n<]*scenario.effective.json) --out", page)[1]
+        command = re.search(r"hapbench (run [^\n<]*scenario.effective.json\S*) --out", page)[1]
         again = self.root / "again"
-        hapbench(*command.split(), "--out", again, "--quiet")
+        hapbench(*shlex.split(html.unescape(command)), "--out", again, "--quiet")
         self.assertEqual((again / "trajectory.csv").read_bytes(), (self.root / "springs" / "trajectory.csv").read_bytes())
 
     def test_the_replay_has_every_run(self):

@@ -110,7 +110,7 @@ class OwnPage(Page):
         self.assertTrue(self.saved("*.webm").startswith(b"\x1a\x45\xdf\xa3"))
 
     def saved(self, pattern):
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + 1800
         while not (found := list(self.root.glob(pattern))):
             self.assertLess(time.monotonic(), deadline, pattern)
             time.sleep(0.1)

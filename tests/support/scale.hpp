@@ -22,9 +22,4 @@ constexpr std::size_t cases(std::size_t n) {
   return HAPBENCH_TEST_SANITIZED != 0 ? (n + 29) / 30 : n;
 }
 
-/// How long to wait for what cannot be cut to a few cases [s].
-constexpr double patience(double seconds) {
-  return HAPBENCH_TEST_SANITIZED != 0 ? 8.0 * seconds : seconds;
-}
-
 }  // namespace hapbench::test

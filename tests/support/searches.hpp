@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "sim/contact/shell_query.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/core/random.hpp"
 #include "sim/tool/cylinder.hpp"
 #include "tests/support/scale.hpp"

@@ -2,10 +2,10 @@
 
 #include <Eigen/Geometry>
 
-#include "algorithms/shell_source.hpp"
+#include "algorithms/depth/depth_model.hpp"
 #include "device_model/hands/scripted_hands.hpp"
 #include "device_model/ideal_device.hpp"
-#include "sim/contact/spring_source.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "tests/support/contact_sets.hpp"
 
 namespace hapbench::test {
@@ -22,7 +22,7 @@ std::shared_ptr<const SpringSet> springs_of(const Setting& setting) {
 std::unique_ptr<ContactSource> source_of(const PointShell* shell, std::shared_ptr<const SpringSet> springs,
                                          const ToolShape& tool, const RenderingConfig& config) {
   if (springs) return std::make_unique<SpringSource>(std::move(springs));
-  return std::make_unique<ShellSource>(*shell, tool, make_contact_query(*shell, tool, Skips::taken),
+  return std::make_unique<ShellSource>(*shell, tool, make_contact_query(*shell, tool, Skips::on),
                                        make_depth_model(config), config.skips);
 }
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "algorithms/registry.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/core/random.hpp"
-#include "sim/geometry/springs.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/tool/cylinder.hpp"
 

@@ -5,15 +5,14 @@
 #include <numeric>
 
 #include "algorithms/laws/exact_shaping.hpp"
-#include "algorithms/laws/merged_shaping.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
-#include "algorithms/stages/gradient_reduction.hpp"
+#include "algorithms/registry.hpp"
+#include "algorithms/stages/point_stage.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/studies/precision/measure.hpp"
-#include "scenarios/studies/precision/study.hpp"
 #include "sim/core/random.hpp"
 
-/// Tells whether merging or dropping contacts before the force law saves time, from dozens of contacts to hundreds.
+/// Tells whether merging or dropping contacts before the force law saves time, for dozens of contacts to hundreds.
 namespace hapbench {
 namespace {
 
@@ -22,15 +21,15 @@ constexpr std::uint64_t kOrders = 4;
 
 struct MergingWay {
   const char* name;
-  std::unique_ptr<ForceLaw> (*make_law)(const RenderingConfig&);
+  const char* law;
   bool reduces;
 };
 constexpr MergingWay kMergingWays[] = {
-    {"exact_shaping of all", make_exact_shaping, false},
-    {"exact_shaping reduced", make_exact_shaping, true},
-    {"shaped_stiffness of all", make_shaped_stiffness, false},
-    {"shaped_stiffness reduced", make_shaped_stiffness, true},
-    {"merged_shaping", make_merged_shaping, false},
+    {"exact_shaping of all", "exact_shaping", false},
+    {"exact_shaping reduced", "exact_shaping", true},
+    {"shaped_stiffness of all", "shaped_stiffness", false},
+    {"shaped_stiffness reduced", "shaped_stiffness", true},
+    {"merged_shaping", "merged_shaping", false},
 };
 
 using Order = std::vector<std::size_t>;
@@ -39,7 +38,9 @@ using Order = std::vector<std::size_t>;
 class Forces {
  public:
   Forces(const MergingWay& way, const RenderingConfig& config, std::size_t capacity)
-      : reduction_(way.reduces ? make_gradient_reduction({}) : nullptr), law_(way.make_law(config)), work_(capacity) {
+      : reduction_(way.reduces ? make_gradient_reduction({}) : nullptr),
+        law_(make_law(way.law, config)),
+        work_(capacity) {
     if (reduction_) reduction_->prepare({});
     law_->prepare(capacity);
   }
@@ -78,9 +79,7 @@ double spread_over_orders(Forces& forces, const ContactBuffer& set, const Vec3& 
 
 PrecisionRow row_of(const MergingWay& way, double spacing, const std::vector<ContactBuffer>& sets,
                     const std::vector<Vec3>& reference, const RenderingConfig& config, int repetitions) {
-  std::size_t capacity = 0;
-  for (const ContactBuffer& set : sets) capacity = std::max(capacity, set.size());
-  Forces forces(way, config, capacity);
+  Forces forces(way, config, largest_size(sets));
   Random random(1);
   double squares = 0.0, scale = 0.0, spread = 0.0, contacts = 0.0, kept = 0.0;
   for (std::size_t i = 0; i < sets.size(); ++i) {
@@ -93,19 +92,11 @@ PrecisionRow row_of(const MergingWay& way, double spacing, const std::vector<Con
     spread = std::max(spread, spread_over_orders(forces, sets[i], force, random));
   }
   const double n = static_cast<double>(sets.size()), rms = std::sqrt(scale / n);
-  const double copying = seconds_per_call(sets.size(), repetitions, [&] {
-    for (const ContactBuffer& set : sets) forces.load(set);
-  });
-  const double seconds = seconds_per_call(sets.size(), repetitions, [&] {
-    for (const ContactBuffer& set : sets) {
-      forces.load(set);
-      forces.force();
-    }
-  });
   return {fmt::format("{} {}", way.name, spacing),
           "completes",
           {spacing, contacts / n, kept / n, std::sqrt(squares / n) / rms, spread / rms},
-          std::max(0.0, seconds - copying)};
+          seconds_per_force(
+              sets, repetitions, [&](const ContactBuffer& set) { forces.load(set); }, [&] { forces.force(); })};
 }
 
 std::vector<Vec3> exact_forces(const std::vector<ContactBuffer>& sets, const RenderingConfig& config) {
@@ -125,14 +116,13 @@ static PrecisionResult study_merging(const Scenario& given, const PrecisionOptio
   result.columns = {"spacing_m", "contacts_mean", "kept_mean", "force_error_relative", "order_spread_relative"};
   result.timed = "call";
   for (const double spacing : kMergedSpacings) {
-    Scenario scenario = drill_in_hole(given);
-    std::get<BlockEnvironment>(scenario.environment).grid = spacing;
-    const std::vector<ContactBuffer> sets = contact_sets(scenario, kContactSetStride);
-    if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
+    Scenario scenario = given;
+    if (auto* block = std::get_if<BlockEnvironment>(&scenario.environment)) block->grid = spacing;
+    const std::vector<ContactBuffer> sets = drill_contact_sets(scenario);
     const std::vector<Vec3> reference = exact_forces(sets, scenario.rendering);
     for (const MergingWay& way : kMergingWays) {
-      result.rows.push_back(row_of(way, spacing, sets, reference, scenario.rendering, options.repetitions));
-      options.progress(result.rows.size(), std::size(kMergingWays) * std::size(kMergedSpacings));
+      result.add(row_of(way, spacing, sets, reference, scenario.rendering, options.repetitions), options,
+                 std::size(kMergingWays) * std::size(kMergedSpacings));
     }
   }
   return result;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/jobs.hpp"
-#include "scenarios/description/scenario_text.hpp"
+#include "scenarios/batch/parallel_for.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
 
 /// What can be rendered on which device: the largest stiffness, for each device, scene and algorithm, at which a run is

@@ -4,10 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/axis.hpp"
-#include "scenarios/batch/jobs.hpp"
+#include "scenarios/batch/parallel_for.hpp"
+#include "scenarios/batch/sweep_points.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/run/recent_shells.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 
 /// The largest or smallest value of a scenario's field at which its run is stable (judged_run.hpp), found on runs.

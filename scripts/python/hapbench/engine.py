@@ -30,8 +30,6 @@ Names = str | Sequence[str] | None
 Place = str | os.PathLike | None
 Progress = Callable[[str, int, int], object] | bool | None
 
-# Fields of a scenario that name files.
-_FILES = (("extends",), ("environment", "file"), ("tool", "file"), ("motion", "position", "file"))
 
 
 def run(scenario: Scenario, overrides: Overrides = None, *, record: Iterable[str] = (), progress: Progress = None) -> Run:
@@ -209,12 +207,9 @@ class _Scratch:
         if not isinstance(scenario, dict):
             return os.fspath(scenario)
         scenario = json.loads(json.dumps(scenario, default=_plain))
-        for *path, last in _FILES:
-            part = scenario
-            for key in path:
-                part = part.get(key) if isinstance(part, dict) else None
-            if isinstance(part, dict) and isinstance(part.get(last), str):
-                part[last] = _named(part[last], is_scenario=last == "extends")
+        if isinstance(scenario.get("extends"), str):
+            scenario["extends"] = _named(scenario["extends"], is_scenario=True)
+        _name_files(scenario)
         name = str(scenario.get("name") or "scenario").replace("/", "_")
         folder = Path(tempfile.mkdtemp(dir=self.path))
         file = folder / f"{name}.json"
@@ -234,6 +229,15 @@ class _Scratch:
 def _named(file, is_scenario):
     """A path that means the same from another folder. What is no file here may be the name of a bundled scenario."""
     return file if is_scenario and not Path(file).is_file() else str(Path(file).absolute())
+
+
+def _name_files(part):
+    """Makes the paths in a scenario absolute: a field "file", wherever it stands, is one, and no other field is."""
+    for key, value in part.items() if isinstance(part, dict) else enumerate(part):
+        if key == "file" and isinstance(value, str):
+            part[key] = _named(value, is_scenario=False)
+        elif isinstance(value, (dict, list)):
+            _name_files(value)
 
 
 def _report(words, scenarios, overrides, out, progress, **options):

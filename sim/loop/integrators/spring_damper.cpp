@@ -9,7 +9,7 @@
 namespace hapbench {
 namespace {
 
-/// The force of the spring-damper, and one that is held over the step.
+/// The force of the spring-damper plus a force held over the step.
 class LinearForce final : public ForceField {
  public:
   LinearForce(const SpringDamper& s, const Vec3& held)
@@ -25,7 +25,7 @@ class LinearForce final : public ForceField {
   Vec3 held_;
 };
 
-/// What the integrator makes of (x, v) in a step in which a force [N] is held.
+/// The result of one step from (x, v) with a held force [N].
 Eigen::Vector2d stepped(const SpringDamper& s, double x, double v, double held) {
   LinearForce field(s, held * Vec3::UnitX());
   ToolState tool;
@@ -36,13 +36,12 @@ Eigen::Vector2d stepped(const SpringDamper& s, double x, double v, double held) 
   return {tool.pose.position.x(), tool.velocity.x()};
 }
 
-/// Eigen's solver for matrices of any size takes seconds to compile; two by two need one rotation, which makes the
-/// matrix triangular if the eigenvalues are real.
+/// For real eigenvalues one rotation makes the matrix triangular. Eigen's general solver would take seconds to compile.
 std::pair<std::complex<double>, std::complex<double>> eigenvalues_of(const Eigen::Matrix2d& A) {
   constexpr double kSmallest = std::numeric_limits<double>::min(), kEpsilon = std::numeric_limits<double>::epsilon();
   const double scale = A.cwiseAbs().maxCoeff();
   if (scale < kSmallest) return {};
-  Eigen::Matrix2d T = A / scale;  // whose squares do not overflow
+  Eigen::Matrix2d T = A / scale;  // so that squares do not overflow
   const double half = 0.5 * (T(0, 0) - T(1, 1)), discriminant = half * half + T(1, 0) * T(0, 1);
   const bool triangular = std::abs(T(1, 0)) <= std::max(kEpsilon * (std::abs(T(0, 0)) + std::abs(T(1, 1))), kSmallest);
   if (!triangular && discriminant < 0.0) {

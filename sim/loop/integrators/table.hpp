@@ -7,32 +7,63 @@
 #include <string_view>
 
 #include "sim/core/model_info.hpp"
-#include "sim/loop/integrators/integrator.hpp"
+#include "sim/loop/force_algorithm.hpp"
+#include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
+
+/// The force on the tool during one step, for integrators that need more than the force of the row.
+class ForceField {
+ public:
+  virtual ~ForceField() = default;
+  /// f_in + f_render [N] at the time t_k + part dt, 0 < part <= 1, with the tip at `position` [m] and `velocity` [m/s].
+  /// The axis follows the script; f_in is held over the step, as a sampled device holds it. Costs a contact search and
+  /// a rendered force.
+  virtual Vec3 force_at(double part, const Vec3& position, const Vec3& velocity) noexcept = 0;
+  /// Jacobian of the row's force. Precondition: force_at has not been called in this step.
+  virtual ForceJacobian jacobian() const noexcept = 0;
+};
+
+/// Turns forces into motion. One object is the state of one run. The classes in explicit.cpp and implicit.cpp document
+/// formula, order, stability and energy.
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  /// Returns to t = 0: clears the state kept between steps.
+  virtual void reset() noexcept {}
+  /// One step of dt [s]: moves position and velocity of the tool of `mass` [kg], on which `force` [N] acts at the row.
+  /// Leaves the axis alone. Allocates nothing.
+  virtual void step(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field) noexcept = 0;
+};
+
+template <class T>
+std::unique_ptr<Integrator> make_integrator() {
+  return std::make_unique<T>();
+}
 
 struct SpringDamper;
 struct RaisedSpringDamper;
 
-/// What is known of an integrator. The theory is that of one spring-damper (spring_damper.hpp); null where there is no
-/// closed form, and whoever needs a number then takes it from steps of the integrator itself.
+/// Description of an integrator. The theory is that of one spring-damper (spring_damper.hpp); functions without a
+/// closed form are null, and callers then use steps of the integrator itself.
 struct IntegratorEntry {
   ModelInfo info;
   std::unique_ptr<Integrator> (*make)();
   int order = 1;         ///< of convergence on undamped springs
-  int damped_order = 1;  ///< and with damping
-  int forces = 1;        ///< rendered forces a step, the row's and those asked for within the step
-  /// True when the row's force acts unchanged over the step: M dv = f dt, so that its work needs no other force.
+  int damped_order = 1;  ///< of convergence with damping
+  int forces = 1;        ///< rendered forces a step, including the row's
+  /// True if the row's force acts unchanged over the step (M dv = f dt), so that its work needs no other force.
   bool holds_force = false;
   /// The matrix A of (x, v) -> A (x, v).
   Eigen::Matrix2d (*step_matrix)(const SpringDamper&) = nullptr;
-  /// Positive exactly where a step is stable.
+  /// Positive if and only if a step is stable.
   double (*stability_margin)(const SpringDamper&) = nullptr;
-  /// The largest stable value; infinite when there is none. None where this problem has no closed form.
+  /// The largest stable value; infinite if every value is stable, nullopt without a closed form for this problem.
   std::optional<double> (*stability_limit)(const RaisedSpringDamper&) = nullptr;
 };
 
-// The table. Each row is defined in the source file of its name; adding an integrator is that file and two lines here.
+// The table. To add an integrator, define its entry in explicit.cpp, implicit.cpp or a new file, and add two lines
+// here.
 extern const IntegratorEntry kLeapfrog;
 extern const IntegratorEntry kVelocityVerlet;
 extern const IntegratorEntry kRk4;
@@ -43,7 +74,7 @@ inline constexpr std::array kIntegrators = {
     &kLeapfrog, &kVelocityVerlet, &kRk4, &kImplicitEuler, &kImplicitMidpoint,
 };
 
-/// Null when the table has no such name.
+/// Returns null if the table has no such name.
 inline const IntegratorEntry* find_integrator(std::string_view name) noexcept {
   for (const IntegratorEntry* entry : kIntegrators) {
     if (entry->info.name == name) return entry;

@@ -10,15 +10,15 @@
 #include "algorithms/laws/exact_shaping.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "device_model/hands/scripted_hands.hpp"
+#include "sim/contact/contact_query.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
-#include "sim/contact/shell_query.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/setting.hpp"
 #include "tests/support/tool_geometry.hpp"
-#include "tests/support/tool_meshes.hpp"
 #include "tests/support/tool_kinds.hpp"
+#include "tests/support/tool_meshes.hpp"
 
 namespace hapbench::test {
 namespace {

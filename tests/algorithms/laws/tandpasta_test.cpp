@@ -1,4 +1,4 @@
-#include "algorithms/laws/laws.hpp"
+#include "algorithms/registry.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 LawForce evaluate(ContactBuffer& contacts) {
-  return make_tandpasta({})->evaluate(contacts);
+  return make_law("tandpasta", {})->evaluate(contacts);
 }
 
 /// sigma_E of thesis F.2, from dense matrices.

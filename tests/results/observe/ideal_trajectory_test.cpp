@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "sim/core/random.hpp"
 
 namespace hapbench::ideal_trajectory_test {
 namespace {
@@ -110,6 +114,142 @@ TEST(IdealTrajectory, MeansAndExtremesAreOverTheRows) {
   EXPECT_NEAR(e.height_min, -3e-5, 1e-17);
   EXPECT_NEAR(e.height_max, 4e-5, 1e-17);
   EXPECT_GE(e.interpenetration_max, e.interpenetration_mean);
+}
+
+constexpr double kRounding = 1e-11;  // what the header promises
+const Cylinder kTool;
+
+ToolPose upright(double x, double y, double z) {
+  return {{x, y, z}, {0, 0, -1}};
+}
+
+ToolPose tilted(const Vec3& position, double tilt, double azimuth = 0.0) {
+  const Vec3 lean{std::cos(azimuth), std::sin(azimuth), 0.0};
+  return {position, -(std::cos(tilt) * Vec3::UnitZ() + std::sin(tilt) * lean)};
+}
+
+TEST(Interpenetration, IsZeroWhereNothingOverlaps) {
+  EXPECT_EQ(interpenetration(kBlock, kTool, upright(0, 0, -0.003)), 0.0) << "free in the hole";
+  EXPECT_EQ(interpenetration(kBlock, kTool, upright(0.004, 0, 0.001)), 0.0) << "above the top";
+  EXPECT_EQ(interpenetration(kBlock, kTool, tilted({0, 0, -0.001}, 0.1)), 0.0) << "leaning in the mouth";
+}
+
+TEST(Interpenetration, OfAnUprightToolIsWhatItIsPressedIn) {
+  for (const double d : {1e-9, 1e-6, 1e-4, 4e-4}) {
+    EXPECT_NEAR(interpenetration(kBlock, kTool, upright(0.004, 0.001, -d)), d, kRounding) << "the top";
+    EXPECT_NEAR(interpenetration(kBlock, kTool, upright(0, 0, -0.005 - d)), d, kRounding) << "the bottom";
+    for (const double angle : {0.0, 0.3, 2.0, 4.4}) {
+      const double reach = 0.0005 + d;
+      EXPECT_NEAR(interpenetration(kBlock, kTool, upright(reach * std::cos(angle), reach * std::sin(angle), -0.003)), d,
+                  kRounding)
+          << "the wall " << angle;
+    }
+  }
+}
+
+/// On the ideal trajectory the tool touches wall and rim without overlapping; pushed down by a little it overlaps by as
+/// much as the formula of the trajectory's two contacts says.
+TEST(Interpenetration, OnTheIdealTrajectoryIsZeroAndBelowItGrows) {
+  const double R = 0.001, r = 0.0005;
+  for (const double tilt : {0.35, 0.6, 0.8, 1.0}) {
+    const double c = std::cos(tilt), s = std::sin(tilt);
+    const Vec3 ideal{-R + r * c, 0.0, (r * (1 + c * c) - 2 * R * c) / s};
+    EXPECT_LE(interpenetration(kBlock, kTool, tilted(ideal, tilt)), 1e-10);
+    double last = 0.0;
+    for (const double d : {1e-6, 1e-5, 1e-4}) {
+      // Straight down, the shaft moves d sin(tilt) into the rim; the depth is measured at 45 degrees.
+      const double depth = interpenetration(kBlock, kTool, tilted(ideal - d * Vec3::UnitZ(), tilt));
+      EXPECT_GT(depth, last);
+      EXPECT_NEAR(depth, d * s / (s + c), 0.05 * d) << "first order, the curvature of rim and shaft left out";
+      last = depth;
+    }
+  }
+}
+
+/// Depth at a place on the tool's side: an angle about its axis and a height above its tip.
+double depth_at(const ToolPose& pose, double angle, double height) {
+  const Vec3 e1 = pose.axis.unitOrthogonal(), e2 = pose.axis.cross(e1);
+  const Vec3 side = kTool.radius() * (std::cos(angle) * e1 + std::sin(angle) * e2);
+  return -signed_distance(kBlock, pose.position + side - height * pose.axis);
+}
+
+/// The deepest place at an angle: of many heights, and then by ternary search round the deepest of them.
+double deepest_at(const ToolPose& pose, double angle) {
+  constexpr int kHeights = 400;
+  constexpr double kApart = 0.006 / kHeights;  // the rest of the tool is in the air
+  double best = 0.0;
+  for (int h = 0; h < kHeights; ++h) {
+    if (depth_at(pose, angle, h * kApart) > depth_at(pose, angle, best)) best = h * kApart;
+  }
+  double low = std::max(0.0, best - kApart), high = best + kApart;
+  while (high - low > 1e-13) {
+    const double a = low + (high - low) / 3, b = high - (high - low) / 3;
+    if (depth_at(pose, angle, a) > depth_at(pose, angle, b)) {
+      high = b;
+    } else {
+      low = a;
+    }
+  }
+  return std::max(depth_at(pose, angle, best), depth_at(pose, angle, low));
+}
+
+/// The deepest place of the tool: of many angles, and then of ever smaller neighbourhoods of the deepest of them.
+double searched(const ToolPose& pose) {
+  double deepest = 0.0, angle = 0.0;
+  const auto look = [&](double from, double apart, int angles) {
+    for (int i = 0; i <= angles; ++i) {
+      const double depth = deepest_at(pose, from + i * apart);
+      if (depth <= deepest) continue;
+      deepest = depth;
+      angle = from + i * apart;
+    }
+  };
+  constexpr double kApart = std::numbers::pi / 45;
+  look(0.0, kApart, 90);
+  for (double around = kApart; around > 1e-8; around *= 0.5) look(angle - around, around / 4, 8);
+  return deepest;
+}
+
+TEST(Interpenetration, EqualsASearchOverTheWholeTool) {
+  Random random(9);
+  for (int run = 0; run < 40; ++run) {
+    const double tilt = random.uniform(0.05, 1.2), azimuth = random.uniform(0, 6.3);
+    const ToolPose pose =
+        tilted({random.uniform(-7e-4, 7e-4), random.uniform(-7e-4, 7e-4), random.uniform(-4e-3, 3e-4)}, tilt, azimuth);
+    EXPECT_NEAR(interpenetration(kBlock, kTool, pose), searched(pose), 2.0 * kRounding) << run;
+  }
+}
+
+/// The tip's edge just below the rim: what is deepest is the edge's point on the cone, a kink of the depth.
+TEST(Interpenetration, OfATipOnTheRimIsThatOfItsEdge) {
+  for (const double d : {1e-7, 1e-5, 1e-4}) {
+    for (const double tilt : {0.05, 0.3, 0.7}) {
+      const double s = std::sin(tilt), c = std::cos(tilt);
+      // The lowest point of the tip's edge, d below the top and outside the rim.
+      const Vec3 low{0.001 + d, 0.0, -d}, place = low - kTool.radius() * Vec3(c, 0.0, -s);
+      EXPECT_NEAR(interpenetration(kBlock, kTool, tilted(place, tilt)), d, kRounding) << tilt;
+    }
+  }
+}
+
+/// Shorter than the hole is deep, and wholly in the wall: the upper end may be the deepest.
+TEST(Interpenetration, KnowsTheUpperEndOfAShortTool) {
+  const Cylinder tool(kTool.radius(), 0.001);
+  for (const double reach : {0.0006, 0.0008}) {
+    // Leaning outwards, so that the upper end is further out; far below the top.
+    const double tilt = 0.3, s = std::sin(tilt), c = std::cos(tilt);
+    const ToolPose pose = tilted({reach, 0.0, -0.003}, tilt);
+    EXPECT_NEAR(interpenetration(kBlock, tool, pose), reach + 0.001 * s + 0.0005 * c - 0.001, kRounding);
+  }
+}
+
+TEST(Interpenetration, DoesNotDependOnTheAzimuth) {
+  const double expected = interpenetration(kBlock, kTool, tilted({-0.0006, 0, -0.0016}, 0.6));
+  EXPECT_GT(expected, 1e-5);
+  for (double azimuth = 0.1; azimuth < 6.3; azimuth += 0.37) {
+    const Vec3 position{-0.0006 * std::cos(azimuth), -0.0006 * std::sin(azimuth), -0.0016};
+    EXPECT_NEAR(interpenetration(kBlock, kTool, tilted(position, 0.6, azimuth)), expected, 2 * kRounding);
+  }
 }
 
 }  // namespace

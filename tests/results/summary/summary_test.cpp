@@ -1,10 +1,24 @@
 #include "results/summary/summary.hpp"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <limits>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "results/io/columns.hpp"
+#include "results/observe/energy_ledger.hpp"
+#include "results/observe/force_fidelity.hpp"
+#include "results/observe/ideal_trajectory.hpp"
+#include "results/observe/lost_torque.hpp"
+#include "results/observe/perception.hpp"
+#include "results/observe/target_metrics.hpp"
+#include "results/record/recorder.hpp"
+#include "results/summary/outcome_names.hpp"
+#include "results/summary/provenance.hpp"
 
 namespace hapbench::summary_test {
 namespace {
@@ -199,8 +213,8 @@ TEST(Summary, OfNoRowsHasNoObservedEnergy) {
   RunSummary run = example();
   run.passivity.reset();
   EXPECT_TRUE(summary_json(run)["passivity"]["net_created_J"].is_null());
-  EXPECT_FALSE(number_of(value_of(metric_list(run), "passivity.net_created_J")));
-  EXPECT_EQ(number_of(value_of(metric_list(example()), "passivity.net_created_J")), 0.25);
+  EXPECT_FALSE(metric_of(run, "passivity.net_created_J"));
+  EXPECT_EQ(metric_of(example(), "passivity.net_created_J"), 0.25);
 }
 
 TEST(Summary, GivesTheFinalPositionToExpectationsByCoordinate) {
@@ -210,17 +224,21 @@ TEST(Summary, GivesTheFinalPositionToExpectationsByCoordinate) {
   EXPECT_EQ(number_of(value_of(metrics, "final_position_m.y")), -0.25);
   EXPECT_EQ(number_of(value_of(metrics, "final_position_m.z")), 0.0);
   run.metrics = {};
-  EXPECT_FALSE(number_of(value_of(metric_list(run), "final_position_m.x")));
+  EXPECT_FALSE(metric_of(run, "final_position_m.x"));
   EXPECT_FALSE(number_of(value_of(metrics, "final_position_m.w"))) << "there is no such metric";
 }
 
 /// Every number of the sections is there under its path, counts as counts.
 TEST(Summary, ListsTheNumbersOfItsSections) {
   RunSummary run = example();
-  run.energy.emplace();
-  run.ideal_trajectory.emplace();
-  run.targets.emplace().resize(2);
-  run.targets->back().place = 7;
+  EnergyMetrics energy;
+  energy.created_max = 0.5;
+  energy.events.emplace_back();
+  std::vector<PlaceMetrics> places(2);
+  places.back().place = 7;
+  run.sections = {{"energy", metric_list(energy), {{"events", events_json(energy)}}},
+                  {"ideal_trajectory", metric_list(IdealTrajectoryMetrics{}), nlohmann::ordered_json::object()},
+                  {"targets", metric_list(places), nlohmann::ordered_json::object()}};
   const auto json = summary_json(run);
   std::size_t in_sections = 0;
   for (const auto& [name, unit, meaning, value] : metric_list(run)) {
@@ -237,7 +255,7 @@ TEST(Summary, ListsTheNumbersOfItsSections) {
   }
   // Passivity, energy, ideal trajectory of two hands, and two target places with four means each.
   EXPECT_EQ(in_sections, 4u + 12u + (2u * 10u + 1u) + 2u * 4u * 3u);
-  EXPECT_FALSE(json["energy"]["events"].is_null());
+  EXPECT_EQ(json["energy"]["events"].size(), 1u);
 }
 
 // What differs between the scalar and the SIMD build must not be named, or their summaries could not be identical.
@@ -248,6 +266,100 @@ TEST(Summary, WithTheRealProvenanceDoesNotNameTheInstructionSet) {
   for (const std::string word : {"march", "native", "avx", "sse", "simd", "SIMD"}) {
     EXPECT_EQ(text.find(word), std::string::npos) << word << " in\n" << text;
   }
+}
+
+TEST(OutcomeNames, LeadBackToTheirOutcomes) {
+  const std::vector<std::string_view> names(outcome_names().begin(), outcome_names().end());
+  EXPECT_EQ(names, (std::vector<std::string_view>{"completes", "leaves_hole", "tool_horizontal", "not_dragged",
+                                                  "no_contact", "lost_contact", "diverges"}));
+  EXPECT_EQ(outcome_name(Outcome::diverges), "diverges");
+  for (const std::string_view name : outcome_names()) {
+    const auto outcome = outcome_named(name);
+    ASSERT_TRUE(outcome) << name;
+    EXPECT_EQ(outcome_name(*outcome), name);
+  }
+}
+
+TEST(OutcomeNames, DoNotIncludeOtherWords) {
+  for (const char* name : {"", "complete", "Completes", "completes "}) EXPECT_FALSE(outcome_named(name)) << name;
+}
+
+TEST(ColumnsJson, HoldsTheColumnsOfEachFileAndTheMetrics) {
+  constexpr Column kColumns[] = {{"t_s", "s", "time"}, {"name", "", "who"}};
+  const ResultTable table = {"a.csv", "what a line is", kColumns};
+  const MetricList metrics = {{"force_max_N", "N", "largest force", 2.0}};
+  EXPECT_EQ(columns_json({&table, 1}, metrics).dump(),
+            R"({"summary.json":[{"name":"force_max_N","unit":"N","meaning":"largest force"}],)"
+            R"("a.csv":[{"name":"t_s","unit":"s","meaning":"time"},{"name":"name","unit":"","meaning":"who"}]})");
+}
+
+/// What comes behind the last "_" of a name that ends in its unit, as units are written in names.
+std::string unit_in_name(std::string unit) {
+  if (unit == "1" || unit.empty()) return "";
+  if (unit == "m2/s2") return "_m2_per_s2";
+  const std::pair<std::string, std::string> spelled[] = {{"/", "_per_"}, {" ", "_"}, {"1_per_", "per_"}};
+  for (const auto& [sign, word] : spelled) {
+    if (const auto at = unit.find(sign); at != std::string::npos) unit.replace(at, sign.size(), word);
+  }
+  return "_" + unit;
+}
+
+/// Names end in their units, and every entry says something.
+template <class Entries>
+void expect_documented(const Entries& entries, const std::string& where) {
+  std::set<std::string> names;
+  for (const auto& entry : entries) {
+    std::string name = entry.name;
+    EXPECT_TRUE(names.insert(name).second) << where << ": " << name << " twice";
+    EXPECT_GE(std::string(entry.meaning).size(), std::string("x of f").size()) << where << ": " << name;
+    for (const char* part : {".x", ".y", ".z", ".mean", ".standard_error", ".subjects"}) {
+      if (name.ends_with(part)) name.resize(name.size() - std::string(part).size());
+    }
+    const std::string unit = unit_in_name(entry.unit);
+    EXPECT_TRUE(name.ends_with(unit)) << where << ": " << name << " in " << entry.unit;
+  }
+}
+
+TEST(Columns, AreDocumentedWithTheUnitTheyAreNamedAfter) {
+  for (const ResultTable* table : {&kTrajectoryTable, &kContactTable, &kStiffnessTable, &kRatioTable, &kEnergyTable,
+                                   &kIdealTrajectoryTable, &kForceReferenceTable, &kTargetTable})
+    expect_documented(table->columns, table->file);
+}
+
+TEST(Metrics, AreDocumentedWithTheUnitTheyAreNamedAfter) {
+  expect_documented(metric_list(Metrics{}), "metrics");
+  expect_documented(final_position_list(Metrics{}), "final position");
+  expect_documented(metric_list(std::optional<PassivityMetrics>()), "passivity");
+  expect_documented(metric_list(EnergyMetrics{}), "energy");
+  expect_documented(metric_list(IdealTrajectoryMetrics{}), "ideal trajectory");
+  expect_documented(metric_list(ForceFidelity{}), "fidelity");
+  expect_documented(metric_list(LostTorqueMetrics{}), "torque");
+  expect_documented(metric_list(PerceptionMetrics{}), "perception");
+  expect_documented(metric_list(std::vector<PlaceMetrics>(1)), "targets");
+}
+
+TEST(Provenance, NamesTheBuild) {
+  const Provenance p = provenance();
+  EXPECT_TRUE(std::regex_match(p.version, std::regex(R"(\d+\.\d+\.\d+)"))) << p.version;
+  EXPECT_TRUE(std::regex_match(p.commit, std::regex("unknown|[-.0-9A-Za-z_/]+"))) << p.commit;
+  EXPECT_TRUE(std::regex_match(p.compiler, std::regex(R"([A-Za-z]+ \d+(\.\d+)*)"))) << p.compiler;
+  EXPECT_FALSE(p.cpu.empty());
+}
+
+TEST(Provenance, NamesTheFlagsThatCanChangeNumbers) {
+  EXPECT_NE(provenance().flags.find("-ffp-contract=off"), std::string::npos) << provenance().flags;
+}
+
+TEST(Provenance, CpuModelIsTheFirstOneOfCpuinfo) {
+  std::istringstream cpuinfo("processor\t: 0\nmodel\t\t: 1\nmodel name\t: Some CPU @ 2 GHz\nmodel name\t: Other\n");
+  EXPECT_EQ(cpu_model(cpuinfo), "Some CPU @ 2 GHz");
+}
+
+TEST(Provenance, CpuModelIsUnknownWhenCpuinfoHasNone) {
+  std::istringstream without("processor\t: 0\nmodel name\t:\n");
+  EXPECT_EQ(cpu_model(without), "unknown");
+  std::istringstream empty;
+  EXPECT_EQ(cpu_model(empty), "unknown");
 }
 
 }  // namespace

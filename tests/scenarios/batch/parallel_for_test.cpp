@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <chrono>
+#include <latch>
 #include <numeric>
 #include <set>
 #include <stdexcept>
@@ -88,18 +88,52 @@ TEST_P(ForEachRun, TakesNoRuns) {
 INSTANTIATE_TEST_SUITE_P(Jobs, ForEachRun, testing::Values(1, 2, 7));
 
 TEST(ForEachRunInParallel, HasAsManyThreadsAsJobsEvenOnASmallerMachine) {
-  // Each of four runs waits until all four have begun: with fewer threads none would come to its end.
-  std::atomic<int> begun = 0;
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  // Each of four runs waits until all four have begun: with fewer threads none would ever come to its end.
+  std::latch begun(4);
+  std::size_t delivered = 0;
   parallel_for(
       numbers_to(4), 4,
       [&](std::size_t) -> Delivery {
-        ++begun;
-        while (begun < 4 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
-        return {};
+        begun.arrive_and_wait();
+        return [&] { ++delivered; };
       },
       never);
-  EXPECT_LT(std::chrono::steady_clock::now(), deadline);
+  EXPECT_EQ(delivered, 4u);
+}
+
+// ---- Lists of jobs
+
+TEST(ForEachJob, DoesEachOnceOnAnyNumberOfThreads) {
+  for (const unsigned threads : {0u, 1u, 2u, 7u, 100u}) {
+    for (const std::size_t count : {0u, 1u, 5u, 1000u}) {
+      std::vector<std::atomic<int>> done(count);
+      for_each_job(count, {threads, ""}, [&](std::size_t i) { ++done[i]; });
+      for (const auto& times : done) EXPECT_EQ(times, 1);
+    }
+  }
+}
+
+TEST(ForEachJob, ThrowsWhatTheLowestFailingJobThrew) {
+  for (const unsigned threads : {1u, 4u}) {
+    // All fail: the first one is begun before any other and is the lowest.
+    try {
+      for_each_job(50, {threads, ""}, [](std::size_t i) { throw std::runtime_error(std::to_string(i)); });
+      FAIL() << "nothing was thrown";
+    } catch (const std::runtime_error& error) {
+      EXPECT_EQ(std::string(error.what()), "0");
+    }
+  }
+}
+
+TEST(ForEachJob, BeginsNothingAfterAFailure) {
+  std::size_t begun = 0;
+  EXPECT_THROW(for_each_job(1000, {1, ""},
+                            [&](std::size_t i) {
+                              ++begun;
+                              if (i == 10) throw std::runtime_error("ten");
+                            }),
+               std::runtime_error);
+  EXPECT_EQ(begun, 11u);
 }
 
 }  // namespace

@@ -2,34 +2,239 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <set>
+
 #include "scenarios/batch/journal.hpp"
-#include "scenarios/batch/sweep_row.hpp"
+#include "scenarios/batch/sweep_plan.hpp"
+#include "scenarios/batch/sweep_table.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/shared_shells.hpp"
 #include "tests/results/files.hpp"
-#include "tests/scenarios/batch/sweeps.hpp"
 #include "tests/scenarios/support/errors.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
 
 namespace hapbench::run_sweep_test {
 namespace {
 
 namespace fs = std::filesystem;
 using test::minimal_scenario;
-using test::plan_of;
 using test::read_file;
+using Numbers = std::vector<std::size_t>;
 
-TEST(SharedShells, MakesEachOnceAndDropsItAfterItsLastRun) {
-  const SweepPlan plan = plan_of(minimal_scenario("plane"), {"environment.spacing_m=0.0005,0.0004"});
-  SharedShells shells({2, 1});
-  auto first = shells.take(0, scenario_of(plan, 0).scenario);
-  const auto other = shells.take(1, scenario_of(plan, 1).scenario);
-  EXPECT_NE(first, other);
-  EXPECT_EQ(other.use_count(), 1);
-  EXPECT_EQ(first.use_count(), 2);
-  const auto again = shells.take(0, scenario_of(plan, 0).scenario);
-  EXPECT_EQ(again, first);
-  EXPECT_EQ(first.use_count(), 2);  // the two here; the collection has let go of it
+SweepPoints grid(const std::vector<std::string>& vary) {
+  std::vector<Axis> axes;
+  for (const std::string& text : vary) axes.push_back(parse_axis(text));
+  return SweepPoints(axes);
 }
+
+SweepPlan plan_of(const Json& scenario, const std::vector<std::string>& vary,
+                  const fs::path& file = test::data_directory() / "sweep.json") {
+  return plan_sweep({file, scenario}, {}, grid(vary), 2, false);
+}
+
+TEST(RunsToCheck, AreAllOfAFewAndTheEdgesOfMany) {
+  EXPECT_EQ(runs_to_check(grid({"a=1,2,3", "b=1,2"})), (Numbers{0, 1, 2, 3, 4, 5}));
+  const SweepPoints many = grid({"a=1:100:100", "b=1:100:100", "c=x,y,z"});
+  const Numbers checked = runs_to_check(many);
+  EXPECT_TRUE(std::is_sorted(checked.begin(), checked.end()));
+  EXPECT_LE(checked.size(), 2u * (100 + 100 + 3));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::set<std::size_t> seen;
+    for (const std::size_t run : checked) seen.insert(many.place(run, axis));
+    EXPECT_EQ(seen.size(), many.axes()[axis].size());
+  }
+}
+
+TEST(RunsToCheck, OfAMillionAreFew) {
+  const Numbers checked = runs_to_check(grid({"a=1:1e6:1000000"}));
+  EXPECT_EQ(checked.size(), kMostChecked);
+  EXPECT_EQ(checked.front(), 0u);
+  EXPECT_EQ(checked.back(), 999'999u);
+  const SweepPoints sample({parse_sampled_axis("a=1:2")}, {SamplingMethod::sobol, 1'000'000, 1});
+  EXPECT_EQ(runs_to_check(sample).size(), kMostChecked);
+}
+
+TEST(SweepPlan, OfALongRangeDescribesItByItsEnds) {
+  const auto content = [](const char* vary) { return plan_of(minimal_scenario("plane"), {vary}).content["vary"][0]; };
+  EXPECT_EQ(content("seed=1:3:3"), (Json{{"path", "seed"}, {"values", {"1", "2", "3"}}}));
+  EXPECT_EQ(content("seed=1:20000:20000"),
+            (Json{{"path", "seed"}, {"range", {1.0, 20000.0}}, {"scale", "linear"}, {"count", 20000}}));
+}
+
+TEST(SweepPlan, LoadsTheScenarioOfEachRun) {
+  const SweepPlan plan = plan_of(minimal_scenario("plane"), {"time.steps=1,2", "rendering.algorithm=mean,summation"});
+  const LoadedScenario loaded = scenario_of(plan, 2);
+  EXPECT_EQ(loaded.scenario.time.steps, 2);
+  EXPECT_EQ(loaded.scenario.rendering.algorithm, "mean");
+}
+
+TEST(SweepPlan, RefusesTheLowestBadRunWhateverTheThreads) {
+  std::string list = "time.steps=";
+  for (int i = 1; i <= 200; ++i) list += std::to_string(i < 120 ? i : -i) + ",";
+  list += "0";
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    const auto error = test::input_error_of([&] { plan_of(minimal_scenario("plane"), {list}); });
+    ASSERT_TRUE(error);
+    EXPECT_NE(std::string(error->what()).find("sweep.json: /time/steps: got -120; allowed: "), std::string::npos)
+        << error->what();
+  }
+}
+
+TEST(SweepPlan, GivesEachWarningOnceInTheOrderOfRuns) {
+  // An algorithm that fixes its depth model overrides the one given.
+  Json scenario = minimal_scenario("plane");
+  scenario["rendering"] = {{"algorithm", "normal_projection"}, {"depth_model", "shortest_distance"}};
+  const std::vector<std::string> alone = load_scenario(ScenarioText{"sweep.json", scenario}, {}).warnings;
+  ASSERT_FALSE(alone.empty());
+  const SweepPlan plan = plan_of(scenario, {"time.steps=1:50:50"}, "sweep.json");
+  EXPECT_EQ(plan.warnings, alone);
+}
+
+TEST(SweepPlan, HasTheColumnsOfWhateverSomeRunRecords) {
+  const auto header = [](const std::vector<std::string>& vary) {
+    return sweep_header(plan_of(minimal_scenario("plane"), vary));
+  };
+  EXPECT_EQ(header({"record.energy=false"}).find("energy."), std::string::npos);
+  EXPECT_NE(header({"record.energy=false,true"}).find(",energy.created_sum_J,"), std::string::npos);
+  EXPECT_EQ(header({"record.energy=false,true"}), header({"record.energy=true,false"}));
+  EXPECT_EQ(header({"record.energy=false,true"}).find("ideal_trajectory"), std::string::npos);
+}
+
+TEST(SweepPlan, HasExactlyTheMetricsOfItsRuns) {
+  std::vector<test::NamedScenario> scenarios = test::rich_scenarios();
+  for (test::NamedScenario& minimal : test::minimal_scenarios()) scenarios.push_back(std::move(minimal));
+  Json prescribed = minimal_scenario("plane");
+  prescribed["motion"]["position"] = {{"type", "prescribed"}, {"x_m", 0}, {"y_m", 0}, {"z_m", 0}};
+  prescribed["reference_force"] = {{"z_N", 1.0}};
+  prescribed["perception"] = Json::object();
+  scenarios.push_back({"with_reference_force", prescribed});
+  Json block = minimal_scenario("block_with_hole");
+  block["record"] = {{"ideal_trajectory", true}};
+  scenarios.push_back({"with_ideal_trajectory", block});
+  std::set<std::string> all;
+  for (const auto& [name, json] : scenarios) {
+    const bool has_targets = json.contains("hand") && json["hand"]["type"] == "tracking";  // which take their time
+    const SweepPlan plan = plan_of(json, {has_targets ? "seed=1" : "time.steps=2"});
+    std::vector<std::string> names;
+    for (const Metric& metric : metric_list(run_scenario(scenario_of(plan, 0), std::nullopt, false).summary))
+      names.push_back(metric.name);
+    EXPECT_EQ(plan.metrics, names) << name;
+    all.insert(names.begin(), names.end());
+  }
+  for (const std::string& name : metric_names()) EXPECT_TRUE(all.contains(name)) << name;
+}
+
+TEST(SweepPlan, HasAnotherDefinitionForEveryOtherContent) {
+  const Json plane = minimal_scenario("plane");
+  Json other = plane;
+  other["seed"] = 5;
+  std::set<std::string> definitions;
+  for (const auto& vary : {std::vector<std::string>{"time.steps=1,2"},
+                           {"time.steps=2,1"},
+                           {"time.steps=1,2,3"},
+                           {"time.steps=1,2", "seed=1"},
+                           {"seed=1", "time.steps=1,2"}}) {
+    definitions.insert(plan_of(plane, vary).definition);
+  }
+  definitions.insert(plan_of(other, {"time.steps=1,2"}).definition);
+  const SweepPoints grid({parse_axis("time.steps=1,2")});
+  definitions.insert(plan_sweep({"sweep.json", plane}, {"seed=5"}, grid, 1, false).definition);
+  const std::vector<Axis> box = {parse_sampled_axis("seed=1,2,3")};
+  for (const Sampling& sampling :
+       {Sampling{SamplingMethod::latin_hypercube, 3, 1}, Sampling{SamplingMethod::latin_hypercube, 3, 2},
+        Sampling{SamplingMethod::latin_hypercube, 4, 1}, Sampling{SamplingMethod::random, 3, 1}}) {
+    definitions.insert(plan_sweep({"sweep.json", plane}, {}, SweepPoints(box, sampling), 1, false).definition);
+  }
+  EXPECT_EQ(definitions.size(), 11u);
+  // Threads, the file's place and spelling do not count.
+  EXPECT_EQ(plan_sweep({"elsewhere.json", plane}, {}, grid, 7, false).definition,
+            plan_of(plane, {"time.steps=1.0,2e0"}).definition);
+}
+
+TEST(SweepPlan, DefinesNamedFilesByTheirContents) {
+  const test::TemporaryDirectory directory;
+  const std::string points = test::read_file(test::data_directory() / "shell.csv");
+  const auto definition = [&](const std::string& contents) {
+    test::write_plainly(directory / "shell.csv", contents);
+    return plan_of(minimal_scenario("point_shell"), {"time.steps=1,2"}, directory / "sweep.json").definition;
+  };
+  const std::string first = definition(points);
+  EXPECT_EQ(definition(points), first);
+  EXPECT_NE(definition(points.substr(0, points.rfind('\n', points.size() - 2) + 1)), first);
+}
+
+/// A plane, which names no file, under a tool that is a mesh.
+Json plane_under_mesh_tool() {
+  Json scenario = minimal_scenario("plane");
+  scenario["tool"] = {{"type", "mesh"}, {"file", "tool.obj"}, {"scale", 0.001}, {"grid_m", 0.0002}};
+  return scenario;
+}
+
+TEST(SweepPlan, DefinesAToolByItsMesh) {
+  const test::TemporaryDirectory directory;
+  const auto definition = [&](const std::string& contents) {
+    test::write_plainly(directory / "tool.obj", contents);
+    return plan_of(plane_under_mesh_tool(), {"time.steps=1,2"}, directory / "sweep.json").definition;
+  };
+  const std::string cube = test::read_file(test::data_directory() / "cube.obj");
+  const std::string first = definition(cube);
+  EXPECT_EQ(definition(cube), first);
+  EXPECT_NE(definition(cube + "# more\n"), first);
+}
+
+TEST(SweepPlan, RefusesBadMeshesOfToolsBeforeTheFirstRun) {
+  const test::TemporaryDirectory directory;
+  const std::string cube = test::read_file(test::data_directory() / "cube.obj");
+  test::write_plainly(directory / "tool.obj", cube);
+  test::write_plainly(directory / "open.obj", cube.substr(0, cube.rfind('f')));
+  for (const std::string bad : {"missing.obj", "open.obj"}) {
+    const auto error = test::input_error_of(
+        [&] { plan_of(plane_under_mesh_tool(), {"tool.file=tool.obj," + bad}, directory / "sweep.json"); });
+    ASSERT_TRUE(error) << bad;
+    EXPECT_NE(std::string(error->what()).find("sweep.json: /tool/file: "), std::string::npos) << error->what();
+    EXPECT_NE(std::string(error->what()).find(bad), std::string::npos) << error->what();
+  }
+}
+
+TEST(SweepPlan, RefusesBadNamedFilesOfAnyRun) {
+  const test::TemporaryDirectory directory;
+  test::write_plainly(directory / "shell.csv", test::read_file(test::data_directory() / "shell.csv"));
+  const auto error = test::input_error_of([&] {
+    plan_of(minimal_scenario("point_shell"), {"environment.file=shell.csv,missing.csv"}, directory / "sweep.json");
+  });
+  ASSERT_TRUE(error);
+  EXPECT_NE(std::string(error->what()).find("missing.csv"), std::string::npos) << error->what();
+}
+
+// ---- Runs
+
+TEST(RunsToDo, AreInOrderWhereTheEnvironmentStaysTheSame) {
+  const SweepPoints points({parse_axis("a=1,2"), parse_axis("b=1,2")});
+  EXPECT_EQ(runs_to_do(points, {}), (Numbers{0, 1, 2, 3}));
+  EXPECT_EQ(runs_to_do(points, {1, 3}), Numbers{1});
+  EXPECT_EQ(runs_to_do(points, {4, 5}), Numbers{});
+}
+
+TEST(RunsToDo, OfOneEnvironmentFollowEachOther) {
+  const SweepPoints points(
+      {parse_axis("a=1,2"), parse_axis("environment.spacing_m=1e-3,2e-3,3e-3"), parse_axis("environment.width_m=1,2")});
+  EXPECT_EQ(runs_to_do(points, {}), (Numbers{0, 6, 1, 7, 2, 8, 3, 9, 4, 10, 5, 11}));
+  EXPECT_EQ(runs_to_do(points, {1, 2}), (Numbers{1, 7, 3, 9, 5, 11}));
+}
+
+TEST(RunsToDo, OfASampleFollowEachOtherByTheListedFields) {
+  const SweepPoints points({parse_sampled_axis("environment.file=x.stl,y.stl"),
+                            parse_sampled_axis("environment.scale=1:2"), parse_sampled_axis("a=1:2")},
+                           {SamplingMethod::latin_hypercube, 40, 1});
+  const Numbers all = runs_to_do(points, {});
+  Numbers sorted = all;
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(sorted[i], i);
+  for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(points.value(all[i], 0), i < 20 ? "x.stl" : "y.stl");
+}
+
+// ---- Sweeps
 
 class RunSweep : public testing::Test {
  protected:
@@ -54,7 +259,7 @@ TEST_F(RunSweep, HasForEachRunWhatTheRunAloneHas) {
   EXPECT_EQ(report.counts.runs, 4u);
   for (std::size_t i = 0; i < 4; ++i) {
     const RunReport alone = run_scenario(scenario_of(plan, i), std::nullopt, false);
-    EXPECT_EQ(report.rows[i], sweep_row(plan, i, alone.summary));
+    EXPECT_EQ(row_text(plan, report.rows[i]), row_text(plan, sweep_row(plan, i, alone.summary)));
     EXPECT_GT(alone.summary.metrics.force_max, 0.0);
   }
 }
@@ -64,7 +269,7 @@ TEST_F(RunSweep, HasOneTableWhateverTheOrderOfTheRuns) {
   const SweepPlan plan = plan_of(minimal_scenario("plane"), {"time.steps=1:40:40", "environment.spacing_m=5e-4,4e-4"});
   const SweepReport report = run(plan, directory_.path());
   ASSERT_EQ(report.rows.size(), 80u);
-  for (std::size_t i = 0; i < 80; ++i) EXPECT_EQ(run_of_row(plan, report.rows[i]), i);
+  for (std::size_t i = 0; i < 80; ++i) EXPECT_EQ(report.rows[i].run, i);
 }
 
 TEST_F(RunSweep, OfManyRunsKeepsNoRows) {
@@ -75,11 +280,11 @@ TEST_F(RunSweep, OfManyRunsKeepsNoRows) {
   EXPECT_TRUE(report.rows.empty());
   const auto lines = test::lines_of(read_file(report.table));
   ASSERT_EQ(lines.size(), 10'002u);
-  for (std::size_t i = 0; i < 10'001; i += 100) EXPECT_EQ(run_of_row(plan, lines[1 + i]), i);
+  for (std::size_t i = 0; i < 10'001; i += 100) EXPECT_EQ(parse_row(plan, lines[1 + i]).value().run, i);
 }
 
 TEST_F(RunSweep, HasErrorRowsForRunsThatNobodyChecked) {
-  // Of so many values not every one is looked at before the first run; 4567 is no seed that is checked.
+  // So many values are not all checked before the first run; 4567 is one that is not.
   std::string seeds = "seed=0";
   for (int i = 1; i < 6000; ++i) seeds += "," + std::to_string(i == 4567 ? -1 : i);
   const SweepPlan plan = plan_of(minimal_scenario("springs"), {seeds});
@@ -88,14 +293,15 @@ TEST_F(RunSweep, HasErrorRowsForRunsThatNobodyChecked) {
   ASSERT_TRUE(report.failed);
   EXPECT_EQ(report.failed->run, 4567u);
   EXPECT_NE(report.failed->problem.find("/seed: got -1"), std::string::npos) << report.failed->problem;
-  EXPECT_EQ(report.rows[4567], error_row(plan, 4567));
+  EXPECT_EQ(row_text(plan, report.rows[4567]), row_text(plan, error_row(plan, 4567)));
 }
 
 TEST_F(RunSweep, LeavesTheTableAndItsDescriptionOnly) {
   const SweepPlan plan = plan_of(minimal_scenario("plane"), {"time.steps=1,2"});
   const SweepReport report = run(plan, directory_.path());
   EXPECT_EQ(directory_.entries(), (std::vector<std::string>{"sweep.csv", "sweep.json"}));
-  EXPECT_EQ(read_file(report.table), sweep_header(plan) + "\n" + report.rows[0] + "\n" + report.rows[1] + "\n");
+  EXPECT_EQ(read_file(report.table),
+            sweep_header(plan) + "\n" + row_text(plan, report.rows[0]) + "\n" + row_text(plan, report.rows[1]) + "\n");
   const Json description = Json::parse(read_file(directory_ / "sweep.json"));
   EXPECT_EQ(description["definition"], plan.definition);
   EXPECT_EQ(description["vary"][0]["values"], (Json{"1", "2"}));
@@ -124,10 +330,10 @@ TEST_F(FailingSweep, HasErrorRowsForWhatFailsAndGoesOn) {
   ASSERT_TRUE(report.failed);
   EXPECT_EQ(report.failed->run, 0u);
   EXPECT_NE(report.failed->problem.find("a.csv"), std::string::npos);
-  EXPECT_EQ(report.rows[1], error_row(*plan_, 1));
-  EXPECT_EQ(report.rows[2].find("2,b.csv,1,completes,true,1,"), 0u) << report.rows[2];
-  for (const std::string& row : report.rows) {
-    EXPECT_EQ(test::cells_of(row).size(), test::cells_of(sweep_header(*plan_)).size());
+  EXPECT_EQ(row_text(*plan_, report.rows[1]), row_text(*plan_, error_row(*plan_, 1)));
+  EXPECT_EQ(row_text(*plan_, report.rows[2]).find("2,b.csv,1,completes,true,1,"), 0u);
+  for (const SweepRow& row : report.rows) {
+    EXPECT_EQ(test::cells_of(row_text(*plan_, row)).size(), test::cells_of(sweep_header(*plan_)).size());
   }
 }
 
@@ -153,7 +359,7 @@ TEST_F(FailingSweep, TriesWhatFailedAgainWhenItIsResumed) {
 TEST_F(RunSweep, TakesNoRowsFromItsJournalThatAreNotItsOwn) {
   const SweepPlan plan = plan_of(minimal_scenario("plane"), {"time.steps=1,2"});
   const std::string title = "definition " + plan.definition + ", shard 0/1, runs are not kept";
-  const std::string good = run(plan, directory_.path()).rows[0];
+  const std::string good = row_text(plan, run(plan, directory_.path()).rows[0]);
   for (const std::string& row : {std::string("2") + good.substr(1), "0,7" + good.substr(3), std::string("x"),
                                  std::string(","), good + ",", std::string("99999999999999999999,1")}) {
     Journal(directory_ / "sweep.journal", title, false).add(row);

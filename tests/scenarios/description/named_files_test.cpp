@@ -35,14 +35,14 @@ constexpr const char* kStroke = R"({"motion": {"position": {"type": "file", "fil
 
 TEST_F(NamedFilesOfAScenario, AreThoseItNames) {
   const NamedFiles none = load("plane").files;
-  EXPECT_EQ(none.environment(), nullptr);
-  EXPECT_EQ(none.motion(), nullptr);
+  EXPECT_TRUE(none.all().empty());
   const NamedFiles both = load("point_shell", kStroke).files;
-  ASSERT_NE(both.environment(), nullptr);
-  ASSERT_NE(both.motion(), nullptr);
-  EXPECT_EQ(both.environment()->path(), directory_ / "shell.csv");
-  EXPECT_EQ(both.environment()->hash(), hash_text(hash_of(test::read_file(directory_ / "shell.csv"))));
-  EXPECT_EQ(both.motion()->hash(), hash_text(hash_of(test::read_file(directory_ / "stroke.csv"))));
+  ASSERT_EQ(both.all().size(), 2u);
+  ASSERT_NE(both.find(kEnvironmentFile), nullptr);
+  ASSERT_NE(both.find(kMotionFile), nullptr);
+  EXPECT_EQ(both.find(kToolFile), nullptr);
+  EXPECT_EQ(both.at(kEnvironmentFile).path(), directory_ / "shell.csv");
+  for (const auto& file : both.all()) EXPECT_EQ(file->hash(), hash_text(hash_of(test::read_file(file->path()))));
 }
 
 // Whoever changes a file while a run is under way changes neither the run nor what it says of itself.
@@ -65,16 +65,16 @@ TEST_F(NamedFilesOfAScenario, AreReadOnce) {
 TEST_F(NamedFilesOfAScenario, AreReadByTheFirstOfTheirCopies) {
   const LoadedScenario loaded = load("mesh");
   const NamedFiles copy = loaded.files;
-  const auto points = copy.mesh().points();
+  const auto points = copy.at(kEnvironmentFile).mesh().points();
   fs::remove(directory_ / "cube.obj");
-  EXPECT_EQ(loaded.files.mesh().points().size(), points.size());
+  EXPECT_EQ(loaded.files.at(kEnvironmentFile).mesh().points().size(), points.size());
 }
 
 TEST_F(NamedFilesOfAScenario, AreRefusedEveryTime) {
   test::write_plainly(directory_ / "cube.obj", "v 0 0 up\n");
   const LoadedScenario loaded = load("mesh");
   for (int i = 0; i < 2; ++i) {
-    const auto error = test::input_error_of([&] { loaded.files.mesh(); });
+    const auto error = test::input_error_of([&] { loaded.files.at(kEnvironmentFile).mesh(); });
     ASSERT_TRUE(error);
     EXPECT_NE(std::string(error->what()).find("line 1: got \"up\"; allowed: a finite number"), std::string::npos);
   }

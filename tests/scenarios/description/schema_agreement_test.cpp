@@ -7,6 +7,7 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/writer.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "tests/scenarios/support/mutation.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
@@ -101,7 +102,8 @@ TEST(ScenarioSchema, AcceptsFilesThatExtendOthersAsTheyStand) {
 }
 
 /// What one mutant must show; `objection` is the reader's.
-void expect_agreement(const test::Mutation& mutant, const std::optional<InputError>& objection, const std::string& name) {
+void expect_agreement(const test::Mutation& mutant, const std::optional<InputError>& objection,
+                      const std::string& name) {
   const bool accepted = schema().accepts(mutant.document);
   const bool wrong_shape = objection && objection->kind() == InputError::Kind::shape;
   EXPECT_EQ(wrong_shape, !accepted) << name << " " << mutant.change

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "scenarios/input/number_table.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "sim/mesh/mesh_from_triangles.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
@@ -51,7 +51,7 @@ class MeshFile : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-/// So that formats that keep no order compare too.
+/// Sorted, because some formats do not keep the order.
 std::vector<Vec3> sorted_positions(const std::vector<SurfacePoint>& points) {
   std::vector<Vec3> positions;
   for (const SurfacePoint& p : points) positions.push_back(p.position);

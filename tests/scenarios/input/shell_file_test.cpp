@@ -1,13 +1,15 @@
-#include "scenarios/input/shell_file.hpp"
-
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <cmath>
 #include <cstdint>
 
+#include "scenarios/input/mesh_file.hpp"
+#include "scenarios/input/mesh_formats.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "sim/core/random.hpp"
 #include "sim/geometry/analytic_shells.hpp"
+#include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
 namespace hapbench::shell_file_test {
@@ -101,6 +103,168 @@ TEST_F(ShellFile, NeedsAKnownExtension) {
               ": has another extension; allowed: .csv or .ply");
     EXPECT_TRUE(test::input_error_of([&] { point_shell_text({}, name); }));
   }
+}
+
+// ---- PLY
+
+const std::string kSixFloats =
+    "property float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\n";
+
+std::string header(const std::string& format, const std::string& count, const std::string& properties = kSixFloats,
+                   const std::string& after = "") {
+  return "ply\nformat " + format + " 1.0\nelement vertex " + count + "\n" + properties + after + "end_header\n";
+}
+
+/// The bytes of a number, most or least significant first.
+template <class Bits>
+std::string bytes(Bits value, bool big_endian) {
+  std::string text;
+  for (std::size_t i = 0; i < sizeof value; ++i) {
+    const std::size_t shift = 8 * (big_endian ? sizeof value - 1 - i : i);
+    text += static_cast<char>(static_cast<std::uint64_t>(value) >> shift & 0xff);
+  }
+  return text;
+}
+std::string float_bytes(float value, bool big_endian = false) {
+  return bytes(std::bit_cast<std::uint32_t>(value), big_endian);
+}
+
+class PlyPoints : public testing::Test {
+ protected:
+  std::vector<SurfacePoint> read(const std::string& contents) const {
+    test::write_plainly(file_, contents);
+    return ply_points_in(read_named_file(file_), file_);
+  }
+  std::string refusal_of(const std::string& contents) const {
+    SCOPED_TRACE(contents.substr(0, 300));
+    const auto error = test::input_error_of([&] { read(contents); });
+    if (!error) return "";
+    const std::string message = error->what();
+    EXPECT_EQ(message.find(file_.string()), 0u);
+    return message.substr(file_.string().size());
+  }
+
+  test::TemporaryDirectory directory_;
+  std::filesystem::path file_ = directory_ / "points.ply";
+};
+
+TEST_F(PlyPoints, AreReadFromText) {
+  const auto points = read(header("ascii", "2") + "1 2 3 0 0 1\n0.1 -2e-3 0 1 0 0\n");
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_EQ(points[0].position, Vec3(1, 2, 3));
+  EXPECT_EQ(points[0].normal, Vec3(0, 0, 1));
+  EXPECT_EQ(points[1].position, Vec3(0.1, -2e-3, 0));
+}
+
+TEST_F(PlyPoints, AreReadFromBinaryOfEitherByteOrder) {
+  for (const bool big : {false, true}) {
+    std::string data;
+    for (const float value : {1.0f, -2.5f, 0.1f, 0.0f, 0.0f, 1.0f}) data += float_bytes(value, big);
+    const auto points = read(header(big ? "binary_big_endian" : "binary_little_endian", "1") + data);
+    ASSERT_EQ(points.size(), 1u);
+    EXPECT_EQ(points[0].position, Vec3(1.0, -2.5, static_cast<double>(0.1f)));
+    EXPECT_EQ(points[0].normal, Vec3(0, 0, 1));
+  }
+}
+
+TEST_F(PlyPoints, MayHaveEveryScalarType) {
+  const std::string properties =
+      "property char x\nproperty uint8 y\nproperty int16 z\nproperty ushort nx\nproperty int ny\nproperty uint32 nz\n"
+      "property double quality\nproperty float64 more\n";
+  const std::string text = header("ascii", "1", properties) + "-1 200 -300 1 0 0 0.5 2\n";
+  const std::string binary = header("binary_big_endian", "1", properties) + bytes(std::uint8_t{255}, true) +
+                             bytes(std::uint8_t{200}, true) + bytes(std::uint16_t{65536 - 300}, true) +
+                             bytes(std::uint16_t{1}, true) + bytes(std::uint32_t{0}, true) +
+                             bytes(std::uint32_t{0}, true) + bytes(std::bit_cast<std::uint64_t>(0.5), true) +
+                             bytes(std::bit_cast<std::uint64_t>(2.0), true);
+  for (const std::string& contents : {text, binary}) {
+    const auto points = read(contents);
+    EXPECT_EQ(points[0].position, Vec3(-1, 200, -300));
+    EXPECT_EQ(points[0].normal, Vec3(1, 0, 0));
+  }
+}
+
+TEST_F(PlyPoints, MayBeFollowedByFacesAndPrecededByComments) {
+  const std::string faces =
+      "element face 4000000000\nproperty list uchar int vertex_indices\nelement edge 3\nproperty int a\n";
+  const auto points =
+      read("ply\r\ncomment element vertex 9\nobj_info end_header\nformat ascii 1.0\nelement vertex 1\n" + kSixFloats +
+           faces + "end_header\r\n1 2 3 0 0 1\r\n2000000000 0 0 0\n");
+  ASSERT_EQ(points.size(), 1u);
+  EXPECT_EQ(points[0].position, Vec3(1, 2, 3));
+}
+
+TEST_F(PlyPoints, MayStandInAnyOrderOfProperties) {
+  const auto points = read(header("ascii", "1",
+                                  "property float nz\nproperty float ny\nproperty float nx\nproperty uchar red\n"
+                                  "property float z\nproperty float y\nproperty float x\n") +
+                           "1 0 0 255 3 2 1\n");
+  EXPECT_EQ(points[0].position, Vec3(1, 2, 3));
+  EXPECT_EQ(points[0].normal, Vec3(0, 0, 1));
+}
+
+TEST_F(PlyPoints, AreRefusedWhenTheFileCannotHoldTheirNumber) {
+  const std::string row = "0 0 0 0 0 1\n";
+  for (const char* count : {"2", "20000000"}) {
+    EXPECT_NE(refusal_of(header("ascii", count) + row), "");
+    EXPECT_NE(
+        refusal_of(header("binary_little_endian", count) + std::string(24, '\0')).find("the file ends before its"),
+        std::string::npos);
+  }
+  EXPECT_NE(refusal_of(header("ascii", "20000000") + row).find("the file ends before its 20000000 vertices"),
+            std::string::npos);
+  for (const char* count :
+       {"20000001", "4000000000", "99999999999999999999999", "-1", "1e3", "0x10", "nan", "1.5", "", "1 2"}) {
+    EXPECT_NE(refusal_of(header("ascii", count) + row).find("allowed:"), std::string::npos) << count;
+  }
+  EXPECT_EQ(read(header("ascii", "0")).size(), 0u);
+}
+
+TEST_F(PlyPoints, AreRefusedWithABrokenHeader) {
+  const std::string row = "0 0 0 0 0 1\n";
+  const std::string good = header("ascii", "1") + row;
+  EXPECT_EQ(refusal_of(""), ", line 0: the header does not end; allowed: a PLY header up to \"end_header\"");
+  EXPECT_EQ(refusal_of("solid\n"), ", line 1: is not a PLY file; allowed: \"ply\" as the first line");
+  EXPECT_NE(refusal_of(good.substr(0, good.find("end_header"))).find("the header does not end"), std::string::npos);
+  EXPECT_NE(refusal_of("ply\nformat ascii 1.0\nend_header\n").find("allowed: a header with"), std::string::npos);
+  EXPECT_NE(refusal_of("ply\nelement vertex 1\n" + kSixFloats + "end_header\n" + row).find("allowed: a header with"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("ply\nformat ascii 2.0\nend_header\n").find(", line 2: unknown format"), std::string::npos);
+  EXPECT_NE(refusal_of("ply\nformat utf8 1.0\nend_header\n").find(", line 2: unknown format"), std::string::npos);
+  EXPECT_NE(
+      refusal_of("ply\nformat ascii 1.0\nelement face 1\nelement vertex 1\nend_header\n").find("as the first element"),
+      std::string::npos);
+  EXPECT_NE(refusal_of(header("ascii", "1", kSixFloats + "end_headerfoo\n")).find("got \"end_headerfoo\""),
+            std::string::npos);
+  EXPECT_NE(refusal_of(header("ascii", "1 element vertex 3000000000")).find("as the first element"), std::string::npos);
+}
+
+TEST_F(PlyPoints, AreRefusedWithoutSixScalarProperties) {
+  EXPECT_NE(refusal_of(header("ascii", "1", "property float x\nproperty float y\nproperty float z\n") + "0 0 0\n")
+                .find("got 0 vertex properties \"nx\"; allowed: one each of x, y, z, nx, ny, nz"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(header("ascii", "1", kSixFloats + "property float x\n")).find("got 2 vertex properties \"x\""),
+            std::string::npos);
+  for (const char* property : {"property list uchar float x\n", "property quad x\n", "property float\n", "property\n",
+                               "property float x element vertex 3000000000\n"}) {
+    EXPECT_NE(refusal_of(header("ascii", "1", kSixFloats + property)).find(", line 10: allowed for a vertex"),
+              std::string::npos);
+  }
+}
+
+TEST_F(PlyPoints, AreRefusedWithCellsThatAreNoFiniteNumbers) {
+  for (const char* cell : {"nan", "inf", "-inf", "x", "1e999", "1,5", "0x1", "+1"}) {
+    EXPECT_EQ(refusal_of(header("ascii", "2") + "0 0 0 0 0 1\n0 " + cell + " 0 0 0 1\n"),
+              std::string(", line 12: vertex 1: got \"") + cell + "\"; allowed: a finite number");
+  }
+  EXPECT_NE(refusal_of(header("ascii", "1") + "0 0 0 0 0 1 7\n").find("vertex 0: got 7 numbers; allowed: 6"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(header("ascii", "2") + "0 0 0 0 0 1\n0 0 0 0 0\n       ").find("vertex 1: got 5 numbers"),
+            std::string::npos);
+  std::string data;
+  for (const float value : {0.0f, std::numeric_limits<float>::infinity(), 0.0f, 0.0f, 0.0f, 1.0f})
+    data += float_bytes(value);
+  EXPECT_EQ(refusal_of(header("binary_little_endian", "1") + data), ": vertex 0: got inf; allowed: finite numbers");
 }
 
 }  // namespace

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/errors.hpp"
+
 namespace hapbench::text_lines_test {
 namespace {
 
@@ -35,6 +40,126 @@ TEST(LineReader, GivesLinesWithTheirNumbersAndLeavesTheRest) {
   EXPECT_EQ(lines.next(), std::nullopt);
   EXPECT_EQ(lines.line(), 4u);
   EXPECT_EQ(LineReader("").next(), std::nullopt);
+}
+
+// ---- Comma-separated values
+
+const std::filesystem::path kFile = "t.csv";
+
+TEST(CsvReader, GivesRowsAsCells) {
+  CsvReader csv{LineReader("a,b\r\n 1 ,\t2\r\n,\n\n3,4"), kFile};
+  EXPECT_EQ(csv.header(), "a,b");
+  EXPECT_EQ(csv.columns(), (Words{"a", "b"}));
+  ASSERT_TRUE(csv.next());
+  EXPECT_EQ(csv.cells(), (Words{"1", "2"}));
+  EXPECT_EQ(csv.line(), 2u);
+  ASSERT_TRUE(csv.next());
+  EXPECT_EQ(csv.cells(), (Words{"", ""}));
+  ASSERT_TRUE(csv.next_not_blank());
+  EXPECT_EQ(csv.cells(), (Words{"3", "4"}));
+  EXPECT_EQ(csv.line(), 5u);
+  EXPECT_FALSE(csv.next());
+  EXPECT_FALSE(csv.next_not_blank());
+}
+
+TEST(CsvReader, OfNothingHasNoHeader) {
+  CsvReader csv{LineReader(""), kFile};
+  EXPECT_EQ(csv.header(), "");
+  EXPECT_FALSE(csv.next());
+}
+
+TEST(CsvReader, RefusesRowsOfAnotherLength) {
+  for (const char* text : {"a,b\n1,2\n3\n", "a,b\n1,2\n3,4,5\n", "a,b\n1,2\n\n"}) {
+    CsvReader csv{LineReader(text), kFile};
+    ASSERT_TRUE(csv.next());
+    const auto error = test::input_error_of([&] { csv.next(); });
+    ASSERT_TRUE(error) << text;
+    EXPECT_TRUE(std::string(error->what()).starts_with("t.csv, line 3: got ")) << error->what();
+    EXPECT_TRUE(std::string(error->what()).ends_with(" cells; allowed: 2")) << error->what();
+  }
+}
+
+// ---- Tables of numbers
+
+class NumberTableFile : public testing::Test {
+ protected:
+  NumberTable read(const std::string& text, std::size_t most_rows = 100) const {
+    test::write_plainly(file_, text);
+    return number_table_in(read_named_file(file_), file_, "a,b", most_rows);
+  }
+  /// The refusal without the file in front.
+  std::string refusal_of(const std::string& text, std::size_t most_rows = 100) const {
+    SCOPED_TRACE(text);
+    const auto error = test::input_error_of([&] { read(text, most_rows); });
+    if (!error) return "";
+    EXPECT_EQ(error->kind(), InputError::Kind::relation);
+    const std::string message = error->what();
+    EXPECT_EQ(message.find(file_.string()), 0u);
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+    return message.substr(file_.string().size());
+  }
+
+  test::TemporaryDirectory directory_;
+  std::filesystem::path file_ = directory_ / "table.csv";
+};
+
+TEST_F(NumberTableFile, IsReadRowByRow) {
+  const NumberTable table = read("a,b\n1,2\n-0.5,1e-3\n");
+  ASSERT_EQ(table.rows(), 2u);
+  EXPECT_EQ(table.row(0)[1], 2.0);
+  EXPECT_EQ(table.row(1)[0], -0.5);
+  EXPECT_EQ(table.row(1)[1], 1e-3);
+}
+
+TEST_F(NumberTableFile, MayHaveBlanksBlankLinesCarriageReturnsAndNoLastLineEnd) {
+  const NumberTable table = read("a,b\r\n\r\n 1 ,\t2\r\n  \n3,4");
+  EXPECT_EQ(table.values, (std::vector<double>{1, 2, 3, 4}));
+}
+
+TEST_F(NumberTableFile, MayHaveNoRows) {
+  EXPECT_EQ(read("a,b").rows(), 0u);
+}
+
+TEST_F(NumberTableFile, KeepsEveryBitOfANumber) {
+  EXPECT_EQ(read("a,b\n0.1,4.9406564584124654e-324\n").values, (std::vector<double>{0.1, 5e-324}));
+  EXPECT_TRUE(std::signbit(read("a,b\n-0,0\n").values[0]));
+}
+
+TEST_F(NumberTableFile, NeedsItsHeader) {
+  EXPECT_EQ(refusal_of("b,a\n1,2\n"), ", line 1: got header \"b,a\"; allowed: \"a,b\"");
+  EXPECT_EQ(refusal_of("1,2\n"), ", line 1: got header \"1,2\"; allowed: \"a,b\"");
+  EXPECT_EQ(refusal_of("\na,b\n"), ", line 1: got header \"\"; allowed: \"a,b\"");
+  EXPECT_EQ(refusal_of(""), ", line 1: the file is empty; allowed: header \"a,b\" and rows");
+  EXPECT_LT(refusal_of(std::string(1'000'000, 'x')).size(), 200u);
+}
+
+TEST_F(NumberTableFile, NamesLineAndColumnOfABadCell) {
+  for (const char* cell :
+       {"nan", "NaN", "inf", "-inf", "1e999", "", "x", "1x", "+1", "0x10", "1 2", "1;2", "--1", "\"1\"", "1e"}) {
+    EXPECT_EQ(refusal_of(std::string("a,b\n1,2\n\n3,") + cell + "\n"),
+              std::string(", line 4: column 2: got \"") + cell + "\"; allowed: a finite number");
+  }
+}
+
+TEST_F(NumberTableFile, NeedsAsManyCellsAsColumns) {
+  EXPECT_EQ(refusal_of("a,b\n1\n"), ", line 2: got 1 cells; allowed: 2");
+  EXPECT_EQ(refusal_of("a,b\n1,2\n1,2,3\n"), ", line 3: got 3 cells; allowed: 2");
+  EXPECT_EQ(refusal_of("a,b\n1,2,\n"), ", line 2: got 3 cells; allowed: 2");
+  EXPECT_EQ(refusal_of("a,b\n" + std::string(1'000'000, ',') + "\n"), ", line 2: got 1000001 cells; allowed: 2");
+}
+
+TEST_F(NumberTableFile, MayHaveAsManyRowsAsAllowed) {
+  EXPECT_EQ(read("a,b\n1,2\n3,4\n", 2).rows(), 2u);
+  EXPECT_EQ(refusal_of("a,b\n1,2\n3,4\n5,6\n", 2), ", line 4: more than 2 rows");
+}
+
+TEST_F(NumberTableFile, ThatIsMissingOrADirectoryIsRefused) {
+  const auto refusal = [](const std::filesystem::path& file) {
+    const auto error = test::input_error_of([&] { number_table_in(read_named_file(file), file, "a,b", 1); });
+    return error ? error->problem() : "";
+  };
+  EXPECT_EQ(refusal(directory_ / "no.csv"), "cannot be read: No such file or directory");
+  EXPECT_EQ(refusal(directory_.path()), "is a directory, not a file");
 }
 
 }  // namespace

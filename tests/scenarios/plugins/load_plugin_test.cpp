@@ -9,6 +9,7 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/environment_variable.hpp"
@@ -151,7 +152,7 @@ TEST_F(OwnParameters, AreCheckedWithPointerRangeAndNearestName) {
 }
 
 TEST_F(OwnParameters, AreInTheSchema) {
-  const Json schema = full_scenario_schema();
+  const Json schema = scenario_guide().schema;
   const Json& gain =
       schema.at(Json::json_pointer("/properties/rendering/properties/parameters/properties/hostile/properties/gain"));
   EXPECT_EQ(gain["default"], 1.0);

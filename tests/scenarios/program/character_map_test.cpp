@@ -1,4 +1,4 @@
-#include "scenarios/program/character_map.hpp"
+#include "scenarios/program/table.hpp"
 
 #include <gtest/gtest.h>
 

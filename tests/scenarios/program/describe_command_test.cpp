@@ -8,13 +8,13 @@
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/program/schema_text.hpp"
-#include "scenarios/studies/stability/classify.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "sim/loop/integrators/integrator.hpp"
+#include "sim/loop/integrators/table.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
@@ -50,7 +50,7 @@ TEST(ListCommand, NamesAllThereIs) {
   for (const IntegratorEntry* integrator : kIntegrators) {
     EXPECT_TRUE(names.contains(integrator->info.name)) << integrator->info.name;
   }
-  for (const std::string& name : environment_names()) EXPECT_TRUE(names.contains(name)) << name;
+  for (const std::string& name : type_names("environment")) EXPECT_TRUE(names.contains(name)) << name;
   for (const BundledScenario& bundled : bundled_scenarios()) EXPECT_TRUE(names.contains(bundled.name)) << bundled.name;
   EXPECT_EQ(hapbench({"list", "--quiet"}).out, "");
 }
@@ -90,7 +90,7 @@ TEST(DescribeCommand, GivesATypeOfEveryFieldThatHasIt) {
 TEST(DescribeCommand, GivesFieldsWithDefaultRangeAndMeaning) {
   const ProgramRun run = hapbench({"describe", "rendering.stiffness_N_per_m"});
   EXPECT_EQ(run.status, 0);
-  EXPECT_NE(run.out.find("number >= 0 <= 1"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("a number >= 0 and <= 1"), std::string::npos) << run.out;
   EXPECT_NE(run.out.find("20000"), std::string::npos) << run.out;
   const std::string all = hapbench({"describe", "scenario"}).out;
   for (const char* field : {"time.step_s", "rendering.limits.max_force_N", "record.every", "bounds.speed_m_per_s"}) {
@@ -186,7 +186,7 @@ TEST(DescribeCommand, ExplainsAScenarioFileOfTheCurrentDirectory) {
 }
 
 TEST(DescribeCommand, ExplainsEveryMetric) {
-  for (const auto& [name, unit, meaning, value] : metrics_without_values({.places = 1})) {
+  for (const auto& [name, unit, meaning, value] : metrics_without_values(1)) {
     const ProgramRun run = hapbench({"describe", name});
     EXPECT_EQ(run.status, 0) << name << run.err;
     EXPECT_EQ(run.out.find("metric " + name), 0u) << run.out;

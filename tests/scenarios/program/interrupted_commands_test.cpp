@@ -22,10 +22,7 @@ class InterruptedCommand : public testing::Test {
   int status_after(int signal, Words words) const {
     words.insert(words.end(), {"--out", out_.string()});
     RunningProgram program(test::hapbench_program(), words);
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (!fs::exists(out_) && program.is_running() && std::chrono::steady_clock::now() < deadline) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
+    EXPECT_TRUE(program.runs_until([&] { return fs::exists(out_); })) << words.front();
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     EXPECT_TRUE(program.is_running()) << words.front();
     return program.end_by(signal);

@@ -21,12 +21,12 @@ using Words = std::vector<std::string>;
 
 class InterruptedSweep : public testing::Test {
  protected:
-  /// Some hundred runs of some milliseconds.
+  /// Runs of some milliseconds, 180 of them or more.
   Words words(const std::string& out, const Words& more = {}, const char* jobs = "2") const {
     Words words = {"sweep",  "single_spring",
                    "--set",  "record.trajectory=false",
                    "--vary", "time.steps=20000:20002:3",
-                   "--vary", "rendering.stiffness_N_per_m=1e3:1e4:60:log",
+                   "--vary", "rendering.stiffness_N_per_m=1e3:1e4:" + std::to_string(runs_ / 3) + ":log",
                    "--jobs", jobs,
                    "--out",  (directory_ / out).string()};
     words.insert(words.end(), more.begin(), more.end());
@@ -43,32 +43,43 @@ class InterruptedSweep : public testing::Test {
   }
   /// Waits until so many rows are in the journal. False when the program ended before.
   bool wait_for_rows(RunningProgram& sweep, const std::string& out, std::size_t rows) const {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (journal_rows(out) < rows && std::chrono::steady_clock::now() < deadline) {
-      if (!sweep.is_running()) return false;
-      std::this_thread::sleep_for(std::chrono::microseconds(500));
-    }
-    return true;
+    return sweep.runs_until([&] { return journal_rows(out) >= rows; });
+  }
+  /// Repeats from the beginning, each time with more runs, until the attempt has interrupted sweeps before their ends:
+  /// a busy machine may let the test wait for longer than a sweep takes.
+  template <class Attempt>
+  void until_in_time(Attempt attempt) {
+    for (; !attempt(); runs_ *= 4) fs::remove_all(directory_ / "out");
+  }
+  /// A sweep that is killed when `rows` rows are in its journal.
+  void leave_killed_sweep(std::size_t rows) {
+    until_in_time([&] {
+      RunningProgram sweep(test::hapbench_program(), words("out"));
+      return wait_for_rows(sweep, "out", rows) && sweep.kill();
+    });
   }
   /// The bytes of a sweep that nobody interrupts.
   void expect_same_as_uninterrupted(const std::string& out) const {
     ASSERT_EQ(hapbench(words("whole")).status, 0);
     test::expect_same_files(directory_ / "whole", directory_ / out);
   }
-  static constexpr std::size_t kRuns = 180;
+  std::size_t runs_ = 180;
   test::TemporaryDirectory directory_;
 };
 
 TEST_F(InterruptedSweep, KilledAgainAndAgainEndsWithTheSameBytes) {
   std::size_t before = 0;
-  for (const std::size_t rows : {0u, 1u, 40u, 90u, 150u}) {
-    RunningProgram sweep(test::hapbench_program(), words("out", {"--resume"}));
-    ASSERT_TRUE(wait_for_rows(sweep, "out", rows));
-    ASSERT_TRUE(sweep.kill()) << "it had ended before it was killed";
-    EXPECT_FALSE(fs::exists(directory_ / "out/sweep.csv"));
-    EXPECT_GE(journal_rows("out"), before);  // nothing is lost
-    before = journal_rows("out");
-  }
+  until_in_time([&] {
+    before = 0;
+    for (const std::size_t sixth : {0u, 1u, 2u, 3u, 5u}) {
+      RunningProgram sweep(test::hapbench_program(), words("out", {"--resume"}));
+      if (!wait_for_rows(sweep, "out", sixth * runs_ / 6) || !sweep.kill()) return false;
+      EXPECT_FALSE(fs::exists(directory_ / "out/sweep.csv"));
+      EXPECT_GE(journal_rows("out"), before);  // nothing is lost
+      before = journal_rows("out");
+    }
+    return true;
+  });
   const ProgramRun end = hapbench(words("out", {"--resume"}));
   EXPECT_EQ(end.status, 0) << end.err;
   EXPECT_NE(end.out.find("\n" + std::to_string(before) + " of the runs were done before\n"), std::string::npos)
@@ -77,9 +88,7 @@ TEST_F(InterruptedSweep, KilledAgainAndAgainEndsWithTheSameBytes) {
 }
 
 TEST_F(InterruptedSweep, GoesOnAfterATornLineWhateverTheJobs) {
-  RunningProgram sweep(test::hapbench_program(), words("out"));
-  ASSERT_TRUE(wait_for_rows(sweep, "out", 20));
-  ASSERT_TRUE(sweep.kill());
+  leave_killed_sweep(20);
   const std::string text = journal_text("out");
   const std::size_t rows = journal_rows("out");
   test::write_plainly(directory_ / "out/sweep.journal", text.substr(0, text.size() - 7));
@@ -90,18 +99,14 @@ TEST_F(InterruptedSweep, GoesOnAfterATornLineWhateverTheJobs) {
 }
 
 TEST_F(InterruptedSweep, BeginsAnewWithoutResume) {
-  RunningProgram sweep(test::hapbench_program(), words("out"));
-  ASSERT_TRUE(wait_for_rows(sweep, "out", 20));
-  ASSERT_TRUE(sweep.kill());
+  leave_killed_sweep(20);
   const ProgramRun end = hapbench(words("out"));
   EXPECT_EQ(end.out.find("done before"), std::string::npos);
   expect_same_as_uninterrupted("out");
 }
 
 TEST_F(InterruptedSweep, IsResumedByNoOther) {
-  RunningProgram sweep(test::hapbench_program(), words("out"));
-  ASSERT_TRUE(wait_for_rows(sweep, "out", 20));
-  ASSERT_TRUE(sweep.kill());
+  leave_killed_sweep(20);
   const auto left = test::files_below(directory_ / "out");
   for (const Words& more : {Words{"--vary", "seed=1,2"}, Words{"--set", "seed=7"}, Words{"--keep-runs"}}) {
     Words other = words("out", {"--resume"});
@@ -116,19 +121,25 @@ TEST_F(InterruptedSweep, IsResumedByNoOther) {
 }
 
 TEST_F(InterruptedSweep, StopsCleanlyAtASignalAndGoesOn) {
-  for (const int signal : {SIGINT, SIGTERM}) {
-    RunningProgram sweep(test::hapbench_program(), words("out", {"--resume"}));
-    ASSERT_TRUE(wait_for_rows(sweep, "out", signal == SIGINT ? 10 : 80));
-    EXPECT_EQ(sweep.end_by(signal), 128 + signal);
-    EXPECT_LT(journal_rows("out"), kRuns);
-    EXPECT_EQ(journal_text("out").back(), '\n');
-    EXPECT_FALSE(fs::exists(directory_ / "out/sweep.csv"));
-  }
+  until_in_time([&] {
+    for (const int signal : {SIGINT, SIGTERM}) {
+      RunningProgram sweep(test::hapbench_program(), words("out", {"--resume"}));
+      if (!wait_for_rows(sweep, "out", signal == SIGINT ? 10 : 80)) return false;
+      const int status = sweep.end_by(signal);
+      if (status == 0) return false;
+      EXPECT_EQ(status, 128 + signal);
+      EXPECT_LT(journal_rows("out"), runs_);
+      EXPECT_EQ(journal_text("out").back(), '\n');
+      EXPECT_FALSE(fs::exists(directory_ / "out/sweep.csv"));
+    }
+    return true;
+  });
   EXPECT_EQ(hapbench(words("out", {"--resume"})).status, 0);
   expect_same_as_uninterrupted("out");
 }
 
 TEST_F(InterruptedSweep, LeavesItsDirectoryToItselfWhileItRuns) {
+  runs_ = 300'000;  // of minutes
   RunningProgram sweep(test::hapbench_program(), words("out"));
   ASSERT_TRUE(wait_for_rows(sweep, "out", 1));
   const ProgramRun second = hapbench(words("out"));
@@ -139,15 +150,19 @@ TEST_F(InterruptedSweep, LeavesItsDirectoryToItselfWhileItRuns) {
 
 TEST_F(InterruptedSweep, OfASampleGoesOn) {
   const auto sample = [&](const std::string& out, const Words& more = {}) {
-    Words words = {"sweep",    "single_spring",    "--set",  "record.trajectory=false",
-                   "--set",    "time.steps=20000", "--vary", "rendering.stiffness_N_per_m=1e3:1e4:log",
-                   "--sample", "sobol:180",        "--out",  (directory_ / out).string()};
+    Words words = {"sweep",    "single_spring",
+                   "--set",    "record.trajectory=false",
+                   "--set",    "time.steps=20000",
+                   "--vary",   "rendering.stiffness_N_per_m=1e3:1e4:log",
+                   "--sample", "sobol:" + std::to_string(runs_),
+                   "--out",    (directory_ / out).string()};
     words.insert(words.end(), more.begin(), more.end());
     return words;
   };
-  RunningProgram sweep(test::hapbench_program(), sample("out"));
-  ASSERT_TRUE(wait_for_rows(sweep, "out", 20));
-  ASSERT_TRUE(sweep.kill());
+  until_in_time([&] {
+    RunningProgram sweep(test::hapbench_program(), sample("out"));
+    return wait_for_rows(sweep, "out", 20) && sweep.kill();
+  });
   const ProgramRun other = hapbench(sample("out", {"--resume", "--seed", "2"}));
   EXPECT_EQ(other.status, 2) << "another sample is another sweep";
   EXPECT_EQ(hapbench(sample("out", {"--resume"})).status, 0);

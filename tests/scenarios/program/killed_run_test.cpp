@@ -1,8 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <thread>
-
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
@@ -20,11 +17,7 @@ class KilledRun : public testing::Test {
   Names kill_a_run() const {
     test::RunningProgram run(test::hapbench_program(),
                              {"run", "single_spring", "--out", out_.string(), "--set", "time.steps=20000000"});
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (bytes_written() < 100'000 && run.is_running() && std::chrono::steady_clock::now() < deadline) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    EXPECT_GE(bytes_written(), 100'000u);
+    EXPECT_TRUE(run.runs_until([&] { return bytes_written() >= 100'000; }));
     EXPECT_TRUE(run.kill()) << "it had ended before it was killed";
     return test::names_below(out_);
   }

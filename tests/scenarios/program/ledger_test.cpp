@@ -23,9 +23,7 @@ std::map<std::string, Json> repeatable_claims(const Json& ledger) {
 
 TEST(Ledger, InTheTreeIsTheOneTheProgramMakes) {
   const test::TemporaryDirectory directory;
-  test::ProgramOptions options;
-  options.patience_s = 280.0;
-  const test::ProgramRun run = hapbench({"reproduce", "--out", (directory / "out").string(), "--quiet"}, options);
+  const test::ProgramRun run = hapbench({"reproduce", "--out", (directory / "out").string(), "--quiet"});
   ASSERT_EQ(run.status, 0) << run.err;
   const auto made = repeatable_claims(Json::parse(test::read_file(directory / "out/claims.json")));
   const auto kept =

@@ -2,7 +2,7 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/program/schema_text.hpp"
+#include "scenarios/program/fields_text.hpp"
 #include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
@@ -36,7 +36,7 @@ TEST(ParameterBlocks, NameFieldsOfScenariosWithTheirUnits) {
   for (const ModelInfo* model : all_models()) {
     for (const auto& [parameter, meaning] : model->parameters) {
       const std::string where = std::string(model->name) + ": " + parameter.field, unit = parameter.range.unit;
-      ASSERT_NE(find_in_schema(scenario_schema_once(), parameter.field), nullptr) << where;
+      ASSERT_NE(find_field(parameter.field), nullptr) << where;
       const std::string refusal = refusal_of_an_object_in(parameter.field);
       EXPECT_EQ(refusal.find(pointer_to(parameter.field).to_string() + ": got {}"), 0u) << refusal;
       const bool is_number = refusal.find("a number") != std::string::npos;
@@ -49,7 +49,7 @@ TEST(ParameterBlocks, NameFieldsOfScenariosWithTheirUnits) {
 }
 
 TEST(DefaultText, IsThatOfTheSchemaOrSaysThatTheSceneGivesIt) {
-  const auto text = [](const char* field) { return default_text(*find_in_schema(scenario_schema_once(), field)); };
+  const auto text = [](const char* field) { return default_text(*find_field(field)); };
   EXPECT_EQ(text("rendering.stiffness_N_per_m"), "20000");
   EXPECT_EQ(text("rendering.iterations"), "3");
   EXPECT_EQ(text("rendering.damping_ratio"), "0.7");
@@ -59,12 +59,15 @@ TEST(DefaultText, IsThatOfTheSchemaOrSaysThatTheSceneGivesIt) {
   EXPECT_EQ(text("rendering.mass_kg"), "by scene");
 }
 
-TEST(RangeText, IsThatOfTheSchema) {
-  const auto text = [](const char* field) { return allowed_text(*find_in_schema(scenario_schema_once(), field)); };
-  EXPECT_EQ(text("rendering.reduction.threshold"), "number > -1 <= 1");
-  EXPECT_EQ(text("rendering.reduction.shuffle_seed"), "null | integer >= 0 <= 9007199254740992");
-  EXPECT_EQ(text("rendering.mass_kg"), "number > 0 <= 1e+06");
-  EXPECT_EQ(text("rendering.local_average"), "boolean");
+/// Messages and documentation say in the same words what a field may hold.
+TEST(AllowedText, IsThatOfTheRefusal) {
+  for (const char* field : {"rendering.reduction.threshold", "rendering.mass_kg", "rendering.local_average",
+                            "rendering.algorithm", "seed"}) {
+    const std::string allowed = "; allowed: " + find_field(field)->value.allowed;
+    EXPECT_NE(refusal_of_an_object_in(field).find(allowed), std::string::npos) << allowed;
+  }
+  EXPECT_EQ(find_field("rendering.reduction.threshold")->value.allowed, "a number > -1 and <= 1 [1]");
+  EXPECT_EQ(find_field("rendering.reduction.shuffle_seed")->value.allowed, "null or an integer 0 ... 9007199254740992");
 }
 
 }  // namespace

@@ -37,8 +37,9 @@ TEST_F(PluginCommand, KnowsTheLawAndItsParametersEverywhere) {
   EXPECT_EQ(described.status, 0) << described.err;
   EXPECT_NE(described.out.find("algorithm depth_weighted"), std::string::npos);
   EXPECT_NE(described.out.find("depth_weighted.so, hash "), std::string::npos);
-  EXPECT_NE(described.out.find("rendering.parameters.depth_weighted.power\n        number >= 0 <= 64 [1]; default 1"),
-            std::string::npos)
+  EXPECT_NE(
+      described.out.find("rendering.parameters.depth_weighted.power\n        a number >= 0 and <= 64 [1]; default 1"),
+      std::string::npos)
       << described.out;
   const ProgramRun list =
       hapbench({"list", "algorithms", "--plugin", plugin("depth_weighted"), "--plugin", plugin("capped_summation")});

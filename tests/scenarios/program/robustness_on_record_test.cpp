@@ -36,9 +36,8 @@ TEST(RobustnessOnRecord, IsWhatTheProgramMakesOfAFewSamples) {
       plan_robustness(choices, PublishedNumbers(kReference / "published"), claims, {}, rows.size() - 1);
   ASSERT_EQ(robustness_table(plan, std::vector<std::vector<std::string>>(plan.samples())).find(rows[0] + "\n"), 0u);
   const test::TemporaryDirectory directory;
-  RecentShells shells;
   for (const std::size_t sample : {std::size_t{0}, plan.costly_samples(), plan.samples() - 1}) {
-    const SampleVerdicts judged = judge_sample(plan, shells, sample, directory / "sample");
+    const SampleVerdicts judged = judge_sample(plan, sample, directory / "sample");
     EXPECT_EQ(robustness_row(plan, sample, judged.verdicts), rows[1 + sample])
         << "renew it with hapbench reproduce --robustness --ledger results/reference/claims.json";
   }
@@ -60,8 +59,7 @@ TEST(RobustnessOnRecord, OfTheChoicesOnRecordIsTheLedger) {
       plan_robustness(Choices(kReference / "choices.json"), PublishedNumbers(kReference / "published"), claims, {}, 1);
   plan.values = {plan.choices.values_on_record()};
   const test::TemporaryDirectory directory;
-  RecentShells shells;
-  const SampleVerdicts judged = judge_sample(plan, shells, 0, directory / "sample");
+  const SampleVerdicts judged = judge_sample(plan, 0, directory / "sample");
   EXPECT_EQ(judged.verdicts, verdicts);
   EXPECT_TRUE(judged.problems.empty());
 }

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "scenarios/input/shell_file.hpp"
+#include "scenarios/input/mesh_file.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"

@@ -185,17 +185,22 @@ TEST(Completion, OffersCommandsOptionsNamesAndFields) {
   }
 }
 
-/// As bash itself asks for it.
+/// As bash itself asks for it: by the name that is found in PATH, and by a path with the backslashes it is typed with.
 TEST(Completion, WorksInBash) {
-  const std::string directory = test::hapbench_program().parent_path().string();
-  const std::string script = "PATH=" + directory +
-                             ":$PATH; source <(hapbench completion bash); complete -p hapbench\n"
-                             "COMP_WORDS=(hapbench run peg_in_hole_2d_summ); COMP_CWORD=2; _hapbench hapbench\n"
-                             "printf '%s\\n' \"${COMPREPLY[@]}\"";
-  const ProgramRun run = test::run_program("/bin/bash", {"--norc", "-c", script});
+  const test::TemporaryDirectory directory;
+  const fs::path folder = directory / "a b'\xc3\xa4";
+  fs::create_directory(folder);
+  fs::create_symlink(test::hapbench_program(), folder / "hapbench");
+  const std::string script = R"(PATH=$0:$PATH; source <(hapbench completion bash); complete -p hapbench
+for name in hapbench "$1"; do
+  COMP_WORDS=("$name" run peg_in_hole_2d_summ); COMP_CWORD=2; _hapbench "$name"
+  printf '%s\n' "${COMPREPLY[@]}"
+done)";
+  const std::string typed = (directory / "a\\ b\\'\xc3\xa4/hapbench").string();
+  const ProgramRun run = test::run_program("/bin/bash", {"--norc", "-c", script, folder.string(), typed});
   EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(lines_of(run.out),
-            (std::vector<std::string>{"complete -o default -F _hapbench hapbench", "peg_in_hole_2d_summation"}));
+  EXPECT_EQ(lines_of(run.out), (std::vector<std::string>{"complete -o default -F _hapbench hapbench",
+                                                         "peg_in_hole_2d_summation", "peg_in_hole_2d_summation"}));
   EXPECT_EQ(run.err, "");
   EXPECT_TRUE(hapbench({"completion", "zsh"}).out.ends_with(hapbench({"completion", "bash"}).out));
   EXPECT_EQ(hapbench({"completion", "tcsh"}).status, 2);

@@ -1,12 +1,11 @@
-#include "scenarios/run/peer_contacts.hpp"
+#include "scenarios/run/assemble.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "scenarios/plugins/load_peer.hpp"
-#include "scenarios/run/assemble.hpp"
-#include "scenarios/run/run_to_end.hpp"
+#include "scenarios/plugins/load_plugin.hpp"
+#include "scenarios/run/stop_signal.hpp"
 #include "tests/scenarios/studies/precision/results.hpp"
 
 namespace hapbench::peer_contacts_test {

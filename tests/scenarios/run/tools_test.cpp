@@ -1,20 +1,20 @@
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/run/make_tool.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/encounter.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/tool_warnings.hpp"
+#include "sim/mesh/marching_cubes.hpp"
 #include "sim/tool/mesh_tool.hpp"
 #include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-/// Tools of every type, from the fields of a scenario.
+/// Tools and environments of every type, from the fields of a scenario.
 namespace hapbench::tools_test {
 namespace {
 
@@ -159,6 +159,26 @@ TEST(ScenarioTool, IsInTheSummaryUnlessItIsACylinder) {
   ASSERT_TRUE(tool);
   EXPECT_EQ(tool->outline, tool_of(kHourglass)->outline());
   EXPECT_EQ(tool->reach, tool_of(kHourglass)->reach());
+}
+
+/// A small block, changed by a merge patch.
+Scenario block_scenario(const char* patch = "{}") {
+  Json json = Json::parse(R"({"time": {"step_s": 0.0005, "steps": 20}, "environment": {"type": "block_with_hole",
+    "size_m": [0.006, 0.005, 0.004], "hole_diameter_m": 0.002, "hole_depth_m": 0.002, "grid_m": 0.0002}})");
+  json.merge_patch(Json::parse(patch));
+  return read_scenario(json, "").scenario;
+}
+
+TEST(MakeShell, OfABlockListsVerticesOnceOrForEachCell) {
+  const auto shared = make_shell(block_scenario());
+  const Scenario scenario = block_scenario(R"({"environment": {"vertices": "per_cell"}})");
+  const auto per_cell = make_shell(scenario);
+  EXPECT_GT(shared->size(), 1000u);
+  EXPECT_EQ(per_cell->size(), 4 * shared->size());
+  // Those of cubes between multiples of the grid's spacing would be others.
+  const auto& block = std::get<BlockEnvironment>(scenario.environment);
+  const IsoSurface surface = marching_cubes(density_field(block.block, block.grid, block.density), {.cells = true});
+  EXPECT_EQ(per_cell->cell_of_points(), points_by_cell(surface, block.grid).cells);
 }
 
 }  // namespace

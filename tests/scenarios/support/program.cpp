@@ -16,7 +16,6 @@
 #include <thread>
 
 #include "tests/scenarios/support/environment_variable.hpp"
-#include "tests/support/scale.hpp"
 
 namespace hapbench::test {
 namespace {
@@ -94,7 +93,7 @@ ProgramRun run_program(const std::filesystem::path& program, const std::vector<s
   const File out = nameless_file(), err = nameless_file();
   const pid_t child = start(program, arguments, options, ::fileno(out.get()), ::fileno(err.get()));
   const auto started = Clock::now();
-  const auto deadline = started + std::chrono::duration<double>(patience(options.patience_s));
+  const auto deadline = started + std::chrono::duration<double>(options.patience_s);
   int status = 0;
   rusage usage{};
   while (::wait4(child, &status, WNOHANG, &usage) == 0) {
@@ -141,6 +140,14 @@ RunningProgram::~RunningProgram() {
 bool RunningProgram::is_running() {
   if (!reaped_ && ::waitpid(process_, nullptr, WNOHANG) == process_) reaped_ = true;
   return !reaped_;
+}
+
+bool RunningProgram::runs_until(const std::function<bool()>& condition) {
+  while (!condition()) {
+    if (!is_running()) return false;
+    std::this_thread::sleep_for(std::chrono::microseconds(500));
+  }
+  return true;
 }
 
 int RunningProgram::end_by(int signal) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -26,7 +27,7 @@ struct ProgramRun {
 
 struct ProgramOptions {
   std::filesystem::path directory = {};  ///< where it runs; empty: here
-  double patience_s = 60.0;              ///< a process that takes longer is killed and counts as ended by SIGKILL
+  double patience_s = 1500.0;            ///< a process that takes longer is killed and counts as ended by SIGKILL
   bool as_root_may = true;       ///< false: root has no privileges either; status 126 when they cannot be dropped
   std::size_t file_limit = 0;    ///< of each file it writes [bytes]; 0: none
   std::size_t columns = 0;       ///< of the terminal it is told to have; 0: none
@@ -51,6 +52,8 @@ class RunningProgram {
   RunningProgram& operator=(const RunningProgram&) = delete;
 
   bool is_running();
+  /// Waits, however long it takes, until the condition holds. Returns false when the process ends before.
+  bool runs_until(const std::function<bool()>& condition);
   /// SIGKILL, and waits for the end. Returns true when that ended it, false when it had ended before.
   bool kill();
   /// Sends a signal that the process may handle, waits for the end and returns the exit status; -1 when the signal

@@ -73,7 +73,7 @@ SlurmCluster::SlurmCluster() {
          "--seed-file=" + munge + "/seed", "--log-file=" + munge + "/log"});
   start({file_of("slurmctld"), "-D", "-i", "-L", directory_ / "slurmctld.log"});
   start({file_of("slurmd"), "-D", "-L", directory_ / "slurmd.log"});
-  for (int attempt = 0; attempt < 100; ++attempt) {
+  for (int attempt = 0; attempt < 1000; ++attempt) {
     if ((*this)("sinfo", {"--noheader", "--format=%T"}).out == "idle\n") return;
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
   }

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "scenarios/description/reader.hpp"
-#include "scenarios/description/schema_writer.hpp"
 #include "scenarios/description/writer.hpp"
 #include "tests/scenarios/support/errors.hpp"
 

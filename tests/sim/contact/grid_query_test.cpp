@@ -1,4 +1,4 @@
-#include "sim/contact/grid_query.hpp"
+#include "sim/contact/neighbour_list_query.hpp"
 
 #include <gtest/gtest.h>
 

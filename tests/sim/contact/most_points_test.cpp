@@ -1,4 +1,4 @@
-#include "sim/contact/most_points.hpp"
+#include "sim/contact/grid_index.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "sim/mesh/block_field.hpp"
+#include "sim/mesh/marching_cubes.hpp"
 #include "tests/support/brick.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/searches.hpp"

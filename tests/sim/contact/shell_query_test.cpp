@@ -1,4 +1,4 @@
-#include "sim/contact/shell_query.hpp"
+#include "sim/contact/contact_query.hpp"
 
 #include <gtest/gtest.h>
 

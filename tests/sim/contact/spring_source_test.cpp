@@ -1,4 +1,4 @@
-#include "sim/contact/spring_source.hpp"
+#include "sim/contact/contact_source.hpp"
 
 #include <gtest/gtest.h>
 

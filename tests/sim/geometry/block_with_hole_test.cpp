@@ -1,4 +1,4 @@
-#include "sim/geometry/block_with_hole.hpp"
+#include "sim/geometry/analytic_shells.hpp"
 
 #include <gtest/gtest.h>
 

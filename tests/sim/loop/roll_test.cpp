@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "sim/tool/cylinder.hpp"
-#include "sim/tool/turn.hpp"
+#include "sim/tool/tool_state.hpp"
 #include "tests/support/brick.hpp"
 #include "tests/support/fakes.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/loop/stop_rules.hpp"
+#include "sim/loop/simulation.hpp"
 #include "tests/support/fakes.hpp"
 
 namespace hapbench::stop_conditions_test {

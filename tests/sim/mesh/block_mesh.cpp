@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "sim/mesh/block_field.hpp"
+#include "sim/mesh/marching_cubes.hpp"
 
 /// Prints the mesh that marching cubes makes of a block with a hole: numbers of vertices and faces, then both.
 /// block_mesh SIZE_X SIZE_Y SIZE_Z HOLE_DIAMETER HOLE_DEPTH SPACING signed_distance|binary

@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "sim/core/random.hpp"
-#include "sim/mesh/block_field.hpp"
 #include "sim/mesh/cube_cases.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"

@@ -1,4 +1,4 @@
-#include "sim/mesh/points_by_cell.hpp"
+#include "sim/mesh/marching_cubes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 #include <map>
 #include <set>
 
-#include "sim/mesh/block_field.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 

@@ -1,4 +1,4 @@
-#include "sim/mesh/resample.hpp"
+#include "sim/mesh/half_edge_mesh.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/mesh/surface_shell.hpp"
+#include "sim/mesh/marching_cubes.hpp"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "sim/contact/grid_index.hpp"
-#include "sim/mesh/block_field.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 

@@ -1,4 +1,4 @@
-#include "sim/tool/meridian.hpp"
+#include "sim/tool/revolved.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/contact/grid_query.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "sim/tool/cylinder.hpp"
 #include "tests/support/meshes.hpp"

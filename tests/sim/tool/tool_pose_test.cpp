@@ -5,7 +5,6 @@
 
 #include "sim/core/random.hpp"
 #include "sim/tool/tool_state.hpp"
-#include "sim/tool/turn.hpp"
 #include "tests/support/contact_sets.hpp"
 
 namespace hapbench::tool_pose_test {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/scenario_text.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/input_error.hpp"
 
 namespace hapbench::field_limit_test {

@@ -7,8 +7,6 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/studies/worst_motion/search_scene.hpp"
-#include "scenarios/studies/worst_motion/trajectory_draws.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
@@ -37,7 +35,8 @@ TEST(Adversary, FindsThatTheOriginalAlgorithmIsWorseThanStiffnessShaping) {
   const SearchResult shaped = search_adversary(scene("shaped_stiffness"), options(200));
   EXPECT_GT(original.badness, 2.0 * original.at_rest);
   EXPECT_GT(original.badness, 10.0 * shaped.badness);
-  EXPECT_GT(original.run.energy->created_sum, 0.1);  // [J]: a hundred times what a hand of 5 N puts in along 0.2 mm
+  EXPECT_GT(metric_of(original.run, "energy.created_sum_J").value(),
+            0.1);  // [J]: a hundred times what a hand of 5 N puts in along 0.2 mm
 }
 
 TEST(Adversary, KeepsNinetyPercentWhileMinimising) {

@@ -1,0 +1,199 @@
+#include "algorithms/depth/depth_model.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/core/simd.hpp"
+#include "sim/tool/tool_state.hpp"
+
+/// The depth models, each with its documentation, and the source that applies one.
+namespace hapbench {
+namespace {
+
+constexpr ModelInfo kShortestDistanceInfo = {
+    .name = "shortest_distance",
+    .summary = "distance to the nearest surface of the tool, gradient towards it",
+    .formula = "d = |q - x|, u = (q - x) / d, with q the place of the tool's surface nearest to the point x",
+    .source =
+        "thesis B.1, with depths >= 0 of which the smallest wins (as printed, negative depths would pull the tool in)",
+    .known_failure = "the gradient flips by 180 degrees when a point crosses the tool's median line (thesis B.3.1)",
+};
+
+class ShortestDistance final : public DepthModel {
+ public:
+  void evaluate(const ToolShape& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept override {
+    tool.shortest_depths(pose, contacts);
+    tool.shortest_gradients(pose, contacts);
+    contacts.pad();
+  }
+};
+
+constexpr ModelInfo kSurfaceNormalInfo = {
+    .name = "surface_normal",
+    .summary = "depth of shortest_distance, gradient against the surface normal (default)",
+    .formula = "d as in shortest_distance, u = -n",
+    .source = "thesis C.1, 2.3",
+    .known_failure = "underestimates the depth; on a flat it saturates at half the tool's width (thesis C.1, F.1)",
+};
+
+class SurfaceNormal final : public DepthModel {
+ public:
+  void evaluate(const ToolShape& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept override {
+    tool.shortest_depths(pose, contacts);
+    for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+      simd::store(-simd::load(&contacts.nx[i]), &contacts.ux[i]);
+      simd::store(-simd::load(&contacts.ny[i]), &contacts.uy[i]);
+      simd::store(-simd::load(&contacts.nz[i]), &contacts.uz[i]);
+    }
+    contacts.pad();
+  }
+};
+
+constexpr ModelInfo kNormalProjectionInfo = {
+    .name = "normal_projection",
+    .summary = "distance along the inverse surface normal to where it leaves the tool",
+    .formula = "u = -n, d = smallest d > 0 at which the ray x + d u leaves the tool (a cylinder: F.7, F.9, F.12)",
+    .source = "thesis F.1 (F.6 printed with a minus; F.7 shows that r_p + d r_n is meant)",
+    .known_failure = "a point that appears at a corner can start with a large depth: the force jumps (Fig. F.4)",
+};
+
+class NormalProjection final : public DepthModel {
+ public:
+  void evaluate(const ToolShape& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept override {
+    for (std::size_t i = 0; i < contacts.size(); ++i) contacts.set_gradient(i, -contacts.normal(i));
+    tool.exit_distances(pose, contacts, contacts.depth.data());
+    contacts.pad();
+  }
+};
+
+constexpr ModelInfo kContinuousNormalProjectionInfo = {
+    .name = "continuous_normal_projection",
+    .summary = "starts as the shortest distance, then follows the tool's motion along the gradient up to its exit",
+    .formula =
+        "u = -n, d = d_sd when the point enters, then d <- min(d_np, max(d_sd, d + <dx, u>)); d_sd of "
+        "shortest_distance, d_np of normal_projection, dx = dp + turn x (x - p) of the tool at the point",
+    .source = "thesis F.1 names the jump (Fig. F.4) and two remedies with their flaws; this one is ours",
+    .known_failure =
+        "depends on the way: what was entered sideways is only as deep as the shortest distance; a point that leaves "
+        "sideways still drops its whole depth at once",
+};
+
+/// Normal projection without the jump (thesis F.1, Fig. F.4). The depth lies between the shortest distance d_sd to the
+/// surface of the tool and the exit distance d_np along the gradient, and each point remembers it from step to step:
+///
+///   d = d_sd                                  when the point enters the tool, or the run starts
+///   d <- min(d_np, max(d_sd, d + <dx, u>))    while it stays
+///
+/// where dx = dp + turn x (x - p) is the motion of the tool's material at the point during the step.
+///
+///  - No depth grows by more than |dx| in a step. This includes entry: seen from the tool, the point has moved by dx,
+///  so
+///    d_sd <= |dx|. Depths of a tool at rest do not creep.
+///  - Moving the tool along u changes d_np by the same amount. A point that the tool has pressed along u since the
+///  first
+///    touch therefore has d = d_np, also beyond the median line, where d_sd saturates.
+///  - The gain from <dx, u> is work done against the force -K d u. Energy is created by d_sd alone, as in depth model
+///    surface_normal, never by the projection. Some is lost where a point leaves sideways.
+///
+/// A depth that is a function of the pose cannot have both properties: continuity at entry requires 0 on the whole
+/// surface of the tool, and no saturation requires the whole diameter there for a point that was pressed across the
+/// tool. Hence the memory of 16 bytes for each point of the shell. Subtracting the depth that a point has at entry is
+/// no alternative: a tool that slides over a flat, where points keep entering from the side, would lose its support.
+/// O(n) per step.
+class ContinuousNormalProjection final : public DepthModel {
+ public:
+  void prepare(const PointShell& shell) override {
+    memory_.resize(shell.size());
+    exit_.resize(shell.size());
+  }
+
+  void reset() noexcept override {
+    std::fill(memory_.begin(), memory_.end(), Memory{});
+    step_ = kNever + 1;
+  }
+
+  void evaluate(const ToolShape& tool, const ToolPose& pose, ContactBuffer& contacts) noexcept override {
+    ++step_;
+    tool.shortest_depths(pose, contacts);
+    const Vec3 moved = pose.position - last_.position, turned = turn(last_, pose);
+    for (std::size_t i = 0; i < contacts.size(); ++i) contacts.set_gradient(i, -contacts.normal(i));
+    tool.exit_distances(pose, contacts, exit_.data());
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const Vec3 x = contacts.point(i), u = contacts.gradient(i);
+      Memory& point = memory_[contacts.index[i]];
+      const bool stays = point.step + 1 == step_;
+      const double pressed = stays ? point.depth + (moved + turned.cross(x - pose.position)).dot(u) : 0.0;
+      const double least = std::max(contacts.depth[i], 0.0);  // rounding may put a point on the surface outside
+      point = {std::min(std::max(least, pressed), exit_[i]), step_};
+      contacts.depth[i] = point.depth;
+    }
+    contacts.pad();
+    last_ = pose;
+  }
+
+ private:
+  static constexpr std::uint64_t kNever = 0;
+
+  struct Memory {
+    double depth = 0.0;           ///< d [m]
+    std::uint64_t step = kNever;  ///< last step in which the point was in the tool
+  };
+
+  std::vector<Memory> memory_;  ///< one for each point of the shell
+  std::vector<double> exit_;    ///< d_np of each contact [m]
+  std::uint64_t step_ = kNever + 1;
+  ToolPose last_;  ///< pose in the step before; not used if no point stays
+};
+
+template <class Model>
+std::unique_ptr<DepthModel> make() {
+  return std::make_unique<Model>();
+}
+
+constexpr DepthModelEntry kDepthModels[] = {
+    {&kShortestDistanceInfo, make<ShortestDistance>},
+    {&kSurfaceNormalInfo, make<SurfaceNormal>},
+    {&kNormalProjectionInfo, make<NormalProjection>},
+    {&kContinuousNormalProjectionInfo, make<ContinuousNormalProjection>},
+};
+
+}  // namespace
+
+std::span<const DepthModelEntry> depth_models() {
+  return kDepthModels;
+}
+
+const DepthModelEntry* find_depth_model(std::string_view name) {
+  const auto found = std::find_if(std::begin(kDepthModels), std::end(kDepthModels),
+                                  [name](const DepthModelEntry& entry) { return entry.info->name == name; });
+  return found == std::end(kDepthModels) ? nullptr : found;
+}
+
+std::unique_ptr<DepthModel> make_depth_model(std::string_view name) {
+  if (const DepthModelEntry* entry = find_depth_model(name)) return entry->make();
+  throw std::invalid_argument("unknown depth model " + std::string(name));
+}
+
+ShellSource::ShellSource(const PointShell& shell, const ToolShape& tool, std::unique_ptr<ContactQuery> search,
+                         std::unique_ptr<DepthModel> depth_model, Skips skips)
+    : tool_(&tool), search_(std::move(search)), depth_model_(std::move(depth_model)), skips_(skips) {
+  depth_model_->prepare(shell);
+}
+
+void ShellSource::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
+  search_->contacts_at(pose, contacts);
+  if (contacts.empty() && model_knows_of_no_contacts_ && skips_ == Skips::on) return;
+  depth_model_->evaluate(*tool_, pose, contacts);
+  model_knows_of_no_contacts_ = contacts.empty();
+}
+
+void ShellSource::reset() noexcept {
+  search_->reset();
+  depth_model_->reset();
+  model_knows_of_no_contacts_ = false;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,139 @@
+#include <algorithm>
+
+#include "algorithms/registry.hpp"
+
+/// Laws that give every contact the same weight c, which depends on the number n of contacts alone:
+/// f = -K c sum d_i u_i. `mean` is the shortest example of a law.
+namespace hapbench {
+namespace {
+
+class Summation final : public ForceLaw {
+ public:
+  using ForceLaw::ForceLaw;
+
+  LawForce evaluate(ContactBuffer& contacts) noexcept override {
+    set_weights(contacts, 1.0);
+    return weighted_force(contacts, K_);
+  }
+};
+
+/// All springs may pull in one direction.
+double summation_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
+  return static_cast<double>(n) * depth;
+}
+
+WedgeStiffness summation_wedge(const RenderingConfig&, double w, double n) {
+  return wedge_of_weight(n, w);
+}
+
+}  // namespace
+
+AlgorithmEntry summation_entry() {
+  static constexpr ModelInfo kInfo = {
+      .name = "summation",
+      .summary = "all penalty springs added",
+      .formula = "c_i = 1",
+      .source = "thesis 1.2, Fig. 2b",
+      .known_failure =
+          "stiffness and damping grow with the number of points: unstable once lambda_max(S) K passes the "
+          "integrator's limit (thesis A.3)",
+      .parameters = kStiffnessAlone,
+  };
+  return {.info = &kInfo,
+          .make_law = law_of<Summation>,
+          .theory = {.force_bound = summation_bound, .wedge_stiffness = summation_wedge},
+          .creates_energy = true};
+}
+
+namespace {
+
+class Mean final : public ForceLaw {
+ public:
+  using ForceLaw::ForceLaw;
+
+  LawForce evaluate(ContactBuffer& contacts) noexcept override {
+    set_weights(contacts, 1.0 / static_cast<double>(contacts.size()));
+    return weighted_force(contacts, K_);
+  }
+};
+
+/// |sum c d u| <= d sum c, and c = 1 / n.
+double mean_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
+  return std::min(1.0, static_cast<double>(n)) * depth;
+}
+
+WedgeStiffness mean_wedge(const RenderingConfig&, double w, double) {
+  return wedge_of_weight(0.5, w);
+}
+
+}  // namespace
+
+AlgorithmEntry mean_entry() {
+  static constexpr ModelInfo kInfo = {
+      .name = "mean",
+      .summary = "penalty springs averaged over the number of points",
+      .formula = "c_i = 1/n",
+      .source = "thesis Fig. 2c",
+      .known_failure =
+          "directions with few points get almost no stiffness: the tool sinks in where most points are parallel",
+      .parameters = kStiffnessAlone,
+  };
+  return {
+      .info = &kInfo, .make_law = law_of<Mean>, .theory = {.force_bound = mean_bound, .wedge_stiffness = mean_wedge}};
+}
+
+namespace {
+
+constexpr OwnParameter kPoints[] = {
+    {"points", {1.0, 1e5, "1"}, 10.0, "most springs that add up before they are scaled"}};
+
+double points_of(const RenderingConfig& config) {
+  return own_value(config, "mcneely", kPoints[0]);
+}
+
+class McNeely final : public ForceLaw {
+ public:
+  explicit McNeely(const RenderingConfig& config) : ForceLaw(config), points_(points_of(config)) {}
+
+  LawForce evaluate(ContactBuffer& contacts) noexcept override {
+    const auto n = static_cast<double>(contacts.size());
+    set_weights(contacts, n > points_ ? points_ / n : 1.0);
+    return weighted_force(contacts, K_);
+  }
+
+ private:
+  double points_;
+};
+
+/// n springs of weight min(1, p / n), all in one direction.
+double mcneely_bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
+  return std::min(static_cast<double>(n), points_of(config)) * depth;
+}
+
+WedgeStiffness mcneely_wedge(const RenderingConfig& config, double w, double n) {
+  return wedge_of_weight(std::min(n, 0.5 * points_of(config)), w);
+}
+
+}  // namespace
+
+AlgorithmEntry mcneely_entry() {
+  static constexpr ModelInfo kInfo = {
+      .name = "mcneely",
+      .summary = "the 10/N rule: springs added, and of more than ten their sum scaled to that of ten",
+      .formula = "c_i = min(1, p / n), p = 10 points, n colliding points; always without reduction",
+      .source =
+          "McNeely, Puterbaugh and Troy, Six degree-of-freedom haptic rendering using voxel sampling (SIGGRAPH 1999)",
+      .known_failure =
+          "the sum is still ten times as stiff as one spring where all points share a direction, and the force "
+          "follows the direction with most points; a point that comes or goes rescales all others",
+      .parameters = kStiffnessAlone,
+  };
+  return {.info = &kInfo,
+          .make_law = law_of<McNeely>,
+          .theory = {.force_bound = mcneely_bound, .wedge_stiffness = mcneely_wedge},
+          .may_reduce = false,
+          .creates_energy = true,
+          .own_parameters = kPoints};
+}
+
+}  // namespace hapbench

@@ -1,0 +1,201 @@
+#include "algorithms/stages/point_stage.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+#include "algorithms/parameters.hpp"
+#include "sim/core/random.hpp"
+#include "sim/core/simd.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr ParameterInfo kLocalAverageParameters[] = {
+    {parameter::kLocalAverage, "switches the stage on"},
+};
+
+/// A merged contact has index, point and normal of the first colliding point of its cell. Merged contacts are in the
+/// order in which their cells first appear.
+class LocalAverage final : public PointStage {
+ public:
+  void prepare(const Scene& scene) override {
+    if (scene.shell == nullptr || !(scene.shell->cell_size() > 0.0)) {
+      throw std::invalid_argument("local_average needs a point shell with a grid");
+    }
+    cell_of_point_ = scene.shell->cell_of_points();
+    std::uint32_t cells = 0;
+    for (const std::uint32_t cell : cell_of_point_) cells = std::max(cells, cell + 1);
+    slot_of_cell_.assign(cells, kNone);
+    sum_.resize(scene.shell->size());
+  }
+
+  void process(ContactBuffer& contacts) noexcept override {
+    const std::size_t merged = gather(contacts);
+    std::size_t kept = 0;
+    for (std::size_t slot = 0; slot < merged; ++slot) {
+      slot_of_cell_[cell_of_point_[contacts.index[slot]]] = kNone;
+      const Vec3 mean = sum_[slot].vector / sum_[slot].count;
+      const double depth = mean.norm();
+      if (depth == 0.0) continue;
+      contacts.copy(slot, kept);
+      contacts.depth[kept] = depth;
+      contacts.set_gradient(kept, mean / depth);
+      ++kept;
+    }
+    contacts.shrink(kept);
+    contacts.pad();
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  struct Sum {
+    Vec3 vector;
+    double count;
+  };
+
+  /// Moves the first contact of each cell to the front, sums d u per cell and returns the number of cells.
+  std::size_t gather(ContactBuffer& contacts) noexcept {
+    std::size_t cells = 0;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const Vec3 depth_vector = contacts.depth[i] * contacts.gradient(i);
+      std::uint32_t& slot = slot_of_cell_[cell_of_point_[contacts.index[i]]];
+      if (slot == kNone) {
+        slot = static_cast<std::uint32_t>(cells++);
+        sum_[slot] = {depth_vector, 1.0};
+        contacts.copy(i, slot);
+      } else {
+        sum_[slot].vector += depth_vector;
+        sum_[slot].count += 1.0;
+      }
+    }
+    return cells;
+  }
+
+  std::vector<std::uint32_t> cell_of_point_;
+  std::vector<std::uint32_t> slot_of_cell_;  ///< kNone between steps
+  std::vector<Sum> sum_;
+};
+
+}  // namespace
+
+const ModelInfo kLocalAverageInfo = {
+    .name = "local_average",
+    .summary = "colliding points that share a grid cell of the shell become one",
+    .formula = "D = mean of d_i u_i over the cell's colliding points; d = |D|, u = D/|D|; dropped when D = 0",
+    .source = "thesis C.2 (optional step, off by default)",
+    .known_failure = "opposite points in one cell cancel",
+    .parameters = kLocalAverageParameters,
+};
+
+std::unique_ptr<PointStage> make_local_average() {
+  return std::make_unique<LocalAverage>();
+}
+
+namespace {
+
+constexpr ParameterInfo kReductionParameters[] = {
+    {parameter::kThreshold, "alpha_TH: gradients with a larger inner product are similar"},
+    {parameter::kMaxPoints, "n_ext: most points kept; further ones are dropped and counted"},
+    {parameter::kShuffleSeed, "visit the shell points in a fixed random order instead of ascending index"},
+};
+
+/// Takes O(n * kept) inner products.
+class GradientReduction final : public PointStage {
+ public:
+  explicit GradientReduction(const ReductionConfig& config) : config_(config) {}
+
+  void prepare(const Scene& scene) override {
+    if (!config_.shuffle_seed) return;
+    // rank_[i] is the place of the shell point or spring i in the visiting order.
+    rank_.resize(scene.shell != nullptr ? scene.shell->size() : scene.capacity);
+    std::iota(rank_.begin(), rank_.end(), 0u);
+    Random(*config_.shuffle_seed).shuffle(rank_);
+    order_.resize(scene.capacity);
+    shuffled_ = std::make_unique<ContactBuffer>(scene.capacity);
+  }
+
+  void process(ContactBuffer& contacts) noexcept override {
+    if (shuffled_) shuffle(contacts);
+    const std::size_t n = contacts.size();
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < n; i += simd::lanes) visit_pack(contacts, i, std::min(simd::lanes, n - i), kept);
+    contacts.shrink(kept);
+    contacts.pad();
+  }
+
+ private:
+  /// Visits the `n` <= 8 contacts from i on. The loops are exchanged: each kept contact, in turn, is compared with all
+  /// contacts of the pack that no earlier kept contact has absorbed. The result is the same, because a kept contact
+  /// depends only on the contacts that the earlier ones refuse, and on their order.
+  void visit_pack(ContactBuffer& c, std::size_t i, std::size_t n, std::size_t& kept) noexcept {
+    using simd::load, simd::Pack;
+    const Pack x = load(&c.ux[i]), y = load(&c.uy[i]), z = load(&c.uz[i]), depth = load(&c.depth[i]);
+    const Pack threshold(config_.threshold);
+    // Pointers in local variables, so that they are not read again for each test.
+    const double *const ux = c.ux.data(), *const uy = c.uy.data(), *const uz = c.uz.data(), *const d = c.depth.data();
+    const auto first = [i](unsigned lanes) { return i + static_cast<std::size_t>(std::countr_zero(lanes)); };
+    // The lanes, out of `lanes`, that are refused by the contact at `place`, which is kept as number k.
+    const auto refused_by = [&](std::size_t k, std::size_t place, unsigned lanes) {
+      unsigned refused = 0;
+      for (;;) {
+        const Pack inner = x * Pack(ux[place]) + y * Pack(uy[place]) + z * Pack(uz[place]);
+        const unsigned similar = simd::bits(inner > threshold) & lanes;
+        // Most kept contacts are similar to none of the eight, so their depth is not compared.
+        const unsigned deeper = similar == 0 ? 0 : simd::bits(depth > Pack(d[place])) & similar;
+        if (deeper == 0) {
+          if (place != k) c.copy(place, k);
+          return refused | (lanes & ~similar);
+        }
+        // The first deeper contact replaces the kept one, and the lanes behind it are compared with that.
+        const unsigned visited = deeper ^ (deeper - 1);
+        refused |= lanes & ~similar & visited;
+        lanes &= ~visited;
+        place = first(deeper);
+      }
+    };
+    unsigned lanes = 0xffu >> (simd::lanes - n);
+    for (std::size_t k = 0; k < kept && lanes != 0; ++k) lanes = refused_by(k, k, lanes);
+    for (; lanes != 0 && kept < config_.max_points; ++kept) lanes = refused_by(kept, first(lanes), lanes & (lanes - 1));
+    dropped_ += static_cast<std::uint64_t>(std::popcount(lanes));
+  }
+
+  void shuffle(ContactBuffer& contacts) noexcept {
+    const auto end = order_.begin() + static_cast<std::ptrdiff_t>(contacts.size());
+    std::iota(order_.begin(), end, 0u);
+    std::sort(order_.begin(), end,
+              [&](std::uint32_t a, std::uint32_t b) { return rank_[contacts.index[a]] < rank_[contacts.index[b]]; });
+    shuffled_->clear();
+    for (auto slot = order_.begin(); slot != end; ++slot) shuffled_->push_copy_of(contacts, *slot);
+    contacts.clear();
+    for (std::size_t i = 0; i < shuffled_->size(); ++i) contacts.push_copy_of(*shuffled_, i);
+  }
+
+  ReductionConfig config_;
+  std::vector<std::uint32_t> rank_;
+  std::vector<std::uint32_t> order_;
+  std::unique_ptr<ContactBuffer> shuffled_;  ///< null without a shuffle
+};
+
+}  // namespace
+
+const ModelInfo kGradientReductionInfo = {
+    .name = "reduction",
+    .summary = "of colliding points with similar gradients only the deepest is kept",
+    .formula =
+        "visit contacts in order; the first kept k with <u_i, u_k> > alpha_TH absorbs i (replaced if d_i > d_k); "
+        "none similar: append, or drop when n_ext are kept",
+    .source =
+        "thesis C.3, 2.8; algorithm C.1 as printed appends replaced points and compares on after a similar one, which "
+        "cannot be meant",
+    .known_failure = "depends on the order of the points; collapses gradually curved surfaces (thesis 4.1)",
+    .parameters = kReductionParameters,
+};
+
+std::unique_ptr<PointStage> make_gradient_reduction(const ReductionConfig& config) {
+  return std::make_unique<GradientReduction>(config);
+}
+
+}  // namespace hapbench

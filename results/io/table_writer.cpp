@@ -1,0 +1,53 @@
+#include "results/io/table_writer.hpp"
+
+#include <sys/mman.h>
+
+#include <limits>
+#include <new>
+
+namespace hapbench {
+namespace {
+
+constexpr std::size_t kFirstNumbers = std::size_t{1} << 15;
+
+}  // namespace
+
+MemoryTable::~MemoryTable() {
+  if (data_ != nullptr) ::munmap(data_, capacity_ * sizeof(double));
+}
+
+/// Doubling pages are moved in the address space, not copied.
+bool MemoryTable::reserve(std::size_t more) noexcept {
+  if (size_ + more <= capacity_) return complete_;
+  const std::size_t capacity = capacity_ == 0 ? kFirstNumbers : 2 * capacity_;
+  void* pages =
+      data_ == nullptr
+          ? ::mmap(nullptr, capacity * sizeof(double), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)
+          : ::mremap(data_, capacity_ * sizeof(double), capacity * sizeof(double), MREMAP_MAYMOVE);
+  if (pages == MAP_FAILED) return complete_ = false;
+  data_ = static_cast<double*>(pages);
+  capacity_ = capacity;
+  return complete_;
+}
+
+void MemoryTable::require_complete() const {
+  if (!complete_) throw std::bad_alloc();
+}
+
+void MemoryTable::put(const Vec3& value) noexcept {
+  for (const double part : value) put(part);
+}
+
+void MemoryTable::put(std::span<const double> values) noexcept {
+  for (const double value : values) put(value);
+}
+
+void MemoryTable::put(const std::optional<double>& value) noexcept {
+  put(value.value_or(std::numeric_limits<double>::quiet_NaN()));
+}
+
+void MemoryTable::put(std::span<const std::optional<double>> values) noexcept {
+  for (const std::optional<double>& value : values) put(value);
+}
+
+}  // namespace hapbench

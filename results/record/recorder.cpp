@@ -1,0 +1,312 @@
+#include "results/record/recorder.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "sim/contact/stiffness_tensor.hpp"
+
+namespace hapbench {
+namespace {
+
+/// All columns; those of pose and torque are optional.
+constexpr Column kTrajectoryColumns[] = {
+    kStepColumn,
+    kTimeColumn,
+    {"px_m", "m", "x of the tip's centre"},
+    {"py_m", "m", "y of the tip's centre"},
+    {"pz_m", "m", "z of the tip's centre"},
+    {"vx_m_per_s", "m/s", "x of its velocity"},
+    {"vy_m_per_s", "m/s", "y of its velocity"},
+    {"vz_m_per_s", "m/s", "z of its velocity"},
+    {"axis_x", "1", "x of the tool's axis, the unit vector out of the tip"},
+    {"axis_y", "1", "y of the tool's axis"},
+    {"axis_z", "1", "z of the tool's axis"},
+    {"fx_N", "N", "x of f = f_render, the rendered force on the tool"},
+    {"fy_N", "N", "y of f"},
+    {"fz_N", "N", "z of f"},
+    {"fspring_x_N", "N", "x of f_spring, the part of f before damping, friction and limits"},
+    {"fspring_y_N", "N", "y of f_spring"},
+    {"fspring_z_N", "N", "z of f_spring"},
+    {"fmeas_x_N", "N", "x of f_meas, what the force sensor read of the hand"},
+    {"fmeas_y_N", "N", "y of f_meas"},
+    {"fmeas_z_N", "N", "z of f_meas"},
+    {"fin_x_N", "N", "x of f_in, what the input-force limiter made of f_meas: it moves the tool with f"},
+    {"fin_y_N", "N", "y of f_in"},
+    {"fin_z_N", "N", "z of f_in"},
+    {"hx_m", "m", "x of the handle"},
+    {"hy_m", "m", "y of the handle"},
+    {"hz_m", "m", "z of the handle"},
+    {"colliding", "1", "points in the tool or on its surface, before local average and reduction"},
+    {"rendered", "1", "points that the force law saw"},
+    {"depth_max_m", "m", "largest penetration depth of a colliding point; 0 without contact"},
+    {"ratio_min", "1", "smallest stiffness ratio u^T S u of a rendered contact; empty without contact"},
+    {"ratio_max", "1", "largest stiffness ratio u^T S u of a rendered contact; empty without contact"},
+
+    {"qw", "1", "w of the unit quaternion that turns the tool's frame, its axis along -z, into the world's; >= 0"},
+    {"qx", "1", "x of this quaternion"},
+    {"qy", "1", "y of this quaternion"},
+    {"qz", "1", "z of this quaternion"},
+
+    {"tx_Nm", "Nm",
+     "x of the lost torque: what the rendered contacts would exert on the tool about its tip's centre and the device "
+     "cannot render, sum r_i x f_i, f_i contact i's share of f_spring"},
+    {"ty_Nm", "Nm", "y of the lost torque"},
+    {"tz_Nm", "Nm", "z of the lost torque"}};
+constexpr std::size_t kPoseColumns = 4, kTorqueColumns = 3;
+constexpr auto kWithoutPose = [] {
+  constexpr std::size_t usual = std::size(kTrajectoryColumns) - kPoseColumns - kTorqueColumns;
+  std::array<Column, usual + kTorqueColumns> columns{};
+  std::copy(std::end(kTrajectoryColumns) - kTorqueColumns, std::end(kTrajectoryColumns),
+            std::copy_n(kTrajectoryColumns, usual, columns.begin()));
+  return columns;
+}();
+
+std::span<const Column> trajectory_columns(const TrajectoryExtras& extras) {
+  if (extras.torque && !extras.pose) return kWithoutPose;
+  const std::span<const Column> all = kTrajectoryColumns;
+  return all.first(all.size() - (extras.torque ? 0 : kTorqueColumns) - (extras.pose ? 0 : kPoseColumns));
+}
+
+constexpr Column kContactColumns[] = {
+    kStepColumn,
+    kTimeColumn,
+    {"index", "1", "number of the shell point, spring or, of another library's contact, triangle, from 0"},
+    {"x_m", "m", "x of the colliding point"},
+    {"y_m", "m", "y of the colliding point"},
+    {"z_m", "m", "z of the colliding point"},
+    {"nx", "1", "x of the environment's outward unit normal there"},
+    {"ny", "1", "y of the environment's outward unit normal there"},
+    {"nz", "1", "z of the environment's outward unit normal there"},
+    {"depth_m", "m", "penetration depth d, by the depth model"},
+    {"gradient_x", "1", "x of the unit gradient u, along which the point would leave the tool"},
+    {"gradient_y", "1", "y of the unit gradient u"},
+    {"gradient_z", "1", "z of the unit gradient u"},
+    {"weight", "1", "c_i of the law; 0 for laws without weights"}};
+
+constexpr Column kStiffnessColumns[] = {
+    kStepColumn,
+    kTimeColumn,
+    {"sxx", "1", "entry xx of the stiffness tensor S that the force was rendered with, in units of K"},
+    {"sxy", "1", "entry xy of S"},
+    {"sxz", "1", "entry xz of S"},
+    {"syy", "1", "entry yy of S"},
+    {"syz", "1", "entry yz of S"},
+    {"szz", "1", "entry zz of S"},
+    {"lambda_max", "1", "largest eigenvalue of S"}};
+
+constexpr Column kRatioColumns[] = {
+    kStepColumn,
+    kTimeColumn,
+    {"iteration", "1", "number m of shaping updates, from equal weights 1"},
+    {"rendered", "1", "points that the force law saw"},
+    {"ratio_min", "1", "smallest stiffness ratio u^T S u of a rendered contact after m updates"},
+    {"ratio_max", "1", "largest stiffness ratio u^T S u of a rendered contact after m updates"},
+    {"lambda_max", "1", "largest eigenvalue of S after m updates: the stiffness in units of K"}};
+
+constexpr Column kEnergyColumns[] = {
+    kStepColumn,
+    kTimeColumn,
+    {"kinetic_J", "J", "kinetic energy of the virtual mass, now"},
+    {"stored_J", "J", "elastic energy of the penalty springs, now"},
+    {"input_J", "J", "work of f_in on the tool since the first row"},
+    {"spring_J", "J", "work of f_spring on the tool since the first row"},
+    {"damping_J", "J", "work of damping, friction and force limit, of f - f_spring, since the first row"},
+    {"rotation_J", "J", "what the tool's turning put into the springs since the first row"},
+    {"created_J", "J", "what the springs store beyond the work that translation and rotation did on them"},
+    {"integration_J", "J", "energy made by the integrator since the first row"},
+    {"script_J", "J", "work of a prescribed motion since the first row"},
+    {"residual_J", "J", "kinetic energy that the other terms do not explain: rounding"},
+    {"hand_J", "J", "work of the hand on the handle since the first row"},
+    {"actuator_J", "J", "work of the device's actuators since the first row"},
+    {"device_dissipated_J", "J", "what the device's mechanics dissipated; empty when the handle is the tool"},
+    {"device_stored_J", "J", "what the device's mechanics store, now; empty when the handle is the tool"}};
+
+constexpr Column kIdealTrajectoryColumns[] = {
+    kStepColumn,
+    kTimeColumn,
+    {"tilt_rad", "rad", "angle of the tool's axis to the hole's"},
+    {"height_m", "m", "tip's centre above the hole's mouth; negative in the hole"},
+    {"ideal_height_m", "m", "the same of the ideal trajectory"},
+    {"lateral_m", "m", "tip's centre from the hole's axis, towards where the tool leans"},
+    {"ideal_lateral_m", "m", "the same of the ideal trajectory"},
+    {"interpenetration_m", "m", "true depth of the tool in the exact block"},
+    {"hand_force_N", "N", "norm of the hand's force"}};
+
+constexpr Column kForceReferenceColumns[] = {
+    kStepColumn,
+    kTimeColumn,
+    {"mfx_N", "N", "x of the reference force f_m on the tool; empty where none was measured"},
+    {"mfy_N", "N", "y of f_m"},
+    {"mfz_N", "N", "z of f_m"},
+    {"force_error_x_N", "N", "x of f - f_m"},
+    {"force_error_y_N", "N", "y of f - f_m"},
+    {"force_error_z_N", "N", "z of f - f_m"}};
+
+constexpr Column kTargetColumns[] = {
+    {"subject", "1", "simulated subject, from 0"},
+    {"trial", "1", "its trial, from 0"},
+    {"target", "1", "target of the trial, from 0"},
+    {"place", "1", "where the target was: index of the task's places"},
+    {"removed", "1", "1 when the subject removed it, 0 when it disappeared at the time limit"},
+    {"time_s", "s", "from the press that activated the task to the end of the target"},
+    {"rows_on_target", "1", "rows with the tip on it"},
+    {"model_force_N", "N", "mean ||f|| of these rows; empty without any"},
+    {"speed_m_per_s", "m/s", "mean speed of the handle in these rows; empty without any"}};
+
+/// w, x, y, z; of the two quaternions of one rotation the one with w >= 0.
+std::array<double, 4> quaternion(const Mat3& rotation) noexcept {
+  const Eigen::Quaterniond q(rotation);
+  const double sign = q.w() < 0.0 ? -1.0 : 1.0;
+  return {sign * q.w(), sign * q.x(), sign * q.y(), sign * q.z()};
+}
+
+}  // namespace
+
+constinit const ResultTable kTrajectoryTable = {
+    "trajectory.csv",
+    "one line per recorded row, before the tool moves on; qw to qz with record.pose, tx_Nm to tz_Nm with record.torque",
+    kTrajectoryColumns};
+constinit const ResultTable kContactTable = {
+    "contacts.csv", "with record.contacts: one line per rendered contact of each recorded row", kContactColumns};
+constinit const ResultTable kStiffnessTable = {
+    "stiffness_tensor.csv", "with record.stiffness_tensor: one line per recorded row", kStiffnessColumns};
+constinit const ResultTable kRatioTable = {
+    "ratios.csv", "with record.ratio_iterations: one line per iteration of each recorded row in contact",
+    kRatioColumns};
+constinit const ResultTable kEnergyTable = {
+    "energy.csv", "with record.energy: the energy balance, one line per recorded row", kEnergyColumns};
+constinit const ResultTable kIdealTrajectoryTable = {
+    "ideal_trajectory.csv",
+    "with record.ideal_trajectory: one line per recorded row at whose tilt the ideal trajectory exists",
+    kIdealTrajectoryColumns};
+constinit const ResultTable kForceReferenceTable = {
+    "force_reference.csv", "with record.force_reference: the measured force of a stroke, one line per recorded row",
+    kForceReferenceColumns};
+constinit const ResultTable kTargetTable = {"targets.csv", "of a tracking hand: one line per target of every trial",
+                                            kTargetColumns};
+
+Recorder::Recorder(TableTarget target, RowSource source, std::uint64_t every)
+    : source_(std::move(source)), writer_(std::move(target), source_.columns), every_(every) {
+  assert(every > 0);
+}
+
+void Recorder::on_step(const StepRecord& record) noexcept {
+  if (record.step % every_ == 0) source_.write(record, writer_);
+}
+
+RowSource trajectory_rows(const TrajectoryExtras& extras) {
+  const auto write = [extras](const StepRecord& r, TableWriter& table) {
+    const auto ratio = r.rendered->empty() ? std::nullopt : std::optional(r.ratio);
+    std::array<double, kPoseColumns + kTorqueColumns> more;
+    std::size_t count = 0;
+    const auto add = [&](const auto& values) {
+      for (const double value : values) more[count++] = value;
+    };
+    if (extras.pose) add(quaternion(ToolPose{r.tool.pose.position, r.tool.pose.axis, r.roll}.rotation()));
+    if (extras.torque) add(r.springs.moment);
+    table.row(r.step, r.time, r.tool.pose.position, r.tool.velocity, r.tool.pose.axis, r.force.rendered, r.force.spring,
+              r.hand.measured, r.hand.input, r.handle.position, r.colliding, r.rendered->size(), r.force.depth_max,
+              ratio ? std::optional(ratio->min) : std::nullopt, ratio ? std::optional(ratio->max) : std::nullopt,
+              std::span<const double>(more.data(), count));
+  };
+  return {.columns = trajectory_columns(extras),
+          .write = write,
+          .wants_ratio = true,
+          .wants_roll = extras.pose,
+          .wants_springs = extras.torque};
+}
+
+RowSource contact_rows() {
+  const auto write = [](const StepRecord& record, TableWriter& table) {
+    const ContactBuffer& c = *record.rendered;
+    for (std::size_t i = 0; i < c.size(); ++i) {
+      table.row(record.step, record.time, std::uint64_t{c.index[i]}, c.point(i), c.normal(i), c.depth[i], c.gradient(i),
+                c.weight[i]);
+    }
+  };
+  return {.columns = kContactColumns, .write = write};
+}
+
+RowSource stiffness_rows() {
+  const auto write = [](const StepRecord& record, TableWriter& table) {
+    const Mat3& S = record.force.S;
+    table.row(record.step, record.time, S(0, 0), S(0, 1), S(0, 2), S(1, 1), S(1, 2), S(2, 2), lambda_max(S));
+  };
+  return {.columns = kStiffnessColumns, .write = write};
+}
+
+RowSource ratio_rows(std::vector<int> iterations, ShapingOperations shaping, std::size_t capacity) {
+  std::sort(iterations.begin(), iterations.end());
+  iterations.erase(std::unique(iterations.begin(), iterations.end()), iterations.end());
+  assert(iterations.empty() || iterations.front() >= 0);
+  const auto write = [iterations = std::move(iterations), shaping, copy = std::make_shared<ContactBuffer>(capacity)](
+                         const StepRecord& record, TableWriter& table) {
+    if (record.rendered->empty()) return;
+    ContactBuffer& contacts = *copy;
+    assert(record.rendered->size() <= contacts.capacity());
+    contacts.assign(*record.rendered);
+    Mat3 S = shaping.start(contacts);
+    int done = 0;
+    for (const int m : iterations) {
+      for (; done < m; ++done) S = shaping.update(contacts, S);
+      const RatioRange ratio = ratio_range(contacts, S);
+      table.row(record.step, record.time, static_cast<std::uint64_t>(m), contacts.size(), ratio.min, ratio.max,
+                lambda_max(S));
+    }
+  };
+  return {.columns = kRatioColumns, .write = write};
+}
+
+RowSource energy_rows(const EnergyLedger& ledger) {
+  const auto write = [&ledger](const StepRecord& record, TableWriter& table) {
+    const EnergyBalance& b = ledger.balance();
+    table.row(record.step, record.time, b.kinetic, b.stored, b.input, b.spring, b.damping, b.rotation, b.created,
+              b.integration, b.script, b.residual, b.hand, b.actuator,
+              b.device ? std::optional(b.device->dissipated) : std::nullopt,
+              b.device ? std::optional(b.device->stored) : std::nullopt);
+  };
+  return {.columns = kEnergyColumns, .write = write};
+}
+
+RowSource ideal_trajectory_rows(const IdealTrajectoryObserver& observer) {
+  const auto write = [&observer](const StepRecord& record, TableWriter& table) {
+    if (!observer.error()) return;
+    const TrajectoryError& e = *observer.error();
+    table.row(record.step, record.time, e.tilt, e.actual.height, e.ideal.height, e.actual.lateral, e.ideal.lateral,
+              e.interpenetration, e.hand_force);
+  };
+  return {.columns = kIdealTrajectoryColumns, .write = write};
+}
+
+RowSource force_reference_rows(const ForceFidelityObserver& observer) {
+  const auto write = [&observer](const StepRecord& record, TableWriter& table) {
+    std::array<std::optional<double>, 6> cells;  // f_m and the error, empty where nothing was measured
+    if (const auto& measured = observer.reference()) {
+      const Vec3 error = record.force.rendered - *measured;
+      for (std::size_t i = 0; i < 3; ++i) {
+        cells[i] = (*measured)[static_cast<int>(i)];
+        cells[i + 3] = error[static_cast<int>(i)];
+      }
+    }
+    table.row(record.step, record.time, std::span<const std::optional<double>>(cells));
+  };
+  return {.columns = kForceReferenceColumns, .write = write};
+}
+
+void write_target_table(TableTarget target, const std::vector<TargetRow>& rows) {
+  TableWriter table(std::move(target), kTargetColumns);
+  for (const TargetRow& row : rows) {
+    const bool any = row.rows_on_target > 0;
+    table.row(std::uint64_t{row.subject}, std::uint64_t{row.trial}, std::uint64_t{row.target},
+              std::uint64_t{row.result.place}, std::uint64_t{row.result.removed}, row.result.time, row.rows_on_target,
+              any ? std::optional(row.model_force) : std::nullopt, any ? std::optional(row.speed) : std::nullopt);
+  }
+  table.finish();
+}
+
+}  // namespace hapbench

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+
+#include "scenarios/description/named_files.hpp"
+#include "scenarios/description/scenario.hpp"
+#include "sim/loop/simulation.hpp"
+#include "sim/tool/cylinder.hpp"
+
+/// What a run is made of, from the fields that describe it: each beside its description, in environments.cpp,
+/// tools.cpp, motions.cpp, hands.cpp and devices.cpp. All throw InputError when a named file cannot be used. `files`
+/// are those of the scenario; without, they are read.
+namespace hapbench {
+
+/// One run of a scenario that has several: a simulated subject's trial. Both count from 0.
+struct Trial {
+  std::size_t subject = 0;
+  std::size_t number = 0;
+};
+
+/// The uses of randomness that differ from trial to trial.
+enum class RandomUse : std::uint64_t { sensor_noise = 1, motor_noise = 2, target_order = 3 };
+/// A seed of its own for each use in each trial: far apart in the 64 bits, whatever the scenario's seed.
+std::uint64_t derived_seed(const Scenario& scenario, Trial trial, RandomUse use);
+
+/// The point shell of the scenario's environment, in the order in which `hapbench shell` writes it; null for springs.
+/// Equal environments share one (SharedCache).
+std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const NamedFiles& files);
+std::shared_ptr<const PointShell> make_shell(const Scenario& scenario);
+
+/// The springs, those with random directions from the seed. Precondition: the environment is springs.
+SpringSet make_springs(const Scenario& scenario);
+
+/// The tool. The grid of a mesh takes seconds to make; equal ones are shared (SharedCache).
+std::shared_ptr<const ToolShape> make_tool(const Scenario& scenario, const NamedFiles& files);
+std::shared_ptr<const ToolShape> make_tool(const Scenario& scenario);
+/// The tool, for callers that need a cylinder. Throws InputError when it is none.
+Cylinder make_cylinder(const ToolFields& fields);
+
+Orientation make_orientation(const OrientationFields& fields);
+std::unique_ptr<Motion> make_motion(const Scenario& scenario, const NamedFiles& files);
+
+/// Adds the hand and the motion, which some hands steer. Precondition: the shell is there.
+void add_hand_and_motion(const Scenario& scenario, const NamedFiles& files, Trial trial, SimulationParts& parts);
+
+std::unique_ptr<Device> make_device(const Scenario& scenario, Trial trial);
+
+}  // namespace hapbench

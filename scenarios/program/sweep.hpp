@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenarios/batch/run_sweep.hpp"
+#include "scenarios/input/json_file.hpp"
+
+/// The parts of `hapbench sweep`: what it prints of a finished sweep, and sweeps on a cluster.
+namespace hapbench {
+
+/// The metric that `sweep` shows: the one asked for, or else the first of kDefaultMetrics that the runs have. Throws
+/// InputError when they have none of that name.
+std::string chosen_metric(const SweepPlan& plan, const std::string& asked_for);
+
+/// The counts of outcomes, and above them for a sweep of one field the runs with their main metrics, for one of two
+/// fields the metric as a table and a map of characters. Tables of more than 100 runs or 400 cells are left out, and
+/// those of a shard or a sample of two fields. Precondition: `metric` is among the plan's.
+std::string summary_text(const SweepPlan& plan, const SweepReport& report, const std::string& metric);
+/// The counts, and the rows that the report has.
+Json summary_json(const SweepPlan& plan, const SweepReport& report);
+
+struct SlurmOptions {
+  std::size_t shards = 0;
+  int cpus = 1;           ///< per task, which does as many runs at once
+  std::string time;       ///< limit of a task, as sbatch takes it; empty: the partition's
+  std::string partition;  ///< empty: the cluster's default
+  bool dry_run = false;   ///< only writes the scripts
+  bool keep_runs = false;
+};
+
+/// A submission to Slurm.
+struct SlurmJobs {
+  std::string definition;  ///< of the sweep
+  std::size_t runs = 0;
+  std::size_t shards = 0;
+  std::string array, merge;  ///< numbers of the jobs; no array when all shards were done before
+  std::string text;          ///< to print
+};
+
+/// Submits a sweep to Slurm as an array with a task for each shard that has no table yet, and a job that merges the
+/// shards when all are done. A task does many runs, since a scheduler starts only about one task a second. Writes the
+/// scripts sweep.sbatch and merge.sbatch into `directory`; a dry run ends there. `sweep` is the command without shard,
+/// jobs and output options. Throws InputError when jobs of an earlier submission are still in the queue, when the
+/// directory holds shards of another sweep, or when Slurm refuses; IoError.
+SlurmJobs submit_to_slurm(const SweepPlan& plan, const SlurmOptions& options, const std::filesystem::path& directory,
+                          const std::vector<std::string>& sweep);
+
+/// The progress of the sweep in a directory.
+struct SweepStatus {
+  std::string text;
+  Json json;
+};
+
+/// Reads the files of a sweep and its shards, and Slurm's queue when they were submitted to Slurm. Throws InputError
+/// when the directory holds no sweep, or shards of several.
+SweepStatus sweep_status(const std::filesystem::path& directory);
+
+}  // namespace hapbench

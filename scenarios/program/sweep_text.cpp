@@ -1,0 +1,205 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "scenarios/batch/league.hpp"
+#include "scenarios/batch/sweep_table.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/run_table.hpp"
+#include "scenarios/program/sweep.hpp"
+#include "scenarios/program/table.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr std::size_t kMostRowsShown = 100;
+constexpr std::size_t kMostCells = 400;
+
+bool has_metric(const SweepPlan& plan, std::string_view name) {
+  return std::find(plan.metrics.begin(), plan.metrics.end(), name) != plan.metrics.end();
+}
+
+/// The runs of a single axis, with the headings that run and compare have.
+std::string runs_text(const SweepPlan& plan, const std::vector<SweepRow>& rows) {
+  std::vector<RunHeading> metrics;
+  std::vector<Table::Column> columns = {{plan.points.axes()[0].path}, {"outcome", false}};
+  for (const RunHeading& heading : kRunHeadings) {
+    if (heading.factor == 0.0 || !has_metric(plan, heading.shows[0])) continue;
+    metrics.push_back(heading);
+    columns.push_back({heading.title});
+  }
+  Table table(columns);
+  for (const SweepRow& row : rows) {
+    std::vector<std::string> cells = {plan.points.value(row.run, 0), row.outcome};
+    for (const RunHeading& heading : metrics) {
+      const double value = row.number(plan, heading.shows[0]).value_or(std::numeric_limits<double>::quiet_NaN());
+      cells.push_back(significant(heading.factor * value, 3));
+    }
+    table.add(std::move(cells));
+  }
+  return table.text();
+}
+
+bool holds_texts(const Axis& axis) {
+  return !std::all_of(axis.values.begin(), axis.values.end(),
+                      [](const std::string& value) { return finite_number(value).has_value(); });
+}
+
+struct GridCell {
+  std::optional<double> value;
+  std::string failure;  ///< outcome of a run that failed
+};
+
+/// A sweep of two fields by one metric. One field goes across, the other one down; fields of texts go down.
+class Grid {
+ public:
+  Grid(const SweepPlan& plan, const std::vector<SweepRow>& rows, std::string_view metric)
+      : first_down_(!holds_texts(plan.points.axes()[1]) || holds_texts(plan.points.axes()[0])),
+        across_(plan.points.axes()[first_down_ ? 1 : 0]),
+        down_(plan.points.axes()[first_down_ ? 0 : 1]) {
+    for (const SweepRow& row : rows) {
+      const bool failed = row.outcome == kErrorOutcome || is_failure(row.outcome);
+      cells_.push_back({failed ? std::nullopt : row.number(plan, metric), failed ? row.outcome : ""});
+    }
+  }
+
+  const Axis& across() const { return across_; }
+  const Axis& down() const { return down_; }
+  const GridCell& at(std::size_t i_across, std::size_t i_down) const {
+    const std::size_t first = first_down_ ? i_down : i_across, second = first_down_ ? i_across : i_down;
+    return cells_[first * (first_down_ ? across_ : down_).size() + second];
+  }
+  const std::vector<GridCell>& cells() const { return cells_; }
+
+ private:
+  bool first_down_;
+  const Axis& across_;
+  const Axis& down_;
+  std::vector<GridCell> cells_;
+};
+
+std::string shown_value(const std::string& text) {
+  const auto number = finite_number(text);
+  return number ? significant(*number, 6) : text;
+}
+
+std::string table_text(const Grid& grid) {
+  std::vector<Table::Column> columns = {
+      {fmt::format("{} \\ {}", grid.down().path, grid.across().path), !holds_texts(grid.down())}};
+  for (std::size_t i = 0; i < grid.across().size(); ++i) columns.push_back({shown_value(grid.across().value(i))});
+  Table table(columns);
+  for (std::size_t j = 0; j < grid.down().size(); ++j) {
+    std::vector<std::string> cells = {shown_value(grid.down().value(j))};
+    for (std::size_t i = 0; i < grid.across().size(); ++i) {
+      const GridCell& cell = grid.at(i, j);
+      cells.push_back(!cell.failure.empty() ? cell.failure : significant(cell.value));
+    }
+    table.add(std::move(cells));
+  }
+  return table.text(prose_width());
+}
+
+/// The levels of a map between the least and the greatest value, in equal ratios where they are more than a decade
+/// apart.
+class Levels {
+ public:
+  static constexpr std::string_view kMarks = ".:-=+*%@";
+
+  explicit Levels(const std::vector<GridCell>& cells) {
+    for (const GridCell& cell : cells) {
+      if (!cell.value) continue;
+      least_ = std::min(least_, *cell.value);
+      greatest_ = std::max(greatest_, *cell.value);
+    }
+  }
+
+  bool empty() const { return least_ > greatest_; }
+  char mark(double value) const {
+    if (!(greatest_ > least_)) return kMarks.front();
+    const auto scaled = [this](double x) { return is_logarithmic() ? std::log(x) : x; };
+    const double part =
+        (scaled(value) - scaled(least_)) / (scaled(greatest_) - scaled(least_)) * static_cast<double>(kMarks.size());
+    return kMarks[std::min(static_cast<std::size_t>(std::max(part, 0.0)), kMarks.size() - 1)];
+  }
+  std::string legend() const {
+    return fmt::format("{} {} ... {} {}{}", kMarks.front(), significant(least_, 3), kMarks.back(),
+                       significant(greatest_, 3), is_logarithmic() ? ", in equal ratios" : "");
+  }
+
+ private:
+  bool is_logarithmic() const { return least_ > 0.0 && greatest_ > 10.0 * least_; }
+
+  double least_ = std::numeric_limits<double>::infinity();
+  double greatest_ = -std::numeric_limits<double>::infinity();
+};
+
+std::string map_text(const Grid& grid, std::string_view metric) {
+  const Levels levels(grid.cells());
+  if (levels.empty()) return "";
+  const auto mark = [&](std::size_t i, std::size_t j) {
+    const GridCell& cell = grid.at(i, j);
+    return !cell.failure.empty() ? '#' : cell.value ? levels.mark(*cell.value) : '?';
+  };
+  std::vector<std::string> labels;
+  for (std::size_t j = 0; j < grid.down().size(); ++j) labels.push_back(shown_value(grid.down().value(j)));
+  const Axis& across = grid.across();
+  const MapColumns columns{across.path, across.size(), shown_value(across.value(0)),
+                           shown_value(across.value(across.size() - 1))};
+  return fmt::format("{}  {}: {}; # failed, ? no value\n", character_map(columns, grid.down().path, labels, mark),
+                     metric, levels.legend());
+}
+
+std::string grid_text(const SweepPlan& plan, const std::vector<SweepRow>& rows, std::string_view metric) {
+  const bool is_grid = plan.points.axes().size() == 2 && !plan.points.sampling();
+  if (!is_grid || rows.size() != plan.points.size() || rows.size() > kMostCells) return "";
+  const Grid grid(plan, rows, metric);
+  std::string text = fmt::format("{}\n\n{}\n", metric, table_text(grid));
+  constexpr std::size_t kMostAcross = 40;  // a wider map does not fit beside its labels
+  if (grid.across().size() <= kMostAcross) text += map_text(grid, metric) + "\n";
+  return text;
+}
+
+}  // namespace
+
+std::string chosen_metric(const SweepPlan& plan, const std::string& asked_for) {
+  if (!asked_for.empty()) {
+    require_valid_name("--metric: got", asked_for, plan.metrics);
+    return asked_for;
+  }
+  const auto has = [&plan](std::string_view name) { return has_metric(plan, name); };
+  return std::string(*std::find_if(std::begin(kDefaultMetrics), std::end(kDefaultMetrics) - 1, has));
+}
+
+std::string summary_text(const SweepPlan& plan, const SweepReport& report, const std::string& metric) {
+  std::string text = grid_text(plan, report.rows, metric);
+  if (plan.points.axes().size() == 1 && report.counts.runs <= kMostRowsShown)
+    text = runs_text(plan, report.rows) + "\n";
+  Table table({{"outcome", false}, {"runs"}, {"as expected"}});
+  for (const auto& [outcome, count] : report.counts.outcomes) {
+    table.add({outcome, std::to_string(count.runs), std::to_string(count.expected)});
+  }
+  text += table.text();
+  if (report.resumed > 0) text += fmt::format("\n{} of the runs were done before\n", report.resumed);
+  return text + fmt::format("\nresults in {}\n", report.table.string());
+}
+
+Json summary_json(const SweepPlan& plan, const SweepReport& report) {
+  const SweepCounts& counts = report.counts;
+  Json outcomes = Json::object();
+  for (const auto& [outcome, count] : counts.outcomes) outcomes[outcome] = count.runs;
+  Json json = {{"definition", plan.definition},   {"runs", counts.runs},     {"outcomes", std::move(outcomes)},
+               {"unexpected", counts.unexpected}, {"failed", counts.failed}, {"file", report.table.string()}};
+  if (counts.runs > SweepReport::kMostRows) return json;
+  Json& rows = json["rows"] = Json::array();
+  for (const SweepRow& row : report.rows) rows.push_back(row_json(plan, row));
+  return json;
+}
+
+}  // namespace hapbench

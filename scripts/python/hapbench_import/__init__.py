@@ -1,0 +1,1 @@
+"""Makes strokes to play back from recordings: the work behind `hapbench import`."""

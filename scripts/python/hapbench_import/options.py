@@ -1,0 +1,205 @@
+"""The options of an import: those of a preset, and over them those of the command line."""
+import json
+import math
+import os
+from dataclasses import dataclass, field
+
+from .faults import Faults, fail, finite_number, plain, quoted, require_name, shown
+
+FORMATS = ("csv", "traj", "hapi", "hapi-binary")
+# The columns of each way to write an orientation, in their order.
+ORIENTATIONS = {
+    "none": (),
+    "axis": ("axis_x", "axis_y", "axis_z"),
+    "quat_wxyz": ("qw", "qx", "qy", "qz"),
+    "quat_xyzw": ("qx", "qy", "qz", "qw"),
+    "axis_angle": ("axis_x", "axis_y", "axis_z", "angle"),
+    "matrix": ("r11", "r12", "r13", "r21", "r22", "r23", "r31", "r32", "r33"),
+}
+QUANTITIES = list(dict.fromkeys(
+    ["time", "position", "px", "py", "pz", "orientation", "force", "mfx", "mfy", "mfz", *sum(ORIENTATIONS.values(), ())]))
+
+
+@dataclass
+class Options:
+    """What the numbers of a recording mean. Defaults: metres, seconds, newtons, radians; the tip points along -z."""
+    format: str = "csv"
+    floats: bool = False                        # hapi-binary: numbers of four bytes
+    columns: dict = field(default_factory=dict)  # of each quantity: the names or numbers, from 1, that its column may have
+    optional: set = field(default_factory=set)  # quantities of `columns` that the file need not have
+    sample_rate_Hz: float | None = None         # of a file without times
+    scale: dict = field(default_factory=dict)   # of "time", "position", "angle", "force": SI units in one of the file's
+    orientation: str = "none"
+    tip_axis: tuple = (0.0, 0.0, -1.0)          # direction out of the tip in the recorded tool's frame, any length
+    frame: tuple = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))  # from the recorded world to the scenario's
+    shift: tuple = (0.0, 0.0, 0.0)              # added to positions in the scenario's frame [m]
+    force_by_tool: bool = False                 # recorded forces act on the object and are negated
+    rate: float | None = None                   # of the stroke [Hz]; None: as recorded
+    smooth: dict | None = None                  # window [samples] and order
+    max_speed: float = 5.0                      # [m/s]
+    max_gap: float = 0.5                        # [s]
+    skip_bad_rows: bool = False
+
+    def set(self, name, value):
+        """Sets an option from a value of JSON."""
+        allowed, fits, read = _FIELDS[name]
+        if not fits(value):
+            fail(f"{name}: got {shown(value)}; allowed: {allowed}")
+        if read:
+            setattr(self, name, read(self, value))
+
+
+def options_of(given):
+    """The options in the words of the command line (__main__)."""
+    options = Options()
+    if "preset" in given:
+        _apply_preset(options, given)
+    for name in ("format", "orientation", "frame"):
+        if name in given:
+            options.set(name, given[name] if name == "frame" else given[name][0])
+    columns = dict(_assignments(given, "columns"))
+    options.set("columns", columns)
+    options.optional -= set(columns)
+    options.set("scale", {quantity: _number("--scale", factor) for quantity, factor in _assignments(given, "scale")})
+    for option in ("tip-axis", "shift"):
+        if option in given:
+            if len(given[option]) != 3:
+                fail(f"--{option}: got {len(given[option])} numbers; allowed: three")
+            setattr(options, option.replace("-", "_"), tuple(_number("--" + option, word) for word in given[option]))
+    if "smooth" in given:
+        options.smooth = _smoothing(given)
+    options.sample_rate_Hz = float(given["sample-rate"][0]) if "sample-rate" in given else None if "time" in columns else options.sample_rate_Hz
+    for option in ("rate", "max-speed", "max-gap"):
+        if option in given:
+            setattr(options, option.replace("-", "_"), float(given[option][0]))
+    options.floats |= "floats" in given
+    options.force_by_tool ^= "force-by-tool" in given
+    options.skip_bad_rows = "skip-bad-rows" in given
+    if not 1e-9 < math.hypot(*options.tip_axis) < 1e9:
+        fail("tip_axis: allowed: a direction")
+    if options.sample_rate_Hz is not None and not 0.0 < options.sample_rate_Hz <= 1e6:
+        fail(f"sample_rate: got {plain(options.sample_rate_Hz)} Hz; allowed: > 0 ... 1e6")
+    return options
+
+
+def list_of_presets(given):
+    presets = {name: _read_preset(_file_of(given, name)).get("description", "") for name in _preset_names(given)}
+    return {"table": list(presets.items()), "json": [{"preset": name, "description": text, "file": _file_of(given, name)}
+                                                     for name, text in presets.items()]}
+
+
+def _preset_names(given):
+    return sorted(name.removesuffix(".json") for name in os.listdir(given["presets"][0]) if name.endswith(".json"))
+
+
+def _file_of(given, name):
+    return os.path.join(given["presets"][0], name + ".json")
+
+
+def _read_preset(file):
+    """A preset is a JSON file with options as fields; users copy and correct it."""
+    try:
+        with open(file.encode("utf-8", "surrogateescape"), encoding="utf-8") as stream:
+            preset = json.load(stream)
+    except OSError as error:
+        fail(f"cannot be read: {error.strerror}", file)
+    except json.JSONDecodeError as error:
+        fail(f"is not JSON: syntax error at line {error.lineno}, column {error.colno}", file)
+    except (ValueError, RecursionError):
+        fail("is not JSON in UTF-8", file)
+    if not isinstance(preset, dict):
+        fail(f"a preset: got {shown(preset)}; allowed: an object", file)
+    return preset
+
+
+def _apply_preset(options, given):
+    file = given["preset"][0]
+    if not file.endswith(".json"):
+        require_name("preset: got", file, _preset_names(given))
+        file = _file_of(given, file)
+    try:
+        for name, value in _read_preset(file).items():
+            require_name("got field", name, list(_FIELDS))
+            options.set(name, value)
+    except Faults as faults:
+        fail(faults.list[0][1], file)
+    options.optional = {"orientation", "force"} & set(options.columns)
+
+
+def _assignments(given, option):
+    for word in given.get(option, ()):
+        name, equals, value = word.partition("=")
+        if not name or not equals:
+            fail(f"--{option}: got {quoted(word)}; allowed: NAME=VALUE")
+        yield name, value
+
+
+def _number(option, word):
+    value = finite_number(word.encode("utf-8", "surrogateescape"))
+    if math.isnan(value):
+        fail(f"{option}: got {quoted(word)}; allowed: a number")
+    return value
+
+
+def _smoothing(given):
+    smoothing = {"window": 0, "order": 0}
+    for name, value in _assignments(given, "smooth"):
+        if not (value.isascii() and value.isdigit() and int(value) <= 100_000):
+            fail(f"--smooth: {name}: got {quoted(value)}; allowed: a whole number")
+        require_name("--smooth: got", name, list(smoothing))
+        smoothing[name] = int(value)
+    return smoothing
+
+
+def _is_number(value):
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _is_column(value):
+    """A name, a number, or a list of them."""
+    return isinstance(value, str) or _is_number(value) or isinstance(value, list) and all(map(_is_column, value))
+
+
+def _named(name, valid):
+    def read(_, value):
+        require_name(f"{name}: got", value, list(valid))
+        return value
+    return read
+
+
+def _columns(options, value):
+    for quantity in value:
+        require_name("columns: got", quantity, QUANTITIES)
+    return options.columns | {quantity: list(map(str, column if isinstance(column, list) else [column])) for quantity, column in value.items()}
+
+
+def _scale(options, value):
+    for quantity, factor in value.items():
+        require_name("scale: got", quantity, ("time", "position", "angle", "force"))
+        if not 0.0 < factor < math.inf:
+            fail(f"scale: {quantity}: got {plain(factor)}; allowed: > 0")
+    return options.scale | value
+
+
+def _frame(_, words):
+    """Three words, as in x, -z, y: which recorded directions are the scenario's x, y and z."""
+    rows = [[0.0 if word.removeprefix("-") != letter else -1.0 if word.startswith("-") else 1.0 for letter in "xyz"] for word in words]
+    # Each row is a unit vector or zero. The triple product is -1 for a mirror image, which no tool can follow.
+    if len(rows) != 3 or sum(rows[0][i] * (rows[1][i - 2] * rows[2][i - 1] - rows[1][i - 1] * rows[2][i - 2]) for i in range(3)) < 0.5:
+        fail('frame: allowed: three of x, y, z, each once, with or without "-", as in "x,-z,y", that make a right-handed frame')
+    return rows
+
+
+# Of each field of a preset: what is allowed, whether a value is, and how it is read; nothing for a mere description.
+_FIELDS = {
+    "description": ("a text", lambda v: isinstance(v, str), None),
+    "format": ("a text", lambda v: isinstance(v, str), _named("format", FORMATS)),
+    "floats": ("true, false", lambda v: isinstance(v, bool), lambda _, v: v),
+    "columns": ("an object of names or numbers", lambda v: isinstance(v, dict) and all(map(_is_column, v.values())), _columns),
+    "sample_rate_Hz": ("a number", _is_number, lambda _, v: float(v)),
+    "scale": ("an object of numbers", lambda v: isinstance(v, dict) and all(map(_is_number, v.values())), _scale),
+    "orientation": ("a text", lambda v: isinstance(v, str), _named("orientation", ORIENTATIONS)),
+    "tip_axis": ("three numbers", lambda v: isinstance(v, list) and len(v) == 3 and all(map(_is_number, v)), lambda _, v: tuple(map(float, v))),
+    "frame": ("a list of texts", lambda v: isinstance(v, list) and all(isinstance(one, str) for one in v), _frame),
+    "force_by_tool": ("true, false", lambda v: isinstance(v, bool), lambda _, v: v),
+}

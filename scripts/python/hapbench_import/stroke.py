@@ -1,0 +1,175 @@
+"""From samples to a stroke: an even clock that starts at 0, smoothed if asked for, and the resolution of the recording."""
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation, Slerp
+
+from .faults import MOST_FAULTS, Faults, fail
+from .samples import DOWN, Read, Samples, read_samples
+
+MOST_SAMPLES = 1e7
+LONG_INTERVALS = 10.0  # median intervals from which on one is a gap
+
+
+@dataclass
+class Clock:
+    """The clock of a recording [s]."""
+    first: float
+    duration: float
+    interval_min: float
+    interval_median: float
+    interval_max: float
+    is_regular: bool  # every sample within a thousandth of an interval of its place on an even clock
+
+
+@dataclass
+class Report:
+    """What was found in a recording and done with it."""
+    read: Read
+    stroke: Samples
+    clock: Clock
+    gaps: list          # bridged: (index of the sample before it, duration [s])
+    resolution: list    # of the recorded coordinates [m]; None: kept in full
+    resampled: bool
+    rate: float         # of the stroke [Hz]
+    smoothing: dict | None  # what it changed
+    speed_p99: float    # between samples of the stroke [m/s]
+    speed_max: float
+
+
+def import_stroke(recording, options):
+    """A stroke that a scenario plays back, with what was found on the way."""
+    read = read_samples(recording, options)
+    clock = clock_of(read.samples.time)
+    gaps = gaps_in(read, clock, options.max_gap)
+    resampled = options.rate is not None or not clock.is_regular
+    rate = options.rate if options.rate is not None else usual_rate(clock, len(read.samples.time))
+    resolution = [resolution_of(column) for column in read.coordinates.T]
+    stroke = resample(read.samples, rate) if resampled else read.samples
+    if not resampled:
+        stroke.time = stroke.time - clock.first
+    smoothing = smooth(stroke, **options.smooth) if options.smooth else None
+    speeds = sorted((np.linalg.norm(np.diff(stroke.position, axis=0), axis=1) / np.diff(stroke.time)).tolist()) or [0.0]
+    return Report(read, stroke, clock, gaps, resolution, resampled, rate, smoothing, speeds[int(0.99 * (len(speeds) - 1))], speeds[-1])
+
+
+def clock_of(time):
+    first, duration, intervals = float(time[0]), float(time[-1] - time[0]), np.diff(time)
+    even = duration / len(intervals)
+    off = time - first - np.arange(len(time)) * even
+    return Clock(first, duration, float(intervals.min()), float(np.sort(intervals)[len(intervals) // 2]), float(intervals.max()),
+                 bool((np.abs(off) <= 1e-3 * even).all()))
+
+
+def usual_rate(clock, samples):
+    """As recorded; of an irregular clock that of its median interval, as a whole number."""
+    if clock.is_regular:
+        return (samples - 1) / clock.duration
+    rate = 1.0 / clock.interval_median
+    return rate if rate < 10.0 else float(math.floor(rate + 0.5))
+
+
+def gaps_in(read, clock, longest):
+    intervals = np.diff(read.samples.time)
+    gaps = [(i, float(intervals[i])) for i in np.flatnonzero(intervals >= LONG_INTERVALS * clock.interval_median).tolist()]
+    faults = [(read.recording.place(read.kept[i]), f"a gap of {duration:.4g} s follows; allowed: {longest:g} s (--max-gap)")
+              for i, duration in gaps if duration > longest]
+    if faults:
+        raise Faults(faults[:MOST_FAULTS])
+    return gaps
+
+
+def resolution_of(values):
+    """The step in which a coordinate was recorded: the greatest length of which all differences between its values are
+    multiples, as 1e-5 m of a log with five decimals. None when there is none above 2e-10 and 2e-9 of the largest value (the
+    coordinate was kept in full), or when all values are equal."""
+    values = np.sort(values).tolist()
+    # Differences are multiples up to the rounding of doubles, which Euclid's algorithm magnifies.
+    rounding = max(1e-10, 1e-9 * max(abs(values[0]), abs(values[-1])))
+    step = 0.0
+    for before, value in zip(values, values[1:]):
+        # Euclid's algorithm for the greatest common divisor. Rounding makes a remainder of zero slightly more, or slightly
+        # less than the divisor.
+        rest = value - before
+        if rest <= rounding:
+            continue
+        while rest > rounding:
+            step, rest = rest, abs(math.remainder(step, rest))
+        if step <= 2.0 * rounding:
+            return None
+        # The span so far is a multiple too, which undoes the magnification.
+        span = value - values[0]
+        step = span / math.floor(span / step + 0.5)
+    return step if step > 0.0 else None
+
+
+def resample(samples, rate):
+    """At an even rate [Hz] from the first sample on, time counted from there: positions and forces between samples linearly,
+    orientations along the arc between them."""
+    time, duration = samples.time, samples.time[-1] - samples.time[0]
+    if not (rate > 0.0 and math.isfinite(rate) and duration * rate < MOST_SAMPLES):
+        fail(f"rate: got {rate:g} Hz for {duration:.6g} s; allowed: above 0, and up to {MOST_SAMPLES:g} samples")
+    # A last sample that is on the grid but for rounding belongs to it.
+    grid = np.arange(math.floor(duration * rate * (1.0 + 1e-12)) + 1) / rate
+    recorded = time[0] + grid
+    after = np.clip(np.searchsorted(time, recorded, side="right"), 1, len(time) - 1)
+    before = after - 1
+    part = np.clip((recorded - time[before]) / (time[after] - time[before]), 0.0, 1.0)
+
+    def between(values):
+        return values[before] + part[:, None] * (values[after] - values[before])
+
+    turn = Slerp(time, samples.turn)(np.minimum(recorded, time[-1]))
+    return Samples(grid, between(samples.position), turn, None if samples.force is None else between(samples.force), samples.has_roll)
+
+
+def smooth(stroke, window, order):
+    """Fits a polynomial to every window of neighbours by least squares and takes its value in the middle (Savitzky and Golay
+    1964); at both ends, the values of the first and the last window's polynomial. Positions and the components of
+    quaternions, which are normalised again, are smoothed; forces are a measurement and stay."""
+    n = len(stroke.time)
+    if window < 3 or window % 2 == 0 or window > 10001 or window > n:
+        fail(f"smooth: got a window of {window} samples; allowed: odd, 3 ... {min(n, 10001)}")
+    if order >= window or order > 20:
+        fail(f"smooth: got order {order}; allowed: 0 ... {min(window - 1, 20)}")
+    half = window // 2
+    # Orthogonal polynomials keep high orders accurate; scipy.signal.savgol_filter uses powers.
+    basis, _ = np.linalg.qr(np.polynomial.chebyshev.chebvander(np.arange(-half, half + 1) / half, order))
+    before = np.column_stack([stroke.position, of_one_sign(stroke.turn.as_quat())])
+    after = np.column_stack([np.convolve(column, (basis @ basis[half])[::-1], "valid") for column in before.T])
+    after = np.concatenate([basis[:half] @ (basis.T @ before[:window]), after, basis[half + 1:] @ (basis.T @ before[n - window:])])
+    # A window over half a turn may average to nothing; such samples keep what they have.
+    is_turn = np.linalg.norm(after[:, 3:], axis=1, keepdims=True) > 0.1
+    turn = Rotation.from_quat(np.where(is_turn, after[:, 3:], before[:, 3:]))
+    moved, turned = np.linalg.norm(after[:, :3] - stroke.position, axis=1), (turn.inv() * stroke.turn).magnitude()
+    stroke.position, stroke.turn = after[:, :3], turn
+    return {"position_largest_m": float(moved.max()), "position_rms_m": float(np.sqrt(np.mean(moved**2))),
+            "angle_largest_rad": float(turned.max()), "angle_rms_rad": float(np.sqrt(np.mean(turned**2)))}
+
+
+def of_one_sign(quaternions):
+    """q and -q are one orientation; neighbours of one sign have the shorter way between them."""
+    same = np.einsum("ij,ij->i", quaternions[1:], quaternions[:-1]) >= 0.0
+    return quaternions * np.cumprod(np.where(np.concatenate([[True], same]), 1.0, -1.0))[:, None]
+
+
+def stroke_text(stroke):
+    """The stroke's file: time_s,px_m,py_m,pz_m, then qw,qx,qy,qz or axis_x,axis_y,axis_z, then with a measured force
+    mfx_N,mfy_N,mfz_N."""
+    if stroke.has_roll:
+        names, pose = "qw,qx,qy,qz", np.roll(of_one_sign(stroke.turn.as_quat()), 1, axis=1)
+    else:
+        names, pose = "axis_x,axis_y,axis_z", stroke.turn.apply(DOWN)
+    names = f"time_s,px_m,py_m,pz_m,{names}{'' if stroke.force is None else ',mfx_N,mfy_N,mfz_N'}"
+    columns = [stroke.time, stroke.position, pose] + ([] if stroke.force is None else [stroke.force])
+    return "\n".join([names, *(",".join(map(number_text, row)) for row in np.column_stack(columns).tolist()), ""])
+
+
+def number_text(value):
+    """The shortest decimal that reads back as the same number, in scientific notation only where that is shorter."""
+    text = repr(value)
+    if "e" not in text and abs(value) >= 1e-3 and not text.endswith(".0"):
+        return text
+    fixed, scientific = np.format_float_positional(value, trim="-"), np.format_float_scientific(value, trim="-", exp_digits=2)
+    return fixed if len(fixed) <= len(scientific) else scientific

@@ -1,0 +1,148 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "sim/loop/integrators/spring_damper.hpp"
+#include "sim/loop/integrators/table.hpp"
+
+namespace hapbench {
+namespace {
+
+/// The integrator that the thesis calls leapfrog (Eq. A.1), which is semi-implicit, symplectic Euler:
+/// v += (force / mass) dt, then p += v dt. Stable on one spring-damper while 4 - 2 B dt / M - K dt^2 / M > 0.
+class Leapfrog final : public Integrator {
+ public:
+  void step(ToolState& tool, const Vec3& force, double mass, double dt, ForceField&) noexcept override {
+    tool.velocity += force / mass * dt;
+    tool.pose.position += tool.velocity * dt;
+  }
+};
+
+/// Eq. A.2.
+Eigen::Matrix2d step_matrix(const SpringDamper& s) {
+  const double k = s.lambda * s.K * s.dt / s.M, b = s.lambda * s.B * s.dt / s.M;
+  Eigen::Matrix2d A;
+  A << 1.0 - k * s.dt, s.dt - b * s.dt, -k, 1.0 - b;
+  return A;
+}
+
+double margin(const SpringDamper& s) {
+  return 4.0 - 2.0 * s.lambda * s.B * s.dt / s.M - s.lambda * s.K * s.dt * s.dt / s.M;
+}
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// Positive root of a x^2 + 2 b x = 4; infinite if there is none.
+double positive_root(double a, double b) {
+  if (a == 0.0) return b == 0.0 ? kNever : 2.0 / b;
+  return 4.0 / (b + std::sqrt(b * b + 4.0 * a));
+}
+
+/// The value at which the margin is zero.
+std::optional<double> leapfrog_limit(const RaisedSpringDamper& problem) {
+  const double M = problem.given.M, dt = problem.given.dt, lambda = problem.given.lambda;
+  if (problem.raised == StabilityCase::time_step) {
+    const SpringDamper system = problem.at(dt);
+    return positive_root(lambda * system.K / M, lambda * system.B / M);
+  }
+  if (lambda == 0.0) return kNever;
+  if (problem.raised == StabilityCase::stiffness_undamped) return 4.0 * M / (lambda * dt * dt);
+  if (problem.raised == StabilityCase::damping_alone) return 2.0 * M / (lambda * dt);
+  // With a fixed B the inequality is linear in K, with B = 2 zeta sqrt(K M) quadratic in sqrt K.
+  if (problem.damping) {
+    return std::max(0.0, (4.0 - 2.0 * lambda * *problem.damping * dt / M) * M / (lambda * dt * dt));
+  }
+  return std::pow(positive_root(lambda * dt * dt / M, 2.0 * problem.damping_ratio * lambda * dt / std::sqrt(M)), 2);
+}
+
+/// Velocity Verlet: half a kick with the row's force, drift, half a kick with the force at the new position and the
+/// velocity after the first half:
+///
+///   v_half = v + f/M dt/2,  p += v_half dt,  v = v_half + f(t + dt, p, v_half)/M dt/2
+///
+/// Order 2 without damping, order 1 with damping, which sees velocities of half a step before. With k = K dt^2 / M,
+/// b = B dt / M and c = 1 - b/2 it is stable on one spring-damper while b < 4 and k (1 + c) < 4 (1 + c^2): k < 4 for
+/// B = 0, as with leapfrog, and b < 4 for K = 0, twice as far. Symplectic on undamped springs: the energy swings by a
+/// fraction of k/4 about its value and does not drift. Two forces a step, because the next row needs the force at the
+/// final velocity.
+class VelocityVerlet final : public Integrator {
+ public:
+  void step(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field) noexcept override {
+    const Vec3 half = tool.velocity + force / mass * (0.5 * dt);
+    tool.pose.position += half * dt;
+    tool.velocity = half + field.force_at(1.0, tool.pose.position, half) / mass * (0.5 * dt);
+  }
+};
+
+std::optional<double> velocity_verlet_limit(const RaisedSpringDamper& problem) {
+  return limit_of_one_alone(problem, {4.0, 4.0});
+}
+
+/// The classical Runge-Kutta method of order 4 (the axis at t, t + dt/2 and t + dt), the reference for smooth forces;
+/// contacts that come and go within a step, and the held force f_in, reduce it to order 1.
+///
+/// An undamped spring is stable while K dt^2 / M < 8 and loses the fraction (K dt^2 / M)^3 / 72 of its energy in a
+/// step. A damper alone is stable while B dt / M < 2.7853. Four forces a step.
+class Rk4 final : public Integrator {
+ public:
+  void step(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field) noexcept override {
+    const double half = 0.5 * dt;
+    const Vec3 p = tool.pose.position, v1 = tool.velocity, a1 = force / mass;
+    const Vec3 v2 = v1 + a1 * half, a2 = field.force_at(0.5, p + v1 * half, v2) / mass;
+    const Vec3 v3 = v1 + a2 * half, a3 = field.force_at(0.5, p + v2 * half, v3) / mass;
+    const Vec3 v4 = v1 + a3 * dt, a4 = field.force_at(1.0, p + v3 * dt, v4) / mass;
+    tool.pose.position += (v1 + 2.0 * v2 + 2.0 * v3 + v4) * (dt / 6.0);
+    tool.velocity += (a1 + 2.0 * a2 + 2.0 * a3 + a4) * (dt / 6.0);
+  }
+};
+
+/// Limits from the ends of the stability region |1 + z + z^2/2 + z^3/6 + z^4/24| <= 1 on the imaginary axis, z^2 = -8,
+/// and on the real axis.
+std::optional<double> rk4_limit(const RaisedSpringDamper& problem) {
+  return limit_of_one_alone(problem, {8.0, 2.785293563405282});
+}
+
+}  // namespace
+
+const IntegratorEntry kLeapfrog = {
+    .info = {.name = "leapfrog",
+             .summary = "semi-implicit Euler, the thesis's integrator: order 1, one force a step",
+             .formula = "v += f/M dt; p += v dt",
+             .source = "thesis Eq. A.1",
+             .known_failure = "blows up where 4 - 2 B dt / M - K dt^2 / M < 0; the energy of an undamped spring swings "
+                              "but does not drift"},
+    .make = make_integrator<Leapfrog>,
+    .holds_force = true,
+    .step_matrix = step_matrix,
+    .stability_margin = margin,
+    .stability_limit = leapfrog_limit,
+};
+
+const IntegratorEntry kVelocityVerlet = {
+    .info = {.name = "velocity_verlet",
+             .summary = "half a kick, drift, half a kick: order 2 without damping, two forces a step",
+             .formula = "v' = v + f/M dt/2; p += v' dt; v = v' + f(p, v')/M dt/2",
+             .source = "L. Verlet 1967, W. C. Swope et al. 1982",
+             .known_failure = "no stiffer springs than leapfrog without damping, K < 4 M / dt^2; order 1 with damping"},
+    .make = make_integrator<VelocityVerlet>,
+    .order = 2,
+    .forces = 2,
+    .stability_limit = velocity_verlet_limit,
+};
+
+const IntegratorEntry kRk4 = {
+    .info = {.name = "rk4",
+             .summary = "classical Runge-Kutta method, the reference on smooth forces: order 4, four forces a step",
+             .formula = "v, p += dt/6 (k1 + 2 k2 + 2 k3 + k4)",
+             .source = "W. Kutta 1901",
+             .known_failure =
+                 "blows up at K > 8 M / dt^2; order 1 where contacts come and go within a step; dissipates a little"},
+    .make = make_integrator<Rk4>,
+    .order = 4,
+    .damped_order = 4,
+    .forces = 4,
+    .stability_limit = rk4_limit,
+};
+
+}  // namespace hapbench

@@ -1,0 +1,252 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "scenarios/input/json_file.hpp"
+#include "tests/scenarios/support/visitors.hpp"
+
+/// Numbers, names, vectors, lists and null as they are read, written and described by a schema, and how messages name
+/// a place (JSON pointer, RFC 6901) and show a value.
+namespace hapbench::field_values_test {
+namespace {
+
+enum class Tip { flat, round, unnamed };
+constexpr Choice<Tip> kTips[] = {{"flat", Tip::flat}, {"round", Tip::round}};
+
+/// A kind of value, as the tests below describe it.
+template <class T>
+struct Kind {
+  void (*describe)(Fields&, T&);
+
+  T value_of(const std::string& text, T value = {}) const {
+    test::read_json(Json::parse(text), "/v", value, describe);
+    return value;
+  }
+  std::string refusal_of(const std::string& text) const { return test::refusal_of(text, T{}, describe); }
+  Json written(const T& value) const { return test::written_by(describe, value); }
+  Json schema() const { return test::schema_of(describe, T{}); }
+};
+
+const Kind<double> kForce = {[](Fields& f, double& v) { f.number(v, {0.0, 10.0, "N"}); }};
+const Kind<double> kMass = {[](Fields& f, double& v) { f.number(v, {0.0, 1e6, "kg", true}); }};
+const Kind<std::int64_t> kCount = {[](Fields& f, std::int64_t& v) { f.integer(v, {1, std::int64_t{1} << 53}); }};
+const Kind<std::uint64_t> kSeed = {[](Fields& f, std::uint64_t& v) { f.integer(v, {0, std::int64_t{1} << 53}); }};
+const Kind<bool> kSwitch = {[](Fields& f, bool& v) { f.boolean(v); }};
+const Kind<std::string> kShortText = {[](Fields& f, std::string& v) { f.text(v, 3); }};
+const Kind<std::string> kText = {[](Fields& f, std::string& v) { f.text(v, 100); }};
+const Kind<Tip> kTip = {[](Fields& f, Tip& v) { f.choice(v, kTips, "tip"); }};
+const Kind<Vec3> kVector = {[](Fields& f, Vec3& v) { f.vector3(v, {-1, 1, "m"}); }};
+const Kind<std::vector<std::int64_t>> kDigits = {[](Fields& f, std::vector<std::int64_t>& v) {
+  f.list(v, {1, 3}, [](Fields& entry, std::int64_t& digit) { entry.integer(digit, {0, 9}); });
+}};
+const Kind<std::optional<double>> kForceOrNull = {[](Fields& f, std::optional<double>& v) {
+  f.nullable(v, [](Fields& inner, double& force) { inner.number(force, {0.0, 10.0, "N"}); });
+}};
+
+TEST(Number, MayBeAtItsBounds) {
+  EXPECT_EQ(kForce.value_of("0"), 0.0);
+  EXPECT_EQ(kForce.value_of("10"), 10.0);
+  EXPECT_EQ(kForce.value_of("1e1"), 10.0);
+  EXPECT_EQ(kMass.value_of("5e-324"), 5e-324);
+}
+
+TEST(Number, IsRefusedBeyondThem) {
+  EXPECT_EQ(kForce.refusal_of("-5e-324"), "/v: got -5e-324; allowed: a number >= 0 and <= 10 [N]");
+  EXPECT_EQ(kForce.refusal_of("10.000000000000002"),
+            "/v: got 10.000000000000002; allowed: a number >= 0 and <= 10 [N]");
+  EXPECT_EQ(kMass.refusal_of("0"), "/v: got 0; allowed: a number > 0 and <= 1000000 [kg]");
+  EXPECT_EQ(kMass.refusal_of("-0.0"), "/v: got -0.0; allowed: a number > 0 and <= 1000000 [kg]");
+  EXPECT_NE(kForce.refusal_of("18446744073709551615"), "");
+}
+
+TEST(Number, IsRefusedWhenNotFinite) {
+  for (const double value : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    double out = 1.0;
+    EXPECT_TRUE(test::input_error_of([&] { test::read_json(Json(value), "/v", out, kForce.describe); }));
+    EXPECT_EQ(out, 1.0);
+  }
+}
+
+TEST(Number, IsNoOtherType) {
+  for (const char* text : {"\"5\"", "true", "null", "[5]", "{}"}) {
+    EXPECT_EQ(kForce.refusal_of(text), std::string("/v: got ") + text + "; allowed: a number >= 0 and <= 10 [N]");
+  }
+}
+
+TEST(Integer, MayBeWrittenAsAnyWholeNumber) {
+  EXPECT_EQ(kCount.value_of("1000"), 1000);
+  EXPECT_EQ(kCount.value_of("1e3"), 1000);
+  EXPECT_EQ(kCount.value_of("1000.0"), 1000);
+  EXPECT_EQ(kCount.value_of("9007199254740992"), 9007199254740992);
+  EXPECT_EQ(kSeed.value_of("9007199254740992"), 9007199254740992u);
+}
+
+TEST(Integer, IsRefusedAsAFractionAndBeyondItsBounds) {
+  for (const char* text :
+       {"1.5", "0", "-1", "9007199254740994", "1e300", "-1e300", "18446744073709551615", "-9223372036854775808"}) {
+    EXPECT_NE(kCount.refusal_of(text).find("allowed: an integer 1 ... 9007199254740992"), std::string::npos);
+  }
+}
+
+TEST(Integer, IsNotRoundedIntoItsRange) {
+  // 2^53 + 1 has no double of its own and would round to the bound 2^53.
+  EXPECT_NE(kCount.refusal_of("9007199254740993"), "");
+}
+
+TEST(Integer, IsNoOtherType) {
+  for (const char* text : {"\"5\"", "true", "null", "[5]", "{}"}) EXPECT_NE(kCount.refusal_of(text), "");
+}
+
+TEST(Boolean, IsTrueOrFalseAlone) {
+  EXPECT_TRUE(kSwitch.value_of("true"));
+  EXPECT_FALSE(kSwitch.value_of("false", true));
+  for (const char* text : {"0", "1", "\"true\"", "null", "[]"}) {
+    EXPECT_EQ(kSwitch.refusal_of(text), std::string("/v: got ") + text + "; allowed: true or false");
+  }
+}
+
+TEST(Text, IsMeasuredInCharactersNotBytes) {
+  EXPECT_EQ(kShortText.value_of(R"("abc")"), "abc");
+  EXPECT_EQ(kShortText.value_of(R"("äöü")"), "äöü");
+  EXPECT_EQ(kShortText.value_of(R"("😀😀😀")"), "😀😀😀");
+  EXPECT_EQ(kShortText.refusal_of(R"("abcd")"), R"(/v: got "abcd"; allowed: a text of at most 3 characters)");
+  EXPECT_NE(kShortText.refusal_of(R"("äöüß")"), "");
+  EXPECT_NE(kShortText.refusal_of("5"), "");
+}
+
+TEST(Name, IsAcceptedExactly) {
+  EXPECT_EQ(kTip.value_of(R"("round")"), Tip::round);
+  for (const char* text : {R"("Round")", R"("round ")", R"("")", "1", "null", R"(["round"])"}) {
+    EXPECT_NE(kTip.refusal_of(text), "");
+  }
+}
+
+TEST(Name, IsSuggestedWhenNear) {
+  EXPECT_EQ(kTip.refusal_of(R"("rond")"),
+            R"(/v: got "rond"; allowed: tip: one of "flat", "round"; nearest valid name: "round")");
+  EXPECT_EQ(kTip.refusal_of(R"("pointed")"), R"(/v: got "pointed"; allowed: tip: one of "flat", "round")");
+}
+
+TEST(Name, IsNotInventedForAValueWithoutOne) {
+  EXPECT_THROW(kTip.written(Tip::unnamed), std::logic_error);
+}
+
+TEST(Vector, IsThreeNumbers) {
+  EXPECT_EQ(kVector.value_of("[0.5, -1, 1]", Vec3(0, 0, 0)), Vec3(0.5, -1, 1));
+  for (const char* text : {"[]", "[1, 1]", "[1, 1, 1, 1]", "1", "{}", "null"}) {
+    EXPECT_EQ(kVector.refusal_of(text).find("/v: got "), 0u);
+  }
+}
+
+TEST(Vector, NamesABadComponent) {
+  EXPECT_EQ(kVector.refusal_of("[0, 2, 0]"), "/v/1: got 2; allowed: a number >= -1 and <= 1 [m]");
+  EXPECT_EQ(kVector.refusal_of("[0, 0, \"0\"]").substr(0, 10), "/v/2: got ");
+}
+
+TEST(List, ReplacesWhatWasThere) {
+  EXPECT_EQ(kDigits.value_of("[3, 1]", {7, 7, 7}), (std::vector<std::int64_t>{3, 1}));
+}
+
+TEST(List, IsRefusedWithTooFewOrTooManyEntriesAndNamesABadOne) {
+  EXPECT_EQ(kDigits.refusal_of("[]"), "/v: got []; allowed: a list of 1 ... 3 entries, each an integer 0 ... 9");
+  EXPECT_NE(kDigits.refusal_of("[1, 2, 3, 4]"), "");
+  EXPECT_NE(kDigits.refusal_of("{}"), "");
+  EXPECT_EQ(kDigits.refusal_of("[1, 2, 10]"), "/v/2: got 10; allowed: an integer 0 ... 9");
+}
+
+TEST(Nullable, IsNullForNoneAndElseTheValue) {
+  EXPECT_EQ(kForceOrNull.value_of("null", {5.0}), std::nullopt);
+  EXPECT_EQ(kForceOrNull.value_of("5"), 5.0);
+  EXPECT_EQ(kForceOrNull.refusal_of("11"), "/v: got 11; allowed: null or a number >= 0 and <= 10 [N]");
+}
+
+TEST(Nullable, OffersNullForTheWholeValueAlone) {
+  const auto describe = [](Fields& f, std::optional<Vec3>& v) {
+    f.nullable(v, [](Fields& inner, Vec3& vector) { inner.vector3(vector, {0, 1}); });
+  };
+  EXPECT_EQ(test::refusal_of("[0, 2, 0]", std::optional<Vec3>(), describe),
+            "/v/1: got 2; allowed: a number >= 0 and <= 1");
+}
+
+/// Reading what was written gives the value again.
+template <class T>
+void expect_round_trip(const Kind<T>& kind, const T& value) {
+  EXPECT_EQ(kind.value_of(kind.written(value).dump()), value);
+}
+
+TEST(Values, AreReadAsTheyWereWritten) {
+  expect_round_trip(kForce, 0.1);
+  expect_round_trip(kMass, std::numeric_limits<double>::denorm_min());
+  expect_round_trip(kCount, std::int64_t{1} << 53);
+  expect_round_trip(kSeed, std::uint64_t{1} << 53);
+  expect_round_trip(kSwitch, true);
+  expect_round_trip(kText, std::string("\"\\\n ä \x01"));
+  expect_round_trip(kTip, Tip::round);
+  expect_round_trip(kVector, Vec3(0.1, -0.2, 1.0 / 3.0));
+  expect_round_trip(kDigits, {1, 2});
+  expect_round_trip(kForceOrNull, std::optional<double>());
+  expect_round_trip(kForceOrNull, std::optional(0.3));
+}
+
+TEST(Values, HaveSchemas) {
+  EXPECT_EQ(kForce.schema(), Json::parse(R"({"type": "number", "minimum": 0.0, "maximum": 10.0})"));
+  EXPECT_EQ(kMass.schema(), Json::parse(R"({"type": "number", "exclusiveMinimum": 0.0, "maximum": 1e6})"));
+  EXPECT_EQ(kCount.schema(), Json::parse(R"({"type": "integer", "minimum": 1, "maximum": 9007199254740992})"));
+  EXPECT_EQ(kShortText.schema(), Json::parse(R"({"type": "string", "maxLength": 3})"));
+  EXPECT_EQ(kTip.schema(), Json::parse(R"({"type": "string", "enum": ["flat", "round"]})"));
+  EXPECT_EQ(kForceOrNull.schema(), (Json{{"anyOf", {{{"type", "null"}}, kForce.schema()}}}));
+  EXPECT_EQ(kDigits.schema(), Json::parse(R"({"type": "array", "items": {"type": "integer", "minimum": 0, "maximum": 9},
+                                              "minItems": 1, "maxItems": 3})"));
+}
+
+TEST(Pointer, EscapesTildeAndSlashAsRfc6901Says) {
+  // The examples of RFC 6901, section 5.
+  EXPECT_EQ(member("", "a/b"), "/a~1b");
+  EXPECT_EQ(member("", "m~n"), "/m~0n");
+  EXPECT_EQ(member("", "~1"), "/~01");
+  EXPECT_EQ(member("", ""), "/");
+  EXPECT_EQ(member("", " "), "/ ");
+  EXPECT_EQ(member("", "k\"l"), "/k\"l");
+  EXPECT_EQ(element(member("", "foo"), 0), "/foo/0");
+}
+
+TEST(Pointer, LeadsToTheValueItNames) {
+  const Json json = Json::parse(R"({"a/b": {"~": [1, {"": 2}]}})");
+  const std::string at = member(element(member(member("", "a/b"), "~"), 1), "");
+  EXPECT_EQ(json.at(Json::json_pointer(at)), 2);
+}
+
+TEST(Pointer, OfAHugeKeyIsCut) {
+  EXPECT_EQ(member("", std::string(1'000'000, 'k')), "/" + std::string(200, 'k'));
+}
+
+TEST(Pointer, StaysOnOneLine) {
+  EXPECT_EQ(member("", "a\nb\tc\x1b"), "/a?b?c?");
+}
+
+TEST(ShownValue, IsJsonOnOneLine) {
+  EXPECT_EQ(shown(Json::parse(R"({"a": [1, "x", null, true, 2.5]})")), R"({"a":[1,"x",null,true,2.5]})");
+  EXPECT_EQ(shown(Json("two\nlines\x1b")), R"("two\nlines\u001b")");
+}
+
+TEST(ShownValue, IsCutWhenLong) {
+  const std::string text = shown(Json(std::string(1000, 'x')));
+  EXPECT_EQ(text, "\"" + std::string(79, 'x') + "...");
+  EXPECT_EQ(shown(Json(std::vector<int>(1'000'000))), "a list of 1000000 entries");
+  Json object = Json::object();
+  for (int i = 0; i < 21; ++i) object["k" + std::to_string(i)] = i;
+  EXPECT_EQ(shown(object), "an object of 21 entries");
+}
+
+TEST(ShownValue, IsAsciiEvenForBytesThatAreNoText) {
+  for (const char* bytes : {"\xc3\xa4", "\xff\xfe", "\xed\xa0\x80", "\xe2\x80\xa8"}) {
+    const std::string text = shown(Json(bytes));
+    EXPECT_EQ(text.find_first_not_of("\"\\u0123456789abcdef"), std::string::npos) << text;
+  }
+}
+
+}  // namespace
+}  // namespace hapbench::field_values_test

@@ -1,0 +1,288 @@
+#include "scenarios/description/load_scenario.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/run/assemble.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/errors.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+/// "extends" and `--set path=value`.
+namespace hapbench::load_scenario_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kBase = R"({
+  "name": "the base", "description": "springs",
+  "time": {"step_s": 0.0005, "steps": 20},
+  "environment": {"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 2}]},
+  "hand": {"type": "force", "x_N": {"type": "ramp", "start": 1, "rate_per_s": 2}},
+  "rendering": {"reduction": {"threshold": 0.9}, "stiffness_N_per_m": 1000},
+  "expect": {"outcome": "diverges"}
+})";
+
+class Extends : public testing::Test {
+ protected:
+  fs::path write(const std::string& name, const std::string& text) const {
+    fs::create_directories((directory_ / name).parent_path());
+    test::write_plainly(directory_ / name, text);
+    return directory_ / name;
+  }
+  Json merged(const std::string& text) const {
+    write("base.json", kBase);
+    return read_scenario_text(write("mine.json", text)).json;
+  }
+  std::string refusal(const fs::path& file, const std::vector<std::string>& overrides = {}) const {
+    const auto error = test::input_error_of([&] { check_named_files(load_scenario(file, overrides)); });
+    return error ? error->what() : "";
+  }
+
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(Extends, MergesObjectsFieldByField) {
+  const Json json = merged(R"({"extends": "base.json", "rendering": {"stiffness_N_per_m": 5, "mass_kg": 1},
+    "environment": {"bilateral": false}})");
+  EXPECT_EQ(json["rendering"],
+            Json::parse(R"({"reduction": {"threshold": 0.9}, "stiffness_N_per_m": 5, "mass_kg": 1})"));
+  EXPECT_EQ(json["environment"]["type"], "springs");
+  EXPECT_EQ(json["environment"]["bilateral"], false);
+  EXPECT_EQ(json["time"], Json::parse(kBase)["time"]);
+  EXPECT_FALSE(json.contains("extends"));
+}
+
+TEST_F(Extends, NullAndListsReplace) {
+  const Json json =
+      merged(R"({"extends": "base.json", "rendering": {"reduction": null}, "environment": {"groups": []}})");
+  ASSERT_TRUE(json["rendering"].contains("reduction"));
+  EXPECT_TRUE(json["rendering"]["reduction"].is_null());
+  EXPECT_EQ(json["environment"]["groups"], Json::array());
+}
+
+TEST_F(Extends, AnObjectOfAnotherTypeReplacesAllOfIt) {
+  EXPECT_EQ(merged(R"({"extends": "base.json", "environment": {"type": "plane"}})")["environment"],
+            Json::parse(R"({"type": "plane"})"));
+  EXPECT_EQ(merged(R"({"extends": "base.json", "hand": {"x_N": {"type": "sine", "mean": 1}}})")["hand"],
+            Json::parse(R"({"type": "force", "x_N": {"type": "sine", "mean": 1}})"));
+  EXPECT_EQ(merged(R"({"extends": "base.json", "hand": {"type": "force", "y_N": 3}})")["hand"],
+            Json::parse(R"({"type": "force", "x_N": {"type": "ramp", "start": 1, "rate_per_s": 2}, "y_N": 3})"));
+}
+
+TEST_F(Extends, OneOfTwoFieldsThatExcludeEachOtherDrivesOutTheOther) {
+  EXPECT_EQ(merged(R"({"extends": "base.json", "time": {"duration_s": 3}})")["time"],
+            Json::parse(R"({"step_s": 0.0005, "duration_s": 3})"));
+}
+
+TEST_F(Extends, NeitherNameNorExpectIsTakenOver) {
+  merged(R"({"extends": "base.json"})");
+  const Scenario scenario = load_scenario(directory_ / "mine.json").scenario;
+  EXPECT_EQ(scenario.name, "mine");
+  EXPECT_EQ(scenario.description, "springs");
+  EXPECT_EQ(scenario.expect.outcomes, Scenario{}.expect.outcomes);
+}
+
+TEST_F(Extends, KnowsBundledScenariosByName) {
+  const Scenario scenario = load_scenario(write("mine.json", R"({"extends": "poke_plane"})")).scenario;
+  EXPECT_TRUE(std::holds_alternative<Plane>(scenario.environment));
+}
+
+TEST_F(Extends, RelativePathsStartFromTheFileThatHasThem) {
+  write("there/data/cube.obj", test::read_file(test::data_directory() / "cube.obj"));
+  write("there/base.json", R"({"time": {"step_s": 0.0005, "steps": 20},
+    "environment": {"type": "mesh", "file": "data/cube.obj", "scale": 0.001}})");
+  write("between/middle.json", R"({"extends": "../there/base.json", "seed": 2})");
+  const LoadedScenario loaded = load_scenario(write("mine.json", R"({"extends": "between/middle.json", "seed": 3})"));
+  EXPECT_EQ(loaded.scenario.seed, 3);
+  EXPECT_EQ(check_named_files(loaded), std::vector<std::string>{});
+  // The effective scenario names it from where it stands, and extends nothing.
+  const Json effective = effective_scenario(loaded.scenario, directory_.path());
+  EXPECT_EQ(effective["environment"]["file"], "there/data/cube.obj");
+  EXPECT_FALSE(effective.contains("extends"));
+}
+
+TEST_F(Extends, ErrorsNameTheFileThatTheValueComesFrom) {
+  const fs::path base = write("base.json", R"({"time": {"step_s": 0.0005, "steps": 20},
+    "environment": {"type": "plane", "size_m": -1}, "rendering": {"mass_kg": 0.1}})");
+  const fs::path mine = write("mine.json", R"({"extends": "base.json", "rendering": {"stiffness_N_per_m": 5}})");
+  EXPECT_TRUE(refusal(mine).starts_with(base.string() + ": /environment/size_m: got -1")) << refusal(mine);
+  // What --set puts there is the business of the file that was given.
+  EXPECT_TRUE(refusal(mine, {"environment.size_m=-2"}).starts_with(mine.string() + ": /environment/size_m: got -2"));
+}
+
+TEST_F(Extends, ErrorsAboutNamedFilesNameTheFileThatNamesThem) {
+  const fs::path base = write("base.json", R"({"time": {"step_s": 0.0005, "steps": 20},
+    "environment": {"type": "mesh", "file": "none.obj", "scale": 0.001}})");
+  const fs::path mine = write("mine.json", R"({"extends": "base.json"})");
+  EXPECT_TRUE(refusal(mine).starts_with(base.string() + ": /environment/file: ")) << refusal(mine);
+  EXPECT_TRUE(refusal(mine, {"environment.file=other.obj"}).starts_with(mine.string() + ": /environment/file: "));
+}
+
+TEST_F(Extends, RefusesCirclesAndWhatItCannotExtend) {
+  const fs::path a = write("a.json", R"({"extends": "sub/b.json"})");
+  const fs::path b = write("sub/b.json", R"({"extends": "../a.json"})");
+  EXPECT_TRUE(refusal(a).starts_with(b.string() + ": /extends: got a circle, " + a.string() + " -> " + b.string()))
+      << refusal(a);
+  const fs::path own = write("own.json", R"({"extends": "own.json"})");
+  EXPECT_TRUE(refusal(own).starts_with(own.string() + ": /extends: got a circle")) << refusal(own);
+  const fs::path typo = write("typo.json", R"({"extends": "poke_plan"})");
+  EXPECT_NE(refusal(typo).find("nearest valid name: \"poke_plane\""), std::string::npos) << refusal(typo);
+  EXPECT_TRUE(refusal(typo).starts_with(typo.string() + ": /extends: ")) << refusal(typo);
+  const fs::path number = write("number.json", R"({"extends": 5})");
+  EXPECT_TRUE(refusal(number).starts_with(number.string() + ": /extends: got 5; allowed: ")) << refusal(number);
+  const fs::path list = write("list.json", "[1]");
+  EXPECT_TRUE(refusal(write("of_list.json", R"({"extends": "list.json"})")).starts_with(list.string() + ": got [1]"));
+}
+
+TEST_F(Extends, AcceptsItselfInNoJsonInMemory) {
+  Json json = Json::parse(kBase);
+  json["extends"] = "poke_plane";
+  const auto error = test::input_error_of([&] { read_scenario(json, ""); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->place(), "/extends");
+}
+
+constexpr const char* kScenario = R"({
+  "name": "base",
+  "time": {"step_s": 0.0005, "steps": 20},
+  "environment": {"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 2}, {"direction": [0, 1, 0], "count": 3}]},
+  "rendering": {"reduction": {"threshold": 0.9}}
+})";
+
+class Override : public testing::Test {
+ protected:
+  Override() { test::write_plainly(file_, kScenario); }
+
+  Json with(const std::vector<std::string>& overrides) const {
+    return effective_scenario(load_scenario(file_, overrides).scenario, directory_.path());
+  }
+  /// The refusal, without the file that stands before it.
+  std::string refusal(const std::string& override) const {
+    SCOPED_TRACE(override);
+    const auto error = test::input_error_of([&] { with({override}); });
+    if (!error) return "";
+    const std::string message = error->what(), before = file_.string() + ": ";
+    EXPECT_EQ(message.find(before), 0u) << message;
+    return message.substr(before.size());
+  }
+
+  test::TemporaryDirectory directory_;
+  std::filesystem::path file_ = directory_ / "base scenario.json";
+};
+
+TEST_F(Override, ReplacesANestedField) {
+  EXPECT_EQ(with({"time.steps=7"})["time"]["steps"], 7);
+  EXPECT_EQ(with({"rendering.reduction.threshold=0.5"})["rendering"]["reduction"]["threshold"], 0.5);
+}
+
+TEST_F(Override, ReachesListEntriesByIndex) {
+  const Json groups =
+      with({"environment.groups.1.count=9", "environment.groups.0.direction.2=4"})["environment"]["groups"];
+  EXPECT_EQ(groups[1]["count"], 9);
+  EXPECT_EQ(groups[0]["count"], 2);
+  EXPECT_EQ(groups[0]["direction"], Json::parse("[1.0, 0.0, 4.0]"));
+}
+
+TEST_F(Override, CreatesObjectsThatAreNotThere) {
+  EXPECT_EQ(with({"rendering.limits.max_force_N=30"})["rendering"]["limits"]["max_force_N"], 30.0);
+  EXPECT_EQ(with({"record.every=5"})["record"]["every"], 5);
+}
+
+TEST_F(Override, TakesJsonOfEveryKind) {
+  EXPECT_EQ(with({"rendering.reduction=null"})["rendering"]["reduction"], nullptr);
+  EXPECT_EQ(with({"rendering.local_average=false"})["rendering"]["local_average"], false);
+  EXPECT_EQ(with({"initial.position_m=[0.001, 0, -2e-3]"})["initial"]["position_m"],
+            Json::parse("[0.001, 0.0, -0.002]"));
+  EXPECT_EQ(with({R"(environment={"type":"plane"})"})["environment"]["type"], "plane");
+  EXPECT_EQ(with({"time.steps=1e3"})["time"]["steps"], 1000);
+}
+
+TEST_F(Override, TakesWhatIsNoJsonAsText) {
+  EXPECT_EQ(with({"rendering.algorithm=mean"})["rendering"]["algorithm"], "mean");
+  EXPECT_EQ(with({R"(rendering.algorithm="mean")"})["rendering"]["algorithm"], "mean");
+  EXPECT_EQ(with({"description=a = b, c"})["description"], "a = b, c");
+  EXPECT_EQ(with({"description="})["description"], "");
+}
+
+TEST_F(Override, GivesWayToALaterOne) {
+  EXPECT_EQ(with({"time.steps=7", "time.steps=8"})["time"]["steps"], 8);
+  EXPECT_EQ(with({R"(rendering={"iterations":9})", "rendering.damping_ratio=0"})["rendering"]["iterations"], 9);
+}
+
+TEST_F(Override, OfAnUnknownPathNamesItAndTheNearest) {
+  EXPECT_EQ(refusal("rendering.stifness_N_per_m=1").find("/rendering/stifness_N_per_m: unknown field; allowed here: "),
+            0u);
+  EXPECT_NE(refusal("rendering.stifness_N_per_m=1").find("nearest valid name: \"stiffness_N_per_m\""),
+            std::string::npos);
+  EXPECT_EQ(refusal("redering.iterations=1").find("/redering: unknown field"), 0u);
+  EXPECT_EQ(refusal("rendering..iterations=1").find("/rendering/: unknown field"), 0u);
+  EXPECT_EQ(refusal(".=1").find("/: unknown field"), 0u);
+}
+
+TEST_F(Override, IsCheckedLikeTheFile) {
+  EXPECT_EQ(refusal("rendering.mass_kg=0").find("/rendering/mass_kg: got 0; allowed: a number > 0"), 0u);
+  EXPECT_EQ(refusal("rendering.mass_kg=heavy").find("/rendering/mass_kg: got \"heavy\"; allowed: a number > 0"), 0u);
+  EXPECT_EQ(refusal("rendering.mass_kg=NaN").find("/rendering/mass_kg: got \"NaN\""), 0u);
+  EXPECT_EQ(refusal("rendering.mass_kg=1e999").find("/rendering/mass_kg: got \"1e999\""), 0u);
+  EXPECT_EQ(refusal("seed.x=1").find("/seed: got {\"x\":1}; allowed: an integer"), 0u);
+  EXPECT_NE(refusal(R"(rendering={"iterations":1,"iterations":2})").find("stands twice"), std::string::npos);
+}
+
+TEST_F(Override, DrivesOutTheFieldThatSaysTheSame) {
+  EXPECT_EQ(with({"time.duration_s=1"})["time"]["steps"], 2000);
+  EXPECT_EQ(with({"time.duration_s=1", "time.steps=8"})["time"]["steps"], 8);
+  EXPECT_EQ(refusal(R"(time={"step_s":0.1,"steps":1,"duration_s":1})").find("/time: got both"), 0u);
+}
+
+TEST_F(Override, ThatEndsTheRunBeforeALegOfItsScriptBeginsIsWarnedOf) {
+  const std::string hand = R"(hand={"type":"force","x_N":{"type":"waypoints","points":[[0,0],[0.005,1],[0.02,0]]}})";
+  EXPECT_TRUE(load_scenario(file_, std::vector<std::string>{hand}).warnings.empty());
+  const auto warnings = load_scenario(file_, std::vector<std::string>{hand, "time.steps=10"}).warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("/hand/x_N: the script's last waypoint is at 0.02 s, but the run ends at 0.005 s"),
+            std::string::npos);
+}
+
+TEST_F(Override, OutsideAListNamesTheIndicesThatExist) {
+  EXPECT_EQ(refusal("environment.groups.2.count=1"),
+            "environment.groups.2.count: got list index \"2\"; allowed: 0 ... 1");
+  for (const char* override : {"environment.groups.-1=1", "environment.groups.x=1", "environment.groups.=1",
+                               "environment.groups.99999999999999999999=1", "environment.groups.0x1=1"}) {
+    EXPECT_NE(refusal(override).find("allowed: 0 ... 1"), std::string::npos);
+  }
+}
+
+TEST_F(Override, IntoAnEmptyListSaysSo) {
+  EXPECT_EQ(refusal("time.stop_when.0=leaves_hole").find("/time/stop_when: got {"), 0u);  // absent: an object is made
+  const auto error = test::input_error_of([&] { with({"environment.groups=[]", "environment.groups.0.count=1"}); });
+  ASSERT_TRUE(error);
+  EXPECT_NE(std::string(error->what()).find("allowed: none, the list is empty"), std::string::npos) << error->what();
+}
+
+TEST_F(Override, ThatIsMalformedSaysWhatIsAllowed) {
+  for (const char* override : {"", "=", "=5", "time.steps", "time"}) {
+    EXPECT_EQ(refusal(override), std::string("--set: got \"") + override +
+                                     "\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000");
+  }
+}
+
+TEST_F(Override, WithControlCharactersStillGivesOneLine) {
+  for (const char* override : {"a\nb=1", "x\ny", "environment.groups.\n=1", "rendering.algorithm=a\nb"}) {
+    EXPECT_EQ(refusal(override).find('\n'), std::string::npos);
+  }
+}
+
+TEST_F(Override, NestedDeeplyIsRefusedLikeAnyUnknownField) {
+  std::string path = "rendering";
+  for (int i = 0; i < 20'000; ++i) path += ".a";
+  EXPECT_EQ(refusal(path + "=1").find("/rendering/a: unknown field"), 0u);
+  EXPECT_NE(refusal("rendering=" + std::string(20'000, '[') + std::string(20'000, ']')).find("nested too deeply"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace hapbench::load_scenario_test

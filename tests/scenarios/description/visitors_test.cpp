@@ -1,0 +1,346 @@
+#include <gtest/gtest.h>
+
+#include <variant>
+
+#include "tests/scenarios/support/visitors.hpp"
+
+/// Objects with named fields, and objects whose field "type" chooses the other fields, through all visitors.
+namespace hapbench::visitors_test {
+namespace {
+
+struct Inner {
+  double width = 2.0;
+};
+struct Outer {
+  double mass = 0.0;
+  std::string name = "unnamed";
+  Inner inner;
+  double scale = 0.25;
+  std::optional<double> steps;
+  std::optional<double> duration;
+};
+
+void describe_inner(Fields& f, Inner& inner) {
+  f.number("width_m", inner.width, {0.0, 10.0, "m"}, "how wide");
+}
+
+void describe_fields(Fields& f, Outer& outer) {
+  const auto number = [](Fields& n, double& value) { n.number(value, {0.0, 9.0}); };
+  f.ignored("$schema", "for editors");
+  f.number("mass_kg", outer.mass, {0.0, 10.0, "kg", true}, "how heavy", Presence::required);
+  f.text("name", outer.name, 10, "what it is called");
+  f.group("inner", "what is in it", [&outer](Fields& g) { describe_inner(g, outer.inner); });
+  f.number("scale", outer.scale, {0.0, 1.0}, "depends on the rest", Presence::no_default);
+  f.if_any("steps", outer.steps, "how many", number);
+  f.if_any("duration_s", outer.duration, "or how long", number);
+  f.exactly_one_of("steps", "duration_s");
+}
+
+void describe_outer(Fields& f, Outer& outer) {
+  f.fields([&outer](Fields& fields) { describe_fields(fields, outer); });
+}
+
+Outer outer_of(const std::string& text) {
+  Outer outer;
+  test::read_json(Json::parse(text), "/v", outer, describe_outer);
+  return outer;
+}
+
+std::string refusal_of(const std::string& text) {
+  return test::refusal_of(text, Outer{}, describe_outer);
+}
+
+TEST(Object, LeavesAbsentFieldsAtTheirDefaults) {
+  const Outer outer = outer_of(R"({"mass_kg": 3, "steps": 2})");
+  EXPECT_EQ(outer.mass, 3.0);
+  EXPECT_EQ(outer.name, "unnamed");
+  EXPECT_EQ(outer.inner.width, 2.0);
+  EXPECT_EQ(outer.scale, 0.25);
+  EXPECT_EQ(outer.duration, std::nullopt);
+}
+
+TEST(Object, HasItsFieldsInAnyOrder) {
+  const Outer outer =
+      outer_of(R"({"duration_s": 1, "scale": 0.5, "inner": {"width_m": 7}, "name": "x", "mass_kg": 1, "$schema": 5})");
+  EXPECT_EQ(outer.name, "x");
+  EXPECT_EQ(outer.inner.width, 7.0);
+  EXPECT_EQ(outer.scale, 0.5);
+  EXPECT_EQ(outer.duration, 1.0);
+  EXPECT_EQ(outer.steps, std::nullopt);
+}
+
+TEST(Object, NamesAnUnknownFieldAndTheNearest) {
+  EXPECT_EQ(
+      refusal_of(R"({"mas_kg": 3, "steps": 2})"),
+      "/v/mas_kg: unknown field; allowed here: \"$schema\", \"mass_kg\", \"name\", \"inner\", \"scale\", \"steps\", "
+      "\"duration_s\"; nearest valid name: \"mass_kg\"");
+  EXPECT_EQ(refusal_of(R"({"mass_kg": 3, "steps": 2, "inner": {"widht_m": 1}})"),
+            "/v/inner/widht_m: unknown field; allowed here: \"width_m\"; nearest valid name: \"width_m\"");
+  EXPECT_EQ(refusal_of(R"({"mass_kg": 3, "steps": 2, "colour": 1})").find("nearest"), std::string::npos);
+}
+
+TEST(Object, NamesAnUnknownFieldBeforeAnyOtherFault) {
+  EXPECT_EQ(refusal_of(R"({"mass_kg": -3, "steps": 2, "nme": 1})").find("/v/nme: unknown field"), 0u);
+}
+
+TEST(Object, HasAllItsFaultsReportedAtOnce) {
+  Outer outer;
+  const auto error = test::input_error_of([&] {
+    test::read_json(Json::parse(R"({"mas_kg": 3, "scale": 2, "inner": {"width_m": "x", "depth_m": 1}})"), "/v", outer,
+                    describe_outer);
+  });
+  ASSERT_TRUE(error);
+  std::vector<std::string> places;
+  for (const InputError& fault : error->faults()) places.push_back(fault.place());
+  EXPECT_EQ(places, (std::vector<std::string>{"/v/mas_kg", "/v/inner/depth_m", "/v/inner/width_m", "/v/scale", "/v"}))
+      << "mass_kg is misspelt rather than missing; the last is that of steps and duration_s";
+}
+
+TEST(Object, HasNoMoreFaultsReportedThanAnybodyReads) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < 10 * kMostFaults; ++i) json["key" + std::to_string(i)] = 0;
+  Outer outer;
+  const auto error = test::input_error_of([&] { test::read_json(json, "/v", outer, describe_outer); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->faults().size(), kMostFaults);
+}
+
+TEST(Object, RefusesTheEmptyKeyAndKeysOfOtherCase) {
+  EXPECT_NE(refusal_of(R"({"mass_kg": 3, "steps": 2, "": 1})"), "");
+  EXPECT_NE(refusal_of(R"({"mass_kg": 3, "steps": 2, "Name": "x"})"), "");
+  EXPECT_NE(refusal_of(R"({"mass_kg": 3, "steps": 2, "type": "x"})"), "");
+}
+
+TEST(Object, EscapesAnUnknownKeyInThePointer) {
+  EXPECT_EQ(refusal_of(R"({"mass_kg": 3, "steps": 2, "a/b~c": 1})").substr(0, 11), "/v/a~1b~0c:");
+}
+
+TEST(Object, NamesAMissingFieldAndWhatIsAllowed) {
+  EXPECT_EQ(refusal_of(R"({"steps": 2})"), "/v: missing field \"mass_kg\"; allowed: a number > 0 and <= 10 [kg]");
+}
+
+TEST(Object, IsNoOtherType) {
+  for (const char* text : {"[]", "null", "1", "\"x\"", "true"}) {
+    EXPECT_EQ(refusal_of(text),
+              std::string("/v: got ") + text +
+                  "; allowed: an object with the fields \"$schema\", \"mass_kg\", \"name\", \"inner\", "
+                  "\"scale\", \"steps\", \"duration_s\"");
+  }
+}
+
+TEST(Object, RefusesNullForFieldsWithoutADefault) {
+  EXPECT_EQ(refusal_of(R"({"mass_kg": 3, "steps": 2, "scale": null})"),
+            "/v/scale: got null; allowed: a number >= 0 and <= 1");
+  EXPECT_EQ(refusal_of(R"({"mass_kg": 3, "steps": null})"), "/v/steps: got null; allowed: a number >= 0 and <= 9");
+}
+
+TEST(Object, WantsExactlyOneOfTwoFields) {
+  EXPECT_EQ(refusal_of(R"({"mass_kg": 3})"), "/v: missing field; allowed: exactly one of \"steps\" and \"duration_s\"");
+  EXPECT_EQ(refusal_of(R"({"mass_kg": 3, "steps": 1, "duration_s": 1})"),
+            "/v: got both \"steps\" and \"duration_s\", which contradict; allowed: exactly one of them");
+}
+
+TEST(Object, HasOnePairOfExclusiveFieldsAtMost) {
+  const auto twice = [](Fields& f, Outer& outer) {
+    f.fields([&outer](Fields& fields) {
+      describe_fields(fields, outer);
+      fields.exactly_one_of("name", "scale");
+    });
+  };
+  EXPECT_THROW(test::schema_of(twice, Outer{}), std::logic_error);
+}
+
+/// What a visitor says of itself inside the fields of an object.
+struct Seen {
+  bool reads = false, gives_name = false, gives_scale = false;
+  double mass = -1.0;
+  std::string at;
+};
+
+TEST(Object, IsReadWhenItsDescriptionIsToldSo) {
+  Seen seen;
+  const auto describe = [&seen](Fields& f, Outer& outer) {
+    f.fields([&](Fields& fields) {
+      describe_fields(fields, outer);
+      if (fields.reads()) seen = {true, fields.given("name"), fields.given("scale"), outer.mass, fields.at()};
+    });
+  };
+  test::schema_of(describe, Outer{});
+  test::written_by(describe, Outer{});
+  EXPECT_FALSE(seen.reads);
+  Outer outer;
+  test::read_json(Json::parse(R"({"steps": 1, "name": "x", "mass_kg": 4})"), "/a/0", outer, describe);
+  EXPECT_TRUE(seen.reads);
+  EXPECT_TRUE(seen.gives_name);
+  EXPECT_FALSE(seen.gives_scale);
+  EXPECT_EQ(seen.mass, 4.0);
+  EXPECT_EQ(seen.at, "/a/0");
+}
+
+TEST(Object, KeepsWarningsForWhoeverAsks) {
+  const Json json = Json::object();
+  std::vector<std::string> warnings;
+  Reader listening(json, "", &warnings), deaf(json, "");
+  for (Reader* reader : {&listening, &deaf}) reader->warn("odd");
+  EXPECT_EQ(warnings, std::vector<std::string>{"odd"});
+}
+
+TEST(Object, IsWrittenWithAllFieldsThatHaveAValue) {
+  const Outer outer = outer_of(R"({"steps": 2, "mass_kg": 3})");
+  EXPECT_EQ(
+      test::written_by(describe_outer, outer),
+      Json::parse(R"({"mass_kg": 3.0, "name": "unnamed", "inner": {"width_m": 2.0}, "scale": 0.25, "steps": 2.0})"));
+}
+
+TEST(Object, HasDefaultsAndRequirementsInItsSchema) {
+  const Json schema = test::schema_of(describe_outer, Outer{});
+  EXPECT_EQ(schema["additionalProperties"], false);
+  EXPECT_EQ(schema["required"], Json::array({"mass_kg"}));
+  EXPECT_EQ(schema["oneOf"], Json::parse(R"([{"required": ["steps"]}, {"required": ["duration_s"]}])"));
+  EXPECT_EQ(
+      schema["properties"]["name"],
+      Json::parse(R"({"type": "string", "maxLength": 10, "description": "what it is called", "default": "unnamed"})"));
+  for (const char* field : {"mass_kg", "scale", "steps", "duration_s"}) {
+    EXPECT_FALSE(schema["properties"][field].contains("default")) << field;
+  }
+  EXPECT_EQ(schema["properties"]["inner"]["default"], Json::parse(R"({"width_m": 2.0})"));
+}
+
+TEST(Object, LeavesFieldsWithoutADefaultOutOfTheDefaultsOfOthers) {
+  const auto describe = [](Fields& f, Outer& outer) {
+    f.fields([&outer](Fields& fields) {
+      fields.group("part", "", [&outer](Fields& g) {
+        g.number("scale", outer.scale, {0.0, 1.0}, "", Presence::no_default);
+        g.number("mass_kg", outer.mass, {0.0, 1.0}, "");
+      });
+    });
+  };
+  EXPECT_EQ(test::schema_of(describe, Outer{})["properties"]["part"]["default"], Json::parse(R"({"mass_kg": 0.0})"));
+  EXPECT_EQ(test::written_by(describe, Outer{}), Json::parse(R"({"part": {"scale": 0.25, "mass_kg": 0.0}})"));
+}
+
+struct Ball {
+  double radius = 1.0;
+};
+struct Box {
+  double edge = 5.0;
+};
+using Solid = std::variant<Ball, Box>;
+
+void describe_solid(Fields& f, Ball& ball) {
+  f.number("radius_m", ball.radius, {0.0, 9.0, "m"}, "of the ball", Presence::required);
+}
+void describe_solid(Fields& f, Box& box) {
+  f.number("edge_m", box.edge, {0.0, 9.0, "m"}, "of the box");
+}
+
+void describe_any(Fields& f, Solid& solid) {
+  f.variant(solid, "solid", {"ball", "box"}, [](Fields& fields, auto& held) { describe_solid(fields, held); });
+}
+
+Solid solid_of(const std::string& text, Solid solid = {}) {
+  test::read_json(Json::parse(text), "/v", solid, describe_any);
+  return solid;
+}
+
+std::string refusal_of_solid(const std::string& text) {
+  return test::refusal_of(text, Solid{}, describe_any);
+}
+
+TEST(TaggedObject, IsChosenByType) {
+  EXPECT_EQ(std::get<Ball>(solid_of(R"({"type": "ball", "radius_m": 3})")).radius, 3.0);
+  EXPECT_EQ(std::get<Box>(solid_of(R"({"edge_m": 4, "type": "box"})")).edge, 4.0);
+}
+
+TEST(TaggedObject, StartsFromTheDefaultsOfTheAlternative) {
+  EXPECT_EQ(std::get<Box>(solid_of(R"({"type": "box"})")).edge, 5.0);
+  EXPECT_EQ(std::get<Box>(solid_of(R"({"type": "box"})", Box{7.0})).edge, 5.0);
+}
+
+TEST(TaggedObject, NamesAnUnknownTypeAndTheNearest) {
+  EXPECT_EQ(refusal_of_solid(R"({"type": "bal", "radius_m": 3})"),
+            R"(/v/type: got "bal"; allowed: solid: one of "ball", "box"; nearest valid name: "ball")");
+  EXPECT_EQ(refusal_of_solid(R"({"type": "cone"})"), R"(/v/type: got "cone"; allowed: solid: one of "ball", "box")");
+  EXPECT_EQ(refusal_of_solid(R"({"type": 1})"), R"(/v/type: got 1; allowed: solid: one of "ball", "box")");
+  EXPECT_EQ(refusal_of_solid(R"({"type": null})"), R"(/v/type: got null; allowed: solid: one of "ball", "box")");
+}
+
+TEST(TaggedObject, WantsAType) {
+  EXPECT_EQ(refusal_of_solid(R"({"radius_m": 3})"),
+            R"(/v: missing field "type"; allowed: solid: one of "ball", "box")");
+  EXPECT_EQ(refusal_of_solid("[]"), R"(/v: got []; allowed: an object whose "type" is one of "ball", "box")");
+}
+
+TEST(TaggedObject, RefusesFieldsOfTheOtherAlternative) {
+  EXPECT_EQ(refusal_of_solid(R"({"type": "ball", "radius_m": 3, "edge_m": 1})"),
+            R"(/v/edge_m: unknown field; allowed here: "type", "radius_m")");
+  EXPECT_EQ(refusal_of_solid(R"({"type": "ball"})"),
+            R"(/v: missing field "radius_m"; allowed: a number >= 0 and <= 9 [m])");
+}
+
+TEST(TaggedObject, SuggestsTypeForAMisspeltTag) {
+  EXPECT_NE(refusal_of_solid(R"({"type": "box", "typ": "ball"})").find(R"(nearest valid name: "type")"),
+            std::string::npos);
+}
+
+TEST(TaggedObject, IsWrittenAsTypeAndFields) {
+  EXPECT_EQ(test::written_by(describe_any, Solid(Ball{3.0})).dump(), R"({"type":"ball","radius_m":3.0})");
+  EXPECT_EQ(test::written_by(describe_any, Solid(Box{4.0})).dump(), R"({"type":"box","edge_m":4.0})");
+}
+
+TEST(TaggedObject, IsNotWrittenWithoutAnAlternative) {
+  Writer writer;
+  const TypeName names[] = {"ball"};
+  EXPECT_THROW(writer.alternatives("solid", names, Untyped::refused, 1, [](Fields&, std::size_t) {}), std::logic_error);
+}
+
+TEST(TaggedObject, HasAnAlternativeForEachTagInItsSchema) {
+  const Json choices = test::schema_of(describe_any, Solid{})["oneOf"];
+  ASSERT_EQ(choices.size(), 2u);
+  EXPECT_EQ(choices[0]["properties"]["type"]["const"], "ball");
+  EXPECT_EQ(choices[0]["required"], Json::array({"type", "radius_m"}));
+  EXPECT_EQ(choices[1]["required"], Json::array({"type"}));
+}
+
+/// A number or an object, one value or a list of them.
+TEST(TwoForms, AreToldApartByTheirJson) {
+  struct Parts {
+    double number = 0.0;
+    std::vector<double> list;
+    Solid solid;
+  };
+  const auto describe = [](Fields& f, Parts& parts) {
+    const auto number = [](Fields& n, double& value) { n.number(value, {0.0, 9.0}); };
+    f.fields([&](Fields& fields) {
+      fields.field("solid", "", Presence::required, [&](Fields& v) {
+        v.number_or_object(
+            true, [&](Fields& n) { number(n, parts.number); }, [&](Fields& o) { describe_any(o, parts.solid); });
+      });
+      fields.field("list", "", Presence::has_default, [&](Fields& v) {
+        v.one_or_list(
+            true, [&](Fields& n) { number(n, parts.number); },
+            [&](Fields& l) {
+              l.list(parts.list, {0, 2}, number);
+            });
+      });
+    });
+  };
+  Parts parts;
+  test::read_json(Json::parse(R"({"solid": {"type": "box", "edge_m": 2}, "list": [1]})"), "", parts, describe);
+  EXPECT_EQ(std::get<Box>(parts.solid).edge, 2.0);
+  EXPECT_EQ(parts.list, std::vector<double>{1.0});
+  test::read_json(Json::parse(R"({"solid": 3})"), "", parts, describe);
+  EXPECT_EQ(parts.number, 3.0);
+  test::read_json(Json::parse(R"({"solid": 3, "list": 4})"), "", parts, describe);
+  EXPECT_EQ(parts.number, 4.0);
+  const std::string number = "a number >= 0 and <= 9";
+  const std::string both = number + ", or an object whose \"type\" is one of \"ball\", \"box\"";
+  EXPECT_EQ(test::refusal_of(R"({"solid": true})", Parts{}, describe), "/v/solid: got true; allowed: " + both);
+  EXPECT_EQ(test::refusal_of("{}", Parts{}, describe), "/v: missing field \"solid\"; allowed: " + both);
+  EXPECT_EQ(test::refusal_of(R"({"solid": 10})", Parts{}, describe), "/v/solid: got 10; allowed: " + number);
+  EXPECT_EQ(test::refusal_of(R"({"solid": 1, "list": true})", Parts{}, describe),
+            "/v/list: got true; allowed: " + number);
+}
+
+}  // namespace
+}  // namespace hapbench::visitors_test

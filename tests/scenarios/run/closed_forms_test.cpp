@@ -1,0 +1,198 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/run_scenario.hpp"
+
+/// Bundled scenarios against closed forms: bilateral springs against the linear recurrence that they are (one
+/// spring-damper under the integrator is (x, v) <- A (x, v) with the matrix A of Eq. A.2), ten minutes in contact, and
+/// the planar peg in its hole (thesis A.1, Fig. A.2).
+namespace hapbench::closed_forms_test {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+struct State {
+  double x, v;
+};
+
+/// The right-hand side of Eq. A.2, in the order in which the thesis prints it.
+State after_one_step(const State& s, double K, double B, double M, double dt) {
+  return {(1.0 - K * dt * dt / M) * s.x + (dt - B * dt * dt / M) * s.v, -K * dt / M * s.x + (1.0 - B * dt / M) * s.v};
+}
+
+/// Rows of a run.
+class Rows final : public Observer {
+ public:
+  void on_step(const StepRecord& record) noexcept override { rows.push_back(record); }
+  std::vector<StepRecord> rows;
+};
+
+std::vector<StepRecord> rows_of(const std::string& scenario, const std::vector<std::string>& overrides) {
+  const LoadedScenario loaded = load_scenario(find_scenario(scenario), overrides);
+  Rows rows;
+  Simulation(simulation_config(loaded.scenario), assemble(loaded.scenario), {&rows}).run();
+  return rows.rows;
+}
+
+TEST(OneSpringDamper, FollowsEquationA2ToRounding) {
+  const double K = 20000.0, M = 0.1, dt = 0.0005, B = 2.0 * 0.7 * std::sqrt(K * M);
+  const auto rows = rows_of("single_spring", {"time.steps=2000", "initial.velocity_m_per_s=[0.5,0,0]"});
+  ASSERT_EQ(rows.size(), 2000u);
+  State expected{1e-3, 0.5};
+  // Each step either side makes a handful of roundings of the current state; with the modulus rho = sqrt(1 - B dt / M)
+  // = 0.83 of the eigenvalues an error made k steps ago is worth k rho^k of it, at most 2. A factor of 4 is for powers
+  // of A being larger than those of its eigenvalues. In all 8 * 2 * 4 units of the largest state.
+  const double x_tolerance = 64 * kEpsilon * 1e-3, v_tolerance = 64 * kEpsilon * 1e-3 / dt;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    ASSERT_NEAR(rows[k].tool.pose.position.x(), expected.x, x_tolerance) << k;
+    ASSERT_NEAR(rows[k].tool.velocity.x(), expected.v, v_tolerance) << k;
+    ASSERT_EQ(rows[k].tool.pose.position.tail<2>(), Eigen::Vector2d::Zero()) << k;
+    expected = after_one_step(expected, K, B, M, dt);
+  }
+  EXPECT_LT(std::abs(expected.x), 1e-100);  // and comes to rest
+}
+
+TEST(OneUndampedSpring, SwingsForEverAsTheClosedFormSays) {
+  // x_(k+1) = (2 - kappa) x_k - x_(k-1) with x_1 = (1 - kappa) x_0: a sampled cosine of 2 cos theta = 2 - kappa.
+  const double K = 1.59e6, M = 0.1, dt = 0.0005, kappa = K * dt * dt / M, x0 = 1e-3;
+  const double cosine = 1.0 - kappa / 2.0, theta = std::acos(cosine), sine = std::sqrt(1.0 - cosine * cosine);
+  const auto rows = rows_of("single_spring_undamped", {});
+  ASSERT_EQ(rows.size(), 2000u);
+  const double amplitude = x0 * (1.0 + (1.0 - kappa - cosine) / sine);
+  // Roundings of some eps of the amplitude a step add up over the steps and are amplified by 1 / sine; theta, known to
+  // eps / sine, is multiplied by k.
+  const double tolerance = 2000 * 8 * kEpsilon / sine * std::abs(amplitude);
+  double largest = 0.0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const double angle = static_cast<double>(k) * theta;
+    const double expected = x0 * (std::cos(angle) + (1.0 - kappa - cosine) / sine * std::sin(angle));
+    ASSERT_NEAR(rows[k].tool.pose.position.x(), expected, tolerance) << k;
+    largest = std::max(largest, std::abs(rows[k].tool.pose.position.x()));
+  }
+  EXPECT_GT(largest, 0.9 * std::abs(amplitude));
+}
+
+TEST(ShapedSpringsOfTableA3, ActAsOneSpringDamperAlongEachAxis) {
+  const double K = 20000.0, M = 0.2, dt = 0.0005, B = 2.0 * 0.7 * std::sqrt(K * M);
+  const auto rows = rows_of("springs_unlimited_shaped_stiffness", {});
+  ASSERT_EQ(rows.size(), 2000u);
+  Mat3 identity_in_plane = Mat3::Zero();
+  identity_in_plane.diagonal() << 1.0, 1.0, 0.0;
+  // 200 equal weights are summed, so that S is off by at most some 200 eps; K and B with it.
+  const double S_tolerance = 256 * kEpsilon;
+  // As above with the error of S in place of eps; rho = sqrt(1 - B dt / M) = 0.88, so that k rho^k stays below 3.
+  const double x_tolerance = 8 * 3 * 4 * 256 * kEpsilon * 5e-3, v_tolerance = x_tolerance / dt;
+  State x{-0.005, 0.0}, y{-0.005, 0.0};
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    ASSERT_LE((rows[k].force.S - identity_in_plane).cwiseAbs().maxCoeff(), S_tolerance) << k;
+    ASSERT_NEAR(rows[k].tool.pose.position.x(), x.x, x_tolerance) << k;
+    ASSERT_NEAR(rows[k].tool.pose.position.y(), y.x, x_tolerance) << k;
+    ASSERT_NEAR(rows[k].tool.velocity.x(), x.v, v_tolerance) << k;
+    ASSERT_NEAR(rows[k].tool.velocity.y(), y.v, v_tolerance) << k;
+    x = after_one_step(x, K, B, M, dt);
+    y = after_one_step(y, K, B, M, dt);
+  }
+}
+
+TEST(UnsignedSpringsOfTableA3, ReachTheOriginUnderTheOriginalAlgorithmToo) {
+  // Thesis A.2: every algorithm arrives. With signed depths the gradients of opposite springs cancel and leave the ten
+  // upward ones, 100 times too soft along x: the tool stays where it was.
+  const auto x_at_end = [](const char* is_signed) {
+    const auto rows = rows_of("springs_unlimited_original_averaging", {std::string("environment.signed=") + is_signed});
+    return std::abs(rows.back().tool.pose.position.x());
+  };
+  EXPECT_EQ(x_at_end("true"), 0.005);
+  EXPECT_LT(x_at_end("false"), 0.0005);
+}
+
+TEST(SummedSpringsOfTableA3, AreTooStiffForTheTimeStep) {
+  // 200 springs along x: lambda K = 4e6 N/m and lambda B = 17.7e3 N s/m, far beyond 4 M / dt^2 = 3.2e6 and 2 M / dt =
+  // 800.
+  const LoadedScenario loaded = load_scenario(find_scenario("springs_unlimited_summation"));
+  Simulation simulation(simulation_config(loaded.scenario), assemble(loaded.scenario), {});
+  EXPECT_EQ(simulation.run().outcome, Outcome::diverges);
+}
+
+/// Steady response x_k of the integrator's spring-damper, (M/dt²)(x_(k+1) - 2 x_k + x_(k-1)) + (B/dt)(x_k - x_(k-1)) +
+/// K x_k = F_k, to F_k = mean + amplitude sin(w k dt): a geometric sequence answers a geometric sequence.
+double steady_response(double K, double B, double M, double dt, const Profile::Sine& force, double k) {
+  const double angle = 2.0 * std::numbers::pi / force.period_s * dt;
+  const std::complex<double> z = std::polar(1.0, angle);
+  const std::complex<double> dynamic_stiffness = (M / (dt * dt)) * (z - 2.0 + 1.0 / z) + (B / dt) * (1.0 - 1.0 / z) + K;
+  return force.mean / K + (force.amplitude * std::polar(1.0, angle * k) / dynamic_stiffness).imag();
+}
+
+TEST(TenMinutesInContact, EndWhereTheClosedFormSaysAndMakeNoEnergy) {
+  const LoadedScenario loaded = load_scenario(find_scenario("ten_minutes_in_contact"));
+  const Scenario& scenario = loaded.scenario;
+  const RunReport report = run_scenario(loaded, std::nullopt, false);
+  EXPECT_EQ(report.unmet, std::vector<std::string>{});
+  EXPECT_EQ(report.summary.result.rows, 1'200'000u);
+
+  const double K = scenario.rendering.stiffness, M = scenario.rendering.mass;
+  const double B = 2.0 * scenario.rendering.damping_ratio * std::sqrt(K * M);
+  const auto& force = std::get<Profile::Sine>(std::get<ForceHandFields>(scenario.hand).force[2].shape());
+  const double expected = steady_response(K, B, M, scenario.time.step, force, 1'199'999.0);
+  // The transient is gone, e^(-100 000). Rounding of position and force, 1e-16 of 0.3 mm each, is forgotten within a
+  // hundred steps; the phase of the sine, 5386 rad, is known to 1e-12, which is 1e-12 of its 0.05 mm.
+  EXPECT_NEAR(report.summary.metrics.final_position.z(), expected, 1e-15);
+  const auto& bound = scenario.expect.metrics.at("final_position_m.z");
+  EXPECT_NEAR(0.5 * (*bound.min + *bound.max), expected, 1e-14) << "the file's bounds are about the closed form";
+
+  // Energy made in a step is the rounding of the ledger's sums of terms up to 3 mJ: 1e-18 J, 1.2 million times.
+  EXPECT_LE(metric_of(report.summary, "energy.created_sum_J").value(), 1.2e-12);
+}
+
+RunReport report_of(const std::string& scenario) {
+  return run_scenario(load_scenario(find_scenario(scenario)), std::nullopt, false);
+}
+
+TEST(PegInHole, VibratesFiveTimesLessWithShapedStiffness) {
+  const Metrics original = report_of("peg_in_hole_2d_original_averaging").summary.metrics;
+  for (const char* shaped : {"peg_in_hole_2d_shaped_stiffness", "peg_in_hole_2d_exact_shaping"}) {
+    const Metrics smooth = report_of(shaped).summary.metrics;
+    EXPECT_GE(original.velocity_total_variation, 5.0 * smooth.velocity_total_variation) << shaped;
+    // The original run is the shorter one, so that a step of it is rougher still.
+    EXPECT_LT(original.rows, smooth.rows) << shaped;
+    EXPECT_GE(*original.vibration_power, 25.0 * *smooth.vibration_power) << shaped;  // power goes with the square
+    EXPECT_GT(original.force_reversals, 5 * smooth.force_reversals) << shaped;
+  }
+}
+
+TEST(PegInHole, IsSteeredOutOfTheHoleByItsTilt) {
+  for (const char* scenario : {"peg_in_hole_2d_shaped_stiffness", "peg_in_hole_2d_exact_shaping"}) {
+    const RunSummary run = report_of(scenario).summary;
+    EXPECT_EQ(run.result.outcome, Outcome::leaves_hole) << scenario;
+    // 1.2 rad/s from 0.1 rad: horizontal, at pi / 2, only after 1.2 s.
+    EXPECT_LT(run.duration, 1.2) << scenario;
+    EXPECT_GT(run.metrics.final_position.y(), 0.0) << scenario;
+  }
+}
+
+TEST(PegInHole, StaysInItsPlane) {
+  for (const BundledScenario& bundled : bundled_scenarios()) {
+    if (bundled.name.find("peg_in_hole_2d") != 0) continue;
+    EXPECT_EQ(report_of(bundled.name).summary.metrics.final_position.z(), 0.0) << bundled.name;
+  }
+}
+
+TEST(PegInHole, KeepsItsRatiosWithinTheProvenBoundUnderExactShaping) {
+  // The bounds of exact_shaping.hpp: lambda_max(S) <= (1 + sqrt 2) / 2 in the plane, with it every ratio; a ratio is at
+  // least 1 - 1e-6 c_i, and c_i <= sum c = tr S <= sqrt 2 ||S||_F <= sqrt 2 ||I||_F = 2; half as much again for
+  // rounding.
+  const Metrics metrics = report_of("peg_in_hole_2d_exact_shaping").summary.metrics;
+  ASSERT_TRUE(metrics.ratio);
+  EXPECT_LE(metrics.ratio->max, (1.0 + std::sqrt(2.0)) / 2.0);
+  EXPECT_GE(metrics.ratio->min, 1.0 - 3e-6);
+}
+
+}  // namespace
+}  // namespace hapbench::closed_forms_test

@@ -1,0 +1,251 @@
+"""Shows what it takes to add things: the edits that the manuals ask for, and no other.
+
+adding_test.py [--keep] [--build-dir DIRECTORY] [unittest options]
+
+Copies the tree to a scratch folder, adds an environment, a tool, a named file and a device field there, builds the
+program (minutes) and shows that reader, schema, describe, list, results and sweep know each of them. `--keep` leaves the
+folder behind, `--build-dir` builds there; a build directory that is kept makes the next run faster.
+"""
+import argparse
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[2]
+OPTIONS = argparse.Namespace(keep=False, build_dir=None)
+
+
+class Tree:
+    """A copy of the files under version control, as they stand now."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        listed = subprocess.run(["git", "ls-files", "-z"], cwd=SOURCE, capture_output=True, check=True).stdout
+        for name in filter(None, listed.decode().split("\0")):
+            if not (SOURCE / name).exists():
+                continue  # removed and not committed yet
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(SOURCE / name, folder / name, follow_symlinks=False)
+
+    def edit(self, anchor, new, before=False):
+        """Puts `new` behind the only place in a source that has `anchor`, or before it. Returns the file's name."""
+        found = [file for file in self.sources() if anchor in file.read_text()]
+        if len(found) != 1:
+            raise AssertionError(f"{anchor!r} stands in {[str(file) for file in found]}; wanted: one file")
+        text = found[0].read_text()
+        if text.count(anchor) != 1:
+            raise AssertionError(f"{anchor!r} stands in {found[0]} {text.count(anchor)} times")
+        found[0].write_text(text.replace(anchor, new + anchor if before else anchor + new))
+        return str(found[0].relative_to(self.folder))
+
+    def sources(self):
+        for part in ("sim", "device_model", "results", "scenarios"):
+            for end in ("*.hpp", "*.cpp"):
+                yield from (self.folder / part).rglob(end)
+
+
+def add_environment(tree):
+    return {
+        tree.edit("using Environment = std::variant<", """struct RidgeEnvironment {
+  double height = 0.001;   ///< [m]
+  double spacing = 0.0005;  ///< [m]
+};
+""", before=True),
+        tree.edit("using Environment = std::variant<SpringsEnvironment, ", "RidgeEnvironment, "),
+        tree.edit("""constexpr TypeName kEnvironmentTypes[] = {
+    {"springs", "springs on the tool's tip, without a surface"},
+""", """    {"ridge", "a row of points"},
+"""),
+        tree.edit("void describe(Fields& f, Environment& environment) {", """static void describe(Fields& f, RidgeEnvironment& ridge) {
+  f.number("height_m", ridge.height, kLength, "height of the row");
+  f.number("spacing_m", ridge.spacing, kLength, "distance of neighbours");
+}
+
+""", before=True),
+        tree.edit("  Shell operator()(const SpringsEnvironment&) const { return nullptr; }\n", """  Shell operator()(const RidgeEnvironment& ridge) const {
+    std::vector<SurfacePoint> points;
+    for (int i = -5; i <= 5; ++i) points.push_back({{ridge.spacing * i, 0.0, ridge.height}, Vec3::UnitZ()});
+    return of(points, ridge.spacing);
+  }
+"""),
+    }
+
+
+def add_tool(tree):
+    return {
+        tree.edit("using ToolFields = std::variant<CylinderFields, ", "TaperFields, "),
+        tree.edit("using ToolFields = std::variant<", """struct TaperFields {
+  double width = 0.002;  ///< at the far end [m]
+};
+""", before=True),
+        tree.edit("""    {"cylinder", "a drill's stylus with a flat or a round tip"},
+""", """    {"taper", "a cone that ends in a narrow tip"},
+"""),
+        tree.edit("void describe(Fields& f, ToolFields& tool) {", """static void describe(Fields& f, TaperFields& tool) {
+  f.number("width_m", tool.width, kLength, "width of the far end");
+}
+
+""", before=True),
+        tree.edit("  std::shared_ptr<const ToolShape> operator()(const RevolvedFields& f) const {\n", """  std::shared_ptr<const ToolShape> operator()(const TaperFields& f) const {
+    return std::make_shared<Revolved>(std::vector<ProfilePoint>{{-0.01, f.width / 2.0}, {0.0, 0.0005}}, Tip::flat);
+  }
+""", before=True),
+    }
+
+
+def add_named_file(tree):
+    return {
+        tree.edit("struct PushHandFields {\n", "  std::optional<std::string> file;  ///< of notes\n"),
+        tree.edit("""static void describe(Fields& f, PushHandFields& hand) {
+""", """  f.if_any(kFileField, hand.file, "a stroke to compare with",
+           [](Fields& s, std::string& path) { s.file(path, {FileContent::Kind::stroke}); });
+"""),
+    }
+
+
+def add_device_field(tree):
+    return {
+        tree.edit("struct ImpedanceDeviceConfig {\n", "  double play = 0.0;  ///< of the transmission [m]\n"),
+        tree.edit("""  f.number("viscous_N_s_per_m", device.viscous,""",
+                  """  f.number("play_m", device.play, {0.0, 1.0, "m"}, "play of the transmission");
+""", before=True),
+    }
+
+
+# Each addition with the most files that it may touch.
+ADDITIONS = {"environment": (add_environment, 2), "tool": (add_tool, 2), "named file": (add_named_file, 2),
+             "device field": (add_device_field, 2)}
+
+
+def scenario(**parts):
+    """A scenario that has all the new things."""
+    return {
+        "time": {"step_s": 0.0005, "steps": 20},
+        "environment": {"type": "ridge", "height_m": 0.001},
+        "initial": {"position_m": [0, 0, 0.00099]},
+        "tool": {"type": "taper", "width_m": 0.003},
+        "expect": {"outcome": ["completes", "no_contact", "lost_contact"]},
+        **parts,
+    }
+
+
+class Adding(unittest.TestCase):
+    maxDiff = None
+
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = Path(tempfile.mkdtemp(prefix="hapbench_adding_"))
+        tree = Tree(cls.scratch / "tree")
+        cls.touched = {thing: add(tree) for thing, (add, _) in ADDITIONS.items()}
+        build = Path(OPTIONS.build_dir or cls.scratch / "build").resolve()
+        configure = ["cmake", "-G", "Ninja", "-S", tree.folder, "-B", build, "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O0",
+                     "-DCMAKE_UNITY_BUILD=ON", "-DCMAKE_UNITY_BUILD_BATCH_SIZE=24", "-DHAPBENCH_BUILD_TESTS=OFF",
+                     "-DHAPBENCH_BUILD_PYTHON=OFF", "-DHAPBENCH_INSTALL=OFF", "-DHAPBENCH_WERROR=ON"]
+        for command in (configure, ["cmake", "--build", build, "--target", "bin/hapbench"]):
+            done = subprocess.run(command, capture_output=True, text=True)
+            if done.returncode != 0:
+                raise AssertionError(f"{' '.join(map(str, command))}\n{done.stdout[-8000:]}{done.stderr[-2000:]}")
+        cls.program = build / "bin" / "hapbench"
+
+    @classmethod
+    def tearDownClass(cls):
+        if OPTIONS.keep:
+            print(f"kept: {cls.scratch}", file=sys.stderr)
+        else:
+            shutil.rmtree(cls.scratch)
+
+    def setUp(self):
+        self.folder = self.scratch / self.id().rpartition(".")[2]
+        shutil.rmtree(self.folder, ignore_errors=True)
+        self.folder.mkdir()
+
+    def hapbench(self, *words, status=0):
+        """Standard output, or of a refusal standard error."""
+        done = subprocess.run([self.program, *map(str, words)], cwd=self.folder, capture_output=True, text=True,
+                              env={**os.environ, "NO_COLOR": "1"})
+        self.assertEqual(done.returncode, status, f"{words}\n{done.stdout}{done.stderr}")
+        return done.stdout if status == 0 else done.stderr
+
+    def write(self, **parts):
+        (self.folder / "scene.json").write_text(json.dumps(scenario(**parts)))
+
+    def test_each_thing_takes_few_files(self):
+        for thing, (_, most) in ADDITIONS.items():
+            self.assertLessEqual(len(self.touched[thing]), most, f"{thing}: {sorted(self.touched[thing])}")
+
+    def test_the_reader_accepts_and_refuses(self):
+        self.write()
+        self.hapbench("run", "scene.json", "--out", "out", "--quiet")
+        effective = json.loads((self.folder / "out" / "scenario.effective.json").read_text())
+        self.assertEqual(effective["environment"], {"type": "ridge", "height_m": 0.001, "spacing_m": 0.0005})
+        self.assertEqual(effective["tool"], {"type": "taper", "width_m": 0.003})
+        for field, value, problem in (
+            ("environment.height_m", "-1", "/environment/height_m: got -1; allowed: a number > 0 and <= 1000 [m]"),
+            ("environment.heigth_m", "1", 'nearest valid name: "height_m"'),
+            ("tool.width_m", "wide", '/tool/width_m: got "wide"; allowed: a number > 0 and <= 1000 [m]'),
+            ("tool.type", "tapered", 'nearest valid name: "taper"'),
+            ("device", '{"type":"impedance","handle_mass_kg":0.1,"play_m":2}',
+             "/device/play_m: got 2; allowed: a number >= 0 and <= 1 [m]"),
+            ("hand", '{"type":"push","force_N":1,"file":5}', "/hand/file: got 5; allowed: a text"),
+        ):
+            self.assertIn(problem, self.hapbench("run", "scene.json", "--set", f"{field}={value}", status=2))
+
+    def test_schema_describe_list_and_completion_know_them(self):
+        schema = json.loads(self.hapbench("describe", "schema"))["else"]["properties"]
+        ridge = schema["environment"]["oneOf"][1]["properties"]
+        self.assertEqual((ridge["type"]["const"], ridge["height_m"]["default"]), ("ridge", 0.001))
+        self.assertIn("taper", [tool["properties"]["type"]["const"] for tool in schema["tool"]["oneOf"]])
+        devices = {device["properties"]["type"]["const"]: device["properties"] for device in schema["device"]["oneOf"]}
+        self.assertEqual(devices["impedance"]["play_m"]["description"], "play of the transmission")
+        self.assertIn("a cone that ends in a narrow tip", self.hapbench("list"))
+        for name, text in (("ridge", "height of the row"), ("taper", "width of the far end"), ("hand.file", "a stroke to compare with"),
+                           ("device.play_m", "a number >= 0 and <= 1 [m]"),
+                           ("environment.type", "a row of points")):
+            self.assertIn(text, self.hapbench("describe", name))
+        self.assertIn("device.play_m=", self.hapbench("completion", "bash"))
+
+    def test_a_named_file_is_read_checked_hashed_and_moved(self):
+        self.write(hand={"type": "push", "force_N": 1, "file": "stroke.csv"})
+        self.assertIn("scene.json: /hand/file: stroke.csv: ", self.hapbench("validate", "scene.json", status=2))
+        stroke = "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n0,0,0,0,0,0,-1\n"
+        summaries = []
+        for more in ("", "1,0,0,0,0,0,-1\n"):
+            (self.folder / "stroke.csv").write_text(stroke + more)
+            self.hapbench("run", "scene.json", "--out", "out/deep", "--quiet")
+            summaries.append(json.loads((self.folder / "out/deep/summary.json").read_text()))
+        self.assertEqual(len({summary["provenance"]["scenario_hash"] for summary in summaries}), 2)
+        effective = json.loads((self.folder / "out/deep/scenario.effective.json").read_text())
+        self.assertEqual(effective["hand"]["file"], "../../stroke.csv")
+        (self.folder / "below").mkdir()
+        (self.folder / "below/other.json").write_text('{"extends": "../scene.json"}')
+        self.hapbench("validate", "below/other.json")
+        (self.folder / "stroke.csv").write_text("nothing\n")
+        self.assertIn("/hand/file: ", self.hapbench("run", "scene.json", status=2))
+
+    def test_a_sweep_varies_them_and_is_defined_by_their_files(self):
+        self.write(hand={"type": "push", "force_N": 1, "file": "stroke.csv"})
+        stroke = "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n0,0,0,0,0,0,-1\n"
+        (self.folder / "stroke.csv").write_text(stroke)
+        vary = ["--vary", "environment.height_m=0.001,0.002", "--vary", "tool.width_m=0.002,0.003"]
+        self.hapbench("sweep", "scene.json", *vary, "--shard", "0/2", "--out", "sweep", "--quiet")
+        rows = (self.folder / "sweep/sweep_shard_0_of_2.csv").read_text().splitlines()
+        self.assertIn("environment.height_m,tool.width_m", rows[0])
+        self.assertEqual(len(rows), 3)
+        self.assertIn("missing.csv", self.hapbench("sweep", "scene.json", "--vary", "hand.file=stroke.csv,missing.csv", "--out", "bad", status=2))
+        (self.folder / "stroke.csv").write_text(stroke + "1,0,0,0,0,0,-1\n")
+        self.hapbench("sweep", "scene.json", *vary, "--shard", "1/2", "--out", "sweep", "--quiet")
+        shards = [f"sweep/sweep_shard_{i}_of_2.csv" for i in range(2)]
+        self.assertIn("is of another sweep", self.hapbench("merge", *shards, "--out", "merged", status=2))
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(add_help=False)
+    parser.add_argument("--keep", action="store_true")
+    parser.add_argument("--build-dir")
+    OPTIONS, rest = parser.parse_known_args()
+    unittest.main(argv=[sys.argv[0], *rest])
