@@ -77,7 +77,7 @@ class MotionClassifier final : public Observer {
   int rows_at_rest_ = 0;
 };
 
-/// Steps the simulation, which `classifier` observes, until it ends or comes to rest. Throws Stopped (run_to_end.hpp).
+/// Steps the simulation, which `classifier` observes, until it ends or comes to rest. Throws Stopped (stop_signal.hpp).
 MotionClass classify(Simulation& simulation, const MotionClassifier& classifier);
 
 }  // namespace hapbench

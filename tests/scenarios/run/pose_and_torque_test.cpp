@@ -69,7 +69,7 @@ struct Contact {
   double depth, weight;
 };
 
-/// What SpringState says of each law, without its code.
+/// The share of a contact in the spring force, as SpringState defines it for each law, without its code.
 Vec3 share(std::string_view algorithm, const RenderingConfig& r, const Vec3& spring, std::size_t n, const Contact& c) {
   const double K = r.stiffness;
   if (algorithm == "original_averaging" || algorithm == "highest_depth") return spring / static_cast<double>(n);
@@ -99,7 +99,7 @@ void expect_torques(std::string_view algorithm, const Place& place) {
   for (std::size_t k = 0; k < rows.rows(); ++k) {
     const Vec3 spring = rows.vector(k, {"fspring_x_N", "fspring_y_N", "fspring_z_N"});
     Vec3 tip = rows.vector(k, {"px_m", "py_m", "pz_m"});
-    // What the points hold is the proxy.
+    // The points hold the proxy, not the tool.
     if (algorithm == "proxy") tip += spring / rendering.stiffness;
     std::vector<Contact> of_row;
     for (; next < contacts.rows() && contacts.number(next, "step") == static_cast<double>(k); ++next) {
@@ -138,7 +138,7 @@ TEST(LostTorque, IsTheSumOverTheContactsOfArmTimesShareForEveryAlgorithm) {
   for (const AlgorithmEntry& algorithm : algorithms()) {
     SCOPED_TRACE(algorithm.info->name);
     expect_torques(algorithm.info->name, kPlane);
-    // Where the walls are too near for the drill the proxy makes a compromise, whose shares its own tests have.
+    // In a slot too narrow for the drill the proxy makes a compromise, whose shares its own tests check.
     if (std::string_view(algorithm.info->name) != "proxy") expect_torques(algorithm.info->name, kSlot);
   }
 }
