@@ -15,19 +15,30 @@ constexpr SourcedNumber ours(double value) {
 
 // clang-format off
 constexpr DevicePreset kPresets[] = {
-  // name          device                         m [kg]        b [N s/m]   c [N]       q [m]            F [N]       K [N/m]     B [N s/m]
-  {"touch",       "3D Systems Touch",             sheet(0.045), ours(0.1),  ours(0.2),  sheet(0.055e-3), chai(3.3),  chai(400),  chai(4)},
-  {"omni",        "SensAble Phantom Omni",        ours(0.045),  ours(0.1),  ours(0.2),  ours(0.055e-3),  chai(3.3),  chai(700),  chai(5)},
-  {"desktop",     "SensAble Phantom Desktop",     ours(0.045),  ours(0.1),  ours(0.06), ours(0.025e-3),  chai(7.9),  chai(1000), chai(5)},
-  {"premium_1.5", "SensAble Phantom Premium 1.5", ours(0.075),  ours(0.1),  ours(0.04), ours(0.03e-3),   chai(8.5),  chai(800),  chai(5)},
-  {"premium_3.0", "SensAble Phantom Premium 3.0", ours(0.16),   ours(0.2),  ours(0.2),  ours(0.02e-3),   chai(22),   chai(1000), chai(5)},
-  {"falcon",      "Novint Falcon",                ours(0.1),    ours(0.5),  ours(0.5),  ours(0.06e-3),   chai(8),    chai(3000), chai(20)},
-  {"omega.3",     "Force Dimension omega.3",      ours(0.2),    ours(0.5),  ours(0.3),  sheet(0.01e-3),  chai(12),   chai(5000), chai(30)},
-  {"omega.6",     "Force Dimension omega.6",      ours(0.3),    ours(0.5),  ours(0.3),  ours(0.01e-3),   chai(12),   chai(5000), chai(30)},
-  {"omega.7",     "Force Dimension omega.7",      ours(0.35),   ours(0.5),  ours(0.3),  ours(0.01e-3),   chai(12),   chai(5000), chai(30)},
-  {"delta.3",     "Force Dimension delta.3",      ours(0.3),    ours(0.5),  ours(0.5),  ours(0.02e-3),   chai(20),   chai(5000), chai(30)},
-  {"sigma.7",     "Force Dimension sigma.7",      ours(0.4),    ours(0.5),  ours(0.4),  ours(0.01e-3),   chai(12),   chai(4000), chai(30)},
-  {"lambda.7",    "Force Dimension lambda.7",     ours(0.4),    ours(0.5),  ours(0.4),  ours(0.01e-3),   chai(12),   chai(8000), chai(30)},
+  {.name = "touch",       .device = "3D Systems Touch",             .handle_mass = sheet(0.045), .viscous = ours(0.1), .coulomb = ours(0.2),
+   .encoder_step = sheet(0.055e-3), .force_max = chai(3.3), .max_stiffness = chai(400),  .max_damping = chai(4)},
+  {.name = "omni",        .device = "SensAble Phantom Omni",        .handle_mass = ours(0.045),  .viscous = ours(0.1), .coulomb = ours(0.2),
+   .encoder_step = ours(0.055e-3),  .force_max = chai(3.3), .max_stiffness = chai(700),  .max_damping = chai(5)},
+  {.name = "desktop",     .device = "SensAble Phantom Desktop",     .handle_mass = ours(0.045),  .viscous = ours(0.1), .coulomb = ours(0.06),
+   .encoder_step = ours(0.025e-3),  .force_max = chai(7.9), .max_stiffness = chai(1000), .max_damping = chai(5)},
+  {.name = "premium_1.5", .device = "SensAble Phantom Premium 1.5", .handle_mass = ours(0.075),  .viscous = ours(0.1), .coulomb = ours(0.04),
+   .encoder_step = ours(0.03e-3),   .force_max = chai(8.5), .max_stiffness = chai(800),  .max_damping = chai(5)},
+  {.name = "premium_3.0", .device = "SensAble Phantom Premium 3.0", .handle_mass = ours(0.16),   .viscous = ours(0.2), .coulomb = ours(0.2),
+   .encoder_step = ours(0.02e-3),   .force_max = chai(22),  .max_stiffness = chai(1000), .max_damping = chai(5)},
+  {.name = "falcon",      .device = "Novint Falcon",                .handle_mass = ours(0.1),    .viscous = ours(0.5), .coulomb = ours(0.5),
+   .encoder_step = ours(0.06e-3),   .force_max = chai(8),   .max_stiffness = chai(3000), .max_damping = chai(20)},
+  {.name = "omega.3",     .device = "Force Dimension omega.3",      .handle_mass = ours(0.2),    .viscous = ours(0.5), .coulomb = ours(0.3),
+   .encoder_step = sheet(0.01e-3),  .force_max = chai(12),  .max_stiffness = chai(5000), .max_damping = chai(30)},
+  {.name = "omega.6",     .device = "Force Dimension omega.6",      .handle_mass = ours(0.3),    .viscous = ours(0.5), .coulomb = ours(0.3),
+   .encoder_step = ours(0.01e-3),   .force_max = chai(12),  .max_stiffness = chai(5000), .max_damping = chai(30)},
+  {.name = "omega.7",     .device = "Force Dimension omega.7",      .handle_mass = ours(0.35),   .viscous = ours(0.5), .coulomb = ours(0.3),
+   .encoder_step = ours(0.01e-3),   .force_max = chai(12),  .max_stiffness = chai(5000), .max_damping = chai(30)},
+  {.name = "delta.3",     .device = "Force Dimension delta.3",      .handle_mass = ours(0.3),    .viscous = ours(0.5), .coulomb = ours(0.5),
+   .encoder_step = ours(0.02e-3),   .force_max = chai(20),  .max_stiffness = chai(5000), .max_damping = chai(30)},
+  {.name = "sigma.7",     .device = "Force Dimension sigma.7",      .handle_mass = ours(0.4),    .viscous = ours(0.5), .coulomb = ours(0.4),
+   .encoder_step = ours(0.01e-3),   .force_max = chai(12),  .max_stiffness = chai(4000), .max_damping = chai(30)},
+  {.name = "lambda.7",    .device = "Force Dimension lambda.7",     .handle_mass = ours(0.4),    .viscous = ours(0.5), .coulomb = ours(0.4),
+   .encoder_step = ours(0.01e-3),   .force_max = chai(12),  .max_stiffness = chai(8000), .max_damping = chai(30)},
 };
 // clang-format on
 

@@ -7,7 +7,7 @@
 
 namespace hapbench {
 
-/// Where a number of a preset comes from.
+/// Source of a number of a preset.
 enum class NumberSource { chai3d, data_sheet, ours };
 
 /// The source in words.
@@ -19,25 +19,25 @@ struct SourcedNumber {
 };
 
 /// A published impedance display. Filter, delay and resolution of the force belong to its controller and are not
-/// here.
+/// included.
 struct DevicePreset {
   const char* name;
-  const char* device;           ///< what is written on it
+  const char* device;           ///< make and model
   SourcedNumber handle_mass;    ///< [kg]
   SourcedNumber viscous;        ///< [N s/m]
   SourcedNumber coulomb;        ///< [N]
   SourcedNumber encoder_step;   ///< [m]
   SourcedNumber force_max;      ///< [N]
   SourcedNumber max_stiffness;  ///< published largest stable stiffness of a wall [N/m]
-  SourcedNumber max_damping;    ///< and damping [N s/m]
+  SourcedNumber max_damping;    ///< published largest stable damping [N s/m]
 };
 
-/// All of them, in the order of their makers.
+/// All presets, in the order of their makers.
 std::span<const DevicePreset> device_presets() noexcept;
-/// Null when there is none of that name.
+/// Null if there is no preset of that name.
 const DevicePreset* find_device_preset(std::string_view name) noexcept;
 
-/// The device, with defaults for what a preset leaves open.
+/// The device, with defaults for fields that a preset does not contain.
 ImpedanceDeviceConfig config_of(const DevicePreset& preset);
 
 }  // namespace hapbench

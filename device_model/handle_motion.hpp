@@ -1,42 +1,72 @@
 #pragma once
 
-#include "device_model/attached_hand.hpp"
-#include "device_model/free_motion.hpp"
 #include "sim/loop/device.hpp"
 
 namespace hapbench {
 
-/// The handle as a body.
-struct HandleMotionConfig {
-  double mass = 0.05;    ///< m [kg]
-  double viscous = 0.0;  ///< b [N s/m]
-  double coulomb = 0.0;  ///< c [N]
+struct ImpedanceDeviceConfig;
+
+/// How the force of a hand answers the motion of the handle between samples:
+///
+///   f_hand = f_k - stiffness (x - x_k) - damping (x' - x'_k) - mass x''
+///
+/// with the force f_k at the sample. All parameters are zero for a hand whose force is sampled and held. Otherwise the
+/// hand is a mass, fixed to the handle, on a spring and a damper towards a target with position and velocity of the
+/// sample.
+struct AttachedHand {
+  double mass = 0.0;       ///< [kg]
+  double stiffness = 0.0;  ///< [N/m]
+  double damping = 0.0;    ///< [N s/m]
 };
 
-/// A handle with friction under forces that are held, each axis on its own, without any error of time steps:
+/// A body on a spring and a damper under a constant force, per unit of its mass and relative to its initial position:
+///
+///   x'' = g - damping x' - stiffness x,   x(0) = 0,   x'(0) = v
+struct MotionLaw {
+  double damping = 0.0;    ///< [1/s], >= 0
+  double stiffness = 0.0;  ///< [1/s^2], >= 0
+};
+
+/// The exact solution of a MotionLaw after `time`:
+///
+///   x = v S + g P,   x' = v V + g S,   integral of x'^2 = v^2 W + v g S^2 + g^2 Z
+struct FreeMotion {
+  double time = 0.0;  ///< [s]
+  double S = 0.0, P = 0.0, V = 1.0;
+  double W = 0.0, Z = 0.0;
+};
+
+/// Solves the law for a time [s] by the power series of a fraction of it, which is then doubled. The relative error is
+/// a few roundings for any damping, stiffness and time, in oscillation as well as in creep. Takes about 0.1 us.
+FreeMotion free_motion(const MotionLaw& law, double time) noexcept;
+
+/// The first time after the start at which the velocity is zero [s], by the closed form; infinity if there is none.
+double time_of_rest(const MotionLaw& law, double v, double g) noexcept;
+
+/// A handle with friction under held forces, in each axis separately and without discretisation error:
 ///
 ///   m x'' = f - b x' - c sign(x') + f_hand
 ///
-/// f_hand is held, too, or that of a hand fixed to the handle. Coulomb friction is exact: the instant at which the
-/// handle stops is found from the closed form, there it sticks while the other forces sum up to no more than c, and
-/// otherwise leaves in their direction. It stops once between two changes of a force, and a hand with a spring lets it
-/// stop another time with each half of its swing, so that no step has more than 2 + w T / pi stops, w the frequency of
-/// the swing.
+/// with m = handle_mass, b = viscous, c = coulomb of the device. f_hand is held, too, or the force of a hand fixed to
+/// the handle. Coulomb friction is exact: the closed form gives the instant at which the handle stops. There it sticks
+/// while the other forces sum up to at most c, and otherwise leaves in their direction. It stops once between two
+/// changes of a force, and once more in each half period if a hand with a spring oscillates, so a step has at most 2 +
+/// w T / pi stops, w the angular frequency.
 class HandleMotion {
  public:
-  HandleMotion(const HandleMotionConfig& config, const AttachedHand& hand);
+  HandleMotion(const ImpedanceDeviceConfig& device, const AttachedHand& hand);
 
-  /// Law of the motion between stops; free_motion of it is what `advance` wants.
+  /// Law of the motion between stops; `advance` takes the free_motion of it.
   const MotionLaw& law() const noexcept { return law_; }
 
   void reset(const HandleState& handle) noexcept;
-  /// Takes the hand's force at a sample [N], which holds until the next call.
+  /// Takes the force of the hand at a sample [N], which holds until the next call.
   void take_hand(const Vec3& force) noexcept;
-  /// Moves on by `stretch.time` under a constant force of the motors [N]. Allocates nothing.
+  /// Advances by `stretch.time` under a constant force of the motors [N]. Allocates nothing.
   void advance(const Vec3& motors, const FreeMotion& stretch) noexcept;
 
   const HandleState& handle() const noexcept { return handle_; }
-  /// Of the handle without the mass of a hand that is fixed to it, whose inertia is part of the hand's work.
+  /// Energy of the handle without the mass of a fixed hand, whose inertia is part of the hand's work.
   DeviceEnergy energy() const noexcept;
 
  private:
@@ -44,14 +74,14 @@ class HandleMotion {
   double hand_at_rest(Eigen::Index axis) const noexcept;
   void move(Eigen::Index axis, double motors, double friction, const FreeMotion& by) noexcept;
 
-  HandleMotionConfig config_;
+  double handle_mass_, viscous_, coulomb_;
   AttachedHand hand_;
-  double mass_;  ///< of handle and hand [kg]
+  double mass_;  ///< handle and hand [kg]
   MotionLaw law_;
   HandleState handle_;
-  Vec3 origin_ = Vec3::Zero();  ///< place of the handle at the sample [m]
-  Vec3 push_ = Vec3::Zero();    ///< of the hand on a handle at rest there [N]
-  DeviceEnergy work_;           ///< its `stored` is not kept up
+  Vec3 origin_ = Vec3::Zero();  ///< position of the handle at the sample [m]
+  Vec3 push_ = Vec3::Zero();    ///< force of the hand on a handle at rest there [N]
+  DeviceEnergy work_;           ///< `stored` is not used
   double stored_at_reset_ = 0.0;
 };
 

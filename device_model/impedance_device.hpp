@@ -1,9 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <vector>
 
-#include "device_model/attached_hand.hpp"
-#include "device_model/force_path.hpp"
 #include "device_model/handle_motion.hpp"
 #include "device_model/velocity_filter.hpp"
 #include "sim/loop/device.hpp"
@@ -13,14 +13,50 @@ namespace hapbench {
 /// An impedance display: a light handle with motors, which measures positions and renders forces.
 struct ImpedanceDeviceConfig {
   double handle_mass = 0.05;   ///< m, of everything that moves, as felt at the handle [kg]
-  double viscous = 0.0;        ///< friction b, each axis [N s/m]
-  double coulomb = 0.0;        ///< friction c, each axis [N]
+  double viscous = 0.0;        ///< friction b of each axis [N s/m]
+  double coulomb = 0.0;        ///< friction c of each axis [N]
   double encoder_step = 0.0;   ///< q [m]; 0: exact
-  double delay_samples = 0.0;  ///< d, from the sample to the force [periods], whole or not
-  VelocityFilterConfig velocity_filter;
-  std::optional<double> force_max;   ///< norm at which the motors saturate [N]
-  double force_step = 0.0;           ///< resolution of each component [N]; 0: exact
-  std::optional<double> force_slew;  ///< fastest change of the force, by its norm [N/s]
+  double delay_samples = 0.0;  ///< d, from the sample to the force [periods], whole or fractional
+  VelocityFilterConfig velocity_filter = {};
+  std::optional<double> force_max = {};   ///< norm at which the motors saturate [N]
+  double force_step = 0.0;                ///< resolution of each component [N]; 0: exact
+  std::optional<double> force_slew = {};  ///< fastest change of the force, by its norm [N/s]
+};
+
+/// Every component as the nearest multiple of `step`, halves away from zero; `v` itself for the step 0.
+Vec3 rounded_to(const Vec3& v, double step) noexcept;
+
+/// Force of the motors over one period: `before` for ForcePath::switch_part of it, `after` for the rest.
+struct HeldForce {
+  Vec3 before = Vec3::Zero();  ///< [N]
+  Vec3 after = Vec3::Zero();   ///< [N]
+};
+
+/// The way from a rendered force to the motors: resolution, saturation and slew limit, in this order, then a delay line
+/// and a zero-order hold. Allocates in the constructor only.
+class ForcePath {
+ public:
+  /// dt: period T [s].
+  ForcePath(const ImpedanceDeviceConfig& config, double dt);
+
+  /// Sets the force to zero everywhere on the way.
+  void reset() noexcept;
+  /// Takes the force rendered at the beginning of a period [N] and returns the force of the motors during it.
+  HeldForce hold(const Vec3& rendered) noexcept;
+  /// Fraction of a period after which the motors change their force, in [0, 1): the fraction of the delay.
+  double switch_part() const noexcept { return switch_part_; }
+
+ private:
+  Vec3 command(const Vec3& rendered) const noexcept;
+
+  double step_;                  ///< [N]
+  std::optional<double> max_;    ///< [N]
+  std::optional<double> slew_;   ///< [N/s]
+  double largest_change_ = 0.0;  ///< per period if the slew is limited [N]
+  double switch_part_;
+  Vec3 last_ = Vec3::Zero();    ///< command of the last period
+  std::vector<Vec3> commands_;  ///< ring of the commands that are on their way
+  std::size_t next_ = 0;
 };
 
 /// The loop of an impedance display (Colgate and Brown, "Factors affecting the Z-width of a haptic display", ICRA 1994;
@@ -29,20 +65,20 @@ struct ImpedanceDeviceConfig {
 ///   handle -> encoder -> x_k -> filter -> v_k -> f_render(x_k, v_k) -> resolution, saturation, slew -> delay d T
 ///     -> hold -> motors -> handle <- hand
 ///
-/// There is no virtual mass: the tool is where the encoder says the handle is. x_k is the nearest multiple of q, halves
-/// away from zero, in each axis; v_0 = 0. Motors give nothing before the first force arrives, at t = d T; a fraction of
-/// d changes the force within the period. Between samples the handle moves exactly (handle_motion.hpp).
+/// There is no virtual mass: the tool is at the measured position of the handle. x_k is the nearest multiple of q,
+/// halves away from zero, in each axis; v_0 = 0. The motors give no force before the first one arrives, at t = d T; a
+/// fraction of d changes the force within the period. Between samples the handle moves exactly (HandleMotion).
 ///
-/// In the energy balance `actuator` is the work of the motors on the handle; f_in is zero, since it drives nothing.
+/// In the energy balance `actuator` is the work of the motors on the handle. f_in is zero because it drives nothing.
 /// Allocates in the constructor only; a step without Coulomb friction takes about 50 ns.
 class ImpedanceDevice final : public Device {
  public:
-  /// dt: the period T [s]; hand: all zero for one whose force is held from sample to sample.
+  /// dt: period T [s]. hand: zeros for a hand whose force is held from sample to sample.
   ImpedanceDevice(const ImpedanceDeviceConfig& config, double dt, const AttachedHand& hand = {});
 
   void reset(const ToolState& tool) noexcept override;
   MeasuredForce measure(const Vec3& hand_force) noexcept override { return {hand_force, Vec3::Zero()}; }
-  /// Does nothing: it is the handle that moves the tool.
+  /// Does nothing, because the handle moves the tool.
   void advance(const ToolState&, const Vec3&, double) noexcept override {}
   HandleState handle() const noexcept override { return motion_.handle(); }
   std::optional<DeviceEnergy> energy() const noexcept override { return motion_.energy(); }

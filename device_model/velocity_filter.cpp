@@ -32,7 +32,7 @@ Vec3 VelocityFilter::read(const Vec3& position) noexcept {
 
 double VelocityFilter::end_fit(Eigen::Index axis, double noise) const noexcept {
   const double now = sample(0)[axis];
-  double rise = 0.0;  // of the line, each sample
+  double rise = 0.0;  // of the line per sample
   for (std::size_t n = 1; n < known_; ++n) {
     const double longer = (now - sample(n)[axis]) / static_cast<double>(n);
     for (std::size_t i = 1; i < n; ++i) {

@@ -11,29 +11,29 @@ namespace hapbench {
 /// v_k = (x_k - x_(k-1)) / T.
 struct DifferenceFilter {};
 
-/// The difference through a first-order low-pass, v_k = v_(k-1) + (1 - e^(-2 pi f T)) (d_k - v_(k-1)): what the
-/// continuous low-pass makes of d_k held over the period.
+/// The difference d_k through a first-order low-pass, v_k = v_(k-1) + (1 - e^(-2 pi f T)) (d_k - v_(k-1)), which is the
+/// continuous low-pass of d_k held over the period.
 struct LowPassFilter {
-  double cutoff = 100.0;  ///< f [Hz], where the continuous low-pass has half the power
+  double cutoff = 100.0;  ///< f [Hz], the half-power frequency of the continuous low-pass
 };
 
 /// First-order adaptive windowing, the end-fit of F. Janabi-Sharifi, V. Hayward and C.-S. J. Chen, "Discrete-time
 /// adaptive windowing for velocity estimation", IEEE Transactions on Control Systems Technology 8(6), 2000: the slope
-/// (x_k - x_(k-n)) / (n T), each axis on its own. The window n grows from 1 as long as every sample within it lies no
-/// further than the noise from the straight line through its ends, and ends at the first that does not.
+/// (x_k - x_(k-n)) / (n T), each axis on its own. The window n is the longest for which every sample within it, and
+/// within all shorter windows, is no further than the noise from the straight line through its ends.
 struct AdaptiveWindowFilter {
   double noise = 1e-5;  ///< largest error of a sample [m]; half the encoder's step for a rounded position
-  /// The longest window [samples] (ours). It takes an encoder's step down to a fifteenth of what the difference makes
-  /// of it, and lags by half its length, 7.5 ms at 1 kHz; a longer one would lag more than it calms.
+  /// The longest window [samples] (ours). It reduces the effect of an encoder's step to a fifteenth of that on the
+  /// difference and lags by half its length, 7.5 ms at 1 kHz.
   static constexpr std::size_t kLongest = 15;
 };
 
 using VelocityFilterConfig = std::variant<DifferenceFilter, LowPassFilter, AdaptiveWindowFilter>;
 
-/// The velocity that a controller makes of sampled positions. Allocates nothing.
+/// Estimates a controller's velocity from sampled positions. Allocates nothing.
 class VelocityFilter {
  public:
-  /// dt: time from sample to sample, T [s].
+  /// dt: sampling period T [s].
   VelocityFilter(const VelocityFilterConfig& config, double dt);
 
   /// Starts with the sample `position` [m] and the velocity zero.
@@ -43,17 +43,17 @@ class VelocityFilter {
 
  private:
   double end_fit(Eigen::Index axis, double noise) const noexcept;
-  /// The sample of so many periods ago.
+  /// The sample `ago` periods before the last one.
   const Vec3& sample(std::size_t ago) const noexcept {
     return samples_[(next_ + samples_.size() - 1 - ago) % samples_.size()];
   }
 
   VelocityFilterConfig config_;
   double dt_;
-  double taken_ = 1.0;                                              ///< of a new difference, by the low-pass
+  double taken_ = 1.0;                                              ///< weight of a new difference in the low-pass
   std::array<Vec3, AdaptiveWindowFilter::kLongest + 1> samples_{};  ///< ring
-  std::size_t next_ = 0;                                            ///< where the next sample goes
-  std::size_t known_ = 0;  ///< samples since the reset, as far as the ring reaches
+  std::size_t next_ = 0;                                            ///< index of the next sample
+  std::size_t known_ = 0;  ///< samples since the reset, at most the size of the ring
   Vec3 velocity_ = Vec3::Zero();
 };
 

@@ -1,19 +1,22 @@
 #include <btBulletCollisionCommon.h>
 
-#include "algorithms/peers/peer.hpp"
+#include <memory>
+#include <vector>
 
-/// Bullet, in double precision: a quantised tree of boxes over static triangles against its cylinder. In millimetres,
-/// because its margins and thresholds are made for lengths about 1. Each triangle that the cylinder meets is a contact;
-/// depth and direction are those that its GJK and EPA find for the pair.
+#include "algorithms/peers/contact_library.hpp"
+
+/// Bullet in double precision: its cylinder against a quantised tree of boxes over static triangles, in millimetres
+/// because its margins and thresholds are made for lengths of about 1. Each triangle that the cylinder meets is a
+/// contact. Depth and direction are those that its GJK and EPA find for the pair.
 namespace hapbench {
 namespace {
 
 constexpr double kMillimetres = 1e3;
 
-/// Takes the contacts of one pair.
+/// Collects the contacts of one pair.
 class Taker final : public btCollisionWorld::ContactResultCallback {
  public:
-  Taker(std::span<PeerContact> room, const btCollisionObject& tool) : room_(room), tool_(&tool) {}
+  Taker(std::span<HapbenchContact> room, const btCollisionObject& tool) : room_(room), tool_(&tool) {}
 
   btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int index_a,
                            const btCollisionObjectWrapper*, int, int index_b) override {
@@ -22,25 +25,25 @@ class Taker final : public btCollisionWorld::ContactResultCallback {
     const bool tool_is_first = a->getCollisionObject() == tool_;
     const btVector3 u = tool_is_first ? -point.m_normalWorldOnB : point.m_normalWorldOnB;
     const btVector3 at = (tool_is_first ? point.m_positionWorldOnB : point.m_positionWorldOnA) / kMillimetres;
-    room_[found++] = {static_cast<std::uint32_t>(tool_is_first ? index_b : index_a),
-                      {at.x(), at.y(), at.z()},
-                      {u.x(), u.y(), u.z()},
-                      -point.getDistance() / kMillimetres};
+    room_[found++] = {.index = static_cast<std::uint32_t>(tool_is_first ? index_b : index_a),
+                      .point = {at.x(), at.y(), at.z()},
+                      .gradient = {u.x(), u.y(), u.z()},
+                      .depth = -point.getDistance() / kMillimetres};
     return 0.0;
   }
 
   std::size_t found = 0;
 
  private:
-  std::span<PeerContact> room_;
+  std::span<HapbenchContact> room_;
   const btCollisionObject* tool_;
 };
 
-class Bullet final : public Peer {
+class Bullet {
  public:
-  Bullet(const PeerSurface& surface, const PeerDrill& drill)
-      : vertices_(surface.vertices),
-        triangles_(surface.triangles.begin(), surface.triangles.end()),
+  Bullet(const HapbenchSurface& surface, const HapbenchCylinder& drill)
+      : vertices_(surface.vertices, surface.vertices + 3 * surface.vertex_count),
+        triangles_(surface.triangles, surface.triangles + 3 * surface.triangle_count),
         drill_(btVector3(drill.radius, drill.radius, drill.length / 2.0) * kMillimetres) {
     for (double& x : vertices_) x *= kMillimetres;
     indices_ = std::make_unique<btTriangleIndexVertexArray>(
@@ -53,7 +56,7 @@ class Bullet final : public Peer {
     tool_.setCollisionShape(&drill_);
   }
 
-  std::size_t contacts_at(const PeerPose& pose, std::span<PeerContact> room) override {
+  std::size_t contacts_at(const HapbenchPose& pose, std::span<HapbenchContact> room) {
     const auto& r = pose.rotation;
     const btMatrix3x3 rotation(r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]);
     const btVector3 centre(pose.centre[0], pose.centre[1], pose.centre[2]);
@@ -79,7 +82,7 @@ class Bullet final : public Peer {
 }  // namespace
 }  // namespace hapbench
 
-extern "C" std::unique_ptr<hapbench::Peer> hapbench_make_peer(const hapbench::PeerSurface& surface,
-                                                              const hapbench::PeerDrill& drill) {
-  return std::make_unique<hapbench::Bullet>(surface, drill);
+const HapbenchContactSource* hapbench_contacts(uint32_t version) {
+  static const HapbenchContactSource library = hapbench::contact_library<hapbench::Bullet>("bullet");
+  return version == library.version ? &library : nullptr;
 }

@@ -1,46 +1,72 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "algorithms/peers/peer.hpp"
+#include "algorithms/peers/hapbench_contacts.h"
 #include "sim/contact/contact_source.hpp"
 
 namespace hapbench {
 
-/// The contacts of another collision library for our laws: which there are, where, how deep and in which direction is
-/// as it says, one for each triangle that the drill meets. No depth model has a part in them.
+/// An environment as triangles, as HapbenchSurface.
+struct PeerSurface {
+  std::vector<double> vertices;
+  std::vector<std::uint32_t> triangles;
+};
+
+/// The pose of a drill of this length [m] for a contact source behind the C interface.
+HapbenchPose peer_pose(const ToolPose& pose, double length) noexcept;
+
+/// A contact source behind the C interface, as the owner of its state.
+class Peer {
+ public:
+  /// `library` must outlive the peer. Throws std::runtime_error with the library's fault.
+  Peer(const HapbenchContactSource& library, const PeerSurface& surface, const HapbenchCylinder& tool);
+  ~Peer() { library_->destroy(source_); }
+  Peer(const Peer&) = delete;
+  Peer& operator=(const Peer&) = delete;
+
+  /// Fills `room` with the contacts at the pose and returns their number. After a fault, returns 0 until clear_fault.
+  std::size_t contacts_at(const HapbenchPose& pose, std::span<HapbenchContact> room) noexcept;
+  /// The fault of a query, in one line; null for none.
+  const char* fault() const noexcept { return fault_[0] == '\0' ? nullptr : fault_.data(); }
+  void clear_fault() noexcept { fault_[0] = '\0'; }
+
+ private:
+  void set_fault(const char* text) noexcept;
+
+  const HapbenchContactSource* library_;
+  void* source_ = nullptr;
+  std::array<char, 256> fault_{};
+};
+
+/// The contacts of another collision library for our laws, one for each triangle that the tool meets. The library
+/// decides which contacts there are, where, how deep and in which direction; no depth model takes part.
 ///
-/// What they mean. Our contact is a point of the shell in the tool, with the way along its gradient out of the tool. A
-/// peer's is a triangle that the tool's surface or inside meets, with the shortest translation that parts the pair: of
-/// a thin triangle deep in the tool, that may be to either side. `index` is the triangle; the normal is the gradient
-/// turned round. Contacts without a direction, or with a depth below zero, are left out.
+/// Our contact is a point of the shell in the tool, with the way along its gradient out of the tool. A peer's is a
+/// triangle that the surface or the inside of the tool meets, with the shortest translation that separates the two,
+/// which may point to either side of a thin triangle deep in the tool. `index` is the triangle; the normal is the
+/// reversed gradient. Contacts without a direction or with a negative depth are left out.
 ///
-/// Unlike other sources it allocates in a step, as the library does.
+/// Unlike other sources, it allocates in a step if the library does.
 class PeerSource final : public ContactSource {
  public:
-  /// `most_contacts` is that of triangles; `length` is the drill's [m].
-  PeerSource(std::unique_ptr<Peer> peer, std::string name, double length, std::size_t most_contacts);
+  /// Throws std::runtime_error if the library cannot make its source.
+  PeerSource(const HapbenchContactSource& library, const PeerSurface& surface, const HapbenchCylinder& tool);
 
-  /// Once the library has thrown, nothing until the next reset.
+  /// After a fault of the library: no contacts until the next reset.
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return room_.size(); }
   void reset() noexcept override;
   const SearchWork& work() const noexcept override { return work_; }
 
  private:
-  std::size_t ask(const ToolPose& pose) noexcept;
-
-  std::unique_ptr<Peer> peer_;
-  std::string name_;
+  Peer peer_;
   double length_;
-  std::vector<PeerContact> room_;
+  std::vector<HapbenchContact> room_;
   SearchWork work_;
-  std::string fault_text_;
 };
-
-/// The drill's pose as peers take it; its length [m].
-PeerPose peer_pose(const ToolPose& pose, double length) noexcept;
 
 }  // namespace hapbench

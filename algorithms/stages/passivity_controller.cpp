@@ -48,6 +48,8 @@ PassivityController::PassivityController(std::unique_ptr<ForceAlgorithm> algorit
 void PassivityController::prepare(const Scene& scene) {
   algorithm_->prepare(scene);
   dt_ = scene.dt;
+  row_ = scene.row;
+  input_ = scene.input;
   observed_ = ObservedEnergy(dt_);
 }
 
@@ -57,23 +59,18 @@ void PassivityController::reset() noexcept {
   steps_controlled_ = 0;
   largest_change_ = 0.0;
   last_turn_.reset();
-  at_row_ = false;
-}
-
-void PassivityController::take_input(const Vec3& input) noexcept {
-  if (algorithm_->wants_input()) algorithm_->take_input(input);
-  input_ = input;
-  at_row_ = true;
+  last_row_.reset();
 }
 
 void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   algorithm_->compute(tool, contacts, out);
-  if (!std::exchange(at_row_, false)) {
+  if (row_ == nullptr || last_row_ == *row_) {
     // A state within the step is not observed and keeps the row's share and damping.
     if (has_springs(contacts, out)) render(tool, out);
     return;
   }
 
+  last_row_ = *row_;
   observed_.move(tool);
   note_turn();
   share_ = spring_share_ = 1.0;
@@ -105,7 +102,7 @@ void PassivityController::control(const ToolState& tool, const Vec3& force) noex
   const double energy = observed_.energy();
   const double weakened = 0.5 * drawn > energy && drawn > 0.0 ? std::max(0.0, 2.0 * energy / drawn) : 1.0;
 
-  const Vec3 w = tool.velocity + input_ * (0.5 * dt_ / mass_);
+  const Vec3 w = tool.velocity + half_kick();
   const Vec3 u = w + force * (weakened * dt_ / mass_);
   const double unforeseen = springs_.moment.norm() * largest_change_;
   const double taken =
@@ -135,7 +132,7 @@ void PassivityController::render(const ToolState& tool, RenderedForce& out) cons
   if (share_ == 1.0) return;
   out.spring *= share_;
   out.S *= share_;
-  out.rendered = limited(share_ * out.rendered - alpha_ * (tool.velocity + input_ * (0.5 * dt_ / mass_)));
+  out.rendered = limited(share_ * out.rendered - alpha_ * (tool.velocity + half_kick()));
 }
 
 SpringState PassivityController::spring_state(const ToolState&, const ContactBuffer&) const noexcept {

@@ -39,12 +39,10 @@ class PassivityController final : public ForceAlgorithm {
 
   void prepare(const Scene& scene) override;
   void reset() noexcept override;
-  void take_input(const Vec3& input) noexcept override;
   /// Weakens f_spring and S with the springs.
   void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept override;
   SpringState spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept override;
   ForceJacobian jacobian() const noexcept override;
-  bool wants_input() const noexcept override { return true; }
   std::optional<double> angular_velocity_cutoff() const noexcept override {
     return algorithm_->angular_velocity_cutoff();
   }
@@ -56,18 +54,21 @@ class PassivityController final : public ForceAlgorithm {
   void control(const ToolState& tool, const Vec3& force) noexcept;
   Vec3 limited(const Vec3& force) const noexcept;
   void render(const ToolState& tool, RenderedForce& out) const noexcept;
+  /// Velocity change over half a step by f_in [m/s].
+  Vec3 half_kick() const noexcept { return *input_ * (0.5 * dt_ / mass_); }
 
   std::unique_ptr<ForceAlgorithm> algorithm_;
   double mass_;
   std::optional<double> max_force_;
   double dt_ = 0.0;
   ObservedEnergy observed_{0.0};
-  bool at_row_ = false;  ///< the next `compute` is at a row and not within a step
-  Vec3 input_ = Vec3::Zero();
-  SpringState springs_;        ///< springs as rendered
-  double share_ = 1.0;         ///< rendered share of the algorithm's force
-  double spring_share_ = 1.0;  ///< share of energy and moment: share_, or less if the limit cuts the force
-  double alpha_ = 0.0;         ///< damping [N s/m]
+  const std::uint64_t* row_ = nullptr;     ///< Scene::row
+  const Vec3* input_ = nullptr;            ///< Scene::input, f_in [N]
+  std::optional<std::uint64_t> last_row_;  ///< row of the last `compute`
+  SpringState springs_;                    ///< springs as rendered
+  double share_ = 1.0;                     ///< rendered share of the algorithm's force
+  double spring_share_ = 1.0;              ///< share of energy and moment: share_, or less if the limit cuts the force
+  double alpha_ = 0.0;                     ///< damping [N s/m]
   std::optional<Vec3> last_turn_;
   double largest_change_ = 0.0;  ///< largest change of the turn between two steps so far [rad]
   std::uint64_t steps_controlled_ = 0;

@@ -1,17 +1,138 @@
 #include "device_model/hands/drag_hand.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace hapbench {
+namespace {
+
+/// Sine of the angle between direction and normal below which a path ends. Its square is the share of a step by which a
+/// path must advance along the direction; beyond the edge of a surface the nearest place is that edge.
+constexpr double kLeastProgress = 0.1;
+
+/// Interpolates between unit vectors.
+Vec3 between(const Vec3& a, const Vec3& b, double fraction) {
+  const Vec3 sum = a + fraction * (b - a);
+  const double norm = sum.norm();
+  return norm > 0.0 ? Vec3(sum / norm) : a;
+}
+
+SurfacePoint between(const SurfacePoint& a, const SurfacePoint& b, double fraction) {
+  return {a.position + fraction * (b.position - a.position), between(a.normal, b.normal, fraction)};
+}
+
+}  // namespace
+
+SurfacePath::SurfacePath(const SmoothedSurface& surface, std::span<const SurfacePoint> places)
+    : radius_(surface.radius()), spacing_(spacing(radius_)), entries_{places.front()} {
+  double total = 0.0;
+  for (std::size_t i = 1; i < places.size(); ++i) total += (places[i].position - places[i - 1].position).norm();
+  const auto pieces = static_cast<std::size_t>(std::ceil(total / spacing_));
+  if (pieces > 0) spacing_ = total / static_cast<double>(pieces);
+  double left = spacing_;  // distance to the next entry
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    const double leg = (places[i].position - places[i - 1].position).norm();
+    double done = 0.0;
+    for (; leg - done >= left && entries_.size() < pieces; left = spacing_) {
+      done += left;
+      entries_.push_back(between(places[i - 1], places[i], done / leg));
+    }
+    left -= leg - done;
+  }
+  entries_.resize(pieces + 1, places.back());
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const auto& [place, normal] = entries_[i];
+    const Vec3 leftwards = normal.cross(direction(static_cast<double>(i) * spacing_));
+    Normals& row = normals_.emplace_back();
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const double aside = (static_cast<double>(k) - static_cast<double>(kSide)) * radius_;
+      row[k] = k == kSide ? normal : surface.nearest(place + aside * leftwards).normal;
+    }
+  }
+}
+
+SurfacePath SurfacePath::over(const SmoothedSurface& surface, std::span<const Vec3> points) {
+  const double step = spacing(surface.radius());
+  std::vector<SurfacePoint> places = {surface.nearest(points.front())};
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const Vec3 leg = points[i] - points[i - 1];
+    const double pieces = std::max(1.0, std::ceil(leg.norm() / step));
+    for (double k = 1.0; k <= pieces; ++k) places.push_back(surface.nearest(points[i - 1] + (k / pieces) * leg));
+  }
+  return {surface, places};
+}
+
+namespace {
+
+/// Places on the surface from `first` along the unit vector `forward`, `step` apart.
+std::vector<SurfacePoint> walk(const SmoothedSurface& surface, const SurfacePoint& first, const Vec3& forward,
+                               double length, double step) {
+  std::vector<SurfacePoint> places = {first};
+  for (double done = 0.0; done < length; done += step) {
+    const SurfacePoint& here = places.back();
+    const Vec3 within = forward - here.normal.dot(forward) * here.normal;
+    if (within.norm() < kLeastProgress) break;
+    const SurfacePoint next = surface.nearest(here.position + step * within.normalized());
+    if (forward.dot(next.position - here.position) < kLeastProgress * kLeastProgress * step) break;
+    places.push_back(next);
+  }
+  return places;
+}
+
+}  // namespace
+
+SurfacePath SurfacePath::along(const SmoothedSurface& surface, const Vec3& start, const Vec3& direction,
+                               double length) {
+  const Vec3 forward = direction.normalized();
+  const double step = spacing(surface.radius());
+  const SurfacePoint first = surface.nearest(start);
+  std::vector<SurfacePoint> places = walk(surface, first, forward, length, step);
+  // If it was found from far above a rough surface, the first place may lie off it, and the first step leads back.
+  if (places.size() == 1) places = walk(surface, surface.nearest(first.position), forward, length, step);
+  return {surface, places};
+}
+
+SurfacePath::Position SurfacePath::position(double s) const noexcept {
+  const double entry = std::clamp(s, 0.0, length()) / spacing_;
+  const auto before = std::min(static_cast<std::size_t>(entry), entries_.size() - 1);
+  return {before, std::min(before + 1, entries_.size() - 1), entry - static_cast<double>(before)};
+}
+
+SurfacePoint SurfacePath::at(double s) const noexcept {
+  const auto [before, after, fraction] = position(s);
+  return between(entries_[before], entries_[after], fraction);
+}
+
+Vec3 SurfacePath::normal_near(const Vec3& x, double s) const noexcept {
+  const auto [before, after, fraction] = position(s);
+  const auto& [place, normal] = between(entries_[before], entries_[after], fraction);
+  const double aside = normal.cross(direction(s)).dot(x - place) / radius_;
+  const double column = std::clamp(aside + static_cast<double>(kSide), 0.0, 2.0 * static_cast<double>(kSide));
+  const auto right = std::min(static_cast<std::size_t>(column), 2 * kSide - 1);
+  const auto across = [&](const Normals& row) {
+    return between(row[right], row[right + 1], column - static_cast<double>(right));
+  };
+  return between(across(normals_[before]), across(normals_[after]), fraction);
+}
+
+Vec3 SurfacePath::direction(double s) const noexcept {
+  const double here = std::clamp(s, 0.0, length());
+  const Vec3 normal = at(here).normal;
+  const Vec3 way = at(here + radius_).position - at(here - radius_).position;
+  const Vec3 within = way - normal.dot(way) * normal;
+  const double norm = within.norm();
+  return norm > 0.0 ? Vec3(within / norm) : normal.unitOrthogonal();
+}
 
 DragHand::DragHand(Drag drag, std::shared_ptr<const SurfacePath> path)
     : drag_(std::move(drag)), path_(std::move(path)) {}
 
 Vec3 DragHand::force(double t, const HandView& view) noexcept {
   const auto& [x, v] = view.handle;
-  // Half of the way to the foot of the perpendicular on the path: in a few steps it is there, and it stays there on
-  // paths that bend, where the whole way would overshoot.
+  // Moves half of the way to the foot of the perpendicular on the path. It arrives in a few steps and stays there on
+  // bent paths, on which the whole way would overshoot.
   nearest_ += 0.5 * path_->direction(nearest_).dot(x - path_->at(nearest_).position);
   nearest_ = std::clamp(nearest_, 0.0, path_->length());
   const Vec3 n = path_->normal_near(x, nearest_);

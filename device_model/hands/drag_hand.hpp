@@ -1,21 +1,68 @@
 #pragma once
 
+#include <array>
 #include <memory>
+#include <span>
+#include <vector>
 
-#include "device_model/hands/surface_path.hpp"
+#include "sim/contact/smoothed_surface.hpp"
 #include "sim/core/profile.hpp"
 #include "sim/loop/hand.hpp"
 #include "sim/tool/motion.hpp"
 
 namespace hapbench {
 
-/// How a hand drags the tool.
+/// A path over a surface, with the surface's normals on it and up to two smoothing radii to either side, as tables over
+/// the arc length. Computed before a run from the shell alone, so it does not depend on how a force is rendered.
+class SurfacePath {
+ public:
+  /// Over the surface below (or above) the straight legs between `points`, of which there are at least two [m].
+  static SurfacePath over(const SmoothedSurface& surface, std::span<const Vec3> points);
+  /// From the place nearest to `start` for `length` [m], always along the component of `direction` within the surface.
+  /// Ends earlier where the surface ends or turns against the direction, to within about 6 degrees.
+  static SurfacePath along(const SmoothedSurface& surface, const Vec3& start, const Vec3& direction, double length);
+
+  /// Largest distance between entries [m]: a tenth of the radius over which the surface is smoothed.
+  static double spacing(double radius) { return 0.1 * radius; }
+
+  double spacing() const noexcept { return spacing_; }  ///< distance between entries [m]
+  double length() const noexcept { return spacing_ * static_cast<double>(entries_.size() - 1); }
+  /// Position and normal at arc length s [m]; constant beyond the ends.
+  SurfacePoint at(double s) const noexcept;
+  /// Unit vector along the path at s, within the surface. It points from one smoothing radius before s to one after, so
+  /// it turns steadily around corners. Any direction within the surface if the path has none.
+  Vec3 direction(double s) const noexcept;
+  /// The outward normal of the surface near x, if s is the place of the path nearest to x. Takes into account that the
+  /// surface may bend to the sides of the path; constant beyond two smoothing radii.
+  Vec3 normal_near(const Vec3& x, double s) const noexcept;
+
+ private:
+  /// Makes entries at equal distances on the path through `places`, in their order.
+  SurfacePath(const SmoothedSurface& surface, std::span<const SurfacePoint> places);
+
+  static constexpr std::size_t kSide = 2;  ///< columns either side of the path, a smoothing radius apart
+  using Normals = std::array<Vec3, 2 * kSide + 1>;
+
+  /// The place of s between two entries.
+  struct Position {
+    std::size_t before, after;
+    double fraction;
+  };
+  Position position(double s) const noexcept;
+
+  double radius_;
+  double spacing_;
+  std::vector<SurfacePoint> entries_;  ///< at least one
+  std::vector<Normals> normals_;       ///< for each entry, from right to left
+};
+
+/// Parameters of a DragHand.
 struct Drag {
   Profile force{1.0};            ///< along the inward normal, over time [N]
   double speed = 0.01;           ///< along the path [m/s]
-  double stiffness = 300.0;      ///< tangential, towards the point that moves along the path [N/m]
-  double damping = 6.0;          ///< tangential, beside it [N s/m]
-  double normal_damping = 50.0;  ///< along the normal [N s/m]; lowers the tool at force / normal_damping
+  double stiffness = 300.0;      ///< tangential, towards the point q that moves along the path [N/m]
+  double damping = 6.0;          ///< tangential [N s/m]
+  double normal_damping = 50.0;  ///< along the normal [N s/m]; the tool is lowered at force / normal_damping
 };
 
 /// A hand that drags the tool over a surface with a given force along the surface's normal. With q the point that moves
@@ -24,12 +71,12 @@ struct Drag {
 ///
 ///   f = -F n + (I - n n^T) (k (q - x) + b (dq/dt - v)) - b_n <v, n> n.
 ///
-/// Along the normal there is nothing but the force and a damping, so the tool presses with F whatever the stiffness of
-/// what it rests on; before the first contact the same rule lowers it. Normals of the path alone would not do: pressed
-/// with F along a fixed direction, a tool slides off a ridge of radius r sideways once F / r > k. The hand knows the
-/// path and the normals about it, made from the shell before the run, and where the handle is: nothing of the rendered
-/// force, so it is the same hand for every algorithm. A step costs a dozen look-ups in the path's table and allocates
-/// nothing.
+/// Along the normal there are only the force and a damping, so the tool presses with F independent of the stiffness of
+/// the surface. Before the first contact the same rule lowers it. Normals on the path alone would not suffice: pressed
+/// with F along a fixed direction, a tool slides sideways off a ridge of radius r if F / r > k. The hand knows the
+/// path, the normals about it, which are computed from the shell before the run, and the handle. It does not know the
+/// rendered force, so it is the same hand for every algorithm. A step takes a dozen look-ups in the table of the path
+/// and allocates nothing.
 class DragHand final : public Hand {
  public:
   DragHand(Drag drag, std::shared_ptr<const SurfacePath> path);
@@ -48,8 +95,8 @@ class DragHand final : public Hand {
   double nearest_ = 0.0;  ///< arc length at which the path is nearest to the handle [m]
 };
 
-/// The wrist of that hand: holds the tool's axis at an angle to the normal at the point that moves along the path. The
-/// position is free. Reads the path's table, allocates nothing.
+/// The wrist of a DragHand: holds the axis of the tool at an angle to the normal at the point that moves along the
+/// path. The position is free. Allocates nothing.
 class DragOrientation final : public Motion {
  public:
   /// The tool leans by `tilt` from the outward normal towards the direction of travel turned by `azimuth` about the

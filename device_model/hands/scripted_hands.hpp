@@ -9,7 +9,7 @@
 
 namespace hapbench {
 
-/// Zero force: nobody holds the handle.
+/// A hand without force: nobody holds the handle.
 class NoHand final : public Hand {
  public:
   void reset() noexcept override {}
@@ -43,7 +43,28 @@ class PushHand final : public Hand {
   Vec3 direction_;
 };
 
-/// Unit vector at `angle` from straight down, -z, towards +x turned by `azimuth` about z [rad]. Exactly -z at angle 0.
+/// A hand that holds the handle towards a scripted target like a spring and a damper:
+/// f = k (x_target - x_handle) + b (v_target - v_handle).
+class ImpedanceHand final : public Hand {
+ public:
+  /// Stiffness [N/m], damping [N s/m], and the target's x, y, z [m] over time.
+  ImpedanceHand(double stiffness, double damping, std::array<Profile, 3> target)
+      : stiffness_(stiffness), damping_(damping), target_(std::move(target)) {}
+
+  void reset() noexcept override {}
+  Vec3 force(double t, const HandView& view) noexcept override {
+    const Vec3 position{target_[0](t), target_[1](t), target_[2](t)};
+    const Vec3 velocity{target_[0].rate(t), target_[1].rate(t), target_[2].rate(t)};
+    return stiffness_ * (position - view.handle.position) + damping_ * (velocity - view.handle.velocity);
+  }
+
+ private:
+  double stiffness_;
+  double damping_;
+  std::array<Profile, 3> target_;
+};
+
+/// Unit vector at `angle` [rad] from -z, towards +x turned by `azimuth` [rad] about z. Exactly -z at angle 0.
 inline Vec3 push_direction(double angle, double azimuth) {
   return {std::sin(angle) * std::cos(azimuth), std::sin(angle) * std::sin(azimuth), -std::cos(angle)};
 }

@@ -9,7 +9,7 @@ namespace hapbench {
 namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-/// The wrist neither lays the tool flat nor turns it past upright.
+/// Range of the tilt [rad]: the wrist neither lays the tool flat nor turns it past upright.
 constexpr double kLeastTilt = 0.0;
 constexpr double kMostTilt = 1.4;
 
@@ -50,8 +50,8 @@ Vec3 TrackingHand::force(double, const HandView& view) noexcept {
          subject_.motor_noise * force_noise_;
 }
 
-/// Puts what the display shows now on its way and returns what arrives now. At the very start that is "on target,
-/// nothing pressed": the subject has not seen anything yet.
+/// Stores the present display and returns the one that the subject sees now, a reaction delay late. Before the first
+/// one arrives that is "on target, nothing pressed".
 TrackingHand::Seen TrackingHand::look(const HandView& view) noexcept {
   Seen& now = seen_[next_];
   now.error = task_.finished() ? Vec3(Vec3::Zero()) : task_.error(view.tool.position);

@@ -10,27 +10,27 @@
 
 namespace hapbench {
 
-/// Parameters of a simulated subject of the man-machine experiments. The thesis did not measure its subjects, so every
-/// value is our choice; the defaults lie within what the motor-control literature reports for a hand holding a pen.
+/// Parameters of a simulated subject of the man-machine experiments. The thesis did not measure its subjects, so all
+/// values are ours; the defaults are within the ranges that the motor-control literature reports for a hand with a pen.
 struct Subject {
   double reaction_delay = 0.2;     ///< from the display to the hand [s]
-  double bandwidth = 0.6;          ///< of following the target on the display [Hz]
-  double stiffness = 300.0;        ///< of the hand about its intended position [N/m]
-  double damping = 6.0;            ///< of the hand [N s/m]
-  double press = 1.7;              ///< force along +z the subject wants to see on the gauge [N]
-  double press_bandwidth = 0.4;    ///< of correcting it [Hz]
+  double bandwidth = 0.6;          ///< bandwidth of following the target on the display [Hz]
+  double stiffness = 300.0;        ///< stiffness of the hand about its intended position [N/m]
+  double damping = 6.0;            ///< damping of the hand [N s/m]
+  double press = 1.7;              ///< force along +z that the subject aims at on the gauge [N]
+  double press_bandwidth = 0.4;    ///< bandwidth of correcting the force [Hz]
   double motor_noise = 0.04;       ///< standard deviation of each force component [N]
-  double tilt_noise = 0.004;       ///< standard deviation of the wrist's angle, when it turns the tool [rad]
-  double noise_bandwidth = 8.0;    ///< of both noises, first order [Hz]
-  double height_per_tilt = 0.004;  ///< how much the subject expects the tip to rise with the tilt [m/rad]
-  double max_speed = 0.02;         ///< of the intended position [m/s]
-  double max_turn = 1.0;           ///< of the wrist [rad/s]
-  double max_force = 6.0;          ///< the arm yields rather than push harder in any axis [N]
+  double tilt_noise = 0.004;       ///< standard deviation of the angle of a turning wrist [rad]
+  double noise_bandwidth = 8.0;    ///< first-order bandwidth of both noises [Hz]
+  double height_per_tilt = 0.004;  ///< expected rise of the tip with the tilt [m/rad]
+  double max_speed = 0.02;         ///< fastest motion of the intended position [m/s]
+  double max_turn = 1.0;           ///< fastest turn of the wrist [rad/s]
+  double max_force = 6.0;          ///< largest force in any axis; beyond it the arm yields [N]
 };
 
-/// The subject at the display: follows one target after the other and presses the tool down. Perceives only what the
-/// thesis's subjects saw, one reaction delay late: the distance from tip to target on the panel or height meter, and
-/// the force gauge; and, without delay, the handle between the fingers. Acts through an intended (equilibrium) position
+/// The subject at the display, who follows one target after the other and presses the tool down. The subject perceives
+/// what those of the thesis saw: one reaction delay late the distance from tip to target on the panel or height meter
+/// and the force gauge; without delay the handle between the fingers. The action is an intended (equilibrium) position
 /// x_e:
 ///
 ///   f = k (x_e - x_handle) - b v_handle + motor noise
@@ -42,20 +42,20 @@ struct Subject {
 /// each limited by the subject's speed and strength. Allocates in the constructor only.
 class TrackingHand final : public Hand {
  public:
-  /// `initial_tilt` [rad]: of the wrist; it turns only with the height display. dt: sampling interval [s].
+  /// initial_tilt: tilt of the wrist [rad], which turns with the height display only. dt: sampling interval [s].
   TrackingHand(const Subject& subject, TargetTask task, double initial_tilt, double dt, std::uint64_t seed);
 
   void reset() noexcept override;
   Vec3 force(double t, const HandView& view) noexcept override;
   const TargetTask* task() const noexcept override { return &task_; }
 
-  /// Tilt at which the wrist holds the tool, noise included [rad].
+  /// Tilt of the tool, including noise [rad].
   double tilt() const noexcept { return tilt_; }
 
  private:
-  /// What the display shows at one sample.
+  /// The display at one sample.
   struct Seen {
-    Vec3 error = Vec3::Zero();  ///< from tip to target, components on display only
+    Vec3 error = Vec3::Zero();  ///< from tip to target, displayed components only
     double gauge = 0.0;
   };
 
@@ -71,7 +71,7 @@ class TrackingHand final : public Hand {
   std::uint64_t seed_;
   double noise_memory_;  ///< correlation of the noise from sample to sample
 
-  std::vector<Seen> seen_;  ///< ring of the samples on their way from the eye to the hand
+  std::vector<Seen> seen_;  ///< ring of the samples within the reaction delay
   std::size_t next_ = 0;
   bool started_ = false;
   Random random_;
@@ -85,7 +85,7 @@ class TrackingHand final : public Hand {
 /// The orientation of a tool that a tracking hand turns; the position is free.
 class HeldOrientation final : public Motion {
  public:
-  /// Tilt comes from the hand, everything else from `orientation`. The hand must outlive the motion.
+  /// Takes the tilt from the hand, the rest from `orientation`. The hand must outlive the motion.
   HeldOrientation(Orientation orientation, const TrackingHand& hand);
 
   Vec3 axis_at(double t) const noexcept override;

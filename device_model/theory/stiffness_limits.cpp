@@ -12,16 +12,12 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 bool has_no_delay(const SampledLoop& loop) {
-  return loop.delay == 0.0;
-}
-
-bool differentiates(const SampledLoop& loop) {
-  return !loop.cutoff;
+  return loop.device.delay_samples == 0.0;
 }
 
 std::optional<double> colgate_schenkel(const SampledLoop& loop) {
-  if (!has_no_delay(loop) || !differentiates(loop)) return std::nullopt;
-  return std::max(0.0, 2.0 * (loop.damping - std::abs(loop.wall_damping)) / loop.period);
+  if (!has_no_delay(loop) || !loop.differentiates()) return std::nullopt;
+  return std::max(0.0, 2.0 * (loop.device.viscous - std::abs(loop.wall_damping)) / loop.period);
 }
 
 /// The condition b > K p + B r at one angle theta = omega T, with e = exp(-j theta) and F the velocity filter:
@@ -32,14 +28,14 @@ struct PassivityAt {
 };
 
 PassivityAt passivity_at(const SampledLoop& loop, double theta) {
-  const double d = loop.delay, a = loop.filter_memory();
+  const double d = loop.device.delay_samples, a = loop.filter_memory();
   const std::complex<double> e = std::polar(1.0, -theta), filter = (1.0 - a) / (1.0 - a * e);
   // (1 - e)^2 = -2 (1 - cos theta) e
   return {loop.period * std::sin((d + 0.5) * theta) / (2.0 * std::sin(0.5 * theta)),
           -(filter * std::polar(1.0, -(d + 1.0) * theta)).real()};
 }
 
-/// The least value of a function between two angles: of a grid, then of ever finer ones around its best point.
+/// The least value of a function between two angles, on a grid and then on ever finer grids around its best point.
 template <class Function>
 double least_value(Function f, double low, double high, int points) {
   double least = kNever;
@@ -57,15 +53,16 @@ double least_value(Function f, double low, double high, int points) {
   return least;
 }
 
-/// Where p > 0 the condition bounds K from above, where p < 0 from below.
+/// The condition bounds K from above where p > 0, from below where p < 0.
 std::optional<double> passive_with_delay(const SampledLoop& loop) {
-  if (!loop.has_whole_delay()) return std::nullopt;
+  const double d = loop.device.delay_samples;
+  if (d != std::floor(d)) return std::nullopt;
   const auto bound = [&loop](double theta, bool above) {
     const auto [p, r] = passivity_at(loop, theta);
-    return (above ? p > 0.0 : p < 0.0) ? (loop.damping - loop.wall_damping * r) / std::abs(p) : kNever;
+    return (above ? p > 0.0 : p < 0.0) ? (loop.device.viscous - loop.wall_damping * r) / std::abs(p) : kNever;
   };
-  constexpr double kFirst = 1e-6;  // 0 / 0 at 0; what is sought is even and smooth there
-  const int points = 256 * (1 + static_cast<int>(loop.delay));
+  constexpr double kFirst = 1e-6;  // 0 / 0 at 0; the function is even and smooth there
+  const int points = 256 * (1 + static_cast<int>(d));
   const double most = least_value([&](double t) { return bound(t, true); }, kFirst, std::numbers::pi, points);
   const double least = -least_value([&](double t) { return bound(t, false); }, kFirst, std::numbers::pi, points);
   return most > std::max(0.0, least) ? most : 0.0;
@@ -74,42 +71,54 @@ std::optional<double> passive_with_delay(const SampledLoop& loop) {
 std::optional<double> gil_hulin(const SampledLoop& loop) {
   constexpr double kLowDamping = 0.15;
   const double damping = loop.total_damping() + loop.wall_damping;
-  const double late = loop.period * (1.0 + loop.delay);
-  if (!differentiates(loop) || damping * late / loop.moving_mass() > kLowDamping) return std::nullopt;
-  return std::max(0.0, damping / (loop.period * (0.5 + loop.delay)));
+  const double late = loop.period * (1.0 + loop.device.delay_samples);
+  if (!loop.differentiates() || damping * late / loop.moving_mass() > kLowDamping) return std::nullopt;
+  return std::max(0.0, damping / (loop.period * (0.5 + loop.device.delay_samples)));
 }
 
 std::optional<double> abbott_okamura(const SampledLoop& loop) {
-  if (!has_no_delay(loop) || loop.wall_damping != 0.0 || loop.encoder_step <= 0.0) return std::nullopt;
-  return std::min(2.0 * loop.damping / loop.period, 2.0 * loop.coulomb / loop.encoder_step);
+  if (!has_no_delay(loop) || loop.wall_damping != 0.0 || loop.device.encoder_step <= 0.0) return std::nullopt;
+  return std::min(2.0 * loop.device.viscous / loop.period, 2.0 * loop.device.coulomb / loop.device.encoder_step);
 }
 
 std::optional<double> undamped_handle(const SampledLoop& loop) {
   const bool bare = loop.total_damping() == 0.0 && loop.hand.stiffness == 0.0;
-  if (!bare || !has_no_delay(loop) || !differentiates(loop)) return std::nullopt;
+  if (!bare || !has_no_delay(loop) || !loop.differentiates()) return std::nullopt;
   const double m = loop.moving_mass(), T = loop.period, beta = loop.wall_damping * T / m;
   return std::max(0.0, 2.0 * beta * (2.0 - beta) / (2.0 + beta) * m / (T * T));
 }
 
 constexpr StiffnessLimit kLimits[] = {
-    {"passive_colgate_schenkel", "K < 2 (b - |B|) / T",
-     "J. E. Colgate, G. Schenkel, Passivity of a class of sampled-data systems, J. Robotic Systems 14(1), 1997",
-     "no delay, velocity by the difference; passive for every passive hand", colgate_schenkel},
-    {"passive_with_delay",
-     "b > max over theta of K T sin((d + 1/2) theta) / (2 sin(theta/2)) - B Re{F e^(-j (d + 1) theta)}",
-     "the general condition of Colgate and Schenkel for this wall, derived; F is the velocity filter",
-     "whole delays; passive for every passive hand", passive_with_delay},
-    {"stable_gil_hulin", "K < (b + B) / (T/2 + t_d), b with the hand's",
-     "J. J. Gil, E. Sanchez, T. Hulin, C. Preusche, G. Hirzinger, J. Comput. Inf. Sci. Eng. 9(1), 2009",
-     "an approximation for low damping and short delays, (b + B)(T + t_d) / m <= 0.15 (ours: at most 14 % above the exact "
-     "edge there); velocity by the difference",
-     gil_hulin},
-    {"passive_abbott_okamura", "K <= min(2 b / T, 2 c / q)",
-     "J. J. Abbott, A. M. Okamura, Effects of position quantization and sampling rate on virtual-wall passivity, IEEE "
-     "T-RO 21(5), 2005",
-     "no delay, B = 0, an encoder step q > 0", abbott_okamura},
-    {"exact_undamped_handle", "K T^2/m < 2 beta (2 - beta) / (2 + beta), beta = B T/m", "derived",
-     "no delay, velocity by the difference, neither handle nor hand damp and no hand's spring", undamped_handle},
+    {.name = "passive_colgate_schenkel",
+     .formula = "K < 2 (b - |B|) / T",
+     .source =
+         "J. E. Colgate, G. Schenkel, Passivity of a class of sampled-data systems, J. Robotic Systems 14(1), 1997",
+     .applies = "no delay, velocity by the difference; passive for every passive hand",
+     .largest = colgate_schenkel},
+    {.name = "passive_with_delay",
+     .formula = "b > max over theta of K T sin((d + 1/2) theta) / (2 sin(theta/2)) - B Re{F e^(-j (d + 1) theta)}",
+     .source = "the general condition of Colgate and Schenkel for this wall, derived; F is the velocity filter",
+     .applies = "whole delays; passive for every passive hand",
+     .largest = passive_with_delay},
+    {.name = "stable_gil_hulin",
+     .formula = "K < (b + B) / (T/2 + t_d), b with the hand's",
+     .source = "J. J. Gil, E. Sanchez, T. Hulin, C. Preusche, G. Hirzinger, J. Comput. Inf. Sci. Eng. 9(1), 2009",
+     .applies =
+         "an approximation for low damping and short delays, (b + B)(T + t_d) / m <= 0.15 (ours: at most 14 % above the exact "
+         "edge there); velocity by the difference",
+     .largest = gil_hulin},
+    {.name = "passive_abbott_okamura",
+     .formula = "K <= min(2 b / T, 2 c / q)",
+     .source =
+         "J. J. Abbott, A. M. Okamura, Effects of position quantization and sampling rate on virtual-wall passivity, IEEE "
+         "T-RO 21(5), 2005",
+     .applies = "no delay, B = 0, an encoder step q > 0",
+     .largest = abbott_okamura},
+    {.name = "exact_undamped_handle",
+     .formula = "K T^2/m < 2 beta (2 - beta) / (2 + beta), beta = B T/m",
+     .source = "derived",
+     .applies = "no delay, velocity by the difference, neither handle nor hand damp and no hand's spring",
+     .largest = undamped_handle},
 };
 
 }  // namespace

@@ -1,5 +1,4 @@
 #include "device_model/hands/drag_hand.hpp"
-#include "device_model/hands/impedance_hand.hpp"
 #include "device_model/hands/scripted_hands.hpp"
 #include "device_model/hands/tracking_hand.hpp"
 #include "scenarios/description/descriptions.hpp"

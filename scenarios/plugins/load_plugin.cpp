@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <cfenv>
+#include <map>
+#include <mutex>
 #include <stdexcept>
 #include <utility>
 
 #include "algorithms/plugin/plugin_law.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "sim/core/hash.hpp"
 
@@ -19,7 +22,30 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLargestPlugin = std::size_t{1} << 28;
-constexpr const char* kEntryPoint = "hapbench_plugin";
+
+/// A C interface: a library exports one function, which returns the interface's table of functions for a version.
+struct Interface {
+  const char* kind;         ///< of a library, in messages
+  const char* entry_point;  ///< name of the function
+  const char* header;
+  std::uint32_t version;
+};
+constexpr Interface kLaws = {.kind = "plugin",
+                             .entry_point = "hapbench_plugin",
+                             .header = "hapbench_plugin.h",
+                             .version = HAPBENCH_PLUGIN_VERSION};
+constexpr Interface kContactSources = {.kind = "source of contacts",
+                                       .entry_point = "hapbench_contacts",
+                                       .header = "hapbench_contacts.h",
+                                       .version = HAPBENCH_CONTACTS_VERSION};
+
+/// Symbols of the library and its dependencies take precedence over ours. Sanitizers replace functions of all
+/// libraries, so they exclude that.
+#ifdef __SANITIZE_ADDRESS__
+constexpr int kApart = RTLD_NOW | RTLD_LOCAL;
+#else
+constexpr int kApart = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
+#endif
 
 std::vector<LoadedPlugin>& plugins() {
   static std::vector<LoadedPlugin> all;
@@ -31,8 +57,8 @@ std::function<std::shared_ptr<void>()>& loading_guard() {
   return guard;
 }
 
-/// A library that is compiled with -ffast-math switches subnormal numbers off for the whole program as it is loaded,
-/// which would change the results of every algorithm.
+/// Restores the floating-point environment. Loading a library that was linked with -ffast-math switches off subnormal
+/// numbers for the whole program, which would change the results of every algorithm.
 class KeptFloatingPoint {
  public:
   KeptFloatingPoint() { std::fegetenv(&environment_); }
@@ -44,7 +70,7 @@ class KeptFloatingPoint {
   std::fenv_t environment_{};
 };
 
-/// Asked before the file is opened: a directory or a pipe is refused here.
+/// Also refuses a directory or a pipe before it would be opened as a library.
 std::string hash_of_file(const fs::path& file) {
   try {
     return hash_text(hash_of(read_text_file(file, kLargestPlugin)));
@@ -53,28 +79,38 @@ std::string hash_of_file(const fs::path& file) {
   }
 }
 
-/// What the library's one function says. The library stays open: its laws may run at any time.
-const HapbenchPlugin& opened(const fs::path& file) {
+/// The table of a library, which stays open because its functions may be called at any time. Throws InputError.
+template <class Table>
+const Table& opened(const fs::path& file, int flags, const Interface& wanted) {
   const KeptFloatingPoint kept;
-  void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* library = dlopen(file.c_str(), flags);
   if (library == nullptr) {
     std::string problem = dlerror();
     const std::string again = file.string() + ": ";
     if (problem.starts_with(again)) problem.erase(0, again.size());
-    fail_in_file(file, "is no plugin: " + problem);
+    fail_in_file(file, fmt::format("is no {}: {}", wanted.kind, problem));
   }
-  void* symbol = dlsym(library, kEntryPoint);
+  void* symbol = dlsym(library, wanted.entry_point);
   if (symbol == nullptr)
-    fail_in_file(file, fmt::format("is no plugin: it has no function \"{}\" (hapbench_plugin.h)", kEntryPoint));
-  const auto* plugin = reinterpret_cast<decltype(&hapbench_plugin)>(symbol)(HAPBENCH_PLUGIN_VERSION);
-  if (plugin == nullptr)
-    fail_in_file(file, fmt::format("does not support version {} of the interface; allowed: built with the "
-                                   "hapbench_plugin.h of this program",
-                                   HAPBENCH_PLUGIN_VERSION));
-  if (plugin->version != HAPBENCH_PLUGIN_VERSION)
-    fail_in_file(file, fmt::format("is built for version {} of the interface; allowed: {}", plugin->version,
-                                   HAPBENCH_PLUGIN_VERSION));
-  return *plugin;
+    fail_in_file(
+        file, fmt::format("is no {}: it has no function \"{}\" ({})", wanted.kind, wanted.entry_point, wanted.header));
+  const Table* table = reinterpret_cast<const Table* (*)(std::uint32_t)>(symbol)(wanted.version);
+  if (table == nullptr)
+    fail_in_file(file, fmt::format("does not support version {} of the interface; allowed: built with the {} of this "
+                                   "program",
+                                   wanted.version, wanted.header));
+  if (table->version != wanted.version)
+    fail_in_file(file,
+                 fmt::format("is built for version {} of the interface; allowed: {}", table->version, wanted.version));
+  return *table;
+}
+
+const HapbenchContactSource* open_peer(const std::string& name) {
+  // lib/hapbench lies beside share/hapbench.
+  const fs::path prefix = installed_folder(".").parent_path().parent_path();
+  const fs::path file = prefix / "lib" / "hapbench" / ("contacts_" + name + ".so");
+  std::error_code error;
+  return fs::exists(file, error) ? &opened<HapbenchContactSource>(file, kApart, kContactSources) : nullptr;
 }
 
 }  // namespace
@@ -87,7 +123,7 @@ void load_plugin(const fs::path& given) {
   if (std::any_of(plugins().begin(), plugins().end(), is_this)) return;
   const std::shared_ptr<void> guarded = loading_guard()();
   const std::string hash = hash_of_file(file);
-  const HapbenchPlugin& plugin = opened(file);
+  const auto& plugin = opened<HapbenchPlugin>(file, RTLD_NOW | RTLD_LOCAL, kLaws);
   try {
     AlgorithmEntry entry = plugin_entry(plugin, {file.filename().string(), hash});
     const std::string name = entry.info->name;
@@ -124,6 +160,18 @@ void guard_loading(std::function<std::shared_ptr<void>()> guard) {
 
 const std::vector<LoadedPlugin>& loaded_plugins() {
   return plugins();
+}
+
+const HapbenchContactSource* find_peer(const std::string& name) {
+  static std::mutex mutex;
+  static std::map<std::string, const HapbenchContactSource*> opened;
+  const std::lock_guard lock(mutex);
+  const auto found = opened.find(name);
+  return found != opened.end() ? found->second : opened.emplace(name, open_peer(name)).first->second;
+}
+
+std::string peer_package(const std::string& name) {
+  return "lib" + name + "-dev";
 }
 
 }  // namespace hapbench

@@ -6,28 +6,39 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/peers/hapbench_contacts.h"
+
+/// Shared libraries behind the C interfaces of laws and of sources of contacts.
 namespace hapbench {
 
-/// A shared library with a law (algorithms/plugin/hapbench_plugin.h) that has been loaded.
+/// A loaded shared library with a law (algorithms/plugin/hapbench_plugin.h).
 struct LoadedPlugin {
   std::filesystem::path file;  ///< absolute
   std::string algorithm;
 };
 
-/// Loads a plugin and adds its law to the algorithms, for as long as the program runs; one that is there already is
-/// not loaded again. Floating-point modes that loading it would change are put back. Not while another thread reads
-/// the table of algorithms. Throws InputError.
+/// Loads a plugin and adds its law to the algorithms for as long as the program runs, unless it is loaded already.
+/// Restores floating-point modes that loading changes. Must not be called while another thread reads the table of
+/// algorithms. Throws InputError.
 void load_plugin(const std::filesystem::path& file);
 
-/// The same for every *.so in folders that are separated by colons, in the order of their names. `what` names the list
-/// in messages. Throws InputError.
+/// Loads every *.so in folders that are separated by colons, in the order of their names. `what` names the list in
+/// messages. Throws InputError.
 void load_plugins_in(const std::string& what, const std::string& folders);
 
-/// `guard` is called before a plugin that is not there yet is loaded, and what it returns is kept until it is: where
-/// several threads may want one, it refuses, by an InputError, while others read the table, and keeps them from it.
+/// Sets the function that is called before a new plugin is loaded. Its result is kept until the plugin is loaded. If
+/// several threads may load plugins, it throws InputError while others read the table of algorithms, and its result
+/// keeps them from reading.
 void guard_loading(std::function<std::shared_ptr<void>()> guard);
 
-/// In the order in which they were loaded.
+/// The loaded plugins, in the order of loading.
 const std::vector<LoadedPlugin>& loaded_plugins();
+
+/// The contact source of a collision library (kPeers), whose module is loaded at the first call and stays; null if it
+/// has not been built. Thread safe. Throws InputError if a module cannot be loaded.
+const HapbenchContactSource* find_peer(const std::string& name);
+
+/// The Debian package that a peer needs, for messages. Precondition: the name is in kPeers.
+std::string peer_package(const std::string& name);
 
 }  // namespace hapbench

@@ -140,30 +140,37 @@ Description describe_stability() {
         {{"name", limit.name}, {"formula", limit.formula}, {"applies", limit.applies}, {"source", limit.source}});
   }
   d.text = fmt::format(
-      "stability maps\n"
-      "  A run of {} steps is judged by its motion alone, quarter by quarter; the amplitude is the largest speed.\n\n"
-      "  diverged   left its bounds, or oscillates with an amplitude that grows by 1 % from each quarter to the next\n"
-      "  vibrating  does not decay: oscillates in the last quarter with at least 1 % of the first quarter's\n"
-      "             amplitude\n"
-      "  dying_out  oscillates so, but loses a tenth of its amplitude from the second quarter to the third and\n"
-      "             again to the last\n"
-      "  stable     all else: at rest, died out, creeping\n\n"
-      "  Limits count what is stable or dying out as stable: it comes to rest if the run goes on.\n\n"
-      "  The analytic limit, under leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = "
-      "lambda_max(S),\n"
-      "  is given where the tool is alone with springs that stay in contact and the force is -K S p. Under "
-      "velocity_verlet\n"
-      "  and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. With a device in the loop "
-      "it is\n"
-      "  where the first eigenvalue of the loop of hand, handle and wall leaves the unit circle: the loop while nothing\n"
-      "  saturates and the contact lasts. The edge by bisection is that of \"diverged\"; that of runs that come to rest "
-      "in the\n"
-      "  maps of the admittance device and of Coulomb friction, which stops a handle for good: there what still moves "
-      "in the\n  end, however little, vibrates.\n\n{}\n"
-      "limits of the stiffness K of a wall on an impedance device\n"
-      "  b is the handle's damping, c its Coulomb friction, q the encoder's step, m the moving mass, T the period, t_d = "
-      "d T\n  the delay. Written beside the edge where they apply.\n{}",
-      kMapSteps, maps, limits);
+      "stability maps\n{}\n",
+      wrapped(fmt::format(
+          "A run of {} steps is judged by its motion alone, quarter by quarter; the amplitude is the largest speed.",
+          kMapSteps)));
+  for (
+      const auto& [name, meaning] :
+      {std::pair{"diverged",
+                 "left its bounds, or oscillates with an amplitude that grows by 1 % from each quarter to the next"},
+       std::pair{"vibrating",
+                 "does not decay: oscillates in the last quarter with at least 1 % of the first quarter's amplitude"},
+       std::pair{
+           "dying_out",
+           "oscillates as much, but loses a tenth of its amplitude from the second quarter to the third and again to the last"},
+       std::pair{"stable", "all else: at rest, died out, creeping"}})
+    d.text += entry(name, meaning, 2, 13);
+  for (
+      const char* paragraph :
+      {"Limits count stable and dying out as stable: the tool comes to rest if the run goes on.",
+       "The analytic limit, under leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = lambda_max(S), is "
+       "given where the tool is alone with springs that stay in contact and the force is -K S p. Under "
+       "velocity_verlet and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. With a "
+       "device in the loop it is where the first eigenvalue of the loop of hand, handle and wall leaves the unit "
+       "circle, as long as nothing saturates and the contact lasts. The edge by bisection is that of \"diverged\". "
+       "Only in the maps of the admittance device and of Coulomb friction, which stops a handle for good, it is that "
+       "of runs that come to rest: there whatever still moves in the end, however little, counts as vibrating."})
+    d.text += "\n" + wrapped(paragraph);
+  d.text += "\n" + maps + "\nlimits of the stiffness K of a wall on an impedance device\n";
+  d.text += wrapped(
+      "b is the handle's damping, c its Coulomb friction, q the encoder's step, m the moving mass, T the period, t_d = d T "
+      "the delay. Each is written beside the edge where it applies.");
+  d.text += limits;
   return d;
 }
 

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "device_model/hands/surface_path.hpp"
+#include "device_model/hands/drag_hand.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/parts.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -269,7 +269,7 @@ class Start {
     if (kind.source == StartSource::mesh && !kind.needs_source && source) sections_.replace(0, kPlane.size(), kMesh);
     values_["steps"] = kind.steps;
     if (source) values_["file"] = fs::proximate(*source, directory.empty() ? "." : directory).generic_string();
-    if (has("@scale@")) choose_scale();
+    if (has("@scale@")) scale_environment();
     if (has("@tool_scale@")) {
       place_mesh_tool();
     } else if (has("@x@")) {
@@ -302,16 +302,21 @@ class Start {
     return make_shell(loaded.scenario, loaded.files)->points();
   }
 
-  /// Guesses the unit of the mesh, which is first read as millimetres.
-  void choose_scale() {
-    const Box box = box_of(points());
+  /// The scale that makes an object, first read as millimetres, about as long as a tooth.
+  double choose_scale(const Box& box, const char* object, const char* field) {
     const double longest = (box.max - box.min).maxCoeff() / 0.001, scale = guessed_scale(longest);
+    notes_.push_back(
+        fmt::format("longest edge of the {}'s box: {:.4g}, with scale {} {:.4g} mm; if it is not, change {}", object,
+                    longest, scale, 1e3 * longest * scale, field));
+    return scale;
+  }
+
+  void scale_environment() {
+    const Box box = box_of(points());
+    const double scale = choose_scale(box, "mesh", "environment.scale");
     values_["scale"] = scale;
-    choose_tool(longest * scale);
+    choose_tool((box.max - box.min).maxCoeff() / 0.001 * scale);
     values_["spacing"] = rounded(diameter_ / 10.0);
-    notes_.push_back(fmt::format(
-        "longest edge of the mesh's box: {:.4g}, with scale {} {:.4g} mm; if it is not, change environment.scale",
-        longest, scale, 1e3 * longest * scale));
   }
 
   void choose_tool(double longest) {
@@ -351,12 +356,8 @@ class Start {
   /// Places the tool above the plane's middle, at a scale that makes it about as long as a tooth.
   void place_mesh_tool() {
     TriangleSoup surface = scenario().files.at(kToolFile).mesh().triangles();  // taken for millimetres
-    const Box given = box_of(surface.vertices);
-    const double longest = (given.max - given.min).maxCoeff() / 0.001, scale = guessed_scale(longest);
+    const double scale = choose_scale(box_of(surface.vertices), "tool", "tool.scale");
     values_["tool_scale"] = scale;
-    notes_.push_back(
-        fmt::format("longest edge of the tool's box: {:.4g}, with scale {} {:.4g} mm; if it is not, change tool.scale",
-                    longest, scale, 1e3 * longest * scale));
     for (Vec3& vertex : surface.vertices) vertex *= scale / 0.001;
     const double touching = find_tip(surface);
     values_["z"] = to_micrometres(touching + kClearance);

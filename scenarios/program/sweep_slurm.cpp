@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 #include <utility>
 
@@ -242,22 +243,15 @@ struct ShardStatus {
   std::size_t done = 0;  ///< runs on disk
 };
 
-/// The number of shards that the name of a sweep's file tells: 0 for a sweep without shards, none for other files.
-std::optional<std::size_t> shards_named_by(const fs::path& file) {
-  const std::string stem = file.stem().string(), kind = file.extension().string();
-  if (kind != ".csv" && kind != ".journal") return std::nullopt;
-  if (stem == "sweep") return 0;
-  const Words words = parts_of(stem, '_');  // sweep_shard_I_of_N
-  const bool is_shard = words.size() == 5 && words[0] == "sweep" && words[1] == "shard" && words[3] == "of";
-  return is_shard ? whole_number(words[4]) : std::nullopt;
-}
-
 /// The number of shards of the sweep in a directory; 0 when it is not divided.
 std::size_t shards_in(const fs::path& directory) {
+  static const std::regex kFile(R"(sweep(?:_shard_\d+_of_(\d+))?\.(?:csv|journal))");
   std::set<std::size_t> counts;
   std::error_code error;
   for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error)) {
-    if (const auto count = shards_named_by(entry->path())) counts.insert(*count);
+    const std::string name = entry->path().filename().string();
+    if (std::smatch parts; std::regex_match(name, parts, kFile))
+      counts.insert(whole_number(parts.str(1)).value_or(0));  // without shards the number is missing
   }
   if (error) fail_in_file(directory, fmt::format("cannot be read: {}", error.message()));
   if (counts.empty()) fail_in_file(directory, "holds no sweep; allowed: the directory that --out named");

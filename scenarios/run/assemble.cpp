@@ -7,12 +7,11 @@
 #include "algorithms/registry.hpp"
 #include "device_model/admittance_device.hpp"
 #include "device_model/hands/drag_hand.hpp"
-#include "device_model/hands/impedance_hand.hpp"
 #include "device_model/hands/scripted_hands.hpp"
 #include "device_model/hands/tracking_hand.hpp"
 #include "device_model/ideal_device.hpp"
 #include "device_model/impedance_device.hpp"
-#include "scenarios/plugins/load_peer.hpp"
+#include "scenarios/plugins/load_plugin.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "sim/core/random.hpp"
 #include "sim/loop/simulation.hpp"
@@ -25,9 +24,9 @@ void add(std::vector<double>& numbers, const Vec3& p) {
   numbers.insert(numbers.end(), {p.x(), p.y(), p.z()});
 }
 
-MakePeer& peer_of(const Scenario& scenario) {
+const HapbenchContactSource& peer_of(const Scenario& scenario) {
   const std::string& name = scenario.rendering.contact_source;
-  if (MakePeer* make = find_peer(name)) return *make;
+  if (const HapbenchContactSource* library = find_peer(name)) return *library;
   throw InputError(
       InputError::Kind::relation, "/rendering/contact_source",
       fmt::format("got \"{}\", which is not built here; allowed: \"{}\", or install {} and build the target "
@@ -62,9 +61,8 @@ void require_contact_source(const Scenario& scenario) {
 
 std::unique_ptr<ContactSource> make_peer_source(const Scenario& scenario, const NamedFiles& files) {
   const Cylinder drill = make_cylinder(scenario.tool);
-  const PeerSurface surface = peer_surface(scenario, files);
-  return std::make_unique<PeerSource>(peer_of(scenario)(surface, {drill.radius(), drill.length()}),
-                                      scenario.rendering.contact_source, drill.length(), surface.triangles.size() / 3);
+  return std::make_unique<PeerSource>(peer_of(scenario), peer_surface(scenario, files),
+                                      HapbenchCylinder{.radius = drill.radius(), .length = drill.length()});
 }
 
 namespace {

@@ -1,5 +1,7 @@
-"""What the commands written in Python share: how they refuse, how they write files, and a notice of what takes long."""
+"""What the commands written in Python share: how they refuse, hints at names, how they write files, and a notice of what takes
+long."""
 import argparse
+import difflib
 import os
 import sys
 import threading
@@ -20,6 +22,15 @@ class Arguments(argparse.ArgumentParser):
     def error(self, message):
         say_error(f"{message}; {self.prog} --help shows what there is")
         sys.exit(BAD_INPUT)
+
+
+def nearest(name, names):
+    """The end of a message about an unknown name, in the words of the program; empty when no name is near."""
+    lower = {candidate.lower(): candidate for candidate in reversed(names)}
+    # Half a name before one that merely looks alike.
+    longer = sorted((n for n in lower if n.startswith(name.lower())), key=len) or [n for n in lower if name.lower() in n]
+    close = longer or difflib.get_close_matches(name.lower(), lower, 1)
+    return f"; nearest valid name: \"{lower[close[0]]}\"" if close else ""
 
 
 def write(file, data):

@@ -18,6 +18,10 @@ struct Scene {
   const PointShell* shell = nullptr;   ///< the environment, unless it is springs
   const SpringSet* springs = nullptr;  ///< the environment, unless it is a shell
   double dt = 0.0005;                  ///< time step [s]
+  /// The present row and its f_in [N], which drives the tool together with f_render over the coming step. They change
+  /// before the first `compute` of each row. Null if the algorithm is not stepped by a Simulation.
+  const std::uint64_t* row = nullptr;
+  const Vec3* input = nullptr;
 };
 
 /// The result of an algorithm in one step.
@@ -85,9 +89,6 @@ class ForceAlgorithm {
   virtual void prepare(const Scene& scene) = 0;
   /// Returns to t = 0, bit for bit.
   virtual void reset() noexcept = 0;
-  /// Passes f_in [N], which drives the tool together with f_render over the coming step. Called once before the
-  /// `compute` of each row if `wants_input` is true.
-  virtual void take_input(const Vec3& input) noexcept { static_cast<void>(input); }
   /// Computes one step or, for some integrators, one state within a step after that of the row. `contacts` holds the
   /// contacts at the tool's pose, with depth and gradient (ContactSource); on return it holds the rendered ones, with
   /// their weights.
@@ -100,8 +101,6 @@ class ForceAlgorithm {
   /// Cut-off frequency [Hz] of the low-pass through which `compute` reads the tool's angular velocity, infinite for the
   /// unfiltered velocity; nullopt if `compute` does not read it, which is then not computed.
   virtual std::optional<double> angular_velocity_cutoff() const noexcept { return std::nullopt; }
-  /// True if `take_input` must be called.
-  virtual bool wants_input() const noexcept { return false; }
   /// If a failure in external code made the result of the last `compute` invalid, its description; else null. Called
   /// when a run diverges.
   virtual const char* fault() const noexcept { return nullptr; }

@@ -53,15 +53,19 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
     roll_wanted_ |= observer->wants_roll();
   }
   position_is_free_ = parts_.motion->position_is_free();
-  input_wanted_ = parts_.algorithm->wants_input();
   handle_is_apart_ = parts_.device->energy().has_value();
   handle_moves_tool_ = position_is_free_ && parts_.device->moves_tool();
   angular_velocity_cutoff_ = parts_.algorithm->angular_velocity_cutoff();
   tool_rolls_ = parts_.tool && !is_round(*parts_.tool);
   turn_rolls_ = tool_rolls_ || parts_.motion->scripts_roll();
   roll_wanted_ |= tool_rolls_ || (turn_rolls_ && angular_velocity_cutoff_);
-  parts_.algorithm->prepare(
-      {parts_.source->capacity(), parts_.tool.get(), parts_.shell.get(), parts_.springs.get(), config_.dt});
+  parts_.algorithm->prepare({.capacity = parts_.source->capacity(),
+                             .tool = parts_.tool.get(),
+                             .shell = parts_.shell.get(),
+                             .springs = parts_.springs.get(),
+                             .dt = config_.dt,
+                             .row = &record_.step,
+                             .input = &record_.hand.input});
   reset();
 }
 
@@ -144,7 +148,6 @@ bool Simulation::step() noexcept {
     return true;
   }
   r.colliding = contacts_.size();
-  if (input_wanted_) parts_.algorithm->take_input(r.hand.input);
   parts_.algorithm->compute(tool_, contacts_, r.force);
   if (!check_bounds()) return true;
 

@@ -96,6 +96,9 @@ class Simulation {
  public:
   /// Prepares the algorithm. Observers must outlive the simulation. Throws what `prepare` throws.
   Simulation(SimulationConfig config, SimulationParts parts, std::vector<Observer*> observers);
+  // The algorithm has pointers to the row (Scene).
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
 
   /// Returns to t = 0, bit for bit; does not reset the observers.
   void reset() noexcept;
@@ -134,10 +137,9 @@ class Simulation {
   bool springs_wanted_ = false;
   bool energy_wanted_ = false;
   bool position_is_free_ = false;
-  bool tool_rolls_ = false;   ///< the tool is not round, so its pose has the roll
-  bool turn_rolls_ = false;   ///< the angular velocity includes the turn about the tool's axis
-  bool roll_wanted_ = false;  ///< something reads the roll
-  bool input_wanted_ = false;
+  bool tool_rolls_ = false;                        ///< the tool is not round, so its pose has the roll
+  bool turn_rolls_ = false;                        ///< the angular velocity includes the turn about the tool's axis
+  bool roll_wanted_ = false;                       ///< something reads the roll
   bool handle_is_apart_ = false;                   ///< the handle is a separate body
   bool handle_moves_tool_ = false;                 ///< there is no virtual mass
   std::optional<double> angular_velocity_cutoff_;  ///< nullopt if nothing reads the angular velocity

@@ -5,10 +5,232 @@
 #include <cmath>
 #include <numbers>
 
+#include "device_model/ideal_device.hpp"
+#include "sim/core/random.hpp"
+
+/// The ideal device, the admittance device and its parts.
 namespace hapbench::admittance_device_test {
 namespace {
 
 constexpr double kStep = 1.0 / 2048;
+
+ToolState some_tool() {
+  ToolState tool;
+  tool.pose.position = {1, 2, 3};
+  tool.velocity = {4, 5, 6};
+  return tool;
+}
+
+TEST(IdealDevice, HandleIsTheToolAfterResetAndAfterEveryStep) {
+  IdealDevice device(std::nullopt);
+  device.reset(some_tool());
+  EXPECT_EQ(device.handle().position, Vec3(1, 2, 3));
+  EXPECT_EQ(device.handle().velocity, Vec3(4, 5, 6));
+  ToolState moved = some_tool();
+  moved.pose.position.x() = 7;
+  moved.velocity.z() = 8;
+  device.advance(moved, {100, 100, 100}, 0.5);
+  EXPECT_EQ(device.handle().position, Vec3(7, 2, 3));
+  EXPECT_EQ(device.handle().velocity, Vec3(4, 5, 8));
+}
+
+TEST(IdealDevice, MeasuresTheHandExactlyAndPassesItOnWithoutALimit) {
+  IdealDevice device(std::nullopt);
+  const MeasuredForce force = device.measure({300, -400, 0});
+  EXPECT_EQ(force.measured, Vec3(300, -400, 0));
+  EXPECT_EQ(force.input, Vec3(300, -400, 0));
+}
+
+TEST(IdealDevice, LimitsTheInputButNotTheMeasurement) {
+  IdealDevice device(2.0);
+  const MeasuredForce force = device.measure({300, -400, 0});
+  EXPECT_EQ(force.measured, Vec3(300, -400, 0));
+  EXPECT_LE((force.input - Vec3(1.2, -1.6, 0)).norm(), 4 * std::numeric_limits<double>::epsilon());
+  EXPECT_EQ(device.measure({1, 1, 1}).input, Vec3(1, 1, 1));
+}
+
+TEST(IdealDevice, MeasuringDoesNotMoveTheHandle) {
+  IdealDevice device(2.0);
+  device.reset(some_tool());
+  device.measure({300, -400, 0});
+  EXPECT_EQ(device.handle().position, Vec3(1, 2, 3));
+}
+
+TEST(InputForceLimiter, ScalesLongerForcesToTheLimitAndKeepsTheirDirection) {
+  Random random(1);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 u = random.direction();
+    const double limit = random.uniform(0.1, 10.0);
+    const Vec3 limited = limit_input_force(limit * random.uniform(1.0, 100.0) * u, limit);
+    EXPECT_LE((limited - limit * u).norm(), 4 * std::numeric_limits<double>::epsilon() * limit);
+  }
+}
+
+TEST(InputForceLimiter, LeavesShorterForcesUntouched) {
+  Random random(2);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 force = random.uniform() * random.direction();
+    EXPECT_EQ(limit_input_force(force, 1.0), force);
+  }
+  EXPECT_EQ(limit_input_force({3, 4, 0}, 5.0), Vec3(3, 4, 0)) << "the limit itself";
+  EXPECT_EQ(limit_input_force({0, 0, 0}, 5.0), Vec3(0, 0, 0));
+}
+
+TEST(InputForceLimiter, AZeroLimitTakesTheHandAway) {
+  EXPECT_EQ(limit_input_force({3, 4, 0}, 0.0), Vec3(0, 0, 0));
+  EXPECT_EQ(limit_input_force({0, 0, 0}, 0.0), Vec3(0, 0, 0));
+}
+
+TEST(ForceSensor, ReadsTheWeightOfTheDrillAsWell) {
+  ForceSensor sensor({.weight = 0.7, .down = {0, -1, 0}});
+  EXPECT_EQ(sensor.read({1, 2, 3}), Vec3(1, 2 - 0.7, 3));
+}
+
+TEST(ForceSensor, CompensationTakesTheWeightOffAgainOrLeavesIt) {
+  const Vec3 reading{0, 0, -2.7};
+  EXPECT_NEAR(ForceSensor({.weight = 0.7}).compensated(reading).z(), -2.0, 1e-15);
+  EXPECT_EQ(ForceSensor({.weight = 0.7, .compensated = false}).compensated(reading), reading);
+}
+
+TEST(ForceSensor, NoiseHasTheGivenDeviationInEveryComponentAndNoMean) {
+  const double sigma = 0.02;
+  ForceSensor sensor({.weight = 0.0, .noise = sigma, .seed = 5});
+  constexpr int kSamples = 100'000;
+  Vec3 sum = Vec3::Zero(), squares = Vec3::Zero(), products = Vec3::Zero();
+  for (int i = 0; i < kSamples; ++i) {
+    const Vec3 e = sensor.read({0, 0, 0}) / sigma;
+    sum += e;
+    squares += e.cwiseAbs2();
+    products += Vec3(e.x() * e.y(), e.y() * e.z(), e.z() * e.x());
+  }
+  // Five standard errors: 1 / sqrt(n) of the mean and of a product, sqrt(2 / n) of the square.
+  const double error = 5.0 / std::sqrt(kSamples);
+  EXPECT_LE((sum / kSamples).cwiseAbs().maxCoeff(), error);
+  EXPECT_LE((products / kSamples).cwiseAbs().maxCoeff(), error);
+  EXPECT_LE((squares / kSamples - Vec3::Ones()).cwiseAbs().maxCoeff(), std::sqrt(2.0) * error);
+}
+
+TEST(ForceSensor, TheSeedDecidesTheNoiseAndAResetRepeatsIt) {
+  const auto first_reading = [](std::uint64_t seed) {
+    return ForceSensor({.noise = 1.0, .seed = seed}).read({0, 0, 0});
+  };
+  EXPECT_NE(first_reading(1), first_reading(2));
+  ForceSensor sensor({.noise = 1.0, .seed = 1});
+  const Vec3 first = sensor.read({0, 0, 0});
+  EXPECT_NE(sensor.read({0, 0, 0}), first);
+  sensor.reset();
+  EXPECT_EQ(sensor.read({0, 0, 0}), first);
+}
+
+ToolState reference(const Vec3& position, const Vec3& velocity) {
+  ToolState tool;
+  tool.pose.position = position;
+  tool.velocity = velocity;
+  return tool;
+}
+
+TEST(PositionServo, PushesAgainstPositionAndVelocityErrors) {
+  PositionServo servo({.stiffness = 100, .damping = 10, .max_force = 1e9, .delay = 0});
+  EXPECT_EQ(servo.force(reference({1, 2, 3}, {4, 5, 6}), {0, 2, 4}, {4, 4, 8}), Vec3(100, 10, -120));
+}
+
+TEST(PositionServo, SaturatesAtTheNormOfItsForce) {
+  PositionServo servo({.stiffness = 1, .damping = 0, .max_force = 30, .delay = 0});
+  EXPECT_EQ(servo.force(reference({18, 24, 0}, {0, 0, 0}), {0, 0, 0}, {0, 0, 0}), Vec3(18, 24, 0)) << "30 N";
+  const Vec3 saturated = servo.force(reference({300, 0, -400}, {0, 0, 0}), {0, 0, 0}, {0, 0, 0});
+  EXPECT_LE((saturated - Vec3(18, 0, -24)).norm(), 1e-14);
+}
+
+TEST(PositionServo, ACommandArrivesAfterTheDelay) {
+  for (const std::size_t delay : {0u, 1u, 2u, 7u}) {
+    PositionServo servo({.stiffness = 1, .damping = 0, .max_force = 1e9, .delay = delay});
+    for (int round = 0; round < 2; ++round) {
+      for (int k = 0; k < 20; ++k) {
+        const Vec3 force = servo.force(reference({k + 1.0, 0, 0}, {0, 0, 0}), {0, 0, 0}, {0, 0, 0});
+        EXPECT_EQ(force.x(), std::max(0.0, k + 1.0 - static_cast<double>(delay))) << delay << " " << k;
+      }
+      servo.reset();  // the second round starts at rest again
+    }
+  }
+}
+
+TEST(HandleMechanics, StartsOnTheToolWithItsVelocity) {
+  HandleMechanics mechanics({});
+  ToolState tool;
+  tool.pose.position = {1, 2, 3};
+  tool.velocity = {4, 5, 6};
+  mechanics.reset(tool);
+  EXPECT_EQ(mechanics.handle().position, Vec3(1, 2, 3));
+  EXPECT_EQ(mechanics.carriage().velocity, Vec3(4, 5, 6));
+  EXPECT_EQ(mechanics.energy().stored, 0.0);
+}
+
+TEST(HandleMechanics, WithoutFrictionMomentumIsImpulse) {
+  HandleMechanics mechanics({.carriage_mass = 0.25, .handle_mass = 0.07, .friction = 0.0});
+  mechanics.reset({});
+  const Vec3 hand{1, -2, 3}, actuator{0.5, 0.25, -4};
+  constexpr int kSteps = 1000;
+  for (int i = 0; i < kSteps; ++i) mechanics.advance(hand, actuator, kStep);
+  const Vec3 momentum = 0.25 * mechanics.carriage().velocity + 0.07 * mechanics.handle().velocity;
+  const Vec3 impulse = (hand + actuator) * (kSteps * kStep);
+  // A few roundings a step.
+  EXPECT_LE((momentum - impulse).norm(), 10 * kSteps * std::numeric_limits<double>::epsilon() * impulse.norm());
+}
+
+TEST(HandleMechanics, StandsStillUnderOppositeForcesWithTheStructureStretched) {
+  const double k = 200000.0;
+  HandleMechanics mechanics({.structure_stiffness = k});
+  mechanics.reset({});
+  for (int i = 0; i < 20000; ++i) mechanics.advance({3, 0, 0}, {-3, 0, 0}, kStep);
+  // The transient has died out: its slowest rate is that of the structure's damping, some hundred per second.
+  EXPECT_NEAR(mechanics.handle().position.x() - mechanics.carriage().position.x(), 3.0 / k, 1e-15);
+  EXPECT_LE(mechanics.handle().velocity.norm(), 1e-12);
+}
+
+TEST(HandleMechanics, TheStructureSwingsAtItsFrequency) {
+  HandleMechanicsConfig config;
+  config.friction = config.structure_damping = 0.0;
+  HandleMechanics mechanics(config);
+  mechanics.reset({});
+  // An impulse sets handle and carriage swinging against each other.
+  constexpr double kFine = 1e-6;
+  mechanics.advance({1000, 0, 0}, {0, 0, 0}, kFine);
+  const auto stretch = [&] { return mechanics.handle().position.x() - mechanics.carriage().position.x(); };
+  double last = stretch();
+  std::vector<double> crossings;
+  for (int i = 1; crossings.size() < 3; ++i) {
+    mechanics.advance({0, 0, 0}, {0, 0, 0}, kFine);
+    if (last < 0.0 && stretch() >= 0.0) crossings.push_back((i - stretch() / (stretch() - last)) * kFine);
+    last = stretch();
+  }
+  const double reduced = 1.0 / (1.0 / config.carriage_mass + 1.0 / config.handle_mass);
+  const double period = 2.0 * std::numbers::pi * std::sqrt(reduced / config.structure_stiffness);
+  // The midpoint rule stretches a period by (omega dt)^2 / 12 = 3e-7 of it; the interpolation errs less.
+  EXPECT_NEAR(crossings[2] - crossings[1], period, 1e-6 * period);
+}
+
+TEST(HandleMechanics, KeepsItsEnergyBalanceToRounding) {
+  Random random(3);
+  for (int run = 0; run < 50; ++run) {
+    HandleMechanics mechanics({.carriage_mass = random.uniform(0.01, 2),
+                               .handle_mass = random.uniform(0.01, 2),
+                               .friction = random.uniform(0, 50),
+                               .structure_stiffness = random.uniform(0, 1e7),
+                               .structure_damping = random.uniform(0, 500)});
+    ToolState tool;
+    tool.velocity = random.direction();
+    mechanics.reset(tool);
+    double turnover = 0.0;
+    for (int i = 0; i < 2000; ++i) {
+      mechanics.advance(5.0 * random.direction(), 30.0 * random.direction(), kStep);
+      const DeviceEnergy e = mechanics.energy();
+      turnover = std::max({turnover, std::abs(e.hand), std::abs(e.actuator), -e.dissipated, std::abs(e.stored)});
+      // Each step rounds sums of the size of the turnover, and of the elastic energy hidden in it: 1e-16 a step.
+      ASSERT_NEAR(e.stored, e.hand + e.actuator + e.dissipated, 1e-12 * (turnover + 1.0));
+      ASSERT_LE(e.dissipated, 0.0);
+    }
+  }
+}
 
 TEST(AdmittanceDevice, TheLimitTakesHoldWhereTheThesisSeesIt) {
   AdmittanceDevice device({});

@@ -1,20 +1,181 @@
-// The device in the loop of the simulation, against recurrences that know nothing of it.
-
 #include "device_model/impedance_device.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "device_model/device_presets.hpp"
 #include "device_model/hands/scripted_hands.hpp"
+#include "device_model/velocity_filter.hpp"
+#include "sim/core/random.hpp"
 #include "tests/support/fakes.hpp"
 
+/// The parts of an impedance device, and the device in the loop of the simulation, compared with recurrences.
 namespace hapbench::impedance_device_test {
 namespace {
 
 constexpr double kT = 0.001, kMass = 0.1;
+
+TEST(ForcePath, ChangesNothingByDefault) {
+  ForcePath path({}, kT);
+  const Vec3 force(1.0 / 3.0, -200.0, 1e-9);
+  EXPECT_EQ(path.hold(force).after, force);
+  EXPECT_EQ(path.switch_part(), 0.0);
+}
+
+TEST(ForcePath, RoundsToTheStepHalvesAwayFromZero) {
+  ForcePath path({.force_step = 0.25}, kT);
+  EXPECT_EQ(path.hold({0.125, -0.125, 0.124}).after, Vec3(0.25, -0.25, 0.0));
+  EXPECT_EQ(path.hold({1.0, 0.9, -7.3}).after, Vec3(1.0, 1.0, -7.25));
+}
+
+TEST(ForcePath, SaturatesTheNormAfterRounding) {
+  ForcePath path({.force_max = 5.0, .force_step = 1.0}, kT);
+  EXPECT_EQ(path.hold({3.2, 4.1, 0.0}).after, Vec3(3, 4, 0)) << "at the limit";
+  EXPECT_EQ(path.hold({6.0, 8.0, 0.4}).after, Vec3(3, 4, 0));
+}
+
+TEST(ForcePath, LimitsTheChangeOfTheForce) {
+  ForcePath path({.force_slew = 1000.0}, kT);  // 1 N a period
+  EXPECT_EQ(path.hold({3.0, 0.0, 0.0}).after, Vec3(1, 0, 0)) << "from zero";
+  EXPECT_EQ(path.hold({3.0, 0.0, 0.0}).after, Vec3(2, 0, 0));
+  EXPECT_EQ(path.hold({2.5, 0.0, 0.0}).after, Vec3(2.5, 0, 0));
+  EXPECT_EQ(path.hold({-9.0, 0.0, 0.0}).after, Vec3(1.5, 0, 0));
+  path.reset();
+  EXPECT_EQ(path.hold({0.0, -3.0, 0.0}).after, Vec3(0, -1, 0));
+}
+
+TEST(ForcePath, DelaysByWholeAndFractionalPeriods) {
+  for (const double delay : {0.0, 0.25, 1.0, 2.5, 3.0}) {
+    ForcePath path({.delay_samples = delay}, kT);
+    EXPECT_EQ(path.switch_part(), delay - std::floor(delay));
+    for (int round = 0; round < 2; ++round) {
+      for (int k = 0; k < 10; ++k) {
+        // Force k + 1 acts from k + delay on. Before the first one the force is zero.
+        const HeldForce held = path.hold({k + 1.0, 0, 0});
+        EXPECT_EQ(held.after.x(), std::max(0.0, k + 1.0 - std::floor(delay))) << delay;
+        EXPECT_EQ(held.before.x(), std::max(0.0, k - std::floor(delay))) << delay;
+      }
+      path.reset();
+    }
+  }
+}
+
+TEST(VelocityFilter, DifferenceIsThatOfTheLastTwoSamples) {
+  VelocityFilter filter(DifferenceFilter{}, kT);
+  filter.reset({1, 1, 1});
+  EXPECT_EQ(filter.read({1.5, 1, 0}), Vec3((1.5 - 1) / kT, 0, (0 - 1) / kT));
+  EXPECT_EQ(filter.read({1.5, 1, 0}), Vec3(0, 0, 0));
+}
+
+/// The continuous low-pass answers a step of the velocity from 0 to 1 by 1 - e^(-2 pi f t), and so does the sampled
+/// one.
+TEST(VelocityFilter, LowPassAnswersAStepLikeTheContinuousOne) {
+  constexpr double kCutoff = 30.0;
+  VelocityFilter filter(LowPassFilter{kCutoff}, kT);
+  filter.reset(Vec3::Zero());
+  for (int k = 1; k <= 100; ++k) {
+    const double t = k * kT;
+    EXPECT_NEAR(filter.read({t, 0, -t}).x(), -std::expm1(-2.0 * std::numbers::pi * kCutoff * t), 1e-12);
+  }
+}
+
+TEST(VelocityFilter, ALowPassAboveAllFrequenciesIsTheDifference) {
+  VelocityFilter low_pass(LowPassFilter{1e9}, kT), difference(DifferenceFilter{}, kT);
+  low_pass.reset(Vec3::Zero());
+  difference.reset(Vec3::Zero());
+  Random random(1);
+  for (int k = 0; k < 50; ++k) {
+    const Vec3 x(random.normal(), random.normal(), random.normal());
+    EXPECT_EQ(low_pass.read(x), difference.read(x));
+  }
+}
+
+/// The definition, on all samples at once: the longest window, grown from 1, all samples of which are within the noise
+/// of the line through its ends.
+double longest_line(const std::vector<double>& x, double noise) {
+  const std::size_t k = x.size() - 1;
+  double slope = 0.0;
+  for (std::size_t n = 1; n <= std::min<std::size_t>(k, 15); ++n) {
+    for (std::size_t j = k - n; j <= k; ++j) {
+      const double line = x[k - n] + (x[k] - x[k - n]) * static_cast<double>(j - (k - n)) / static_cast<double>(n);
+      if (std::abs(line - x[j]) > noise + 1e-15) return slope;
+    }
+    slope = (x[k] - x[k - n]) / (static_cast<double>(n) * kT);
+  }
+  return slope;
+}
+
+TEST(VelocityFilter, AdaptiveWindowIsItsDefinition) {
+  Random random(7);
+  for (const double noise : {0.3e-5, 1e-5, 4e-5}) {
+    VelocityFilter filter(AdaptiveWindowFilter{noise}, kT);
+    std::vector<double> x = {0.0}, y = {0.0};
+    filter.reset(Vec3::Zero());
+    double longest = 0.0;
+    for (int k = 1; k < 400; ++k) {
+      x.push_back(1e-4 * std::sin(0.02 * k) + 1e-5 * random.uniform());
+      y.push_back(std::round(3.7e-6 * k / 1e-5) * 1e-5);
+      const Vec3 v = filter.read({x.back(), y.back(), 0.0});
+      EXPECT_NEAR(v.x(), longest_line(x, noise), 1e-10) << k;
+      EXPECT_NEAR(v.y(), longest_line(y, noise), 1e-10) << k;
+      EXPECT_EQ(v.z(), 0.0);
+      longest = std::max(longest, std::abs(v.x()));
+    }
+    EXPECT_GT(longest, 0.0);
+  }
+}
+
+/// The error is half a step at either end of a window of 15 samples instead of one.
+TEST(VelocityFilter, AdaptiveWindowSmoothsARoundedRamp) {
+  constexpr double kEncoder = 1e-5, kSpeed = 0.0037;
+  VelocityFilter window(AdaptiveWindowFilter{kEncoder}, kT), difference(DifferenceFilter{}, kT);
+  window.reset(Vec3::Zero());
+  difference.reset(Vec3::Zero());
+  double worst = 0.0, worst_difference = 0.0;
+  for (int k = 1; k < 1000; ++k) {
+    const Vec3 x(std::round(kSpeed * k * kT / kEncoder) * kEncoder, 0, 0);
+    const double v = window.read(x).x(), d = difference.read(x).x();
+    if (k < 20) continue;
+    worst = std::max(worst, std::abs(v - kSpeed));
+    worst_difference = std::max(worst_difference, std::abs(d - kSpeed));
+  }
+  EXPECT_LE(worst, kEncoder / (15 * kT));
+  EXPECT_GT(worst_difference, 0.6 * kEncoder / kT);
+}
+
+TEST(VelocityFilter, AResetForgetsEverything) {
+  for (const VelocityFilterConfig& config :
+       {VelocityFilterConfig(DifferenceFilter{}), VelocityFilterConfig(LowPassFilter{50.0}),
+        VelocityFilterConfig(AdaptiveWindowFilter{1e-3})}) {
+    VelocityFilter filter(config, kT);
+    std::vector<Vec3> seen[2];
+    for (auto& values : seen) {
+      filter.reset({0.1, 0.2, 0.3});
+      for (int k = 1; k < 40; ++k) values.push_back(filter.read({0.1 * std::cos(0.1 * k), 0.2, 0.3 + 0.001 * k * k}));
+    }
+    EXPECT_EQ(seen[0], seen[1]);
+  }
+}
+
+TEST(DevicePresets, HaveNamesOfTheirOwnAndPossibleNumbers) {
+  for (const DevicePreset& preset : device_presets()) {
+    EXPECT_EQ(find_device_preset(preset.name), &preset);
+    const ImpedanceDeviceConfig config = config_of(preset);
+    EXPECT_GT(config.handle_mass, 0.0);
+    EXPECT_GE(config.viscous, 0.0);
+    EXPECT_GE(config.coulomb, 0.0);
+    EXPECT_GT(config.encoder_step, 0.0);
+    EXPECT_GT(config.force_max.value(), 0.0);
+    EXPECT_GT(preset.max_stiffness.value, 0.0);
+    EXPECT_EQ(preset.max_stiffness.source, NumberSource::chai3d);
+    EXPECT_GT(preset.max_damping.value, 0.0);
+  }
+  EXPECT_EQ(find_device_preset("touch")->max_stiffness.value, 400.0);
+  EXPECT_EQ(find_device_preset("Touch"), nullptr);
+}
 
 /// The rows of a run in which the device renders `law` of the tool and a hand pushes with `push` along x.
 std::vector<StepRecord> rows_of(const ImpedanceDeviceConfig& config, test::FakeAlgorithm::Law law, std::uint64_t steps,
@@ -25,7 +186,7 @@ std::vector<StepRecord> rows_of(const ImpedanceDeviceConfig& config, test::FakeA
   SimulationConfig run;
   run.dt = kT;
   run.steps = steps;
-  run.mass = 1e9;  // nobody may ask for it
+  run.mass = 1e9;  // must not matter
   run.position = start;
   run.velocity = velocity;
   test::Recorder recorder;
@@ -33,7 +194,7 @@ std::vector<StepRecord> rows_of(const ImpedanceDeviceConfig& config, test::FakeA
   return recorder.rows;
 }
 
-/// Pushes only, along +x from x = 0 on.
+/// A wall that pushes along +x at x < 0.
 test::FakeAlgorithm::Law wall(double K, double B) {
   return [=](const ToolState& t) {
     const double x = t.pose.position.x();
@@ -136,7 +297,7 @@ TEST(ImpedanceDevice, IsStableUpToTheStiffnessOfTheTheory) {
   }
 }
 
-TEST(ImpedanceDevice, TheToolIsWhereTheEncoderSays) {
+TEST(ImpedanceDevice, TheToolIsAtTheMeasuredPosition) {
   constexpr double q = 1.0 / 4096;
   ImpedanceDeviceConfig config;
   config.handle_mass = kMass;
@@ -153,7 +314,7 @@ TEST(ImpedanceDevice, TheToolIsWhereTheEncoderSays) {
   }
 }
 
-/// The motors hold what they can; the hand's spring settles the rest.
+/// A push beyond the saturation of the motors moves the handle.
 TEST(ImpedanceDevice, SaturatedMotorsYield) {
   for (const double push : {-2.9, -3.1}) {
     ImpedanceDeviceConfig config;
@@ -161,7 +322,7 @@ TEST(ImpedanceDevice, SaturatedMotorsYield) {
     config.viscous = 5.0;
     config.force_max = 3.0;
     const auto rows = rows_of(config, wall(1000.0, 5.0), 4000, Vec3::Zero(), Vec3::Zero(), push);
-    // Beyond, 0.1 N moves it against the friction at 0.02 m/s for four seconds.
+    // Beyond the saturation, 0.1 N moves it against the friction at 0.02 m/s for four seconds.
     EXPECT_EQ(rows.back().handle.position.x() < -0.05, push < -3.0);
   }
 }

@@ -16,7 +16,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
-from python_fixture import ENVIRONMENT, EVERYTHING, PEG, SHORT, SOURCE, Scratch, program, python, words_of
+from python_fixture import ENVIRONMENT, EVERYTHING, PEG, SHORT, SOURCE, Scratch, main, program, python, words_of
 
 import hapbench
 from hapbench import _hapbench
@@ -330,4 +330,4 @@ class Notebook(Scratch):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    main()

@@ -2,7 +2,7 @@
 #include <optional>
 #include <string_view>
 
-#include "scenarios/plugins/load_peer.hpp"
+#include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/studies/precision/ideal_runs.hpp"

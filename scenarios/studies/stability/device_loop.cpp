@@ -14,24 +14,15 @@ bool is_blind(const HandFields& hand) {
 DeviceLoop impedance_loop(const Scenario& scenario, const ImpedanceDeviceConfig& device, double lambda) {
   DeviceLoop result;
   SampledLoop& loop = result.loop.emplace<SampledLoop>();
-  loop.handle_mass = device.handle_mass;
-  loop.damping = device.viscous;
-  loop.coulomb = device.coulomb;
-  loop.encoder_step = device.encoder_step;
-  loop.delay = device.delay_samples;
+  loop.device = device;
   loop.period = scenario.time.step;
   loop.stiffness = lambda * scenario.rendering.stiffness;
   loop.wall_damping = lambda * normal_damping(scenario.rendering);
-  if (const auto* filter = std::get_if<LowPassFilter>(&device.velocity_filter)) loop.cutoff = filter->cutoff;
   if (const auto* hand = std::get_if<MassSpringDamperHandFields>(&scenario.hand))
     loop.hand = {hand->mass, hand->spring.stiffness, hand->spring.damping};
   else if (!is_blind(scenario.hand))
     result.no_theory = "the hand's force is sampled";
-
-  if (std::holds_alternative<AdaptiveWindowFilter>(device.velocity_filter))
-    result.no_theory = "an adaptive window is not linear";
-  if (device.coulomb > 0.0 || device.encoder_step > 0.0 || device.force_step > 0.0)
-    result.no_theory = "Coulomb friction and steps of encoder and force are not linear";
+  if (const char* nonlinearity = loop.nonlinearity()) result.no_theory = nonlinearity;
   return result;
 }
 

@@ -4,8 +4,7 @@
 #include <string>
 #include <variant>
 
-#include "device_model/theory/admittance_loop.hpp"
-#include "device_model/theory/sampled_loop.hpp"
+#include "device_model/theory/linear_loops.hpp"
 #include "scenarios/description/scenario.hpp"
 
 namespace hapbench {

@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/stages/damping_and_limits.hpp"
-#include "device_model/theory/eigenvalue_edge.hpp"
+#include "device_model/theory/linear_loops.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/input_error.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "device_model/theory/eigenvalue_edge.hpp"
+#include "device_model/theory/linear_loops.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/stability/device_loop.hpp"
 #include "scenarios/studies/stability/map_overrides.hpp"

@@ -145,7 +145,7 @@ def draw_path(ax, plane, samples, looks, surface=None):
         draw_surface(ax, plane, samples, surface)
 
 
-def corners(trajectory, spans=1000):
+def corners(trajectory, spans=300):
     """Rows that keep the shape of a way: the extremes along each axis in so many equal spans of rows."""
     n = len(trajectory["px_m"])
     if n <= 6 * spans:

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "algorithms/peers/contact_library.hpp"
 #include "algorithms/registry.hpp"
 #include "tests/support/fakes.hpp"
 #include "tests/support/setting.hpp"
@@ -14,36 +15,37 @@ namespace {
 
 constexpr double kLength = 0.01;
 
-/// A peer that answers what it is told to, or throws.
-class FakePeer final : public Peer {
- public:
+/// A library whose sources give the answer in `script`, or throw.
+struct FakePeer {
   struct Script {
-    std::vector<PeerContact> answer;
+    std::vector<HapbenchContact> answer;
     int asked = 0;
     int throws_at = -1;
-    PeerPose pose;
+    HapbenchPose pose = {};
   };
-  explicit FakePeer(Script& script) : script_(script) {}
+  static inline Script script;
 
-  std::size_t contacts_at(const PeerPose& pose, std::span<PeerContact> room) override {
-    script_.pose = pose;
-    if (script_.asked++ == script_.throws_at) throw std::runtime_error("no\nway");
-    std::copy(script_.answer.begin(), script_.answer.end(), room.begin());
-    return script_.answer.size();
+  FakePeer(const HapbenchSurface& surface, const HapbenchCylinder&) {
+    if (surface.triangle_count == 0) throw std::runtime_error("nothing there");
   }
-
- private:
-  Script& script_;
+  std::size_t contacts_at(const HapbenchPose& pose, std::span<HapbenchContact> room) {
+    script.pose = pose;
+    if (script.asked++ == script.throws_at) throw std::runtime_error("no\nway");
+    std::copy(script.answer.begin(), script.answer.end(), room.begin());
+    return script.answer.size();
+  }
 };
 
-std::unique_ptr<PeerSource> source_of(FakePeer::Script& script) {
-  return std::make_unique<PeerSource>(std::make_unique<FakePeer>(script), "fake", kLength, 10);
+const HapbenchContactSource kFake = contact_library<FakePeer>("fake");
+
+std::unique_ptr<PeerSource> source_of(FakePeer::Script script) {
+  FakePeer::script = std::move(script);
+  const PeerSurface ten_triangles{{}, std::vector<std::uint32_t>(30)};
+  return std::make_unique<PeerSource>(kFake, ten_triangles, HapbenchCylinder{.radius = 0.001, .length = kLength});
 }
 
 TEST(PeerSource, TakesPointDepthAndDirectionAsTheyAre) {
-  FakePeer::Script script;
-  script.answer = {{7, {1, 2, 3}, {0, 0, -2}, 0.5}, {8, {4, 5, 6}, {1, 0, 0}, 0.0}};
-  const auto source = source_of(script);
+  const auto source = source_of({{{7, {1, 2, 3}, {0, 0, -2}, 0.5}, {8, {4, 5, 6}, {1, 0, 0}, 0.0}}});
   ContactBuffer contacts(source->capacity());
   source->contacts_at({}, contacts);
   ASSERT_EQ(contacts.size(), 2u);
@@ -59,32 +61,35 @@ TEST(PeerSource, TakesPointDepthAndDirectionAsTheyAre) {
 
 TEST(PeerSource, LeavesOutWhatHasNoDirectionOrDepth) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  FakePeer::Script script;
-  script.answer = {
-      {0, {}, {0, 0, 0}, 0.5}, {0, {}, {kNaN, 0, 1}, 0.5}, {0, {}, {0, 0, 1}, -0.5}, {0, {}, {0, 0, 1}, kNaN}};
-  const auto source = source_of(script);
+  const auto source = source_of(
+      {{{0, {}, {0, 0, 0}, 0.5}, {0, {}, {kNaN, 0, 1}, 0.5}, {0, {}, {0, 0, 1}, -0.5}, {0, {}, {0, 0, 1}, kNaN}}});
   ContactBuffer contacts(source->capacity());
   source->contacts_at({}, contacts);
   EXPECT_TRUE(contacts.empty());
 }
 
 TEST(PeerSource, AsksAboutTheMiddleOfTheDrillWithItsShankAlongZ) {
-  FakePeer::Script script;
-  const auto source = source_of(script);
+  const auto source = source_of({});
   ContactBuffer contacts(source->capacity());
   const Vec3 axis = Vec3(1, 2, -3).normalized();
   source->contacts_at({{0.1, 0.2, 0.3}, axis}, contacts);
-  const auto& [centre, r] = script.pose;
+  const auto& [centre, r] = FakePeer::script.pose;
   EXPECT_TRUE(Vec3(centre[0], centre[1], centre[2]).isApprox(Vec3(0.1, 0.2, 0.3) - 0.5 * kLength * axis, 1e-15));
   EXPECT_TRUE(Vec3(r[2], r[5], r[8]).isApprox(-axis, 1e-15));
+}
+
+TEST(PeerSource, SaysWhyALibraryCannotMakeIt) {
+  try {
+    const PeerSource source(kFake, {}, {.radius = 0.001, .length = kLength});
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "fake fails: nothing there");
+  }
 }
 
 TEST(PeerSource, EndsTheRunWhenTheLibraryThrows) {
   for (const AlgorithmEntry& algorithm : algorithms()) {
     for (const bool controlled : {false, true}) {
-      FakePeer::Script script;
-      script.answer = {{0, {}, {0, 0, -1}, 1e-5}, {1, {}, {1, 0, 0}, 1e-5}};
-      script.throws_at = 3;
       test::Setting setting;
       setting.springs.emplace();
       RenderingConfig config;
@@ -93,15 +98,15 @@ TEST(PeerSource, EndsTheRunWhenTheLibraryThrows) {
       config.max_force = 1.0;
       config.reduction.emplace();
       SimulationParts parts = test::free_run(setting, config);
-      parts.source = source_of(script);
+      parts.source = source_of({.answer = {{0, {}, {0, 0, -1}, 1e-5}, {1, {}, {1, 0, 0}, 1e-5}}, .throws_at = 3});
       Simulation simulation(test::free_run_config(setting, config, 10), std::move(parts), {});
       const SimulationResult result = simulation.run();
       EXPECT_EQ(result.outcome, Outcome::diverges) << algorithm.info->name << controlled;
       EXPECT_EQ(result.divergence.step, 3u);
       EXPECT_EQ(result.divergence.fault, "fake fails: no way");
-      EXPECT_EQ(script.asked, 4);
+      EXPECT_EQ(FakePeer::script.asked, 4);
       simulation.reset();
-      script.throws_at = -1;
+      FakePeer::script.throws_at = -1;
       EXPECT_EQ(simulation.run().outcome, Outcome::completes);
     }
   }

@@ -279,11 +279,12 @@ TEST(PassivityController, ItsJacobianIsThatOfTheForceItRenders) {
   config.mass = 0.2;
   PassivityController controller(std::make_unique<test::FakeAlgorithm>([](const ToolState&) { return Vec3(9, 0, 0); }),
                                  config);
-  controller.prepare({.dt = 0.0005});
+  const std::uint64_t row = 0;
+  const Vec3 input = Vec3::Zero();
+  controller.prepare({.dt = 0.0005, .row = &row, .input = &input});
   controller.reset();
   ContactBuffer none(0);
   RenderedForce out;
-  controller.take_input(Vec3::Zero());
   controller.compute({}, none, out);  // at rest with nothing stored: no force
   EXPECT_EQ(out.rendered, Vec3(0, 0, 0));
   EXPECT_EQ(controller.jacobian().stiffness, Mat3(Mat3::Zero()));

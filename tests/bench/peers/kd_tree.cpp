@@ -12,8 +12,8 @@
 
 #include "tests/bench/peers/linked_peers.hpp"
 
-/// CGAL: a k-d tree over the points of the shell, asked for those in the box around the drill, each of which is then
-/// compared with the drill. The only library here that answers our own question, to the point.
+/// CGAL: a k-d tree over the points of the shell. A query takes the points in the box around the drill and compares
+/// each with the drill, which answers exactly our question.
 namespace hapbench::bench {
 namespace {
 
@@ -24,18 +24,18 @@ using Traits =
 using Tree = CGAL::Kd_tree<Traits>;
 using Box = CGAL::Fuzzy_iso_box<Traits>;
 
-class KdTree final : public Peer {
+class KdTree {
  public:
-  KdTree(const PeerSurface& surface, const PeerDrill& drill) : drill_(drill) {
-    for (std::uint32_t i = 0; 3 * i < surface.vertices.size(); ++i) {
+  KdTree(const HapbenchSurface& surface, const HapbenchCylinder& drill) : drill_(drill) {
+    for (std::uint32_t i = 0; i < surface.vertex_count; ++i) {
       const double* p = &surface.vertices[3 * i];
       tree_.insert({{p[0], p[1], p[2]}, i});
     }
     tree_.build();
   }
 
-  /// Their numbers, ascending.
-  std::size_t contacts_at(const PeerPose& pose, std::span<PeerContact> room) override {
+  /// The indices of the points in the drill, ascending.
+  std::size_t contacts_at(const HapbenchPose& pose, std::span<HapbenchContact> room) {
     near_.clear();
     points_.clear();
     const auto& r = pose.rotation;
@@ -54,12 +54,12 @@ class KdTree final : public Peer {
     }
     std::sort(points_.begin(), points_.end());
     const std::size_t found = std::min(points_.size(), room.size());
-    for (std::size_t i = 0; i < found; ++i) room[i].number = points_[i];
+    for (std::size_t i = 0; i < found; ++i) room[i].index = points_[i];
     return found;
   }
 
  private:
-  PeerDrill drill_;
+  HapbenchCylinder drill_;
   Tree tree_;
   std::vector<Numbered> near_;
   std::vector<std::uint32_t> points_;
@@ -67,8 +67,9 @@ class KdTree final : public Peer {
 
 }  // namespace
 
-std::unique_ptr<Peer> make_kd_tree(const PeerSurface& surface, const PeerDrill& drill) {
-  return std::make_unique<KdTree>(surface, drill);
+const HapbenchContactSource& kd_tree() {
+  static const HapbenchContactSource library = contact_library<KdTree>("kd_tree");
+  return library;
 }
 
 }  // namespace hapbench::bench

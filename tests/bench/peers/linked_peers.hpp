@@ -1,11 +1,11 @@
 #pragma once
 
-#include "algorithms/peers/peer.hpp"
+#include "algorithms/peers/contact_library.hpp"
 
-/// Peers that no run takes contacts of, linked with the benchmark.
+/// Contact sources that are linked with the benchmark and no run uses.
 namespace hapbench::bench {
 
-MakePeer make_kd_tree;  ///< over points: the vertices of the surface
-MakePeer make_ode;
+const HapbenchContactSource& kd_tree();  ///< CGAL, over the vertices of the surface
+const HapbenchContactSource& ode();
 
 }  // namespace hapbench::bench

@@ -8,43 +8,43 @@
 
 #include "algorithms/peers/peer_source.hpp"
 #include "results/summary/provenance.hpp"
-#include "scenarios/plugins/load_peer.hpp"
+#include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "tests/bench/peers/linked_peers.hpp"
 #include "tests/bench/task_scene.hpp"
 
-/// Our search and other libraries at the same poses of the same scenes: peers/<library>/<task> takes as long for a pose
-/// as its counters say it found contacts there. Libraries that are not here when it is built are left out.
+/// Our search and other libraries at the same poses of the same scenes, as peers/<library>/<task>. Libraries that are
+/// not installed are left out.
 namespace hapbench::bench {
 namespace {
 
-/// They take milliseconds a pose.
+/// Poses between queries, because the libraries take milliseconds per pose.
 constexpr std::size_t kEvery = 64;
 
-/// Room for what a library answers; ODE says no more than this.
+/// Room for the contacts of a library; more than the limit of ODE.
 constexpr std::size_t kRoom = 100'000;
 
 struct Library {
   std::string name;
-  MakePeer* make;
-  bool same_question;  ///< which points of the shell are in the drill
+  const HapbenchContactSource* source;
+  bool same_question;  ///< true: which points of the shell are in the drill
 };
 
 std::vector<Library> libraries() {
   std::vector<Library> here;
 #ifdef HAPBENCH_PEER_KD_TREE
-  here.push_back({"cgal_kd_tree", make_kd_tree, true});
+  here.push_back({"cgal_kd_tree", &kd_tree(), true});
 #endif
   for (const char* name : kPeers)
-    if (MakePeer* make = find_peer(name)) here.push_back({name, make, false});
+    if (const HapbenchContactSource* source = find_peer(name)) here.push_back({name, source, false});
 #ifdef HAPBENCH_PEER_ODE
-  here.push_back({"ode", make_ode, false});
+  here.push_back({"ode", &ode(), false});
 #endif
   return here;
 }
 
-/// The block with a hole, in the form that the library wants.
+/// The block with a hole as points or triangles, as the library takes it.
 const PeerSurface& surface_for(const Library& library) {
   static const PeerSurface points = [] {
     PeerSurface surface;
@@ -60,9 +60,9 @@ const PeerSurface& surface_for(const Library& library) {
   return library.same_question ? points : triangles;
 }
 
-/// What our search and depths say at the poses that the libraries are asked at.
+/// The answers of our search and depths at the poses of the queries.
 struct Ours {
-  std::vector<PeerPose> poses;
+  std::vector<HapbenchPose> poses;
   std::vector<std::vector<std::uint32_t>> points;
   std::vector<double> depths;
 };
@@ -86,33 +86,29 @@ const Ours& ours(const std::string& task) {
   return known.emplace(task, std::move(answers)).first->second;
 }
 
-std::unique_ptr<Peer> make_peer(const Library& library, const TaskScene& scene) {
-  const Cylinder drill = make_cylinder(scene.loaded.scenario.tool);
-  return library.make(surface_for(library), {drill.radius(), drill.length()});
-}
-
-/// Compares the answers before it times them: to the point with a library that is asked our question, else how often
-/// both see a contact, and how deep they say it is.
+/// Compares the answers before it times them: exactly with a library that answers our question, otherwise by how often
+/// both see a contact, and how deep it is.
 void time_library(benchmark::State& state, const Library& library, const std::string& task) {
   const Ours& known = ours(task);
-  const auto peer = make_peer(library, task_scene(task));
-  std::vector<PeerContact> room(kRoom);
+  const Cylinder drill = make_cylinder(task_scene(task).loaded.scenario.tool);
+  Peer peer(*library.source, surface_for(library), {.radius = drill.radius(), .length = drill.length()});
+  std::vector<HapbenchContact> room(kRoom);
   double contacts = 0.0, agreed = 0.0, depth = 0.0, our_depth = 0.0;
   for (std::size_t k = 0; k < known.poses.size(); ++k) {
-    const std::span answer(room.data(), peer->contacts_at(known.poses[k], room));
-    const auto is_same = [](const PeerContact& contact, std::uint32_t point) { return contact.number == point; };
+    const std::span answer(room.data(), peer.contacts_at(known.poses[k], room));
+    const auto is_same = [](const HapbenchContact& contact, std::uint32_t point) { return contact.index == point; };
     if (library.same_question &&
         !std::equal(answer.begin(), answer.end(), known.points[k].begin(), known.points[k].end(), is_same))
       return state.SkipWithError(fmt::format("not the points of our search at pose {}", k).c_str());
     contacts += static_cast<double>(answer.size());
     agreed += answer.empty() == known.points[k].empty() ? 1.0 : 0.0;
     double deepest = 0.0;
-    for (const PeerContact& contact : answer) deepest = std::max(deepest, contact.depth);
+    for (const HapbenchContact& contact : answer) deepest = std::max(deepest, contact.depth);
     depth += deepest;
     our_depth += known.depths[k];
   }
   for (auto _ : state) {
-    for (const PeerPose& pose : known.poses) benchmark::DoNotOptimize(peer->contacts_at(pose, room));
+    for (const HapbenchPose& pose : known.poses) benchmark::DoNotOptimize(peer.contacts_at(pose, room));
   }
   const auto n = static_cast<double>(known.poses.size());
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(known.poses.size()));
@@ -124,7 +120,7 @@ void time_library(benchmark::State& state, const Library& library, const std::st
   state.counters["same_question"] = library.same_question ? 1.0 : 0.0;
 }
 
-/// The search alone, and with the depths, at the consecutive poses that a run asks it at.
+/// Times a search, with or without depths, at the consecutive poses of a run.
 template <class Source>
 void time_ours(benchmark::State& state, Source& source, const std::vector<ToolPose>& poses) {
   ContactBuffer contacts(source.capacity());

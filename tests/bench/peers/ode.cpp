@@ -4,19 +4,19 @@
 
 #include "tests/bench/peers/linked_peers.hpp"
 
-/// ODE: its triangle mesh (OPCODE) against its cylinder, in millimetres. It returns as many contacts as it is given
-/// room for.
+/// ODE: its triangle mesh (OPCODE) against its cylinder, in millimetres. It returns as many contacts as there is room
+/// for.
 namespace hapbench::bench {
 namespace {
 
 constexpr double kMillimetres = 1e3;
 constexpr int kRoom = 0xffff;  // the most that it takes
 
-class Ode final : public Peer {
+class Ode {
  public:
-  Ode(const PeerSurface& surface, const PeerDrill& drill)
-      : vertices_(surface.vertices.begin(), surface.vertices.end()),
-        triangles_(surface.triangles.begin(), surface.triangles.end()),
+  Ode(const HapbenchSurface& surface, const HapbenchCylinder& drill)
+      : vertices_(surface.vertices, surface.vertices + 3 * surface.vertex_count),
+        triangles_(surface.triangles, surface.triangles + 3 * surface.triangle_count),
         contacts_(kRoom) {
     dInitODE();
     for (dReal& x : vertices_) x *= static_cast<dReal>(kMillimetres);
@@ -26,7 +26,7 @@ class Ode final : public Peer {
     mesh_ = dCreateTriMesh(nullptr, data_, nullptr, nullptr, nullptr);
     drill_ = dCreateCylinder(nullptr, kMillimetres * drill.radius, kMillimetres * drill.length);
   }
-  ~Ode() override {
+  ~Ode() {
     dGeomDestroy(drill_);
     dGeomDestroy(mesh_);
     dGeomTriMeshDataDestroy(data_);
@@ -35,7 +35,7 @@ class Ode final : public Peer {
   Ode(const Ode&) = delete;
   Ode& operator=(const Ode&) = delete;
 
-  std::size_t contacts_at(const PeerPose& pose, std::span<PeerContact> room) override {
+  std::size_t contacts_at(const HapbenchPose& pose, std::span<HapbenchContact> room) {
     const auto& r = pose.rotation;
     const dMatrix3 rotation = {r[0], r[1], r[2], 0.0, r[3], r[4], r[5], 0.0, r[6], r[7], r[8], 0.0};
     dGeomSetRotation(drill_, rotation);
@@ -57,8 +57,9 @@ class Ode final : public Peer {
 
 }  // namespace
 
-std::unique_ptr<Peer> make_ode(const PeerSurface& surface, const PeerDrill& drill) {
-  return std::make_unique<Ode>(surface, drill);
+const HapbenchContactSource& ode() {
+  static const HapbenchContactSource library = contact_library<Ode>("ode");
+  return library;
 }
 
 }  // namespace hapbench::bench

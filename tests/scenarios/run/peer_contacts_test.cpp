@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "scenarios/plugins/load_peer.hpp"
+#include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "tests/scenarios/studies/precision/results.hpp"
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "scenarios/plugins/load_peer.hpp"
+#include "scenarios/plugins/load_plugin.hpp"
 #include "tests/scenarios/studies/precision/results.hpp"
 
 namespace hapbench::contact_sources_test {

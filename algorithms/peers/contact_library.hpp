@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdio>
+#include <exception>
+#include <span>
+
+#include "algorithms/peers/hapbench_contacts.h"
+
+/// Contact sources in C++ behind the C interface. No Eigen: the modules are compiled with the flags of their libraries,
+/// and a type whose layout depends on flags must not pass between them and the program.
+namespace hapbench {
+
+/// The functions of a contact source that is a class with
+///
+///   Source(const HapbenchSurface& surface, const HapbenchCylinder& tool);
+///   std::size_t contacts_at(const HapbenchPose& pose, std::span<HapbenchContact> room);
+///
+/// both of which may throw.
+template <class Source>
+HapbenchContactSource contact_library(const char* name) {
+  HapbenchContactSource library = {};
+  library.version = HAPBENCH_CONTACTS_VERSION;
+  library.name = name;
+  library.create = [](const HapbenchSurface* surface, const HapbenchCylinder* tool, char* fault,
+                      std::size_t fault_size) -> void* {
+    try {
+      return new Source(*surface, *tool);
+    } catch (const std::exception& error) {
+      std::snprintf(fault, fault_size, "%s", error.what());
+    } catch (...) {
+      std::snprintf(fault, fault_size, "unknown error");
+    }
+    return nullptr;
+  };
+  library.destroy = [](void* source) { delete static_cast<Source*>(source); };
+  library.contacts_at = [](void* source, const HapbenchPose* pose, HapbenchContact* contacts, std::size_t room,
+                           char* fault, std::size_t fault_size) -> std::int64_t {
+    try {
+      return static_cast<std::int64_t>(static_cast<Source*>(source)->contacts_at(*pose, {contacts, room}));
+    } catch (const std::exception& error) {
+      std::snprintf(fault, fault_size, "%s", error.what());
+    } catch (...) {
+      std::snprintf(fault, fault_size, "unknown error");
+    }
+    return -1;
+  };
+  return library;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,151 @@
+#include "device_model/theory/linear_loops.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <unsupported/Eigen/MatrixFunctions>
+
+namespace hapbench {
+
+double spectral_radius(const Eigen::MatrixXd& A) {
+  return Eigen::EigenSolver<Eigen::MatrixXd>(A, false).eigenvalues().cwiseAbs().maxCoeff();
+}
+
+namespace {
+
+/// Range of K T^2 / m. For smaller values the eigenvalues are so close to 1 that rounding decides.
+constexpr double kLeastEdge = 1e-8;
+constexpr double kNoEdge = 1e6;
+
+/// Indices of the state of a SampledLoop.
+enum { kPosition, kVelocity, kLastPosition, kLastFiltered, kForces };
+
+/// The matrix M for which M (x, T v, T^2/m f) is (x, T v) after a share of the period under a constant force f.
+Eigen::Matrix<double, 2, 3> motion_over(const SampledLoop& loop, double share) {
+  const double m = loop.moving_mass(), T = loop.period;
+  Eigen::Matrix3d rate = Eigen::Matrix3d::Zero();
+  rate(0, 1) = 1.0;
+  rate.row(1) << -loop.hand.stiffness * T * T / m, -loop.total_damping() * T / m, 1.0;
+  return Eigen::Matrix3d((rate * share).exp()).topRows<2>();
+}
+
+}  // namespace
+
+double SampledLoop::filter_memory() const {
+  const auto* filter = std::get_if<LowPassFilter>(&device.velocity_filter);
+  return filter != nullptr ? std::exp(-2.0 * std::numbers::pi * filter->cutoff * period) : 0.0;
+}
+
+const char* SampledLoop::nonlinearity() const {
+  if (device.coulomb > 0.0 || device.encoder_step > 0.0 || device.force_step > 0.0)
+    return "Coulomb friction and steps of encoder and force are not linear";
+  if (std::holds_alternative<AdaptiveWindowFilter>(device.velocity_filter)) return "an adaptive window is not linear";
+  return nullptr;
+}
+
+Eigen::MatrixXd SampledLoop::state_matrix() const {
+  const double T = period, m = moving_mass(), a = filter_memory(), delay = device.delay_samples;
+  const Eigen::Index whole = static_cast<Eigen::Index>(std::floor(delay));
+  const double part = delay - static_cast<double>(whole);
+  const Eigen::Index kept = whole + (part > 0.0 ? 1 : 0), n = kForces + kept;
+
+  Eigen::RowVectorXd filtered = Eigen::RowVectorXd::Zero(n);
+  filtered(kPosition) = 1.0 - a;
+  filtered(kLastPosition) = a - 1.0;
+  filtered(kLastFiltered) = a;
+  Eigen::RowVectorXd force = -(wall_damping * T / m) * filtered;
+  force(kPosition) -= stiffness * T * T / m;
+  // The force of `age` samples ago.
+  const auto force_of = [&](Eigen::Index age) -> Eigen::RowVectorXd {
+    return age == 0 ? force : Eigen::RowVectorXd(Eigen::RowVectorXd::Unit(n, kForces + age - 1));
+  };
+
+  const auto before = motion_over(*this, part), after = motion_over(*this, 1.0 - part);
+  Eigen::MatrixXd moving = Eigen::MatrixXd::Zero(2, n);
+  moving.leftCols<2>() = before.leftCols<2>();
+  if (part > 0.0) moving += before.col(2) * force_of(whole + 1);
+
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
+  A.topRows<2>() = after.leftCols<2>() * moving + after.col(2) * force_of(whole);
+  A(kLastPosition, kPosition) = 1.0;
+  A.row(kLastFiltered) = filtered;
+  for (Eigen::Index age = 0; age < kept; ++age) A.row(kForces + age) = force_of(age);
+  return A;
+}
+
+double eigenvalue_edge(SampledLoop loop) {
+  const double unit = loop.moving_mass() / (loop.period * loop.period);
+  return first_edge(kLeastEdge * unit, kNoEdge * unit, [&loop](double K) {
+    loop.stiffness = K;
+    return loop.state_matrix();
+  });
+}
+
+std::span<const AttachedHand> hand_family() {
+  static constexpr AttachedHand kFamily[] = {{},           {0.1, 100.0},  {0.1, 300.0}, {0.1, 1000.0}, {0.2, 100.0},
+                                             {0.2, 300.0}, {0.2, 1000.0}, {0.5, 100.0}, {0.5, 300.0},  {0.5, 1000.0}};
+  return kFamily;
+}
+
+double worst_hand_edge(SampledLoop loop) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const AttachedHand& hand : hand_family()) {
+    loop.hand = hand;
+    least = std::min(least, eigenvalue_edge(loop));
+  }
+  return least;
+}
+
+namespace {
+
+/// Indices of the state of an AdmittanceLoop.
+enum { kTool, kToolVelocity, kCarriage, kCarriageVelocity, kHandle, kHandleVelocity, kCommands };
+
+/// Carriage and handle after a step of the implicit midpoint rule (HandleMechanics). The columns belong to
+/// (x_c, v_c, x_h, v_h) and to constant forces on carriage and handle.
+Eigen::Matrix<double, 4, 6> mechanics_step(const HandleMechanicsConfig& m, double dt) {
+  const double k = m.structure_stiffness, c = m.structure_damping;
+  Eigen::Matrix4d rate;
+  rate << 0, 1, 0, 0,                                                                                       //
+      -k / m.carriage_mass, -(c + m.friction) / m.carriage_mass, k / m.carriage_mass, c / m.carriage_mass,  //
+      0, 0, 0, 1,                                                                                           //
+      k / m.handle_mass, c / m.handle_mass, -k / m.handle_mass, -c / m.handle_mass;
+  Eigen::Matrix<double, 4, 6> right;
+  right.leftCols<4>() = Eigen::Matrix4d::Identity() + 0.5 * dt * rate;
+  right.rightCols<2>().setZero();
+  right(1, 4) = dt / m.carriage_mass;
+  right(3, 5) = dt / m.handle_mass;
+  return (Eigen::Matrix4d::Identity() - 0.5 * dt * rate).partialPivLu().solve(right);
+}
+
+}  // namespace
+
+Eigen::MatrixXd AdmittanceLoop::state_matrix() const {
+  const auto delay = static_cast<Eigen::Index>(servo.delay);
+  const Eigen::Index n = kCommands + delay;
+  const auto unit = [n](Eigen::Index i) -> Eigen::RowVectorXd { return Eigen::RowVectorXd::Unit(n, i); };
+
+  const Eigen::RowVectorXd hand = -hand_stiffness * unit(kHandle) - hand_damping * unit(kHandleVelocity);
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
+  A.block<2, 2>(kTool, kTool) = tool.step_matrix();
+  A.middleRows<2>(kTool) += tool.input_step() * hand;
+
+  const Eigen::RowVectorXd command = servo.stiffness * (A.row(kTool) - unit(kCarriage)) +
+                                     servo.damping * (A.row(kToolVelocity) - unit(kCarriageVelocity));
+  const Eigen::RowVectorXd actuator = delay == 0 ? command : unit(kCommands + delay - 1);
+  const auto mechanics_of = mechanics_step(mechanics, tool.dt);
+  A.block<4, 4>(kCarriage, kCarriage) = mechanics_of.leftCols<4>();
+  A.middleRows<4>(kCarriage) += mechanics_of.col(4) * actuator + mechanics_of.col(5) * hand;
+
+  for (Eigen::Index i = 0; i < delay; ++i) A.row(kCommands + i) = i == 0 ? command : unit(kCommands + i - 1);
+
+  Eigen::VectorXd scale = Eigen::VectorXd::Ones(n);
+  for (const Eigen::Index velocity : {kToolVelocity, kCarriageVelocity, kHandleVelocity}) scale[velocity] = tool.dt;
+  scale.tail(delay).setConstant(tool.dt * tool.dt / tool.M);
+  return scale.asDiagonal() * A * scale.cwiseInverse().asDiagonal();
+}
+
+}  // namespace hapbench

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <variant>
+
+#include "device_model/admittance_device.hpp"
+#include "device_model/impedance_device.hpp"
+#include "sim/core/bisection.hpp"
+#include "sim/loop/integrators/spring_damper.hpp"
+
+/// The loops of device, hand and wall, whose step is a linear map of their state, and where they become unstable.
+namespace hapbench {
+
+/// Largest |eigenvalue| of a square matrix. Exact to rounding if its entries are of comparable size.
+double spectral_radius(const Eigen::MatrixXd& A);
+
+/// True if no eigenvalue leaves the unit circle by more than rounding.
+inline bool is_stable_step(const Eigen::MatrixXd& A) {
+  return spectral_radius(A) <= 1.0 + 1e-13;
+}
+
+/// The largest value from `least` to `most` up to which the step `step_matrix(value)` is stable, with a relative error
+/// of 1e-11; zero if `least` is unstable, infinite if all values are stable.
+///
+/// It is the first edge from below: values a tenth apart are tried from `least` on, and the first unstable one is
+/// bisected against the last stable one. An unstable range that begins and ends within a tenth is overlooked. The tests
+/// compare the edges of random loops with their frequency responses, which show every crossing.
+template <class StepMatrix>
+double first_edge(double least, double most, StepMatrix step_matrix) {
+  const auto stable = [&](double value) { return is_stable_step(step_matrix(value)); };
+  return stable(least) ? largest_stable(least, 1e-11, stable, most, 1.1) : 0.0;
+}
+
+/// The loop of an impedance device at a wall, as a linear system along one axis in SI units: the loop without
+/// saturation, Coulomb friction, and steps of encoder and force. A handle m x'' = f - b x', with or without a hand,
+/// moves freely between samples. At sample k the wall answers
+///
+///   f_k = -K x_k - B w_k,   w_k = a w_{k-1} + (1 - a) (x_k - x_{k-1}) / T
+///
+/// which is held on the handle from t_k + d T for one period. a = 0 for the difference, a = exp(-2 pi f_c T) for its
+/// low-pass with cut-off f_c. The springs of the wall act to both sides; a wall that only pushes would let go of the
+/// handle.
+struct SampledLoop {
+  ImpedanceDeviceConfig device;  ///< with m, b, d and the velocity filter
+  AttachedHand hand;             ///< zeros: no hand
+  double period = 0.001;         ///< T [s]
+  double stiffness = 0.0;        ///< K of the wall [N/m]
+  double wall_damping = 0.0;     ///< B of the wall [N s/m]
+
+  double moving_mass() const { return device.handle_mass + hand.mass; }   ///< handle and hand [kg]
+  double total_damping() const { return device.viscous + hand.damping; }  ///< handle and hand [N s/m]
+  /// True if the velocity is the difference of positions (or a window, which is not linear).
+  bool differentiates() const { return !std::holds_alternative<LowPassFilter>(device.velocity_filter); }
+  /// The share a of the filter's memory.
+  double filter_memory() const;
+  /// Says which property of the device the linear system does not have; null if none.
+  const char* nonlinearity() const;
+
+  /// The map of the state at sample k to that at k + 1,
+  ///   (x_k, T v_k, x_{k-1}, T w_{k-1}, T^2/m f_{k-1}, T^2/m f_{k-2}, …),
+  /// with the true velocity v of the handle, the moving mass m and as many forces as are on their way. All components
+  /// are in metres, so that the eigenvalues are exact to rounding. The motion between samples is exact (matrix
+  /// exponential).
+  Eigen::MatrixXd state_matrix() const;
+};
+
+/// The exact limit: the largest K up to which no eigenvalue of the loop leaves the unit circle (first_edge), with the
+/// loop's other parameters. Zero if there is none above 1e-8 m / T^2. Takes about 0.5 ms.
+double eigenvalue_edge(SampledLoop loop);
+
+/// Typical hands (100 to 1000 N/m, 0.1 to 0.5 kg), and no hand. They add no damping, because a hand that does is
+/// safer.
+std::span<const AttachedHand> hand_family();
+
+/// The smallest eigenvalue_edge of the loop with each hand of the family in place of its own.
+double worst_hand_edge(SampledLoop loop);
+
+/// The loop of an AdmittanceDevice at a wall, as a linear system along one axis: the loop while neither the limiter of
+/// the input nor the servo saturates and the contact lasts. In each step, as in Simulation, the hand's force f = -k x_h
+/// - b v_h at the row drives the handle and the virtual mass, which the wall holds; the servo then follows the mass.
+struct AdmittanceLoop {
+  SpringDamper tool;  ///< the virtual mass at the wall, with time step and integrator
+  PositionServoConfig servo;
+  HandleMechanicsConfig mechanics;
+  double hand_stiffness = 0.0;  ///< k [N/m]
+  double hand_damping = 0.0;    ///< b [N s/m]
+
+  /// The map of the state at one row to that at the next,
+  ///   (x, T v of the virtual mass, of the carriage, of the handle, T^2/M of the servo's delayed commands, last first)
+  /// with the time step T and the virtual mass M. All components are in metres, so that the eigenvalues are exact to
+  /// rounding.
+  Eigen::MatrixXd state_matrix() const;
+};
+
+}  // namespace hapbench

@@ -1,0 +1,331 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "device_model/hands/drag_hand.hpp"
+#include "device_model/hands/scripted_hands.hpp"
+#include "device_model/hands/tracking_hand.hpp"
+#include "sim/geometry/analytic_shells.hpp"
+
+namespace hapbench::hands_test {
+namespace {
+
+TEST(NoHand, NeverPushes) {
+  NoHand hand;
+  EXPECT_EQ(hand.force(0.0, {}), Vec3(0, 0, 0));
+  EXPECT_EQ(hand.force(9.0, {{{1, 2, 3}, {4, 5, 6}}, {}, {7, 8, 9}}), Vec3(0, 0, 0));
+}
+
+TEST(ForceHand, PushesWithItsProfilesWhateverTheHandleDoes) {
+  ForceHand hand({Profile::Shape(Profile::Ramp{1.0, 2.0}), -3.0, Profile::Shape(Profile::Ramp{0.0, -1.0})});
+  EXPECT_EQ(hand.force(0.0, {}), Vec3(1, -3, 0));
+  EXPECT_EQ(hand.force(2.0, {}), Vec3(5, -3, -2));
+  EXPECT_EQ(hand.force(2.0, {{{1, 2, 3}, {4, 5, 6}}, {}, {7, 8, 9}}), Vec3(5, -3, -2));
+  hand.reset();
+  EXPECT_EQ(hand.force(0.0, {}), Vec3(1, -3, 0));
+}
+
+TEST(PushHand, PushesAlongItsDirectionWithItsProfile) {
+  PushHand hand(Profile::Shape(Profile::Ramp{1.0, 2.0}), {0.0, 0.6, -0.8});
+  EXPECT_EQ(hand.force(0.0, {}), Vec3(0.0, 0.6, -0.8));
+  EXPECT_EQ(hand.force(2.0, {{{1, 2, 3}, {4, 5, 6}}, {}, {7, 8, 9}}), 5.0 * Vec3(0.0, 0.6, -0.8));
+}
+
+TEST(PushDirection, LeansFromStraightDownTowardsItsAzimuth) {
+  EXPECT_EQ(push_direction(0.0, 1.0), Vec3(0, 0, -1));
+  const double eps = 4 * std::numeric_limits<double>::epsilon(), pi = std::numbers::pi;
+  EXPECT_LE((push_direction(pi / 2, 0.0) - Vec3::UnitX()).norm(), eps);
+  EXPECT_LE((push_direction(pi / 2, pi / 2) - Vec3::UnitY()).norm(), eps);
+  EXPECT_LE((push_direction(pi / 6, pi) - Vec3(-0.5, 0.0, -std::sqrt(0.75))).norm(), eps);
+  for (const double angle : {-3.0, 0.3, 1.0, 2.0}) {
+    for (const double azimuth : {-2.0, 0.0, 5.0}) EXPECT_NEAR(push_direction(angle, azimuth).norm(), 1.0, eps);
+  }
+}
+
+TEST(ImpedanceHand, IsASpringAndADamperFromTargetToHandle) {
+  ImpedanceHand hand(100.0, 10.0, {Profile::Shape(Profile::Ramp{1.0, 2.0}), 5.0, 0.0});
+  const HandView view{{{1, 5, -1}, {2, 0, 3}}, {}, {9, 9, 9}};
+  // At t = 3 the target is at x = 7 and moves at 2 m/s.
+  EXPECT_EQ(hand.force(3.0, view), Vec3(100 * 6 + 10 * 0, 0, 100 * 1 - 10 * 3));
+}
+
+TEST(ImpedanceHand, DoesNotPushOnATargetItMovesWith) {
+  ImpedanceHand hand(100.0, 10.0, {Profile::Shape(Profile::Ramp{0.0, 1.0}), 0.0, 0.0});
+  EXPECT_EQ(hand.force(2.0, {{{2, 0, 0}, {1, 0, 0}}, {}, {}}), Vec3(0, 0, 0));
+}
+
+constexpr double kSmoothing = 0.0005;
+
+/// A plane and paths over it.
+class DragOnPlane : public testing::Test {
+ protected:
+  std::shared_ptr<const SurfacePath> over(std::vector<Vec3> points) const {
+    return std::make_shared<const SurfacePath>(SurfacePath::over(surface_, points));
+  }
+  std::shared_ptr<const SurfacePath> along(const Vec3& start, const Vec3& direction, double length) const {
+    return std::make_shared<const SurfacePath>(SurfacePath::along(surface_, start, direction, length));
+  }
+
+  const PointShell shell_{surface_points(Plane{0.004, 0.0001}), 0.0001};
+  const SmoothedSurface surface_{shell_, kSmoothing};
+};
+
+TEST_F(DragOnPlane, PathGoesThroughItsPointsBelowThem) {
+  const auto path = over({{-0.001, 0, 0.0003}, {0.001, 0, 0.0003}, {0.001, 0.001, -0.0002}});
+  EXPECT_NEAR(path->length(), 0.003, 1e-15);
+  EXPECT_NEAR((path->at(0.0).position - Vec3(-0.001, 0, 0)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((path->at(0.00123).position - Vec3(0.00023, 0, 0)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((path->at(0.0027).position - Vec3(0.001, 0.0007, 0)).norm(), 0.0, 1e-15);
+  EXPECT_EQ(path->at(1.0).position, path->at(path->length()).position);
+  EXPECT_EQ(path->at(-1.0).position, path->at(0.0).position);
+}
+
+TEST_F(DragOnPlane, DirectionTurnsSteadilyAroundACorner) {
+  const auto path = over({{-0.001, 0, 0}, {0.001, 0, 0}, {0.001, 0.001, 0}});
+  EXPECT_NEAR((path->direction(0.001) - Vec3(1, 0, 0)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((path->direction(0.002) - Vec3(1, 1, 0).normalized()).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((path->direction(0.0027) - Vec3(0, 1, 0)).norm(), 0.0, 1e-12);
+}
+
+TEST_F(DragOnPlane, PathAlongADirectionEndsAtTheEdge) {
+  const auto path = along({0.001, 0, 0.002}, {2, 0, -5}, 1.0);
+  // Places beyond the last points are still in their plane as long as some point is within the smoothing radius.
+  EXPECT_GT(path->length(), 0.001 - 1e-12);
+  EXPECT_LT(path->length(), 0.001 + kSmoothing);
+  EXPECT_NEAR(path->at(0.0005).position.x(), 0.0015, 1e-12);
+  EXPECT_NEAR(along({0, 0, 0}, {1, 0, 0}, 0.001)->length(), 0.001, 1.01 * SurfacePath::spacing(kSmoothing));
+  EXPECT_EQ(along({0, 0, 0}, {0, 0, 1}, 0.001)->length(), 0.0) << "no way on along the normal";
+}
+
+TEST(SurfacePath, AlongADirectionStartsFromFarAboveARoughSurface) {
+  // Waves of 0.1 mm, shorter than the smoothing radius: seen from 2 mm above, the first place lies off the surface.
+  constexpr double kWave = 2.0 * std::numbers::pi / 0.0003, kHeight = 0.0001;
+  std::vector<SurfacePoint> points;
+  for (int i = -40; i <= 40; ++i) {
+    for (int j = -40; j <= 40; ++j) {
+      const double x = 5e-5 * i, y = 5e-5 * j;
+      const Vec3 normal(-kHeight * kWave * std::cos(kWave * x), -kHeight * kWave * std::cos(kWave * y), 1.0);
+      const double z = kHeight * (std::sin(kWave * x) + std::sin(kWave * y));
+      points.push_back({Vec3(x, y, z), normal.normalized()});
+    }
+  }
+  const PointShell shell(points, 0.0);
+  const SmoothedSurface surface(shell, kSmoothing);
+  for (int i = -3; i <= 3; ++i)
+    EXPECT_GT(SurfacePath::along(surface, {1e-4 * i, 1e-4, 0.002}, {1, 0, 0}, 0.001).length(), 0.0009) << i;
+}
+
+TEST_F(DragOnPlane, PushesAlongTheNormalAndPullsWithinTheSurface) {
+  const Drag drag{.force = 2.0, .speed = 0.01, .stiffness = 100.0, .damping = 10.0, .normal_damping = 50.0};
+  DragHand hand(drag, over({{-0.001, 0, 0}, {0.001, 0, 0}}));
+  const Vec3 x(-0.0004, 0.0002, 0.0005), v(0.003, -0.001, -0.02);
+  // At t = 0.05 s the moving point is at x = -0.5 mm.
+  const Vec3 expected(100.0 * -0.0001 + 10.0 * (0.01 - 0.003), 100.0 * -0.0002 + 10.0 * 0.001, -2.0 + 50.0 * 0.02);
+  EXPECT_LT((hand.force(0.05, {{x, v}, {}, {}}) - expected).norm(), 1e-12);
+  // Once the path is at its end, the point rests.
+  EXPECT_LT((hand.force(1.0, {{{0.001, 0, 0.0005}, {0, 0, 0}}, {}, {}}) - Vec3(0, 0, -2)).norm(), 1e-12);
+}
+
+TEST_F(DragOnPlane, ForcesDoNotDependOnWhatIsRendered) {
+  DragHand a({}, over({{-0.001, 0, 0}, {0.001, 0, 0}})), b({}, over({{-0.001, 0, 0}, {0.001, 0, 0}}));
+  const HandleState handle{{0.0001, 0, 0.0002}, {0.01, 0, 0}};
+  EXPECT_EQ(a.force(0.1, {handle, {}, {0, 0, 0}, {0, 0, 0}}), b.force(0.1, {handle, {}, {9, 9, 9}, {-9, 9, 9}}));
+}
+
+TEST_F(DragOnPlane, AxisLeansFromTheNormalTowardsTheTravel) {
+  const auto path = over({{-0.001, 0, 0}, {0.001, 0, 0}});
+  const auto axis = [&](double tilt, double azimuth) {
+    return DragOrientation(path, 0.01, tilt, azimuth).axis_at(0.1);
+  };
+  EXPECT_LT((axis(0.0, 0.0) - Vec3(0, 0, -1)).norm(), 1e-12);
+  EXPECT_LT((axis(0.3, 0.0) - Vec3(-std::sin(0.3), 0, -std::cos(0.3))).norm(), 1e-12);
+  // A quarter turn about the normal, right-handed: to the left of the travel.
+  EXPECT_LT((axis(0.3, std::acos(0.0)) - Vec3(0, -std::sin(0.3), -std::cos(0.3))).norm(), 1e-12);
+}
+
+TEST(DragHand, PushesAlongTheNormalOfASphereWhereTheHandleIs) {
+  constexpr double kRadius = 0.005;
+  std::vector<SurfacePoint> points;
+  for (int i = 0; i < 20'000; ++i) {  // evenly distributed, on a spiral of golden angles
+    const double z = 1.0 - (2.0 * i + 1.0) / 20'000, rho = std::sqrt(1.0 - z * z), turn = 2.399963229728653 * i;
+    const Vec3 normal(rho * std::cos(turn), rho * std::sin(turn), z);
+    points.push_back({kRadius * normal, normal});
+  }
+  const PointShell shell(points, 0.0);
+  const SmoothedSurface surface(shell, kSmoothing);
+  DragHand hand({.force = 1.0, .stiffness = 0.0, .damping = 0.0},
+                std::make_shared<const SurfacePath>(SurfacePath::along(surface, {-0.004, 0, 0.003}, {1, 0, 0}, 0.02)));
+  // From 53 degrees on one side of the top to 60 on the other, one tool radius above, as slowly as a hand moves.
+  for (double angle = -0.92; angle < 1.05; angle += 0.001) {
+    // Up to two smoothing radii aside of the path, because the surface is bent in that direction, too.
+    const double aside = 0.18 * std::sin(20.0 * angle);
+    const Vec3 radial(std::sin(angle) * std::cos(aside), std::sin(aside), std::cos(angle) * std::cos(aside));
+    const Vec3 force = hand.force(0.0, {{(kRadius + 0.0005) * radial, Vec3::Zero()}, {}, {}});
+    EXPECT_NEAR(force.norm(), 1.0, 1e-12);
+    // The mean of normals within R of a place is off by at most R / r. The place lags by two steps, 0.002. An arc of
+    // 0.18, 1 mm aside at the height of the handle, is 0.194 in the table, whose steps lie in the plane of the path.
+    EXPECT_LT(std::acos(std::min(1.0, -force.dot(radial))), kSmoothing / kRadius + 0.016) << angle;
+  }
+}
+
+constexpr double kStep = 1.0 / 2048;
+
+Subject calm() {
+  Subject subject;
+  subject.motor_noise = subject.tilt_noise = 0.0;
+  return subject;
+}
+
+TargetTask one_target(TargetDisplay display, const Vec3& place) {
+  TargetRules rules;
+  rules.display = display;
+  rules.places = {place};
+  rules.targets_per_place = 1;
+  return {rules, 1};
+}
+
+TEST(TrackingHand, DoesNothingBeforeTheReactionDelay) {
+  const Subject subject = calm();
+  TrackingHand hand(subject, one_target(TargetDisplay::panel, {0.01, 0, 0}), 0.0, kStep, 1);
+  HandView view;
+  view.model_force.z() = subject.press;  // nothing to correct in z
+  const int delay = static_cast<int>(std::lround(subject.reaction_delay / kStep));
+  double first_force = -1.0;
+  for (int i = 0; i <= delay; ++i) {
+    const Vec3 force = hand.force(i * kStep, view);
+    if (force.x() != 0.0) {
+      first_force = i;
+      break;
+    }
+  }
+  EXPECT_EQ(first_force, delay);
+}
+
+TEST(TrackingHand, MovesTowardsTheTargetAtTheBandwidthOfTheSubject) {
+  Subject subject = calm();
+  subject.reaction_delay = 0.0;
+  const double error = 0.001;
+  TrackingHand hand(subject, one_target(TargetDisplay::panel, {error, -error, 0}), 0.0, kStep, 1);
+  HandView view;
+  view.model_force.z() = subject.press;
+  const Vec3 force = hand.force(0.0, view);
+  const double step = 2.0 * std::numbers::pi * subject.bandwidth * error * kStep;
+  EXPECT_NEAR(force.x(), subject.stiffness * step, 1e-12);
+  EXPECT_NEAR(force.y(), -subject.stiffness * step, 1e-12);
+  EXPECT_EQ(force.z(), 0.0);
+}
+
+TEST(TrackingHand, PressesHarderOrSofterUntilTheGaugeShowsWhatItWants) {
+  Subject subject = calm();
+  subject.reaction_delay = 0.0;
+  for (const double shown : {0.0, subject.press + 1.0}) {
+    TrackingHand hand(subject, one_target(TargetDisplay::panel, {0, 0, 0}), 0.0, kStep, 1);
+    HandView view;
+    view.model_force.z() = shown;
+    const double force = hand.force(0.0, view).z();
+    const double change = -2.0 * std::numbers::pi * subject.press_bandwidth * (subject.press - shown) * kStep;
+    EXPECT_NEAR(force, change, 1e-12) << "downwards when too little is shown";
+  }
+}
+
+TEST(TrackingHand, ReadsTheSpringForceFromAGaugeAndTheRenderedForceWithoutOne) {
+  HandView view;
+  view.model_force.z() = 3.0;
+  view.spring_force.z() = 2.0;
+  TargetRules rules;
+  rules.places = {Vec3(0, 0, 0)};
+  for (const bool has_gauge : {false, true}) {
+    if (has_gauge) rules.gauge = Gauge{1e6, 0.1};  // too fast to filter anything
+    TrackingHand hand(calm(), TargetTask(rules, 1), 0.0, kStep, 1);
+    hand.force(0.0, view);
+    EXPECT_EQ(hand.task()->reading(), has_gauge ? 2.0 : 3.0);
+  }
+}
+
+TEST(TrackingHand, NeverPushesHarderThanItsStrength) {
+  Subject subject = calm();
+  TrackingHand hand(subject, one_target(TargetDisplay::panel, {1, 0, 0}), 0.0, kStep, 1);
+  double strongest = 0.0;
+  for (int i = 0; i < 20 * 2048; ++i) {
+    const Vec3 force = hand.force(i * kStep, {});  // a handle that does not give way
+    if (hand.finished()) break;
+    strongest = std::max(strongest, force.cwiseAbs().maxCoeff());
+  }
+  EXPECT_NEAR(strongest, subject.max_force, 1e-9);
+}
+
+TEST(TrackingHand, TurnsTheToolOnlyWithTheHeightDisplay) {
+  Subject subject = calm();
+  subject.reaction_delay = 0.0;
+  const double rise = 0.001;
+  TrackingHand panel(subject, one_target(TargetDisplay::panel, {0, 0, rise}), 0.5, kStep, 1);
+  TrackingHand height(subject, one_target(TargetDisplay::height, {0.3, 0.3, rise}), 0.5, kStep, 1);
+  const Vec3 force = height.force(0.0, {});
+  panel.force(0.0, {});
+  EXPECT_EQ(panel.tilt(), 0.5);
+  const double turn = 2.0 * std::numbers::pi * subject.bandwidth * rise / subject.height_per_tilt * kStep;
+  EXPECT_NEAR(height.tilt(), 0.5 + turn, 1e-15) << "the tip rises with the tilt";
+  EXPECT_EQ(force.x(), 0.0) << "what is not on display does not count";
+}
+
+TEST(TrackingHand, HeldOrientationFollowsTheWrist) {
+  Subject subject = calm();
+  subject.reaction_delay = 0.0;
+  TrackingHand hand(subject, one_target(TargetDisplay::height, {0, 0, 1}), 0.5, kStep, 1);
+  const HeldOrientation motion({}, hand);
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_NEAR(std::acos(-motion.axis_at(0.0).z()), hand.tilt(), 1e-14);
+    hand.force(i * kStep, {});
+  }
+  EXPECT_GT(hand.tilt(), 0.5);
+}
+
+TEST(TrackingHand, NoiseHasTheGivenDeviationAndBandwidth) {
+  Subject subject;
+  subject.bandwidth = subject.press_bandwidth = 0.0;  // no motion but noise
+  subject.motor_noise = 0.5;
+  subject.noise_bandwidth = 8.0;
+  TargetRules rules;
+  rules.places = {Vec3(0, 0, 0)};
+  rules.time_limit = 1e6;
+  TrackingHand hand(subject, TargetTask(rules, 1), 0.0, kStep, 7);
+  double squares = 0.0, products = 0.0, last = 0.0;
+  constexpr int kSamples = 400'000;
+  for (int i = 0; i < kSamples; ++i) {
+    const double x = hand.force(i * kStep, {}).x();
+    squares += x * x;
+    products += x * last;
+    last = x;
+  }
+  const double memory = std::exp(-2.0 * std::numbers::pi * subject.noise_bandwidth * kStep);
+  // A sum of correlated samples is as good as n (1 - a^2) / (1 + a^2) independent ones. Five standard errors.
+  const double independent = kSamples * (1.0 - memory * memory) / (1.0 + memory * memory);
+  EXPECT_NEAR(squares / kSamples / 0.25, 1.0, 5.0 * std::sqrt(2.0 / independent));
+  // 1 - products / squares estimates 1 - a with relative error about sqrt(2 / (n (1 - a))).
+  EXPECT_NEAR((1.0 - products / squares) / (1.0 - memory), 1.0, 5.0 * std::sqrt(2.0 / (kSamples * (1.0 - memory))));
+}
+
+TEST(TrackingHand, AResetRepeatsEverythingBitForBitAndASeedChangesIt) {
+  const auto record = [](TrackingHand& hand) {
+    std::vector<Vec3> forces;
+    for (int i = 0; i < 3000; ++i) {
+      HandView view;
+      view.handle.position.x() = 1e-4 * std::sin(0.01 * i);
+      view.tool.position = view.handle.position;
+      view.model_force.z() = 1.2;
+      forces.push_back(hand.force(i * kStep, view));
+    }
+    return forces;
+  };
+  TrackingHand hand({}, one_target(TargetDisplay::height, {0, 0, 0.001}), 0.3, kStep, 11);
+  const auto first = record(hand);
+  hand.reset();
+  EXPECT_EQ(record(hand), first);
+  TrackingHand other({}, one_target(TargetDisplay::height, {0, 0, 0.001}), 0.3, kStep, 12);
+  EXPECT_NE(record(other), first);
+}
+
+}  // namespace
+}  // namespace hapbench::hands_test

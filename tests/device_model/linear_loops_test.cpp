@@ -1,0 +1,451 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+
+#include "device_model/admittance_device.hpp"
+#include "device_model/hands/scripted_hands.hpp"
+#include "device_model/theory/linear_loops.hpp"
+#include "device_model/theory/stiffness_limits.hpp"
+#include "sim/core/random.hpp"
+#include "tests/support/fakes.hpp"
+
+namespace hapbench::linear_loops_test {
+namespace {
+
+/// An undamped handle of 0.1 kg.
+SampledLoop light_loop() {
+  SampledLoop loop;
+  loop.device.handle_mass = 0.1;
+  return loop;
+}
+
+/// An undamped handle of 1 kg and a period of 1 s: K is alpha = K T^2/m and B is beta = B T/m.
+SampledLoop unit_loop(double delay, double beta) {
+  SampledLoop loop;
+  loop.device.handle_mass = loop.period = 1.0;
+  loop.device.delay_samples = delay;
+  loop.wall_damping = beta;
+  return loop;
+}
+
+/// Coefficients from the constant up.
+using Polynomial = std::vector<double>;
+
+Polynomial product(const Polynomial& a, const Polynomial& b) {
+  Polynomial out(a.size() + b.size() - 1, 0.0);
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t j = 0; j < b.size(); ++j) out[i + j] += a[i] * b[j];
+  return out;
+}
+
+Polynomial sum(Polynomial a, const Polynomial& b) {
+  a.resize(std::max(a.size(), b.size()), 0.0);
+  for (std::size_t i = 0; i < b.size(); ++i) a[i] += b[i];
+  return a;
+}
+
+/// The largest |root|, by the companion matrix.
+double largest_root(const Polynomial& p) {
+  const auto n = static_cast<Eigen::Index>(p.size()) - 1;
+  Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index i = 0; i + 1 < n; ++i) companion(i, i + 1) = 1.0;
+  for (Eigen::Index i = 0; i < n; ++i) companion(n - 1, i) = -p[static_cast<std::size_t>(i)] / p.back();
+  return spectral_radius(companion);
+}
+
+Polynomial z_to(int power) {
+  Polynomial p(static_cast<std::size_t>(power) + 1, 0.0);
+  p.back() = 1.0;
+  return p;
+}
+
+/// 2 z^(d+1) (z - 1)^2 + (z + 1) ((alpha + beta) z - beta)
+Polynomial undamped(int d, double alpha, double beta) {
+  return sum(product(z_to(d + 1), {2.0, -4.0, 2.0}), product({1.0, 1.0}, {-beta, alpha + beta}));
+}
+
+/// z^(d+1) (z - 1) (z - e) + (b1 z + b2) ((alpha + beta) z - beta) for a handle damped with b T/m.
+Polynomial damped(int d, double alpha, double beta, double b) {
+  const double e = std::exp(-b), b1 = (b - 1.0 + e) / (b * b), b2 = (1.0 - e - b * e) / (b * b);
+  return sum(product(z_to(d + 1), product({-1.0, 1.0}, {-e, 1.0})), product({b2, b1}, {-beta, alpha + beta}));
+}
+
+double polynomial_edge(int d, double beta) {
+  const auto stable = [&](double alpha) { return largest_root(undamped(d, alpha, beta)) <= 1.0 + 1e-12; };
+  return stable(1e-8) ? largest_stable(1e-8, 1e-11, stable, 1e6, 1.1) : 0.0;
+}
+
+/// The largest value over beta, found between 0 and 2 by the golden section; the edge rises and falls once.
+template <class Edge>
+double best_over_damping(Edge edge) {
+  const double ratio = std::numbers::phi - 1.0;
+  double low = 0.01, high = 1.9;
+  while (high - low > 1e-5) {
+    const double a = high - ratio * (high - low), b = low + ratio * (high - low);
+    (edge(a) < edge(b) ? low : high) = edge(a) < edge(b) ? a : b;
+  }
+  return edge(0.5 * (low + high));
+}
+
+TEST(SampledLoop, RendersAtMostTheseStiffnessesOnAnUndampedHandle) {
+  // Rounded to these digits. Half a sample more or less of delay would give other numbers.
+  const double published[] = {0.6863, 0.1445, 0.0624, 0.0348};
+  for (const int d : {0, 1, 2, 3}) {
+    const double by_polynomial = best_over_damping([d](double beta) { return polynomial_edge(d, beta); });
+    const double by_state = best_over_damping([d](double beta) { return eigenvalue_edge(unit_loop(d, beta)); });
+    EXPECT_NEAR(by_polynomial, published[d], 0.00005) << d;
+    EXPECT_NEAR(by_state, by_polynomial, 1e-9 * by_polynomial) << d;
+  }
+}
+
+TEST(SampledLoop, HasTheEdgeOfTheClosedFormWithoutDelay) {
+  for (const double beta : {0.01, 0.1, 0.5, 2.0 * std::numbers::sqrt2 - 2.0, 1.2, 1.9}) {
+    const double closed = 2.0 * beta * (2.0 - beta) / (2.0 + beta);
+    EXPECT_NEAR(eigenvalue_edge(unit_loop(0.0, beta)), closed, 1e-10 * closed) << beta;
+  }
+  EXPECT_EQ(eigenvalue_edge(unit_loop(0.0, 2.1)), 0.0);
+  EXPECT_EQ(eigenvalue_edge(unit_loop(0.0, 0.0)), 0.0) << "nothing damps";
+}
+
+TEST(SampledLoop, HasTheRootsOfTheTransferFunctionOfADampedHandle) {
+  Random random(1);
+  for (int i = 0; i < 200; ++i) {
+    const int d = i % 4;
+    SampledLoop loop = unit_loop(d, random.uniform());
+    loop.device.viscous = 0.05 + random.uniform();
+    loop.stiffness = random.uniform();
+    const double root = largest_root(damped(d, loop.stiffness, loop.wall_damping, loop.device.viscous));
+    // Rounding moves a double root by the square root of eps.
+    EXPECT_NEAR(spectral_radius(loop.state_matrix()), root, 1e-7);
+  }
+}
+
+TEST(SampledLoop, CountsAHandsMassAndDampingAsTheHandles) {
+  SampledLoop held = unit_loop(1.5, 0.2), heavy = held;
+  held.device.handle_mass = 0.6;
+  held.device.viscous = 0.01;
+  held.hand = {0.4, 0.0, 0.02};
+  heavy.device.viscous = 0.03;
+  EXPECT_NEAR(eigenvalue_edge(held), eigenvalue_edge(heavy), 1e-10);
+}
+
+TEST(SampledLoop, OfAHandWithASpringMovesAsTheClosedFormHasIt) {
+  SampledLoop loop = light_loop();  // no wall: x'' + 2 zeta w x' + w^2 x = 0
+  loop.hand = {0.3, 500.0, 2.0};
+  const double w = std::sqrt(500.0 / 0.4), zeta = 2.0 / (2.0 * std::sqrt(500.0 * 0.4)), T = loop.period;
+  const double wd = w * std::sqrt(1.0 - zeta * zeta), decay = std::exp(-zeta * w * T);
+  const Eigen::MatrixXd A = loop.state_matrix();
+  EXPECT_NEAR(A(0, 0), decay * (std::cos(wd * T) + zeta * w / wd * std::sin(wd * T)), 1e-15);
+  EXPECT_NEAR(A(0, 1) * T, decay * std::sin(wd * T) / wd, 1e-15 * T);
+}
+
+TEST(SampledLoop, HasAFractionalDelayBetweenTheWholeOnes) {
+  double last = std::numeric_limits<double>::infinity();
+  for (double delay = 0.0; delay <= 3.0; delay += 0.125) {
+    const double edge = eigenvalue_edge(unit_loop(delay, 0.2));
+    EXPECT_LT(edge, last) << delay;
+    last = edge;
+  }
+  // The edge of a whole delay is the limit from either side.
+  const double whole = eigenvalue_edge(unit_loop(1.0, 0.2));
+  EXPECT_NEAR(eigenvalue_edge(unit_loop(1.0 - 1e-7, 0.2)), whole, 1e-6);
+  EXPECT_NEAR(eigenvalue_edge(unit_loop(1.0 + 1e-7, 0.2)), whole, 1e-6);
+}
+
+TEST(SampledLoop, AWideLowPassIsTheDifference) {
+  SampledLoop loop = unit_loop(0.0, 0.3);
+  const double difference = eigenvalue_edge(loop);
+  loop.device.velocity_filter = LowPassFilter{20.0};  // a = e^-126
+  EXPECT_NEAR(eigenvalue_edge(loop), difference, 1e-10);
+  loop.device.velocity_filter = LowPassFilter{0.05};
+  EXPECT_LT(eigenvalue_edge(loop), 0.9 * difference) << "a filter is late";
+}
+
+/// The smallest K with an eigenvalue on the unit circle, by the frequency response. The wall enters the state matrix as
+/// K times a matrix of rank one, u v^T, so an eigenvalue e^(j theta) needs K v^T (e^(j theta) I - A_0)^(-1) u = 1 with
+/// a real positive K.
+double first_crossing(SampledLoop loop) {
+  loop.stiffness = 0.0;
+  const Eigen::MatrixXd A = loop.state_matrix();
+  loop.stiffness = 1.0;
+  const Eigen::MatrixXd wall = loop.state_matrix() - A;
+  const Eigen::VectorXcd u = wall.col(0).cast<std::complex<double>>();  // v^T: the position
+  const auto stiffness_at = [&](double theta) {
+    const Eigen::MatrixXcd shifted =
+        std::polar(1.0, theta) * Eigen::MatrixXcd::Identity(A.rows(), A.rows()) - A.cast<std::complex<double>>();
+    return 1.0 / Eigen::VectorXcd(shifted.partialPivLu().solve(u))[0];
+  };
+  double first = std::numeric_limits<double>::infinity(), low = 1e-3;
+  std::complex<double> before = stiffness_at(low);
+  for (int i = 1; i <= 2000; ++i) {
+    const double high = 1e-3 + (std::numbers::pi - 1e-3) * i / 2000;
+    const std::complex<double> at = stiffness_at(high);
+    if (before.imag() * at.imag() <= 0.0 && std::abs(before - at) < std::abs(at)) {  // no pole in between
+      double a = low, b = high;
+      bisect(
+          a, b, [&](double theta) { return stiffness_at(theta).imag() * before.imag() > 0.0; },
+          [](double c, double d) { return 0.5 * (c + d); }, [](double c, double d) { return d - c > 1e-13; });
+      const double K = stiffness_at(a).real();
+      if (K > 0.0) first = std::min(first, K);
+    }
+    before = at;
+    low = high;
+  }
+  return first;
+}
+
+TEST(SampledLoop, HasNoCrossingBelowItsEdge) {
+  Random random(3);
+  for (int i = 0; i < 12; ++i) {
+    SampledLoop loop = unit_loop(std::floor(10.0 * random.uniform()) / 4.0, 0.4 * random.uniform());
+    loop.device.viscous = 0.05 + 0.1 * random.uniform();
+    loop.hand = {2.0 * random.uniform(), i % 2 == 0 ? 0.0 : 0.01 * random.uniform(), 0.0};
+    if (i % 3 == 0) loop.device.velocity_filter = LowPassFilter{0.1};
+    const double edge = eigenvalue_edge(loop);
+    ASSERT_GT(edge, 0.0);
+    // The sweep cannot see a crossing at pi, but none of these loops has its first crossing there.
+    EXPECT_NEAR(first_crossing(loop), edge, 1e-8 * edge) << i;
+  }
+}
+
+TEST(HandFamily, NeedsLessStiffnessThanAnyOfItsHands) {
+  SampledLoop loop = light_loop();
+  loop.device.viscous = 0.5;
+  loop.wall_damping = 5.0;
+  const double worst = worst_hand_edge(loop);
+  bool met = false;
+  for (const AttachedHand& hand : hand_family()) {
+    loop.hand = hand;
+    const double edge = eigenvalue_edge(loop);
+    EXPECT_GE(edge, worst);
+    met = met || edge == worst;
+  }
+  EXPECT_TRUE(met);
+}
+
+std::optional<double> limit(const char* name, const SampledLoop& loop) {
+  return find_stiffness_limit(name)->largest(loop);
+}
+
+SampledLoop damped_loop() {
+  SampledLoop loop = light_loop();
+  loop.device.viscous = 1.5;
+  loop.wall_damping = 0.5;
+  return loop;
+}
+
+TEST(StiffnessLimits, SaysWithoutDelayWhatColgateAndSchenkelSay) {
+  for (const double B : {-0.5, 0.0, 0.5, 1.4, 1.6}) {
+    SampledLoop loop = damped_loop();
+    loop.wall_damping = B;
+    const double closed = std::max(0.0, 2.0 * (1.5 - std::abs(B)) / 0.001);
+    EXPECT_NEAR(*limit("passive_colgate_schenkel", loop), closed, 1e-9);
+    EXPECT_NEAR(*limit("passive_with_delay", loop), closed, 1e-6 * closed) << B;
+  }
+}
+
+TEST(StiffnessLimits, AllowsWithDelayAndWithoutDampingWhatTheClosedFormAllows) {
+  SampledLoop loop = damped_loop();
+  loop.wall_damping = 0.0;
+  for (const double d : {1.0, 2.0, 5.0}) {
+    loop.device.delay_samples = d;
+    EXPECT_NEAR(*limit("passive_with_delay", loop), 1.5 / (0.001 * (0.5 + d)), 1e-6 / 0.001) << d;
+    EXPECT_FALSE(limit("passive_colgate_schenkel", loop)) << "without delay only";
+  }
+  loop.device.delay_samples = 0.5;
+  EXPECT_FALSE(limit("passive_with_delay", loop)) << "the sum over the aliases needs whole delays";
+}
+
+/// The inequality itself, on a grid of angles, holds slightly below the limit and fails slightly above.
+TEST(StiffnessLimits, ThePassiveStiffnessIsTheLargestThatMeetsTheInequality) {
+  const auto holds = [](const SampledLoop& loop, double K) {
+    for (int i = 1; i <= 20000; ++i) {
+      const double theta = std::numbers::pi * i / 20000, d = loop.device.delay_samples, a = loop.filter_memory();
+      const std::complex<double> e = std::polar(1.0, -theta);
+      const std::complex<double> H = K + loop.wall_damping * (1.0 - e) / loop.period * (1.0 - a) / (1.0 - a * e);
+      const double need = 0.5 * loop.period / (1.0 - std::cos(theta)) * ((1.0 - e) * std::pow(e, d) * H).real();
+      if (loop.device.viscous <= need) return false;
+    }
+    return true;
+  };
+  for (const double delay : {0.0, 1.0, 3.0}) {
+    for (const VelocityFilterConfig& filter : {VelocityFilterConfig(), VelocityFilterConfig(LowPassFilter{60.0})}) {
+      SampledLoop loop = damped_loop();
+      loop.device.delay_samples = delay;
+      loop.device.velocity_filter = filter;
+      const double K = *limit("passive_with_delay", loop);
+      ASSERT_GT(K, 0.0);
+      EXPECT_TRUE(holds(loop, K * (1.0 - 1e-6))) << delay;
+      EXPECT_FALSE(holds(loop, K * (1.0 + 1e-6))) << delay;
+    }
+  }
+}
+
+TEST(StiffnessLimits, WhatIsPassiveIsStableWithEveryHand) {
+  for (const double delay : {0.0, 1.0, 2.0}) {
+    for (const double B : {0.0, 0.3, 1.0}) {
+      SampledLoop loop = damped_loop();
+      loop.device.delay_samples = delay;
+      loop.wall_damping = B;
+      // Both edges are exact to 1e-9; at B = 0 without a hand they differ by a thousandth.
+      EXPECT_LE(*limit("passive_with_delay", loop), worst_hand_edge(loop) * (1.0 + 1e-9)) << delay << " " << B;
+    }
+  }
+}
+
+TEST(StiffnessLimits, TheLinearConditionComesCloseToTheExactEdgeAtLowDamping) {
+  for (const double delay : {0.0, 0.5, 1.0, 2.0, 3.0}) {
+    SampledLoop loop = light_loop();  // m/T = 100 N s/m
+    loop.device.delay_samples = delay;
+    loop.device.viscous = 0.5;
+    loop.wall_damping = 1.0;
+    EXPECT_NEAR(eigenvalue_edge(loop) / *limit("stable_gil_hulin", loop), 1.0, 0.02) << delay;
+    const double most = 0.15 * 100.0 / (1.0 + delay);
+    loop.wall_damping = 0.999 * most - loop.device.viscous;
+    const double ratio = eigenvalue_edge(loop) / *limit("stable_gil_hulin", loop);
+    EXPECT_LT(ratio, 1.0) << delay;
+    EXPECT_GT(ratio, 0.86) << delay;
+    loop.wall_damping = 1.001 * most - loop.device.viscous;
+    EXPECT_FALSE(limit("stable_gil_hulin", loop)) << "not low any more";
+  }
+}
+
+TEST(StiffnessLimits, FrictionMustCoverTheEncodersStep) {
+  SampledLoop loop = damped_loop();
+  loop.device.coulomb = 0.02;
+  loop.device.encoder_step = 5e-5;
+  EXPECT_FALSE(limit("passive_abbott_okamura", loop)) << "B is not zero";
+  loop.wall_damping = 0.0;
+  EXPECT_DOUBLE_EQ(*limit("passive_abbott_okamura", loop), 800.0);  // 2 c / q
+  loop.device.coulomb = 1.0;
+  EXPECT_DOUBLE_EQ(*limit("passive_abbott_okamura", loop), 3000.0);  // 2 b / T
+  loop.device.encoder_step = 0.0;
+  EXPECT_FALSE(limit("passive_abbott_okamura", loop));
+}
+
+TEST(StiffnessLimits, TheUndampedHandleHasAClosedForm) {
+  SampledLoop loop = light_loop();
+  loop.wall_damping = 50.0;
+  EXPECT_NEAR(*limit("exact_undamped_handle", loop), eigenvalue_edge(loop), 1e-9 * eigenvalue_edge(loop));
+  loop.hand.mass = 0.2;
+  EXPECT_NEAR(*limit("exact_undamped_handle", loop), eigenvalue_edge(loop), 1e-9 * eigenvalue_edge(loop));
+  loop.hand.stiffness = 100.0;
+  EXPECT_FALSE(limit("exact_undamped_handle", loop));
+}
+
+TEST(StiffnessLimits, EveryRowSaysWhereItComesFromAndWhenItApplies) {
+  for (const StiffnessLimit& limit : stiffness_limits()) {
+    for (const char* text : {limit.name, limit.formula, limit.source, limit.applies}) EXPECT_STRNE(text, "");
+    EXPECT_EQ(find_stiffness_limit(limit.name), &limit);
+  }
+  EXPECT_EQ(find_stiffness_limit("none"), nullptr);
+}
+
+AdmittanceLoop random_loop(Random& random) {
+  AdmittanceLoop loop;
+  loop.tool.K = 40000.0 * random.uniform();
+  loop.tool.B = 100.0 * random.uniform();
+  loop.tool.M = 0.05 + 0.2 * random.uniform();
+  loop.mechanics.handle_mass = 0.05 + 0.1 * random.uniform();
+  loop.mechanics.structure_stiffness = 1e5 * (1.0 + random.uniform());
+  loop.servo.delay = static_cast<std::size_t>(4.0 * random.uniform());
+  loop.servo.max_force = 1e9;
+  loop.hand_stiffness = 1000.0 * random.uniform();
+  loop.hand_damping = 10.0 * random.uniform();
+  return loop;
+}
+
+/// The rows of the simulation with this loop, from a given position and velocity of the tool along x.
+std::vector<StepRecord> simulated(const AdmittanceLoop& loop, double position, double velocity, std::uint64_t steps) {
+  test::Recorder recorder;
+  SimulationConfig config;
+  config.dt = loop.tool.dt;
+  config.mass = loop.tool.M;
+  config.integrator = loop.tool.integrator;
+  config.steps = steps;
+  config.position = position * Vec3::UnitX();
+  config.velocity = velocity * Vec3::UnitX();
+  SimulationParts parts = test::fake_parts([&loop](const ToolState& tool) -> Vec3 {
+    return -loop.tool.K * tool.pose.position - loop.tool.B * tool.velocity;
+  });
+  parts.hand = std::make_unique<ImpedanceHand>(loop.hand_stiffness, loop.hand_damping, std::array<Profile, 3>{});
+  AdmittanceDeviceConfig device;
+  device.force_limit.reset();
+  device.servo = loop.servo;
+  device.mechanics = loop.mechanics;
+  parts.device = std::make_unique<AdmittanceDevice>(device);
+  Simulation(config, std::move(parts), {&recorder}).run();
+  return recorder.rows;
+}
+
+/// The state at the start of a run: handle and carriage on the tool, no command on its way.
+Eigen::VectorXd first_state(const AdmittanceLoop& loop, double position, double velocity) {
+  Eigen::VectorXd state = Eigen::VectorXd::Zero(loop.state_matrix().rows());
+  for (const Eigen::Index i : {0, 2, 4}) {
+    state[i] = position;
+    state[i + 1] = velocity * loop.tool.dt;
+  }
+  return state;
+}
+
+TEST(AdmittanceLoop, IsTheLinearMapOfTheSimulation) {
+  Random random(1);
+  for (const IntegratorEntry* integrator : {&kLeapfrog, &kVelocityVerlet, &kRk4}) {
+    for (int i = 0; i < 10; ++i) {
+      AdmittanceLoop loop = random_loop(random);
+      loop.tool.integrator = integrator;
+      const double position = 1e-3 * random.normal(), velocity = 0.1 * random.normal();
+      const Eigen::MatrixXd A = loop.state_matrix();
+      Eigen::VectorXd state = first_state(loop, position, velocity);
+      double scale = state.norm();
+      for (const StepRecord& row : simulated(loop, position, velocity, 40)) {
+        scale = std::max(scale, state.norm());
+        const double dt = loop.tool.dt;
+        // Rounding of some forty steps, of a state that need not decay.
+        EXPECT_NEAR(row.tool.pose.position.x(), state[0], 1e-12 * scale) << row.step;
+        EXPECT_NEAR(row.tool.velocity.x() * dt, state[1], 1e-12 * scale) << row.step;
+        EXPECT_NEAR(row.handle.position.x(), state[4], 1e-12 * scale) << row.step;
+        EXPECT_NEAR(row.handle.velocity.x() * dt, state[5], 1e-12 * scale) << row.step;
+        state = A * state;
+      }
+    }
+  }
+}
+
+/// Runs with hands one per cent softer and stiffer than the edge decay and grow.
+TEST(AdmittanceLoop, HasItsEdgeWhereRunsGrow) {
+  for (const std::size_t delay : {0u, 1u, 2u}) {
+    AdmittanceLoop loop;
+    loop.tool.K = 20000.0;
+    loop.tool.B = 2.0 * 0.7 * std::sqrt(loop.tool.K * loop.tool.M);
+    loop.servo.delay = delay;
+    loop.servo.max_force = 1e9;
+    loop.hand_damping = 6.0;
+    const double edge = first_edge(1.0, 1e9, [loop](double k) mutable {
+      loop.hand_stiffness = k;
+      return loop.state_matrix();
+    });
+    ASSERT_GT(edge, 1.0);
+    ASSERT_LT(edge, 1e8);
+    const auto grows = [&](double factor) {
+      loop.hand_stiffness = factor * edge;
+      const auto rows = simulated(loop, 1e-6, 0.0, 20000);
+      const auto largest = [&](std::size_t from) {
+        double most = 0.0;
+        for (std::size_t i = from; i < from + 2000; ++i) most = std::max(most, std::abs(rows[i].handle.velocity.x()));
+        return most;
+      };
+      return rows.size() < 20000 || largest(18000) > largest(8000);
+    };
+    EXPECT_FALSE(grows(0.99)) << delay;
+    EXPECT_TRUE(grows(1.01)) << delay;
+  }
+}
+
+}  // namespace
+}  // namespace hapbench::linear_loops_test
