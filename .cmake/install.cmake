@@ -1,4 +1,4 @@
-# What `cmake --install` installs: libraries and headers for find_package(hapbench), the files that come with them, the program.
+# Rules of `cmake --install`: libraries and headers for find_package(hapbench), the files that come with them, the program.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/hapbench)
@@ -18,7 +18,7 @@ install(TARGETS ${libraries} EXPORT hapbench-targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT hapbench-targets NAMESPACE hapbench:: DESTINATION ${config_folder})
 
-# What the headers need; static libraries, also what their code needs.
+# Packages that the headers need; of static libraries, also those that their code needs.
 set(HAPBENCH_DEPENDENCIES "find_dependency(Eigen3 3.4)\nfind_dependency(nlohmann_json 3.11)")
 set(HAPBENCH_SHARE_RULE "")
 if(NOT HAPBENCH_SHARED)

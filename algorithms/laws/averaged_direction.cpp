@@ -11,18 +11,10 @@ namespace {
 /// Below this mean gradient the direction is rounding noise, and the force is zero.
 constexpr double kCancelledBelow = 1e-9;
 
-class AveragedDirectionLaw : public ForceLaw {
+/// Its one spring is compressed by d_r. The laws define no point of application.
+class AveragedDirectionLaw : public SingleSpringLaw {
  public:
-  using ForceLaw::ForceLaw;
-
-  /// One spring, compressed by d_r. The laws give it no point of application; the mean of the contacts is taken.
-  SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
-    return spring_of_force(contacts, spring, tip, K_);
-  }
-  /// The velocity at that point of application, along u_r.
-  Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
-    return turning_velocity_of_force(contacts, S, tool);
-  }
+  using SingleSpringLaw::SingleSpringLaw;
 
  protected:
   /// The law's answer with d_r = depth(|sum u_i|) [m]. Leaves weights of 1.

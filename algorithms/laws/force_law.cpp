@@ -55,12 +55,16 @@ SpringState shifted_springs(const ContactBuffer& contacts, const Vec3& shift, co
   return {0.5 * K * simd::sum(energy), -K * Vec3(simd::sum(mx), simd::sum(my), simd::sum(mz))};
 }
 
-SpringState spring_of_force(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip, double K) noexcept {
-  if (K == 0.0) return {};
-  return {spring.squaredNorm() / (2.0 * K), mean_arm(contacts, tip).cross(spring)};
+SpringState SingleSpringLaw::spring_state(const ContactBuffer& contacts, const Vec3& spring,
+                                          const Vec3& tip) const noexcept {
+  if (gives_weights_) return ForceLaw::spring_state(contacts, spring, tip);
+  if (K_ == 0.0) return {};
+  return {spring.squaredNorm() / (2.0 * K_), mean_arm(contacts, tip).cross(spring)};
 }
 
-Vec3 turning_velocity_of_force(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) noexcept {
+Vec3 SingleSpringLaw::turning_velocity(const ContactBuffer& contacts, const Mat3& S,
+                                       const ToolState& tool) const noexcept {
+  if (gives_weights_) return ForceLaw::turning_velocity(contacts, S, tool);
   return S * tool.angular_velocity.cross(mean_arm(contacts, tool.pose.position));
 }
 

@@ -53,6 +53,19 @@ class ForceLaw {
   std::uint64_t iterations_ = 0;
 };
 
+/// A law that defines force and S but no springs. As its springs counts one of stiffness K along the force, which acts
+/// at the weighted mean of the contacts.
+class SingleSpringLaw : public ForceLaw {
+ public:
+  using ForceLaw::ForceLaw;
+
+  SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override;
+  Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override;
+
+ protected:
+  bool gives_weights_ = false;  ///< the last `evaluate` gave weighted springs after all, for laws that may do either
+};
+
 /// Gives every contact the weight c and keeps the padding at zero. O(n).
 void set_weights(ContactBuffer& contacts, double c) noexcept;
 
@@ -62,11 +75,6 @@ Vec3 gradient_sum(const ContactBuffer& contacts) noexcept;
 /// Mean of the vectors from the tip centre `tip` to the colliding points [m], weighted by the weights in the buffer;
 /// zero if their sum is. O(n).
 Vec3 mean_arm(const ContactBuffer& contacts, const Vec3& tip) noexcept;
-
-/// Implement ForceLaw::spring_state and turning_velocity for a law that defines force and S but no springs: one spring
-/// of stiffness K [N/m] along the force acts at the weighted mean of the contacts. O(n).
-SpringState spring_of_force(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip, double K) noexcept;
-Vec3 turning_velocity_of_force(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) noexcept;
 
 /// Energy and moment about `tip` of springs of stiffness K [N/m] with the weights in the buffer, whose ends have moved
 /// by `shift` [m], so the depths are d_i + <u_i, shift>. O(n).

@@ -48,36 +48,12 @@ void note_fault(const char* text) {
   if (faults().count++ == 0) faults().first = text;
 }
 
-/// A law behind the C interface. It reads the contacts of the step in place. A step adds one indirect call and a check
-/// that the answer is finite; it does not allocate.
-class PluginLaw final : public ForceLaw {
- public:
-  /// `plugin` must outlive the law; `parameters` are in its order.
-  PluginLaw(const HapbenchPlugin& plugin, double stiffness, std::vector<double> parameters);
-  ~PluginLaw() override;
-  PluginLaw(const PluginLaw&) = delete;
-  PluginLaw& operator=(const PluginLaw&) = delete;
-
-  void prepare(std::size_t capacity) override;
-  void reset() noexcept override;
-  /// After a fault the force is NaN until the next reset.
-  LawForce evaluate(ContactBuffer& contacts) noexcept override;
-  SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override;
-  Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override;
-  const char* fault() const noexcept override { return fault_[0] == '\0' ? nullptr : fault_.data(); }
-
- private:
-  LawForce failed(const char* problem) noexcept;
-  LawForce failed(int error) noexcept;
-
-  const HapbenchPlugin& plugin_;
-  std::vector<double> parameters_;
-  void* law_ = nullptr;
-  std::array<char, 256> fault_{};  ///< empty without a fault
-};
+}  // namespace
 
 PluginLaw::PluginLaw(const HapbenchPlugin& plugin, double stiffness, std::vector<double> parameters)
-    : ForceLaw(stiffness), plugin_(plugin), parameters_(std::move(parameters)) {}
+    : SingleSpringLaw(stiffness), plugin_(plugin), parameters_(std::move(parameters)) {
+  gives_weights_ = plugin.gives == HAPBENCH_WEIGHTS;
+}
 
 PluginLaw::~PluginLaw() {
   if (law_ != nullptr && plugin_.destroy != nullptr) plugin_.destroy(law_);
@@ -114,14 +90,13 @@ LawForce PluginLaw::evaluate(ContactBuffer& contacts) noexcept {
   if (contacts.empty()) return {};
   if (fault() != nullptr) return {Vec3::Constant(kNaN), Mat3::Zero()};
   if (law_ == nullptr) return failed("could not be created with these parameters");
-  const bool gives_force = plugin_.gives == HAPBENCH_FORCE;
   // Pre-fills with NaN to detect outputs that the plugin did not write.
-  set_weights(contacts, gives_force ? 1.0 / static_cast<double>(contacts.size()) : kNaN);
+  set_weights(contacts, gives_weights_ ? kNaN : 1.0 / static_cast<double>(contacts.size()));
   HapbenchForce answer{{kNaN, kNaN, kNaN}, {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}};
   const HapbenchContacts view = view_of(contacts);
   if (const int error = plugin_.evaluate(law_, &view, contacts.weight.data(), &answer); error != 0)
     return failed(error);
-  const LawForce force = gives_force ? force_of(answer) : weighted_force(contacts, K_);
+  const LawForce force = gives_weights_ ? weighted_force(contacts, K_) : force_of(answer);
   // A weight that is not finite makes the tensor not finite, too.
   if (!force.spring.allFinite()) return failed("gives a force that is not finite");
   if (!force.S.allFinite()) return failed("gives a stiffness that is not finite");
@@ -136,16 +111,8 @@ SpringState PluginLaw::spring_state(const ContactBuffer& contacts, const Vec3& s
     plugin_.springs(law_, &view, tip.data(), &state.energy, state.moment.data());
     return state;
   }
-  if (plugin_.gives == HAPBENCH_WEIGHTS) return ForceLaw::spring_state(contacts, spring, tip);
-  return spring_of_force(contacts, spring, tip, K_);
+  return SingleSpringLaw::spring_state(contacts, spring, tip);
 }
-
-Vec3 PluginLaw::turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept {
-  if (plugin_.gives == HAPBENCH_WEIGHTS) return ForceLaw::turning_velocity(contacts, S, tool);
-  return turning_velocity_of_force(contacts, S, tool);
-}
-
-}  // namespace
 
 AlgorithmEntry plugin_entry(const HapbenchPlugin& plugin, AlgorithmOrigin origin) {
   if (plugin.create == nullptr) throw std::invalid_argument("its function \"create\" is missing");

@@ -48,9 +48,8 @@ Journal::Journal(std::filesystem::path file, const std::string& sweep, bool resu
   try {
     struct stat status {};
     if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) fail_in_file(file_, "is no file");
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
       fail_in_file(file_, "another sweep is writing to this directory; allowed: one at a time");
-    }
     const std::string first_line = title_line(sweep);
     if (resume) read(first_line, found);
     if (::ftruncate(descriptor_, static_cast<off_t>(end_)) != 0) throw IoError("write", file_, last_error());

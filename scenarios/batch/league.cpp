@@ -17,9 +17,8 @@ namespace {
 
 bool seeds_matter_in(const LeagueRuns& runs, std::size_t scenario) {
   for (std::size_t a = 0; a < runs.algorithms.size(); ++a) {
-    for (std::size_t k = 1; k < runs.seeds; ++k) {
+    for (std::size_t k = 1; k < runs.seeds; ++k)
       if (runs.run(scenario, a, k).state_hash != runs.run(scenario, a, 0).state_hash) return true;
-    }
   }
   return false;
 }
@@ -37,9 +36,8 @@ std::vector<std::optional<double>> values_of(const LeagueRuns& runs, std::size_t
 
 std::vector<double> known(const std::vector<std::optional<double>>& values) {
   std::vector<double> numbers;
-  for (const auto& value : values) {
+  for (const auto& value : values)
     if (value) numbers.push_back(*value);
-  }
   return numbers;
 }
 
@@ -118,11 +116,10 @@ class ScenarioStandings {
     for (std::size_t a = 0; a < standings_.size(); ++a) {
       Standing& standing = standings_[a];
       if (failures_[a] > 0 || !standing.mean) continue;
-      if (*standing.mean == least) {
+      if (*standing.mean == least)
         standing.ratio_to_best = 1.0;
-      } else if (least > 0.0) {
+      else if (least > 0.0)
         standing.ratio_to_best = *standing.mean / least;
-      }
       if (a == *best || !seeds_matter) continue;
       standing.beyond_spread = differ_beyond_spread(values_[a], values_[*best]);
       // Rounding errors may be the same with every seed, which makes t infinite.
@@ -137,9 +134,8 @@ class ScenarioStandings {
 
 std::optional<double> mean_rank(const League& league, std::size_t scenario, std::size_t algorithm) {
   std::vector<double> ranks;
-  for (std::size_t m = 0; m < league.runs.metrics.size(); ++m) {
+  for (std::size_t m = 0; m < league.runs.metrics.size(); ++m)
     if (const auto rank = league.at(scenario, algorithm, m).rank) ranks.push_back(static_cast<double>(*rank));
-  }
   return ranks.empty() ? std::nullopt : std::optional(mean_of(ranks));
 }
 
@@ -186,11 +182,10 @@ std::string League::outcomes(std::size_t scenario, std::size_t algorithm) const 
     const std::string& outcome = runs.run(scenario, algorithm, k).outcome;
     const auto known =
         std::find_if(counts.begin(), counts.end(), [&outcome](const auto& count) { return count.first == outcome; });
-    if (known == counts.end()) {
+    if (known == counts.end())
       counts.emplace_back(outcome, 1);
-    } else {
+    else
       ++known->second;
-    }
   }
   if (counts.size() == 1) return counts.front().first;
   std::vector<std::string> texts;
@@ -208,9 +203,8 @@ League make_league(LeagueRuns runs) {
     league.seeds_matter.push_back(seeds_matter_in(league.runs, s));
     for (std::size_t m = 0; m < metrics; ++m) {
       const ScenarioStandings column(league, s, m);
-      for (std::size_t a = 0; a < algorithms; ++a) {
+      for (std::size_t a = 0; a < algorithms; ++a)
         league.standings[(s * algorithms + a) * metrics + m] = column.standings()[a];
-      }
     }
   }
   for (std::size_t a = 0; a < algorithms; ++a) league.laws.push_back(law_standing(league, a));

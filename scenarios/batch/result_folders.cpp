@@ -27,9 +27,7 @@ std::set<fs::path> results_below(const fs::path& folder) {
     if (name == "summary.json" || name == "sweep.csv") found.insert(entry->path().lexically_relative(folder));
   }
   if (error) fail_in_file(folder, fmt::format("cannot be read: {}", error.message()));
-  if (found.empty()) {
-    fail_in_file(folder, "is not the folder of a run: it has no summary.json, nor has any below it");
-  }
+  if (found.empty()) fail_in_file(folder, "is not the folder of a run: it has no summary.json, nor has any below it");
   return found;
 }
 
@@ -48,9 +46,8 @@ bool lies_below(const fs::path& directory, const fs::path& path) {
 std::vector<fs::path> paths_in(const Json& json, const char* name) {
   std::vector<fs::path> paths;
   if (!json.is_object() || !json.contains(name) || !json[name].is_array()) return paths;
-  for (const Json& path : json[name]) {
+  for (const Json& path : json[name])
     if (path.is_string()) paths.emplace_back(path.get<std::string>());
-  }
   return paths;
 }
 
@@ -77,9 +74,8 @@ void write_list(const fs::path& file, const ResultList& list) {
 /// Removes the empty directories from `path` up to, but not including, `directory`.
 void remove_empty(const fs::path& directory, fs::path path) {
   std::error_code error;
-  for (; !path.empty(); path = path.parent_path()) {
+  for (; !path.empty(); path = path.parent_path())
     if (!fs::is_directory(directory / path, error) || !fs::remove(directory / path, error) || error) return;
-  }
 }
 
 bool contains(const std::vector<fs::path>& paths, const fs::path& path) {
@@ -91,18 +87,15 @@ bool contains(const std::vector<fs::path>& paths, const fs::path& path) {
 ResultPairs pair_results(const fs::path& a, const fs::path& b) {
   const std::set<fs::path> in_a = results_below(a), in_b = results_below(b);
   ResultPairs pairs;
-  for (const fs::path& path : in_a) {
-    if (!in_b.contains(path)) {
+  for (const fs::path& path : in_a)
+    if (!in_b.contains(path))
       pairs.only_in_a.push_back(path);
-    } else if (path.filename() == "sweep.csv") {
+    else if (path.filename() == "sweep.csv")
       pairs.sweeps.push_back(path);
-    } else {
+    else
       pairs.runs.push_back(path.parent_path());
-    }
-  }
-  for (const fs::path& path : in_b) {
+  for (const fs::path& path : in_b)
     if (!in_a.contains(path)) pairs.only_in_b.push_back(path);
-  }
   if (pairs.empty()) {
     throw InputError(fmt::format(
         "{} has {} and {} has {}, nothing by the same name; allowed: the folders of two runs, or of several each",

@@ -71,9 +71,8 @@ std::vector<std::string> names_of(const std::vector<fs::path>& files) {
 
 /// Appends the warnings that are not in the list yet.
 void add(std::vector<std::string>& warnings, std::vector<std::string> more) {
-  for (std::string& warning : more) {
+  for (std::string& warning : more)
     if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) warnings.push_back(std::move(warning));
-  }
 }
 
 RunReport run_one(const BatchPlan& plan, const BatchOptions& options, std::size_t number) {

@@ -40,22 +40,18 @@ std::vector<SharedColumn> shared_columns(const Words& a, const Words& b, TableDi
     shared.push_back({i, *other});
     shared.back().difference.column = a[i];
   }
-  for (const std::string_view name : b) {
+  for (const std::string_view name : b)
     if (!place_of(name, a)) difference.only_in_b.emplace_back(name);
-  }
   return shared;
 }
 
 void compare_cells(std::string_view a, std::string_view b, std::size_t row, SharedColumn& column,
                    TableDifference& difference) {
   const auto number_a = finite_number(a), number_b = finite_number(b);
-  for (const auto& number : {number_a, number_b}) {
+  for (const auto& number : {number_a, number_b})
     if (number) column.magnitude = std::max(column.magnitude, std::abs(*number));
-  }
   if (a == b) return;
-  if (!difference.first) {
-    difference.first = {row, column.difference.column, std::string(a), std::string(b)};
-  }
+  if (!difference.first) difference.first = {row, column.difference.column, std::string(a), std::string(b)};
   const double size = number_a && number_b ? std::abs(*number_a - *number_b) : kInfinity;
   if (!column.differs || size > column.difference.largest) {
     column.difference.largest = size;
@@ -72,11 +68,10 @@ constexpr std::string_view kNoResults[] = {"name", "algorithm",  "expected",  "w
                                            "work", "provenance", "state_hash"};
 
 void flatten(const Json& json, const std::string& name, Values& values) {
-  if (json.is_structured() && !json.empty()) {
+  if (json.is_structured() && !json.empty())
     for (const auto& [key, value] : json.items()) flatten(value, name.empty() ? key : name + "." + key, values);
-  } else {
+  else
     values.emplace_back(name, json.is_null() ? "" : json.is_string() ? json.get<std::string>() : json.dump());
-  }
 }
 
 Json read_object(const fs::path& file) {
@@ -99,9 +94,16 @@ Values results_of(const Json& summary) {
   return values;
 }
 
-const std::string* value_of(const Values& values, const std::string& name) {
-  const auto found = std::find_if(values.begin(), values.end(), [&name](const auto& v) { return v.first == name; });
-  return found == values.end() ? nullptr : &found->second;
+/// Calls `visit` for each name with its values in both; null where it is missing.
+template <class Visit>
+void for_each_pair(const Values& a, const Values& b, Visit visit) {
+  const auto value_of = [](const Values& values, const std::string& name) {
+    const auto found = std::find_if(values.begin(), values.end(), [&name](const auto& v) { return v.first == name; });
+    return found == values.end() ? nullptr : &found->second;
+  };
+  for (const auto& [name, value] : a) visit(name, &value, value_of(b, name));
+  for (const auto& [name, value] : b)
+    if (value_of(a, name) == nullptr) visit(name, nullptr, &value);
 }
 
 std::string state_hash_of(const Json& summary) {
@@ -120,42 +122,34 @@ bool are_the_same_file(const fs::path& a, const fs::path& b) {
   }
 }
 
+Values fields_of(const fs::path& run) {
+  Json scenario = read_object(run / "scenario.effective.json");
+  scenario.erase("expect");  // expectations do not change the run
+  Values values;
+  flatten(scenario, "", values);
+  return values;
+}
+
 std::vector<NamedDifference> compare_fields(const fs::path& a, const fs::path& b) {
-  const char* file = "scenario.effective.json";
-  Values values_a, values_b;
-  const auto scenario_in = [file](const fs::path& run) {
-    Json scenario = read_object(run / file);
-    scenario.erase("expect");  // expectations do not change the run
-    return scenario;
-  };
-  flatten(scenario_in(a), "", values_a);
-  flatten(scenario_in(b), "", values_b);
   std::vector<NamedDifference> fields;
-  for (const auto& [name, value] : values_a) {
-    const std::string* other = value_of(values_b, name);
-    if (other != nullptr && *other == value) continue;
-    if (other != nullptr && name.ends_with(".file") && are_the_same_file(a / value, b / *other)) continue;
-    fields.push_back({name, cell_difference(value, other == nullptr ? "" : *other)});
-  }
-  for (const auto& [name, value] : values_b) {
-    if (value_of(values_a, name) == nullptr) fields.push_back({name, cell_difference("", value)});
-  }
+  for_each_pair(fields_of(a), fields_of(b),
+                [&](const std::string& name, const std::string* in_a, const std::string* in_b) {
+                  if (in_a != nullptr && in_b != nullptr) {
+                    if (*in_a == *in_b || (name.ends_with(".file") && are_the_same_file(a / *in_a, b / *in_b))) return;
+                  }
+                  fields.push_back({name, cell_difference(in_a == nullptr ? "" : *in_a, in_b == nullptr ? "" : *in_b)});
+                });
   return fields;
 }
 
 void compare_results(const Json& a, const Json& b, RunDifference& difference) {
-  const Values values_a = results_of(a), values_b = results_of(b);
-  for (const auto& [name, value] : values_a) {
-    const std::string* other = value_of(values_b, name);
-    if (other == nullptr) {
-      difference.unshared.push_back("< " + name);
-    } else if (*other != value) {
-      difference.metrics.push_back({name, cell_difference(value, *other)});
-    }
-  }
-  for (const auto& [name, value] : values_b) {
-    if (value_of(values_a, name) == nullptr) difference.unshared.push_back("> " + name);
-  }
+  for_each_pair(results_of(a), results_of(b),
+                [&](const std::string& name, const std::string* in_a, const std::string* in_b) {
+                  if (in_a == nullptr || in_b == nullptr)
+                    difference.unshared.push_back((in_b == nullptr ? "< " : "> ") + name);
+                  else if (*in_a != *in_b)
+                    difference.metrics.push_back({name, cell_difference(*in_a, *in_b)});
+                });
   difference.state_hash_a = state_hash_of(a);
   difference.state_hash_b = state_hash_of(b);
 }
@@ -188,9 +182,8 @@ TableDifference compare_tables(const fs::path& a, const fs::path& b) {
   bool more_a = rows_a.next(), more_b = rows_b.next();
   for (; more_a && more_b; more_a = rows_a.next(), more_b = rows_b.next()) {
     const std::size_t row = difference.rows_a;
-    for (SharedColumn& column : columns) {
+    for (SharedColumn& column : columns)
       compare_cells(rows_a.cells()[column.in_a], rows_b.cells()[column.in_b], row, column, difference);
-    }
     ++difference.rows_a;
     ++difference.rows_b;
   }

@@ -25,15 +25,6 @@ bool is_of_environment(const Axis& axis) {
   return axis.path == "environment" || axis.path.starts_with("environment.");
 }
 
-/// The axes by whose values runs can be grouped: each point of a sampled range has a value of its own.
-std::vector<std::size_t> environment_axes(const SweepPoints& points) {
-  std::vector<std::size_t> axes;
-  for (std::size_t a = 0; a < points.axes().size(); ++a) {
-    if (is_of_environment(points.axes()[a]) && points.axes()[a].size() > 1) axes.push_back(a);
-  }
-  return axes;
-}
-
 /// Journal offset of each finished row of the shard.
 class Rows {
  public:
@@ -69,9 +60,8 @@ class Rows {
 void note(Rows& rows, const SweepPlan& plan, const Shard& shard, const fs::path& file, Journal::Place place,
           std::string_view row) {
   const auto known = parse_row(plan, row);
-  if (!known || !shard.has(known->run)) {
+  if (!known || !shard.has(known->run))
     fail_in_file(file, fmt::format("got the row \"{}\"; allowed: rows of this sweep", row.substr(0, 60)));
-  }
   rows.set(known->run, place);
 }
 
@@ -97,7 +87,7 @@ void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& j
   // The journal is flushed after this much work, because flushing after each run would take 1 % of a short one.
   constexpr std::chrono::milliseconds kMostUnwritten(10);
   std::chrono::steady_clock::duration unwritten{};
-  RunsToDo runs(plan.points, options.part());
+  const std::vector<std::size_t> runs = runs_to_do(plan.points, options.part());
   ProgressBar bar("sweep", rows.size(), options.progress);
   bar.start_at(rows.count());
   const auto deliver = [&](std::size_t run, const FinishedRun& finished) {
@@ -113,12 +103,9 @@ void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& j
     rows.set_failed(run);
     if (!report.failed || run < report.failed->run) report.failed = FailedRun{run, problem};
   };
-  const auto next = [&]() -> std::optional<std::size_t> {
-    while (StopSignal::received() == 0) {
-      const auto run = runs.next();
-      if (!run || !rows.has(*run)) return run;
-    }
-    return std::nullopt;
+  const auto next = [&, run = runs.begin()]() mutable -> std::optional<std::size_t> {
+    while (run != runs.end() && rows.has(*run)) ++run;
+    return run == runs.end() || StopSignal::received() != 0 ? std::nullopt : std::optional(*run++);
   };
   const auto work = [&](std::size_t run) -> Delivery {
     try {
@@ -137,34 +124,21 @@ void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& j
 
 }  // namespace
 
-std::string environment_of(const SweepPoints& points, std::size_t run) {
-  std::string environment;
-  for (std::size_t a = 0; a < points.axes().size(); ++a) {
-    // No value has a line break.
-    if (is_of_environment(points.axes()[a])) environment += points.value(run, a) + "\n";
-  }
-  return environment;
-}
-
-RunsToDo::RunsToDo(const SweepPoints& points, const Shard& shard) : shard_(shard), count_(shard.size(points.size())) {
-  const std::vector<std::size_t> axes = environment_axes(points);
-  if (axes.empty()) return;
-  order_.reserve(count_);
-  for (std::size_t run = shard.index; run < points.size(); run += shard.count) {
-    std::uint32_t environment = 0;  // may overflow: then runs of two environments alternate
-    for (const std::size_t a : axes) {
-      environment = environment * static_cast<std::uint32_t>(points.axes()[a].size()) +
-                    static_cast<std::uint32_t>(points.place(run, a));
+std::vector<std::size_t> runs_to_do(const SweepPoints& points, const Shard& shard) {
+  std::vector<std::size_t> runs;
+  for (std::size_t run = shard.index; run < points.size(); run += shard.count) runs.push_back(run);
+  // A number for each combination of listed values. Each point of a sampled range has a value of its own.
+  const auto environment = [&points](std::size_t run) {
+    std::size_t number = 0;
+    for (std::size_t a = 0; a < points.axes().size(); ++a) {
+      const Axis& axis = points.axes()[a];
+      if (is_of_environment(axis) && axis.size() > 0) number = number * axis.size() + points.place(run, a);
     }
-    order_.push_back(std::uint64_t{environment} << 32 | run);
-  }
-  std::sort(order_.begin(), order_.end());
-}
-
-std::optional<std::size_t> RunsToDo::next() {
-  if (given_ == count_) return std::nullopt;
-  const std::size_t i = given_++;
-  return order_.empty() ? shard_.index + i * shard_.count : order_[i] & 0xffffffff;
+    return number;
+  };
+  std::stable_sort(runs.begin(), runs.end(),
+                   [&](std::size_t a, std::size_t b) { return environment(a) < environment(b); });
+  return runs;
 }
 
 std::string stem_of(const std::optional<Shard>& shard) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,24 +11,9 @@
 
 namespace hapbench {
 
-/// A text that is equal for runs whose varied fields of the environment have equal values; empty when none varies.
-std::string environment_of(const SweepPoints& points, std::size_t run);
-
-/// The runs of a shard one by one. Runs in one environment follow each other, so that few shells are needed at a time;
-/// apart from that they are in order. Takes 8 bytes for each run if a listed field of the environment varies, otherwise
-/// no memory. `points` must outlive it.
-class RunsToDo {
- public:
-  RunsToDo(const SweepPoints& points, const Shard& shard);
-
-  std::optional<std::size_t> next();
-
- private:
-  Shard shard_;
-  std::size_t count_;
-  std::size_t given_ = 0;
-  std::vector<std::uint64_t> order_;  ///< environment in the upper and run in the lower 32 bits; may be empty
-};
+/// The runs of a shard in the order in which they are done: runs in one environment follow each other, so that few
+/// shells are needed at a time; apart from that they are in order.
+std::vector<std::size_t> runs_to_do(const SweepPoints& points, const Shard& shard);
 
 struct SweepOptions {
   std::filesystem::path directory;  ///< for all files; must exist

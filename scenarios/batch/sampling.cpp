@@ -97,9 +97,8 @@ std::vector<double> latin_hypercube(Random& random, std::size_t count) {
   std::iota(strata.begin(), strata.end(), std::size_t{0});
   random.shuffle(strata);
   std::vector<double> points(count);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count; ++i)
     points[i] = std::min((static_cast<double>(strata[i]) + random.uniform()) / static_cast<double>(count), kLast);
-  }
   return points;
 }
 
@@ -122,18 +121,16 @@ SobolAxis::SobolAxis(std::size_t axis) {
   // The recurrence of Bratley and Fox (1988) that the polynomial defines.
   for (std::size_t i = s; i < kBits; ++i) {
     std::uint32_t v = directions_[i - s] ^ (directions_[i - s] >> s);
-    for (std::size_t k = 1; k < s; ++k) {
+    for (std::size_t k = 1; k < s; ++k)
       if ((numbers.a >> (s - 1 - k) & 1) != 0) v ^= directions_[i - k];
-    }
     directions_[i] = v;
   }
 }
 
 std::uint32_t SobolAxis::at(std::uint32_t point) const {
   std::uint32_t value = 0;
-  for (std::uint32_t bits = point ^ (point >> 1); bits != 0; bits &= bits - 1) {  // those of the Gray code
+  for (std::uint32_t bits = point ^ (point >> 1); bits != 0; bits &= bits - 1)  // those of the Gray code
     value ^= directions_[static_cast<std::size_t>(std::countr_zero(bits))];
-  }
   return value;
 }
 
@@ -157,9 +154,8 @@ Sampling parse_sampling(const std::string& text, std::uint64_t seed) {
 }
 
 UnitSample::UnitSample(const Sampling& sampling, std::size_t axes) {
-  if (sampling.method == SamplingMethod::sobol && axes > kSobolAxes) {
+  if (sampling.method == SamplingMethod::sobol && axes > kSobolAxes)
     throw InputError(fmt::format("--sample: got a Sobol sample of {} fields; allowed: at most {}", axes, kSobolAxes));
-  }
   for (std::size_t axis = 0; axis < axes; ++axis) {
     // A stream for each axis: one more axis does not change the others.
     Random random(Random::derive(sampling.seed, axis));

@@ -1,8 +1,6 @@
 #include "scenarios/batch/sweep_plan.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -17,7 +15,6 @@
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/progress_bar.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
@@ -45,91 +42,36 @@ Point examine(const SweepPlan& plan, std::size_t run) {
   return point;
 }
 
-/// Collects the points of a plan, one by one in whatever order; the outcome does not depend on it.
-class Collector {
- public:
-  explicit Collector(SweepPlan& plan) : plan_(plan) {}
-
-  void add(std::size_t run, const Point& point) {
-    add_sections(sections_, point.sections);
-    if (!point.origin.file.empty()) plugins_.emplace(point.origin.file, point.origin.hash);
-    if (!point.files.empty()) keep_first(files_, point.files, {run, 0});
-    for (std::size_t i = 0; i < point.warnings.size(); ++i) keep_first(warnings_, point.warnings[i], {run, i});
-  }
-
-  /// Gives the plan the warnings, when all points have been added.
-  void give_warnings() {
-    for (const auto& [place, warning] : in_order(warnings_)) plan_.warnings.push_back(warning);
-  }
-
-  /// The files that algorithms come from, with their hashes.
-  const std::map<std::string, std::string>& plugins() const { return plugins_; }
-
-  /// The metrics that some run has; call it after check_files.
-  std::vector<std::string> metrics() const { return metric_names(sections_); }
-
-  /// Reads what the scenarios name, each file once for each use, and hashes it.
-  Json check_files() {
-    Json hashes = Json::array();
-    for (const auto& [place, names] : in_order(files_)) {
-      LoadedScenario loaded = scenario_of(plan_, place.first);
-      for (std::string& warning : check_named_files(loaded)) {
-        const auto end = plan_.warnings.end();
-        if (std::find(plan_.warnings.begin(), end, warning) == end) plan_.warnings.push_back(std::move(warning));
-      }
-      if (std::holds_alternative<RecordedPosition>(loaded.scenario.motion.position))
-        add_sections(sections_, sections_of(loaded.scenario, loaded.files.at(kMotionFile).stroke()->force.has_value()));
-      loaded.scenario.name.clear();  // which may be that of the scenario's file
-      hashes.push_back(with_file(loaded, [&] { return scenario_hash(loaded.scenario, loaded.files); }));
-    }
-    return hashes;
-  }
-
- private:
-  /// Where something first occurs: run, and number within the run.
-  using Place = std::pair<std::size_t, std::size_t>;
-  using FirstPlaces = std::map<std::string, Place>;
-
-  static void keep_first(FirstPlaces& places, const std::string& text, Place place) {
-    Place& first = places.emplace(text, place).first->second;
-    first = std::min(first, place);
-  }
-  static std::map<Place, std::string> in_order(const FirstPlaces& places) {
-    std::map<Place, std::string> order;
-    for (const auto& [text, place] : places) order.emplace(place, text);
-    return order;
-  }
-
-  SweepPlan& plan_;
-  SectionParts sections_;
-  FirstPlaces files_, warnings_;
-  std::map<std::string, std::string> plugins_;
-};
-
-/// Fills the collector; throws the error of the lowest run that has one.
-void examine_all(const SweepPlan& plan, std::size_t jobs, bool progress, Collector& collector) {
-  const std::vector<std::size_t> runs = runs_to_check(plan.points);
-  ProgressBar bar("checking", runs.size(), progress);
-  std::size_t done = 0;
-  std::map<std::size_t, std::exception_ptr> errors;
-  // Runs start in order, so when any run fails, the lowest one that will fail has at least been started.
-  std::atomic<bool> failed = false;
-  const auto work = [&](std::size_t run) -> Delivery {
-    try {
-      return [&, run, point = examine(plan, run)] {
-        collector.add(run, point);
-        bar.show(++done, true);
-      };
-    } catch (const InputError&) {
-      failed = true;
-      return [&errors, run, error = std::current_exception()] { errors[run] = error; };
-    }
-  };
-  parallel_for(runs, jobs, work, [&failed] { return failed.load(); });
-  if (!errors.empty()) std::rethrow_exception(errors.begin()->second);
+/// Examines the runs on several threads. Throws the error of the first run that has one.
+std::vector<Point> examine_all(const SweepPlan& plan, const std::vector<std::size_t>& runs, std::size_t jobs,
+                               bool progress) {
+  std::vector<Point> points(runs.size());
+  for_each_job(runs.size(), {static_cast<unsigned>(jobs), progress ? "checking" : ""},
+               [&](std::size_t i) { points[i] = examine(plan, runs[i]); });
+  return points;
 }
 
-/// A grid's values one by one, but for ranges of very many.
+void append_new(std::vector<std::string>& warnings, const std::vector<std::string>& more) {
+  for (const std::string& warning : more)
+    if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) warnings.push_back(warning);
+}
+
+/// Reads the files that the scenarios of these runs name, adds their warnings to the plan and what they measured to the
+/// sections, and returns their hashes.
+Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, SectionParts& sections) {
+  Json hashes = Json::array();
+  for (const std::size_t run : runs) {
+    LoadedScenario loaded = scenario_of(plan, run);
+    append_new(plan.warnings, check_named_files(loaded));
+    if (std::holds_alternative<RecordedPosition>(loaded.scenario.motion.position))
+      add_sections(sections, sections_of(loaded.scenario, loaded.files.at(kMotionFile).stroke()->force.has_value()));
+    loaded.scenario.name.clear();  // may be that of the scenario's file
+    hashes.push_back(with_file(loaded, [&] { return scenario_hash(loaded.scenario, loaded.files); }));
+  }
+  return hashes;
+}
+
+/// The values of an axis; only the ends of a range that has very many.
 Json axis_content(const Axis& axis) {
   constexpr std::size_t kMostListed = 10'000;
   if (!axis.range || (axis.steps > 0 && axis.steps <= kMostListed)) {
@@ -188,12 +130,29 @@ std::vector<std::size_t> runs_to_check(const SweepPoints& points) {
 
 SweepPlan plan_sweep(ScenarioText scenario, std::vector<std::string> overrides, SweepPoints points, std::size_t jobs,
                      bool progress) {
-  SweepPlan plan{std::move(scenario), std::move(overrides), std::move(points), {}, {}, {}, ""};
-  Collector collector(plan);
-  examine_all(plan, jobs, progress, collector);
-  collector.give_warnings();
-  plan.content = content_of(plan, collector.check_files(), collector.plugins());
-  plan.metrics = collector.metrics();
+  SweepPlan plan{.scenario = std::move(scenario),
+                 .overrides = std::move(overrides),
+                 .points = std::move(points),
+                 .warnings = {},
+                 .metrics = {},
+                 .content = {},
+                 .definition = ""};
+  const std::vector<std::size_t> runs = runs_to_check(plan.points);
+  SectionParts sections;
+  std::map<std::string, std::string> plugins;
+  std::map<std::string, std::size_t> first_runs;  // of each combination of files
+  for (std::size_t i = 0; const Point& point : examine_all(plan, runs, jobs, progress)) {
+    add_sections(sections, point.sections);
+    append_new(plan.warnings, point.warnings);
+    if (!point.origin.file.empty()) plugins.emplace(point.origin.file, point.origin.hash);
+    if (!point.files.empty()) first_runs.emplace(point.files, runs[i]);
+    ++i;
+  }
+  std::set<std::size_t> runs_with_files;
+  for (const auto& [files, run] : first_runs) runs_with_files.insert(run);
+  const Json hashes = check_files(plan, {runs_with_files.begin(), runs_with_files.end()}, sections);
+  plan.metrics = metric_names(sections);
+  plan.content = content_of(plan, hashes, plugins);
   plan.definition = hash_text(hash_of(json_text(plan.content)));
   return plan;
 }

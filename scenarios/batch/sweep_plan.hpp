@@ -9,38 +9,38 @@
 
 namespace hapbench {
 
-/// A scenario run at several points, of a grid or a sample: what is known, and checked, before the first run. Its size
-/// does not depend on the number of runs, but for the points (sweep_points.hpp).
+/// A scenario to run at the points of a grid or a sample, checked before the first run. Its size does not depend on the
+/// number of runs, except for the points (sweep_points.hpp).
 struct SweepPlan {
   ScenarioText scenario;
-  std::vector<std::string> overrides;  ///< of all runs, as in --set; the points' come after them
+  std::vector<std::string> overrides;  ///< of all runs, as in --set; those of the points follow
   SweepPoints points;
 
-  std::vector<std::string> warnings;  ///< of the runs that were checked, each once
-  std::vector<std::string> metrics;   ///< that some of them has
-  /// What the rows are a function of: scenario, overrides, points, hashes of the files the scenarios name, program.
+  std::vector<std::string> warnings;  ///< of the runs that were checked, without duplicates
+  std::vector<std::string> metrics;   ///< that some of these runs have
+  /// Everything that determines the rows: scenario, overrides, points, hashes of the files the scenarios name, program.
   Json content;
   std::string definition;  ///< FNV-1a of the content, as 16 hexadecimal digits
 };
 
-/// Most runs of a sample, and most values of a field of a grid, that are checked before the first run.
+/// Maximum number of runs of a sample, and of values of a field of a grid, that are checked before the first run.
 inline constexpr std::size_t kMostChecked = 1000;
 
-/// The runs that are checked, in order: all when there are no more than kMostChecked. Of a longer grid those at its
-/// edges from the first run and from the last one, where one field takes each of its values (kMostChecked of them, the
-/// ends included); of a longer sample the first ones.
+/// The runs that are checked, in order: all if there are at most kMostChecked. Of a larger grid, the runs at the edges
+/// through its first and its last run, along each of which one field takes all its values (at most kMostChecked of
+/// them, the ends included). Of a larger sample, the first runs.
 std::vector<std::size_t> runs_to_check(const SweepPoints& points);
 
-/// Loads the scenarios of the runs to check and reads the files they name, to find what is wrong before anything is run
-/// or written. About 0.1 ms a run for each of `jobs` threads. `progress` allows a progress bar. Throws InputError, of
-/// several for the run with the lowest number.
+/// Loads the scenarios of the runs to check and reads the files they name, to find errors before anything is run or
+/// written. Takes about 0.1 ms for each run on each of `jobs` threads. `progress` allows a progress bar. Throws
+/// InputError, that of the run with the lowest number if there are several.
 SweepPlan plan_sweep(ScenarioText scenario, std::vector<std::string> overrides, SweepPoints points, std::size_t jobs,
                      bool progress);
 
 /// The overrides of one run: the plan's and the point's. Precondition, here and below: run < plan.points.size().
 std::vector<std::string> overrides_of(const SweepPlan& plan, std::size_t run);
 
-/// The scenario of one run. For several threads. Throws InputError when it was not checked and is wrong.
+/// The scenario of one run. Thread-safe. Throws InputError when it was not checked and is wrong.
 LoadedScenario scenario_of(const SweepPlan& plan, std::size_t run);
 
 }  // namespace hapbench

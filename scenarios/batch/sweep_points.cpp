@@ -30,9 +30,8 @@ std::string number_text(double value) {
 
 double range_end(const std::string& text, std::string_view word) {
   const auto number = finite_number(word);
-  if (!number || std::abs(*number) > kLargestEnd) {
+  if (!number || std::abs(*number) > kLargestEnd)
     refuse_axis(text, fmt::format("got \"{}\" for an end of the range", word), "a finite number");
-  }
   return *number;
 }
 
@@ -60,12 +59,10 @@ struct RangeText {
 RangeText read_range(const std::string& text, std::string_view words, bool sampled) {
   const Words parts = parts_of(words, ':');
   const std::size_t least = sampled ? 2 : 3;
-  if (sampled && parts.size() > 2 && whole_number(parts[2])) {
+  if (sampled && parts.size() > 2 && whole_number(parts[2]))
     refuse_axis(text, "got a number of values beside --sample, which has its own", "a:b or a:b:log");
-  }
-  if (!sampled && parts.size() == 2) {
+  if (!sampled && parts.size() == 2)
     refuse_axis(text, "got 2 parts between colons", "a:b:n or a:b:n:log; a:b and a:b:log with --sample");
-  }
   if (parts.size() != least && parts.size() != least + 1) {
     refuse_axis(text, fmt::format("got {} parts between colons", parts.size()),
                 sampled ? "a:b or a:b:log" : "a:b:n or a:b:n:log");
@@ -83,17 +80,15 @@ RangeText read_range(const std::string& text, std::string_view words, bool sampl
 
 std::size_t steps_of(const std::string& text, std::string_view word) {
   const auto n = whole_number(word);
-  if (!n || *n < 2 || *n > kMostRuns) {
+  if (!n || *n < 2 || *n > kMostRuns)
     refuse_axis(text, fmt::format("got \"{}\" values", word), fmt::format("an integer 2 ... {}", kMostRuns));
-  }
   return *n;
 }
 
 std::vector<std::string> listed_values(const std::string& text, std::string_view list) {
   const Words words = parts_of(list, ',');
-  if (words.size() > kMostRuns) {
+  if (words.size() > kMostRuns)
     refuse_axis(text, fmt::format("got {} values", words.size()), fmt::format("at most {}", kMostRuns));
-  }
   std::vector<std::string> values;
   for (const std::string_view word : words) {
     if (word.empty()) refuse_axis(text, "got an empty value", "numbers or texts separated by commas");
@@ -115,9 +110,8 @@ Axis read_axis(const std::string& text, bool sampled) {
   }
   const std::string_view values = std::string_view(text).substr(equals + 1);
   const auto needs_quotes = [](unsigned char c) { return c < 0x20 || c == 0x7f || c == '"'; };
-  if (std::any_of(values.begin(), values.end(), needs_quotes)) {
+  if (std::any_of(values.begin(), values.end(), needs_quotes))
     refuse_axis(text, "has quotes or control characters", "numbers or plain texts");
-  }
   const bool is_range = values.find(',') == std::string_view::npos && values.find(':') != std::string_view::npos;
   if (!is_range) {
     axis.values = listed_values(text, values);
@@ -169,9 +163,8 @@ SweepPoints::SweepPoints(std::vector<Axis> axes) : axes_(std::move(axes)) {
   check_paths(axes_);
   double size = 1.0;  // a double, because the product may overflow integers
   for (const Axis& axis : axes_) size *= static_cast<double>(axis.size());
-  if (size > static_cast<double>(kMostRuns)) {
+  if (size > static_cast<double>(kMostRuns))
     throw InputError(fmt::format("--vary: got a grid of {:.7g} runs; allowed: at most {}", size, kMostRuns));
-  }
   strides_.resize(axes_.size());
   for (std::size_t a = axes_.size(); a-- > 0; size_ *= axes_[a].size()) strides_[a] = size_;
 }

@@ -159,9 +159,8 @@ std::optional<SweepRow> parse_row(const SweepPlan& plan, std::string_view text) 
   const std::size_t axes = plan.points.axes().size(), first_metric = leading_columns(plan);
   const auto run = whole_number(cells[0]);
   if (!run || *run >= plan.points.size() || cells.size() != first_metric + plan.metrics.size() + 1) return std::nullopt;
-  for (std::size_t a = 0; a < axes; ++a) {
+  for (std::size_t a = 0; a < axes; ++a)
     if (cells[1 + a] != plan.points.value(*run, a)) return std::nullopt;
-  }
   SweepRow row{.run = *run,
                .outcome = std::string(cells[1 + axes]),
                .expected = cells[2 + axes] == "true",
@@ -309,9 +308,8 @@ void check_complete(std::span<const ShardTitle> tables) {
   if (shards.size() == count) return;
   constexpr std::size_t kMostShown = 10;
   std::vector<std::string> missing;
-  for (std::size_t i = 0; i < count && missing.size() < kMostShown; ++i) {
+  for (std::size_t i = 0; i < count && missing.size() < kMostShown; ++i)
     if (!shards.contains(i)) missing.push_back(shard_text({i, count}));
-  }
   throw InputError(fmt::format("{} of {} shards missing: {}{}", count - shards.size(), count, fmt::join(missing, ", "),
                                count - shards.size() > kMostShown ? ", ..." : ""));
 }

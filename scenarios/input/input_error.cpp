@@ -11,8 +11,9 @@
 namespace hapbench {
 namespace {
 
-/// Letters to replace, to leave out, to put in, or neighbours to swap, to make `b` of `a`; or one more than that for a
-/// part of `b` that ends before an underscore, if that is less. Names are short, so a quadratic table is enough.
+/// Number of letters to replace, remove, insert or swap with a neighbour to turn `a` into `b`. If that is less, one
+/// more than the number for a part of `b` that ends before an underscore. Names are short, so quadratic cost is
+/// acceptable.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> rows(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   std::iota(rows[0].begin(), rows[0].end(), std::size_t{0});
@@ -27,9 +28,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   }
   const std::vector<std::size_t>& distances = rows.back();
   std::size_t least = distances.back();
-  for (std::size_t j = 1; j < b.size(); ++j) {
+  for (std::size_t j = 1; j < b.size(); ++j)
     if (b[j] == '_') least = std::min(least, distances[j] + 1);
-  }
   return least;
 }
 
@@ -69,10 +69,10 @@ void fail_in_line(const std::filesystem::path& file, std::size_t line, const std
 }
 
 std::string nearest_name(std::string_view given, std::span<const std::string> valid) {
-  // A hostile name may be megabytes long; nothing that long is near a name of ours.
+  // A hostile name may be megabytes long; no valid name is that long.
   if (given.size() > 200) return "";
   std::string best;
-  // A third of the letters may be wrong; in a short name more than one would match anything.
+  // A third of the letters may be wrong, but only one in a short name, which would otherwise match anything.
   std::size_t best_distance = std::max<std::size_t>(given.size() > 4 ? 2 : 1, given.size() / 3) + 1;
   for (const std::string& name : valid) {
     const bool contains = given.size() >= 3 && name.find(given) != std::string::npos;
@@ -97,7 +97,7 @@ void require_valid_name(std::string_view got, const std::string& name, std::span
 }
 
 std::string quoted_list(std::span<const std::string> names) {
-  constexpr std::size_t kMostNames = 50;  // more than that nobody reads
+  constexpr std::size_t kMostNames = 50;  // longer lists are not readable
   if (names.empty()) return "nothing";
   const std::size_t more = names.size() - std::min(names.size(), kMostNames);
   return fmt::format("\"{}\"{}", fmt::join(names.first(names.size() - more), "\", \""),

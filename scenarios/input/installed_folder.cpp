@@ -7,7 +7,7 @@
 
 #include "scenarios/input/input_error.hpp"
 
-// A static library does not know where it was installed: who finds it by find_package links .cmake/share_folder.cpp.
+// A static library does not know where it was installed. Users of find_package link .cmake/share_folder.cpp instead.
 extern "C" [[gnu::weak]] const char hapbench_share_folder[];
 
 namespace hapbench {
@@ -16,10 +16,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// In this shared object, or in the program.
+/// An address in this shared object or program, for dladdr.
 constexpr char kHere = 0;
 
-/// Canonical, so that messages name the place in the source tree to which a build tree has links.
+/// The path is canonical, so that messages name a folder of the source tree instead of the build tree's link to it.
 std::optional<fs::path> folder_at(const fs::path& path) {
   std::error_code error;
   const fs::path found = fs::canonical(path, error);
@@ -33,13 +33,12 @@ std::optional<fs::path> folder_above_shared_object(const fs::path& program, cons
   std::error_code error;
   const fs::path file = fs::canonical(object.dli_fname, error);
   if (error || file == program) return std::nullopt;
-  for (fs::path above = file.parent_path(); above != above.root_path(); above = above.parent_path()) {
+  for (fs::path above = file.parent_path(); above != above.root_path(); above = above.parent_path())
     if (auto found = folder_at(above / wanted)) return found;
-  }
   return std::nullopt;
 }
 
-/// The share folder of which the build tells; empty when it does not.
+/// The share folder that the build defines; may be empty.
 fs::path share_of_build() {
 #ifdef HAPBENCH_SHARE
   return HAPBENCH_SHARE;

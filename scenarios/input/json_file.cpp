@@ -28,14 +28,14 @@ std::string line_and_column(const std::string& text, std::size_t byte) {
   return fmt::format("line {}, column {}", line, std::max<std::size_t>(column, 1));
 }
 
-/// What was probably meant where the text stops being JSON, at a byte counted from 1, the last that the parser has read
-/// of what it does not take; or empty.
+/// A hint at the probable cause of a syntax error; may be empty. `byte` is the position, from 1, of the last byte that
+/// the parser read.
 std::string syntax_hint(const std::string& text, std::size_t byte) {
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) return "; the text is UTF-16; allowed: UTF-8";
   if (byte > text.size()) return "; the text ends too early";
   std::size_t at = std::max<std::size_t>(byte, 1) - 1;
   const char last = text[at];
-  // Back to where the word or the text begins.
+  // Go back to the beginning of the word or the string.
   const auto is_letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
   while (at > 0 && is_letter(last) && is_letter(text[at - 1])) --at;
   if (const std::size_t quote = last == '"' ? text.rfind('"', byte - 2) : std::string::npos; quote < at) at = quote;
@@ -66,7 +66,7 @@ std::string number_in(const std::string& message) {
   return number.size() > kLongest ? number.substr(0, kLongest) + "..." : number;
 }
 
-/// Watches the parser's events for what the parser itself would accept, and knows where in the document it is.
+/// Follows the parser's events to refuse what the parser accepts, such as duplicate keys, and to know the position.
 class Guard {
  public:
   bool operator()(int depth, Json::parse_event_t event, Json& parsed) {
@@ -93,12 +93,11 @@ class Guard {
     return true;
   }
 
-  /// JSON pointer of the value the parser is at; shortened where it is deep.
+  /// JSON pointer of the current value; only its first levels if it is deep.
   std::string pointer() const {
     std::string at;
-    for (std::size_t i = 0; i < levels_.size() && i < 8; ++i) {
+    for (std::size_t i = 0; i < levels_.size() && i < 8; ++i)
       at = levels_[i].is_array ? element(at, levels_[i].index) : member(at, levels_[i].key);
-    }
     return at;
   }
 
@@ -125,19 +124,19 @@ class Guard {
     if (object.seen.size() > kMostKeys) refuse_here(fmt::format("more than {} keys in one object", kMostKeys));
   }
 
-  std::vector<Level> levels_;  ///< objects and arrays that are open
+  std::vector<Level> levels_;  ///< open objects and arrays
 };
 
 }  // namespace
 
 std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest) {
-  // The system would read the name up to the zero byte, which is another file.
+  // The system would open the file whose name ends before the zero byte.
   if (file.native().find('\0') != std::string::npos) throw InputError("cannot be read: the name has a zero byte");
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) throw InputError("is a directory, not a file");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError(fmt::format("cannot be read: {}", std::strerror(errno)));
-  // Read in pieces up to the limit rather than trust a size, which pipes and devices do not have.
+  // Read in pieces up to the limit, because pipes and devices have no size.
   std::string text;
   std::vector<char> piece(1 << 16);
   while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())) || stream.gcount() > 0) {
@@ -148,7 +147,7 @@ std::string read_text_file(const std::filesystem::path& file, std::uintmax_t lar
 }
 
 Json parse_json(const std::string& text) {
-  // The parser takes a zero byte for the end and would not see what follows.
+  // The parser would stop at a zero byte.
   if (const std::size_t zero = text.find('\0'); zero != std::string::npos) refuse_syntax(text, zero + 1);
   Guard guard;
   try {
@@ -163,10 +162,9 @@ Json parse_json(const std::string& text) {
 
 std::string shown(const Json& json) {
   constexpr std::size_t kLongest = 80;
-  // Only the beginning of a large value is worth printing, and printing all of it could take long.
-  if ((json.is_array() || json.is_object()) && json.size() > 20) {
+  // Printing all of a large value could take long.
+  if ((json.is_array() || json.is_object()) && json.size() > 20)
     return fmt::format("{} of {} entries", json.is_array() ? "a list" : "an object", json.size());
-  }
   std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
   if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
   return text;
@@ -186,15 +184,13 @@ std::string shown(std::string_view text) {
 
 std::string member(const std::string& at, const std::string& name) {
   std::string pointer = at + "/";
-  for (const char c : name.substr(0, 200)) {
-    if (c == '~') {
+  for (const char c : name.substr(0, 200))
+    if (c == '~')
       pointer += "~0";
-    } else if (c == '/') {
+    else if (c == '/')
       pointer += "~1";
-    } else {
+    else
       pointer += static_cast<unsigned char>(c) < 0x20 ? '?' : c;  // keep the message on one line
-    }
-  }
   return pointer;
 }
 

@@ -9,19 +9,19 @@
 
 namespace hapbench {
 
-/// Keeps the order of keys, so that written scenarios read like the documentation. Only declared here, because its
-/// definition takes a compiler long: a source that makes one or takes one apart includes <nlohmann/json.hpp>.
+/// JSON that keeps the order of keys, so that written scenarios read like the documentation. This header only declares
+/// it to save compile time: a source that creates or reads values includes <nlohmann/json.hpp>.
 using Json = nlohmann::ordered_json;
 
 /// Largest JSON file read [bytes].
 inline constexpr std::uintmax_t kLargestJsonFile = 64 << 20;
 
-/// Reads a whole file. Throws InputError (place: none) when it cannot be read or is larger than `largest`.
+/// Reads a whole file. Throws InputError without a place when it cannot be read or is larger than `largest` bytes.
 std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest);
 
-/// Parses JSON from outside, which may be hostile: refuses what is no JSON (with line, column and a hint at comments,
+/// Parses JSON that may be hostile. Throws InputError for syntax errors (with line, column and a hint at comments,
 /// commas, quotes and encodings), nesting deeper than 64, objects with more than 10 000 keys, duplicate keys and
-/// numbers beyond double. Throws InputError.
+/// numbers beyond the range of double.
 Json parse_json(const std::string& text);
 
 /// The value as an error message shows it: JSON on one line, cut when long.
@@ -30,7 +30,7 @@ std::string shown(double value);
 std::string shown(const Vec3& value);
 std::string shown(std::string_view text);
 
-/// Pointer of a member or an element; `~` and `/` escaped as RFC 6901 says.
+/// JSON pointer of a member or an element of the value at `at`, escaped as in RFC 6901.
 std::string member(const std::string& at, const std::string& name);
 std::string element(const std::string& at, std::size_t index);
 

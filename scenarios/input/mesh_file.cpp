@@ -135,13 +135,11 @@ void check_and_normalise(std::vector<SurfacePoint>& points, const fs::path& file
   for (std::size_t i = 0; i < points.size(); ++i) {
     SurfacePoint& point = points[i];
     const double largest = point.position.cwiseAbs().maxCoeff();
-    if (!(largest <= 1000.0)) {
+    if (!(largest <= 1000.0))
       fail_in_file(file, fmt::format("point {}: got coordinate {}; allowed: finite, at most 1000 m", i, largest));
-    }
     const double length = point.normal.norm();
-    if (!(std::abs(length - 1.0) <= 1e-3)) {
+    if (!(std::abs(length - 1.0) <= 1e-3))
       fail_in_file(file, fmt::format("point {}: got a normal of length {}; allowed: unit normals", i, length));
-    }
     // Unit to rounding is left alone, so that an exported shell reads back bit for bit.
     if (std::abs(length - 1.0) > 1e-12) point.normal /= length;
   }

@@ -8,6 +8,125 @@
 #include "scenarios/input/input_error.hpp"
 
 namespace hapbench {
+namespace {
+
+// ---- OBJ
+
+/// Index of the vertex that a corner of a face names. "7/1/3" is the seventh vertex of the file, which may come later;
+/// "-1" is the last of the `vertices` read so far.
+std::uint32_t vertex_of(std::string_view word, std::size_t vertices, const MeshLines& lines) {
+  const std::string_view number = word.substr(0, word.find('/'));
+  int index = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), index);
+  const bool parsed = error == std::errc() && end == number.data() + number.size();
+  const auto count = static_cast<std::int64_t>(vertices);
+  if (!parsed || index == 0 || index < -count) {
+    lines.fail(fmt::format("got {}; allowed: the number of a vertex, from 1, or back from -1, the last one",
+                           quoted_word(word)));
+  }
+  return static_cast<std::uint32_t>(index > 0 ? index - 1 : count + index);
+}
+
+// ---- OFF
+
+/// Reads what follows the header's keyword. Normals, colours and texture coordinates come after the position or the
+/// corners and are ignored.
+TriangleSoup read_off_text(MeshLines& lines) {
+  // The counts may stand in the line of the header.
+  const std::size_t counts = lines.words().size() > 1 ? 1 : 0;
+  if (counts == 0 && !lines.next()) lines.fail("the file ends before its counts of vertices, faces and edges");
+  const std::size_t vertices = lines.count(counts, "vertices"), faces = lines.count(counts + 1, "faces");
+  TriangleSoup soup;
+  for (std::size_t i = 0; i < vertices; ++i) {
+    if (!lines.next())
+      lines.fail(fmt::format("the file ends before its {} vertices; allowed: a complete file", vertices));
+    soup.vertices.push_back(lines.position(0));
+  }
+  for (std::size_t i = 0; i < faces; ++i) {
+    if (!lines.next()) lines.fail(fmt::format("the file ends before its {} faces; allowed: a complete file", faces));
+    lines.add_face(i, 0, soup);
+  }
+  return soup;
+}
+
+/// Reads the counts, vertices and faces that follow the line "OFF BINARY".
+TriangleSoup read_off_binary(std::string_view bytes, const std::filesystem::path& file) {
+  ByteReader reader(bytes, std::endian::little);
+  const auto need = [&](std::size_t numbers, const char* what) {
+    if (reader.left() / 4 < numbers)
+      fail_in_file(file, fmt::format("ends before its {}; allowed: a complete, little endian file", what));
+  };
+  need(3, "faces");
+  const auto vertices = reader.take<std::uint32_t>(), faces = reader.take<std::uint32_t>();
+  reader.skip(4);  // the count of edges
+  need(3 * std::size_t{vertices}, "faces");
+  TriangleSoup soup;
+  for (std::uint32_t i = 0; i < vertices; ++i) {
+    const auto x = reader.take<float>(), y = reader.take<float>(), z = reader.take<float>();
+    soup.vertices.push_back(Vec3(x, y, z));
+  }
+  std::vector<std::uint32_t> corners;
+  for (std::uint32_t i = 0; i < faces; ++i) {
+    need(1, "faces");
+    const auto count = reader.take<std::uint32_t>();
+    if (count < 3) fail_in_file(file, fmt::format("face {}: got {} corners; allowed: at least 3", i, count));
+    need(count, i + 1 == faces ? "last face" : "faces");
+    corners.clear();
+    for (std::uint32_t k = 0; k < count; ++k) corners.push_back(reader.take<std::uint32_t>());
+    add_polygon(corners, soup);
+  }
+  return soup;
+}
+
+// ---- STL
+
+constexpr std::size_t kName = 80, kHeader = 84, kTriangle = 50;  // bytes of a binary file
+
+void add_triangle(const std::array<Vec3, 3>& corners, TriangleSoup& soup) {
+  const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+  soup.vertices.insert(soup.vertices.end(), corners.begin(), corners.end());
+  soup.triangles.push_back({first, first + 1, first + 2});
+}
+
+TriangleSoup read_stl_text(std::string_view text, const std::filesystem::path& file) {
+  TriangleSoup soup;
+  MeshLines lines{LineReader(text), file};
+  while (lines.next()) {
+    const std::string first = lower_case(lines.words()[0]);
+    if (first == "outer") {
+      std::array<Vec3, 3> corners;
+      for (Vec3& corner : corners) {
+        if (!lines.next() || lower_case(lines.words()[0]) != "vertex")
+          lines.fail("allowed after \"outer loop\": three vertices");
+        corner = lines.position(1);
+      }
+      add_triangle(corners, soup);
+    } else if (first != "solid" && first != "facet" && first != "endloop" && first != "endfacet" &&
+               first != "endsolid") {
+      lines.fail(
+          fmt::format("got {}; allowed: solid, facet, outer loop, three times vertex, endloop, endfacet, endsolid",
+                      quoted_word(lines.words()[0])));
+    }
+  }
+  return soup;
+}
+
+TriangleSoup read_stl_binary(ByteReader reader, std::size_t triangles, const std::filesystem::path& file) {
+  TriangleSoup soup;
+  for (std::size_t t = 0; t < triangles; ++t) {
+    reader.skip(3 * sizeof(float));  // the normal
+    std::array<Vec3, 3> corners;
+    for (Vec3& corner : corners) {
+      for (double& coordinate : corner) coordinate = reader.take<float>();
+      if (!corner.allFinite()) fail_in_file(file, fmt::format("triangle {}: a vertex is not finite", t));
+    }
+    reader.skip(2);  // attributes
+    add_triangle(corners, soup);
+  }
+  return soup;
+}
+
+}  // namespace
 
 void add_polygon(std::span<const std::uint32_t> corners, TriangleSoup& soup) {
   for (std::size_t i = 2; i < corners.size(); ++i) soup.triangles.push_back({corners[0], corners[i - 1], corners[i]});
@@ -61,25 +180,6 @@ void MeshLines::fail(const std::string& problem) const {
   fail_in_line(file_, lines_.line(), problem);
 }
 
-namespace {
-
-/// Index of the vertex that a corner of a face names. "7/1/3" is the seventh vertex of the file, which may come later;
-/// "-1" is the last of the `vertices` read so far.
-std::uint32_t vertex_of(std::string_view word, std::size_t vertices, const MeshLines& lines) {
-  const std::string_view number = word.substr(0, word.find('/'));
-  int index = 0;
-  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), index);
-  const bool parsed = error == std::errc() && end == number.data() + number.size();
-  const auto count = static_cast<std::int64_t>(vertices);
-  if (!parsed || index == 0 || index < -count) {
-    lines.fail(fmt::format("got {}; allowed: the number of a vertex, from 1, or back from -1, the last one",
-                           quoted_word(word)));
-  }
-  return static_cast<std::uint32_t>(index > 0 ? index - 1 : count + index);
-}
-
-}  // namespace
-
 TriangleSoup read_obj(std::string_view text, const std::filesystem::path& file) {
   TriangleSoup soup;
   std::vector<std::uint32_t> corners;
@@ -100,59 +200,6 @@ TriangleSoup read_obj(std::string_view text, const std::filesystem::path& file) 
   return soup;
 }
 
-namespace {
-
-/// Reads what follows the header's keyword. Normals, colours and texture coordinates come after the position or the
-/// corners and are ignored.
-TriangleSoup read_off_text(MeshLines& lines) {
-  // The counts may stand in the line of the header.
-  const std::size_t counts = lines.words().size() > 1 ? 1 : 0;
-  if (counts == 0 && !lines.next()) lines.fail("the file ends before its counts of vertices, faces and edges");
-  const std::size_t vertices = lines.count(counts, "vertices"), faces = lines.count(counts + 1, "faces");
-  TriangleSoup soup;
-  for (std::size_t i = 0; i < vertices; ++i) {
-    if (!lines.next())
-      lines.fail(fmt::format("the file ends before its {} vertices; allowed: a complete file", vertices));
-    soup.vertices.push_back(lines.position(0));
-  }
-  for (std::size_t i = 0; i < faces; ++i) {
-    if (!lines.next()) lines.fail(fmt::format("the file ends before its {} faces; allowed: a complete file", faces));
-    lines.add_face(i, 0, soup);
-  }
-  return soup;
-}
-
-/// Reads the counts, vertices and faces that follow the line "OFF BINARY".
-TriangleSoup read_off_binary(std::string_view bytes, const std::filesystem::path& file) {
-  ByteReader reader(bytes, std::endian::little);
-  const auto need = [&](std::size_t numbers, const char* what) {
-    if (reader.left() / 4 < numbers)
-      fail_in_file(file, fmt::format("ends before its {}; allowed: a complete, little endian file", what));
-  };
-  need(3, "faces");
-  const auto vertices = reader.take<std::uint32_t>(), faces = reader.take<std::uint32_t>();
-  reader.skip(4);  // the count of edges
-  need(3 * std::size_t{vertices}, "faces");
-  TriangleSoup soup;
-  for (std::uint32_t i = 0; i < vertices; ++i) {
-    const auto x = reader.take<float>(), y = reader.take<float>(), z = reader.take<float>();
-    soup.vertices.push_back(Vec3(x, y, z));
-  }
-  std::vector<std::uint32_t> corners;
-  for (std::uint32_t i = 0; i < faces; ++i) {
-    need(1, "faces");
-    const auto count = reader.take<std::uint32_t>();
-    if (count < 3) fail_in_file(file, fmt::format("face {}: got {} corners; allowed: at least 3", i, count));
-    need(count, i + 1 == faces ? "last face" : "faces");
-    corners.clear();
-    for (std::uint32_t k = 0; k < count; ++k) corners.push_back(reader.take<std::uint32_t>());
-    add_polygon(corners, soup);
-  }
-  return soup;
-}
-
-}  // namespace
-
 TriangleSoup read_off(std::string_view text, const std::filesystem::path& file) {
   MeshLines lines{LineReader(text), file};
   constexpr std::array<std::string_view, 8> kKinds = {"OFF",   "COFF",   "NOFF",   "CNOFF",
@@ -164,56 +211,6 @@ TriangleSoup read_off(std::string_view text, const std::filesystem::path& file) 
   if (header[0] != "OFF") lines.fail("allowed for a binary file: no normals, colours or texture coordinates");
   return read_off_binary(lines.rest(), file);
 }
-
-namespace {
-
-constexpr std::size_t kName = 80, kHeader = 84, kTriangle = 50;  // bytes of a binary file
-
-void add_triangle(const std::array<Vec3, 3>& corners, TriangleSoup& soup) {
-  const auto first = static_cast<std::uint32_t>(soup.vertices.size());
-  soup.vertices.insert(soup.vertices.end(), corners.begin(), corners.end());
-  soup.triangles.push_back({first, first + 1, first + 2});
-}
-
-TriangleSoup read_stl_text(std::string_view text, const std::filesystem::path& file) {
-  TriangleSoup soup;
-  MeshLines lines{LineReader(text), file};
-  while (lines.next()) {
-    const std::string first = lower_case(lines.words()[0]);
-    if (first == "outer") {
-      std::array<Vec3, 3> corners;
-      for (Vec3& corner : corners) {
-        if (!lines.next() || lower_case(lines.words()[0]) != "vertex")
-          lines.fail("allowed after \"outer loop\": three vertices");
-        corner = lines.position(1);
-      }
-      add_triangle(corners, soup);
-    } else if (first != "solid" && first != "facet" && first != "endloop" && first != "endfacet" &&
-               first != "endsolid") {
-      lines.fail(
-          fmt::format("got {}; allowed: solid, facet, outer loop, three times vertex, endloop, endfacet, endsolid",
-                      quoted_word(lines.words()[0])));
-    }
-  }
-  return soup;
-}
-
-TriangleSoup read_stl_binary(ByteReader reader, std::size_t triangles, const std::filesystem::path& file) {
-  TriangleSoup soup;
-  for (std::size_t t = 0; t < triangles; ++t) {
-    reader.skip(3 * sizeof(float));  // the normal
-    std::array<Vec3, 3> corners;
-    for (Vec3& corner : corners) {
-      for (double& coordinate : corner) coordinate = reader.take<float>();
-      if (!corner.allFinite()) fail_in_file(file, fmt::format("triangle {}: a vertex is not finite", t));
-    }
-    reader.skip(2);  // attributes
-    add_triangle(corners, soup);
-  }
-  return soup;
-}
-
-}  // namespace
 
 TriangleSoup read_stl(std::string_view text, const std::filesystem::path& file) {
   const std::string first_word = lower_case(text.substr(0, text.find_first_of(" \t\r\n")));

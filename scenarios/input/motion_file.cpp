@@ -11,7 +11,7 @@ namespace hapbench {
 namespace {
 
 constexpr std::size_t kMostSamples = 10'000'000;
-constexpr double kLargestNormError = 1e-3;  ///< of a quaternion: three decimals are enough
+constexpr double kLargestNormError = 1e-3;  ///< of a quaternion: three decimals suffice
 constexpr std::string_view kHeaders[] = {"time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z",
                                          "time_s,px_m,py_m,pz_m,qw,qx,qy,qz",
                                          "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z,mfx_N,mfy_N,mfz_N",
@@ -52,11 +52,10 @@ Stroke stroke_in(std::string_view text, const std::filesystem::path& file) {
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const auto row = table.row(i);
     RecordedMotion::Sample sample{row[0], {row[1], row[2], row[3]}};
-    if (pose == kAxisPose) {
+    if (pose == kAxisPose)
       sample.axis = axis_of(row.subspan(4), file, i);
-    } else {
+    else
       sample.orientation = orientation_of(row.subspan(4), file, i);
-    }
     if (i > 0 && !(samples.back().time < row[0])) {
       fail(file, i,
            fmt::format("got time {} after {}; allowed: strictly increasing times", row[0], samples.back().time));

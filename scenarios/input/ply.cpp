@@ -60,9 +60,8 @@ std::optional<PlyType> ply_type(std::string_view name) {
                 {"short", "int16", {signed_integer, 2}}, {"ushort", "uint16", {unsigned_integer, 2}},
                 {"int", "int32", {signed_integer, 4}},   {"uint", "uint32", {unsigned_integer, 4}},
                 {"float", "float32", {real, 4}},         {"double", "float64", {real, 8}}};
-  for (const auto& t : kTypes) {
+  for (const auto& t : kTypes)
     if (name == t.name || name == t.alias) return t.type;
-  }
   return std::nullopt;
 }
 
@@ -116,7 +115,7 @@ PlyHeader read_ply_header(LineReader& lines, const fs::path& file) {
 
 // ---- Surfaces
 
-/// What a property is used for.
+/// The use of a property.
 enum class Role { x, y, z, corners, nothing };
 
 struct Property {
@@ -198,10 +197,9 @@ TriangleSoup read_ply_text(const std::vector<Element>& elements, MeshLines lines
     std::size_t word = 0;
     for (const Property& p : element.properties) {
       const std::size_t length = p.count ? 1 + lines.count(word, "entries") : 1;
-      if (lines.words().size() < word + length) {
+      if (lines.words().size() < word + length)
         lines.fail(
             fmt::format("got {} values; allowed: the {} of a vertex", lines.words().size(), element.properties.size()));
-      }
       if (p.role != Role::nothing) position[static_cast<int>(p.role)] = lines.number(word);
       word += length;
     }
@@ -233,9 +231,8 @@ class BinaryEntries {
   BinaryEntries(ByteReader reader, const fs::path& file) : reader_(reader), file_(file) {}
 
   TriangleSoup read(const std::vector<Element>& elements) {
-    for (const Element& element : elements) {
+    for (const Element& element : elements)
       for (std::size_t i = 0; i < element.entries && !element.properties.empty(); ++i) read_entry(element, i);
-    }
     return std::move(soup_);
   }
 
@@ -245,13 +242,12 @@ class BinaryEntries {
     for (const Property& p : element.properties) {
       const std::size_t length = p.count ? list_length(element, p, i) : 1;
       need(length, p.type, element);
-      if (p.role == Role::nothing) {
+      if (p.role == Role::nothing)
         reader_.skip(length * p.type.size);
-      } else if (p.role == Role::corners) {
+      else if (p.role == Role::corners)
         add_face(length, p.type);
-      } else {
+      else
         position[static_cast<int>(p.role)] = take_ply_number(reader_, p.type);
-      }
     }
     if (element.is_vertex()) soup_.vertices.push_back(position);
   }
@@ -379,10 +375,9 @@ Values binary_vertex(ByteReader& reader, const VertexLayout& layout, std::size_t
     const double value = take_ply_number(reader, property);
     if (property.wanted) values[*property.wanted] = value;
   }
-  for (const double value : values) {
+  for (const double value : values)
     if (!std::isfinite(value))
       fail_in_file(file, fmt::format("vertex {}: got {}; allowed: finite numbers", index, value));
-  }
   return values;
 }
 

@@ -105,9 +105,8 @@ bool CsvReader::next() {
 }
 
 bool CsvReader::next_not_blank() {
-  for (LineReader after = lines_; const auto row = after.next(); lines_ = after) {
+  for (LineReader after = lines_; const auto row = after.next(); lines_ = after)
     if (!trimmed(*row).empty()) return next();
-  }
   return false;
 }
 

@@ -10,8 +10,8 @@
 #include "scenarios/program/describe.hpp"
 #include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/scenario_start.hpp"
-#include "scenarios/studies/precision/study.hpp"
-#include "scenarios/studies/stability/map_scenes.hpp"
+#include "scenarios/studies/precision/measure.hpp"
+#include "scenarios/studies/stability/stability_map.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "sim/loop/integrators/table.hpp"
 

@@ -71,7 +71,7 @@ ProgramOutput run_tool(const ImportOptions& options, const fs::path& out) {
   return output_of(words);
 }
 
-/// What the tool found out. Throws what it could not do.
+/// The reply of the tool. Throws the errors that it reports.
 Json reply_in(const std::string& text, const fs::path& out) {
   Json reply = parse_json(text);
   if (reply.contains("io_error"))

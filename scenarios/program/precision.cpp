@@ -14,7 +14,7 @@
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/studies/precision/study.hpp"
+#include "scenarios/studies/precision/measure.hpp"
 
 namespace hapbench {
 namespace {

@@ -14,11 +14,10 @@
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/studies/stability/map_scenes.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
+#include "scenarios/studies/stability/stability_map.hpp"
 #include "scenarios/studies/stress/law_stress.hpp"
 #include "scenarios/studies/worst_motion/adversary.hpp"
-#include "scenarios/studies/worst_motion/search_scene.hpp"
 
 namespace hapbench {
 namespace {

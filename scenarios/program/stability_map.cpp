@@ -12,7 +12,6 @@
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
-#include "scenarios/studies/stability/map_overrides.hpp"
 
 namespace hapbench {
 namespace {

@@ -101,7 +101,7 @@ Measured measure_local_average(const Evidence& e) {
   Scene scene;
   scene.capacity = shell->size();
   scene.shell = shell.get();
-  const std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(loaded.scenario), 128);
+  const std::vector<ContactBuffer> sets = rendered_contact_sets(drill_in_hole(loaded.scenario), 128);
   Measured measured;
   for (const char* law : kLaws) {
     RenderingConfig config = with_algorithm(loaded.scenario, law).rendering;

@@ -55,7 +55,7 @@ double tandpasta_energy_ratio(const Evidence& e) {
   const Scenario scenario = drill_in_hole(e.load("task2_rotate_signed_distance").scenario);
   const auto law = make_law("tandpasta", {});
   double ratio = 1.0;
-  for (ContactBuffer& set : contact_sets(scenario, 64)) {
+  for (ContactBuffer& set : rendered_contact_sets(scenario, 64)) {
     law->prepare(set.capacity());
     law->evaluate(set);
     double weighed = 0.0, unweighed = 0.0;

@@ -121,7 +121,7 @@ constexpr double kSmallLoad = 0.01;
 
 Measured measure_loop_load(const Evidence& e) {
   const LoadedScenario task = e.load("task3_spin_signed_distance");
-  std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(task.scenario), 128);
+  std::vector<ContactBuffer> sets = rendered_contact_sets(drill_in_hole(task.scenario), 128);
   std::size_t largest = 0;
   for (const ContactBuffer& set : sets) largest = std::max(largest, set.size());
   DenseShaping dense(largest);

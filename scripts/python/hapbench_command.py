@@ -1,5 +1,7 @@
-"""What the commands written in Python share: how they refuse, how they write files, and a notice of what takes long."""
+"""Shared by the commands written in Python: error messages, hints at names, writing of files, and a notice while work takes
+long."""
 import argparse
+import difflib
 import os
 import sys
 import threading
@@ -20,6 +22,15 @@ class Arguments(argparse.ArgumentParser):
     def error(self, message):
         say_error(f"{message}; {self.prog} --help shows what there is")
         sys.exit(BAD_INPUT)
+
+
+def nearest(name, names):
+    """The end of a message about an unknown name, in the words of the program; empty when no name is near."""
+    lower = {candidate.lower(): candidate for candidate in reversed(names)}
+    # Half a name before one that merely looks alike.
+    longer = sorted((n for n in lower if n.startswith(name.lower())), key=len) or [n for n in lower if name.lower() in n]
+    close = longer or difflib.get_close_matches(name.lower(), lower, 1)
+    return f"; nearest valid name: \"{lower[close[0]]}\"" if close else ""
 
 
 def write(file, data):
@@ -45,7 +56,7 @@ class Notice:
         self._thread = threading.Thread(target=self._show, daemon=True) if sys.stderr.isatty() else None
 
     def say(self, text):
-        """What is being done now."""
+        """Changes the text."""
         self._text = text
 
     def __enter__(self):

@@ -45,7 +45,7 @@ ALGORITHMS = {
 PUBLISHED, PUBLISHED_DARK = "#C2261C", "#FF8A75"
 
 
-# Of algorithms without an entry.
+# For algorithms without an entry.
 FURTHER_DASHES = ((2, 2), (6, 1, 1, 1), (4, 2), (1, 2))
 FURTHER_MARKERS = ("8", "H", "3", "4", "+", "x", ".")
 # The largest and the least relative luminance that keep a contrast of 4.5 to the light and to the dark ground.

@@ -20,13 +20,13 @@ def smooth_step(x):
 
 
 def depth(t):
-    """Of the ball in the flat [m]; it comes from 1 mm above it and leaves again."""
+    """Depth of the ball in the flat [m]; it comes from 1 mm above it and leaves again."""
     pressed = smooth_step(t / 0.6) * smooth_step((SECONDS - t) / 0.6)
     return -0.001 + pressed * (0.0014 + 0.0001 * math.sin(2 * math.pi * 1.5 * t))
 
 
 def place(t):
-    """Of the ball's centre [m]: rounds of 8 mm by 5 mm."""
+    """Place of the ball's centre [m]: rounds of 8 mm by 5 mm."""
     turn = 2 * math.pi * 0.5 * t
     return 0.004 * math.cos(turn), 0.0025 * math.sin(turn), RADIUS_M - depth(t)
 
@@ -57,7 +57,7 @@ def with_y_up(v):
 
 
 def axis_and_angle(q):
-    """Of the orientation where y is up: the same turn, then the world's by -90 degrees about x."""
+    """Axis and angle of the orientation where y is up: the same turn, then the world's by -90 degrees about x."""
     half = math.sqrt(0.5)
     w, *axis = product((half, -half, 0.0, 0.0), q)
     length = math.sqrt(sum(part * part for part in axis))

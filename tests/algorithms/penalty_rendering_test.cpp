@@ -48,7 +48,7 @@ TEST(PenaltyRendering, NothingOfAStepIsLeftForTheNext) {
 }
 
 TEST(PenaltyRendering, DepthMaxIsTheDeepestCollidingPointBeforeAnyStage) {
-  // The deepest point is merged with shallower ones of its cell, and reduction leaves one point of all.
+  // The deepest point is merged with shallower ones of its cell, and the reduction keeps a single point.
   RenderingConfig config;
   test::Probe plain(pressed_plane(), config);
   const double depth = plain.force_at(pressed_plane().pose).depth_max;

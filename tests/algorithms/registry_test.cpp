@@ -63,7 +63,7 @@ TEST(Registry, EveryTheoryIsThatOfItsAlgorithm) {
     RenderingConfig config;
     config.algorithm = entry.info->name;
     if (const auto bound = entry.theory.force_bound) {
-      // One spring pulls with its own stiffness, and no algorithm may answer with less bound than that.
+      // The force of a single spring must be within the bound.
       test::Setting setting;
       setting.springs = SpringSet{{Vec3::UnitX()}, true};
       setting.pose.position = {1e-4, 0.0, 0.0};
@@ -73,7 +73,7 @@ TEST(Registry, EveryTheoryIsThatOfItsAlgorithm) {
       EXPECT_LE(force.spring.norm(), most * (1.0 + 1e-12)) << entry.info->name;
     }
     if (const auto wedge = entry.theory.wedge_stiffness) {
-      // A right angle of single points: one spring each, as far as the algorithm knows the faces apart.
+      // A right angle with one point on each face, hence at most one spring in each direction.
       const WedgeStiffness stiffness = wedge(config, 0.25 * std::numbers::pi, 1.0);
       EXPECT_TRUE(std::isfinite(stiffness.along) && std::isfinite(stiffness.across)) << entry.info->name;
       EXPECT_GT(stiffness.along, 0.0) << entry.info->name;
@@ -99,7 +99,7 @@ TEST(ForceBound, HoldsForSpringsOfEqualDepthInClosedForm) {
     EXPECT_GE(bound("shaped_stiffness", n), 1.0);
     EXPECT_LE(bound("shaped_stiffness", n), 3.0);
   }
-  // A proxy is not bounded by a depth but by how far it moves: 64 passes of a fifth of the radius, 0.5 mm.
+  // The bound of a proxy is its motion: 64 passes of a fifth of the radius, 0.5 mm.
   EXPECT_DOUBLE_EQ(bound("proxy", 1), 64 * 0.2 * 0.0005);
   config.iterations = 0;
   EXPECT_EQ(bound("shaped_stiffness", 50), 50.0);  // summation
@@ -141,8 +141,8 @@ TEST(Registry, AnAlgorithmsFixedStagesReplaceTheConfiguredOnes) {
   EXPECT_TRUE(with_fixed_stages(config).reduction);
 }
 
-/// The contacts of the peg, tilted in its hole, as the algorithm leaves them; in a second step, or depth models that
-/// remember would not show it.
+/// The contacts of the tilted peg in its hole after the algorithm, in a second step so that depth models with a memory
+/// show it.
 std::uint64_t rendered_contacts(const RenderingConfig& config) {
   test::Setting setting;
   setting.tool = {0.0005, 0.005, Tip::round};

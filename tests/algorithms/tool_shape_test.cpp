@@ -1,5 +1,3 @@
-#include "sim/tool/tool_shape.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,16 +6,20 @@
 
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/registry.hpp"
+#include "results/allocations/allocations.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
+#include "sim/core/random.hpp"
 #include "sim/geometry/analytic_shells.hpp"
-#include "tests/algorithms/proxy_descent.hpp"
+#include "sim/tool/mesh_tool.hpp"
+#include "sim/tool/tool_shape.hpp"
 #include "tests/support/brick.hpp"
+#include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/searches.hpp"
 #include "tests/support/tool_kinds.hpp"
+#include "tests/support/tool_meshes.hpp"
 
-/// A shape that nothing but this test knows goes through searches, depth models and algorithms: the interface is all
-/// that they ask of a tool.
+/// A tool shape that only this test knows, and tools of a mesh, in searches, depth models and algorithms.
 namespace hapbench::tool_shape_test {
 namespace {
 
@@ -101,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(Registered, NewShapeInEveryAlgorithm,
                          [](const auto& entry) { return std::string(entry.param.info->name); });
 
 TEST_P(NewShapeInEveryAlgorithm, IsPushedOutOfAPlane) {
-  // Rolled, or the brick would stand parallel to the rows of points.
+  // Rolled, so that the brick does not stand parallel to the rows of points.
   const ToolPose pose{{0.00002, -0.00001, -0.00005}, {0.0, 0.0, -1.0}, 0.4};
   const Brick brick(0.0003, 0.0008, 0.002);
   const PointShell shell(surface_points(Plane{0.004, kSpacing}), kSpacing);
@@ -123,8 +125,36 @@ TEST_P(NewShapeInEveryAlgorithm, IsPushedOutOfAPlane) {
   }
   EXPECT_NEAR(force.depth_max, 0.00005, 1e-15);
   EXPECT_GT(force.spring.z(), 0.5 * config.stiffness * force.depth_max / static_cast<double>(contacts.size()));
-  // Of the shortest ways out, some lead through a side.
+  // Some of the shortest ways out lead through a side.
   EXPECT_LE(std::hypot(force.spring.x(), force.spring.y()), 0.05 * force.spring.z());
+}
+
+/// Lowers a tool from `start` by 50 µm per step into a shell under the proxy algorithm and expects that the proxy stays
+/// out: `deepest(pose)` [m], the largest depth of a shell point in the tool at a pose, is rounding.
+template <class Deepest>
+void expect_proxy_stays_out(const ToolShape& tool, const PointShell& shell, const ToolPose& start, int steps,
+                            const Deepest& deepest) {
+  RenderingConfig config;
+  config.algorithm = "proxy";
+  ShellSource source(shell, tool, make_contact_query(shell, tool, Skips::on), make_depth_model(config));
+  ContactBuffer contacts(source.capacity());
+  const auto proxy = make_algorithm(config);
+  proxy->prepare({source.capacity(), &tool, &shell});
+  proxy->reset();
+  RenderedForce force;
+  ToolPose pose = start;
+  for (int k = 0; k < steps; ++k) {
+    pose.position.z() = start.position.z() - 0.00005 * k;
+    source.contacts_at(pose, contacts);
+    proxy->compute({pose, Vec3::Zero()}, contacts, force);
+    ASSERT_LE(deepest({pose.position + force.spring / config.stiffness, pose.axis, pose.roll}), 1e-9) << "step " << k;
+  }
+  EXPECT_GT(force.spring.z(), 0.0);
+}
+
+/// An axis that points down and leans by at most half a radian.
+Vec3 leaning_axis(Random& random) {
+  return (Vec3(0, 0, -1) + 0.5 * random.direction()).normalized();
 }
 
 /// The largest slack of a point of the shell; positive inside.
@@ -143,9 +173,9 @@ TEST(Proxy, KeepsEveryPointOutOfANewShape) {
     return largest(shell, [&](const Vec3& point) { return brick.slack(pose, point); });
   };
   for (std::size_t run = 0; run < cases(20); ++run) {
-    const Vec3 axis = test::leaning_axis(random);
+    const Vec3 axis = leaning_axis(random);
     const ToolPose start{{0.0, 0.0, 0.001}, axis, random.uniform(-3.0, 3.0)};
-    test::expect_proxy_stays_out(brick, shell, start, 40, deepest);
+    expect_proxy_stays_out(brick, shell, start, 40, deepest);
   }
 }
 
@@ -161,10 +191,78 @@ TEST(Proxy, KeepsEveryPointOutOfConvexSolidsOfRevolution) {
       return largest(
           shell, [&](const Vec3& point) { return static_cast<double>(tool.slack(pose, point.cast<long double>())); });
     };
-    test::expect_proxy_stays_out(*tool.shape, shell, {{0.0, 0.0, 0.002}, test::leaning_axis(random)}, 60, deepest);
+    expect_proxy_stays_out(*tool.shape, shell, {{0.0, 0.0, 0.002}, leaning_axis(random)}, 60, deepest);
     ++runs;
   }
   EXPECT_GT(runs, cases(100) / 4);
+}
+
+/// A drill of 32 sides, a sphere and, concave, a cup, 1 mm wide.
+const std::vector<std::shared_ptr<const MeshTool>>& tools() {
+  static const auto all = [] {
+    std::vector<std::shared_ptr<const MeshTool>> made;
+    for (const TriangleSoup& soup :
+         {test::cylinder_mesh(0.0005, 0.003, 32), test::scaled(test::sphere(1.0, 3), 0.0005, {0, 0, 0.0005}),
+          test::scaled(test::cup(24), 0.0005)}) {
+      made.push_back(std::make_shared<MeshTool>(test::grid_of(soup, 0.00004)));
+    }
+    return made;
+  }();
+  return all;
+}
+
+class MeshToolInEveryAlgorithm : public testing::TestWithParam<AlgorithmEntry> {};
+INSTANTIATE_TEST_SUITE_P(Registered, MeshToolInEveryAlgorithm,
+                         testing::ValuesIn(algorithms().begin(), algorithms().end()),
+                         [](const auto& entry) { return std::string(entry.param.info->name); });
+
+TEST_P(MeshToolInEveryAlgorithm, IsPushedOutOfAPlaneWithoutAllocating) {
+  const PointShell shell(surface_points(Plane{0.004, kSpacing}), kSpacing);
+  for (const auto& tool : tools()) {
+    for (const DepthModelEntry& model : depth_models()) {
+      RenderingConfig config;
+      config.algorithm = GetParam().info->name;
+      if (GetParam().fixed_depth_model.empty()) config.depth_model = model.info->name;
+      ShellSource source(shell, *tool, make_contact_query(shell, *tool, Skips::on), make_depth_model(config));
+      ContactBuffer contacts(source.capacity());
+      const auto algorithm = make_algorithm(config);
+      algorithm->prepare({source.capacity(), tool.get(), &shell});
+      algorithm->reset();
+      RenderedForce force;
+      const AllocationCount allocations;
+      for (int k = 0; k < 20; ++k) {
+        const ToolPose pose{{0.00002, -0.00001, 0.0001 - 0.000007 * k}, Vec3(0.05, 0.02, -1.0).normalized(), 0.1 * k};
+        source.contacts_at(pose, contacts);
+        algorithm->compute({pose, Vec3::Zero()}, contacts, force);
+        ASSERT_TRUE(force.spring.allFinite());
+      }
+      EXPECT_EQ(allocations.value(), 0u);
+      // The tools lean by 3 degrees and edges are near, so some springs point aside, but their sum points up. Half-way
+      // through the bottom of the cup, 75 um deep, the shortest way out would lead into the cup.
+      EXPECT_GT(force.spring.z(), 0.0) << model.info->name;
+    }
+  }
+}
+
+TEST(Proxy, KeepsEveryPointOutOfAConvexMesh) {
+  Random random(3);
+  const PointShell shell(surface_points(Plane{0.004, kSpacing}), kSpacing);
+  ContactBuffer all(shell.size());
+  for (std::size_t i = 0; i < shell.size(); ++i) {
+    all.push(static_cast<std::uint32_t>(i), shell.point(i).position, shell.point(i).normal);
+  }
+  for (const auto& tool : tools()) {
+    if (!tool->convex()) continue;
+    const auto deepest = [&](const ToolPose& pose) {
+      tool->shortest_depths(pose, all);
+      return *std::max_element(all.depth.begin(), all.depth.begin() + static_cast<std::ptrdiff_t>(all.size()));
+    };
+    for (std::size_t run = 0; run < cases(20); ++run) {
+      const Vec3 axis = leaning_axis(random);
+      const ToolPose start{{0.0, 0.0, 0.001}, axis, random.uniform(-3.0, 3.0)};
+      expect_proxy_stays_out(*tool, shell, start, 40, deepest);
+    }
+  }
 }
 
 }  // namespace

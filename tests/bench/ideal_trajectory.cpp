@@ -6,7 +6,7 @@
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
 
-/// What a row of ideal_trajectory.csv costs: the ideal place of the tip, and how deep the tool truly is in the block.
+/// The cost of a row of ideal_trajectory.csv: the ideal place of the tip and the true depth of the tool in the block.
 namespace hapbench::bench {
 namespace {
 
@@ -18,8 +18,8 @@ struct Scene {
   const Cylinder tool = make_cylinder(task.loaded.scenario.tool);
 };
 
-/// The deepest of places spread over the tool's tip and side: no deeper than the truth, and short of it by no more than
-/// the way from the deepest place to the nearest of them.
+/// Compares the depth with that of the deepest of places distributed over the tip and side of the tool, which is at
+/// most the true depth and differs by at most the distance from the deepest place to the nearest of them.
 bool is_deepest(const Scene& scene, const ToolPose& pose, double depth) {
   constexpr int kRound = 512, kAlong = 256;
   const Vec3 across = pose.axis.unitOrthogonal(), other = pose.axis.cross(across);
@@ -32,7 +32,7 @@ bool is_deepest(const Scene& scene, const ToolPose& pose, double depth) {
       deepest = std::max(deepest, -signed_distance(scene.block, place));
     }
   }
-  // The depth itself is known to 1e-11 m (ideal_trajectory.hpp).
+  // The depth is exact to 1e-11 m (ideal_trajectory.hpp).
   return deepest <= depth + 1e-11 && depth <= deepest + (along + scene.tool.radius() * round) / 2 + 1e-11;
 }
 

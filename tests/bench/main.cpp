@@ -12,7 +12,7 @@ namespace {
 
 bool refuted = false;
 
-/// What times mean nothing without; --benchmark_format=json has it under "context".
+/// Adds the commit and the machine to the output; --benchmark_format=json has them under "context".
 void add_context() {
   const Provenance program = provenance();
   const InstructionSet instructions = instruction_set();
@@ -23,7 +23,7 @@ void add_context() {
   benchmark::AddCustomContext("instruction_set", instructions.widest);
 }
 
-/// Removes our own option.
+/// Removes our option --full from the arguments and returns whether it was there.
 bool take_full(int& argc, char** argv) {
   char** const end =
       std::remove_if(argv + 1, argv + argc, [](const char* a) { return std::string_view(a) == "--full"; });
@@ -43,7 +43,7 @@ int run_benchmarks(int argc, char** argv) {
     register_group();
   }
   register_growth_over_points(full);
-  // No benchmark of a given filter is a mistake in the filter.
+  // A filter that matches nothing is a mistake.
   if (benchmark::RunSpecifiedBenchmarks() == 0) return 2;
   return refuted ? 1 : 0;
 }

@@ -1,22 +1,79 @@
-#include "tests/bench/step.hpp"
-
 #include <fmt/format.h>
-
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
 #include <stdexcept>
+#include <string>
 
-#include "algorithms/registry.hpp"
 #include "algorithms/depth/depth_model.hpp"
+#include "algorithms/registry.hpp"
+#include "results/observe/metrics.hpp"
+#include "results/observe/passivity_observer.hpp"
+#include "results/observe/step_times.hpp"
 #include "sim/contact/contact_query.hpp"
+#include "sim/contact/neighbour_list_query.hpp"
+#include "sim/loop/simulation.hpp"
 #include "sim/tool/cylinder.hpp"
 #include "sim/tool/mesh_tool.hpp"
 #include "sim/tool/revolved.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
+#include "tests/support/bits.hpp"
 #include "tests/support/tool_meshes.hpp"
 
+/// Whole steps: their mean time, single steps, growth with the number of contacts, and what each skip saves.
 namespace hapbench::bench {
+/// The runs whose steps are timed.
+constexpr const char* kSteps[] = {"T1",
+                                  "T2",
+                                  "T2_proxy",
+                                  "T3",
+                                  "T1_revolved",
+                                  "T2_revolved",
+                                  "T3_revolved",
+                                  "T3_grooved",
+                                  "T1_mesh",
+                                  "T2_mesh",
+                                  "T3_mesh",
+                                  "unreduced_1000",
+                                  "free_air",
+                                  "upright",
+                                  "upright_proxy",
+                                  "pressed_ideal",
+                                  "pressed_impedance"};
 
-/// Writes the numbers of a row of trajectory.csv into memory that was there before.
+/// Steps before the first timed one. By then T1 has touched the block, and every buffer has been used.
+constexpr std::uint64_t kWarmUp = 1024;
+
+/// A run of one of kSteps as `hapbench run` makes it, with its metrics and a recorder that keeps the numbers of
+/// trajectory.csv in memory. In `_revolved` the drill is a solid of revolution whose side is cut into eight lines, the
+/// same body; in `_grooved` it has grooves of 0.1 um, so that it is not convex but meets nearly the same points.
+class TimedRun {
+ public:
+  explicit TimedRun(const std::string& name, Skips skips = Skips::on);
+  ~TimedRun();
+
+  /// Back to the state after kWarmUp steps.
+  void rewind() noexcept;
+  /// The rest of the run after rewinding.
+  std::uint64_t steps_left() const { return steps_ - kWarmUp; }
+  /// Whether every step has been taken.
+  bool at_end() const { return simulation_->next_row() == steps_; }
+  Simulation& simulation() { return *simulation_; }
+  const MetricsObserver& metrics() const { return *metrics_; }
+
+ private:
+  class MemoryRecorder;
+
+  std::uint64_t steps_ = 0;
+  std::unique_ptr<MetricsObserver> metrics_;
+  std::unique_ptr<PassivityObserver> passivity_;
+  std::unique_ptr<MemoryRecorder> recorder_;
+  std::unique_ptr<Simulation> simulation_;
+};
+
+/// Writes the numbers of a row of trajectory.csv into preallocated memory.
 class TimedRun::MemoryRecorder final : public Observer {
  public:
   explicit MemoryRecorder(std::size_t rows) : rows_(rows) {}
@@ -64,7 +121,7 @@ std::shared_ptr<const ToolShape> as_revolved(const Cylinder& drill, bool grooved
   return revolved;
 }
 
-/// The drill in the shape that the end of a name in kSteps says; null for the drill as it is.
+/// The shape of the drill according to the suffix of a name in kSteps; null for the drill of the scenario.
 std::shared_ptr<const ToolShape> other_shape(const Cylinder& drill, const std::string& name) {
   if (name.ends_with("_mesh")) return std::make_shared<MeshTool>(drill_grid(drill));
   if (name.ends_with("_revolved")) return as_revolved(drill, false);
@@ -105,6 +162,10 @@ void TimedRun::rewind() noexcept {
   for (std::uint64_t k = 0; k < kWarmUp; ++k) simulation_->step();
 }
 
+namespace {
+
+/// Says what is wrong with the first second of the run; empty if nothing. The reference is the run without skips (brute
+/// force, everything computed); position, velocity and force of every row must be identical.
 std::string wrong_run(const std::string& name) {
   TimedRun run(name), reference(name, Skips::off);
   for (int k = 0; k < 2048; ++k) {
@@ -114,8 +175,6 @@ std::string wrong_run(const std::string& name) {
   const bool same = run.metrics().metrics().state_hash == reference.metrics().metrics().state_hash;
   return same ? "" : "not the run without skips";
 }
-
-namespace {
 
 void step_benchmark(benchmark::State& state, const std::string& name) {
   if (!proved(state, "step/" + name, [&name] { return wrong_run(name); })) return;
@@ -139,6 +198,214 @@ void step_benchmark(benchmark::State& state, const std::string& name) {
 void register_steps() {
   for (const char* name : kSteps) {
     benchmark::RegisterBenchmark(fmt::format("step/{}", name).c_str(), step_benchmark, std::string(name));
+  }
+}
+
+namespace {
+
+/// Runs for the latencies. All take the same steps, so the shortest time of each step excludes disturbances by the
+/// machine.
+constexpr benchmark::IterationCount kRuns = 5;
+
+void latency(benchmark::State& state, const std::string& name) {
+  if (!proved(state, "step/" + name, [&name] { return wrong_run(name); })) return;
+  TimedRun run(name);
+  std::vector<std::uint64_t> all, best;
+  for (auto _ : state) {
+    StepTimes times(run.steps_left());
+    run.rewind();
+    times.start();
+    while (run.simulation().step()) times.lap();
+    const auto ns = times.nanoseconds();
+    all.insert(all.end(), ns.begin(), ns.end());
+    if (best.empty()) best.assign(ns.begin(), ns.end());
+    for (std::size_t k = 0; k < ns.size(); ++k) best[k] = std::min(best[k], ns[k]);
+  }
+  const StepLatency single = step_latency(all, 0), repeatable = step_latency(best, 0);
+  state.counters["p50_s"] = 1e-9 * static_cast<double>(single.p50);
+  state.counters["p99_9_s"] = 1e-9 * static_cast<double>(repeatable.p99_9);
+  state.counters["longest_s"] = 1e-9 * static_cast<double>(repeatable.max);
+  state.counters["steps"] = static_cast<double>(repeatable.steps);
+  state.counters["late"] = static_cast<double>(repeatable.misses[1]);
+}
+
+}  // namespace
+
+void register_latencies() {
+  for (const char* name : {"T1", "T2", "T2_proxy", "T3", "unreduced_1000", "upright_proxy"}) {
+    benchmark::RegisterBenchmark(fmt::format("latency/{}", name).c_str(), latency, std::string(name))
+        ->Iterations(kRuns)
+        ->Unit(benchmark::kMillisecond);
+  }
+}
+
+namespace {
+
+constexpr std::uint64_t kStepsAtATime = 64;
+
+/// The wall of a hole, 0.05 mm inside the upright drill that fills it: n points, all of them contacts, evenly
+/// distributed like the seeds of a sunflower.
+std::shared_ptr<const PointShell> wall(std::size_t n, const Cylinder& tool) {
+  const double radius = tool.radius() - 5e-5, turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
+  std::vector<SurfacePoint> points(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double angle = turn * static_cast<double>(i);
+    const Vec3 out{std::cos(angle), std::sin(angle), 0.0};
+    const double height = 0.004 * (static_cast<double>(i) + 0.5) / static_cast<double>(n);
+    points[i] = {radius * out + Vec3{0.0, 0.0, height}, -out};
+  }
+  return std::make_shared<const PointShell>(points, 0.0);
+}
+
+/// The drill at rest in that hole, held by its contacts, without a hand.
+class FilledHole {
+ public:
+  FilledHole(std::size_t n, Skips skips) {
+    static const LoadedScenario loaded =
+        load_unrecorded("round_the_wall", {"rendering.reduction=null", "hand={\"type\":\"none\"}",
+                                           "device={\"type\":\"ideal\"}", "initial.position_m=[0,0,-0.0005]"});
+    Scenario scenario = loaded.scenario;
+    scenario.rendering.skips = skips;
+    SimulationConfig config = simulation_config(scenario);
+    config.steps = 1'000'000'000;  // more than are timed
+    metrics_ = std::make_unique<MetricsObserver>(config.dt);
+    passivity_ = std::make_unique<PassivityObserver>(config.dt);
+    simulation_ = std::make_unique<Simulation>(config, assemble(scenario, wall(n, make_cylinder(scenario.tool)), {}),
+                                               std::vector<Observer*>{metrics_.get(), passivity_.get()});
+    take(kStepsAtATime);
+  }
+  void take(std::uint64_t steps) { simulation_->advance(steps); }
+  Metrics metrics() const { return metrics_->metrics(); }
+
+ private:
+  std::unique_ptr<MetricsObserver> metrics_;
+  std::unique_ptr<PassivityObserver> passivity_;
+  std::unique_ptr<Simulation> simulation_;
+};
+
+void step(benchmark::State& state, std::size_t n) {
+  const auto wrong = [n]() -> std::string {
+    const Metrics metrics = FilledHole(n, Skips::on).metrics();
+    if (metrics.colliding_mean != static_cast<double>(n)) return "not every point is a contact";
+    return metrics.state_hash == FilledHole(n, Skips::off).metrics().state_hash ? "" : "not the run without skips";
+  };
+  if (!proved(state, fmt::format("growth/step/{}", n), wrong)) return;
+  FilledHole run(n, Skips::on);
+  while (state.KeepRunningBatch(kStepsAtATime)) run.take(kStepsAtATime);
+  state.counters["contacts"] = run.metrics().colliding_mean;
+}
+
+}  // namespace
+
+void register_growth_over_contacts() {
+  for (const std::size_t n : kGrowthContacts) {
+    benchmark::RegisterBenchmark(fmt::format("growth/step/{}", n).c_str(), step, n);
+  }
+}
+
+namespace {
+
+std::uint64_t bits_of(const RenderedForce& force) {
+  test::Hash hash;
+  hash.add(force.rendered);
+  hash.add(force.spring);
+  return hash.value();
+}
+
+/// One force algorithm on fixed contacts.
+class Rendering {
+ public:
+  Rendering(RenderingConfig config, Skips skips, std::size_t contacts)
+      : all_(task_contacts(std::max<std::size_t>(contacts, 1))), contacts_(all_) {
+    config.skips = skips;
+    algorithm_ = make_algorithm(config);
+    algorithm_->prepare({.capacity = all_.capacity()});
+    algorithm_->reset();
+    if (contacts == 0) contacts_.clear();
+  }
+  const RenderedForce& compute() {
+    algorithm_->compute({{}, {0.001, -0.002, 0.003}}, contacts_, force_);
+    return force_;
+  }
+
+ private:
+  ContactBuffer all_, contacts_;
+  std::unique_ptr<ForceAlgorithm> algorithm_;
+  RenderedForce force_;
+};
+
+void rendering_benchmark(benchmark::State& state, const RenderingConfig& config, std::size_t contacts, Skips skips) {
+  Rendering rendering(config, skips, contacts), other(config, skips == Skips::off ? Skips::on : Skips::off, contacts);
+  if (bits_of(rendering.compute()) != bits_of(other.compute())) {
+    return refute(state, "the skip changes the force");
+  }
+  for (auto _ : state) benchmark::DoNotOptimize(rendering.compute());
+  state.counters["contacts"] = static_cast<double>(contacts);
+}
+
+/// A query in free air, which the clearance of the list answers, while the grid looks into its cells.
+void clearance_benchmark(benchmark::State& state, Skips skips) {
+  const TaskScene& scene = task_scene("T1");
+  const ToolPose pose{{0.0, 0.0, 0.002}, {0.0, 0.0, -1.0}};
+  NeighbourListQuery list(*scene.shell, *scene.tool);
+  GridQuery grid(*scene.shell, *scene.tool);
+  ContactQuery& query = skips == Skips::on ? static_cast<ContactQuery&>(list) : grid;
+  ContactBuffer contacts(query.capacity());
+  for (ContactQuery* each : {static_cast<ContactQuery*>(&list), static_cast<ContactQuery*>(&grid)}) {
+    each->contacts_at(pose, contacts);
+    if (!contacts.empty()) return refute(state, "contacts in free air");
+  }
+  for (auto _ : state) query.contacts_at(pose, contacts);
+}
+
+/// T3 without observers. With the skip off, ratios and energies are computed nevertheless.
+void records_benchmark(benchmark::State& state, Skips skips) {
+  const Scenario& scenario = step_scenario("T3").scenario;
+  const auto run = [&scenario](Skips s) {
+    SimulationConfig config = simulation_config(scenario);
+    config.skips = s;
+    return Simulation(config, assemble(scenario, block_shell(), {}), {});
+  };
+  Simulation simulation = run(skips), other = run(skips == Skips::off ? Skips::on : Skips::off);
+  for (int k = 0; k < 2048; ++k) {
+    simulation.step();
+    other.step();
+  }
+  if (simulation.tool().pose.position != other.tool().pose.position) return refute(state, "the skip changes the run");
+  constexpr benchmark::IterationCount kBatch = 16'384;
+  while (state.KeepRunningBatch(kBatch)) {
+    state.PauseTiming();
+    simulation.reset();
+    state.ResumeTiming();
+    for (benchmark::IterationCount k = 0; k < kBatch; ++k) simulation.step();
+  }
+}
+
+/// The drill of the thesis: shaping, reduction and friction.
+RenderingConfig task_rendering() {
+  RenderingConfig config;
+  config.reduction = ReductionConfig{};
+  config.mu_s = 5.0;
+  config.mu_f = 10.0;
+  return config;
+}
+
+}  // namespace
+
+void register_skips() {
+  RenderingConfig plain = task_rendering();
+  plain.reduction.reset();
+  plain.mu_s = plain.mu_f = 0.0;
+  for (const Skips skips : {Skips::on, Skips::off}) {
+    const auto add = [skips](const char* what, auto function, auto... arguments) {
+      const char* way = skips == Skips::on ? "taken" : "off";
+      benchmark::RegisterBenchmark(fmt::format("skip/{}/{}", what, way).c_str(), function, arguments..., skips);
+    };
+    add("clearance", clearance_benchmark);
+    add("no_contact", rendering_benchmark, task_rendering(), std::size_t{0});
+    add("reduction_of_one", rendering_benchmark, task_rendering(), std::size_t{1});
+    add("no_friction", rendering_benchmark, plain, std::size_t{1});
+    add("unwanted_records", records_benchmark);
   }
 }
 

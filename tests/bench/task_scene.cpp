@@ -8,7 +8,7 @@
 namespace hapbench::bench {
 namespace {
 
-/// Where the poses start and how many there are [steps]: T1 from its start, the others one period of 6 s later on.
+/// The first pose and their number [steps]: T1 from its start, the others one later period of 6 s.
 struct Window {
   std::uint64_t first, count;
 };
@@ -27,7 +27,7 @@ LoadedScenario load_step_scenario(const std::string& name) {
                                               "rendering.reduction=null"});
   }
   if (name == "upright" || name == "upright_proxy") {
-    // The first 10 s of the first trial, with points shared by cells: there the proxy's passes go round most.
+    // The first 10 s of the first trial, with points shared by cells, where the proxy needs most passes.
     std::vector<std::string> overrides = {"environment.vertices=shared", "time.duration_s=10"};
     if (name == "upright_proxy") overrides.emplace_back("rendering.algorithm=proxy");
     return load_unrecorded("vertical_peg_in_hole_shaped_stiffness", std::move(overrides));
@@ -79,7 +79,7 @@ TaskScene make_task_scene(const std::string& task) {
 }  // namespace
 
 LoadedScenario load_unrecorded(const char* bundled, std::vector<std::string> overrides) {
-  // What is recorded costs what is recorded: the summary alone.
+  // Records take time, so only the summary is kept.
   for (const char* off : {"record.trajectory=false", "record.ratio_iterations=[]", "record.ideal_trajectory=false"}) {
     overrides.emplace_back(off);
   }

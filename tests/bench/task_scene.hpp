@@ -7,13 +7,13 @@
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"
 
-/// The scenes that searches and steps are timed in, assembled as the program assembles them.
+/// The scenes in which searches and steps are timed, assembled as the program assembles them.
 namespace hapbench::bench {
 
 /// Names of the thesis's tasks: T1 drags the tip over a flat, T2 turns it in the hole, T3 leads it along the wall.
 inline constexpr const char* kTasks[] = {"T1", "T2", "T3"};
 
-/// A scenario with its shell and where its tool went.
+/// A scenario with its shell and the poses of its tool.
 struct TaskScene {
   LoadedScenario loaded;
   std::shared_ptr<const PointShell> shell;
@@ -21,7 +21,7 @@ struct TaskScene {
   std::vector<ToolPose> poses;  ///< consecutive, 2048 a second, in contact most of the time
 };
 
-/// The scene of one of kTasks, made once. The poses of T2 and T3 are one period of the script.
+/// The scene of one of kTasks, computed once. The poses of T2 and T3 are one period of the script.
 const TaskScene& task_scene(const std::string& task);
 
 /// The scenario a step is timed in: one of kTasks, `T2_proxy` (T2 with a proxy), `unreduced_1000` (a drill that nearly
@@ -31,12 +31,12 @@ const TaskScene& task_scene(const std::string& task);
 /// an upright drill on the bottom of the hole, through either device), or a task with `_mesh` behind it, whose
 /// drill TimedRun replaces by a mesh of it. Nothing is recorded.
 const LoadedScenario& step_scenario(const std::string& name);
-/// A bundled scenario with overrides as of `--set`, nothing recorded.
+/// A bundled scenario with overrides as for `--set`, without records.
 LoadedScenario load_unrecorded(const char* bundled, std::vector<std::string> overrides);
 
 /// The shell of a scenario as the program builds it, ready for the search.
 std::shared_ptr<const PointShell> built_shell(const Scenario& scenario);
-/// The shell of all these scenes, which have the same block, built once.
+/// The shell of all these scenes, which have the same block; built once.
 std::shared_ptr<const PointShell> block_shell();
 
 }  // namespace hapbench::bench

@@ -1,25 +1,20 @@
-"""Tests scripts/bench: the table on record, its statistics, and the comparison of two commits of a small project.
-
-bench_test.py SOURCE_DIRECTORY: the tree with scripts and manuals.
-"""
+"""scripts/bench: the table on record, its statistics, and the comparison of two commits of a small project."""
 import copy
 import json
 import random
 import shutil
 import signal
 import subprocess
-import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-SOURCE = Path(sys.argv[1])
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(SOURCE / "scripts" / "python"))
-from hapbench_bench import peers, table  # noqa: E402  (the path comes first)
-from hapbench_bench.program import BenchError  # noqa: E402
-from hapbench_bench.against import compare  # noqa: E402
-from hapbench_bench.targets import GROUPS  # noqa: E402
+from fixture import SOURCE, main
+
+from hapbench_bench import peers, table
+from hapbench_bench.against import compare
+from hapbench_bench.program import BenchError
+from hapbench_bench.targets import GROUPS
 
 RECORD = json.loads((SOURCE / "results" / "reference" / "performance.json").read_text(encoding="utf-8"))
 
@@ -201,4 +196,4 @@ class Against(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    main()

@@ -1,37 +1,30 @@
-"""hapbench as a library: a project of its own finds it installed, and takes it in as a folder. Arguments: cmake, the build
-tree, the source tree, the program."""
+"""hapbench as a library: a project of its own finds it installed, and takes it in as a folder. Arguments: the program, cmake,
+the build tree."""
 import json
-import os
 import subprocess
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 
-CMAKE, BUILD, SOURCE, PROGRAM = sys.argv[1:5]
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(Path(SOURCE) / "scripts" / "python"))
-from hapbench_docs.manuals import Manual, broken_links  # noqa: E402  (the path comes first)
+from fixture import ENVIRONMENT, PROGRAM, SOURCE, main, must as any_must, scratch_folder
 
-CONSUMER = Path(SOURCE) / "tests" / "consumer"
+from hapbench_docs.manuals import Manual, broken_links
+
+CMAKE, BUILD = sys.argv[2:4]
+CONSUMER = SOURCE / "tests" / "consumer"
 SCENARIO = "peg_in_hole_2d_mean"
 # A parent's flags are its own business; CMake would take these from the environment.
-ENVIRONMENT = {key: value for key, value in os.environ.items() if key not in ("CXXFLAGS", "LDFLAGS", "CMAKE_BUILD_TYPE")}
+BARE = {key: value for key, value in ENVIRONMENT.items() if key not in ("CXXFLAGS", "LDFLAGS", "CMAKE_BUILD_TYPE")}
 
 
 def must(*words, cwd=None):
-    run = subprocess.run([*map(str, words)], cwd=cwd, env=ENVIRONMENT, capture_output=True, text=True, stdin=subprocess.DEVNULL)
-    if run.returncode != 0:
-        raise AssertionError(f"{' '.join(map(str, words))}: {run.returncode}\n{run.stdout}{run.stderr}")
-    return run.stdout
+    return any_must(*words, cwd=cwd, env=BARE)
 
 
 class Consumer(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.temporary.cleanup)
-        cls.folder = Path(cls.temporary.name).resolve()
+        cls.folder = scratch_folder(cls)
         cls.prefix = cls.folder / "prefix"
         must(CMAKE, "--install", BUILD, "--prefix", cls.prefix)
 
@@ -83,4 +76,4 @@ class Consumer(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1], verbosity=2)
+    main()

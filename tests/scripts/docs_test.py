@@ -1,22 +1,19 @@
 """The manuals keep what they promise: documented commands work, links lead somewhere, generated tables are those on
-record, and the first page keeps its size. Arguments: the built program, the source tree. Needs numpy and matplotlib."""
+record, and the first page keeps its size."""
 import json
 import os
 import re
 import shutil
 import subprocess
-import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-PROGRAM, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(SOURCE / "scripts" / "python"))
+from fixture import PROGRAM, SOURCE, main, ran
 
-from hapbench_docs import blocks, ledger  # noqa: E402  (the path comes first)
-from hapbench_docs.manuals import Manual, anchor, broken_links, manuals  # noqa: E402
-from hapbench_docs.program import Program, ProgramError, same_but_for_times  # noqa: E402
+from hapbench_docs import blocks, ledger
+from hapbench_docs.manuals import Manual, anchor, broken_links, manuals
+from hapbench_docs.program import Program, ProgramError, same_but_for_times
 
 GALLERY, RECORD = SOURCE / "scenarios" / "GALLERY.md", SOURCE / "results" / "reference"
 MANUALS = [Manual(file) for file in manuals()]
@@ -28,15 +25,13 @@ WANTS_PACKAGE = re.compile("which is not built here; allowed: .* or install ")
 LONG = {"precision", "reproduce", "--map", "--stress", "--search"}
 FEW_STEPS = ["--set", 'time={"step_s": 0.0005, "steps": 40}']
 SHORTER = {"run": FEW_STEPS, "compare": FEW_STEPS, "sweep": FEW_STEPS, "limit": [*FEW_STEPS, "--resolution", "0.5"]}
-ENVIRONMENT = {**os.environ, "HAPBENCH_PYTHON": sys.executable, "LC_ALL": "C.UTF-8", "PYTHONDONTWRITEBYTECODE": "1"}
 CORNERS = ((0, 0, 0), (6, 0, 0), (6, 6, 0), (0, 6, 0), (0, 0, 3), (6, 0, 3), (6, 6, 3), (0, 6, 3))
 FACES = ((0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4), (1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6),
          (3, 0, 4), (3, 4, 7))
 
 
 def started(words, directory="."):
-    return subprocess.run([*map(str, words)], cwd=directory, env=ENVIRONMENT, capture_output=True, text=True, encoding="utf-8",
-                          stdin=subprocess.DEVNULL)
+    return ran(*words, cwd=directory, LC_ALL="C.UTF-8")
 
 
 def of_program(command):
@@ -254,4 +249,4 @@ class Generated(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    main()

@@ -1,20 +1,12 @@
-"""Tests scripts/figures on freshly made results.
-
-figures_test.py PROGRAM SOURCE_DIRECTORY: the hapbench that makes results, and the tree with scripts and scenarios.
-"""
+"""scripts/figures on freshly made results."""
 import glob
 import json
-import os
 import re
-import subprocess
-import sys
-import tempfile
 import unittest
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
-PROGRAM, SOURCE = Path(sys.argv[1]), Path(sys.argv[2])
-sys.dont_write_bytecode = True
+from fixture import ENVIRONMENT, PROGRAM, SOURCE, hapbench as program, main, must, ran, scratch_folder
 
 SVG = "{http://www.w3.org/2000/svg}"
 # Short runs of the same scenarios: what is tested is the drawing. They need not end as their scenarios expect.
@@ -37,20 +29,12 @@ RUNS = (
 DRAWN_TWICE = "A.5,B.4,C.1,C.3,D.7,E.3,precision,stability-wedge"
 
 
-def hapbench(*arguments):
-    done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True)
-    if done.returncode not in (0, 3):
-        raise AssertionError(f"hapbench {' '.join(map(str, arguments))}: {done.stderr}")
+def hapbench(*words):
+    must(PROGRAM, *words, statuses=(0, 3))
 
 
-def figures(*arguments, **environment):
-    return subprocess.run(
-        [SOURCE / "scripts" / "figures", *arguments], capture_output=True, text=True, env={**os.environ, **environment}
-    )
-
-
-def listed():
-    return subprocess.run([PROGRAM, "list", "--json"], capture_output=True, text=True, check=True).stdout
+def figures(*words, **environment):
+    return ran(SOURCE / "scripts" / "figures", *words, **environment)
 
 
 def ids():
@@ -63,25 +47,25 @@ def make_results(directory):
         assert scenarios, pattern
         # Only several scenarios get a directory each.
         out = directory / "thesis" / (Path(scenarios[0]).stem if len(scenarios) == 1 else "")
-        hapbench("run", *scenarios, *(f"--set={text}" for text in overrides), "--quiet", "--out", out)
+        hapbench("run", *scenarios, *(f"--set={text}" for text in overrides), "--out", out)
     name = "corner_continuous_normal_projection"
-    hapbench("run", name, "--quiet", "--out", directory / "beyond" / name)
-    hapbench("stability", "single_spring", "--quiet", "--out", directory / "stability")
-    hapbench(*("compare", "rotate_in_hole_proxy", "--algorithms", "proxy,shaped_stiffness,exact_shaping", "--quiet"),
+    hapbench("run", name, "--out", directory / "beyond" / name)
+    hapbench("stability", "single_spring", "--out", directory / "stability")
+    hapbench(*("compare", "rotate_in_hole_proxy", "--algorithms", "proxy,shaped_stiffness,exact_shaping"),
              *("--set=time.duration_s=2", "--set=record.every=8", "--set=rendering.reduction={}"),
              *("--out", directory / "proxy"))
-    hapbench(*("compare", "lost_torque", "--algorithms", "original_averaging,shaped_stiffness", "--quiet"),
+    hapbench(*("compare", "lost_torque", "--algorithms", "original_averaging,shaped_stiffness"),
              *("--out", directory / "torque"))
-    hapbench("compare", "peg_in_hole_2d_shaped_stiffness", "--quiet", "--out", directory / "compare")
+    hapbench("compare", "peg_in_hole_2d_shaped_stiffness", "--out", directory / "compare")
     for scene, scenario in (("peg", "tilt_sweep_shaped_stiffness"), ("wedge", "wedge_stiffness")):
         out = directory / "stiffness" / scene
-        hapbench("compare", scenario, "--set=record.stiffness_tensor=true", "--quiet", "--out", out)
+        hapbench("compare", scenario, "--set=record.stiffness_tensor=true", "--out", out)
     make_studies(directory / "precision")
-    hapbench(*("stability", "--map", "all", "--algorithms", "shaped_stiffness,summation", "--size", "3", "--quiet"),
+    hapbench(*("stability", "--map", "all", "--algorithms", "shaped_stiffness,summation", "--size", "3"),
              *("--out", directory / "stability_maps"))
     hapbench(*("stability", "--map", "time_step,damping_ratio,device", "--algorithms", "shaped_stiffness", "--size", "3"),
-             *("--integrators", "all", "--quiet", "--out", directory / "stability_integrators"))
-    hapbench("compare", "--devices", "touch,omega.3", "--quiet", "--out", directory / "devices")
+             *("--integrators", "all", "--out", directory / "stability_integrators"))
+    hapbench("compare", "--devices", "touch,omega.3", "--out", directory / "devices")
     (directory / "performance.json").write_text(json.dumps(performance()))
     timing = {
         "step_latency": {
@@ -100,7 +84,7 @@ def make_results(directory):
 
 
 def performance():
-    """As scripts/bench writes it, as far as it is drawn: one size of a part is no line, and has no slope."""
+    """The drawn part of what scripts/bench writes. A part with a single size is no line and has no slope."""
     sizes = {"step": (10, 100, 1000, 10000), "reduction": (10, 100, 1000), "law/mean": (10, 100), "law/proxy": (10,)}
     growth = [{"part": part, "size": n, "seconds": 1e-9 * n} for part, of in sizes.items() for n in of]
     for part in ("shell", "list_rebuild", "search/grid", "search/neighbour_list", "search/brute_force"):
@@ -139,15 +123,10 @@ def make_studies(directory):
 class Figures(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.directory = Path(cls.temporary.name)
+        cls.directory = scratch_folder(cls)
         cls.results, cls.drawn = cls.directory / "results", cls.directory / "figures"
         make_results(cls.results)
         cls.run_ = figures(cls.results, "--out", cls.drawn)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.temporary.cleanup()
 
     def index(self, directory=None):
         return json.loads(((directory or self.drawn) / "figures.json").read_text(encoding="utf-8"))["figures"]
@@ -187,7 +166,7 @@ class Figures(unittest.TestCase):
                 self.assertGreater(len(words), 1)
 
     def test_the_stiffness_of_every_algorithm_is_drawn_in_both_scenes(self):
-        names = [entry["name"] for entry in json.loads(listed()) if entry["kind"] == "algorithm"]
+        names = [entry["name"] for entry in json.loads(program("list", "--json")) if entry["kind"] == "algorithm"]
         text = list(xml.parse(self.drawn / "figure_stiffness.svg").getroot().itertext())
         self.assertGreater(len(names), 8)
         for name in names:
@@ -284,9 +263,9 @@ class Figures(unittest.TestCase):
         poor = self.directory / "poor"
         poor.mkdir()
         (poor / "python3").symlink_to("/bin/false")
-        done = figures("--list", PATH=f"{poor}:{os.environ['PATH']}")
+        done = figures("--list", PATH=f"{poor}:{ENVIRONMENT['PATH']}")
         self.assertTrue(done.returncode == 0 or "needs a python3 with numpy" in done.stderr, done.stderr)
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    main()

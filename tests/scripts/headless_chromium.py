@@ -1,4 +1,5 @@
-"""A headless Chromium for tests, driven over a pipe by the DevTools protocol. Standard library only."""
+"""A headless Chromium for tests, driven over a pipe by the DevTools protocol, and what every page has to keep.
+HAPBENCH_CHROMIUM names the browser."""
 import base64
 import json
 import os
@@ -7,8 +8,12 @@ import shutil
 import subprocess
 import tempfile
 import time
+import unittest
 
 PATIENCE_S = 1800
+UNNAMED = """[...document.querySelectorAll('button, select, input, canvas, img')].filter((e) =>
+    !(e.getAttribute('aria-label') || e.getAttribute('alt') || e.textContent.trim() && e.tagName === 'BUTTON' ||
+      [...(e.labels || [])].some((label) => label.textContent.trim()))).map((e) => e.outerHTML.slice(0, 80))"""
 
 
 class Chromium:
@@ -117,8 +122,58 @@ class Chromium:
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
 
     def screenshot(self):
-        """What is in view, as PNG."""
+        """The visible part, as PNG."""
         return base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
 
     def pdf(self):
         return base64.b64decode(self.call("Page.printToPDF", printBackground=True, preferCSSPageSize=True)["data"])
+
+
+class Page(unittest.TestCase):
+    """Tests of one page, opened from its file without network."""
+
+    @classmethod
+    def show(cls, file):
+        """Opens the file for the tests of a module, in its setUpModule."""
+        cls.url, cls.browser = file.as_uri(), Chromium(os.environ["HAPBENCH_CHROMIUM"])
+        unittest.addModuleCleanup(cls.browser.__exit__)
+
+    def setUp(self):
+        self.browser.messages.clear()
+        self.browser.size(1280, 900)
+        self.browser.dark(False)
+        self.open()
+
+    def tearDown(self):
+        self.assertEqual(self.browser.complaints(), [])
+
+    def open(self, hash_=""):
+        self.browser.open("about:blank")
+        self.browser.open(self.url + hash_)
+        self.js("document.documentElement.style.scrollBehavior = 'auto'")
+
+    def js(self, expression):
+        return self.browser.evaluate(expression)
+
+    def centre(self, selector):
+        return self.js(f"(() => {{ const e = document.querySelector('{selector}'); e.scrollIntoView({{block: 'center'}});"
+                       "const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; })()")
+
+    def click(self, selector):
+        """Clicks by the mouse, because browsers allow sound only then."""
+        x, y = self.centre(selector)
+        for kind in ("mousePressed", "mouseReleased"):
+            self.browser.mouse(kind, x, y, button="left", clickCount=1)
+
+    def choose(self, selector, value):
+        self.js(f"(() => {{ const menu = document.querySelector('{selector}'); menu.value = '{value}';"
+                "menu.dispatchEvent(new Event('change')); })()")
+
+    def time(self):
+        return float(self.js("document.getElementById('replay-player').dataset.time"))
+
+    def check_every_page(self):
+        """It fits a telephone, and every control has a name."""
+        self.assertEqual(self.js(UNNAMED), [])
+        self.browser.size(360, 740, 2)
+        self.assertLessEqual(self.js("document.documentElement.scrollWidth"), 360)

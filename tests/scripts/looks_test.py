@@ -1,18 +1,12 @@
-"""Tests how algorithms look in figures and report: each its own way, readable on light and dark.
-
-looks_test.py PROGRAM SOURCE_DIRECTORY
-"""
+"""How algorithms look in figures and report: each its own way, readable on light and dark."""
 import json
 import re
-import subprocess
 import sys
 import unittest
-from pathlib import Path
 
-PROGRAM, SOURCE = Path(sys.argv[1]), Path(sys.argv[2])
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(SOURCE / "scripts" / "python"))
-import hapbench_looks  # noqa: E402  (the path comes first)
+from fixture import SOURCE, hapbench, main, must
+
+import hapbench_looks
 
 
 def luminance(colour):
@@ -31,8 +25,7 @@ class Looks(unittest.TestCase):
     LEAST_CONTRAST = 4.5  # WCAG 2.1, level AA, of text
 
     def test_algorithms_are_told_apart(self):
-        listed = subprocess.run([PROGRAM, "list", "--json"], capture_output=True, text=True, check=True).stdout
-        names = {entry["name"] for entry in json.loads(listed) if entry["kind"] == "algorithm"}
+        names = {entry["name"] for entry in json.loads(hapbench("list", "--json")) if entry["kind"] == "algorithm"}
         self.assertGreaterEqual(names, set(hapbench_looks.ALGORITHMS), "an entry for no algorithm")
         looks = [hapbench_looks.look(name) for name in names]
         for part in ("label", "colour", "dark", "marker"):
@@ -45,8 +38,7 @@ class Looks(unittest.TestCase):
         looks = [hapbench_looks.look(name) for name in names]
         # The same in another process: nothing depends on the order of calls or on the seed of hashes.
         code = "import hapbench_looks; print(hapbench_looks.look('law_7'))"
-        environment = {"PYTHONPATH": str(SOURCE / "scripts" / "python"), "PYTHONHASHSEED": "1", "PYTHONDONTWRITEBYTECODE": "1"}
-        said = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True).stdout
+        said = must(sys.executable, "-c", code, PYTHONPATH=str(SOURCE / "scripts" / "python"), PYTHONHASHSEED="1")
         self.assertEqual(said.strip(), repr(looks[7]))
         # Of 360 hues, 4 dashes and 7 markers, 200 names share few.
         self.assertGreater(len({(look.colour, look.dash, look.marker) for look in looks}), 190)
@@ -70,4 +62,4 @@ class Looks(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    main()

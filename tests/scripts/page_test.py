@@ -4,10 +4,9 @@ import html
 import json
 import re
 import shlex
-import sys
-import unittest
 
-from pictures_fixture import PROGRAM, Given, hapbench, make_runs
+from fixture import hapbench, main
+from pictures_fixture import Given, make_runs
 
 setUpModule = make_runs
 
@@ -89,6 +88,6 @@ class Page(Given):
             error = hapbench("report", *words, expected=2)
             self.assertTrue(said in error and error.count("\n") == 1, error)
 
+
 if __name__ == "__main__":
-    assert PROGRAM.is_file(), PROGRAM
-    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
+    main()

@@ -1,17 +1,10 @@
-"""A page of own runs in a real headless Chromium: what report_browser_test.py does not try of the replay.
-
-HAPBENCH_PROGRAM names the built program, HAPBENCH_CHROMIUM the browser.
-"""
-import os
-import subprocess
-import tempfile
+"""A page of own runs in a real headless Chromium: what report_browser_test.py does not try of the replay."""
 import time
 import unittest
-from pathlib import Path
 
-from headless_chromium import Chromium
+from fixture import hapbench, main, scratch_folder
+from headless_chromium import Page
 
-PROGRAM, CHROMIUM = os.environ["HAPBENCH_PROGRAM"], os.environ["HAPBENCH_CHROMIUM"]
 # Text against the ground it stands on; inherited grounds are looked up. Returns what falls below 4.5 to 1.
 POOR_CONTRAST = """(() => {
   const parse = (text) => (text.match(/[\\d.]+/g) || []).map(Number);
@@ -28,56 +21,17 @@ POOR_CONTRAST = """(() => {
 })()"""
 
 
-def hapbench(*words):
-    subprocess.run([PROGRAM, *map(str, words), "--quiet"], check=True, stdin=subprocess.DEVNULL)
-
-
 def setUpModule():
-    scratch = tempfile.TemporaryDirectory(prefix="hapbench-pictures-")
-    unittest.addModuleCleanup(scratch.cleanup)
-    OwnPage.root = root = Path(scratch.name)
+    OwnPage.root = root = scratch_folder(unittest)
     hapbench("compare", "mesh_molar", "--algorithms", "original_averaging,shaped_stiffness,proxy", "--set", "time.duration_s=0.5",
-             "--set", "record.contacts=true", "--out", root / "molar")
-    hapbench("run", "springs_limited_mean", "--out", root / "springs")
-    hapbench("report", root / "molar", root / "springs", "--out", root / "page.html")
-    OwnPage.url = (root / "page.html").as_uri()
-    OwnPage.browser = Chromium(CHROMIUM)
-    unittest.addModuleCleanup(OwnPage.browser.__exit__)
+             "--set", "record.contacts=true", "--quiet", "--out", root / "molar")
+    hapbench("run", "springs_limited_mean", "--quiet", "--out", root / "springs")
+    hapbench("report", root / "molar", root / "springs", "--quiet", "--out", root / "page.html")
+    OwnPage.show(root / "page.html")
     OwnPage.browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=str(root))
 
 
-class OwnPage(unittest.TestCase):
-    def setUp(self):
-        self.browser.messages.clear()
-        self.browser.size(1280, 900)
-        self.browser.dark(False)
-        self.open("")
-
-    def tearDown(self):
-        self.assertEqual(self.browser.complaints(), [])
-
-    def open(self, hash_):
-        self.browser.open("about:blank")
-        self.browser.open(self.url + hash_)
-        self.js("document.documentElement.style.scrollBehavior = 'auto'")
-
-    def js(self, expression):
-        return self.browser.evaluate(expression)
-
-    def click(self, selector):
-        """By the mouse: browsers allow sound after nothing less."""
-        x, y = self.js(f"(() => {{ const e = document.querySelector('{selector}'); e.scrollIntoView({{block: 'center'}});"
-                       "const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; })()")
-        for kind in ("mousePressed", "mouseReleased"):
-            self.browser.mouse(kind, x, y, button="left", clickCount=1)
-
-    def choose(self, selector, value):
-        self.js(f"(() => {{ const menu = document.querySelector('{selector}'); menu.value = '{value}';"
-                "menu.dispatchEvent(new Event('change')); })()")
-
-    def time(self):
-        return float(self.js("document.getElementById('replay-player').dataset.time"))
-
+class OwnPage(Page):
     def test_three_views(self):
         self.choose("#replay-views", "3")
         shown = self.js("[...document.querySelectorAll('.side:not([hidden])')].map((side) => side.dataset.algorithm)")
@@ -173,18 +127,11 @@ class OwnPage(unittest.TestCase):
             self.browser.dark(dark)
             self.assertEqual(self.js(POOR_CONTRAST), [])
 
-    def test_fits_a_telephone(self):
-        self.browser.size(360, 740, 2)
-        self.assertLessEqual(self.js("document.documentElement.scrollWidth"), 360)
+    def test_what_every_page_keeps(self):
+        self.check_every_page()
         low = "[...document.querySelectorAll('#replay-player button, #replay-player select')].filter((e) => e.checkVisibility() && e.clientHeight < 24).length"
         self.assertEqual(self.js(low), 0)
 
-    def test_every_control_has_a_name(self):
-        unnamed = """[...document.querySelectorAll('button, select, input, canvas, img')].filter((e) =>
-            !(e.getAttribute('aria-label') || e.getAttribute('alt') || e.textContent.trim() && e.tagName === 'BUTTON' ||
-              [...(e.labels || [])].some((label) => label.textContent.trim()))).map((e) => e.outerHTML.slice(0, 80))"""
-        self.assertEqual(self.js(unnamed), [])
-
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

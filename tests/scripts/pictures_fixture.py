@@ -1,32 +1,15 @@
-"""Short runs, a comparison and a sweep for the tests of `hapbench plot` and `hapbench report`. Arguments of such a test: the
-built program, the source tree."""
-import os
+"""Short runs, a comparison and a sweep for the tests of `hapbench plot` and `hapbench report`."""
 import shutil
-import subprocess
-import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-PROGRAM, SOURCE = Path(sys.argv[1]), Path(sys.argv[2])
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(SOURCE / "scripts" / "python"))
-ENVIRONMENT = {**os.environ, "HAPBENCH_PYTHON": sys.executable, "COLUMNS": "80"}
-
-
-def hapbench(*words, locale="C", expected=0):
-    """Standard output, or the error where one is expected."""
-    done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, encoding="utf-8",
-                          env={**ENVIRONMENT, "LC_ALL": locale}, stdin=subprocess.DEVNULL)
-    assert done.returncode == expected, (words, done.returncode, done.stderr)
-    return done.stderr if expected else done.stdout
+from fixture import hapbench, scratch_folder
 
 
 def make_runs():
     """Once for a module, as its setUpModule."""
-    scratch = tempfile.TemporaryDirectory(prefix="hapbench-pictures-")
-    unittest.addModuleCleanup(scratch.cleanup)
-    Given.root = root = Path(scratch.name)
+    Given.root = root = scratch_folder(unittest)
     hapbench("run", "mesh_molar", "--set", "time.duration_s=0.25", "--set", "record.contacts=true", "--set", "expect={}",
              "--out", root / "mesh", "--quiet")
     hapbench("run", "springs_limited_mean", "--set", "time.steps=300", "--set", "expect={}", "--out", root / "springs", "--quiet")

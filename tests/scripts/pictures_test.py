@@ -1,12 +1,12 @@
 """The modules behind `hapbench plot` and `hapbench report`. Needs numpy and, for a filter to compare with, scipy."""
 import re
-import sys
 import unittest
 
 import numpy as np
 from scipy import signal
 
-from pictures_fixture import PROGRAM, Given, make_runs
+from fixture import main
+from pictures_fixture import Given, make_runs
 
 from hapbench.columns import header, read_columns
 from hapbench_pictures.quantities import settled_range
@@ -148,6 +148,6 @@ class Tool(unittest.TestCase):
         for wrong in ([], [[0, 1]], [[0, 1], [2]], [[0, 1], [1, None]], "outline", [[0, 1], 5]):
             self.assertIsNone(tool_profile({"tool": {"type": "bur"}}, {"tool": {"outline_m": wrong}}), wrong)
 
+
 if __name__ == "__main__":
-    assert PROGRAM.is_file(), PROGRAM
-    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
+    main()

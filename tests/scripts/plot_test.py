@@ -1,16 +1,15 @@
 """`hapbench plot`. Needs numpy and matplotlib."""
 import json
 import shutil
-import sys
 import tempfile
-import unittest
 from contextlib import redirect_stdout
 from io import StringIO
 from pathlib import Path
 
 import numpy as np
 
-from pictures_fixture import PROGRAM, Given, hapbench, make_runs
+from fixture import hapbench, main
+from pictures_fixture import Given, make_runs
 
 from hapbench.columns import header, read_columns
 from hapbench_pictures.given import given_runs, labels, named
@@ -204,6 +203,6 @@ class Plot(Given):
             error = hapbench("plot", *words, expected=2)
             self.assertTrue(error.startswith("hapbench: error: ") and said in error and error.count("\n") == 1, error)
 
+
 if __name__ == "__main__":
-    assert PROGRAM.is_file(), PROGRAM
-    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
+    main()

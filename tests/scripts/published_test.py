@@ -1,10 +1,9 @@
-"""Tests the published numbers on record: published_test.py SOURCE_DIRECTORY."""
+"""The published numbers on record."""
 import json
-import sys
 import unittest
-from pathlib import Path
 
-SOURCE = Path(sys.argv[1])
+from fixture import SOURCE, main
+
 CLAIMS = ("T1 T2 T3 T4 R1 R2 L1 J1 G1 A1 A2 A3 A4 B1 B2 B3 C1 C2 C3 C4 F1 F2 D1 D2 D3 D4 D5 D6").split()
 
 
@@ -60,4 +59,4 @@ class PublishedNumbers(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    main()

@@ -1,16 +1,15 @@
-"""The Python package with its compiled module, for its tests. Arguments: the built program, the source tree, the folder of
-the built package."""
+"""The Python package with its compiled module, for its tests. Arguments: the program, the source tree, the folder of the built
+package."""
 import json
-import os
-import subprocess
 import sys
-import tempfile
 import unittest
 import warnings
 from pathlib import Path
 
-PROGRAM, SOURCE, PACKAGES = (Path(word).resolve() for word in sys.argv[1:4])
-sys.dont_write_bytecode = True
+from fixture import ENVIRONMENT as OF_TESTS
+from fixture import PROGRAM, SOURCE, main, ran, scratch_folder  # noqa: F401  (for the tests)
+
+PACKAGES = Path(sys.argv[-1]).resolve()
 sys.path.insert(0, str(PACKAGES))
 
 import hapbench  # noqa: E402  (the path comes first)
@@ -20,18 +19,17 @@ PEG = "peg_in_hole_2d_shaped_stiffness"
 SHORT = {"time.steps": 300, "expect": "{}"}
 EVERYTHING = {"record.contacts": True, "record.stiffness_tensor": True, "record.energy": True, "record.torque": True,
               "record.pose": True, "record.ratio_iterations": "[0,3]"}
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(PACKAGES), "PYTHONDONTWRITEBYTECODE": "1"}
+ENVIRONMENT = {**OF_TESTS, "PYTHONPATH": str(PACKAGES)}
 
 
 def program(*words, expected=0):
-    done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    done = ran(PROGRAM, *words)
     assert done.returncode == expected, (words, done.returncode, done.stderr)
     return done
 
 
-def python(*words, **options):
-    return subprocess.run([sys.executable, *map(str, words)], capture_output=True, text=True, env=ENVIRONMENT,
-                          stdin=subprocess.DEVNULL, **options)
+def python(*words, cwd=None):
+    return ran(sys.executable, *words, env=ENVIRONMENT, cwd=cwd)
 
 
 def words_of(overrides):
@@ -40,7 +38,5 @@ def words_of(overrides):
 
 class Scratch(unittest.TestCase):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory(prefix="hapbench-python-")
-        self.addCleanup(scratch.cleanup)
-        self.root = Path(scratch.name)
+        self.root = scratch_folder(self)
         warnings.simplefilter("ignore", hapbench.ScenarioWarning)

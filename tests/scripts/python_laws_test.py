@@ -1,13 +1,11 @@
 """Force laws in Python, and plugins beside them. Arguments: those of python_fixture.py."""
 import json
 import subprocess
-import sys
 import threading
 import traceback
-import unittest
 
 import numpy as np
-from python_fixture import PEG, SHORT, SOURCE, Scratch, python, words_of
+from python_fixture import PEG, SHORT, SOURCE, Scratch, main, python, words_of
 
 import hapbench
 
@@ -209,4 +207,4 @@ class Plugins(Scratch):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    main()

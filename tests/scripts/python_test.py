@@ -16,7 +16,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
-from python_fixture import ENVIRONMENT, EVERYTHING, PEG, SHORT, SOURCE, Scratch, program, python, words_of
+from python_fixture import ENVIRONMENT, EVERYTHING, PEG, SHORT, SOURCE, Scratch, main, program, python, words_of
 
 import hapbench
 from hapbench import _hapbench
@@ -25,7 +25,7 @@ from hapbench.columns import read_columns
 
 class Runs(Scratch):
     def compare(self, scene, overrides):
-        """What Python computes and what the program writes are the same."""
+        """Python computes what the program writes."""
         run = hapbench.run(scene, overrides)
         program("run", scene, *words_of(overrides), "--out", self.root / scene, "--quiet")
         files = {file.stem for file in (self.root / scene).glob("*.csv")}
@@ -36,7 +36,7 @@ class Runs(Scratch):
             for column, values in written.items():
                 found = run.tables[name][column]
                 self.assertEqual(found.dtype, np.float64)
-                # By their bits, except that there are many NaN.
+                # Equal bits, except that there are many NaN.
                 np.testing.assert_array_equal(np.isnan(found), np.isnan(values), f"{name} {column}")
                 known = ~np.isnan(values)
                 np.testing.assert_array_equal(found[known].view(np.int64), values[known].view(np.int64), f"{name} {column}")
@@ -330,4 +330,4 @@ class Notebook(Scratch):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    main()

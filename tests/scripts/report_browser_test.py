@@ -1,17 +1,11 @@
-"""The report in a real headless Chromium, opened from its file without network.
-
-HAPBENCH_PROGRAM names the built program, HAPBENCH_CHROMIUM the browser.
-"""
+"""The report in a real headless Chromium."""
 import base64
-import os
-import tempfile
 import unittest
-from pathlib import Path
 
-from headless_chromium import Chromium
+from fixture import main, scratch_folder
+from headless_chromium import Page
 from report_fixture import make_claims, make_figures, make_results, report
 
-CHROMIUM = os.environ["HAPBENCH_CHROMIUM"]
 # The drawings that are shown.
 CANVASES = "[...document.querySelectorAll('#replay .side:not([hidden]) canvas, #replay-chart')]"
 # Decodes a screenshot in the page and counts its colours.
@@ -41,35 +35,17 @@ COUNT_COLLIDING = """(() => {
 
 
 def setUpModule():
-    scratch = tempfile.TemporaryDirectory(prefix="hapbench-report-")
-    unittest.addModuleCleanup(scratch.cleanup)
-    root = Path(scratch.name)
+    root = scratch_folder(unittest)
     make_results(root / "results")
     make_figures(root / "figures")
     make_claims(root / "claims.json")
     done = report(root / "results", "--figures", root / "figures", "--claims", root / "claims.json",
                   "--out", root / "report.html")
     assert done.returncode == 0, done.stderr
-    InBrowser.url = (root / "report.html").as_uri()
-    InBrowser.browser = Chromium(CHROMIUM)
-    unittest.addModuleCleanup(InBrowser.browser.__exit__)
+    InBrowser.show(root / "report.html")
 
 
-class InBrowser(unittest.TestCase):
-    def setUp(self):
-        self.browser.messages.clear()
-        self.browser.size(1280, 900)
-        self.browser.dark(False)
-        self.browser.open("about:blank")
-        self.browser.open(self.url)
-        self.js("document.documentElement.style.scrollBehavior = 'auto'")
-
-    def tearDown(self):
-        self.assertEqual(self.browser.complaints(), [])
-
-    def js(self, expression):
-        return self.browser.evaluate(expression)
-
+class InBrowser(Page):
     def pictures(self):
         """The pixels of all drawings."""
         return self.js(CANVASES + ".map((c) => c.toDataURL())")
@@ -77,21 +53,8 @@ class InBrowser(unittest.TestCase):
     def tips(self):
         return self.js("[...document.querySelectorAll('.side:not([hidden])')].map((side) => side.dataset.tip)")
 
-    def time(self):
-        return float(self.js("document.getElementById('replay-player').dataset.time"))
-
-    def centre(self, selector):
-        return self.js(f"(() => {{ const e = document.querySelector('{selector}'); e.scrollIntoView({{block: 'center'}});"
-                       "const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; })()")
-
-    def click(self, selector):
-        x, y = self.centre(selector)
-        for kind in ("mousePressed", "mouseReleased"):
-            self.browser.mouse(kind, x, y, button="left", clickCount=1)
-
     def choose_scene(self, index):
-        self.js(f"(() => {{ const menu = document.getElementById('replay-scene'); menu.value = '{index}';"
-                "menu.dispatchEvent(new Event('change')); })()")
+        self.choose("#replay-scene", index)
 
     def assert_all_differ(self, first, second):
         for a, b in zip(first, second, strict=True):
@@ -231,23 +194,15 @@ class InBrowser(unittest.TestCase):
         self.assertNotEqual(light, dark)
         self.browser.wait_for(f"document.querySelector('.view').toDataURL() !== '{drawn[0]}'")
         for theme, colour in (("light", light), ("dark", dark), ("system", dark)):
-            self.js(f"(() => {{ const menu = document.getElementById('theme'); menu.value = '{theme}';"
-                    "menu.dispatchEvent(new Event('change')); })()")
+            self.choose("#theme", theme)
             self.assertEqual(self.js(background), colour)
-
-    def test_fits_a_telephone(self):
-        self.browser.size(360, 740, 2)
-        self.assertLessEqual(self.js("document.documentElement.scrollWidth"), 360)
 
     def test_prints(self):
         self.assertTrue(self.browser.pdf().startswith(b"%PDF-"))
 
-    def test_every_control_has_a_name(self):
-        unnamed = """[...document.querySelectorAll('button, select, input, canvas')].filter((e) =>
-            !(e.getAttribute('aria-label') || e.textContent.trim() && e.tagName === 'BUTTON' ||
-              [...(e.labels || [])].some((label) => label.textContent.trim()))).map((e) => e.outerHTML.slice(0, 80))"""
-        self.assertEqual(self.js(unnamed), [])
+    def test_what_every_page_keeps(self):
+        self.check_every_page()
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()

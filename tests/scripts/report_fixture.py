@@ -1,31 +1,20 @@
-"""Results to report on, made afresh by the built program, and the report's modules."""
+"""Results to report on, made afresh by the built program, and the report."""
 import json
-import os
-import subprocess
-import sys
-from pathlib import Path
 
-sys.dont_write_bytecode = True
-SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
-sys.path.insert(0, str(SCRIPTS / "python"))
+from fixture import PROGRAM, SOURCE, hapbench, ran
 
-PROGRAM = Path(os.environ["HAPBENCH_PROGRAM"])
+from hapbench_report.replay import record_replays
+
 SCENARIOS = ("peg_in_hole_2d_mean", "springs_limited_shaped_stiffness", "single_spring", "poke_plane")
 SVG = ('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 60"><path d="M5 55 L45 5 L85 55" stroke="black"/></svg>')
 
 
 def make_results(directory):
     """Short runs, one recorded time, limits, and the replay's recordings."""
-    from hapbench_report.replay import record_replays
-
     for scenario in SCENARIOS:
-        hapbench("run", scenario, "--set", "record.timing=true", "--out", directory / "thesis" / scenario)
-    hapbench("stability", "single_spring", "--out", directory / "stability")
+        hapbench("run", scenario, "--set", "record.timing=true", "--quiet", "--out", directory / "thesis" / scenario)
+    hapbench("stability", "single_spring", "--quiet", "--out", directory / "stability")
     record_replays(PROGRAM, directory / "replay")
-
-
-def hapbench(*words):
-    subprocess.run([PROGRAM, *words, "--quiet"], check=True, stdin=subprocess.DEVNULL)
 
 
 def make_figures(directory):
@@ -58,5 +47,4 @@ def make_claims(file):
 
 def report(*words):
     """The finished process of scripts/report."""
-    return subprocess.run([SCRIPTS / "report", *map(str, words)], capture_output=True, text=True,
-                          stdin=subprocess.DEVNULL)
+    return ran(SOURCE / "scripts" / "report", *words)

@@ -1,29 +1,26 @@
-"""What scripts/report writes, without a browser. HAPBENCH_PROGRAM names the built program."""
+"""scripts/report, without a browser."""
 import base64
 import functools
 import json
 import random
 import re
 import shutil
-import tempfile
 import unittest
 from array import array
-from pathlib import Path
 
-from report_fixture import PROGRAM, SCRIPTS, claim, make_claims, make_figures, make_results, report
+from fixture import SOURCE, main, scratch_folder
+from report_fixture import claim, make_claims, make_figures, make_results, report
 
 from hapbench_report.markup import column, number, strip, typeset
 from hapbench_report.recording import CONTACT_COLUMNS, MEASURED_COLUMNS, Recording
 from hapbench_report.replay import packed_replays
 from hapbench_report.thesis import figure_labels
 
-PEERS = json.loads((SCRIPTS.parent / "results" / "reference" / "peers.json").read_text(encoding="utf-8"))
+PEERS = json.loads((SOURCE / "results" / "reference" / "peers.json").read_text(encoding="utf-8"))
 
 
 def setUpModule():
-    scratch = tempfile.TemporaryDirectory(prefix="hapbench-report-")
-    unittest.addModuleCleanup(scratch.cleanup)
-    WithResults.root = root = Path(scratch.name)
+    WithResults.root = root = scratch_folder(unittest)
     WithResults.recorded, WithResults.results = root / "recorded", root / "results"
     WithResults.figures, WithResults.claims = root / "figures", root / "claims.json"
     make_results(WithResults.recorded)
@@ -86,7 +83,7 @@ class Page(WithResults):
                          ["claim-C1", "claim-C2", run, run, "thesis-a-3"])
         self.assertEqual(self.links_of(page, f'id="{run}"', "</details>"), ["claim-C1", "claim-C2", "figure-f1"])
         self.assertIn("<code>not_among_these</code>", self.part(page, 'id="claim-C2"', "</tr>"))
-        # What is not confirmed leads to its claim from the summary.
+        # The summary leads to the claims that are not confirmed.
         self.assertEqual(self.links_of(page, "do not confirm", "</ul>"), ["claim-C2", "claim-C3"])
 
     def test_numbers_are_typeset(self):
@@ -113,7 +110,7 @@ class Page(WithResults):
     def test_performance_is_shown_where_it_was_measured(self):
         self.assertIn("No performance.json among these results", self.page())
         file = self.results / "performance.json"
-        shutil.copy(SCRIPTS.parent / "results" / "reference" / "performance.json", file)
+        shutil.copy(SOURCE / "results" / "reference" / "performance.json", file)
         self.addCleanup(file.unlink)
         value = json.loads(file.read_text(encoding="utf-8"))
         section = self.part(self.page(), '<section id="performance"', "</section>")
@@ -339,5 +336,4 @@ class Names(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    assert PROGRAM.is_file(), PROGRAM
-    unittest.main()
+    main()

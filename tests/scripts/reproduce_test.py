@@ -1,26 +1,20 @@
-"""Tests what scripts/reproduce makes of its parts, with a program that does nothing in place of hapbench.
-
-reproduce_test.py SOURCE_DIRECTORY: the tree with scripts.
-"""
+"""How scripts/reproduce runs its parts, with a program that does nothing in place of hapbench."""
 import os
 import shlex
 import shutil
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 import unittest
-from pathlib import Path
 
-SOURCE = Path(sys.argv[1])
+from fixture import SOURCE, main, scratch_folder
+
 NOTHING = "#!/bin/sh\nexit 0\n"
 
 
 class Reproduce(unittest.TestCase):
     def setUp(self):
-        self.root = Path(tempfile.mkdtemp(prefix="hapbench-reproduce-"))
-        self.addCleanup(shutil.rmtree, self.root)
+        self.root = scratch_folder(self)
         (self.root / "results" / "reference").mkdir(parents=True)
         (self.root / "results" / "reference" / "performance.json").write_text("{}")
         self.put("scripts/reproduce", (SOURCE / "scripts" / "reproduce").read_text(encoding="utf-8"))
@@ -75,4 +69,4 @@ class Reproduce(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    main()

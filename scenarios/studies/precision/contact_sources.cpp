@@ -5,37 +5,31 @@
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
-#include "scenarios/studies/precision/ideal_runs.hpp"
 #include "scenarios/studies/precision/measure.hpp"
 
-/// What a law makes of the contacts of other libraries: at the places where our contacts lead the tool, and where
-/// theirs lead it.
+/// Compares what a law makes of the contacts of other libraries: at the places where our contacts lead the tool, and
+/// along the way on which theirs lead it.
 namespace hapbench {
 namespace {
 
-/// A place of the tool, and what was rendered there.
+/// A place of the tool, and the force of the springs that was rendered there.
 struct Place {
   ToolState tool;
   Vec3 spring = Vec3::Zero();  ///< [N]
 };
 
-class PlaceSampler final : public Observer {
- public:
-  void on_step(const StepRecord& record) noexcept override {
-    if (record.step % kContactSetStride == 0) places.push_back({record.tool, record.force.spring});
-  }
-  std::vector<Place> places;
-};
-
-/// Where the run leads the tool, taken every so many steps.
+/// The places of every kContactSetStride-th row of a run.
 std::vector<Place> places_of(const Scenario& scenario, std::shared_ptr<const PointShell> shell) {
-  PlaceSampler sampler;
+  std::vector<Place> places;
+  OnEachRow sampler([&](const StepRecord& record) {
+    if (record.step % kContactSetStride == 0) places.push_back({record.tool, record.force.spring});
+  });
   Simulation simulation(simulation_config(scenario), assemble(scenario, std::move(shell), {}), {&sampler});
   run_to_end(simulation);
-  return std::move(sampler.places);
+  return places;
 }
 
-/// What a source answers at these places, and how far its spring forces are from those that were rendered there.
+/// What a source answers at such places, and how far its spring forces are from those that were rendered there.
 struct Answers {
   double contacts = 0.0;     ///< mean number
   double depth = 0.0;        ///< mean of the largest [m]
@@ -85,8 +79,7 @@ static PrecisionResult study_contact_sources(const Scenario& given, const Precis
       row = std::move(run.row);
       row.values.insert(row.values.begin(), {contacts, depth, error, distance(run.positions, way).rms});
     }
-    result.rows.push_back(std::move(row));
-    options.progress(result.rows.size(), 1 + kPeers.size());
+    result.add(std::move(row), options, 1 + kPeers.size());
   };
   add_row(kOwnContacts);
   for (const char* peer : kPeers) add_row(peer);

@@ -1,17 +1,12 @@
-#include "scenarios/studies/precision/ideal_runs.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "algorithms/registry.hpp"
-#include "results/observe/ideal_trajectory.hpp"
-#include "results/observe/metrics.hpp"
-#include "results/summary/outcome_names.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/precision/measure.hpp"
 
-/// The studies whose reference is the ideal trajectory.
+/// Studies whose reference is the ideal trajectory: of the shell's spacing and density, and of the algorithms.
 namespace hapbench {
 namespace {
 
@@ -20,32 +15,10 @@ constexpr double kShellSpacings[] = {0.0004, 0.0002, 0.0001, 0.00005, 0.000025};
 constexpr std::pair<const char*, Density> kDensities[] = {{"signed_distance", Density::signed_distance},
                                                           {"binary", Density::binary}};
 
-/// The algorithms whose angular damping is compared with that of the tip's velocity alone: the two that the thesis
-/// compares.
+/// The algorithms whose angular damping is compared with damping of the tip's velocity alone: those of the thesis.
 constexpr const char* kAngularlyDamped[] = {"original_averaging", "shaped_stiffness"};
 
 }  // namespace
-
-const std::vector<std::string> kIdealColumns = {"ideal_height_error_rms_m", "ideal_height_error_max_m",
-                                                "ideal_lateral_error_rms_m", "interpenetration_max_m",
-                                                "force_step_max_N"};
-
-IdealRun ideal_run(std::string setting, const Scenario& scenario, std::shared_ptr<const PointShell> shell,
-                   int repetitions) {
-  const BlockWithHole& block = std::get<BlockEnvironment>(scenario.environment).block;
-  IdealTrajectoryObserver ideal(block, make_cylinder(scenario.tool));
-  MetricsObserver motion(scenario.time.step);
-  SampledRun run = sampled_run(scenario, shell, kContactSetStride, {&ideal, &motion});
-  const IdealTrajectoryMetrics metrics = ideal.metrics();
-  const TrajectoryErrors& errors = metrics.gentle.rows > 0 ? metrics.gentle : metrics.firm;
-  const double highest = std::max(-errors.height_min, errors.height_max);
-  return {
-      {std::move(setting),
-       std::string(outcome_name(run.result.outcome)),
-       {errors.height_rms, highest, errors.lateral_rms, errors.interpenetration_max, motion.metrics().force_step_max},
-       seconds_per_step(scenario, std::move(shell), repetitions)},
-      std::move(run.positions)};
-}
 
 static PrecisionResult study_spacing(const Scenario& given, const PrecisionOptions& options) {
   PrecisionResult result;
@@ -63,8 +36,7 @@ static PrecisionResult study_spacing(const Scenario& given, const PrecisionOptio
       const double points = static_cast<double>(shell->size());
       const double bytes = static_cast<double>(shell->padded_size() * 6 * sizeof(double));
       row.values.insert(row.values.begin(), {spacing, points, bytes});
-      result.rows.push_back(std::move(row));
-      options.progress(result.rows.size(), 2 * std::size(kShellSpacings));
+      result.add(std::move(row), options, std::size(kDensities) * std::size(kShellSpacings));
     }
   }
   return result;
@@ -82,8 +54,7 @@ static PrecisionResult study_algorithms(const Scenario& given, const PrecisionOp
   const auto add_row = [&](std::string setting, const RenderingConfig& config) {
     Scenario run = scenario;
     run.rendering = with_fixed_stages(config);
-    result.rows.push_back(ideal_run(std::move(setting), run, shell, options.repetitions).row);
-    options.progress(result.rows.size(), all);
+    result.add(ideal_run(std::move(setting), run, shell, options.repetitions).row, options, all);
   };
   RenderingConfig config = scenario.rendering;
   // Off, except in the rows whose setting names them.

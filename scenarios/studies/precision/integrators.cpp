@@ -8,15 +8,13 @@
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/studies/first_tensor.hpp"
 #include "scenarios/studies/precision/measure.hpp"
-#include "scenarios/studies/precision/study.hpp"
 
 namespace hapbench {
 namespace {
 
-/// Positions at t = 0, T, 2 T, … of M x'' = -K S x - B S x' - F (I - S) x', which is what bilateral springs whose
-/// weights are constant obey; from the matrix exponential, exact to rounding.
+/// Positions at t = 0, T, 2 T, … of M x'' = -K S x - B S x' - F (I - S) x', the equation of bilateral springs with
+/// constant weights; from the matrix exponential, exact to rounding.
 std::vector<Vec3> exact_positions(const Scenario& scenario, const Mat3& S, double T, std::size_t samples) {
   const RenderingConfig& r = scenario.rendering;
   const double K = r.stiffness, M = r.mass, B = normal_damping(r);
@@ -66,7 +64,7 @@ class SpringEnergy final : public Observer {
     last_ = energy;
     largest_ = std::max(largest_, std::abs(energy - first_));
   }
-  /// (E_end - E_0) / E_0 and the largest |E - E_0| / E_0; none without energy.
+  /// (E_end - E_0) / E_0 and the largest |E - E_0| / E_0; empty for a run that begins without energy.
   std::optional<double> gain() const { return share(last_ - first_); }
   std::optional<double> swing() const { return share(largest_); }
 
@@ -119,11 +117,14 @@ FittedOrder order_of(const IntegratorEntry& integrator, const PrecisionResult& r
 
 static PrecisionResult study_integrators(const Scenario& scenario, const PrecisionOptions& options) {
   check_scenario(scenario);
-  FirstTensor tensor;
-  sampled_run(scenario, nullptr, 1, {&tensor});
+  Mat3 S = Mat3::Zero();
+  OnEachRow first_row([&S](const StepRecord& record) {
+    if (record.step == 0) S = record.force.S;
+  });
+  sampled_run(scenario, nullptr, 1, {&first_row});
   const double T = scenario.time.step;
   const auto samples = static_cast<std::size_t>(scenario.time.steps);
-  const std::vector<Vec3> exact = exact_positions(scenario, tensor.S, T, samples);
+  const std::vector<Vec3> exact = exact_positions(scenario, S, T, samples);
 
   double reach = 0.0;
   for (const Vec3& position : exact) reach = std::max(reach, position.norm());
@@ -143,8 +144,8 @@ static PrecisionResult study_integrators(const Scenario& scenario, const Precisi
       run.integrator.type = integrator;
       run.time.step = T / division;
       run.time.steps = static_cast<std::int64_t>(samples) * division;
-      result.rows.push_back(measure(run, division, tensor.S, exact, options.repetitions));
-      options.progress(result.rows.size(), kIntegrators.size() * std::size(kDivisions));
+      result.add(measure(run, division, S, exact, options.repetitions), options,
+                 kIntegrators.size() * std::size(kDivisions));
     }
     result.orders.push_back(order_of(*integrator, result, begin, kRounding * reach));
   }

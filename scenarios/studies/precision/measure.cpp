@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "results/observe/ideal_trajectory.hpp"
+#include "results/observe/metrics.hpp"
+#include "results/summary/outcome_names.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
@@ -11,51 +14,26 @@
 namespace hapbench {
 namespace {
 
-class RowSampler final : public Observer {
- public:
-  RowSampler(std::uint64_t stride, std::uint64_t rows) : stride_(stride) {
-    run.positions.reserve(rows / stride + 1);
-    run.forces.reserve(rows / stride + 1);
-  }
-  void on_step(const StepRecord& record) noexcept override {
-    run.in_contact = run.in_contact || record.colliding > 0;
-    if (record.step % stride_ != 0) return;
-    run.positions.push_back(record.tool.pose.position);
-    run.forces.push_back(record.force.rendered);
-  }
-  SampledRun run;
-
- private:
-  std::uint64_t stride_;
-};
-
-/// Keeps copies of the contacts a law saw.
-class ContactSampler final : public Observer {
- public:
-  ContactSampler(std::uint64_t stride, std::vector<ContactBuffer>& sets) : stride_(stride), sets_(&sets) {}
-  void on_step(const StepRecord& record) noexcept override {
-    const ContactBuffer& seen = *record.rendered;
-    if (record.step % stride_ != 0 || seen.empty()) return;
-    sets_->emplace_back(seen.size()).assign(seen);
-  }
-
- private:
-  std::uint64_t stride_;
-  std::vector<ContactBuffer>* sets_;
-};
-
-constexpr double kPeriod = 6.0;  // of the tilt of task 2 [s]
+constexpr double kPeriod = 6.0;  // [s], of the tilt of task 2
 
 }  // namespace
 
 SampledRun sampled_run(const Scenario& scenario, std::shared_ptr<const PointShell> shell, std::uint64_t stride,
                        std::vector<Observer*> observers) {
   const SimulationConfig config = simulation_config(scenario);
-  RowSampler sampler(stride, config.steps);
+  SampledRun run;
+  run.positions.reserve(config.steps / stride + 1);
+  run.forces.reserve(config.steps / stride + 1);
+  OnEachRow sampler([&](const StepRecord& record) {
+    run.in_contact = run.in_contact || record.colliding > 0;
+    if (record.step % stride != 0) return;
+    run.positions.push_back(record.tool.pose.position);
+    run.forces.push_back(record.force.rendered);
+  });
   observers.push_back(&sampler);
   Simulation simulation(config, assemble(scenario, std::move(shell), {}), std::move(observers));
-  sampler.run.result = run_to_end(simulation);
-  return std::move(sampler.run);
+  run.result = run_to_end(simulation);
+  return run;
 }
 
 TrajectoryDistance distance(std::span<const Vec3> a, std::span<const Vec3> b) {
@@ -104,10 +82,6 @@ double seconds_per_step(const Scenario& scenario, std::shared_ptr<const PointShe
   });
 }
 
-IdealDeviceFields with_ideal_device(const DeviceFields& device) {
-  return {input_force_limit(device)};
-}
-
 Scenario drill_in_hole(Scenario scenario) {
   if (!std::holds_alternative<BlockEnvironment>(scenario.environment)) {
     throw InputError(
@@ -115,30 +89,63 @@ Scenario drill_in_hole(Scenario scenario) {
         "got another environment; allowed for this study: block_with_hole, the hole its drill is measured in "
         "(the study time_step takes any scene)");
   }
-  make_cylinder(scenario.tool);  // refuses any other
+  make_cylinder(scenario.tool);  // refuses other tools
   if (!has_ideal_trajectory(scenario)) {
     throw InputError(InputError::Kind::relation, "/tool/tip",
                      "got \"round\"; allowed for this study: \"flat\", whose ideal trajectory is known");
   }
-  scenario.device = with_ideal_device(scenario.device);
+  scenario.device = IdealDeviceFields{input_force_limit(scenario.device)};
   const auto rows = static_cast<std::int64_t>(std::llround(kPeriod / scenario.time.step));
   scenario.time.steps = std::min(scenario.time.steps, rows);
   scenario.record = {};
   return scenario;
 }
 
-std::vector<ContactBuffer> contact_sets(Scenario scenario, std::uint64_t stride) {
+std::vector<ContactBuffer> drill_contact_sets(const Scenario& given) {
+  Scenario scenario = drill_in_hole(given);
   scenario.rendering.reduction.reset();
   scenario.rendering.local_average = false;
-  return rendered_contact_sets(scenario, stride);
+  std::vector<ContactBuffer> sets = rendered_contact_sets(scenario, kContactSetStride);
+  if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
+  return sets;
 }
 
 std::vector<ContactBuffer> rendered_contact_sets(const Scenario& scenario, std::uint64_t stride) {
   std::vector<ContactBuffer> sets;
-  ContactSampler sampler(stride, sets);
+  OnEachRow sampler([&](const StepRecord& record) {
+    const ContactBuffer& seen = *record.rendered;
+    if (record.step % stride == 0 && !seen.empty()) sets.emplace_back(seen.size()).assign(seen);
+  });
   Simulation simulation(simulation_config(scenario), assemble(scenario, make_shell(scenario), {}), {&sampler});
   run_to_end(simulation);
   return sets;
+}
+
+std::size_t largest_size(const std::vector<ContactBuffer>& sets) {
+  std::size_t largest = 0;
+  for (const ContactBuffer& set : sets) largest = std::max(largest, set.size());
+  return largest;
+}
+
+const std::vector<std::string> kIdealColumns = {"ideal_height_error_rms_m", "ideal_height_error_max_m",
+                                                "ideal_lateral_error_rms_m", "interpenetration_max_m",
+                                                "force_step_max_N"};
+
+IdealRun ideal_run(std::string setting, const Scenario& scenario, std::shared_ptr<const PointShell> shell,
+                   int repetitions) {
+  const BlockWithHole& block = std::get<BlockEnvironment>(scenario.environment).block;
+  IdealTrajectoryObserver ideal(block, make_cylinder(scenario.tool));
+  MetricsObserver motion(scenario.time.step);
+  SampledRun run = sampled_run(scenario, shell, kContactSetStride, {&ideal, &motion});
+  const IdealTrajectoryMetrics metrics = ideal.metrics();
+  const TrajectoryErrors& errors = metrics.gentle.rows > 0 ? metrics.gentle : metrics.firm;
+  const double highest = std::max(-errors.height_min, errors.height_max);
+  return {
+      {std::move(setting),
+       std::string(outcome_name(run.result.outcome)),
+       {errors.height_rms, highest, errors.lateral_rms, errors.interpenetration_max, motion.metrics().force_step_max},
+       seconds_per_step(scenario, std::move(shell), repetitions)},
+      std::move(run.positions)};
 }
 
 }  // namespace hapbench

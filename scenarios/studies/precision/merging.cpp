@@ -10,10 +10,9 @@
 #include "algorithms/stages/point_stage.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/studies/precision/measure.hpp"
-#include "scenarios/studies/precision/study.hpp"
 #include "sim/core/random.hpp"
 
-/// Tells whether merging or dropping contacts before the force law saves time, from dozens of contacts to hundreds.
+/// Tells whether merging or dropping contacts before the force law saves time, for dozens of contacts to hundreds.
 namespace hapbench {
 namespace {
 
@@ -80,9 +79,7 @@ double spread_over_orders(Forces& forces, const ContactBuffer& set, const Vec3& 
 
 PrecisionRow row_of(const MergingWay& way, double spacing, const std::vector<ContactBuffer>& sets,
                     const std::vector<Vec3>& reference, const RenderingConfig& config, int repetitions) {
-  std::size_t capacity = 0;
-  for (const ContactBuffer& set : sets) capacity = std::max(capacity, set.size());
-  Forces forces(way, config, capacity);
+  Forces forces(way, config, largest_size(sets));
   Random random(1);
   double squares = 0.0, scale = 0.0, spread = 0.0, contacts = 0.0, kept = 0.0;
   for (std::size_t i = 0; i < sets.size(); ++i) {
@@ -95,19 +92,11 @@ PrecisionRow row_of(const MergingWay& way, double spacing, const std::vector<Con
     spread = std::max(spread, spread_over_orders(forces, sets[i], force, random));
   }
   const double n = static_cast<double>(sets.size()), rms = std::sqrt(scale / n);
-  const double copying = seconds_per_call(sets.size(), repetitions, [&] {
-    for (const ContactBuffer& set : sets) forces.load(set);
-  });
-  const double seconds = seconds_per_call(sets.size(), repetitions, [&] {
-    for (const ContactBuffer& set : sets) {
-      forces.load(set);
-      forces.force();
-    }
-  });
   return {fmt::format("{} {}", way.name, spacing),
           "completes",
           {spacing, contacts / n, kept / n, std::sqrt(squares / n) / rms, spread / rms},
-          std::max(0.0, seconds - copying)};
+          seconds_per_force(
+              sets, repetitions, [&](const ContactBuffer& set) { forces.load(set); }, [&] { forces.force(); })};
 }
 
 std::vector<Vec3> exact_forces(const std::vector<ContactBuffer>& sets, const RenderingConfig& config) {
@@ -127,14 +116,13 @@ static PrecisionResult study_merging(const Scenario& given, const PrecisionOptio
   result.columns = {"spacing_m", "contacts_mean", "kept_mean", "force_error_relative", "order_spread_relative"};
   result.timed = "call";
   for (const double spacing : kMergedSpacings) {
-    Scenario scenario = drill_in_hole(given);
-    std::get<BlockEnvironment>(scenario.environment).grid = spacing;
-    const std::vector<ContactBuffer> sets = contact_sets(scenario, kContactSetStride);
-    if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
+    Scenario scenario = given;
+    if (auto* block = std::get_if<BlockEnvironment>(&scenario.environment)) block->grid = spacing;
+    const std::vector<ContactBuffer> sets = drill_contact_sets(scenario);
     const std::vector<Vec3> reference = exact_forces(sets, scenario.rendering);
     for (const MergingWay& way : kMergingWays) {
-      result.rows.push_back(row_of(way, spacing, sets, reference, scenario.rendering, options.repetitions));
-      options.progress(result.rows.size(), std::size(kMergingWays) * std::size(kMergedSpacings));
+      result.add(row_of(way, spacing, sets, reference, scenario.rendering, options.repetitions), options,
+                 std::size(kMergingWays) * std::size(kMergedSpacings));
     }
   }
   return result;

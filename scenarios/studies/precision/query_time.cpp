@@ -3,16 +3,15 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/precision/measure.hpp"
-#include "scenarios/studies/precision/study.hpp"
 
-/// How long a step's question takes, which points the tool touches and how deep, over how deep it is: a tool that
-/// sinks in touches more and more points.
+/// Measures how long the search for contacts takes in a step over the depth of the tool, which touches more and more
+/// points as it sinks in.
 namespace hapbench {
 namespace {
 
-constexpr double kDeeper = 5.0;  ///< than the scenario's stroke goes
+constexpr double kDeeper = 5.0;  ///< how many times as far as the scenario's stroke the tool goes
 constexpr std::size_t kLevels = 10;
-constexpr std::size_t kPoses = 256;  ///< from one level to the next
+constexpr std::size_t kPoses = 256;  ///< poses from one level to the next
 
 struct Way {
   const char* name;
@@ -23,7 +22,7 @@ constexpr Way kWays[] = {{"neighbour_list", Skips::on}, {"every_point", Skips::o
 /// The straight way from the stroke's start through its farthest point.
 struct Push {
   ToolPose start;
-  Vec3 way;  ///< whole [m]
+  Vec3 way;  ///< to the deepest place [m]
 
   ToolPose at(std::size_t level, std::size_t pose) const {
     ToolPose there = start;
@@ -50,7 +49,7 @@ Push push_of(const Scenario& scenario, const Motion& motion) {
 PrecisionRow row_of(const Way& way, const Push& push, std::size_t level, SimulationParts& parts, int repetitions) {
   ContactBuffer contacts(parts.source->capacity());
   parts.source->reset();
-  std::vector<ToolPose> poses;  // not made while it is timed
+  std::vector<ToolPose> poses;  // made before the time is taken
   for (std::size_t pose = 0; pose < kPoses; ++pose) poses.push_back(push.at(level, pose));
   double depth = 0.0, count = 0.0;
   for (const ToolPose& pose : poses) {
@@ -83,8 +82,7 @@ static PrecisionResult study_query_time(const Scenario& given, const PrecisionOp
     SimulationParts parts = assemble(scenario, shell, {});
     const Push push = push_of(scenario, *parts.motion);
     for (std::size_t level = 0; level < kLevels; ++level) {
-      result.rows.push_back(row_of(way, push, level, parts, options.repetitions));
-      options.progress(result.rows.size(), kLevels * std::size(kWays));
+      result.add(row_of(way, push, level, parts, options.repetitions), options, kLevels * std::size(kWays));
     }
   }
   return result;

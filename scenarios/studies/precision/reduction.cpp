@@ -8,7 +8,6 @@
 #include "algorithms/stages/point_stage.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/studies/precision/measure.hpp"
-#include "scenarios/studies/precision/study.hpp"
 
 namespace hapbench {
 namespace {
@@ -31,12 +30,6 @@ Vec3 depth_vector(ContactBuffer& contacts, bool exact, int iterations) {
   return weighted_depth(contacts);
 }
 
-std::size_t largest_size(const std::vector<ContactBuffer>& sets) {
-  std::size_t largest = 0;
-  for (const ContactBuffer& set : sets) largest = std::max(largest, set.size());
-  return largest;
-}
-
 class Measurement {
  public:
   Measurement(const std::vector<ContactBuffer>& sets, int iterations)
@@ -51,30 +44,25 @@ class Measurement {
     const auto reduction =
         make_gradient_reduction({.threshold = std::min(way.threshold, 1.0), .max_points = 100'000, .shuffle_seed = {}});
     reduction->prepare({});
-    const auto force = [&](const ContactBuffer& set) {
-      work_.assign(set);
+    const auto load = [&](const ContactBuffer& set) { work_.assign(set); };
+    const auto force = [&] {
       if (way.threshold != kOff) reduction->process(work_);
       return depth_vector(work_, way.exact, iterations_);
     };
     double squares = 0.0, scale = 0.0, largest = 0.0, kept = 0.0;
     for (std::size_t i = 0; i < sets_.size(); ++i) {
-      const double error = (force(sets_[i]) - exact_[i]).norm();
+      load(sets_[i]);
+      const double error = (force() - exact_[i]).norm();
       squares += error * error;
       scale += exact_[i].squaredNorm();
       largest = std::max(largest, error);
       kept += static_cast<double>(work_.size()) / static_cast<double>(sets_.size());
     }
-    const double copying = seconds_per_call(sets_.size(), repetitions, [&] {
-      for (const ContactBuffer& set : sets_) work_.assign(set);
-    });
-    const double seconds = seconds_per_call(sets_.size(), repetitions, [&] {
-      for (const ContactBuffer& set : sets_) force(set);
-    });
     const std::string law = way.exact ? "exact_shaping" : "shaped_stiffness";
     return {way.threshold == kOff ? law + " off" : fmt::format("{} {}", law, way.threshold),
             "completes",
             {kept, std::sqrt(squares / scale), largest},
-            std::max(0.0, seconds - copying)};
+            seconds_per_force(sets_, repetitions, load, force)};
   }
 
  private:
@@ -87,8 +75,7 @@ class Measurement {
 }  // namespace
 
 static PrecisionResult study_reduction(const Scenario& scenario, const PrecisionOptions& options) {
-  const std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(scenario), kContactSetStride);
-  if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
+  const std::vector<ContactBuffer> sets = drill_contact_sets(scenario);
   Measurement measurement(sets, scenario.rendering.iterations);
   std::vector<ReductionWay> ways;
   for (const bool exact : {false, true}) {
@@ -98,10 +85,7 @@ static PrecisionResult study_reduction(const Scenario& scenario, const Precision
   PrecisionResult result;
   result.columns = {"kept_mean", "force_error_relative", "depth_error_max_m"};
   result.timed = "call";
-  for (const ReductionWay& way : ways) {
-    result.rows.push_back(measurement.row(way, options.repetitions));
-    options.progress(result.rows.size(), ways.size());
-  }
+  for (const ReductionWay& way : ways) result.add(measurement.row(way, options.repetitions), options, ways.size());
   return result;
 }
 

@@ -5,15 +5,13 @@
 
 #include "algorithms/laws/exact_shaping.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
-#include "scenarios/input/input_error.hpp"
 #include "scenarios/studies/precision/measure.hpp"
-#include "scenarios/studies/precision/study.hpp"
 
 namespace hapbench {
 namespace {
 
-constexpr int kIterations[] = {0, 1, 2, 3, 4, 5, 10, 20, 40, 80, 160};
-constexpr int kExact = -1;
+constexpr int kExact = -1;  // in place of a number of iterations
+constexpr int kIterations[] = {0, 1, 2, 3, 4, 5, 10, 20, 40, 80, 160, kExact};
 
 Mat3 shape(ContactBuffer& contacts, int iterations) {
   if (iterations != kExact) return shape_weights(contacts, iterations);
@@ -44,19 +42,15 @@ PrecisionRow measure(int iterations, std::vector<ContactBuffer>& sets, const std
 }  // namespace
 
 static PrecisionResult study_shaping(const Scenario& scenario, const PrecisionOptions& options) {
-  std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(scenario), kContactSetStride);
-  if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
+  std::vector<ContactBuffer> sets = drill_contact_sets(scenario);
   std::vector<Mat3> optimum;
   for (ContactBuffer& set : sets) optimum.push_back(shape(set, kExact));
 
   PrecisionResult result;
   result.columns = {"tensor_error_rms", "tensor_error_max", "ratio_error_max"};
   result.timed = "call";
-  for (const int iterations : kIterations) {
-    result.rows.push_back(measure(iterations, sets, optimum, options.repetitions));
-    options.progress(result.rows.size(), std::size(kIterations) + 1);
-  }
-  result.rows.push_back(measure(kExact, sets, optimum, options.repetitions));
+  for (const int iterations : kIterations)
+    result.add(measure(iterations, sets, optimum, options.repetitions), options, std::size(kIterations));
   return result;
 }
 

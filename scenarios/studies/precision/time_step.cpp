@@ -7,7 +7,6 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/precision/measure.hpp"
-#include "scenarios/studies/precision/study.hpp"
 
 namespace hapbench {
 namespace {
@@ -42,7 +41,7 @@ void refuse_noise(const Scenario& scenario) {
                    "got \"tracking\", whose noise is drawn anew in every step; allowed for this study: other hands");
 }
 
-/// Any other scene, without what has no limit as the step gets finer.
+/// Any other scene, without devices that have no limit as the step gets finer.
 Scenario any_scene(Scenario scenario) {
   if (scenario.time.steps < 2 * std::llround(kFactors[0])) {
     throw InputError(
@@ -50,7 +49,7 @@ Scenario any_scene(Scenario scenario) {
         fmt::format("got {}; allowed for this study: at least {}", scenario.time.steps, 2 * std::llround(kFactors[0])));
   }
   scenario.time.steps -= scenario.time.steps % std::llround(kFactors[0]);  // so that all end at the same time
-  scenario.device = with_ideal_device(scenario.device);
+  scenario.device = IdealDeviceFields{input_force_limit(scenario.device)};
   scenario.record = {};
   return scenario;
 }
@@ -99,9 +98,9 @@ static PrecisionResult study_time_step(const Scenario& given, const PrecisionOpt
         sampled_run(run, shell, stride(factor), beside ? std::vector<Observer*>{&*beside} : std::vector<Observer*>());
     const TrajectoryDistance d =
         free ? distance(sampled.positions, reference.positions) : distance(sampled.forces, reference.forces);
-    result.rows.push_back(row_of(run, sampled, d, seconds_per_step(run, shell, options.repetitions)));
-    if (beside) result.rows.back().values.emplace_back(beside->metrics().gentle.height_rms);
-    options.progress(result.rows.size(), std::size(kFactors));
+    PrecisionRow row = row_of(run, sampled, d, seconds_per_step(run, shell, options.repetitions));
+    if (beside) row.values.emplace_back(beside->metrics().gentle.height_rms);
+    result.add(std::move(row), options, std::size(kFactors));
     // A drill that was thrown out may be anywhere: its distance from the reference does not converge.
     const bool thrown_out = free && !(d.max <= half_width);
     if (sampled.positions.size() != reference.positions.size() || thrown_out) continue;

@@ -18,7 +18,6 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/studies/stability/device_loop.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
 #include "sim/core/bisection.hpp"
 
@@ -34,7 +33,7 @@ std::string override_text(const std::string& path, double value, bool whole) {
   return whole ? fmt::format("{}={:.0f}", path, value) : fmt::format("{}={}", path, value);
 }
 
-/// A range as its part of the way from the end that is stable to begin with: 0 there, 1 at the other end.
+/// Maps a range to parts of the way from the end that is expected to be stable (0) to the other end (1).
 class FieldWay {
  public:
   explicit FieldWay(const LimitQuestion& question) : question_(question) {}
@@ -63,10 +62,10 @@ class FieldWay {
   const LimitQuestion& question_;
 };
 
-/// What is known after a search: parts of the way, and whether they are stable.
+/// The result of a search, as parts of the way.
 struct Edge {
-  std::optional<double> stable;  ///< the last part that is
-  std::optional<double> beyond;  ///< the first one beyond that is not
+  std::optional<double> stable;  ///< the last stable part
+  std::optional<double> beyond;  ///< the first unstable part beyond it
 };
 
 /// The edge behind the scenario's own value, or if that is not stable behind the first stable values of the way. With
@@ -171,7 +170,7 @@ class Search {
     return question_.smallest ? 0.0 : std::numeric_limits<double>::infinity();
   }
 
-  /// True of springs that stay in contact, and devices whose loop is linear.
+  /// True for springs that stay in contact, and devices whose loop is linear.
   static bool has_theory(const Scenario& scenario) {
     try {
       has_device(scenario) ? require_bilateral_springs(scenario) : require_lasting_springs(scenario);
@@ -181,7 +180,7 @@ class Search {
     return !has_device(scenario) || device_loop(scenario, 1.0).no_theory.empty();
   }
 
-  /// True of a device that is part of the loop.
+  /// True for a device that is part of the loop.
   static bool has_device(const Scenario& scenario) {
     return !std::holds_alternative<IdealDeviceFields>(scenario.device);
   }

@@ -6,11 +6,93 @@
 #include <optional>
 #include <string_view>
 
+#include "results/observe/butterworth.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "sim/geometry/point_shell.hpp"
+#include "sim/loop/observer.hpp"
+#include "sim/loop/simulation.hpp"
 
-/// Judges whether a run of any scene is stable: by the classes of classify.hpp, and by where its tool ends.
+/// Judges whether a run is stable: first by its motion alone, without eigenvalues, tensors or knowledge of the law
+/// (MotionClass), then also by where its tool ends (RunVerdict).
+///
+/// The run is cut into quarters. The amplitude of a quarter is the largest speed of the tool in it (of the handle where
+/// the handle moves the tool, because an encoder turns its motion into jumps that nobody feels); a turn is a change of
+/// sign of a component of the velocity, two for each period of an oscillation, whether or not dry friction holds a
+/// handle at the turns.
+///
+///   diverged   the run left its bounds, or it oscillates and its amplitude has grown by more than 1 % from each
+///              quarter to the next
+///   vibrating  not diverged, and it does not decay: in the last quarter it oscillates (two turns or more of one
+///              component) with at least 1 % of the first quarter's amplitude, that is 1e-4 of its energy
+///   dying_out  oscillates so, but loses more than a tenth of its amplitude from the second quarter to the third and
+///              from the third to the last; an irregular vibration may lose it once, by chance
+///   stable     all else: at rest, died out, creeping without a turn
+///
+/// Both stable and dying_out come to rest if the run goes on long enough, so both count as stable where a limit is
+/// looked for. A damped oscillation dies out to 1 % within three quarters of n steps when it loses more than 6.1 / n of
+/// its amplitude in a step, and vibrates when it loses less than 0.42 / n: "vibrating" is a thin strip below the limit
+/// of a damped linear system, all that is stable of an undamped one, and the limit cycles of a nonlinear one.
 namespace hapbench {
+
+enum class MotionClass { stable, dying_out, vibrating, diverged };
+inline constexpr std::array kMotionClasses = {MotionClass::stable, MotionClass::dying_out, MotionClass::vibrating,
+                                              MotionClass::diverged};
+
+/// A class of motion for people.
+struct MotionClassText {
+  std::string_view name;  ///< also in result files
+  const char* meaning;
+  const char* rule;  ///< by which a run belongs to it: see above
+};
+const MotionClassText& text_of(MotionClass motion) noexcept;
+
+inline std::string_view motion_class_name(MotionClass motion) noexcept {
+  return text_of(motion).name;
+}
+
+/// True for motion that comes to rest: stable and dying_out.
+inline bool comes_to_rest(MotionClass motion) noexcept {
+  return motion == MotionClass::stable || motion == MotionClass::dying_out;
+}
+
+/// Watches a run and classifies it. Constant memory.
+class MotionClassifier final : public Observer {
+ public:
+  /// `steps`: rows the run will have. Precondition: steps >= 4.
+  explicit MotionClassifier(std::uint64_t steps) : steps_(steps) {}
+  /// For a tool that a script moves: only the part of its velocity above 30 Hz counts (all of it when steps are longer
+  /// than a 60th of a second), and in the last quarter only amplitudes beyond 1 mm/s, about what a hand can feel there.
+  /// Such a tool is never at rest.
+  static MotionClassifier of_moved_tool(std::uint64_t steps, double time_step);
+
+  void on_step(const StepRecord& record) noexcept override;
+
+  /// True once the tool has come to rest to 1e-12 of its largest speed for 200 rows: what is left is rounding, and the
+  /// run may be cut short.
+  bool at_rest() const noexcept { return !is_moved_ && rows_at_rest_ >= kRowsAtRest; }
+  /// Class of a complete run, or of one that was cut short because it came to rest.
+  MotionClass motion_class(Outcome outcome) const noexcept;
+
+ private:
+  static constexpr int kRowsAtRest = 200;
+
+  struct Quarter {
+    double amplitude = 0.0;                ///< largest speed [m/s]
+    std::array<std::uint64_t, 3> turns{};  ///< of each component
+  };
+  bool oscillates_in(const Quarter& quarter) const noexcept;
+
+  std::uint64_t steps_;
+  bool is_moved_ = false;
+  std::optional<HighPass> high_pass_;
+  std::array<Quarter, 4> quarters_{};
+  Vec3 last_velocity_ = Vec3::Zero();  ///< the last value of each component that was not zero
+  double largest_speed_ = 0.0;
+  int rows_at_rest_ = 0;
+};
+
+/// Steps the simulation, which `classifier` observes, until it ends or comes to rest. Throws Stopped (stop_signal.hpp).
+MotionClass classify(Simulation& simulation, const MotionClassifier& classifier);
 
 /// The classes of motion, and two ends of a run that no motion tells. run_verdict_meaning() explains each.
 enum class RunVerdict { stable, dying_out, vibrating, diverged, thrown_out, no_contact };
@@ -21,7 +103,7 @@ inline constexpr std::array kRunVerdicts = {RunVerdict::stable,   RunVerdict::dy
 std::string_view run_verdict_name(RunVerdict verdict) noexcept;
 const char* run_verdict_meaning(RunVerdict verdict) noexcept;
 
-/// True of what comes to rest in contact: stable, dying_out.
+/// True for runs that come to rest in contact: stable and dying_out.
 inline bool is_stable(RunVerdict verdict) noexcept {
   return verdict == RunVerdict::stable || verdict == RunVerdict::dying_out;
 }
@@ -30,9 +112,9 @@ inline bool is_stable(RunVerdict verdict) noexcept {
 /// and 1 mm/s counts as motion.
 bool is_moved(const Scenario& scenario);
 
-/// What the last quarter of a run is like.
+/// The last quarter of a run.
 struct SettledState {
-  /// Root mean square of the handle's speed above 30 Hz [m/s]; none at sampling rates of 60 Hz or less.
+  /// Root mean square of the handle's speed above 30 Hz [m/s]; empty at sampling rates of 60 Hz or less.
   std::optional<double> vibration;
   double contacts = 0.0;    ///< mean number of rendered contacts of the rows in contact
   double lambda_max = 0.0;  ///< largest eigenvalue of their mean S: the stiffness rendered, in units of K
@@ -44,9 +126,9 @@ struct JudgedRun {
   std::uint64_t way = 0;  ///< a hash of all positions of the handle: runs that differ in it moved differently
 };
 
-/// Runs the scenario's first trial, without records, and judges it. With `most_vibration` [m/s] that decides between
-/// stable and vibrating, by the vibration of the settled state, whatever the class of the motion: a limit cycle that
-/// is too small to be felt is stable, and what is felt is not, though it may die out; nothing is stable where no
+/// Runs the scenario's first trial, without records, and judges it. With `most_vibration` [m/s], the vibration of the
+/// settled state decides between stable and vibrating, whatever the class of the motion: a limit cycle that is too
+/// small to be felt is stable, and motion that is felt is not, though it may die out; nothing is stable where no
 /// vibration is measured. `shell` is make_shell of the scenario. Throws Stopped when a signal ends it. Precondition:
 /// the position is free, and there are 4 steps or more.
 JudgedRun judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell,

@@ -1,8 +1,14 @@
-#include "scenarios/studies/stability/map_scenes.hpp"
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
+
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/studies/stability/stability_map.hpp"
 
 namespace hapbench {
 namespace {
@@ -146,76 +152,77 @@ constexpr MapAxis kSpringStiffness = {kStiffnessName, 1e3, 1e7, Scale::logarithm
 constexpr MapAxis kHandleStiffness = {kStiffnessName, 1e2, 1e5, Scale::logarithmic};
 
 constexpr StabilityMap kMaps[] = {
-    {"time_step",
-     "K over the time step, one spring",
-     {"time_step_s", 5e-5, 5e-3, Scale::logarithmic},
-     kSpringStiffness,
-     time_step_scene},
-    {"mass",
-     "K over the mass of the virtual tool, one spring",
-     {"mass_kg", 0.01, 10.0, Scale::logarithmic},
-     kSpringStiffness,
-     mass_scene},
-    {"damping_ratio",
-     "K over zeta, one spring",
-     {"damping_ratio", 0.0, 3.0, Scale::linear},
-     kSpringStiffness,
-     damping_ratio_scene},
-    {"contacts",
-     "K over the number of parallel contacts",
-     {"contacts", 1.0, 100.0, Scale::logarithmic, true},
-     kSpringStiffness,
-     contacts_scene},
-    {"wedge",
-     "K over the angle between two faces",
-     {"wedge_angle_rad", 0.0, std::numbers::pi, Scale::linear},
-     kSpringStiffness,
-     wedge_scene},
-    {"device",
-     "stiffness of the hand over the delay of the servo, K = 20 000 N/m, admittance device",
-     {"delay_samples", 0.0, 16.0, Scale::linear, true},
-     {"hand_stiffness_N_per_m", 30.0, 3e5, Scale::logarithmic},
-     device_scene,
-     MapEdge::largest_at_rest},
-    {"z_width",
-     "K over B of one wall on both sides, impedance device of 100 g and 0.5 N s/m at 1 kHz",
-     {"wall_damping_N_s_per_m", 0.1, 150.0, Scale::logarithmic},
-     kHandleStiffness,
-     z_width_scene},
-    {"delay",
-     "K over the delay of the force, B = 5 N s/m, impedance device as for z_width",
-     {"delay_samples", 0.0, 8.0, Scale::linear},
-     kHandleStiffness,
-     delay_scene},
-    {"velocity_filter",
-     "K over the cut-off of the velocity's low-pass, B = 5 N s/m, impedance device as for z_width",
-     {"cutoff_Hz", 20.0, 500.0, Scale::logarithmic},
-     kHandleStiffness,
-     velocity_filter_scene},
-    {"hand",
-     "K over the stiffness of a passive hand of 200 g and 2 N s/m, B = 5 N s/m, impedance device as for z_width",
-     {"hand_stiffness_N_per_m", 10.0, 1e4, Scale::logarithmic},
-     kHandleStiffness,
-     hand_scene},
-    {"encoder_step",
-     "K over the encoder's step, B = 0, impedance device as for z_width with 0.02 N of Coulomb friction",
-     {"encoder_step_m", 1e-6, 1e-3, Scale::logarithmic},
-     kHandleStiffness,
-     encoder_step_scene,
-     MapEdge::largest_at_rest,
-     std::nullopt,
-     true},
-    {"friction_quantisation",
-     "Coulomb friction over viscous friction, in units of what the encoder and the sampling of a wall need, B = 0, "
-     "impedance device as for z_width",
-     // Without 1 on any grid, where a run is neither.
-     {"2b_over_KT", 0.12, 12.0, Scale::logarithmic},
-     {"2c_over_Kq", 0.12, 12.0, Scale::logarithmic},
-     friction_scene,
-     MapEdge::smallest_at_rest,
-     1000.0,
-     true,
-     true},
+    {.name = "time_step",
+     .summary = "K over the time step, one spring",
+     .x = {"time_step_s", 5e-5, 5e-3, Scale::logarithmic},
+     .y = kSpringStiffness,
+     .scene = time_step_scene},
+    {.name = "mass",
+     .summary = "K over the mass of the virtual tool, one spring",
+     .x = {"mass_kg", 0.01, 10.0, Scale::logarithmic},
+     .y = kSpringStiffness,
+     .scene = mass_scene},
+    {.name = "damping_ratio",
+     .summary = "K over zeta, one spring",
+     .x = {"damping_ratio", 0.0, 3.0, Scale::linear},
+     .y = kSpringStiffness,
+     .scene = damping_ratio_scene},
+    {.name = "contacts",
+     .summary = "K over the number of parallel contacts",
+     .x = {"contacts", 1.0, 100.0, Scale::logarithmic, true},
+     .y = kSpringStiffness,
+     .scene = contacts_scene},
+    {.name = "wedge",
+     .summary = "K over the angle between two faces",
+     .x = {"wedge_angle_rad", 0.0, std::numbers::pi, Scale::linear},
+     .y = kSpringStiffness,
+     .scene = wedge_scene},
+    {.name = "device",
+     .summary = "stiffness of the hand over the delay of the servo, K = 20 000 N/m, admittance device",
+     .x = {"delay_samples", 0.0, 16.0, Scale::linear, true},
+     .y = {"hand_stiffness_N_per_m", 30.0, 3e5, Scale::logarithmic},
+     .scene = device_scene,
+     .edge = MapEdge::largest_at_rest},
+    {.name = "z_width",
+     .summary = "K over B of one wall on both sides, impedance device of 100 g and 0.5 N s/m at 1 kHz",
+     .x = {"wall_damping_N_s_per_m", 0.1, 150.0, Scale::logarithmic},
+     .y = kHandleStiffness,
+     .scene = z_width_scene},
+    {.name = "delay",
+     .summary = "K over the delay of the force, B = 5 N s/m, impedance device as for z_width",
+     .x = {"delay_samples", 0.0, 8.0, Scale::linear},
+     .y = kHandleStiffness,
+     .scene = delay_scene},
+    {.name = "velocity_filter",
+     .summary = "K over the cut-off of the velocity's low-pass, B = 5 N s/m, impedance device as for z_width",
+     .x = {"cutoff_Hz", 20.0, 500.0, Scale::logarithmic},
+     .y = kHandleStiffness,
+     .scene = velocity_filter_scene},
+    {.name = "hand",
+     .summary =
+         "K over the stiffness of a passive hand of 200 g and 2 N s/m, B = 5 N s/m, impedance device as for z_width",
+     .x = {"hand_stiffness_N_per_m", 10.0, 1e4, Scale::logarithmic},
+     .y = kHandleStiffness,
+     .scene = hand_scene},
+    {.name = "encoder_step",
+     .summary = "K over the encoder's step, B = 0, impedance device as for z_width with 0.02 N of Coulomb friction",
+     .x = {"encoder_step_m", 1e-6, 1e-3, Scale::logarithmic},
+     .y = kHandleStiffness,
+     .scene = encoder_step_scene,
+     .edge = MapEdge::largest_at_rest,
+     .friction_stops = true},
+    {.name = "friction_quantisation",
+     .summary =
+         "Coulomb friction over viscous friction, in units of what the encoder and the sampling of a wall need, B = 0, "
+         "impedance device as for z_width",
+     // No grid has the value 1, where a run neither comes to rest nor goes on.
+     .x = {"2b_over_KT", 0.12, 12.0, Scale::logarithmic},
+     .y = {"2c_over_Kq", 0.12, 12.0, Scale::logarithmic},
+     .scene = friction_scene,
+     .edge = MapEdge::smallest_at_rest,
+     .far = 1000.0,
+     .friction_stops = true,
+     .in_units_of_device = true},
 };
 
 }  // namespace
@@ -233,6 +240,110 @@ std::span<const StabilityMap> stability_maps() {
 const StabilityMap* find_stability_map(std::string_view name) {
   const auto found = std::find_if(std::begin(kMaps), std::end(kMaps), [name](const auto& m) { return m.name == name; });
   return found == std::end(kMaps) ? nullptr : &*found;
+}
+
+namespace {
+
+constexpr std::string_view kAnyAlgorithm = "summation";  // no algorithm changes device or hand
+constexpr std::string_view kTimeStep = "time.step_s";
+constexpr std::string_view kWholeDevice = "device";
+
+std::string_view section_of(std::string_view override) {
+  const std::string_view path = overridden_path(override);
+  return path.substr(0, path.find('.'));
+}
+
+bool has_own_device(const StabilityMap& map) {
+  return handle_moves_tool(map.scene(map.x.low, map.y.low, kAnyAlgorithm).device) && !map.in_units_of_device;
+}
+
+void require_map_of_device(const StabilityMap& map) {
+  if (has_own_device(map)) return;
+  std::vector<std::string> names;
+  for (const StabilityMap& other : stability_maps()) {
+    if (has_own_device(other)) names.emplace_back(other.name);
+  }
+  throw InputError(
+      fmt::format("--set: got an override for the map \"{}\"; allowed: for {}", map.name, quoted_list(names)));
+}
+
+/// The value of a scene of the map at a dotted path, or null.
+Json field_at(const StabilityMap& map, double x, double y, std::string_view path) {
+  const Json scene = effective_scenario(map.scene(x, y, kAnyAlgorithm), {});
+  Json::json_pointer at;
+  for (const std::string_view key : parts_of(path, '.')) at /= std::string(key);
+  return scene.contains(at) ? scene.at(at) : Json();
+}
+
+void require_field(const StabilityMap& map, std::string_view override) {
+  const std::string_view path = overridden_path(override), section = section_of(override);
+  if (section != "device" && section != "hand" && path != kTimeStep) {
+    throw InputError(fmt::format(
+        "--set: got {} with --map; allowed: {} and fields of device and hand, such as device.handle_mass_kg", path,
+        kTimeStep));
+  }
+  if (path == kWholeDevice) return;  // the axes set their fields afterwards
+  if (path == "device.type" || path == "device.preset") {
+    throw InputError(fmt::format(
+        R"(--set: got {} with --map, whose device has all its numbers; allowed: device as a whole, such as 'device={{"type":"impedance","preset":"touch"}}')",
+        path));
+  }
+  const Json value = field_at(map, map.x.low, map.y.low, path);
+  for (const MapAxis* axis : {&map.x, &map.y}) {
+    const bool along_x = axis == &map.x;
+    if (field_at(map, along_x ? map.x.high : map.x.low, along_x ? map.y.low : map.y.high, path) == value) continue;
+    throw InputError(
+        fmt::format("--set: got {}, which {} of the map \"{}\" varies; allowed: other fields of device and hand", path,
+                    axis->name, map.name));
+  }
+}
+
+bool gives_impedance_device(const std::string& override) {
+  const std::string value = override.substr(override.find('=') + 1);
+  if (overridden_path(override) != kWholeDevice || !Json::accept(value)) return false;
+  const Json device = parse_json(value);
+  return device.is_object() && device.value("type", Json()) == "impedance";
+}
+
+/// The fields of the device that the axes vary, as overrides with the values of this scene of the map.
+std::vector<std::string> device_at(const StabilityMap& map, const Json& scene) {
+  std::vector<std::string> varied;
+  for (const auto& field : scene.at(kWholeDevice).items()) {
+    const std::string path = fmt::format("{}.{}", kWholeDevice, field.key());
+    if (field_at(map, map.x.low, map.y.low, path) != field_at(map, map.x.high, map.y.high, path))
+      varied.push_back(fmt::format("{}={}", path, field.value().dump()));
+  }
+  return varied;
+}
+
+}  // namespace
+
+void require_overridable(const StabilityMap& map, const std::vector<std::string>& overrides) {
+  if (overrides.empty()) return;
+  require_map_of_device(map);
+  for (const std::string& override : overrides) require_field(map, override);
+  const Scenario scene = with_overrides(map, map.scene(map.x.low, map.y.low, kAnyAlgorithm), overrides);
+  if (!handle_moves_tool(scene.device))
+    throw InputError("--set: got a device of another type with --map; allowed: \"impedance\"");
+}
+
+Scenario with_overrides(const StabilityMap& map, Scenario scenario, const std::vector<std::string>& overrides) {
+  ScenarioText text{fmt::format("map {}", map.name), effective_scenario(scenario, {})};
+  // A search for an edge uses numbers beyond what a file may hold: sections without an override stay out of the text.
+  const bool has_hand =
+      std::any_of(overrides.begin(), overrides.end(), [](const auto& o) { return section_of(o) == "hand"; });
+  std::vector<std::string> all = overrides;
+  if (std::any_of(overrides.begin(), overrides.end(), gives_impedance_device)) {
+    const std::vector<std::string> varied = device_at(map, text.json);
+    all.insert(all.end(), varied.begin(), varied.end());
+  }
+  text.json.erase("rendering");
+  if (!has_hand) text.json.erase("hand");
+  const LoadedScenario loaded = load_scenario(text, all);
+  scenario.time.step = loaded.scenario.time.step;
+  scenario.device = loaded.scenario.device;
+  if (has_hand) scenario.hand = loaded.scenario.hand;
+  return scenario;
 }
 
 }  // namespace hapbench

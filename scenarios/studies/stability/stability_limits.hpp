@@ -1,17 +1,21 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <complex>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "device_model/theory/linear_loops.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "sim/loop/integrators/spring_damper.hpp"
 
 /// The integrator's stability on a set of bilateral springs (thesis A.3): how stiff, how damped and how coarse in time
 /// a run may be before it blows up. Along the stiffest direction the springs act as one spring lambda K with one damper
 /// lambda B, lambda = lambda_max(S), and the step (x, v) -> A (x, v) is stable while no eigenvalue of A leaves the unit
-/// circle, under leapfrog (Eq. A.2) while 4 - 2 lambda B dt / M - lambda K dt^2 / M > 0.
+/// circle, under leapfrog (Eq. A.2) while 4 - 2 lambda B dt / M - lambda K dt^2 / M > 0. With a device the loop is
+/// larger (DeviceLoop).
 namespace hapbench {
 
 /// The largest stable value of one case, found three ways; infinite when nothing up to 1e15, or 1e6 s, is unstable.
@@ -19,13 +23,13 @@ struct StabilityLimit {
   StabilityCase which;
   std::string name;
   std::string unit;
-  std::optional<double> analytic = {};  ///< in closed form; none where the integrator has none
+  std::optional<double> analytic = {};  ///< in closed form; empty where the integrator has none
   double eigenvalue = 0.0;              ///< bisection on the eigenvalues of A
   double simulation = 0.0;              ///< bisection on runs of the real simulation
   double damping_at_limit = 0.0;        ///< B at the limit [N s/m]
   double lambda = 1.0;                  ///< lambda_max(S) of the springs under the scenario's algorithm
 
-  /// The analytic one, or else that of the eigenvalues.
+  /// The analytic limit, or the limit of the eigenvalues if there is none.
   double limit() const { return analytic.value_or(eigenvalue); }
 };
 
@@ -37,7 +41,7 @@ struct RootLocusPoint {
 };
 
 /// The largest stable value of one case under the scenario's integrator, where the springs of its algorithm have the
-/// given lambda: infinite when nothing is unstable, none when the integrator has no closed form of it.
+/// given lambda: infinite when nothing is unstable, empty when the integrator has no closed form of it.
 std::optional<double> analytic_limit(StabilityCase which, const Scenario& scenario, double lambda);
 
 /// The same by bisection on the eigenvalues of A, to 1e-10, from `start` on (see largest_stable): infinite when nothing
@@ -58,5 +62,19 @@ std::vector<StabilityLimit> stability_limits(const Scenario& scenario);
 
 /// The eigenvalues from zero to a quarter beyond each finite limit.
 std::vector<RootLocusPoint> root_locus(const Scenario& scenario, const std::vector<StabilityLimit>& limits);
+
+/// Device, hand and wall of a scenario as a linear loop, as it is while nothing saturates and the contact lasts.
+struct DeviceLoop {
+  std::variant<SampledLoop, AdmittanceLoop> loop;
+  std::string no_theory;  ///< why the loop's eigenvalues do not tell its stability; empty where they do
+
+  Eigen::MatrixXd state_matrix() const {
+    return std::visit([](const auto& linear) { return linear.state_matrix(); }, loop);
+  }
+};
+
+/// The loop along a direction in which the springs' tensor has the eigenvalue lambda: the wall is lambda K, lambda B.
+/// Precondition: the device is not ideal; that has no loop of its own.
+DeviceLoop device_loop(const Scenario& scenario, double lambda);
 
 }  // namespace hapbench

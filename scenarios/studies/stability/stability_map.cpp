@@ -7,8 +7,6 @@
 
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/studies/stability/device_loop.hpp"
-#include "scenarios/studies/stability/map_overrides.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
 #include "sim/core/bisection.hpp"
 
@@ -18,16 +16,16 @@ namespace {
 /// A twentieth of the 2 % within which theory and runs must agree.
 constexpr double kMapPrecision = 1e-3;
 
-/// How far beyond a map's range an edge is looked for. Further out, from K dt^2 / M = 6e8 on, the rounding of a step of
-/// implicit_midpoint, which damps nothing there, grows.
+/// An edge is looked for up to this factor beyond a map's range. Further out, from K dt^2 / M = 6e8 on, the rounding of
+/// a step of implicit_midpoint, which damps nothing there, grows.
 constexpr double kBeyondTheMap = 1e4;
-/// And before it, of the edge of a loop.
+/// The edge of a loop is looked for from this factor below the range.
 constexpr double kBelowTheMap = 1e-3;
 
-/// Of limits in closed form that are about another number than y.
+/// Precision in y of limits in closed form that are given in another number than y.
 constexpr double kLimitPrecision = 1e-9;
 
-/// The first row: where the springs start from.
+/// Keeps the first row: the springs at the start.
 class FirstRow final : public Observer {
  public:
   void on_step(const StepRecord& record) noexcept override {
@@ -44,7 +42,7 @@ class FirstRow final : public Observer {
 struct Probe {
   MotionClass motion;
   Vec3 lambdas;  ///< eigenvalues of S, ascending
-  bool linear;   ///< the force is -K S p
+  bool linear;   ///< true when the force is -K S p
 };
 
 Probe probe(const StabilityMap& map, const Scenario& scenario) {
@@ -60,7 +58,7 @@ Probe probe(const StabilityMap& map, const Scenario& scenario) {
   return {motion, Eigen::SelfAdjointEigenSolver<Mat3>(first.S, Eigen::EigenvaluesOnly).eigenvalues(), linear};
 }
 
-/// No device and no hand have a part in what the springs do to the tool.
+/// True when no device and no hand take part in the motion of the tool on the springs.
 bool is_alone(const Scenario& scenario) {
   return std::holds_alternative<IdealDeviceFields>(scenario.device);
 }
@@ -87,8 +85,8 @@ MapPoint map_point(const StabilityMap& map, const MapSubject& subject, double x,
   return point;
 }
 
-/// The least limit of the modes of the springs. Under leapfrog it is that of the stiffest; a softer one is damped less,
-/// which under velocity Verlet may end it first.
+/// The least limit of the modes of the springs. Under leapfrog the stiffest mode has it; a softer one is damped less
+/// and may become unstable first under velocity Verlet.
 double theory_of(const Scenario& start, const Vec3& lambdas) {
   constexpr auto kCase = StabilityCase::stiffness_damped;
   double least = std::numeric_limits<double>::infinity();
@@ -108,7 +106,7 @@ double edge_in_y(const StabilityMap& map, double precision, Holds holds) {
   return 1.0 / largest_stable(1.0 / map.y.high, precision, holds_at_inverse, kBeyondTheMap / map.y.low);
 }
 
-/// What is known of the loops along one x, in which the wall is lambda K, lambda B.
+/// Adds what is known in theory of the loops along one x, in which the wall is lambda K, lambda B.
 void add_loop_theory(const StabilityMap& map, const MapSubject& subject, double lambda, BoundaryPoint& point) {
   const auto loop_at = [&](double y) { return device_loop(scene(map, subject, point.x, y), lambda); };
   const DeviceLoop start = loop_at(map.y.low);
@@ -136,7 +134,7 @@ void add_loop_theory(const StabilityMap& map, const MapSubject& subject, double 
   }
 }
 
-/// True where motors keep every run bounded, however unstable it is.
+/// True where motors saturate and so keep every run bounded, however unstable it is.
 bool saturates(const Scenario& scenario) {
   const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
   return device != nullptr && device->force_max.has_value();

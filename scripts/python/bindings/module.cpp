@@ -6,20 +6,43 @@
 #include <optional>
 
 #include "algorithms/registry.hpp"
+#include "bindings/bindings.hpp"
+#include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/program.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
-/// The engine and the program's commands for Python. What people use is the package around it (hapbench/).
+/// The engine and the commands of the program for Python. Users call the package around it (hapbench/).
 namespace hapbench {
 namespace {
 
 namespace py = pybind11;
 
-/// Of each column its name, unit and meaning, and the numbers: an array of columns x rows.
+void raise(const InputError& error) {
+  py::list faults;
+  for (const InputError& fault : error.faults()) faults.append(py::make_tuple(fault.place(), fault.problem()));
+  const py::object type = py::module_::import("hapbench.errors").attr("ScenarioError");
+  PyErr_SetObject(type.ptr(), type(faults).ptr());
+}
+
+/// Raises InputError and IoError as hapbench.ScenarioError and OSError.
+void translate_errors() {
+  py::register_exception_translator([](std::exception_ptr pointer) {
+    try {
+      if (pointer) std::rethrow_exception(pointer);
+    } catch (const InputError& error) {
+      raise(error);
+    } catch (const IoError& error) {
+      PyErr_SetString(PyExc_OSError, error.what());
+    }
+  });
+}
+
+/// Name, unit and meaning of each column, and the numbers as an array of columns x rows.
 py::tuple table_of(const MemoryTable& table) {
   py::list columns;
   for (const Column& column : table.columns()) columns.append(py::make_tuple(column.name, column.unit, column.meaning));

@@ -1,4 +1,3 @@
-
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -9,8 +8,8 @@
 #include <memory>
 #include <utility>
 
-#include "algorithms/penalty_rendering.hpp"
 #include "algorithms/registry.hpp"
+#include "bindings/bindings.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
@@ -18,7 +17,7 @@ namespace {
 
 namespace py = pybind11;
 
-/// Holds the interpreter. Each thread keeps its state of it, which takes longer to make than a law to call.
+/// Holds the interpreter. Each thread keeps its thread state, because making one takes longer than calling a law.
 class Held {
  public:
   Held() {
@@ -31,7 +30,7 @@ class Held {
 
  private:
   struct Kept {
-    // A thread that has a state holds the interpreter already: Python made it.
+    // A thread that was made by Python has a state already.
     Kept() : made(PyGILState_GetThisThreadState() == nullptr) {
       if (!made) return;
       gil = PyGILState_Ensure();
@@ -53,35 +52,35 @@ class Held {
   PyGILState_STATE state_;
 };
 
-/// What a law may ask for by the name of an argument, beside its own parameters.
+/// The arguments of a law, by their names; `own` stands for the law's own parameters.
 enum class Argument { depths, gradients, points, normals, stiffness, own };
 
-/// A function of Python, or a class whose objects are called, as a force law.
+/// A force law in Python: a function, or a class whose objects are called.
 struct Definition {
   std::string name;
   py::object callable;
   bool is_class = false;
-  /// In the order of the function's arguments; of an own parameter its place in the table.
+  /// The function's arguments in their order; for an own parameter its index in the table.
   std::vector<std::pair<Argument, std::size_t>> arguments;
 };
 
-/// Given up only while there is an interpreter, whichever thread does it.
+/// Any thread may release the last reference. The definition is destroyed only while there is an interpreter.
 using SharedDefinition = std::shared_ptr<const Definition>;
 SharedDefinition share(Definition definition) {
   return {new Definition(std::move(definition)), [](const Definition* last) {
-            if (!Py_IsInitialized()) return;  // its objects went with the interpreter
+            if (!Py_IsInitialized()) return;  // the interpreter has destroyed its objects
             const Held held;
             delete last;
           }};
 }
 
-/// An array of numpy with `width` numbers for each contact, of which a view of the first rows is handed out.
+/// A numpy array with `width` numbers for each contact, of which laws get a view of the first rows.
 class ContactArray {
  public:
   ContactArray(std::size_t capacity, py::ssize_t width) : width_(width), numbers_(shape(capacity)) {}
 
   double* data() { return numbers_.mutable_data(); }
-  /// Of the first n rows; kept from call to call as long as n stays.
+  /// The view of the first n rows; reused while n stays the same.
   const py::object& view(std::size_t n) {
     if (n != rows_) {
       view_ = py::array_t<double>(shape(n), numbers_.data(), numbers_);
@@ -115,10 +114,10 @@ void copy(const double* x, const double* y, const double* z, std::size_t n, Cont
   }
 }
 
-class PythonLaw final : public ForceLaw {
+class PythonLaw final : public SingleSpringLaw {
  public:
   PythonLaw(SharedDefinition definition, const std::vector<double>& own, double stiffness)
-      : ForceLaw(stiffness), definition_(std::move(definition)) {
+      : SingleSpringLaw(stiffness), definition_(std::move(definition)) {
     const Held held;
     state_ = std::make_unique<State>();
     for (const double value : own) state_->own.push_back(py::float_(value));
@@ -165,15 +164,8 @@ class PythonLaw final : public ForceLaw {
     return no_force(contacts);
   }
 
-  SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
-    return gave_force_ ? spring_of_force(contacts, spring, tip, K_) : ForceLaw::spring_state(contacts, spring, tip);
-  }
-  Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
-    return gave_force_ ? turning_velocity_of_force(contacts, S, tool) : ForceLaw::turning_velocity(contacts, S, tool);
-  }
-
  private:
-  /// Objects of Python: made and given up with the interpreter held.
+  /// Python objects, which are made and released while the interpreter is held.
   struct State {
     py::object callable;
     std::vector<py::object> own;
@@ -185,7 +177,7 @@ class PythonLaw final : public ForceLaw {
     return state_->columns[static_cast<std::size_t>(argument)];
   }
 
-  /// A law with a state of its own begins anew.
+  /// Makes a new object of a law that is a class.
   void start() noexcept {
     failed_ = false;
     try {
@@ -197,7 +189,7 @@ class PythonLaw final : public ForceLaw {
     }
   }
 
-  /// Ends the run: it is none.
+  /// The answer after an error, which ends the run.
   static LawForce no_force(ContactBuffer& contacts) noexcept {
     set_weights(contacts, 0.0);
     return {Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Mat3::Zero()};
@@ -238,8 +230,8 @@ class PythonLaw final : public ForceLaw {
   }
 
   LawForce force_of(const py::object& answer, ContactBuffer& contacts) {
-    gave_force_ = py::isinstance<py::tuple>(answer);
-    if (gave_force_) return given_force(answer, contacts);
+    gives_weights_ = !py::isinstance<py::tuple>(answer);
+    if (!gives_weights_) return given_force(answer, contacts);
     const auto weights = numbers(answer);
     const std::size_t n = contacts.size();
     if (weights.ndim() == 0) {
@@ -293,11 +285,10 @@ class PythonLaw final : public ForceLaw {
 
   SharedDefinition definition_;
   std::unique_ptr<State> state_;
-  bool gave_force_ = false;  ///< in place of weights, at the last call
   bool failed_ = false;
 };
 
-/// name, default, least, greatest, unit, meaning
+/// Name, default, minimum, maximum, unit, meaning.
 using GivenParameter = std::tuple<std::string, double, double, double, std::string, std::string>;
 
 Argument argument_named(const std::string& name) {
@@ -316,7 +307,10 @@ void add_force_law(const std::string& name, const py::object& callable, bool is_
   Definition definition{name, callable, is_class, {}};
   std::vector<OwnParameter> own;
   for (const auto& [own_name, initial, least, greatest, unit, meaning] : parameters)
-    own.push_back({own_name.c_str(), {least, greatest, unit.c_str()}, initial, meaning.c_str()});
+    own.push_back({.name = own_name.c_str(),
+                   .range = {least, greatest, unit.c_str()},
+                   .initial = initial,
+                   .meaning = meaning.c_str()});
   for (const std::string& argument : arguments) {
     const auto place = std::find_if(parameters.begin(), parameters.end(),
                                     [&](const GivenParameter& p) { return std::get<0>(p) == argument; });
@@ -326,17 +320,19 @@ void add_force_law(const std::string& name, const py::object& callable, bool is_
   if (!depth_model.empty() && fixed == nullptr)
     throw std::invalid_argument("unknown depth model \"" + depth_model + "\"");
 
-  static const ParameterInfo kShared[] = {kStiffnessParameter};
-  const ModelInfo info = {name.c_str(),     texts[0].c_str(), texts[1].c_str(),
-                          texts[2].c_str(), texts[3].c_str(), kShared};
+  const ModelInfo info = {.name = name.c_str(),
+                          .summary = texts[0].c_str(),
+                          .formula = texts[1].c_str(),
+                          .source = texts[2].c_str(),
+                          .known_failure = texts[3].c_str(),
+                          .parameters = kStiffnessAlone};
   AlgorithmEntry entry;
   entry.info = &info;
   if (fixed != nullptr) entry.fixed_depth_model = fixed->info->name;
   entry.own_parameters = own;
   entry.origin = {file, hash_text(hash_of(source))};
-  entry.make = [shared = share(std::move(definition)), name](const RenderingConfig& config) {
-    return std::make_unique<PenaltyRendering>(
-        std::make_unique<PythonLaw>(shared, own_values(config, *find_algorithm(name)), config.stiffness), config);
+  entry.make_law = [shared = share(std::move(definition)), name](const RenderingConfig& config) {
+    return std::make_unique<PythonLaw>(shared, own_values(config, *find_algorithm(name)), config.stiffness);
   };
   add_algorithm(std::move(entry));
 }

@@ -1,10 +1,10 @@
-
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
 #include <optional>
 
+#include "bindings/bindings.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -37,7 +37,7 @@ py::array_t<double> array_of(const Vec3& v) {
   return py::array_t<double>(3, v.data());
 }
 
-/// n x 3, of three columns.
+/// An n x 3 array of the vectors at(i).
 template <class At>
 py::array_t<double> rows_of(std::size_t n, At at) {
   py::array_t<double> rows({n, std::size_t{3}});
@@ -49,7 +49,7 @@ py::array_t<double> rows_of(std::size_t n, At at) {
   return rows;
 }
 
-/// A run step by step.
+/// A run, step by step.
 class PythonSimulation {
  public:
   PythonSimulation(const std::string& scenario, const std::vector<std::string>& overrides)
@@ -66,7 +66,7 @@ class PythonSimulation {
     return more;
   }
 
-  /// In pieces, between which signals are looked after.
+  /// Computes in pieces, between which signals are handled.
   std::uint64_t advance(std::uint64_t steps) {
     const std::uint64_t first = simulation_->result().rows;
     for (bool more = true; more && steps > 0;) {

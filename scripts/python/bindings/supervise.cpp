@@ -1,4 +1,3 @@
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -13,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "bindings/bindings.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/run/progress_bar.hpp"
@@ -24,19 +24,19 @@ namespace {
 namespace py = pybind11;
 using namespace std::chrono_literals;
 
-/// How long Ctrl-C may wait.
+/// Interval of handling signals and progress.
 constexpr auto kLookEvery = 50ms;
 
-/// The number of supervised calls, and the error that ends them: guarded by the interpreter's lock.
+/// The number of supervised calls, and the error that ends them. Both are guarded by the lock of the interpreter.
 int under_way = 0;
-/// Null when there is none. A bare pointer, because at the end of the process there is no interpreter.
+/// Null if there is none. A bare pointer, because at the end of the process there is no interpreter.
 PyObject* python_error = nullptr;
 
 void forget_python_error() {
   Py_CLEAR(python_error);
 }
 
-/// Raises an error, which it takes.
+/// Raises an error and takes ownership of it.
 [[noreturn]] void raise_taken(PyObject* error) {
   PyErr_Restore(Py_NewRef(reinterpret_cast<PyObject*>(Py_TYPE(error))), error, PyException_GetTraceback(error));
   throw py::error_already_set();
@@ -58,13 +58,13 @@ class ProgressBoard final : public ProgressListener {
     total_ = total;
   }
 
-  /// What was reported last, if anything.
+  /// The last report, if there is one.
   std::optional<State> last() {
     const std::lock_guard lock(mutex_);
     if (total_ == 0) return std::nullopt;
     return State{{label_.data(), length_}, done_, total_};
   }
-  /// The same, unless it was taken before.
+  /// The last report, unless it was taken before.
   std::optional<State> take() {
     const auto state = last();
     const bool is_new =
@@ -82,14 +82,14 @@ class ProgressBoard final : public ProgressListener {
   State taken_;
 };
 
-/// Work on its thread.
+/// Runs work on a thread of its own.
 class Worker {
  public:
   Worker(ProgressListener* listener, const std::function<void()>& work)
       : thread_([this, listener, &work] { run(listener, work); }) {}
   ~Worker() { join(); }
 
-  /// Waits for a while; returns whether the work has ended.
+  /// Waits for kLookEvery at most; returns true if the work has ended.
   bool wait() {
     std::unique_lock lock(mutex_);
     return ended_.wait_for(lock, kLookEvery, [this] { return has_ended_; });
@@ -124,7 +124,7 @@ void tell(const py::object& progress, ProgressBoard& board) {
     progress(state->label, state->done, state->total);
 }
 
-/// Precondition: the interpreter is held.
+/// Handles signals and progress. Precondition: the interpreter is held.
 void look_after(const py::object& progress, ProgressBoard& board) {
   if (python_error != nullptr) return;
   try {
@@ -136,7 +136,7 @@ void look_after(const py::object& progress, ProgressBoard& board) {
   }
 }
 
-/// The end of a call: that of the last one lets work begin again.
+/// Counts a call. The end of the last one lets work begin again.
 class UnderWay {
  public:
   UnderWay() { ++under_way; }

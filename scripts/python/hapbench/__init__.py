@@ -16,7 +16,7 @@ _COMPILED = {"Parameter": "laws", "force_law": "laws"}
 
 
 def __getattr__(name):
-    """What needs the compiled module, when it is first asked for."""
+    """Imports names that need the compiled module when they are first used."""
     if name not in __all__:
         raise AttributeError(f"module 'hapbench' has no attribute {name!r}")
     from importlib import import_module

@@ -6,7 +6,7 @@ import numpy as np
 from .errors import ResultError
 
 PIECE_BYTES = 1 << 25
-# Of which some look like numbers.
+# Columns of texts, some of which look like numbers.
 TEXTS = ("state_hash",)
 COMMA, NEWLINE = ord(","), ord("\n")
 
@@ -56,7 +56,7 @@ def whole_lines(file):
 
 
 def ends_of_fields(piece, columns, file, line):
-    """Where the fields end: a row for each line."""
+    """Offsets of the ends of the fields: a row for each line."""
     stops = np.flatnonzero((piece == COMMA) | (piece == NEWLINE))
     last = np.flatnonzero(piece[stops] == NEWLINE)
     fields = np.diff(last, prepend=-1)

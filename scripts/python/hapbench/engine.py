@@ -271,7 +271,7 @@ def _words(overrides):
 
 
 def _value(value):
-    """As a word of --set: text as it is, all else as JSON."""
+    """The word that --set takes for a value: text as it is, all else as JSON."""
     return value if isinstance(value, str) else json.dumps(value, default=_plain)
 
 

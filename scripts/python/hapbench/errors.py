@@ -1,4 +1,4 @@
-"""What goes wrong, as exceptions."""
+"""Exceptions."""
 import re
 from pathlib import Path
 
@@ -28,7 +28,7 @@ class ScenarioError(InputError):
 
 
 class ScenarioWarning(UserWarning):
-    """What may make the numbers of a run mislead, or a field without effect."""
+    """A warning: the numbers of a run may mislead, or a field has no effect."""
 
 
 def _split(place):

@@ -148,7 +148,7 @@ class Folder(_WithTables):
 
 
 def load(folder: str | os.PathLike) -> "Run | Folder":
-    """What is in a folder of results: a Run, or else a Folder of tables and runs. Raises ResultError."""
+    """Reads a folder of results: a Run, or else a Folder of tables and runs. Raises ResultError."""
     folder = Path(folder)
     if not folder.is_dir():
         raise ResultError(f"{folder}: is not a folder; allowed: one that run, compare, sweep, stability, limit … wrote")

@@ -114,7 +114,7 @@ def compare(chosen):
 
 def main(words=None):
     chosen = arguments(words)
-    # What is temporary is removed by those who made it, on SIGTERM too.
+    # On SIGTERM, too, temporary files are removed by the code that made them.
     signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))
     try:
         return (compare if chosen.against else measure_peers if chosen.peers else measure)(chosen)

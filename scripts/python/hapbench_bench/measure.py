@@ -64,7 +64,7 @@ def growth_of(program, names, options):
 
 
 def limits_of_growth(growth, shell_s):
-    """What the growth over shell points has to keep: memory, and at the largest shell its time and the longest step."""
+    """Limits on the growth over shell points: memory, and at the largest shell its time and the longest step."""
     by_name = {f"growth/{point['part']}/{point['size']}": point for point in growth}
     few, many = (by_name[name] for name in SIZES_OF_MEMORY)
     bytes_ = [point["bytes_per_point"] * point["points"] for point in (few, many)]

@@ -14,7 +14,7 @@ PACKAGES = "libcgal-dev, libfcl-dev, libbullet-dev, libode-dev"
 
 TASKS = ("T1", "T2", "T3")
 REPETITIONS = 9
-# What a library is, what it answers, and with what of ours that compares: the search alone, or with depths.
+# Name of a library, its answer, and the benchmark of ours that compares: the search alone, or with depths.
 LIBRARIES = {
     "cgal_kd_tree": ("CGAL, k-d tree of the points", "the same points", "hapbench"),
     "fcl": ("FCL, OBB-RSS tree of triangles", "triangles, a depth each", "hapbench_with_depths"),
@@ -24,7 +24,7 @@ LIBRARIES = {
 
 
 def seconds(entry):
-    """Of one pose; a repetition goes through all."""
+    """Time for one pose; a repetition goes through all."""
     return entry["cpu_s"] / entry["poses"]
 
 
@@ -78,5 +78,5 @@ def markdown(peers):
 
 
 def record():
-    """What scripts/bench --peers --record has measured."""
+    """The record of scripts/bench --peers --record."""
     return json.loads(RECORD.read_text(encoding="utf-8"))

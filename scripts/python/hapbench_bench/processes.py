@@ -45,7 +45,7 @@ def ratios(hapbench):
 
 
 def limits(hapbench):
-    """What, value, unit, at most."""
+    """Rows of name, value, unit and limit."""
     found = []
     for name, overrides in SMALL.items():
         wall = statistics.median(run(hapbench, [name], overrides)[0] for _ in range(ROUNDS))

@@ -17,7 +17,7 @@ UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 
 
 class BenchError(Exception):
-    """What the user is told in one line."""
+    """An error that the user is told in one line."""
 
 
 def say(text):

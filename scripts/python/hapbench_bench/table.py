@@ -12,7 +12,7 @@ SCALES = {"s": ((1, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns")), "B": ((1e6
 
 
 def record():
-    """What scripts/bench --record has measured."""
+    """The record of scripts/bench --record."""
     return json.loads(RECORD.read_text(encoding="utf-8"))
 
 

@@ -1,4 +1,4 @@
-"""What is measured against what, and how much it may take. A target is a promise about the program, so it is a ratio
+"""Which benchmarks are compared, and their targets. A target is a promise about the program, so it is a ratio
 wherever that is possible: absolute times differ from machine to machine, and on one from hour to hour."""
 from dataclasses import dataclass
 from typing import Optional
@@ -18,7 +18,7 @@ class Row:
 
     @property
     def label(self):
-        """Of what it is over, short: a benchmark of the same name is one of another size or way."""
+        """Short name of the denominator; "…/" stands for the part of the name that both benchmarks share."""
         name = self.over.removeprefix("search/")
         group, _, last = self.over.rpartition("/")
         if group == self.what.rpartition("/")[0]:
@@ -36,7 +36,7 @@ def contacts_grow(part):
     return Row(f"growth/{part}/10000", f"growth/{part}/1000", 1.3, times=10)
 
 
-# What is in a group is timed together. Brute force tests every point of the shell with every SIMD lane: what is over it
+# The benchmarks of a group are timed together. Brute force tests every point of the shell with every SIMD lane: a ratio to it
 # is how much of that work is left.
 GROUPS = (
     [*searches("T1"), Row("step/T1", "search/brute_force/T1", 0.009)],

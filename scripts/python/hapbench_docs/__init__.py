@@ -1,1 +1,1 @@
-"""What is generated in the manuals, and what the manuals promise."""
+"""Generated parts of the manuals, and the commands and links in them."""

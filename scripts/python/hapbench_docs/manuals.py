@@ -9,7 +9,7 @@ NOT_OURS = ("build", "results/out")
 COMMAND = re.compile(r"^\s*(?:\$ )?((?:build/\S+/hapbench|hapbench|scripts/[a-z]+)(?:\s.*)?)$")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^#{1,6} (.+)$", re.M)
-# Where a command of the shell ends.
+# Words that end a command of the shell.
 ENDS = re.compile(r"^(?:\||&&|;|\d?>.*|<.*)$")
 
 
@@ -47,7 +47,7 @@ class Manual:
                 yield number, line
 
     def commands(self):
-        """Those that begin with hapbench, build/…/hapbench or scripts/…; a backslash at the end joins the next line."""
+        """The commands that begin with hapbench, build/…/hapbench or scripts/…; a backslash at the end joins the next line."""
         lines = list(self.code())
         while lines:
             number, line = lines.pop(0)
@@ -64,7 +64,7 @@ class Manual:
         return LINK.findall(self.text)
 
     def anchors(self):
-        """Of its headings, as GitHub makes them."""
+        """Anchors of its headings, as GitHub makes them."""
         return {anchor(title) for title in HEADING.findall(self.text)}
 
 

@@ -34,7 +34,7 @@ class Program:
         return old if same_but_for_times(text, known) else f"{text}\n\nPrinted by {self.provenance()}."
 
     def provenance(self):
-        """As in "commit 5e60010bc2c9, 2026-11-21, AMD EPYC"."""
+        """Commit, date and processor: "commit 5e60010bc2c9, 2026-11-21, AMD EPYC"."""
         commit = re.search(r"\(([^)]+)\)", self.run(["--version"], "."))
         return f"commit {commit[1] if commit else 'unknown'}, {datetime.date.today()}, {processor()}"
 

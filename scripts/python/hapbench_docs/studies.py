@@ -14,7 +14,7 @@ COLUMNS = (
 
 SOURCES = {"own": "ours", "fcl": "FCL", "bullet": "Bullet"}
 TASKS = (("T1", "poke_on_flat"), ("T2", "rotate_in_hole"), ("T3", "round_the_wall"))
-# What the hole's ideal trajectory measures says something of T2 alone.
+# The ideal trajectory of the hole means something in T2 only.
 SOURCE_COLUMNS = (
     ("contacts_mean", "contacts", 1.0),
     ("depth_max_mean_m", "deepest [µm]", 1e6),
@@ -36,7 +36,7 @@ def ideal_trajectory(old, program, directory):
 
 
 def contact_sources(old, program, directory):
-    """What the default law makes of contacts of other libraries, in the tasks; the old table where they are not built."""
+    """The default law with the contacts of other libraries, in the tasks; the old table if they are not built."""
     lines = [f"| task | contacts of | {' | '.join(heading for _, heading, _ in SOURCE_COLUMNS)} |",
              "|---" * (len(SOURCE_COLUMNS) + 2) + "|"]
     for task, scene in TASKS:

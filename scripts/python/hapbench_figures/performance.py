@@ -1,4 +1,4 @@
-"""What accuracy costs: work-precision plots and the latency of a step."""
+"""Work-precision plots and the latency of a step."""
 from textwrap import wrap
 
 import numpy as np
@@ -90,7 +90,7 @@ def draw_curves(ax, rows, study, column, scale, time_column):
             end = np.flatnonzero(fine)[np.argmax(time[fine])]
             ax.annotate(name.replace("_", " "), (time[end], error[end]), (4, 0), textcoords="offset points", color=colour,
                         fontsize=6.5, va="center").set_in_layout(False)
-        # Where the settings are the same, their names would cover one another.
+        # Names of settings that several curves share would cover one another.
         elif i == 0 or study != "spacing":
             name_ends(ax, study, [row for row, keep in zip(own, fine) if keep], time[fine], error[fine])
     if len(split) > 1 and study != "integrators":

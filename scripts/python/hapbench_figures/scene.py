@@ -20,7 +20,7 @@ class Contacts:
     weight: np.ndarray
 
     def flipped(self):
-        """Those whose gradient points against the inverse of the surface normal: they pull the tool in."""
+        """Which contacts have a gradient against the inverse of the surface normal: they pull the tool in."""
         return np.einsum("ij,ij->i", self.gradient, self.normal) > 0
 
 

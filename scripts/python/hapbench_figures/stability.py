@@ -22,7 +22,7 @@ CASES = (
 
 
 def spaced(number):
-    """With spaces between thousands, and decimals where there are few digits before them."""
+    """A number with spaces between thousands, and with decimals if there are few digits before them."""
     return f"{number:,.{0 if number >= 1000 or number == round(number) else 3}f}".replace(",", " ")
 
 
@@ -62,7 +62,7 @@ CLASSES = {
     "vibrating": ("vibrating", "#E0A030", ""),
     "thrown_out": ("thrown out", "#B05A1E", ""),
     "diverged": ("diverged", "#7A2E00", ""),
-    # Of runs from near and from far.
+    # Classes of pairs of runs, one from near and one from far.
     "passive": ("comes to rest from near and far", style.PALE, ""),
     "locally_stable": ("from near only", "#E9F3FA", "/////"),
     "limit_cycles": ("limit cycles", "#E0A030", ""),
@@ -224,7 +224,7 @@ def map_file(results, name, of_integrators):
 
 
 def class_legend(figure, maps, **place):
-    """What the cells and lines of the maps mean."""
+    """The legend of the cells and lines of the maps."""
     present = {row["class"] for found in maps for row in found.rows}
     looks = [look_of_class(name) for name in sorted(present, key=lambda name: ([*CLASSES, name].index(name), name))]
     handles = [Patch(facecolor=colour, hatch=hatch, edgecolor=style.PETROL, lw=0) for _, colour, hatch in looks]

@@ -11,7 +11,7 @@ import hapbench_style as style
 from . import published, scene
 
 SWEEP = "tilt_sweep_shaped_stiffness"
-# That sweep, and the wedge, under every algorithm.
+# The same sweep and the wedge, under every algorithm.
 PEG, WEDGE = "stiffness/peg", "stiffness/wedge"
 TITLES = {"summation": "sum", "mean": "mean", "virtual_coupling": "coupling", "shaped_stiffness": "shaping"}
 DIRECTIONS = np.linspace(0, 2 * np.pi, 121)

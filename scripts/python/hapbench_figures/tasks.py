@@ -43,7 +43,7 @@ def published_count(ax, x, task, what):
 
 
 def span(time, values):
-    """Where each of so many spans of time begins, and the least and the greatest value in it."""
+    """The begin of each of BINS spans of time, and the least and the greatest value in it."""
     return style.reduced(time, values, values, BINS)
 
 
@@ -280,7 +280,7 @@ def _ratio_over_time(results, column, colour, word):
         ax.fill_between(time, low, high, color=colour, alpha=0.75, lw=0.4, edgecolor=colour)
         ax.axhline(1, color=style.BLACK, lw=0.7, ls="--")
         once = published.entries()["R1.once"]["at_most" if column == "ratio_max" else "at_least"]
-        # Where the curve is on the dashed line, its number still tells.
+        # Tells the extreme even if the curve lies on the dashed line.
         extreme = rows[column].max() if above else rows[column].min()
         style.note(ax, 0.5, 0.8 if above else 0.15, f"{'≤' if above else '≥'} {extreme:.4g}", colour, ha="center", va="center")
         if ITERATIONS[i] == 1:

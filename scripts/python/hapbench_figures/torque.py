@@ -1,4 +1,4 @@
-"""What the contacts of a turned drill would turn it back with, and a device of three degrees of freedom cannot render."""
+"""The torque of the contacts of a turned drill, which a device of three degrees of freedom cannot render."""
 import numpy as np
 
 import hapbench_style as style

@@ -6,6 +6,9 @@ for `list`; or `faults`, each a place and a problem; or `io_error`, the number o
 import json
 import os
 import sys
+from pathlib import Path
+
+from hapbench_command import INTERRUPTED, SUCCESS, write
 
 from .faults import Faults
 from .options import list_of_presets, options_of
@@ -19,22 +22,9 @@ def run(given):
         return list_of_presets(given)
     options = options_of(given)
     report = import_stroke(open_recording(given["file"][0], options), options)
-    write(os.fsencode(given["out"][0].encode("utf-8", "surrogateescape")), stroke_text(report.stroke))
+    write(Path(os.fsdecode(given["out"][0].encode("utf-8", "surrogateescape"))), stroke_text(report.stroke))
     stiffness = float(given["stiffness_N_per_m"][0])
     return {"table": table_of(report, stiffness), "json": {"file": given["out"][0]} | json_of(report, stiffness)}
-
-
-def write(file, text):
-    """The file is complete or not there at all."""
-    folder, name = os.path.split(file)
-    scratch = os.path.join(folder, b".%s.%d.tmp" % (name, os.getpid()))
-    try:
-        with open(scratch, "w", encoding="ascii") as stream:
-            stream.write(text)
-        os.replace(scratch, file)
-    finally:
-        if os.path.exists(scratch):
-            os.unlink(scratch)
 
 
 def main():
@@ -50,9 +40,9 @@ def main():
     except OSError as error:
         reply = {"io_error": error.errno}
     except KeyboardInterrupt:
-        return 130
+        return INTERRUPTED
     sys.stdout.buffer.write(json.dumps(reply, ensure_ascii=False).encode("utf-8", "replace"))
-    return 0
+    return SUCCESS
 
 
 if __name__ == "__main__":

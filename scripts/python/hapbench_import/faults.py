@@ -3,7 +3,7 @@ import json
 import math
 import re
 
-from hapbench_pictures.names import nearest
+from hapbench_command import nearest
 
 MOST_FAULTS = 20  # reported at once
 

@@ -3,7 +3,7 @@ import math
 import re
 
 import numpy as np
-from hapbench_pictures.names import nearest
+from hapbench_command import nearest
 
 from .faults import fail, finite_number, plain, quoted
 

@@ -3,7 +3,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from hapbench_pictures.names import nearest
+from hapbench_command import nearest
 from scipy.spatial.transform import Rotation
 
 from .faults import MOST_FAULTS, Faults, fail, quoted

@@ -67,7 +67,7 @@ def fidelity_section(runs, labels):
 
 
 def force_curves(runs, labels):
-    """Of those that recorded both forces."""
+    """Curves of the runs that recorded both forces."""
     drawn = [(run, label) for run, label in zip(runs, labels) if {TRAJECTORY, REFERENCE} <= set(tables_of(run))]
     if not drawn:
         return "<p class=note>With --set record.force_reference=true the curves stand here.</p>"

@@ -3,7 +3,7 @@ import json
 
 from hapbench_report.markup import column
 
-# What a field is called where its last name says too little, and in formulas.
+# Titles of fields whose last name says too little, and symbols in formulas.
 TITLES, SYMBOLS = {"time.step_s": "time step"}, {"rendering.stiffness_N_per_m": "K"}
 NO_INPUT = ("expect", "description", "name", "source")
 

@@ -1,12 +1,11 @@
-"""The runs that RUN… on the command line mean: folders of `run`, folders of `compare`, or one folder of `sweep`; and hints at
-names that were meant."""
-import difflib
+"""The runs that RUN… on the command line mean: folders of `run`, folders of `compare`, or one folder of `sweep`."""
 import json
 import os
 import re
 from pathlib import Path
 
 from hapbench.columns import read_records
+from hapbench_command import nearest
 from hapbench_report.json_input import InputError
 from hapbench_report.runs import load_run, load_runs
 
@@ -14,15 +13,6 @@ from .fields import differing, entry, leaves
 
 SUMMARY, SWEEP = "summary.json", "sweep.csv"
 SEED_FOLDER = re.compile(r"seed_\d+")  # of a comparison with --seeds
-
-
-def nearest(name, names):
-    """What ends a message about a name that is none, in the words of the program; nothing when none is near."""
-    lower = {candidate.lower(): candidate for candidate in reversed(names)}
-    # Half a name before one that merely looks alike.
-    longer = sorted((n for n in lower if n.startswith(name.lower())), key=len) or [n for n in lower if name.lower() in n]
-    close = longer or difflib.get_close_matches(name.lower(), lower, 1)
-    return f"; nearest valid name: \"{lower[close[0]]}\"" if close else ""
 
 
 def given_sweep(words):

@@ -6,7 +6,7 @@ from hapbench_style import curve, reduced
 
 from .quantities import range_of
 
-SPANS = 900  # of a curve: more than a page has pixels
+SPANS = 600  # of a curve: a page hardly shows more
 # Runs whose peaks are further apart than this share no linear axis.
 LARGEST_RATIO = 30
 SECTION_M = 0.15e-3  # a point of the surface no further away belongs to its section
@@ -86,13 +86,13 @@ def draw_surface(ax, plane, samples, points):
     dots = 1e3 * section(points, ["xyz".index(axis) for axis in plane], tip)
     (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
     inside = (dots[:, 0] >= left) & (dots[:, 0] <= right) & (dots[:, 1] >= bottom) & (dots[:, 1] <= top)
-    # As an image: thousands of points would make the file large.
+    # Rasterised, because thousands of points would make the file large.
     ax.plot(*dots[inside].T, ".", color=SURFACE, ms=1.5, zorder=0, rasterized=True)
     ax.grid(False)
 
 
 def outline(profile, tip, axis):
-    """Of the tool [m] at a tip with an axis, both projected into a plane; right where the axis lies in the plane, and near it
+    """Outline of the tool [m] at a tip with an axis, both projected into a plane; right where the axis lies in the plane, and near it
     elsewhere. `profile`: hapbench_report.replay_tool.tool_profile."""
     axis = axis / np.linalg.norm(axis)
     s, radius = np.array(profile).T[:, :, None]
@@ -145,7 +145,7 @@ def draw_path(ax, plane, samples, looks, surface=None):
         draw_surface(ax, plane, samples, surface)
 
 
-def corners(trajectory, spans=1000):
+def corners(trajectory, spans=300):
     """Rows that keep the shape of a way: the extremes along each axis in so many equal spans of rows."""
     n = len(trajectory["px_m"])
     if n <= 6 * spans:

@@ -151,7 +151,7 @@ def draw(runs, shown, quantities, with_path, samples, surface=None):
 
 
 def profile_of(run):
-    """Of the tool; None for springs, which have none."""
+    """Profile of the tool; None for springs, which have no tool."""
     return None if at(run.scenario, "/environment/type") == "springs" else tool_profile(run.scenario, run.summary)
 
 
@@ -170,7 +170,7 @@ def shortened(name):
 
 
 def legend_columns(entries, width):
-    """As many as fit beside each other in so many inches."""
+    """The number of columns that fit into so many inches."""
     return max(1, min(LEGEND_COLUMNS, int((width - 0.2) / (0.55 + LETTER * max(map(len, entries))))))
 
 

@@ -1,4 +1,4 @@
-"""What can be drawn over time: short names, and every column of a run's tables by its own name; with the range of an axis:
+"""Quantities to draw over time: short names, and every column of a run's tables by its own name; with the range of an axis:
 that of settled contact, where the peak of a landing or a crash would squeeze it."""
 from dataclasses import dataclass
 
@@ -74,7 +74,7 @@ SHORT = {q.name: q for q in (
     Quantity("input_energy", "energy put in by the hand", "mJ", 1e3, "energy.csv", ("input_J",)),
 )}
 PATH = "path"  # the tip's way in space, which is no function of time
-# What is drawn when nothing is chosen; those that no run recorded are left out.
+# Drawn by default, as far as a run recorded them.
 USUAL = ("force", "reference", "force_error", "depth", "ratio", "contacts", "energy", PATH)
 
 
@@ -127,7 +127,7 @@ def tables_of(run):
 
 
 class Samples:
-    """What is drawn of one run: the tables' columns, each table read once."""
+    """The columns of one run that are drawn; each table is read once."""
 
     def __init__(self, run, quantities, further=(), window=(-np.inf, np.inf)):
         """`further`: columns of trajectory.csv beside those of the quantities; `window`: the times to keep [s]."""

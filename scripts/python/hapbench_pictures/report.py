@@ -41,7 +41,7 @@ def report(words):
 
 
 def sections(runs, names, words):
-    """Those that have something to show."""
+    """The sections that have something to show."""
     drawn = [(run, name) for run, name in zip(runs, names) if TRAJECTORY in tables_of(run)]
     found = (
         ("summary", "Summary", "Summary", summary_section(runs, names)),

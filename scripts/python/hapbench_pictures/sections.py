@@ -9,7 +9,7 @@ from hapbench_report.runs import plugin_text, provenance_of, provenance_section
 from .fields import differing
 
 MOST_CARDS = 6
-# Of section "metrics" of summary.json, shown where any run has it. What separates algorithms comes first.
+# Metrics of summary.json in the first table, as far as any run has them. Those that separate algorithms come first.
 METRICS = ("landings", "landing_force_max_N", "force_mean_in_contact_N", "force_step_p99_N", "settled_force_step_max_N",
            "force_rms_above_30Hz_N", "force_reversals_per_s", "force_max_N", "velocity_total_variation_m_per_s", "depth_max_m",
            "ratio_min", "ratio_max")
@@ -44,7 +44,7 @@ def card(outcome, expected, words):
 
 
 def contact_share(run):
-    """Of the run's steps; those of earlier versions have no metric of their own for it."""
+    """Share of the steps that are in contact. Runs of earlier versions have no metric for it."""
     share = run.metric("contact_share")
     if share is not None:
         return share
@@ -121,7 +121,7 @@ def commands_section(runs, words):
 
 
 def plugin_option(run):
-    """Of the law of a plugin, which the results know by its file's name."""
+    """The option that loads a plugin's law; results know it by its file's name."""
     file = at(run.summary, "/provenance/plugin/file")
     return f" --plugin {quoted(file)}" if file else ""
 

@@ -33,7 +33,7 @@ def this_terminal():
 
 
 def knows_unicode():
-    """Of the user's locale. Python's own encoding does not tell: it takes UTF-8 where the locale has none."""
+    """Whether the user's locale is UTF-8. Python's own encoding does not tell: it is UTF-8 where the locale has none."""
     try:
         locale.setlocale(locale.LC_CTYPE, "")
     except locale.Error:

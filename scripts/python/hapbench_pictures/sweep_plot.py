@@ -14,7 +14,7 @@ from .given import nearest
 
 USUAL = ("force_rms_above_30Hz_N", "force_max_N")
 FAILURES = ("diverges", "error")
-# Of runs that failed, and of places without a number.
+# Looks of runs that failed, and of places without a number.
 FAILED = {"facecolor": "#E2E2E2", "edgecolor": "#8E8E8E", "hatch": "////", "lw": 0}
 NO_VALUE = {"facecolor": "#F4F4F4", "edgecolor": "#C8C8C8", "lw": 0.5}
 MOST_TICKS = 12

@@ -37,7 +37,7 @@ def objects(value, key, file, place=""):
 
 
 def at(value, pointer):
-    """What a JSON pointer names, or None."""
+    """The value that a JSON pointer names, or None."""
     for key in pointer.strip("/").split("/"):
         if isinstance(value, list):
             value = value[int(key)] if key.isdecimal() and int(key) < len(value) else None

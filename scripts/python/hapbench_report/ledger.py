@@ -38,7 +38,7 @@ def robustness_text(claim):
 
 
 def load_choices(file):
-    """What the thesis leaves open: results/reference/choices.json."""
+    """The choices that the thesis leaves open: results/reference/choices.json."""
     return objects(load_object(file), "choices", file)
 
 
@@ -79,7 +79,7 @@ def warnings(runs):
 
 
 def refusals(claims):
-    """What the bench does not confirm, in the summary rather than somewhere below."""
+    """The claims that are not confirmed. They belong into the summary."""
     items = "".join(f"<li>{verdict_mark(c['verdict'])} {claim_link(c)} ({text(c.get('place', ''))}): "
                     f"{typeset(c.get('claim', ''))}</li>" for c in claims if VERDICTS[c["verdict"]][1] == "bad")
     return f"<p>What these runs do not confirm:</p><ul>{items}</ul>" if items else ""

@@ -1,4 +1,4 @@
-"""What belongs together: claims, the runs that decide them, and the figures drawn of those runs."""
+"""Links between claims, the runs that decide them, and the figures drawn of those runs."""
 import re
 
 from .markup import text
@@ -79,7 +79,7 @@ class Links:
         return any(run in self._runs_of_figure[figure.id] for run in self._runs_of_claim[id(claim)])
 
     def _figures_of_claim(self, claim):
-        """Those the claim's place names, before those that show a run which decides it."""
+        """Figures that the claim's place names, then figures that show a run which decides it."""
         labels = figure_labels(" ".join(named_figures(claim)))
         named = [f for f in self.figures if labels & figure_labels(f.thesis_figure)]
         return named + [f for f in self.figures if f not in named and self._share(claim, f)]
@@ -89,7 +89,7 @@ class Links:
 
 
 def scenarios_of(claim):
-    """Of the thesis's scenarios, those a claim was measured with; a ledger of an older program names none."""
+    """Names of the thesis's scenarios that a claim was measured with; a ledger of an older program has none."""
     names = claim.get("scenarios")
     return [str(name) for name in names] if isinstance(names, list) else []
 

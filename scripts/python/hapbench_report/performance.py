@@ -1,5 +1,5 @@
-"""What scripts/bench has measured (performance.json in the folder of results, if it is there): what the program promises, as
-ratios, whether it keeps it, and how cost grows."""
+"""Measurements of scripts/bench (performance.json in the folder of results, if it is there): targets as ratios, whether they are
+met, and how cost grows."""
 import re
 from pathlib import Path
 

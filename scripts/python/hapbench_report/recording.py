@@ -127,7 +127,7 @@ class Recording:
         self.contacts = self.read_contacts(directory / "contacts.csv")
 
     def read_tensors(self, file):
-        """Of every shown row; None when they were not recorded."""
+        """The tensors of every shown row; None if they were not recorded."""
         if not file.is_file():
             return None
         columns = numbers(file, ("step", *TENSOR_COLUMNS), set(self.steps))
@@ -138,7 +138,7 @@ class Recording:
         return [of_step[step] for step in self.steps]
 
     def read_contacts(self, file):
-        """Of every shown row, in the order of the file, with their normals; none when they were not recorded."""
+        """The contacts of every shown row, in the order of the file, with their normals; empty if they were not recorded."""
         rows = {step: [] for step in self.steps}
         if file.is_file():
             columns = numbers(file, ("step", *CONTACT_COLUMNS, *NORMAL_COLUMNS), set(self.steps))
@@ -157,7 +157,7 @@ class Recording:
         return np.column_stack([self.columns[f"p{axis}_m"][rows] for axis in "xyz"]).tolist()
 
     def story(self):
-        """What became of it, in a few words."""
+        """Contact, outcome and largest force, in a few words."""
         times = self.columns["time_s"]
         touching = times[self.columns["colliding"] > 0]
         contact = f"in contact until {number(touching[-1], 3)} s of {number(times[-1], 3)} s" if touching.size else "never in contact"

@@ -59,7 +59,7 @@ def overrides(settings):
 
 
 def rerun_commands(scene):
-    """What a reader types to get one recording."""
+    """The commands that make one recording."""
     settings = " ".join(overrides((*RECORDED, *scene.settings)))
     return [f"hapbench run {scene.scenario} {settings} --set rendering.algorithm={scene.algorithms[0]} --out {scene.id}",
             f"hapbench shell {scene.scenario} --out shell.csv"]

@@ -12,7 +12,7 @@ from .markup import (algorithm_name, cell, columns, command, counted, filters, f
 
 # Written for the replay, not as results of their own.
 REPLAY_DIRECTORY = "replay"
-# Of summary.json, in the table of all runs.
+# Metrics of summary.json in the table of all runs.
 METRICS = ("force_max_N", "velocity_total_variation_m_per_s", "force_reversals", "depth_max_m", "ratio_min", "ratio_max",
            "colliding_mean", "rendered_mean")
 
@@ -149,7 +149,7 @@ def provenance_of(runs):
     """Distinct builds and machines, with the number of their runs."""
     found = {}
     for run in runs:
-        # What is the scenario's or the law's own is no other build.
+        # The scenario and a plugin's law do not make another build.
         build = {k: v for k, v in (run.summary.get("provenance") or {}).items() if k not in ("scenario_hash", "plugin")}
         key = json.dumps(build, sort_keys=True)
         found[key] = found.get(key, 0) + 1

@@ -1,4 +1,4 @@
-"""Where each figure and table of the thesis is in this report, and its tables beside ours."""
+"""An index of the figures and tables of the thesis, and its tables beside ours."""
 import json
 import re
 from pathlib import Path

@@ -27,7 +27,7 @@ void expect_optimal(const test::GradientFamily& family, ContactBuffer& contacts)
   // which only the mixtures have, make the active set change contact by contact: 135 steps were the worst of 1e6.
   ASSERT_LT(steps, std::string(family.name) == "mixture" ? 200 : 60);
   const auto optimality = test::shaping_optimality(contacts, kExactShapingEpsilon);
-  // In this order NaN fails too.
+  // Written so that NaN fails, too.
   ASSERT_TRUE(optimality.smallest_weight >= 0.0 && optimality.largest_weight <= 1.0);
   ASSERT_LE(optimality.violation, test::kShapingRounding);
   ASSERT_GE(optimality.ratio_margin, -test::kShapingRounding);
@@ -60,7 +60,7 @@ TEST_P(ExactShapingOnFamily, TensorDoesNotDependOnTheOrderOfTheContacts) {
     ContactBuffer permuted = test::contacts_of(test::shuffled(gradients, random));
     solve_exact_shaping(contacts);
     solve_exact_shaping(permuted);
-    // Both tensors are those of weights that are optimal to rounding.
+    // Both sets of weights are optimal to rounding.
     const double tolerance = test::tensor_tolerance(gradients.size(), 2 * test::kShapingRounding, kExactShapingEpsilon);
     ASSERT_LE((stiffness_tensor(contacts) - stiffness_tensor(permuted)).norm(), tolerance) << "set " << i;
   }
@@ -135,7 +135,7 @@ TEST_F(ExactShapingOnHardSets, FollowsTheActiveSetThroughTheLastCorrection) {
 }
 
 TEST_F(ExactShapingOnHardSets, DoesNotTakeSmallGradientsOfAWellScaledDualForRounding) {
-  // Where |w| is small, so is the rounding of a_i . w: a tolerance for |w| = 1/eps stops 0.1 from the optimum.
+  // The rounding of a_i . w is small if |w| is. A tolerance for |w| = 1/eps stops 0.1 from the optimum.
   expect_optimal_on({{"mixture", 1943},
                      {"mixture", 3501},
                      {"mixture", 90246},
@@ -157,7 +157,7 @@ TEST_F(ExactShapingOnHardSets, WeighsDuplicatesAlike) {
     for (std::size_t i = 0; i < n; ++i) gradients.push_back(few[i % few.size()]);
     ContactBuffer contacts = test::contacts_of(gradients);
     solve_exact_shaping(contacts);
-    // By the strict convexity of the problem, and to the bit because their sums are the same.
+    // The problem is strictly convex, and the sums are the same to the bit.
     for (std::size_t i = few.size(); i < n; ++i) EXPECT_EQ(contacts.weight[i], contacts.weight[i % few.size()]);
   }
 }

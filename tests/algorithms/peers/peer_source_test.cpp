@@ -15,16 +15,16 @@ namespace {
 
 constexpr double kLength = 0.01;
 
+struct Script {
+  std::vector<HapbenchContact> answer;
+  int asked = 0;
+  int throws_at = -1;
+  HapbenchPose pose = {};
+};
+Script script;
+
 /// A library whose sources give the answer in `script`, or throw.
 struct FakePeer {
-  struct Script {
-    std::vector<HapbenchContact> answer;
-    int asked = 0;
-    int throws_at = -1;
-    HapbenchPose pose = {};
-  };
-  static inline Script script;
-
   FakePeer(const HapbenchSurface& surface, const HapbenchCylinder&) {
     if (surface.triangle_count == 0) throw std::runtime_error("nothing there");
   }
@@ -38,8 +38,8 @@ struct FakePeer {
 
 const HapbenchContactSource kFake = contact_library<FakePeer>("fake");
 
-std::unique_ptr<PeerSource> source_of(FakePeer::Script script) {
-  FakePeer::script = std::move(script);
+std::unique_ptr<PeerSource> source_of(Script what) {
+  script = std::move(what);
   const PeerSurface ten_triangles{{}, std::vector<std::uint32_t>(30)};
   return std::make_unique<PeerSource>(kFake, ten_triangles, HapbenchCylinder{.radius = 0.001, .length = kLength});
 }
@@ -73,7 +73,7 @@ TEST(PeerSource, AsksAboutTheMiddleOfTheDrillWithItsShankAlongZ) {
   ContactBuffer contacts(source->capacity());
   const Vec3 axis = Vec3(1, 2, -3).normalized();
   source->contacts_at({{0.1, 0.2, 0.3}, axis}, contacts);
-  const auto& [centre, r] = FakePeer::script.pose;
+  const auto& [centre, r] = script.pose;
   EXPECT_TRUE(Vec3(centre[0], centre[1], centre[2]).isApprox(Vec3(0.1, 0.2, 0.3) - 0.5 * kLength * axis, 1e-15));
   EXPECT_TRUE(Vec3(r[2], r[5], r[8]).isApprox(-axis, 1e-15));
 }
@@ -104,9 +104,9 @@ TEST(PeerSource, EndsTheRunWhenTheLibraryThrows) {
       EXPECT_EQ(result.outcome, Outcome::diverges) << algorithm.info->name << controlled;
       EXPECT_EQ(result.divergence.step, 3u);
       EXPECT_EQ(result.divergence.fault, "fake fails: no way");
-      EXPECT_EQ(FakePeer::script.asked, 4);
+      EXPECT_EQ(script.asked, 4);
       simulation.reset();
-      FakePeer::script.throws_at = -1;
+      script.throws_at = -1;
       EXPECT_EQ(simulation.run().outcome, Outcome::completes);
     }
   }

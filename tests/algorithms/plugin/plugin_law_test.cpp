@@ -1,23 +1,99 @@
-#include "algorithms/plugin/plugin_law.hpp"
-
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <limits>
+#include <stdexcept>
 
-#include "algorithms/registry.hpp"
+#include "algorithms/penalty_rendering.hpp"
 #include "algorithms/plugin/law_plugin.hpp"
+#include "algorithms/plugin/plugin_law.hpp"
+#include "algorithms/registry.hpp"
 #include "results/allocations/allocations.hpp"
 #include "tests/support/contact_sets.hpp"
 
 namespace hapbench::plugin_law_test {
 namespace {
 
+std::unique_ptr<ForceAlgorithm> make_some(const RenderingConfig& config) {
+  return std::make_unique<PenaltyRendering>(make_law("mean", config), config);
+}
+
+/// Adds an algorithm and returns the reason of a refusal, or nothing.
+std::string problem_with(const ModelInfo& info, std::vector<OwnParameter> parameters = {}) {
+  try {
+    add_algorithm({.info = &info, .make = make_some, .own_parameters = parameters});
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(AddedAlgorithm, IsFoundAndCanBeReplaced) {
+  const std::size_t before = algorithms().size(), additions_before = additions();
+  const AlgorithmEntry& mean = *find_algorithm("mean");
+  {
+    // Temporary texts, which are copied.
+    std::string name = "added", text = "text", parameter = "gain";
+    const OwnParameter own[] = {{parameter.c_str(), {0, 2, "1"}, 0.5, text.c_str()}};
+    const ModelInfo info{name.c_str(), text.c_str(), text.c_str(), text.c_str(), text.c_str()};
+    add_algorithm({.info = &info, .make = make_some, .own_parameters = own});
+    name = text = parameter = "other";
+  }
+  ASSERT_EQ(algorithms().size(), before + 1);
+  EXPECT_EQ(algorithm_names().back(), "added");
+  EXPECT_EQ(&mean, find_algorithm("mean"));
+  const AlgorithmEntry& added = *find_algorithm("added");
+  EXPECT_STREQ(added.info->summary, "text");
+  RenderingConfig config;
+  config.algorithm = "added";
+  EXPECT_NE(make_algorithm(config), nullptr);
+  EXPECT_EQ(own_values(config, added), std::vector<double>{0.5});
+  config.parameters["added"]["gain"] = 2.0;
+  EXPECT_EQ(own_values(config, added), std::vector<double>{2.0});
+
+  EXPECT_EQ(problem_with({"added", "again", "a", "b", "c"}), "");
+  EXPECT_EQ(algorithms().size(), before + 1);
+  EXPECT_EQ(&added, find_algorithm("added"));
+  EXPECT_STREQ(added.info->summary, "again");
+  EXPECT_EQ(additions(), additions_before + 2);
+}
+
+TEST(AddedAlgorithm, IsRefusedWithTheReason) {
+  const std::size_t before = algorithms().size();
+  const auto named = [](const char* name) { return problem_with({name, "a", "b", "c", "d"}); };
+  EXPECT_EQ(named("mean"), "\"mean\" is the name of a built-in algorithm");
+  EXPECT_EQ(named("all"), "an algorithm is called \"all\", which means all of them");
+  for (const char* name : {"", "a.b", "A", "1st", "with blank", "a,b", "a=b"})
+    EXPECT_TRUE(named(name).starts_with("an algorithm is called \"" + std::string(name) + "\"; allowed: letters"));
+  EXPECT_TRUE(named(nullptr).starts_with("an algorithm is called \"\""));
+  EXPECT_EQ(problem_with({"x", nullptr, "b", "c", "d"}), "its summary is missing");
+  EXPECT_EQ(problem_with({"x", "a", "", "c", "d"}), "its formula is missing");
+  EXPECT_EQ(problem_with({"x", "a", "b", nullptr, "d"}), "its source is missing");
+  EXPECT_EQ(problem_with({"x", "a", "b", "c", nullptr}), "its known failure is missing");
+
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const auto with = [](std::vector<OwnParameter> own) {
+    return problem_with({"x", "a", "b", "c", "d"}, std::move(own));
+  };
+  const OwnParameter good{"p", {0, 1, "1"}, 0.5, "meaning"};
+  EXPECT_EQ(with({good, good}), "parameter \"p\" is there twice");
+  EXPECT_TRUE(with({{"a b", good.range, 0.5, "m"}}).starts_with("a parameter is called \"a b\"; allowed"));
+  EXPECT_EQ(with({{"p", good.range, 1.5, "m"}}), "parameter \"p\": its default is out of its range");
+  EXPECT_EQ(with({{"p", {0, 1, "1", true}, 0.0, "m"}}), "parameter \"p\": its default is out of its range");
+  EXPECT_EQ(with({{"p", good.range, std::numeric_limits<double>::quiet_NaN(), "m"}}),
+            "parameter \"p\": its default is out of its range");
+  for (const NumberRange range : {NumberRange{1, 0, "1"}, {1, 1, "1"}, {0, kInfinity, "1"}})
+    EXPECT_EQ(with({{"p", range, 0.5, "m"}}), "parameter \"p\": a range needs two finite ends, the lower first");
+  EXPECT_EQ(with({{"p", {0, 1, nullptr}, 0.5, "m"}}), "parameter \"p\": its unit is missing");
+  EXPECT_EQ(with({{"p", good.range, 0.5, nullptr}}), "parameter \"p\": its meaning is missing");
+  EXPECT_EQ(algorithms().size(), before);
+}
+
 constexpr double kK = 20000.0;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const Vec3 kTip(0.1, -0.2, 0.3);
 
-/// What the plugins below do, and what was asked of them.
+/// The behaviour of the plugins below, and counts of their calls.
 struct Script {
   int error = 0;
   double weight_scale = 1.0;
@@ -68,7 +144,7 @@ class APluginLaw : public testing::Test {
  protected:
   APluginLaw() { script = {}; }
 
-  /// The fault of a law that has been asked once.
+  /// The fault of a law after one call.
   static std::string fault_of(const HapbenchPlugin& plugin) {
     PluginLaw law(plugin, kK, {});
     law.prepare(10);
@@ -105,7 +181,7 @@ TEST_F(APluginLaw, OfAForceAnswersThatForce) {
   const LawForce force = law.evaluate(contacts);
   EXPECT_EQ(force.spring, Vec3(0, -1, 0));
   EXPECT_EQ(force.S, Mat3(0.5 * Mat3::Identity()));
-  // One spring of stiffness K at the middle of the contacts, which lie at the origin.
+  // One spring of stiffness K at the mean of the contacts, which lie at the origin.
   const SpringState state = law.spring_state(contacts, force.spring, kTip);
   EXPECT_DOUBLE_EQ(state.energy, 1.0 / (2.0 * kK));
   EXPECT_TRUE(state.moment.isApprox((-kTip).cross(force.spring)));
@@ -207,7 +283,7 @@ TEST_F(APluginLaw, AllocatesNothingInAStep) {
   }
 }
 
-/// virtual_coupling, from outside: it leaves weights, gives force and tensor, and knows its springs.
+/// virtual_coupling as a law from outside, with weights, force, tensor and springs.
 class Coupling final : public ForceLaw {
  public:
   Coupling(double stiffness, std::span<const double> parameters) : ForceLaw(stiffness) {

@@ -1,20 +1,78 @@
-#include "algorithms/proxy/proxy_rendering.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <limits>
 
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/proxy/nearest_allowed.hpp"
 #include "algorithms/proxy/proxy_constraints.hpp"
+#include "algorithms/proxy/proxy_rendering.hpp"
 #include "sim/contact/contact_query.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/geometry/analytic_shells.hpp"
+#include "sim/tool/cylinder.hpp"
 #include "tests/support/setting.hpp"
 #include "tests/support/tool_geometry.hpp"
 
 namespace hapbench::proxy_rendering_test {
 namespace {
+
+const SpringSet kSprings{{{1, 0, 0}, {0, 0, 1}}, true};
+
+TEST(SpringConstraints, OfABilateralSpringHoldTheToolFromBothSides) {
+  SpringConstraints constraints(kSprings);
+  ContactBuffer contacts(constraints.capacity());
+  ASSERT_EQ(constraints.capacity(), 4u);
+  constraints.constraints_at({{0.25, 0.0, -0.5}}, Vec3::Zero(), contacts);
+  ASSERT_EQ(contacts.size(), 4u);
+  const double depths[] = {0.25, -0.25, -0.5, 0.5};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(contacts.index[i], i / 2);
+    EXPECT_EQ(contacts.depth[i], depths[i]);
+    EXPECT_EQ(contacts.gradient(i), Vec3((i % 2 == 0 ? 1.0 : -1.0) * kSprings.gradients[i / 2]));
+  }
+  EXPECT_EQ(constraints.work().points_tested, 2u);
+}
+
+TEST(SpringConstraints, OfAUnilateralSpringHoldFromOneSideAtAnyDistance) {
+  const SpringSet springs{kSprings.gradients, false};
+  SpringConstraints constraints(springs);
+  ContactBuffer contacts(constraints.capacity());
+  constraints.constraints_at({{-7.0, 0.0, 0.5}}, Vec3::Zero(), contacts);
+  ASSERT_EQ(contacts.size(), 2u);
+  EXPECT_EQ(contacts.depth[0], -7.0);
+  EXPECT_EQ(constraints.margin(), std::numeric_limits<double>::infinity());
+  EXPECT_FALSE(constraints.act_at_points());
+  constraints.constraints_at({Vec3::Constant(std::numeric_limits<double>::quiet_NaN())}, Vec3::Zero(), contacts);
+  EXPECT_TRUE(contacts.empty());
+}
+
+TEST(ShellConstraints, AreThoseOfEveryPointWithinTheMargin) {
+  const Cylinder tool;
+  const PointShell shell(surface_points(Plane{0.004, 0.0001}), 0.0);
+  for (const Skips skips : {Skips::on, Skips::off}) {
+    ShellConstraints constraints(shell, tool, skips);
+    EXPECT_EQ(constraints.margin(), kProxyMargin * tool.radius());
+    ContactBuffer contacts(constraints.capacity());
+    // The tip plane is half a margin above the plane of the points.
+    const double height = 0.5 * constraints.margin();
+    constraints.constraints_at({{0.0, 0.0, height}}, -Vec3::UnitZ(), contacts);
+    std::vector<bool> found(shell.size(), false);
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      found[contacts.index[i]] = true;
+      EXPECT_LE(contacts.depth[i], -height + 1e-18);
+    }
+    std::size_t below = 0;
+    for (std::size_t i = 0; i < shell.size(); ++i) {
+      if (shell.point(i).position.norm() > tool.radius()) continue;
+      EXPECT_TRUE(found[i]);
+      ++below;
+    }
+    EXPECT_GT(below, 50u);
+    constraints.constraints_at({{0.0, 0.0, 0.001}}, -Vec3::UnitZ(), contacts);
+    EXPECT_TRUE(contacts.empty());
+  }
+}
 
 constexpr double kK = 20'000.0;
 
@@ -60,7 +118,7 @@ test::Setting tilted_on_plane(double tilt, double depth, Random& random) {
   return setting;
 }
 
-/// Clear of the plane, at most two passes away.
+/// A pose clear of the plane, at most two passes away.
 ToolPose above(const test::Setting& setting) {
   return {setting.pose.position + Vec3(0, 0, 1.5e-4), setting.pose.axis};
 }
@@ -68,11 +126,11 @@ ToolPose above(const test::Setting& setting) {
 TEST(ProxyRendering, OfAnEdgeOnAPlaneIsTheDepthOfTheEdgeWhereverThePointsLie) {
   Random random(1);
   for (int i = 0; i < 300; ++i) {
-    // Flatter than 0.11 rad the tip is flush with the plane; 0.1 mm is how far the first pass looks.
+    // Below 0.11 rad the tip is flush with the plane; the first pass looks 0.1 mm ahead.
     const double tilt = random.uniform(0.11, 1.3), depth = 9e-5 * random.uniform();
     const test::Setting setting = tilted_on_plane(tilt, depth, random);
     test::Probe probe(setting, proxy_config());
-    // The proxy must come from outside: where it starts in the shell, points push it out sideways.
+    // The proxy must come from outside, because points would push it sideways out of the shell.
     probe.force_at(above(setting));
     const RenderedForce force = probe.force_at(setting.pose);
     EXPECT_LE((force.spring - Vec3(0, 0, kK * depth)).norm(), kK * 1e-12) << "tilt " << tilt << ", depth " << depth;
@@ -83,7 +141,7 @@ TEST(ProxyRendering, OfAnEdgeOnAPlaneIsTheDepthOfTheEdgeWhereverThePointsLie) {
 TEST(ProxyRendering, SlidesOverAFlatWithoutBumpingIntoThePointsAhead) {
   Random random(8);
   for (int run = 0; run < 10; ++run) {
-    // Normals off by a few degrees, as those of marching cubes are.
+    // Normals with errors of a few degrees, as from marching cubes.
     test::Setting setting;
     setting.points = surface_points(Plane{0.004, 0.0001});
     for (SurfacePoint& point : setting.points) point.normal = (point.normal + 0.1 * random.direction()).normalized();
@@ -93,7 +151,7 @@ TEST(ProxyRendering, SlidesOverAFlatWithoutBumpingIntoThePointsAhead) {
     for (int step = 0; step <= 200; ++step) {
       const Vec3 p = 5e-6 * step * way + Vec3(0, 0, step == 0 ? 1e-4 : -5e-5);
       const Vec3 force = probe.force_at({p, -Vec3::UnitZ()}).spring;
-      // The patches' planes lean with their normals: up to 0.1 rad, and 0.75 spacings from their points.
+      // The planes of the patches are tilted by up to 0.1 rad and reach 0.75 spacings from their points.
       if (step > 0) {
         EXPECT_LE((force - Vec3(0, 0, kK * 5e-5)).norm(), 0.2 * kK * 5e-5) << "step " << step;
       }
@@ -179,7 +237,7 @@ TEST(ProxyRendering, FollowsAToolThatIsPutElsewhere) {
 }
 
 TEST(ProxyRendering, HoldsAToolThatIsPulledThroughAPlane) {
-  // Where penalty springs let go: the whole tool is below the points.
+  // The whole tool is below the points, where penalty springs have no contact.
   test::Setting setting;
   setting.points = surface_points(Plane{0.004, 0.0001});
   setting.tool = {0.0005, 0.002, Tip::flat};
@@ -189,10 +247,11 @@ TEST(ProxyRendering, HoldsAToolThatIsPulledThroughAPlane) {
   EXPECT_LE((force.spring - Vec3(0, 0, kK * 0.00489)).norm(), kK * 1e-12);
 }
 
-/// How far a proxy that starts inside may go in a step of the rig, whose tools are this thick.
+/// Half width of the tools.
 constexpr double kHalfWidth = 0.0005;
+/// Motion of a proxy that starts inside in one step.
 const double kRecovery = kRecoverySpeed * kHalfWidth * Scene{}.dt;
-/// A move is only nearly proportional to the depths: points about to be entered do not recede with them.
+/// A move is only nearly proportional to the depths, because points that are not yet entered stay in place.
 constexpr double kNearly = 1.1;
 
 TEST(ProxyRendering, LeavesAPlaneItStartsInSlowlyAndThenForGood) {
@@ -211,7 +270,7 @@ TEST(ProxyRendering, LeavesAPlaneItStartsInSlowlyAndThenForGood) {
     last = rig.proxy.proxy();
   }
   EXPECT_LE((rig.force.spring - Vec3(0, 0, kK * depth)).norm(), kK * 1e-9);
-  // Out, it stays out: no turn is too fast.
+  // Once outside, it stays outside, however fast the tool turns.
   const ToolPose turned{tool.pose.position, Vec3(1.0, 0.0, 0.02).normalized()};
   rig.step({turned, Vec3::Zero()});
   EXPECT_LE(deepest_point(setting, {rig.proxy.proxy(), turned.axis}), 1e-10);
@@ -255,27 +314,28 @@ TEST(ProxyRendering, DampsTheTurnOfTheEdgeThatTouches) {
   const Vec3 turn(0.3, -0.4, 0.1);
   rig.step({setting.pose, Vec3::Zero(), turn});
   ASSERT_EQ(rig.contacts.size(), 1u);
-  // One patch holds the edge: its point moves with omega x r, of which the part along the normal is damped.
+  // One patch holds the edge. The normal component of the velocity omega x r of its point is damped.
   const double along = turn.cross(rig.contacts.point(0) - rig.proxy.proxy()).z();
   const double B = 2.0 * config.damping_ratio * std::sqrt(kK * config.mass);
   EXPECT_LE((rig.force.rendered - rig.force.spring - Vec3(0, 0, -B * along)).norm(), 1e-12);
 }
 
-TEST(ProxyRendering, EndsForAPoseThatIsNone) {
+TEST(ProxyRendering, AnswersAPoseThatIsNotFiniteWithAForceThatIsNotUntilAReset) {
   Random random(6);
   const test::Setting setting = tilted_on_plane(0.5, 5e-5, random);
   test::Probe probe(setting, proxy_config());
-  probe.force_at(setting.pose);
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  probe.force_at({Vec3::Constant(nan), setting.pose.axis});
-  probe.force_at(setting.pose);
+  const Vec3 force = probe.force_at(setting.pose).spring;
+  const ToolPose nowhere{Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), setting.pose.axis};
+  EXPECT_FALSE(probe.force_at(nowhere).spring.allFinite());
+  probe.algorithm().reset();
+  EXPECT_EQ(probe.force_at(setting.pose).spring, force);
 }
 
 TEST(TypicalSpacing, IsThatOfALatticeAndOfALine) {
   EXPECT_NEAR(typical_spacing(PointShell(surface_points(Plane{0.004, 0.0001}), 0.0)), 1e-4, 1e-12);
   EXPECT_NEAR(typical_spacing(PointShell(surface_points(Hole2d{}), 0.0)), 1e-4, 1e-12);
   EXPECT_EQ(typical_spacing(PointShell({}, 0.0)), 0.0);
-  // Each point four times, but for rounding.
+  // Each point four times, with rounding.
   std::vector<SurfacePoint> copies;
   for (const SurfacePoint& point : surface_points(Plane{0.004, 0.0001})) {
     for (int k = 0; k < 4; ++k) {

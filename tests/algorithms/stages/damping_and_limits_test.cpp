@@ -23,7 +23,7 @@ const Mat3 kS = Vec3(1.0, 0.5, 0.0).asDiagonal();
 const Vec3 kSpring(-4.0, 8.0, 0.0);
 const Vec3 kVelocity(0.5, 0.25, -2.0);
 
-/// For a tool that does not turn.
+/// The rendered force for a tool that does not turn.
 Vec3 rendered(const RenderingConfig& config, const Vec3& spring = kSpring, const Mat3& S = kS,
               const Vec3& v = kVelocity) {
   return DampingAndLimits(config).rendered_force(spring, S, {v, S * v});

@@ -32,7 +32,7 @@ class Watch final : public Observer {
   double least = std::numeric_limits<double>::infinity();
   double turnover = 0.0;
   double force_max = 0.0;
-  /// Of one step: the share s, the force made of it and its work have a handful of roundings of what there was to give.
+  /// Rounding of one step, in the share s, the force and its work.
   double rounding() const { return 50 * kEpsilon * turnover; }
 
  private:
@@ -127,7 +127,7 @@ TEST(PassivityController, KeepsAnyForceUnderAnyHandPassive) {
   }
 }
 
-/// From the third row on, forces of at most `limit` and moments, neither of which knows anything of the tool.
+/// Forces of at most `limit` and moments, from the third row on, both independent of the tool.
 class Lever final : public ForceAlgorithm {
  public:
   Lever(std::uint64_t seed, double limit) : numbers_(seed), limit_(limit) {}
@@ -241,7 +241,7 @@ TEST(PassivityController, ChangesARunOnlyIfItWouldCreateEnergy) {
       }
     }
   }
-  // Both kinds were seen, or this would say nothing.
+  // Both kinds have occurred.
   EXPECT_GT(passive, 10u);
   EXPECT_GT(active, 0u);
 }
@@ -273,7 +273,7 @@ TEST(PassivityController, ResetRepeatsTheRunBitForBit) {
   EXPECT_EQ(simulation.algorithm().work().steps_controlled, steps);
 }
 
-/// f_render = s f - alpha w, so its Jacobian is s times that of f, and alpha more of damping; here s = 0.
+/// The Jacobian of f_render = s f - alpha w is s times that of f plus the damping alpha; here s = 0.
 TEST(PassivityController, ItsJacobianIsThatOfTheForceItRenders) {
   RenderingConfig config;
   config.mass = 0.2;

@@ -22,7 +22,7 @@ class EarlierResults : public testing::Test {
       write(directory + "/" + file);
     }
   }
-  /// What is there beside the list itself.
+  /// The files except for the list itself.
   Names names() const {
     Names names = test::names_below(out_);
     std::erase(names, kResultListFile);

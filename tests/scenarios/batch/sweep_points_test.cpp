@@ -8,6 +8,7 @@
 
 #include "scenarios/batch/sampling.hpp"
 #include "scenarios/batch/sweep_table.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
@@ -83,36 +84,12 @@ TEST(Axis, OfAListHasItsValuesInOrderAndNumbersInOneSpelling) {
 }
 
 TEST(Axis, RefusesWhatItCannotRead) {
-  for (const char* text : {"",
-                           "=",
-                           "a",
-                           "a=",
-                           "=1,2",
-                           "a b=1,2",
-                           "a,b=1,2",
-                           "a=1,,2",
-                           "a=,",
-                           "a=1:2",
-                           "a=1:2:3:4:5",
-                           "a=1:2:1",
-                           "a=1:2:0",
-                           "a=1:2:-3",
-                           "a=1:2:2.5",
-                           "a=1:2:1000001",
-                           "a=1:2:99999999999999999999",
-                           "a=x:2:3",
-                           "a=1::3",
-                           "a=nan:1:3",
-                           "a=1:inf:3",
-                           "a=1e301:2:3",
-                           "a=0:1:5:log",
-                           "a=-1:1:5:log",
-                           "a=1:2:5:lin",
-                           "a=1:2:5:",
-                           "a=\"x\",y",
-                           "a=x\ny,z",
-                           "a=x\r,z",
-                           "a=\x7f"}) {
+  const std::string_view bad =
+      "|=|a|a=|=1,2|a b=1,2|a,b=1,2|a=1,,2|a=,|a=1:2|a=1:2:3:4:5|a=1:2:1|a=1:2:0|a=1:2:-3|a=1:2:2.5|a=1:2:1000001|"
+      "a=1:2:99999999999999999999|a=x:2:3|a=1::3|a=nan:1:3|a=1:inf:3|a=1e301:2:3|a=0:1:5:log|a=-1:1:5:log|"
+      "a=1:2:5:lin|a=1:2:5:|a=\"x\",y|a=x\ny,z|a=x\r,z|a=\x7f";
+  for (const std::string_view word : parts_of(bad, '|')) {
+    const std::string text(word);
     const auto error = test::input_error_of([&] { parse_axis(text); });
     ASSERT_TRUE(error) << text;
     EXPECT_NE(std::string(error->what()).find("--vary \""), std::string::npos) << error->what();

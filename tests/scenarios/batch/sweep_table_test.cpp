@@ -41,7 +41,7 @@ class ShardTables : public testing::Test {
     while (const auto row = rows.next()) found.emplace_back(*row);
     return found;
   }
-  /// What is wrong with a table of this text.
+  /// The message of the error in a table with this text; empty if there is none.
   std::string complaint(const std::string& text) const {
     const auto error = test::input_error_of([&] { rows_of(file("bad.csv", text)); });
     return error ? error->what() : "";

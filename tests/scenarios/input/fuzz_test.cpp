@@ -64,7 +64,7 @@ TEST(Fuzz, ScenarioTextsAreReadOrRefused) {
   expect_mixture(fuzz(texts, test::cases(40'000), 1, [](const std::string& text) {
     const Json json = parse_json(text);
     const Json effective = effective_scenario(read_scenario(json, "").scenario, "");
-    // What was accepted is a scenario: its effective form reads as itself.
+    // An accepted text is a scenario: its effective form reads as itself.
     EXPECT_EQ(effective_scenario(read_scenario(effective, "").scenario, ""), effective) << text;
   }));
 }
@@ -130,7 +130,8 @@ TEST(Fuzz, RecordedMotionsAreReadOrRefused) {
                                           with_force.substr(0, with_force.rfind('\n') + 1)};
   expect_mixture(fuzz(texts, test::cases(10'000), 4, [](const std::string& text) {
     const auto [motion, force] = stroke_in(text, "stroke.csv");
-    if (force) EXPECT_TRUE(!force->at(0.01) || force->at(0.01)->allFinite());
+    const auto sample = force ? force->at(0.01) : std::nullopt;
+    EXPECT_TRUE(!sample || sample->allFinite());
     EXPECT_NEAR(motion.axis_at(-1.0).norm(), 1.0, 1e-12) << text;
     EXPECT_NEAR(motion.axis_at(1e9).norm(), 1.0, 1e-12) << text;
   }));

@@ -51,7 +51,7 @@ class MeshFile : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-/// So that formats that keep no order compare too.
+/// Sorted, because some formats do not keep the order.
 std::vector<Vec3> sorted_positions(const std::vector<SurfacePoint>& points) {
   std::vector<Vec3> positions;
   for (const SurfacePoint& p : points) positions.push_back(p.position);

@@ -1,20 +1,21 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <map>
 #include <memory>
 #include <regex>
+#include <set>
 
 #include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
-#include "tests/scenarios/support/recorded_hashes.hpp"
-#include "tests/scenarios/support/shortened.hpp"
+#include "tests/scenarios/support/recorded_numbers.hpp"
 
-/// Every scenario that comes with the program, run by the program.
+/// Every scenario that comes with the program, run by the program, and the numbers on record.
 namespace hapbench::bundled_scenarios_test {
 namespace {
 
@@ -22,95 +23,172 @@ namespace fs = std::filesystem;
 using test::lines_of;
 using test::ProgramRun;
 
-/// The scenarios run once in full and once shortened, for all tests of the suite.
+/// Arguments that make a scenario of many steps a matter of milliseconds; none for the others. The tasks of the thesis
+/// touch the block within these steps.
+std::vector<std::string> shortened(const Scenario& scenario) {
+  constexpr std::int64_t kSteps = 1500;
+  if (scenario.time.steps <= kSteps) return {};
+  std::vector<std::string> arguments = {
+      "--set",
+      R"(expect={"outcome": ["completes", "leaves_hole", "tool_horizontal", "not_dragged", "no_contact", "lost_contact", "diverges"]})",
+      "--set", fmt::format("time={{\"step_s\": {}, \"steps\": {}}}", scenario.time.step, kSteps)};
+  if (std::holds_alternative<TrackingHandFields>(scenario.hand))
+    arguments.insert(arguments.end(), {"--set", "hand.trials=1", "--set", "hand.subjects=[{}]"});
+  return arguments;
+}
+
+/// All bundled scenarios in full, in one process.
+ProgramRun run_all(const fs::path& out) {
+  std::vector<std::string> arguments = {"run", "--out", out.string()};
+  for (const BundledScenario& bundled : bundled_scenarios()) arguments.push_back(bundled.file.string());
+  return test::hapbench(arguments);
+}
+
+/// The runs are made once for all tests of the suite.
 class BundledScenarios : public testing::Test {
  protected:
-  static void SetUpTestSuite() { directory_ = std::make_unique<test::TemporaryDirectory>(); }
+  static void SetUpTestSuite() {
+    directory_ = std::make_unique<test::TemporaryDirectory>();
+    full_run_ = run_all(*directory_ / "full");
+  }
   static void TearDownTestSuite() { directory_.reset(); }
 
-  static fs::path directory(const std::string& name) { return *directory_ / name; }
-
-  /// All of them in full, in one process.
-  static const ProgramRun& full_run() {
-    static const ProgramRun run = [] {
-      std::vector<std::string> arguments = {"run", "--out", directory("full").string()};
-      for (const BundledScenario& bundled : bundled_scenarios()) arguments.push_back(bundled.file.string());
-      return test::hapbench(arguments);
-    }();
-    return run;
-  }
-
-  /// What they print as warnings, by their names.
-  static std::map<std::string, std::string> run_shortened(const std::string& name, const fs::path& program) {
-    std::map<std::string, std::string> warnings;
-    for (const BundledScenario& bundled : bundled_scenarios()) {
-      std::vector<std::string> arguments = {"run", bundled.file.string(), "--out",
-                                            (directory(name) / bundled.name).string()};
-      const std::vector<std::string> more = test::shortened(bundled);
-      arguments.insert(arguments.end(), more.begin(), more.end());
-      const ProgramRun run = test::run_program(program, arguments);
-      EXPECT_EQ(run.status, 0) << bundled.name << ": " << run.err;
-      warnings[bundled.name] = run.err;
-    }
-    return warnings;
-  }
-
-  /// In directory("short").
-  static const std::map<std::string, std::string>& shortened_runs() {
-    static const auto warnings = run_shortened("short", test::hapbench_program());
-    return warnings;
-  }
-
- private:
   static std::unique_ptr<test::TemporaryDirectory> directory_;
+  static ProgramRun full_run_;
 };
 
 std::unique_ptr<test::TemporaryDirectory> BundledScenarios::directory_;
+ProgramRun BundledScenarios::full_run_;
 
 TEST_F(BundledScenarios, EndAsTheirExpectBlocksSayAndAllocateNothingInTheirStepLoops) {
-  const ProgramRun& run = full_run();
-  EXPECT_EQ(run.status, 0) << run.err;
-  for (const std::string& line : test::lines_of(run.err)) {
+  EXPECT_EQ(full_run_.status, 0) << full_run_.err;
+  for (const std::string& line : lines_of(full_run_.err)) {
     EXPECT_TRUE(line.starts_with("hapbench: warning: ") || line.starts_with("hapbench: about ")) << line;
   }
   for (const BundledScenario& bundled : bundled_scenarios()) {
-    const Json summary = Json::parse(test::read_file(directory("full") / bundled.name / "summary.json"));
+    const Json summary = Json::parse(test::read_file(*directory_ / "full" / bundled.name / "summary.json"));
     EXPECT_EQ(summary["expected"], true) << bundled.name;
     EXPECT_EQ(summary["name"], bundled.name) << "the name in the file is the file's";
     EXPECT_EQ(summary["work"]["allocations"], 0) << bundled.name;
   }
 }
 
-TEST_F(BundledScenarios, HaveTheResultsOnRecord) {
-  full_run();
-  std::map<std::string, std::string> hashes;
+TEST_F(BundledScenarios, HaveTheNumbersOnRecord) {
+  fs::path runs = *directory_ / "full";
+  test::expect_recorded(false, [&] {
+    if (!fs::exists(runs)) run_all(runs);
+    test::NumbersByName numbers;
+    for (const BundledScenario& bundled : bundled_scenarios())
+      numbers[bundled.name] = test::numbers_below(runs / bundled.name);
+    runs = *directory_ / "once_more";
+    return numbers;
+  });
+}
+
+/// Warnings, each once, without the file that a warning about a field names.
+std::set<std::string> warnings_in(const std::string& err) {
+  static const std::regex file(R"(warning: /.*?\.json: )");
+  std::set<std::string> warnings;
+  for (const std::string& line : lines_of(err)) {
+    if (line.starts_with("hapbench: warning: ")) warnings.insert(std::regex_replace(line, file, "warning: "));
+  }
+  return warnings;
+}
+
+/// The summary without what brute force counts differently.
+std::string summary_without_work(Json summary) {
+  summary.erase("work");
+  return summary.dump();
+}
+
+// Another process, the scenario that the run wrote, the scalar build and brute force in place of skips: none of them
+// changes a byte. Scenarios of many steps are shortened.
+TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuildWithoutSkipsFromTheirEffectiveScenarios) {
+  const fs::path first = *directory_ / "first", again = *directory_ / "again",
+                 effective = *directory_ / "effective" / "scenes";
+  std::vector<std::string> arguments = {"run", "--no-skip", "--quiet", "--out", again.string()};
+  std::set<std::string> warnings = warnings_in(full_run_.err);
+  fs::create_directory(first);
+  fs::create_directories(effective);
   for (const BundledScenario& bundled : bundled_scenarios()) {
-    hashes["scenario: " + bundled.name] = test::hash_of_results(directory("full") / bundled.name);
+    const fs::path out = first / bundled.name;
+    const std::vector<std::string> changes = shortened(load_scenario(bundled.file).scenario);
+    if (changes.empty()) {
+      fs::copy(*directory_ / "full" / bundled.name, out,
+               fs::copy_options::recursive | fs::copy_options::create_hard_links);
+    } else {
+      std::erase_if(warnings, [&](const std::string& warning) {
+        return warning.starts_with("hapbench: warning: " + bundled.name + ": ");
+      });
+      std::vector<std::string> words = {"run", bundled.file.string(), "--out", out.string()};
+      words.insert(words.end(), changes.begin(), changes.end());
+      const ProgramRun run = test::hapbench(words);
+      EXPECT_EQ(run.status, 0) << bundled.name << ": " << run.err;
+      warnings.merge(warnings_in(run.err));
+    }
+    // Under the scenario's name, which becomes the directory's, and as deep, since paths in it are relative.
+    arguments.push_back((effective / (bundled.name + ".json")).string());
+    fs::create_hard_link(out / "scenario.effective.json", arguments.back());
   }
-  test::expect_recorded("scenario:", hashes);
-}
-
-/// Warnings about fields name the file that has them, whatever characters its path has.
-std::string without_files(const std::string& err) {
-  static const std::regex file(R"(warning: /[^\n]*?\.json: )");
-  return std::regex_replace(err, file, "warning: ");
-}
-
-/// Another process, and the scenario that the run wrote: neither changes a byte.
-TEST_F(BundledScenarios, GiveTheSameBytesAgainFromTheirEffectiveScenarios) {
-  for (const auto& [name, warnings] : shortened_runs()) {
-    const ProgramRun again = test::hapbench({"run", (directory("short") / name / "scenario.effective.json").string(),
-                                             "--out", (directory("again") / name).string()});
-    EXPECT_EQ(again.status, 0) << name << ": " << again.err;
-    EXPECT_EQ(without_files(again.err), without_files(warnings)) << name;
+  const ProgramRun run = test::run_program(test::hapbench_scalar_program(), arguments);
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(warnings_in(run.err), warnings);
+  test::expect_same_files(first, again, {"summary.json", "timing.json"});
+  std::uint64_t tested_first = 0, tested_again = 0, skipped = 0;
+  for (const BundledScenario& bundled : bundled_scenarios()) {
+    const Json a = Json::parse(test::read_file(first / bundled.name / "summary.json")),
+               b = Json::parse(test::read_file(again / bundled.name / "summary.json"));
+    EXPECT_EQ(summary_without_work(a), summary_without_work(b)) << bundled.name;
+    EXPECT_EQ(b["work"]["steps_skipped"], 0) << bundled.name;
+    EXPECT_EQ(b["work"]["lists_rebuilt"], 0) << bundled.name;
+    EXPECT_EQ(b["work"]["allocations"], a["work"]["allocations"]) << bundled.name;
+    tested_first += a["work"]["points_tested"].get<std::uint64_t>();
+    tested_again += b["work"]["points_tested"].get<std::uint64_t>();
+    skipped += a["work"]["steps_skipped"].get<std::uint64_t>();
   }
-  test::expect_same_files(directory("short"), directory("again"), {"timing.json"});
+  // There was something to skip.
+  EXPECT_LT(20 * tested_first, tested_again);
+  EXPECT_GT(skipped, 0u);
 }
 
-TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuild) {
-  shortened_runs();
-  run_shortened("scalar", test::hapbench_scalar_program());
-  test::expect_same_files(directory("short"), directory("scalar"), {"timing.json"});
+// What the commands besides `run` write, and what every algorithm makes of scenes of every kind.
+TEST(Commands, HaveTheNumbersOnRecord) {
+  const char* kShort = "time={\"step_s\":0.0005,\"steps\":600}";
+  const std::vector<std::pair<std::string, std::vector<std::string>>> commands = {
+      {"compare:peg", {"compare", "peg_in_hole_2d_shaped_stiffness"}},
+      {"compare:springs", {"compare", "springs_limited_shaped_stiffness"}},
+      {"compare:faces", {"compare", "parallel_faces"}},
+      {"compare:rotate", {"compare", "rotate_in_hole_proxy", "--set", kShort, "--set", "rendering.reduction={}"}},
+      {"compare:task1",
+       {"compare", "task1_flat_binary", "--set", kShort, "--set", "record.energy=true", "--set", "record.contacts=true",
+        "--set", "record.stiffness_tensor=true"}},
+      {"compare:trials",
+       {"compare", "rotational_peg_in_hole_original_averaging", "--set", kShort, "--set", "hand.trials=1"}},
+      {"sweep:peg",
+       {"sweep", "peg_in_hole_2d_shaped_stiffness", "--vary", "rendering.stiffness_N_per_m=1e3:1e5:4:log", "--vary",
+        "rendering.algorithm=mean,proxy", "--vary", "integrator.type=leapfrog,rk4,implicit_midpoint"}},
+      {"stability:limits", {"stability", "single_spring"}},
+      {"stability:maps",
+       {"stability", "--map", "all", "--algorithms", "shaped_stiffness,normal_projection", "--size", "3"}},
+      {"stability:integrators",
+       {"stability", "--map", "time_step", "--algorithms", "shaped_stiffness", "--integrators", "all", "--size", "3"}},
+      {"stability:stress", {"stability", "--stress", "--count", "3000"}},
+      {"stability:search", {"stability", "peg_in_hole_2d_shaped_stiffness", "--search", "--evaluations", "8"}},
+  };
+  const test::TemporaryDirectory directory;
+  test::expect_recorded(true, [&] {
+    test::NumbersByName numbers;
+    for (const auto& [name, words] : commands) {
+      std::vector<std::string> arguments = words;
+      const fs::path out = directory / name;
+      arguments.insert(arguments.end(), {"--out", out.string(), "--quiet"});
+      const ProgramRun run = test::hapbench(arguments);
+      // 3: a run that diverges, as summation does in places.
+      EXPECT_TRUE(run.status == 0 || run.status == 3) << name << ": " << run.err;
+      numbers[name] = test::numbers_below(out);
+    }
+    return numbers;
+  });
 }
 
 TEST(Trajectory, HasTheColumnsOfTheDesignInTheirOrder) {

@@ -12,7 +12,6 @@
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/studies/stability/classify.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "sim/loop/integrators/table.hpp"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/studies/precision/study.hpp"
+#include "scenarios/studies/precision/measure.hpp"
 
 namespace hapbench::test {
 

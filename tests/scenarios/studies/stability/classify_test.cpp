@@ -1,4 +1,4 @@
-#include "scenarios/studies/stability/classify.hpp"
+#include "scenarios/studies/stability/judged_run.hpp"
 
 #include <gtest/gtest.h>
 

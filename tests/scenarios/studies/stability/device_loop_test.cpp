@@ -1,9 +1,9 @@
-#include "scenarios/studies/stability/device_loop.hpp"
+#include "scenarios/studies/stability/stability_limits.hpp"
 
 #include <gtest/gtest.h>
 
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/studies/stability/map_scenes.hpp"
+#include "scenarios/studies/stability/stability_map.hpp"
 #include "sim/core/random.hpp"
 
 /// The linear loops against the simulation that scenarios are run by.

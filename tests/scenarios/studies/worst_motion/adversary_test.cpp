@@ -7,8 +7,6 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/studies/worst_motion/search_scene.hpp"
-#include "scenarios/studies/worst_motion/trajectory_draws.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 

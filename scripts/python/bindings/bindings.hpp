@@ -1,0 +1,36 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <functional>
+
+/// The parts of the compiled module.
+namespace hapbench {
+
+/// Calls `work` on a thread of its own, with the interpreter released, and waits for it. Several threads of Python may
+/// call it at once. While it waits, it handles signals and progress several times a second. `progress`: None for bars
+/// on a terminal, False for none, or a function of (label, done, total). Throws what `work` throws. An error of a
+/// Python law, of the progress function or of a signal handler, such as KeyboardInterrupt, ends the work and is raised;
+/// it also ends the work of other threads. Precondition: the interpreter is held.
+void supervise(const pybind11::object& progress, const std::function<void()>& work);
+
+/// Keeps the Python error that is set, unless one is kept already, and stops all work. Precondition: the interpreter is
+/// held.
+void stop_by_python_error();
+
+/// Raises the error that stop_by_python_error has kept, if any. Precondition: no supervised work is under way.
+void raise_python_error();
+
+/// True while supervised work is under way. Precondition: the interpreter is held.
+bool is_work_under_way();
+
+/// Makes loading of plugins and computing by another thread exclude each other.
+void guard_plugins();
+
+/// Adds the function that makes an algorithm of a Python function.
+void bind_force_laws(pybind11::module_& module);
+
+/// Adds the class Simulation.
+void bind_simulation(pybind11::module_& module);
+
+}  // namespace hapbench

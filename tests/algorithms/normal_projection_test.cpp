@@ -1,0 +1,379 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <map>
+
+#include "algorithms/depth/depth_model.hpp"
+#include "sim/contact/contact_query.hpp"
+#include "sim/geometry/analytic_shells.hpp"
+#include "sim/tool/tool_state.hpp"
+#include "tests/support/scale.hpp"
+#include "tests/support/tool_geometry.hpp"
+
+namespace hapbench::normal_projection_test {
+namespace {
+
+using test::Vec3L;
+
+double depth_at(const Cylinder& tool, const ToolPose& pose, const Vec3& point, const Vec3& normal) {
+  ContactBuffer contacts(1);
+  contacts.push(0, point, normal);
+  make_depth_model("normal_projection")->evaluate(tool, pose, contacts);
+  EXPECT_EQ(contacts.gradient(0), Vec3(-normal));
+  return contacts.depth[0];
+}
+
+/// Whether the search reports the point, as it does for every point a depth model sees.
+bool collides(const Cylinder& tool, const ToolPose& pose, const Vec3& point) {
+  const PointShell shell({{point, Vec3::UnitZ()}}, 0.0);
+  ShellQuery query(shell, tool);
+  ContactBuffer contacts(query.capacity());
+  query.contacts_at(pose, contacts);
+  return !contacts.empty();
+}
+
+class NormalProjectionDepthForTip : public testing::TestWithParam<Tip> {};
+INSTANTIATE_TEST_SUITE_P(BothTips, NormalProjectionDepthForTip, testing::Values(Tip::flat, Tip::round),
+                         [](const auto& tip) { return tip.param == Tip::flat ? "flat" : "round"; });
+
+/// Checks that the ray from the point against its normal leaves the tool after `depth`: there the slack is zero, and
+/// not yet before nor any more after. Slacks carry a few roundings of coordinates up to 1 m.
+void expect_exit(const Cylinder& tool, const ToolPose& pose, const Vec3& point, const Vec3& normal, double depth) {
+  constexpr long double rounding = 2e-15L;
+  const Vec3L x = point.cast<long double>(), u = -normal.cast<long double>();
+  const auto slack_at = [&](long double d) { return test::slack(tool, pose, x + d * u); };
+  ASSERT_GE(depth, 0.0);
+  ASSERT_LE(std::abs(slack_at(depth)), rounding);
+  // The slack is concave along the ray: inside half-way, and if the ray went on inside it would show a little later.
+  ASSERT_GE(slack_at(0.5L * depth), -rounding);
+  ASSERT_LE(slack_at(depth + 0.001L * tool.radius()), rounding);
+}
+
+TEST_P(NormalProjectionDepthForTip, IsWhereTheRayAgainstTheNormalLeavesTheTool) {
+  Random random(1);
+  for (std::size_t i = 0; i < test::cases(100000); ++i) {
+    const Cylinder tool = test::random_tool(random, GetParam());
+    const ToolPose pose = test::random_pose(random);
+    const Vec3 point = test::random_point_near(tool, pose, random);
+    if (test::slack(tool, pose, point.cast<long double>()) < 0.0L) continue;
+    const Vec3 normal = random.direction();
+    const double depth = depth_at(tool, pose, point, normal);
+    expect_exit(tool, pose, point, normal, depth);
+    // Marching along the ray by bisection, to the rounding of the slack over the rate at which it falls at the exit.
+    const long double marched = test::exit_along(tool, pose, point.cast<long double>(), -normal.cast<long double>());
+    const long double h = 1e-9L * tool.radius();
+    const long double rate =
+        -test::slack(tool, pose, point.cast<long double>() - (marched + h) * normal.cast<long double>()) / h;
+    ASSERT_NEAR(static_cast<double>(marched - depth), 0.0, static_cast<double>(2e-15L / rate));
+  }
+}
+
+TEST_P(NormalProjectionDepthForTip, ARayInwardsFromTheSurfaceCrossesTheTool) {
+  // Independent of the side of the surface to which rounding has moved the point.
+  Random random(2);
+  std::size_t inwards = 0;
+  for (std::size_t i = 0; i < test::cases(100000); ++i) {
+    const Cylinder tool = test::random_tool(random, GetParam());
+    const ToolPose pose = test::random_pose(random);
+    const Vec3 point = test::random_point_on(tool, pose, random);
+    const Vec3 normal = random.direction();
+    const Vec3L a_little_on = point.cast<long double>() - 0.001L * tool.radius() * normal.cast<long double>();
+    if (!collides(tool, pose, point) || test::slack(tool, pose, a_little_on) < 1e-12L) continue;
+    ++inwards;
+    const double depth = depth_at(tool, pose, point, normal);
+    ASSERT_GE(depth, 0.001 * tool.radius());
+    expect_exit(tool, pose, point, normal, depth);
+  }
+  EXPECT_GT(inwards, test::cases(100000) / 8);
+}
+
+TEST_P(NormalProjectionDepthForTip, HandlesRaysAlongAndAcrossTheAxis) {
+  // Rays for which the denominator of (F.7) or (F.12) is zero or nearly zero.
+  Random random(3);
+  for (std::size_t i = 0; i < test::cases(20000); ++i) {
+    const Cylinder tool = test::random_tool(random, GetParam());
+    const ToolPose pose{Vec3::Zero(), random.uniform() < 0.5 ? Vec3(0, 0, -1) : Vec3(1, 0, 0)};
+    const Vec3 point = test::random_point_near(tool, pose, random);
+    if (test::slack(tool, pose, point.cast<long double>()) < 0.0L) continue;
+    const double tiny = std::pow(10.0, random.uniform(-18.0, -3.0));
+    for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(0, 1, 0)}) {
+      expect_exit(tool, pose, point, direction, depth_at(tool, pose, point, direction));
+      const Vec3 nearly = (direction + tiny * random.direction()).normalized();
+      expect_exit(tool, pose, point, nearly, depth_at(tool, pose, point, nearly));
+    }
+  }
+}
+
+// Dyadic sizes and a pose along the axes, so that the closed forms are exact.
+constexpr double kUnit = 0x1p-13;
+const ToolPose kPose{Vec3::Zero(), {0, 0, -1}};
+
+TEST(NormalProjectionDepth, LeavesTheFlatToolThroughTheNearestSurfaceOnItsWay) {
+  const Cylinder tool{4 * kUnit, 16 * kUnit, Tip::flat};
+  const Vec3 point(kUnit, 0, 3 * kUnit);  // 3 units above the tip plane
+  EXPECT_EQ(depth_at(tool, kPose, point, {-1, 0, 0}), 3 * kUnit) << "side, forwards";
+  EXPECT_EQ(depth_at(tool, kPose, point, {1, 0, 0}), 5 * kUnit) << "side, across the axis";
+  EXPECT_EQ(depth_at(tool, kPose, point, {0, 0, 1}), 3 * kUnit) << "tip";
+  EXPECT_EQ(depth_at(tool, kPose, point, {0, 0, -1}), 13 * kUnit) << "bottom";
+}
+
+TEST(NormalProjectionDepth, LeavesTheRoundToolThroughTheHalfBall) {
+  const Cylinder tool{5 * kUnit, 16 * kUnit, Tip::round};
+  // Down along x = 3 units from 3 units above the tip plane: the ball is 4 units below it there.
+  EXPECT_EQ(depth_at(tool, kPose, {3 * kUnit, 0, 3 * kUnit}, {0, 0, 1}), 7 * kUnit);
+  // From inside the ball sideways, at 4 units below the plane: 3 units to its surface.
+  EXPECT_EQ(depth_at(tool, kPose, {0, 0, -4 * kUnit}, {-1, 0, 0}), 3 * kUnit);
+  // From inside the ball upwards: through the plane, which is no surface, to the bottom.
+  EXPECT_EQ(depth_at(tool, kPose, {kUnit, 0, -2 * kUnit}, {0, 0, -1}), 18 * kUnit);
+}
+
+TEST(NormalProjectionDepth, OnlyPositiveExitsCount) {
+  // The minimal positive value, thesis F.1: a point exactly on a surface whose ray points outwards there has passed it
+  // already. It meets the next surface of (F.7), (F.9), (F.12) instead, beyond the body, or none.
+  const Cylinder tool{4 * kUnit, 16 * kUnit, Tip::flat};
+  EXPECT_EQ(depth_at(tool, kPose, {4 * kUnit, 0, 8 * kUnit}, {-1, 0, 0}), 0.0) << "side, straight out: none left";
+  EXPECT_EQ(depth_at(tool, kPose, {kUnit, 0, 0}, {0, 0, 1}), 0.0) << "tip, straight out: none left";
+  // From the tip plane downwards along 3 : 4, the infinite side wall is met after 5 units sideways 3.
+  EXPECT_NEAR(depth_at(tool, kPose, {kUnit, 0, 0}, {-0.6, 0, 0.8}), 5 * kUnit, 4e-16 * kUnit * 16);
+}
+
+TEST(NormalProjectionDepth, IsNeverLongerThanTheTool) {
+  // Points in the tip plane with rays almost along the axis meet the infinite side wall r / sin(angle) away.
+  for (const Tip tip : {Tip::flat, Tip::round}) {
+    const Cylinder tool{4 * kUnit, 16 * kUnit, tip};
+    const double longest = tool.length() + 3.0 * tool.radius();  // beyond the longest way through the body
+    for (double angle = 1.0; angle > 1e-18; angle *= 0.5) {
+      for (const double down : {1.0, -1.0}) {
+        const Vec3 normal(-std::sin(angle), 0, down * std::cos(angle));
+        for (const double height : {0.0, 16 * kUnit}) {
+          const double depth = depth_at(tool, kPose, {kUnit, 0, height}, normal);
+          EXPECT_GE(depth, 0.0);
+          EXPECT_LE(depth, longest) << "angle " << angle << ", height " << height;
+        }
+      }
+    }
+  }
+}
+
+TEST(NormalProjectionDepth, GrowsPastTheRadiusWhereSurfaceNormalSaturates) {
+  // Thesis F.1: on a flat the depth is what the tool is pressed in by.
+  for (const double pressed : {0.0001, 0.0004, 0.002, 0.005}) {
+    EXPECT_EQ(depth_at(Cylinder{}, {{0, 0, -pressed}, {0, 0, -1}}, Vec3::Zero(), Vec3::UnitZ()), pressed);
+  }
+}
+
+TEST(NormalProjectionDepth, OfAZeroNormalIsZero) {
+  EXPECT_EQ(depth_at(Cylinder{}, kPose, {0, 0, 0.001}, Vec3::Zero()), 0.0);
+}
+
+/// Rounding of coordinates up to 1 m in a few operations [m].
+constexpr double kRounding = 4e-15;
+
+/// Depths of a colliding point in one step [m].
+struct Depths {
+  double continuous = 0.0;
+  double shortest = 0.0;
+  double projected = 0.0;
+};
+
+/// A tool led through points, step by step.
+class Stroke {
+ public:
+  Stroke(const Cylinder& tool, const std::vector<SurfacePoint>& points)
+      : tool_(tool), shell_(points, 0.0), query_(shell_, tool_), contacts_(query_.capacity()) {
+    model_->prepare(shell_);
+    model_->reset();
+  }
+
+  /// Moves the tool and returns the depths by index of the point.
+  std::map<std::uint32_t, Depths> to(const ToolPose& pose) {
+    query_.contacts_at(pose, contacts_);
+    std::map<std::uint32_t, Depths> depths;
+    std::vector<double> exits(contacts_.size());
+    for (std::size_t i = 0; i < contacts_.size(); ++i) contacts_.set_gradient(i, -contacts_.normal(i));
+    tool_.shortest_depths(pose, contacts_);
+    tool_.exit_distances(pose, contacts_, exits.data());
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      depths[contacts_.index[i]] = {0.0, contacts_.depth[i], exits[i]};
+    }
+    model_->evaluate(tool_, pose, contacts_);
+    for (std::size_t i = 0; i < contacts_.size(); ++i) depths[contacts_.index[i]].continuous = contacts_.depth[i];
+    return depths;
+  }
+
+ private:
+  Cylinder tool_;
+  PointShell shell_;
+  ShellQuery query_;
+  ContactBuffer contacts_;
+  std::unique_ptr<DepthModel> model_ = make_depth_model("continuous_normal_projection");
+};
+
+ToolPose upright(double x, double z) {
+  return {{x, 0.0, z}, {0.0, 0.0, -1.0}};
+}
+
+/// A random walk of a random tool among random points.
+class RandomStroke {
+ public:
+  static constexpr double kMove = 1e-5, kTurn = 0.01;  ///< largest in a step [m, rad]
+
+  explicit RandomStroke(std::uint64_t seed) : random_(seed) {}
+
+  const ToolPose& next() {
+    pose_.position += kMove * random_.uniform() * random_.direction();
+    const Vec3 turn = kTurn * random_.uniform() * random_.direction();
+    pose_.axis = (pose_.axis + turn.cross(pose_.axis)).normalized();
+    return pose_;
+  }
+  std::vector<SurfacePoint> points() {
+    std::vector<SurfacePoint> points;
+    for (int i = 0; i < 100; ++i)
+      points.push_back({test::random_point_near(tool, pose_, random_), random_.direction()});
+    return points;
+  }
+
+ private:
+  Random random_;
+  ToolPose pose_ = test::random_pose(random_);
+
+ public:
+  const Cylinder tool = test::random_tool(random_, random_.uniform() < 0.5 ? Tip::flat : Tip::round);
+};
+
+TEST(ContinuousNormalProjectionDepth, StartsAtTheShortestDistance) {
+  for (std::uint64_t seed = 0; seed < test::cases(300); ++seed) {
+    RandomStroke walk(seed);
+    for (const auto& [i, d] : Stroke(walk.tool, walk.points()).to(walk.next())) {
+      ASSERT_NEAR(d.continuous, std::max(0.0, d.shortest), kRounding);
+    }
+  }
+}
+
+TEST(ContinuousNormalProjectionDepth, IsBetweenShortestDistanceAndNormalProjection) {
+  std::size_t at_the_least = 0, at_the_most = 0, between = 0;
+  for (std::uint64_t seed = 0; seed < test::cases(300); ++seed) {
+    RandomStroke walk(seed);
+    Stroke stroke(walk.tool, walk.points());
+    for (int step = 0; step < 50; ++step) {
+      for (const auto& [i, d] : stroke.to(walk.next())) {
+        ASSERT_GE(d.continuous, d.shortest - kRounding);
+        ASSERT_LE(d.continuous, d.projected);
+        at_the_least += d.continuous == d.shortest;
+        at_the_most += d.continuous == d.projected;
+        between += d.continuous > d.shortest && d.continuous < d.projected;
+      }
+    }
+  }
+  // All cases of the formula have occurred.
+  for (const std::size_t count : {at_the_least, at_the_most, between}) EXPECT_GT(count, test::cases(300));
+}
+
+TEST(ContinuousNormalProjectionDepth, GrowsByNoMoreThanTheToolHasMovedAtThePoint) {
+  double largest_jump_of_projection = 0.0;
+  for (std::uint64_t seed = 0; seed < test::cases(300); ++seed) {
+    RandomStroke walk(seed);
+    const std::vector<SurfacePoint> points = walk.points();
+    Stroke stroke(walk.tool, points);
+    ToolPose before = walk.next();
+    auto last = stroke.to(before);
+    for (int step = 0; step < 50; ++step) {
+      const ToolPose pose = walk.next();
+      const Vec3 turned = turn(before.axis, pose.axis);
+      const auto now = stroke.to(pose);
+      for (const auto& [i, d] : now) {
+        const Vec3 arm = points[i].position - pose.position;
+        const double moved = (pose.position - before.position + turned.cross(arm)).norm();
+        // dx is exact to first order in the turn; the second order is |turn|^2 |arm| / 2.
+        const double bound = moved + 0.5 * turned.squaredNorm() * arm.norm() + kRounding;
+        const Depths was = last.contains(i) ? last[i] : Depths{};
+        ASSERT_LE(d.continuous - was.continuous, bound);
+        largest_jump_of_projection = std::max(largest_jump_of_projection, d.projected - was.projected);
+      }
+      last = now;
+      before = pose;
+    }
+  }
+  // Plain normal projection jumps by more than the longest motion in a step, the turn of a tool of 10 mm.
+  EXPECT_GT(largest_jump_of_projection, RandomStroke::kMove + RandomStroke::kTurn * 0.012);
+}
+
+TEST(ContinuousNormalProjectionDepth, AFlatTipPressedInIsAsDeepAsItsTip) {
+  // Up to twice the radius, far beyond the saturation of the shortest distance. Each step rounds lengths below 2 mm.
+  Stroke stroke(Cylinder{}, surface_points(Plane{0.002, 0.0001}));
+  for (int step = 0; step <= 1000; ++step) {
+    const double depth = 1e-6 * step;
+    for (const auto& [i, d] : stroke.to(upright(0.00001, -depth))) {
+      ASSERT_EQ(d.projected, depth);
+      ASSERT_NEAR(d.continuous, depth, 1e-15);
+    }
+  }
+}
+
+TEST(ContinuousNormalProjectionDepth, ATippedOverToolPressedAcrossFollowsToWithinAStep) {
+  // A tool that lies on the plane goes down through it by 0.95 of its diameter. A point is found at most one step after
+  // the surface has passed it; then its depth grows with the motion.
+  constexpr double kStep = 1e-6;
+  const Cylinder tool;
+  Stroke stroke(tool, surface_points(Plane{0.002, 0.00013}));
+  double saturated = 0.0;
+  for (int step = 0; step <= 950; ++step) {
+    for (const auto& [i, d] : stroke.to({{0.005, 0.0, tool.radius() - kStep * step}, Vec3::UnitX()})) {
+      ASSERT_LE(d.projected - d.continuous, kStep + 1e-15);
+      saturated = std::max(saturated, d.continuous - d.shortest);
+    }
+  }
+  // Beyond the median line, 0.95 of the diameter deep, the other side is a twentieth away.
+  EXPECT_NEAR(saturated, 0.9 * 2.0 * tool.radius(), 2 * kStep);
+}
+
+TEST(ContinuousNormalProjectionDepth, UnderAFaceEnteredSidewaysItIsTheLargestShortestDistanceSoFar) {
+  // Fig. F.4: an upright tool 1 mm below a face is led in under it.
+  Stroke stroke(Cylinder{}, {{{0.0, 0.00003, 0.0}, Vec3::UnitZ()}});
+  double largest = 0.0;
+  int steps = 0;
+  for (double x = -0.0006; x < 0.0004; x += 1e-6) {
+    for (const auto& [i, d] : stroke.to(upright(x, -0.001))) {
+      largest = std::max(largest, d.shortest);
+      ASSERT_EQ(d.projected, 0.001);
+      ASSERT_NEAR(d.continuous, largest, 1e-18);
+      ++steps;
+    }
+  }
+  EXPECT_GT(steps, 800);
+  EXPECT_GT(largest, 0.0004);
+}
+
+TEST(ContinuousNormalProjectionDepth, APointThatHasLeftIsForgotten) {
+  Stroke stroke(Cylinder{}, {{{0.0, 0.0, 0.0}, Vec3::UnitZ()}});
+  for (int step = 0; step <= 700; ++step) stroke.to(upright(0.0, -1e-6 * step));
+  EXPECT_NEAR(stroke.to(upright(0.0, -0.0007))[0].continuous, 0.0007, 1e-15);
+  EXPECT_TRUE(stroke.to(upright(0.001, -0.0007)).empty());
+  EXPECT_NEAR(stroke.to(upright(0.0004, -0.0007))[0].continuous, 0.0001, 1e-15);
+}
+
+TEST(ContinuousNormalProjectionDepth, PressingFromThereCountsOnTop) {
+  // Entered from the side to 0.1 mm, then 0.3 mm down and up again: 0.1 mm more than the way, and back.
+  Stroke stroke(Cylinder{}, {{{0.0, 0.0, 0.0}, Vec3::UnitZ()}});
+  stroke.to(upright(0.001, -0.0007));
+  stroke.to(upright(0.0004, -0.0007));
+  EXPECT_NEAR(stroke.to(upright(0.0004, -0.0010))[0].continuous, 0.0004, 1e-15);
+  EXPECT_NEAR(stroke.to(upright(0.0004, -0.0008))[0].continuous, 0.0002, 1e-15);
+  EXPECT_NEAR(stroke.to(upright(0.0004, -0.0005))[0].continuous, 0.0001, 1e-15) << "not below the shortest distance";
+  EXPECT_NEAR(stroke.to(upright(0.0004, -0.00005))[0].continuous, 0.00005, 1e-15) << "nor above the projection";
+}
+
+TEST(ContinuousNormalProjectionDepth, DoesNotCreepAtRest) {
+  RandomStroke walk(1);
+  Stroke stroke(walk.tool, walk.points());
+  for (int step = 0; step < 50; ++step) stroke.to(walk.next());
+  const ToolPose pose = walk.next();
+  const auto first = stroke.to(pose);
+  for (int step = 0; step < 1000; ++step) {
+    for (const auto& [i, d] : stroke.to(pose)) ASSERT_EQ(d.continuous, first.at(i).continuous);
+  }
+}
+
+}  // namespace
+}  // namespace hapbench::normal_projection_test

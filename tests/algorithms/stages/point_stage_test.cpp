@@ -1,0 +1,386 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <numbers>
+#include <set>
+#include <stdexcept>
+
+#include "algorithms/stages/point_stage.hpp"
+#include "sim/contact/contact_query.hpp"
+#include "tests/support/bits.hpp"
+#include "tests/support/contact_sets.hpp"
+#include "tests/support/fakes.hpp"
+
+namespace hapbench::point_stage_test {
+namespace {
+
+/// A stage prepared for a scene of up to `points` contacts.
+std::unique_ptr<PointStage> reduction(const ReductionConfig& config, std::size_t points) {
+  auto stage = make_gradient_reduction(config);
+  stage->prepare({.capacity = points});
+  stage->reset();
+  return stage;
+}
+
+ContactBuffer reduced(const ReductionConfig& config, ContactBuffer contacts) {
+  reduction(config, contacts.size())->process(contacts);
+  return contacts;
+}
+
+std::vector<std::uint32_t> indices(const ContactBuffer& contacts) {
+  return {contacts.index.begin(), contacts.index.begin() + static_cast<std::ptrdiff_t>(contacts.size())};
+}
+
+/// The algorithm of thesis C.3 with its errata (see the source), in the given visiting order.
+struct Reference {
+  std::vector<std::size_t> kept;
+  std::uint64_t dropped = 0;
+
+  Reference(const ReductionConfig& config, const ContactBuffer& c, const std::vector<std::size_t>& order) {
+    for (const std::size_t i : order) {
+      const auto similar = std::find_if(kept.begin(), kept.end(), [&](std::size_t k) {
+        return c.ux[i] * c.ux[k] + c.uy[i] * c.uy[k] + c.uz[i] * c.uz[k] > config.threshold;
+      });
+      if (similar != kept.end()) {
+        if (c.depth[i] > c.depth[*similar]) *similar = i;
+      } else if (kept.size() < config.max_points) {
+        kept.push_back(i);
+      } else {
+        ++dropped;
+      }
+    }
+  }
+};
+
+TEST(GradientReduction, IsTheAlgorithmOfTheThesisOnRandomSets) {
+  Random random(1);
+  for (const auto& family : test::gradient_families()) {
+    for (int i = 0; i < 30; ++i) {
+      const auto gradients = family.draw(random, 2 + random.below(300));
+      const ContactBuffer contacts = test::contacts_of(gradients, test::random_depths(random, gradients.size()));
+      std::vector<std::size_t> ascending(contacts.size());
+      for (std::size_t k = 0; k < ascending.size(); ++k) ascending[k] = k;
+      const ReductionConfig config{random.uniform(0.5, 1.0), 1 + random.below(40), {}};
+
+      const Reference expected(config, contacts, ascending);
+      ContactBuffer actual = contacts;
+      const auto stage = reduction(config, contacts.size());
+      stage->process(actual);
+      ASSERT_EQ(actual.size(), expected.kept.size()) << family.name;
+      for (std::size_t k = 0; k < actual.size(); ++k) {
+        ASSERT_EQ(actual.index[k], contacts.index[expected.kept[k]]) << family.name;
+        ASSERT_EQ(actual.depth[k], contacts.depth[expected.kept[k]]);
+        ASSERT_EQ(actual.gradient(k), contacts.gradient(expected.kept[k]));
+      }
+      ASSERT_EQ(stage->dropped(), expected.dropped) << family.name;
+    }
+  }
+}
+
+TEST(GradientReduction, KeepsTheDeepestOfSimilarContacts) {
+  const std::vector<Vec3> same(4, Vec3::UnitX());
+  const ContactBuffer contacts = reduced({}, test::contacts_of(same, {2.0, 1.0, 5.0, 3.0}));
+  EXPECT_EQ(indices(contacts), std::vector<std::uint32_t>{2});
+  EXPECT_EQ(contacts.depth[0], 5.0);
+}
+
+TEST(GradientReduction, OfEquallyDeepContactsTheFirstStays) {
+  const std::vector<Vec3> same(3, Vec3::UnitX());
+  EXPECT_EQ(indices(reduced({}, test::contacts_of(same, {2.0, 2.0, 2.0}))), std::vector<std::uint32_t>{0});
+}
+
+TEST(GradientReduction, InnerProductsEqualToTheThresholdAreNotSimilar) {
+  // <u_0, u_1> = 0.5 exactly.
+  const std::vector<Vec3> gradients = {{1, 0, 0}, {0.5, std::sqrt(0.75), 0}};
+  EXPECT_EQ(reduced({0.5, 100, {}}, test::contacts_of(gradients)).size(), 2u);
+  EXPECT_EQ(reduced({std::nextafter(0.5, 0.0), 100, {}}, test::contacts_of(gradients)).size(), 1u);
+}
+
+TEST(GradientReduction, TheFirstSimilarKeptContactAbsorbsEvenIfALaterOneIsMoreSimilar) {
+  // The third lies between the first two and is similar to both, nearer to the second.
+  const auto at = [](double degrees) {
+    return Vec3(std::cos(degrees * std::numbers::pi / 180), std::sin(degrees * std::numbers::pi / 180), 0);
+  };
+  const ContactBuffer contacts = reduced({std::cos(10 * std::numbers::pi / 180), 100, {}},
+                                         test::contacts_of({at(0), at(12), at(8)}, {1.0, 1.0, 7.0}));
+  EXPECT_EQ(indices(contacts), (std::vector<std::uint32_t>{2, 1}));
+}
+
+TEST(GradientReduction, AReplacementIsComparedWithFromThenOn) {
+  // The first is replaced by the second, 8 degrees on; the third is similar to the second only.
+  const auto at = [](double degrees) {
+    return Vec3(std::cos(degrees * std::numbers::pi / 180), std::sin(degrees * std::numbers::pi / 180), 0);
+  };
+  const ContactBuffer contacts = reduced({std::cos(10 * std::numbers::pi / 180), 100, {}},
+                                         test::contacts_of({at(0), at(8), at(16)}, {1.0, 2.0, 1.5}));
+  EXPECT_EQ(indices(contacts), std::vector<std::uint32_t>{1});
+}
+
+TEST(GradientReduction, ContactsBeyondMaxPointsAreDroppedAndCountedUntilReset) {
+  const ContactBuffer contacts =
+      test::contacts_of({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {1, 0, 0}}, {1, 1, 1, 1, 3});
+  const auto stage = reduction({0.995, 2, {}}, 5);
+  for (int step = 1; step <= 3; ++step) {
+    ContactBuffer actual = contacts;
+    stage->process(actual);
+    // The last contact is absorbed by the first although the buffer is full.
+    EXPECT_EQ(indices(actual), (std::vector<std::uint32_t>{4, 1}));
+    EXPECT_EQ(stage->dropped(), 2u * static_cast<unsigned>(step));
+  }
+  stage->reset();
+  EXPECT_EQ(stage->dropped(), 0u);
+}
+
+TEST(GradientReduction, LeavesASingleContactAndNoneAlone) {
+  ContactBuffer one = test::contacts_of({Vec3::UnitX()}, {2.0});
+  const std::uint64_t before = test::hash_of(one);
+  const auto stage = reduction({}, 1);
+  stage->process(one);
+  EXPECT_EQ(test::hash_of(one), before);
+  ContactBuffer none = test::contacts_of({});
+  stage->process(none);
+  EXPECT_TRUE(none.empty());
+}
+
+TEST(GradientReduction, PadsTheKeptContacts) {
+  const ContactBuffer contacts = reduced({}, test::contacts_of(std::vector<Vec3>(8, Vec3::UnitX())));
+  ASSERT_EQ(contacts.size(), 1u);
+  for (std::size_t i = 1; i < 8; ++i) {
+    EXPECT_EQ(contacts.depth[i], 0.0);
+    EXPECT_EQ(contacts.gradient(i), Vec3(0, 0, 0));
+  }
+}
+
+/// Gradients no two of which are similar, so that the reduction keeps all of them in its visiting order.
+ContactBuffer dissimilar(std::size_t n) {
+  std::vector<Vec3> gradients;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double a = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n);
+    gradients.push_back({std::cos(a), std::sin(a), 0});
+  }
+  return test::contacts_of(gradients);
+}
+
+std::vector<std::uint32_t> visiting_order(std::uint64_t seed, std::size_t n) {
+  const ReductionConfig config{0.9999999, n, seed};
+  return indices(reduced(config, dissimilar(n)));
+}
+
+TEST(GradientReduction, AShuffleVisitsEveryPointInAnOrderFixedByItsSeed) {
+  const auto order = visiting_order(7, 100);
+  EXPECT_EQ(std::set<std::uint32_t>(order.begin(), order.end()).size(), 100u);
+  EXPECT_FALSE(std::is_sorted(order.begin(), order.end()));
+  EXPECT_EQ(order, visiting_order(7, 100));
+  EXPECT_NE(order, visiting_order(8, 100));
+}
+
+TEST(GradientReduction, AShuffledOrderIsOneOfTheShellsPointsNotOfTheStepsContacts) {
+  // The order of two points does not depend on other contacts.
+  const auto order = visiting_order(7, 100);
+  const ContactBuffer all = dissimilar(100);
+  const auto stage = reduction({0.9999999, 100, 7}, 100);
+  Random random(2);
+  for (int step = 0; step < 50; ++step) {
+    ContactBuffer some(100);
+    for (std::size_t i = 0; i < 100; ++i) {
+      if (random.uniform() < 0.3) some.push_copy_of(all, i);
+    }
+    some.pad();
+    std::vector<std::uint32_t> expected;
+    for (const std::uint32_t i : order) {
+      const auto present = indices(some);
+      if (std::find(present.begin(), present.end(), i) != present.end()) expected.push_back(i);
+    }
+    stage->process(some);
+    ASSERT_EQ(indices(some), expected);
+  }
+}
+
+TEST(GradientReduction, AShuffledReductionIsTheAlgorithmInTheShuffledOrder) {
+  Random random(3);
+  const auto order = visiting_order(11, 200);
+  for (int i = 0; i < 30; ++i) {
+    std::vector<Vec3> gradients(200);
+    for (Vec3& u : gradients) u = random.direction();
+    const ContactBuffer contacts = test::contacts_of(gradients, test::random_depths(random, 200));
+    const ReductionConfig config{0.9, 30, 11};
+    const Reference expected(config, contacts, {order.begin(), order.end()});
+    const ContactBuffer actual = reduced(config, contacts);
+    ASSERT_EQ(actual.size(), expected.kept.size());
+    for (std::size_t k = 0; k < actual.size(); ++k) {
+      ASSERT_EQ(actual.index[k], expected.kept[k]);
+      ASSERT_EQ(actual.depth[k], contacts.depth[expected.kept[k]]);
+    }
+  }
+}
+
+constexpr double kCell = 0.001;
+
+/// A contact of a test.
+struct Contact {
+  double x;  ///< position along the x axis, in cells
+  double depth;
+  Vec3 gradient;
+};
+
+/// The contacts of a shell of these points after the stage.
+class LocalAverage : public testing::Test {
+ protected:
+  ContactBuffer averaged(const std::vector<Contact>& all, const std::vector<std::uint32_t>& colliding) {
+    prepare(all);
+    return process(all, colliding);
+  }
+
+  void prepare(const std::vector<Contact>& all) {
+    std::vector<SurfacePoint> points;
+    for (const Contact& c : all) points.push_back({{c.x * kCell, 0, 0}, -c.gradient});
+    shell_ = std::make_unique<PointShell>(points, kCell);
+    stage_ = make_local_average();
+    stage_->prepare({.shell = shell_.get()});
+  }
+
+  ContactBuffer process(const std::vector<Contact>& all, const std::vector<std::uint32_t>& colliding) {
+    ContactBuffer contacts(all.size());
+    for (const std::uint32_t i : colliding) {
+      const std::size_t k = contacts.size();
+      contacts.push(i, shell_->point(i).position, shell_->point(i).normal);
+      contacts.depth[k] = all[i].depth;
+      contacts.set_gradient(k, all[i].gradient);
+    }
+    contacts.pad();
+    stage_->process(contacts);
+    return contacts;
+  }
+
+  std::unique_ptr<PointShell> shell_;
+  std::unique_ptr<PointStage> stage_;
+};
+
+// One rounding of a product, a sum, a division and a norm.
+constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
+
+TEST_F(LocalAverage, MergesContactsOfACellIntoTheMeanOfTheirDepthVectors) {
+  const std::vector<Contact> all = {{0.0, 3.0, {1, 0, 0}}, {0.2, 4.0, {0, 1, 0}}};
+  const ContactBuffer contacts = averaged(all, {0, 1});
+  ASSERT_EQ(contacts.size(), 1u);
+  // Mean of (3, 0, 0) and (0, 4, 0): length 5/2, direction (3, 4)/5.
+  EXPECT_NEAR(contacts.depth[0], 2.5, kRounding * 2.5);
+  EXPECT_LE((contacts.gradient(0) - Vec3(0.6, 0.8, 0)).norm(), kRounding);
+}
+
+TEST_F(LocalAverage, KeepsContactsOfDifferentCellsApart) {
+  const std::vector<Contact> all = {{0.0, 3.0, {1, 0, 0}}, {1.0, 4.0, {0, 1, 0}}};
+  const ContactBuffer contacts = averaged(all, {0, 1});
+  ASSERT_EQ(contacts.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(contacts.index[i], i);
+    EXPECT_EQ(contacts.depth[i], all[i].depth);
+    EXPECT_EQ(contacts.gradient(i), all[i].gradient);
+  }
+}
+
+TEST_F(LocalAverage, CountsOnlyCollidingPointsOfACell) {
+  const std::vector<Contact> all = {{0.0, 2.0, {1, 0, 0}}, {0.1, 9.0, {1, 0, 0}}, {0.2, 4.0, {1, 0, 0}}};
+  const ContactBuffer contacts = averaged(all, {0, 2});
+  ASSERT_EQ(contacts.size(), 1u);
+  EXPECT_EQ(contacts.depth[0], 3.0);
+}
+
+TEST_F(LocalAverage, KeepsIndexPointAndNormalOfTheCellsFirstContact) {
+  const std::vector<Contact> all = {{1.0, 1.0, {0, 0, 1}}, {0.1, 2.0, {1, 0, 0}}, {0.2, 4.0, {0, 1, 0}}};
+  const ContactBuffer contacts = averaged(all, {0, 1, 2});
+  ASSERT_EQ(contacts.size(), 2u);
+  EXPECT_EQ(contacts.index[1], 1u);
+  EXPECT_EQ(contacts.point(1), Vec3(0.1 * kCell, 0, 0));
+  EXPECT_EQ(contacts.normal(1), Vec3(-1, 0, 0));
+}
+
+TEST_F(LocalAverage, DropsACellWhoseDepthVectorsCancel) {
+  const std::vector<Contact> all = {
+      {0.0, 2.0, {1, 0, 0}}, {0.1, 2.0, {-1, 0, 0}}, {1.0, 5.0, {0, 0, 1}}, {2.0, 0.0, {0, 1, 0}}};
+  const ContactBuffer contacts = averaged(all, {0, 1, 2, 3});
+  ASSERT_EQ(contacts.size(), 1u);
+  EXPECT_EQ(contacts.index[0], 2u);
+}
+
+TEST_F(LocalAverage, MayLeaveNoContact) {
+  EXPECT_TRUE(averaged({{0.0, 2.0, {1, 0, 0}}, {0.1, 2.0, {-1, 0, 0}}}, {0, 1}).empty());
+  EXPECT_TRUE(averaged({{0.0, 2.0, {1, 0, 0}}}, {}).empty());
+}
+
+TEST_F(LocalAverage, PadsTheMergedContacts) {
+  const std::vector<Contact> all(8, {0.0, 3.0, {1, 0, 0}});
+  const ContactBuffer contacts = averaged(all, {0, 1, 2, 3, 4, 5, 6, 7});
+  ASSERT_EQ(contacts.size(), 1u);
+  for (std::size_t i = 1; i < 8; ++i) {
+    EXPECT_EQ(contacts.depth[i], 0.0);
+    EXPECT_EQ(contacts.gradient(i), Vec3(0, 0, 0));
+  }
+}
+
+TEST_F(LocalAverage, EqualsAStraightforwardMeanOnRandomContactsStepAfterStep) {
+  Random random(1);
+  constexpr std::uint32_t n = 200;
+  std::vector<Contact> all;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    all.push_back({random.uniform(0.0, 30.0), random.uniform(0.1, 1.0), random.direction()});
+  }
+  prepare(all);
+  const std::vector<std::uint32_t> cell = shell_->cell_of_points();
+  // Several steps with one stage, which must not keep anything of a step.
+  for (int step = 0; step < 20; ++step) {
+    std::vector<std::uint32_t> colliding;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      if (random.uniform() < 0.5) colliding.push_back(i);
+    }
+    const ContactBuffer contacts = process(all, colliding);
+
+    std::map<std::uint32_t, std::pair<Vec3, double>> sums;
+    std::vector<std::uint32_t> order;
+    for (const std::uint32_t i : colliding) {
+      if (!sums.contains(cell[i])) order.push_back(cell[i]);
+      auto& [sum, count] = sums.try_emplace(cell[i], Vec3::Zero(), 0.0).first->second;
+      sum += all[i].depth * all[i].gradient;
+      count += 1.0;
+    }
+    ASSERT_EQ(contacts.size(), sums.size());
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+      EXPECT_EQ(cell[contacts.index[k]], order[k]) << "cells keep the order of their first contact";
+      const auto& [sum, count] = sums.at(order[k]);
+      EXPECT_LE((contacts.depth[k] * contacts.gradient(k) - sum / count).norm(), 4 * kRounding);
+      EXPECT_NEAR(contacts.gradient(k).norm(), 1.0, kRounding);
+    }
+  }
+}
+
+TEST_F(LocalAverage, MergesTheCellsThatAShellWasListedBy) {
+  // Two cells that share their vertices, so that positions do not determine the cell.
+  const Vec3 a(0, 0, 0), b(0, kCell, 0);
+  shell_ = std::make_unique<PointShell>(std::vector<SurfacePoint>{{a}, {b}, {a}, {b}}, kCell,
+                                        std::vector<std::uint32_t>{0, 0, 1, 1});
+  stage_ = make_local_average();
+  stage_->prepare({.shell = shell_.get()});
+  const std::vector<Contact> all = {{0, 3.0, {1, 0, 0}}, {0, 4.0, {0, 1, 0}}, {0, 3.0, {1, 0, 0}}, {0, 4.0, {0, 1, 0}}};
+  const ContactBuffer both = process(all, {0, 1, 2, 3});
+  ASSERT_EQ(both.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(both.index[i], 2 * i);
+    EXPECT_NEAR(both.depth[i], 2.5, kRounding * 2.5);
+    EXPECT_LE((both.gradient(i) - Vec3(0.6, 0.8, 0)).norm(), kRounding);
+  }
+  const ContactBuffer one_each = process(all, {1, 2});
+  ASSERT_EQ(one_each.size(), 2u);
+  EXPECT_EQ(one_each.depth[0], 4.0);
+  EXPECT_EQ(one_each.depth[1], 3.0);
+}
+
+TEST_F(LocalAverage, RefusesScenesWithoutAGrid) {
+  const auto stage = make_local_average();
+  EXPECT_THROW(stage->prepare({}), std::invalid_argument);
+  const PointShell without_grid({}, 0.0);
+  EXPECT_THROW(stage->prepare({.shell = &without_grid}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace hapbench::point_stage_test

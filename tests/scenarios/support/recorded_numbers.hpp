@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+
+/// The numbers on record, in tests/data/numbers.txt: a line "name state_hash tables_hash" for each bundled scenario and
+/// for some commands. They show that a change of the code has changed no number; no text is in them. They hold on every
+/// x86-64 and for every compiler. The C library computes sines and exponentials in another way on processors without
+/// fused multiply-add: where that shows, both hashes of such a processor follow in the line.
+///
+/// Where a change is meant to change numbers, this renews the record, to be committed with it:
+///
+///     HAPBENCH_RENEW_NUMBERS=1 build/release/bin/program_test --gtest_filter='*OnRecord*'
+namespace hapbench::test {
+
+struct RecordedNumbers {
+  std::string state;   ///< state_hash of summary.json; "-" for results of several runs
+  std::string tables;  ///< hash of the bits of all numbers in tables, headers and words left out
+  bool operator==(const RecordedNumbers&) const = default;
+};
+using NumbersByName = std::map<std::string, RecordedNumbers>;
+
+/// The numbers of a directory of results: of all CSV files, of the metrics in files summary.json, and of the scenarios
+/// worst_*.json, which a search for the worst motion writes.
+RecordedNumbers numbers_below(const std::filesystem::path& directory);
+
+/// Compares numbers by name with those on record; fails where any differs, is missing or, among names that do or do not
+/// contain a colon as `of_commands` says, is left over. `measured` is called once more, with the C library as it is on
+/// other processors, when the record is renewed. Precondition: it gets its numbers from other processes.
+void expect_recorded(bool of_commands, const std::function<NumbersByName()>& measured);
+
+}  // namespace hapbench::test
