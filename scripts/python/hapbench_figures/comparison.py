@@ -36,12 +36,10 @@ def algorithms(results):
         tick.set_color(style.look(row["algorithm"]).colour)
     axes[0, 0].set_ylim(-0.6, len(rows) + 0.6)
     style.letter(axes[0])
-    return figure, (
-        "Every algorithm on the planar peg-in-hole of A.1: (a) greatest force, (b) total variation of velocity, "
-        "which vibration makes large, (c) greatest depth, (d) steps until the peg leaves the hole, few when it is "
-        "thrown out, (e) range of the stiffness ratio; dashed: K, dotted: the published bound of 4 K that the "
-        "actuators set (4.3). Ours."
-    )
+    return figure, ("Every algorithm on the planar peg-in-hole of A.1: (a) greatest force, (b) total variation of "
+                    "velocity, which vibration makes large, (c) greatest depth, (d) steps until the peg leaves the hole, "
+                    "few when it is thrown out, (e) range of the stiffness ratio; dashed: K, dotted: the published bound "
+                    "of 4 K that the actuators set (4.3). Ours.")
 
 
 def draw_ratio_axis(ax, lines):
@@ -62,12 +60,10 @@ def discussion(results):
     draw_pure_rotation(axes[0, 1], results)
     draw_parallel_faces(axes[0, 2], results)
     style.letter(axes[0])
-    return figure, (
-        "Cases that the thesis discusses without figures. (a) Over-reduction (4.1): of a groove's contacts at most "
-        "one survives the reduction. (b) Pure rotation (4.4): the energy stored in the springs returns, and the "
-        "damping takes nothing. (c) A drill turned between two parallel faces (4.6): the depth grows, the force on "
-        "the drill stays at zero. Ours."
-    )
+    return figure, ("Cases that the thesis discusses without figures. (a) Over-reduction (4.1): of a groove's contacts at "
+                    "most one survives the reduction. (b) Pure rotation (4.4): the energy stored in the springs returns, "
+                    "and the damping takes nothing. (c) A drill turned between two parallel faces (4.6): the depth grows, "
+                    "the force on the drill stays at zero. Ours.")
 
 
 def draw_over_reduction(ax, results):

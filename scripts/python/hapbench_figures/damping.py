@@ -90,11 +90,10 @@ def implicit_plane(results):
     draw_distributed(axes[0, 1], sweep)
     wall_damping(axes[0, 2], results)
     style.letter(axes[0])
-    return figure, (
-        "Damping of the original algorithm. Its spring force defines one implicit plane (plum); normal damping "
-        "(black) acts across it, tangential damping (petrol) along it, against the velocity (amber). (a) On a flat "
-        "the plane is parallel to the surface. (b) In a hole it is parallel to neither wall. (c) What damping "
-        "remains across the walls while the peg is tilted, in units of B: u_x^2 of the rendered direction for the "
-        "original, S_xx for stiffness shaping, which keeps about the B that it should. Ours: (a) from the formulas "
-        "of B.2, (b, c) from hapbench's forces and tensors; the velocity is made up, friction of Table A.1."
-    )
+    return figure, ("Damping of the original algorithm. Its spring force defines one implicit plane (plum); normal damping "
+                    "(black) acts across it, tangential damping (petrol) along it, against the velocity (amber). (a) On a "
+                    "flat the plane is parallel to the surface. (b) In a hole it is parallel to neither wall. (c) What "
+                    "damping remains across the walls while the peg is tilted, in units of B: u_x^2 of the rendered "
+                    "direction for the original, S_xx for stiffness shaping, which keeps about the B that it should. Ours: "
+                    "(a) from the formulas of B.2, (b, c) from hapbench's forces and tensors; the velocity is made up, "
+                    "friction of Table A.1.")

@@ -27,9 +27,7 @@ def force_limit(results):
     ax.text(4.0, 0.19, "without limit", color=style.AMBER, ha="right")
     ax.text(4.2, 0.113, "input force limited to 2 N", color=style.PETROL)
     ax.text(threshold + 0.05, 0.245, "published: 2.7 N measured = 2.0 N + 0.7 N weight", color=style.RED, fontsize=7)
-    return figure, (
-        "Displacement of the tip into a flat against the measured force, without (amber triangles) and with (petrol "
-        "circles) the limit of the input force; ours, a scripted hand that presses up to 5 N. Black: the ideal, "
-        "(force - 0.7 N)/K. Dotted: the published threshold of 2.7 N measured force, 2.0 N plus 0.7 N of weight "
-        "(3.5)."
-    )
+    return figure, ("Displacement of the tip into a flat against the measured force, without (amber triangles) and with "
+                    "(petrol circles) the limit of the input force; ours, a scripted hand that presses up to 5 N. Black: "
+                    "the ideal, (force - 0.7 N)/K. Dotted: the published threshold of 2.7 N measured force, 2.0 N plus 0.7 "
+                    "N of weight (3.5).")

@@ -77,11 +77,9 @@ def trajectory(results):
     style.note(distance, 0.97, 0.9, "shaded: published,\nerror up to about\n0.25 mm", style.RED, ha="right")
     style.letter(axes[0])
     low, high = (rows["interpenetration_m"].max() for rows in drawn)
-    return figure, (
-        "The tip while the drill is rotated to and fro in the hole (task 2, the recording of figures 4 and 5) and the "
-        "ideal trajectory (black), which the exact geometry of drill and hole allows; ours, rows in which the hand "
-        "presses with less (petrol circles) or, in three short taps, more (amber triangles) than 2 N, thinned. "
-        "(a) section, (b) height, (c) distance to the median line. Shaded: the published error of about 0.25 mm "
-        "(Fig. 7, 3.6). In the drawn rows the drill overlaps the exact hole by "
-        f"at most {low:.2f} mm below and {high:.2f} mm above 2 N."
-    )
+    return figure, ("The tip while the drill is rotated to and fro in the hole (task 2, the recording of figures 4 and 5) "
+                    "and the ideal trajectory (black), which the exact geometry of drill and hole allows; ours, rows in "
+                    "which the hand presses with less (petrol circles) or, in three short taps, more (amber triangles) "
+                    "than 2 N, thinned. (a) section, (b) height, (c) distance to the median line. Shaded: the published "
+                    "error of about 0.25 mm (Fig. 7, 3.6). In the drawn rows the drill overlaps the exact hole by at most "
+                    f"{low:.2f} mm below and {high:.2f} mm above 2 N.")

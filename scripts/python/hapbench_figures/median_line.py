@@ -33,12 +33,10 @@ def shortest_distance_and_normal(results):
     style.note(axes[0, 0], 0.98, 0.04, "dashed: median line", style.GREY, ha="right", va="bottom")
     style.note(axes[0, 1], 0.98, 0.14, "too short: the segments end\ninside the tool", style.AMBER, ha="right")
     style.letter(axes[0])
-    return figure, (
-        f"Depth and gradient of each contact of a peg tilted by {DEEP} rad, drawn from the point to where it is "
-        "taken to leave the tool. (a) Shortest distance: beyond the median line (dashed) the gradients flip "
-        "(green). (b) The same depths along the inverse surface normal: no gradient flips, but the depth is "
-        "underestimated. Ours; the pose is prescribed."
-    )
+    return figure, (f"Depth and gradient of each contact of a peg tilted by {DEEP} rad, drawn from the point to where it is "
+                    "taken to leave the tool. (a) Shortest distance: beyond the median line (dashed) the gradients flip "
+                    "(green). (b) The same depths along the inverse surface normal: no gradient flips, but the depth is "
+                    "underestimated. Ours; the pose is prescribed.")
 
 
 def gradient_flipping(results):
@@ -55,12 +53,11 @@ def gradient_flipping(results):
     draw_flip_count(ax, sweep)
     ax.set_title("over the tilt")
     style.letter(axes[0])
-    return figure, (
-        "Gradient flipping of the original algorithm. (a) Shallow: every depth pushes the tool off the wall it "
-        "touches. (b) Deep: points beyond the median line (dashed) have flipped gradients (petrol). Arrow: direction "
-        "of the spring force, and its size. (c) Over the tilt: share of flipped gradients, and the mean of each "
-        "contact's pull towards its wall, -1 when all push off, +1 when all pull in. Ours; the pose is prescribed."
-    )
+    return figure, ("Gradient flipping of the original algorithm. (a) Shallow: every depth pushes the tool off the wall it "
+                    "touches. (b) Deep: points beyond the median line (dashed) have flipped gradients (petrol). Arrow: "
+                    "direction of the spring force, and its size. (c) Over the tilt: share of flipped gradients, and the "
+                    "mean of each contact's pull towards its wall, -1 when all push off, +1 when all pull in. Ours; the "
+                    "pose is prescribed.")
 
 
 def draw_flip_count(ax, sweep):
@@ -90,12 +87,11 @@ def underestimation(results):
     axes[0, 1].set_ylabel("")
     draw_error(axes[0, 2], scene.Sweep(results, NORMAL))
     style.letter(axes[0])
-    return figure, (
-        "(a) Shortest distance, (b) inverse surface normal at a tilt of 0.3 rad; flipped gradients in petrol. (c) How much the depth of "
-        "(b) falls short of the distance to the tool's surface along the same direction, for every contact of a peg "
-        "tilted from 0 to 0.6 rad; the tilt is the brightness. Dotted: the published depth of 0.25 mm, below which "
-        "the error is called negligible (4.2). Points whose exit is the far end of the tool are left out. Ours."
-    )
+    return figure, ("(a) Shortest distance, (b) inverse surface normal at a tilt of 0.3 rad; flipped gradients in petrol. "
+                    "(c) How much the depth of (b) falls short of the distance to the tool's surface along the same "
+                    "direction, for every contact of a peg tilted from 0 to 0.6 rad; the tilt is the brightness. Dotted: "
+                    "the published depth of 0.25 mm, below which the error is called negligible (4.2). Points whose exit "
+                    "is the far end of the tool are left out. Ours.")
 
 
 def draw_error(ax, sweep):

@@ -150,14 +150,13 @@ def work_precision(results):
     handles, labels = studies[-1].get_legend_handles_labels()
     names = legend[1].legend(handles, labels, loc="center", ncol=4, fontsize=7, handletextpad=0.2, title="algorithms of (f)")
     names.set_in_layout(False)  # it is wider than the panel it stands in
-    return figure, (
-        "Work against precision in six studies: error over run time on one core, a mark for each setting, first and "
-        "last named in (b) to (e). (a) Integrators and time steps of 1 ms to 1 µs, against the exact solution; (b) time "
-        "step, against a 64 times finer one; (c) shaping iterations against exact shaping; (d) threshold of the reduction, against exact shaping "
-        "of all points; (e) spacing of the block's points and (f) force algorithms, against the ideal trajectory of "
-        "3.6. Left out: settings that diverged, were off by more than 10 mm or have no error. Ours; run times are "
-        "those of the machine that measured them."
-    )
+    return figure, ("Work against precision in six studies: error over run time on one core, a mark for each setting, "
+                    "first and last named in (b) to (e). (a) Integrators and time steps of 1 ms to 1 µs, against the exact "
+                    "solution; (b) time step, against a 64 times finer one; (c) shaping iterations against exact shaping; "
+                    "(d) threshold of the reduction, against exact shaping of all points; (e) spacing of the block's "
+                    "points and (f) force algorithms, against the ideal trajectory of 3.6. Left out: settings that "
+                    "diverged, were off by more than 10 mm or have no error. Ours; run times are those of the machine that "
+                    "measured them.")
 
 
 def query_time(results):
@@ -180,12 +179,10 @@ def query_time(results):
     time.legend()
     points.legend()
     style.letter(axes[0])
-    return figure, (
-        "Query time over penetration depth (after Weller, Sagardia et al. 2010): a round tip is pushed into a plane in "
-        "steps of less than a micrometre. (a) Time of the search for contacts and of their depths, on one core; (b) points "
-        "the tool touches and points compared with it. Both ways give the same contacts. Ours; run times are those of the "
-        "machine that measured them."
-    )
+    return figure, ("Query time over penetration depth (after Weller, Sagardia et al. 2010): a round tip is pushed into a "
+                    "plane in steps of less than a micrometre. (a) Time of the search for contacts and of their depths, on "
+                    "one core; (b) points the tool touches and points compared with it. Both ways give the same contacts. "
+                    "Ours; run times are those of the machine that measured them.")
 
 
 def latency(results):
@@ -210,12 +207,10 @@ def latency(results):
     ax.text(deadline / 1.06, 1.2, f"deadline {deadline:.0f} µs", color=style.RED, ha="right", fontsize=7)
     ax.text(1.06 * deadline, 1.2, "late", color=style.RED, fontsize=7)
     ax.legend(loc="lower left")
-    return figure, (
-        "How long the steps of a run took: the share of its steps that took longer, both axes logarithmic; filled marks: "
-        "bounds of the histogram, hollow ones: median, 99 %, 99.9 % and the longest step, drawn at one step of the run. "
-        "Red: the deadline of a haptic loop at 2048 Hz, the published rate (3.1). Steps "
-        "beyond it were late, on a machine without a real-time system. Ours."
-    )
+    return figure, ("How long the steps of a run took: the share of its steps that took longer, both axes logarithmic; "
+                    "filled marks: bounds of the histogram, hollow ones: median, 99 %, 99.9 % and the longest step, drawn "
+                    "at one step of the run. Red: the deadline of a haptic loop at 2048 Hz, the published rate (3.1). "
+                    "Steps beyond it were late, on a machine without a real-time system. Ours.")
 
 
 def draw_latency(ax, name, latency_, look):

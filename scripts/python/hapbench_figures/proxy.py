@@ -43,8 +43,7 @@ def rotated(results):
     height.legend(loc="lower right", markerscale=1.8, fontsize=6.5, handlelength=1.2)
     style.letter(axes[0])
     rms = ", ".join(f"{style.look(name).label} {error:.2f} mm" for name, error in errors.items())
-    return figure, (
-        "The drill turned to and fro in the hole while 2 N push straight down (task 2), with two ways of shaping and with a "
-        "proxy. (a) Section with the ideal trajectory of 3.6 (black), (b) height of the tip over it, (c) how deep the drill is "
-        f"in the exact hole. Root mean square of the height error: {rms}. Ours."
-    )
+    return figure, ("The drill turned to and fro in the hole while 2 N push straight down (task 2), with two ways of "
+                    "shaping and with a proxy. (a) Section with the ideal trajectory of 3.6 (black), (b) height of the tip "
+                    f"over it, (c) how deep the drill is in the exact hole. Root mean square of the height error: {rms}. "
+                    "Ours.")

@@ -41,11 +41,9 @@ def paths(results, kind, published):
         ax.set_xlabel("x [mm]")
     for ax in axes[:, 0]:
         ax.set_ylabel("y [mm]")
-    return figure, (
-        "Trajectory of a mass on 100 pairs of opposite springs and 10 upward ones, released at (-5, -5) mm, damping "
-        f"and force {published} Grey: stiffness shaping, for comparison. Settled means to stay within 0.05 mm of the "
-        "origin (+). Ours, parameters of Table A.3."
-    )
+    return figure, ("Trajectory of a mass on 100 pairs of opposite springs and 10 upward ones, released at (-5, -5) mm, "
+                    f"damping and force {published} Grey: stiffness shaping, for comparison. Settled means to stay within "
+                    "0.05 mm of the origin (+). Ours, parameters of Table A.3.")
 
 
 def unlimited(results):

@@ -47,12 +47,10 @@ def root_locus(results):
         ax.set(title=title, xlabel="real part", xlim=(-1.75, 1.4), ylim=(-1.6, 1.6), aspect="equal")
     axes[0, 0].set_ylabel("imaginary part")
     style.letter(axes[0])
-    return figure, (
-        "Root locus of the integrator on one spring and damper: both eigenvalues (petrol, amber dashed) as stiffness "
-        "or damping grows, and the unit circle, outside of which it is unstable. Diamonds: the eigenvalue that leaves "
-        "it, at the published limit. Ours, below: the limit at which bisection over simulated runs finds divergence. M = 0.1 "
-        "kg, time step 0.5 ms (A.3)."
-    )
+    return figure, ("Root locus of the integrator on one spring and damper: both eigenvalues (petrol, amber dashed) as "
+                    "stiffness or damping grows, and the unit circle, outside of which it is unstable. Diamonds: the "
+                    "eigenvalue that leaves it, at the published limit. Ours, below: the limit at which bisection over "
+                    "simulated runs finds divergence. M = 0.1 kg, time step 0.5 ms (A.3).")
 
 
 # Class -> its name, colour and hatching; light to dark, so that they can be told apart in grey.
@@ -349,8 +347,7 @@ def integrators(results):
         ax.set_title(name.replace("_", " "))
     figure.get_layout_engine().set(rect=(0, 0, 1, 0.95))
     class_legend(figure, maps, loc="upper center", bbox_to_anchor=(0.5, 1.0))
-    return figure, (
-        f"Where a run is stable, still dies out, vibrates or diverges under each integrator, {style.look(algorithm).label}: stiffness "
-        "of one spring over the time step and over zeta, stiffness of the hand over the delay of the device's servo. "
-        "Lines: the limit from theory, where there is one, and found by bisection over simulated runs. Ours."
-    )
+    return figure, ("Where a run is stable, still dies out, vibrates or diverges under each integrator, "
+                    f"{style.look(algorithm).label}: stiffness of one spring over the time step and over zeta, stiffness of "
+                    "the hand over the delay of the device's servo. Lines: the limit from theory, where there is one, and "
+                    "found by bisection over simulated runs. Ours.")

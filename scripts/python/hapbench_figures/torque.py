@@ -30,11 +30,10 @@ def lost(results):
     force_over_time.set_ylim(top=1.35 * force_over_time.get_ylim()[1])  # room for the legend
     style.letter(axes[0])
     shown = ", ".join(f"{label} {force:.2g} N and {torque:.2g} mN m" for label, (force, torque) in most.items())
-    return figure, (
-        "A drill whose tip rests against the wall of the hole is turned by script until its side meets the rim opposite, and "
-        "back; both algorithms see the same contacts. (a) The force that is rendered. (b) The torque about the tip that the "
-        "contacts would exert by their shares of the spring force, and that a device of three degrees of freedom loses: what "
-        "Fig. 1 is about. (c) Their ratio. While wall and rim push against each other, most of the contact is torque. Shaping "
-        "renders the little force that is left; the original algorithm makes it up by dividing by the nearly cancelled sum of "
-        f"directions. At most: {shown}. Ours."
-    )
+    return figure, ("A drill whose tip rests against the wall of the hole is turned by script until its side meets the rim "
+                    "opposite, and back; both algorithms see the same contacts. (a) The force that is rendered. (b) The "
+                    "torque about the tip that the contacts would exert by their shares of the spring force, and that a "
+                    "device of three degrees of freedom loses: what Fig. 1 is about. (c) Their ratio. While wall and rim "
+                    "push against each other, most of the contact is torque. Shaping renders the little force that is "
+                    "left; the original algorithm makes it up by dividing by the nearly cancelled sum of directions. At "
+                    f"most: {shown}. Ours.")

@@ -1,7 +1,7 @@
 """How runs are drawn: as their algorithm is everywhere, and with line styles where two runs share one."""
 from dataclasses import dataclass, replace
 
-from hapbench_looks import look
+from hapbench_looks import Look, look
 
 DASHES = ((), (4, 1.5), (1, 1), (4, 1, 1, 1))
 # Text, ground, grid and secondary text: of paper, and of the dark page.
@@ -16,18 +16,10 @@ THIN = 0.6  # line width of the single runs of a group [points]
 
 
 @dataclass(frozen=True)
-class RunLook:
-    label: str
-    colour: str
-    dark: str
-    dash: tuple
+class RunLook(Look):
+    marker: str = ""  # curves of runs have none
     width: float = 1.3
     group: str = ""  # the label of all runs that differ in the seed only
-
-    @property
-    def line(self):
-        """The line's style as matplotlib has it."""
-        return (0, self.dash) if self.dash else "-"
 
 
 def looks(runs, labels, groups=()):
@@ -42,7 +34,7 @@ def looks(runs, labels, groups=()):
     for run, label, group in zip(runs, labels, groups):
         own, i = look(run.algorithm), nth[group]
         colours = SHARED[i % len(SHARED)] if alike and not one_each else (own.colour, own.dark)
-        found.append(RunLook(label, *colours, own.dash if one_each else DASHES[i % len(DASHES)], width, group))
+        found.append(RunLook(label, *colours, own.dash if one_each else DASHES[i % len(DASHES)], width=width, group=group))
     return found
 
 
