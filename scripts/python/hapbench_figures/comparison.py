@@ -1,4 +1,5 @@
-"""Every algorithm on the planar peg-in-hole, and the cases that the thesis discusses (4.1, 4.4, 4.6)."""
+"""Every algorithm on the planar peg-in-hole and on many springs (figures A.4 and A.5), and the cases that the thesis
+discusses (4.1, 4.4, 4.6)."""
 import numpy as np
 from matplotlib.ticker import LogLocator
 
@@ -97,3 +98,55 @@ def draw_parallel_faces(ax, results):
     right.set_ylim(0, 0.6)
     right.spines["right"].set_visible(True)
     right.grid(False)
+
+
+def draw_path(ax, rows, look):
+    x, y = 1e3 * rows["px_m"], 1e3 * rows["py_m"]
+    ax.plot(x, y, color=look.colour, lw=1.2, clip_on=True)
+    ax.plot(x[:1], y[:1], "o", color=look.colour, mfc="white", ms=4)
+    ax.plot(0, 0, "+", color=style.BLACK, ms=7, mew=1)
+
+
+def settling(rows):
+    """Time after which the mass stays within 0.05 mm of the origin [ms], or None."""
+    far = np.hypot(rows["px_m"], rows["py_m"]) > 5e-5
+    if far[-1]:
+        return None
+    last = np.flatnonzero(far)
+    return 1e3 * rows["time_s"][last[-1] + 1] if len(last) else 0.0
+
+
+def paths(results, kind, published):
+    figure, axes = style.panels(2, 4, 4.3, sharex=True, sharey=True)
+    proposed = results.table(f"thesis/springs_{kind}_shaped_stiffness/trajectory.csv")
+    own = [name for name in style.ALGORITHMS if results.has(f"thesis/springs_{kind}_{name}/trajectory.csv")]
+    for ax, name in zip(axes.flat, own):
+        look = style.look(name)
+        rows = results.table(f"thesis/springs_{kind}_{name}/trajectory.csv")
+        outcome = results.json(f"thesis/springs_{kind}_{name}/summary.json")["outcome"]
+        if name != "shaped_stiffness":
+            ax.plot(1e3 * proposed["px_m"], 1e3 * proposed["py_m"], color="#8A8A8A", lw=0.9)
+        draw_path(ax, rows, look)
+        ax.set(xlim=(-6.5, 6.5), ylim=(-6.5, 6.5), aspect="equal", xticks=[-5, 0, 5], yticks=[-5, 0, 5])
+        time = settling(rows)
+        text = ("diverges" if outcome == "diverges" else f"settles in {time:.0f} ms" if time is not None else "has not settled")
+        # Above the frame: some curves fill it.
+        ax.set_title(look.label, color=look.colour, pad=14)
+        ax.text(0, 1.03, text, transform=ax.transAxes, fontsize=7)
+    for ax in axes[-1]:
+        ax.set_xlabel("x [mm]")
+    for ax in axes[:, 0]:
+        ax.set_ylabel("y [mm]")
+    return figure, ("Trajectory of a mass on 100 pairs of opposite springs and 10 upward ones, released at (-5, -5) mm, "
+                    f"damping and force {published} Grey: stiffness shaping, for comparison. Settled means to stay within "
+                    "0.05 mm of the origin (+). Ours, parameters of Table A.3.")
+
+
+def unlimited(results):
+    return paths(results, "unlimited", "not limited. Published: every algorithm reaches the origin; ours: what the panels say.")
+
+
+def limited(results):
+    return paths(results, "limited",
+                 "limited to 100 N s/m and 30 N. Published: the proposed algorithm keeps its performance, others "
+                 "become under-damped.")
