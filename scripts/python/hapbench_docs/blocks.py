@@ -25,7 +25,7 @@ COLUMNS = (
     ("force_step_max_N", "largest force step [N]", 1.0),
 )
 SOURCES = {"own": "ours", "fcl": "FCL", "bullet": "Bullet"}
-TASKS = (("T1", "poke_on_flat"), ("T2", "rotate_in_hole"), ("T3", "round_the_wall"))
+SCENES = (("T1", "poke_on_flat"), ("T2", "rotate_in_hole"), ("T3", "round_the_wall"))
 # The ideal trajectory of the hole means something in T2 only.
 SOURCE_COLUMNS = (
     ("contacts_mean", "contacts", 1.0),
@@ -129,7 +129,7 @@ def contact_sources(old, program, directory):
     """The default law with the contacts of other libraries, in the tasks; the old table if they are not built."""
     lines = [f"| task | contacts of | {' | '.join(heading for _, heading, _ in SOURCE_COLUMNS)} |",
              "|---" * (len(SOURCE_COLUMNS) + 2) + "|"]
-    for task, scene in TASKS:
+    for task, scene in SCENES:
         words = ["precision", "contact_sources", "--scenario", scene, "--repetitions", "1", "--json"]
         found = json.loads(program.run(words, directory))[0]["rows"]
         if any(row["outcome"] == "not built" for row in found):
