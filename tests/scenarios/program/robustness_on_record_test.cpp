@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/thesis_claims/robustness_run.hpp"
+#include "scenarios/thesis_claims/robustness.hpp"
 #include "tests/results/files.hpp"
 
 /// The robustness of the claims that is committed.
