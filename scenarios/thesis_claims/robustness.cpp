@@ -347,12 +347,11 @@ RobustnessReport run_robustness(const RobustnessPlan& plan, const RobustnessOpti
   report.verdicts.resize(plan.samples());
   const std::vector<std::size_t> left = samples_to_do(plan, file, rows, report);
   fs::remove_all(scratch);  // of a process that was killed
-  RecentShells shells;
   ProgressBar bar("robustness", plan.samples(), options.progress);
   bar.start_at(report.resumed);
   std::map<std::size_t, std::vector<std::string>> problems;
   const auto judge = [&](std::size_t sample) -> Delivery {
-    return [&, sample, judged = judge_sample(plan, shells, sample, scratch / std::to_string(sample))] {
+    return [&, sample, judged = judge_sample(plan, sample, scratch / std::to_string(sample))] {
       journal.add(robustness_row(plan, sample, judged.verdicts));
       journal.flush();
       report.verdicts[sample] = judged.verdicts;
