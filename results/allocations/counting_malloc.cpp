@@ -6,17 +6,17 @@
 
 using hapbench::allocations_of_thread;
 
-#ifdef __SANITIZE_ADDRESS__
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define HAPBENCH_SANITIZED
 #elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define HAPBENCH_SANITIZED
 #endif
 #endif
 
 #ifdef HAPBENCH_SANITIZED
 
-// AddressSanitizer owns malloc and offers hooks instead.
+// AddressSanitizer and ThreadSanitizer own malloc and offer hooks instead.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*, std::size_t),
                                                          void (*free_hook)(const volatile void*));
 

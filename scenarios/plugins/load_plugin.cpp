@@ -41,7 +41,7 @@ constexpr Interface kContactSources = {.kind = "source of contacts",
 
 /// Symbols of the library and its dependencies take precedence over ours. Sanitizers replace functions of all
 /// libraries, so they exclude that.
-#ifdef __SANITIZE_ADDRESS__
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr int kApart = RTLD_NOW | RTLD_LOCAL;
 #else
 constexpr int kApart = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;

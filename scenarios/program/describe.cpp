@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <ranges>
 
 #include "algorithms/registry.hpp"
 #include "device_model/device_presets.hpp"
@@ -13,7 +14,7 @@
 #include "scenarios/program/table.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 #include "scenarios/studies/stability/stability_map.hpp"
-#include "scenarios/thesis_claims/choices_file.hpp"
+#include "scenarios/thesis_claims/choices.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "sim/loop/integrators/table.hpp"
 
@@ -145,7 +146,7 @@ Description describe_stability() {
       wrapped(fmt::format(
           "A run of {} steps is judged by its motion alone, quarter by quarter; the amplitude is the largest speed.",
           kMapSteps)));
-  for (const MotionClass motion : kMotionClasses)
+  for (const MotionClass motion : kMotionClasses | std::views::reverse)  // "all else" last
     d.text += entry(motion_class_name(motion), text_of(motion).rule, 2, 13);
   for (
       const char* paragraph :

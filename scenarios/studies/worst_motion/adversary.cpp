@@ -10,7 +10,7 @@
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/run_trial.hpp"
+#include "scenarios/run/run_scenario.hpp"
 
 namespace hapbench {
 namespace {
@@ -269,15 +269,10 @@ class Bench {
   Bench(const SearchScene& scene, Badness badness) : scene_(scene), badness_(badness) {}
 
   RunSummary run(const Trajectory& trajectory) const {
-    const TrialResult trial = run_trial(with_trajectory(scene_, trajectory), scene_.shell, {}, {});
-    RunSummary summary;
-    summary.result = trial.result;
-    summary.duration = static_cast<double>(trial.result.rows) * scene_.scenario.time.step;
-    summary.metrics = trial.metrics;
-    summary.passivity = trial.passivity;
-    const SectionObservers* sections[] = {&*trial.sections};
-    summary.sections = SectionObservers::summarised(sections);
-    return summary;
+    LoadedScenario loaded;
+    loaded.scenario = with_trajectory(scene_, trajectory);
+    loaded.files = NamedFiles(loaded.scenario);
+    return run_with_shell(loaded, scene_.shell, std::nullopt, false).summary;
   }
   /// Zero when it is not finite: a search cannot climb there.
   double badness(const Trajectory& trajectory) const {

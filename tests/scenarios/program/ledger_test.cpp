@@ -5,7 +5,7 @@
 #include <map>
 
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/thesis_claims/robustness_run.hpp"
+#include "scenarios/thesis_claims/robustness.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 

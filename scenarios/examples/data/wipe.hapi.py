@@ -1,6 +1,6 @@
 """Prints a recording to import: a ball of 2 mm wiped over a flat for 4 s by a hand, as a text log of HAPI would hold it.
 
-    python3 scripts/python/hapbench_recording.py >scenarios/examples/data/wipe.hapi.txt
+    python3 scenarios/examples/data/wipe.hapi.py >scenarios/examples/data/wipe.hapi.txt
 
 All of it is made up, so that it is known what is right: the flat (z = 0) pushes with 2000 N/m along z, friction with 0.2
 of that against the motion, and the sensor adds noise of 5 mN to each component. The log has what real ones have: the y

@@ -1,4 +1,5 @@
-"""Gradients across the median line of the tool, and depths that are too small (figures 8, B.3 and C.1)."""
+"""Depth models: gradients across the median line of the tool, depths that are too small (figures 8, B.3 and C.1), and normal
+projection at a corner of the hole (figure F.4)."""
 import numpy as np
 from matplotlib.colors import ListedColormap
 
@@ -11,6 +12,12 @@ DEEP = 0.42  # tilt [rad] at which many points lie beyond the median line
 SHALLOW = 0.12
 # Without the yellow end, which white paper swallows.
 TILT_COLOURS = ListedColormap(style.plt.get_cmap("viridis")(np.linspace(0, 0.75, 256)))
+# Directory, algorithm, name of its depth; the wide line shows below the one that covers it.
+STROKES = (("thesis/corner_normal_projection", "normal_projection", "normal projection", {"lw": 1.1}),
+           ("thesis/corner_shaped_stiffness", "shaped_stiffness", "shortest distance", {"lw": 3.2, "alpha": 0.35}))
+# Not of the thesis, so the figure is drawn without it too.
+CONTINUOUS = (
+    "beyond/corner_continuous_normal_projection", "continuous_normal_projection", "continuous (ours)", {"lw": 1.1})
 
 
 def draw_contacts(ax, sweep, tilt, colours=(style.AMBER, style.PETROL)):
@@ -33,12 +40,10 @@ def shortest_distance_and_normal(results):
     style.note(axes[0, 0], 0.98, 0.04, "dashed: median line", style.GREY, ha="right", va="bottom")
     style.note(axes[0, 1], 0.98, 0.14, "too short: the segments end\ninside the tool", style.AMBER, ha="right")
     style.letter(axes[0])
-    return figure, (
-        f"Depth and gradient of each contact of a peg tilted by {DEEP} rad, drawn from the point to where it is "
-        "taken to leave the tool. (a) Shortest distance: beyond the median line (dashed) the gradients flip "
-        "(green). (b) The same depths along the inverse surface normal: no gradient flips, but the depth is "
-        "underestimated. Ours; the pose is prescribed."
-    )
+    return figure, (f"Depth and gradient of each contact of a peg tilted by {DEEP} rad, drawn from the point to where it is "
+                    "taken to leave the tool. (a) Shortest distance: beyond the median line (dashed) the gradients flip "
+                    "(green). (b) The same depths along the inverse surface normal: no gradient flips, but the depth is "
+                    "underestimated. Ours; the pose is prescribed.")
 
 
 def gradient_flipping(results):
@@ -55,12 +60,11 @@ def gradient_flipping(results):
     draw_flip_count(ax, sweep)
     ax.set_title("over the tilt")
     style.letter(axes[0])
-    return figure, (
-        "Gradient flipping of the original algorithm. (a) Shallow: every depth pushes the tool off the wall it "
-        "touches. (b) Deep: points beyond the median line (dashed) have flipped gradients (petrol). Arrow: direction "
-        "of the spring force, and its size. (c) Over the tilt: share of flipped gradients, and the mean of each "
-        "contact's pull towards its wall, -1 when all push off, +1 when all pull in. Ours; the pose is prescribed."
-    )
+    return figure, ("Gradient flipping of the original algorithm. (a) Shallow: every depth pushes the tool off the wall it "
+                    "touches. (b) Deep: points beyond the median line (dashed) have flipped gradients (petrol). Arrow: "
+                    "direction of the spring force, and its size. (c) Over the tilt: share of flipped gradients, and the "
+                    "mean of each contact's pull towards its wall, -1 when all push off, +1 when all pull in. Ours; the "
+                    "pose is prescribed.")
 
 
 def draw_flip_count(ax, sweep):
@@ -90,12 +94,11 @@ def underestimation(results):
     axes[0, 1].set_ylabel("")
     draw_error(axes[0, 2], scene.Sweep(results, NORMAL))
     style.letter(axes[0])
-    return figure, (
-        "(a) Shortest distance, (b) inverse surface normal at a tilt of 0.3 rad; flipped gradients in petrol. (c) How much the depth of "
-        "(b) falls short of the distance to the tool's surface along the same direction, for every contact of a peg "
-        "tilted from 0 to 0.6 rad; the tilt is the brightness. Dotted: the published depth of 0.25 mm, below which "
-        "the error is called negligible (4.2). Points whose exit is the far end of the tool are left out. Ours."
-    )
+    return figure, ("(a) Shortest distance, (b) inverse surface normal at a tilt of 0.3 rad; flipped gradients in petrol. "
+                    "(c) How much the depth of (b) falls short of the distance to the tool's surface along the same "
+                    "direction, for every contact of a peg tilted from 0 to 0.6 rad; the tilt is the brightness. Dotted: "
+                    "the published depth of 0.25 mm, below which the error is called negligible (4.2). Points whose exit "
+                    "is the far end of the tool are left out. Ours.")
 
 
 def draw_error(ax, sweep):
@@ -114,3 +117,31 @@ def draw_error(ax, sweep):
     style.note(ax, 0.22, 0.98, "published: negligible\nup to 0.25 mm", style.RED)
     ax.set(xlabel="distance along the normal [mm]", ylabel="depth too small by [mm]", title="underestimation", xlim=(0, 1.3),
            ylim=(-0.02, 0.85))
+
+
+def corner(results):
+    figure, axes = style.panels(1, 3, 2.5)
+    ours = results.has(f"{CONTINUOUS[0]}/trajectory.csv")
+    for directory, algorithm, label, width in (*STROKES, CONTINUOUS) if ours else STROKES:
+        rows = results.table(f"{directory}/trajectory.csv")
+        line = {"color": style.look(algorithm).colour, **width}
+        x = 1e3 * rows["px_m"]
+        force = np.stack([rows[f"f{axis}_N"] for axis in "xyz"], 1)
+        change = np.linalg.norm(np.diff(force, axis=0), axis=1)
+        axes[0, 0].plot(x, np.linalg.norm(force, axis=1), **line)
+        axes[0, 1].plot(x, 1e3 * rows["depth_max_m"], **line, label=label)
+        axes[0, 2].plot(x[1:], change, **line)
+    axes[0, 0].set(title="force", ylabel="model force [N]")
+    axes[0, 1].set(title="greatest depth", ylabel="depth [mm]")
+    axes[0, 2].set(title="change in one step", ylabel="|Δ model force| [N]")
+    for ax in axes[0]:
+        ax.set_xlabel("tip's way towards the wall [mm]")
+    axes[0, 1].legend(loc="upper left", handlelength=1.5, fontsize=6.5, borderaxespad=0.1)
+    style.letter(axes[0])
+    return figure, (
+        "An upright drill is moved steadily against the wall of the hole, near its mouth. With normal projection "
+        "(grey) the depth of a point near the rim is at once as large as the way along its normal out of the "
+        "drill, and the force jumps in a single step; with the shortest distance (wide) it grows from zero"
+        + (", and so it does with continuous normal projection (brown), which nearly covers it" if ours else "")
+        + ". (a) Force, (b) greatest depth, (c) change from step to step. Ours."
+    )
