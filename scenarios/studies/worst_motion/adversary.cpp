@@ -53,7 +53,7 @@ Vec3 first_touch(const Vec3& from, const Vec3& to, double stride, const std::fun
   return place(touching);
 }
 
-/// Where the scene's tool, moved without turning, first touches the shell.
+/// The place where the scene's tool, moved without turning, first touches the shell.
 Vec3 place_at_surface(const Scenario& scenario, const std::shared_ptr<const PointShell>& shell) {
   const SimulationParts parts = assemble(scenario, shell, {});
   ContactBuffer contacts(parts.source->capacity());
@@ -376,7 +376,7 @@ const char* metric_name(Badness badness) {
   return badness == Badness::created ? "energy.created_sum_J" : "vibration_power_above_30Hz_m2_per_s2";
 }
 
-/// What the found run shows, with room for another compiler's rounding.
+/// The outcome and the metric of the found run, with room for another compiler's rounding.
 ExpectFields expectation(Badness badness, const RunSummary& run) {
   ExpectFields expect;
   expect.outcomes = {run.result.outcome};
