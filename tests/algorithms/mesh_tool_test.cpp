@@ -12,7 +12,6 @@
 #include "tests/algorithms/proxy_descent.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
-#include "tests/support/tool_meshes.hpp"
 
 /// Tools of a mesh under every algorithm and depth model.
 namespace hapbench::mesh_tool_test {

@@ -11,7 +11,6 @@
 #include "sim/contact/neighbour_list_query.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/algorithms/proxy_descent.hpp"
-#include "tests/support/brick.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/searches.hpp"
 #include "tests/support/tool_kinds.hpp"

@@ -8,7 +8,6 @@
 #include "tests/bench/bench.hpp"
 #include "tests/bench/contact_samples.hpp"
 #include "tests/support/dense_laws.hpp"
-#include "tests/support/shaping_optimality.hpp"
 
 namespace hapbench::bench {
 namespace {

@@ -12,7 +12,7 @@
 #include "sim/tool/revolved.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
-#include "tests/support/tool_meshes.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace hapbench::bench {
 

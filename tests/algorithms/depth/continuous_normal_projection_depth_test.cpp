@@ -11,7 +11,7 @@
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/tool/tool_state.hpp"
 #include "tests/support/scale.hpp"
-#include "tests/support/tool_geometry.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace hapbench::continuous_normal_projection_depth_test {
 namespace {

@@ -6,7 +6,7 @@
 #include "algorithms/registry.hpp"
 #include "sim/contact/contact_query.hpp"
 #include "tests/support/scale.hpp"
-#include "tests/support/tool_geometry.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace hapbench::every_depth_model_test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "sim/contact/contact_query.hpp"
 #include "tests/support/scale.hpp"
-#include "tests/support/tool_geometry.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace hapbench::normal_projection_depth_test {
 namespace {

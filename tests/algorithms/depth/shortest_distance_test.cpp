@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/scale.hpp"
-#include "tests/support/tool_geometry.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace hapbench::shortest_distance_test {
 namespace {

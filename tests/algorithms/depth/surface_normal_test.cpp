@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/depth/shortest_distance.hpp"
-#include "tests/support/tool_geometry.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace hapbench::surface_normal_test {
 namespace {
