@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstring>
 #include <new>
-#include <utility>
 #include <vector>
 
 /// Memory for loops that take eight doubles at a time. The packs themselves are in simd.hpp, which headers must not
@@ -26,40 +25,32 @@ inline void zero_pack(double* p) {
 
 }  // namespace simd
 
-/// Allocates on 64-byte boundaries, so that a pack of eight doubles never straddles a cache line.
-template <class T>
+/// Allocates on 64-byte boundaries, so that a pack of eight doubles never straddles a cache line. If `Unset`, a
+/// vector's `resize` leaves new elements uninitialised: several threads then fill a large column, and each touches the
+/// pages it fills first.
+template <class T, bool Unset = false>
 struct CacheLineAllocator {
   using value_type = T;
   static constexpr std::align_val_t alignment{64};
+  template <class U>
+  struct rebind {
+    using other = CacheLineAllocator<U, Unset>;
+  };
 
   CacheLineAllocator() = default;
   template <class U>
-  CacheLineAllocator(const CacheLineAllocator<U>&) noexcept {}
+  CacheLineAllocator(const CacheLineAllocator<U, Unset>&) noexcept {}
 
   T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), alignment)); }
   void deallocate(T* p, std::size_t) noexcept { ::operator delete(p, alignment); }
+  template <class U>
+  void construct(U* p) requires Unset {
+    ::new (static_cast<void*>(p)) U;
+  }
   bool operator==(const CacheLineAllocator&) const = default;
 };
 
 using AlignedDoubles = std::vector<double, CacheLineAllocator<double>>;
-
-/// The same allocator, but `resize` leaves new elements uninitialised: several threads then fill a large column, and
-/// each touches the pages it fills first.
-template <class T>
-struct UnsetCacheLineAllocator : CacheLineAllocator<T> {
-  template <class U>
-  struct rebind {
-    using other = UnsetCacheLineAllocator<U>;
-  };
-  template <class U, class... Args>
-  void construct(U* p, Args&&... args) {
-    if constexpr (sizeof...(Args) == 0)
-      ::new (static_cast<void*>(p)) U;
-    else
-      ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
-  }
-};
-
-using UnsetDoubles = std::vector<double, UnsetCacheLineAllocator<double>>;
+using UnsetDoubles = std::vector<double, CacheLineAllocator<double, true>>;
 
 }  // namespace hapbench

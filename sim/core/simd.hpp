@@ -24,6 +24,9 @@
 /// Sums over contacts always keep eight partial sums (element i goes to partial sum i mod 8) and `sum` adds those in
 /// one fixed order, whatever the register width. Together with -ffp-contract=off this makes the scalar build and every
 /// SIMD build agree bit for bit. Include from source files only: the type of Pack differs between the two builds.
+///
+/// Intrinsics of single operations come with the mask of all lanes, 0xff, which makes no difference to the code but
+/// avoids a false warning of g++ 12 (GCC bug 105593).
 namespace hapbench::simd {
 
 #if HAPBENCH_SIMD
@@ -49,7 +52,11 @@ inline Pack select(const Mask& m, const Pack& yes, const Pack& no) {
 #endif
 }
 inline Pack sqrt(const Pack& a) {
+#ifdef __AVX512VL__
+  return Pack(_mm512_maskz_sqrt_pd(0xff, static_cast<__m512d>(a)));
+#else
   return std::experimental::sqrt(a);
+#endif
 }
 inline bool any(const Mask& m) {
   return std::experimental::any_of(m);
@@ -178,8 +185,6 @@ inline std::size_t first(const Mask& m) {
 inline Pack abs(const Pack& a) {
   return select(a < Pack(0.0), -a, a);
 }
-
-// The masks of all lanes in `min` and `max` avoid a false warning of g++ 12 (GCC bug 105593).
 
 /// b < a ? b : a, hence a if they are equal or one is NaN, exactly as the instruction does.
 inline Pack min(const Pack& a, const Pack& b) {

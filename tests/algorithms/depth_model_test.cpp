@@ -9,7 +9,7 @@
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/tool/cylinder.hpp"
 #include "tests/support/scale.hpp"
-#include "tests/support/tool_geometry.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace hapbench::depth_model_test {
 namespace {

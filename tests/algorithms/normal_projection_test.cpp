@@ -9,7 +9,7 @@
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/tool/tool_state.hpp"
 #include "tests/support/scale.hpp"
-#include "tests/support/tool_geometry.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace hapbench::normal_projection_test {
 namespace {

@@ -12,12 +12,10 @@
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/tool/mesh_tool.hpp"
 #include "sim/tool/tool_shape.hpp"
-#include "tests/support/brick.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/searches.hpp"
 #include "tests/support/tool_kinds.hpp"
-#include "tests/support/tool_meshes.hpp"
 
 /// A tool shape that only this test knows, and tools of a mesh, in searches, depth models and algorithms.
 namespace hapbench::tool_shape_test {

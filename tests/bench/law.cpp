@@ -15,7 +15,6 @@
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
 #include "tests/support/dense_laws.hpp"
-#include "tests/support/shaping_optimality.hpp"
 
 /// The force laws, the reduction and the proxy's solver on contacts of the tasks.
 namespace hapbench::bench {

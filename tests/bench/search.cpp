@@ -13,7 +13,7 @@
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
 #include "tests/support/searches.hpp"
-#include "tests/support/tool_geometry.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 /// The searches for contacts and the shells that they search, also as the grid of the block gets finer.
 namespace hapbench::bench {

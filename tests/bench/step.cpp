@@ -20,7 +20,7 @@
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
 #include "tests/support/bits.hpp"
-#include "tests/support/tool_meshes.hpp"
+#include "tests/support/meshes.hpp"
 
 /// Whole steps: their mean time, single steps, growth with the number of contacts, and what each skip saves.
 namespace hapbench::bench {

@@ -35,7 +35,7 @@ class FakeSource final : public ContactSource {
   SearchWork work_;
 };
 
-/// What the loop did to a FakeAlgorithm.
+/// Numbers of calls of a FakeAlgorithm.
 struct Calls {
   int prepare = 0;
   int reset = 0;
@@ -101,6 +101,16 @@ inline SimulationParts fake_parts(FakeAlgorithm::Law law, Calls* calls = nullptr
 /// No force at all.
 inline Vec3 weightless(const ToolState&) {
   return Vec3::Zero();
+}
+
+/// One step of leapfrog, which needs no force but the row's.
+inline void leapfrog(ToolState& tool, const Vec3& force, double mass, double dt) {
+  class NoField final : public ForceField {
+   public:
+    Vec3 force_at(double, const Vec3&, const Vec3&) noexcept override { return Vec3::Zero(); }
+    ForceJacobian jacobian() const noexcept override { return {}; }
+  } field;
+  kLeapfrog.make()->step(tool, force, mass, dt, field);
 }
 
 }  // namespace hapbench::test

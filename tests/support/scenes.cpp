@@ -20,123 +20,75 @@ Setting springs(std::vector<Vec3> gradients, const Vec3& position, bool bilatera
   return setting;
 }
 
-// K_vc = K by default, so a stack of springs of stiffness k K renders k K in series with K: k / (k + 1).
-
 const Vec3 kOblique(0.6, 0.64, 0.48);
 
 Setting single_spring() {
   return springs({kOblique}, kDeep * kOblique, false);
 }
-Answer single_spring_answer() {
-  const double d = kDeep;
-  return {-kOblique,
-          false,
-          false,
-          {{"original_averaging", d},
-           {"summation", d},
-           {"mcneely", d},
-           {"mean", d},
-           {"virtual_coupling", d / 2},
-           {"shaped_stiffness", d},
-           {"tandpasta", d},
-           {"normal_projection", d},
-           {"continuous_normal_projection", d},
-           {"exact_shaping", d / (1 + kEps)},
-           {"least_squares", d / (1 + kRegularisation)},
-           {"highest_depth", d}}};
-}
-
 Setting parallel_springs() {
   return springs(std::vector<Vec3>(5, kOblique), kDeep * kOblique, false);
 }
-Answer parallel_springs_answer() {
-  const double d = kDeep;
-  return {-kOblique,
-          false,
-          false,
-          {{"original_averaging", d},
-           {"summation", 5 * d},
-           {"mcneely", 5 * d},
-           {"mean", d},
-           {"virtual_coupling", d * 5 / 6},
-           {"shaped_stiffness", d},
-           {"tandpasta", 5 * d},
-           {"normal_projection", d},
-           {"continuous_normal_projection", d},
-           {"exact_shaping", d * 5 / (5 + kEps)},
-           {"least_squares", d * 5 / (5 + kRegularisation)},
-           {"highest_depth", d}}};
-}
-
 // Three orthogonal springs, equally compressed: S_sum = I, sum u = (1, 1, 1).
 Setting corner_springs() {
   return springs({Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, Vec3::Constant(kDeep), false);
 }
-Answer corner_springs_answer() {
-  const double d = kDeep * std::sqrt(3.0);
-  return {Vec3::Constant(-std::sqrt(1.0 / 3.0)),
-          false,
-          false,
-          {{"original_averaging", d},
-           {"summation", d},
-           {"mcneely", d},
-           {"mean", d / 3},
-           {"virtual_coupling", d / 2},
-           {"shaped_stiffness", d},
-           {"tandpasta", d},
-           {"normal_projection", d},
-           {"continuous_normal_projection", d},
-           {"exact_shaping", d / (1 + kEps)},
-           {"least_squares", d / (1 + kRegularisation)},
-           {"highest_depth", kDeep}}};
-}
-
 // One spring pushes, the other pulls: depths d and -d on gradients x and -x.
 Setting opposite_springs() {
   return springs({Vec3::UnitX(), -Vec3::UnitX()}, kDeep * Vec3::UnitX(), true);
 }
-Answer opposite_springs_answer() {
-  const double d = kDeep;
-  return {-Vec3::UnitX(),
-          true,
-          false,
-          {{"original_averaging", 0.0},
-           {"summation", 2 * d},
-           {"mcneely", 2 * d},
-           {"mean", d},
-           {"virtual_coupling", d * 2 / 3},
-           {"shaped_stiffness", d},
-           {"tandpasta", 0.0},
-           {"normal_projection", d},
-           {"continuous_normal_projection", d},
-           {"exact_shaping", d * 2 / (2 + kEps)},
-           {"least_squares", d * 2 / (2 + kRegularisation)},
-           {"highest_depth", 0.0}}};
-}
-
 // Two faces 120 degrees apart, the tool pressed straight in: depths d/2, <u_1, u_2> = -1/2, and along the way out each
 // spring counts with half of its depth.
 Setting wedge_springs() {
   const double s = std::sqrt(0.75);
   return springs({{0.5, s, 0.0}, {0.5, -s, 0.0}}, kDeep * Vec3::UnitX(), false);
 }
+
+/// Spring force over K of each law in the five scenes above, in units of the compression. K_vc = K by default, so a
+/// stack of springs of stiffness k K renders k K in series with K: k / (k + 1).
+struct SpringRow {
+  std::string_view law;
+  double single, parallel, corner, opposite, wedge;
+};
+std::span<const SpringRow> spring_rows() {
+  static const double root3 = std::sqrt(3.0);
+  static const SpringRow kRows[] = {
+      {"original_averaging", 1, 1, root3, 0, 1},
+      {"summation", 1, 5, root3, 2, 0.5},
+      {"mcneely", 1, 5, root3, 2, 0.5},
+      {"mean", 1, 1, root3 / 3, 1, 0.25},
+      {"virtual_coupling", 0.5, 5.0 / 6, root3 / 2, 2.0 / 3, 1.0 / 3},
+      {"shaped_stiffness", 1, 1, root3, 1, 0.4},
+      {"tandpasta", 1, 5, root3, 0, 0.5},
+      {"normal_projection", 1, 1, root3, 1, 0.4},
+      {"continuous_normal_projection", 1, 1, root3, 1, 0.4},
+      {"exact_shaping", 1 / (1 + kEps), 5 / (5 + kEps), root3 / (1 + kEps), 2 / (2 + kEps), 0.5 / (1.25 + kEps)},
+      {"least_squares", 1 / (1 + kRegularisation), 5 / (5 + kRegularisation), root3 / (1 + kRegularisation),
+       2 / (2 + kRegularisation), 0.5 / (0.5 + kRegularisation)},
+      {"highest_depth", 1, 1, 1, 0, 0.5},
+  };
+  return kRows;
+}
+
+template <double SpringRow::*kScene>
+Answer spring_answer(const Vec3& direction, bool may_vanish = false) {
+  Answer answer{direction, may_vanish};
+  for (const SpringRow& row : spring_rows()) answer.spring_over_K[row.law] = kDeep * row.*kScene;
+  return answer;
+}
+Answer single_spring_answer() {
+  return spring_answer<&SpringRow::single>(-kOblique);
+}
+Answer parallel_springs_answer() {
+  return spring_answer<&SpringRow::parallel>(-kOblique);
+}
+Answer corner_springs_answer() {
+  return spring_answer<&SpringRow::corner>(Vec3::Constant(-std::sqrt(1.0 / 3.0)));
+}
+Answer opposite_springs_answer() {
+  return spring_answer<&SpringRow::opposite>(-Vec3::UnitX(), true);
+}
 Answer wedge_springs_answer() {
-  const double d = kDeep;
-  return {-Vec3::UnitX(),
-          false,
-          false,
-          {{"original_averaging", d},
-           {"summation", d / 2},
-           {"mcneely", d / 2},
-           {"mean", d / 4},
-           {"virtual_coupling", d / 3},
-           {"shaped_stiffness", d * 0.4},
-           {"tandpasta", d / 2},
-           {"normal_projection", d * 0.4},
-           {"continuous_normal_projection", d * 0.4},
-           {"exact_shaping", d * 0.5 / (1.25 + kEps)},
-           {"least_squares", d * 0.5 / (0.5 + kRegularisation)},
-           {"highest_depth", d / 2}}};
+  return spring_answer<&SpringRow::wedge>(-Vec3::UnitX());
 }
 
 Setting springs_at_rest() {

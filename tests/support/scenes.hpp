@@ -2,7 +2,6 @@
 
 #include <map>
 #include <span>
-#include <string>
 #include <string_view>
 
 #include "tests/support/setting.hpp"
@@ -10,7 +9,7 @@
 /// Small scenes whose rendered force is known without running an algorithm.
 namespace hapbench::test {
 
-/// What every algorithm must answer in a scene, whatever its law.
+/// The force that every algorithm must render in a scene, whatever its law.
 struct Answer {
   /// The force is along this unit vector, or zero when it is zero; no claim when `only_in_plane`.
   Vec3 direction = Vec3::Zero();
@@ -28,7 +27,7 @@ struct AnalyticScene {
   std::string_view depth_model;
   Setting (*setting)();
   Answer (*answer)();
-  /// Where the tool has to go for all force to vanish.
+  /// Position of the tool at which all force vanishes.
   Vec3 position_without_force;
   /// A point lies on the tool's surface to the last bit: once the scene is moved, rounding decides whether it collides.
   bool touches = false;

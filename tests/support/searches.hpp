@@ -10,7 +10,7 @@
 #include "sim/tool/cylinder.hpp"
 #include "tests/support/scale.hpp"
 
-/// What the tests of contact searches share: shells, walks of the tool, and brute force to compare with.
+/// Shells, walks of the tool and brute force for tests of contact searches.
 namespace hapbench::test {
 
 /// Whether both buffers hold the same contacts in the same order, bit for bit.
@@ -55,7 +55,7 @@ class SearchPair {
   std::uint64_t contacts_ = 0;
 };
 
-/// What a million poses came to.
+/// Totals over the poses of a walk.
 struct WalkTotals {
   std::uint64_t poses = 0, contacts = 0, lists_rebuilt = 0;
 };
@@ -81,7 +81,7 @@ void expect_agreement_at_a_million_poses(Random random, const MakeTool& make_too
   EXPECT_GE(totals.poses, cases(2000) * 500);
 }
 
-/// Of a size that goes with a shell of `size` metres.
+/// A drill whose size suits a shell of `size` metres.
 std::shared_ptr<const ToolShape> random_drill(Random& random, double size);
 
 }  // namespace hapbench::test

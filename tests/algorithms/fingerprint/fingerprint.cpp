@@ -15,10 +15,9 @@
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/contact_sets.hpp"
+#include "tests/support/meshes.hpp"
 #include "tests/support/setting.hpp"
-#include "tests/support/tool_geometry.hpp"
 #include "tests/support/tool_kinds.hpp"
-#include "tests/support/tool_meshes.hpp"
 
 namespace hapbench::test {
 namespace {

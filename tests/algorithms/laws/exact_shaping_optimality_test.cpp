@@ -7,8 +7,8 @@
 
 #include "algorithms/laws/exact_shaping.hpp"
 #include "tests/support/contact_sets.hpp"
+#include "tests/support/dense_laws.hpp"
 #include "tests/support/scale.hpp"
-#include "tests/support/shaping_optimality.hpp"
 
 namespace hapbench::exact_shaping_optimality_test {
 namespace {

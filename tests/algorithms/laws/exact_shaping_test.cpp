@@ -9,9 +9,7 @@
 #include "algorithms/registry.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
-#include "tests/support/nonnegative_least_squares.hpp"
 #include "tests/support/scale.hpp"
-#include "tests/support/shaping_optimality.hpp"
 
 namespace hapbench::exact_shaping_test {
 namespace {

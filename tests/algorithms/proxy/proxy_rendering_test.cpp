@@ -12,7 +12,7 @@
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/tool/cylinder.hpp"
 #include "tests/support/setting.hpp"
-#include "tests/support/tool_geometry.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace hapbench::proxy_rendering_test {
 namespace {

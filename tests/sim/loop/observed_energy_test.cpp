@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/support/leapfrog.hpp"
+#include "tests/support/fakes.hpp"
 
 namespace hapbench::observed_energy_test {
 namespace {

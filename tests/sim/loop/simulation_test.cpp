@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include "sim/geometry/analytic_shells.hpp"
+#include "sim/tool/cylinder.hpp"
+#include "sim/tool/tool_state.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/fakes.hpp"
-#include "tests/support/leapfrog.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace hapbench::simulation_test {
 namespace {
@@ -50,7 +54,7 @@ TEST(Simulation, OfNoStepsCompletesWithoutARow) {
   EXPECT_EQ(calls.compute, 0);
 }
 
-TEST(Simulation, RowKIsAtTimeKDt) {
+TEST(Simulation, RowKIsAtTimeKDtAndRowZeroIsTheInitialState) {
   Recorder recorder;
   SimulationConfig config = config_of(5000);
   config.dt = 1.0 / 3000.0;
@@ -60,28 +64,9 @@ TEST(Simulation, RowKIsAtTimeKDt) {
     EXPECT_EQ(recorder.rows[k].step, k);
     EXPECT_EQ(recorder.rows[k].time, static_cast<double>(k) * config.dt);
   }
-}
-
-TEST(Simulation, RowZeroIsTheInitialState) {
-  Recorder recorder;
-  const SimulationConfig config = config_of(1);
-  Simulation(config, fake_parts(spring), {&recorder}).run();
   EXPECT_EQ(recorder.rows[0].tool.pose.position, config.position);
   EXPECT_EQ(recorder.rows[0].tool.velocity, config.velocity);
   EXPECT_EQ(recorder.rows[0].tool.pose.axis, Vec3(0, 0, -1));
-}
-
-TEST(Simulation, EachRowIsEvaluatedBeforeItsStepIsTaken) {
-  Recorder recorder;
-  const SimulationConfig config = config_of(100);
-  Simulation(config, fake_parts(spring), {&recorder}).run();
-  ToolState tool = recorder.rows[0].tool;
-  for (const StepRecord& row : recorder.rows) {
-    EXPECT_EQ(row.tool.pose.position, tool.pose.position);
-    EXPECT_EQ(row.tool.velocity, tool.velocity);
-    EXPECT_EQ(row.force.rendered, spring(tool));
-    test::leapfrog(tool, row.force.rendered, config.mass, config.dt);
-  }
 }
 
 TEST(Simulation, TheLimitedHandForceDrivesTheTool) {
@@ -269,6 +254,163 @@ TEST(Simulation, SteppingIsRunning) {
   b.run();
   ASSERT_EQ(stepped.rows.size(), ran.rows.size());
   EXPECT_EQ(stepped.rows.back().tool.pose.position, ran.rows.back().tool.pose.position);
+}
+
+std::array<Profile, 3> some_path() {
+  return {Profile::Shape(Profile::Sine{0.001, 0.002, 0.1, 0.3}), Profile::Shape(Profile::Ramp{0.5, -2.0}), 0.25};
+}
+
+std::vector<StepRecord> run_along(std::array<Profile, 3> path, test::FakeAlgorithm::Law law) {
+  SimulationParts parts = fake_parts(std::move(law));
+  parts.motion = std::make_unique<ScriptedMotion>(Orientation{}, std::move(path));
+  SimulationConfig config;
+  config.steps = 200;
+  config.position = {7, 7, 7};
+  config.velocity = {3, 3, 3};
+  Recorder recorder;
+  Simulation simulation(config, std::move(parts), {&recorder});
+  simulation.run();
+  // The second run of the same object must not remember the first.
+  simulation.reset();
+  recorder.rows.clear();
+  simulation.run();
+  return recorder.rows;
+}
+
+TEST(PrescribedMotion, PutsToolAndHandleWhereTheScriptSaysWithTheBackwardDifferenceAsVelocity) {
+  const auto path = some_path();
+  const auto rows = run_along(path, test::weightless);
+  ASSERT_EQ(rows.size(), 200u);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto& [position, axis, roll] = rows[k].tool.pose;
+    EXPECT_EQ(position, Vec3(path[0](rows[k].time), path[1](rows[k].time), path[2](rows[k].time)));
+    const Vec3 moved = k == 0 ? Vec3(0, 0, 0) : Vec3(position - rows[k - 1].tool.pose.position);
+    EXPECT_EQ(rows[k].tool.velocity, Vec3(moved / SimulationConfig{}.dt));
+    EXPECT_EQ(rows[k].handle.position, position);
+    EXPECT_EQ(rows[k].handle.velocity, rows[k].tool.velocity);
+  }
+}
+
+TEST(PrescribedMotion, ForcesAreComputedButDoNotMoveTheTool) {
+  const auto free = run_along(some_path(), test::weightless);
+  const auto pushed = run_along(some_path(), [](const ToolState&) { return Vec3(1e6, -1e6, 1e6); });
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    EXPECT_EQ(pushed[k].force.rendered, Vec3(1e6, -1e6, 1e6));
+    EXPECT_EQ(pushed[k].tool.pose.position, free[k].tool.pose.position);
+    EXPECT_EQ(pushed[k].tool.velocity, free[k].tool.velocity);
+  }
+}
+
+// The tool's turn about its own axis.
+
+const double kDt = SimulationConfig{}.dt;
+
+Profile ramp(double start, double rate) {
+  return Profile::Shape(Profile::Ramp{start, rate});
+}
+
+const Orientation kSpun{{0, 0, 1}, {1, 0, 0}, ramp(0.3, 2.0), ramp(-1.0, 5.0), ramp(0.5, 30.0)};
+const Orientation kLed{{0, 0, 1}, {1, 0, 0}, ramp(0.3, 2.0), ramp(-1.0, 5.0), 0.5};
+
+/// Independent of axis and roll.
+Mat3 rotation(const Orientation& o, double t) {
+  return (Eigen::AngleAxisd(o.azimuth(t), Vec3::UnitZ()) * Eigen::AngleAxisd(o.tilt(t), Vec3::UnitY()) *
+          Eigen::AngleAxisd(o.roll(t), -Vec3::UnitZ()))
+      .toRotationMatrix();
+}
+
+class WantsRoll final : public Observer {
+ public:
+  bool wants_roll() const noexcept override { return true; }
+  void on_step(const StepRecord& record) noexcept override { rows.push_back(record); }
+  std::vector<StepRecord> rows;
+};
+
+/// Reads the angular velocity, unfiltered, and answers nothing.
+class ReadsTurn final : public ForceAlgorithm {
+ public:
+  void prepare(const Scene&) override {}
+  void reset() noexcept override {}
+  void compute(const ToolState&, ContactBuffer&, RenderedForce& out) noexcept override { out = {}; }
+  SpringState spring_state(const ToolState&, const ContactBuffer&) const noexcept override { return {}; }
+  ForceJacobian jacobian() const noexcept override { return {}; }
+  std::optional<double> angular_velocity_cutoff() const noexcept override {
+    return std::numeric_limits<double>::infinity();
+  }
+};
+
+std::vector<StepRecord> rows_of(std::shared_ptr<const ToolShape> tool, const Orientation& orientation) {
+  SimulationParts parts = test::fake_parts(test::weightless);
+  parts.tool = std::move(tool);
+  parts.algorithm = std::make_unique<ReadsTurn>();
+  parts.motion = std::make_unique<ScriptedMotion>(orientation, std::nullopt);
+  SimulationConfig config;
+  config.steps = 5;
+  WantsRoll observer;
+  Simulation(config, std::move(parts), {&observer}).run();
+  return observer.rows;
+}
+
+const auto kCylinder = std::make_shared<const Cylinder>();
+const auto kBrick = std::make_shared<const test::Brick>(0.0003, 0.0008, 0.002);
+
+TEST(Roll, IsRecordedOfEveryToolAndInThePoseOfThoseThatAreNotRound) {
+  for (const StepRecord& row : rows_of(kCylinder, kSpun)) {
+    EXPECT_LE((ToolPose{Vec3::Zero(), row.tool.pose.axis, row.roll}.rotation() - rotation(kSpun, row.time)).norm(),
+              1e-14);
+    EXPECT_EQ(row.tool.pose.roll, 0.0);
+  }
+  for (const StepRecord& row : rows_of(kBrick, kSpun)) {
+    EXPECT_LE((row.tool.pose.rotation() - rotation(kSpun, row.time)).norm(), 1e-14);
+    EXPECT_EQ(row.tool.pose.roll, row.roll);
+  }
+}
+
+/// Turns of 1e-3 rad are known to 1e-16 / 1e-3.
+TEST(Roll, IsInTheAngularVelocityWhereItIsScriptedOrTheToolIsNotRound) {
+  const auto expect_whole = [](const std::vector<StepRecord>& rows, const Orientation& script) {
+    for (std::size_t k = 1; k < rows.size(); ++k) {
+      const Eigen::AngleAxisd turned(
+          Mat3(rotation(script, rows[k].time) * rotation(script, rows[k - 1].time).transpose()));
+      EXPECT_LE((rows[k].tool.angular_velocity - turned.angle() / kDt * turned.axis()).norm(), 1e-10) << k;
+    }
+  };
+  expect_whole(rows_of(kCylinder, kSpun), kSpun);
+  expect_whole(rows_of(kBrick, kSpun), kSpun);
+  expect_whole(rows_of(kBrick, kLed), kLed);
+  const auto led = rows_of(kCylinder, kLed);
+  for (std::size_t k = 1; k < led.size(); ++k) {
+    EXPECT_EQ(led[k].tool.angular_velocity, Vec3(turn(led[k - 1].tool.pose.axis, led[k].tool.pose.axis) / kDt));
+  }
+}
+
+/// Counts who asks for its roll.
+class Counting final : public Motion {
+ public:
+  explicit Counting(int& asked) : asked_(&asked) {}
+  Vec3 axis_at(double) const noexcept override { return -Vec3::UnitZ(); }
+  double roll_at(double) const noexcept override { return ++*asked_; }
+  bool scripts_roll() const noexcept override { return true; }
+  bool position_is_free() const noexcept override { return true; }
+  Vec3 position_at(double) const noexcept override { return Vec3::Zero(); }
+
+ private:
+  int* asked_;
+};
+
+TEST(Roll, IsNotComputedUnlessSomebodyReadsIt) {
+  const auto asked = [](std::shared_ptr<const ToolShape> tool) {
+    int count = 0;
+    SimulationParts parts = test::fake_parts(test::weightless);
+    parts.tool = std::move(tool);
+    parts.motion = std::make_unique<Counting>(count);
+    SimulationConfig config;
+    config.steps = 5;
+    Simulation(config, std::move(parts), {}).run();
+    return count;
+  };
+  EXPECT_EQ(asked(kCylinder), 0);
+  EXPECT_GE(asked(kBrick), 5);
 }
 
 }  // namespace

@@ -2,14 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 #include "tests/support/scale.hpp"
-#include "tests/support/tool_geometry.hpp"
+#include "tests/support/tool_kinds.hpp"
 
+/// Properties of cylinders alone; EveryTool tests those of any tool.
 namespace hapbench::cylinder_test {
 namespace {
 
@@ -17,103 +16,6 @@ using test::cases;
 
 /// Coordinates of up to 1 m are rounded to 1e-16 of themselves, a few times over.
 constexpr double kRounding = 4e-15;
-
-class CylinderOfTip : public testing::TestWithParam<Tip> {};
-INSTANTIATE_TEST_SUITE_P(BothTips, CylinderOfTip, testing::Values(Tip::flat, Tip::round),
-                         [](const auto& tip) { return tip.param == Tip::flat ? "flat" : "round"; });
-
-/// Eight points as the searches hand them over.
-class Pack {
- public:
-  explicit Pack(const std::array<Vec3, 8>& points) : x_(8), y_(8), z_(8) {
-    for (std::size_t i = 0; i < 8; ++i)
-      std::tie(x_[i], y_[i], z_[i]) = std::tuple(points[i].x(), points[i].y(), points[i].z());
-  }
-  PointArrays arrays() const { return {x_.data(), y_.data(), z_.data()}; }
-
- private:
-  AlignedDoubles x_, y_, z_;
-};
-
-constexpr PackRange kOnePack{0, 1};
-
-TEST_P(CylinderOfTip, MarksAsNearWhateverLiesWithinTheMargin) {
-  Random random(1);
-  std::size_t near = 0;
-  for (std::size_t i = 0; i < cases(5000); ++i) {
-    const Cylinder tool = test::random_tool(random, GetParam());
-    const ToolPose pose = test::random_pose(random);
-    const double margin = tool.radius() * random.uniform();
-    std::array<Vec3, 8> points;
-    for (Vec3& point : points) {
-      point = test::random_point_on(tool, pose, random) + margin * std::cbrt(random.uniform()) * random.direction();
-    }
-    std::uint8_t marks = 0;
-    tool.mark_near(pose, margin + kRounding, Pack(points).arrays(), {&kOnePack, 1}, &marks);
-    ASSERT_EQ(marks, 0xff);
-    const Box all{Vec3::Constant(-2.0), Vec3::Constant(2.0)};
-    const Box box = tool.box_near(pose, margin + kRounding, all);
-    for (const Vec3& point : points) {
-      ASSERT_TRUE((point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all());
-      near += test::slack(tool, pose, point.cast<long double>()) < 0.0L;
-    }
-  }
-  EXPECT_GT(near, cases(5000));
-}
-
-TEST_P(CylinderOfTip, MovesNoPointOfItsBodyFurtherThanItSays) {
-  Random random(2);
-  for (std::size_t i = 0; i < cases(5000); ++i) {
-    const Cylinder tool = test::random_tool(random, GetParam());
-    const ToolPose from = test::random_pose(random);
-    const double turn = std::pow(10.0, random.uniform(-6.0, 0.0));
-    const ToolPose to{from.position + turn * 1e-3 * random.direction(),
-                      (from.axis + turn * random.direction()).normalized(), random.uniform(-3.0, 3.0)};
-    const double moved = tool.moved_at_most(from, to);
-    const Vec3 point = test::random_point_on(tool, to, random);
-    // Within `moved` of where the body was, so the body grown by as much has it.
-    std::uint8_t marks = 0;
-    tool.mark_near(from, moved + kRounding, Pack({point, point, point, point, point, point, point, point}).arrays(),
-                   {&kOnePack, 1}, &marks);
-    ASSERT_EQ(marks, 0xff);
-  }
-}
-
-TEST_P(CylinderOfTip, HasItsForemostPlaceOnTheSurfaceAndNoneBeyondIt) {
-  Random random(3);
-  for (std::size_t i = 0; i < cases(5000); ++i) {
-    const Cylinder tool = test::random_tool(random, GetParam());
-    const ToolPose pose = test::random_pose(random);
-    const Vec3 normal = random.direction();
-    ContactBuffer contacts(1);
-    contacts.push(0, test::random_point_near(tool, pose, random), normal);
-    alignas(64) double x[simd::lanes], y[simd::lanes], z[simd::lanes];
-    tool.foremost_places(pose, contacts, {x, y, z});
-    const Vec3 place(x[0], y[0], z[0]);
-    EXPECT_NEAR(static_cast<double>(test::slack(tool, pose, place.cast<long double>())), 0.0, kRounding);
-    for (int k = 0; k < 20; ++k) {
-      EXPECT_GE((test::random_point_on(tool, pose, random) - place).dot(normal), -kRounding);
-    }
-  }
-}
-
-TEST_P(CylinderOfTip, GrownHoldsEveryPointWithinTheMargin) {
-  Random random(4);
-  for (std::size_t i = 0; i < cases(5000); ++i) {
-    const Cylinder tool = test::random_tool(random, GetParam());
-    const ToolPose pose = test::random_pose(random);
-    const double margin = tool.radius() * random.uniform();
-    const ToolShape::Grown grown = tool.grown(margin + kRounding);
-    const ToolPose ahead{pose.position + grown.forward * pose.axis, pose.axis, pose.roll};
-    std::array<Vec3, 8> points;
-    for (Vec3& point : points) {
-      point = test::random_point_on(tool, pose, random) + margin * random.uniform() * random.direction();
-    }
-    std::uint8_t marks = 0;
-    grown.shape->mark_inside(ahead, Pack(points).arrays(), {&kOnePack, 1}, &marks);
-    ASSERT_EQ(marks, 0xff);
-  }
-}
 
 TEST(LargestSquareWithin, IsTheLastSquareWhoseRootDoesNotExceedTheRadius) {
   Random random(3);
@@ -124,6 +26,64 @@ TEST(LargestSquareWithin, IsTheLastSquareWhoseRootDoesNotExceedTheRadius) {
     ASSERT_LE(std::sqrt(square), r);
     ASSERT_GT(std::sqrt(std::nextafter(square, up)), r);
   }
+}
+
+/// Distance -d_i and normal m_i of one point.
+struct Constraint {
+  double distance;
+  Vec3 normal;
+};
+
+Constraint constraint_of(const Cylinder& tool, const ToolPose& pose, const Vec3& point) {
+  ContactBuffer contacts(1);
+  contacts.push(0, point, Vec3::UnitZ());
+  tool.surface_constraints(pose, Vec3::Zero(), 0.0, contacts);
+  return {-contacts.depth[0], contacts.gradient(0)};
+}
+
+TEST(CylinderConstraints, AreSignedDistancesHoweverShortTheCylinder) {
+  Random random(1);
+  for (std::size_t i = 0; i < cases(20'000); ++i) {
+    const double radius = random.uniform(1e-4, 1e-3);
+    const Cylinder tool(radius, random.uniform(0.2, 2.0) * radius, i % 2 == 0 ? Tip::flat : Tip::round);
+    const ToolPose pose = test::random_pose(random);
+    const auto slack = [&](const Vec3& point) {
+      return static_cast<double>(test::slack(tool, pose, point.cast<long double>()));
+    };
+    const Vec3 point =
+        i % 5 < 2 ? test::random_point_on(tool, pose, random) : test::random_point_near(tool, pose, random);
+    const Constraint c = constraint_of(tool, pose, point);
+    if (std::abs(slack(point)) > kRounding) {
+      ASSERT_EQ(std::signbit(c.distance), slack(point) > 0.0);
+    }
+    ASSERT_NEAR(c.normal.norm(), 1.0, kRounding);
+    // Close to an edge's line the direction is as uncertain as rounding over distance; the place is not.
+    ASSERT_NEAR(slack(point - c.distance * c.normal), 0.0, kRounding);
+    // Subgradients of a convex function: with the two above, no place of the surface is nearer.
+    for (int k = 0; k < 5; ++k) {
+      const Vec3 other = k == 0 ? Vec3(point + 1e-6 * random.direction()) : test::random_point_near(tool, pose, random);
+      ASSERT_GE(constraint_of(tool, pose, other).distance, c.distance + c.normal.dot(other - point) - kRounding);
+    }
+  }
+}
+
+TEST(CylinderConstraints, OnTheAxisTakeSomeNearestPlace) {
+  const Cylinder tool{0.0005, 0.01, Tip::flat};
+  const ToolPose pose{Vec3::Zero(), -Vec3::UnitZ()};
+  const Constraint middle = constraint_of(tool, pose, {0, 0, 0.005});
+  EXPECT_EQ(middle.distance, -0.0005);
+  EXPECT_NEAR(middle.normal.norm(), 1.0, 1e-15);
+  EXPECT_EQ(middle.normal.z(), 0.0);
+  const Constraint at_tip = constraint_of(tool, pose, {0, 0, 0.0001});
+  EXPECT_EQ(at_tip.distance, -0.0001);
+  EXPECT_EQ(at_tip.normal, pose.axis);
+}
+
+TEST(CylinderConstraints, BeyondAnEdgeMeasureToTheEdge) {
+  const Cylinder tool{0.5, 10.0, Tip::flat};
+  const Constraint c = constraint_of(tool, {Vec3::Zero(), -Vec3::UnitZ()}, {0.5 + 0.3, 0.0, -0.4});
+  EXPECT_NEAR(c.distance, 0.5, 1e-15);
+  EXPECT_LE((c.normal - Vec3(0.6, 0.0, -0.8)).norm(), 1e-15);
 }
 
 }  // namespace

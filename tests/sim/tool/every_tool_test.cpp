@@ -1,14 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <array>
 #include <cmath>
 
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_kinds.hpp"
 
-/// What any tool has to answer, against the definition of its body in long double.
+/// Compares the answers of every kind of tool with the definition of its body in long double.
 namespace hapbench::every_tool_test {
 namespace {
 
@@ -61,7 +60,7 @@ std::vector<bool> inside(const ToolShape& tool, const ToolPose& pose, const Cont
   return marked(contacts, [&](auto points, auto ranges, auto marks) { tool.mark_inside(pose, points, ranges, marks); });
 }
 
-/// Those that the search would find, which are what depth models get.
+/// The contacts that a search would find and pass to a depth model.
 ContactBuffer colliding(const DefinedTool& tool, const ToolPose& pose, const ContactBuffer& contacts) {
   const std::vector<bool> found = inside(*tool.shape, pose, contacts);
   ContactBuffer in(contacts.size());
@@ -125,7 +124,7 @@ TEST_P(EveryTool, HasExitsWhereRaysFirstGoOut) {
     std::vector<double> exits(in.size());
     tool.shape->exit_distances(pose, in, exits.data());
     for (std::size_t i = 0; i < in.size(); ++i) {
-      // What a cylinder answers from its surface is the thesis's choice; a test of its own says so.
+      // The exit of a point on a cylinder's surface is the thesis's choice and has tests of its own.
       if (slack_at(tool, pose, in.point(i)) < kRounding) continue;
       ++rays;
       const auto slack_after = [&](long double d) {
@@ -139,7 +138,7 @@ TEST_P(EveryTool, HasExitsWhereRaysFirstGoOut) {
     }
   });
   EXPECT_GT(rays, cases(1000));
-  // Of a hollow body some rays cut a corner's air.
+  // Some rays of a hollow body pass through the air at a corner.
   EXPECT_LE(back_in, rays / 500);
 }
 

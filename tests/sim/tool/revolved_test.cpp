@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
 
+#include "sim/tool/bur.hpp"
 #include "tests/support/scale.hpp"
-#include "tests/support/tool_geometry.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace hapbench::revolved_test {
 namespace {
@@ -136,6 +140,137 @@ TEST(Revolved, OfAPoseThatIsNotFiniteHoldsNothing) {
       EXPECT_EQ(inside(tool, {{0, 0, 0}, {0, bad, -1}}, contacts), 0);
     }
   }
+}
+
+std::string refused(std::vector<ProfilePoint> points, Tip tip = Tip::flat) {
+  try {
+    Meridian(std::move(points), tip);
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+void expect_refused(const std::string& start, const std::string& about, std::vector<ProfilePoint> points,
+                    Tip tip = Tip::flat) {
+  const std::string what = refused(std::move(points), tip);
+  EXPECT_EQ(what.substr(0, start.size()), start);
+  EXPECT_NE(what.find(about), std::string::npos) << what;
+}
+
+TEST(Meridian, SaysWhichPointIsWrongAndWhy) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  expect_refused("a profile needs", "two points", {{0, 1}});
+  expect_refused("profile[1] = [nan, 1]", "finite", {{-2, 1}, {nan, 1}, {0, 1}});
+  expect_refused("profile[1] = [0.5, 1]", "s has to be <= 0", {{-2, 1}, {0.5, 1}});
+  expect_refused("profile[1] = [-1, -0.5]", "rho", {{-2, 1}, {-1, -0.5}, {0, 1}});
+  expect_refused("profile[1] = [-1, 0]", "only the first and the last", {{-2, 1}, {-1, 0}, {0, 1}});
+  expect_refused("profile[2] = [-1, 1]", "same as the point before", {{-2, 1}, {-1, 1}, {-1, 1}, {0, 1}});
+  expect_refused("profile[1] = [-2, 1]", "from the shank's end to the tip", {{0, 1}, {-2, 1}});
+  expect_refused("profile[1] = [-1, 1]", "goes back on itself", {{-2, 1}, {-1, 1}, {-1.5, 1}, {0, 2}});
+  expect_refused("profile[2] = [0, 0.5]", "goes back on itself", {{-2, 1}, {0, 2}, {0, 0.5}, {0, 1}});
+  expect_refused("profile[2]", "line from profile[0] to profile[1]", {{-3, 1}, {-1, 2}, {-2, 3}, {-2.5, 0.5}, {0, 1}});
+  expect_refused("profile[1]", "disc that closes the shank's end", {{-2, 2}, {-1, 1}, {-3, 1}, {-3, 3}, {0, 3}});
+  expect_refused("profile[1] = [-1, 1]", "beside it: s = 0", {{-2, 1}, {-1, 1}}, Tip::round);
+  expect_refused("profile[1] = [0, 0]", "beside it: s = 0, rho > 0", {{-2, 1}, {0, 0}}, Tip::round);
+  expect_refused("profile[1] = [0, 0]", "no body", {{-2, 0}, {0, 0}});
+}
+
+TEST(Meridian, TakesWhateverDoesNotMeetItself) {
+  EXPECT_EQ(refused({{-2, 1}, {0, 1}}), "accepted");
+  EXPECT_EQ(refused({{-2, 0}, {-1, 1}, {0, 0}}), "accepted");
+  EXPECT_EQ(refused({{-3, 1}, {-1, 1}, {-2, 2}, {0, 2}}), "accepted") << "undercut";
+  EXPECT_EQ(refused({{-3, 1}, {0, 1}, {-1, 0}}), "accepted") << "hollow tip";
+  EXPECT_EQ(refused({{-3, 1}, {0, 1}, {0, 2}}, Tip::round), "accepted") << "a half ball wider than its shank";
+  EXPECT_EQ(refused({{-3, 1}, {-1, 1}, {-1, 2}, {0, 2}, {0, 1}}, Tip::round), "accepted") << "a narrower one";
+}
+
+TEST(Meridian, KnowsWhetherTheBodyIsConvex) {
+  const auto convex = [](std::vector<ProfilePoint> points, Tip tip = Tip::flat) {
+    return Meridian(std::move(points), tip).convex;
+  };
+  EXPECT_TRUE(convex({{-2, 1}, {0, 1}}));
+  EXPECT_TRUE(convex({{-2, 1}, {-1, 1}, {0, 1}})) << "straight";
+  EXPECT_TRUE(convex({{-2, 1}, {0, 1}}, Tip::round));
+  EXPECT_TRUE(convex({{-2, 0.5}, {0, 1}}, Tip::round));
+  EXPECT_TRUE(convex({{-2, 0}, {-1, 1}, {0, 0}}));
+  EXPECT_TRUE(convex({{-2, 0.5}, {-2, 1}, {0, 1}, {0, 0.5}})) << "points on the discs";
+  EXPECT_FALSE(convex({{-2, 1}, {-1, 0.5}, {0, 1}}));
+  EXPECT_FALSE(convex({{-2, 1}, {-1, 1}, {-1, 0.5}, {0, 0.5}})) << "a step";
+  EXPECT_FALSE(convex({{-2, 1}, {0, 0.5}}, Tip::round)) << "it narrows towards the ball";
+  EXPECT_FALSE(convex({{-2, 0.5}, {0, 0.5}, {0, 1}}, Tip::round));
+  EXPECT_FALSE(convex({{-3, 1}, {0, 1}, {-1, 0}})) << "hollow tip";
+}
+
+TEST(Meridian, CutsTheSectionAtCornersThatTurnInwards) {
+  // A shank, a cone and a head: two corners inwards, with one of them a step.
+  const Meridian meridian({{-9, 1}, {-4, 1}, {-3, 2}, {-3, 3}, {-1, 3}, {0, 2}}, Tip::flat);
+  ASSERT_EQ(meridian.parts.size(), 3u);
+  EXPECT_EQ(meridian.parts[2].low, -3);
+  EXPECT_EQ(meridian.parts[2].high, 0);
+  EXPECT_EQ(meridian.parts[2].last - meridian.parts[2].first, 2u);
+}
+
+constexpr BurFamily kFamilies[] = {BurFamily::ball,    BurFamily::cylinder,      BurFamily::round_cylinder,
+                                   BurFamily::tapered, BurFamily::inverted_cone, BurFamily::pear,
+                                   BurFamily::flame};
+
+double length_of(BurFamily family) {
+  return family == BurFamily::ball ? 0.001 : 0.003;
+}
+
+TEST(BurProfile, HasTheDiameterTheLengthAndTheShankItIsAskedFor) {
+  for (const BurFamily family : kFamilies) {
+    SCOPED_TRACE(static_cast<int>(family));
+    const BurProfile bur = bur_profile(family, 0.001, length_of(family), 0.0004);
+    const Revolved tool(bur.profile, bur.tip);
+    EXPECT_NEAR(tool.half_width(), 0.0005, 1e-18);
+    const auto& p = bur.profile;
+    EXPECT_EQ(p[0].rho, 0.0002);
+    EXPECT_EQ(p[1].rho, 0.0002);
+    EXPECT_NEAR(p[1].s - p[0].s, 0.004, 1e-17);
+    // The neck cuts a little off a ball.
+    const double cut = family == BurFamily::ball ? 0.0005 - std::sqrt(0.0005 * 0.0005 - 0.0002 * 0.0002) : 0.0;
+    const double foremost = bur.tip == Tip::round ? p.back().rho : p.back().s;
+    EXPECT_NEAR(foremost - p[1].s, length_of(family) - cut, 1e-17);
+    EXPECT_FALSE(tool.convex());
+  }
+}
+
+TEST(BurProfile, WithoutAStepOfTheShankIsConvexWhereItCanBe) {
+  const BurProfile bur = bur_profile(BurFamily::round_cylinder, 0.001, 0.003, 0.001);
+  EXPECT_TRUE(Revolved(bur.profile, bur.tip).convex());
+}
+
+TEST(BurProfile, KeepsAThousandthOfTheDiameterToItsArcs) {
+  const BurProfile ball = bur_profile(BurFamily::ball, 0.001, 0.001, 0.0003);
+  for (std::size_t i = 1; i + 1 < ball.profile.size(); ++i) {
+    const ProfilePoint a = ball.profile[i], b = ball.profile[i + 1];
+    EXPECT_NEAR(std::hypot(a.s, a.rho), 0.0005, 1e-18);
+    EXPECT_GE(std::hypot(0.5 * (a.s + b.s), 0.5 * (a.rho + b.rho)), 0.0005 - 1e-6);
+  }
+  // Smooth: from the shank on no corner of pear and flame but the tip's, the shank's and the flame's waist turns by
+  // more than a chord does.
+  for (const BurFamily family : {BurFamily::pear, BurFamily::flame}) {
+    const BurProfile bur = bur_profile(family, 0.001, 0.003, 0.0004);
+    for (std::size_t i = 2; i + 1 < bur.profile.size(); ++i) {
+      const ProfilePoint a = bur.profile[i - 1], b = bur.profile[i], c = bur.profile[i + 1];
+      const double turn = std::atan2(c.rho - b.rho, c.s - b.s) - std::atan2(b.rho - a.rho, b.s - a.s);
+      EXPECT_LE(turn, 1e-9) << i;
+      EXPECT_GE(turn, -2.0 * std::acos(1.0 - 0.002)) << i;
+    }
+  }
+}
+
+TEST(BurProfile, RefusesLengthsThatDoNotSuitTheFamily) {
+  EXPECT_THROW(bur_profile(BurFamily::cylinder, 0.0, 0.003, 0.0004), std::invalid_argument);
+  EXPECT_THROW(bur_profile(BurFamily::cylinder, 0.001, -0.003, 0.0004), std::invalid_argument);
+  EXPECT_THROW(bur_profile(BurFamily::cylinder, 0.001, 0.003, std::nan("")), std::invalid_argument);
+  EXPECT_THROW(bur_profile(BurFamily::ball, 0.001, 0.002, 0.0004), std::invalid_argument);
+  EXPECT_THROW(bur_profile(BurFamily::ball, 0.001, 0.001, 0.001), std::invalid_argument);
+  EXPECT_THROW(bur_profile(BurFamily::round_cylinder, 0.001, 0.0004, 0.0004), std::invalid_argument);
+  EXPECT_THROW(bur_profile(BurFamily::pear, 0.001, 0.0009, 0.0004), std::invalid_argument);
+  EXPECT_THROW(bur_profile(BurFamily::flame, 0.001, 0.0008, 0.0004), std::invalid_argument);
 }
 
 }  // namespace

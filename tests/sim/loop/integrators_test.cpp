@@ -1,17 +1,18 @@
-#include "sim/loop/integrators/table.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 #include <unsupported/Eigen/MatrixFunctions>
+#include <vector>
 
 #include "sim/core/random.hpp"
+#include "sim/loop/integrators/table.hpp"
 #include "tests/support/fakes.hpp"
 
-namespace hapbench::integrator_test {
+namespace hapbench::integrators_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -265,7 +266,7 @@ class Witness final : public ForceAlgorithm {
 
 const Orientation kTurn{{0, 0, 1}, {1, 0, 0}, Profile::Shape(Profile::Ramp{0.1, 3.0}), {}};
 
-/// What an algorithm sees of a tool that tilts from -z towards -x, about y, at 3 rad/s.
+/// The states that an algorithm sees of a tool that tilts from -z towards -x, about y, at 3 rad/s.
 std::vector<ToolState> seen_of_a_turn(const IntegratorEntry* integrator, std::uint64_t steps, double cutoff) {
   std::vector<ToolState> seen;
   SimulationParts parts = test::fake_parts(test::weightless);
@@ -367,5 +368,75 @@ TEST(IntegratorInTheLoop, LeavesAPrescribedPositionAlone) {
   }
 }
 
+using test::leapfrog;
+
+/// A mass on a spring-damper along x.
+struct Oscillator {
+  double B = 0.0, K = 20000.0, M = 0.2, dt = 0.0005;
+  ToolState tool = {{{0.001, 0, 0}}, {0.3, 0, 0}};
+
+  void step() { leapfrog(tool, {-K * x() - B * v(), 0, 0}, M, dt); }
+  double x() const { return tool.pose.position.x(); }
+  double v() const { return tool.velocity.x(); }
+  double energy() const { return 0.5 * M * v() * v() + 0.5 * K * x() * x(); }
+};
+
+TEST(Leapfrog, VelocityIsUpdatedBeforePosition) {
+  // Dyadic numbers: exact.
+  ToolState tool;
+  tool.pose.position = {1, 2, 3};
+  tool.velocity = {0.5, 0.0, -1.0};
+  leapfrog(tool, {2, 4, -8}, 4.0, 0.25);
+  EXPECT_EQ(tool.velocity, Vec3(0.625, 0.25, -1.5));
+  EXPECT_EQ(tool.pose.position, Vec3(1.15625, 2.0625, 2.625));
+}
+
+TEST(Leapfrog, FollowsTheClosedFormOfItsRecurrence) {
+  // With b = B dt/M and k = K dt^2/M the positions obey x_{j+1} = (2 - b - k) x_j - (1 - b) x_{j-1}: powers of the
+  // roots of z^2 - (2 - b - k) z + (1 - b), from x_0 and x_1.
+  for (const double B : {0.0, 5.0, 88.5}) {
+    Oscillator o{B};
+    const double b = o.B * o.dt / o.M, k = o.K * o.dt * o.dt / o.M;
+    using Complex = std::complex<double>;
+    const Complex root = std::sqrt(Complex((2 - b - k) * (2 - b - k) - 4 * (1 - b)));
+    const Complex z1 = 0.5 * (2 - b - k + root), z2 = 0.5 * (2 - b - k - root);
+    const double x0 = o.x();
+    o.step();
+    const double x1 = o.x();
+    const Complex c1 = (x1 - z2 * x0) / (z1 - z2), c2 = (z1 * x0 - x1) / (z1 - z2);
+    const double amplitude = std::abs(c1) + std::abs(c2);
+    constexpr int steps = 1000;
+    // Each step rounds its three terms, and a disturbance of the recurrence echoes with the amplitude 2 / |z1 - z2|.
+    const double tolerance = steps * 8 * kEps * amplitude * 2.0 / std::abs(z1 - z2);
+    ASSERT_LT(tolerance, 1e-9 * amplitude);
+    for (int j = 2; j <= steps; ++j) {
+      o.step();
+      const double exact = (c1 * std::pow(z1, j) + c2 * std::pow(z2, j)).real();
+      ASSERT_NEAR(o.x(), exact, tolerance) << "B = " << B << ", step " << j;
+    }
+  }
+}
+
+TEST(Leapfrog, ConservesItsModifiedEnergy) {
+  Oscillator o;
+  const auto modified = [&o] { return o.energy() - 0.5 * o.K * o.dt * o.x() * o.v(); };
+  const double start = modified();
+  constexpr int steps = 100000;
+  for (int j = 0; j < steps; ++j) {
+    o.step();
+    ASSERT_NEAR(modified(), start, steps * 8 * kEps * start);
+  }
+}
+
+TEST(Leapfrog, ConstantForceGivesTheDiscreteParabola) {
+  // v_j = j a dt and x_j = a dt^2 j (j + 1) / 2: exact in dyadic numbers.
+  ToolState tool;
+  for (int j = 1; j <= 1000; ++j) {
+    leapfrog(tool, {0, 0, -2}, 0.5, 0x1p-10);
+    EXPECT_EQ(tool.velocity.z(), -4 * 0x1p-10 * j);
+    EXPECT_EQ(tool.pose.position.z(), -4 * 0x1p-20 * j * (j + 1) / 2);
+  }
+}
+
 }  // namespace
-}  // namespace hapbench::integrator_test
+}  // namespace hapbench::integrators_test

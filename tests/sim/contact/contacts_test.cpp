@@ -1,0 +1,259 @@
+#include <gtest/gtest.h>
+
+#include "sim/contact/contact_buffer.hpp"
+#include "sim/contact/contact_source.hpp"
+#include "sim/contact/stiffness_tensor.hpp"
+#include "tests/support/bits.hpp"
+#include "tests/support/contact_sets.hpp"
+#include "tests/support/dense_laws.hpp"
+#include "tests/support/scale.hpp"
+
+namespace hapbench::contacts_test {
+namespace {
+
+ContactBuffer random_contacts(std::size_t n) {
+  Random random(n);
+  ContactBuffer contacts(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    contacts.push(static_cast<std::uint32_t>(10 * i), random.direction(), random.direction());
+    contacts.set_gradient(i, random.direction());
+    contacts.depth[i] = random.uniform();
+    contacts.weight[i] = random.uniform();
+  }
+  return contacts;
+}
+
+TEST(ContactBuffer, StartsEmptyWithTheGivenCapacity) {
+  const ContactBuffer contacts(13);
+  EXPECT_TRUE(contacts.empty());
+  EXPECT_EQ(contacts.size(), 0u);
+  EXPECT_EQ(contacts.padded_size(), 0u);
+  EXPECT_EQ(contacts.capacity(), 13u);
+}
+
+TEST(ContactBuffer, PushedContactsHaveNoDepthGradientOrWeight) {
+  ContactBuffer contacts = random_contacts(3);
+  contacts.clear();
+  contacts.push(7, {1, 2, 3}, {0, 1, 0});
+  ASSERT_EQ(contacts.size(), 1u);
+  EXPECT_EQ(contacts.index[0], 7u);
+  EXPECT_EQ(contacts.point(0), Vec3(1, 2, 3));
+  EXPECT_EQ(contacts.normal(0), Vec3(0, 1, 0));
+  EXPECT_EQ(contacts.gradient(0), Vec3(0, 0, 0));
+  EXPECT_EQ(contacts.depth[0], 0.0);
+  EXPECT_EQ(contacts.weight[0], 0.0);
+}
+
+TEST(ContactBuffer, HasRoomForWholePacksUpToItsCapacity) {
+  for (std::size_t n = 0; n <= 17; ++n) {
+    const ContactBuffer contacts = random_contacts(n);
+    EXPECT_EQ(contacts.padded_size() % 8, 0u);
+    EXPECT_GE(contacts.padded_size(), n);
+    EXPECT_GE(contacts.weight.size(), contacts.padded_size());
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(contacts.weight.data()) % 64, 0u);
+  }
+}
+
+TEST(ContactBuffer, PadZeroesWhatSumsReadBeyondTheLastContact) {
+  ContactBuffer contacts = random_contacts(16);
+  contacts.shrink(9);
+  contacts.pad();
+  for (std::size_t i = 9; i < 16; ++i) {
+    EXPECT_EQ(contacts.depth[i], 0.0);
+    EXPECT_EQ(contacts.gradient(i), Vec3(0, 0, 0));
+    EXPECT_EQ(contacts.weight[i], 0.0);
+  }
+  EXPECT_NE(contacts.weight[8], 0.0);
+}
+
+TEST(ContactBuffer, PadStaysWithinAFullBuffer) {
+  for (std::size_t n = 0; n <= 17; ++n) {
+    ContactBuffer contacts = random_contacts(n);
+    ASSERT_GE(contacts.weight.size(), n + 8);
+    contacts.pad();
+  }
+}
+
+TEST(ContactBuffer, ShrinkKeepsTheFirstContacts) {
+  const ContactBuffer all = random_contacts(12);
+  ContactBuffer contacts = all;
+  contacts.shrink(5);
+  ASSERT_EQ(contacts.size(), 5u);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(contacts.index[i], all.index[i]);
+}
+
+TEST(ContactBuffer, CopyOverwritesEveryColumn) {
+  ContactBuffer contacts = random_contacts(4);
+  ContactBuffer expected(4);
+  for (const std::size_t from : {0u, 3u, 2u, 3u}) expected.push_copy_of(contacts, from);
+  contacts.copy(3, 1);
+  EXPECT_EQ(test::hash_of(contacts), test::hash_of(expected));
+}
+
+TEST(ContactBuffer, PushCopyOfTakesEveryColumnFromTheOtherBuffer) {
+  const ContactBuffer from = random_contacts(6);
+  ContactBuffer to(6);
+  for (std::size_t i = 0; i < 6; ++i) to.push_copy_of(from, i);
+  EXPECT_EQ(test::hash_of(to), test::hash_of(from));
+}
+
+TEST(ContactBuffer, AssignTakesAllContactsInPlaceOfItsOwn) {
+  const ContactBuffer from = random_contacts(5);
+  ContactBuffer to = random_contacts(20);
+  to.assign(from);
+  EXPECT_EQ(test::hash_of(to), test::hash_of(from));
+  for (std::size_t i = 5; i < to.padded_size(); ++i) EXPECT_EQ(to.weight[i], 0.0) << "padded";
+}
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+// An entry of S adds n / 8 <= 13 products in each of eight partial sums, and u^T S u a few more: 20 roundings of
+// numbers below n = 100, 2e-13, in a ratio that is at least its own weight, 1/2. The dense sums round as much again.
+constexpr double kTolerance = 1e-12;
+
+/// A random set with random weights in [1/2, 1).
+ContactBuffer weighted_contacts(const test::GradientFamily& family, Random& random) {
+  const auto gradients = family.draw(random, test::random_size(random, 100));
+  ContactBuffer contacts = test::contacts_of(gradients, test::random_depths(random, gradients.size()));
+  for (std::size_t i = 0; i < contacts.size(); ++i) contacts.weight[i] = random.uniform(0.5, 1.0);
+  return contacts;
+}
+
+TEST(StiffnessTensor, IsTheWeightedSumOfOuterProducts) {
+  Random random(1);
+  for (const auto& family : test::gradient_families()) {
+    for (std::size_t i = 0; i < test::cases(100); ++i) {
+      const ContactBuffer contacts = weighted_contacts(family, random);
+      const Eigen::VectorXd c = test::weights(contacts);
+      const Mat3 expected = test::Dense(contacts).S(c);
+      const Mat3 S = stiffness_tensor(contacts);
+      EXPECT_LE((S - expected).norm(), kTolerance * c.sum()) << family.name;
+      EXPECT_EQ(S, S.transpose());
+    }
+  }
+}
+
+TEST(StiffnessTensor, RatiosEqualThoseOfTheMatrixOfSquaredInnerProducts) {
+  Random random(2);
+  for (const auto& family : test::gradient_families()) {
+    for (std::size_t i = 0; i < test::cases(100); ++i) {
+      const ContactBuffer contacts = weighted_contacts(family, random);
+      const Eigen::VectorXd rho = test::Dense(contacts).A() * test::weights(contacts);
+      const RatioRange range = ratio_range(contacts, stiffness_tensor(contacts));
+      EXPECT_NEAR(range.min, rho.minCoeff(), kTolerance * rho.minCoeff()) << family.name;
+      EXPECT_NEAR(range.max, rho.maxCoeff(), kTolerance * rho.maxCoeff()) << family.name;
+    }
+  }
+}
+
+TEST(StiffnessTensor, OfNoContactsIsZero) {
+  const ContactBuffer contacts(8);
+  EXPECT_EQ(stiffness_tensor(contacts), Mat3::Zero());
+  EXPECT_EQ(weighted_depth(contacts), Vec3::Zero());
+  const RatioRange range = ratio_range(contacts, Mat3::Identity());
+  EXPECT_EQ(range.min, 0.0);
+  EXPECT_EQ(range.max, 0.0);
+}
+
+TEST(StiffnessTensor, RatioRangeCoversEveryContact) {
+  const ContactBuffer contacts = test::contacts_of({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+  const RatioRange range = ratio_range(contacts, Vec3(2.0, 0.5, 3.0).asDiagonal());
+  EXPECT_EQ(range.min, 0.5);
+  EXPECT_EQ(range.max, 3.0);
+}
+
+TEST(WeightedDepth, IsTheSumOfWeightedDepthVectors) {
+  Random random(3);
+  for (const auto& family : test::gradient_families()) {
+    const ContactBuffer contacts = weighted_contacts(family, random);
+    const test::Dense dense(contacts);
+    const Eigen::VectorXd c = test::weights(contacts);
+    EXPECT_LE((weighted_depth(contacts) + dense.spring(1.0, c)).norm(), kTolerance * dense.magnitude(c)) << family.name;
+  }
+}
+
+TEST(LambdaMax, IsTheLargestEigenvalue) {
+  Random random(4);
+  for (std::size_t i = 0; i < test::cases(10000); ++i) {
+    const Mat3 Q = test::random_rotation(random);
+    const Vec3 eigenvalues(random.uniform(-1.0, 2.0), random.uniform(-1.0, 2.0), random.uniform(-1.0, 2.0));
+    const Mat3 S = Q * eigenvalues.asDiagonal() * Q.transpose();
+    // Building S and the iteration each move eigenvalues by a few roundings of the norm.
+    EXPECT_NEAR(lambda_max(S), eigenvalues.maxCoeff(), 32 * kEps * eigenvalues.cwiseAbs().maxCoeff());
+  }
+}
+
+TEST(LambdaMax, KeepsItsDigitsWhenTheLargestEigenvalueIsDouble) {
+  Random random(5);
+  for (std::size_t i = 0; i < test::cases(10000); ++i) {
+    const Mat3 Q = test::random_rotation(random);
+    const Mat3 S = Q * Vec3(1.0, 1.0, random.uniform()).asDiagonal() * Q.transpose();
+    EXPECT_NEAR(lambda_max(S), 1.0, 32 * kEps);
+  }
+}
+
+TEST(LambdaMax, OfADiagonalIsItsLargestEntry) {
+  EXPECT_EQ(lambda_max(Vec3(0.25, 4.0, 1.0).asDiagonal()), 4.0);
+  EXPECT_EQ(lambda_max(Mat3::Zero()), 0.0);
+  EXPECT_EQ(lambda_max(-Mat3::Identity()), -1.0);
+}
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+struct SpringContact {
+  std::uint32_t spring;
+  double depth;
+  Vec3 gradient;
+};
+
+// Gradients whose inner products with dyadic positions are exact.
+const SpringSet kBilateral{{{1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}}, true};
+const SpringSet kUnilateral{kBilateral.gradients, false}, kUnsigned{kBilateral.gradients, true, false};
+
+TEST(SpringSource, HasTheContactsOfItsKindOfSprings) {
+  const struct {
+    const char* name;
+    SpringSet springs;
+    Vec3 position;
+    std::vector<SpringContact> contacts;
+  } kCases[] = {
+      {"bilateral springs always act, with depths of either sign",
+       kBilateral,
+       {0.25, -0.5, 0.125},
+       {{0, 0.25, {1, 0, 0}}, {1, -0.25, {-1, 0, 0}}, {2, 0.5, {0, -1, 0}}, {3, 0.125, {0, 0, 1}}}},
+      {"unsigned ones have gradients along the displacement; the fourth is at its natural length",
+       kUnsigned,
+       {0.25, -0.5, 0.0},
+       {{0, 0.25, {1, 0, 0}}, {1, 0.25, {1, 0, 0}}, {2, 0.5, {0, -1, 0}}, {3, 0.0, {0, 0, 1}}}},
+      {"unilateral springs act when compressed",
+       kUnilateral,
+       {0.25, 0.5, 0.125},
+       {{0, 0.25, {1, 0, 0}}, {3, 0.125, {0, 0, 1}}}},
+      {"and not at their natural length", kUnilateral, {0, 0, 0}, {}},
+      {"nor at a position that is not finite", kUnilateral, Vec3::Constant(kNaN), {}},
+  };
+  for (const auto& c : kCases) {
+    SCOPED_TRACE(c.name);
+    SpringSource source(std::make_shared<const SpringSet>(c.springs));
+    EXPECT_EQ(source.capacity(), 4u);
+    ContactBuffer contacts(8);
+    contacts.depth.assign(16, 1.0);
+    source.contacts_at({c.position, -Vec3::UnitZ()}, contacts);
+    ASSERT_EQ(contacts.size(), c.contacts.size());
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      EXPECT_EQ(contacts.index[i], c.contacts[i].spring);
+      EXPECT_EQ(contacts.depth[i], c.contacts[i].depth);
+      EXPECT_EQ(contacts.gradient(i), c.contacts[i].gradient);
+      EXPECT_EQ(contacts.normal(i), Vec3(-c.contacts[i].gradient));
+      EXPECT_EQ(contacts.point(i), c.position);
+    }
+    for (std::size_t i = contacts.size(); i < 8; ++i) EXPECT_EQ(contacts.depth[i], 0.0) << "padded";
+    EXPECT_EQ(source.work().queries, 1u);
+    EXPECT_EQ(source.work().points_tested, 4u);
+    source.reset();
+    EXPECT_EQ(source.work().queries, 0u);
+  }
+}
+
+}  // namespace
+}  // namespace hapbench::contacts_test

@@ -1,0 +1,288 @@
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "sim/contact/neighbour_list_query.hpp"
+#include "sim/geometry/analytic_shells.hpp"
+#include "sim/mesh/marching_cubes.hpp"
+#include "tests/support/searches.hpp"
+#include "tests/support/tool_kinds.hpp"
+
+namespace hapbench::searches_test {
+namespace {
+
+using test::cases;
+using test::next_pose;
+
+constexpr double kInf = std::numeric_limits<double>::infinity(), kNaN = std::numeric_limits<double>::quiet_NaN();
+const Cylinder kDrill(0.0005, 0.01, Tip::flat);
+
+/// The searches in a grid must answer exactly as brute force does, whatever the tool did before: same points, same
+/// order, same bits.
+template <class Query>
+class GridSearch : public testing::Test {};
+struct QueryName {
+  template <class Query>
+  static std::string GetName(int) {
+    return std::is_same_v<Query, GridQuery> ? "GridQuery" : "NeighbourListQuery";
+  }
+};
+using GridSearches = testing::Types<GridQuery, NeighbourListQuery>;
+TYPED_TEST_SUITE(GridSearch, GridSearches, QueryName);
+
+TYPED_TEST(GridSearch, FindsWhatBruteForceFindsAtAMillionPosesOfDrills) {
+  test::WalkTotals totals;
+  test::expect_agreement_at_a_million_poses<TypeParam>(Random(3), test::random_drill, totals);
+  // The walks touch something, and lists are used more than once.
+  EXPECT_GT(totals.contacts, totals.poses);
+  EXPECT_LT(totals.lists_rebuilt, totals.poses / 2);
+}
+
+TYPED_TEST(GridSearch, FindsWhatBruteForceFindsAtAMillionPosesOfEveryKindOfTool) {
+  for (const test::ToolKind& kind : test::tool_kinds()) {
+    SCOPED_TRACE(kind.name);
+    const auto make_tool = [&](Random& random, double size) { return kind.make(random, 0.5 * size).shape; };
+    test::WalkTotals totals;
+    test::expect_agreement_at_a_million_poses<TypeParam>(Random(13), make_tool, totals);
+    EXPECT_GT(totals.contacts, totals.poses / 2);
+  }
+}
+
+// Points that lie exactly on the tool's surface are in the box around it, whatever the rounding of either.
+TYPED_TEST(GridSearch, AgreesOnTheAnalyticShells) {
+  Random random(5);
+  const Cylinder round{0.0005, 0.005, Tip::round};
+  using Pair = test::SearchPair<TypeParam>;
+  Pair hole(surface_points(Hole2d{}), 0.0001, round);
+  Pair plane(surface_points(Plane{0.004, 0.0001}), 0.0001, kDrill);
+  Pair slot(surface_points(Slot{0.001, 0.003, 0.004, 0.0001}), 0.0001, kDrill);
+  ToolPose pose{{0, -0.004, 0}, {0, -1, 0}}, pose_3d{{0, 0, 0}, {0, 0, -1}};
+  for (std::size_t k = 0; k < cases(20'000); ++k) {
+    ASSERT_TRUE(hole.agree_at(pose));
+    ASSERT_TRUE(plane.agree_at(pose_3d));
+    ASSERT_TRUE(slot.agree_at(pose_3d));
+    pose = next_pose(pose, random, 0.004, 0.00005);
+    pose_3d = next_pose(pose_3d, random, 0.002, 0.00005);
+  }
+  EXPECT_GT(hole.contacts() + plane.contacts() + slot.contacts(), 1000u);
+}
+
+TYPED_TEST(GridSearch, SurvivesAnEmptyShellAndPosesThatAreNotFinite) {
+  test::SearchPair<TypeParam> empty({}, 0.0001, kDrill), pair(surface_points(Plane{0.004, 0.0001}), 0.0001, kDrill);
+  EXPECT_TRUE(empty.agree_at({Vec3::Zero(), {0, 0, -1}}));
+  for (const double bad : {kNaN, kInf, -kInf, 1e300}) {
+    EXPECT_TRUE(pair.agree_at({{bad, 0, 0}, {0, 0, -1}}));
+    EXPECT_TRUE(pair.agree_at({{0, 0, bad}, {0, 0, -1}}));
+    EXPECT_TRUE(pair.agree_at({{0, 0, 0}, {0, bad, -1}}));
+    EXPECT_TRUE(pair.agree_at({{0, 0, 0}, {0, 0, -1}}));
+  }
+}
+
+TEST(GridQuery, TestsTheCellsAroundTheToolOnly) {
+  test::SearchPair<GridQuery> pair(surface_points(Plane{0.02, 0.0001}), 0.0001, kDrill);
+  ASSERT_TRUE(pair.agree_at({Vec3::Zero(), {0, 0, -1}}));
+  EXPECT_EQ(pair.work().queries, 1u);
+  EXPECT_GE(pair.work().points_tested, pair.contacts());
+  // Cells of 2.5 spacings: the box of 1 mm is at most 1 mm and two cells wide.
+  EXPECT_LE(pair.work().points_tested, 16u * 16u);
+  pair.reset();
+  EXPECT_EQ(pair.work().points_tested, 0u);
+}
+
+using ListPair = test::SearchPair<NeighbourListQuery>;
+
+TEST(NeighbourListQuery, HoldsToItsInequalityWhenTheToolTurnsAboutItsTip) {
+  // The bottom end, 10 mm from the tip, sweeps furthest: a list that ignored rotation would miss these points.
+  std::vector<SurfacePoint> arc;
+  for (int k = 0; k < 360; ++k) {
+    const double a = k * std::numbers::pi / 180.0;
+    arc.push_back({{0.0098 * std::sin(a), 0.0, 0.0098 * std::cos(a)}, {0, 0, 1}});
+  }
+  ListPair pair(arc, 0.0001, kDrill);
+  for (double tilt = 0.0; tilt < 6.0; tilt += 0.001) {
+    ASSERT_TRUE(pair.agree_at({Vec3::Zero(), {-std::sin(tilt), 0.0, -std::cos(tilt)}})) << tilt;
+  }
+  EXPECT_GT(pair.contacts(), 6000u);
+}
+
+TEST(NeighbourListQuery, TestsNothingInFreeAir) {
+  ListPair pair(surface_points(Plane{0.004, 0.0001}), 0.0001, kDrill);
+  ASSERT_TRUE(pair.agree_at({{0, 0, 0.05}, {0, 0, -1}}));
+  const std::uint64_t tested = pair.work().points_tested;
+  for (int k = 0; k < 1000; ++k) ASSERT_TRUE(pair.agree_at({{1e-6 * k, 0, 0.05 - 1e-6 * k}, {0, 0, -1}}));
+  EXPECT_EQ(pair.work().points_tested, tested);
+  EXPECT_EQ(pair.work().skipped, 1000u);
+}
+
+TEST(NeighbourListQuery, AfterResetDoesTheSameWorkAgain) {
+  ListPair pair(surface_points(Plane{0.004, 0.0001}), 0.0001, kDrill);
+  const auto walk = [&pair] {
+    for (int k = 0; k < 100; ++k) EXPECT_TRUE(pair.agree_at({{1e-5 * k, 0, 0.0003 - 1e-5 * k}, {0, 0, -1}}));
+    return pair.work();
+  };
+  const SearchWork first = walk();
+  pair.reset();
+  const SearchWork second = walk();
+  EXPECT_EQ(first.points_tested, second.points_tested);
+  EXPECT_EQ(first.lists_rebuilt, second.lists_rebuilt);
+  EXPECT_GT(first.lists_rebuilt, 0u);
+}
+
+std::vector<SurfacePoint> at(const std::vector<Vec3>& positions) {
+  std::vector<SurfacePoint> points;
+  for (const Vec3& position : positions) points.push_back({position, Vec3::UnitZ()});
+  return points;
+}
+
+ContactBuffer brute_force(const PointShell& shell, const Cylinder& tool, const ToolPose& pose) {
+  ShellQuery query(shell, tool);
+  ContactBuffer contacts(query.capacity());
+  query.contacts_at(pose, contacts);
+  return contacts;
+}
+
+/// Whether a shell of the one point reports it.
+bool collides(const Cylinder& tool, const ToolPose& pose, const Vec3& position) {
+  return brute_force(PointShell(at({position}), 0.0), tool, pose).size() == 1;
+}
+
+class ShellQueryForTip : public testing::TestWithParam<Tip> {};
+INSTANTIATE_TEST_SUITE_P(BothTips, ShellQueryForTip, testing::Values(Tip::flat, Tip::round),
+                         [](const auto& tip) { return tip.param == Tip::flat ? "flat" : "round"; });
+
+// Poses along the coordinate axes and dyadic sizes: all coordinates below are exact, so the closed set is exact too.
+constexpr double kRadius = 0x5p-13;  // 0.61 mm, a multiple of 5 for the point (3, 4) on the circle
+constexpr double kLength = 0x1p-7;
+// One unit in the last place of the coordinates, which are below 1/2; the radius is far above it.
+constexpr double kOut = 0x1p-53;
+const Vec3 kPosition(0x3p-4, -0x5p-4, 0x1p-4);
+
+/// Places (s, a, b): s along the axis, a and b across it.
+std::vector<Vec3> on_cylinder() {
+  std::vector<Vec3> places;
+  for (const double s : {0.0, -kLength / 2, -kLength}) {
+    // 0.6 and 0.8 radii are 3 and 4 units of 2^-13: exact.
+    for (const auto& [a, b] : {std::pair(1.0, 0.0), {0.0, -1.0}, {0.6, 0.8}, {0.0, 0.0}})
+      places.push_back({s, a * kRadius, b * kRadius});
+  }
+  return places;
+}
+const std::vector<Vec3> kOnRound = {
+    {kRadius, 0, 0}, {0.6 * kRadius, 0.8 * kRadius, 0}, {0.8 * kRadius, 0, -0.6 * kRadius}};
+const std::vector<Vec3> kOffBoth = {
+    {-kLength - kOut, 0, 0}, {-kLength / 2, kRadius + kOut, 0}, {-kLength / 2, 0, -kRadius - kOut}};
+const std::vector<Vec3> kOffFlat = {{kOut, 0, 0}};
+const std::vector<Vec3> kOffRound = {{kRadius + kOut, 0, 0}, {0.6 * kRadius + kOut, 0.8 * kRadius + kOut, 0}};
+
+TEST_P(ShellQueryForTip, FindsPointsExactlyOnTheSurfaceAndNoneJustOutside) {
+  const Cylinder tool{kRadius, kLength, GetParam()};
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    const Vec3 axis = (k < 3 ? -1.0 : 1.0) * Vec3::Unit(k % 3), e1 = Vec3::Unit((k + 1) % 3),
+               e2 = Vec3::Unit((k + 2) % 3);
+    const auto expect = [&](const std::vector<Vec3>& places, bool hit) {
+      for (const Vec3& p : places) {
+        const Vec3 point = kPosition + p[0] * axis + p[1] * e1 + p[2] * e2;
+        EXPECT_EQ(collides(tool, {kPosition, axis}, point), hit) << k << ": " << p.transpose();
+      }
+    };
+    expect(on_cylinder(), true);
+    expect(kOffBoth, false);
+    expect(GetParam() == Tip::round ? kOnRound : std::vector<Vec3>{}, true);
+    expect(GetParam() == Tip::round ? kOffRound : kOffFlat, false);
+  }
+}
+
+TEST_P(ShellQueryForTip, ReportsPointsInAscendingOrderAsTheShellHasThem) {
+  Random random(2);
+  const Cylinder tool = test::random_tool(random, GetParam());
+  const ToolPose pose = test::random_pose(random);
+  std::vector<SurfacePoint> points(1000);
+  for (SurfacePoint& p : points) p = {test::random_point_near(tool, pose, random), random.direction()};
+  const ContactBuffer contacts = brute_force(PointShell(points, 0.0), tool, pose);
+  ASSERT_GT(contacts.size(), 100u);
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    ASSERT_TRUE(k == 0 || contacts.index[k - 1] < contacts.index[k]);
+    EXPECT_EQ(contacts.point(k), points[contacts.index[k]].position);
+    EXPECT_EQ(contacts.normal(k), points[contacts.index[k]].normal);
+  }
+}
+
+TEST(ShellQuery, ReplacesWhatTheBufferHeldAndCountsItsWorkWithoutPadding) {
+  const PointShell shell(at(std::vector<Vec3>(13, Vec3::Zero())), 0.0);
+  ShellQuery query(shell, kDrill);
+  EXPECT_EQ(query.capacity(), 13u);
+  ContactBuffer contacts(query.capacity());
+  for (int i = 0; i < 2; ++i) {
+    query.contacts_at({}, contacts);
+    EXPECT_EQ(contacts.size(), 13u);
+  }
+  query.contacts_at({{1, 0, 0}, {0, 0, -1}}, contacts);
+  EXPECT_TRUE(contacts.empty());
+  EXPECT_EQ(query.work().queries, 3u);
+  EXPECT_EQ(query.work().points_tested, 39u);
+  query.reset();
+  EXPECT_EQ(query.work().queries, 0u);
+  EXPECT_EQ(query.work().points_tested, 0u);
+  for (const double x : {kNaN, kInf}) {
+    query.contacts_at({{x, 0, 0}, {0, 0, -1}}, contacts);
+    EXPECT_TRUE(contacts.empty()) << "at a pose that is not finite";
+  }
+}
+
+std::size_t marked_near(const PointShell& shell, const ToolShape& tool, const ToolPose& pose, double margin) {
+  const PackRange all{0, shell.padded_size() / simd::lanes};
+  std::vector<std::uint8_t> marks(all.last);
+  tool.mark_near(pose, margin, {shell.x(), shell.y(), shell.z()}, {&all, 1}, marks.data());
+  return std::accumulate(marks.begin(), marks.end(), std::size_t{0}, [](std::size_t n, std::uint8_t mark) {
+    return n + static_cast<std::size_t>(std::popcount(mark));
+  });
+}
+
+/// The largest number of points of a random shell that the tool has near it over some poses, relative to the bound.
+double worst_part_of_bound(const ToolShape& tool, double size, Random& random) {
+  const double margin = random.uniform(0.0, 0.3) * tool.half_width();
+  const PointShell shell(test::random_shell(random, size), 0.0);
+  const std::size_t bound = most_points_in(shell, tool.cover(margin));
+  EXPECT_LE(bound, shell.size());
+  ToolPose pose{Vec3::Zero(), random.direction()};
+  std::size_t worst = 0;
+  for (int k = 0; k < 50; ++k) {
+    pose = next_pose(pose, random, size, 0.2 * tool.half_width());
+    worst = std::max(worst, marked_near(shell, tool, pose, margin));
+  }
+  EXPECT_LE(worst, bound);
+  return static_cast<double>(worst) / static_cast<double>(std::max<std::size_t>(1, bound));
+}
+
+TEST(MostPoints, BoundWhatAnyToolHasNearItAnywhere) {
+  Random random(5);
+  double tightest = 0.0;
+  for (std::size_t i = 0; i < cases(2000); ++i) {
+    const double size = std::pow(10.0, random.uniform(-4.0, 0.0));
+    const Tip tip = random.below(2) == 0 ? Tip::flat : Tip::round;
+    const Cylinder drill{size * random.uniform(0.01, 0.2), size * random.uniform(0.02, 3.0), tip};
+    tightest = std::max(tightest, worst_part_of_bound(drill, size, random));
+    const test::Brick brick(size * random.uniform(0.01, 0.2), size * random.uniform(0.01, 0.2),
+                            size * random.uniform(0.02, 0.5));
+    tightest = std::max(tightest, worst_part_of_bound(brick, size, random));
+  }
+  EXPECT_GT(tightest, 0.5);  // the walks come close to the bound
+}
+
+TEST(MostPoints, AreFewOfTheThesissBlockAndNoneOfAnEmptyShell) {
+  const std::vector<SurfacePoint> points =
+      marching_cubes(density_field(BlockWithHole(), 0.0001, Density::signed_distance)).vertices;
+  const PointShell shell(points, 0.0001);
+  // 440 in the hole, 1000 along a wall; eight balls and the hole's 2 000 points in a cube around each.
+  const std::size_t bound = most_points_in(shell, Cylinder().cover(0.0));
+  EXPECT_GT(bound, 1000u);
+  EXPECT_LT(bound, shell.size() / 4);
+  EXPECT_EQ(most_points_in(PointShell({}, 0.1), Cylinder().cover(0.0)), 0u);
+}
+
+}  // namespace
+}  // namespace hapbench::searches_test

@@ -1,0 +1,224 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "sim/core/bisection.hpp"
+#include "sim/core/hash.hpp"
+#include "sim/core/profile.hpp"
+#include "sim/core/random.hpp"
+
+namespace hapbench::core_test {
+namespace {
+
+TEST(LargestStable, FindsTheEdgeFromBothSides) {
+  for (const double edge : {3e-7, 0.02, 1.0, 433731.0, 7e12}) {
+    for (const double start : {1e-3, 1.0, 1e5}) {
+      const double found = largest_stable(start, 1e-4, [&](double value) { return value <= edge; });
+      EXPECT_LE(found, edge);
+      EXPECT_GE(found, edge / (1.0 + 1e-4) * (1.0 - 1e-12));
+    }
+  }
+}
+
+TEST(LargestStable, SaysWhenThereIsNoEdge) {
+  EXPECT_EQ(largest_stable(1.0, 1e-4, [](double) { return false; }), 0.0);
+  EXPECT_TRUE(std::isinf(largest_stable(1.0, 1e-4, [](double) { return true; })));
+}
+
+// Values of the reference implementation (draft-eastlake-fnv, test vectors for FNV-1a, 64 bits).
+TEST(Hash, OfTextEqualsPublishedVectorsOfFnv1a) {
+  EXPECT_EQ(hash_of(""), 0xcbf29ce484222325u);
+  EXPECT_EQ(hash_of("a"), 0xaf63dc4c8601ec8cu);
+  EXPECT_EQ(hash_of("foobar"), 0x85944171f73967e8u);
+}
+
+TEST(Hash, OfTextInPiecesEqualsHashOfTheWhole) {
+  Hash64 hash;
+  hash.bytes("foo");
+  hash.bytes("bar");
+  EXPECT_EQ(hash.value(), hash_of("foobar"));
+}
+
+std::uint64_t hash_of_reals(double a, double b) {
+  Hash64 hash;
+  hash.real(a);
+  hash.real(b);
+  return hash.value();
+}
+
+TEST(Hash, TellsZeroFromMinusZeroTwoFlippedSignsFromNoneAndOrders) {
+  EXPECT_NE(hash_of_reals(0.0, 1.0), hash_of_reals(-0.0, 1.0));
+  EXPECT_NE(hash_of_reals(1.5, 2.5), hash_of_reals(-1.5, -2.5));
+  EXPECT_NE(hash_of_reals(1.0, 2.0), hash_of_reals(2.0, 1.0));
+}
+
+TEST(Hash, TextHasSixteenHexadecimalDigitsLeadingZerosIncluded) {
+  EXPECT_EQ(hash_text(0x00f1e2d3c4b5a697u), "00f1e2d3c4b5a697");
+  EXPECT_EQ(hash_text(0), "0000000000000000");
+}
+
+TEST(Random, UniformIsTheTop53BitsOfMt19937_64) {
+  // The standard ([rand.predef]) fixes the 10000th number of the default seed 5489.
+  Random random(5489);
+  for (int i = 1; i < 10000; ++i) random.uniform();
+  EXPECT_EQ(random.uniform(), static_cast<double>(9981545732273789042u >> 11) * 0x1.0p-53);
+}
+
+TEST(Random, SameSeedGivesSameNumbers) {
+  Random a(7), b(7), c(8);
+  bool differs = false;
+  for (int i = 0; i < 100; ++i) {
+    const double x = a.uniform();
+    EXPECT_EQ(x, b.uniform());
+    differs |= x != c.uniform();
+  }
+  EXPECT_TRUE(differs);
+}
+
+TEST(Random, NumbersStayInTheirRange) {
+  Random random(1);
+  for (int i = 0; i < 100000; ++i) {
+    const double x = random.uniform(-3.0, 5.0);
+    ASSERT_GE(x, -3.0);
+    ASSERT_LT(x, 5.0);
+    ASSERT_LT(random.below(7), 7u);
+  }
+}
+
+TEST(Random, NormalNumbersHaveTheMomentsOfTheNormalDistribution) {
+  Random random(4);
+  constexpr int n = 200'000;
+  std::array<double, 5> moments{};
+  for (int i = 0; i < n; ++i) {
+    const double x = random.normal();
+    for (std::size_t k = 1; k < moments.size(); ++k) moments[k] += std::pow(x, static_cast<double>(k)) / n;
+  }
+  // Expected 0, 1, 0, 3 with variances 1, 2, 15, 96 over n; five standard errors.
+  const double root = std::sqrt(n);
+  EXPECT_NEAR(moments[1], 0.0, 5 * 1.0 / root);
+  EXPECT_NEAR(moments[2], 1.0, 5 * std::sqrt(2.0) / root);
+  EXPECT_NEAR(moments[3], 0.0, 5 * std::sqrt(15.0) / root);
+  EXPECT_NEAR(moments[4], 3.0, 5 * std::sqrt(96.0) / root);
+}
+
+TEST(Random, DerivesSeedsThatDifferForNeighboursOfBothKinds) {
+  std::set<std::uint64_t> seeds;
+  for (std::uint64_t stream = 0; stream < 100; ++stream) {
+    for (std::uint64_t number = 0; number < 100; ++number) seeds.insert(Random::derive(stream, number));
+  }
+  EXPECT_EQ(seeds.size(), 10'000u);
+  static_assert(Random::derive(3, 5) == 3 * 0x9e3779b97f4a7c15u + 5, "results depend on it");
+}
+
+TEST(Random, DirectionsAreUnitVectors) {
+  Random random(2);
+  // Three rounded squares and a rounded root.
+  const double tolerance = 4 * std::numeric_limits<double>::epsilon();
+  for (int i = 0; i < 10000; ++i) {
+    ASSERT_NEAR(random.direction().norm(), 1.0, tolerance);
+    const Vec3 planar = random.direction_in_plane();
+    ASSERT_NEAR(planar.norm(), 1.0, tolerance);
+    ASSERT_EQ(planar.z(), 0.0);
+  }
+}
+
+TEST(Random, DirectionsFavourNoOctant) {
+  Random random(3);
+  constexpr int n = 80000;
+  std::array<int, 8> octants{};
+  for (int i = 0; i < n; ++i) {
+    const Vec3 u = random.direction();
+    ++octants[(u.x() > 0) + 2u * (u.y() > 0) + 4u * (u.z() > 0)];
+  }
+  // Binomial with p = 1/8: standard deviation 94; six of them.
+  for (const int count : octants) EXPECT_NEAR(count, n / 8, 6 * 94);
+}
+
+using Waypoints = Profile::Waypoints;
+constexpr auto kLinear = Profile::Interpolation::linear;
+constexpr auto kCosine = Profile::Interpolation::cosine;
+
+TEST(Profile, HasTheValuesOfItsShape) {
+  const Profile linear = Profile::Shape(Waypoints{{{0.1, 1.0}, {0.3, -7.0}, {0.35, 0.1}}, kLinear});
+  const Profile cosine = Profile::Shape(Waypoints{{{0.1, 1.0}, {0.3, -7.0}, {0.35, 0.1}}, kCosine});
+  const Profile straight = Profile::Shape(Waypoints{{{0.0, 0.0}, {1.0, 8.0}, {3.0, 4.0}}, kLinear});
+  const struct {
+    const char* name;
+    Profile profile;
+    std::vector<std::pair<double, double>> values;  ///< exact: at the time, the value
+  } kCases[] = {
+      {"zero by default", {}, {{0.0, 0.0}, {123.0, 0.0}}},
+      {"constant", -2.5, {{-1e9, -2.5}, {0.0, -2.5}, {0.3, -2.5}, {1e9, -2.5}}},
+      {"ramp", Profile::Shape(Profile::Ramp{0.5, -2.0}), {{0.0, 0.5}, {0.25, 0.0}, {3.0, -5.5}, {-1.0, 2.5}}},
+      {"sine", Profile::Shape(Profile::Sine{1.0, 3.0, 0.5, 0.0}), {{0.0, 1.0}}},
+      {"through every linear waypoint", linear, {{0.1, 1.0}, {0.3, -7.0}, {0.35, 0.1}}},
+      {"through every cosine waypoint", cosine, {{0.1, 1.0}, {0.3, -7.0}, {0.35, 0.1}}},
+      {"linear, held outside", linear, {{-1e300, 1.0}, {0.0999, 1.0}, {0.3501, 0.1}, {1e300, 0.1}}},
+      {"cosine, held outside", cosine, {{-1e300, 1.0}, {0.0999, 1.0}, {0.3501, 0.1}, {1e300, 0.1}}},
+      {"straight between", straight, {{0.25, 2.0}, {0.5, 4.0}, {1.5, 7.0}, {2.5, 5.0}}},
+      {"one waypoint", Profile::Shape(Waypoints{{{1.0, 4.0}}, kLinear}), {{0.0, 4.0}, {1.0, 4.0}, {2.0, 4.0}}}};
+  for (const auto& [name, profile, values] : kCases) {
+    for (const auto& [t, value] : values) EXPECT_EQ(profile(t), value) << name << " at " << t;
+  }
+}
+
+TEST(Profile, SineHasItsMeanAmplitudePeriodAndPhase) {
+  const Profile profile = Profile::Shape(Profile::Sine{1.0, 3.0, 0.5, 0.0});
+  // One rounding in 2 pi t / T times a slope of at most the amplitude, one in the sine, one in the sum.
+  const double tolerance = 16 * std::numeric_limits<double>::epsilon();
+  EXPECT_NEAR(profile(0.125), 4.0, tolerance);
+  EXPECT_NEAR(profile(0.25), 1.0, tolerance);
+  EXPECT_NEAR(profile(0.375), -2.0, tolerance);
+  EXPECT_NEAR(profile(0.5 + 0.1), profile(0.1), 4 * tolerance);
+  const Profile shifted = Profile::Shape(Profile::Sine{1.0, 3.0, 0.5, std::numbers::pi / 2});
+  EXPECT_NEAR(shifted(0.0), 4.0, tolerance);
+  EXPECT_NEAR(shifted(0.125), 1.0, tolerance);
+}
+
+TEST(Profile, CosineWaypointsFollowHalfACosineOnEachLeg) {
+  const Profile profile = Profile::Shape(Waypoints{{{2.0, 1.0}, {4.0, 5.0}}, kCosine});
+  for (int k = 0; k <= 20; ++k) {
+    const double s = k / 20.0;
+    // A leg of length 4 evaluated in a handful of operations on numbers below 8.
+    EXPECT_NEAR(profile(2.0 + 2.0 * s), 3.0 - 2.0 * std::cos(std::numbers::pi * s), 1e-14) << s;
+  }
+}
+
+TEST(Profile, CosineWaypointsStartAndEndEachLegAtRest) {
+  const Profile profile = Profile::Shape(Waypoints{{{0.0, 0.0}, {1.0, 1.0}, {2.0, -3.0}}, kCosine});
+  // The curvature of a leg of height h is at most pi^2 h / 2 < 20, so a step e from rest moves by less than 10 e^2.
+  const double e = 1e-4;
+  for (const double t : {0.0, 1.0, 2.0}) {
+    EXPECT_NEAR(profile(t + e), profile(t), 10 * e * e) << t;
+    EXPECT_NEAR(profile(t - e), profile(t), 10 * e * e) << t;
+  }
+}
+
+TEST(Profile, RateIsTheTimeDerivativeOfEveryShape) {
+  const Profile profiles[] = {3.0, Profile::Shape(Profile::Ramp{1.0, -2.0}),
+                              Profile::Shape(Profile::Sine{1.0, 2.0, 3.0, 0.5}),
+                              Profile::Shape(Waypoints{{{0.0, 0.0}, {1.0, 8.0}, {3.0, 4.0}}, kLinear}),
+                              Profile::Shape(Waypoints{{{0.0, 0.0}, {1.0, 8.0}, {3.0, 4.0}}, kCosine})};
+  for (const Profile& profile : profiles) {
+    for (const double t : {-1.0, 0.3, 0.7, 1.4, 2.2, 5.0}) {
+      // Third derivatives stay below 4 pi^3 = 125: the central difference errs by less than 25 h^2 and 1e-15 / h.
+      const double h = 1e-5;
+      EXPECT_NEAR(profile.rate(t), (profile(t + h) - profile(t - h)) / (2.0 * h), 25 * h * h + 1e-9) << t;
+    }
+  }
+  EXPECT_EQ(profiles[3].rate(1.0), -2.0) << "a corner belongs to the leg that begins there";
+  EXPECT_EQ(profiles[3].rate(3.0), 0.0);
+}
+
+TEST(Profile, KeepsTheShapeItWasGiven) {
+  const Profile profile = Profile::Shape(Profile::Ramp{0.5, -2.0});
+  ASSERT_TRUE(std::holds_alternative<Profile::Ramp>(profile.shape()));
+  EXPECT_EQ(std::get<Profile::Ramp>(profile.shape()).rate_per_s, -2.0);
+  EXPECT_EQ(std::get<Profile::Constant>(Profile(3.0).shape()).value, 3.0);
+}
+
+}  // namespace
+}  // namespace hapbench::core_test

@@ -1,0 +1,224 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "sim/loop/simulation.hpp"
+#include "tests/support/fakes.hpp"
+
+namespace hapbench::run_end_test {
+namespace {
+
+using test::fake_parts;
+using test::Recorder;
+
+const Vec3 kUp(0, 0, 1);
+
+/// A weightless tool that rises at 1 m/s along `up` from 10.5 steps below height 0.
+SimulationConfig rising(const Vec3& up) {
+  SimulationConfig config;
+  config.steps = 100;
+  config.velocity = up;
+  config.position = -10.5 * config.dt * up;
+  return config;
+}
+
+SimulationResult run(const SimulationConfig& config, SimulationParts parts, Recorder& recorder) {
+  return Simulation(config, std::move(parts), {&recorder}).run();
+}
+
+TEST(StopConditions, LeavesTheHoleAtTheFirstRowAboveHeightZeroWhichIsRecorded) {
+  for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0)}) {
+    SimulationConfig config = rising(up);
+    config.stop_when = {when_tool_leaves_hole(up)};
+    // Row 11 is half a step above; a stop on the last row is still a stop.
+    for (const std::uint64_t steps : {100u, 12u}) {
+      config.steps = steps;
+      Recorder recorder;
+      const SimulationResult result = run(config, fake_parts(test::weightless), recorder);
+      EXPECT_EQ(result.outcome, Outcome::leaves_hole);
+      EXPECT_EQ(result.rows, 12u);
+      ASSERT_EQ(recorder.rows.size(), 12u);
+      EXPECT_GT(recorder.rows[11].tool.pose.position.dot(up), 0.0);
+      EXPECT_LT(recorder.rows[10].tool.pose.position.dot(up), 0.0);
+    }
+  }
+}
+
+TEST(StopConditions, ExactlyAtHeightZeroTheToolIsStillInTheHole) {
+  SimulationConfig config;
+  config.steps = 3;
+  config.stop_when = {when_tool_leaves_hole(kUp)};
+  Recorder recorder;
+  EXPECT_EQ(run(config, fake_parts(test::weightless), recorder).outcome, Outcome::completes);
+}
+
+SimulationParts tilting(const Vec3& up, double start, double rate_per_s) {
+  SimulationParts parts = fake_parts(test::weightless);
+  parts.motion = std::make_unique<ScriptedMotion>(
+      Orientation{up, {1, 0, 0}, Profile::Shape(Profile::Ramp{start, rate_per_s}), {}}, std::nullopt);
+  return parts;
+}
+
+TEST(StopConditions, ToolIsHorizontalAtTheFirstRowWhereItsAxisReachesThePlaneWhichIsRecorded) {
+  for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0)}) {
+    SimulationConfig config;
+    config.steps = 10000;
+    config.stop_when = {when_tool_is_horizontal(up)};
+    Recorder recorder;
+    const SimulationResult result = Simulation(config, tilting(up, 0.1, 1.2), {&recorder}).run();
+    EXPECT_EQ(result.outcome, Outcome::tool_horizontal);
+    // 0.1 + 1.2 k dt = pi / 2.
+    const double k = std::ceil((std::numbers::pi / 2 - 0.1) / 1.2 / config.dt);
+    EXPECT_EQ(static_cast<double>(result.rows), k + 1);
+    ASSERT_EQ(recorder.rows.size(), result.rows);
+    EXPECT_GE(recorder.rows.back().tool.pose.axis.dot(up), 0.0);
+    EXPECT_LT(recorder.rows[recorder.rows.size() - 2].tool.pose.axis.dot(up), 0.0);
+  }
+}
+
+TEST(StopConditions, AreOffByDefault) {
+  Recorder recorder;
+  EXPECT_EQ(run(rising(kUp), tilting(kUp, 2.0, 0.0), recorder).outcome, Outcome::completes);
+  EXPECT_EQ(recorder.rows.size(), 100u);
+}
+
+TEST(StopConditions, TheEarlierOneWins) {
+  SimulationConfig config = rising(kUp);
+  config.stop_when = {when_tool_leaves_hole(kUp), when_tool_is_horizontal(kUp)};
+  Recorder recorder;
+  EXPECT_EQ(run(config, tilting(kUp, 0.1, 0.0), recorder).outcome, Outcome::leaves_hole);
+  EXPECT_EQ(run(config, tilting(kUp, 2.0, 0.0), recorder).outcome, Outcome::tool_horizontal);
+}
+
+TEST(StopConditions, AStoppedRunTakesNoFurtherSteps) {
+  SimulationConfig config = rising(kUp);
+  config.stop_when = {when_tool_leaves_hole(kUp)};
+  Recorder recorder;
+  Simulation simulation(config, fake_parts(test::weightless), {&recorder});
+  simulation.run();
+  const Vec3 position = simulation.tool().pose.position;
+  EXPECT_FALSE(simulation.step());
+  EXPECT_EQ(simulation.tool().pose.position, position);
+  EXPECT_EQ(recorder.rows.size(), 12u);
+}
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+SimulationConfig config_of(std::uint64_t steps) {
+  SimulationConfig config;
+  config.steps = steps;
+  return config;
+}
+
+/// No force before the tool has been asked `steps` times, then the given one.
+test::FakeAlgorithm::Law after(int steps, const Vec3& force) {
+  return [=, k = 0](const ToolState&) mutable { return k++ < steps ? Vec3(Vec3::Zero()) : force; };
+}
+
+TEST(Divergence, StopsAtTheRowWhoseForceIsNotFiniteAndKeepsTheRowsBefore) {
+  for (const double bad : {kNaN, kInf, -kInf}) {
+    Recorder recorder;
+    Simulation simulation(config_of(100), fake_parts(after(5, {0, bad, 0})), {&recorder});
+    const SimulationResult result = simulation.run();
+    EXPECT_EQ(result.outcome, Outcome::diverges);
+    EXPECT_EQ(result.rows, 5u);
+    ASSERT_EQ(recorder.rows.size(), 5u);
+    for (const StepRecord& row : recorder.rows) EXPECT_TRUE(row.force.rendered.allFinite());
+    EXPECT_EQ(result.divergence.step, 5u);
+    EXPECT_EQ(result.divergence.time, 5 * SimulationConfig{}.dt);
+    EXPECT_EQ(result.divergence.quantity, std::string("rendered force"));
+    EXPECT_FALSE(std::isfinite(result.divergence.magnitude));
+    EXPECT_EQ(result.divergence.bound, DivergenceBounds{}.force);
+    EXPECT_FALSE(simulation.step());
+  }
+}
+
+TEST(Divergence, IsReportedForEachQuantityThatLeavesItsBound) {
+  const struct {
+    Vec3 velocity;
+    double force;
+    const char* quantity;
+    std::uint64_t step;
+    double magnitude, bound;
+  } kCases[] = {{{0, 0, 3}, 0.0, "position", 2, 0.75, 0.5},  // 0.375 m a step
+                {{0, 0, 5}, 0.0, "velocity", 0, 5.0, 4.0},
+                {{0, 0, 0}, 17.0, "rendered force", 0, 17.0, 16.0}};
+  for (const auto& c : kCases) {
+    SimulationConfig config = config_of(100);
+    config.bounds = {0.5, 4.0, 16.0};
+    config.dt = 0.125;
+    config.velocity = c.velocity;
+    Recorder recorder;
+    const SimulationResult result = run(config, fake_parts(after(0, {0, 0, c.force})), recorder);
+    EXPECT_EQ(recorder.rows.size(), result.rows);
+    EXPECT_EQ(result.rows, c.step);
+    EXPECT_EQ(result.divergence.step, c.step);
+    EXPECT_EQ(result.divergence.quantity, std::string(c.quantity));
+    EXPECT_EQ(result.divergence.magnitude, c.magnitude);
+    EXPECT_EQ(result.divergence.bound, c.bound);
+  }
+}
+
+TEST(Divergence, ABoundItselfIsStillWithin) {
+  SimulationConfig config = config_of(1);
+  config.bounds = {0.5, 4.0, 16.0};
+  config.position = {0.5, 0, 0};
+  config.velocity = {0, 4.0, 0};
+  EXPECT_EQ(Simulation(config, fake_parts(after(0, {16.0, 0, 0})), {}).run().outcome, Outcome::completes);
+}
+
+TEST(Divergence, ANonFinitePositionOrVelocityIsFoundAtItsRow) {
+  for (const double bad : {kNaN, kInf}) {
+    SimulationConfig position = config_of(10), velocity = config_of(10);
+    position.position = {bad, 0, 0};
+    velocity.velocity = {0, bad, 0};
+    const auto quantity = [](const SimulationConfig& config) {
+      return std::string(Simulation(config, fake_parts(test::weightless), {}).run().divergence.quantity);
+    };
+    EXPECT_EQ(quantity(position), "position");
+    EXPECT_EQ(quantity(velocity), "velocity");
+  }
+}
+
+TEST(Divergence, OfAPrescribedPositionIsFoundToo) {
+  SimulationParts parts = fake_parts(test::weightless);
+  parts.motion = std::make_unique<ScriptedMotion>(
+      Orientation{}, std::array<Profile, 3>{Profile::Shape(Profile::Ramp{0.0, 1e6}), 0.0, 0.0});
+  Recorder recorder;
+  const SimulationResult result = Simulation(config_of(10), std::move(parts), {&recorder}).run();
+  EXPECT_EQ(result.outcome, Outcome::diverges);
+  // 500 m a step: row 3 is beyond 1 km.
+  EXPECT_EQ(result.rows, 3u);
+}
+
+TEST(Divergence, IsForgottenByReset) {
+  SimulationConfig config = config_of(10);
+  int rows = 0;
+  Simulation simulation(config, fake_parts([&rows](const ToolState&) { return Vec3(0, 0, rows++ == 3 ? kNaN : 0.0); }),
+                        {});
+  EXPECT_EQ(simulation.run().outcome, Outcome::diverges);
+  simulation.reset();
+  EXPECT_EQ(simulation.run().outcome, Outcome::completes);
+  EXPECT_EQ(simulation.result().rows, 10u);
+}
+
+TEST(Divergence, OfAnUnstableSpringComesFromTheIntegratorAlone) {
+  // 10 times the stability limit 4 M/dt^2: the displacement multiplies by about 38 a step.
+  SimulationConfig config = config_of(1000);
+  config.position = {0.001, 0, 0};
+  const double K = 40 * config.mass / (config.dt * config.dt);
+  Recorder recorder;
+  const auto result =
+      Simulation(config, fake_parts([K](const ToolState& tool) { return Vec3(-K * tool.pose.position); }), {&recorder})
+          .run();
+  EXPECT_EQ(result.outcome, Outcome::diverges);
+  EXPECT_LT(result.rows, 10u);
+  EXPECT_EQ(recorder.rows.size(), result.rows);
+}
+
+}  // namespace
+}  // namespace hapbench::run_end_test
