@@ -397,7 +397,7 @@ class Pictures(Given):
         hapbench("run", "recorded_wipe", "--out", run, "--quiet")
         hapbench("report", run, "--quiet")
         page = (run / "report.html").read_text(encoding="utf-8")
-        for words in ("Against the measured force", "Tangential, N", "Rendered and measured force [N] over time"):
+        for words in ("Against the measured force", "force error tangential rms", "Rendered and measured force [N] over time"):
             self.assertIn(words, page)
         hapbench("plot", run, "--y", "reference,force_error", "--quiet")
         self.assertIn("force of the stroke", (run / "plot.svg").read_text(encoding="utf-8"))
