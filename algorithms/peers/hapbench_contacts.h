@@ -10,8 +10,8 @@
  * Ownership: what `create` returns belongs to the caller until `destroy`. All other memory belongs to the side that
  * allocated it, and pointers that are handed over are valid during the call only, so `create` copies what it keeps.
  * Threads: functions may be called from several threads at once, those of one source by one thread at a time.
- * Faults: nothing may be thrown. A function that fails writes why, as a text of one line that ends with 0, into `fault`,
- * which has room for `fault_size` > 0 characters. Queries may allocate. */
+ * Faults: nothing may be thrown. A function that fails writes why, as a text of one line that ends with 0, into
+ * `fault`, which has room for `fault_size` > 0 characters. Queries may allocate. */
 
 #define HAPBENCH_CONTACTS_VERSION 1u
 
@@ -21,7 +21,7 @@ extern "C" {
 
 /* The environment as triangles. For a library that takes points, the vertices alone. */
 typedef struct HapbenchSurface {
-  const double* vertices;    /* x, y, z of each [m] */
+  const double* vertices; /* x, y, z of each [m] */
   size_t vertex_count;
   const uint32_t* triangles; /* three vertices of each, counter-clockwise from outside */
   size_t triangle_count;
@@ -59,12 +59,13 @@ typedef struct HapbenchContactSource {
                          size_t fault_size);
 } HapbenchContactSource;
 
-/* The one function that the library exports. `version` is the host's HAPBENCH_CONTACTS_VERSION; NULL: not supported. The
- * result lives as long as the library. */
+/* The one function that the library exports. `version` is the host's HAPBENCH_CONTACTS_VERSION; NULL: not supported.
+ * The result lives as long as the library. */
 #if defined(__GNUC__)
 __attribute__((visibility("default")))
 #endif
-const HapbenchContactSource* hapbench_contacts(uint32_t version);
+const HapbenchContactSource*
+hapbench_contacts(uint32_t version);
 
 #ifdef __cplusplus
 }

@@ -19,10 +19,10 @@ extern "C" {
 
 /* A parameter of the law: the field rendering.parameters.<law>.<name> of a scenario. Bounds are included. */
 typedef struct HapbenchParameter {
-  const char* name;    /* letters, digits and "_", a small letter first */
-  const char* unit;    /* SI, as in "N/m"; "1" for none */
+  const char* name; /* letters, digits and "_", a small letter first */
+  const char* unit; /* SI, as in "N/m"; "1" for none */
   double min, max;
-  double initial;      /* the default */
+  double initial; /* the default */
   const char* meaning;
 } HapbenchParameter;
 
@@ -30,17 +30,17 @@ typedef struct HapbenchParameter {
  * deeper; the penalty force on the tool of contact i alone is -K depth gradient. */
 typedef struct HapbenchContacts {
   size_t n;
-  const double* depth;                /* [m]; negative for some springs without a surface */
-  const double *gx, *gy, *gz;         /* gradient */
-  const double *x, *y, *z;            /* colliding point, world [m] */
-  const double *nx, *ny, *nz;         /* outward normal of the environment there */
-  const uint32_t* index;              /* of the point in its environment, the same from step to step */
+  const double* depth;        /* [m]; negative for some springs without a surface */
+  const double *gx, *gy, *gz; /* gradient */
+  const double *x, *y, *z;    /* colliding point, world [m] */
+  const double *nx, *ny, *nz; /* outward normal of the environment there */
+  const uint32_t* index;      /* of the point in its environment, the same from step to step */
 } HapbenchContacts;
 
 /* What a law that gives a force answers. */
 typedef struct HapbenchForce {
-  double force[3];      /* f_spring on the tool [N] */
-  double stiffness[6];  /* tensor in units of K: xx, xy, xz, yy, yz, zz; damping, friction and integrators need it */
+  double force[3];     /* f_spring on the tool [N] */
+  double stiffness[6]; /* tensor in units of K: xx, xy, xz, yy, yz, zz; damping, friction and integrators need it */
 } HapbenchForce;
 
 enum {
@@ -49,11 +49,11 @@ enum {
 };
 
 typedef struct HapbenchPlugin {
-  uint32_t version;  /* HAPBENCH_PLUGIN_VERSION */
-  uint32_t gives;    /* HAPBENCH_WEIGHTS or HAPBENCH_FORCE */
+  uint32_t version; /* HAPBENCH_PLUGIN_VERSION */
+  uint32_t gives;   /* HAPBENCH_WEIGHTS or HAPBENCH_FORCE */
 
   /* What "hapbench describe" prints; none may be missing. */
-  const char* name;  /* as a parameter's */
+  const char* name; /* as a parameter's */
   const char* summary;
   const char* formula;
   const char* source;        /* where it is published, or whose idea it is */
@@ -83,7 +83,8 @@ typedef struct HapbenchPlugin {
 #if defined(__GNUC__)
 __attribute__((visibility("default")))
 #endif
-const HapbenchPlugin* hapbench_plugin(uint32_t version);
+const HapbenchPlugin*
+hapbench_plugin(uint32_t version);
 
 #ifdef __cplusplus
 }

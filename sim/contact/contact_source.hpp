@@ -9,8 +9,8 @@
 namespace hapbench {
 
 /// The environment as the step loop sees it: answers which contacts a tool in a given pose has, each with its depth and
-/// gradient. A shell of points needs a search and a depth model for that (algorithms/depth/depth_model.hpp); springs know
-/// their depths, and so do other libraries (algorithms/peers).
+/// gradient. A shell of points needs a search and a depth model for that (algorithms/depth/depth_model.hpp); springs
+/// know their depths, and so do other libraries (algorithms/peers).
 class ContactSource {
  public:
   virtual ~ContactSource() = default;

@@ -9,7 +9,8 @@
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 
-/// The velocity that a turning tool adds (ForceLaw::turning_velocity), and shells that list every vertex once for each of its four cells.
+/// The velocity that a turning tool adds (ForceLaw::turning_velocity), and shells that list every vertex once for each
+/// of its four cells.
 namespace hapbench::force_law_test {
 namespace {
 
