@@ -206,7 +206,7 @@ void add_limit(CommandLine& line) {
               "a:b, the range to search (default: a thousandth to a thousandfold of the scenario's value)");
   command.flag("--smallest", options.smallest, "find the smallest stable value instead, as of a mass");
   command.add("--algorithms", options.algorithms, "names separated by commas, or all (default: the scenario's own)")
-      .words(all_algorithms_and_all)
+      .words([] { return with_all(all_algorithms()); })
       .comma_separated();
   command.add("--resolution", options.resolution,
               "relative width of the answer (default: 0.001); of the range when the range reaches 0 or below");
