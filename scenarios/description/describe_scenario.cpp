@@ -52,17 +52,73 @@ void check_orientation(const MotionFields& motion) {
        fmt::format("got up {} and lean {}; allowed: two perpendicular directions, not zero", shown(up), shown(lean)));
 }
 
-void check_local_average(const Scenario& scenario) {
-  if (!scenario.rendering.local_average) return;
-  const auto* shell = std::get_if<PointShellEnvironment>(&scenario.environment);
-  const auto* mesh = std::get_if<MeshEnvironment>(&scenario.environment);
-  if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) {
-    fail("/rendering/local_average", "got true; allowed: false, because springs have no grid cells");
-  }
-  if ((shell != nullptr && !shell->grid) || (mesh != nullptr && !mesh->grid)) {
-    fail("/rendering/local_average", "got true; allowed: false, unless environment.grid_m gives the cells");
-  }
+template <class Type, class Variant>
+bool is(const Variant& value) {
+  return std::holds_alternative<Type>(value);
 }
+
+bool is_zero(const Profile& profile) {
+  return profile.is_constant() && profile(0.0) == 0.0;
+}
+
+/// A combination of fields that is refused.
+struct Rule {
+  const char* at;
+  const char* problem;
+  bool (*is_broken)(const Scenario& scenario);
+};
+
+/// A later rule may rely on the earlier ones.
+constexpr Rule kRules[] = {
+    {"/rendering/local_average", "got true; allowed: false, because springs have no grid cells",
+     [](const Scenario& s) { return s.rendering.local_average && is<SpringsEnvironment>(s.environment); }},
+    {"/rendering/local_average", "got true; allowed: false, unless environment.grid_m gives the cells",
+     [](const Scenario& s) {
+       const auto* shell = std::get_if<PointShellEnvironment>(&s.environment);
+       const auto* mesh = std::get_if<MeshEnvironment>(&s.environment);
+       return s.rendering.local_average && ((shell != nullptr && !shell->grid) || (mesh != nullptr && !mesh->grid));
+     }},
+    {"/record/ideal_trajectory",
+     "got true; allowed: false, unless the environment is block_with_hole and the tool a cylinder with a flat tip",
+     [](const Scenario& s) { return s.record.ideal_trajectory && !has_ideal_trajectory(s); }},
+    {"/reference_force", "contradicts motion.position of type \"free\"; allowed with a way that is known beforehand",
+     [](const Scenario& s) { return s.reference_force && is<FreePosition>(s.motion.position); }},
+    {"/record/force_reference",
+     "got true; allowed: false, unless there is a reference_force or motion.position is of type \"file\"",
+     [](const Scenario& s) {
+       return s.record.force_reference && !s.reference_force && !is<RecordedPosition>(s.motion.position);
+     }},
+    {"/hand/type", "got \"push\", which pushes along z; allowed in the plane of \"hole_2d\": \"force\"",
+     [](const Scenario& s) { return is<PushHandFields>(s.hand) && is<Hole2d>(s.environment); }},
+    {"/hand/type", "got \"drag\" with springs, which have no surface; allowed: environments that have one",
+     [](const Scenario& s) { return is<DragHandFields>(s.hand) && is<SpringsEnvironment>(s.environment); }},
+    {"/motion/position/type", "got a prescribed position; allowed: \"free\" with hand \"drag\", which moves the tool",
+     [](const Scenario& s) { return is<DragHandFields>(s.hand) && !is<FreePosition>(s.motion.position); }},
+    {"/motion/orientation",
+     "got tilt_rad, azimuth_rad or roll_rad beside hand \"drag\", which turns the tool; allowed: without, or "
+     "hand.tilt_rad null",
+     [](const Scenario& s) {
+       const auto* drag = std::get_if<DragHandFields>(&s.hand);
+       if (drag == nullptr || !drag->tilt) return false;
+       const OrientationFields& orientation = *s.motion.orientation;
+       return !(is_zero(orientation.tilt) && is_zero(orientation.azimuth) && is_zero(orientation.roll));
+     }},
+    {"/motion/position/type",
+     "got a prescribed position; allowed: \"free\" with hand \"tracking\", which moves the tool",
+     [](const Scenario& s) { return is<TrackingHandFields>(s.hand) && !is<FreePosition>(s.motion.position); }},
+    // The rules below are about the virtual mass between hand and tool, which an impedance device does not have.
+    {"/hand/type",
+     "got \"mass_spring_damper\", which is fixed to the handle of device \"impedance\"; allowed with other devices: "
+     "\"impedance\", the same spring and damper without the mass",
+     [](const Scenario& s) { return is<MassSpringDamperHandFields>(s.hand) && !handle_moves_tool(s.device); }},
+    {"/motion/position/type",
+     "got a prescribed position; allowed: \"free\" with device \"impedance\", whose handle moves the tool",
+     [](const Scenario& s) { return handle_moves_tool(s.device) && !is<FreePosition>(s.motion.position); }},
+    {"/rendering/passivity_controller",
+     "got true; allowed: false with device \"impedance\": the controller looks ahead by the virtual mass, which is "
+     "not there",
+     [](const Scenario& s) { return handle_moves_tool(s.device) && s.rendering.passivity_controller; }},
+};
 
 /// A peer finds contacts between triangles and a cylinder; they have no shell points.
 void check_contact_source(const Scenario& scenario) {
@@ -82,30 +138,6 @@ void check_contact_source(const Scenario& scenario) {
        fmt::format("got \"{}\"; allowed: \"{}\", {}", rendering.contact_source, kOwnContacts, problem));
 }
 
-void check_ideal_trajectory(const Scenario& scenario) {
-  if (!scenario.record.ideal_trajectory || has_ideal_trajectory(scenario)) return;
-  fail("/record/ideal_trajectory",
-       "got true; allowed: false, unless the environment is block_with_hole and the tool a cylinder with a flat tip");
-}
-
-void check_force_reference(const Scenario& scenario) {
-  const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
-  if (scenario.reference_force && is_free)
-    fail("/reference_force",
-         "contradicts motion.position of type \"free\"; allowed with a way that is known beforehand");
-  if (!scenario.record.force_reference || scenario.reference_force ||
-      std::holds_alternative<RecordedPosition>(scenario.motion.position))
-    return;
-  fail("/record/force_reference",
-       "got true; allowed: false, unless there is a reference_force or motion.position is of type \"file\"");
-}
-
-void check_push_hand(const Scenario& scenario) {
-  if (!std::holds_alternative<PushHandFields>(scenario.hand)) return;
-  if (!std::holds_alternative<Hole2d>(scenario.environment)) return;
-  fail("/hand/type", "got \"push\", which pushes along z; allowed in the plane of \"hole_2d\": \"force\"");
-}
-
 double drag_length(const DragHandFields& hand, double duration) {
   if (!hand.path) return hand.drag.speed * duration;
   double length = 0.0;
@@ -116,20 +148,6 @@ double drag_length(const DragHandFields& hand, double duration) {
 void check_drag_hand(const Scenario& scenario, double steps) {
   const auto* hand = std::get_if<DragHandFields>(&scenario.hand);
   if (hand == nullptr) return;
-  if (std::holds_alternative<SpringsEnvironment>(scenario.environment))
-    fail("/hand/type", "got \"drag\" with springs, which have no surface; allowed: environments that have one");
-  if (!std::holds_alternative<FreePosition>(scenario.motion.position)) {
-    fail("/motion/position/type",
-         "got a prescribed position; allowed: \"free\" with hand \"drag\", which moves the tool");
-  }
-  const auto is_zero = [](const Profile& profile) { return profile.is_constant() && profile(0.0) == 0.0; };
-  const OrientationFields& orientation = *scenario.motion.orientation;
-  if (hand->tilt && !(is_zero(orientation.tilt) && is_zero(orientation.azimuth) && is_zero(orientation.roll))) {
-    fail(
-        "/motion/orientation",
-        "got tilt_rad, azimuth_rad or roll_rad beside hand \"drag\", which turns the tool; allowed: without, or hand.tilt_rad "
-        "null");
-  }
   if (hand->direction) require_direction(*hand->direction, "/hand/direction");
   const double entries = drag_length(*hand, steps * scenario.time.step) / SurfacePath::spacing(hand->smoothing);
   if (entries <= kLongestDrag) return;
@@ -140,10 +158,6 @@ void check_drag_hand(const Scenario& scenario, double steps) {
 void check_tracking_hand(const Scenario& scenario, double steps) {
   const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
   if (hand == nullptr) return;
-  if (!std::holds_alternative<FreePosition>(scenario.motion.position)) {
-    fail("/motion/position/type",
-         "got a prescribed position; allowed: \"free\" with hand \"tracking\", which moves the tool");
-  }
   for (std::size_t i = 0; i < hand->subjects.size(); ++i) {
     const double samples = hand->subjects[i].reaction_delay / scenario.time.step;
     if (samples <= kMostDelaySamples) continue;
@@ -160,27 +174,6 @@ void check_perception(const Scenario& scenario) {
   const double from = scenario.perception->band_from, to = scenario.perception->band_to;
   if (from < to) return;
   fail("/perception/band_Hz", fmt::format("got from {:g} to {:g}; allowed: from below to", from, to));
-}
-
-/// Refuses what needs a virtual mass between hand and tool where the device has none.
-void check_impedance_device(const Scenario& scenario) {
-  const bool impedance = handle_moves_tool(scenario.device);
-  if (!impedance && std::holds_alternative<MassSpringDamperHandFields>(scenario.hand)) {
-    fail(
-        "/hand/type",
-        "got \"mass_spring_damper\", which is fixed to the handle of device \"impedance\"; allowed with other devices: "
-        "\"impedance\", the same spring and damper without the mass");
-  }
-  if (!impedance) return;
-  if (!std::holds_alternative<FreePosition>(scenario.motion.position)) {
-    fail("/motion/position/type",
-         "got a prescribed position; allowed: \"free\" with device \"impedance\", whose handle moves the tool");
-  }
-  if (scenario.rendering.passivity_controller) {
-    fail("/rendering/passivity_controller",
-         "got true; allowed: false with device \"impedance\": the controller looks ahead by the virtual mass, which is "
-         "not there");
-  }
 }
 
 /// A warning about an admittance device whose servo or mechanics differ from the usual ones under a hand that does not
@@ -229,15 +222,13 @@ void require_direction(const Vec3& direction, const std::string& at) {
 void check_relations(const Scenario& scenario, double steps) {
   check_sizes(scenario, steps);
   check_orientation(scenario.motion);
-  check_local_average(scenario);
+  for (const Rule& rule : kRules) {
+    if (rule.is_broken(scenario)) fail(rule.at, rule.problem);
+  }
   check_contact_source(scenario);
-  check_ideal_trajectory(scenario);
-  check_force_reference(scenario);
-  check_push_hand(scenario);
   check_drag_hand(scenario, steps);
   check_tracking_hand(scenario, steps);
   check_perception(scenario);
-  check_impedance_device(scenario);
 }
 
 std::vector<std::string> relation_warnings(const Scenario& scenario, const Json& json) {

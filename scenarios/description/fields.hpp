@@ -60,7 +60,7 @@ enum class Presence {
   left_out      ///< as no_default, and the object has no value to write
 };
 
-/// What an object without a "type" is, where types choose the fields.
+/// The meaning of an object without a "type", where types choose the fields.
 enum class Untyped {
   refused,
   first  ///< one of the first type, which is written without
@@ -84,7 +84,7 @@ struct Choice {
   Enum value;
 };
 
-/// What a file that a scenario names holds, and how it is read.
+/// The content of a file that a scenario names, and how it is read.
 struct FileContent {
   enum class Kind { point_shell, mesh, stroke };
   Kind kind;

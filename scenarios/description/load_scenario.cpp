@@ -40,7 +40,7 @@ void merge(Json& base, const Json& more) {
   for (const auto& entry : more.items()) merge(base[entry.key()], entry.value());
 }
 
-/// Lets the files named by relative paths start from `directory`.
+/// Makes relative paths of files start from `directory`.
 void keep_files(Json& json, const fs::path& directory) {
   if (!json.is_structured()) return;
   for (auto& entry : json.items()) {
@@ -53,7 +53,7 @@ void keep_files(Json& json, const fs::path& directory) {
   }
 }
 
-/// Refuses a chain in which the next file stands already.
+/// Refuses to extend a file that is in the chain already.
 void check_chain(const std::vector<ScenarioLayer>& layers, const fs::path& next) {
   std::error_code ignored;
   std::string chain;
@@ -107,8 +107,8 @@ Json read_extended(const fs::path& file, std::vector<ScenarioLayer>& layers) {
   return merged;
 }
 
-/// Sets the field at a dotted path; a number in the path indexes a list. Of two fields that say the same, the other
-/// goes, as where a scenario extends another.
+/// Sets the field at a dotted path; a number in the path indexes a list. Of two fields that exclude each other the
+/// other one is removed, as where a scenario extends another.
 void apply_override(Json& json, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == 0 || equals == std::string::npos) {
@@ -148,8 +148,8 @@ bool leaves_run_alone(std::string_view override) {
          section == "source";
 }
 
-/// Takes back what the scenario says about the run it describes, which another run owes nothing: bounds on metrics and
-/// the exact outcome. A run that misses its object or diverges stays unexpected unless the scenario expects it.
+/// Removes the expectations that hold only for the run that the scenario describes: bounds on metrics and the exact
+/// outcome. A run that misses its object or diverges stays unexpected unless the scenario expects it.
 void expect_less(Json& expect) {
   if (!expect.is_object()) return;  // the reader will say so
   expect.erase("metrics");
@@ -174,7 +174,7 @@ std::string last_name(const std::string& path, char separator) {
   return path.substr(path.rfind(separator) + 1);
 }
 
-/// The hint for a field that is like none where it stands: fields elsewhere with the nearest name.
+/// The hint for a field whose name resembles no field of its object: fields elsewhere with the nearest name.
 std::string hint_elsewhere(const std::string& place) {
   const std::string field = last_name(place, '/');
   const std::vector<std::string> paths = scenario_field_paths();
@@ -190,7 +190,7 @@ std::string hint_elsewhere(const std::string& place) {
   return found.empty() ? "" : "; nearest valid names: " + quoted_list(found);
 }
 
-/// The fault in its file.
+/// The fault with its file in front, and with hints.
 InputError in_file(const InputError& fault, const fs::path& file) {
   std::string problem = fault.problem();
   if (problem.starts_with("unknown field") && problem.find("nearest valid name") == std::string::npos)
@@ -202,7 +202,7 @@ InputError in_file(const InputError& fault, const fs::path& file) {
   return {fault.kind(), place, problem};
 }
 
-/// The scenario with the hashes of named files in place of their paths, of those in fields below `pointer`.
+/// The scenario with hashes in place of the paths of the files that are named by fields below `pointer`.
 Scenario with_contents(Scenario scenario, const NamedFiles& files, std::string_view pointer = "") {
   for (const auto& [at, path, content] : files_named_in(scenario)) {
     if (at.starts_with(pointer)) *path = files.at(at).hash();
@@ -244,7 +244,7 @@ ScenarioText read_scenario_text(const fs::path& file) {
 fs::path file_of(const LoadedScenario& loaded, const std::string& pointer) {
   if (!loaded.layers || !pointer.starts_with('/')) return loaded.file;
   try {
-    // What no file has, a default, is the business of the object around it.
+    // A field that no file has is at its default; the object around it is the nearest place to name.
     for (Json::json_pointer at(pointer); !at.empty(); at = at.parent_pointer()) {
       for (const ScenarioLayer& layer : *loaded.layers) {
         if (layer.json.contains(at)) return layer.file;

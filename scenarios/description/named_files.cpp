@@ -126,11 +126,11 @@ std::vector<FileReference> files_named_in(Scenario& scenario) {
 
 namespace {
 
-/// Hashes of regular files, which are not read again while they look unchanged.
+/// Hashes of regular files, which need not be read again while they look unchanged.
 class KnownHashes {
  public:
-  /// What tells that a file has changed; nothing for what is no regular file, and for one that changed so recently that
-  /// the clock of the file system might not tell another change.
+  /// A text that differs after a change of the file. Nothing for a file that is not regular, and for one that changed
+  /// so recently that the clock of the file system might not tell the next change.
   static std::optional<std::string> stamp_of(const std::filesystem::path& file) {
     struct stat s {};
     if (::stat(file.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return std::nullopt;

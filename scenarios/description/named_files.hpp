@@ -39,7 +39,7 @@ class SharedCache {
     }));
   }
 
-  /// How many values have been made so far.
+  /// Number of values made so far.
   std::size_t made() const;
 
  private:
@@ -99,7 +99,7 @@ class NamedFile {
   const std::string& hash();
   /// Reads and parses the file.
   void check() { contents(); }
-  /// What is odd about its contents, without the file's directory.
+  /// Warnings about its contents, without the file's directory.
   std::vector<std::string> warnings();
 
   /// The points with normals. Precondition, here and below: the content is of that kind.

@@ -7,9 +7,9 @@
 #include "sim/loop/simulation.hpp"
 #include "sim/tool/cylinder.hpp"
 
-/// What a run is made of, from the fields that describe it: each beside its description, in environments.cpp,
-/// tools.cpp, motions.cpp, hands.cpp and devices.cpp. All throw InputError when a named file cannot be used. `files`
-/// are those of the scenario; without, they are read.
+/// Factories of the parts of a run. Each stands beside the description of its fields, in environments.cpp, tools.cpp,
+/// motions.cpp, hands.cpp and devices.cpp. All throw InputError when a named file cannot be used. `files` are those of
+/// the scenario; functions without `files` read them.
 namespace hapbench {
 
 /// One run of a scenario that has several: a simulated subject's trial. Both count from 0.

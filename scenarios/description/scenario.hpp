@@ -29,7 +29,7 @@
 /// Names, units and ranges of the file's fields: the functions `describe` of this folder.
 namespace hapbench {
 
-/// What ends a run early, with the outcome of the same name.
+/// Conditions that end a run early, with the outcome of the same name.
 enum class StopCondition { leaves_hole, tool_horizontal };
 
 struct TimeFields {
@@ -52,7 +52,7 @@ struct SpringsEnvironment {
   std::vector<SpringGroup> groups;
   RandomSprings random;
 };
-/// How often the shell lists a vertex of the block's surface.
+/// The number of times that the shell lists a vertex of the block's surface.
 enum class BlockVertices {
   shared,   ///< once
   per_cell  ///< once for each grid cell that has it on an edge, as thesis 2.1 and C.2 have it
@@ -198,7 +198,7 @@ struct RecordFields {
 /// True when a run writes rows of its steps.
 bool records_rows(const RecordFields& record);
 
-/// What an ideal rendering would give on a prescribed way.
+/// The force that an ideal rendering would give on a prescribed way.
 struct ReferenceForceFields {
   std::array<Profile, 3> force;  ///< [N]
 };
@@ -207,7 +207,7 @@ struct MetricBound {
   std::optional<double> min;
   std::optional<double> max;
 };
-/// What the run must show to count as expected: one of the outcomes, and bounds on metrics.
+/// The conditions for a run to count as expected: one of the outcomes, and bounds on metrics.
 struct ExpectFields {
   std::vector<Outcome> outcomes = {Outcome::completes, Outcome::leaves_hole, Outcome::tool_horizontal};
   std::map<std::string, MetricBound> metrics;
@@ -241,15 +241,15 @@ struct Scenario {
 /// a flat-tipped cylinder in a block_with_hole.
 bool has_ideal_trajectory(const Scenario& scenario);
 
-/// How often the scenario is run: once by each subject and trial of a tracking hand. A double, because what is asked
-/// for may be beyond every integer.
+/// The number of runs of the scenario: one for each subject and trial of a tracking hand. A double, because a scenario
+/// may ask for more than any integer holds.
 double trial_count(const HandFields& hand);
 
-/// Where a file named in the scenario lies.
+/// The path of a file that the scenario names.
 std::filesystem::path resolve_path(const Scenario& scenario, const std::string& file);
 
-/// The scenario with another algorithm and with what that fixes: depth model and reduction. Precondition: the name is
-/// known.
+/// The scenario with another algorithm and the settings that the algorithm fixes: depth model and reduction.
+/// Precondition: the name is known.
 Scenario with_algorithm(Scenario scenario, std::string_view algorithm);
 
 }  // namespace hapbench

@@ -13,7 +13,7 @@
 namespace hapbench {
 namespace {
 
-constexpr std::size_t kMostCorners = 1000;  // of a profile; each costs every step
+constexpr std::size_t kMostCorners = 1000;  // of a profile; the cost of a step grows with them
 
 /// In the order of the variant.
 constexpr TypeName kToolTypes[] = {
@@ -34,7 +34,7 @@ constexpr Choice<BurFamily> kFamilies[] = {
     {"flame", BurFamily::flame},
 };
 
-/// What the shape has to say against its fields, at `at`.
+/// Turns the objection of a shape to its fields into an InputError at `at`.
 template <class Make>
 void check_shape(const std::string& at, const char* allowed, const Make& make) {
   try {

@@ -10,11 +10,11 @@ namespace hapbench {
 /// Writes a value as JSON. Throws std::logic_error for a value that has no name.
 class Writer final : public Fields {
  public:
-  /// Which fields to write: all that have a value, or those alone whose default holds for every scenario.
+  /// Selects the fields to write: all that have a value, or only those whose default holds for every scenario.
   enum class Which { all, with_default };
   explicit Writer(Which which = Which::all) : which_(which) {}
 
-  /// What was written.
+  /// The written JSON.
   const Json& json() const { return json_; }
 
   void number(double& value, NumberRange range) override;
@@ -65,8 +65,8 @@ std::vector<std::string> names_of(std::span<const TypeName> types);
 
 struct FieldGuide;
 
-/// Which values are allowed: as a JSON Schema (draft 7), in words for messages and documentation, and by the fields of
-/// an object.
+/// The values that are allowed: as a JSON Schema (draft 7), in words for messages and documentation, and by the fields
+/// of an object.
 struct ValueGuide {
   Json schema;
   std::string allowed;              ///< as in "a number > 0 and <= 10 [m]"
@@ -88,7 +88,7 @@ struct FieldGuide {
   Json schema() const;
 };
 
-/// Tells which values are allowed. Defaults are the values of the object it visits, which has to be a
+/// Describes which values are allowed. Defaults are the values of the object it visits, which has to be a
 /// default-constructed one.
 class SchemaWriter final : public Fields {
  public:
@@ -133,8 +133,8 @@ class SchemaWriter final : public Fields {
 /// The whole JSON Schema (draft 7) that scenarios/scenario.schema.json holds.
 Json scenario_schema();
 
-/// What a scenario in full may be, with what it extends filled in. Built once, and again when an algorithm has been
-/// added; the reference holds until then. Not for several threads at once.
+/// The guide to a scenario in full, that is, with the fields of the scenario that it extends filled in. It is built
+/// once, and again after an algorithm has been added; references stay valid. For several threads.
 const ValueGuide& scenario_guide();
 
 /// The dotted paths of all fields of objects, as "rendering.limits.max_force_N"; those of list entries aside.

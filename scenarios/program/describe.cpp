@@ -14,7 +14,7 @@
 #include "scenarios/program/table.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 #include "scenarios/studies/stability/stability_map.hpp"
-#include "scenarios/thesis_claims/choices_file.hpp"
+#include "scenarios/thesis_claims/choices.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "sim/loop/integrators/table.hpp"
 

@@ -30,7 +30,7 @@ std::vector<std::pair<std::string, const ValueGuide*>> types_called(const std::s
 /// The default of a field; "by scene" for one whose default depends on other fields.
 std::string default_text(const FieldGuide& field);
 
-/// What there is to say of a field; empty where there is nothing.
+/// The text about a field; parts may be empty.
 struct FieldCard {
   std::string name;
   std::string initial = "";  ///< its default
@@ -46,7 +46,7 @@ std::string card(const FieldCard& field, std::size_t indent = 2);
 std::string fields_text(const std::string& title, const ValueGuide& value, const std::string& of = "");
 std::string fields_text(const std::string& title, const FieldGuide& field, const std::string& of = "");
 
-/// What `type_field`, as "hand.type", may say, and what each means; empty for a field that chooses no type.
+/// The values of `type_field`, as "hand.type", with their meanings; empty for a field that chooses no type.
 std::string types_text(const std::string& type_field);
 
 /// A field of a scenario and its meaning.

@@ -71,9 +71,10 @@ ProgramOutput run_tool(const ImportOptions& options, const fs::path& out) {
   return output_of(words);
 }
 
-/// The reply of the tool. Throws the errors that it reports.
+/// The reply of the tool, the last line of its output: a shell may have warned of the locale before. Throws the errors
+/// that it reports.
 Json reply_in(const std::string& text, const fs::path& out) {
-  Json reply = parse_json(text);
+  Json reply = parse_json(text.substr(text.rfind('\n') + 1));
   if (reply.contains("io_error"))
     throw IoError("write", out, std::error_code(reply["io_error"].get<int>(), std::generic_category()));
   std::vector<InputError> faults;

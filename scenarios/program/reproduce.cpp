@@ -20,7 +20,7 @@
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/thesis_claims/ledger.hpp"
-#include "scenarios/thesis_claims/robustness_run.hpp"
+#include "scenarios/thesis_claims/robustness.hpp"
 
 namespace hapbench {
 namespace {
@@ -245,7 +245,7 @@ int reproduce(const ReproduceOptions& options) {
   if (!options.only.empty()) text += claims_text(judged);
   if (ledger) {
     write_file_atomically(*ledger, json_text(json));
-    write_file_atomically(fs::path(*ledger).replace_extension(".md"), ledger_markdown(judged, robustness));
+    write_file_atomically(fs::path(*ledger).replace_extension(".md"), ledger_markdown(judged, published, robustness));
     write_file_atomically(ledger->parent_path() / "choices.md", choices.markdown());
     text += fmt::format("\nledger in {}\n", ledger->string());
   } else {

@@ -148,7 +148,7 @@ std::string scale_question(const Scenario& scenario) {
   return "are the sizes of environment in metres?";
 }
 
-/// How close the target of a hand's spring comes to the environment, looked at a thousand times.
+/// The least distance of the target of a hand's spring from the environment, at a thousand and one times of the run.
 double closest_target(const ImpedanceHandFields& hand, const TimeFields& time, const Box& environment) {
   constexpr int kLooks = 1000;
   double closest = std::numeric_limits<double>::infinity();

@@ -16,18 +16,18 @@
 #include "sim/loop/observer.hpp"
 #include "sim/tool/tool_shape.hpp"
 
-/// What a run had to do with its environment: its outcome, whether that was expected, and warnings about what may
-/// mislead a reader of its results.
+/// Outcomes of runs, whether they were expected, and warnings about runs whose numbers may mislead.
 namespace hapbench {
 
-/// How far a scenario has the tool dragged in `duration` [s]: on and on along a direction, of points to the last [m].
+/// The length of the way on which a scenario has the tool dragged in `duration` [s]: along a direction as far as the
+/// time allows, along points at most to the last one [m].
 double way_to_cover(const DragHandFields& hand, double duration);
 
-/// For a path over the surface that falls short of `to_cover`, that way [m], by more than the tool's `width` [m], how
-/// long it is and what to change; known before the run.
+/// A warning for a path over the surface that falls short of the way `to_cover` [m] by more than the tool's `width`
+/// [m]: how long it is and what to change. It is known before the run.
 std::optional<std::string> short_path_warning(const DragHandFields& hand, double path, double to_cover, double width);
 
-/// How far a dragged tool came on the path it was led along.
+/// The progress of a dragged tool on the path along which it was led.
 struct DragCourse {
   double to_cover = 0.0;      ///< way_to_cover up to the last row [m]
   double asked = 0.0;         ///< way of the point that leads it [m]
@@ -40,15 +40,17 @@ struct DragCourse {
   double width = 0.0;         ///< the tool's [m]
   /// When the depth first reached the tool's half width: its axis is then in the surface.
   std::optional<double> through;
-  /// Time of the last contact, if the tool was without for the default settling time up to the end although the hand
-  /// pressed: after as long the next touch would be a landing.
+  /// Time of the last contact, if the tool had no contact for the default settling time before the end although the
+  /// hand pressed: after that long the next touch would be a landing.
   std::optional<double> lost;
 
   std::optional<std::string> short_path;  ///< short_path_warning
 
-  /// The point has left it behind by more than the tool is wide. A tool that follows comes on as far as the point.
+  /// True when the point has moved on by more than the tool's width since the tool last came further. A tool that
+  /// follows comes as far as the point.
   bool stands_still() const { return asked_since > width; }
-  /// It came nowhere, less than its width, although the way was longer than two: the spring that leads it lags by less.
+  /// True when the tool came less than its width along a way of more than two widths: the spring that leads it lags by
+  /// less.
   bool not_dragged() const { return way < width && to_cover > 2.0 * width; }
 };
 
@@ -72,7 +74,7 @@ class DragCourseObserver final : public Observer {
   DragCourse course_;
 };
 
-/// What a reader of the results must know: that the tool stood still, has gone through the surface or has lost it.
+/// Warnings that the tool stood still, went through the surface or lost it.
 std::vector<std::string> drag_warnings(const DragCourse& course);
 
 /// Notes when the tool touches an open mesh where it ends. Beyond such an edge there is nothing to touch, and a tool
@@ -85,7 +87,7 @@ class OpenEdgeObserver final : public Observer {
 
   void on_step(const StepRecord& record) noexcept override;
 
-  /// What a reader of the results must know; none when no such point was touched.
+  /// A warning with the first contact at such a point; nothing when there was none.
   std::optional<std::string> warning() const;
 
  private:
@@ -96,7 +98,7 @@ class OpenEdgeObserver final : public Observer {
   Vec3 first_place_ = Vec3::Zero();
 };
 
-/// What a run that did all its steps had to do with the environment.
+/// The contact of a run that did all its steps with the environment.
 struct Encounter {
   const Metrics& metrics;
   const Approach& approach;
@@ -119,23 +121,22 @@ std::optional<std::string> scale_warning(const Scenario& scenario, const ToolSha
 /// that lost the surface within the environment's box, of which drag_warnings tells.
 std::optional<std::string> warning_about(const Scenario& scenario, Outcome outcome, const Encounter& encounter);
 
-/// What the run does not show although the scenario expects it, one sentence each; empty when all is as expected.
+/// The expectations of the scenario that the run does not meet, one sentence each.
 std::vector<std::string> unmet_expectations(const ExpectFields& expect, const RunSummary& run);
 
 /// True when `outcome` is among those the scenario expects.
 bool outcome_is_expected(const ExpectFields& expect, Outcome outcome);
 
-/// What to know before the forces of a run are believed, a sentence each: it passed the limit of explicit friction
-/// (results/observe/explicit_friction.hpp), or the reduction makes its force jump
-/// (results/observe/reduction_jumps.hpp).
+/// Warnings about the forces of a run: it passed the limit of explicit friction, or the reduction makes its force jump
+/// (results/observe).
 std::vector<std::string> force_warnings(const Metrics& metrics);
 
-/// How a tool within the box, in its own frame, lies otherwise than tools do, whose tip centre is the origin and whose
-/// tip points along -z: the rest of a sentence about it, such as "lies across its axis"; empty when nothing is odd.
+/// The odd thing about the place of a tool that fills the box in its own frame, as the end of a sentence such as "lies
+/// across its axis"; empty when nothing is odd. Tools have their tip centre at the origin, and their tip points along
+/// -z.
 std::string odd_frame(const Box& tool);
 
-/// What to know of a tool before its run is believed, a sentence each: a proxy keeps points out of convex tools only,
-/// and a mesh may lie oddly in its frame.
+/// Warnings about a tool: a proxy keeps points out of convex tools only, and a mesh may lie oddly in its frame.
 std::vector<std::string> tool_warnings(const RenderingConfig& rendering, const ToolShape& tool);
 
 }  // namespace hapbench

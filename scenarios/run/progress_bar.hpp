@@ -45,7 +45,7 @@ class ProgressBar {
   /// Shows how much is done, now and then. With `counts` also the numbers and the time that is left, if the rest takes
   /// as long for each as what was done since the bar was made.
   void show(std::uint64_t done, bool counts = false) noexcept;
-  /// What was done before (by an earlier process), not to be counted as speed.
+  /// Sets how much was done before, by an earlier process: it does not count as speed.
   void start_at(std::uint64_t done) noexcept { first_ = done; }
 
  private:

@@ -14,7 +14,7 @@
 
 namespace hapbench {
 
-/// What the recorders of a trial are made from.
+/// Data from which the recorders of a trial are made.
 struct RecordedTrial {
   const RecordFields& fields;
   std::size_t contact_capacity;  ///< the most contacts a row can have
@@ -24,7 +24,8 @@ struct RecordedTrial {
 /// The tables of a trial in memory, by the names that their files would have.
 using RecordedTables = std::map<std::string, MemoryTable>;
 
-/// Where the recorders of a trial write: files in a directory, or tables in memory (never null, outlive the recorders).
+/// The destination of the recorders of a trial: files in a directory, or tables in memory (never null; they must
+/// outlive the recorders).
 using RecordTarget = std::variant<std::filesystem::path, RecordedTables*>;
 
 /// Recorders for what the scenario asks for. Throws IoError.
@@ -32,7 +33,7 @@ std::vector<std::unique_ptr<Recorder>> make_recorders(const RecordedTrial& trial
 
 /// The tables of all recorders there are.
 std::vector<ResultTable> record_tables();
-/// Those that a run with these fields writes.
+/// The tables that a run with these fields writes.
 std::vector<ResultTable> record_tables(const RecordFields& fields);
 
 /// About how many bytes a run of the scenario will write [bytes]: rows times columns times 12 of what it records, all

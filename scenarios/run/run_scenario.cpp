@@ -1,18 +1,25 @@
 #include "scenarios/run/run_scenario.hpp"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
+
 #include <algorithm>
+#include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "algorithms/registry.hpp"
+#include "results/allocations/allocations.hpp"
 #include "results/io/atomic_file.hpp"
 #include "results/io/columns.hpp"
 #include "results/io/json_text.hpp"
+#include "results/observe/step_times.hpp"
 #include "results/record/recorder.hpp"
+#include "scenarios/description/metric_sections.hpp"
+#include "scenarios/run/assemble.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/recorders.hpp"
-#include "scenarios/run/run_trial.hpp"
+#include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 namespace {
@@ -22,6 +29,177 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// The results of one trial; most scenarios have one.
+struct TrialResult {
+  SimulationResult result;
+  std::shared_ptr<const ToolShape> tool;
+  Metrics metrics;
+  std::optional<PassivityMetrics> passivity;
+  std::optional<SectionObservers> sections;  ///< never empty in a result of run_trial
+  std::vector<std::string> warnings;         ///< about what may make the numbers mislead
+  RunWork work;
+  double loop_seconds = 0.0;                    ///< wall time of the step loop
+  std::vector<std::uint64_t> step_nanoseconds;  ///< samples of the time of single steps (StepSampler)
+  std::uint64_t preemptions = 0;                ///< involuntary context switches in the loop
+  /// Their files are complete but under temporary names until `finish`.
+  std::vector<std::unique_ptr<Recorder>> recorders;
+};
+
+/// The spring force beyond which the explicit step of friction is unstable [N]. Nothing where the position is
+/// prescribed or a handle moves the tool, since no integrator does.
+std::optional<double> friction_limit(const Scenario& scenario, const Motion& motion) {
+  if (!motion.position_is_free() || handle_moves_tool(scenario.device)) return std::nullopt;
+  const RenderingConfig& rendering = scenario.rendering;
+  return explicit_friction_limit(*scenario.integrator.type, rendering.mass, scenario.time.step, rendering.mu_s,
+                                 rendering.mu_f);
+}
+
+MetricsConfig metrics_config(const Scenario& scenario, const SimulationParts& parts) {
+  MetricsConfig config;
+  config.friction_limit = friction_limit(scenario, *parts.motion);
+  config.settling = scenario.metrics;
+  if (scenario.rendering.reduction) config.most_reduced = parts.source->capacity();
+  return config;
+}
+
+/// The force that the rendered one is compared with: ideal, or measured with a stroke; null without.
+std::shared_ptr<const ReferenceForce> reference_force(const Scenario& scenario, const NamedFiles& files) {
+  if (scenario.reference_force) return std::make_shared<const ReferenceForce>(scenario.reference_force->force);
+  if (!std::holds_alternative<RecordedPosition>(scenario.motion.position)) return nullptr;
+  const auto stroke = files.at(kMotionFile).stroke();
+  if (stroke->force) return {stroke, &*stroke->force};
+  if (scenario.record.force_reference)
+    throw InputError("/record/force_reference: got true; allowed: false, because the stroke has no measured force");
+  return nullptr;
+}
+
+/// The observers of a trial: only those that the scenario asks for.
+class TrialObservers {
+ public:
+  TrialObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts, Trial trial)
+      : tool_(parts.tool),
+        metrics_(scenario.time.step, metrics_config(scenario, parts)),
+        passivity_(scenario.time.step),
+        sections_({.scenario = scenario,
+                   .simulation = parts,
+                   .reference = reference_force(scenario, files),
+                   .subject = trial.subject,
+                   .trial = trial.number}) {
+    observers_.push_back(&metrics_);
+    observers_.push_back(&passivity_);
+    for (const auto& observer : sections_.all()) observers_.push_back(observer.get());
+    if (parts.shell && parts.shell->size() > 0) {
+      approach_.emplace(parts.shell->bounds());
+      observers_.push_back(&*approach_);
+      // Needs shell indices; FCL and Bullet contacts have none.
+      if (std::holds_alternative<MeshEnvironment>(scenario.environment) &&
+          scenario.rendering.contact_source == kOwnContacts &&
+          !files.at(kEnvironmentFile).mesh().open_edges().empty()) {
+        open_edges_.emplace(*parts.shell, files.at(kEnvironmentFile).mesh().open_edges(), parts.tool->half_width());
+        observers_.push_back(&*open_edges_);
+      }
+    }
+    if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get())) {
+      drag_.emplace(*hand, std::get<DragHandFields>(scenario.hand), parts.tool->half_width());
+      observers_.push_back(&*drag_);
+    }
+  }
+
+  /// Adds recorders for what the scenario asks for. Throws IoError.
+  void record(const RecordFields& fields, const RecordTarget& target, std::size_t contact_capacity) {
+    recorders_ = make_recorders({fields, contact_capacity, sections_}, target);
+    for (const auto& recorder : recorders_) observers_.push_back(recorder.get());
+  }
+
+  void add(Observer& observer) { observers_.push_back(&observer); }
+  const std::vector<Observer*>& all() const { return observers_; }
+
+  /// Moves what was observed into the result.
+  void move_to(const Scenario& scenario, TrialResult& out) {
+    out.tool = tool_;
+    out.metrics = metrics_.metrics();
+    if (approach_ && out.result.outcome == Outcome::completes) {
+      Encounter encounter{out.metrics, approach_->approach(), approach_->environment(), *tool_};
+      if (drag_) encounter.drag = drag_->course();
+      out.result.outcome = outcome_of(scenario, encounter);
+      if (auto warning = warning_about(scenario, out.result.outcome, encounter)) out.warnings.push_back(*warning);
+    }
+    if (drag_) {
+      for (std::string& warning : drag_warnings(drag_->course())) out.warnings.push_back(std::move(warning));
+    }
+    if (approach_) {
+      if (auto warning = scale_warning(scenario, *tool_, approach_->environment())) out.warnings.push_back(*warning);
+    }
+    if (open_edges_ && open_edges_->warning()) out.warnings.push_back(*open_edges_->warning());
+    out.passivity = passivity_.metrics();
+    out.sections = std::move(sections_);
+    out.recorders = std::move(recorders_);
+  }
+
+ private:
+  std::shared_ptr<const ToolShape> tool_;
+  MetricsObserver metrics_;
+  PassivityObserver passivity_;
+  SectionObservers sections_;
+  std::optional<ApproachObserver> approach_;
+  std::optional<OpenEdgeObserver> open_edges_;
+  std::optional<DragCourseObserver> drag_;
+  std::vector<std::unique_ptr<Recorder>> recorders_;
+  std::vector<Observer*> observers_;
+};
+
+/// Does what run_to_end does and times every step.
+SimulationResult run_timed(Simulation& simulation, StepTimes& times) {
+  times.start();
+  for (bool more = true; more;) {
+    throw_if_stopped();
+    for (std::uint64_t i = 0; i < kAskEvery && (more = simulation.step()); ++i) times.lap();
+  }
+  throw_if_stopped();
+  return simulation.result();
+}
+
+/// Number of involuntary context switches of this process so far.
+std::uint64_t involuntary_context_switches() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_nivcsw);
+}
+
+/// Runs one trial and records into `target`, if there is one, whose directory exists. `label` is that of the progress
+/// bar; empty for none. Every step is timed into `times`, if that is not null. Throws Stopped when a signal ends the
+/// run.
+TrialResult run_trial(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell, Trial trial,
+                      const std::optional<RecordTarget>& target, const std::string& label, StepTimes* times) {
+  const Scenario& scenario = loaded.scenario;
+  SimulationParts parts = assemble(scenario, loaded.files, shell, trial);
+  TrialObservers observers(scenario, loaded.files, parts, trial);
+  if (target) observers.record(scenario.record, *target, parts.source->capacity());
+  Progress bar(label, static_cast<std::uint64_t>(scenario.time.steps), !label.empty());
+  observers.add(bar);
+  StepSampler sampler(static_cast<std::uint64_t>(scenario.time.steps));
+  std::vector<Observer*> all = observers.all();
+  all.insert(all.begin(), &sampler.first());
+  all.push_back(&sampler.last());
+  Simulation simulation(simulation_config(scenario), std::move(parts), std::move(all));
+
+  TrialResult out;
+  const std::uint64_t allocations_before = heap_allocations();
+  const std::uint64_t preemptions_before = involuntary_context_switches();
+  const auto start = Clock::now();
+  out.result = times != nullptr ? run_timed(simulation, *times) : run_to_end(simulation);
+  out.loop_seconds = seconds_since(start);
+  out.preemptions = involuntary_context_switches() - preemptions_before;
+  out.work.allocations = heap_allocations() - allocations_before;
+  out.work.search = simulation.source().work();
+  out.work.steps_skipped = out.work.search.skipped;
+  out.work.algorithm = simulation.algorithm().work();
+  out.work.search += out.work.algorithm.search;
+  out.step_nanoseconds.assign(sampler.nanoseconds().begin(), sampler.nanoseconds().end());
+  observers.move_to(scenario, out);
+  return out;
 }
 
 /// The trials of a scenario, subject by subject.
@@ -39,7 +217,7 @@ std::vector<Trial> trials_of(const Scenario& scenario) {
 
 constexpr const char* kTrialDirectory = "subject_";
 
-/// Where a trial records: the scenario's directory itself when it is the only one.
+/// The directory into which a trial records: that of the scenario when the trial is the only one.
 fs::path trial_directory(const fs::path& directory, Trial trial, std::size_t trials) {
   if (trials == 1) return directory;
   return directory / fmt::format("{}{}_trial_{}", kTrialDirectory, trial.subject, trial.number);
@@ -52,7 +230,7 @@ void create_output(NewDirectories& directories, const fs::path& directory) {
   remove_stale_temporaries(directory);
 }
 
-/// Optional files that an earlier run with other settings may have left: they would not belong to this run.
+/// Removes optional files that an earlier run with other settings may have left: they would not belong to this run.
 void remove_files_of_earlier_runs(const fs::path& directory) {
   std::error_code ignored;
   std::vector<std::string> files = {"summary.json", "columns.json", kTargetTable.file, "timing.json"};
@@ -65,7 +243,7 @@ void remove_files_of_earlier_runs(const fs::path& directory) {
   }
 }
 
-/// Several trials end as the worst of them does.
+/// The result of all trials: the outcome is the worst of them.
 SimulationResult merged_result(const std::vector<TrialResult>& trials) {
   SimulationResult all = trials.front().result;
   for (std::size_t i = 1; i < trials.size(); ++i) {
@@ -77,7 +255,7 @@ SimulationResult merged_result(const std::vector<TrialResult>& trials) {
   return all;
 }
 
-/// Those of the first trial that has any, and how many others have some.
+/// The warnings of the first trial that has any, with the number of trials that have some.
 std::vector<std::string> merged_warnings(const std::vector<TrialResult>& trials) {
   const auto warns = [](const TrialResult& trial) { return !trial.warnings.empty(); };
   const auto first = std::find_if(trials.begin(), trials.end(), warns);
@@ -113,7 +291,7 @@ RunSummary summarise(const Scenario& scenario, const std::vector<TrialResult>& t
   const ToolShape& tool = *trials.front().tool;
   for (const auto& more : {force_warnings(summary.metrics), tool_warnings(scenario.rendering, tool)})
     summary.warnings.insert(summary.warnings.end(), more.begin(), more.end());
-  // A cylinder's fields say all.
+  // The fields of a cylinder say all.
   if (!std::holds_alternative<CylinderFields>(scenario.tool))
     summary.tool = ToolSummary{tool.half_width(), tool.reach(), tool.convex(), tool.outline()};
   return summary;
@@ -200,19 +378,17 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
   if (scenario.record.timing) times.emplace(static_cast<std::size_t>(scenario.time.steps) * trials.size());
   std::vector<TrialResult> results;
   for (const Trial trial : trials) {
-    TrialOptions options;
-    options.files = loaded.files;
+    std::optional<RecordTarget> target;
     if (output && records_rows(scenario.record)) {
       const fs::path directory = trial_directory(*output, trial, trials.size());
       create_output(directories, directory);
-      options.target = directory;
+      target = directory;
     } else if (tables != nullptr) {
-      options.target = &tables->trials[results.size()];
+      target = &tables->trials[results.size()];
     }
-    if (progress) options.label = scenario.name;
-    if (progress && trials.size() > 1) options.label += fmt::format(" {}/{}", results.size() + 1, trials.size());
-    if (times) options.times = &*times;
-    results.push_back(run_trial(scenario, shell, trial, options));
+    std::string label = progress ? scenario.name : "";
+    if (progress && trials.size() > 1) label += fmt::format(" {}/{}", results.size() + 1, trials.size());
+    results.push_back(run_trial(loaded, shell, trial, target, label, times ? &*times : nullptr));
   }
 
   for (const TrialResult& result : results) {

@@ -23,7 +23,7 @@ struct RunReport {
   RunTiming timing;                ///< of a tracking hand, all trials together
 };
 
-/// What a run recorded in memory.
+/// The tables that a run recorded in memory.
 struct RunTables {
   std::vector<RecordedTables> trials;
   std::optional<MemoryTable> targets;  ///< targets.csv, of a tracking hand

@@ -10,13 +10,13 @@
 
 namespace hapbench {
 
-/// What there is to know of its tool.
+/// Facts about the tool of a scenario.
 struct ToolFacts {
   std::string type;         ///< as the scenario's field
   double half_width = 0.0;  ///< [m]
   double reach = 0.0;       ///< of its furthest point from the tip centre [m]
   bool convex = true;
-  /// Of a mesh.
+  /// Facts about a tool that is a mesh.
   struct Mesh {
     std::size_t triangles;
     Box box;             ///< in the tool's frame [m]
@@ -26,9 +26,9 @@ struct ToolFacts {
   std::optional<Mesh> mesh;
 };
 
-/// What there is to know of a scenario before it runs.
+/// Facts about a scenario that are known before it runs.
 struct SceneFacts {
-  /// Of an environment of points; none for springs.
+  /// The points of the environment; springs have none.
   struct Surface {
     Box box;
     std::size_t points = 0;
@@ -54,7 +54,7 @@ std::string length_text(double metres);
 
 /// The edges of a box in one unit, as in "13.5 x 16.7 x 6.6 mm".
 std::string size_text(const Box& box);
-/// Where it lies in that unit, as in "x -6.74 ... 6.76, y -7.3 ... 9.4, z -3.3 ... 3.3 mm".
+/// The place of a box in one unit, as in "x -6.74 ... 6.76, y -7.3 ... 9.4, z -3.3 ... 3.3 mm".
 std::string place_text(const Box& box);
 
 /// An amount of data, as in "271 MB".

@@ -6,9 +6,7 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/contacts_by_hand.hpp"
-#include "scenarios/thesis_claims/swing_decay.hpp"
-#include "scenarios/thesis_claims/wording.hpp"
+#include "scenarios/thesis_claims/measurements.hpp"
 
 /// Claims of appendix B: what is wrong with the original algorithm, on contacts made for it.
 namespace hapbench {
@@ -66,8 +64,7 @@ Finding judge_groove(const Measured& measured, const PublishedNumbers&) {
   std::string text;
   for (const MeasuredCase& m : measured) {
     if (m["original_averaging"] <= kUnderDamped * m["shaped_stiffness"]) ++under_damped;
-    text += fmt::format("{}{}: {:.2f} against {:.2f}", text.empty() ? "" : "; ", m.name, m["original_averaging"],
-                        m["shaped_stiffness"]);
+    append_item(text, fmt::format("{}: {:.2f} against {:.2f}", m.name, m["original_averaging"], m["shaped_stiffness"]));
   }
   return {
       decide(under_damped == measured.size(), 2 * under_damped > measured.size()),
@@ -117,47 +114,35 @@ Finding judge_added_points(const Measured& measured, const PublishedNumbers&) {
           depths && turned ? "exact, as the formula says" : "another depth or direction than the formula's"};
 }
 
-constexpr Claim kAppendixBOriginalAlgorithm[] = {
-    {.id = "B1",
-     .place = "B.3.1",
-     .claim = "flipped gradients pull the tool into the object",
-     .published = "",
-     .rule =
-         [](const PublishedNumbers&) {
-           return std::string(
-               "reproduced: force into the wall beyond the median line, out of it with the surface normal");
-         },
-     .measure = measure_flipped_gradient,
-     .judge = judge_flipped_gradient},
-    {.id = "B2",
-     .place = "B.3.2",
-     .claim = "with distributed contact the original algorithm is under-damped",
-     .published = "",
-     .rule =
-         [](const PublishedNumbers&) {
-           return fmt::format(
-               "reproduced: swings across a groove are damped at most {} as much as with stiffness shaping, at every angle "
-               "between the contacts; in kind: at most angles",
-               in_words(kUnderDamped));
-         },
-     .measure = measure_groove,
-     .judge = judge_groove},
-    {.id = "B3",
-     .place = "B.3.3",
-     .claim = "two more points change the merged depth from 2n+1 to 2n+3 and turn the direction round",
-     .published = "21, 23, 180 degrees for n = 10",
-     .rule =
-         [](const PublishedNumbers&) {
-           return fmt::format("reproduced: the integers to {}, opposite directions", plain(kExact));
-         },
-     .measure = measure_added_points,
-     .judge = judge_added_points},
-};
-
 }  // namespace
 
-std::span<const Claim> appendix_b_original_algorithm() {
-  return kAppendixBOriginalAlgorithm;
+std::vector<Claim> appendix_b_original_algorithm() {
+  return {
+      {.id = "B1",
+       .place = "B.3.1",
+       .claim = "flipped gradients pull the tool into the object",
+       .published = "",
+       .rule = "reproduced: force into the wall beyond the median line, out of it with the surface normal",
+       .measure = measure_flipped_gradient,
+       .judge = judge_flipped_gradient},
+      {.id = "B2",
+       .place = "B.3.2",
+       .claim = "with distributed contact the original algorithm is under-damped",
+       .published = "",
+       .rule = fmt::format(
+           "reproduced: swings across a groove are damped at most {} as much as with stiffness shaping, at every angle "
+           "between the contacts; in kind: at most angles",
+           in_words(kUnderDamped)),
+       .measure = measure_groove,
+       .judge = judge_groove},
+      {.id = "B3",
+       .place = "B.3.3",
+       .claim = "two more points change the merged depth from 2n+1 to 2n+3 and turn the direction round",
+       .published = "<B3.depth.before>, <B3.depth.after>, <B3.turn> degrees for n = 10",
+       .rule = fmt::format("reproduced: the integers to {}, opposite directions", plain(kExact)),
+       .measure = measure_added_points,
+       .judge = judge_added_points},
+  };
 }
 
 }  // namespace hapbench

@@ -6,19 +6,17 @@
 #include "algorithms/registry.hpp"
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/contacts_by_hand.hpp"
-#include "scenarios/thesis_claims/swing_decay.hpp"
-#include "scenarios/thesis_claims/wording.hpp"
+#include "scenarios/thesis_claims/measurements.hpp"
 
 /// Claims of appendix C: what the proposed algorithm does to point density and damping.
 namespace hapbench {
 namespace {
 
-/// The laws that the claims set beside each other; ours last.
+/// The laws that the claims compare; ours is last.
 constexpr const char* kLaws[] = {"shaped_stiffness", "original_averaging", "summation", "mean",
                                  "virtual_coupling", "least_squares"};
 
-/// What an algorithm answers to contacts with depths and gradients, under a tool at rest.
+/// The force of an algorithm for contacts with depths and gradients, under a tool at rest.
 RenderedForce answer(ForceAlgorithm& algorithm, ContactBuffer contacts) {
   ToolState tool;
   tool.pose = kUpright;
@@ -37,7 +35,7 @@ const MeasuredCase& proposed(const Measured& measured) {
 constexpr std::size_t kWallDensities[] = {1, 2, 4, 10, 40};
 constexpr double kDecoupled = 0.05;
 
-/// Points of the wall, one of the corner's edge, one of the face on top.
+/// Contacts of the wall, one of the corner's edge and one of the top face.
 ContactBuffer corner(std::size_t wall_points) {
   ContactBuffer contacts(wall_points + 2);
   const auto add = [&contacts](const Vec3& gradient) {
@@ -52,7 +50,7 @@ ContactBuffer corner(std::size_t wall_points) {
   return contacts;
 }
 
-/// The stiffness of a law, all of whose stages are off.
+/// The stiffness tensor of a law without stages.
 Mat3 stiffness_of(const char* law, ContactBuffer contacts) {
   RenderingConfig config;
   config.algorithm = law;
@@ -80,8 +78,8 @@ Finding judge_density(const Measured& measured, const PublishedNumbers&) {
   };
   std::string text;
   for (const MeasuredCase& m : measured) {
-    text += fmt::format("{}{} {:.3f} to {:.3f}", text.empty() ? "" : ", ", m.name, m.all("stiffness").front(),
-                        m.all("stiffness").back());
+    append_item(text, fmt::format("{} {:.3f} to {:.3f}", m.name, m.all("stiffness").front(), m.all("stiffness").back()),
+                ", ");
   }
   const double shaped = change(proposed(measured));
   return {decide(shaped <= kDecoupled, false),
@@ -101,7 +99,7 @@ Measured measure_local_average(const Evidence& e) {
   Scene scene;
   scene.capacity = shell->size();
   scene.shell = shell.get();
-  const std::vector<ContactBuffer> sets = rendered_contact_sets(drill_in_hole(loaded.scenario), 128);
+  const std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(loaded.scenario), 128);
   Measured measured;
   for (const char* law : kLaws) {
     RenderingConfig config = with_algorithm(loaded.scenario, law).rendering;
@@ -124,7 +122,7 @@ Measured measure_local_average(const Evidence& e) {
 Finding judge_local_average(const Measured& measured, const PublishedNumbers&) {
   std::string text;
   for (const MeasuredCase& m : measured)
-    text += fmt::format("{}{} {:.1f} %", text.empty() ? "" : ", ", m.name, 100.0 * m["change"]);
+    append_item(text, fmt::format("{} {:.1f} %", m.name, 100.0 * m["change"]), ", ");
   const double shaped = proposed(measured)["change"];
   const bool least = std::all_of(measured.begin(), measured.end(), [shaped](const MeasuredCase& m) {
     return m["change"] >= shaped || m.name == "least_squares";
@@ -148,7 +146,7 @@ Measured measure_relative_damping(const Evidence& e) {
     const std::string overrides[] = {fmt::format(R"(environment.groups=[{{"direction":[1,0,0],"count":{}}}])", count),
                                      "initial.position_m=[-0.005,0,0]",
                                      fmt::format("rendering.damping_ratio={}", kSpringDamping),
-                                     // A tenth of the step: the integrator's own damping would show.
+                                     // With a tenth of the step the integrator's own damping is negligible.
                                      "time.step_s=0.00005", "time.steps=10000"};
     SwingDecay swings;
     e.for_each_row(e.load("springs_unlimited_summation", overrides),
@@ -164,56 +162,45 @@ Finding judge_relative_damping(const Measured& measured, const PublishedNumbers&
   for (const MeasuredCase& m : measured) {
     const double expected = kSpringDamping * std::sqrt(m["count"]);
     worst = std::max(worst, std::abs(m["damping_ratio"] / expected - 1.0));
-    text += fmt::format("{}ρ = {}: {:.4f}", text.empty() ? "" : ", ", m.name, m["damping_ratio"]);
+    append_item(text, fmt::format("ρ = {}: {:.4f}", m.name, m["damping_ratio"]), ", ");
   }
   return {decide(worst <= kSameRatio, false),
           fmt::format("springs with a damping ratio of {} each, together: {}", kSpringDamping, text),
           fmt::format("√ρ times that of one spring to {:.2g} %", 100.0 * worst)};
 }
 
-constexpr Claim kAppendixCProposedAlgorithm[] = {
-    {.id = "P1",
-     .place = "abstract, 1.2, C.2, C.4, 5",
-     .claim = "stiffness shaping decouples the force from the density of points",
-     .published = "",
-     .rule =
-         [](const PublishedNumbers&) {
-           return fmt::format(
-               "reproduced: the stiffness across a corner changes by at most {} when the wall beside it has {} times the "
-               "points",
-               percent(kDecoupled), kWallDensities[std::size(kWallDensities) - 1]);
-         },
-     .measure = measure_density,
-     .judge = judge_density},
-    {.id = "C5",
-     .place = "C.2",
-     .claim = "once stiffness is shaped, the local average is unnecessary",
-     .published = "",
-     .rule =
-         [](const PublishedNumbers&) {
-           return fmt::format(
-               "reproduced: it changes the spring force of stiffness shaping in task 2 by at most {}, rms; in kind: by less "
-               "than that of any other law of the thesis",
-               percent(kUnnecessary));
-         },
-     .measure = measure_local_average,
-     .judge = judge_local_average},
-    {.id = "C6",
-     .place = "C.4.3",
-     .claim = "the relative damping of combined contacts grows with the root of the stiffness ratio",
-     .published = "√ρ",
-     .rule =
-         [](const PublishedNumbers&) {
-           return fmt::format("reproduced: √ρ times the damping ratio of one spring, within {}", percent(kSameRatio));
-         },
-     .measure = measure_relative_damping,
-     .judge = judge_relative_damping},
-};
-
 }  // namespace
 
-std::span<const Claim> appendix_c_proposed_algorithm() {
-  return kAppendixCProposedAlgorithm;
+std::vector<Claim> appendix_c_proposed_algorithm() {
+  return {
+      {.id = "P1",
+       .place = "abstract, 1.2, C.2, C.4, 5",
+       .claim = "stiffness shaping decouples the force from the density of points",
+       .published = "",
+       .rule = fmt::format(
+           "reproduced: the stiffness across a corner changes by at most {} when the wall beside it has {} times the "
+           "points",
+           percent(kDecoupled), kWallDensities[std::size(kWallDensities) - 1]),
+       .measure = measure_density,
+       .judge = judge_density},
+      {.id = "C5",
+       .place = "C.2",
+       .claim = "once stiffness is shaped, the local average is unnecessary",
+       .published = "",
+       .rule = fmt::format(
+           "reproduced: it changes the spring force of stiffness shaping in task 2 by at most {}, rms; in kind: by less "
+           "than that of any other law of the thesis",
+           percent(kUnnecessary)),
+       .measure = measure_local_average,
+       .judge = judge_local_average},
+      {.id = "C6",
+       .place = "C.4.3",
+       .claim = "the relative damping of combined contacts grows with the root of the stiffness ratio",
+       .published = "√ρ",
+       .rule = fmt::format("reproduced: √ρ times the damping ratio of one spring, within {}", percent(kSameRatio)),
+       .measure = measure_relative_damping,
+       .judge = judge_relative_damping},
+  };
 }
 
 }  // namespace hapbench

@@ -6,7 +6,6 @@
 #include "algorithms/registry.hpp"
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/wording.hpp"
 
 /// Claims of appendix F: the thesis's optional algorithms.
 namespace hapbench {
@@ -50,12 +49,12 @@ constexpr double kEnergyKept = 1e-9;
 constexpr double kBoosted = 2.0;
 constexpr double kBoostTilts[] = {0.08, 0.12, 0.2, 0.4};
 
-/// The ratio farthest from 1 of all contact sets that give a force at all.
+/// The ratio furthest from 1 among the contact sets that give a force.
 double tandpasta_energy_ratio(const Evidence& e) {
   const Scenario scenario = drill_in_hole(e.load("task2_rotate_signed_distance").scenario);
   const auto law = make_law("tandpasta", {});
   double ratio = 1.0;
-  for (ContactBuffer& set : rendered_contact_sets(scenario, 64)) {
+  for (ContactBuffer& set : contact_sets(scenario, 64)) {
     law->prepare(set.capacity());
     law->evaluate(set);
     double weighed = 0.0, unweighed = 0.0;
@@ -68,7 +67,7 @@ double tandpasta_energy_ratio(const Evidence& e) {
   return ratio;
 }
 
-/// At the first rows beyond each tilt.
+/// The outward force over that of the plain springs, at the first row beyond each tilt.
 std::vector<double> outward_boosts(const Evidence& e) {
   const LoadedScenario loaded = e.load("tilt_sweep_tandpasta");
   const double stiffness = loaded.scenario.rendering.stiffness;
@@ -115,38 +114,30 @@ Finding judge_tandpasta(const Measured& measured, const PublishedNumbers&) {
           unchanged ? "keep" : "change", least > 1.0 ? "raise" : "do not raise")};
 }
 
-constexpr Claim kAppendixFOptionalAlgorithms[] = {
-    {.id = "F1",
-     .place = "F.1, Fig. F.4",
-     .claim = "the normal projection does not saturate on a flat, and jumps at a corner",
-     .published = "",
-     .rule =
-         [](const PublishedNumbers&) {
-           return fmt::format(
-               "reproduced: {} times the force step, follows the press where the shortest distance saturates",
-               in_words(kForceSteps));
-         },
-     .measure = measure_normal_projection,
-     .judge = judge_normal_projection},
-    {.id = "F2",
-     .place = "F.2, Fig. F.5",
-     .claim = "tandpasta keeps the elastic energy and boosts the force that pushes the tool out",
-     .published = "",
-     .rule =
-         [](const PublishedNumbers&) {
-           return fmt::format(
-               "reproduced: energy unchanged to {}, at least {} times the outward force of the plain springs at every tilt "
-               "looked at; in kind: more at every tilt",
-               plain(kEnergyKept), in_words(kBoosted));
-         },
-     .measure = measure_tandpasta,
-     .judge = judge_tandpasta},
-};
-
 }  // namespace
 
-std::span<const Claim> appendix_f_optional_algorithms() {
-  return kAppendixFOptionalAlgorithms;
+std::vector<Claim> appendix_f_optional_algorithms() {
+  return {
+      {.id = "F1",
+       .place = "F.1, Fig. F.4",
+       .claim = "the normal projection does not saturate on a flat, and jumps at a corner",
+       .published = "",
+       .rule =
+           fmt::format("reproduced: {} times the force step, follows the press where the shortest distance saturates",
+                       in_words(kForceSteps)),
+       .measure = measure_normal_projection,
+       .judge = judge_normal_projection},
+      {.id = "F2",
+       .place = "F.2, Fig. F.5",
+       .claim = "tandpasta keeps the elastic energy and boosts the force that pushes the tool out",
+       .published = "",
+       .rule = fmt::format(
+           "reproduced: energy unchanged to {}, at least {} times the outward force of the plain springs at every tilt "
+           "looked at; in kind: more at every tilt",
+           plain(kEnergyKept), in_words(kBoosted)),
+       .measure = measure_tandpasta,
+       .judge = judge_tandpasta},
+  };
 }
 
 }  // namespace hapbench

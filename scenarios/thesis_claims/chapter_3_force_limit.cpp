@@ -8,8 +8,7 @@
 
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/firm_hand.hpp"
-#include "scenarios/thesis_claims/wording.hpp"
+#include "scenarios/thesis_claims/measurements.hpp"
 
 /// Claims of 2.7, 3.5 and 4.5: the limit of the input force.
 namespace hapbench {
@@ -23,7 +22,7 @@ constexpr double kProportional = 0.02;
 constexpr double kOnset = 0.1;
 constexpr double kConstant = 0.02;
 
-/// The displacement in each row with contact [m]; appends the force measured there [N].
+/// Returns the displacement in each row with contact [m] and appends the measured force of these rows [N].
 std::vector<double> displacement(const Evidence& e, const char* scenario, std::vector<double>& force) {
   const auto table = e.results.table(scenario, "trajectory.csv");
   std::vector<double> depth;
@@ -84,12 +83,12 @@ double force_limit(const Scenario& scenario) {
 }
 
 Measured measure_saturated_motion(const Evidence& e) {
-  const LoadedScenario loaded = e.load("task2_rotate_signed_distance", kFirmHand);
+  const LoadedScenario loaded = e.load("task2_rotate_signed_distance", kHandAboveLimit);
   const double limit = force_limit(loaded.scenario);
   double rows = 0.0, against = 0.0, way = 0.0, uphill = 0.0;
   e.for_each_row(loaded, [&](const StepRecord& row) {
     const Vec3& spring = row.force.spring;
-    // The limiter scales to the limit, up to rounding.
+    // The limiter scales the force to the limit, up to rounding.
     if (row.hand.input.norm() < limit * (1.0 - 1e-12) || spring.norm() < limit) return;
     const Vec3 gradient = -row.force.S * spring;
     const double along = row.tool.velocity.dot(gradient) / gradient.norm();
@@ -163,59 +162,47 @@ Finding judge_shaking(const Measured& measured, const PublishedNumbers& publishe
     const double factor = m["mass"] / m["mass_unlimited"];
     if (m["frequency"] == kNormalShaking) normal = m["force"] < limit && std::abs(factor - 1.0) <= kSameMass;
     heavier = heavier || factor >= kHeavier;
-    text += fmt::format("{}{}: {:.2f} N, {:.3f} kg (without limit {:.3f})", text.empty() ? "" : "; ", m.name,
-                        m["force"], m["mass"], m["mass_unlimited"]);
+    append_item(text, fmt::format("{}: {:.2f} N, {:.3f} kg (without limit {:.3f})", m.name, m["force"], m["mass"],
+                                  m["mass_unlimited"]));
   }
   return {decide(normal && heavier, heavier), text,
           fmt::format("fast shaking {} like more mass; at {} Hz the force {}", heavier ? "feels" : "does not feel",
                       kNormalShaking, normal ? "stays below the limit and nothing changes" : "reaches the limit")};
 }
 
-constexpr Claim kChapter3ForceLimit[] = {
-    {.id = "L1",
-     .place = "3.5, Fig. 6",
-     .claim = "displacement is proportional to the force without the limit and constant with it",
-     .published = "constant beyond 2.0 N of the hand, 2.7 N measured",
-     .rule =
-         [](const PublishedNumbers&) {
-           return fmt::format("reproduced: slope within {}, onset within {} N, constant to {}", percent(kProportional),
-                              plain(kOnset), percent(kConstant));
-         },
-     .measure = measure_force_limit,
-     .judge = judge_force_limit},
-    {.id = "L2",
-     .place = "2.7, C.4.4",
-     .claim = "once the input force is limited, the tool moves only where the reaction decreases",
-     .published = "no velocity along the gradient of the reaction",
-     .rule =
-         [](const PublishedNumbers&) {
-           return fmt::format(
-               "reproduced: not uphill in {} of the rows with limited input whose reaction has reached "
-               "the limit; in kind: in {}",
-               percent(kNearlyAlways), percent(kMostly));
-         },
-     .measure = measure_saturated_motion,
-     .judge = judge_saturated_motion},
-    {.id = "L3",
-     .place = "4.5, C.4.4",
-     .claim = "in free air the limit is felt as inertia when the tool is shaken violently, and not normally",
-     .published = "normal shaking stays below 2 N",
-     .rule =
-         [](const PublishedNumbers& published) {
-           return fmt::format(
-               "reproduced: {} times the apparent mass at some frequency up to {} Hz; at {} Hz less than {} N and the "
-               "same mass within {}; in kind: the first",
-               in_words(kHeavier), plain(*std::max_element(std::begin(kFrequencies), std::end(kFrequencies))),
-               plain(kNormalShaking), plain(published["L1.threshold"].mean), percent(kSameMass));
-         },
-     .measure = measure_shaking,
-     .judge = judge_shaking},
-};
-
 }  // namespace
 
-std::span<const Claim> chapter_3_force_limit() {
-  return kChapter3ForceLimit;
+std::vector<Claim> chapter_3_force_limit() {
+  return {
+      {.id = "L1",
+       .place = "3.5, Fig. 6",
+       .claim = "displacement is proportional to the force without the limit and constant with it",
+       .published = "constant beyond <L1.threshold.mean:.1f> N of the hand, <L1.measured> N measured",
+       .rule = fmt::format("reproduced: slope within {}, onset within {} N, constant to {}", percent(kProportional),
+                           plain(kOnset), percent(kConstant)),
+       .measure = measure_force_limit,
+       .judge = judge_force_limit},
+      {.id = "L2",
+       .place = "2.7, C.4.4",
+       .claim = "once the input force is limited, the tool moves only where the reaction decreases",
+       .published = "no velocity along the gradient of the reaction",
+       .rule = fmt::format("reproduced: not uphill in {} of the rows with limited input whose reaction has reached "
+                           "the limit; in kind: in {}",
+                           percent(kNearlyAlways), percent(kMostly)),
+       .measure = measure_saturated_motion,
+       .judge = judge_saturated_motion},
+      {.id = "L3",
+       .place = "4.5, C.4.4",
+       .claim = "in free air the limit is felt as inertia when the tool is shaken violently, and not normally",
+       .published = "normal shaking stays below <L1.threshold> N",
+       .rule = fmt::format(
+           "reproduced: {} times the apparent mass at some frequency up to {} Hz; at {} Hz less than <L1.threshold> N and the "
+           "same mass within {}; in kind: the first",
+           in_words(kHeavier), plain(*std::max_element(std::begin(kFrequencies), std::end(kFrequencies))),
+           plain(kNormalShaking), percent(kSameMass)),
+       .measure = measure_shaking,
+       .judge = judge_shaking},
+  };
 }
 
 }  // namespace hapbench

@@ -7,8 +7,7 @@
 
 #include "results/io/columns.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/firm_hand.hpp"
-#include "scenarios/thesis_claims/wording.hpp"
+#include "scenarios/thesis_claims/measurements.hpp"
 
 /// Claim of 3.6: task 2 against the ideal trajectory. The same recording as T2 and R1.
 namespace hapbench {
@@ -18,7 +17,7 @@ namespace {
 // as far as it would; one for the same hand held firm; and some for directions of a firm hand, which the thesis does
 // not give.
 
-/// What the thesis means by "around".
+/// "Around" a published number means at most this many times that number.
 constexpr double kAround = 1.2;
 constexpr double kDegrees[] = {0.0, 10.0, 20.0, 30.0, 40.0, 50.0};
 constexpr const char* kFirm = "the same hand held firm";
@@ -37,7 +36,7 @@ MeasuredCase errors(const std::string& name, Number number) {
            {"firm_interpenetration", {number("firm.interpenetration_max_m")}}}};
 }
 
-/// Of task 2 with a firm hand.
+/// The errors of task 2 with other overrides.
 MeasuredCase firm_errors(const Evidence& e, const std::string& name, const std::vector<std::string>& overrides) {
   const RunSummary summary = e.run("task2_rotate_signed_distance", overrides).summary;
   const MetricList& metrics = summary.section("ideal_trajectory")->metrics;
@@ -53,7 +52,7 @@ Measured measure_ideal_trajectory(const Evidence& e) {
       return e.results.number("task2_rotate_" + density, "ideal_trajectory." + key);
     }));
   }
-  std::vector<std::string> overrides = kFirmHand;
+  std::vector<std::string> overrides = kHandAboveLimit;
   measured.push_back(firm_errors(e, kFirm, overrides));
   overrides.emplace_back();
   for (const double degrees : kDegrees) {
@@ -63,7 +62,7 @@ Measured measure_ideal_trajectory(const Evidence& e) {
   return measured;
 }
 
-/// Why the rows beyond 2 N are not as published; empty if they are.
+/// The reason why the rows beyond 2 N are not as published; empty if they are.
 std::string firm_deviation(const MeasuredCase& m, const PublishedNumbers& published) {
   if (m["firm_rows"] == 0.0) return "no row in contact with more than 2 N";
   if (m["firm_lateral"] > kAround * published["J1.lateral"].mean) return "off the line with more than 2 N";
@@ -85,7 +84,7 @@ Finding judge_ideal_trajectory(const Measured& measured, const PublishedNumbers&
   for (const MeasuredCase& m : measured) {
     if (m.name.starts_with(kDirection)) {
       if (firm_deviation(m, published).empty()) {
-        directions += (directions.empty() ? "" : ", ") + m.name.substr(std::string(kDirection).size());
+        append_item(directions, m.name.substr(std::string(kDirection).size()), ", ");
       }
       continue;
     }
@@ -100,37 +99,32 @@ Finding judge_ideal_trajectory(const Measured& measured, const PublishedNumbers&
     text += fmt::format(
         "{} above 2 N lateral error at most {:.2f} mm, inside by at most {:.2f} mm, height off by {:.2f} mm",
         is_firm ? ":" : ",", 1e3 * m["firm_lateral"], 1e3 * m["firm_interpenetration"], 1e3 * m["firm_height"]);
-    why += fmt::format("{}{}: {}", why.empty() ? "" : "; ", m.name, problem.empty() ? "as published" : problem);
+    append_item(why, fmt::format("{}: {}", m.name, problem.empty() ? "as published" : problem));
   }
   return {decide(recordings && firm, recordings), text,
           fmt::format("{}. Of firm hands {} degrees from straight down it holds for {}", why, fmt::join(kDegrees, ", "),
                       directions.empty() ? "none" : directions)};
 }
 
-constexpr Claim kChapter3IdealTrajectory[] = {
-    {.id = "J1",
-     .place = "3.6, Fig. 7",
-     .claim =
-         "below 2 N the tip follows the ideal trajectory; above, its height is off, but hardly its distance to the "
-         "hole's axis, and it sinks in a little",
-     .published = "lateral error around 0.25 mm, penetration at most around 0.25 mm; no number for the height",
-     .rule =
-         [](const PublishedNumbers& published) {
-           return fmt::format(
-               "reproduced: lateral error at most {} mm rms below 2 N and {} mm above, never further inside than {} mm, "
-               "height further off above 2 N than below, at both densities, and above 2 N the same when the hand is held "
-               "firm; in kind: all but the last",
-               plain(1e3 * published["J1.lateral"].mean), plain(1e3 * kAround * published["J1.lateral"].mean),
-               plain(1e3 * kAround * published["J1.depth"].mean));
-         },
-     .measure = measure_ideal_trajectory,
-     .judge = judge_ideal_trajectory},
-};
-
 }  // namespace
 
-std::span<const Claim> chapter_3_ideal_trajectory() {
-  return kChapter3IdealTrajectory;
+std::vector<Claim> chapter_3_ideal_trajectory() {
+  return {
+      {.id = "J1",
+       .place = "3.6, Fig. 7",
+       .claim =
+           "below 2 N the tip follows the ideal trajectory; above, its height is off, but hardly its distance to the "
+           "hole's axis, and it sinks in a little",
+       .published =
+           "lateral error around <J1.lateral.mean*1000> mm, penetration at most around <J1.depth.mean*1000> mm; no number for the height",
+       .rule = fmt::format(
+           "reproduced: lateral error at most <J1.lateral.mean*1000> mm rms below 2 N and <J1.lateral.mean*{0}> mm above, "
+           "never further inside than <J1.depth.mean*{0}> mm, height further off above 2 N than below, at both densities, "
+           "and above 2 N the same when the hand is held firm; in kind: all but the last",
+           1e3 * kAround),
+       .measure = measure_ideal_trajectory,
+       .judge = judge_ideal_trajectory},
+  };
 }
 
 }  // namespace hapbench

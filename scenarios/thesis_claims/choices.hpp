@@ -12,7 +12,8 @@
 
 #include "scenarios/description/load_scenario.hpp"
 
-/// What the thesis leaves open and the bundled scenarios had to choose: results/reference/choices.json.
+/// Choices that the thesis leaves open and that the bundled scenarios make: results/reference/choices.json.
+/// The format of results/reference/choices.json.
 namespace hapbench {
 
 /// A field that a choice sets, in the scenarios that have it.
@@ -39,7 +40,7 @@ struct OpenChoice {
   std::vector<ChosenField> fields;
 };
 
-/// True when a name of a choice's scenarios, with its stars, means this scenario.
+/// True when a pattern of a choice's scenarios matches this scenario's name; '*' stands for any characters.
 bool names_scenario(std::string_view pattern, std::string_view scenario);
 
 /// All choices on record.
@@ -58,9 +59,9 @@ class Choices {
   /// each on an equal share.
   std::vector<std::string> values_at(std::span<const double> point) const;
 
-  /// What these values change in a scenario: overrides "path=value" for load_scenario. Choices that meet in one field
-  /// are applied in order. Throws InputError when a choice's path is no field of a scenario that it names, or a field
-  /// to multiply is no number. Precondition: one value for each choice.
+  /// Returns the changes that these values make to a scenario, as overrides "path=value" for load_scenario. Choices
+  /// that concern the same field are applied in order. Throws InputError when a choice's path is no field of a scenario
+  /// that it names, or a field to multiply is no number. Precondition: one value for each choice.
   std::vector<std::string> overrides(const Scenario& scenario, std::span<const std::string> values) const;
 
   /// A Markdown table for people.
@@ -70,5 +71,11 @@ class Choices {
   std::vector<OpenChoice> all_;
   std::string hash_;
 };
+
+/// The choices of a file. Throws InputError with JSON pointer, the value given and what is allowed.
+std::vector<OpenChoice> read_choices(const Json& json);
+
+/// The JSON Schema (draft 7) that results/reference/choices.schema.json holds.
+Json choices_schema();
 
 }  // namespace hapbench

@@ -1,15 +1,63 @@
 #include "scenarios/thesis_claims/claims.hpp"
 
+#include <fmt/format.h>
+
 namespace hapbench {
+
+std::string_view verdict_name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::reproduced:
+      return "reproduced";
+    case Verdict::in_kind:
+      return "reproduced in kind";
+    case Verdict::not_reproduced:
+      return "not reproduced";
+    case Verdict::refuted:
+      return "refuted";
+    case Verdict::not_reproducible:
+      return "not reproducible";
+  }
+  return "";
+}
+
+Verdict decide(bool reproduced, bool in_kind) {
+  return reproduced ? Verdict::reproduced : in_kind ? Verdict::in_kind : Verdict::not_reproduced;
+}
+
+void append_item(std::string& list, std::string_view item, std::string_view separator) {
+  if (!list.empty()) list += separator;
+  list += item;
+}
+
+std::string plain(double number) {
+  std::string text = fmt::format("{:g}", number);
+  // An exponent without its leading zero.
+  const auto exponent = text.find("e-0");
+  if (exponent != std::string::npos) text.erase(exponent + 2, 1);
+  return text;
+}
+
+std::string percent(double share) {
+  return plain(100.0 * share) + " %";
+}
+
+std::string in_words(double number) {
+  constexpr std::pair<double, const char*> kWords[] = {
+      {0.5, "half"}, {1.0, "one"}, {2.0, "two"}, {5.0, "five"}, {10.0, "ten"}};
+  for (const auto& [value, word] : kWords) {
+    if (value == number) return word;
+  }
+  return plain(number);
+}
 
 std::vector<Claim> all_claims() {
   std::vector<Claim> claims;
   for (const auto chapter :
-       {chapter_3_reduction(), chapter_3_cost(), chapter_3_stiffness_ratios(), chapter_3_force_limit(),
-        chapter_3_ideal_trajectory(), appendix_a_planar_peg(), appendix_a_springs(), appendix_a_stability(),
-        chapter_4_depths(), appendix_b_original_algorithm(), chapter_4_discussion(), appendix_c_proposed_algorithm(),
-        chapter_1_penetration(), appendix_f_optional_algorithms(), appendix_d_experiments()}) {
-    claims.insert(claims.end(), chapter.begin(), chapter.end());
+       {chapter_3_reduction, chapter_3_cost, chapter_3_stiffness_ratios, chapter_3_force_limit,
+        chapter_3_ideal_trajectory, appendix_a_planar_peg, appendix_a_springs, appendix_a_stability, chapter_4_depths,
+        appendix_b_original_algorithm, chapter_4_discussion, appendix_c_proposed_algorithm, chapter_1_penetration,
+        appendix_f_optional_algorithms, appendix_d_experiments}) {
+    for (Claim& claim : chapter()) claims.push_back(std::move(claim));
   }
   return claims;
 }

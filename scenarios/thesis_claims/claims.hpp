@@ -1,26 +1,72 @@
 #pragma once
 
-#include <span>
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenarios/thesis_claims/evidence.hpp"
-#include "scenarios/thesis_claims/finding.hpp"
-#include "scenarios/thesis_claims/measured.hpp"
 
-/// What the thesis claims, and how each claim is judged. All of a claim stands together in the file of its chapter: its
-/// text, what is measured, the thresholds and the rule. A new claim is an entry there, and its published numbers are
-/// one in results/reference/published.
+/// The claims of the thesis, and how each is judged. All of a claim stands together in the file of its chapter: its
+/// text, what is measured, the thresholds and the rule. A new claim is an entry there, with its published numbers in
+/// results/reference/published.
 namespace hapbench {
 
+/// The outcome of testing a published statement.
+enum class Verdict {
+  reproduced,       ///< the rule of the claim holds with its published numbers
+  in_kind,          ///< the direction or the mechanism is the published one, the numbers are not
+  not_reproduced,   ///< neither, in this model of the device and the hand
+  refuted,          ///< it contradicts an exact result
+  not_reproducible  ///< no simulation can show it
+};
+
+std::string_view verdict_name(Verdict verdict);
+
+/// The verdict of a rule for "reproduced" and a weaker one for "reproduced in kind".
+Verdict decide(bool reproduced, bool in_kind);
+
+/// The result of judging a claim, computed from measured numbers.
+struct Finding {
+  Verdict verdict = Verdict::not_reproducible;
+  std::string measured;  ///< the numbers, for people
+  std::string why;       ///< one sentence: which part of the rule decided
+};
+
+/// The measurements in one case of a claim, such as a density or an algorithm: numbers by name, several under one name
+/// where each subject has its own.
+struct MeasuredCase {
+  std::string name;  ///< empty where the claim has a single case
+  std::map<std::string, std::vector<double>> values;
+
+  /// The value of a name that has one. Throws std::out_of_range for other names.
+  double operator[](const std::string& value) const { return all(value).at(0); }
+  const std::vector<double>& all(const std::string& value) const { return values.at(value); }
+};
+
+/// All numbers that decide a claim beside the published ones, so that it can be judged again at any time.
+using Measured = std::vector<MeasuredCase>;
+
+/// Appends an item to an enumeration in words.
+void append_item(std::string& list, std::string_view item, std::string_view separator = "; ");
+
+// Thresholds as the rules of claims write them.
+
+/// "half", "one", "two", "five" or "ten"; other numbers as `plain` has them.
+std::string in_words(double number);
+/// "2 %" for 0.02.
+std::string percent(double share);
+/// Six digits at most: "0.1", "15", "1e-9".
+std::string plain(double number);
+
+/// Its texts hold published numbers by id, which PublishedNumbers::fill puts in.
 struct Claim {
   const char* id;
   const char* place;      ///< in the thesis
   const char* claim;      ///< in our words
-  const char* published;  ///< its numbers, for people
-  /// What decides, for people: written from the thresholds and published numbers that `judge` compares with.
-  std::string (*rule)(const PublishedNumbers& published);
-  /// Takes what decides from the results of scenarios, or computes it.
+  std::string published;  ///< its numbers, for people
+  std::string rule;       ///< of the verdict, for people: with the thresholds that `judge` compares with
+  /// Takes the deciding numbers from the results of scenarios, or computes them.
   Measured (*measure)(const Evidence& evidence);
   /// Depends on its arguments alone.
   Finding (*judge)(const Measured& measured, const PublishedNumbers& published);
@@ -31,24 +77,24 @@ struct Claim {
 /// All of them, in the order of the ledger.
 std::vector<Claim> all_claims();
 
-/// What the thesis proposes.
+/// The algorithm that the thesis proposes.
 inline constexpr const char* kProposedLaw = "shaped_stiffness";
 
-/// By chapter.
-std::span<const Claim> chapter_1_penetration();           ///< V
-std::span<const Claim> chapter_3_reduction();             ///< T1 to T3
-std::span<const Claim> chapter_3_cost();                  ///< T4, T5
-std::span<const Claim> chapter_3_stiffness_ratios();      ///< R
-std::span<const Claim> chapter_3_force_limit();           ///< L
-std::span<const Claim> chapter_3_ideal_trajectory();      ///< J
-std::span<const Claim> chapter_4_depths();                ///< G
-std::span<const Claim> chapter_4_discussion();            ///< B4, C1 to C4
-std::span<const Claim> appendix_a_planar_peg();           ///< A1
-std::span<const Claim> appendix_a_springs();              ///< A2, A3
-std::span<const Claim> appendix_a_stability();            ///< A4
-std::span<const Claim> appendix_b_original_algorithm();   ///< B1 to B3
-std::span<const Claim> appendix_c_proposed_algorithm();   ///< P, C5, C6
-std::span<const Claim> appendix_d_experiments();          ///< D
-std::span<const Claim> appendix_f_optional_algorithms();  ///< F
+// By chapter.
+std::vector<Claim> chapter_1_penetration();           ///< V
+std::vector<Claim> chapter_3_reduction();             ///< T1 to T3
+std::vector<Claim> chapter_3_cost();                  ///< T4, T5
+std::vector<Claim> chapter_3_stiffness_ratios();      ///< R
+std::vector<Claim> chapter_3_force_limit();           ///< L
+std::vector<Claim> chapter_3_ideal_trajectory();      ///< J
+std::vector<Claim> chapter_4_depths();                ///< G
+std::vector<Claim> chapter_4_discussion();            ///< B4, C1 to C4
+std::vector<Claim> appendix_a_planar_peg();           ///< A1
+std::vector<Claim> appendix_a_springs();              ///< A2, A3
+std::vector<Claim> appendix_a_stability();            ///< A4
+std::vector<Claim> appendix_b_original_algorithm();   ///< B1 to B3
+std::vector<Claim> appendix_c_proposed_algorithm();   ///< P, C5, C6
+std::vector<Claim> appendix_d_experiments();          ///< D
+std::vector<Claim> appendix_f_optional_algorithms();  ///< F
 
 }  // namespace hapbench

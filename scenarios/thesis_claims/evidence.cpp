@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <regex>
 
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
@@ -14,6 +15,7 @@
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "scenarios/thesis_claims/claims.hpp"
 
 namespace hapbench {
 namespace {
@@ -58,9 +60,29 @@ const PublishedNumber& PublishedNumbers::operator[](const std::string& id) const
   return found->second;
 }
 
-Published PublishedNumbers::mean_and_spread(const std::string& id) const {
-  const PublishedNumber& number = (*this)[id];
-  return {number.mean, number.spread};
+std::string PublishedNumbers::fill(const std::string& text) const {
+  // An id, and perhaps a part of the number with a factor and a format.
+  static const std::regex kNumber(
+      R"(<([^<>*:]+?)(?:\.(mean|spread|at_least|at_most)(?:\*([^<>:]+))?(?::([^<>]+))?)?>)");
+  std::string filled;
+  auto end = text.begin();
+  for (std::sregex_iterator found(text.begin(), text.end(), kNumber), none; found != none; ++found) {
+    const std::smatch& match = *found;
+    filled.append(end, match[0].first);
+    end = match[0].second;
+    const PublishedNumber& number = (*this)[match[1]];
+    if (!match[2].matched) {
+      filled += plain(number.mean) + (number.spread > 0.0 ? " ± " + plain(number.spread) : "");
+      continue;
+    }
+    const double part = match[2] == "mean"       ? number.mean
+                        : match[2] == "spread"   ? number.spread
+                        : match[2] == "at_least" ? number.at_least
+                                                 : number.at_most;
+    const double scaled = match[3].matched ? part * finite_number(match[3].str()).value() : part;
+    filled += match[4].matched ? fmt::format(fmt::runtime("{:" + match[4].str() + "}"), scaled) : plain(scaled);
+  }
+  return filled.append(end, text.end());
 }
 
 Json ResultFiles::summary(const std::string& scenario) const {

@@ -12,12 +12,11 @@
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/thesis_claims/finding.hpp"
 #include "sim/loop/observer.hpp"
 
 namespace hapbench {
 
-/// One number of results/reference/published, with its place in the thesis.
+/// One number of results/reference/published. Parts that are not published have these values.
 struct PublishedNumber {
   double mean = std::numeric_limits<double>::quiet_NaN();
   double spread = 0.0;  ///< standard deviation or standard error, whichever is published
@@ -32,17 +31,20 @@ class PublishedNumbers {
   explicit PublishedNumbers(const std::filesystem::path& directory);
   /// Throws InputError for an id that is not there.
   const PublishedNumber& operator[](const std::string& id) const;
-  Published mean_and_spread(const std::string& id) const;
+  /// The text with the numbers that it names by id: <T2.raw> becomes "37.8 ± 17.7", <T3.reduced.bound.at_most> "15".
+  /// A part (mean, spread, at_least or at_most) may have a factor and a format, as <J1.depth.mean*1000:.2f>; without a
+  /// format it is written as `plain` writes it (claims.hpp). Throws InputError for an id that is not there.
+  std::string fill(const std::string& text) const;
 
  private:
   std::map<std::string, PublishedNumber> numbers_;
 };
 
-/// Result files of scenarios that are run into subdirectories of one directory.
+/// Result files of scenarios, each in a subdirectory of one directory.
 class ResultFiles {
  public:
-  /// Called before results are read, with a scenario's name and which of them: a file's name, or for a number that of
-  /// its section of summary.json, as "metrics". Whoever runs on demand runs it then.
+  /// Called before results are read, with a scenario's name and the part that is read: a file's name or, for a number,
+  /// its section of summary.json, as "metrics". Runs the scenario if scenarios are run on demand.
   using Provide = std::function<void(const std::string& scenario, const std::string& part)>;
   ResultFiles(std::filesystem::path directory, Provide provide)
       : directory_(std::move(directory)), provide_(std::move(provide)) {}
@@ -62,19 +64,19 @@ class ResultFiles {
   Provide provide_;
 };
 
-/// What claims are judged by.
+/// The sources of the measurements by which claims are judged.
 struct Evidence {
   PublishedNumbers published;
   ResultFiles results;
-  /// What to change in a bundled scenario, as for load_scenario; empty for nothing.
+  /// Returns the overrides of a bundled scenario, as for load_scenario; empty for none.
   std::function<std::vector<std::string>(const Scenario&)> overrides = {};
 
-  /// Told the name of every bundled scenario that a claim computes something with by itself; empty for nobody.
+  /// Called with the name of every bundled scenario that a claim loads by itself; may be empty.
   std::function<void(const std::string& scenario)> used = {};
 
-  // What claims compute by themselves starts from here. All throw InputError.
+  // Claims that compute something by themselves start from these functions. All throw InputError.
 
-  /// A bundled scenario, changed as those are whose results these are, and then by `more` overrides.
+  /// A bundled scenario with `overrides`, and then with `more` overrides.
   LoadedScenario load(const std::string& name, std::span<const std::string> more = {}) const;
   /// Runs it in memory.
   RunReport run(const std::string& name, std::span<const std::string> more = {}) const;

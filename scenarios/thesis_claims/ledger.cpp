@@ -97,9 +97,9 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
     claims.push_back({{"id", j.claim.id},
                       {"place", j.claim.place},
                       {"claim", j.claim.claim},
-                      {"published", j.claim.published},
+                      {"published", published.fill(j.claim.published)},
                       {"measured", j.finding.measured},
-                      {"rule", j.claim.rule(published)},
+                      {"rule", published.fill(j.claim.rule)},
                       {"verdict", verdict_name(j.finding.verdict)},
                       {"robustness", robustness.of(j)},
                       {"why", j.finding.why},
@@ -111,7 +111,7 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
 
 namespace {
 
-/// The cell of a claim: its counts, or why it has none.
+/// The cell of a claim: its counts, or the reason why it has none.
 std::string robustness_cell(const JudgedClaim& judged, const RobustnessOnRecord& robustness) {
   if (judged.claim.timing) return "not sampled: times of one machine";
   if (judged.finding.verdict == Verdict::not_reproducible) return "not sampled: nothing to simulate";
@@ -120,12 +120,13 @@ std::string robustness_cell(const JudgedClaim& judged, const RobustnessOnRecord&
 
 }  // namespace
 
-std::string ledger_markdown(const std::vector<JudgedClaim>& judged, const RobustnessOnRecord& robustness) {
+std::string ledger_markdown(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published,
+                            const RobustnessOnRecord& robustness) {
   std::string text =
       "| id | place | claim | published | measured | verdict | robustness | why |\n|---|---|---|---|---|---|---|---|\n";
   for (const JudgedClaim& j : judged) {
     text += fmt::format("| {} | {} | {} | {} | {} | **{}** | {} | {} |\n", j.claim.id, j.claim.place, j.claim.claim,
-                        j.claim.published, j.finding.measured, verdict_name(j.finding.verdict),
+                        published.fill(j.claim.published), j.finding.measured, verdict_name(j.finding.verdict),
                         robustness_cell(j, robustness), j.finding.why);
   }
   return text;

@@ -8,7 +8,7 @@
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/robustness.hpp"
 
-/// The ledger's files: what became of each claim, and how far that hangs on the choices on record.
+/// The ledger's files: the verdict on each claim, and its robustness against the choices on record.
 namespace hapbench {
 
 /// A claim with the verdict on it.
@@ -23,31 +23,32 @@ Json robustness_json(const RobustnessPlan& plan, const std::vector<ClaimRobustne
 /// The same as a Markdown table.
 std::string robustness_markdown(const RobustnessPlan& plan, const std::vector<ClaimRobustness>& claims);
 
-/// What robustness.json says of claims, by id.
+/// The record of robustness.json about claims, by id.
 class RobustnessOnRecord {
  public:
-  /// Nothing on record.
+  /// An empty record.
   RobustnessOnRecord() = default;
-  /// Takes the record when it is about the choices of this hash; another one, for choices that have changed since, says
-  /// nothing. Throws InputError when it is no such record.
+  /// Takes the record if it is about the choices with this hash; a record of other choices counts as empty. Throws
+  /// InputError when it is no such record.
   RobustnessOnRecord(const Json& record, const std::string& choices_hash);
-  /// The same from a file; nothing when there is none.
+  /// The same from a file; empty when there is none.
   RobustnessOnRecord(const std::filesystem::path& file, const std::string& choices_hash);
 
-  /// The claim's counts, when the verdict on record there is this one; else null.
+  /// The claim's counts if the recorded verdict is this one; else null.
   Json of(const JudgedClaim& judged) const;
 
  private:
   std::map<std::string, Json> claims_;
 };
 
-/// The counts for people: "this verdict in 91 of 100 samples; decided by task2.hand_angle (S = 0.43)"; empty for null.
+/// The counts in words: "this verdict in 91 of 100 samples; decided by task2.hand_angle (S = 0.43)"; empty for null.
 std::string robustness_text(const Json& robustness);
 
 /// claims.json
 Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published,
                  const RobustnessOnRecord& robustness);
 /// claims.md
-std::string ledger_markdown(const std::vector<JudgedClaim>& judged, const RobustnessOnRecord& robustness);
+std::string ledger_markdown(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published,
+                            const RobustnessOnRecord& robustness);
 
 }  // namespace hapbench

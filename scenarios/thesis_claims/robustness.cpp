@@ -1,24 +1,98 @@
 #include "scenarios/thesis_claims/robustness.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <numeric>
+#include <optional>
 
 #include "results/io/atomic_file.hpp"
+#include "results/io/json_text.hpp"
+#include "results/summary/provenance.hpp"
+#include "scenarios/batch/journal.hpp"
+#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/sampling.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/thesis_claims/sensitivity.hpp"
+#include "scenarios/run/stop_signal.hpp"
 #include "sim/core/hash.hpp"
+#include "sim/core/random.hpp"
 
 namespace hapbench {
 namespace {
 
+/// None when no input has an index.
+std::optional<DecidingInput> largest_index(const std::vector<std::vector<std::size_t>>& bins_of_inputs,
+                                           std::span<const double> y) {
+  std::optional<DecidingInput> largest;
+  for (std::size_t i = 0; i < bins_of_inputs.size(); ++i) {
+    const double index = first_order_index(bins_of_inputs[i], y);
+    if (!std::isnan(index) && (!largest || index > largest->index)) largest = DecidingInput{i, index};
+  }
+  return largest;
+}
+
+}  // namespace
+
+std::vector<std::size_t> equal_count_bins(std::span<const double> values, std::size_t bins) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [values](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  std::vector<std::size_t> bin(values.size());
+  for (std::size_t rank = 0; rank < order.size(); ++rank) bin[order[rank]] = rank * bins / order.size();
+  return bin;
+}
+
+double first_order_index(std::span<const std::size_t> bin, std::span<const double> y) {
+  if (y.empty()) return std::nan("");
+  const auto n = static_cast<double>(y.size());
+  const double mean = std::accumulate(y.begin(), y.end(), 0.0) / n;
+  std::vector<double> sums(*std::max_element(bin.begin(), bin.end()) + 1), counts(sums.size());
+  double total = 0.0;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    total += (y[i] - mean) * (y[i] - mean);
+    sums[bin[i]] += y[i] - mean;
+    counts[bin[i]] += 1.0;
+  }
+  double between = 0.0, filled = 0.0;
+  for (std::size_t b = 0; b < sums.size(); ++b) {
+    if (counts[b] == 0.0) continue;
+    between += sums[b] * sums[b] / counts[b];
+    filled += 1.0;
+  }
+  if (total == 0.0 || n <= filled) return std::nan("");
+  return (between - (filled - 1.0) * (total - between) / (n - filled)) / total;
+}
+
+std::optional<DecidingInput> deciding_input(const std::vector<std::vector<std::size_t>>& bins_of_inputs,
+                                            std::vector<double> y, std::uint64_t seed, double level,
+                                            std::size_t permutations) {
+  const std::optional<DecidingInput> found = largest_index(bins_of_inputs, y);
+  if (!found) return std::nullopt;
+  Random random(seed);
+  std::size_t as_large = 0;
+  for (std::size_t i = 0; i < permutations; ++i) {
+    random.shuffle(y);
+    as_large += largest_index(bins_of_inputs, y)->index >= found->index ? 1U : 0U;
+  }
+  // The order that was observed counts as one of them (Phipson and Smyth 2010).
+  const double p = static_cast<double>(as_large + 1) / static_cast<double>(permutations + 1);
+  return p <= level ? found : std::nullopt;
+}
+
+namespace {
+
 namespace fs = std::filesystem;
 
-/// A directory that does not outlive its owner.
+/// Removes a directory at the end of its scope.
 class ScratchDirectory {
  public:
   explicit ScratchDirectory(fs::path path) : path_(std::move(path)) {}
@@ -33,7 +107,7 @@ class ScratchDirectory {
   fs::path path_;
 };
 
-/// Switches off the records that nobody reads.
+/// Switches off the records that no claim reads.
 void record_only(const std::set<std::string>& parts, RecordFields& record) {
   const auto read = [&parts](std::initializer_list<const char*> any_of) {
     return std::any_of(any_of.begin(), any_of.end(), [&parts](const char* part) { return parts.contains(part); });
@@ -51,7 +125,7 @@ void record_only(const std::set<std::string>& parts, RecordFields& record) {
   record.timing = false;
 }
 
-/// The results of one sample, run when they are asked for.
+/// The results of one sample; scenarios run when a claim asks for their results.
 class SampleRuns {
  public:
   SampleRuns(const RobustnessPlan& plan, std::size_t sample, const fs::path& directory)
@@ -90,7 +164,7 @@ class SampleRuns {
       const RunReport report =
           run_with_shell(loaded, make_shell(loaded.scenario, loaded.files), directory_ / name, false);
       const std::vector<Outcome>& expected = loaded.scenario.expect.outcomes;
-      // A subject who loses the drill misses the targets that are left, which is a result.
+      // A subject who loses the drill misses the remaining targets, which is a result.
       const bool diverged = report.summary.result.outcome == Outcome::diverges &&
                             !std::holds_alternative<TrackingHandFields>(loaded.scenario.hand) &&
                             std::find(expected.begin(), expected.end(), Outcome::diverges) == expected.end();
@@ -106,10 +180,10 @@ class SampleRuns {
   std::map<std::string, Run> runs_;
 };
 
-/// For each input the bins of the samples given.
+/// The bins of these samples, for each choice.
 std::vector<std::vector<std::size_t>> bins_of_choices(const RobustnessPlan& plan,
                                                       const std::vector<std::size_t>& samples) {
-  // Sixteen points in a bin for a mean, sixteen bins for a curve, where there are enough.
+  // Sixteen bins with sixteen points each, if there are enough points.
   const std::size_t count = std::clamp<std::size_t>(samples.size() / 16, 2, 16);
   std::vector<std::vector<std::size_t>> bins;
   for (std::size_t c = 0; c < plan.choices.all().size(); ++c) {
@@ -197,6 +271,120 @@ std::vector<ClaimRobustness> robustness_of(const RobustnessPlan& plan, const std
       claim.decided_by = deciding_choice(plan, samples, holds, claim.id);
   }
   return all;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+using Verdicts = std::vector<std::string>;
+
+std::string header(const RobustnessPlan& plan) {
+  std::vector<std::string> columns = {"sample"};
+  for (const OpenChoice& choice : plan.choices.all()) columns.push_back(choice.id);
+  for (const Claim& claim : plan.claims) columns.emplace_back(claim.id);
+  return fmt::format("{}", fmt::join(columns, ","));
+}
+
+/// The source and the build that compute the verdicts; empty when the commit does not identify the source.
+std::string program_identity() {
+  const Provenance p = provenance();
+  if (p.commit == "unknown" || p.commit.ends_with("-dirty")) return "";
+  return fmt::format("{} {} {} {}", p.commit, p.compiler, p.build_type, p.flags);
+}
+
+/// A text that identifies everything the verdicts depend on.
+std::string definition(const RobustnessPlan& plan) {
+  Json content = {{"table", header(plan)},
+                  {"choices", plan.choices.hash()},
+                  {"samples", plan.samples()},
+                  {"program", program_identity()}};
+  for (const BundledScenario& bundled : bundled_scenarios()) {
+    const LoadedScenario loaded = load_scenario(bundled.file);
+    content["scenarios"].push_back(scenario_hash(loaded.scenario, loaded.files));
+  }
+  return fmt::format("robustness {}", hash_text(hash_of(json_text(content))));
+}
+
+/// The sample and the verdicts in a row; none when it is not of this plan.
+std::optional<std::pair<std::size_t, Verdicts>> read_row(const RobustnessPlan& plan, const std::string& row) {
+  const Words cells = parts_of(row, ',');
+  const auto sample = whole_number(cells.front());
+  const std::size_t leading = 1 + plan.choices.all().size();
+  if (!sample || *sample >= plan.samples() || cells.size() != leading + plan.claims.size()) return std::nullopt;
+  const Verdicts verdicts(cells.begin() + static_cast<std::ptrdiff_t>(leading), cells.end());
+  if (robustness_row(plan, *sample, verdicts) != row) return std::nullopt;
+  return std::pair{*sample, verdicts};
+}
+
+/// Copies the verdicts of the journal into the report and returns the samples that are left.
+std::vector<std::size_t> samples_to_do(const RobustnessPlan& plan, const fs::path& journal,
+                                       const std::vector<std::string>& rows, RobustnessReport& report) {
+  std::vector<bool> done(plan.samples());
+  for (const std::string& row : rows) {
+    auto read = read_row(plan, row);
+    if (!read) fail_in_file(journal, fmt::format("got the row \"{}\"; allowed: rows of this plan", row.substr(0, 60)));
+    done[read->first] = true;
+    report.verdicts[read->first] = std::move(read->second);
+  }
+  std::vector<std::size_t> left;
+  for (std::size_t sample = 0; sample < plan.samples(); ++sample) {
+    if (!done[sample]) left.push_back(sample);
+  }
+  report.resumed = report.done = plan.samples() - left.size();
+  return left;
+}
+
+}  // namespace
+
+RobustnessReport run_robustness(const RobustnessPlan& plan, const RobustnessOptions& options) {
+  const fs::path file = options.directory / "robustness.journal", scratch = options.directory / "robustness";
+  const std::string title = definition(plan);
+  // Results of a program without an identity cannot be trusted: compute them again.
+  const bool resume = !options.anew && !program_identity().empty() && Journal::is_of(file, title);
+  std::vector<std::string> rows;
+  Journal journal(file, title, resume, [&rows](Journal::Place, std::string_view row) { rows.emplace_back(row); });
+  RobustnessReport report;
+  report.verdicts.resize(plan.samples());
+  const std::vector<std::size_t> left = samples_to_do(plan, file, rows, report);
+  fs::remove_all(scratch);  // of a process that was killed
+  ProgressBar bar("robustness", plan.samples(), options.progress);
+  bar.start_at(report.resumed);
+  std::map<std::size_t, std::vector<std::string>> problems;
+  const auto judge = [&](std::size_t sample) -> Delivery {
+    return [&, sample, judged = judge_sample(plan, sample, scratch / std::to_string(sample))] {
+      journal.add(robustness_row(plan, sample, judged.verdicts));
+      journal.flush();
+      report.verdicts[sample] = judged.verdicts;
+      problems[sample] = judged.problems;
+      bar.show(++report.done, true);
+    };
+  };
+  const auto work = [&](std::size_t sample) -> Delivery {
+    try {
+      return judge(sample);
+    } catch (const Stopped&) {
+      return {};  // the same command judges it
+    }
+  };
+  parallel_for(left, options.jobs, work, [] { return StopSignal::received() != 0; });
+  std::error_code ignored;
+  fs::remove_all(scratch, ignored);
+  for (const auto& [sample, texts] : problems)
+    report.problems.insert(report.problems.end(), texts.begin(), texts.end());
+  if (report.done < plan.samples()) report.signal = StopSignal::received();
+  return report;
+}
+
+std::string robustness_row(const RobustnessPlan& plan, std::size_t sample, const Verdicts& verdicts) {
+  return fmt::format("{},{},{}", sample, fmt::join(plan.values[sample], ","), fmt::join(verdicts, ","));
+}
+
+std::string robustness_table(const RobustnessPlan& plan, const std::vector<Verdicts>& verdicts) {
+  std::string text = header(plan) + "\n";
+  for (std::size_t sample = 0; sample < plan.samples(); ++sample) {
+    text += robustness_row(plan, sample, verdicts[sample]) + "\n";
+  }
+  return text;
 }
 
 }  // namespace hapbench

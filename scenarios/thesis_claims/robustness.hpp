@@ -1,29 +1,61 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "scenarios/thesis_claims/choices.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 
-/// How far the verdicts hang on the choices on record: the claims judged again at a Latin hypercube of the choices'
-/// ranges. The point on record is not among them; the ledger is that.
+/// Robustness of the verdicts: the claims judged again at a Latin hypercube of the ranges of the choices on record, and
+/// the choices that decide. The values on record are not among the samples; they are the ledger's.
 namespace hapbench {
 
-/// What claims read of each scenario's results: files, and sections of summary.json.
+// Statistics of a sample: which input decides a yes or no.
+
+/// For each value the number of its bin, when the values in order are cut into `bins` of equal count; of equal values
+/// the first ones come first.
+std::vector<std::size_t> equal_count_bins(std::span<const double> values, std::size_t bins);
+
+/// The first-order Sobol index of an input, Var(E[y | x]) / Var(y), from given data: x is cut into bins (one for each
+/// value of a discrete input) and E[y | x] is the mean of y in a bin,
+///
+///   S = (SSB - (B - 1) SSW / (n - B)) / SST,  SSB = sum_b n_b (mean_b - mean)^2,  SSW = SST - SSB,
+///
+/// for n points in B bins that are not empty. Without the subtracted term, the mean of SSB when x has no influence,
+/// this is the estimator of Plischke, Borgonovo, Smith, "Global sensitivity measures from given
+/// data", EJOR 226 (2013) 536-550; with it, Kelley's epsilon squared (1935). May be a little below 0. NaN when y never
+/// changes or there are no more points than bins. Precondition: as many bins as values.
+double first_order_index(std::span<const std::size_t> bin, std::span<const double> y);
+
+/// The input with the largest index, if that is significant.
+struct DecidingInput {
+  std::size_t input = 0;
+  double index = 0.0;
+};
+
+/// The input with the largest first-order index, if less than `level` of `permutations` random orders of y (seeded)
+/// have a largest index as large: the largest of all inputs, so that many inputs do not make a false alarm likely. None
+/// when y never changes.
+std::optional<DecidingInput> deciding_input(const std::vector<std::vector<std::size_t>>& bins_of_inputs,
+                                            std::vector<double> y, std::uint64_t seed, double level = 0.01,
+                                            std::size_t permutations = 999);
+
+/// The parts of each scenario's results that claims read: files, and sections of summary.json.
 using ResultsRead = std::map<std::string, std::set<std::string>>;
 
-/// Everything that the verdicts of a sample are a function of, and the program.
+/// The inputs of the verdicts of a sample.
 struct RobustnessPlan {
   Choices choices;
   PublishedNumbers published;
   std::vector<Claim> claims;
-  ResultsRead read;  ///< by them; what else a scenario records is left out until a claim asks for it all the same
+  ResultsRead read;  ///< by the claims; other records of a scenario are left out until a claim asks for them
   std::vector<std::vector<std::string>> values;  ///< for each sample one of each choice
 
   std::size_t samples() const { return values.size(); }
@@ -33,7 +65,7 @@ struct RobustnessPlan {
 
 inline constexpr std::uint64_t kRobustnessSeed = 1;
 
-/// The plan for so many samples. Of the claims those about time are left out.
+/// The plan for so many samples. Claims about times are left out.
 RobustnessPlan plan_robustness(Choices choices, PublishedNumbers published, std::vector<Claim> claims, ResultsRead read,
                                std::size_t samples);
 
@@ -73,5 +105,32 @@ struct ClaimRobustness {
 /// Counts and deciding choice of each claim. `on_record` are the ledger's verdicts, `verdicts` those of each sample.
 std::vector<ClaimRobustness> robustness_of(const RobustnessPlan& plan, const std::vector<std::string>& on_record,
                                            const std::vector<std::vector<std::string>>& verdicts);
+
+struct RobustnessOptions {
+  std::filesystem::path directory;  ///< of the journal and of results while they are needed; exists
+  std::size_t jobs = 1;             ///< samples at once
+  bool anew = false;                ///< use nothing that an interrupted run has left
+  bool progress = false;            ///< allow a progress bar
+};
+
+/// The verdicts of all samples.
+struct RobustnessReport {
+  std::vector<std::vector<std::string>> verdicts;  ///< by sample and claim; of a stopped run not to be used
+  std::vector<std::string> problems;               ///< of this process's samples, in their order
+  std::size_t done = 0;                            ///< samples
+  std::size_t resumed = 0;                         ///< of them, by an earlier process
+  int signal = 0;                                  ///< the signal that stopped it, or 0
+};
+
+/// Judges every sample of a plan, `jobs` at once. Verdicts depend neither on `jobs` nor on interruptions. Each sample's
+/// are in a journal at once: after a kill the same plan, judged by the same program, goes on from there. SIGINT and
+/// SIGTERM end it after the samples in flight. Throws InputError when another process is at work in the directory,
+/// IoError when something cannot be written.
+RobustnessReport run_robustness(const RobustnessPlan& plan, const RobustnessOptions& options);
+
+/// robustness.csv: sample, a column for each choice and one for each claim.
+std::string robustness_table(const RobustnessPlan& plan, const std::vector<std::vector<std::string>>& verdicts);
+/// A row of it, without its end.
+std::string robustness_row(const RobustnessPlan& plan, std::size_t sample, const std::vector<std::string>& verdicts);
 
 }  // namespace hapbench

@@ -24,7 +24,7 @@ struct WeightedDirection {
 };
 using Directions = std::vector<WeightedDirection>;
 
-/// After some iterations from the given weights.
+/// The stiffness tensor after some iterations from the given weights.
 Mat3 shaped_tensor(const Directions& contacts, int iterations) {
   std::vector<double> c;
   for (const WeightedDirection& contact : contacts) c.push_back(contact.weight);
@@ -44,7 +44,7 @@ Mat3 shaped_tensor(const Directions& contacts, int iterations) {
   return S;
 }
 
-/// Where the iteration converges to; the weights do not matter there.
+/// The limit of the iteration; it does not depend on the weights.
 Mat3 limit_tensor(const Directions& contacts) {
   ContactBuffer buffer(contacts.size());
   for (const WeightedDirection& contact : contacts) {

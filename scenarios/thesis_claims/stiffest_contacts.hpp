@@ -4,10 +4,10 @@
 
 namespace hapbench {
 
-/// As many iterations as it takes: the exact limit.
+/// Instead of a number of iterations: the exact limit.
 inline constexpr int kExactLimit = -1;
 
-/// How far above the true supremum rounding may lift a result of the search.
+/// Rounding may lift a result of the search above the true supremum by this much.
 inline constexpr double kSearchRounding = 1e-9;
 
 /// Result of a search for contacts that stiffness shaping makes stiff.

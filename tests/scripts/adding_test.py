@@ -2,8 +2,8 @@
 
 adding_test.py [--keep] [--build-dir DIRECTORY] [unittest options]
 
-Copies the tree to a scratch folder, adds an environment, a tool, a named file and a device field there, builds the
-program (minutes) and shows that reader, schema, describe, list, results and sweep know each of them. `--keep` leaves the
+Copies the tree to a scratch folder, adds an environment, a tool, a named file, a device field and a section of metrics
+there, builds the program (minutes) and shows that reader, schema, describe, list, results and sweep know each of them. `--keep` leaves the
 folder behind, `--build-dir` builds there; a build directory that is kept makes the next run faster.
 """
 import argparse
@@ -117,9 +117,48 @@ def add_device_field(tree):
     }
 
 
+def add_metric_section(tree):
+    observer = "results/observe/stillness.hpp"
+    (tree.folder / observer).write_text("""#pragma once
+
+#include "results/io/columns.hpp"
+#include "sim/loop/observer.hpp"
+
+namespace hapbench {
+
+struct StillnessMetrics {
+  double still = 0.0;  ///< rows in which the tool did not move
+};
+
+inline MetricList metric_list(const StillnessMetrics& metrics) {
+  return {{"still", "1", "rows in which the tool did not move", metrics.still}};
+}
+
+class StillnessObserver final : public Observer {
+ public:
+  void on_step(const StepRecord& record) noexcept override { metrics_.still += record.tool.velocity.isZero(0.0) ? 1.0 : 0.0; }
+  StillnessMetrics metrics() const noexcept { return metrics_; }
+
+ private:
+  StillnessMetrics metrics_;
+};
+
+}  // namespace hapbench
+""")
+    return {
+        observer,
+        tree.edit('#include "results/observe/perception.hpp"\n#include "results/observe/target_metrics.hpp"\n',
+                  '#include "results/observe/stillness.hpp"\n', before=True),
+        tree.edit("const SectionKind kSections[] = {\n", """    {"stillness", [](const Scenario& s, bool) { return std::size_t{s.record.pose}; },
+     [](const TrialParts&) -> std::unique_ptr<Observer> { return std::make_unique<StillnessObserver>(); },
+     summary_of_one<StillnessObserver>, list_without_values<StillnessObserver>},
+"""),
+    }
+
+
 # Each addition with the most files that it may touch.
 ADDITIONS = {"environment": (add_environment, 2), "tool": (add_tool, 2), "named file": (add_named_file, 2),
-             "device field": (add_device_field, 2)}
+             "device field": (add_device_field, 2), "metric section": (add_metric_section, 2)}
 
 
 def scenario(**parts):
@@ -226,6 +265,21 @@ class Adding(unittest.TestCase):
         self.hapbench("validate", "below/other.json")
         (self.folder / "stroke.csv").write_text("nothing\n")
         self.assertIn("/hand/file: ", self.hapbench("run", "scene.json", status=2))
+
+    def test_a_section_of_metrics_is_in_all_results(self):
+        self.write(record={"pose": True}, expect={"outcome": ["completes", "no_contact", "lost_contact"],
+                                                  "metrics": {"stillness.still": {"min": 100}}})
+        self.hapbench("run", "scene.json", "--out", "out", "--quiet", status=3)
+        summary, columns = (json.loads((self.folder / "out" / name).read_text()) for name in ("summary.json", "columns.json"))
+        self.assertIn("still", summary["stillness"])
+        self.assertIn("stillness.still", json.dumps(columns))
+        self.assertIn("rows in which the tool did not move", self.hapbench("describe", "stillness.still"))
+        self.assertIn("stillness.still", self.hapbench("list", "metrics"))
+        self.assertIn("stillness.still", json.dumps(json.loads(self.hapbench("describe", "schema"))["else"]["properties"]["expect"]))
+        for pose, found in (("true", True), ("false", False)):
+            self.hapbench("sweep", "scene.json", "--vary", "seed=1,2", "--set", f"record.pose={pose}", "--out", f"sweep_{pose}", "--quiet")
+            header = (self.folder / f"sweep_{pose}/sweep.csv").read_text().splitlines()[0]
+            self.assertEqual("stillness.still" in header, found)
 
     def test_a_sweep_varies_them_and_is_defined_by_their_files(self):
         self.write(hand={"type": "push", "force_N": 1, "file": "stroke.csv"})

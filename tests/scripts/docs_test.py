@@ -11,7 +11,7 @@ from pathlib import Path
 
 from fixture import PROGRAM, SOURCE, main, ran
 
-from hapbench_docs import blocks, ledger
+from hapbench_docs import blocks
 from hapbench_docs.manuals import Manual, anchor, broken_links, manuals
 from hapbench_docs.program import Program, ProgramError, same_but_for_times
 
@@ -217,11 +217,11 @@ class Generated(unittest.TestCase):
     def test_tables_are_those_on_record(self):
         for manual in MANUALS:
             with self.subTest(str(manual.file)):
-                self.assertEqual(blocks.renewed(manual.text, ledger.MAKERS), manual.text, "renew it with scripts/docs --tables")
+                self.assertEqual(blocks.renewed(manual.text, blocks.MAKERS), manual.text, "renew it with scripts/docs --tables")
 
     def test_a_block_without_end_is_refused(self):
         with self.assertRaises(blocks.BlockError):
-            blocks.renewed("<!-- generated: verdicts -->\n| a |\n", ledger.MAKERS)
+            blocks.renewed("<!-- generated: verdicts -->\n| a |\n", blocks.MAKERS)
 
     def test_a_session_holds_what_the_command_prints(self):
         with tempfile.TemporaryDirectory() as scratch:

@@ -13,7 +13,7 @@ from pictures_fixture import Given, make_runs
 
 from hapbench.columns import header, read_columns
 from hapbench_pictures.given import given_runs, labels, named
-from hapbench_pictures.looks import looks
+from hapbench_pictures.panels import looks
 from hapbench_pictures.plot import legend_columns, legend_of, plot
 
 setUpModule = make_runs

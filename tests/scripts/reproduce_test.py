@@ -1,7 +1,6 @@
 """How scripts/reproduce runs its parts, with a program that does nothing in place of hapbench."""
 import os
 import shlex
-import shutil
 import signal
 import subprocess
 import time

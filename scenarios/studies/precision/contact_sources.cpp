@@ -29,7 +29,7 @@ std::vector<Place> places_of(const Scenario& scenario, std::shared_ptr<const Poi
   return places;
 }
 
-/// What a source answers at such places, and how far its spring forces are from those that were rendered there.
+/// The answers of a source at such places, and how far its spring forces are from those that were rendered there.
 struct Answers {
   double contacts = 0.0;     ///< mean number
   double depth = 0.0;        ///< mean of the largest [m]

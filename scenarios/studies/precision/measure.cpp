@@ -101,11 +101,14 @@ Scenario drill_in_hole(Scenario scenario) {
   return scenario;
 }
 
-std::vector<ContactBuffer> drill_contact_sets(const Scenario& given) {
-  Scenario scenario = drill_in_hole(given);
+std::vector<ContactBuffer> contact_sets(Scenario scenario, std::uint64_t stride) {
   scenario.rendering.reduction.reset();
   scenario.rendering.local_average = false;
-  std::vector<ContactBuffer> sets = rendered_contact_sets(scenario, kContactSetStride);
+  return rendered_contact_sets(scenario, stride);
+}
+
+std::vector<ContactBuffer> drill_contact_sets(const Scenario& scenario) {
+  std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(scenario), kContactSetStride);
   if (sets.empty()) throw InputError("the tool of this scenario touches nothing; the study needs contacts");
   return sets;
 }

@@ -155,8 +155,11 @@ Scenario drill_in_hole(Scenario scenario);
 /// Rows from one contact set of a study to the next.
 inline constexpr std::uint64_t kContactSetStride = 64;
 
-/// The colliding points of every kContactSetStride-th row of `drill_in_hole(scenario)`, with depth and gradient, before
-/// any point stage; rows without contact are left out. Throws InputError when the tool touches nothing.
+/// The colliding points of every `stride`-th row of a scenario, with depth and gradient, before any point stage; rows
+/// without contact are left out.
+std::vector<ContactBuffer> contact_sets(Scenario scenario, std::uint64_t stride);
+/// The same of every kContactSetStride-th row of `drill_in_hole(scenario)`. Throws InputError when the tool touches
+/// nothing.
 std::vector<ContactBuffer> drill_contact_sets(const Scenario& scenario);
 
 /// The contacts of every `stride`-th row of a scenario after its point stages, without rows that have none.

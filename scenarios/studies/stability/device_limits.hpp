@@ -9,7 +9,7 @@
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
 
-/// What can be rendered on which device: the largest stiffness, for each device, scene and algorithm, at which a run is
+/// The largest stiffness that devices can render: for each device, scene and algorithm, at which a run is
 /// stable and its handle still (judged_run.hpp), found as field_limit.hpp finds it.
 namespace hapbench {
 
@@ -32,7 +32,7 @@ ComparedDevice device_of_file(const std::filesystem::path& file);
 /// nothing is published of it. Other devices stay as they are.
 ComparedDevice with_marked_name(ComparedDevice device, const std::vector<std::string>& overrides);
 
-/// What is compared. The overrides hold for all runs, also for fields of the devices.
+/// The devices, scenes and algorithms to compare. The overrides hold for all runs, also for fields of the devices.
 struct DeviceQuestion {
   std::vector<ComparedDevice> devices;
   std::vector<ScenarioText> scenes;

@@ -14,7 +14,7 @@ namespace hapbench {
 
 struct ScenarioText;
 
-/// What is looked for.
+/// The question: which limit of which field.
 struct LimitQuestion {
   std::string path;                ///< of the field, dotted as in --set
   Range range;                     ///< where it may lie, from < to; both ends are tried

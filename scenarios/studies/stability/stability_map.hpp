@@ -43,7 +43,7 @@ struct StabilityMap {
   /// integrator has a limit in theory; other devices have the limit of their loop (DeviceLoop).
   Scenario (*scene)(double x, double y, std::string_view algorithm);
   MapEdge edge = MapEdge::largest_bounded;
-  /// Where it matters how far a run begins from rest, every cell has a second run from so many times as far.
+  /// If set, every cell has a second run that begins so many times as far from rest.
   std::optional<double> far = std::nullopt;
   /// True where dry friction stops the handle for good: there a handle that still moves in the end, however little,
   /// vibrates.
@@ -108,8 +108,8 @@ struct BoundaryPoint {
 struct MapSubject {
   std::string algorithm;
   const IntegratorEntry* integrator = &kLeapfrog;
-  /// Of device and hand (require_overridable). With motors that saturate, the edge of a map of bounded runs becomes
-  /// that of runs that come to rest: they all stay bounded.
+  /// Overrides of device and hand (require_overridable). With motors that saturate, the edge of a map of bounded runs
+  /// becomes that of runs that come to rest: they all stay bounded.
   std::vector<std::string> overrides = {};
 };
 

@@ -78,7 +78,7 @@ Points coincident(Random& random, const ContactSet& set, std::size_t n) {
       n, [&] { return place; }, [&] { return random.direction(); });
 }
 
-/// Where no radial direction exists, the tip centre among them; normals along the axis or not.
+/// Points on the axis, where no radial direction exists, the tip centre among them; normals along the axis or not.
 Points on_the_axis(Random& random, const ContactSet& set, std::size_t n) {
   const double height = chance(random, 0.3) ? 0.0 : set.tool.length();
   return fill(

@@ -38,7 +38,7 @@ ContactSet draw_contact_set(Random& random);
 
 /// Sends random contact sets through every law and counts the answers that no law may give.
 
-/// What one algorithm made of all sets.
+/// The counts of one algorithm over all sets.
 struct StressCounts {
   std::string algorithm;
   std::uint64_t sets = 0;            ///< drawn

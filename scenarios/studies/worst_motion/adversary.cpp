@@ -10,7 +10,7 @@
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/run_trial.hpp"
+#include "scenarios/run/run_scenario.hpp"
 
 namespace hapbench {
 namespace {
@@ -53,7 +53,7 @@ Vec3 first_touch(const Vec3& from, const Vec3& to, double stride, const std::fun
   return place(touching);
 }
 
-/// Where the scene's tool, moved without turning, first touches the shell.
+/// The place where the scene's tool, moved without turning, first touches the shell.
 Vec3 place_at_surface(const Scenario& scenario, const std::shared_ptr<const PointShell>& shell) {
   const SimulationParts parts = assemble(scenario, shell, {});
   ContactBuffer contacts(parts.source->capacity());
@@ -269,15 +269,10 @@ class Bench {
   Bench(const SearchScene& scene, Badness badness) : scene_(scene), badness_(badness) {}
 
   RunSummary run(const Trajectory& trajectory) const {
-    const TrialResult trial = run_trial(with_trajectory(scene_, trajectory), scene_.shell, {}, {});
-    RunSummary summary;
-    summary.result = trial.result;
-    summary.duration = static_cast<double>(trial.result.rows) * scene_.scenario.time.step;
-    summary.metrics = trial.metrics;
-    summary.passivity = trial.passivity;
-    const SectionObservers* sections[] = {&*trial.sections};
-    summary.sections = SectionObservers::summarised(sections);
-    return summary;
+    LoadedScenario loaded;
+    loaded.scenario = with_trajectory(scene_, trajectory);
+    loaded.files = NamedFiles(loaded.scenario);
+    return run_with_shell(loaded, scene_.shell, std::nullopt, false).summary;
   }
   /// Zero when it is not finite: a search cannot climb there.
   double badness(const Trajectory& trajectory) const {
@@ -381,7 +376,7 @@ const char* metric_name(Badness badness) {
   return badness == Badness::created ? "energy.created_sum_J" : "vibration_power_above_30Hz_m2_per_s2";
 }
 
-/// What the found run shows, with room for another compiler's rounding.
+/// The outcome and the metric of the found run, with room for another compiler's rounding.
 ExpectFields expectation(Badness badness, const RunSummary& run) {
   ExpectFields expect;
   expect.outcomes = {run.result.outcome};

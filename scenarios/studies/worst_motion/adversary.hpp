@@ -69,8 +69,8 @@ struct SearchScene {
   Scenario scenario;  ///< where the tool touches the surface from the start, or is where the scenario has it in a hole
   std::shared_ptr<const PointShell> shell;
   bool planar = false;  ///< all lies in z = 0
-  /// Where the hand may aim [m]: the box around the shell, one tool diameter wider. Empty in a hole, whose walls
-  /// hold the tool.
+  /// The box where the hand may aim [m]: the box around the shell, one tool diameter wider. Empty in a hole, whose
+  /// walls hold the tool.
   std::optional<Box> reach;
 };
 

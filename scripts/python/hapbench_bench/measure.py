@@ -1,14 +1,28 @@
 """Measures everything that the table of targets and the figure of growth show, as one JSON value."""
 import datetime
+import os
 import statistics
+import subprocess
+import tempfile
+import time
 
-from . import processes
-from .program import measured, say
+from .program import BenchError, measured, say
 from .targets import BYTES_PER_POINT, DEADLINE, GROUPS, LARGEST, LARGEST_SHELL, LATENCIES, SIZES_OF_MEMORY
 
 REPETITIONS = 15
 GROWTH_REPETITIONS = 3  # one, where one takes seconds
 LARGE = 1_000_000
+# Whole runs of the program, as a user waits for them.
+ROUNDS = 5
+UNRECORDED = ("record.trajectory=false", "record.ratio_iterations=[]", "record.ideal_trajectory=false")
+TASKS = ("poke_on_flat", "rotate_in_hole", "round_the_wall")
+TASKS_SIMULATE = 65.0  # [s]
+TASK = "task2_rotate_signed_distance"
+SMALL = {
+    "single_spring": ("time.steps=2000",),
+    "peg_in_hole_2d_shaped_stiffness": ("time.steps=2000", "time.stop_when=[]", "record.ratio_iterations=[]",
+                                        "expect.outcome=completes"),
+}
 
 
 def rounded(value):
@@ -87,8 +101,8 @@ def performance(bench, hapbench, growing, options):
     say("single steps")
     limits += latencies(bench)
     say("whole runs")
-    ratios += [ratio(*row) for row in processes.ratios(hapbench)]
-    limits += [limit(*row) for row in processes.limits(hapbench)]
+    ratios += [ratio(*row) for row in ratios_of_runs(hapbench)]
+    limits += [limit(*row) for row in limits_of_runs(hapbench)]
     say("growth")
     growth = list(growth_of(bench, growing, options))
     shell_s = next(row["seconds"] for row in ratios if row["what"] == "`shell/build`")
@@ -103,3 +117,39 @@ def performance(bench, hapbench, growing, options):
         "limits": limits,
         "growth": growth,
     }
+
+
+def timed(hapbench, scenarios, overrides=()):
+    """Wall and CPU time [s] and peak memory [bytes] of `hapbench run`."""
+    with tempfile.TemporaryDirectory(prefix="hapbench-bench-") as out:
+        words = [hapbench, "run", *scenarios, "--quiet", "--out", out, *(f"--set={text}" for text in overrides)]
+        start = time.monotonic()
+        process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        said = process.stderr.read()
+        _, status, usage = os.wait4(process.pid, 0)
+        wall = time.monotonic() - start
+        process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        raise BenchError(f"{' '.join(map(str, words))}: {said.strip() or process.returncode}")
+    return wall, usage.ru_utime + usage.ru_stime, 1024 * usage.ru_maxrss
+
+
+def ratios_of_runs(hapbench):
+    """Pairs of CPU times, round by round: what, over what, at most, pairs."""
+    recorded, tasks = [], []
+    for _ in range(ROUNDS):
+        recorded.append((timed(hapbench, [TASK])[1], timed(hapbench, [TASK], UNRECORDED)[1]))
+        tasks.append((timed(hapbench, TASKS, UNRECORDED)[1], TASKS_SIMULATE))
+    return [(f"`run {TASK}`", "unrecorded", 6.0, recorded),
+            ("`run` of tasks 1 to 3, unrecorded", f"the {TASKS_SIMULATE:g} s they simulate", 1 / 60, tasks)]
+
+
+def limits_of_runs(hapbench):
+    """Rows of name, value, unit and limit."""
+    found = []
+    for name, overrides in SMALL.items():
+        wall = statistics.median(timed(hapbench, [name], overrides)[0] for _ in range(ROUNDS))
+        found.append((f"`run {name}`, 2000 steps", wall, "s", 0.030))
+    memory = timed(hapbench, TASKS, UNRECORDED)[2]
+    found.append(("memory of tasks 1 to 3", memory, "B", 150e6))
+    return found

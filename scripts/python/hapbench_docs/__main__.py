@@ -8,7 +8,7 @@ from hapbench_bench import peers, table
 from hapbench_command import BAD_INPUT, FAILED, INTERRUPTED, SUCCESS, Arguments, say_error, write
 from hapbench_report.json_input import InputError
 
-from . import blocks, gallery, ledger, studies
+from . import blocks, gallery
 from .manuals import ROOT, Manual, manuals
 from .program import Program, ProgramError
 
@@ -29,11 +29,11 @@ def arguments(words):
 
 def renewed(manual, scratch, program):
     """The manual's text with its blocks made anew."""
-    makers = dict(ledger.MAKERS)
+    makers = dict(blocks.MAKERS)
     if program:
         makers["session"] = lambda old: blocks.session(old, program, scratch)
-        makers["ideal_trajectory"] = lambda old: studies.ideal_trajectory(old, program, scratch)
-        makers["contact_sources"] = lambda old: studies.contact_sources(old, program, scratch)
+        makers["ideal_trajectory"] = lambda old: blocks.ideal_trajectory(old, program, scratch)
+        makers["contact_sources"] = lambda old: blocks.contact_sources(old, program, scratch)
     text = blocks.renewed(manual.text, makers)
     if manual.file != table.MANUAL:
         return text

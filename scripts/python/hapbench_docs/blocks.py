@@ -1,11 +1,40 @@
-"""Generated parts of a manual: what stands between `<!-- generated: NAME -->` and `<!-- /generated -->`."""
+"""Generated parts of a manual, which stand between `<!-- generated: NAME -->` and `<!-- /generated -->`: sessions, tables of the
+ledger (claims.json) and of its robustness as results/reference holds them, and tables of studies that are too wide for a manual as
+the program prints them."""
+import json
 import re
 import shlex
+import textwrap
 
+from hapbench_bench.table import number
+
+from .manuals import ROOT
 from .program import ProgramError
 
 BLOCK = re.compile(r"(<!-- generated: (\S+)[^\n]*-->\n)(.*?)(<!-- /generated -->)", re.S)
 BEGIN = "<!-- generated:"
+REFERENCE = ROOT / "results" / "reference"
+VERDICTS = ("reproduced", "reproduced in kind", "not reproduced", "refuted", "not reproducible")
+TASKS = {"D1": "upright, 0.52 mm aside", "D2": "upright, centre", "D3": "turning, 3 mm high", "D4": "turning, 4 mm high"}
+PAIR = re.compile(r"success(?: rate)? (.+?) vs ([^;(]+)")
+# Name in the study, heading, factor of the unit.
+COLUMNS = (
+    ("ideal_height_error_rms_m", "height error [mm rms]", 1e3),
+    ("ideal_lateral_error_rms_m", "lateral error [mm rms]", 1e3),
+    ("interpenetration_max_m", "deepest in the wall [mm]", 1e3),
+    ("force_step_max_N", "largest force step [N]", 1.0),
+)
+SOURCES = {"own": "ours", "fcl": "FCL", "bullet": "Bullet"}
+SCENES = (("T1", "poke_on_flat"), ("T2", "rotate_in_hole"), ("T3", "round_the_wall"))
+# The ideal trajectory of the hole means something in T2 only.
+SOURCE_COLUMNS = (
+    ("contacts_mean", "contacts", 1.0),
+    ("depth_max_mean_m", "deepest [µm]", 1e6),
+    ("spring_force_error_rms_N", "force apart [N rms]", 1.0),
+    ("way_apart_rms_m", "way apart [µm rms]", 1e6),
+    ("ideal_height_error_rms_m", "height error [mm rms]", 1e3),
+    ("force_step_max_N", "largest force step [N]", 1.0),
+)
 
 
 class BlockError(Exception):
@@ -32,3 +61,85 @@ def session(old, program, directory):
     output = program.run(shlex.split(line)[2:], directory)
     shown = "\n".join(f"    {text}".rstrip() for text in [line, "", *output.strip("\n").splitlines()])
     return program.stamped(shown, old)
+
+
+def read(name):
+    return json.loads((REFERENCE / name).read_text(encoding="utf-8"))
+
+
+def verdicts(_old=""):
+    """How many claims have which verdict, and which."""
+    claims = read("claims.json")["claims"]
+    lines = ["| verdict | claims | which |", "|---|---|---|"]
+    for verdict in VERDICTS:
+        ids = [claim["id"] for claim in claims if claim["verdict"] == verdict]
+        lines.append(f"| {verdict} | {len(ids)} of {len(claims)} | {' '.join(ids)} |")
+    return "\n".join(lines)
+
+
+def experiments(_old=""):
+    """Success in the thesis's experiments, measured with simulated subjects and published with people."""
+    by_id = {claim["id"]: claim for claim in read("claims.json")["claims"]}
+    lines = ["| task and target | original algorithm, ours (published) | stiffness shaping, ours (published) |", "|---|---|---|"]
+    for id_, task in TASKS.items():
+        published = PAIR.search(re.sub(r" \(printed [^)]*\)", "", by_id[id_]["published"]))
+        measured = PAIR.search(by_id[id_]["measured"])
+        cells = (f"{measured[i].strip()} ({published[i].strip()})" for i in (1, 2))
+        lines.append(f"| {task} ({id_}) | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def robustness(_old=""):
+    """How firmly the verdicts hold over the choices on record. Of claims whose verdict has changed since, it says so."""
+    record = read("robustness.json")
+    on_record = {claim["id"]: claim["verdict"] for claim in read("claims.json")["claims"]}
+    rows = [claim for claim in record["claims"] if claim["judged"]]
+    current = [claim for claim in rows if claim["on_record"] == on_record.get(claim["id"])]
+    always = [claim for claim in current if claim["holds"] == claim["judged"]]
+    lines = [f"Of {len(rows)} claims that were sampled, {len(current)} have the same verdict today; of these, {len(always)} hold it in "
+             "every sample. The others:", "", "| claim | verdict | this verdict in | decided by (first-order Sobol index) |", "|---|---|---|---|"]
+    for claim in current:
+        if claim in always:
+            continue
+        by = claim["decided_by"]
+        decided = f"`{by['choice']}` ({by['index']:.2f})" if by else "no single choice"
+        lines.append(f"| {claim['id']} | {claim['on_record']} | {claim['holds']} of {claim['judged']} | {decided} |")
+    stale = [claim["id"] for claim in rows if claim not in current]
+    if stale:
+        lines += ["", f"To be sampled anew, since their verdict has changed: {', '.join(stale)}."]
+    return wrapped(lines)
+
+
+def wrapped(lines, width=110):
+    """Sentences in lines of that width; tables stay."""
+    return "\n".join(line if line.startswith("|") else "\n".join(textwrap.wrap(line, width)) for line in lines)
+
+
+def ideal_trajectory(old, program, directory):
+    """Every algorithm against the ideal trajectory of task 2."""
+    found = json.loads(program.run(["precision", "algorithms", "--repetitions", "1", "--json"], directory))[0]["rows"]
+    lines = [f"| | {' | '.join(heading for _, heading, _ in COLUMNS)} |", "|---" * (len(COLUMNS) + 1) + "|"]
+    for row in found:
+        cells = (f"{factor * row[name]:.3g}" if row.get(name) is not None else "" for name, _, factor in COLUMNS)
+        lines.append(f"| `{row['setting'].replace(' + ', '` + `')}` | {' | '.join(cells)} |")
+    return program.stamped("\n".join(lines), old)
+
+
+def contact_sources(old, program, directory):
+    """The default law with the contacts of other libraries, in the tasks; the old table if they are not built."""
+    lines = [f"| task | contacts of | {' | '.join(heading for _, heading, _ in SOURCE_COLUMNS)} |",
+             "|---" * (len(SOURCE_COLUMNS) + 2) + "|"]
+    for task, scene in SCENES:
+        words = ["precision", "contact_sources", "--scenario", scene, "--repetitions", "1", "--json"]
+        found = json.loads(program.run(words, directory))[0]["rows"]
+        if any(row["outcome"] == "not built" for row in found):
+            return old
+        for row in found:
+            cells = [f"{number(factor * row[name])}" if task == "T2" or not name.startswith("ideal_") else ""
+                     for name, _, factor in SOURCE_COLUMNS]
+            lines.append(f"| {task} | {SOURCES[row['setting']]} | {' | '.join(cells)} |")
+    return program.stamped("\n".join(lines), old)
+
+
+# The tables that need no program.
+MAKERS = {"verdicts": verdicts, "experiments": experiments, "robustness": robustness}

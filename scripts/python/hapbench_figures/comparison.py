@@ -1,4 +1,5 @@
-"""Every algorithm on the planar peg-in-hole, and the cases that the thesis discusses (4.1, 4.4, 4.6)."""
+"""Every algorithm on the planar peg-in-hole and on many springs (figures A.4 and A.5), and the cases that the thesis
+discusses (4.1, 4.4, 4.6)."""
 import numpy as np
 from matplotlib.ticker import LogLocator
 
@@ -36,12 +37,10 @@ def algorithms(results):
         tick.set_color(style.look(row["algorithm"]).colour)
     axes[0, 0].set_ylim(-0.6, len(rows) + 0.6)
     style.letter(axes[0])
-    return figure, (
-        "Every algorithm on the planar peg-in-hole of A.1: (a) greatest force, (b) total variation of velocity, "
-        "which vibration makes large, (c) greatest depth, (d) steps until the peg leaves the hole, few when it is "
-        "thrown out, (e) range of the stiffness ratio; dashed: K, dotted: the published bound of 4 K that the "
-        "actuators set (4.3). Ours."
-    )
+    return figure, ("Every algorithm on the planar peg-in-hole of A.1: (a) greatest force, (b) total variation of "
+                    "velocity, which vibration makes large, (c) greatest depth, (d) steps until the peg leaves the hole, "
+                    "few when it is thrown out, (e) range of the stiffness ratio; dashed: K, dotted: the published bound "
+                    "of 4 K that the actuators set (4.3). Ours.")
 
 
 def draw_ratio_axis(ax, lines):
@@ -62,12 +61,10 @@ def discussion(results):
     draw_pure_rotation(axes[0, 1], results)
     draw_parallel_faces(axes[0, 2], results)
     style.letter(axes[0])
-    return figure, (
-        "Cases that the thesis discusses without figures. (a) Over-reduction (4.1): of a groove's contacts at most "
-        "one survives the reduction. (b) Pure rotation (4.4): the energy stored in the springs returns, and the "
-        "damping takes nothing. (c) A drill turned between two parallel faces (4.6): the depth grows, the force on "
-        "the drill stays at zero. Ours."
-    )
+    return figure, ("Cases that the thesis discusses without figures. (a) Over-reduction (4.1): of a groove's contacts at "
+                    "most one survives the reduction. (b) Pure rotation (4.4): the energy stored in the springs returns, "
+                    "and the damping takes nothing. (c) A drill turned between two parallel faces (4.6): the depth grows, "
+                    "the force on the drill stays at zero. Ours.")
 
 
 def draw_over_reduction(ax, results):
@@ -101,3 +98,55 @@ def draw_parallel_faces(ax, results):
     right.set_ylim(0, 0.6)
     right.spines["right"].set_visible(True)
     right.grid(False)
+
+
+def draw_path(ax, rows, look):
+    x, y = 1e3 * rows["px_m"], 1e3 * rows["py_m"]
+    ax.plot(x, y, color=look.colour, lw=1.2, clip_on=True)
+    ax.plot(x[:1], y[:1], "o", color=look.colour, mfc="white", ms=4)
+    ax.plot(0, 0, "+", color=style.BLACK, ms=7, mew=1)
+
+
+def settling(rows):
+    """Time after which the mass stays within 0.05 mm of the origin [ms], or None."""
+    far = np.hypot(rows["px_m"], rows["py_m"]) > 5e-5
+    if far[-1]:
+        return None
+    last = np.flatnonzero(far)
+    return 1e3 * rows["time_s"][last[-1] + 1] if len(last) else 0.0
+
+
+def paths(results, kind, published):
+    figure, axes = style.panels(2, 4, 4.3, sharex=True, sharey=True)
+    proposed = results.table(f"thesis/springs_{kind}_shaped_stiffness/trajectory.csv")
+    own = [name for name in style.ALGORITHMS if results.has(f"thesis/springs_{kind}_{name}/trajectory.csv")]
+    for ax, name in zip(axes.flat, own):
+        look = style.look(name)
+        rows = results.table(f"thesis/springs_{kind}_{name}/trajectory.csv")
+        outcome = results.json(f"thesis/springs_{kind}_{name}/summary.json")["outcome"]
+        if name != "shaped_stiffness":
+            ax.plot(1e3 * proposed["px_m"], 1e3 * proposed["py_m"], color="#8A8A8A", lw=0.9)
+        draw_path(ax, rows, look)
+        ax.set(xlim=(-6.5, 6.5), ylim=(-6.5, 6.5), aspect="equal", xticks=[-5, 0, 5], yticks=[-5, 0, 5])
+        time = settling(rows)
+        text = ("diverges" if outcome == "diverges" else f"settles in {time:.0f} ms" if time is not None else "has not settled")
+        # Above the frame: some curves fill it.
+        ax.set_title(look.label, color=look.colour, pad=14)
+        ax.text(0, 1.03, text, transform=ax.transAxes, fontsize=7)
+    for ax in axes[-1]:
+        ax.set_xlabel("x [mm]")
+    for ax in axes[:, 0]:
+        ax.set_ylabel("y [mm]")
+    return figure, ("Trajectory of a mass on 100 pairs of opposite springs and 10 upward ones, released at (-5, -5) mm, "
+                    f"damping and force {published} Grey: stiffness shaping, for comparison. Settled means to stay within "
+                    "0.05 mm of the origin (+). Ours, parameters of Table A.3.")
+
+
+def unlimited(results):
+    return paths(results, "unlimited", "not limited. Published: every algorithm reaches the origin; ours: what the panels say.")
+
+
+def limited(results):
+    return paths(results, "limited",
+                 "limited to 100 N s/m and 30 N. Published: the proposed algorithm keeps its performance, others "
+                 "become under-damped.")

@@ -7,10 +7,11 @@ import threading
 from concurrent.futures import ProcessPoolExecutor, as_completed
 
 import hapbench_style as style
+from hapbench.errors import ResultError
 from hapbench_command import write
 
 from . import catalogue
-from .results import BadResult, MissingResult
+from .results import MissingResult
 
 FORMATS = ("svg", "pdf", "png")
 
@@ -41,7 +42,7 @@ def attempt(number, results, directory):
         return number, draw(figure, results, directory), None, None
     except MissingResult as missing:
         return number, None, f"{figure.id} ({missing})", None
-    except BadResult as error:
+    except ResultError as error:
         return number, None, None, str(error)
     except (KeyError, IndexError, TypeError, ValueError) as error:
         # A file that can be read but has not the columns, rows or members of hapbench's.

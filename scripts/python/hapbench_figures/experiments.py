@@ -62,9 +62,8 @@ def draw_measure(ax, tables, place, claim, measure):
         ax.plot(x - 0.24 + np.linspace(-0.05, 0.05, len(finite)), finite, "o", color=style.GREY, ms=2.2, mec="none")
         error = finite.std(ddof=1) / np.sqrt(len(finite)) if len(finite) > 1 else 0
         if len(finite):
-            ax.errorbar(
-                [x], [finite.mean()], yerr=[error], marker=look.marker, color=look.colour, ms=5, capsize=2.5, elinewidth=1.2
-            )
+            ax.errorbar([x], [finite.mean()], yerr=[error], marker=look.marker, color=look.colour, ms=5, capsize=2.5,
+                        elinewidth=1.2)
         id_ = f"{claim}.{name}.{method}"
         ax.errorbar([x + 0.24], [scale * published.value(id_)], yerr=[scale * published.spread(id_)], **style.PUBLISHED)
     ax.set_xlim(-0.5, 1.5)
@@ -94,13 +93,11 @@ def experiment(results, task, targets, what):
     axes[0, 3].yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes[0, 3].yaxis.set_minor_formatter(NullFormatter())
     style.letter(axes[0])
-    return figure, (
-        f"{what}: success rate (a), completion time (b), model force (c) and velocity (d, logarithmic), original algorithm (DP) "
-        "against stiffness shaping (HS). Filled marks: ours, mean and standard error over six simulated subjects "
-        "(grey dots: their means), whose parameters are ours. Hollow diamonds: "
-        "published mean and standard error of six people. Paired t-tests over the subjects that have both values. A "
-        "simulated subject shows the dynamics, not what people feel or learn."
-    )
+    return figure, (f"{what}: success rate (a), completion time (b), model force (c) and velocity (d, logarithmic), "
+                    "original algorithm (DP) against stiffness shaping (HS). Filled marks: ours, mean and standard error "
+                    "over six simulated subjects (grey dots: their means), whose parameters are ours. Hollow diamonds: "
+                    "published mean and standard error of six people. Paired t-tests over the subjects that have both "
+                    "values. A simulated subject shows the dynamics, not what people feel or learn.")
 
 
 def vertical(results):
@@ -109,9 +106,8 @@ def vertical(results):
 
 
 def rotational(results):
-    return experiment(
-        results, "rotational", ((0, "D3", "target at 3 mm"), (1, "D4", "target at 4 mm")), "Rotational peg-in-hole task"
-    )
+    return experiment(results, "rotational", ((0, "D3", "target at 3 mm"), (1, "D4", "target at 4 mm")),
+                      "Rotational peg-in-hole task")
 
 
 def questionnaires(results):
@@ -135,11 +131,9 @@ def questionnaires(results):
         ax.set_xlim(-0.6, 1.6)
         ax.grid(axis="x", visible=False)
     style.letter(axes[0])
-    return figure, (
-        "What the thesis's subjects said of their effort (mean and standard error of six people), original algorithm "
-        "(DP) and stiffness shaping (HS). Published numbers alone, with nothing of ours beside them: simulated subjects feel "
-        "nothing and fill in no forms."
-    )
+    return figure, ("What the thesis's subjects said of their effort (mean and standard error of six people), original "
+                    "algorithm (DP) and stiffness shaping (HS). Published numbers alone, with nothing of ours beside them: "
+                    "simulated subjects feel nothing and fill in no forms.")
 
 
 def draw_published_bar(ax, x, id_):

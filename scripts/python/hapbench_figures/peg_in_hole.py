@@ -23,11 +23,9 @@ def simulation_view(results):
     ax.annotate(f"rendered force, {np.linalg.norm(force):.1f} N", xy=head, xytext=(0.75, -1.9),
                 arrowprops={"arrowstyle": "-", "color": style.BLACK, "lw": 0.6})
     ax.text(1.45, 1.35, "tool")
-    return figure, (
-        "The planar simulation: point shell (petrol), tool (outline), colliding points with their depths (amber) "
-        f"and the rendered force (arrow) of stiffness shaping, peg tilted by {sweep.tilt[step]:.2f} rad. Ours; "
-        "the pose is prescribed."
-    )
+    return figure, ("The planar simulation: point shell (petrol), tool (outline), colliding points with their depths "
+                    f"(amber) and the rendered force (arrow) of stiffness shaping, peg tilted by {sweep.tilt[step]:.2f} "
+                    "rad. Ours; the pose is prescribed.")
 
 
 SNAPSHOTS = 4
@@ -115,12 +113,10 @@ def redistribution(results):
     style.note(axes[0, 0], 0.02, 0.91, "pushing sideways", style.GREY)
     axes[0, 1].set_ylabel("")
     style.letter(axes[0])
-    return figure, (
-        "Spring forces of the contacts (a) before and (b) after tandpasta redistributes the elastic energy: forces "
-        "that fight each other (grey) lose weight, those that push the peg out (amber) gain it, the energy "
-        f"stays the same, and the outward force grows {outward[1] / outward[0]:.1f}-fold. Arrows to one scale. Ours; the "
-        "pose is prescribed."
-    )
+    return figure, ("Spring forces of the contacts (a) before and (b) after tandpasta redistributes the elastic energy: "
+                    "forces that fight each other (grey) lose weight, those that push the peg out (amber) gain it, the "
+                    f"energy stays the same, and the outward force grows {outward[1] / outward[0]:.1f}-fold. Arrows to one "
+                    "scale. Ours; the pose is prescribed.")
 
 
 def turned_direction(results):
@@ -143,8 +139,6 @@ def turned_direction(results):
     style.note(axes[0, 0], 0.98, 0.08, "◇ in (b), published: 2n + 1 = 21, then\n2n + 3 = 23, turned by 180°", style.RED,
                ha="right", va="bottom")
     style.letter(axes[0])
-    return figure, (
-        "The original algorithm with ten contacts one way and eleven the other, then two more on the first side "
-        "(B.3.3): the rendered depth goes from 21 to 23 times that of a point, and its direction turns round. Ours, "
-        "a run of 40 steps; diamonds: the published sizes."
-    )
+    return figure, ("The original algorithm with ten contacts one way and eleven the other, then two more on the first "
+                    "side (B.3.3): the rendered depth goes from 21 to 23 times that of a point, and its direction turns "
+                    "round. Ours, a run of 40 steps; diamonds: the published sizes.")

@@ -13,10 +13,6 @@ class MissingResult(Exception):
     """A figure's data is not there; the figure is skipped."""
 
 
-class BadResult(Exception):
-    """A result file cannot be understood."""
-
-
 # Several figures show one table.
 _columns = lru_cache(maxsize=None)(read_columns)
 
@@ -60,10 +56,7 @@ class Results:
         if not file.is_file():
             raise MissingResult(f"no {path}")
         self.sources.add(path)
-        try:
-            return read(file)
-        except ResultError as error:
-            raise BadResult(str(error)) from error
+        return read(file)
 
 
 def numbers(records, name):

@@ -1,4 +1,5 @@
-"""Stability: the root locus of A.3, and our maps of stable, vibrating and diverged runs."""
+"""Stability: the root locus of A.3, our maps of stable, vibrating and diverged runs, and the largest stable stiffness of each
+device (`compare --devices`)."""
 from itertools import cycle
 from textwrap import wrap
 
@@ -14,6 +15,11 @@ from hapbench_report.markup import column
 from . import published
 from .results import MissingResult, numbers
 
+# Of the picture of devices.
+DEVICES = "device_limits.csv"
+PANEL = 2.6  # [inch]
+LEGEND = 0.3  # [inch]
+STEP = 0.16  # of a row, between algorithms
 CASES = (
     ("stiffness_undamped", "A4.stiffness", "B = 0, K grows", "K", "N/m"),
     ("damping_alone", "A4.damping", "K = 0, B grows", "B", "N s/m"),
@@ -47,12 +53,10 @@ def root_locus(results):
         ax.set(title=title, xlabel="real part", xlim=(-1.75, 1.4), ylim=(-1.6, 1.6), aspect="equal")
     axes[0, 0].set_ylabel("imaginary part")
     style.letter(axes[0])
-    return figure, (
-        "Root locus of the integrator on one spring and damper: both eigenvalues (petrol, amber dashed) as stiffness "
-        "or damping grows, and the unit circle, outside of which it is unstable. Diamonds: the eigenvalue that leaves "
-        "it, at the published limit. Ours, below: the limit at which bisection over simulated runs finds divergence. M = 0.1 "
-        "kg, time step 0.5 ms (A.3)."
-    )
+    return figure, ("Root locus of the integrator on one spring and damper: both eigenvalues (petrol, amber dashed) as "
+                    "stiffness or damping grows, and the unit circle, outside of which it is unstable. Diamonds: the "
+                    "eigenvalue that leaves it, at the published limit. Ours, below: the limit at which bisection over "
+                    "simulated runs finds divergence. M = 0.1 kg, time step 0.5 ms (A.3).")
 
 
 # Class -> its name, colour and hatching; light to dark, so that they can be told apart in grey.
@@ -349,8 +353,42 @@ def integrators(results):
         ax.set_title(name.replace("_", " "))
     figure.get_layout_engine().set(rect=(0, 0, 1, 0.95))
     class_legend(figure, maps, loc="upper center", bbox_to_anchor=(0.5, 1.0))
-    return figure, (
-        f"Where a run is stable, still dies out, vibrates or diverges under each integrator, {style.look(algorithm).label}: stiffness "
-        "of one spring over the time step and over zeta, stiffness of the hand over the delay of the device's servo. "
-        "Lines: the limit from theory, where there is one, and found by bisection over simulated runs. Ours."
+    return figure, ("Where a run is stable, still dies out, vibrates or diverges under each integrator, "
+                    f"{style.look(algorithm).label}: stiffness of one spring over the time step and over zeta, stiffness of "
+                    "the hand over the delay of the device's servo. Lines: the limit from theory, where there is one, and "
+                    "found by bisection over simulated runs. Ours.")
+
+
+def draw_devices(results, table=DEVICES):
+    rows = results.records(table)
+    devices, scenes, algorithms = (list(dict.fromkeys(row[name] for row in rows)) for name in ("device", "scenario", "algorithm"))
+    figure, axes = style.plt.subplots(1, len(scenes), sharex=True, sharey=True, squeeze=False,
+                                figsize=(1.0 + PANEL * len(scenes), 0.9 + LEGEND + 0.24 * len(devices)))
+    for ax, scene in zip(axes[0], scenes):
+        for i, algorithm in enumerate(algorithms):
+            mine = [row for row in rows if (row["scenario"], row["algorithm"]) == (scene, algorithm)]
+            at = np.array([devices.index(row["device"]) for row in mine]) + STEP * (i - (len(algorithms) - 1) / 2)
+            ax.plot(numbers(mine, "limit_N_per_m"), at, ls="", marker=style.look(algorithm).marker, ms=5, color=style.look(algorithm).colour,
+                    label=style.look(algorithm).label)
+        published = {devices.index(row["device"]): float(row["published_N_per_m"]) for row in rows if row["published_N_per_m"]}
+        if published:
+            places = np.array(list(published))
+            ax.vlines(list(published.values()), places - 0.4, places + 0.4, color=style.BLACK, lw=1.2,
+                      ls=style.PUBLISHED_LINE["ls"], label="published, of a wall")
+        ax.set(title=scene.replace("_", " "), xscale="log", xlabel="largest stable stiffness K [N/m]",
+               yticks=range(len(devices)), yticklabels=[name.replace("$", r"\$") for name in devices],
+               ylim=(len(devices) - 0.4, -0.6))
+    # A legend of the figure takes no room by itself.
+    figure.get_layout_engine().set(rect=(0, 0, 1, 1 - LEGEND / figure.get_figheight()))
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="upper left", ncol=4)
+    return figure
+
+
+def of_all_devices(results):
+    return draw_devices(results, f"devices/{DEVICES}"), (
+        "The largest stiffness that each device renders stably and quietly while a hand taps with a flat probe on a wall, in a "
+        "corner and in a hole a tenth wider than the probe, without damping. Short lines: the published largest stable "
+        "stiffness of a wall. If shaping makes one K safe in every direction, its marks stand in one column in all panels, "
+        "while those of the sum fall back by the number of contacts. Ours."
     )

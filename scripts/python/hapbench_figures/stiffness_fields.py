@@ -80,13 +80,11 @@ def excessive_stiffness(results):
     style.note(axes[0, 1], 0.5, 0.985, "published: 4 K", style.RED, ha="center")
     style.note(axes[0, 4], 0.5, 0.985, "K", ha="center")
     style.letter(axes[0])
-    return figure, (
-        "Excessive stiffness: (a) a tilted peg in a hole, its contacts (amber) and depths; (b-e) the stiffness "
-        "in every direction, in units of K, that four ways of merging these contacts give. Red: the published "
-        "largest renderable stiffness, 4 K = 80 000 N/m (4.3), outside the frames of (c-e); dashed: K. Amber "
-        "dots and numbers: the ratios along the contacts. The scale of (b) is 28 times that of the others. Contacts "
-        "and tensors are those that the runs recorded. Ours."
-    )
+    return figure, ("Excessive stiffness: (a) a tilted peg in a hole, its contacts (amber) and depths; (b-e) the stiffness "
+                    "in every direction, in units of K, that four ways of merging these contacts give. Red: the published "
+                    "largest renderable stiffness, 4 K = 80 000 N/m (4.3), outside the frames of (c-e); dashed: K. Amber "
+                    "dots and numbers: the ratios along the contacts. The scale of (b) is 28 times that of the others. "
+                    "Contacts and tensors are those that the runs recorded. Ours.")
 
 
 def fields_over_tilt(results):
@@ -108,13 +106,11 @@ def fields_over_tilt(results):
     for ax in axes[:-1, 0]:
         ax.set_xlabel("")
     style.letter(axes[0])
-    return figure, (
-        "The stiffness field as the peg tilts (rows): contacts (a) and the stiffness in every direction, in units "
-        "of K, of four ways of merging them (b-e). Black arrow: direction of the spring force. Red: published "
-        "largest renderable stiffness, 4 K; dashed: K; the scale of (b) is 28 times that of the others. Summation "
-        "and mean follow the number of points on the side walls, shaping does not. Contacts and tensors are those "
-        "that the runs recorded. Ours."
-    )
+    return figure, ("The stiffness field as the peg tilts (rows): contacts (a) and the stiffness in every direction, in "
+                    "units of K, of four ways of merging them (b-e). Black arrow: direction of the spring force. Red: "
+                    "published largest renderable stiffness, 4 K; dashed: K; the scale of (b) is 28 times that of the "
+                    "others. Summation and mean follow the number of points on the side walls, shaping does not. Contacts "
+                    "and tensors are those that the runs recorded. Ours.")
 
 
 SHAPING = "shaped_stiffness"
@@ -202,12 +198,10 @@ def of_all_algorithms(results):
                           names, draw_in_wedge)
     draw_wedge(first, scene.Sweep(results, SHAPING, WEDGE))
     field_legend(figure)
-    return figure, (
-        "Stiffness in every direction, in units of K, of every algorithm: (a) in the tilted peg of Fig. 2, below each panel the "
-        "least and greatest ratio along the contacts (amber); (b) in a wedge whose faces stand 10 degrees from "
-        "its middle plane, below each panel the stiffness along the way out and how far 2 N press the tool in within a "
-        "second. Dashed: K, red: the published largest renderable stiffness, 4 K (4.3); where a field does not "
-        "fit, its panel has a scale of its own. Stiffness shaping gives K along every contact and next to nothing "
-        "along the way out, between them: 2 sin² w / (1 + cos² 2w) = 0.032 K. Tensors and contacts are those that "
-        "the runs recorded. Ours."
-    )
+    return figure, ("Stiffness in every direction, in units of K, of every algorithm: (a) in the tilted peg of Fig. 2, "
+                    "below each panel the least and greatest ratio along the contacts (amber); (b) in a wedge whose faces "
+                    "stand 10 degrees from its middle plane, below each panel the stiffness along the way out and how far "
+                    "2 N press the tool in within a second. Dashed: K, red: the published largest renderable stiffness, 4 "
+                    "K (4.3); where a field does not fit, its panel has a scale of its own. Stiffness shaping gives K "
+                    "along every contact and next to nothing along the way out, between them: 2 sin² w / (1 + cos² 2w) = "
+                    "0.032 K. Tensors and contacts are those that the runs recorded. Ours.")

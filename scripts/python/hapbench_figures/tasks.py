@@ -99,12 +99,10 @@ def point_counts(results):
     style.note(axes[1, 1], 0.03, 0.06, "after", style.PETROL, va="bottom")
     style.note(axes[0, 0], 0.03, 0.98, "loop load: black dots, right axis")
     style.note(axes[1, 0], 0.97, 0.98, "published mean ± SD ◇", style.RED, ha="right")
-    return figure, (
-        "Colliding points before (amber dots) and after (petrol squares) the gradient-based reduction in the three "
-        "tasks of 3.2, for both densities of the block, and the loop load (black dots, right axis, medians of spans): "
-        "the share of the 0.49 ms of a step that this machine takes. Ours, thinned; hollow diamonds at the right edge: "
-        f"published mean and standard deviation (3.3). {HAND}"
-    )
+    return figure, ("Colliding points before (amber dots) and after (petrol squares) the gradient-based reduction in the "
+                    "three tasks of 3.2, for both densities of the block, and the loop load (black dots, right axis, "
+                    "medians of spans): the share of the 0.49 ms of a step that this machine takes. Ours, thinned; hollow "
+                    f"diamonds at the right edge: published mean and standard deviation (3.3). {HAND}")
 
 
 def count_distribution(results):
@@ -132,12 +130,10 @@ def count_distribution(results):
     style.note(axes[0, 1], 0.98, 0.68, "thick: ± SD\nthin: 5 to 95 %", style.PETROL, ha="right")
     style.note(axes[0, 1], 0.98, 0.44, "◇ published, 3.3 and C.3\n(mean ± SD)", style.RED, ha="right")
     style.letter(axes[0])
-    return figure, (
-        "Distribution of the number of points in contact before (a) and after (b) the gradient-based reduction. "
-        "Ours, for two densities of the block: mean (mark), standard deviation (thick), 5th to 95th percentile "
-        "(thin), over the steps in contact. Published means and standard deviations of 3.3 (upper) and C.3 (lower "
-        f"diamond). {HAND}"
-    )
+    return figure, ("Distribution of the number of points in contact before (a) and after (b) the gradient-based "
+                    "reduction. Ours, for two densities of the block: mean (mark), standard deviation (thick), 5th to 95th "
+                    "percentile (thin), over the steps in contact. Published means and standard deviations of 3.3 (upper) "
+                    f"and C.3 (lower diamond). {HAND}")
 
 
 def draw_distribution(ax, y, values, marker, label):
@@ -182,12 +178,10 @@ def convergence_by_task(results):
     style.note(axes[0, 0], 0.97, 0.92, "published bound 1.5", style.RED, ha="right")
     style.note(axes[0, 1], 0.97, 0.86, "greatest", style.PETROL, ha="right")
     style.note(axes[0, 1], 0.97, 0.3, "least", style.AMBER, ha="right")
-    return figure, (
-        "Greatest (petrol circles) and least (amber squares) stiffness ratio of the contacts of a step after so many "
-        "shaping iterations: median, 5th to 95th percentile (shaded) and extreme (dotted) over all steps in "
-        "contact, ours, signed-distance block. Published (red): 0.8 to 1.3 after one iteration (bar at the "
-        f"left edge, C.4.2), never above 1.5 (4.3). {HAND}"
-    )
+    return figure, ("Greatest (petrol circles) and least (amber squares) stiffness ratio of the contacts of a step after "
+                    "so many shaping iterations: median, 5th to 95th percentile (shaded) and extreme (dotted) over all "
+                    "steps in contact, ours, signed-distance block. Published (red): 0.8 to 1.3 after one iteration (bar "
+                    f"at the left edge, C.4.2), never above 1.5 (4.3). {HAND}")
 
 
 def convergence(results):
@@ -208,12 +202,10 @@ def convergence(results):
     style.note(axes[0, 0], 0.97, 0.95, "greatest: stays above 1 where\na contact's weight vanishes", style.PETROL, ha="right")
     style.note(axes[0, 0], 0.97, 0.06, "least: tends to 1", style.AMBER, ha="right", va="bottom")
     style.letter(axes[0])
-    return figure, (
-        "Convergence of the stiffness ratios over tasks 2 and 3 (in task 1 they are 1), both axes logarithmic: "
-        "median (marks), 5th to 95th percentile (shaded), extreme (dotted); ours. Published: 0.8 to 1.3 after one "
-        "iteration (red bar), and that the ratio converges to 1 (dashed). The least ratio does; the greatest "
-        "does not where a contact's weight tends to zero."
-    )
+    return figure, ("Convergence of the stiffness ratios over tasks 2 and 3 (in task 1 they are 1), both axes logarithmic: "
+                    "median (marks), 5th to 95th percentile (shaded), extreme (dotted); ours. Published: 0.8 to 1.3 after "
+                    "one iteration (red bar), and that the ratio converges to 1 (dashed). The least ratio does; the "
+                    "greatest does not where a contact's weight tends to zero.")
 
 
 def over_time(results, draw, label, height=2.6, rows=1, **keywords):
@@ -265,10 +257,9 @@ def model_force(results):
     style.note(axes[0, 0], 0.98, 0.8, "logarithmic above 0.5 N", style.GREY, ha="right")
     limit = published.value("L1.threshold")
     axes[0, 0].text(0, 0.95 * limit, "published limit of the input force", color=style.RED, fontsize=7, va="top")
-    return figure, (
-        "Size of the model force (spring, damping and friction) over time in the three tasks, ours: range in each "
-        f"of {BINS} spans of time; the axis is linear up to 0.5 N. Dashed: the limit of the input force, 2 N (3.5). {HAND}"
-    )
+    return figure, ("Size of the model force (spring, damping and friction) over time in the three tasks, ours: range in "
+                    f"each of {BINS} spans of time; the axis is linear up to 0.5 N. Dashed: the limit of the input force, 2 "
+                    f"N (3.5). {HAND}")
 
 
 def _ratio_over_time(results, column, colour, word):
@@ -293,12 +284,10 @@ def _ratio_over_time(results, column, colour, word):
         ax.set_ylim((0.95, 1.4) if above else (0.4, 1.05))
     style.note(axes[0, 0], 0.98, 0.3 if above else 0.1, f"published: {'1.3' if above else '0.8'}", style.RED, ha="right",
                va="bottom")
-    return figure, (
-        f"The {word} stiffness ratio of a step's contacts over time, after {', '.join(labels[:-1])} and {labels[-1]} "
-        f"shaping iterations (rows), ours (signed-distance block): range in each of {BINS} spans of time; numbers: the "
-        f"{word} of all. Dotted: "
-        f"published {'upper' if above else 'lower'} end after one iteration (C.4.2). {HAND}"
-    )
+    return figure, (f"The {word} stiffness ratio of a step's contacts over time, after {', '.join(labels[:-1])} and "
+                    f"{labels[-1]} shaping iterations (rows), ours (signed-distance block): range in each of {BINS} spans "
+                    f"of time; numbers: the {word} of all. Dotted: published {'upper' if above else 'lower'} end after one "
+                    f"iteration (C.4.2). {HAND}")
 
 
 def greatest_ratio(results):

@@ -5,15 +5,13 @@ from pathlib import Path
 
 import numpy as np
 
-from hapbench_figures.devices import TABLE as DEVICES
-from hapbench_figures.devices import draw_devices
-from hapbench_figures.results import BadResult, MissingResult, Results, numbers
-from hapbench_figures.stability import CLASSES, MapFile, draw_stability_map, is_geometric, look_of_class
+from hapbench_figures.results import MissingResult, Results, numbers
+from hapbench_figures.stability import CLASSES, DEVICES, MapFile, draw_devices, draw_stability_map, is_geometric, look_of_class
 from hapbench_looks import look
 from hapbench_report.json_input import InputError
 from hapbench_style import BLACK, PETROL, SETTINGS, plt
 
-from .fields import axis
+from .given import axis
 
 MAP, LIMIT, LIMIT_RUNS = "stability_map_", "limit.csv", "limit_runs.csv"
 
@@ -42,7 +40,7 @@ def study_figures(path):
             results = Results(path.parent if path.is_file() else path)
             files = [path.name] if path.is_file() else results.glob(f"{MAP}*.csv")
             return [(name, draw_stability_map(found)) for file in files for name, found in single_maps(results, file)]
-    except (BadResult, MissingResult) as error:
+    except MissingResult as error:
         raise InputError(str(error)) from error
     except (KeyError, ValueError, IndexError) as error:
         raise InputError(f"{path}: is not a table that hapbench wrote: {error}") from error

@@ -1,11 +1,23 @@
-"""One quantity over time, and the tip's way in space, of several runs, into matplotlib's axes."""
+"""How runs are drawn: as their algorithm is everywhere, with line styles where two runs share one; one quantity over time, and the
+tip's way in space, of several runs, into matplotlib's axes."""
+from dataclasses import dataclass, replace
+
 import numpy as np
 from matplotlib.patches import Polygon
 
+from hapbench_looks import Look, look
 from hapbench_style import curve, reduced
 
 from .quantities import range_of
 
+DASHES = ((), (4, 1.5), (1, 1), (4, 1, 1, 1))
+# Text, ground, grid and secondary text: of paper, and of the dark page.
+LIGHT = ("#1d2126", "#ffffff", "#e6e6e6", "#5b636c")
+DARK = ("#e7e9ea", "#1c2024", "#383e44", "#a3abb3")
+# Colours of runs that share one algorithm, on paper and on the dark page, each with a contrast of at least 4.5.
+SHARED = (("#000000", "#F2F2F2"), ("#C2500A", "#FFA366"), ("#0B6BC4", "#6CB4F5"), ("#9F0375", "#F07CC8"), ("#1D6A01", "#7EDB5A"),
+          ("#775543", "#D3AE97"))
+THIN = 0.6  # line width of the single runs of a group [points]
 SPANS = 600  # of a curve: a page hardly shows more
 # Runs whose peaks are further apart than this share no linear axis.
 LARGEST_RATIO = 30
@@ -14,6 +26,40 @@ SURFACE = "#8A949C"  # on paper and in the dark
 PATH_COLUMNS, AXIS_COLUMNS = ("px_m", "py_m", "pz_m"), ("axis_x", "axis_y", "axis_z")
 SNAPSHOTS = (0.3, 0.45, 0.65, 0.9)  # opacity of the tool at so many places of its way
 LEAST_IN_PLANE = 0.85  # of the tool's axis, for its outline to be drawn: no more than 30 degrees out of the plane
+
+
+@dataclass(frozen=True)
+class RunLook(Look):
+    marker: str = ""  # curves of runs have none
+    width: float = 1.3
+    group: str = ""  # the label of all runs that differ in the seed only
+
+
+def looks(runs, labels, groups=()):
+    """`groups`: a name for each run, the same for those that differ in the seed only; by default the labels."""
+    groups = groups or labels
+    distinct = list(dict.fromkeys(zip(groups, (run.algorithm for run in runs))))
+    algorithms = [algorithm for _, algorithm in distinct]
+    nth = {group: algorithms[:i].count(algorithm) for i, (group, algorithm) in enumerate(distinct)}
+    one_each, alike = len(set(algorithms)) == len(distinct), len(set(algorithms)) == 1
+    width = RunLook.width if len(distinct) == len(runs) else THIN
+    found = []
+    for run, label, group in zip(runs, labels, groups):
+        own, i = look(run.algorithm), nth[group]
+        colours = SHARED[i % len(SHARED)] if alike and not one_each else (own.colour, own.dark)
+        found.append(RunLook(label, *colours, own.dash if one_each else DASHES[i % len(DASHES)], width=width, group=group))
+    return found
+
+
+def on_dark(shown):
+    return [replace(one, colour=one.dark) for one in shown]
+
+
+def settings(paper):
+    """matplotlib's colours for LIGHT or DARK."""
+    ink, ground, grid, _ = paper
+    return {"text.color": ink, "axes.labelcolor": ink, "xtick.color": ink, "ytick.color": ink, "axes.edgecolor": ink,
+            "axes.facecolor": ground, "figure.facecolor": ground, "savefig.facecolor": ground, "grid.color": grid}
 
 
 def draw_over_time(ax, quantity, samples, looks):

@@ -10,9 +10,8 @@ from hapbench_report.recording import tool_profile
 from hapbench_style import SETTINGS, picture, plt
 
 from .given import common_folder, given_runs, given_sweep, named
-from .looks import looks
 from .map_plot import given_study, study_figures
-from .panels import AXIS_COLUMNS, PATH_COLUMNS, draw_over_time, draw_path, draw_tool, projections
+from .panels import AXIS_COLUMNS, PATH_COLUMNS, draw_over_time, draw_path, draw_tool, looks, projections
 from .quantities import Samples, chosen
 from .replay import surface_of
 from .sketch import sketch, this_terminal

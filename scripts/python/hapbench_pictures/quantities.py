@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from hapbench.columns import header, read_columns
+from hapbench_command import nearest
 from hapbench_report.json_input import InputError, at, number_or_none
 from hapbench_report.recording import SETTLING_S, settled_rows
 
-from .given import nearest
 
 TRAJECTORY = "trajectory.csv"
 REFERENCE = "force_reference.csv"

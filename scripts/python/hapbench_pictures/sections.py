@@ -6,7 +6,7 @@ from hapbench_report.json_input import at, number_or_none
 from hapbench_report.markup import cell, columns, command, heading_cell, number, number_cell, table, text
 from hapbench_report.runs import plugin_text, provenance_of, provenance_section
 
-from .fields import differing
+from .given import differing
 
 MOST_CARDS = 6
 # Metrics of summary.json in the first table, as far as any run has them. Those that separate algorithms come first.

@@ -5,12 +5,12 @@ from matplotlib.patches import Patch, Rectangle
 
 from hapbench.columns import read_records
 from hapbench_figures.stability import edges, is_geometric
+from hapbench_command import nearest
 from hapbench_looks import look
 from hapbench_report.json_input import InputError, at, load_object
 from hapbench_style import SETTINGS, plt
 
-from .fields import axis
-from .given import nearest
+from .given import axis
 
 USUAL = ("force_rms_above_30Hz_N", "force_max_N")
 FAILURES = ("diverges", "error")

@@ -56,7 +56,7 @@ class Run(results.Run):
         file = self.folder / "columns.json"
         documented = {entry["name"] for entry in results.read_json(file).get("summary.json", ())} if file.is_file() else set()
         return {name: value for name, value in self.summary.items()
-                if isinstance(value, dict) and (name == "metrics" or documented & set(value))}
+                if isinstance(value, dict) and (name == "metrics" or any(f"{name}.{key}" in documented for key in value))}
 
 
 def load_runs(directory: Path):

@@ -70,12 +70,6 @@ TEST(Number, IsRefusedWhenNotFinite) {
   }
 }
 
-TEST(Number, IsNoOtherType) {
-  for (const char* text : {"\"5\"", "true", "null", "[5]", "{}"}) {
-    EXPECT_EQ(kForce.refusal_of(text), std::string("/v: got ") + text + "; allowed: a number >= 0 and <= 10 [N]");
-  }
-}
-
 TEST(Integer, MayBeWrittenAsAnyWholeNumber) {
   EXPECT_EQ(kCount.value_of("1000"), 1000);
   EXPECT_EQ(kCount.value_of("1e3"), 1000);
@@ -85,43 +79,44 @@ TEST(Integer, MayBeWrittenAsAnyWholeNumber) {
 }
 
 TEST(Integer, IsRefusedAsAFractionAndBeyondItsBounds) {
-  for (const char* text :
-       {"1.5", "0", "-1", "9007199254740994", "1e300", "-1e300", "18446744073709551615", "-9223372036854775808"}) {
+  // 2^53 + 1 has no double of its own and would round to the bound 2^53.
+  for (const char* text : {"1.5", "0", "-1", "9007199254740993", "9007199254740994", "1e300", "-1e300",
+                           "18446744073709551615", "-9223372036854775808"}) {
     EXPECT_NE(kCount.refusal_of(text).find("allowed: an integer 1 ... 9007199254740992"), std::string::npos);
   }
-}
-
-TEST(Integer, IsNotRoundedIntoItsRange) {
-  // 2^53 + 1 has no double of its own and would round to the bound 2^53.
-  EXPECT_NE(kCount.refusal_of("9007199254740993"), "");
-}
-
-TEST(Integer, IsNoOtherType) {
-  for (const char* text : {"\"5\"", "true", "null", "[5]", "{}"}) EXPECT_NE(kCount.refusal_of(text), "");
 }
 
 TEST(Boolean, IsTrueOrFalseAlone) {
   EXPECT_TRUE(kSwitch.value_of("true"));
   EXPECT_FALSE(kSwitch.value_of("false", true));
-  for (const char* text : {"0", "1", "\"true\"", "null", "[]"}) {
-    EXPECT_EQ(kSwitch.refusal_of(text), std::string("/v: got ") + text + "; allowed: true or false");
-  }
+}
+
+TEST(Values, OfAnotherTypeAreRefusedWithWhatIsAllowed) {
+  const auto expect_refused = [](const auto& kind, const std::string& allowed,
+                                 std::initializer_list<const char*> texts) {
+    for (const char* text : texts)
+      EXPECT_EQ(kind.refusal_of(text), std::string("/v: got ") + text + "; allowed: " + allowed);
+  };
+  expect_refused(kForce, "a number >= 0 and <= 10 [N]", {"\"5\"", "true", "null", "[5]", "{}"});
+  expect_refused(kCount, "an integer 1 ... 9007199254740992", {"\"5\"", "true", "null", "[5]", "{}"});
+  expect_refused(kSwitch, "true or false", {"0", "1", "\"true\"", "null", "[]"});
+  expect_refused(kShortText, "a text of at most 3 characters", {"5", "null", "\"abcd\""});
+  expect_refused(kTip, R"(tip: one of "flat", "round")", {R"("")", "1", "null", R"(["round"])"});
+  expect_refused(kVector, "three numbers [x, y, z], each a number >= -1 and <= 1 [m]",
+                 {"[]", "[1,1]", "[1,1,1,1]", "1", "{}", "null"});
+  expect_refused(kDigits, "a list of 1 ... 3 entries, each an integer 0 ... 9", {"[]", "[1,2,3,4]", "{}"});
 }
 
 TEST(Text, IsMeasuredInCharactersNotBytes) {
   EXPECT_EQ(kShortText.value_of(R"("abc")"), "abc");
   EXPECT_EQ(kShortText.value_of(R"("äöü")"), "äöü");
   EXPECT_EQ(kShortText.value_of(R"("😀😀😀")"), "😀😀😀");
-  EXPECT_EQ(kShortText.refusal_of(R"("abcd")"), R"(/v: got "abcd"; allowed: a text of at most 3 characters)");
   EXPECT_NE(kShortText.refusal_of(R"("äöüß")"), "");
-  EXPECT_NE(kShortText.refusal_of("5"), "");
 }
 
 TEST(Name, IsAcceptedExactly) {
   EXPECT_EQ(kTip.value_of(R"("round")"), Tip::round);
-  for (const char* text : {R"("Round")", R"("round ")", R"("")", "1", "null", R"(["round"])"}) {
-    EXPECT_NE(kTip.refusal_of(text), "");
-  }
+  for (const char* text : {R"("Round")", R"("round ")"}) EXPECT_NE(kTip.refusal_of(text), "");
 }
 
 TEST(Name, IsSuggestedWhenNear) {
@@ -136,9 +131,6 @@ TEST(Name, IsNotInventedForAValueWithoutOne) {
 
 TEST(Vector, IsThreeNumbers) {
   EXPECT_EQ(kVector.value_of("[0.5, -1, 1]", Vec3(0, 0, 0)), Vec3(0.5, -1, 1));
-  for (const char* text : {"[]", "[1, 1]", "[1, 1, 1, 1]", "1", "{}", "null"}) {
-    EXPECT_EQ(kVector.refusal_of(text).find("/v: got "), 0u);
-  }
 }
 
 TEST(Vector, NamesABadComponent) {
@@ -150,10 +142,7 @@ TEST(List, ReplacesWhatWasThere) {
   EXPECT_EQ(kDigits.value_of("[3, 1]", {7, 7, 7}), (std::vector<std::int64_t>{3, 1}));
 }
 
-TEST(List, IsRefusedWithTooFewOrTooManyEntriesAndNamesABadOne) {
-  EXPECT_EQ(kDigits.refusal_of("[]"), "/v: got []; allowed: a list of 1 ... 3 entries, each an integer 0 ... 9");
-  EXPECT_NE(kDigits.refusal_of("[1, 2, 3, 4]"), "");
-  EXPECT_NE(kDigits.refusal_of("{}"), "");
+TEST(List, NamesABadEntry) {
   EXPECT_EQ(kDigits.refusal_of("[1, 2, 10]"), "/v/2: got 10; allowed: an integer 0 ... 9");
 }
 
@@ -219,11 +208,8 @@ TEST(Pointer, LeadsToTheValueItNames) {
   EXPECT_EQ(json.at(Json::json_pointer(at)), 2);
 }
 
-TEST(Pointer, OfAHugeKeyIsCut) {
+TEST(Pointer, IsOneShortLineWhateverTheKey) {
   EXPECT_EQ(member("", std::string(1'000'000, 'k')), "/" + std::string(200, 'k'));
-}
-
-TEST(Pointer, StaysOnOneLine) {
   EXPECT_EQ(member("", "a\nb\tc\x1b"), "/a?b?c?");
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "algorithms/registry.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -68,6 +69,18 @@ TEST_F(NamedFilesOfAScenario, AreReadByTheFirstOfTheirCopies) {
   const auto points = copy.at(kEnvironmentFile).mesh().points();
   fs::remove(directory_ / "cube.obj");
   EXPECT_EQ(loaded.files.at(kEnvironmentFile).mesh().points().size(), points.size());
+}
+
+// Laws side by side share the parsed mesh and the shell; a scale of its own keeps other tests' values away.
+TEST_F(NamedFilesOfAScenario, AreParsedOnceForAllLaws) {
+  const std::size_t before = shared_cache().made();
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    Json patch = {{"environment", {{"scale", 0.00123}}}, {"rendering", {{"algorithm", algorithm.info->name}}}};
+    const LoadedScenario loaded = load("mesh", patch.dump().c_str());
+    check_named_files(loaded);
+    run_scenario(loaded, {}, false);
+  }
+  EXPECT_EQ(shared_cache().made() - before, 2u);
 }
 
 TEST_F(NamedFilesOfAScenario, AreRefusedEveryTime) {

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "algorithms/registry.hpp"
@@ -150,32 +151,21 @@ TEST(Duration, BecomesARoundedNumberOfSteps) {
   EXPECT_EQ(effective(json)["time"]["steps"], 200);
 }
 
-TEST(FixedDepthModel, OverridesAGivenOneWithAWarning) {
-  const struct {
-    const char *algorithm, *fixed, *given;
-  } kCases[] = {{"original_averaging", "shortest_distance", "surface_normal"},
-                {"normal_projection", "normal_projection", "shortest_distance"}};
-  for (const auto& c : kCases) {
-    Json json = test::minimal_scenario("plane");
-    json["rendering"] = {{"algorithm", c.algorithm}, {"depth_model", c.given}};
-    const LoadedScenario scenario = loaded(json);
-    EXPECT_EQ(scenario.scenario.rendering.depth_model, c.fixed);
-    ASSERT_EQ(scenario.warnings.size(), 1u);
-    EXPECT_EQ(scenario.warnings[0], std::string("/rendering/depth_model: \"") + c.given +
-                                        "\" is not used: algorithm \"" + c.algorithm + "\" is defined with \"" +
-                                        c.fixed + "\"");
-  }
-}
-
-TEST(FixedDepthModel, IsTakenWithoutAWarningWhenNothingElseIsGiven) {
-  for (const char* algorithm : {"original_averaging", "normal_projection"}) {
+TEST(FixedDepthModel, OverridesAnotherOneWithAWarning) {
+  for (const auto& [algorithm, fixed, other] : {std::tuple{"original_averaging", "shortest_distance", "surface_normal"},
+                                                {"normal_projection", "normal_projection", "shortest_distance"}}) {
     Json json = test::minimal_scenario("plane");
     json["rendering"] = {{"algorithm", algorithm}};
     EXPECT_TRUE(loaded(json).warnings.empty());
-    const std::string fixed = loaded(json).scenario.rendering.depth_model;
-    EXPECT_NE(fixed, "surface_normal");
+    EXPECT_EQ(loaded(json).scenario.rendering.depth_model, fixed);
     json["rendering"]["depth_model"] = fixed;
     EXPECT_TRUE(loaded(json).warnings.empty());
+    json["rendering"]["depth_model"] = other;
+    EXPECT_EQ(loaded(json).scenario.rendering.depth_model, fixed);
+    EXPECT_EQ(loaded(json).warnings,
+              std::vector<std::string>{
+                  fmt::format("/rendering/depth_model: \"{}\" is not used: algorithm \"{}\" is defined with \"{}\"",
+                              other, algorithm, fixed)});
   }
 }
 
@@ -345,7 +335,7 @@ class EffectivePaths : public testing::Test {
     json["environment"]["file"] = "data/shell.csv";
     test::write_plainly(scenario_, json.dump());
   }
-  /// Where the file named in the effective scenario of `output` leads.
+  /// The file to which the path in the effective scenario of `output` leads.
   fs::path file_from(const fs::path& output) const {
     const Json effective = effective_scenario(load_scenario(scenario_).scenario, output);
     return fs::canonical(output / effective["environment"]["file"].get<std::string>());
@@ -384,31 +374,21 @@ TEST_F(EffectivePaths, WorkForAScenarioOfTheCurrentDirectory) {
   EXPECT_NO_THROW(effective_scenario(read_scenario(test::minimal_scenario("point_shell"), "").scenario, ""));
 }
 
-TEST(ScenarioHash, FollowsContentsNotPaths) {
+TEST(ScenarioHash, FollowsTheContentsOfFilesNotTheirPaths) {
   const test::TemporaryDirectory directory;
-  const std::string shell = test::read_file(test::data_directory() / "shell.csv");
-  test::write_plainly(directory / "a.csv", shell);
-  test::write_plainly(directory / "b.csv", shell);
-  const auto hash_with = [&directory](const char* file) {
-    Json json = test::minimal_scenario("point_shell");
-    json["environment"]["file"] = file;
-    return content_hash(read_scenario(json, directory.path()).scenario);
-  };
-  const std::string hash = hash_with("a.csv");
-  EXPECT_EQ(hash_with("b.csv"), hash);
-  test::write_plainly(directory / "b.csv", shell + "0,0,0,0,0,1\n");
-  EXPECT_NE(hash_with("b.csv"), hash);
-}
-
-TEST(ScenarioHash, FollowsTheContentsOfMeshes) {
-  const test::TemporaryDirectory directory;
-  const auto hash_of_text = [&directory](const std::string& text) {
-    test::write_plainly(directory / "cube.obj", text);
-    return content_hash(read_scenario(test::minimal_scenario("mesh"), directory.path()).scenario);
-  };
-  const std::string cube = test::read_file(test::data_directory() / "cube.obj");
-  EXPECT_EQ(hash_of_text(cube), hash_of_text(cube));
-  EXPECT_NE(hash_of_text(cube), hash_of_text(cube + "# more\n"));
+  for (const auto& [environment, source, more] :
+       {std::tuple{"point_shell", "shell.csv", "0,0,0,0,0,1\n"}, {"mesh", "cube.obj", "# more\n"}}) {
+    const std::string end = fs::path(source).extension(), contents = test::read_file(test::data_directory() / source);
+    const auto hash_with = [&](const std::string& file, const std::string& text) {
+      test::write_plainly(directory / (file + end), text);
+      Json json = test::minimal_scenario(environment);
+      json["environment"]["file"] = file + end;
+      return content_hash(read_scenario(json, directory.path()).scenario);
+    };
+    const std::string hash = hash_with("a", contents);
+    EXPECT_EQ(hash_with("b", contents), hash);
+    EXPECT_NE(hash_with("b", contents + more), hash);
+  }
 }
 
 TEST(ScenarioHash, DiffersWhenAnyFieldDiffers) {

@@ -101,7 +101,7 @@ TEST(ScenarioSchema, AcceptsFilesThatExtendOthersAsTheyStand) {
   EXPECT_FALSE(accepts(R"({"environment": {"type": "plane"}})"));
 }
 
-/// What one mutant must show; `objection` is the reader's.
+/// Expects schema and reader to agree on a mutant; `objection` is the reader's.
 void expect_agreement(const test::Mutation& mutant, const std::optional<InputError>& objection,
                       const std::string& name) {
   const bool accepted = schema().accepts(mutant.document);

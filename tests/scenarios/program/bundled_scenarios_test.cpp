@@ -151,7 +151,7 @@ TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuildWithoutSkipsFromTheirEf
   EXPECT_GT(skipped, 0u);
 }
 
-// What the commands besides `run` write, and what every algorithm makes of scenes of every kind.
+// The results of commands besides `run`, and of every algorithm on scenes of every kind.
 TEST(Commands, HaveTheNumbersOnRecord) {
   const char* kShort = "time={\"step_s\":0.0005,\"steps\":600}";
   const std::vector<std::pair<std::string, std::vector<std::string>>> commands = {

@@ -114,7 +114,7 @@ TEST_F(PluginCommand, EndsARunAndNoMoreWhenALawFails) {
   EXPECT_EQ(both.json()[1]["outcome"], "leaves_hole");
   EXPECT_NE(both.err.find("hostile diverges at step 0: hostile reports error 42"), std::string::npos) << both.err;
 
-  // Where divergence is no failure, the law's is.
+  // The failure of a law counts even where a divergence is expected.
   const ProgramRun expected =
       hapbench({"run", "single_spring", "--plugin", plugin("hostile"), "--set", "rendering.algorithm=hostile", "--set",
                 "expect.outcome=diverges", "--out", out("expected")});

@@ -1,33 +1,44 @@
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <map>
 #include <set>
 
+#include "algorithms/registry.hpp"
+#include "results/io/json_text.hpp"
+#include "results/summary/outcome_names.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/metric_sections.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/describe.hpp"
+#include "scenarios/program/fields_text.hpp"
+#include "scenarios/program/run_table.hpp"
+#include "scenarios/studies/stability/judged_run.hpp"
+#include "scenarios/thesis_claims/claims.hpp"
+#include "sim/loop/integrators/table.hpp"
 #include "tests/results/files.hpp"
+#include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-/// What people see: widths, manual page, completions, where the program finds its files.
+/// The program at a terminal: widths, lists, descriptions, manual page, completions; where results may go, and
+/// where the program finds its files.
 namespace hapbench::terminal_test {
 namespace {
 
 namespace fs = std::filesystem;
 using test::hapbench;
+using test::hapbench_here;
 using test::lines_of;
 using test::ProgramRun;
 
-/// What the shell offers at the end of a command line; `words` as bash has broken them.
+/// The words that the shell offers at the end of a command line; `words` as bash has broken them.
 std::vector<std::string> offered(std::vector<std::string> words) {
   words.insert(words.begin(), "complete");
   return lines_of(hapbench(words).out);
-}
-
-bool holds(const std::vector<std::string>& words, const std::string& word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
 }
 
 std::size_t widest(const std::string& text) {
@@ -46,9 +57,10 @@ TEST(Terminal, HasEveryHelpInItsWidth) {
   std::vector<std::string> commands = offered({""});
   ASSERT_GE(commands.size(), 17u);
   for (const std::string& command : commands) {
-    EXPECT_LE(widest(in_terminal({command, "--help"}, 80).out), 80u) << command;
+    const ProgramRun help = in_terminal({command, "--help"}, 80);
+    EXPECT_EQ(help.status, 0) << command;
+    EXPECT_LE(widest(help.out), 80u) << command;
     EXPECT_LE(widest(hapbench({command, "--help"}).out), 100u) << command << ", in a pipe";
-    EXPECT_EQ(hapbench({command, "--help"}).status, 0) << command;
   }
   EXPECT_LE(widest(in_terminal({"--help"}, 80).out), 80u);
 }
@@ -99,90 +111,6 @@ TEST(Terminal, GetsNoControlCharactersThroughAPipe) {
 // A field whose type has no summary would be listed without a word.
 TEST(List, SaysWhatEverythingIs) {
   for (const Json& entry : hapbench({"list", "--json"}).json()) EXPECT_NE(entry["summary"], "") << entry;
-}
-
-TEST(List, ShowsWhatIsAskedFor) {
-  EXPECT_NE(hapbench({"list", "scenarios", "--grep", "MOLAR"}).out.find("mesh_molar"), std::string::npos);
-  EXPECT_EQ(hapbench({"list", "scenarios", "--grep", "MOLAR"}).out.find("poke_plane"), std::string::npos);
-  EXPECT_EQ(hapbench({"list", "depth_models"}).out.find("algorithms"), std::string::npos);
-  const ProgramRun wrong = hapbench({"list", "integratros"}), nothing = hapbench({"list", "--grep", "no such thing"});
-  EXPECT_EQ(wrong.status, 2);
-  EXPECT_NE(wrong.err.find("nearest valid name: \"integrator\""), std::string::npos) << wrong.err;
-  EXPECT_EQ(nothing.status, 2);
-}
-
-TEST(CommandWords, AreSuggestedWhenMisspelt) {
-  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
-      {{"rnu", "single_spring"}, "unknown command \"rnu\"; nearest valid name: \"run\""},
-      {{"help"}, "unknown command \"help\"; nearest valid name: \"--help\""},
-      {{"version"}, "unknown command \"version\"; nearest valid name: \"--version\""},
-      {{"compare", "single_spring", "--algorithm", "proxy"},
-       "unknown option \"--algorithm\"; nearest valid name: \"--algorithms\""},
-      {{"run", "single_spring", "--otu=x"}, "unknown option \"--otu\"; nearest valid name: \"--out\""},
-      {{"stability", "single_spring", "--search", "--objective", "crated"}, "nearest valid name: \"created\""},
-      {{}, "a command is missing"},
-      {{"run"}, "run: scenarios is required"},
-      {{"compare", "single_spring", "--jobs", "0"}, "--jobs: got 0; allowed: 1 ... 1024"}};
-  for (const auto& [words, says] : cases) {
-    const ProgramRun run = hapbench(words);
-    EXPECT_EQ(run.status, 2) << says;
-    EXPECT_EQ(run.err.find("hapbench: error: "), 0u) << run.err;
-    EXPECT_EQ(lines_of(run.err).size(), 1u) << run.err;
-    EXPECT_NE(run.err.find(says), std::string::npos) << run.err;
-  }
-}
-
-TEST(Overrides, AreSuggestedWhenMisspelt) {
-  for (const auto& [override, says] : {std::pair{"rendering.stifness=3", "nearest valid name: \"stiffness_N_per_m\""},
-                                       std::pair{"stiffness=3", "\"rendering.stiffness_N_per_m\""},
-                                       std::pair{"redering.iterations=1", "nearest valid name: \"rendering\""}}) {
-    const ProgramRun run = hapbench({"run", "single_spring", "--set", override});
-    EXPECT_EQ(run.status, 2);
-    EXPECT_NE(run.err.find(says), std::string::npos) << run.err;
-  }
-}
-
-TEST(ScenarioFile, HasAllItsFaultsReportedAtOnce) {
-  const test::TemporaryDirectory directory;
-  Json json = test::minimal_scenario("plane");
-  json["time"]["step_s"] = -1;
-  json["environment"]["spacing_m"] = "fine";
-  json["rendering"]["stifness_N_per_m"] = 1;
-  test::write_plainly(directory / "a.json", json.dump());
-  const std::string file = (directory / "a.json").string();
-  const ProgramRun run = hapbench({"run", file});
-  EXPECT_EQ(run.status, 2);
-  const std::vector<std::string> lines = lines_of(run.err);
-  ASSERT_EQ(lines.size(), 3u) << run.err;
-  std::set<std::string> places;
-  for (const std::string& line : lines) {
-    const std::string begin = "hapbench: error: " + file + ": ";
-    ASSERT_EQ(line.find(begin), 0u) << line;
-    places.insert(line.substr(begin.size(), line.find(':', begin.size()) - begin.size()));
-  }
-  EXPECT_EQ(places, (std::set<std::string>{"/environment/spacing_m", "/rendering/stifness_N_per_m", "/time/step_s"}));
-  EXPECT_EQ(hapbench({"validate", file, "--json"}).json()[0]["errors"].size(), 3u);
-}
-
-TEST(Completion, OffersCommandsOptionsNamesAndFields) {
-  EXPECT_EQ(offered({"pre"}), std::vector<std::string>{"precision"});
-  EXPECT_TRUE(holds(offered({"compare", "--alg"}), "--algorithms"));
-  EXPECT_TRUE(holds(offered({"run", "peg_in"}), "peg_in_hole_2d_mean"));
-  EXPECT_TRUE(holds(offered({"run", "single_spring", "peg_in"}), "peg_in_hole_2d_mean")) << "of several";
-  EXPECT_TRUE(holds(offered({"compare", "x", "--algorithms", "mean,pro"}), "mean,proxy"));
-  EXPECT_EQ(offered({"compare", "x", "--algorithms=mean,pro"}), std::vector<std::string>{"--algorithms=mean,proxy"});
-  EXPECT_EQ(offered({"compare", "x", "--algorithms", "=", "prox"}), std::vector<std::string>{"proxy"})
-      << "broken by bash";
-  EXPECT_EQ(offered({"run", "x", "--set", "rendering.stiff"}),
-            std::vector<std::string>{"rendering.stiffness_N_per_m="});
-  EXPECT_EQ(offered({"run", "x", "--set", "rendering.algorithm", "=", "summ"}), std::vector<std::string>{"summation"});
-  EXPECT_EQ(offered({"run", "x", "--set", "rendering.local_average", "="}),
-            (std::vector<std::string>{"true", "false"}));
-  EXPECT_EQ(offered({"describe", "continuous_"}), std::vector<std::string>{"continuous_normal_projection"});
-  for (const std::vector<std::string>& words :
-       std::vector<std::vector<std::string>>{{"run", "x", "--out", ""}, {"nonsense", ""}, {"describe", "mean", ""}}) {
-    EXPECT_EQ(offered(words), std::vector<std::string>{}) << words[0];
-  }
 }
 
 /// As bash itself asks for it: by the name that is found in PATH, and by a path with the backslashes it is typed with.
@@ -257,6 +185,228 @@ TEST(Installation, HasItsScenariosBesideTheProgramAndMissesThemAloud) {
     EXPECT_NE(run.err.find("share/hapbench/"), std::string::npos) << run.err;
   }
   EXPECT_EQ(test::run_program(program, {"describe", "mean"}).status, 0) << "needs no folder";
+}
+
+TEST(ListCommand, NamesAllThereIs) {
+  const ProgramRun run = hapbench({"list"});
+  EXPECT_EQ(run.status, 0);
+  std::set<std::string> names;
+  for (const Json& entry : hapbench({"list", "--json"}).json()) {
+    names.insert(entry["name"]);
+    const std::string name = entry["name"];
+    // Scenarios that differ in their algorithm share a line: "springs_limited_*", and the algorithms.
+    const bool stands_there =
+        run.out.find("  " + name + " ") != std::string::npos || run.out.find("  " + name + "\n") != std::string::npos;
+    bool is_shared = false;
+    for (const AlgorithmEntry& algorithm : algorithms()) {
+      const std::string end = std::string("_") + algorithm.info->name;
+      is_shared |= name.ends_with(end) &&
+                   run.out.find("  " + name.substr(0, name.size() - end.size()) + "_*") != std::string::npos;
+    }
+    EXPECT_TRUE(stands_there || is_shared) << entry;
+  }
+  for (const AlgorithmEntry& entry : algorithms()) EXPECT_TRUE(names.contains(entry.info->name)) << entry.info->name;
+  for (const DepthModelEntry& entry : depth_models()) EXPECT_TRUE(names.contains(entry.info->name)) << entry.info->name;
+  for (const IntegratorEntry* integrator : kIntegrators) {
+    EXPECT_TRUE(names.contains(integrator->info.name)) << integrator->info.name;
+  }
+  for (const std::string& name : type_names("environment")) EXPECT_TRUE(names.contains(name)) << name;
+  for (const BundledScenario& bundled : bundled_scenarios()) EXPECT_TRUE(names.contains(bundled.name)) << bundled.name;
+  EXPECT_EQ(hapbench({"list", "--quiet"}).out, "");
+}
+
+TEST(DescribeCommand, ExplainsEveryListedName) {
+  for (const Json& entry : hapbench_here({"list", "--json"}).json()) {
+    const std::string name = entry["name"];
+    const ProgramRun run = hapbench_here({"describe", name});
+    EXPECT_EQ(run.status, 0) << name << run.err;
+    EXPECT_NE(run.out.find(name), std::string::npos) << run.out;
+    EXPECT_EQ(run.err, "") << name;
+    EXPECT_TRUE(hapbench_here({"describe", name, "--json"}).json().is_structured()) << name;
+  }
+}
+
+TEST(DescribeCommand, ExplainsEveryField) {
+  for (const std::string& path : scenario_field_paths()) {
+    if (path.starts_with("expect.metrics.")) continue;  // as every metric
+    const ProgramRun run = hapbench_here({"describe", path});
+    EXPECT_EQ(run.status, 0) << path << run.err;
+    EXPECT_NE(run.out.find(path + "\n"), std::string::npos) << path << run.out;
+  }
+}
+
+TEST(DescribeCommand, ExplainsTheWordsAndHeadingsThatResultsHave) {
+  std::vector<std::string> words = {"reproduced in kind"};
+  for (const std::string_view outcome : outcome_names()) words.emplace_back(outcome);
+  for (const MotionClass motion : kMotionClasses) words.emplace_back(motion_class_name(motion));
+  for (const RunVerdict verdict : {RunVerdict::thrown_out, RunVerdict::no_contact})
+    words.emplace_back(run_verdict_name(verdict));
+  for (const std::string& word : words) EXPECT_EQ(hapbench_here({"describe", word}).status, 0) << word;
+  for (const RunHeading& heading : kRunHeadings)
+    EXPECT_EQ(hapbench_here({"describe", heading.title}).status, 0) << heading.title;
+  EXPECT_EQ(hapbench_here({"describe", ">30Hz rms N"}).out.find("metric force_rms_above_30Hz_N"), 0u);
+}
+
+TEST(DescribeCommand, ExplainsEveryClaim) {
+  for (const Claim& claim : all_claims()) {
+    const ProgramRun run = hapbench_here({"describe", lower_case(claim.id)});
+    EXPECT_EQ(run.out.find(std::string("claim ") + claim.id + ", verdict on record: "), 0u) << run.out << run.err;
+  }
+  const ProgramRun list = hapbench_here({"list", "claims"});
+  EXPECT_EQ(lines_of(list.out)[0], "claims");
+  EXPECT_NE(list.out.find("  C5   not reproduced"), std::string::npos) << list.out;
+}
+
+TEST(DescribeCommand, ShowsWhatNamesAPlaceOfTheThesis) {
+  for (const char* name : {"Fig. A.2", "fig a.2", "figure_A.2", "figure_A.2_springs.svg"}) {
+    const Json place = hapbench_here({"describe", name, "--json"}).json();
+    EXPECT_EQ(place["claims"], Json::array({"A1"})) << name;
+    EXPECT_NE(place["scenarios"].dump().find("peg_in_hole_2d_shaped_stiffness"), std::string::npos) << name;
+  }
+  // Section A.2 is about the springs, and Fig. 2 has the parts 2c and 2d.
+  EXPECT_EQ(hapbench_here({"describe", "section A.2", "--json"}).json()["claims"], Json::array({"A2", "A3"}));
+  EXPECT_EQ(hapbench_here({"describe", "A.2", "--json"}).json()["claims"], Json::array({"A1", "A2", "A3", "D2"}));
+  EXPECT_EQ(hapbench_here({"describe", "Fig. 2", "--json"}).json()["claims"], Json::array({"V1", "V2"}));
+  const ProgramRun none = hapbench_here({"describe", "Fig. 99"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.err.find("names Fig. 99 of the thesis"), std::string::npos) << none.err;
+}
+
+TEST(DescribeCommand, PrintsTheSchema) {
+  EXPECT_EQ(hapbench({"describe", "schema"}).out, json_text(scenario_schema()));
+}
+
+TEST(DescribeCommand, ExplainsEveryMetric) {
+  for (const auto& [name, unit, meaning, value] : metrics_without_values(1)) {
+    const ProgramRun run = hapbench_here({"describe", name});
+    EXPECT_EQ(run.status, 0) << name << run.err;
+    EXPECT_EQ(run.out.find("metric " + name), 0u) << run.out;
+  }
+  EXPECT_NE(hapbench_here({"describe", "metrics"}).out.find("force_step_p99_N [N]"), std::string::npos);
+}
+
+/// As a test of all that a run can write.
+TEST(DescribeCommand, ExplainsEveryColumnOfEveryFileOfARun) {
+  const test::TemporaryDirectory directory;
+  Json json = test::minimal_scenario("block_with_hole");
+  json["initial"]["position_m"] = {0.003, 0.0, 0.0};  // on the flat
+  json["record"] = {
+      {"contacts", true}, {"stiffness_tensor", true}, {"energy", true},         {"ideal_trajectory", true},
+      {"pose", true},     {"torque", true},           {"ratio_iterations", {3}}};
+  test::write_plainly(directory / "a.json", json.dump());
+  const std::string out = (directory / "out").string();
+  ASSERT_EQ(hapbench({"run", (directory / "a.json").string(), "--out", out}).status, 0);
+  const Json columns = Json::parse(test::read_file(directory / "out/columns.json"));
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(out)) {
+    if (entry.path().extension() != ".csv") continue;
+    const std::string file = entry.path().filename().string();
+    std::string header;
+    for (const Json& column : columns.at(file)) {
+      header += (header.empty() ? "" : ",") + column["name"].get<std::string>();
+      const ProgramRun run = hapbench_here({"describe", column["name"].get<std::string>()});
+      EXPECT_NE(run.out.find(file), std::string::npos) << column << run.out << run.err;
+    }
+    EXPECT_EQ(lines_of(test::read_file(entry.path()))[0], header) << file;
+    EXPECT_EQ(hapbench_here({"describe", file, "--json"}).json()["columns"], columns[file]) << file;
+    ++files;
+  }
+  EXPECT_EQ(files, 6u);
+  const Json metrics = Json::parse(test::read_file(directory / "out/summary.json"))["metrics"];
+  for (const auto& [name, value] : metrics.items()) {
+    if (name == "final_position_m") continue;
+    EXPECT_NE(columns["summary.json"].dump().find("\"" + name + "\""), std::string::npos) << name;
+  }
+}
+
+class ValidateCommand : public testing::Test {
+ protected:
+  std::string write(const std::string& name, const std::string& text) const {
+    test::write_plainly(directory_ / name, text);
+    return (directory_ / name).string();
+  }
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(ValidateCommand, AcceptsEveryBundledScenario) {
+  std::vector<std::string> arguments = {"validate"};
+  for (const BundledScenario& bundled : bundled_scenarios()) arguments.push_back(bundled.file.string());
+  const ProgramRun run = hapbench(arguments);
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  const auto lines = lines_of(run.out);
+  EXPECT_EQ(
+      std::count_if(lines.begin(), lines.end(), [](const std::string& line) { return line.ends_with(": valid"); }),
+      static_cast<std::ptrdiff_t>(arguments.size() - 1));
+}
+
+TEST_F(ValidateCommand, WritesNothing) {
+  test::ProgramOptions options;
+  options.directory = directory_.path();
+  hapbench({"validate", "single_spring"}, options);
+  EXPECT_EQ(directory_.entries(), std::vector<std::string>{});
+}
+
+/// The command line itself, and where results may go.
+class OutputDirectory : public testing::Test {
+ protected:
+  static std::vector<std::vector<std::string>> commands_writing_to(const fs::path& out) {
+    return {{"run", "single_spring", "--out", out.string()},
+            {"run", "single_spring", "single_damper", "--out", out.string()},
+            {"compare", "single_spring", "--algorithms", "mean", "--out", out.string()},
+            {"stability", "single_spring", "--out", out.string()},
+            {"sweep", "single_spring", "--vary", "seed=1,2", "--out", out.string()},
+            {"shell", "peg_in_hole_2d_mean", "--out", (out / "s.csv").string()}};
+  }
+  static void expect_all_refused(const fs::path& out, const test::ProgramOptions& options = {}) {
+    for (const auto& arguments : commands_writing_to(out)) {
+      const ProgramRun run = hapbench(arguments, options);
+      EXPECT_EQ(run.status, 2) << arguments[0] << " " << run.err;
+      EXPECT_EQ(run.out, "") << arguments[0];
+      EXPECT_EQ(test::lines_of(run.err).size(), 1u) << run.err;
+      EXPECT_NE(run.err.find(out.string()), std::string::npos) << run.err;
+    }
+  }
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(OutputDirectory, ThatIsAFileIsRefused) {
+  test::write_plainly(directory_ / "file", "mine");
+  expect_all_refused(directory_ / "file");
+  EXPECT_EQ(test::read_file(directory_ / "file"), "mine");
+}
+
+TEST_F(OutputDirectory, BelowAFileIsRefused) {
+  test::write_plainly(directory_ / "file", "mine");
+  expect_all_refused(directory_ / "file/below");
+}
+
+TEST_F(OutputDirectory, ThatCannotBeCreatedIsRefused) {
+  expect_all_refused("/proc/hapbench_cannot_write_here");
+}
+
+TEST_F(OutputDirectory, WithoutPermissionIsRefused) {
+  fs::create_directory(directory_ / "locked");
+  ::chmod((directory_ / "locked").c_str(), 0555);
+  test::ProgramOptions options;
+  options.as_root_may = false;
+  if (hapbench({"list"}, options).status == 126) GTEST_SKIP() << "root's privileges cannot be dropped here";
+  expect_all_refused(directory_ / "locked", options);
+  expect_all_refused(directory_ / "locked/below", options);
+  EXPECT_TRUE(fs::is_empty(directory_ / "locked"));
+}
+
+TEST_F(OutputDirectory, WithATooLongNameIsRefused) {
+  expect_all_refused(directory_ / std::string(300, 'd'));
+}
+
+TEST_F(OutputDirectory, MayHaveSpacesQuotesAndLetters) {
+  const fs::path out = directory_ / "a b/c'd\"e/\xc3\xa4$HOME;x";
+  for (const auto& arguments : commands_writing_to(out)) {
+    const ProgramRun run = hapbench(arguments);
+    EXPECT_EQ(run.status, 0) << arguments[0] << run.err;
+  }
+  EXPECT_TRUE(fs::exists(out / "s.csv"));
 }
 
 }  // namespace

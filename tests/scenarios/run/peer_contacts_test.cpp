@@ -72,7 +72,7 @@ TEST_P(APeersContacts, FeedARunThatIsTheSameAgain) {
   EXPECT_EQ(run(), run());
 }
 
-/// What `work` is refused for; empty when it is not.
+/// The message with which `work` is refused; empty when it is not.
 template <class Work>
 std::string refusal(Work work) {
   try {

@@ -6,7 +6,7 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "sim/contact/contact_query.hpp"
 
-/// What the proxy promises, over whole runs.
+/// The guarantees of the proxy, over whole runs.
 namespace hapbench::proxy_in_hole_test {
 namespace {
 
@@ -20,7 +20,7 @@ constexpr double kOutside = 1e-9;
 /// Deeper than this, the drill's proxy leaves slowly [m]: a step at kRecoverySpeed.
 constexpr double kRecovery = 1e-5;
 
-/// Where the proxy is follows from the spring: p + f_spring / K. Looks for points in it by brute force.
+/// Looks for points in the proxy by brute force. Its place follows from the spring: p + f_spring / K.
 class PointsInProxy final : public Observer {
  public:
   PointsInProxy(const PointShell& shell, const SimulationParts& parts, double K)

@@ -175,7 +175,7 @@ TEST(MakeShell, OfABlockListsVerticesOnceOrForEachCell) {
   const auto per_cell = make_shell(scenario);
   EXPECT_GT(shared->size(), 1000u);
   EXPECT_EQ(per_cell->size(), 4 * shared->size());
-  // Those of cubes between multiples of the grid's spacing would be others.
+  // Cubes between multiples of the grid's spacing would give other cells.
   const auto& block = std::get<BlockEnvironment>(scenario.environment);
   const IsoSurface surface = marching_cubes(density_field(block.block, block.grid, block.density), {.cells = true});
   EXPECT_EQ(per_cell->cell_of_points(), points_by_cell(surface, block.grid).cells);

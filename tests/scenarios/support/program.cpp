@@ -15,6 +15,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "scenarios/program/command.hpp"
+#include "scenarios/program/program.hpp"
 #include "tests/scenarios/support/environment_variable.hpp"
 
 namespace hapbench::test {
@@ -125,6 +127,23 @@ std::filesystem::path hapbench_scalar_program() {
 
 ProgramRun hapbench(const std::vector<std::string>& arguments, const ProgramOptions& options) {
   return run_program(hapbench_program(), arguments, options);
+}
+
+ProgramRun hapbench_here(const std::vector<std::string>& arguments) {
+  set_this_program(hapbench_program());
+  std::vector<std::string> words = {hapbench_program().string()};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  ProgramRun run;
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  run.status = run_program_to_exit(static_cast<int>(words.size()), argv.data());
+  std::fflush(stdout);
+  run.out = testing::internal::GetCapturedStdout();
+  run.err = testing::internal::GetCapturedStderr();
+  return run;
 }
 
 RunningProgram::RunningProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments) {

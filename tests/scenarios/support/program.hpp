@@ -11,9 +11,9 @@
 /// Runs the built programs as a user's shell would, but without a shell: arguments arrive as they are given.
 namespace hapbench::test {
 
-/// What a finished process left.
+/// The exit status and the outputs of a finished process.
 struct ProgramRun {
-  /// Standard output as JSON; fails the test when it is none.
+  /// Standard output as JSON; fails the test when it is no JSON.
   Json json() const;
 
   int status = -1;              ///< exit status; -1 when a signal ended it
@@ -42,6 +42,9 @@ std::filesystem::path hapbench_program();
 std::filesystem::path hapbench_scalar_program();
 /// `hapbench ARGUMENTS…`
 ProgramRun hapbench(const std::vector<std::string>& arguments, const ProgramOptions& options = {});
+
+/// The same in this process, for commands that only read and print; a hundredth of the time of a process each.
+ProgramRun hapbench_here(const std::vector<std::string>& arguments);
 
 /// A process that goes on while the test does something else; killed, if need be, by the destructor.
 class RunningProgram {

@@ -10,7 +10,7 @@
 /// x86-64 and for every compiler. The C library computes sines and exponentials in another way on processors without
 /// fused multiply-add: where that shows, both hashes of such a processor follow in the line.
 ///
-/// Where a change is meant to change numbers, this renews the record, to be committed with it:
+/// This renews the record after a change that is meant to change numbers, to be committed with it:
 ///
 ///     HAPBENCH_RENEW_NUMBERS=1 build/release/bin/program_test --gtest_filter='*OnRecord*'
 namespace hapbench::test {

@@ -19,7 +19,7 @@ class SchemaValidator {
   ~SchemaValidator();
 
   bool accepts(const Json& document) const;
-  /// What is wrong with a document, for messages of tests; empty when nothing is.
+  /// Describes what is wrong with a document, for messages of tests; empty when it is valid.
   std::string complaints(const Json& document) const;
 
  private:

@@ -8,7 +8,7 @@
 #include "scenarios/description/writer.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
-/// What the three visitors make of a value, which `describe(Fields&, T&)` describes.
+/// Applies the three visitors to a value that `describe(Fields&, T&)` describes.
 namespace hapbench::test {
 
 /// Reads a JSON text, found at `at`, into `value`.

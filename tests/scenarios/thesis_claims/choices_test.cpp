@@ -4,7 +4,6 @@
 
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/thesis_claims/choices_file.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/schema_validator.hpp"
@@ -39,7 +38,7 @@ TEST(ChoicesOnRecord, AreWhatTheScenariosHave) {
   }
 }
 
-/// Each field of each choice, so that none has gone astray when a scenario was renamed.
+/// Tests each field of each choice, so that none is lost when a scenario is renamed.
 TEST(ChoicesOnRecord, ConcernEachAScenarioThatThenDiffers) {
   const Choices choices(kReference / "choices.json");
   const Texts on_record = choices.values_on_record();

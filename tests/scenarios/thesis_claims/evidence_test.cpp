@@ -63,5 +63,16 @@ TEST_F(ResultFile, ThatIsEmptyIsRefused) {
   EXPECT_TRUE(test::input_error_of([&] { table_of(""); }));
 }
 
+TEST(PublishedNumbers, FillTextsThatNameThem) {
+  const test::TemporaryDirectory directory;
+  test::write_plainly(directory / "some.json", R"({"values": [
+    {"id": "A.raw", "mean": 37.8, "std": 17.7}, {"id": "B", "value": 0.00025, "at_most": 15}]})");
+  const PublishedNumbers numbers(directory.path());
+  EXPECT_EQ(numbers.fill("raw <A.raw>, <B*1000 mm"), "raw 37.8 ± 17.7, <B*1000 mm");
+  EXPECT_EQ(numbers.fill("<B.mean*1000> mm, <B.at_most>"), "0.25 mm, 15");
+  EXPECT_EQ(numbers.fill("<A.raw.spread:.2f>"), "17.70");
+  EXPECT_THROW(numbers.fill("<C>"), InputError);
+}
+
 }  // namespace
 }  // namespace hapbench::evidence_test

@@ -1,9 +1,12 @@
-#include "scenarios/thesis_claims/robustness_run.hpp"
+#include "scenarios/thesis_claims/robustness.hpp"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/thesis_claims/ledger.hpp"
+#include "sim/core/random.hpp"
 #include "tests/results/files.hpp"
 
 namespace hapbench::robustness_test {
@@ -44,7 +47,7 @@ class Robustness : public testing::Test {
          .place = "",
          .claim = "",
          .published = "",
-         .rule = nullptr,
+         .rule = "",
          .measure = [](const Evidence& e) -> Measured {
            return {{"",
                     {{"stiffness", {e.load("springs_unlimited_mean").scenario.rendering.stiffness}},
@@ -58,7 +61,7 @@ class Robustness : public testing::Test {
          .place = "",
          .claim = "",
          .published = "",
-         .rule = nullptr,
+         .rule = "",
          .measure = [](const Evidence&) { return Measured(); },
          .judge = [](const Measured&, const PublishedNumbers&) -> Finding {
            return {Verdict::refuted, "", ""};
@@ -68,7 +71,7 @@ class Robustness : public testing::Test {
          .place = "",
          .claim = "",
          .published = "",
-         .rule = nullptr,
+         .rule = "",
          .measure = [](const Evidence& e) -> Measured {
            e.results.table("springs_unlimited_mean", "none.csv");
            return {};
@@ -78,7 +81,7 @@ class Robustness : public testing::Test {
          .place = "",
          .claim = "",
          .published = "",
-         .rule = nullptr,
+         .rule = "",
          .measure = nullptr,
          .judge = nullptr,
          .timing = true}};
@@ -171,6 +174,86 @@ TEST(RobustnessText, SaysWhatDecides) {
             "this verdict in 91 of 100 samples; decided by hand (S = 0.43)");
   EXPECT_EQ(robustness_text(counts(nullptr)), "this verdict in 91 of 100 samples; no single choice decides");
   EXPECT_EQ(robustness_text(nullptr), "");
+}
+
+using Bins = std::vector<std::size_t>;
+using Values = std::vector<double>;
+
+Values uniform(std::size_t count, std::uint64_t seed) {
+  Random random(seed);
+  Values values(count);
+  for (double& value : values) value = random.uniform();
+  return values;
+}
+
+TEST(EqualCountBins, CutTheValuesInOrder) {
+  EXPECT_EQ(equal_count_bins(Values{3, 1, 2, 4}, 2), (Bins{1, 0, 0, 1}));
+  EXPECT_EQ(equal_count_bins(Values{5, 5, 5}, 3), (Bins{0, 1, 2}));
+  EXPECT_TRUE(equal_count_bins(Values{}, 3).empty());
+}
+
+TEST(FirstOrderIndex, IsTheFormulasByHand) {
+  // Means 0.25 and 1 about 0.625: SST = 1.875, SSB = 2 * 4 * 0.375^2 = 1.125, SSW = 0.75 with 8 - 2 degrees of freedom.
+  const Bins bin = {0, 0, 0, 0, 1, 1, 1, 1};
+  const Values y = {0, 0, 0, 1, 1, 1, 1, 1};
+  EXPECT_NEAR(first_order_index(bin, y), (1.125 - 0.75 / 6.0) / 1.875, 1e-15);
+  EXPECT_EQ(first_order_index(bin, Values{0, 0, 0, 0, 1, 1, 1, 1}), 1.0);
+  EXPECT_TRUE(std::isnan(first_order_index(bin, Values(8, 1.0)))) << "nothing changes";
+  EXPECT_TRUE(std::isnan(first_order_index(Bins{0, 1}, Values{0, 1}))) << "every bin has one point";
+}
+
+TEST(FirstOrderIndex, IsUnbiasedWithoutInfluenceAndThatOfAModelWithOne) {
+  // y = [x1 < 1/2] or [x2 < 1/2]: Var(E[y | x1]) / Var(y) = (1/16) / (3/16) = 1/3.
+  double without = 0.0, with = 0.0;
+  constexpr int kRepeats = 400;
+  constexpr std::size_t kPoints = 128;
+  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+    const auto seed = static_cast<std::uint64_t>(repeat);
+    const Values a = uniform(kPoints, 3 * seed), b = uniform(kPoints, 3 * seed + 1), c = uniform(kPoints, 3 * seed + 2);
+    Values y(kPoints);
+    for (std::size_t i = 0; i < kPoints; ++i) y[i] = a[i] < 0.5 || b[i] < 0.5 ? 1.0 : 0.0;
+    // Bins with an edge where y changes; of equal count, the bin across it would blur the step.
+    Bins eighths(kPoints);
+    for (std::size_t i = 0; i < kPoints; ++i) eighths[i] = static_cast<std::size_t>(8.0 * a[i]);
+    with += first_order_index(eighths, y) / kRepeats;
+    without += first_order_index(equal_count_bins(c, 8), y) / kRepeats;
+  }
+  // One estimate scatters by about sqrt(2 (B - 1)) / n = 0.03 without and 0.07 with influence; four standard errors of
+  // the mean of 400.
+  EXPECT_NEAR(without, 0.0, 4 * 0.03 / 20);
+  EXPECT_NEAR(with, 1.0 / 3.0, 4 * 0.07 / 20);
+}
+
+TEST(DecidingInput, IsTheOneThatDecidesOrNone) {
+  constexpr std::size_t kPoints = 96;
+  std::vector<Bins> bins;
+  std::vector<Values> inputs;
+  for (std::uint64_t i = 0; i < 10; ++i) {
+    inputs.push_back(uniform(kPoints, 100 + i));
+    bins.push_back(equal_count_bins(inputs.back(), 6));
+  }
+  Values y(kPoints);
+  for (std::size_t i = 0; i < kPoints; ++i) y[i] = inputs[7][i] < 0.3 ? 1.0 : 0.0;
+  const auto deciding = deciding_input(bins, y, 1);
+  ASSERT_TRUE(deciding);
+  EXPECT_EQ(deciding->input, 7u);
+  EXPECT_GT(deciding->index, 0.8);
+  EXPECT_FALSE(deciding_input(bins, Values(kPoints, 1.0), 1)) << "y never changes";
+}
+
+TEST(DecidingInput, RaisesFalseAlarmsAtItsLevelOnly) {
+  constexpr std::size_t kPoints = 64, kTrials = 300;
+  std::vector<Bins> bins;
+  for (std::uint64_t i = 0; i < 10; ++i) bins.push_back(equal_count_bins(uniform(kPoints, 500 + i), 4));
+  std::size_t alarms = 0;
+  for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
+    Values y = uniform(kPoints, 9000 + trial);
+    for (double& value : y) value = value < 0.4 ? 1.0 : 0.0;
+    if (deciding_input(bins, y, trial, 0.05, 99)) ++alarms;
+  }
+  // Binomial with p = 0.05: 15 of 300 on average, standard deviation 3.8.
+  EXPECT_LE(alarms, 15u + 4 * 4);
+  EXPECT_GE(alarms, 1u) << "the level is not that of something else";
 }
 
 }  // namespace

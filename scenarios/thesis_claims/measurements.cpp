@@ -1,0 +1,69 @@
+#include "scenarios/thesis_claims/measurements.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "scenarios/thesis_claims/claims.hpp"
+
+namespace hapbench {
+
+MeasuredCase vibration(const std::string& name, const RunSummary& summary) {
+  const Metrics& metrics = summary.metrics;
+  return {name,
+          {{"velocity_variation", {metrics.velocity_total_variation}},
+           {"vibration_power", {metrics.vibration_power.value_or(0.0)}},
+           {"force_reversals", {static_cast<double>(metrics.force_reversals)}}}};
+}
+
+bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b) {
+  return a["velocity_variation"] >= kVibratesMore * b["velocity_variation"] &&
+         a["vibration_power"] >= kVibratesMore * kVibratesMore * b["vibration_power"];
+}
+
+bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b) {
+  return a["velocity_variation"] > b["velocity_variation"] && a["vibration_power"] > b["vibration_power"];
+}
+
+std::string vibration_rule() {
+  return fmt::format("reproduced: {} times the total variation of velocity and {} times the power above 30 Hz",
+                     in_words(kVibratesMore), plain(kVibratesMore * kVibratesMore));
+}
+
+std::string vibrations_text(const Measured& cases) {
+  std::string text;
+  for (const MeasuredCase& m : cases) {
+    append_item(text,
+                fmt::format("{}: velocity varies by {:.3g} m/s, power above 30 Hz {:.2g} m²/s², {} force reversals",
+                            m.name, m["velocity_variation"], m["vibration_power"], m["force_reversals"]));
+  }
+  return text;
+}
+
+void SwingDecay::add(double x) {
+  const bool is_extreme = rows_ >= 2 && (last_ - before_) * (x - last_) < 0.0;
+  if (is_extreme && !decayed_) {
+    const double extreme = std::abs(last_);
+    if (extreme < kSmallest) {
+      decayed_ = true;
+    } else {
+      if (extremes_ == 0) first_extreme_ = extreme;
+      last_extreme_ = extreme;
+      ++extremes_;
+    }
+  }
+  before_ = last_;
+  last_ = x;
+  ++rows_;
+}
+
+double SwingDecay::damping_ratio() const {
+  if (extremes_ < 2) return std::abs(last_) < kSmallest ? 1.0 : 0.0;
+  const double q = std::pow(last_extreme_ / first_extreme_, 1.0 / static_cast<double>(extremes_ - 1));
+  if (q >= 1.0) return 0.0;
+  const double log_q = std::log(q);
+  return -log_q / std::sqrt(std::numbers::pi * std::numbers::pi + log_q * log_q);
+}
+
+}  // namespace hapbench

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "algorithms/registry.hpp"
+#include "results/summary/summary.hpp"
+#include "scenarios/thesis_claims/claims.hpp"
+#include "sim/contact/contact_buffer.hpp"
+#include "sim/tool/cylinder.hpp"
+
+/// Measurements and scenes that several claims share.
+namespace hapbench {
+
+inline const Cylinder kDrill;
+inline const ToolPose kUpright{Vec3::Zero(), {0.0, 0.0, -1.0}};
+
+/// A wall point with normal +x, `beyond` the median line of an upright tool (so beyond > 0: the tool's axis is inside).
+inline ContactBuffer wall_point(double beyond, const char* depth_model) {
+  ContactBuffer contacts(1);
+  contacts.push(0, {beyond, 0.0, 0.001}, Vec3::UnitX());
+  find_depth_model(depth_model)->make()->evaluate(kDrill, kUpright, contacts);
+  contacts.pad();
+  return contacts;
+}
+
+/// Overrides of task 2: the hand pushes with more than the input limit of 2 N all the time, during one rotation of the
+/// drill to and fro.
+inline const std::vector<std::string> kHandAboveLimit = {
+    R"(hand.force_N={"type":"sine","mean":3.5,"amplitude":1.4,"period_s":1.7})", "time.duration_s=6"};
+
+/// Total variation of the velocity [m/s], power of the velocity above 30 Hz [m^2/s^2] and reversals of the force.
+MeasuredCase vibration(const std::string& name, const RunSummary& summary);
+
+/// An algorithm vibrates, compared with a smooth one, if it has this many times the total variation and the square of
+/// it times the power.
+inline constexpr double kVibratesMore = 5.0;
+bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b);
+/// True if `a` has more of both.
+bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b);
+
+/// The beginning of a rule that compares vibrations.
+std::string vibration_rule();
+std::string vibrations_text(const Measured& cases);
+
+/// Measures the damping ratio of a swing about zero from the ratio q of successive extremes,
+/// zeta = -ln q / sqrt(pi^2 + ln^2 q).
+class SwingDecay {
+ public:
+  /// Extremes closer to zero than this end the decay [m]: rounding and grazing contact are no swings.
+  static constexpr double kSmallest = 1e-6;
+
+  /// Adds the coordinate of the next row [m].
+  void add(double x);
+  /// From the first and the last extreme. With fewer than two extremes: 1 if the motion has come to zero, else 0.
+  double damping_ratio() const;
+
+ private:
+  double before_ = 0.0, last_ = 0.0;
+  std::size_t rows_ = 0;
+  std::size_t extremes_ = 0;
+  bool decayed_ = false;
+  double first_extreme_ = 0.0, last_extreme_ = 0.0;
+};
+
+}  // namespace hapbench

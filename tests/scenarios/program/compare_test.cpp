@@ -1,0 +1,389 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "algorithms/registry.hpp"
+#include "device_model/device_presets.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/file_tree.hpp"
+#include "tests/scenarios/support/program.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+/// hapbench compare: of algorithms, of scenarios and seeds, of devices.
+namespace hapbench::compare_test {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+using test::cells_of;
+using test::hapbench;
+using test::lines_of;
+using test::ProgramRun;
+
+class CompareCommand : public testing::Test {
+ protected:
+  ProgramRun compare(std::vector<std::string> more) const {
+    more.insert(more.begin(), {"compare", "peg_in_hole_2d_shaped_stiffness", "--out", out_});
+    return hapbench(more);
+  }
+  test::TemporaryDirectory directory_;
+  std::string out_ = (directory_ / "out").string();
+};
+
+TEST_F(CompareCommand, ShowsARowForEachAlgorithm) {
+  const ProgramRun run = compare({"--algorithms", "original_averaging,mean,exact_shaping"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  const auto lines = lines_of(run.out);
+  ASSERT_EQ(lines.size(), 15u) << run.out;
+  EXPECT_EQ(lines[0], "peg_in_hole_2d_shaped_stiffness");
+  EXPECT_EQ(lines[3].find("algorithm          outcome"), 0u);
+  EXPECT_EQ(lines[5].find("original_averaging leaves_hole"), 0u);
+  EXPECT_EQ(lines[6].find("mean               leaves_hole"), 0u);
+  EXPECT_EQ(lines[7].find("exact_shaping      leaves_hole"), 0u);
+  EXPECT_EQ(lines[9],
+            "\"-\": under 1/30 s of settled contact (original_averaging); --set metrics.from_s=0 takes all contact");
+  EXPECT_EQ(lines[11].find("99 % of the steps take at most "), 0u) << lines[11];
+  EXPECT_EQ(lines[12], "defined with a depth model of their own: original_averaging with shortest_distance");
+}
+
+TEST_F(CompareCommand, ShowsAllAlgorithmsIn100Columns) {
+  for (const std::string& line : lines_of(compare({}).out)) {
+    EXPECT_LE(line.size(), 100u) << line;
+  }
+}
+
+TEST_F(CompareCommand, NamesTheAlgorithmsWhoseFrictionTheIntegratorCannotStep) {
+  EXPECT_EQ(
+      compare({"--algorithms", "mean,summation,tandpasta"}).err,
+      "hapbench: warning: peg_in_hole_2d_shaped_stiffness: beyond 79.5 N of spring force, in 2 of 5 rows, "
+      "first in step 0, the explicit step of friction is unstable; what follows is the integrator's doing, not the "
+      "law's (summation; likewise tandpasta)\n");
+  EXPECT_EQ(compare({"--algorithms", "mean"}).err, "");
+  const std::string implicit = compare({"--algorithms", "summation", "--set", "integrator.type=implicit_euler"}).err;
+  EXPECT_EQ(implicit.find("friction"), std::string::npos) << implicit;
+}
+
+TEST_F(CompareCommand, SaysWhySettledContactHasNoMetrics) {
+  const std::string why = "\"-\": under 1/30 s of settled contact (mean)";
+  EXPECT_NE(compare({"--algorithms", "mean", "--set", "time.steps=50"}).out.find(why), std::string::npos);
+  EXPECT_EQ(compare({"--algorithms", "mean", "--set", "time.steps=100", "--set", "metrics.from_s=0"}).out.find("\"-\""),
+            std::string::npos);
+}
+
+TEST_F(CompareCommand, WritesTheFilesOfEachSideBySideAndTheTable) {
+  compare({"--algorithms", "mean,summation"});
+  for (const char* algorithm : {"mean", "summation"}) {
+    for (const char* file : {"summary.json", "trajectory.csv", "scenario.effective.json", "ratios.csv"}) {
+      EXPECT_TRUE(fs::exists(directory_.path() / "out" / algorithm / file)) << algorithm << file;
+    }
+  }
+  const auto lines = lines_of(test::read_file(directory_ / "out/comparison.csv"));
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(
+      lines[0],
+      "algorithm,outcome,steps,force_max_N,velocity_total_variation_m_per_s,force_reversals,"
+      "vibration_power_above_30Hz_m2_per_s2,depth_max_m,ratio_min,ratio_max,steps_in_contact,contact_share,landings,"
+      "landing_force_max_N,landing_force_step_max_N,settled_s,force_mean_in_contact_N,settled_force_max_N,"
+      "force_step_p99_N,settled_force_step_max_N,force_rms_above_30Hz_N,force_reversals_per_s,reduction_changes,"
+      "reduction_force_step_max_N");
+  // The numbers are those of the summary.
+  const Json summary = Json::parse(test::read_file(directory_ / "out/mean/summary.json"));
+  const Json& metrics = summary["metrics"];
+  const auto cells = cells_of(lines[1]);
+  EXPECT_EQ(cells[0], "mean");
+  EXPECT_EQ(cells[1], summary["outcome"]);
+  EXPECT_EQ(cells[2], std::to_string(summary["steps"].get<int>()));
+  const auto names = cells_of(lines[0]);
+  ASSERT_EQ(cells.size(), names.size());
+  for (std::size_t i = 3; i < names.size(); ++i) {
+    const Json& metric = metrics.at(names[i]);
+    const auto number = metric.is_null() ? std::nullopt : std::optional(metric.get<double>());
+    EXPECT_EQ(cells[i].empty() ? std::nullopt : std::optional(test::number_in(cells[i])), number) << names[i];
+  }
+}
+
+TEST_F(CompareCommand, EqualsARunOfEachAlgorithmAlone) {
+  compare({"--algorithms", "mean"});
+  hapbench({"run", "peg_in_hole_2d_shaped_stiffness", "--set", "rendering.algorithm=mean", "--out",
+            (directory_ / "run").string()});
+  // The run misses the expectations of another algorithm, which compare does not ask about; the numbers are the same.
+  test::expect_same_files(directory_ / "out/mean", directory_ / "run", {"summary.json"});
+}
+
+TEST_F(CompareCommand, GivesTheSameBytesTwice) {
+  compare({"--algorithms", "mean,tandpasta"});
+  const auto first = test::files_below(out_);
+  compare({"--algorithms", "mean,tandpasta"});
+  EXPECT_EQ(test::files_below(out_), first);
+}
+
+TEST_F(CompareCommand, TakesOverridesJsonAndQuiet) {
+  const Json json = compare({"--algorithms", "mean,summation", "--set", "time.steps=3", "--json"}).json();
+  ASSERT_EQ(json.size(), 2u);
+  EXPECT_EQ(json[0]["algorithm"], "mean");
+  EXPECT_EQ(json[1]["steps"], 3);
+  const ProgramRun quiet = compare({"--algorithms", "mean", "--quiet"});
+  EXPECT_EQ(quiet.out + quiet.err, "");
+}
+
+TEST_F(CompareCommand, RunsAllAlgorithmsUnlessSomeAreNamed) {
+  const Json json = compare({"--set", "time.steps=3", "--json"}).json();
+  ASSERT_EQ(json.size(), algorithms().size());
+  for (std::size_t i = 0; i < json.size(); ++i) EXPECT_EQ(json[i]["algorithm"], algorithms()[i].info->name);
+}
+
+TEST_F(CompareCommand, ExitsWith3WhenOneDivergesUnexpectedly) {
+  const ProgramRun run = hapbench(
+      {"compare", "springs_unlimited_shaped_stiffness", "--algorithms", "shaped_stiffness,summation", "--out", out_});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_NE(run.err.find("summation diverges at step "), std::string::npos) << run.err;
+  EXPECT_EQ(lines_of(run.err).size(), 1u);
+}
+
+/// Comparisons of several scenarios or seeds.
+class CompareBatch : public testing::Test {
+ protected:
+  CompareBatch() {
+    for (const char* name : {"press", "poke"}) {
+      // A round tip pressed onto a plane, from two heights.
+      test::write_plainly(directory_ / (std::string(name) + ".json"),
+                          std::string(R"({"time": {"step_s": 0.0005, "steps": 100}, "tool": {"tip": "round"},
+                              "environment": {"type": "plane"}, "hand": {"type": "force", "z_N": -1},
+                              "initial": {"position_m": [0, 0, )") +
+                              (name == std::string("press") ? "0.0001" : "0.0003") + "]}}");
+    }
+  }
+  std::string file(const std::string& name) const { return (directory_ / name).string(); }
+  ProgramRun compare(const std::string& out, const Words& more = {}) const {
+    Words words = {"compare", file("press.json"), file("poke.json"),      "--out",
+                   file(out), "--algorithms",     "mean, summation,proxy"};
+    words.insert(words.end(), more.begin(), more.end());
+    return hapbench(words);
+  }
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(CompareBatch, ShowsALeagueWithinAHundredColumns) {
+  const ProgramRun run = compare("out", {"--by", "force_max_N,depth_max_m"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  for (const char* text : {"A  press\n", "B  poke\n", "\nforce_max_N, less is better\n", "\ndepth_max_m, less",
+                           "\nall metrics and scenarios\n", "one seed: no spread is known", "results in "}) {
+    EXPECT_NE(run.out.find(text), std::string::npos) << text << run.out;
+  }
+  for (const std::string& line : lines_of(run.out)) {
+    if (line.starts_with("results in")) continue;  // the path is the test's
+    EXPECT_LE(line.size(), 100u) << line;
+  }
+}
+
+TEST_F(CompareBatch, TakesTheNameOfAGroupAndRanksByFidelityWhereTheIdealForceIsKnown) {
+  const ProgramRun run = hapbench({"compare", "quality", "--algorithms", "mean,proxy", "--out", file("out")});
+  EXPECT_EQ(run.status, 0) << run.err;
+  for (const char* text : {"cone_in_cone\n", "two_walls\n", "\nfidelity.force_error_relative, less is better\n",
+                           "\nfidelity.force_artefact_share, less is better\n"}) {
+    EXPECT_NE(run.out.find(text), std::string::npos) << text << run.out;
+  }
+}
+
+TEST_F(CompareBatch, KeepsEachRunInAFolderOfItsOwn) {
+  compare("out", {"--seeds", "2", "--quiet"});
+  for (const char* name : {"league.csv", "press/comparison.csv", "poke/comparison.csv",
+                           "press/mean/seed_0/summary.json", "poke/proxy/seed_1/trajectory.csv"}) {
+    EXPECT_TRUE(fs::exists(directory_ / "out" / name)) << name;
+  }
+  const auto lines = lines_of(test::read_file(directory_ / "out/poke/comparison.csv"));
+  ASSERT_EQ(lines.size(), 7u);
+  EXPECT_EQ(lines[0].find("seed,algorithm,outcome,"), 0u);
+  EXPECT_EQ(lines[2].find("1,mean,completes,"), 0u) << lines[2];
+  EXPECT_EQ(lines_of(test::read_file(directory_ / "out/league.csv")).size(), 1u + 2 * 3 * 3);
+}
+
+TEST_F(CompareBatch, GivesTheSameBytesWhateverTheJobs) {
+  compare("one", {"--seeds", "2", "--jitter", "1e-5", "--jobs", "1"});
+  compare("three", {"--seeds", "2", "--jitter", "1e-5", "--jobs", "3"});
+  test::expect_same_files(directory_ / "one", directory_ / "three");
+}
+
+TEST_F(CompareBatch, SaysThatNothingIsRandomAndOffersJitter) {
+  const std::string alike = compare("out", {"--seeds", "3", "--by", "force_max_N"}).out;
+  EXPECT_NE(alike.find("nothing is random in A B: all seeds are one run"), std::string::npos) << alike;
+  EXPECT_NE(alike.find("--jitter METRES"), std::string::npos);
+  const ProgramRun shifted = compare("out", {"--seeds", "3", "--by", "force_max_N", "--jitter", "2e-5", "--json"});
+  for (const Json& row : shifted.json()["standings"]) EXPECT_GT(row["spread"], 0.0) << row;
+  EXPECT_EQ(shifted.json()["runs"].size(), 18u);
+}
+
+TEST_F(CompareBatch, GoesOnAfterADivergence) {
+  const ProgramRun run = hapbench({"compare", file("press.json"), "springs_unlimited_shaped_stiffness", "--out",
+                                   file("out"), "--algorithms", "summation,shaped_stiffness", "--json"});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_NE(lines_of(run.err).back().find("1 of 4 runs diverge, the first: "), std::string::npos) << run.err;
+  const Json json = run.json();
+  EXPECT_EQ(json["runs"].size(), 4u);
+  const auto summation = std::find_if(json["laws"].begin(), json["laws"].end(),
+                                      [](const Json& law) { return law["algorithm"] == "summation"; });
+  // The press throws its tool out with the sum of all springs.
+  EXPECT_EQ((*summation)["fails"], Json({"press", "springs_unlimited_shaped_stiffness"}));
+}
+
+TEST_F(CompareBatch, LeavesNothingOfAnEarlierOne) {
+  compare("out", {"--quiet"});
+  test::write_plainly(directory_ / "out/mine.txt", "mine");
+  hapbench({"compare", file("press.json"), "--out", file("out"), "--algorithms", "proxy", "--quiet"});
+  const Words names = test::names_below(directory_ / "out");
+  for (const std::string& name : names) {
+    EXPECT_TRUE(name.starts_with("proxy/") || name == "comparison.csv" || name == "mine.txt" ||
+                name == "hapbench_results.json")
+        << name;
+  }
+  EXPECT_TRUE(fs::exists(directory_ / "out/mine.txt"));
+}
+
+TEST_F(CompareBatch, IsAloneInTakingAwayEarlierResults) {
+  hapbench({"run", file("press.json"), file("poke.json"), "--out", file("out"), "--quiet"});
+  hapbench({"run", file("poke.json"), "single_spring", "--out", file("out"), "--quiet"});
+  EXPECT_TRUE(fs::exists(directory_ / "out/press/summary.json")) << "one folder may gather the runs of many commands";
+}
+
+/// `compare --devices`: the largest stiffness that devices render.
+class CompareDevices : public testing::Test {
+ protected:
+  CompareDevices() {
+    // A probe pressed on a plane of 49 points by a hand with a mass.
+    test::write_plainly(directory_ / "press.json",
+                        R"({"time": {"step_s": 0.001, "steps": 200}, "tool": {"diameter_m": 0.01, "length_m": 0.1},
+                            "environment": {"type": "plane", "size_m": 0.006, "spacing_m": 0.001},
+                            "hand": {"type": "mass_spring_damper", "mass_kg": 0.2, "stiffness_N_per_m": 300,
+                                     "damping_N_s_per_m": 6, "target": {"x_m": 0, "y_m": 0, "z_m": -0.003}},
+                            "device": {"type": "impedance", "preset": "omega.3"},
+                            "rendering": {"stiffness_N_per_m": 2000, "damping_ratio": 0,
+                                          "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}})");
+  }
+  std::string file(const std::string& name) const { return (directory_ / name).string(); }
+  ProgramRun compare(const std::string& devices, const std::string& out, const Words& more = {}) const {
+    Words words = {"compare", file("press.json"), "--devices", devices, "--out", file(out)};
+    words.insert(words.end(), more.begin(), more.end());
+    return hapbench(words);
+  }
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(CompareDevices, AnswersAsLimitDoes) {
+  const Words question = {"--algorithms", "shaped_stiffness,summation", "--vibration", "0.002", "--resolution", "0.01",
+                          "--json"};
+  const ProgramRun table = compare("omega.3", "out", question);
+  ASSERT_EQ(table.status, 0) << table.err;
+  Words words = {"limit", file("press.json"), "--vary", "rendering.stiffness_N_per_m", "--out", file("limit")};
+  words.insert(words.end(), question.begin(), question.end());
+  const Json limits = hapbench(words).json()["limits"], rows = table.json()["limits"];
+  ASSERT_EQ(rows.size(), 2u);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_TRUE(rows[i]["limit_N_per_m"].is_number());
+    EXPECT_EQ(rows[i]["limit_N_per_m"], limits[i]["limit"]);
+    EXPECT_EQ(rows[i]["beyond_N_per_m"], limits[i]["beyond"]);
+    EXPECT_EQ(rows[i]["runs"], limits[i]["runs"]);
+    EXPECT_LE(rows[i]["vibration_m_per_s"], 0.002);
+    EXPECT_EQ(rows[i]["published_N_per_m"], 5000.0);
+  }
+}
+
+TEST_F(CompareDevices, SummationRendersOneOverTheContactsOfAFlatWall) {
+  const Json rows = compare("touch", "out", {"--json"}).json()["limits"];
+  const Json &shaped = rows[0], &summation = rows[1];
+  EXPECT_EQ(shaped["stiffness_ratio"], 1.0);
+  EXPECT_NEAR(shaped["lambda_max"].get<double>(), 1.0, 1e-9);
+  EXPECT_NEAR(summation["contacts"].get<double>(), 49.0, 1e-9);
+  EXPECT_NEAR(summation["lambda_max"].get<double>(), 49.0, 1e-9);
+  // Equal normals make one spring of n K: both searches end within their 1 % of the same stiffness.
+  EXPECT_NEAR(summation["rendered_ratio"].get<double>(), 1.0, 0.021);
+  EXPECT_NEAR(summation["stiffness_ratio"].get<double>(), 1.0 / 49.0, 0.021 / 49.0);
+}
+
+TEST_F(CompareDevices, GivesTheSameBytesWhateverTheJobs) {
+  const ProgramRun one = compare("ideal,admittance,touch", "one", {"--jobs", "1"});
+  const ProgramRun two = compare("ideal,admittance,touch", "two", {"--jobs", "2"});
+  EXPECT_EQ(one.status, 0) << one.err;
+  test::expect_same_files(directory_ / "one", directory_ / "two");
+  EXPECT_EQ(test::names_below(directory_ / "one"), (Words{"device_limits.csv", "device_runs.csv"}));
+  EXPECT_EQ(lines_of(test::read_file(directory_ / "one/device_limits.csv")).size(), 1u + 3 * 2);
+  for (const char* text :
+       {"B = 0 at every K", "published", "touch", "0.001 m/s rms above 30 Hz", "summation in press: "}) {
+    EXPECT_NE(one.out.find(text), std::string::npos) << text << one.out;
+  }
+}
+
+TEST_F(CompareDevices, OverridesHoldForEveryDevice) {
+  const ProgramRun run =
+      compare("ideal,touch", "out",
+              {"--set", "rendering.damping_ratio=0.5", "--set", "rendering.mass_kg=0.3", "--set", "hand.mass_kg=0.1"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("damping_ratio zeta = 0.5 and rendering.mass_kg m = 0.3"), std::string::npos) << run.out;
+}
+
+TEST_F(CompareDevices, TakesADeviceOfOnesOwn) {
+  // touch, in numbers: the answers have to be the same.
+  const std::string device =
+      R"({"type": "impedance", "handle_mass_kg": 0.045, "viscous_N_s_per_m": 0.1, "coulomb_N": 0.2,
+          "encoder_step_m": 0.055e-3, "force_max_N": 3.3})";
+  test::write_plainly(directory_ / "mine.json", device);
+  test::write_plainly(directory_ / "scene.json", R"({"extends": "press.json", "device": )" + device + "}");
+  const ProgramRun run =
+      compare("touch," + file("mine.json") + "," + file("scene.json"), "out", {"--algorithms", "summation", "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const Json rows = run.json()["limits"];
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[1]["device"], "mine");
+  EXPECT_EQ(rows[2]["device"], "scene");
+  for (const Json& row : rows) EXPECT_EQ(row["limit_N_per_m"], rows[0]["limit_N_per_m"]);
+  EXPECT_EQ(rows[0]["published_N_per_m"], 400.0);
+  EXPECT_EQ(rows[1]["published_N_per_m"], nullptr);
+}
+
+TEST_F(CompareDevices, MarksAPresetWithOtherNumbers) {
+  const Words question = {"--algorithms", "mean", "--resolution", "0.5"};
+  const auto with = [&](const char* override) {
+    Words words = question;
+    words.insert(words.end(), {"--set", override});
+    return compare("touch", "out", words);
+  };
+  const ProgramRun changed = with("device.coulomb_N=0");
+  EXPECT_NE(changed.out.find("\ntouch*"), std::string::npos) << changed.out;
+  EXPECT_NE(changed.out.find("*: a preset with numbers of --set"), std::string::npos) << changed.out;
+  EXPECT_EQ(lines_of(test::read_file(directory_ / "out/device_limits.csv"))[1].find("touch*,press,mean,"), 0u);
+  EXPECT_EQ(changed.out.find("400"), std::string::npos) << changed.out;
+  const ProgramRun delayed = with("device.delay_samples=1");
+  EXPECT_NE(delayed.out.find("\ntouch*"), std::string::npos) << delayed.out;
+  EXPECT_EQ(with("hand.mass_kg=0.1").out.find("touch*"), std::string::npos);
+}
+
+TEST_F(CompareDevices, SaysWhichDelaysDiffer) {
+  test::write_plainly(directory_ / "mine.json",
+                      R"({"type": "impedance", "handle_mass_kg": 0.1, "delay_samples": 1.5})");
+  const Words question = {"--algorithms", "mean", "--resolution", "0.5"};
+  const auto out = [&](const std::string& devices) { return compare(devices, "out", question).out; };
+  EXPECT_NE(out("touch,ideal," + file("mine.json")).find("\ndelay_samples: 0 of touch; 1.5 of mine; "),
+            std::string::npos);
+  EXPECT_EQ(out("touch,falcon,ideal").find("delay_samples"), std::string::npos);
+}
+
+TEST_F(CompareDevices, TakesAllPresetsByTheirType) {
+  const Words question = {"--algorithms", "mean", "--resolution", "0.5", "--set", "device.delay_samples=1", "--json"};
+  const Json rows = compare("impedance", "out", question).json()["limits"];
+  ASSERT_EQ(rows.size(), device_presets().size());
+  EXPECT_EQ(rows[0]["device"], "touch*");
+}
+
+TEST_F(CompareDevices, LimitSaysThatAFieldHasNoEffect) {
+  const auto limit = [&](const char* field, const char* override) {
+    return hapbench({"limit", file("press.json"), "--vary", field, "--set", override, "--resolution", "0.1", "--out",
+                     file("limit")})
+        .out;
+  };
+  const char* filter = "device.velocity_filter={\"type\":\"low_pass\",\"cutoff_Hz\":100}";
+  const std::string idle = "cutoff_Hz has no effect here: the handle moves alike in all ";
+  EXPECT_NE(limit("device.velocity_filter.cutoff_Hz", filter).find(idle), std::string::npos);
+  EXPECT_EQ(limit("rendering.stiffness_N_per_m", filter).find("no effect"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace hapbench::compare_test

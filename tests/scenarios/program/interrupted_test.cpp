@@ -1,0 +1,305 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/file_tree.hpp"
+#include "tests/scenarios/support/program.hpp"
+
+/// Commands that are killed or stopped while they compute, and sweeps that go on.
+namespace hapbench::interrupted_test {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+using test::hapbench;
+using test::ProgramRun;
+using test::RunningProgram;
+
+/// A run of minutes, killed once it has begun to write.
+class KilledRun : public testing::Test {
+ protected:
+  /// Words of what it left.
+  Words kill_a_run() const {
+    test::RunningProgram run(test::hapbench_program(),
+                             {"run", "single_spring", "--out", out_.string(), "--set", "time.steps=20000000"});
+    EXPECT_TRUE(run.runs_until([&] { return bytes_written() >= 100'000; }));
+    EXPECT_TRUE(run.kill()) << "it had ended before it was killed";
+    return test::names_below(out_);
+  }
+  std::uintmax_t bytes_written() const {
+    std::uintmax_t bytes = 0;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(out_, ignored)) {
+      const auto size = entry.file_size(ignored);
+      if (!ignored) bytes += size;
+    }
+    return bytes;
+  }
+
+  test::TemporaryDirectory directory_;
+  fs::path out_ = directory_ / "out";
+};
+
+TEST_F(KilledRun, LeavesNoFileUnderAFinalName) {
+  const Words left = kill_a_run();
+  EXPECT_FALSE(left.empty());
+  for (const std::string& name : left) {
+    EXPECT_TRUE(name.starts_with('.') && name.ends_with(".tmp")) << name;
+  }
+}
+
+TEST_F(KilledRun, IsCleanedUpByTheNext) {
+  kill_a_run();
+  const test::ProgramRun run = test::hapbench({"run", "single_spring", "--out", out_.string()});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(test::names_below(out_),
+            (Words{"columns.json", "scenario.effective.json", "summary.json", "trajectory.csv"}));
+  // Nothing of the killed run is in the new one.
+  test::hapbench({"run", "single_spring", "--out", (directory_ / "fresh").string()});
+  test::expect_same_files(out_, directory_ / "fresh");
+}
+
+TEST_F(KilledRun, LeavesTheResultsOfAnEarlierRunComplete) {
+  test::hapbench({"run", "single_spring", "--out", out_.string()});
+  const auto before = test::files_below(out_);
+  kill_a_run();
+  auto after = test::files_below(out_);
+  std::erase_if(after, [](const auto& file) { return file.first.ends_with(".tmp"); });
+  EXPECT_EQ(after, before);
+}
+
+/// Commands other than sweep that Ctrl-C ends while they compute.
+class InterruptedCommand : public testing::Test {
+ protected:
+  /// Starts a command that takes minutes and sends it the signal once it has made its directory and had time to begin.
+  int status_after(int signal, Words words) const {
+    words.insert(words.end(), {"--out", out_.string()});
+    RunningProgram program(test::hapbench_program(), words);
+    EXPECT_TRUE(program.runs_until([&] { return fs::exists(out_); })) << words.front();
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    EXPECT_TRUE(program.is_running()) << words.front();
+    return program.end_by(signal);
+  }
+
+  test::TemporaryDirectory directory_;
+  fs::path out_ = directory_ / "out" / "below";
+};
+
+const Words kCommands[] = {
+    {"run", "single_spring", "--set", "time.steps=20000000"},
+    {"run", "single_spring", "--set", "time.steps=20000000", "--latency"},
+    {"compare", "single_spring", "--algorithms", "mean,proxy", "--set", "time.steps=20000000"},
+    {"stability", "--map", "all", "--size", "101", "--quiet"},
+    {"stability", "--stress", "--count", "1000000000", "--quiet"},
+    {"stability", "drill_in_hole", "--search", "--evaluations", "1000000", "--quiet"},
+    {"limit", "single_spring", "--vary", "rendering.stiffness_N_per_m", "--set", "time.steps=500000000", "--set",
+     "record.trajectory=false", "--set", "rendering.damping_ratio=0", "--quiet"},
+    {"precision", "time_step", "--scenario", "single_spring", "--set", "time.steps=10000000", "--quiet"},
+};
+
+TEST_F(InterruptedCommand, EndsWith130AndLeavesNothing) {
+  for (const Words& words : kCommands) {
+    EXPECT_EQ(status_after(SIGINT, words), 130) << words[0] << " " << words[1];
+    EXPECT_EQ(directory_.entries(), Words{}) << words[0] << " " << words[1];
+  }
+}
+
+TEST_F(InterruptedCommand, EndsWith143BySigterm) {
+  EXPECT_EQ(status_after(SIGTERM, kCommands[0]), 143);
+  EXPECT_EQ(directory_.entries(), Words{});
+}
+
+TEST_F(InterruptedCommand, LeavesWhatWasThereBefore) {
+  ASSERT_EQ(test::hapbench({"run", "single_spring", "--out", out_.string()}).status, 0);
+  const auto before = test::files_below(out_);
+  EXPECT_EQ(status_after(SIGINT, kCommands[0]), 130);
+  EXPECT_EQ(test::files_below(out_), before);
+}
+
+TEST(LargeOutput, IsAnnounced) {
+  const test::TemporaryDirectory directory;
+  const auto err_of = [&](const char* steps) {
+    return test::hapbench({"run", "single_spring", "--quiet", "--set", std::string("time.steps=") + steps, "--set",
+                           "bounds.position_m=1e-9", "--set", "expect.outcome=diverges", "--out",
+                           (directory / "out").string()})
+        .err;
+  };
+  EXPECT_EQ(err_of("1000"), "");
+  const std::string err = err_of("1000000");
+  EXPECT_NE(err.find("about 372 MB will be written"), std::string::npos) << err;
+}
+
+/// Sweeps that are killed or stopped, and go on.
+class InterruptedSweep : public testing::Test {
+ protected:
+  /// Runs of some milliseconds, 180 of them or more.
+  Words words(const std::string& out, const Words& more = {}, const char* jobs = "2") const {
+    Words words = {"sweep",  "single_spring",
+                   "--set",  "record.trajectory=false",
+                   "--vary", "time.steps=20000:20002:3",
+                   "--vary", "rendering.stiffness_N_per_m=1e3:1e4:" + std::to_string(runs_ / 3) + ":log",
+                   "--jobs", jobs,
+                   "--out",  (directory_ / out).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  std::string journal_text(const std::string& out) const {
+    const fs::path file = directory_ / out / "sweep.journal";
+    return fs::exists(file) ? test::read_file(file) : "";
+  }
+  std::size_t journal_rows(const std::string& out) const {
+    const std::string text = journal_text(out);
+    const auto lines = std::count(text.begin(), text.end(), '\n');
+    return lines == 0 ? 0 : static_cast<std::size_t>(lines) - 1;
+  }
+  /// Waits until so many rows are in the journal. False when the program ended before.
+  bool wait_for_rows(RunningProgram& sweep, const std::string& out, std::size_t rows) const {
+    return sweep.runs_until([&] { return journal_rows(out) >= rows; });
+  }
+  /// Repeats from the beginning, each time with more runs, until the attempt has interrupted sweeps before their ends:
+  /// a busy machine may let the test wait for longer than a sweep takes.
+  template <class Attempt>
+  void until_in_time(Attempt attempt) {
+    for (; !attempt(); runs_ *= 4) fs::remove_all(directory_ / "out");
+  }
+  /// A sweep that is killed when `rows` rows are in its journal.
+  void leave_killed_sweep(std::size_t rows) {
+    until_in_time([&] {
+      RunningProgram sweep(test::hapbench_program(), words("out"));
+      return wait_for_rows(sweep, "out", rows) && sweep.kill();
+    });
+  }
+  /// The bytes of a sweep that nobody interrupts.
+  void expect_same_as_uninterrupted(const std::string& out) const {
+    ASSERT_EQ(hapbench(words("whole")).status, 0);
+    test::expect_same_files(directory_ / "whole", directory_ / out);
+  }
+  std::size_t runs_ = 180;
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(InterruptedSweep, KilledAgainAndAgainEndsWithTheSameBytes) {
+  std::size_t before = 0;
+  until_in_time([&] {
+    before = 0;
+    for (const std::size_t sixth : {0u, 1u, 2u, 3u, 5u}) {
+      RunningProgram sweep(test::hapbench_program(), words("out", {"--resume"}));
+      if (!wait_for_rows(sweep, "out", sixth * runs_ / 6) || !sweep.kill()) return false;
+      EXPECT_FALSE(fs::exists(directory_ / "out/sweep.csv"));
+      EXPECT_GE(journal_rows("out"), before);  // nothing is lost
+      before = journal_rows("out");
+    }
+    return true;
+  });
+  const ProgramRun end = hapbench(words("out", {"--resume"}));
+  EXPECT_EQ(end.status, 0) << end.err;
+  EXPECT_NE(end.out.find("\n" + std::to_string(before) + " of the runs were done before\n"), std::string::npos)
+      << end.out;
+  expect_same_as_uninterrupted("out");
+}
+
+TEST_F(InterruptedSweep, GoesOnAfterATornLineWhateverTheJobs) {
+  leave_killed_sweep(20);
+  const std::string text = journal_text("out");
+  const std::size_t rows = journal_rows("out");
+  test::write_plainly(directory_ / "out/sweep.journal", text.substr(0, text.size() - 7));
+  const ProgramRun end = hapbench(words("out", {"--resume"}, "5"));
+  EXPECT_NE(end.out.find("\n" + std::to_string(rows - 1) + " of the runs were done before\n"), std::string::npos)
+      << end.out;
+  expect_same_as_uninterrupted("out");
+}
+
+TEST_F(InterruptedSweep, BeginsAnewWithoutResume) {
+  leave_killed_sweep(20);
+  const ProgramRun end = hapbench(words("out"));
+  EXPECT_EQ(end.out.find("done before"), std::string::npos);
+  expect_same_as_uninterrupted("out");
+}
+
+TEST_F(InterruptedSweep, IsResumedByNoOther) {
+  leave_killed_sweep(20);
+  const auto left = test::files_below(directory_ / "out");
+  for (const Words& more : {Words{"--vary", "seed=1,2"}, Words{"--set", "seed=7"}, Words{"--keep-runs"}}) {
+    Words other = words("out", {"--resume"});
+    other.insert(other.end(), more.begin(), more.end());
+    const ProgramRun run = hapbench(other);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_NE(run.err.find("sweep.journal: is not the journal of this sweep; --resume needs"), std::string::npos)
+        << run.err;
+    EXPECT_EQ(test::lines_of(run.err).size(), 1u);
+  }
+  EXPECT_EQ(test::files_below(directory_ / "out"), left);
+}
+
+TEST_F(InterruptedSweep, StopsCleanlyAtASignalAndGoesOn) {
+  until_in_time([&] {
+    for (const int signal : {SIGINT, SIGTERM}) {
+      RunningProgram sweep(test::hapbench_program(), words("out", {"--resume"}));
+      if (!wait_for_rows(sweep, "out", signal == SIGINT ? 10 : 80)) return false;
+      const int status = sweep.end_by(signal);
+      if (status == 0) return false;
+      EXPECT_EQ(status, 128 + signal);
+      EXPECT_LT(journal_rows("out"), runs_);
+      EXPECT_EQ(journal_text("out").back(), '\n');
+      EXPECT_FALSE(fs::exists(directory_ / "out/sweep.csv"));
+    }
+    return true;
+  });
+  EXPECT_EQ(hapbench(words("out", {"--resume"})).status, 0);
+  expect_same_as_uninterrupted("out");
+}
+
+TEST_F(InterruptedSweep, LeavesItsDirectoryToItselfWhileItRuns) {
+  runs_ = 300'000;  // of minutes
+  RunningProgram sweep(test::hapbench_program(), words("out"));
+  ASSERT_TRUE(wait_for_rows(sweep, "out", 1));
+  const ProgramRun second = hapbench(words("out"));
+  EXPECT_EQ(second.status, 2);
+  EXPECT_NE(second.err.find("another sweep is writing to this directory"), std::string::npos) << second.err;
+  EXPECT_TRUE(sweep.is_running());
+}
+
+TEST_F(InterruptedSweep, OfASampleGoesOn) {
+  const auto sample = [&](const std::string& out, const Words& more = {}) {
+    Words words = {"sweep",    "single_spring",
+                   "--set",    "record.trajectory=false",
+                   "--set",    "time.steps=20000",
+                   "--vary",   "rendering.stiffness_N_per_m=1e3:1e4:log",
+                   "--sample", "sobol:" + std::to_string(runs_),
+                   "--out",    (directory_ / out).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  until_in_time([&] {
+    RunningProgram sweep(test::hapbench_program(), sample("out"));
+    return wait_for_rows(sweep, "out", 20) && sweep.kill();
+  });
+  const ProgramRun other = hapbench(sample("out", {"--resume", "--seed", "2"}));
+  EXPECT_EQ(other.status, 2) << "another sample is another sweep";
+  EXPECT_EQ(hapbench(sample("out", {"--resume"})).status, 0);
+  ASSERT_EQ(hapbench(sample("whole")).status, 0);
+  test::expect_same_files(directory_ / "whole", directory_ / "out");
+}
+
+TEST_F(InterruptedSweep, ShardsGoOnInOneDirectory) {
+  for (const char* shard : {"0/2", "1/2"}) {
+    RunningProgram sweep(test::hapbench_program(), words("out", {"--shard", shard}));
+    std::this_thread::sleep_for(std::chrono::milliseconds(60));
+    sweep.kill();
+    EXPECT_EQ(hapbench(words("out", {"--shard", shard, "--resume"})).status, 0);
+  }
+  EXPECT_EQ(
+      hapbench({"merge", (directory_ / "out/sweep_shard_0_of_2.csv").string(),
+                (directory_ / "out/sweep_shard_1_of_2.csv").string(), "--out", (directory_ / "merged.csv").string()})
+          .status,
+      0);
+  ASSERT_EQ(hapbench(words("whole")).status, 0);
+  EXPECT_EQ(test::read_file(directory_ / "merged.csv"), test::read_file(directory_ / "whole/sweep.csv"));
+}
+
+}  // namespace
+}  // namespace hapbench::interrupted_test

@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+#include <wordexp.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/file_tree.hpp"
+#include "tests/scenarios/support/program.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+/// The texts of the program, as sessions at a terminal: tests/data/golden/*.txt. A session begins in a folder with
+/// cube.obj, shell.csv and stroke.csv. Its lines are
+///
+///     # a comment
+///     + NAME TEXT             writes a file; "\n" in the text ends a line
+///     $ hapbench WORDS…       runs the program, with words as a shell takes them
+///     $ ls                    lists the files of the session
+///
+/// and what the program answers: standard output behind two blanks, standard error behind "! ", an exit status other
+/// than 0 behind "= ". After a change of texts this renews the answers, to be read as a diff and committed:
+///
+///     HAPBENCH_RENEW_GOLDEN=1 build/release/bin/program_test --gtest_filter='*Sessions*'
+namespace hapbench::sessions_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kGolden = test::data_directory() / "golden";
+const std::vector<std::string> kGiven = {"cube.obj", "shell.csv", "stroke.csv"};
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+std::vector<std::string> words_of(const std::string& line) {
+  wordexp_t expanded{};
+  if (::wordexp(line.c_str(), &expanded, WRDE_NOCMD | WRDE_UNDEF) != 0)
+    throw std::invalid_argument("no words: " + line);
+  std::vector<std::string> words(expanded.we_wordv, expanded.we_wordv + expanded.we_wordc);
+  ::wordfree(&expanded);
+  return words;
+}
+
+/// Each line of the text behind a mark, without blanks at its end.
+std::string marked(const std::string& text, const std::string& mark) {
+  std::string result;
+  for (const std::string& line : test::lines_of(text)) {
+    const std::string whole = mark + line;
+    result += whole.substr(0, whole.find_last_not_of(' ') + 1) + "\n";
+  }
+  return result;
+}
+
+/// A session with the answers of the program that was built.
+class Session {
+ public:
+  Session() {
+    for (const std::string& name : kGiven) fs::copy_file(test::data_directory() / name, directory_ / name);
+  }
+
+  std::string played(const std::string& script) const {
+    std::string session;
+    for (const std::string& line : test::lines_of(script)) {
+      const char kind = line.empty() ? ' ' : line[0];
+      if (kind == '#' || kind == '+' || kind == '$') session += line + "\n";
+      if (kind == '+') write(line);
+      if (kind == '$') session += answer(words_of(line.substr(2)));
+    }
+    return session;
+  }
+
+ private:
+  void write(const std::string& line) const {
+    const std::size_t end = std::min(line.find(' ', 2), line.size());
+    const fs::path file = directory_ / line.substr(2, end - 2);
+    fs::create_directories(file.parent_path());
+    test::write_plainly(file, replaced(line.substr(std::min(end + 1, line.size())), "\\n", "\n"));
+  }
+
+  std::string answer(const std::vector<std::string>& words) const {
+    if (words.at(0) == "ls") {
+      std::string names;
+      for (const std::string& name : test::names_below(directory_.path())) {
+        if (std::find(kGiven.begin(), kGiven.end(), name) == kGiven.end()) names += name + "\n";
+      }
+      return marked(names, "  ");
+    }
+    test::ProgramOptions options;
+    options.directory = directory_.path();
+    const test::ProgramRun run = test::hapbench({words.begin() + 1, words.end()}, options);
+    return marked(without_places(run.out), "  ") + marked(without_places(run.err), "! ") +
+           (run.status == 0 ? "" : "= " + std::to_string(run.status) + "\n");
+  }
+
+  std::string without_places(std::string text) const {
+    text = replaced(std::move(text), directory_.path().string(), "<here>");
+    text = replaced(std::move(text), fs::canonical(test::hapbench_program()).string(), "<program>");
+    return replaced(std::move(text), fs::canonical(HAPBENCH_SCENARIOS).string(), "<scenarios>");
+  }
+
+  test::TemporaryDirectory directory_;
+};
+
+std::vector<std::string> session_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(kGolden)) names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+class Sessions : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Golden, Sessions, testing::ValuesIn(session_names()),
+                         [](const auto& name) { return name.param; });
+
+TEST_P(Sessions, GoAsTheyDid) {
+  const fs::path file = kGolden / (GetParam() + ".txt");
+  const std::string before = test::read_file(file), now = Session().played(before);
+  if (std::getenv("HAPBENCH_RENEW_GOLDEN") != nullptr) {
+    test::write_plainly(file, now);
+  } else if (now != before) {
+    const test::TemporaryDirectory directory;
+    test::write_plainly(directory / "now", now);
+    ADD_FAILURE() << test::run_program("/usr/bin/diff", {"-u", file.string(), (directory / "now").string()}).out
+                  << "HAPBENCH_RENEW_GOLDEN=1 renews " << file;
+  }
+}
+
+}  // namespace
+}  // namespace hapbench::sessions_test

@@ -1,0 +1,346 @@
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "algorithms/registry.hpp"
+#include "results/summary/outcome_names.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/file_tree.hpp"
+#include "tests/scenarios/support/program.hpp"
+
+/// hapbench sweep and merge: what a sweep computes, writes and shows, whole and in shards.
+namespace hapbench::sweep_test {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+using test::cells_of;
+using test::hapbench;
+using test::lines_of;
+using test::ProgramRun;
+using test::read_file;
+
+/// A sweep with a directory for what it writes.
+class PegSweep : public testing::Test {
+ protected:
+  /// 24 runs in four environments, some of which end early.
+  ProgramRun sweep(const std::string& out, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {
+        "sweep",  "peg_in_hole_2d_shaped_stiffness",
+        "--out",  (directory_ / out).string(),
+        "--set",  "expect.outcome=[\"completes\",\"leaves_hole\",\"lost_contact\",\"diverges\"]",
+        "--set",  "expect.metrics={}",
+        "--vary", "rendering.stiffness_N_per_m=5000:20000:2",
+        "--vary", "environment.spacing_m=2e-5:5e-5:4:log",
+        "--vary", "rendering.algorithm=mean,summation,exact_shaping"};
+    words.insert(words.end(), more.begin(), more.end());
+    return hapbench(words);
+  }
+  std::string table(const std::string& out) const { return read_file(directory_ / out / "sweep.csv"); }
+  test::TemporaryDirectory directory_;
+};
+
+class SweepCommand : public PegSweep {};
+
+TEST_F(SweepCommand, HasTheNumbersOfTheRunsAlone) {
+  const ProgramRun run = sweep("a");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  const auto lines = lines_of(table("a"));
+  ASSERT_EQ(lines.size(), 25u);
+  const Words names = cells_of(lines[0]);
+  EXPECT_EQ((Words{names.begin(), names.begin() + 7}),
+            (Words{"index", "rendering.stiffness_N_per_m", "environment.spacing_m", "rendering.algorithm", "outcome",
+                   "expected", "steps"}));
+  EXPECT_EQ(names.back(), "state_hash");
+  const Words cells = cells_of(lines[1 + 12 + 0 + 2]);
+  EXPECT_EQ((Words{cells.begin(), cells.begin() + 4}), (Words{"14", "20000", "2e-05", "exact_shaping"}));
+
+  hapbench({"run", "peg_in_hole_2d_shaped_stiffness", "--out", (directory_ / "run").string(), "--set",
+            "rendering.stiffness_N_per_m=20000", "--set", "environment.spacing_m=2e-05", "--set",
+            "rendering.algorithm=exact_shaping"});
+  const Json summary = Json::parse(read_file(directory_ / "run/summary.json"));
+  EXPECT_EQ(cells[4], summary["outcome"]);
+  EXPECT_EQ(cells[6], std::to_string(summary["steps"].get<int>()));
+  EXPECT_EQ(cells.back(), summary["state_hash"]);
+  for (std::size_t i = 7; i + 1 < names.size(); ++i) {
+    Json value = summary["metrics"].value(names[i], Json(nullptr));
+    if (names[i].starts_with("passivity.")) value = summary["passivity"][names[i].substr(names[i].find('.') + 1)];
+    // The components of the one metric that is a vector have columns of their own.
+    if (names[i].starts_with("final_position_m.")) {
+      value = summary["metrics"]["final_position_m"][static_cast<std::size_t>(names[i].back() - 'x')];
+    }
+    if (value.is_null()) {
+      EXPECT_EQ(cells[i], "") << names[i];
+    } else {
+      EXPECT_EQ(test::number_in(cells[i]), value.get<double>()) << names[i];
+    }
+  }
+}
+
+TEST_F(SweepCommand, KeepsTheRunsAsRunWritesThem) {
+  // Byte for byte, the counted allocations of a run beside others included.
+  EXPECT_EQ(sweep("a", {"--keep-runs", "--jobs", "4"}).status, 0);
+  Words words = {"run", "peg_in_hole_2d_shaped_stiffness", "--out", (directory_ / "a/run").string()};
+  for (const char* set :
+       {"expect.outcome=[\"completes\",\"leaves_hole\",\"lost_contact\",\"diverges\"]", "expect.metrics={}",
+        "rendering.stiffness_N_per_m=20000", "environment.spacing_m=2e-05", "rendering.algorithm=exact_shaping"}) {
+    words.insert(words.end(), {"--set", set});
+  }
+  hapbench(words);
+  test::expect_same_files(directory_ / "a/runs/000014", directory_ / "a/run");
+  EXPECT_EQ(Json::parse(read_file(directory_ / "a/runs/000014/summary.json"))["work"]["allocations"], 0);
+  EXPECT_TRUE(fs::exists(directory_ / "a/runs/000023/trajectory.csv"));
+  EXPECT_FALSE(fs::exists(directory_ / "a/runs/000024"));
+}
+
+TEST_F(SweepCommand, ReadsMeshesOnSeveralThreads) {
+  test::write_plainly(directory_ / "cube.obj", read_file(fs::path(HAPBENCH_TEST_DATA) / "cube.obj"));
+  test::write_plainly(directory_ / "cube.json",
+                      R"({"time": {"step_s": 0.0005, "steps": 20}, "expect": {"outcome": "no_contact"},
+                          "environment": {"type": "mesh", "file": "cube.obj", "scale": 0.001}})");
+  const auto sweep_cube = [&](const char* out, const char* jobs) {
+    return hapbench({"sweep", (directory_ / "cube.json").string(), "--vary", "environment.scale=0.001:0.002:12",
+                     "--jobs", jobs, "--out", (directory_ / out).string()});
+  };
+  const ProgramRun run = sweep_cube("seven", "7");
+  EXPECT_EQ(run.status, 0) << run.err;
+  sweep_cube("one", "1");
+  EXPECT_EQ(table("seven"), table("one"));
+}
+
+TEST_F(SweepCommand, ShowsTheRunsOfOneFieldAndTheOutcomes) {
+  const Words words = {"sweep",  "single_spring_unstable",
+                       "--set",  "expect.outcome=diverges",
+                       "--vary", "rendering.stiffness_N_per_m=1e4,1e8",
+                       "--out",  (directory_ / "out").string()};
+  const ProgramRun run = hapbench(words);
+  EXPECT_EQ(run.status, 3);  // one of them does not diverge, which is expected
+  EXPECT_NE(run.err.find("1 of 2 runs did not end as expected, the first: run 0 (rendering.stiffness_N_per_m=10000)\n"),
+            std::string::npos)
+      << run.err;
+  const auto lines = lines_of(run.out);
+  ASSERT_EQ(lines.size(), 12u) << run.out;
+  EXPECT_EQ(lines[1].find("rendering.stiffness_N_per_m  outcome"), 0u);
+  EXPECT_NE(lines[3].find("10000  completes"), std::string::npos);
+  EXPECT_NE(lines[4].find("1e+08  diverges"), std::string::npos);
+  EXPECT_EQ(lines[8], "completes     1            0");
+  EXPECT_EQ(lines[9], "diverges      1            1");
+  Words json_words = words, quiet_words = words;
+  json_words.emplace_back("--json");
+  const Json json = hapbench(json_words).json();
+  EXPECT_EQ(json["runs"], 2);
+  EXPECT_EQ(json["outcomes"], (Json{{"completes", 1}, {"diverges", 1}}));
+  EXPECT_EQ(json["unexpected"], 1);
+  quiet_words.emplace_back("--quiet");
+  EXPECT_EQ(hapbench(quiet_words).out, "");
+}
+
+TEST_F(SweepCommand, ShowsTwoFieldsAsATableAndAMap) {
+  const Words words = {"sweep",  "peg_in_hole_2d_shaped_stiffness",
+                       "--set",  "expect.outcome=[\"completes\",\"leaves_hole\",\"lost_contact\",\"diverges\"]",
+                       "--set",  "expect.metrics={}",
+                       "--vary", "rendering.stiffness_N_per_m=5000,20000",
+                       "--vary", "rendering.algorithm=mean,exact_shaping",
+                       "--out",  (directory_ / "out").string()};
+  Words shown = words;
+  shown.insert(shown.end(), {"--metric", "depth_max_m"});
+  const auto lines = lines_of(hapbench(shown).out);
+  ASSERT_GT(lines.size(), 10u);
+  EXPECT_EQ(lines[0], "depth_max_m");
+  EXPECT_EQ(lines[2].find("rendering.algorithm \\ rendering.stiffness_N_per_m  "), 0u) << lines[2];
+  EXPECT_TRUE(lines[2].ends_with(" 20000")) << lines[2];
+  // The cells are those of the rows.
+  const Json json = [&] {
+    Words wanted = shown;
+    wanted.emplace_back("--json");
+    return hapbench(wanted).json();
+  }();
+  ASSERT_EQ(json["rows"].size(), 4u);
+  EXPECT_EQ(json["rows"][1]["rendering.algorithm"], "exact_shaping");
+  EXPECT_EQ(json["rows"][1]["rendering.stiffness_N_per_m"], 5000);
+  char cell[32];
+  std::snprintf(cell, sizeof cell, "%.4g", json["rows"][1]["depth_max_m"].get<double>());
+  EXPECT_EQ(lines[5].find("exact_shaping "), 0u);
+  EXPECT_NE(lines[5].find(std::string(" ") + cell + " "), std::string::npos) << lines[5];
+  EXPECT_TRUE(lines[7].ends_with("  rendering.algorithm")) << lines[7];
+  EXPECT_NE(lines[10].find("depth_max_m: . "), std::string::npos) << lines[10];
+}
+
+TEST_F(SweepCommand, VariesAllAlgorithmsByOneWordAndRefusesUnknownMetrics) {
+  const ProgramRun run = hapbench({"sweep", "single_spring", "--vary", "rendering.algorithm=all", "--out",
+                                   (directory_ / "out").string(), "--json"});
+  EXPECT_EQ(run.json()["rows"].size(), algorithms().size()) << run.err;
+  const ProgramRun refused = hapbench({"sweep", "single_spring", "--vary", "seed=1,2", "--metric", "force_mix_N",
+                                       "--out", (directory_ / "no").string()});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("nearest valid name: \"force_max_N\""), std::string::npos) << refused.err;
+  EXPECT_FALSE(fs::exists(directory_ / "no"));
+}
+
+TEST_F(SweepCommand, PrintsTheCommandThatRepeatsARun) {
+  sweep("a");
+  const auto lines = lines_of(table("a"));
+  const ProgramRun printed = sweep("a", {"--row", "14", "--print"});
+  ASSERT_EQ(printed.status, 0) << printed.err;
+  EXPECT_EQ(lines_of(printed.out).size(), 1u);
+  // As a shell takes it apart: the quotes around the list of outcomes are its own.
+  EXPECT_NE(printed.out.find(" --set 'expect.outcome=[\"completes\","), std::string::npos) << printed.out;
+  Words words = sweep("a", {"--row", "14", "--print", "--json"}).json()["command"];
+  EXPECT_EQ(words[0], fs::canonical(test::hapbench_program()));
+  words.erase(words.begin());
+  words.insert(words.end(), {"--out", (directory_ / "run").string()});
+  ASSERT_EQ(hapbench(words).status, 0);
+  const Json summary = Json::parse(read_file(directory_ / "run/summary.json"));
+  EXPECT_EQ(summary["state_hash"], cells_of(lines[1 + 14]).back());
+
+  const ProgramRun beyond = sweep("a", {"--row", "24", "--print"});
+  EXPECT_EQ(beyond.status, 2);
+  EXPECT_NE(beyond.err.find("--row: got 24; allowed: 0 ... 23"), std::string::npos) << beyond.err;
+  EXPECT_EQ(sweep("a", {"--row", "3"}).status, 2);
+  EXPECT_EQ(sweep("a", {"--print"}).status, 2);
+}
+
+/// A sweep in parts: shards, their merge, their state and their scripts for Slurm.
+class SweepShards : public PegSweep {};
+
+TEST_F(SweepShards, GiveTheSameBytesHoweverManyWithAnyJobs) {
+  sweep("whole");
+  const std::string whole = table("whole");
+  for (const char* jobs : {"1", "2", "7"}) {
+    EXPECT_EQ(sweep(std::string("jobs_") + jobs, {"--jobs", jobs}).status, 0);
+    test::expect_same_files(directory_ / "whole", directory_ / (std::string("jobs_") + jobs));
+  }
+  for (int count = 1; count <= 5; ++count) {
+    const std::string n = std::to_string(count), out = "shards_" + n;
+    Words merge = {"merge", "--out", (directory_ / out / "all/merged.csv").string()};
+    for (int i = count - 1; i >= 0; --i) {
+      EXPECT_EQ(sweep(out, {"--shard", std::to_string(i) + "/" + n, "--jobs", std::to_string(1 + i)}).status, 0);
+      merge.push_back((directory_ / out / ("sweep_shard_" + std::to_string(i) + "_of_" + n + ".csv")).string());
+    }
+    const ProgramRun merged = hapbench(merge);
+    EXPECT_EQ(merged.status, 0) << merged.err;
+    EXPECT_EQ(read_file(directory_ / out / "all/merged.csv"), whole) << count;
+  }
+}
+
+TEST_F(SweepShards, OfASampleGiveTheSameBytes) {
+  const auto sample = [&](const std::string& out, const Words& more) {
+    Words words = {"sweep",    "peg_in_hole_2d_shaped_stiffness",
+                   "--out",    (directory_ / out).string(),
+                   "--set",    "expect.metrics={}",
+                   "--vary",   "rendering.stiffness_N_per_m=5000:20000:log",
+                   "--vary",   "rendering.algorithm=mean,exact_shaping",
+                   "--sample", "lhs:12"};
+    words.insert(words.end(), more.begin(), more.end());
+    return hapbench(words);
+  };
+  const ProgramRun run = sample("whole", {"--jobs", "1"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(lines_of(table("whole")).size(), 13u);
+  EXPECT_EQ(Json::parse(read_file(directory_ / "whole/sweep.json"))["sample"],
+            (Json{{"method", "lhs"}, {"runs", 12}, {"seed", 1}}));
+  sample("two", {"--jobs", "2"});
+  test::expect_same_files(directory_ / "whole", directory_ / "two");
+  for (const char* shard : {"0/2", "1/2"}) EXPECT_EQ(sample("shards", {"--shard", shard}).status, 0);
+  hapbench({"merge", (directory_ / "shards/sweep_shard_0_of_2.csv").string(),
+            (directory_ / "shards/sweep_shard_1_of_2.csv").string(), "--out", (directory_ / "merged.csv").string()});
+  EXPECT_EQ(read_file(directory_ / "merged.csv"), table("whole"));
+  sample("other", {"--seed", "2"});
+  EXPECT_NE(table("other"), table("whole"));
+}
+
+TEST_F(SweepShards, MayBeMoreThanRuns) {
+  Words merge = {"merge", "--out", (directory_ / "merged.csv").string()};
+  const auto seeds = [&](const Words& more) {
+    Words words = {"sweep", "single_spring", "--vary", "seed=1,2", "--out", directory_.path().string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return hapbench(words);
+  };
+  for (const char* i : {"0", "1", "2"}) {
+    EXPECT_EQ(seeds({"--shard", std::string(i) + "/3"}).status, 0);
+    merge.push_back((directory_ / ("sweep_shard_" + std::string(i) + "_of_3.csv")).string());
+  }
+  EXPECT_EQ(hapbench(merge).status, 0);
+  seeds({});
+  EXPECT_EQ(read_file(directory_ / "merged.csv"), read_file(directory_ / "sweep.csv"));
+}
+
+TEST_F(SweepShards, AreMergedOnlyWhenTheyBelongTogether) {
+  const auto seeds = [&](const std::string& out, const std::string& vary, const std::string& shard) {
+    hapbench({"sweep", "single_spring", "--vary", vary, "--out", (directory_ / out).string(), "--shard", shard});
+    return (directory_ / out / ("sweep_shard_" + shard.substr(0, 1) + "_of_2.csv")).string();
+  };
+  const std::string first = seeds("a", "seed=1,2", "0/2"), other = seeds("b", "seed=1,3", "1/2");
+  for (const Words& files : {Words{first}, Words{first, first}, Words{first, other},
+                             Words{first, (directory_ / "missing.csv").string()}, Words{directory_.path().string()}}) {
+    Words words = {"merge", "--out", (directory_ / "out/merged.csv").string()};
+    words.insert(words.end(), files.begin(), files.end());
+    const ProgramRun run = hapbench(words);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(run.out, "");
+    EXPECT_EQ(lines_of(run.err).size(), 1u) << run.err;
+    EXPECT_FALSE(fs::exists(directory_ / "out"));
+  }
+}
+
+TEST_F(SweepShards, ShowHowFarTheyAre) {
+  const auto status = [&] { return hapbench({"sweep", "--status", (directory_ / "out").string(), "--json"}); };
+  EXPECT_EQ(status().status, 2) << "there is no such directory";
+  ASSERT_EQ(sweep("out", {"--shard", "1/4"}).status, 0);
+  {
+    // A killed process leaves a journal like this.
+    test::write_plainly(directory_ / "out/sweep_shard_2_of_4.journal", "title\nrow\nrow\n");
+  }
+  const Json json = status().json();
+  EXPECT_EQ(json["runs"], 24);
+  EXPECT_EQ(json["runs_done"], 8);
+  EXPECT_EQ(json["merged"], false);
+  Words states;
+  for (const Json& shard : json["shards"]) states.push_back(shard["state"]);
+  EXPECT_EQ(states, (Words{"missing", "done", "failed", "missing"}));
+  const ProgramRun shown = hapbench({"sweep", "--status", (directory_ / "out").string()});
+  EXPECT_NE(shown.out.find("4 shards: 1 done, 0 running, 0 waiting, 1 failed, 2 missing; 8 of 24 runs; not merged\n"),
+            std::string::npos)
+      << shown.out;
+  sweep("out", {"--shard", "0/3"});
+  const ProgramRun mixed = hapbench({"sweep", "--status", (directory_ / "out").string()});
+  EXPECT_EQ(mixed.status, 2);
+  EXPECT_NE(mixed.err.find("holds shards of several sweeps (of 3 and of 4)"), std::string::npos) << mixed.err;
+}
+
+TEST_F(SweepShards, HaveScriptsForSlurmThatADryRunDoesNotSubmit) {
+  const Words slurm = {"--slurm", "4", "--dry-run", "--time", "2:00:00", "--cpus", "2", "--partition", "short"};
+  ASSERT_EQ(sweep("it's", {"--shard", "1/4"}).status, 0);
+  const ProgramRun run = sweep("it's", slurm);
+  ASSERT_EQ(run.status, 0) << run.err;
+  const std::string script = read_file(directory_ / "it's/sweep.sbatch"),
+                    merge = read_file(directory_ / "it's/merge.sbatch");
+  EXPECT_NE(run.out.find(script), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find(merge), std::string::npos) << run.out;
+  for (const char* line : {"\n#SBATCH --array=0,2-3\n", "\n#SBATCH --time=2:00:00\n", "\n#SBATCH --cpus-per-task=2\n",
+                           "\n#SBATCH --partition=short\n", "\n#SBATCH --requeue\n"}) {
+    EXPECT_NE(script.find(line), std::string::npos) << line;
+  }
+  EXPECT_FALSE(fs::exists(directory_ / "it's/sweep_slurm.json"));
+  // They do what Slurm would have them do: each task its shard, then the merge.
+  for (const char* task : {"0", "2", "3"}) {
+    const std::string text = "SLURM_ARRAY_TASK_ID=" + std::string(task) + "\n" + script;
+    EXPECT_EQ(test::run_program("/bin/bash", {"-c", text}).status, 0);
+  }
+  EXPECT_EQ(test::run_program("/bin/bash", {"-c", merge}).status, 0);
+  sweep("whole");
+  for (const char* file : {"sweep.csv", "sweep.json"}) {
+    EXPECT_EQ(read_file(directory_ / "it's" / file), read_file(directory_ / "whole" / file)) << file;
+  }
+}
+
+TEST_F(SweepShards, AreNotSubmittedBesideAnotherSweep) {
+  ASSERT_EQ(sweep("out", {"--shard", "1/4"}).status, 0);
+  const ProgramRun run = sweep("out", {"--slurm", "4", "--dry-run", "--set", "seed=9"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.err.find("sweep_shard_1_of_4.csv: is of another sweep"), std::string::npos) << run.err;
+}
+
+}  // namespace
+}  // namespace hapbench::sweep_test

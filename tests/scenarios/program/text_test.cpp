@@ -1,0 +1,169 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "algorithms/registry.hpp"
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/program/fields_text.hpp"
+#include "scenarios/program/table.hpp"
+#include "tests/scenarios/support/errors.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+/// Tables, maps and the words for fields.
+namespace hapbench::text_test {
+namespace {
+
+TEST(Table, AlignsWordsLeftAndNumbersRightUnderTheirTitles) {
+  Table table({{"name", false}, {"n"}, {"unit", false}});
+  table.add({"a", "1", "m"});
+  table.add({"longer", "1000", ""});
+  EXPECT_EQ(table.text(),
+            "name       n  unit\n"
+            "------  ----  ----\n"
+            "a          1  m\n"
+            "longer  1000\n");
+}
+
+TEST(Table, TakesTitlesOfTwoLinesAndANarrowGap) {
+  Table table({{"name", false}, {"force\nN"}, {"n"}}, 1);
+  table.add({"a", "1", "2"});
+  EXPECT_EQ(table.text(),
+            "     force\n"
+            "name     N n\n"
+            "---- ----- -\n"
+            "a        1 2\n");
+}
+
+TEST(Wrapped, BreaksBetweenWordsAndNeverWithinOne) {
+  EXPECT_EQ(wrapped("aa bb cc", 1, 6), " aa bb\n cc\n");
+  EXPECT_EQ(wrapped("aaaaaaaaaa b", 2, 6), "  aaaaaaaaaa\n  b\n");
+  EXPECT_EQ(wrapped("a", 0, 6), "a\n");
+  EXPECT_EQ(wrapped("aa bb", 2, std::string::npos), "  aa bb\n") << "a width without bound";
+  EXPECT_EQ(wrapped("a\nb\n\nc", 1, 6), " a\n b\n\n c\n");
+}
+
+TEST(Table, BreaksIntoBlocksThatBeginWithTheFirstColumn) {
+  Table table({{"name", false}, {"one"}, {"two"}, {"three"}});
+  table.add({"a", "1", "2", "3"});
+  EXPECT_EQ(table.width(), 21u);
+  EXPECT_EQ(table.text(21), table.text());
+  EXPECT_EQ(table.text(14),
+            "name  one  two\n"
+            "----  ---  ---\n"
+            "a       1    2\n"
+            "\n"
+            "name  three\n"
+            "----  -----\n"
+            "a         3\n");
+  EXPECT_EQ(table.text(1).find("name  one\n"), 0u) << "a column at least";
+}
+
+TEST(Table, WrapsALastColumnOfText) {
+  Table table({{"name", false}, {"n"}, {"meaning", false}});
+  table.add({"a", "1", "one two three four five six seven"});
+  table.add({"b", "2", "short"});
+  EXPECT_EQ(table.text(34),
+            "name  n  meaning\n"
+            "----  -  -------------------------\n"
+            "a     1  one two three four five\n"
+            "         six seven\n"
+            "b     2  short\n");
+}
+
+TEST(Fitted, BreaksWideLinesAtBlanksAndKeepsTheirIndent) {
+  EXPECT_EQ(fitted("  aa bb cc dd\nshort\n", 9), "  aa bb\n    cc dd\nshort\n");
+  EXPECT_EQ(fitted("aaaaaaaaaaaa\n", 5), "aaaaaaaaaaaa\n");
+  EXPECT_EQ(fitted("a  b\n\n", 80), "a  b\n\n");
+}
+
+TEST(Entry, HasTheMeaningBesideOrBelowTheName) {
+  EXPECT_EQ(entry("a", "b", 2, 6), "  a   b\n");
+  EXPECT_EQ(entry("longer", "b", 2, 6), "  longer\n      b\n");
+  EXPECT_EQ(entry("a", "", 2, 6), "  a\n");
+}
+
+TEST(Table, WithoutRowsIsItsHead) {
+  EXPECT_EQ(Table({{"a"}, {"bc", false}}).text(), "a  bc\n-  --\n");
+}
+
+TEST(SignificantDigits, AreRounded) {
+  EXPECT_EQ(significant(1.0 / 3.0, 3), "0.333");
+  EXPECT_EQ(significant(433731.6, 6), "433732");
+  EXPECT_EQ(significant(1.6e6, 6), "1.6e+06");
+  EXPECT_EQ(significant(0.0, 4), "0");
+}
+
+TEST(SignificantDigits, OfWhatHasNoValueAreADash) {
+  EXPECT_EQ(significant(std::numeric_limits<double>::quiet_NaN(), 3), "-");
+  EXPECT_EQ(significant(std::numeric_limits<double>::infinity(), 3), "-");
+}
+
+TEST(CharacterMap, HasTheFirstRowBelow) {
+  const auto cell = [](std::size_t column, std::size_t row) { return row == 0 ? 'a' : column == 1 ? 'c' : 'b'; };
+  EXPECT_EQ(character_map({"x", 2, "1", "9"}, "y", {"low", "high"}, cell),
+            "       high   b c  y\n"
+            "        low   a a\n"
+            "             1 ... 9  x\n");
+}
+
+std::vector<const ModelInfo*> all_models() {
+  std::vector<const ModelInfo*> models(stages().begin(), stages().end());
+  for (const AlgorithmEntry& entry : algorithms()) models.push_back(entry.info);
+  for (const DepthModelEntry& entry : depth_models()) models.push_back(entry.info);
+  return models;
+}
+
+/// "/rendering/iterations" for "rendering.iterations"
+Json::json_pointer pointer_to(std::string field) {
+  for (char& c : field) c = c == '.' ? '/' : c;
+  return Json::json_pointer("/" + field);
+}
+
+/// The message of the reader when the field holds an object.
+std::string refusal_of_an_object_in(const char* field) {
+  Json json = test::minimal_scenario("plane");
+  json[pointer_to(field)] = Json::object();
+  const auto error = test::input_error_of([&] { read_scenario(json, ""); });
+  return error ? error->what() : "";
+}
+
+/// Parameters are documented with the models and enforced where scenarios are described.
+TEST(ParameterBlocks, NameFieldsOfScenariosWithTheirUnits) {
+  EXPECT_FALSE(find_algorithm("shaped_stiffness")->info->parameters.empty());
+  for (const ModelInfo* model : all_models()) {
+    for (const auto& [parameter, meaning] : model->parameters) {
+      const std::string where = std::string(model->name) + ": " + parameter.field, unit = parameter.range.unit;
+      ASSERT_NE(find_field(parameter.field), nullptr) << where;
+      const std::string refusal = refusal_of_an_object_in(parameter.field);
+      EXPECT_EQ(refusal.find(pointer_to(parameter.field).to_string() + ": got {}"), 0u) << refusal;
+      const bool is_number = refusal.find("a number") != std::string::npos;
+      EXPECT_TRUE(is_number ? refusal.find("[" + unit + "]") != std::string::npos : unit == "1") << where << refusal;
+      EXPECT_STRNE(meaning, "") << where;
+    }
+  }
+}
+
+TEST(DefaultText, IsThatOfTheSchemaOrSaysThatTheSceneGivesIt) {
+  const auto text = [](const char* field) { return default_text(*find_field(field)); };
+  EXPECT_EQ(text("rendering.stiffness_N_per_m"), "20000");
+  EXPECT_EQ(text("rendering.iterations"), "3");
+  EXPECT_EQ(text("rendering.damping_ratio"), "0.7");
+  EXPECT_EQ(text("rendering.reduction.threshold"), "0.995");
+  EXPECT_EQ(text("rendering.limits.max_force_N"), "null");
+  EXPECT_EQ(text("rendering.angular_damping"), "false");
+  EXPECT_EQ(text("rendering.mass_kg"), "by scene");
+}
+
+/// Messages and documentation say in the same words what a field may hold.
+TEST(AllowedText, IsThatOfTheRefusal) {
+  for (const char* field : {"rendering.reduction.threshold", "rendering.mass_kg", "rendering.local_average",
+                            "rendering.algorithm", "seed"}) {
+    const std::string allowed = "; allowed: " + find_field(field)->value.allowed;
+    EXPECT_NE(refusal_of_an_object_in(field).find(allowed), std::string::npos) << allowed;
+  }
+  EXPECT_EQ(find_field("rendering.reduction.threshold")->value.allowed, "a number > -1 and <= 1 [1]");
+  EXPECT_EQ(find_field("rendering.reduction.shuffle_seed")->value.allowed, "null or an integer 0 ... 9007199254740992");
+}
+
+}  // namespace
+}  // namespace hapbench::text_test

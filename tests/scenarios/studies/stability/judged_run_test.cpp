@@ -1,0 +1,185 @@
+#include "scenarios/studies/stability/judged_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "scenarios/studies/stability/stability_limits.hpp"
+
+namespace hapbench::judged_run_test {
+namespace {
+
+constexpr std::uint64_t kSteps = 4000;
+
+/// The class of a motion along x whose velocity at row k is given.
+MotionClass class_of(const std::function<double(double)>& velocity, Outcome outcome = Outcome::completes) {
+  MotionClassifier classifier(kSteps);
+  StepRecord record;
+  for (record.step = 0; record.step < kSteps; ++record.step) {
+    record.tool.velocity = Vec3(velocity(static_cast<double>(record.step)), 0.0, 0.0);
+    classifier.on_step(record);
+  }
+  return classifier.motion_class(outcome);
+}
+
+TEST(MotionClassifier, NamesItsClasses) {
+  EXPECT_EQ(motion_class_name(MotionClass::stable), "stable");
+  EXPECT_EQ(motion_class_name(MotionClass::dying_out), "dying_out");
+  EXPECT_EQ(motion_class_name(MotionClass::vibrating), "vibrating");
+  EXPECT_EQ(motion_class_name(MotionClass::diverged), "diverged");
+}
+
+TEST(MotionClassifier, OfNoMotionAndOfCreepingIsStable) {
+  EXPECT_EQ(class_of([](double) { return 0.0; }), MotionClass::stable);
+  EXPECT_EQ(class_of([](double) { return 1.0; }), MotionClass::stable);
+  EXPECT_EQ(class_of([](double k) { return std::exp(-0.0001 * k); }), MotionClass::stable)
+      << "slow, but no oscillation";
+  EXPECT_EQ(class_of([](double k) { return 1.0 + 0.001 * k; }), MotionClass::stable) << "falls, but does not oscillate";
+}
+
+TEST(MotionClassifier, OfARunThatLeftItsBoundsIsDiverged) {
+  EXPECT_EQ(class_of([](double) { return 0.0; }, Outcome::diverges), MotionClass::diverged);
+}
+
+TEST(MotionClassifier, OfASustainedOscillationIsVibrating) {
+  for (const double period : {2.0, 17.3, 100.0, 900.0}) {
+    EXPECT_EQ(class_of([&](double k) { return std::cos(2.0 * std::numbers::pi * k / period); }), MotionClass::vibrating)
+        << period;
+  }
+}
+
+TEST(MotionClassifier, SeesTurnsBetweenWhichDryFrictionHoldsAHandle) {
+  const auto sticking = [](double k) {
+    const int phase = static_cast<int>(k) % 40;
+    return phase == 0 ? 1.0 : (phase == 20 ? -1.0 : 0.0);
+  };
+  EXPECT_EQ(class_of(sticking), MotionClass::vibrating);
+}
+
+// An encoder makes jumps of the velocity of a handle that creeps.
+TEST(MotionClassifier, OfAHandleThatMovesTheToolTakesItsOwnVelocity) {
+  MotionClassifier classifier(kSteps);
+  StepRecord record;
+  record.handle_moves_tool = true;
+  for (record.step = 0; record.step < kSteps; ++record.step) {
+    record.tool.velocity = Vec3(record.step % 2 == 0 ? 1.0 : -1.0, 0.0, 0.0);
+    record.handle.velocity = Vec3(0.001, 0.0, 0.0);
+    classifier.on_step(record);
+  }
+  EXPECT_EQ(classifier.motion_class(Outcome::completes), MotionClass::stable);
+}
+
+/// An oscillation that changes by the factor `per_step` in every step. The amplitude of the fourth quarter is that of
+/// the first times per_step^(3/4 kSteps), up to the phase at the beginning of a quarter, a period of 10 rows: 1 % of
+/// it.
+MotionClass class_of_oscillation(double per_step) {
+  return class_of([&](double k) { return std::pow(per_step, k) * std::cos(0.2 * std::numbers::pi * k); });
+}
+
+TEST(MotionClassifier, SeparatesDyingFromDeadAtAHundredthInThreeQuarters) {
+  const double at_limit = std::pow(0.01, 1.0 / (0.75 * kSteps));
+  EXPECT_EQ(class_of_oscillation(1.0 - 0.9 * (1.0 - at_limit)), MotionClass::dying_out);
+  EXPECT_EQ(class_of_oscillation(1.0 - 1.1 * (1.0 - at_limit)), MotionClass::stable);
+}
+
+TEST(MotionClassifier, SeparatesVibratingFromDyingAtATenthInAQuarter) {
+  const double at_limit = std::pow(0.9, 4.0 / kSteps);
+  EXPECT_EQ(class_of_oscillation(1.0 - 0.9 * (1.0 - at_limit)), MotionClass::vibrating);
+  EXPECT_EQ(class_of_oscillation(1.0 - 1.1 * (1.0 - at_limit)), MotionClass::dying_out);
+}
+
+TEST(MotionClassifier, OfABeatThatEndsInATroughIsVibrating) {
+  // The last quarter has 70 % of the third's amplitude, which is the second's.
+  EXPECT_EQ(class_of([](double k) {
+              const double quarter = 4.0 * k / kSteps;
+              return (quarter < 3.0 ? 1.0 : 0.7) * std::cos(0.2 * std::numbers::pi * k);
+            }),
+            MotionClass::vibrating);
+}
+
+TEST(MotionClassifier, WhatDiesOutComesToRest) {
+  EXPECT_TRUE(comes_to_rest(MotionClass::stable));
+  EXPECT_TRUE(comes_to_rest(MotionClass::dying_out));
+  EXPECT_FALSE(comes_to_rest(MotionClass::vibrating));
+  EXPECT_FALSE(comes_to_rest(MotionClass::diverged));
+}
+
+/// The class of a tool that a hand moves to and fro, 20 mm/s at 1 Hz, and that vibrates besides.
+MotionClass class_of_moved_tool(double amplitude, double frequency) {
+  constexpr double kStep = 0.0005;
+  MotionClassifier classifier = MotionClassifier::of_moved_tool(kSteps, kStep);
+  StepRecord record;
+  for (record.step = 0; record.step < kSteps; ++record.step) {
+    const double t = kStep * static_cast<double>(record.step);
+    record.tool.velocity = Vec3(0.02 * std::cos(2.0 * std::numbers::pi * t),
+                                amplitude * std::cos(2.0 * std::numbers::pi * frequency * t), 0.0);
+    classifier.on_step(record);
+  }
+  EXPECT_FALSE(classifier.at_rest());
+  return classifier.motion_class(Outcome::completes);
+}
+
+TEST(MotionClassifier, OfAMovedToolSeesWhatNoHandDoesAndWhatOneFeels) {
+  EXPECT_EQ(class_of_moved_tool(0.0, 0.0), MotionClass::stable) << "the hand alone";
+  EXPECT_EQ(class_of_moved_tool(0.01, 200.0), MotionClass::vibrating);
+  EXPECT_EQ(class_of_moved_tool(0.0005, 200.0), MotionClass::stable) << "half a millimetre a second is not felt";
+  EXPECT_EQ(class_of_moved_tool(0.01, 3.0), MotionClass::stable) << "a hand does that, too";
+}
+
+TEST(MotionClassifier, SeparatesVibratingFromGrowingAtAPercentInAQuarter) {
+  const double at_limit = std::pow(1.01, 4.0 / kSteps);
+  EXPECT_EQ(class_of_oscillation(1.0 + 0.8 * (at_limit - 1.0)), MotionClass::vibrating);
+  EXPECT_EQ(class_of_oscillation(1.0 + 1.2 * (at_limit - 1.0)), MotionClass::diverged);
+}
+
+TEST(MotionClassifier, OfALimitCycleIsVibratingHoweverItBegan) {
+  EXPECT_EQ(class_of([](double k) { return std::min(1.0, 0.001 * k) * std::sin(k); }), MotionClass::vibrating);
+  EXPECT_EQ(class_of([](double k) { return (1.0 + 9.0 * std::exp(-0.01 * k)) * std::sin(k); }), MotionClass::vibrating);
+}
+
+TEST(MotionClassifier, SeesAnOscillationAlongAnyAxis) {
+  for (int axis = 0; axis < 3; ++axis) {
+    MotionClassifier classifier(kSteps);
+    StepRecord record;
+    for (record.step = 0; record.step < kSteps; ++record.step) {
+      record.tool.velocity = Vec3::Ones();  // a drift does not hide it
+      record.tool.velocity[axis] = record.step % 2 == 0 ? 1.0 : -1.0;
+      classifier.on_step(record);
+    }
+    EXPECT_EQ(classifier.motion_class(Outcome::completes), MotionClass::vibrating) << axis;
+  }
+}
+
+TEST(MotionClassifier, IsAtRestOnlyAfterManyQuietRows) {
+  MotionClassifier classifier(kSteps);
+  StepRecord record;
+  const auto see = [&](double speed, int rows) {
+    for (int i = 0; i < rows; ++i, ++record.step) {
+      record.tool.velocity = Vec3(speed, 0.0, 0.0);
+      classifier.on_step(record);
+    }
+  };
+  see(1.0, 1);
+  see(1e-13, 199);
+  EXPECT_FALSE(classifier.at_rest());
+  see(1e-11, 1);  // not quiet enough: counting begins again
+  see(1e-13, 199);
+  EXPECT_FALSE(classifier.at_rest());
+  see(1e-13, 1);
+  EXPECT_TRUE(classifier.at_rest());
+}
+
+TEST(SpringDamperMargin, ChangesItsSignWhereAnEigenvalueLeavesTheUnitCircle) {
+  for (const double lambda : {0.5, 1.0, 7.0}) {
+    for (double K = 1e4; K < 1e7; K *= 1.1) {
+      const SpringDamper system{K, 1.4 * std::sqrt(0.1 * K), 0.1, 0.0005, lambda};
+      if (std::abs(*system.margin()) < 1e-9) continue;  // the limit itself, to rounding
+      EXPECT_EQ(*system.margin() > 0.0, system.spectral_radius() < 1.0) << K << " " << lambda;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hapbench::judged_run_test
