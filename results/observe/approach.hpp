@@ -7,14 +7,14 @@
 
 namespace hapbench {
 
-/// How near the tool's tip centre came to the box around an environment; 0 within the box.
+/// Distance of the tool's tip centre to the box around an environment; 0 within the box.
 struct Approach {
   double closest = std::numeric_limits<double>::infinity();  ///< [m]
   double closest_time = 0.0;                                 ///< of the first row that close [s]
   double last = std::numeric_limits<double>::infinity();     ///< of the last row [m]
 };
 
-/// Measures the approach while a run goes on; a few nanoseconds a row.
+/// Measures the approach during a run; a few nanoseconds a row.
 class ApproachObserver final : public Observer {
  public:
   explicit ApproachObserver(const Box& environment) : environment_(environment) {}

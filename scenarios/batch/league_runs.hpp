@@ -19,13 +19,11 @@ inline constexpr std::string_view kFidelityMetrics[] = {"fidelity.force_error_re
 /// kDefaultMetrics, separated by commas.
 std::string default_metrics_text();
 
-/// True for an outcome after which a run's numbers say nothing about its algorithm: diverges, not_dragged, no_contact,
-/// lost_contact.
+/// True for the name of an outcome after which a run's numbers say nothing about its algorithm (OutcomeInfo).
 bool is_failure(std::string_view outcome);
 
-/// The runs of a finished batch by the metrics, names of metric_list (default: kFidelityMetrics if every
-/// run has a reference force, else kDefaultMetrics). A run has failed when
-/// its outcome is a failure or none that its scenario expects.
+/// The runs of a finished batch with these metrics (default: kFidelityMetrics if every run has a reference force, else
+/// kDefaultMetrics). A run has failed when its outcome is a failure or is not expected by its scenario.
 LeagueRuns league_runs(const BatchPlan& plan, const BatchReport& report, const std::vector<std::string>& metrics);
 
 }  // namespace hapbench

@@ -57,8 +57,8 @@ class Collector {
     for (std::size_t i = 0; i < point.warnings.size(); ++i) keep_first(warnings_, point.warnings[i], {run, i});
   }
 
-  /// Gives the plan the warnings, when all points have been added.
-  void give_warnings() {
+  /// Puts the warnings into the plan. Call it when all points have been added.
+  void set_warnings() {
     for (const auto& [place, warning] : in_order(warnings_)) plan_.warnings.push_back(warning);
   }
 
@@ -191,7 +191,7 @@ SweepPlan plan_sweep(ScenarioText scenario, std::vector<std::string> overrides, 
   SweepPlan plan{std::move(scenario), std::move(overrides), std::move(points), {}, {}, {}, ""};
   Collector collector(plan);
   examine_all(plan, jobs, progress, collector);
-  collector.give_warnings();
+  collector.set_warnings();
   plan.content = content_of(plan, collector.check_files(), collector.plugins());
   plan.metrics = collector.metrics();
   plan.definition = hash_text(hash_of(json_text(plan.content)));

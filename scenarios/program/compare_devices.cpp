@@ -8,12 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "results/io/csv_writer.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/device_limits_text.hpp"
-#include "scenarios/program/result_tables.hpp"
 #include "scenarios/run/assemble.hpp"
 
 namespace hapbench {
@@ -125,29 +123,6 @@ void print_all_warnings(const DeviceQuestion& question) {
   print_warnings(warnings);
 }
 
-void write(const fs::path& directory, const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
-  CsvWriter table(directory / "device_limits.csv", kDeviceLimitColumns);
-  CsvWriter runs(directory / "device_runs.csv", kDeviceRunColumns);
-  for (const DeviceLimit& found : limits) {
-    const ComparedDevice& device = question.devices[found.device];
-    const std::string scene = scene_name(question, found.scene);
-    const FieldLimit& limit = found.limit;
-    const auto settled = [&limit](double value) { return limit.value ? std::optional(value) : std::nullopt; };
-    const DeviceRatio ratio = ratio_of(found, limits.at(reference_of(question, found.device)));
-    table.row(std::string_view(device.name), std::string_view(scene), std::string_view(limit.algorithm), limit.value,
-              limit.beyond ? std::optional(limit.beyond->value) : std::nullopt, std::string_view(beyond_text(limit)),
-              device.published_stiffness, limit.value ? limit.settled.vibration : std::nullopt,
-              settled(limit.settled.contacts), settled(limit.settled.lambda_max), ratio.stiffness, ratio.rendered,
-              std::uint64_t{limit.runs.size()}, std::uint64_t{limit.astray.size()});
-    for (const JudgedValue& run : limit.runs) {
-      runs.row(std::string_view(device.name), std::string_view(scene), std::string_view(limit.algorithm), run.value,
-               run_verdict_name(run.verdict));
-    }
-  }
-  table.finish();
-  runs.finish();
-}
-
 double number_between(const char* option, const std::string& text, double least, double greatest) {
   const auto number = finite_number(text);
   if (number && *number >= least && *number <= greatest) return *number;
@@ -172,7 +147,7 @@ int compare_devices(const CompareDevicesOptions& options) {
   const JobOptions jobs{options.jobs == 0 ? static_cast<unsigned>(available_threads()) : options.jobs,
                         options.output.quiet ? "" : "compare"};
   const std::vector<DeviceLimit> limits = device_limits(question, jobs);
-  write(out, question, limits);
+  write_device_limits(out, question, limits);
   print(options.output, device_limits_text(question, limits) + fmt::format("\nresults in {}\n", out.string()),
         device_limits_json(question, limits));
   return kSuccess;

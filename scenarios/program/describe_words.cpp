@@ -5,6 +5,7 @@
 #include <cctype>
 #include <nlohmann/json.hpp>
 
+#include "results/summary/outcome_names.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/program/table.hpp"
@@ -13,7 +14,7 @@ namespace hapbench {
 namespace {
 
 struct Word {
-  const char* name;
+  std::string_view name;
   const char* kind;
   const char* meaning;
 };
@@ -24,17 +25,6 @@ constexpr const char* kTime = "number of timing.json";
 constexpr const char* kVerdict = "verdict on a claim";
 
 constexpr Word kWords[] = {
-    {"completes", kOutcome, "all steps are done, or the hand has finished its task"},
-    {"leaves_hole", kOutcome, "the tip centre rose above height 0"},
-    {"tool_horizontal", kOutcome, "the tool's axis reached the horizontal plane"},
-    {"not_dragged", kOutcome,
-     "all steps are done, but a tool that a hand of type drag was to lead further than two of its widths came less than "
-     "one along the path"},
-    {"no_contact", kOutcome, "all steps are done, and the tool never touched the environment"},
-    {"lost_contact", kOutcome,
-     "all steps are done, but a freely moving tool ended further from the environment's box than the box is wide and the "
-     "tool reaches together"},
-    {"diverges", kOutcome, "a value stopped being finite or left its bound (describe bounds)"},
     {"stable", kMotion, "at rest, died out or creeping"},
     {"dying_out", kMotion, "still oscillates, but comes to rest if the run goes on"},
     {"vibrating", kMotion, "oscillates and does not decay"},
@@ -51,6 +41,14 @@ constexpr Word kWords[] = {
     {"not reproducible", kVerdict, "no simulation can show it: people or the trainer are needed"},
 };
 
+/// Outcomes first.
+std::vector<Word> all_words() {
+  std::vector<Word> all;
+  for (const OutcomeInfo& outcome : outcome_infos()) all.push_back({outcome.name, kOutcome, outcome.meaning});
+  all.insert(all.end(), std::begin(kWords), std::end(kWords));
+  return all;
+}
+
 /// In lower case, without blanks and line breaks.
 std::string plain(std::string_view text) {
   std::string plain = lower_case(text);
@@ -62,7 +60,7 @@ std::string plain(std::string_view text) {
 
 std::vector<Description> describe_word(const std::string& name) {
   std::vector<Description> found;
-  for (const Word& word : kWords) {
+  for (const Word& word : all_words()) {
     if (name != word.name) continue;
     std::string text = fmt::format("{}: {}\n{}", bold(stdout, word.name), word.kind, wrapped(word.meaning));
     if (word.kind == kMotion) text += "  in numbers: hapbench describe stability\n";
@@ -87,7 +85,7 @@ std::vector<Description> describe_heading(const std::string& name) {
 
 std::vector<std::string> described_words() {
   std::vector<std::string> names;
-  for (const Word& word : kWords) names.emplace_back(word.name);
+  for (const Word& word : all_words()) names.emplace_back(word.name);
   return names;
 }
 

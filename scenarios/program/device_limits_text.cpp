@@ -8,7 +8,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "results/io/csv_writer.hpp"
 #include "results/observe/contact_forces.hpp"
+#include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/table.hpp"
 
 namespace hapbench {
@@ -25,7 +27,7 @@ std::string stiffness_text(double K) {
 std::string limit_text(const FieldLimit& limit) {
   if (!limit.value) return "none";
   return fmt::format("{}{}{}", limit.beyond ? "" : "> ", stiffness_text(*limit.value),
-                     limit.astray.empty() ? "" : " ~");
+                     limit.inconsistent.empty() ? "" : " ~");
 }
 
 std::string damping_text(const RenderingConfig& rendering) {
@@ -146,8 +148,71 @@ std::string delays_text(const DeviceQuestion& question) {
   return wrapped(fmt::format("delay_samples: {}; none of a preset is published", fmt::join(parts, "; ")), 0);
 }
 
-Json or_null(const std::optional<double>& value) {
-  return value ? Json(*value) : Json(nullptr);
+/// A line of device_limits.csv.
+struct DeviceLimitRow {
+  const DeviceQuestion& question;
+  const DeviceLimit& found;
+  DeviceRatio ratio;
+
+  const FieldLimit& limit() const { return found.limit; }
+  /// A number of the run at the limit.
+  Cell settled(double value) const { return limit().value ? Cell(value) : Cell(); }
+};
+using DeviceField = Field<DeviceLimitRow>;
+
+constexpr Column kDeviceColumn = {
+    "device", "", "ideal, admittance, the preset of an impedance device (* with numbers of --set), or a file's"};
+constexpr Column kSceneColumn = {"scenario", "", "name of the scene's file"};
+constexpr Column kAlgorithmColumn = {"algorithm", "", "force algorithm"};
+
+const DeviceField kDeviceLimitFields[] = {
+    {kDeviceColumn, [](const DeviceLimitRow& r) -> Cell { return r.question.devices[r.found.device].name; }},
+    {kSceneColumn, [](const DeviceLimitRow& r) -> Cell { return scene_name(r.question, r.found.scene); }},
+    {kAlgorithmColumn, [](const DeviceLimitRow& r) -> Cell { return r.limit().algorithm; }},
+    {{"limit_N_per_m", "N/m", "largest stable K by bisection on runs; empty when no run is stable"},
+     [](const DeviceLimitRow& r) { return cell_if(r.limit().value); }},
+    {{"beyond_N_per_m", "N/m", "the first unstable K beyond; empty when the range ends stable"},
+     [](const DeviceLimitRow& r) { return r.limit().beyond ? Cell(r.limit().beyond->value) : Cell(); }},
+    {{"class_beyond", "", "what became of the run there"},
+     [](const DeviceLimitRow& r) -> Cell { return beyond_text(r.limit()); }},
+    {{"published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device"},
+     [](const DeviceLimitRow& r) { return cell_if(r.question.devices[r.found.device].published_stiffness); }},
+    {{"vibration_m_per_s", "m/s", "at the limit: rms of the handle's speed above 30 Hz in the last quarter of the run"},
+     [](const DeviceLimitRow& r) { return r.limit().value ? cell_if(r.limit().settled.vibration) : Cell(); }},
+    {{"contacts", "1", "at the limit: mean number of rendered contacts there"},
+     [](const DeviceLimitRow& r) { return r.settled(r.limit().settled.contacts); }},
+    {{"lambda_max", "1", "at the limit: largest eigenvalue of the mean S there"},
+     [](const DeviceLimitRow& r) { return r.settled(r.limit().settled.lambda_max); }},
+    {{"stiffness_ratio", "1", "K over that of the device in the first scene with the first algorithm"},
+     [](const DeviceLimitRow& r) { return cell_if(r.ratio.stiffness); }},
+    {{"rendered_ratio", "1", "the same of K lambda_max"},
+     [](const DeviceLimitRow& r) { return cell_if(r.ratio.rendered); }},
+    {{"unstable_without_contact", "", "true when hand and device alone are unstable beyond the limit"},
+     [](const DeviceLimitRow& r) -> Cell { return r.limit().unstable_alone; },
+     DeviceField::In::json},
+    {{"runs", "1", "runs of the search"}, [](const DeviceLimitRow& r) -> Cell { return r.limit().runs.size(); }},
+    {kInconsistentColumn, [](const DeviceLimitRow& r) -> Cell { return r.limit().inconsistent.size(); }}};
+
+/// A line of device_runs.csv.
+struct DeviceRunRow {
+  const DeviceQuestion& question;
+  const DeviceLimit& found;
+  const JudgedValue& run;
+};
+
+const Field<DeviceRunRow> kDeviceRunFields[] = {
+    {kDeviceColumn, [](const DeviceRunRow& r) -> Cell { return r.question.devices[r.found.device].name; }},
+    {kSceneColumn, [](const DeviceRunRow& r) -> Cell { return scene_name(r.question, r.found.scene); }},
+    {kAlgorithmColumn, [](const DeviceRunRow& r) -> Cell { return r.found.limit.algorithm; }},
+    {{"rendering.stiffness_N_per_m", "N/m", "K of the run"}, [](const DeviceRunRow& r) -> Cell { return r.run.value; }},
+    {{"class", "", "what became of the run"},
+     [](const DeviceRunRow& r) -> Cell { return std::string(run_verdict_name(r.run.verdict)); }}};
+
+std::vector<DeviceLimitRow> limit_rows(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
+  std::vector<DeviceLimitRow> rows;
+  for (const DeviceLimit& found : limits)
+    rows.push_back({question, found, ratio_of(found, limits.at(reference_of(question, found.device)))});
+  return rows;
 }
 
 }  // namespace
@@ -183,7 +248,8 @@ std::string device_limits_text(const DeviceQuestion& question, const std::vector
                   [](const ComparedDevice& device) { return device.name.ends_with('*'); }))
     text += "*: a preset with numbers of --set, of which nothing is published\n";
   text += delays_text(question);
-  if (std::any_of(limits.begin(), limits.end(), [](const DeviceLimit& limit) { return !limit.limit.astray.empty(); }))
+  if (std::any_of(limits.begin(), limits.end(),
+                  [](const DeviceLimit& limit) { return !limit.limit.inconsistent.empty(); }))
     text += "~: some values below it are unstable, or some beyond it are stable: device_runs.csv\n";
   if (columns_of(question) == 1) return text;
   const std::string reference = fmt::format("{} in {}", question.algorithms.front(), scene_name(question, 0));
@@ -194,28 +260,27 @@ std::string device_limits_text(const DeviceQuestion& question, const std::vector
   return text + spreads_text(question, limits);
 }
 
+std::vector<Column> device_limit_columns() {
+  return columns_of(kDeviceLimitFields);
+}
+
+std::vector<Column> device_run_columns() {
+  return columns_of(kDeviceRunFields);
+}
+
+void write_device_limits(const std::filesystem::path& directory, const DeviceQuestion& question,
+                         const std::vector<DeviceLimit>& limits) {
+  std::vector<DeviceRunRow> runs;
+  for (const DeviceLimit& found : limits) {
+    for (const JudgedValue& run : found.limit.runs) runs.push_back({question, found, run});
+  }
+  write_csv(directory / "device_limits.csv", kDeviceLimitFields, limit_rows(question, limits));
+  write_csv(directory / "device_runs.csv", kDeviceRunFields, runs);
+}
+
 Json device_limits_json(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
   Json rows = Json::array();
-  for (const DeviceLimit& found : limits) {
-    const FieldLimit& limit = found.limit;
-    const DeviceRatio ratio = ratio_of(found, limits[reference_of(question, found.device)]);
-    const auto settled = [&limit](double value) { return limit.value ? Json(value) : Json(nullptr); };
-    rows.push_back({{"device", question.devices[found.device].name},
-                    {"scenario", scene_name(question, found.scene)},
-                    {"algorithm", limit.algorithm},
-                    {"limit_N_per_m", or_null(limit.value)},
-                    {"beyond_N_per_m", limit.beyond ? Json(limit.beyond->value) : Json(nullptr)},
-                    {"class_beyond", beyond_text(limit)},
-                    {"published_N_per_m", or_null(question.devices[found.device].published_stiffness)},
-                    {"vibration_m_per_s", limit.value ? or_null(limit.settled.vibration) : Json(nullptr)},
-                    {"contacts", settled(limit.settled.contacts)},
-                    {"lambda_max", settled(limit.settled.lambda_max)},
-                    {"stiffness_ratio", or_null(ratio.stiffness)},
-                    {"rendered_ratio", or_null(ratio.rendered)},
-                    {"unstable_without_contact", limit.unstable_alone},
-                    {"runs", limit.runs.size()},
-                    {"astray", limit.astray.size()}});
-  }
+  for (const DeviceLimitRow& row : limit_rows(question, limits)) add_row(rows.emplace_back(), kDeviceLimitFields, row);
   return {{"most_vibration_m_per_s", question.most_vibration},
           {"resolution", question.resolution},
           {"reference", {{"scenario", scene_name(question, 0)}, {"algorithm", question.algorithms.front()}}},

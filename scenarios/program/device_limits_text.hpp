@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,9 @@ std::string beyond_text(const FieldLimit& limit);
 
 /// The question, the table of K, that of the ratios, and a line for each of its columns.
 std::string device_limits_text(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits);
+/// Writes device_limits.csv and device_runs.csv. Throws IoError.
+void write_device_limits(const std::filesystem::path& directory, const DeviceQuestion& question,
+                         const std::vector<DeviceLimit>& limits);
 Json device_limits_json(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits);
 
 }  // namespace hapbench

@@ -53,28 +53,14 @@ inline constexpr Column kStressColumns[] = {
     {"largest_force_per_K_d", "1", "largest ||f_spring|| in units of K times the set's deepest penetration"},
     {"largest_share_of_bound", "1", "largest ||f_spring|| in units of the law's bound; empty for laws without one"}};
 
-inline constexpr Column kDeviceLimitColumns[] = {
-    {"device", "", "ideal, admittance, the preset of an impedance device (* with numbers of --set), or a file's"},
-    {"scenario", "", "name of the scene's file"},
-    {"algorithm", "", "force algorithm"},
-    {"limit_N_per_m", "N/m", "largest stable K by bisection on runs; empty when no run is stable"},
-    {"beyond_N_per_m", "N/m", "the first unstable K beyond; empty when the range ends stable"},
-    {"class_beyond", "", "what became of the run there"},
-    {"published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device"},
-    {"vibration_m_per_s", "m/s", "at the limit: rms of the handle's speed above 30 Hz in the last quarter of the run"},
-    {"contacts", "1", "at the limit: mean number of rendered contacts there"},
-    {"lambda_max", "1", "at the limit: largest eigenvalue of the mean S there"},
-    {"stiffness_ratio", "1", "K over that of the device in the first scene with the first algorithm"},
-    {"rendered_ratio", "1", "the same of K lambda_max"},
-    {"runs", "1", "runs of the search"},
-    {"astray", "1", "runs unstable below the limit, or stable beyond it"}};
+/// Of the tables of `limit` and `compare --devices`.
+inline constexpr Column kInconsistentColumn = {
+    "inconsistent_runs", "1", "runs that are unstable on the stable side of the limit, or stable beyond it"};
 
-inline constexpr Column kDeviceRunColumns[] = {
-    {"device", "", "ideal, admittance, the preset of an impedance device (* with numbers of --set), or a file's"},
-    {"scenario", "", "name of the scene's file"},
-    {"algorithm", "", "force algorithm"},
-    {"rendering.stiffness_N_per_m", "N/m", "K of the run"},
-    {"class", "", "what became of the run"}};
+std::vector<Column> limit_columns();
+std::span<const Column> limit_run_columns();
+std::vector<Column> device_limit_columns();
+std::vector<Column> device_run_columns();
 
 /// The header of a stability map's table.
 std::string map_header(std::span<const Column> columns, const std::string& x, const std::string& y);

@@ -83,8 +83,8 @@ class TrialObservers {
   void add(Observer& observer) { observers_.push_back(&observer); }
   const std::vector<Observer*>& all() const { return observers_; }
 
-  /// Hands over what was observed.
-  void give(const Scenario& scenario, TrialResult& out) {
+  /// Moves the results and the recorders into `out`.
+  void finish(const Scenario& scenario, TrialResult& out) {
     out.tool = tool_;
     out.metrics = metrics_.metrics();
     if (approach_ && out.result.outcome == Outcome::completes) {
@@ -164,7 +164,7 @@ TrialResult run_trial(const Scenario& scenario, std::shared_ptr<const PointShell
   out.work.algorithm = simulation.algorithm().work();
   out.work.search += out.work.algorithm.search;
   out.step_nanoseconds.assign(sampler.nanoseconds().begin(), sampler.nanoseconds().end());
-  observers.give(scenario, out);
+  observers.finish(scenario, out);
   return out;
 }
 
