@@ -19,7 +19,12 @@ class ApproachObserver final : public Observer {
  public:
   explicit ApproachObserver(const Box& environment) : environment_(environment) {}
 
-  void on_step(const StepRecord& record) noexcept override;
+  void on_step(const StepRecord& record) noexcept override {
+    approach_.last = distance_to(environment_, record.tool.pose.position);
+    if (approach_.last >= approach_.closest) return;
+    approach_.closest = approach_.last;
+    approach_.closest_time = record.time;
+  }
   const Approach& approach() const { return approach_; }
   const Box& environment() const { return environment_; }
 

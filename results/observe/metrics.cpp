@@ -240,15 +240,13 @@ MetricList metric_list(const Metrics& m) {
        m.vibration_power},
       {"depth_max_m", "m", "largest penetration depth of a colliding point", m.depth_max},
       {"ratio_min", "1",
-       "smallest stiffness ratio rho = u^T S u of a rendered contact: the combined stiffness along it, in "
-       "units of K",
+       "smallest stiffness ratio rho = u^T S u of a rendered contact: the combined stiffness along it, in units of K",
        if_any(m.ratio.has_value(), ratio.min)},
       {"ratio_max", "1", "largest such ratio", if_any(m.ratio.has_value(), ratio.max)},
       {"colliding_mean", "1", "colliding points per row, rows without contact included", if_any(any, m.colliding_mean)},
       {"colliding_max", "1", "most colliding points of a row", m.colliding_max},
       {"rendered_mean", "1",
-       "points that the force law saw (after local average and reduction) per row, rows without contact "
-       "included",
+       "points that the force law saw (after local average and reduction) per row, rows without contact included",
        if_any(any, m.rendered_mean)},
       {"rendered_max", "1", "most points that the force law saw in a row", m.rendered_max},
       {"steps_in_contact", "1", "rows with a colliding point", m.steps_in_contact},
