@@ -30,7 +30,7 @@ std::string_view case_name(StabilityCase which) {
   return kNames[static_cast<std::size_t>(which)];  // in the order of the enumeration
 }
 
-const Field<StabilityLimit> kLimitFields[] = {
+const Field<StabilityLimit> kStabilityLimitFields[] = {
     {{"case", "", "what grows until the run is unstable: stiffness, damping or time step"},
      [](const StabilityLimit& l) -> Cell { return std::string(case_name(l.which)); }},
     {{"unit", "", "unit of the limit"}, [](const StabilityLimit& l) -> Cell { return l.unit; }},
@@ -59,7 +59,7 @@ const Field<RootLocusPoint> kRootLocusFields[] = {
 
 Json limits_json(const LoadedScenario& loaded, const std::vector<StabilityLimit>& limits) {
   Json rows = Json::array();
-  for (const StabilityLimit& limit : limits) add_row(rows.emplace_back(Json::object()), kLimitFields, limit);
+  for (const StabilityLimit& limit : limits) add_row(rows.emplace_back(Json::object()), kStabilityLimitFields, limit);
   return {{"name", loaded.scenario.name},
           {"algorithm", loaded.scenario.rendering.algorithm},
           {"integrator", loaded.scenario.integrator.type->info.name},
@@ -118,7 +118,7 @@ int limits(const StabilityOptions& options) {
     const LoadedScenario& loaded = scenarios[i];
     const std::vector<StabilityLimit>& limits = all_limits[i];
     const fs::path& directory = directories[i];
-    write_csv(directory / "limits.csv", kLimitFields, limits);
+    write_csv(directory / "limits.csv", kStabilityLimitFields, limits);
     write_csv(directory / "root_locus.csv", kRootLocusFields, root_locus(loaded.scenario, limits));
     write_file_atomically(directory / "scenario.effective.json",
                           json_text(effective_scenario(loaded.scenario, directory)));
@@ -335,7 +335,7 @@ JobOptions StabilityOptions::job_options(const std::string& label) const {
 }
 
 std::vector<Column> stability_limit_columns() {
-  return columns_of(kLimitFields);
+  return columns_of(kStabilityLimitFields);
 }
 
 std::vector<Column> root_locus_columns() {
