@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Large enough that system calls do not count, small enough for the second-level cache.
+/// Large enough that the cost of system calls is negligible, small enough for the second-level cache.
 constexpr std::size_t kBufferSize = 0x10000;
 
 std::error_code last_error() {
@@ -53,7 +53,7 @@ bool remove_if_abandoned(const fs::path& path) {
 
 AtomicFile::AtomicFile(fs::path target)
     : target_(std::move(target)), buffer_(std::make_unique_for_overwrite<char[]>(kBufferSize)) {
-  // A clean-up may remove the file before it is locked; then another one is made.
+  // A clean-up may remove the file before it is locked; then create another one.
   for (struct stat status{}; status.st_nlink == 0;) {
     if (descriptor_ >= 0) ::close(descriptor_);
     temporary_ = temporary_name(target_);

@@ -11,7 +11,7 @@
 
 namespace hapbench {
 
-/// A result file that could not be written: says what was tried, on which file, and why it failed.
+/// A result file could not be written. The message says what was tried, on which file, and why it failed.
 class IoError : public std::runtime_error {
  public:
   /// `attempt` completes "cannot …", e.g. "write".
@@ -20,7 +20,7 @@ class IoError : public std::runtime_error {
         path_(std::move(path)),
         reason_(reason) {}
 
-  /// The file as its reader knows it, not the temporary behind it.
+  /// The final name of the file, not that of the temporary.
   const std::filesystem::path& path() const noexcept { return path_; }
   const std::error_code& reason() const noexcept { return reason_; }
 
@@ -79,8 +79,8 @@ void write_file_atomically(const std::filesystem::path& target, std::string_view
 /// does not exist has none; one that cannot be listed throws IoError. A file that cannot be removed is left.
 std::size_t remove_stale_temporaries(const std::filesystem::path& directory);
 
-/// Makes directories for results, and removes those of them that are still empty when it goes, so that work which was
-/// stopped or failed leaves none behind.
+/// Creates directories for results. Its destructor removes those that are still empty, so that failed or stopped work
+/// leaves none behind.
 class NewDirectories {
  public:
   NewDirectories() = default;
@@ -88,7 +88,7 @@ class NewDirectories {
   NewDirectories(const NewDirectories&) = delete;
   NewDirectories& operator=(const NewDirectories&) = delete;
 
-  /// Makes a directory and its missing parents; `error` as of std::filesystem::create_directories.
+  /// Creates a directory and its missing parents; `error` as of std::filesystem::create_directories.
   void create(const std::filesystem::path& directory, std::error_code& error);
 
  private:

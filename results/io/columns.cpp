@@ -1,7 +1,6 @@
 #include "results/io/columns.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "results/io/json_text.hpp"
@@ -11,7 +10,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Of columns or metrics.
+/// Columns or metrics as JSON.
 template <class Entries>
 ordered_json entries_json(const Entries& entries) {
   ordered_json json = ordered_json::array();
@@ -23,16 +22,13 @@ ordered_json entries_json(const Entries& entries) {
 
 }  // namespace
 
-Metric Metric::number(const char* name, const char* unit, const char* meaning, std::optional<double> value) {
-  return {name, unit, meaning, value && std::isfinite(*value) ? Value(*value) : Value()};
-}
-
-Metric Metric::number_if(bool exists, const char* name, const char* unit, const char* meaning, double value) {
-  return number(name, unit, meaning, exists ? std::optional(value) : std::nullopt);
-}
-
-Metric Metric::count(const char* name, const char* meaning, std::optional<std::uint64_t> value) {
-  return {name, "1", meaning, value ? Value(*value) : Value()};
+void add_cell(ordered_json& object, const Column& column, const Cell& cell) {
+  ordered_json& value = object[column.name];
+  std::visit(
+      [&value](const auto& held) {
+        if constexpr (!std::is_same_v<std::decay_t<decltype(held)>, std::monostate>) value = held;
+      },
+      cell);
 }
 
 Metric::Value value_of(const MetricList& list, std::string_view name) {

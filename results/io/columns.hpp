@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -9,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-/// What the numbers of result files are called and mean: columns of CSV files and metrics of summary.json.
+/// Names, units and meanings of the numbers in result files: columns of CSV files and metrics of summary.json.
 namespace hapbench {
 
 /// A column of a result file: what its header, `hapbench describe` and columns.json say of it.
@@ -37,51 +38,76 @@ inline std::string header_of(std::span<const Column> columns) {
 inline constexpr Column kStepColumn = {"step", "1", "row number k, from 0"};
 inline constexpr Column kTimeColumn = {"time_s", "s", "time of the row, k times the time step"};
 
-/// What stands in one cell of a table: nothing, a count, a number, true or false, or text. In CSV the first is empty,
-/// in JSON null.
+/// The content of one cell of a table: nothing (empty in CSV, null in JSON), a count, a number, true or false, or text.
 using Cell = std::variant<std::monostate, std::uint64_t, double, bool, std::string>;
 
-/// A cell of a value that need not exist.
+/// The cell of a value that need not exist.
 template <class Value>
 Cell cell_if(const std::optional<Value>& value) {
   return value ? Cell(*value) : Cell();
 }
 
-/// A column of a table whose rows are of type `Row`, and its cell in such a row. A constant array of them describes the
-/// whole table: CSV file (write_csv in csv_writer.hpp), JSON (rows_json) and documentation (columns_of).
+/// A column of a table whose rows are of type `Row`, with its cell in such a row. A constant array of fields describes
+/// a table once, for CSV (write_csv in csv_writer.hpp), for JSON (add_row) and for documentation (columns_of).
 template <class Row>
 struct Field {
+  enum class In { both, csv, json };
+
   Column column;
   Cell (*cell)(const Row& row);
+  In in = In::both;
 };
 
+/// The columns of the CSV file.
 template <class Row, std::size_t size>
 std::vector<Column> columns_of(const Field<Row> (&fields)[size]) {
   std::vector<Column> columns;
-  for (const Field<Row>& field : fields) columns.push_back(field.column);
+  for (const Field<Row>& field : fields) {
+    if (field.in != Field<Row>::In::json) columns.push_back(field.column);
+  }
   return columns;
 }
 
-/// A cell as a JSON value.
-nlohmann::ordered_json json_of(const Cell& cell);
+/// Adds a cell to a JSON object, under the name of its column.
+void add_cell(nlohmann::ordered_json& object, const Column& column, const Cell& cell);
 
-/// A row as a JSON object with the columns' names as keys.
+/// Adds a row to a JSON object: the names of columns and their cells.
 template <class Row, std::size_t size>
-nlohmann::ordered_json row_json(const Field<Row> (&fields)[size], const Row& row);
+void add_row(nlohmann::ordered_json& object, const Field<Row> (&fields)[size], const Row& row) {
+  for (const Field<Row>& field : fields) {
+    if (field.in != Field<Row>::In::csv) add_cell(object, field.column, field.cell(row));
+  }
+}
 
 /// A number of a run, by name. It has no value when it does not exist (a ratio without contact) or is not finite.
 struct Metric {
   using Value = std::variant<std::monostate, std::uint64_t, double>;  ///< none, a count, a number
 
-  std::string name;  ///< dots lead into sections, as in "gentle.rows"
-  const char* unit = "";
-  const char* meaning = "";  ///< what it says and how it is computed; ||.|| is the Euclidean norm, f is f_render
-  Value value = {};
+  std::string name;     ///< dots lead into sections, as in "gentle.rows"
+  const char* unit;     ///< "1" for pure numbers and counts
+  const char* meaning;  ///< what it says and how it is computed; ||.|| is the Euclidean norm, f is f_render
+  Value value;
 
-  static Metric number(const char* name, const char* unit, const char* meaning, std::optional<double> value);
-  static Metric number_if(bool exists, const char* name, const char* unit, const char* meaning, double value);
-  static Metric count(const char* name, const char* meaning, std::optional<std::uint64_t> value);
+  /// From a number, a count, one of them that need not exist, or a Value.
+  template <class Given>
+  Metric(std::string name_, const char* unit_, const char* meaning_, const Given& given)
+      : name(std::move(name_)), unit(unit_), meaning(meaning_), value(value_from(given)) {}
+
+ private:
+  static Value value_from(const Value& given) { return given; }
+  static Value value_from(std::uint64_t count) { return count; }
+  static Value value_from(double number) { return std::isfinite(number) ? Value(number) : Value(); }
+  template <class Given>
+  static Value value_from(const std::optional<Given>& given) {
+    return given ? value_from(*given) : Value();
+  }
 };
+
+/// A value that need not exist.
+template <class Value>
+std::optional<Value> if_any(bool exists, Value value) {
+  return exists ? std::optional(value) : std::nullopt;
+}
 
 /// The metrics of a run or of a part of it. Each subject's header has a function `metric_list`, the one place that
 /// names and documents its metrics; the names do not depend on the run, except that each target place has its own.
@@ -100,7 +126,7 @@ void append(MetricList& list, std::string_view section, const MetricList& more);
 /// columns.json, for other programs: for each file its columns, and for summary.json its metrics, each with name, unit
 /// and meaning.
 nlohmann::ordered_json columns_json(std::span<const ResultTable> tables, const MetricList& metrics);
-/// Those of one file, and the metrics alone.
+/// The entries of one file, or of the metrics alone.
 nlohmann::ordered_json columns_json(std::span<const Column> columns);
 nlohmann::ordered_json columns_json(const MetricList& metrics);
 

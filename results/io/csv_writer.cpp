@@ -24,26 +24,12 @@ void CsvWriter::put(std::uint64_t value) noexcept {
   file_.append(NumberText(value));
 }
 
-void CsvWriter::put(const Vec3& value) noexcept {
-  put(value.x());
-  put(value.y());
-  put(value.z());
-}
-
-void CsvWriter::put(std::span<const double> values) noexcept {
-  for (const double value : values) put(value);
-}
-
 void CsvWriter::put(const std::optional<double>& value) noexcept {
   if (value) {
     put(*value);
   } else {
     begin_cell();
   }
-}
-
-void CsvWriter::put(std::span<const std::optional<double>> values) noexcept {
-  for (const std::optional<double>& value : values) put(value);
 }
 
 void CsvWriter::put(std::string_view text) noexcept {
@@ -59,6 +45,18 @@ void CsvWriter::put(std::string_view text) noexcept {
     file_.append({&c, 1});
   }
   file_.append("\"");
+}
+
+void CsvWriter::cells(std::span<const Cell> cells) {
+  cells_ = 0;
+  for (const Cell& cell : cells) {
+    if (const auto* count = std::get_if<std::uint64_t>(&cell)) put(*count);
+    if (const auto* number = std::get_if<double>(&cell)) put(*number);
+    if (const auto* flag = std::get_if<bool>(&cell)) put(std::string_view(*flag ? "true" : "false"));
+    if (const auto* text = std::get_if<std::string>(&cell)) put(std::string_view(*text));
+    if (std::holds_alternative<std::monostate>(cell)) begin_cell();
+  }
+  end_row();
 }
 
 void CsvWriter::begin_cell() noexcept {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -7,6 +8,7 @@
 #include <span>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/columns.hpp"
@@ -21,7 +23,7 @@ class CsvWriter {
  public:
   /// `header` is the first line, column names separated by commas. Throws IoError.
   CsvWriter(std::filesystem::path file, std::string_view header);
-  /// The same with the names of the columns.
+  /// The same with the names of these columns.
   CsvWriter(std::filesystem::path file, std::span<const Column> columns)
       : CsvWriter(std::move(file), header_of(columns)) {}
 
@@ -35,17 +37,22 @@ class CsvWriter {
     end_row();
   }
 
+  /// Writes a row of cells whose types are known only at run time.
+  void cells(std::span<const Cell> cells);
+
   /// Puts the table under its final name. Throws IoError, also for the errors of earlier rows.
   void finish() { file_.commit(); }
 
  private:
   void put(double value) noexcept;
   void put(std::uint64_t value) noexcept;
-  void put(const Vec3& value) noexcept;
-  void put(std::span<const double> values) noexcept;
   void put(const std::optional<double>& value) noexcept;
-  void put(std::span<const std::optional<double>> values) noexcept;
   void put(std::string_view text) noexcept;
+  template <class Values>
+  requires(requires(const Values& v) { v.begin(); } &&
+           !std::convertible_to<Values, std::string_view>) void put(const Values& values) noexcept {
+    for (const auto& value : values) put(value);
+  }
   void begin_cell() noexcept;
   void end_row() noexcept;
 
@@ -53,5 +60,20 @@ class CsvWriter {
   std::size_t columns_;
   std::size_t cells_ = 0;  ///< of the row being written
 };
+
+/// Writes a table of fields, a line for each row. Throws IoError.
+template <class Row, std::size_t size>
+void write_csv(const std::filesystem::path& file, const Field<Row> (&fields)[size], const std::vector<Row>& rows) {
+  CsvWriter csv(file, columns_of(fields));
+  std::vector<Cell> cells;
+  for (const Row& row : rows) {
+    cells.clear();
+    for (const Field<Row>& field : fields) {
+      if (field.in != Field<Row>::In::json) cells.push_back(field.cell(row));
+    }
+    csv.cells(cells);
+  }
+  csv.finish();
+}
 
 }  // namespace hapbench

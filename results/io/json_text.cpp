@@ -11,7 +11,7 @@ using nlohmann::ordered_json;
 
 void write(std::string& out, const ordered_json& value, std::size_t indent);
 
-/// Strings, integers, booleans and null as nlohmann writes them; bytes that are not UTF-8 become U+FFFD.
+/// Writes strings, integers, booleans and null as nlohmann does; bytes that are not UTF-8 become U+FFFD.
 void write_plain(std::string& out, const ordered_json& value) {
   if (!value.is_number_float()) {
     out += value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);

@@ -2,7 +2,6 @@
 
 #include <sys/mman.h>
 
-#include <limits>
 #include <new>
 
 namespace hapbench {
@@ -16,7 +15,7 @@ MemoryTable::~MemoryTable() {
   if (data_ != nullptr) ::munmap(data_, capacity_ * sizeof(double));
 }
 
-/// Doubling pages are moved in the address space, not copied.
+/// Doubles the capacity. mremap moves pages in the address space without copying them.
 bool MemoryTable::reserve(std::size_t more) noexcept {
   if (size_ + more <= capacity_) return complete_;
   const std::size_t capacity = capacity_ == 0 ? kFirstNumbers : 2 * capacity_;
@@ -32,22 +31,6 @@ bool MemoryTable::reserve(std::size_t more) noexcept {
 
 void MemoryTable::require_complete() const {
   if (!complete_) throw std::bad_alloc();
-}
-
-void MemoryTable::put(const Vec3& value) noexcept {
-  for (const double part : value) put(part);
-}
-
-void MemoryTable::put(std::span<const double> values) noexcept {
-  for (const double value : values) put(value);
-}
-
-void MemoryTable::put(const std::optional<double>& value) noexcept {
-  put(value.value_or(std::numeric_limits<double>::quiet_NaN()));
-}
-
-void MemoryTable::put(std::span<const std::optional<double>> values) noexcept {
-  for (const std::optional<double>& value : values) put(value);
 }
 
 }  // namespace hapbench

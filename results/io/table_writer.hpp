@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -14,8 +15,8 @@
 
 namespace hapbench {
 
-/// A table of numbers in memory, row after row, with the values that the same rows have in a CSV file: an empty cell is
-/// NaN. Grows by pages of its own instead of the heap, so that a step that is recorded allocates nothing.
+/// A table of numbers in memory with the same rows as the CSV file; an empty cell is NaN. It grows by memory pages of
+/// its own and not on the heap, so that a recorded step allocates nothing.
 class MemoryTable {
  public:
   /// `columns` must outlive the table.
@@ -24,8 +25,8 @@ class MemoryTable {
   MemoryTable(const MemoryTable&) = delete;
   MemoryTable& operator=(const MemoryTable&) = delete;
 
-  /// One row, of cells as CsvWriter::row takes them, but no text. Without memory for it, the row is lost, which
-  /// `require_complete` tells.
+  /// Adds a row of cells as CsvWriter::row takes them, without text. If there is no memory left the row is lost, and
+  /// require_complete throws.
   template <class... Cells>
   void row(const Cells&... cells) noexcept {
     if (!reserve(columns_.size())) return;
@@ -44,10 +45,14 @@ class MemoryTable {
   bool reserve(std::size_t more) noexcept;
   void put(double value) noexcept { data_[size_++] = value; }
   void put(std::uint64_t value) noexcept { put(static_cast<double>(value)); }
-  void put(const Vec3& value) noexcept;
-  void put(std::span<const double> values) noexcept;
-  void put(std::span<const std::optional<double>> values) noexcept;
-  void put(const std::optional<double>& value) noexcept;
+  void put(const std::optional<double>& value) noexcept {
+    put(value.value_or(std::numeric_limits<double>::quiet_NaN()));
+  }
+  template <class Values>
+  requires(requires(const Values& v) { v.begin(); } &&
+           !std::convertible_to<Values, std::string_view>) void put(const Values& values) noexcept {
+    for (const auto& value : values) put(value);
+  }
 
   std::span<const Column> columns_;
   double* data_ = nullptr;
@@ -56,10 +61,10 @@ class MemoryTable {
   bool complete_ = true;
 };
 
-/// Where a table of numbers goes: a CSV file, or memory (never null, outlives the writer).
+/// The destination of a table of numbers: a CSV file, or memory (never null, outlives the writer).
 using TableTarget = std::variant<std::filesystem::path, MemoryTable*>;
 
-/// Writes a table of numbers row by row to its target. Allocates in the constructor only.
+/// Writes a table of numbers row by row. Allocates in the constructor only.
 class TableWriter {
  public:
   /// `columns` are those of a table in memory, too. Throws IoError.

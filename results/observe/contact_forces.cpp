@@ -28,12 +28,8 @@ double MagnitudeHistogram::quantile(double p) const noexcept {
 namespace {
 
 std::uint64_t rows_in(double time, double dt) noexcept {
-  // Beyond all rows there can be, and within the integers.
+  // The bound exceeds every possible number of rows and fits the integer.
   return static_cast<std::uint64_t>(std::min(std::round(time / dt), 0x1p62));
-}
-
-std::optional<double> if_any(std::uint64_t rows, double value) noexcept {
-  return rows > 0 ? std::optional(value) : std::nullopt;
 }
 
 std::optional<double> if_settled(const ContactForces& forces, double value) noexcept {
@@ -63,11 +59,11 @@ ContactForces& ContactForces::operator+=(const ContactForces& other) noexcept {
 }
 
 std::optional<double> ContactForces::landing_max() const noexcept {
-  return if_any(landing_rows, std::sqrt(landing_max_squared));
+  return if_any(landing_rows > 0, std::sqrt(landing_max_squared));
 }
 
 std::optional<double> ContactForces::landing_step_max() const noexcept {
-  return if_any(landing_rows, std::sqrt(landing_step_max_squared));
+  return if_any(landing_rows > 0, std::sqrt(landing_step_max_squared));
 }
 
 std::optional<double> ContactForces::mean() const noexcept {
@@ -84,7 +80,7 @@ std::optional<double> ContactForces::step_max() const noexcept {
 
 std::optional<double> ContactForces::step_p99() const noexcept {
   if (settled < kLeastSettled) return std::nullopt;
-  // The middle of the highest bin may lie above all that is in it.
+  // The middle of the highest bin may exceed all numbers in it.
   return std::min(steps.quantile(0.99), *step_max());
 }
 
@@ -113,7 +109,7 @@ ContactForceObserver::ContactForceObserver(double dt, const SettlingRule& rule)
 
 ContactForceObserver::Phase ContactForceObserver::phase_of_next_row(bool in_contact) noexcept {
   if (in_contact) {
-    // Without a settling time, a row away is what makes the next touch a first one.
+    // Without a settling time, one row without contact suffices.
     const bool first_touch = rows_away_ >= settling_rows_ && (rows_away_ > 0 || forces_.landings == 0);
     rows_away_ = 0;
     if (first_touch) {
@@ -136,7 +132,7 @@ Vec3 ContactForceObserver::filtered(const Vec3& force, Phase phase) noexcept {
   }
   if (!filtering_) return Vec3::Zero();
   if (rows_away_ <= settling_rows_) return high_pass_->filter(force);
-  // Long away: its output has died out, and numbers too small for full precision would be slow.
+  // After a long time without contact the output has decayed; denormal numbers would be slow.
   if (rows_away_ == settling_rows_ + 1) high_pass_->settle_at(Vec3::Zero());
   return Vec3::Zero();
 }
@@ -172,37 +168,31 @@ ContactForces ContactForceObserver::forces() const noexcept {
 }
 
 MetricList metric_list(const ContactForces& c) {
-  return {
-      Metric::count(
-          "landings",
-          "first touches: rows in contact after at least metrics.settling_s without contact, or since the start",
-          c.landings),
-      Metric::number("landing_force_max_N", "N",
-                     "largest ||f|| within metrics.settling_s after a first touch, or before metrics.from_s",
-                     c.landing_max()),
-      Metric::number("landing_force_step_max_N", "N", "largest ||f_k - f_(k-1)|| of those rows", c.landing_step_max()),
-      Metric::number(
-          "settled_s", "s",
-          "time in settled contact: rows in contact that belong to no landing, times the time step; below 1/30 s, a "
-          "period of the high-pass, the metrics of settled contact have no value",
-          c.settled),
-      Metric::number("force_mean_in_contact_N", "N", "mean ||f|| of the rows in settled contact", c.mean()),
-      Metric::number("settled_force_max_N", "N", "largest ||f|| of the rows in settled contact", c.max()),
-      Metric::number("force_step_p99_N", "N",
-                     "99 % of the rows in settled contact have at most this force step ||f_k - f_(k-1)||; within 0.8 %",
-                     c.step_p99()),
-      Metric::number("settled_force_step_max_N", "N",
-                     "largest force step ||f_k - f_(k-1)|| of the rows in settled contact", c.step_max()),
-      Metric::number(
-          "force_rms_above_30Hz_N", "N",
-          "vibration of the force, which the hand feels: root mean square of f behind a high-pass (Butterworth, "
-          "fourth order, 30 Hz, started at rest at the end of each landing) over the rows in settled contact; none at "
-          "sampling rates of 60 Hz or less",
-          c.rms_above_cutoff()),
-      Metric::number(
-          "force_reversals_per_s", "1/s",
-          "rows in settled contact whose f has a negative inner product with that of the row before, per settled_s",
-          c.reversals_per_second())};
+  return {{"landings", "1",
+           "first touches: rows in contact after at least metrics.settling_s without contact, or since the start",
+           c.landings},
+          {"landing_force_max_N", "N",
+           "largest ||f|| within metrics.settling_s after a first touch, or before metrics.from_s", c.landing_max()},
+          {"landing_force_step_max_N", "N", "largest ||f_k - f_(k-1)|| of those rows", c.landing_step_max()},
+          {"settled_s", "s",
+           "time in settled contact: rows in contact that belong to no landing, times the time step; below 1/30 s, a "
+           "period of the high-pass, the metrics of settled contact have no value",
+           c.settled},
+          {"force_mean_in_contact_N", "N", "mean ||f|| of the rows in settled contact", c.mean()},
+          {"settled_force_max_N", "N", "largest ||f|| of the rows in settled contact", c.max()},
+          {"force_step_p99_N", "N",
+           "99 % of the rows in settled contact have at most this force step ||f_k - f_(k-1)||; within 0.8 %",
+           c.step_p99()},
+          {"settled_force_step_max_N", "N", "largest force step ||f_k - f_(k-1)|| of the rows in settled contact",
+           c.step_max()},
+          {"force_rms_above_30Hz_N", "N",
+           "vibration of the force, which the hand feels: root mean square of f behind a high-pass (Butterworth, "
+           "fourth order, 30 Hz, started at rest at the end of each landing) over the rows in settled contact; none at "
+           "sampling rates of 60 Hz or less",
+           c.rms_above_cutoff()},
+          {"force_reversals_per_s", "1/s",
+           "rows in settled contact whose f has a negative inner product with that of the row before, per settled_s",
+           c.reversals_per_second()}};
 }
 
 }  // namespace hapbench

@@ -9,7 +9,7 @@
 namespace hapbench {
 namespace {
 
-/// How many of the sorted numbers `a` are not among the sorted numbers `b`.
+/// The number of elements of the sorted list `a` that are not in the sorted list `b`.
 std::size_t missing(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) noexcept {
   std::size_t count = 0;
   auto other = b.begin();
@@ -93,7 +93,7 @@ void EnergyLedger::add_step(const StepRecord& now) noexcept {
   if (created > events_.back().created) note_event(now, created);
 }
 
-/// Also adds up what translation and rotation did to the springs.
+/// Returns the created energy of a step [J] and adds the works of translation and rotation to the balance.
 double EnergyLedger::created_in_step(const StepRecord& now, double spring_work) noexcept {
   const Vec3 moved = now.tool.pose.position - last_.tool.pose.position;
   const Vec3 turned = turn(last_.tool.pose, now.tool.pose);
@@ -146,23 +146,22 @@ EnergyMetrics EnergyLedger::metrics() const {
 
 MetricList metric_list(const EnergyMetrics& m) {
   const EnergyBalance& b = m.balance;
-  return {Metric::number("created_sum_J", "J", "sum of created energy over the steps that created some", m.created_sum),
-          Metric::number("created_max_J", "J", "most energy that a single step created", m.created_max),
-          Metric::number(
-              "created_J", "J",
-              "what the springs store at the end beyond the work that translation and rotation did on them: made by "
-              "contacts that appear, vanish or change their weights",
-              b.created),
-          Metric::number("input_J", "J", "work of f_in on the tool", b.input),
-          Metric::number("spring_J", "J", "work of f_spring on the tool", b.spring),
-          Metric::number("damping_J", "J", "work of damping, friction and force limit: of f - f_spring", b.damping),
-          Metric::number("rotation_J", "J", "what the tool's turning put into the springs", b.rotation),
-          Metric::number("integration_J", "J", "energy made by the integrator", b.integration),
-          Metric::number("script_J", "J", "work of a prescribed motion", b.script),
-          Metric::number("hand_J", "J", "work of the hand on the handle", b.hand),
-          Metric::number("actuator_J", "J", "work of the device's actuators", b.actuator),
-          Metric::number("residual_max_J", "J",
-                         "largest |kinetic energy that the terms do not explain| of a row: rounding", m.residual_max)};
+  return {{"created_sum_J", "J", "sum of created energy over the steps that created some", m.created_sum},
+          {"created_max_J", "J", "most energy that a single step created", m.created_max},
+          {"created_J", "J",
+           "what the springs store at the end beyond the work that translation and rotation did on them: made by "
+           "contacts that appear, vanish or change their weights",
+           b.created},
+          {"input_J", "J", "work of f_in on the tool", b.input},
+          {"spring_J", "J", "work of f_spring on the tool", b.spring},
+          {"damping_J", "J", "work of damping, friction and force limit: of f - f_spring", b.damping},
+          {"rotation_J", "J", "what the tool's turning put into the springs", b.rotation},
+          {"integration_J", "J", "energy made by the integrator", b.integration},
+          {"script_J", "J", "work of a prescribed motion", b.script},
+          {"hand_J", "J", "work of the hand on the handle", b.hand},
+          {"actuator_J", "J", "work of the device's actuators", b.actuator},
+          {"residual_max_J", "J", "largest |kinetic energy that the terms do not explain| of a row: rounding",
+           m.residual_max}};
 }
 
 nlohmann::ordered_json events_json(const EnergyMetrics& energy) {

@@ -28,11 +28,11 @@ std::optional<Vec3> ReferenceForce::at(double t) const noexcept {
 
 namespace {
 
-/// More samples or finer lags would make the correlation, some 1e8 products as it is, take longer than the run.
+/// Limits the correlation to about 1e8 products, so that it does not take longer than the run.
 constexpr std::uint64_t kMostKept = 1u << 17;
 constexpr double kFinestLag = 5e-4;  // [s]
 
-/// Without the samples that the other one, shifted, has no partner for.
+/// The overlapping parts of two signals, one of them shifted.
 struct Overlap {
   const Vec3* early;
   const Vec3* late;
@@ -55,7 +55,7 @@ std::optional<double> correlation(const Overlap& o) {
     early_square += a.squaredNorm();
     late_square += b.squaredNorm();
   }
-  // Rounding alone is no variation.
+  // A variation that may be rounding does not count.
   const double least = 1e-24 * n * (early_mean.squaredNorm() + late_mean.squaredNorm());
   if (!(early_square > least && late_square > least)) return std::nullopt;
   return both / std::sqrt(early_square * late_square);
@@ -74,7 +74,7 @@ std::optional<double> ForceFidelity::artefact_share() const noexcept {
 std::optional<double> lag_between(const std::vector<Vec3>& early, const std::vector<Vec3>& late, double dt,
                                   double most) {
   const std::size_t n = std::min(early.size(), late.size());
-  // Half of the samples overlap at least: less says little of the whole.
+  // At least half of the samples must overlap.
   const auto reach = static_cast<std::ptrdiff_t>(std::min(std::round(most / dt), static_cast<double>(n / 2)));
   std::vector<double> found;
   for (std::ptrdiff_t shift = -reach; shift <= reach; ++shift) {
@@ -121,7 +121,7 @@ void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
   sums_.rendered_rms += rendered_norm * rendered_norm;
   if (norm > kLeastForce && rendered_norm > kLeastForce) {
     ++sums_.direction_rows;
-    // Of the cross product too: the cosine alone loses half its digits near 0.
+    // Near 0, the cosine alone would lose half its digits.
     sums_.direction_error += std::atan2(wanted.cross(rendered).norm(), wanted.dot(rendered));
   }
   if (record.step % every_ == 0 && kept_reference_.size() < kept_reference_.capacity()) {
@@ -143,29 +143,26 @@ ForceFidelity ForceFidelityObserver::metrics() const {
 
 MetricList metric_list(const ForceFidelity& f) {
   const bool any = f.rows > 0;
-  return {
-      Metric::count("rows", "rows that have a reference force f_m: measured with the stroke, or ideal", f.rows),
-      Metric::number_if(any, "reference_force_rms_N", "N", "root mean square of ||f_m||", f.reference_rms),
-      Metric::number_if(any, "force_error_rms_N", "N", "root mean square of ||f - f_m||", f.error_rms),
-      Metric::number("force_error_relative", "1", "force_error_rms_N / reference_force_rms_N", f.relative()),
-      Metric::number_if(
-          any, "force_error_normal_rms_N", "N",
-          "root mean square of n n^T (f - f_m); n is f_spring / ||f_spring||, what is rendered before damping and "
-          "friction, or where nothing is rendered f_m / ||f_m||",
-          f.normal_rms),
-      Metric::number_if(any, "force_error_tangential_rms_N", "N",
-                        "root mean square of (I - n n^T) (f - f_m), with the same n", f.tangential_rms),
-      Metric::number("force_artefact_share", "1",
-                     "root mean square of the part of f across f_m, all of it where f_m is zero, over that of ||f||",
-                     f.artefact_share()),
-      Metric::count("direction_rows", "rows in which ||f|| and ||f_m|| are both above 0.1 N", f.direction_rows),
-      Metric::number_if(f.direction_rows > 0, "force_direction_error_rad", "rad",
-                        "mean angle between f and f_m of those rows", f.direction_error),
-      Metric::number(
-          "force_lag_s", "s",
-          "time by which f follows f_m: where their correlation (Pearson's, all components) is greatest, within "
-          "0.1 s; none where it is not or where a force does not vary",
-          f.lag)};
+  return {{"rows", "1", "rows that have a reference force f_m: measured with the stroke, or ideal", f.rows},
+          {"reference_force_rms_N", "N", "root mean square of ||f_m||", if_any(any, f.reference_rms)},
+          {"force_error_rms_N", "N", "root mean square of ||f - f_m||", if_any(any, f.error_rms)},
+          {"force_error_relative", "1", "force_error_rms_N / reference_force_rms_N", f.relative()},
+          {"force_error_normal_rms_N", "N",
+           "root mean square of n n^T (f - f_m); n is f_spring / ||f_spring||, what is rendered before damping and "
+           "friction, or where nothing is rendered f_m / ||f_m||",
+           if_any(any, f.normal_rms)},
+          {"force_error_tangential_rms_N", "N", "root mean square of (I - n n^T) (f - f_m), with the same n",
+           if_any(any, f.tangential_rms)},
+          {"force_artefact_share", "1",
+           "root mean square of the part of f across f_m, all of it where f_m is zero, over that of ||f||",
+           f.artefact_share()},
+          {"direction_rows", "1", "rows in which ||f|| and ||f_m|| are both above 0.1 N", f.direction_rows},
+          {"force_direction_error_rad", "rad", "mean angle between f and f_m of those rows",
+           if_any(f.direction_rows > 0, f.direction_error)},
+          {"force_lag_s", "s",
+           "time by which f follows f_m: where their correlation (Pearson's, all components) is greatest, within "
+           "0.1 s; none where it is not or where a force does not vary",
+           f.lag}};
 }
 
 }  // namespace hapbench

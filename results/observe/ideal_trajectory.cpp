@@ -27,7 +27,7 @@ const std::array<Turn, kSamples> kTurns = [] {
   return turns;
 }();
 
-/// The tool's side, one straight line for each angle about its axis.
+/// The side of the tool as straight lines, one for each angle about its axis.
 class Side {
  public:
   Side(const BlockWithHole& block, const Cylinder& tool, const ToolPose& pose)
@@ -202,25 +202,22 @@ namespace {
 MetricList metric_list(const TrajectoryErrors& e) {
   const bool any = e.rows > 0;
   return {
-      Metric::count(
-          "rows",
-          "recorded rows at whose tilt the ideal trajectory exists, of a hand below 2 N (gentle) or from 2 N on (firm)",
-          e.rows),
-      Metric::number_if(any, "height_error_mean_m", "m", "mean of tip height - ideal height; negative: sunk in",
-                        e.height_mean),
-      Metric::number_if(any, "height_error_rms_m", "m", "root mean square of tip height - ideal height", e.height_rms),
-      Metric::number_if(any, "height_error_min_m", "m", "least tip height - ideal height", e.height_min),
-      Metric::number_if(any, "height_error_max_m", "m", "largest tip height - ideal height", e.height_max),
-      Metric::number_if(any, "lateral_error_mean_m", "m",
-                        "mean of lateral place of the tip - ideal one, towards the lean", e.lateral_mean),
-      Metric::number_if(any, "lateral_error_rms_m", "m", "root mean square of lateral place of the tip - ideal one",
-                        e.lateral_rms),
-      Metric::number_if(any, "lateral_error_max_m", "m", "largest |lateral place of the tip - ideal one|",
-                        e.lateral_max_abs),
-      Metric::number_if(any, "interpenetration_mean_m", "m", "mean true depth of the tool in the exact block",
-                        e.interpenetration_mean),
-      Metric::number_if(any, "interpenetration_max_m", "m", "largest true depth of the tool in the exact block",
-                        e.interpenetration_max)};
+      {"rows", "1",
+       "recorded rows at whose tilt the ideal trajectory exists, of a hand below 2 N (gentle) or from 2 N on (firm)",
+       e.rows},
+      {"height_error_mean_m", "m", "mean of tip height - ideal height; negative: sunk in", if_any(any, e.height_mean)},
+      {"height_error_rms_m", "m", "root mean square of tip height - ideal height", if_any(any, e.height_rms)},
+      {"height_error_min_m", "m", "least tip height - ideal height", if_any(any, e.height_min)},
+      {"height_error_max_m", "m", "largest tip height - ideal height", if_any(any, e.height_max)},
+      {"lateral_error_mean_m", "m", "mean of lateral place of the tip - ideal one, towards the lean",
+       if_any(any, e.lateral_mean)},
+      {"lateral_error_rms_m", "m", "root mean square of lateral place of the tip - ideal one",
+       if_any(any, e.lateral_rms)},
+      {"lateral_error_max_m", "m", "largest |lateral place of the tip - ideal one|", if_any(any, e.lateral_max_abs)},
+      {"interpenetration_mean_m", "m", "mean true depth of the tool in the exact block",
+       if_any(any, e.interpenetration_mean)},
+      {"interpenetration_max_m", "m", "largest true depth of the tool in the exact block",
+       if_any(any, e.interpenetration_max)}};
 }
 
 }  // namespace
@@ -229,8 +226,8 @@ MetricList metric_list(const IdealTrajectoryMetrics& m) {
   MetricList list;
   append(list, "gentle", metric_list(m.gentle));
   append(list, "firm", metric_list(m.firm));
-  list.push_back(Metric::count("rows_without_ideal", "recorded rows at whose tilt the ideal trajectory does not exist",
-                               m.rows_without_ideal));
+  list.push_back({"rows_without_ideal", "1", "recorded rows at whose tilt the ideal trajectory does not exist",
+                  m.rows_without_ideal});
   return list;
 }
 

@@ -19,12 +19,11 @@ LostTorqueMetrics LostTorqueObserver::metrics() const noexcept {
 }
 
 MetricList metric_list(const LostTorqueMetrics& m) {
-  return {Metric::number_if(
-              m.rows_in_contact > 0, "lost_mean_Nm", "Nm",
-              "mean ||tau|| of the rows in contact; tau = sum r_i x f_i about the tip's centre is the torque that "
-              "the rendered contacts would exert by their shares f_i of f_spring, and that is lost",
-              m.mean),
-          Metric::number_if(m.rows_in_contact > 0, "lost_max_Nm", "Nm", "largest ||tau|| of a row", m.max)};
+  return {{"lost_mean_Nm", "Nm",
+           "mean ||tau|| of the rows in contact; tau = sum r_i x f_i about the tip's centre is the torque that "
+           "the rendered contacts would exert by their shares f_i of f_spring, and that is lost",
+           if_any(m.rows_in_contact > 0, m.mean)},
+          {"lost_max_Nm", "Nm", "largest ||tau|| of a row", if_any(m.rows_in_contact > 0, m.max)}};
 }
 
 }  // namespace hapbench

@@ -24,7 +24,7 @@ class LostTorqueObserver final : public Observer {
   bool wants_springs() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override;
 
-  /// Of the rows seen so far.
+  /// The metrics of the rows seen so far.
   LostTorqueMetrics metrics() const noexcept;
 
  private:

@@ -30,7 +30,7 @@ constexpr double kFarMore = 3.0;
 
 ReductionJumps& ReductionJumps::operator+=(const ReductionJumps& other) noexcept {
   changes += other.changes;
-  step_max_squared = std::max(step_max_squared, other.step_max_squared);  // nothing is less than any number
+  step_max_squared = std::max(step_max_squared, other.step_max_squared);  // an empty optional is less than any number
   step_max_squared_elsewhere = std::max(step_max_squared_elsewhere, other.step_max_squared_elsewhere);
   return *this;
 }
@@ -104,7 +104,7 @@ void MetricsObserver::add_motion(const Vec3& position, const Vec3& v) noexcept {
 }
 
 ForceChange MetricsObserver::add_force(const RenderedForce& force) noexcept {
-  // Before the first row the last force is zero, which reverses nothing.
+  // The initial last force is zero, so the first row reverses nothing.
   ForceChange change;
   change.reverses = force.rendered.dot(last_force_) < 0.0;
   if (change.reverses) ++metrics_.force_reversals;
@@ -212,14 +212,13 @@ namespace {
 
 MetricList reduction_list(const std::optional<ReductionJumps>& given) {
   const ReductionJumps jumps = given.value_or(ReductionJumps{});
-  return {
-      Metric::count("reduction_changes",
-                    "rows in contact whose set of kept points is another than in the row before, in contact too; with "
-                    "rendering.reduction",
-                    given ? std::optional(jumps.changes) : std::nullopt),
-      Metric::number("reduction_force_step_max_N", "N",
-                     "largest force step ||f_k - f_(k-1)|| of such rows in settled contact; with rendering.reduction",
-                     jumps.step_max())};
+  return {{"reduction_changes", "1",
+           "rows in contact whose set of kept points is another than in the row before, in contact too; with "
+           "rendering.reduction",
+           if_any(given.has_value(), jumps.changes)},
+          {"reduction_force_step_max_N", "N",
+           "largest force step ||f_k - f_(k-1)|| of such rows in settled contact; with rendering.reduction",
+           jumps.step_max()}};
 }
 
 }  // namespace
@@ -229,47 +228,38 @@ MetricList metric_list(const Metrics& m) {
   const auto ratio = m.ratio.value_or(RatioRange{});
   const auto friction = m.explicit_friction.value_or(ExplicitFriction{});
   MetricList list = {
-      Metric::number("force_max_N", "N", "largest ||f|| of a row", m.force_max),
-      Metric::number("force_step_max_N", "N", "largest force step ||f_k - f_(k-1)||, landings included",
-                     m.force_step_max),
-      Metric::number("velocity_total_variation_m_per_s", "m/s",
-                     "sum ||v_k - v_(k-1)|| over all rows: what a smooth motion has little of",
-                     m.velocity_total_variation),
-      Metric::count("force_reversals", "rows whose f has a negative inner product with that of the row before",
-                    m.force_reversals),
-      Metric::number(
-          "vibration_power_above_30Hz_m2_per_s2", "m2/s2",
-          "mean ||v||^2 of all rows behind a high-pass (Butterworth, fourth order, 30 Hz); none at sampling rates of "
-          "60 Hz or less",
-          m.vibration_power),
-      Metric::number("depth_max_m", "m", "largest penetration depth of a colliding point", m.depth_max),
-      Metric::number_if(
-          m.ratio.has_value(), "ratio_min", "1",
-          "smallest stiffness ratio rho = u^T S u of a rendered contact: the combined stiffness along it, in "
-          "units of K",
-          ratio.min),
-      Metric::number_if(m.ratio.has_value(), "ratio_max", "1", "largest such ratio", ratio.max),
-      Metric::number_if(any, "colliding_mean", "1", "colliding points per row, rows without contact included",
-                        m.colliding_mean),
-      Metric::count("colliding_max", "most colliding points of a row", m.colliding_max),
-      Metric::number_if(
-          any, "rendered_mean", "1",
-          "points that the force law saw (after local average and reduction) per row, rows without contact "
-          "included",
-          m.rendered_mean),
-      Metric::count("rendered_max", "most points that the force law saw in a row", m.rendered_max),
-      Metric::count("steps_in_contact", "rows with a colliding point", m.steps_in_contact),
-      Metric::number_if(any, "contact_share", "1", "steps_in_contact / steps",
-                        static_cast<double>(m.steps_in_contact) / static_cast<double>(m.rows)),
-      Metric::number("last_contact_s", "s", "time of the last row with a colliding point", m.last_contact),
-      Metric::number("speed_max_m_per_s", "m/s", "largest speed of the tip's centre", m.speed_max),
-      Metric::number_if(
-          m.explicit_friction.has_value(), "explicit_friction_limit_N", "N",
-          "largest ||f_spring|| whose friction the explicit integrator steps stably, (B_max - mu_s) / mu_f",
-          friction.limit),
-      Metric::count("explicit_friction_rows_beyond", "rows with a larger ||f_spring||",
-                    m.explicit_friction ? std::optional(friction.rows_beyond) : std::nullopt),
-      Metric::count("explicit_friction_first_step", "the first of those rows", friction.first_step)};
+      {"force_max_N", "N", "largest ||f|| of a row", m.force_max},
+      {"force_step_max_N", "N", "largest force step ||f_k - f_(k-1)||, landings included", m.force_step_max},
+      {"velocity_total_variation_m_per_s", "m/s",
+       "sum ||v_k - v_(k-1)|| over all rows: what a smooth motion has little of", m.velocity_total_variation},
+      {"force_reversals", "1", "rows whose f has a negative inner product with that of the row before",
+       m.force_reversals},
+      {"vibration_power_above_30Hz_m2_per_s2", "m2/s2",
+       "mean ||v||^2 of all rows behind a high-pass (Butterworth, fourth order, 30 Hz); none at sampling rates of "
+       "60 Hz or less",
+       m.vibration_power},
+      {"depth_max_m", "m", "largest penetration depth of a colliding point", m.depth_max},
+      {"ratio_min", "1",
+       "smallest stiffness ratio rho = u^T S u of a rendered contact: the combined stiffness along it, in units of K",
+       if_any(m.ratio.has_value(), ratio.min)},
+      {"ratio_max", "1", "largest such ratio", if_any(m.ratio.has_value(), ratio.max)},
+      {"colliding_mean", "1", "colliding points per row, rows without contact included", if_any(any, m.colliding_mean)},
+      {"colliding_max", "1", "most colliding points of a row", m.colliding_max},
+      {"rendered_mean", "1",
+       "points that the force law saw (after local average and reduction) per row, rows without contact included",
+       if_any(any, m.rendered_mean)},
+      {"rendered_max", "1", "most points that the force law saw in a row", m.rendered_max},
+      {"steps_in_contact", "1", "rows with a colliding point", m.steps_in_contact},
+      {"contact_share", "1", "steps_in_contact / steps",
+       if_any(any, static_cast<double>(m.steps_in_contact) / static_cast<double>(m.rows))},
+      {"last_contact_s", "s", "time of the last row with a colliding point", m.last_contact},
+      {"speed_max_m_per_s", "m/s", "largest speed of the tip's centre", m.speed_max},
+      {"explicit_friction_limit_N", "N",
+       "largest ||f_spring|| whose friction the explicit integrator steps stably, (B_max - mu_s) / mu_f",
+       if_any(m.explicit_friction.has_value(), friction.limit)},
+      {"explicit_friction_rows_beyond", "1", "rows with a larger ||f_spring||",
+       if_any(m.explicit_friction.has_value(), friction.rows_beyond)},
+      {"explicit_friction_first_step", "1", "the first of those rows", friction.first_step}};
   append(list, "", metric_list(m.contact));
   append(list, "", reduction_list(m.reduction));
   return list;
@@ -277,10 +267,9 @@ MetricList metric_list(const Metrics& m) {
 
 MetricList final_position_list(const Metrics& m) {
   const bool any = m.rows > 0;
-  return {
-      Metric::number_if(any, "final_position_m.x", "m", "x of the tip's centre in the last row", m.final_position.x()),
-      Metric::number_if(any, "final_position_m.y", "m", "y of the tip's centre in the last row", m.final_position.y()),
-      Metric::number_if(any, "final_position_m.z", "m", "z of the tip's centre in the last row", m.final_position.z())};
+  return {{"final_position_m.x", "m", "x of the tip's centre in the last row", if_any(any, m.final_position.x())},
+          {"final_position_m.y", "m", "y of the tip's centre in the last row", if_any(any, m.final_position.y())},
+          {"final_position_m.z", "m", "z of the tip's centre in the last row", if_any(any, m.final_position.z())}};
 }
 
 }  // namespace hapbench

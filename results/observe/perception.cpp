@@ -75,25 +75,21 @@ MetricList metric_list(const PerceptionMetrics& m) {
     return static_cast<double>(part) / static_cast<double>(whole);
   };
   const double rms = m.acceleration_rms.value_or(0.0);
-  return {Metric::number_if(
-              m.reference_rows > 0, "error_noticed_share", "1",
-              "share of the rows with a reference force f_m whose ||f - f_m|| is above the just noticeable "
-              "difference: perception.force_jnd of ||f_m||, or of perception.least_force_N where that is more",
-              share(m.error_rows, m.reference_rows)),
-          Metric::number_if(
-              m.rows_in_contact > 0, "vibration_noticed_share", "1",
-              "share of the rows in contact whose force above 30 Hz (Butterworth, fourth order) is above the just "
-              "noticeable difference of the rest of the force",
-              share(m.vibration_rows, m.rows_in_contact)),
-          Metric::number(
-              "tactile_acceleration_rms_m_per_s2", "m/s2",
-              "root mean square of the handle's acceleration between perception.band_Hz, where touch is most sensitive",
-              m.acceleration_rms),
-          Metric::number_if(
-              m.acceleration_rms && m.threshold_rms > 0.0, "tactile_acceleration_over_threshold", "1",
-              "the same over that of a vibration that is just felt, of perception.amplitude_at_250Hz_m; above 1 it "
-              "is felt",
-              rms / m.threshold_rms)};
+  return {{"error_noticed_share", "1",
+           "share of the rows with a reference force f_m whose ||f - f_m|| is above the just noticeable "
+           "difference: perception.force_jnd of ||f_m||, or of perception.least_force_N where that is more",
+           if_any(m.reference_rows > 0, share(m.error_rows, m.reference_rows))},
+          {"vibration_noticed_share", "1",
+           "share of the rows in contact whose force above 30 Hz (Butterworth, fourth order) is above the just "
+           "noticeable difference of the rest of the force",
+           if_any(m.rows_in_contact > 0, share(m.vibration_rows, m.rows_in_contact))},
+          {"tactile_acceleration_rms_m_per_s2", "m/s2",
+           "root mean square of the handle's acceleration between perception.band_Hz, where touch is most sensitive",
+           m.acceleration_rms},
+          {"tactile_acceleration_over_threshold", "1",
+           "the same over that of a vibration that is just felt, of perception.amplitude_at_250Hz_m; above 1 it "
+           "is felt",
+           if_any(m.acceleration_rms && m.threshold_rms > 0.0, rms / m.threshold_rms)}};
 }
 
 }  // namespace hapbench

@@ -7,13 +7,13 @@
 namespace hapbench {
 namespace {
 
-/// Steps that do nothing, timed to learn what timing costs: enough that the first ones, with cold caches, do not
-/// matter.
+/// Number of empty steps that are timed to measure the cost of timing: enough to make the first ones, with cold caches,
+/// irrelevant.
 constexpr std::size_t kEmptySteps = 501;
 
 }  // namespace
 
-// Filled with zeros, so that the pages are there before the first step.
+// The buffer is filled with zeros, so that its pages exist before the first step.
 StepTimes::StepTimes(std::size_t capacity) : times_(std::max(capacity, kEmptySteps)) {
   start();
   for (std::size_t i = 0; i < kEmptySteps; ++i) lap();
@@ -50,7 +50,7 @@ namespace {
 
 using Times = std::vector<std::uint64_t>;
 
-/// Nearest rank, in tenths of a percent so that the rank is computed exactly. Precondition: sorted and not empty.
+/// Percentile by nearest rank, in tenths of a percent so that the rank is exact. Precondition: sorted and not empty.
 std::uint64_t percentile(const Times& sorted, std::size_t per_mille) {
   const std::size_t rank = (sorted.size() * per_mille + 999) / 1000;
   return sorted[std::max<std::size_t>(rank, 1) - 1];

@@ -91,10 +91,9 @@ namespace {
 
 MetricList metric_list(const SubjectMean& m, const char* unit, const char* meaning) {
   const bool any = m.subjects > 0;
-  return {
-      Metric::number_if(any, "mean", unit, meaning, m.mean),
-      Metric::number_if(any, "standard_error", unit, "standard error of that mean, over subjects", m.standard_error),
-      Metric::count("subjects", "subjects that have a value", m.subjects)};
+  return {{"mean", unit, meaning, if_any(any, m.mean)},
+          {"standard_error", unit, "standard error of that mean, over subjects", if_any(any, m.standard_error)},
+          {"subjects", "1", "subjects that have a value", m.subjects}};
 }
 
 }  // namespace

@@ -1,30 +1,42 @@
 #include "results/summary/outcome_names.hpp"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 
 namespace hapbench {
 namespace {
 
-/// In the order of the enumeration.
-constexpr std::array<std::string_view, 7> kNames = {"completes",  "leaves_hole",  "tool_horizontal", "not_dragged",
-                                                    "no_contact", "lost_contact", "diverges"};
-static_assert(static_cast<std::size_t>(Outcome::diverges) == kNames.size() - 1);
+constexpr OutcomeInfo kOutcomes[] = {
+    {"completes", "all steps are done, or the hand has finished its task"},
+    {"leaves_hole", "the tip centre rose above height 0"},
+    {"tool_horizontal", "the tool's axis reached the horizontal plane"},
+    {"not_dragged",
+     "all steps are done, but a tool that a hand of type drag was to lead further than two of its widths came less than "
+     "one along the path",
+     true},
+    {"no_contact", "all steps are done, and the tool never touched the environment", true},
+    {"lost_contact",
+     "all steps are done, but a freely moving tool ended further from the environment's box than the box is wide and the "
+     "tool reaches together",
+     true},
+    {"diverges", "a value stopped being finite or left its bound (describe bounds)", true}};
+static_assert(static_cast<std::size_t>(Outcome::diverges) == std::size(kOutcomes) - 1);
 
 }  // namespace
 
+std::span<const OutcomeInfo> outcome_infos() noexcept {
+  return kOutcomes;
+}
+
 std::string_view outcome_name(Outcome outcome) noexcept {
-  return kNames[static_cast<std::size_t>(outcome)];
+  return kOutcomes[static_cast<std::size_t>(outcome)].name;
 }
 
 std::optional<Outcome> outcome_named(std::string_view name) noexcept {
-  const auto found = std::find(kNames.begin(), kNames.end(), name);
-  if (found == kNames.end()) return std::nullopt;
-  return static_cast<Outcome>(found - kNames.begin());
-}
-
-std::span<const std::string_view> outcome_names() noexcept {
-  return kNames;
+  const auto found = std::find_if(std::begin(kOutcomes), std::end(kOutcomes),
+                                  [name](const OutcomeInfo& outcome) { return outcome.name == name; });
+  if (found == std::end(kOutcomes)) return std::nullopt;
+  return static_cast<Outcome>(found - std::begin(kOutcomes));
 }
 
 }  // namespace hapbench

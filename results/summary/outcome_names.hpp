@@ -6,14 +6,21 @@
 
 #include "sim/loop/simulation.hpp"
 
-/// Names of outcomes in scenario files and result files.
+/// Outcomes in scenario files, result files and `describe`.
 namespace hapbench {
 
-/// "completes", "leaves_hole", "tool_horizontal" or "diverges".
+/// An outcome in words.
+struct OutcomeInfo {
+  std::string_view name;    ///< in files, as "completes"
+  const char* meaning;      ///< in a sentence without its full stop
+  bool is_failure = false;  ///< the numbers of such a run say nothing about the algorithm
+};
+
+/// All outcomes, in the order of the enumeration.
+std::span<const OutcomeInfo> outcome_infos() noexcept;
+
 std::string_view outcome_name(Outcome outcome) noexcept;
 /// Returns nothing if no outcome has that name.
 std::optional<Outcome> outcome_named(std::string_view name) noexcept;
-/// All names, in the order of the enumeration.
-std::span<const std::string_view> outcome_names() noexcept;
 
 }  // namespace hapbench

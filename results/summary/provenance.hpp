@@ -3,14 +3,14 @@
 #include <istream>
 #include <string>
 
-/// Which program on which machine computed a result.
+/// Identifies the program and the machine that computed a result.
 ///
 /// The instruction set (-march, SIMD on or off) is kept apart. Results do not depend on it, and summary.json is
 /// byte-identical between the scalar and the SIMD build of one tree; it could not be if it named the build. What
 /// depends on the instruction set is time, so timing.json names it.
 namespace hapbench {
 
-/// Goes into summary.json. Unknown parts are "unknown".
+/// Part of summary.json. Unknown parts are "unknown".
 struct Provenance {
   std::string version;      ///< of hapbench
   std::string commit;       ///< of the source tree at build time; ends in "-dirty" when tracked files differ from it
@@ -18,14 +18,14 @@ struct Provenance {
   std::string build_type;   ///< of CMake
   std::string flags;        ///< compiler flags that can change numbers
   std::string cpu;          ///< model name
-  std::string plugin = {};  ///< of an algorithm from outside the file it comes from; else empty
+  std::string plugin = {};  ///< file of the plugin whose algorithm was used; else empty
   std::string plugin_hash = {};  ///< of that file's content
 };
 
 /// Returns the provenance of the running program. Reads /proc/cpuinfo.
 Provenance provenance();
 
-/// Goes into timing.json only.
+/// Part of timing.json only.
 struct InstructionSet {
   std::string march;  ///< value of -march; empty for the compiler's default
   std::string

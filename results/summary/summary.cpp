@@ -36,7 +36,7 @@ ordered_json value_json(const Metric::Value& value) {
   return number != nullptr ? ordered_json(*number) : ordered_json(nullptr);
 }
 
-/// An object with an object in it for each section.
+/// An object with a nested object for each section of the names.
 ordered_json metrics_json(const MetricList& list) {
   ordered_json json = ordered_json::object();
   for (const Metric& metric : list) {

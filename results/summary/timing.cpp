@@ -10,7 +10,7 @@ namespace {
 using nlohmann::ordered_json;
 
 double seconds(double nanoseconds) {
-  return nanoseconds / 1e9;  // unlike times 1e-9, the double nearest to the decimal
+  return nanoseconds / 1e9;  // the double nearest to the decimal, unlike multiplication by 1e-9
 }
 
 }  // namespace

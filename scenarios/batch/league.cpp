@@ -219,8 +219,8 @@ std::string default_metrics_text() {
 }
 
 bool is_failure(std::string_view outcome) {
-  constexpr std::string_view kFailures[] = {"diverges", "not_dragged", "no_contact", "lost_contact"};
-  return std::find(std::begin(kFailures), std::end(kFailures), outcome) != std::end(kFailures);
+  const std::optional<Outcome> known = outcome_named(outcome);
+  return known && outcome_infos()[static_cast<std::size_t>(*known)].is_failure;
 }
 
 LeagueRuns league_runs(const BatchPlan& plan, const BatchReport& report, const std::vector<std::string>& metrics) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
+#include "results/io/columns.hpp"
 #include "scenarios/batch/run_batch.hpp"
 #include "scenarios/input/json_file.hpp"
 
@@ -93,8 +94,7 @@ inline constexpr std::string_view kFidelityMetrics[] = {"fidelity.force_error_re
 /// kDefaultMetrics, separated by commas.
 std::string default_metrics_text();
 
-/// Returns true for an outcome after which a run's metrics say nothing about its algorithm: diverges, not_dragged,
-/// no_contact, lost_contact.
+/// Returns true for the name of an outcome after which a run's metrics say nothing about its algorithm (OutcomeInfo).
 bool is_failure(std::string_view outcome);
 
 /// The runs of a finished batch with the given metrics (names of metric_list). If `metrics` is empty, they are
@@ -102,9 +102,10 @@ bool is_failure(std::string_view outcome);
 /// failure or is not one that its scenario expects.
 LeagueRuns league_runs(const BatchPlan& plan, const BatchReport& report, const std::vector<std::string>& metrics);
 
-/// Writes league.csv: a row for each scenario, algorithm and metric: scenario, algorithm, metric, seeds, failed,
-/// outcome, mean, spread, rank, ratio_to_best, beyond_spread; empty cells for missing values (see Standing).
-/// Throws IoError.
+/// The columns of league.csv, a table with a row for each scenario, algorithm and metric.
+std::vector<Column> league_columns();
+
+/// Writes league.csv. Throws IoError.
 void write_league(const std::filesystem::path& file, const League& league);
 
 /// The same rows as objects, null for missing values, and a summary of each algorithm.

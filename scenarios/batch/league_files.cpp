@@ -7,19 +7,50 @@
 namespace hapbench {
 namespace {
 
-template <class Visit>
-void for_each_standing(const League& league, Visit visit) {
+/// A line of league.csv: places of scenario, algorithm and metric.
+struct StandingRow {
+  const League& league;
+  std::size_t scenario, algorithm, metric;
+
+  const Standing& standing() const { return league.at(scenario, algorithm, metric); }
+};
+
+std::vector<StandingRow> standing_rows(const League& league) {
+  std::vector<StandingRow> rows;
   for (std::size_t s = 0; s < league.runs.scenarios.size(); ++s) {
     for (std::size_t a = 0; a < league.runs.algorithms.size(); ++a) {
-      for (std::size_t m = 0; m < league.runs.metrics.size(); ++m) visit(s, a, m);
+      for (std::size_t m = 0; m < league.runs.metrics.size(); ++m) rows.push_back({league, s, a, m});
     }
   }
+  return rows;
 }
 
-template <class Value>
-Json or_null(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
+const Field<StandingRow> kStandingFields[] = {
+    {{"scenario", "", "name of the scenario"},
+     [](const StandingRow& r) -> Cell { return r.league.runs.scenarios[r.scenario]; }},
+    {{"algorithm", "", "force algorithm"},
+     [](const StandingRow& r) -> Cell { return r.league.runs.algorithms[r.algorithm]; }},
+    {{"metric", "", "name of the metric; its unit is part of the name"},
+     [](const StandingRow& r) -> Cell { return r.league.runs.metrics[r.metric]; }},
+    {{"seeds", "1", "seeds of the algorithm in the scenario"},
+     [](const StandingRow& r) -> Cell { return r.league.runs.seeds; }},
+    {{"failed", "1", "seeds that failed"},
+     [](const StandingRow& r) -> Cell { return r.league.failures(r.scenario, r.algorithm); }},
+    {{"outcome", "", "how the runs ended; of several ways with their numbers"},
+     [](const StandingRow& r) -> Cell { return r.league.outcomes(r.scenario, r.algorithm); }},
+    {{"mean", "by name", "mean of the metric over the seeds that did not fail; empty when there is none"},
+     [](const StandingRow& r) { return cell_if(r.standing().mean); }},
+    {{"spread", "by name",
+      "standard deviation over these seeds; empty when there is one, or when seeds change nothing"},
+     [](const StandingRow& r) { return cell_if(r.standing().spread); }},
+    {{"rank", "1",
+      "1 + the number of algorithms that did better in this scenario by this metric; those with failures are last"},
+     [](const StandingRow& r) { return cell_if(r.standing().rank); }},
+    {{"ratio_to_best", "1", "mean in units of the best mean; empty after a failure"},
+     [](const StandingRow& r) { return cell_if(r.standing().ratio_to_best); }},
+    {{"beyond_spread", "",
+      "true when the mean differs from the best by more than the spread of the seeds: paired t, 5 %"},
+     [](const StandingRow& r) { return cell_if(r.standing().beyond_spread); }}};
 
 std::vector<std::string> names_of(const std::vector<std::size_t>& places, const std::vector<std::string>& names) {
   std::vector<std::string> chosen;
@@ -29,41 +60,19 @@ std::vector<std::string> names_of(const std::vector<std::size_t>& places, const 
 
 }  // namespace
 
+std::vector<Column> league_columns() {
+  return columns_of(kStandingFields);
+}
+
 void write_league(const std::filesystem::path& file, const League& league) {
-  const LeagueRuns& runs = league.runs;
-  CsvWriter csv(file, "scenario,algorithm,metric,seeds,failed,outcome,mean,spread,rank,ratio_to_best,beyond_spread");
-  for_each_standing(league, [&](std::size_t s, std::size_t a, std::size_t m) {
-    const Standing& standing = league.at(s, a, m);
-    const std::string outcomes = league.outcomes(s, a);
-    const auto rank = standing.rank ? std::optional(static_cast<double>(*standing.rank)) : std::nullopt;
-    csv.row(std::string_view(runs.scenarios[s]), std::string_view(runs.algorithms[a]),
-            std::string_view(runs.metrics[m]), static_cast<std::uint64_t>(runs.seeds),
-            static_cast<std::uint64_t>(league.failures(s, a)), std::string_view(outcomes), standing.mean,
-            standing.spread, rank, standing.ratio_to_best,
-            std::string_view(!standing.beyond_spread   ? ""
-                             : *standing.beyond_spread ? "true"
-                                                       : "false"));
-  });
-  csv.finish();
+  write_csv(file, kStandingFields, standing_rows(league));
 }
 
 Json league_json(const League& league) {
   const LeagueRuns& runs = league.runs;
+  const auto or_null = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   Json rows = Json::array(), laws = Json::array();
-  for_each_standing(league, [&](std::size_t s, std::size_t a, std::size_t m) {
-    const Standing& standing = league.at(s, a, m);
-    rows.push_back({{"scenario", runs.scenarios[s]},
-                    {"algorithm", runs.algorithms[a]},
-                    {"metric", runs.metrics[m]},
-                    {"seeds", runs.seeds},
-                    {"failed", league.failures(s, a)},
-                    {"outcome", league.outcomes(s, a)},
-                    {"mean", or_null(standing.mean)},
-                    {"spread", or_null(standing.spread)},
-                    {"rank", or_null(standing.rank)},
-                    {"ratio_to_best", or_null(standing.ratio_to_best)},
-                    {"beyond_spread", or_null(standing.beyond_spread)}});
-  });
+  for (const StandingRow& row : standing_rows(league)) add_row(rows.emplace_back(), kStandingFields, row);
   for (const LawStanding& law : league.laws) {
     laws.push_back({{"algorithm", runs.algorithms[law.algorithm]},
                     {"mean_rank", or_null(law.mean_rank)},

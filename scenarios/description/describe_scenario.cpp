@@ -268,7 +268,7 @@ double describe_time(Fields& f, TimeFields& time) {
 /// One outcome, or a list of them.
 void describe_outcomes(Fields& f, std::vector<Outcome>& outcomes) {
   std::vector<Choice<Outcome>> choices;
-  for (const std::string_view name : outcome_names()) choices.push_back({name, *outcome_named(name)});
+  for (const OutcomeInfo& known : outcome_infos()) choices.push_back({known.name, *outcome_named(known.name)});
   const auto outcome = [&choices](Fields& o, Outcome& value) { o.choice(value, choices, "outcome"); };
   f.one_or_list(
       outcomes.size() != 1,
@@ -278,7 +278,7 @@ void describe_outcomes(Fields& f, std::vector<Outcome>& outcomes) {
         if (one.reads()) outcomes = {value};
       },
       [&](Fields& several) {
-        several.list(outcomes, {1, outcome_names().size()}, outcome);
+        several.list(outcomes, {1, outcome_infos().size()}, outcome);
       });
 }
 

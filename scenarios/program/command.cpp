@@ -119,10 +119,6 @@ std::vector<std::string> all_algorithms() {
   return algorithm_names();
 }
 
-std::vector<std::string> all_algorithms_and_all() {
-  return with_all(all_algorithms());
-}
-
 std::vector<std::string> all_integrators() {
   return names_of(kIntegrators, [](const IntegratorEntry* entry) { return entry->info.name; });
 }

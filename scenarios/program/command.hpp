@@ -85,8 +85,6 @@ Json or_null(const std::optional<Value>& value) {
 
 /// The names of all registered algorithms.
 std::vector<std::string> all_algorithms();
-/// Their names and "all", for completion.
-std::vector<std::string> all_algorithms_and_all();
 /// The names of all integrators.
 std::vector<std::string> all_integrators();
 /// The names of all bundled scenarios. Throws InputError.

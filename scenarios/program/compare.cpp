@@ -349,7 +349,7 @@ void add_compare(CommandLine& line) {
   command
       .add("--algorithms", common.algorithms,
            "names, separated by commas, or all (default: all; with --devices shaped_stiffness,summation)")
-      .words(all_algorithms_and_all)
+      .words([] { return with_all(all_algorithms()); })
       .comma_separated();
   const CommandOption devices =
       command

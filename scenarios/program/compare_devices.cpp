@@ -143,7 +143,7 @@ std::string stiffness_text(double K) {
 std::string limit_text(const FieldLimit& limit) {
   if (!limit.value) return "none";
   return fmt::format("{}{}{}", limit.beyond ? "" : "> ", stiffness_text(*limit.value),
-                     limit.astray.empty() ? "" : " ~");
+                     limit.inconsistent.empty() ? "" : " ~");
 }
 
 std::string damping_text(const RenderingConfig& rendering) {
@@ -209,6 +209,7 @@ class Answers {
   Answers(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits)
       : question_(question), limits_(limits) {}
 
+  const DeviceQuestion& question() const { return question_; }
   std::size_t columns() const { return question_.scenes.size() * question_.algorithms.size(); }
   std::string scene(std::size_t column) const { return scene_name(column / question_.algorithms.size()); }
   const std::string& algorithm(std::size_t column) const {
@@ -232,7 +233,7 @@ class Answers {
     if (std::ranges::any_of(question_.devices, [](const auto& device) { return device.name.ends_with('*'); }))
       text += "*: a preset with numbers of --set, of which nothing is published\n";
     text += delays_text(question_);
-    if (std::ranges::any_of(limits_, [](const DeviceLimit& limit) { return !limit.limit.astray.empty(); }))
+    if (std::ranges::any_of(limits_, [](const DeviceLimit& limit) { return !limit.limit.inconsistent.empty(); }))
       text += "~: some values below it are unstable, or some beyond it are stable: device_runs.csv\n";
     if (columns() == 1) return text;
     const std::string reference = fmt::format("{} in {}", algorithm(0), scene(0));
@@ -295,57 +296,83 @@ class Answers {
   const std::vector<DeviceLimit>& limits_;
 };
 
-Json device_limits_json(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
+/// A line of device_limits.csv.
+struct DeviceLimitRow {
+  const Answers& answers;
+  const DeviceLimit& found;
+
+  const FieldLimit& limit() const { return found.limit; }
+  const ComparedDevice& device() const { return answers.question().devices[found.device]; }
+  DeviceRatio ratio() const { return answers.ratio(found.device, found.limit); }
+  /// A number of the run at the limit.
+  Cell settled(double value) const { return limit().value ? Cell(value) : Cell(); }
+};
+using DeviceField = Field<DeviceLimitRow>;
+
+constexpr Column kDeviceColumn = {
+    "device", "", "ideal, admittance, the preset of an impedance device (* with numbers of --set), or a file's"};
+constexpr Column kSceneColumn = {"scenario", "", "name of the scene's file"};
+constexpr Column kAlgorithmColumn = {"algorithm", "", "force algorithm"};
+
+const DeviceField kDeviceLimitFields[] = {
+    {kDeviceColumn, [](const DeviceLimitRow& r) -> Cell { return r.device().name; }},
+    {kSceneColumn, [](const DeviceLimitRow& r) -> Cell { return r.answers.scene_name(r.found.scene); }},
+    {kAlgorithmColumn, [](const DeviceLimitRow& r) -> Cell { return r.limit().algorithm; }},
+    {{"limit_N_per_m", "N/m", "largest stable K by bisection on runs; empty when no run is stable"},
+     [](const DeviceLimitRow& r) { return cell_if(r.limit().value); }},
+    {{"beyond_N_per_m", "N/m", "the first unstable K beyond; empty when the range ends stable"},
+     [](const DeviceLimitRow& r) { return r.limit().beyond ? Cell(r.limit().beyond->value) : Cell(); }},
+    {{"class_beyond", "", "what became of the run there"},
+     [](const DeviceLimitRow& r) -> Cell { return beyond_text(r.limit()); }},
+    {{"published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device"},
+     [](const DeviceLimitRow& r) { return cell_if(r.device().published_stiffness); }},
+    {{"vibration_m_per_s", "m/s", "at the limit: rms of the handle's speed above 30 Hz in the last quarter of the run"},
+     [](const DeviceLimitRow& r) { return r.limit().value ? cell_if(r.limit().settled.vibration) : Cell(); }},
+    {{"contacts", "1", "at the limit: mean number of rendered contacts there"},
+     [](const DeviceLimitRow& r) { return r.settled(r.limit().settled.contacts); }},
+    {{"lambda_max", "1", "at the limit: largest eigenvalue of the mean S there"},
+     [](const DeviceLimitRow& r) { return r.settled(r.limit().settled.lambda_max); }},
+    {{"stiffness_ratio", "1", "K over that of the device in the first scene with the first algorithm"},
+     [](const DeviceLimitRow& r) { return cell_if(r.ratio().stiffness); }},
+    {{"rendered_ratio", "1", "the same of K lambda_max"},
+     [](const DeviceLimitRow& r) { return cell_if(r.ratio().rendered); }},
+    {{"unstable_without_contact", "", "true when hand and device alone are unstable beyond the limit"},
+     [](const DeviceLimitRow& r) -> Cell { return r.limit().unstable_alone; },
+     DeviceField::In::json},
+    {{"runs", "1", "runs of the search"}, [](const DeviceLimitRow& r) -> Cell { return r.limit().runs.size(); }},
+    {kInconsistentColumn, [](const DeviceLimitRow& r) -> Cell { return r.limit().inconsistent.size(); }}};
+
+/// A line of device_runs.csv.
+struct DeviceRunRow {
+  const DeviceLimitRow& limit;
+  const JudgedValue& run;
+};
+
+const Field<DeviceRunRow> kDeviceRunFields[] = {
+    {kDeviceColumn, [](const DeviceRunRow& r) -> Cell { return r.limit.device().name; }},
+    {kSceneColumn, [](const DeviceRunRow& r) -> Cell { return r.limit.answers.scene_name(r.limit.found.scene); }},
+    {kAlgorithmColumn, [](const DeviceRunRow& r) -> Cell { return r.limit.limit().algorithm; }},
+    {{"rendering.stiffness_N_per_m", "N/m", "K of the run"}, [](const DeviceRunRow& r) -> Cell { return r.run.value; }},
+    {{"class", "", "what became of the run"},
+     [](const DeviceRunRow& r) -> Cell { return std::string(run_verdict_name(r.run.verdict)); }}};
+
+/// Writes device_limits.csv and device_runs.csv, and returns the content of the first as JSON.
+Json write(const fs::path& directory, const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
   const Answers answers(question, limits);
-  Json rows = Json::array();
-  for (const DeviceLimit& found : limits) {
-    const FieldLimit& limit = found.limit;
-    const DeviceRatio ratio = answers.ratio(found.device, limit);
-    const auto settled = [&limit](double value) { return limit.value ? Json(value) : Json(nullptr); };
-    rows.push_back({{"device", question.devices[found.device].name},
-                    {"scenario", answers.scene_name(found.scene)},
-                    {"algorithm", limit.algorithm},
-                    {"limit_N_per_m", or_null(limit.value)},
-                    {"beyond_N_per_m", limit.beyond ? Json(limit.beyond->value) : Json(nullptr)},
-                    {"class_beyond", beyond_text(limit)},
-                    {"published_N_per_m", or_null(question.devices[found.device].published_stiffness)},
-                    {"vibration_m_per_s", limit.value ? or_null(limit.settled.vibration) : Json(nullptr)},
-                    {"contacts", settled(limit.settled.contacts)},
-                    {"lambda_max", settled(limit.settled.lambda_max)},
-                    {"stiffness_ratio", or_null(ratio.stiffness)},
-                    {"rendered_ratio", or_null(ratio.rendered)},
-                    {"unstable_without_contact", limit.unstable_alone},
-                    {"runs", limit.runs.size()},
-                    {"astray", limit.astray.size()}});
+  std::vector<DeviceLimitRow> rows;
+  for (const DeviceLimit& found : limits) rows.push_back({answers, found});
+  std::vector<DeviceRunRow> runs;
+  Json json = Json::array();
+  for (const DeviceLimitRow& row : rows) {
+    add_row(json.emplace_back(), kDeviceLimitFields, row);
+    for (const JudgedValue& run : row.limit().runs) runs.push_back({row, run});
   }
+  write_csv(directory / "device_limits.csv", kDeviceLimitFields, rows);
+  write_csv(directory / "device_runs.csv", kDeviceRunFields, runs);
   return {{"most_vibration_m_per_s", question.most_vibration},
           {"resolution", question.resolution},
           {"reference", {{"scenario", answers.scene_name(0)}, {"algorithm", question.algorithms.front()}}},
-          {"limits", std::move(rows)}};
-}
-
-void write(const fs::path& directory, const DeviceQuestion& question, const std::vector<DeviceLimit>& limits) {
-  const Answers answers(question, limits);
-  CsvWriter table(directory / "device_limits.csv", kDeviceLimitColumns);
-  CsvWriter runs(directory / "device_runs.csv", kDeviceRunColumns);
-  for (const DeviceLimit& found : limits) {
-    const ComparedDevice& device = question.devices[found.device];
-    const std::string scene = answers.scene_name(found.scene);
-    const FieldLimit& limit = found.limit;
-    const auto settled = [&limit](double value) { return limit.value ? std::optional(value) : std::nullopt; };
-    const DeviceRatio ratio = answers.ratio(found.device, limit);
-    table.row(std::string_view(device.name), std::string_view(scene), std::string_view(limit.algorithm), limit.value,
-              limit.beyond ? std::optional(limit.beyond->value) : std::nullopt, std::string_view(beyond_text(limit)),
-              device.published_stiffness, limit.value ? limit.settled.vibration : std::nullopt,
-              settled(limit.settled.contacts), settled(limit.settled.lambda_max), ratio.stiffness, ratio.rendered,
-              std::uint64_t{limit.runs.size()}, std::uint64_t{limit.astray.size()});
-    for (const JudgedValue& run : limit.runs) {
-      runs.row(std::string_view(device.name), std::string_view(scene), std::string_view(limit.algorithm), run.value,
-               run_verdict_name(run.verdict));
-    }
-  }
-  table.finish();
-  runs.finish();
+          {"limits", std::move(json)}};
 }
 
 double number_between(const char* option, const std::string& text, double least, double greatest) {
@@ -364,6 +391,14 @@ std::vector<std::string> device_names() {
 
 std::vector<std::string> default_device_scenes() {
   return {"tap_wall", "tap_corner", "tap_hole"};
+}
+
+std::vector<Column> device_limit_columns() {
+  return columns_of(kDeviceLimitFields);
+}
+
+std::vector<Column> device_run_columns() {
+  return columns_of(kDeviceRunFields);
 }
 
 std::string beyond_text(const FieldLimit& limit) {
@@ -385,9 +420,8 @@ int compare_devices(const CompareDevicesOptions& options) {
   const fs::path out = results_directory(options.out, "compare_devices");
   require_writable_directory(out);
   const std::vector<DeviceLimit> limits = device_limits(question, job_options(options.jobs, options.output, "compare"));
-  write(out, question, limits);
-  print(options.output, Answers(question, limits).text() + fmt::format("\nresults in {}\n", out.string()),
-        device_limits_json(question, limits));
+  const Json json = write(out, question, limits);
+  print(options.output, Answers(question, limits).text() + fmt::format("\nresults in {}\n", out.string()), json);
   return kSuccess;
 }
 

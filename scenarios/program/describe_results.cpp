@@ -5,6 +5,7 @@
 #include <cctype>
 
 #include "results/io/columns.hpp"
+#include "results/summary/outcome_names.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/input/text_lines.hpp"
@@ -13,6 +14,7 @@
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
+#include "scenarios/thesis_claims/claims.hpp"
 
 namespace hapbench {
 namespace {
@@ -117,31 +119,18 @@ constexpr const char* kMotion = "class of motion, of limit and stability";
 constexpr const char* kTime = "number of timing.json";
 constexpr const char* kVerdict = "verdict on a claim";
 
+/// Words that no enumeration has.
 constexpr Word kWords[] = {
-    {"completes", kOutcome, "all steps are done, or the hand has finished its task"},
-    {"leaves_hole", kOutcome, "the tip centre rose above height 0"},
-    {"tool_horizontal", kOutcome, "the tool's axis reached the horizontal plane"},
-    {"not_dragged", kOutcome,
-     "all steps are done, but a tool that a hand of type drag was to lead further than two of its widths came less than "
-     "one along the path"},
-    {"no_contact", kOutcome, "all steps are done, and the tool never touched the environment"},
-    {"lost_contact", kOutcome,
-     "all steps are done, but a freely moving tool ended further from the environment's box than the box is wide and the "
-     "tool reaches together"},
-    {"diverges", kOutcome, "a value stopped being finite or left its bound (describe bounds)"},
     {"step_p50_s", kTime, "what half of the steps take at most, each by itself, without observers and recorders [s]"},
     {"step_p99_s", kTime, "what 99 % of the steps take at most, each by itself, without observers and recorders [s]"},
-    {"reproduced", kVerdict, "the rule of the claim holds with the published numbers"},
-    {"reproduced in kind", kVerdict, "direction or mechanism are the published ones, the numbers are not"},
-    {"not reproduced", kVerdict, "neither, in this model of the device and the hand"},
-    {"refuted", kVerdict, "it contradicts an exact result"},
-    {"not reproducible", kVerdict, "no simulation can show it: people or the trainer are needed"},
 };
 
 std::vector<Word> all_words() {
   std::vector<Word> all(std::begin(kWords), std::end(kWords));
+  for (const OutcomeInfo& outcome : outcome_infos()) all.push_back({outcome.name, kOutcome, outcome.meaning});
   for (const RunVerdict verdict : kRunVerdicts)
     all.push_back({run_verdict_name(verdict), kMotion, run_verdict_meaning(verdict)});
+  for (const Verdict verdict : kVerdicts) all.push_back({verdict_name(verdict), kVerdict, text_of(verdict).meaning});
   return all;
 }
 

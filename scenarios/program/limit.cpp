@@ -9,6 +9,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/compare_devices.hpp"
+#include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
@@ -84,19 +85,24 @@ std::string value_text(const std::optional<double>& value) {
 }
 
 Table table_of(const std::vector<FieldLimit>& limits) {
-  Table table(
-      {{"algorithm", false}, {"first edge"}, {"beyond it", false}, {"theory"}, {"off theory %"}, {"runs"}, {"astray"}});
+  Table table({{"algorithm", false},
+               {"first edge"},
+               {"beyond it", false},
+               {"theory"},
+               {"off theory %"},
+               {"runs"},
+               {"inconsistent"}});
   for (const FieldLimit& limit : limits) {
     const auto difference = limit.difference();
     table.add({limit.algorithm, limit.value ? significant(*limit.value, 6) : "none", beyond_text(limit),
                value_text(limit.theory), difference ? significant(100.0 * *difference, 2) : "-",
-               std::to_string(limit.runs.size()), std::to_string(limit.astray.size())});
+               std::to_string(limit.runs.size()), std::to_string(limit.inconsistent.size())});
   }
   return table;
 }
 
-/// Remarks on algorithms whose stable values are not all on one side of the limit, or whose hand and device cause the
-/// instability.
+/// Remarks on algorithms whose stable values are not all on one side of the limit, or whose hand and device are
+/// unstable by themselves.
 std::string remarks_text(const std::vector<FieldLimit>& limits, const LimitQuestion& question) {
   constexpr std::size_t kMost = 4;
   std::string text;
@@ -116,48 +122,81 @@ std::string remarks_text(const std::vector<FieldLimit>& limits, const LimitQuest
           fmt::format("{}: at {} hand and device are unstable by themselves: the tool vibrates without contact, too\n",
                       limit.algorithm, significant((limit.beyond ? *limit.beyond : limit.runs.front()).value));
     }
-    if (limit.astray.empty()) continue;
+    if (limit.inconsistent.empty()) continue;
     text += fmt::format("{}: not one edge:", limit.algorithm);
-    for (std::size_t i = 0; i < std::min(kMost, limit.astray.size()); ++i) {
-      const JudgedValue& run = limit.astray[i];
+    for (std::size_t i = 0; i < std::min(kMost, limit.inconsistent.size()); ++i) {
+      const JudgedValue& run = limit.inconsistent[i];
       text += fmt::format("{} {} at {}", i == 0 ? "" : ",", run_verdict_name(run.verdict), significant(run.value));
     }
-    text += limit.astray.size() > kMost ? fmt::format(" and at {} more\n", limit.astray.size() - kMost) : "\n";
+    text +=
+        limit.inconsistent.size() > kMost ? fmt::format(" and at {} more\n", limit.inconsistent.size() - kMost) : "\n";
   }
   return text;
 }
 
+/// A line of limit.csv.
+struct LimitRow {
+  const FieldLimit& limit;
+  const LimitQuestion& question;
+};
+using LimitField = Field<LimitRow>;
+
+const LimitField kLimitFields[] = {
+    {{"algorithm", "", "force algorithm"}, [](const LimitRow& r) -> Cell { return r.limit.algorithm; }},
+    {{"field", "", "path of the field"},
+     [](const LimitRow& r) -> Cell { return r.question.path; },
+     LimitField::In::csv},
+    {{"side", "", "largest or smallest: the stable value that was asked for"},
+     [](const LimitRow& r) -> Cell { return side(r.question); },
+     LimitField::In::csv},
+    {{"limit", "by field",
+      "the last stable value before the first edge, by bisection on runs; empty when there is none"},
+     [](const LimitRow& r) { return cell_if(r.limit.value); }},
+    {{"beyond", "by field", "the first unstable value beyond it; empty when the range ends stable"},
+     [](const LimitRow& r) { return r.limit.beyond ? Cell(r.limit.beyond->value) : Cell(); }},
+    {{"class_beyond", "", "what became of the run there (describe stability)"},
+     [](const LimitRow& r) -> Cell { return beyond_text(r.limit); }},
+    {{"theory", "by field", "the limit in theory; empty where there is none"},
+     [](const LimitRow& r) { return cell_if(r.limit.theory); }},
+    {{"unstable_without_contact", "", "true when hand and device alone are unstable beyond the edge"},
+     [](const LimitRow& r) -> Cell { return r.limit.unstable_alone; },
+     LimitField::In::json},
+    {{"has_effect", "", "false when the field changes no run"},
+     [](const LimitRow& r) -> Cell { return r.limit.has_effect; },
+     LimitField::In::json},
+    {{"runs", "1", "runs of the search"}, [](const LimitRow& r) -> Cell { return r.limit.runs.size(); }},
+    {kInconsistentColumn, [](const LimitRow& r) -> Cell { return r.limit.inconsistent.size(); }}};
+
+/// {field} is the path of the field.
+constexpr Column kLimitRunColumns[] = {{"algorithm", "", "force algorithm"},
+                                       {"{field}", "by name", "value of the field"},
+                                       {"class", "", "what became of the run (describe stability)"}};
+
+std::vector<LimitRow> rows_of(const std::vector<FieldLimit>& limits, const LimitQuestion& question) {
+  std::vector<LimitRow> rows;
+  for (const FieldLimit& limit : limits) rows.push_back({limit, question});
+  return rows;
+}
+
 void write_limits(const fs::path& directory, const std::vector<FieldLimit>& limits, const LimitQuestion& question) {
-  CsvWriter csv(directory / "limit.csv", "algorithm,field,side,limit,beyond,class_beyond,theory,runs,astray");
-  CsvWriter runs(directory / "limit_runs.csv", fmt::format("algorithm,{},class", question.path));
+  write_csv(directory / "limit.csv", kLimitFields, rows_of(limits, question));
+  CsvWriter runs(directory / "limit_runs.csv",
+                 fmt::format(fmt::runtime(header_of(kLimitRunColumns)), fmt::arg("field", question.path)));
   for (const FieldLimit& limit : limits) {
-    const auto beyond = limit.beyond ? std::optional(limit.beyond->value) : std::nullopt;
-    csv.row(std::string_view(limit.algorithm), std::string_view(question.path), std::string_view(side(question)),
-            limit.value, beyond, std::string_view(beyond_text(limit)), limit.theory, std::uint64_t{limit.runs.size()},
-            std::uint64_t{limit.astray.size()});
-    for (const JudgedValue& run : limit.runs) {
+    for (const JudgedValue& run : limit.runs)
       runs.row(std::string_view(limit.algorithm), run.value, run_verdict_name(run.verdict));
-    }
   }
-  csv.finish();
   runs.finish();
 }
 
 Json limits_json(const std::vector<FieldLimit>& limits, const LimitQuestion& question) {
   Json rows = Json::array();
-  for (const FieldLimit& limit : limits) {
-    Json astray = Json::array();
-    for (const JudgedValue& run : limit.astray)
-      astray.push_back({{"value", run.value}, {"class", run_verdict_name(run.verdict)}});
-    rows.push_back({{"algorithm", limit.algorithm},
-                    {"limit", or_null(limit.value)},
-                    {"beyond", limit.beyond ? Json(limit.beyond->value) : Json(nullptr)},
-                    {"class_beyond", beyond_text(limit)},
-                    {"theory", or_null(limit.theory)},
-                    {"unstable_without_contact", limit.unstable_alone},
-                    {"has_effect", limit.has_effect},
-                    {"runs", limit.runs.size()},
-                    {"astray", std::move(astray)}});
+  for (const LimitRow& row : rows_of(limits, question)) {
+    Json& json = rows.emplace_back();
+    add_row(json, kLimitFields, row);
+    json[kInconsistentColumn.name] = Json::array();
+    for (const JudgedValue& run : row.limit.inconsistent)
+      json[kInconsistentColumn.name].push_back({{"value", run.value}, {"class", run_verdict_name(run.verdict)}});
   }
   return {{"field", question.path},
           {"side", side(question)},
@@ -192,6 +231,14 @@ int limit(const LimitOptions& options) {
 
 }  // namespace
 
+std::vector<Column> limit_columns() {
+  return columns_of(kLimitFields);
+}
+
+std::span<const Column> limit_run_columns() {
+  return kLimitRunColumns;
+}
+
 void add_limit(CommandLine& line) {
   auto [command, options] =
       line.command("limit", "Find the largest stable value of any field, by bisection on runs of any scene", limit,
@@ -206,7 +253,7 @@ void add_limit(CommandLine& line) {
               "a:b, the range to search (default: a thousandth to a thousandfold of the scenario's value)");
   command.flag("--smallest", options.smallest, "find the smallest stable value instead, as of a mass");
   command.add("--algorithms", options.algorithms, "names separated by commas, or all (default: the scenario's own)")
-      .words(all_algorithms_and_all)
+      .words([] { return with_all(all_algorithms()); })
       .comma_separated();
   command.add("--resolution", options.resolution,
               "relative width of the answer (default: 0.001); of the range when the range reaches 0 or below");
@@ -222,7 +269,7 @@ void add_limit(CommandLine& line) {
       "by more than the tool reaches) or touches nothing. Oscillations slower than a quarter of the run are not seen. "
       "The range is tried at 17 values. The first edge upwards of the scenario's own value (of the first stable value, "
       "if that one is not stable; with --smallest downwards, from the high end) is bisected, and three values are tried "
-      "on either side of it, which may reveal an earlier edge. The column astray counts unstable values on the stable "
+      "on either side of it, which may reveal an earlier edge. The column inconsistent counts unstable values on the stable "
       "side and stable ones beyond the edge. Where the hand is an impedance, a run without environment tells whether "
       "hand and device alone are unstable beyond the edge. Where the springs stay in contact, the theoretical limit "
       "stands beside the edge. limit_runs.csv has every run.");

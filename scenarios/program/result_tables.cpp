@@ -4,6 +4,7 @@
 
 #include "device_model/theory/stiffness_limits.hpp"
 #include "results/record/recorder.hpp"
+#include "scenarios/batch/league.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/program/run_table.hpp"
@@ -118,17 +119,22 @@ std::vector<DescribedTable> result_tables() {
   for (const ResultTable& table : record_tables()) tables.push_back({table.file, table.holds, all(table.columns)});
   tables.push_back({kTargetTable.file, kTargetTable.holds, all(kTargetTable.columns)});
   tables.push_back({"comparison.csv", "of compare: one line per algorithm", comparison_columns()});
-  tables.push_back({"device_limits.csv", "of compare --devices: one line per device, scene and algorithm",
-                    all(kDeviceLimitColumns)});
-  tables.push_back({"device_runs.csv", "of compare --devices: one line per run", all(kDeviceRunColumns)});
+  tables.push_back({"league.csv",
+                    "of compare with several scenarios or seeds: one line per scenario, algorithm and metric",
+                    league_columns()});
+  tables.push_back(
+      {"device_limits.csv", "of compare --devices: one line per device, scene and algorithm", device_limit_columns()});
+  tables.push_back({"device_runs.csv", "of compare --devices: one line per run", device_run_columns()});
+  tables.push_back({"limit.csv", "of limit: one line per algorithm", limit_columns()});
+  tables.push_back({"limit_runs.csv", "of limit: one line per run", all(limit_run_columns())});
   tables.push_back({"sweep.csv", "of sweep: one line per run", sweep_columns()});
-  tables.push_back({"limits.csv", "of stability SCENARIO: one line per limit", all(kStabilityLimitColumns)});
+  tables.push_back({"limits.csv", "of stability SCENARIO: one line per limit", stability_limit_columns()});
   tables.push_back({"root_locus.csv", "of stability SCENARIO: eigenvalues of a step as the case's number grows",
-                    all(kRootLocusColumns)});
+                    root_locus_columns()});
   tables.push_back({"stability_map_NAME.csv", "of stability --map: one line per run", all(kStabilityMapColumns)});
   tables.push_back({"stability_boundary_NAME.csv", "of stability --map: one line per x of the map",
                     all(stability_boundary_columns())});
-  tables.push_back({"stability_stress.csv", "of stability --stress: one line per algorithm", all(kStressColumns)});
+  tables.push_back({"stability_stress.csv", "of stability --stress: one line per algorithm", stress_columns()});
   tables.push_back({"precision_STUDY.csv", "of precision: one line per setting, with the columns of its study",
                     all(kPrecisionColumns)});
   tables.push_back({"shell.csv", "of shell: one line per point of the environment", all(kShellColumns)});

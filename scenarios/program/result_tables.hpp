@@ -9,23 +9,6 @@
 /// headers from here.
 namespace hapbench {
 
-inline constexpr Column kStabilityLimitColumns[] = {
-    {"case", "", "what grows until the run is unstable: stiffness, damping or time step"},
-    {"unit", "", "unit of the limit"},
-    {"analytic", "unit", "the limit in closed form; empty where the integrator has none"},
-    {"eigenvalue", "unit", "by bisection on the eigenvalues of a step"},
-    {"simulation", "unit", "by bisection on runs"},
-    {"damping_at_limit_N_s_per_m", "N s/m", "B at the limit"},
-    {"lambda_max", "1", "largest eigenvalue of S: stiffness of the springs in units of K"}};
-
-inline constexpr Column kRootLocusColumns[] = {{"case", "", "what grows"},
-                                               {"value", "unit", "its value, in the unit of the case in limits.csv"},
-                                               {"first_real", "1", "real part of an eigenvalue of a step"},
-                                               {"first_imaginary", "1", "its imaginary part"},
-                                               {"second_real", "1", "real part of the other eigenvalue"},
-                                               {"second_imaginary", "1", "its imaginary part"},
-                                               {"spectral_radius", "1", "largest |eigenvalue|; above 1: unstable"}};
-
 /// {x} and {y} are the names of the map's axes.
 inline constexpr Column kStabilityMapColumns[] = {
     {"algorithm", "", "force algorithm"},
@@ -43,38 +26,18 @@ inline constexpr Column kStabilityMapColumns[] = {
 /// With one for each limit of the stiffness that is known (stiffness_limits.hpp).
 std::span<const Column> stability_boundary_columns();
 
-inline constexpr Column kStressColumns[] = {
-    {"algorithm", "", "force algorithm"},
-    {"sets", "1", "random contact sets drawn"},
-    {"in_contact", "1", "sets whose tool touches a point"},
-    {"non_finite", "1", "answers that are not finite"},
-    {"out_of_bound", "1", "finite answers beyond what the law allows"},
-    {"points_dropped", "1", "contacts that a full reduction refused"},
-    {"largest_force_per_K_d", "1", "largest ||f_spring|| in units of K times the set's deepest penetration"},
-    {"largest_share_of_bound", "1", "largest ||f_spring|| in units of the law's bound; empty for laws without one"}};
+/// A column of the tables of `limit` and `compare --devices`.
+inline constexpr Column kInconsistentColumn = {
+    "inconsistent_runs", "1", "runs that are unstable on the stable side of the limit, or stable beyond it"};
 
-inline constexpr Column kDeviceLimitColumns[] = {
-    {"device", "", "ideal, admittance, the preset of an impedance device (* with numbers of --set), or a file's"},
-    {"scenario", "", "name of the scene's file"},
-    {"algorithm", "", "force algorithm"},
-    {"limit_N_per_m", "N/m", "largest stable K by bisection on runs; empty when no run is stable"},
-    {"beyond_N_per_m", "N/m", "the first unstable K beyond; empty when the range ends stable"},
-    {"class_beyond", "", "what became of the run there"},
-    {"published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device"},
-    {"vibration_m_per_s", "m/s", "at the limit: rms of the handle's speed above 30 Hz in the last quarter of the run"},
-    {"contacts", "1", "at the limit: mean number of rendered contacts there"},
-    {"lambda_max", "1", "at the limit: largest eigenvalue of the mean S there"},
-    {"stiffness_ratio", "1", "K over that of the device in the first scene with the first algorithm"},
-    {"rendered_ratio", "1", "the same of K lambda_max"},
-    {"runs", "1", "runs of the search"},
-    {"astray", "1", "runs unstable below the limit, or stable beyond it"}};
-
-inline constexpr Column kDeviceRunColumns[] = {
-    {"device", "", "ideal, admittance, the preset of an impedance device (* with numbers of --set), or a file's"},
-    {"scenario", "", "name of the scene's file"},
-    {"algorithm", "", "force algorithm"},
-    {"rendering.stiffness_N_per_m", "N/m", "K of the run"},
-    {"class", "", "what became of the run"}};
+// The columns of tables that are defined as fields in the sources of their commands.
+std::vector<Column> limit_columns();
+std::span<const Column> limit_run_columns();
+std::vector<Column> device_limit_columns();
+std::vector<Column> device_run_columns();
+std::vector<Column> stability_limit_columns();
+std::vector<Column> root_locus_columns();
+std::vector<Column> stress_columns();
 
 /// The header of a stability map's table.
 std::string map_header(std::span<const Column> columns, const std::string& x, const std::string& y);

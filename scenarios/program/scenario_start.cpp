@@ -112,22 +112,14 @@ Box box_of(const std::vector<SurfacePoint>& points) {
 
 /// The point nearest to the middle of those within `tolerance` of the top.
 Vec3 middle_of_the_top(const std::vector<SurfacePoint>& points, double top, double tolerance) {
+  std::vector<Vec3> high;
+  for (const SurfacePoint& point : points) {
+    if (point.position.z() >= top - tolerance) high.push_back(point.position);
+  }
   Vec3 middle = Vec3::Zero();
-  double count = 0.0;
-  const auto is_high = [&](const SurfacePoint& point) { return point.position.z() >= top - tolerance; };
-  for (const SurfacePoint& point : points) {
-    if (!is_high(point)) continue;
-    middle += point.position;
-    count += 1.0;
-  }
-  middle /= count;
-  const SurfacePoint* nearest = nullptr;
-  for (const SurfacePoint& point : points) {
-    if (!is_high(point)) continue;
-    const double distance = (point.position - middle).norm();
-    if (nearest == nullptr || distance < (nearest->position - middle).norm()) nearest = &point;
-  }
-  return nearest->position;
+  for (const Vec3& place : high) middle += place;
+  middle /= static_cast<double>(high.size());
+  return *std::ranges::min_element(high, {}, [&middle](const Vec3& place) { return (place - middle).norm(); });
 }
 
 /// The highest of the points above or below the box's middle, to within `aside`; where there are none, as in a ring,
@@ -141,13 +133,10 @@ Vec3 top_of_the_middle(const std::vector<SurfacePoint>& points, const Box& box, 
   return top.z() > box.min.z() ? top : middle;
 }
 
+/// The unit, of m, cm and mm, in which the length is nearest to a tooth's.
 double guessed_scale(double longest) {
-  double best = 1.0;
   const auto misfit = [longest](double scale) { return std::abs(std::log(longest * scale / kToothLength)); };
-  for (const double scale : {0.01, 0.001}) {
-    if (misfit(scale) < misfit(best)) best = scale;
-  }
-  return best;
+  return std::ranges::min({1.0, 0.01, 0.001}, {}, misfit);
 }
 
 /// Rounds to the micrometre, as people write places.

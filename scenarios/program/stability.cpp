@@ -30,35 +30,36 @@ std::string_view case_name(StabilityCase which) {
   return kNames[static_cast<std::size_t>(which)];  // in the order of the enumeration
 }
 
-void write_limits(const fs::path& file, const std::vector<StabilityLimit>& limits) {
-  CsvWriter csv(file, kStabilityLimitColumns);
-  for (const StabilityLimit& limit : limits) {
-    csv.row(case_name(limit.which), std::string_view(limit.unit), limit.analytic, limit.eigenvalue, limit.simulation,
-            limit.damping_at_limit, limit.lambda);
-  }
-  csv.finish();
-}
+const Field<StabilityLimit> kStabilityLimitFields[] = {
+    {{"case", "", "what grows until the run is unstable: stiffness, damping or time step"},
+     [](const StabilityLimit& l) -> Cell { return std::string(case_name(l.which)); }},
+    {{"unit", "", "unit of the limit"}, [](const StabilityLimit& l) -> Cell { return l.unit; }},
+    {{"analytic", "unit", "the limit in closed form; empty where the integrator has none"},
+     [](const StabilityLimit& l) { return cell_if(l.analytic); }},
+    {{"eigenvalue", "unit", "by bisection on the eigenvalues of a step"},
+     [](const StabilityLimit& l) -> Cell { return l.eigenvalue; }},
+    {{"simulation", "unit", "by bisection on runs"}, [](const StabilityLimit& l) -> Cell { return l.simulation; }},
+    {{"damping_at_limit_N_s_per_m", "N s/m", "B at the limit"},
+     [](const StabilityLimit& l) -> Cell { return l.damping_at_limit; }},
+    {{"lambda_max", "1", "largest eigenvalue of S: stiffness of the springs in units of K"},
+     [](const StabilityLimit& l) -> Cell { return l.lambda; }}};
 
-void write_root_locus(const fs::path& file, const std::vector<RootLocusPoint>& locus) {
-  CsvWriter csv(file, kRootLocusColumns);
-  for (const RootLocusPoint& point : locus) {
-    csv.row(case_name(point.which), point.value, point.first.real(), point.first.imag(), point.second.real(),
-            point.second.imag(), std::max(std::abs(point.first), std::abs(point.second)));
-  }
-  csv.finish();
-}
+const Field<RootLocusPoint> kRootLocusFields[] = {
+    {{"case", "", "what grows"}, [](const RootLocusPoint& p) -> Cell { return std::string(case_name(p.which)); }},
+    {{"value", "unit", "its value, in the unit of the case in limits.csv"},
+     [](const RootLocusPoint& p) -> Cell { return p.value; }},
+    {{"first_real", "1", "real part of an eigenvalue of a step"},
+     [](const RootLocusPoint& p) -> Cell { return p.first.real(); }},
+    {{"first_imaginary", "1", "its imaginary part"}, [](const RootLocusPoint& p) -> Cell { return p.first.imag(); }},
+    {{"second_real", "1", "real part of the other eigenvalue"},
+     [](const RootLocusPoint& p) -> Cell { return p.second.real(); }},
+    {{"second_imaginary", "1", "its imaginary part"}, [](const RootLocusPoint& p) -> Cell { return p.second.imag(); }},
+    {{"spectral_radius", "1", "largest |eigenvalue|; above 1: unstable"},
+     [](const RootLocusPoint& p) -> Cell { return std::max(std::abs(p.first), std::abs(p.second)); }}};
 
 Json limits_json(const LoadedScenario& loaded, const std::vector<StabilityLimit>& limits) {
   Json rows = Json::array();
-  for (const StabilityLimit& limit : limits) {
-    rows.push_back({{"case", case_name(limit.which)},
-                    {"unit", limit.unit},
-                    {"analytic", or_null(limit.analytic)},
-                    {"eigenvalue", limit.eigenvalue},
-                    {"simulation", limit.simulation},
-                    {"damping_at_limit_N_s_per_m", limit.damping_at_limit},
-                    {"lambda_max", limit.lambda}});
-  }
+  for (const StabilityLimit& limit : limits) add_row(rows.emplace_back(Json::object()), kStabilityLimitFields, limit);
   return {{"name", loaded.scenario.name},
           {"algorithm", loaded.scenario.rendering.algorithm},
           {"integrator", loaded.scenario.integrator.type->info.name},
@@ -117,8 +118,8 @@ int limits(const StabilityOptions& options) {
     const LoadedScenario& loaded = scenarios[i];
     const std::vector<StabilityLimit>& limits = all_limits[i];
     const fs::path& directory = directories[i];
-    write_limits(directory / "limits.csv", limits);
-    write_root_locus(directory / "root_locus.csv", root_locus(loaded.scenario, limits));
+    write_csv(directory / "limits.csv", kStabilityLimitFields, limits);
+    write_csv(directory / "root_locus.csv", kRootLocusFields, root_locus(loaded.scenario, limits));
     write_file_atomically(directory / "scenario.effective.json",
                           json_text(effective_scenario(loaded.scenario, directory)));
     text += limits_text(loaded, limits) + fmt::format("\nroot locus in {}\n", (directory / "root_locus.csv").string());
@@ -128,37 +129,33 @@ int limits(const StabilityOptions& options) {
   return kSuccess;
 }
 
-void write_counts(const fs::path& file, const std::vector<StressCounts>& all) {
-  CsvWriter csv(file, kStressColumns);
-  for (const StressCounts& c : all) {
-    csv.row(std::string_view(c.algorithm), c.sets, c.in_contact, c.non_finite, c.out_of_bound, c.points_dropped,
-            c.largest_force, c.largest_share);
-  }
-  csv.finish();
-}
-
 bool is_bad(const StressCounts& counts) {
   return counts.non_finite + counts.out_of_bound > 0;
 }
 
-Json counts_json(const StressCounts& c) {
-  Json json = {{"algorithm", c.algorithm},
-               {"sets", c.sets},
-               {"in_contact", c.in_contact},
-               {"non_finite", c.non_finite},
-               {"out_of_bound", c.out_of_bound},
-               {"points_dropped", c.points_dropped},
-               {"largest_force_per_K_d", c.largest_force},
-               {"largest_share_of_bound", or_null(c.largest_share)}};
-  json["first_bad_set"] = is_bad(c) ? Json(c.first_bad) : Json(nullptr);
-  return json;
-}
+const Field<StressCounts> kStressFields[] = {
+    {{"algorithm", "", "force algorithm"}, [](const StressCounts& c) -> Cell { return c.algorithm; }},
+    {{"sets", "1", "random contact sets drawn"}, [](const StressCounts& c) -> Cell { return c.sets; }},
+    {{"in_contact", "1", "sets whose tool touches a point"},
+     [](const StressCounts& c) -> Cell { return c.in_contact; }},
+    {{"non_finite", "1", "answers that are not finite"}, [](const StressCounts& c) -> Cell { return c.non_finite; }},
+    {{"out_of_bound", "1", "finite answers beyond what the law allows"},
+     [](const StressCounts& c) -> Cell { return c.out_of_bound; }},
+    {{"points_dropped", "1", "contacts that a full reduction refused"},
+     [](const StressCounts& c) -> Cell { return c.points_dropped; }},
+    {{"largest_force_per_K_d", "1", "largest ||f_spring|| in units of K times the set's deepest penetration"},
+     [](const StressCounts& c) -> Cell { return c.largest_force; }},
+    {{"largest_share_of_bound", "1", "largest ||f_spring|| in units of the law's bound; empty for laws without one"},
+     [](const StressCounts& c) { return cell_if(c.largest_share); }},
+    {{"first_bad_set", "1", "number of the first set with a bad answer"},
+     [](const StressCounts& c) { return is_bad(c) ? Cell(c.first_bad) : Cell(); },
+     Field<StressCounts>::In::json}};
 
 int stress(const StabilityOptions& options) {
   const fs::path out = results_directory(options.out, "stability_stress");
   require_writable_directory(out);
   const std::vector<StressCounts> all = stress_laws(options.count, options.seed, options.job_options("stress"));
-  write_counts(out / "stability_stress.csv", all);
+  write_csv(out / "stability_stress.csv", kStressFields, all);
 
   Table table({{"algorithm", false},
                {"sets"},
@@ -174,7 +171,7 @@ int stress(const StabilityOptions& options) {
     table.add({c.algorithm, std::to_string(c.sets), std::to_string(c.in_contact), std::to_string(c.non_finite),
                std::to_string(c.out_of_bound), std::to_string(c.points_dropped), significant(c.largest_force),
                c.largest_share ? significant(*c.largest_share, 3) : "none"});
-    json.push_back(counts_json(c));
+    add_row(json.emplace_back(Json::object()), kStressFields, c);
     if (!is_bad(c)) continue;
     print_error(fmt::format("{}: {} of {} forces are not finite, {} out of bound; the first in set {} of seed {}",
                             c.algorithm, c.non_finite, c.sets, c.out_of_bound, c.first_bad, options.seed));
@@ -335,6 +332,18 @@ std::vector<std::string> StabilityOptions::chosen_algorithms() const {
 
 JobOptions StabilityOptions::job_options(const std::string& label) const {
   return hapbench::job_options(jobs, output, label);
+}
+
+std::vector<Column> stability_limit_columns() {
+  return columns_of(kStabilityLimitFields);
+}
+
+std::vector<Column> root_locus_columns() {
+  return columns_of(kRootLocusFields);
+}
+
+std::vector<Column> stress_columns() {
+  return columns_of(kStressFields);
 }
 
 void add_stability(CommandLine& line) {

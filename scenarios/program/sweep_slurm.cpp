@@ -179,21 +179,18 @@ std::string dry_run_text(const fs::path& array_file, const std::string& array, c
               : fmt::format("sbatch {}\n", merge_line));
 }
 
-void refuse_while_queued(const fs::path& directory) {
-  const auto jobs = read_jobs(directory);
-  if (!jobs || queued_tasks(jobs->array).empty()) return;
-  throw InputError(
-      fmt::format("--slurm: job {} of {} is still in the queue; allowed: when it has ended (\"scancel {}\")",
-                  jobs->array, directory.string(), jobs->array));
-}
-
 }  // namespace
 
 SlurmJobs submit_to_slurm(const SweepPlan& plan, const SlurmOptions& options, const fs::path& given,
                           const std::vector<std::string>& sweep) {
   const fs::path directory = fs::absolute(given).lexically_normal();
   const std::vector<std::size_t> shards = missing_shards(plan, options, directory);
-  if (!options.dry_run) refuse_while_queued(directory);
+  const auto earlier = options.dry_run ? std::nullopt : read_jobs(directory);
+  if (earlier && !queued_tasks(earlier->array).empty()) {
+    throw InputError(
+        fmt::format("--slurm: job {} of {} is still in the queue; allowed: when it has ended (\"scancel {}\")",
+                    earlier->array, directory.string(), earlier->array));
+  }
   const fs::path array_file = directory / "sweep.sbatch", merge_file = directory / "merge.sbatch";
   const std::string array = sweep_script(options, directory, sweep, shards), merge = merge_script(options, directory);
   if (!shards.empty()) write_file_atomically(array_file, array);
@@ -232,10 +229,6 @@ enum class ShardState {
 
 /// In the order of the enumeration.
 constexpr std::array<const char*, 5> kStateNames = {"done", "running", "waiting", "failed", "missing"};
-
-const char* name_of(ShardState state) {
-  return kStateNames[static_cast<std::size_t>(state)];
-}
 
 struct ShardStatus {
   Shard shard;
@@ -321,7 +314,7 @@ SweepStatus sweep_status(const fs::path& directory) {
     if (shard.state == ShardState::done && size) shard.done = *size;
     ++counts[static_cast<std::size_t>(shard.state)];
     done += shard.done;
-    const std::string name = shard_text(shard.shard), state = name_of(shard.state);
+    const std::string name = shard_text(shard.shard), state = kStateNames[static_cast<std::size_t>(shard.state)];
     table.add({name, state, std::to_string(shard.done), count_text(size)});
     list.push_back({{"shard", name}, {"state", state}, {"runs_done", shard.done}});
   }

@@ -4,20 +4,15 @@
 
 namespace hapbench {
 
-std::string_view verdict_name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::reproduced:
-      return "reproduced";
-    case Verdict::in_kind:
-      return "reproduced in kind";
-    case Verdict::not_reproduced:
-      return "not reproduced";
-    case Verdict::refuted:
-      return "refuted";
-    case Verdict::not_reproducible:
-      return "not reproducible";
-  }
-  return "";
+const VerdictText& text_of(Verdict verdict) {
+  // In the order of the enumeration.
+  static constexpr VerdictText kTexts[] = {
+      {"reproduced", "the rule of the claim holds with the published numbers"},
+      {"reproduced in kind", "direction or mechanism are the published ones, the numbers are not"},
+      {"not reproduced", "neither, in this model of the device and the hand"},
+      {"refuted", "it contradicts an exact result"},
+      {"not reproducible", "no simulation can show it: people or the trainer are needed"}};
+  return kTexts[static_cast<std::size_t>(verdict)];
 }
 
 Verdict decide(bool reproduced, bool in_kind) {

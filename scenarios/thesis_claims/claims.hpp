@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <string_view>
@@ -13,15 +14,19 @@
 namespace hapbench {
 
 /// The outcome of testing a published statement.
-enum class Verdict {
-  reproduced,       ///< the rule of the claim holds with its published numbers
-  in_kind,          ///< the direction or the mechanism is the published one, the numbers are not
-  not_reproduced,   ///< neither, in this model of the device and the hand
-  refuted,          ///< it contradicts an exact result
-  not_reproducible  ///< no simulation can show it
-};
+enum class Verdict { reproduced, in_kind, not_reproduced, refuted, not_reproducible };
+inline constexpr std::array kVerdicts = {Verdict::reproduced, Verdict::in_kind, Verdict::not_reproduced,
+                                         Verdict::refuted, Verdict::not_reproducible};
 
-std::string_view verdict_name(Verdict verdict);
+/// A verdict in words.
+struct VerdictText {
+  std::string_view name;  ///< also in the ledger
+  const char* meaning;
+};
+const VerdictText& text_of(Verdict verdict);
+inline std::string_view verdict_name(Verdict verdict) {
+  return text_of(verdict).name;
+}
 
 /// The verdict of a rule for "reproduced" and a weaker one for "reproduced in kind".
 Verdict decide(bool reproduced, bool in_kind);

@@ -128,7 +128,7 @@ class Search {
     for (const auto& [value, run] : runs) {
       limit.runs.push_back({value, run.verdict});
       if (limit.value && is_stable(run.verdict) != on_stable_side(value, limit))
-        limit.astray.push_back(limit.runs.back());
+        limit.inconsistent.push_back(limit.runs.back());
     }
     limit.has_effect = std::any_of(runs.begin(), runs.end(),
                                    [&runs](const auto& run) { return run.second.way != runs.begin()->second.way; });
@@ -195,7 +195,13 @@ class Search {
         constexpr double kNoWall = 1e-12;  // a direction without springs: the handle is free to go
         return lambda < kNoWall || is_stable_step(device_loop(scenario, lambda).state_matrix());
       }
-      return SpringDamper{r.stiffness, B, r.mass, scenario.time.step, lambda, scenario.integrator.type}.is_stable();
+      const SpringDamper mode{.K = r.stiffness,
+                              .B = B,
+                              .M = r.mass,
+                              .dt = scenario.time.step,
+                              .lambda = lambda,
+                              .integrator = scenario.integrator.type};
+      return mode.is_stable();
     });
   }
 

@@ -47,9 +47,10 @@ struct FieldLimit {
   /// Hand and device are unstable even where there is nothing to touch, at the value beyond, or without a limit at the
   /// first one. Only asked of a hand that feels the handle and needs no surface.
   bool unstable_alone = false;
-  bool has_effect = true;           ///< false when the handle moved alike, bit for bit, in all runs
-  std::vector<JudgedValue> runs;    ///< all, by value
-  std::vector<JudgedValue> astray;  ///< of them, unstable on the stable side of the limit, or stable beyond it
+  bool has_effect = true;         ///< false when the handle moved alike, bit for bit, in all runs
+  std::vector<JudgedValue> runs;  ///< all, by value
+  std::vector<JudgedValue>
+      inconsistent;  ///< runs that are unstable on the stable side of the limit, or stable beyond it
 
   /// value / theory - 1; none without either.
   std::optional<double> difference() const;

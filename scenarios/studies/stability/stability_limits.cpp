@@ -43,7 +43,12 @@ Probes probes_of(StabilityCase which) {
 /// The springs of the scenario along a direction in which their stiffness is lambda K.
 RaisedSpringDamper problem_of(StabilityCase which, const Scenario& scenario, double lambda) {
   const RenderingConfig& config = scenario.rendering;
-  const SpringDamper given{config.stiffness, 0.0, config.mass, scenario.time.step, lambda, scenario.integrator.type};
+  const SpringDamper given{.K = config.stiffness,
+                           .B = 0.0,
+                           .M = config.mass,
+                           .dt = scenario.time.step,
+                           .lambda = lambda,
+                           .integrator = scenario.integrator.type};
   return {which, given, config.damping, config.damping_ratio};
 }
 

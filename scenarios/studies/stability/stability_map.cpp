@@ -81,7 +81,9 @@ MapPoint map_point(const StabilityMap& map, const MapSubject& subject, double x,
   if (!is_alone(scenario) || !run.linear) return point;
   const double K = scenario.rendering.stiffness, M = scenario.rendering.mass;
   const double B = 2.0 * scenario.rendering.damping_ratio * std::sqrt(K * M);
-  point.margin = SpringDamper{K, B, M, scenario.time.step, run.lambdas[2], subject.integrator}.margin();
+  const SpringDamper stiffest{
+      .K = K, .B = B, .M = M, .dt = scenario.time.step, .lambda = run.lambdas[2], .integrator = subject.integrator};
+  point.margin = stiffest.margin();
   return point;
 }
 

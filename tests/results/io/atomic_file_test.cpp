@@ -172,8 +172,6 @@ TEST(WriteFileAtomically, WritesTheContentsAndNothingElse) {
   EXPECT_EQ(read_file(dir / "summary.json"), "{}\n");
 }
 
-using Names = std::vector<std::string>;
-
 /// A process that is killed while it writes `target`.
 void kill_a_writer_of(const std::filesystem::path& target) {
   const pid_t child = ::fork();

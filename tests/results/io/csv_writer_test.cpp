@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "results/allocations/allocations.hpp"
@@ -101,6 +102,30 @@ TEST(CsvWriter, KeepsAnErrorOfItsRowsForFinish) {
 
 constexpr Column kColumns[] = {{"n", "1", ""}, {"x", "m", ""}, {"y", "m", ""},
                                {"z", "m", ""}, {"a", "1", ""}, {"b", "1", ""}};
+
+struct Fruit {
+  std::string name;
+  std::optional<double> weight;
+  std::uint64_t seeds;
+  bool ripe;
+};
+
+const Field<Fruit> kFruitFields[] = {
+    {{"name", "", "what it is called"}, [](const Fruit& f) -> Cell { return f.name; }},
+    {{"weight_kg", "kg", "its weight"}, [](const Fruit& f) { return cell_if(f.weight); }},
+    {{"seeds", "1", "their number"}, [](const Fruit& f) -> Cell { return f.seeds; }, Field<Fruit>::In::csv},
+    {{"ripe", "", "whether it is"}, [](const Fruit& f) -> Cell { return f.ripe; }}};
+
+TEST(Fields, DescribeATableForCsvJsonAndDocumentation) {
+  const std::vector<Fruit> fruits = {{"apple, red", 0.25, 5, true}, {"plum", std::nullopt, 1, false}};
+  const TemporaryDirectory dir;
+  write_csv(dir / "fruits.csv", kFruitFields, fruits);
+  EXPECT_EQ(read_file(dir / "fruits.csv"), "name,weight_kg,seeds,ripe\n\"apple, red\",0.25,5,true\nplum,,1,false\n");
+  nlohmann::ordered_json plum = {{"place", 2}};
+  add_row(plum, kFruitFields, fruits[1]);
+  EXPECT_EQ(plum.dump(), R"({"place":2,"name":"plum","weight_kg":null,"ripe":false})");
+  EXPECT_EQ(header_of(columns_of(kFruitFields)), "name,weight_kg,seeds,ripe");
+}
 
 TEST(MemoryTable, HoldsTheNumbersOfItsCells) {
   MemoryTable table(kColumns);

@@ -205,7 +205,7 @@ TEST(EnergyLedger, OfAnImpedanceDeviceSaysWhatHoldingTheForceCreates) {
     EXPECT_NEAR(b.stored, stored + b.damping + b.created + b.integration + b.script, rounding);
     EXPECT_NEAR(b.created, 0.0, rounding);
     EXPECT_NEAR(b.integration, b.stored + b.device->stored - b.device->dissipated - stored, rounding);
-    // Of holding f = -k x over a way d, k d^2 / 2 is from nothing.
+    // Holding f = -k x over a displacement d creates k d^2 / 2.
     EXPECT_GT(b.integration, 0.05 * stored);
     EXPECT_NEAR(passivity.metrics()->energy_end, stored - b.actuator, rounding);
     EXPECT_LT(passivity.metrics()->energy_end, b.stored);

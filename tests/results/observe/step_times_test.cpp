@@ -130,7 +130,7 @@ Times scrambled(std::uint64_t n) {
   return times;
 }
 
-// Of 1 … n, the value of rank r is r.
+// The value of rank r among 1 … n is r.
 TEST(StepLatency, PercentilesAreThoseOfNearestRank) {
   const StepLatency thousand = step_latency(scrambled(1000), 0);
   EXPECT_EQ(thousand.p50, 500u);

@@ -37,7 +37,7 @@ TEST(FieldLimit, OfOneSpringIsThatOfTheory) {
   EXPECT_NEAR(*limit.theory, 433731.0, 0.002 * 433731.0);  // A.3; bisection stops at 0.1 %
   EXPECT_NEAR(*limit.value, 433731.0, 0.01 * 433731.0);
   EXPECT_LE(limit.beyond->value, *limit.value * 1.001 * (1.0 + 1e-12));
-  EXPECT_TRUE(limit.astray.empty());
+  EXPECT_TRUE(limit.inconsistent.empty());
   EXPECT_NEAR(*limit.difference(), *limit.value / *limit.theory - 1.0, 1e-15);
 }
 
