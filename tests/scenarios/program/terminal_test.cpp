@@ -237,7 +237,7 @@ TEST(DescribeCommand, ExplainsEveryField) {
 
 TEST(DescribeCommand, ExplainsTheWordsAndHeadingsThatResultsHave) {
   std::vector<std::string> words = {"reproduced in kind"};
-  for (const std::string_view outcome : outcome_names()) words.emplace_back(outcome);
+  for (const OutcomeInfo& outcome : outcome_infos()) words.emplace_back(outcome.name);
   for (const MotionClass motion : kMotionClasses) words.emplace_back(motion_class_name(motion));
   for (const RunVerdict verdict : {RunVerdict::thrown_out, RunVerdict::no_contact})
     words.emplace_back(run_verdict_name(verdict));
