@@ -61,6 +61,41 @@ std::optional<double> correlation(const Overlap& o) {
   return both / std::sqrt(early_square * late_square);
 }
 
+/// A maximum of the correlation.
+struct Peak {
+  double shift = 0.0;  ///< [samples]
+  double value = 0.0;
+  bool inside = false;  ///< not at an end of the range
+};
+
+/// The peaks as high as the greatest one, to kSamePeak, of the correlations at the shifts -m … m. Two peaks are told
+/// apart by a dip of kDip between them, so that noise on a peak does not split it.
+std::vector<Peak> greatest_peaks(const std::vector<double>& found) {
+  constexpr double kDip = 0.1, kSamePeak = 0.01;
+  const double least = *std::max_element(found.begin(), found.end()) - kDip;
+  std::vector<Peak> peaks;
+  for (auto from = found.begin(); from != found.end();) {
+    from = std::find_if(from, found.end(), [least](double value) { return value >= least; });
+    const auto to = std::find_if(from, found.end(), [least](double value) { return value < least; });
+    if (from == to) break;
+    const auto top = std::max_element(from, to);
+    Peak peak{static_cast<double>(top - found.begin()) - 0.5 * static_cast<double>(found.size() - 1), *top,
+              top != found.begin() && top != found.end() - 1};
+    if (peak.inside) {  // of the parabola through the top and its neighbours
+      const double below = *(top - 1), above = *(top + 1), curvature = below - 2.0 * *top + above;
+      const double part = curvature < 0.0 ? 0.5 * (below - above) / curvature : 0.0;
+      peak.shift += part;
+      peak.value += 0.25 * (above - below) * part;
+    }
+    peaks.push_back(peak);
+    from = to;
+  }
+  double greatest = 0.0;
+  for (const Peak& peak : peaks) greatest = std::max(greatest, peak.value);
+  std::erase_if(peaks, [greatest](const Peak& peak) { return peak.value < greatest - kSamePeak; });
+  return peaks;
+}
+
 }  // namespace
 
 std::optional<double> ForceFidelity::relative() const noexcept {
@@ -71,8 +106,7 @@ std::optional<double> ForceFidelity::artefact_share() const noexcept {
   return rendered_rms > 0.0 ? std::optional(across_rms / rendered_rms) : std::nullopt;
 }
 
-std::optional<double> lag_between(const std::vector<Vec3>& early, const std::vector<Vec3>& late, double dt,
-                                  double most) {
+std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector<Vec3>& late, double dt, double most) {
   const std::size_t n = std::min(early.size(), late.size());
   // At least half of the samples must overlap.
   const auto reach = static_cast<std::ptrdiff_t>(std::min(std::round(most / dt), static_cast<double>(n / 2)));
@@ -85,11 +119,18 @@ std::optional<double> lag_between(const std::vector<Vec3>& early, const std::vec
     if (!coefficient) return std::nullopt;
     found.push_back(*coefficient);
   }
-  const auto top = std::max_element(found.begin(), found.end());
-  if (top == found.begin() || top == found.end() - 1) return std::nullopt;
-  const double below = *(top - 1), above = *(top + 1), curvature = below - 2.0 * *top + above;
-  const double part = curvature < 0.0 ? 0.5 * (below - above) / curvature : 0.0;
-  return (static_cast<double>(top - found.begin() - reach) + part) * dt;
+  const std::vector<Peak> peaks = greatest_peaks(found);
+  const Peak* nearest = nullptr;
+  for (const Peak& peak : peaks) {
+    if (peak.inside && (nearest == nullptr || std::abs(peak.shift) < std::abs(nearest->shift))) nearest = &peak;
+  }
+  if (nearest == nullptr) return std::nullopt;
+  Lag lag{nearest->shift * dt, {}};
+  for (const Peak& peak : peaks) {
+    const double apart = std::abs(peak.shift - nearest->shift) * dt;
+    if (&peak != nearest && (!lag.period || apart < *lag.period)) lag.period = apart;
+  }
+  return lag;
 }
 
 ForceFidelityObserver::ForceFidelityObserver(const ReferenceForce& reference, double dt, std::uint64_t steps)
@@ -137,7 +178,11 @@ ForceFidelity ForceFidelityObserver::metrics() const {
                       &found.across_rms, &found.rendered_rms})
     *sum = std::sqrt(*sum / rows);
   found.direction_error /= static_cast<double>(std::max<std::uint64_t>(1, found.direction_rows));
-  found.lag = lag_between(kept_reference_, kept_rendered_, dt_ * static_cast<double>(every_), kMostLag);
+  const auto lag = lag_between(kept_reference_, kept_rendered_, dt_ * static_cast<double>(every_), kMostLag);
+  if (lag) {
+    found.lag = lag->time;
+    found.lag_period = lag->period;
+  }
   return found;
 }
 
@@ -145,24 +190,29 @@ MetricList metric_list(const ForceFidelity& f) {
   const bool any = f.rows > 0;
   return {{"rows", "1", "rows that have a reference force f_m: measured with the stroke, or ideal", f.rows},
           {"reference_force_rms_N", "N", "root mean square of ||f_m||", if_any(any, f.reference_rms)},
-          {"force_error_rms_N", "N", "root mean square of ||f - f_m||", if_any(any, f.error_rms)},
-          {"force_error_relative", "1", "force_error_rms_N / reference_force_rms_N", f.relative()},
+          {"force_error_rms_N", "N", "root mean square of ||f - f_m||", if_any(any, f.error_rms), Better::less},
+          {"force_error_relative", "1", "force_error_rms_N / reference_force_rms_N", f.relative(), Better::less},
           {"force_error_normal_rms_N", "N",
            "root mean square of n n^T (f - f_m); n is f_spring / ||f_spring||, what is rendered before damping and "
            "friction, or where nothing is rendered f_m / ||f_m||",
-           if_any(any, f.normal_rms)},
+           if_any(any, f.normal_rms), Better::less},
           {"force_error_tangential_rms_N", "N", "root mean square of (I - n n^T) (f - f_m), with the same n",
-           if_any(any, f.tangential_rms)},
+           if_any(any, f.tangential_rms), Better::less},
           {"force_artefact_share", "1",
            "root mean square of the part of f across f_m, all of it where f_m is zero, over that of ||f||",
-           f.artefact_share()},
+           f.artefact_share(), Better::less},
           {"direction_rows", "1", "rows in which ||f|| and ||f_m|| are both above 0.1 N", f.direction_rows},
           {"force_direction_error_rad", "rad", "mean angle between f and f_m of those rows",
-           if_any(f.direction_rows > 0, f.direction_error)},
+           if_any(f.direction_rows > 0, f.direction_error), Better::less},
           {"force_lag_s", "s",
            "time by which f follows f_m: where their correlation (Pearson's, all components) is greatest, within "
-           "0.1 s; none where it is not or where a force does not vary",
-           f.lag}};
+           "0.1 s; of equally great ones, as of a periodic force, that nearest to 0; none where it is greatest at the "
+           "ends of this range or where a force does not vary",
+           f.lag},
+          {"force_lag_period_s", "s",
+           "the lag is known up to multiples of this only: spacing of equally great correlations (to 0.01); none "
+           "where the lag is unambiguous",
+           f.lag_period}};
 }
 
 }  // namespace hapbench

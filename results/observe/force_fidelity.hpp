@@ -44,8 +44,9 @@ struct ForceFidelity {
   double across_rms = 0.0;    ///< rms of the part of f across f_m, of all of f where f_m is zero [N]
   double rendered_rms = 0.0;  ///< rms ||f|| [N]
   std::uint64_t direction_rows = 0;
-  double direction_error = 0.0;  ///< [rad]
-  std::optional<double> lag;     ///< [s]
+  double direction_error = 0.0;      ///< [rad]
+  std::optional<double> lag;         ///< [s]
+  std::optional<double> lag_period;  ///< [s], of an ambiguous lag
 
   /// rms error in units of that of f_m; nothing where f_m is zero throughout.
   std::optional<double> relative() const noexcept;
@@ -60,12 +61,17 @@ inline constexpr double kLeastForce = 0.1;
 /// Largest lag that is searched for, in both directions [s].
 inline constexpr double kMostLag = 0.1;
 
-/// Returns the time by which `late` follows `early` [s]: the shift with the greatest correlation (Pearson's over all
-/// three components of the overlapping samples), refined by a parabola through the greatest value and its neighbours.
-/// Nothing when either signal does not vary, or when the greatest value is at the end of the range +-`most` [s]. `dt`:
-/// time between samples [s]. O(n most / dt).
-std::optional<double> lag_between(const std::vector<Vec3>& early, const std::vector<Vec3>& late, double dt,
-                                  double most);
+/// The time by which one signal follows another.
+struct Lag {
+  double time = 0.0;             ///< [s]
+  std::optional<double> period;  ///< distance to the next equally good answer [s], as of periodic signals
+};
+
+/// Returns the time by which `late` follows `early`: the shift with the greatest correlation (Pearson's over all three
+/// components of the overlapping samples), refined by a parabola through the greatest value and its neighbours. Of
+/// equally great ones, to 0.01 of the coefficient, it is that nearest to 0. Nothing when either signal does not vary,
+/// or when the greatest value is at the end of the range +-`most` [s]. `dt`: time between samples [s]. O(n most / dt).
+std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector<Vec3>& late, double dt, double most);
 
 /// Compares every row. Allocates in the constructor and in metrics(), not in a row; about 50 ns a row.
 class ForceFidelityObserver final : public Observer {
