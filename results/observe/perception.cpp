@@ -9,12 +9,14 @@
 namespace hapbench {
 namespace {
 
-template <class Filter>
-void make_if_held(std::optional<Filter>& filter, double cutoff, double rate) {
-  if (cutoff > 0.0 && cutoff < 0.5 * rate) filter.emplace(cutoff, rate);
-}
+/// Time constant of the mean square of a vibration: one period of the slowest [s].
+constexpr double kEnvelopeTime = 1.0 / kVibrationCutoff;
 
 }  // namespace
+
+bool PerceptionThresholds::band_is_sampled(double dt) const noexcept {
+  return band_to * dt < 0.5;
+}
 
 double PerceptionThresholds::acceleration_rms() const noexcept {
   const double omega = 2.0 * std::numbers::pi * 250.0;
@@ -23,10 +25,15 @@ double PerceptionThresholds::acceleration_rms() const noexcept {
 
 PerceptionObserver::PerceptionObserver(const PerceptionThresholds& thresholds, const ReferenceForce* reference,
                                        double dt)
-    : thresholds_(thresholds), reference_(reference), dt_(dt), force_high_pass_(vibration_filter(dt)) {
-  const double rate = 1.0 / dt;
-  make_if_held(band_from_, thresholds_.band_from, rate);
-  make_if_held(band_to_, thresholds_.band_to, rate);
+    : thresholds_(thresholds),
+      reference_(reference),
+      dt_(dt),
+      envelope_gain_(-std::expm1(-dt / kEnvelopeTime)),
+      force_high_pass_(vibration_filter(dt)) {
+  if (thresholds_.band_is_sampled(dt)) {
+    if (thresholds_.band_from > 0.0) band_from_.emplace(thresholds_.band_from, 1.0 / dt);
+    band_to_.emplace(thresholds_.band_to, 1.0 / dt);
+  }
   counts_.threshold_rms = thresholds_.acceleration_rms();
 }
 
@@ -42,10 +49,13 @@ void PerceptionObserver::add_force(const StepRecord& record) noexcept {
       if ((f - *wanted).norm() > noticed(wanted->norm())) ++counts_.error_rows;
     }
   }
-  const Vec3 fast = force_high_pass_ ? force_high_pass_->filter(f) : Vec3(Vec3::Zero());
-  if (record.colliding == 0) return;
-  ++counts_.rows_in_contact;
-  if (fast.norm() > noticed((f - fast).norm())) ++counts_.vibration_rows;
+  if (force_high_pass_) {
+    const Vec3 fast = force_high_pass_->filter(f);
+    vibration_square_ += envelope_gain_ * (fast.squaredNorm() - vibration_square_);
+    if (record.colliding > 0 && std::sqrt(2.0 * vibration_square_) > noticed((f - fast).norm()))
+      ++counts_.vibration_rows;
+  }
+  if (record.colliding > 0) ++counts_.rows_in_contact;
 }
 
 void PerceptionObserver::add_motion(const Vec3& velocity) noexcept {
@@ -53,9 +63,9 @@ void PerceptionObserver::add_motion(const Vec3& velocity) noexcept {
   begun_ = true;
   last_velocity_ = velocity;
   ++rows_;
-  if (!band_from_) return;
-  acceleration = band_from_->filter(acceleration);
-  if (band_to_) acceleration = band_to_->filter(acceleration);
+  if (!band_to_) return;
+  if (band_from_) acceleration = band_from_->filter(acceleration);
+  acceleration = band_to_->filter(acceleration);
   acceleration_sum_ += acceleration.squaredNorm();
 }
 
@@ -66,7 +76,8 @@ void PerceptionObserver::on_step(const StepRecord& record) noexcept {
 
 PerceptionMetrics PerceptionObserver::metrics() const noexcept {
   PerceptionMetrics found = counts_;
-  if (band_from_ && rows_ > 0) found.acceleration_rms = std::sqrt(acceleration_sum_ / static_cast<double>(rows_));
+  found.vibration_is_sampled = force_high_pass_.has_value();
+  if (band_to_ && rows_ > 0) found.acceleration_rms = std::sqrt(acceleration_sum_ / static_cast<double>(rows_));
   return found;
 }
 
@@ -75,21 +86,25 @@ MetricList metric_list(const PerceptionMetrics& m) {
     return static_cast<double>(part) / static_cast<double>(whole);
   };
   const double rms = m.acceleration_rms.value_or(0.0);
-  return {{"error_noticed_share", "1",
-           "share of the rows with a reference force f_m whose ||f - f_m|| is above the just noticeable "
-           "difference: perception.force_jnd of ||f_m||, or of perception.least_force_N where that is more",
-           if_any(m.reference_rows > 0, share(m.error_rows, m.reference_rows))},
-          {"vibration_noticed_share", "1",
-           "share of the rows in contact whose force above 30 Hz (Butterworth, fourth order) is above the just "
-           "noticeable difference of the rest of the force",
-           if_any(m.rows_in_contact > 0, share(m.vibration_rows, m.rows_in_contact))},
-          {"tactile_acceleration_rms_m_per_s2", "m/s2",
-           "root mean square of the handle's acceleration between perception.band_Hz, where touch is most sensitive",
-           m.acceleration_rms},
-          {"tactile_acceleration_over_threshold", "1",
-           "the same over that of a vibration that is just felt, of perception.amplitude_at_250Hz_m; above 1 it "
-           "is felt",
-           if_any(m.acceleration_rms && m.threshold_rms > 0.0, rms / m.threshold_rms)}};
+  return {
+      {"error_noticed_share", "1",
+       "share of the rows with a reference force f_m whose ||f - f_m|| is above the just noticeable "
+       "difference: perception.force_jnd of ||f_m||, or of perception.least_force_N where that is more",
+       if_any(m.reference_rows > 0, share(m.error_rows, m.reference_rows)), Better::less},
+      {"vibration_noticed_share", "1",
+       "share of the rows in contact in which the vibration of the force above 30 Hz (Butterworth, fourth order) has "
+       "an amplitude, sqrt(2) times its root mean square over the last 1/30 s, above the just noticeable difference "
+       "of the rest of the force; none at sampling rates of 60 Hz and less",
+       if_any(m.rows_in_contact > 0 && m.vibration_is_sampled, share(m.vibration_rows, m.rows_in_contact)),
+       Better::less},
+      {"tactile_acceleration_rms_m_per_s2", "m/s2",
+       "root mean square of the handle's acceleration between perception.band_Hz, where touch is most sensitive; "
+       "none where half the sampling rate is within or below the band",
+       m.acceleration_rms, Better::less},
+      {"tactile_acceleration_over_threshold", "1",
+       "the same over that of a vibration that is just felt, of perception.amplitude_at_250Hz_m; above 1 it "
+       "is felt",
+       if_any(m.acceleration_rms && m.threshold_rms > 0.0, rms / m.threshold_rms), Better::less}};
 }
 
 }  // namespace hapbench

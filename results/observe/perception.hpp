@@ -27,6 +27,8 @@ struct PerceptionThresholds {
   /// Root mean square of the acceleration of that vibration [m/s^2]. In the band the threshold's amplitude falls as
   /// 1 / f^2, so that the threshold of the acceleration is about this at every frequency.
   double acceleration_rms() const noexcept;
+  /// True when half the sampling rate lies beyond the band; `dt` is the time between samples [s].
+  bool band_is_sampled(double dt) const noexcept;
 };
 
 /// The errors and vibrations of a run that a person would have felt.
@@ -34,7 +36,8 @@ struct PerceptionMetrics {
   std::uint64_t rows_in_contact = 0;
   std::uint64_t reference_rows = 0;  ///< rows with a reference force
   std::uint64_t error_rows = 0;      ///< those of them whose ||f - f_m|| is noticed
-  std::uint64_t vibration_rows = 0;  ///< rows in contact whose force above 30 Hz is noticed
+  std::uint64_t vibration_rows = 0;  ///< rows in contact in which the force's vibration above 30 Hz is noticed
+  bool vibration_is_sampled = false;
   std::optional<double>
       acceleration_rms;        ///< of the handle in the band [m/s^2]; nothing if the sampling rate is too low
   double threshold_rms = 0.0;  ///< PerceptionThresholds::acceleration_rms
@@ -45,8 +48,8 @@ MetricList metric_list(const PerceptionMetrics& perception);
 /// Constant memory, no heap; about 60 ns a row.
 class PerceptionObserver final : public Observer {
  public:
-  /// `reference` may be null and must outlive this. `dt`: time from row to row [s]. Metrics whose filter the sampling
-  /// rate does not allow have no value; a band that ends beyond half the sampling rate ends there.
+  /// `reference` may be null and must outlive this. `dt`: time from row to row [s]. Metrics whose band the sampling
+  /// rate does not cover have no value.
   PerceptionObserver(const PerceptionThresholds& thresholds, const ReferenceForce* reference, double dt);
 
   void on_step(const StepRecord& record) noexcept override;
@@ -61,6 +64,8 @@ class PerceptionObserver final : public Observer {
   PerceptionThresholds thresholds_;
   const ReferenceForce* reference_;
   double dt_;
+  double envelope_gain_;                     ///< of the first-order low-pass that gives vibration_square_
+  double vibration_square_ = 0.0;            ///< mean square of the force's vibration [N^2]
   std::optional<HighPass> force_high_pass_;  ///< removes voluntary movement
   std::optional<HighPass> band_from_;
   std::optional<LowPass> band_to_;

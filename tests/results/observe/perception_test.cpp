@@ -72,14 +72,19 @@ TEST(Perception, AVibrationOfTheForceIsNoticedBeyondItsShareOfTheRest) {
     const auto force = [=](double time) { return 2.0 + amplitude * std::sin(2 * std::numbers::pi * 200 * time); };
     const PerceptionMetrics m = observed(PerceptionObserver({}, nullptr, 1 / kRate), force, zero, 8000);
     const double share = static_cast<double>(m.vibration_rows) / static_cast<double>(m.rows_in_contact);
-    // The step of 2 N at the start dies out within a few periods of 30 Hz: some hundred of 8000 rows. |sin| is above
-    // 0.2 / 0.5 for 1 - 2/pi asin(0.4) = 0.738 of a period.
-    EXPECT_NEAR(share, amplitude > 0.2 ? 0.738 : 0.0, 0.03);
+    // A steady vibration is noticed in every row or in none, but for the start: the step of 2 N dies out within a few
+    // periods of 30 Hz, some hundred of 8000 rows, and five periods of 30 Hz, 666 rows, later its square is below
+    // (2 N)^2 e^-5 / 2 < (0.2 N)^2 / 2.
+    EXPECT_NEAR(share, amplitude > 0.2 ? 1.0 : 0.0, 0.1);
   }
 }
 
 TEST(Perception, AtALowRateThereIsNoBand) {
   EXPECT_FALSE(PerceptionObserver({}, nullptr, 0.02).metrics().acceleration_rms);
+  EXPECT_FALSE(PerceptionObserver({}, nullptr, 0.02).metrics().vibration_is_sampled);
+  // 600 Hz of sampling end within the band of 40 to 400 Hz.
+  EXPECT_FALSE(observed(PerceptionObserver({}, nullptr, 1.0 / 600.0), zero, zero, 100).acceleration_rms);
+  EXPECT_TRUE(observed(PerceptionObserver({}, nullptr, 1.0 / 900.0), zero, zero, 100).acceleration_rms);
 }
 
 }  // namespace
