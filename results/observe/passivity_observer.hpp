@@ -27,8 +27,8 @@ std::optional<PassivityMetrics> merged(const std::vector<std::optional<Passivity
 /// Observes every row, in constant memory; about 100 ns a row with a turning moment, 4 ns without force.
 class PassivityObserver final : public Observer {
  public:
-  /// `dt`: time from row to row [s].
-  explicit PassivityObserver(double dt) : observed_(dt) {}
+  /// `dt`: time from row to row [s]; `position_is_free`: the motion is not prescribed.
+  explicit PassivityObserver(double dt, bool position_is_free = true) : observed_(dt, position_is_free) {}
 
   bool wants_springs() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override;

@@ -81,7 +81,7 @@ class TrialObservers {
   TrialObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts, Trial trial)
       : tool_(parts.tool),
         metrics_(scenario.time.step, metrics_config(scenario, parts)),
-        passivity_(scenario.time.step),
+        passivity_(scenario.time.step, parts.motion->position_is_free()),
         sections_({.scenario = scenario,
                    .simulation = parts,
                    .reference = reference_force(scenario, files),

@@ -20,12 +20,16 @@ namespace hapbench {
 /// If the handle of a device moves the tool, the work is that of the force held while the tool moves on,
 /// f_render_k . (p_(k+1) - p_k), and E is that of the display (Hannaford and Ryu), including the energy created by
 /// sampling and holding.
+///
+/// A prescribed motion is not moved by the force, so nothing is held: its work is the integral along the way by the
+/// trapezoidal rule, (f_k + f_(k+1))/2 . (p_(k+1) - p_k). Where a contact of stiffness K begins or ends between two
+/// rows d apart, the rule is off by up to K d^2 / 8.
 class ObservedEnergy {
  public:
-  explicit ObservedEnergy(double dt) : dt_(dt) {}
+  explicit ObservedEnergy(double dt, bool position_is_free = true) : dt_(dt), free_(position_is_free) {}
 
   /// Returns to t = 0.
-  void reset() noexcept { *this = ObservedEnergy(dt_); }
+  void reset() noexcept { *this = ObservedEnergy(dt_, free_); }
 
   /// Starts the next row; `tool` is the tool's state in it.
   void move(const ToolState& tool, bool handle_moves_tool = false) noexcept {
@@ -33,7 +37,7 @@ class ObservedEnergy {
     begun_ = true;
     now_ = !now_;
     note(tool.pose);
-    if (force_acts_) energy_ -= force_.dot(way_to(tool, handle_moves_tool));
+    if (force_acts_) energy_ -= (free_ ? 1.0 : 0.5) * force_.dot(way_to(tool, handle_moves_tool));
     if (moment_acts_) energy_ -= 0.5 * moment_.dot(turned());
   }
   /// Ends the row: `rendered` and `springs` act on the tool passed to `move`.
@@ -43,6 +47,7 @@ class ObservedEnergy {
     moment_acts_ = !is_zero(springs.moment);
     if (force_acts_) {
       force_ = rendered;
+      if (!free_ && !first_) energy_ -= 0.5 * force_.dot(tool.pose.position - pose_[!now_].position);
       velocity_ = tool.velocity;
     }
     if (moment_acts_) {
@@ -76,7 +81,7 @@ class ObservedEnergy {
  private:
   /// Displacement since the previous row over which its force acts [m].
   Vec3 way_to(const ToolState& tool, bool handle_moves_tool) const noexcept {
-    if (handle_moves_tool) return tool.pose.position - pose_[!now_].position;
+    if (handle_moves_tool || !free_) return tool.pose.position - pose_[!now_].position;
     return 0.5 * (velocity_ + tool.velocity) * dt_;
   }
   /// Branch-free, unlike Eigen's isZero.
@@ -88,6 +93,7 @@ class ObservedEnergy {
   }
 
   double dt_;
+  bool free_;
   double energy_ = 0.0;
   bool begun_ = false;
   bool first_ = false;

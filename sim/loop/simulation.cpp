@@ -100,7 +100,7 @@ Vec3 Simulation::angular_velocity_after(double part, const Vec3& axis, double ro
 }
 
 /// The orientation always follows the script, with omega_k from the turn of the last step and omega_0 = 0. A prescribed
-/// position also gives the velocity, (p_k - p_{k-1}) / dt with v_0 = 0.
+/// position also gives the velocity, (p_k - p_{k-1}) / dt, and v_0 = v_1.
 void Simulation::move_tool_by_script() noexcept {
   const double t = static_cast<double>(row_) * config_.dt;
   const Vec3 axis = parts_.motion->axis_at(t);
@@ -112,7 +112,9 @@ void Simulation::move_tool_by_script() noexcept {
   roll_ = roll;
   if (position_is_free_) return;
   const Vec3 position = parts_.motion->position_at(t);
-  tool_.velocity = row_ == 0 ? Vec3::Zero() : Vec3((position - tool_.pose.position) / config_.dt);
+  const Vec3 way =
+      row_ == 0 ? Vec3(parts_.motion->position_at(config_.dt) - position) : Vec3(position - tool_.pose.position);
+  tool_.velocity = way / config_.dt;
   tool_.pose.position = position;
 }
 

@@ -284,7 +284,8 @@ TEST(PrescribedMotion, PutsToolAndHandleWhereTheScriptSaysWithTheBackwardDiffere
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto& [position, axis, roll] = rows[k].tool.pose;
     EXPECT_EQ(position, Vec3(path[0](rows[k].time), path[1](rows[k].time), path[2](rows[k].time)));
-    const Vec3 moved = k == 0 ? Vec3(0, 0, 0) : Vec3(position - rows[k - 1].tool.pose.position);
+    const std::size_t to = std::max<std::size_t>(k, 1);  // row 0 has the velocity of row 1
+    const Vec3 moved = rows[to].tool.pose.position - rows[to - 1].tool.pose.position;
     EXPECT_EQ(rows[k].tool.velocity, Vec3(moved / SimulationConfig{}.dt));
     EXPECT_EQ(rows[k].handle.position, position);
     EXPECT_EQ(rows[k].handle.velocity, rows[k].tool.velocity);
