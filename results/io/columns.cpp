@@ -50,7 +50,10 @@ std::string cell_text(const Metric::Value& value) {
 
 void append(MetricList& list, std::string_view section, const MetricList& more) {
   const std::string prefix = section.empty() ? "" : std::string(section) + ".";
-  for (const Metric& metric : more) list.push_back({prefix + metric.name, metric.unit, metric.meaning, metric.value});
+  for (const Metric& metric : more) {
+    list.push_back(metric);
+    list.back().name = prefix + metric.name;
+  }
 }
 
 ordered_json columns_json(std::span<const Column> columns) {

@@ -79,6 +79,9 @@ void add_row(nlohmann::ordered_json& object, const Field<Row> (&fields)[size], c
   }
 }
 
+/// The direction in which a metric gets better, all else equal. Most have none: a position, a count, a work.
+enum class Better { none, less, more };
+
 /// A number of a run, by name. It has no value when it does not exist (a ratio without contact) or is not finite.
 struct Metric {
   using Value = std::variant<std::monostate, std::uint64_t, double>;  ///< none, a count, a number
@@ -87,11 +90,12 @@ struct Metric {
   const char* unit;     ///< "1" for pure numbers and counts
   const char* meaning;  ///< what it says and how it is computed; ||.|| is the Euclidean norm, f is f_render
   Value value;
+  Better better;
 
   /// From a number, a count, one of them that need not exist, or a Value.
   template <class Given>
-  Metric(std::string name_, const char* unit_, const char* meaning_, const Given& given)
-      : name(std::move(name_)), unit(unit_), meaning(meaning_), value(value_from(given)) {}
+  Metric(std::string name_, const char* unit_, const char* meaning_, const Given& given, Better better_ = Better::none)
+      : name(std::move(name_)), unit(unit_), meaning(meaning_), value(value_from(given)), better(better_) {}
 
  private:
   static Value value_from(const Value& given) { return given; }

@@ -168,31 +168,33 @@ ContactForces ContactForceObserver::forces() const noexcept {
 }
 
 MetricList metric_list(const ContactForces& c) {
-  return {{"landings", "1",
-           "first touches: rows in contact after at least metrics.settling_s without contact, or since the start",
-           c.landings},
-          {"landing_force_max_N", "N",
-           "largest ||f|| within metrics.settling_s after a first touch, or before metrics.from_s", c.landing_max()},
-          {"landing_force_step_max_N", "N", "largest ||f_k - f_(k-1)|| of those rows", c.landing_step_max()},
-          {"settled_s", "s",
-           "time in settled contact: rows in contact that belong to no landing, times the time step; below 1/30 s, a "
-           "period of the high-pass, the metrics of settled contact have no value",
-           c.settled},
-          {"force_mean_in_contact_N", "N", "mean ||f|| of the rows in settled contact", c.mean()},
-          {"settled_force_max_N", "N", "largest ||f|| of the rows in settled contact", c.max()},
-          {"force_step_p99_N", "N",
-           "99 % of the rows in settled contact have at most this force step ||f_k - f_(k-1)||; within 0.8 %",
-           c.step_p99()},
-          {"settled_force_step_max_N", "N", "largest force step ||f_k - f_(k-1)|| of the rows in settled contact",
-           c.step_max()},
-          {"force_rms_above_30Hz_N", "N",
-           "vibration of the force, which the hand feels: root mean square of f behind a high-pass (Butterworth, "
-           "fourth order, 30 Hz, started at rest at the end of each landing) over the rows in settled contact; none at "
-           "sampling rates of 60 Hz or less",
-           c.rms_above_cutoff()},
-          {"force_reversals_per_s", "1/s",
-           "rows in settled contact whose f has a negative inner product with that of the row before, per settled_s",
-           c.reversals_per_second()}};
+  return {
+      {"landings", "1",
+       "first touches: rows in contact after at least metrics.settling_s without contact, or since the start",
+       c.landings},
+      {"landing_force_max_N", "N",
+       "largest ||f|| within metrics.settling_s after a first touch, or before metrics.from_s", c.landing_max(),
+       Better::less},
+      {"landing_force_step_max_N", "N", "largest ||f_k - f_(k-1)|| of those rows", c.landing_step_max(), Better::less},
+      {"settled_s", "s",
+       "time in settled contact: rows in contact that belong to no landing, times the time step; below 1/30 s, a "
+       "period of the high-pass, the metrics of settled contact have no value",
+       c.settled},
+      {"force_mean_in_contact_N", "N", "mean ||f|| of the rows in settled contact", c.mean()},
+      {"settled_force_max_N", "N", "largest ||f|| of the rows in settled contact", c.max()},
+      {"force_step_p99_N", "N",
+       "99 % of the rows in settled contact have at most this force step ||f_k - f_(k-1)||; within 0.8 %", c.step_p99(),
+       Better::less},
+      {"settled_force_step_max_N", "N", "largest force step ||f_k - f_(k-1)|| of the rows in settled contact",
+       c.step_max(), Better::less},
+      {"force_rms_above_30Hz_N", "N",
+       "vibration of the force, which the hand feels: root mean square of f behind a high-pass (Butterworth, "
+       "fourth order, 30 Hz, started at rest at the end of each landing) over the rows in settled contact; none at "
+       "sampling rates of 60 Hz or less",
+       c.rms_above_cutoff(), Better::less},
+      {"force_reversals_per_s", "1/s",
+       "rows in settled contact whose f has a negative inner product with that of the row before, per settled_s",
+       c.reversals_per_second(), Better::less}};
 }
 
 }  // namespace hapbench

@@ -206,18 +206,20 @@ MetricList metric_list(const TrajectoryErrors& e) {
        "recorded rows at whose tilt the ideal trajectory exists, of a hand below 2 N (gentle) or from 2 N on (firm)",
        e.rows},
       {"height_error_mean_m", "m", "mean of tip height - ideal height; negative: sunk in", if_any(any, e.height_mean)},
-      {"height_error_rms_m", "m", "root mean square of tip height - ideal height", if_any(any, e.height_rms)},
+      {"height_error_rms_m", "m", "root mean square of tip height - ideal height", if_any(any, e.height_rms),
+       Better::less},
       {"height_error_min_m", "m", "least tip height - ideal height", if_any(any, e.height_min)},
       {"height_error_max_m", "m", "largest tip height - ideal height", if_any(any, e.height_max)},
       {"lateral_error_mean_m", "m", "mean of lateral place of the tip - ideal one, towards the lean",
        if_any(any, e.lateral_mean)},
       {"lateral_error_rms_m", "m", "root mean square of lateral place of the tip - ideal one",
-       if_any(any, e.lateral_rms)},
-      {"lateral_error_max_m", "m", "largest |lateral place of the tip - ideal one|", if_any(any, e.lateral_max_abs)},
+       if_any(any, e.lateral_rms), Better::less},
+      {"lateral_error_max_m", "m", "largest |lateral place of the tip - ideal one|", if_any(any, e.lateral_max_abs),
+       Better::less},
       {"interpenetration_mean_m", "m", "mean true depth of the tool in the exact block",
-       if_any(any, e.interpenetration_mean)},
+       if_any(any, e.interpenetration_mean), Better::less},
       {"interpenetration_max_m", "m", "largest true depth of the tool in the exact block",
-       if_any(any, e.interpenetration_max)}};
+       if_any(any, e.interpenetration_max), Better::less}};
 }
 
 }  // namespace

@@ -215,10 +215,10 @@ MetricList reduction_list(const std::optional<ReductionJumps>& given) {
   return {{"reduction_changes", "1",
            "rows in contact whose set of kept points is another than in the row before, in contact too; with "
            "rendering.reduction",
-           if_any(given.has_value(), jumps.changes)},
+           if_any(given.has_value(), jumps.changes), Better::less},
           {"reduction_force_step_max_N", "N",
            "largest force step ||f_k - f_(k-1)|| of such rows in settled contact; with rendering.reduction",
-           jumps.step_max()}};
+           jumps.step_max(), Better::less}};
 }
 
 }  // namespace
@@ -228,17 +228,19 @@ MetricList metric_list(const Metrics& m) {
   const auto ratio = m.ratio.value_or(RatioRange{});
   const auto friction = m.explicit_friction.value_or(ExplicitFriction{});
   MetricList list = {
-      {"force_max_N", "N", "largest ||f|| of a row", m.force_max},
-      {"force_step_max_N", "N", "largest force step ||f_k - f_(k-1)||, landings included", m.force_step_max},
+      {"force_max_N", "N", "largest ||f|| of a row", m.force_max, Better::less},
+      {"force_step_max_N", "N", "largest force step ||f_k - f_(k-1)||, landings included", m.force_step_max,
+       Better::less},
       {"velocity_total_variation_m_per_s", "m/s",
-       "sum ||v_k - v_(k-1)|| over all rows: what a smooth motion has little of", m.velocity_total_variation},
+       "sum ||v_k - v_(k-1)|| over all rows: what a smooth motion has little of", m.velocity_total_variation,
+       Better::less},
       {"force_reversals", "1", "rows whose f has a negative inner product with that of the row before",
-       m.force_reversals},
+       m.force_reversals, Better::less},
       {"vibration_power_above_30Hz_m2_per_s2", "m2/s2",
        "mean ||v||^2 of all rows behind a high-pass (Butterworth, fourth order, 30 Hz); none at sampling rates of "
        "60 Hz or less",
-       m.vibration_power},
-      {"depth_max_m", "m", "largest penetration depth of a colliding point", m.depth_max},
+       m.vibration_power, Better::less},
+      {"depth_max_m", "m", "largest penetration depth of a colliding point", m.depth_max, Better::less},
       {"ratio_min", "1",
        "smallest stiffness ratio rho = u^T S u of a rendered contact: the combined stiffness along it, in units of K",
        if_any(m.ratio.has_value(), ratio.min)},
@@ -258,7 +260,7 @@ MetricList metric_list(const Metrics& m) {
        "largest ||f_spring|| whose friction the explicit integrator steps stably, (B_max - mu_s) / mu_f",
        if_any(m.explicit_friction.has_value(), friction.limit)},
       {"explicit_friction_rows_beyond", "1", "rows with a larger ||f_spring||",
-       if_any(m.explicit_friction.has_value(), friction.rows_beyond)},
+       if_any(m.explicit_friction.has_value(), friction.rows_beyond), Better::less},
       {"explicit_friction_first_step", "1", "the first of those rows", friction.first_step}};
   append(list, "", metric_list(m.contact));
   append(list, "", reduction_list(m.reduction));

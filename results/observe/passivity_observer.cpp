@@ -36,14 +36,14 @@ std::optional<PassivityMetrics> merged(const std::vector<std::optional<Passivity
 MetricList metric_list(const std::optional<PassivityMetrics>& m) {
   const bool any = m.has_value();
   const PassivityMetrics p = m.value_or(PassivityMetrics{});
-  return {
-      {"energy_min_J", "J",
-       "least observed energy of a row: what translation and rotation have put into the rendering; "
-       "negative when it gave more than it had",
-       if_any(any, p.energy_min)},
-      {"time_of_min_s", "s", "time of the first row that has it", if_any(any, p.time_of_min)},
-      {"energy_end_J", "J", "observed energy of the last row", if_any(any, p.energy_end)},
-      {"net_created_J", "J", "energy that the rendering created, max(0, -energy_min_J)", if_any(any, p.net_created())}};
+  return {{"energy_min_J", "J",
+           "least observed energy of a row: what translation and rotation have put into the rendering; "
+           "negative when it gave more than it had",
+           if_any(any, p.energy_min)},
+          {"time_of_min_s", "s", "time of the first row that has it", if_any(any, p.time_of_min)},
+          {"energy_end_J", "J", "observed energy of the last row", if_any(any, p.energy_end)},
+          {"net_created_J", "J", "energy that the rendering created, max(0, -energy_min_J)",
+           if_any(any, p.net_created()), Better::less}};
 }
 
 }  // namespace hapbench

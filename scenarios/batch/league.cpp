@@ -10,6 +10,7 @@
 
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/batch/statistics.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/encounter.hpp"
 
 namespace hapbench {
@@ -23,12 +24,28 @@ bool seeds_matter_in(const LeagueRuns& runs, std::size_t scenario) {
   return false;
 }
 
-/// The values of a metric in the runs that did not fail, seed by seed.
-std::vector<std::optional<double>> values_of(const LeagueRuns& runs, std::size_t scenario, std::size_t algorithm,
+std::vector<std::size_t> common_seeds(const League& league, std::size_t scenario) {
+  const LeagueRuns& runs = league.runs;
+  const auto where_none_fails = [&](std::size_t most_failures) {
+    std::vector<std::size_t> seeds;
+    for (std::size_t k = 0; k < runs.seeds; ++k) {
+      bool failed = false;
+      for (std::size_t a = 0; a < runs.algorithms.size(); ++a)
+        failed |= runs.run(scenario, a, k).failed && league.failures(scenario, a) <= most_failures;
+      if (!failed) seeds.push_back(k);
+    }
+    return seeds;
+  };
+  const std::vector<std::size_t> seeds = where_none_fails(runs.seeds - 1);
+  return seeds.empty() ? where_none_fails(0) : seeds;
+}
+
+/// The values of a metric in the common seeds of the scenario; none where the run failed.
+std::vector<std::optional<double>> values_of(const League& league, std::size_t scenario, std::size_t algorithm,
                                              std::size_t metric) {
   std::vector<std::optional<double>> values;
-  for (std::size_t k = 0; k < runs.seeds; ++k) {
-    const LeagueRun& run = runs.run(scenario, algorithm, k);
+  for (const std::size_t k : league.common[scenario]) {
+    const LeagueRun& run = league.runs.run(scenario, algorithm, k);
     values.push_back(run.failed ? std::nullopt : run.metrics[metric]);
   }
   return values;
@@ -61,10 +78,11 @@ std::optional<bool> differ_beyond_spread(const std::vector<std::optional<double>
 /// The standings of one scenario and metric.
 class ScenarioStandings {
  public:
-  ScenarioStandings(const League& league, std::size_t scenario, std::size_t metric) {
+  ScenarioStandings(const League& league, std::size_t scenario, std::size_t metric)
+      : better_(league.runs.better[metric]) {
     const LeagueRuns& runs = league.runs;
     for (std::size_t a = 0; a < runs.algorithms.size(); ++a) {
-      values_.push_back(values_of(runs, scenario, a, metric));
+      values_.push_back(values_of(league, scenario, a, metric));
       failures_.push_back(league.failures(scenario, a));
       Standing standing;
       const std::vector<double> numbers = known(values_[a]);
@@ -72,6 +90,7 @@ class ScenarioStandings {
       if (numbers.size() >= 2 && league.seeds_matter[scenario]) standing.spread = standard_deviation(numbers);
       standings_.push_back(standing);
     }
+    if (better_ == Better::none) return;
     rank();
     compare_with_best(league.seeds_matter[scenario]);
   }
@@ -79,6 +98,11 @@ class ScenarioStandings {
   const std::vector<Standing>& standings() const { return standings_; }
 
  private:
+  bool is_better(std::size_t a, std::size_t b) const {
+    return better_ == Better::more ? *standings_[a].mean > *standings_[b].mean
+                                   : *standings_[a].mean < *standings_[b].mean;
+  }
+
   /// Order: algorithms without failures by their means, a missing mean last; then the others by their number of
   /// failures. There are no ranks for a metric that no algorithm has.
   void rank() {
@@ -89,8 +113,7 @@ class ScenarioStandings {
       if (failures_[a] == 0 && standings_[a].mean) order.push_back(a);
     }
     if (!any_mean) return;
-    std::stable_sort(order.begin(), order.end(),
-                     [this](std::size_t a, std::size_t b) { return *standings_[a].mean < *standings_[b].mean; });
+    std::stable_sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) { return is_better(a, b); });
     std::size_t leader = 0;
     for (std::size_t i = 0; i < order.size(); ++i) {
       if (!is_same(*standings_[order[leader]].mean, *standings_[order[i]].mean)) leader = i;
@@ -109,24 +132,25 @@ class ScenarioStandings {
     std::optional<std::size_t> best;
     for (std::size_t a = 0; a < standings_.size(); ++a) {
       if (failures_[a] > 0 || !standings_[a].mean) continue;
-      if (!best || *standings_[a].mean < *standings_[*best].mean) best = a;
+      if (!best || is_better(a, *best)) best = a;
     }
     if (!best) return;  // all failed, or no algorithm has the metric
-    const double least = *standings_[*best].mean;
+    const double best_mean = *standings_[*best].mean;
     for (std::size_t a = 0; a < standings_.size(); ++a) {
       Standing& standing = standings_[a];
       if (failures_[a] > 0 || !standing.mean) continue;
-      if (*standing.mean == least)
+      if (*standing.mean == best_mean)
         standing.ratio_to_best = 1.0;
-      else if (least > 0.0)
-        standing.ratio_to_best = *standing.mean / least;
+      else if (best_mean > 0.0 && *standing.mean > 0.0)
+        standing.ratio_to_best = better_ == Better::more ? best_mean / *standing.mean : *standing.mean / best_mean;
       if (a == *best || !seeds_matter) continue;
       standing.beyond_spread = differ_beyond_spread(values_[a], values_[*best]);
       // Rounding errors may be the same with every seed, which makes t infinite.
-      if (is_same(*standing.mean, least) && standing.beyond_spread) standing.beyond_spread = false;
+      if (is_same(*standing.mean, best_mean) && standing.beyond_spread) standing.beyond_spread = false;
     }
   }
 
+  Better better_;
   std::vector<Standing> standings_;
   std::vector<std::vector<std::optional<double>>> values_;
   std::vector<std::size_t> failures_;
@@ -163,7 +187,7 @@ LawStanding law_standing(const League& league, std::size_t algorithm) {
     if (wins(league, s, algorithm)) law.wins.push_back(s);
   }
   if (!ranks.empty()) law.mean_rank = mean_of(ranks);
-  if (!logarithms.empty()) law.mean_ratio = std::exp(mean_of(logarithms));
+  if (!logarithms.empty() && law.fails.empty()) law.mean_ratio = std::exp(mean_of(logarithms));
   law.ratios = logarithms.size();
   return law;
 }
@@ -201,6 +225,7 @@ League make_league(LeagueRuns runs) {
   league.standings.resize(scenarios * algorithms * metrics);
   for (std::size_t s = 0; s < scenarios; ++s) {
     league.seeds_matter.push_back(seeds_matter_in(league.runs, s));
+    league.common.push_back(common_seeds(league, s));
     for (std::size_t m = 0; m < metrics; ++m) {
       const ScenarioStandings column(league, s, m);
       for (std::size_t a = 0; a < algorithms; ++a)
@@ -233,6 +258,11 @@ LeagueRuns league_runs(const BatchPlan& plan, const BatchReport& report, const s
   const std::span<const std::string_view> usual =
       all_have_reference ? std::span<const std::string_view>(kFidelityMetrics) : kDefaultMetrics;
   league.metrics = metrics.empty() ? std::vector<std::string>(usual.begin(), usual.end()) : metrics;
+  const MetricList known = metrics_without_values();
+  for (const std::string& name : league.metrics) {
+    const auto metric = std::find_if(known.begin(), known.end(), [&](const Metric& m) { return m.name == name; });
+    league.better.push_back(metric == known.end() ? Better::none : metric->better);
+  }
   league.seeds = plan.definition.seeds;
   for (std::size_t i = 0; i < plan.size(); ++i) {
     const RunSummary& summary = report.runs[i].summary;

@@ -23,11 +23,12 @@ struct LeagueRun {
   std::vector<std::optional<double>> metrics;
 };
 
-/// The runs of a league. A smaller value of any metric is better.
+/// The runs of a league.
 struct LeagueRuns {
   std::vector<std::string> scenarios;
   std::vector<std::string> algorithms;
   std::vector<std::string> metrics;
+  std::vector<Better> better;  ///< for each metric
   std::size_t seeds = 1;
   std::vector<LeagueRun> runs;  ///< by scenario, then by algorithm, then by seed
 
@@ -40,16 +41,18 @@ struct LeagueRuns {
 /// Rounding errors, by which equivalent algorithms differ, are far smaller.
 inline constexpr double kSameRank = 1e-3;
 
-/// One algorithm in one scenario, judged by one metric over the seeds that did not fail.
+/// One algorithm in one scenario, judged by one metric over the common seeds of the scenario (League::common).
 struct Standing {
-  std::optional<double> mean;    ///< none when all runs failed or no run has the metric
+  std::optional<double> mean;    ///< none when its runs failed or no run has the metric
   std::optional<double> spread;  ///< sample standard deviation; none for one seed or if seeds change nothing
   /// 1 + the number of better algorithms. Those without failures come first, ordered by their means; means within
   /// kSameRank of the first of a group share its rank, and algorithms without a mean come last of these (a tool that is
   /// thrown out at once has no settled force). The others follow by their number of failed seeds. None if no algorithm
-  /// has the metric.
+  /// has the metric, or no direction of it is better.
   std::optional<std::size_t> rank;
-  std::optional<double> ratio_to_best;  ///< mean / best mean; none after a failure, and where the best is not > 0
+  /// How many times worse than the best, mean / best mean or where more is better the inverse; none after a failure,
+  /// without a rank, and where a mean is not > 0.
+  std::optional<double> ratio_to_best;
   /// The difference to the best is larger than the spread: |t| of the differences for each seed exceeds the two-sided
   /// 5 % quantile of Student's t (statistics.hpp). Differences are paired, because each seed gives all algorithms the
   /// same start and noise. Never true within kSameRank of the best. None for the best itself, after a failure, and
@@ -61,7 +64,7 @@ struct Standing {
 struct LawStanding {
   std::size_t algorithm = 0;
   std::optional<double> mean_rank;   ///< mean of its ranks, including those for failures
-  std::optional<double> mean_ratio;  ///< geometric mean of its ratios to the best
+  std::optional<double> mean_ratio;  ///< geometric mean of its ratios to the best; none after a failure
   std::size_t ratios = 0;            ///< number of ratios in mean_ratio
   std::vector<std::size_t> wins;     ///< scenarios without its failure in which no algorithm has a smaller mean rank
   std::vector<std::size_t> fails;    ///< scenarios in which at least one seed failed
@@ -70,6 +73,9 @@ struct LawStanding {
 struct League {
   LeagueRuns runs;
   std::vector<bool> seeds_matter;  ///< for each scenario: whether the seed changes the run
+  /// For each scenario the seeds over which the means are, so that they are about the same runs: those in which no
+  /// algorithm failed that has any success; if there are none, all seeds of the algorithms that never failed.
+  std::vector<std::vector<std::size_t>> common;
   std::vector<Standing> standings;
   std::vector<LawStanding> laws;  ///< best mean rank first
 

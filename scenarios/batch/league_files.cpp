@@ -38,7 +38,7 @@ const Field<StandingRow> kStandingFields[] = {
      [](const StandingRow& r) -> Cell { return r.league.failures(r.scenario, r.algorithm); }},
     {{"outcome", "", "how the runs ended; of several ways with their numbers"},
      [](const StandingRow& r) -> Cell { return r.league.outcomes(r.scenario, r.algorithm); }},
-    {{"mean", "by name", "mean of the metric over the seeds that did not fail; empty when there is none"},
+    {{"mean", "by name", "mean of the metric over the common seeds; empty when there is none"},
      [](const StandingRow& r) { return cell_if(r.standing().mean); }},
     {{"spread", "by name",
       "standard deviation over these seeds; empty when there is one, or when seeds change nothing"},
@@ -46,11 +46,20 @@ const Field<StandingRow> kStandingFields[] = {
     {{"rank", "1",
       "1 + the number of algorithms that did better in this scenario by this metric; those with failures are last"},
      [](const StandingRow& r) { return cell_if(r.standing().rank); }},
-    {{"ratio_to_best", "1", "mean in units of the best mean; empty after a failure"},
+    {{"ratio_to_best", "1", "how many times worse than the best mean; empty after a failure"},
      [](const StandingRow& r) { return cell_if(r.standing().ratio_to_best); }},
     {{"beyond_spread", "",
       "true when the mean differs from the best by more than the spread of the seeds: paired t, 5 %"},
-     [](const StandingRow& r) { return cell_if(r.standing().beyond_spread); }}};
+     [](const StandingRow& r) { return cell_if(r.standing().beyond_spread); }},
+    {{"common_seeds", "1",
+      "seeds that mean and spread are over: those in which no algorithm failed that has any success in the scenario; if "
+      "there are none, all seeds of the algorithms that never failed"},
+     [](const StandingRow& r) -> Cell { return std::uint64_t{r.league.common[r.scenario].size()}; }},
+    {{"better", "", "less or more, whichever is better of the metric; empty when neither is, and nothing is ranked"},
+     [](const StandingRow& r) {
+       const Better better = r.league.runs.better[r.metric];
+       return better == Better::none ? Cell() : Cell(better == Better::less ? "less" : "more");
+     }}};
 
 std::vector<std::string> names_of(const std::vector<std::size_t>& places, const std::vector<std::string>& names) {
   std::vector<std::string> chosen;

@@ -236,21 +236,39 @@ std::string spread_text(const League& league) {
   return text;
 }
 
+/// Where some seeds failed: which seeds the means are over.
+std::string failed_seeds_text(const League& league, std::size_t scenario) {
+  const std::size_t seeds = league.runs.seeds, common = league.common[scenario].size();
+  std::vector<std::string> failed;
+  for (std::size_t a = 0; a < league.runs.algorithms.size(); ++a) {
+    const std::size_t failures = league.failures(scenario, a);
+    if (failures > 0 && failures < seeds) failed.push_back(fmt::format("{} {}", league.runs.algorithms[a], failures));
+  }
+  if (failed.empty()) return "";
+  return fmt::format("\n   means over {} of {} seeds; failed: {}", common, seeds, fmt::join(failed, ", "));
+}
+
 /// For each metric a table of algorithms and scenarios, with as much of rank, ratio to the best, mean and spread as
 /// fits into kTableWidth, then a line for each algorithm, then the signs and the rule by which a difference counts.
 std::string league_text(const League& league) {
   std::string text;
   const std::size_t scenarios = league.runs.scenarios.size();
-  for (std::size_t s = 0; s < scenarios; ++s) text += fmt::format("{}  {}\n", letter(s), league.runs.scenarios[s]);
+  for (std::size_t s = 0; s < scenarios; ++s)
+    text += fmt::format("{}  {}{}\n", letter(s), league.runs.scenarios[s], failed_seeds_text(league, s));
   for (std::size_t m = 0; m < league.runs.metrics.size(); ++m) {
-    text += fmt::format("\n{}, less is better\n\n{}", league.runs.metrics[m], standings_text(league, m));
+    const Better better = league.runs.better[m];
+    text += fmt::format("\n{}, {}\n\n{}", league.runs.metrics[m],
+                        better == Better::less   ? "less is better"
+                        : better == Better::more ? "more is better"
+                                                 : "neither less nor more is better: not ranked",
+                        standings_text(league, m));
   }
   return text +
          fmt::format(
              "\nall metrics and scenarios\n\n{}\n"
-             "ratio: to the best; in the last table the geometric mean of so many. wins: no other has a better\nmean rank "
-             "there. Closer than {} % share a rank. x: a run failed; it ranks behind all that did not,\nand of "
-             "those the ones without such a number last.\n{}",
+             "ratio: to the best; in the last table the geometric mean of so many, none after a failure. wins: no\nother has a "
+             "better mean rank there. Closer than {} % share a rank. x: a run failed; it ranks behind all\nthat did not, "
+             "in the order of failures, and of the others the ones without such a number are last.\n{}",
              laws_text(league), 100.0 * kSameRank, spread_text(league));
 }
 

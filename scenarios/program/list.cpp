@@ -51,7 +51,7 @@ std::vector<Listed> everything() {
   }
   for (const DevicePreset& preset : device_presets()) all.push_back({"preset", preset.name, preset.device});
   for (const BundledScenario& bundled : bundled_scenarios()) all.push_back(listed_scenario(bundled));
-  for (const auto& [name, unit, meaning, value] : metrics_without_values()) all.push_back({"metric", name, meaning});
+  for (const Metric& metric : metrics_without_values()) all.push_back({"metric", metric.name, metric.meaning});
   for (const Json& claim : claims_on_record()) {
     all.push_back({.kind = "claim",
                    .name = claim.at("id"),

@@ -241,7 +241,7 @@ TEST(Summary, ListsTheNumbersOfItsSections) {
                   {"targets", metric_list(places), nlohmann::ordered_json::object()}};
   const auto json = summary_json(run);
   std::size_t in_sections = 0;
-  for (const auto& [name, unit, meaning, value] : metric_list(run)) {
+  for (const auto& [name, unit, meaning, value, better] : metric_list(run)) {
     if (name.starts_with("final_position_m.")) continue;
     const bool in_metrics = name.find('.') == std::string::npos;
     std::string pointer = (in_metrics ? "/metrics/" : "/") + name;

@@ -53,11 +53,13 @@ TEST(MeanOf, IsNoNumberWithoutValues) {
 using Values = std::vector<std::optional<double>>;
 
 /// One metric; `values` by scenario, algorithm and seed. A negative value stands for a run that diverged.
-League league_of(std::size_t scenarios, std::size_t algorithms, std::size_t seeds, const Values& values) {
+League league_of(std::size_t scenarios, std::size_t algorithms, std::size_t seeds, const Values& values,
+                 Better better = Better::less) {
   LeagueRuns runs;
   for (std::size_t s = 0; s < scenarios; ++s) runs.scenarios.push_back("scene_" + std::to_string(s));
   for (std::size_t a = 0; a < algorithms; ++a) runs.algorithms.push_back("law_" + std::to_string(a));
   runs.metrics = {"force_max_N"};
+  runs.better = {better};
   runs.seeds = seeds;
   for (const auto& value : values) {
     const bool failed = value && *value < 0.0;
@@ -122,6 +124,31 @@ TEST(League, RanksByFailedSeedsAndThenNoFurther) {
   EXPECT_EQ(league.outcomes(0, 0), "completes 2; diverges 1");
   EXPECT_EQ(league.at(0, 0, 0).mean, 9.0) << "of those that did not fail";
   EXPECT_EQ(league.at(0, 2, 0).ratio_to_best, 1.0);
+}
+
+TEST(League, TakesMeansOverTheSeedsInWhichNobodyFailed) {
+  // Law 0 fails with seed 0, on which law 1 is bad; over its survivors alone law 1 would look worse than it is.
+  const League league = league_of(1, 3, 3, {-1.0, 2.0, 3.0, 90.0, 1.0, 2.0, -1.0, -1.0, -1.0});
+  EXPECT_EQ(league.common[0], (std::vector<std::size_t>{1, 2})) << "the law that always fails takes no seed away";
+  EXPECT_EQ(league.at(0, 0, 0).mean, 2.5);
+  EXPECT_EQ(league.at(0, 1, 0).mean, 1.5);
+  EXPECT_FALSE(league.at(0, 2, 0).mean);
+  EXPECT_EQ(ranks(league, 0), (Ranks{2, 1, 3}));
+  EXPECT_FALSE(league.laws[1].mean_ratio) << "after a failure";
+  // No seed is common to both: the law that never failed is judged by all.
+  const League apart = league_of(1, 3, 2, {-1.0, 2.0, 3.0, -1.0, 4.0, 6.0});
+  EXPECT_EQ(apart.common[0].size(), 2u);
+  EXPECT_EQ(apart.at(0, 2, 0).mean, 5.0);
+}
+
+TEST(League, KnowsWhichDirectionIsBetter) {
+  const League more = league_of(1, 3, 1, {0.5, 1.0, 0.25}, Better::more);
+  EXPECT_EQ(ranks(more, 0), (Ranks{2, 1, 3}));
+  EXPECT_EQ(more.at(0, 2, 0).ratio_to_best, 4.0) << "times worse";
+  const League none = league_of(1, 2, 1, {1.0, 2.0}, Better::none);
+  EXPECT_EQ(ranks(none, 0), (Ranks{0, 0}));
+  EXPECT_EQ(none.at(0, 1, 0).mean, 2.0);
+  EXPECT_FALSE(none.at(0, 1, 0).ratio_to_best);
 }
 
 TEST(League, RanksThoseWithoutTheMetricBehindThoseWithIt) {
@@ -191,7 +218,7 @@ TEST(League, SumsUpEachAlgorithmOverTheScenarios) {
   EXPECT_EQ(league.laws[0].fails, Ranks{});
   EXPECT_EQ(league.laws[1].algorithm, 0u);
   EXPECT_EQ(league.laws[1].mean_rank, 2.0);
-  EXPECT_EQ(league.laws[1].mean_ratio, 1.0);
+  EXPECT_FALSE(league.laws[1].mean_ratio) << "after a failure";
   EXPECT_EQ(league.laws[1].ratios, 1u);
   EXPECT_EQ(league.laws[1].wins, Ranks{0});
   EXPECT_EQ(league.laws[1].fails, Ranks{1});
@@ -208,19 +235,22 @@ TEST(League, HasNoWinnerWhereAllFail) {
 
 TEST(LeagueFile, HasARowForEachScenarioAlgorithmAndMetric) {
   const test::TemporaryDirectory directory;
-  const League league = league_of(1, 3, 2, {1.0, 3.0, 4.0, 6.0, 5.0, -1.0});
+  const League league = league_of(1, 3, 3, {1.0, 3.0, 8.0, 4.0, 6.0, 8.0, 5.0, 6.0, -1.0});
   write_league(directory / "league.csv", league);
   const auto lines = test::lines_of(test::read_file(directory / "league.csv"));
   ASSERT_EQ(lines.size(), 4u);
-  EXPECT_EQ(lines[0], "scenario,algorithm,metric,seeds,failed,outcome,mean,spread,rank,ratio_to_best,beyond_spread");
-  EXPECT_EQ(lines[1].find("scene_0,law_0,force_max_N,2,0,completes,2,1.414"), 0u) << lines[1];
-  // Both seeds differ by 3: no spread at all.
-  EXPECT_TRUE(lines[2].ends_with(",2,2.5,true")) << lines[2];
-  EXPECT_EQ(lines[3], "scene_0,law_2,force_max_N,2,1,completes 1; diverges 1,5,,3,,");
+  EXPECT_EQ(lines[0],
+            "scenario,algorithm,metric,seeds,failed,outcome,mean,spread,rank,ratio_to_best,beyond_spread,"
+            "common_seeds,better");
+  EXPECT_EQ(lines[1].find("scene_0,law_0,force_max_N,3,0,completes,2,1.414"), 0u) << lines[1];
+  // Both common seeds differ by 3: no spread at all.
+  EXPECT_TRUE(lines[2].ends_with(",2,2.5,true,2,less")) << lines[2];
+  EXPECT_EQ(lines[3].find("scene_0,law_2,force_max_N,3,1,completes 2; diverges 1,5.5,0.707"), 0u) << lines[3];
+  EXPECT_TRUE(lines[3].ends_with(",3,,,2,less")) << lines[3];
   const Json json = league_json(league);
   EXPECT_EQ(json["standings"].size(), 3u);
   EXPECT_EQ(json["standings"][1]["ratio_to_best"], 2.5);
-  EXPECT_EQ(json["standings"][2]["spread"], nullptr);
+  EXPECT_EQ(json["standings"][2]["ratio_to_best"], nullptr);
   EXPECT_EQ(json["laws"][0]["wins"], Json({"scene_0"}));
   EXPECT_EQ(json["laws"][2]["fails"], Json({"scene_0"}));
 }
