@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "scenarios/description/load_scenario.hpp"
@@ -42,6 +43,8 @@ std::vector<SharedColumn> shared_columns(const Words& a, const Words& b, TableDi
   }
   for (const std::string_view name : b)
     if (!place_of(name, a)) difference.only_in_b.emplace_back(name);
+  difference.reordered = !std::is_sorted(shared.begin(), shared.end(),
+                                         [](const SharedColumn& x, const SharedColumn& y) { return x.in_b < y.in_b; });
   return shared;
 }
 
@@ -111,6 +114,13 @@ std::string state_hash_of(const Json& summary) {
   return hash != summary.end() && hash->is_string() ? hash->get<std::string>() : "";
 }
 
+std::set<std::string> warnings_of(const Json& summary) {
+  std::set<std::string> texts;
+  for (const Json& warning : summary.value("warnings", Json::array()))
+    texts.insert(warning.is_string() ? warning.get<std::string>() : warning.dump());
+  return texts;
+}
+
 /// Compares contents, because paths in a scenario are relative to its folder and differ for one file.
 bool are_the_same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
@@ -150,6 +160,11 @@ void compare_results(const Json& a, const Json& b, RunDifference& difference) {
                   else if (*in_a != *in_b)
                     difference.metrics.push_back({name, cell_difference(*in_a, *in_b)});
                 });
+  const std::set<std::string> warnings_a = warnings_of(a), warnings_b = warnings_of(b);
+  for (const std::string& text : warnings_a)
+    if (!warnings_b.contains(text)) difference.unshared.push_back("< warning: " + text);
+  for (const std::string& text : warnings_b)
+    if (!warnings_a.contains(text)) difference.unshared.push_back("> warning: " + text);
   difference.state_hash_a = state_hash_of(a);
   difference.state_hash_b = state_hash_of(b);
 }
@@ -167,7 +182,7 @@ CellDifference cell_difference(std::string a, std::string b) {
 }
 
 bool TableDifference::is_beyond(double tolerance) const {
-  if (rows_a != rows_b) return true;
+  if (rows_a != rows_b || !only_in_a.empty() || !only_in_b.empty() || reordered) return true;
   if (tolerance == 0.0) return !columns.empty();
   return std::any_of(columns.begin(), columns.end(), [tolerance](const ColumnDifference& column) {
     return column.column != "state_hash" && !(column.relative <= tolerance);
@@ -199,7 +214,7 @@ TableDifference compare_tables(const fs::path& a, const fs::path& b) {
 }
 
 bool RunDifference::is_beyond(double tolerance) const {
-  if (trajectory_missing || (trajectory && trajectory->is_beyond(tolerance))) return true;
+  if (trajectory_missing || !unshared.empty() || (trajectory && trajectory->is_beyond(tolerance))) return true;
   if (tolerance == 0.0) return !metrics.empty() || state_hash_a != state_hash_b;
   return std::any_of(metrics.begin(), metrics.end(),
                      [tolerance](const NamedDifference& metric) { return !(metric.values.relative <= tolerance); });

@@ -37,11 +37,13 @@ struct FirstDifference {
 struct TableDifference {
   std::size_t rows_a = 0, rows_b = 0;
   std::vector<std::string> only_in_a, only_in_b;  ///< columns
+  bool reordered = false;                         ///< the common columns come in another order
   std::optional<FirstDifference> first;
   std::vector<ColumnDifference> columns;  ///< that differ, in order
 
-  /// Returns true if rows are missing or a column differs by more than the tolerance relative to its largest magnitude.
-  /// State hashes, which change with any bit, count only with a tolerance of 0.
+  /// Returns true if rows or columns are missing, columns are in another order or one differs by more than the
+  /// tolerance relative to its largest magnitude. State hashes, which change with any bit, count only with a tolerance
+  /// of 0.
   bool is_beyond(double tolerance) const;
 };
 
@@ -58,14 +60,15 @@ struct NamedDifference {
 struct RunDifference {
   std::vector<NamedDifference> fields;   ///< of scenario.effective.json; named files are compared by their contents
   std::vector<NamedDifference> metrics;  ///< outcome, steps and numbers of summary.json
-  std::vector<std::string> unshared;     ///< metrics in only one summary: "< name" in the first, "> name" in the second
+  /// Metrics and warnings in only one summary: "< name" in the first, "> name" in the second; "< warning: text".
+  std::vector<std::string> unshared;
   std::string state_hash_a, state_hash_b;
   std::optional<TableDifference> trajectory;  ///< if both runs recorded one
   bool trajectory_missing = false;            ///< only one run recorded one
 
   /// Returns true if the results differ by more than the tolerance: the outcome, a metric relative to the larger value,
-  /// the trajectory, or, with a tolerance of 0, the state hash. Fields of the scenario and unshared metrics do not
-  /// count; a trajectory that only one run has does.
+  /// the trajectory, or, with a tolerance of 0, the state hash; or if a metric, a warning or the trajectory is in only
+  /// one of them. Fields of the scenario do not count.
   bool is_beyond(double tolerance) const;
 };
 

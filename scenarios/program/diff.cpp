@@ -62,22 +62,29 @@ std::string columns_text(const char* name, const TableDifference& difference) {
   const std::string rows = difference.rows_a == difference.rows_b
                                ? fmt::format("{} rows", difference.rows_a)
                                : fmt::format("{} and {} rows", difference.rows_a, difference.rows_b);
-  if (!difference.first)
-    return fmt::format("{}: {}, the same{}\n", name, rows,
-                       difference.rows_a == difference.rows_b ? "" : " as far as both go");
+  std::string columns;
+  if (!difference.only_in_a.empty())
+    columns += fmt::format("  columns of A alone: {}\n", fmt::join(difference.only_in_a, ", "));
+  if (!difference.only_in_b.empty())
+    columns += fmt::format("  columns of B alone: {}\n", fmt::join(difference.only_in_b, ", "));
+  if (difference.reordered) columns += "  the columns are in another order\n";
+  if (!difference.first) {
+    const bool whole = difference.rows_a == difference.rows_b && columns.empty();
+    return fmt::format("{}: {}, the same{}\n{}", name, rows, whole ? "" : " as far as both go", columns);
+  }
   const FirstDifference& first = *difference.first;
   Table table({{"column", false}, {"largest difference"}, {"in row"}, {"relative to the largest"}});
   for (const ColumnDifference& column : difference.columns) {
     table.add({column.column, shown_size(column.largest), std::to_string(column.row), shown_size(column.relative)});
   }
-  return fmt::format("{}: {}, first different in row {} (from 0), column {}: {} and {}\n\n{}", name, rows, first.row,
-                     first.column, cut_value(first.a), cut_value(first.b), table.text());
+  return fmt::format("{}: {}, first different in row {} (from 0), column {}: {} and {}\n{}\n{}", name, rows, first.row,
+                     first.column, cut_value(first.a), cut_value(first.b), columns, table.text());
 }
 
 std::string run_text(const RunDifference& run, double tolerance) {
   std::string text = fields_text(run) + metrics_text(run, tolerance);
   if (!run.unshared.empty()) {
-    text += fmt::format("known to one of them alone: {}\n", fmt::join(run.unshared, ", "));
+    text += fmt::format("in A (<) or B (>) alone:\n  {}\n", fmt::join(run.unshared, "\n  "));
   }
   text += run.state_hash_a == run.state_hash_b
               ? fmt::format("state hash: {} in both\n", run.state_hash_a)
@@ -109,7 +116,8 @@ Json table_json(const TableDifference& difference) {
           {"first", std::move(first)},
           {"columns", std::move(columns)},
           {"only_in_a", difference.only_in_a},
-          {"only_in_b", difference.only_in_b}};
+          {"only_in_b", difference.only_in_b},
+          {"reordered", difference.reordered}};
 }
 
 Json named_json(const std::vector<NamedDifference>& differences, bool sizes) {
@@ -217,7 +225,8 @@ void add_diff(CommandLine& line) {
   add_output_options(command, options.output);
   command.footer(
       "For a regression test keep the results of a good version and compare every new one with them. Results are the "
-      "outcome, the metrics of summary.json and trajectory.csv; without a tolerance the state hash, too. Fields of the "
+      "outcome, the metrics and warnings of summary.json and trajectory.csv; without a tolerance the state hash, too. What "
+      "one of them alone has, a metric, a warning or a column, makes them unequal whatever the tolerance. Fields of the "
       "scenario are shown where they differ but do not count; provenance, times and counted work are not looked at. Of "
       "a sweep whose runs were not kept, the rows of sweep.csv are compared.\n"
       "Exit status: 0 equal, 2 not the results of runs, 3 not equal.");

@@ -133,12 +133,25 @@ TEST_F(Differences, OfLengthCountWhateverTheTolerance) {
   EXPECT_TRUE(difference().is_beyond(1.0));
 }
 
-TEST_F(Differences, AreTakenOfTheColumnsThatBothHave) {
-  write("b", "trajectory.csv", "fx_N,t_s,new\n1,0,7\n-2,0.5,7\n4,1,7\n");
+TEST_F(Differences, OfColumnsCountWhateverTheTolerance) {
+  for (const char* text :
+       {"t_s,fx_N,new\n0,1,7\n0.5,-2,7\n1,4,7\n", "t_s\n0\n0.5\n1\n", "fx_N,t_s\n1,0\n-2,0.5\n4,1\n"}) {
+    write("b", "trajectory.csv", text);
+    const RunDifference d = difference();
+    EXPECT_FALSE(d.trajectory->first) << "the columns that both have are the same";
+    EXPECT_TRUE(d.is_beyond(0.0)) << text;
+    EXPECT_TRUE(d.is_beyond(1.0)) << text;
+  }
+  EXPECT_TRUE(difference().trajectory->reordered);
+}
+
+TEST_F(Differences, OfMetricsAndWarningsThatOneAloneHasCount) {
+  write("b", "summary.json",
+        R"({"outcome": "completes", "steps": 3, "metrics": {"force_max_N": 4}, "passivity": {"energy_end_J": 0.5},
+            "state_hash": "ab", "warnings": ["the tool went through"]})");
   const RunDifference d = difference();
-  EXPECT_FALSE(d.trajectory->first);
-  EXPECT_EQ(d.trajectory->only_in_b, Names{"new"});
-  EXPECT_FALSE(d.is_beyond(0.0));
+  EXPECT_EQ(d.unshared, (Names{"< ratio_min", "> warning: the tool went through"}));
+  EXPECT_TRUE(d.is_beyond(1.0));
 }
 
 TEST_F(Differences, OfSignedZeroAreNoneWithinATolerance) {
