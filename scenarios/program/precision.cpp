@@ -71,8 +71,9 @@ std::string study_text(const PrecisionStudy& study, const PrecisionResult& resul
     table.add(std::move(cells));
   }
   std::string text = fmt::format("{}: {}\n\n{}", study.name, study.summary, table.text());
-  for (const FittedOrder& order : result.orders) {
-    text += fmt::format("order of {}, {}: {}\n", order.error, order.series, significant(order.order, 3));
+  for (const ObservedOrder& order : result.orders) {
+    text += fmt::format("order of {} between the finest two, {}: {} +- {} (change from the two before)\n", order.error,
+                        order.series, significant(order.order.value, 3), significant(order.order.uncertainty, 2));
   }
   return text + "\n";
 }
@@ -88,10 +89,31 @@ Json study_json(const PrecisionStudy& study, const PrecisionResult& result) {
     rows.push_back(std::move(json));
   }
   Json orders = Json::array();
-  for (const FittedOrder& order : result.orders) {
-    orders.push_back({{"series", order.series}, {"error", order.error}, {"order", order.order}});
+  for (const ObservedOrder& order : result.orders) {
+    orders.push_back({{"series", order.series},
+                      {"error", order.error},
+                      {"order", order.order.value},
+                      {"uncertainty", order.order.uncertainty}});
   }
   return {{"study", study.name}, {"rows", std::move(rows)}, {"orders", std::move(orders)}};
+}
+
+bool overrides_device(const std::vector<std::string>& overrides) {
+  return std::any_of(overrides.begin(), overrides.end(), [](const std::string& override) {
+    const std::string_view path = overridden_path(override);
+    return path == "device" || path.starts_with("device.");
+  });
+}
+
+/// The studies are about the rendering: in them an ideal device with the same force limit takes the place of others,
+/// which would add dynamics of their own. That must not be taken for a result about the device that somebody asked for.
+void refuse_device(const LoadedScenario& loaded, bool asked_for) {
+  if (!asked_for || std::holds_alternative<IdealDeviceFields>(loaded.scenario.device)) return;
+  const auto limit = input_force_limit(loaded.scenario.device);
+  throw InputError(fmt::format(
+      "{}: /device/type: got another device; allowed for the studies: \"ideal\", because they measure the rendering "
+      "alone (--set 'device={{\"type\":\"ideal\"{}}}')",
+      loaded.file.string(), limit ? fmt::format(",\"force_limit_N\":{}", *limit) : ""));
 }
 
 int precision(const PrecisionCommandOptions& options) {
@@ -101,6 +123,7 @@ int precision(const PrecisionCommandOptions& options) {
     const std::string& given = options.scenario;
     scenarios.push_back(load_scenario(find_scenario(given.empty() ? study->scenario : given), options.overrides));
     print_warnings(check_named_files(scenarios.back()));
+    refuse_device(scenarios.back(), !given.empty() || overrides_device(options.overrides));
   }
   const fs::path out = results_directory(
       options.out, options.scenario.empty() ? "precision" : "precision_" + scenarios.front().file.stem().string());

@@ -100,9 +100,9 @@ PrecisionRow measure(const Scenario& run, int division, const Mat3& S, const std
           seconds_per_step(run, nullptr, repetitions)};
 }
 
-/// The order fitted to the rows from `begin` on, without those whose error is rounding.
-FittedOrder order_of(const IntegratorEntry& integrator, const PrecisionResult& result, std::size_t begin,
-                     double rounding) {
+/// The order of the rows from `begin` on, without those whose error is rounding.
+ObservedOrder order_of(const IntegratorEntry& integrator, const PrecisionResult& result, std::size_t begin,
+                       double rounding) {
   constexpr std::size_t kStep = 0, kRms = 2;
   std::vector<double> steps, errors;
   for (std::size_t i = begin; i < result.rows.size(); ++i) {
@@ -110,7 +110,7 @@ FittedOrder order_of(const IntegratorEntry& integrator, const PrecisionResult& r
     steps.push_back(*result.rows[i].values[kStep]);
     errors.push_back(error > rounding ? error : 0.0);
   }
-  return {integrator.info.name, result.columns[kRms], fitted_order(steps, errors)};
+  return {integrator.info.name, result.columns[kRms], observed_order(steps, errors)};
 }
 
 }  // namespace

@@ -62,14 +62,17 @@ double slope(std::span<const double> x, std::span<const double> y) {
   return n >= 2.0 && spread > 0.0 ? (n * sxy - sx * sy) / spread : std::numeric_limits<double>::quiet_NaN();
 }
 
-double fitted_order(std::span<const double> x, std::span<const double> error) {
-  std::vector<double> log_x, log_error;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!(error[i] > 0.0) || !std::isfinite(error[i])) continue;
-    log_x.push_back(std::log(x[i]));
-    log_error.push_back(std::log(error[i]));
-  }
-  return slope(log_x, log_error);
+Order observed_order(std::span<const double> x, std::span<const double> error) {
+  std::vector<std::size_t> valid;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (error[i] > 0.0 && std::isfinite(error[i])) valid.push_back(i);
+  // Between the `back`-th valid error from the end and the next finer one.
+  const auto order = [&](std::size_t back) {
+    if (valid.size() < back) return std::numeric_limits<double>::quiet_NaN();
+    const std::size_t coarse = valid[valid.size() - back], fine = valid[valid.size() - back + 1];
+    return std::log(error[coarse] / error[fine]) / std::log(x[coarse] / x[fine]);
+  };
+  return {order(2), std::abs(order(2) - order(3))};
 }
 
 double seconds_per_step(const Scenario& scenario, std::shared_ptr<const PointShell> shell, int repetitions) {

@@ -26,11 +26,17 @@ struct PrecisionRow {
   double seconds = 0.0;  ///< per step or call: the least of the repetitions, timed apart from the errors
 };
 
-/// A line log(error) = order log(x) + c fitted to the rows of one series.
-struct FittedOrder {
+/// The power of x with which errors fall, log(e_2 / e_3) / log(x_2 / x_3) at the two finest of a series.
+struct Order {
+  double value = 0.0;        ///< NaN with fewer than two errors
+  double uncertainty = 0.0;  ///< distance from the order of the two errors before; NaN with fewer than three
+};
+
+/// The order of the rows of one series.
+struct ObservedOrder {
   std::string series;
   std::string error;  ///< name of the column
-  double order = 0.0;
+  Order order;
 };
 
 struct PrecisionOptions {
@@ -42,7 +48,7 @@ struct PrecisionResult {
   std::vector<std::string> columns;  ///< names with units
   std::string timed;                 ///< what `seconds` measures: a "step" or a "call"
   std::vector<PrecisionRow> rows;
-  std::vector<FittedOrder> orders;
+  std::vector<ObservedOrder> orders;
 
   /// Appends a row and reports progress; `all` rows are expected.
   void add(PrecisionRow row, const PrecisionOptions& options, std::size_t all) {
@@ -108,9 +114,8 @@ TrajectoryDistance distance(std::span<const Vec3> a, std::span<const Vec3> b);
 /// Slope of y over x by least squares; NaN for fewer than two different x.
 double slope(std::span<const double> x, std::span<const double> y);
 
-/// Order of convergence: the slope of log(error) over log(x) by least squares. Ignores errors that are not positive
-/// and finite; NaN for fewer than two others.
-double fitted_order(std::span<const double> x, std::span<const double> error);
+/// The order of convergence at the fine end; x falls. Ignores errors that are not positive and finite.
+Order observed_order(std::span<const double> x, std::span<const double> error);
 
 /// Seconds per step of a run without observers, the least of `repetitions`, or of as many as a second allows.
 double seconds_per_step(const Scenario& scenario, std::shared_ptr<const PointShell> shell, int repetitions);
