@@ -69,10 +69,14 @@ std::vector<std::string> names_of(const std::vector<fs::path>& files) {
   return names;
 }
 
+bool contains(const std::vector<std::string>& warnings, const std::string& warning) {
+  return std::find(warnings.begin(), warnings.end(), warning) != warnings.end();
+}
+
 /// Appends the warnings that are not in the list yet.
 void add(std::vector<std::string>& warnings, std::vector<std::string> more) {
   for (std::string& warning : more)
-    if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) warnings.push_back(std::move(warning));
+    if (!contains(warnings, warning)) warnings.push_back(std::move(warning));
 }
 
 RunReport run_one(const BatchPlan& plan, const BatchOptions& options, std::size_t number) {
@@ -104,12 +108,17 @@ BatchPlan plan_batch(BatchDefinition definition) {
                                  plan.size(), kMostRuns));
   }
   for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
+    std::vector<std::string> common;  // to all algorithms: what only one of them reads has an effect here
     for (std::size_t a = 0; a < plan.definition.algorithms.size(); ++a) {
       const LoadedScenario loaded = load(plan, s, a);
-      if (a > 0) continue;  // the files are those of the scenario
-      check_seeds_and_jitter(plan.definition, loaded);
-      add(plan.warnings, check_named_files(loaded));
+      if (a == 0) {  // the files are those of the scenario
+        check_seeds_and_jitter(plan.definition, loaded);
+        add(plan.warnings, check_named_files(loaded));
+        common = loaded.warnings;
+      }
+      std::erase_if(common, [&loaded](const std::string& warning) { return !contains(loaded.warnings, warning); });
     }
+    add(plan.warnings, std::move(common));
   }
   return plan;
 }

@@ -1,5 +1,9 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -8,6 +12,7 @@
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/metric_sections.hpp"
+#include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
 
@@ -194,6 +199,44 @@ void warn_of_idle_device(const Scenario& scenario, std::vector<std::string>& war
       hand));
 }
 
+/// True when the algorithm documents the field as one of its parameters.
+bool reads(const AlgorithmEntry& algorithm, std::string_view field) {
+  const auto& parameters = algorithm.info->parameters;
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [field](const ParameterInfo& info) { return info.parameter.field == field; });
+}
+
+/// Warnings about values in `json`, other than the defaults, that the rendering does not read: parameters of other
+/// algorithms, and the filter of a velocity that nothing sees.
+void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::vector<std::string>& warnings) {
+  const AlgorithmEntry& own = *find_algorithm(scenario.rendering.algorithm);
+  const Json initial = {{"rendering", written_object(RenderingConfig{})}};
+  std::map<std::string, std::vector<std::string>> readers;  // pointer of a field -> algorithms
+  for (const AlgorithmEntry& other : algorithms()) {
+    for (const ParameterInfo& info : other.info->parameters) {
+      if (reads(own, info.parameter.field)) continue;
+      std::string pointer = "/" + std::string(info.parameter.field);
+      std::replace(pointer.begin(), pointer.end(), '.', '/');
+      readers[pointer].emplace_back(other.info->name);
+    }
+    if (&other == &own) continue;
+    for (const OwnParameter& parameter : other.own_parameters)
+      readers[fmt::format("/rendering/parameters/{}/{}", other.info->name, parameter.name)] = {other.info->name};
+  }
+  const auto is_given = [&](const std::string& pointer) {
+    const Json::json_pointer at(pointer);
+    return json.contains(at) && !(initial.contains(at) && initial.at(at) == json.at(at));
+  };
+  for (const auto& [pointer, names] : readers) {
+    if (!is_given(pointer)) continue;
+    warnings.push_back(
+        fmt::format("{}: has no effect on this algorithm; it is a parameter of {}", pointer, fmt::join(names, ", ")));
+  }
+  constexpr const char* kCutoff = "/rendering/angular_velocity_cutoff_Hz";
+  if (is_given(kCutoff) && !scenario.rendering.angular_damping)
+    warnings.push_back(fmt::format("{}: has no effect without rendering.angular_damping", kCutoff));
+}
+
 /// The first script within `json`, found at `at`, that a run of so long [s] does not play. The reader has checked it.
 std::optional<std::string> first_unplayed(const Json& json, const std::string& at, double duration) {
   if (!json.is_object()) return std::nullopt;
@@ -234,6 +277,13 @@ void check_relations(const Scenario& scenario, double steps) {
 std::vector<std::string> relation_warnings(const Scenario& scenario, const Json& json) {
   std::vector<std::string> warnings;
   warn_of_idle_device(scenario, warnings);
+  warn_of_unread_rendering(scenario, json, warnings);
+  if (scenario.perception && !scenario.perception->band_is_sampled(scenario.time.step)) {
+    warnings.push_back(fmt::format(
+        "/perception/band_Hz: ends at {} Hz, but {:.4g} samples a second show less than {:.4g} Hz: the metrics of this "
+        "band have no value",
+        scenario.perception->band_to, 1.0 / scenario.time.step, 0.5 / scenario.time.step));
+  }
   const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);
   for (const char* part : {"hand", "motion"}) {
     if (!json.contains(part)) continue;
@@ -400,7 +450,7 @@ static void describe(Fields& f, ExpectFields& expect) {
           [&expect](Fields& value) { describe_outcomes(value, expect.outcomes); });
   f.group("metrics", "bounds on the run's metrics, min and max of each; \"hapbench list metrics\" shows them",
           [&expect](Fields& metrics) {
-            for (const auto& [name, unit, meaning, value] : kMetrics) {
+            for (const auto& [name, unit, meaning, value, better] : kMetrics) {
               const auto known = expect.metrics.find(name);
               std::optional<MetricBound> bound;
               if (known != expect.metrics.end()) bound = known->second;

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
@@ -273,6 +274,26 @@ TEST_F(Override, NestedDeeplyIsRefusedLikeAnyUnknownField) {
   EXPECT_EQ(refusal(path + "=1").find("/rendering/a: unknown field"), 0u);
   EXPECT_NE(refusal("rendering=" + std::string(20'000, '[') + std::string(20'000, ']')).find("nested too deeply"),
             std::string::npos);
+}
+
+/// The warnings about a bundled scenario with these overrides, without the file in front.
+std::vector<std::string> warnings_with(std::vector<std::string> overrides) {
+  std::vector<std::string> warnings;
+  for (const std::string& warning : load_scenario(find_scenario("poke_plane"), overrides).warnings)
+    warnings.push_back(warning.substr(warning.find(": /") + 2));
+  return warnings;
+}
+
+TEST(Warnings, NameFieldsThatTheAlgorithmDoesNotRead) {
+  EXPECT_TRUE(warnings_with({"rendering.iterations=3"}).empty()) << "the default";
+  EXPECT_TRUE(warnings_with({"rendering.iterations=7"}).empty()) << "shaped_stiffness reads it";
+  const auto found =
+      warnings_with({"rendering.algorithm=mean", "rendering.iterations=7", "rendering.virtual_coupling_N_per_m=100",
+                     "rendering.angular_velocity_cutoff_Hz=5"});
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_TRUE(found[0].starts_with("/rendering/iterations: has no effect on this algorithm")) << found[0];
+  EXPECT_TRUE(found[1].ends_with("it is a parameter of virtual_coupling, static_coupling")) << found[1];
+  EXPECT_EQ(found[2], "/rendering/angular_velocity_cutoff_Hz: has no effect without rendering.angular_damping");
 }
 
 }  // namespace

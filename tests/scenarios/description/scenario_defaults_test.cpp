@@ -295,7 +295,9 @@ void expect_fixed_point(const Scenario& scenario, const fs::path& directory) {
   // Through text, as the file is.
   const LoadedScenario again = read_scenario(parse_json(json_text(effective)), directory);
   EXPECT_EQ(json_text(effective_scenario(again.scenario, directory)), json_text(effective));
-  EXPECT_EQ(again.warnings, std::vector<std::string>{});
+  for (const std::string& warning : again.warnings) {
+    EXPECT_TRUE(warning.find("has no effect") != std::string::npos || warning.ends_with("have no value")) << warning;
+  }
   EXPECT_EQ(content_hash(again.scenario), content_hash(scenario));
 }
 
