@@ -1,10 +1,10 @@
 """Shows what it takes to add things: the edits that the manuals ask for, and no other.
 
-adding_test.py [--keep] [--build-dir DIRECTORY] [unittest options]
+adding_test.py [--keep] [unittest options]
 
-Copies the tree to a scratch folder, adds an environment, a tool, a named file, a device field and a section of metrics
-there, builds the program (minutes) and shows that reader, schema, describe, list, results and sweep know each of them. `--keep` leaves the
-folder behind, `--build-dir` builds there; a build directory that is kept makes the next run faster.
+Copies the tree to a scratch folder, adds a law, a tool, an environment, a named file, a device field, a metric, a section of
+metrics and a command there, builds the program (minutes) and shows that reader, schema, describe, list, results, sweep, help and
+completion know each of them. `--keep` leaves the folder behind.
 """
 import argparse
 import json
@@ -17,7 +17,7 @@ import unittest
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
-OPTIONS = argparse.Namespace(keep=False, build_dir=None)
+OPTIONS = argparse.Namespace(keep=False)
 
 
 class Tree:
@@ -32,21 +32,66 @@ class Tree:
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(SOURCE / name, folder / name, follow_symlinks=False)
 
-    def edit(self, anchor, new, before=False):
-        """Puts `new` behind the only place in a source that has `anchor`, or before it. Returns the file's name."""
+    def edit(self, anchor, new, before=False, replace=False):
+        """Puts `new` behind the only place in a source that has `anchor`, before it or in its place. Returns the file's name."""
         found = [file for file in self.sources() if anchor in file.read_text()]
         if len(found) != 1:
             raise AssertionError(f"{anchor!r} stands in {[str(file) for file in found]}; wanted: one file")
         text = found[0].read_text()
         if text.count(anchor) != 1:
             raise AssertionError(f"{anchor!r} stands in {found[0]} {text.count(anchor)} times")
-        found[0].write_text(text.replace(anchor, new + anchor if before else anchor + new))
+        found[0].write_text(text.replace(anchor, new if replace else new + anchor if before else anchor + new))
         return str(found[0].relative_to(self.folder))
 
     def sources(self):
-        for part in ("sim", "device_model", "results", "scenarios"):
-            for end in ("*.hpp", "*.cpp"):
+        for part in ("sim", "algorithms", "device_model", "results", "scenarios"):
+            for end in ("*.hpp", "*.cpp", "CMakeLists.txt"):
                 yield from (self.folder / part).rglob(end)
+
+    def write(self, name, text):
+        """Writes a new file. Returns its name."""
+        (self.folder / name).write_text(text)
+        return name
+
+
+def add_law(tree):
+    return {
+        tree.write("algorithms/laws/halved.cpp", """#include "algorithms/registry.hpp"
+
+namespace hapbench {
+namespace {
+
+class Halved final : public ForceLaw {
+ public:
+  using ForceLaw::ForceLaw;
+
+  LawForce evaluate(ContactBuffer& contacts) noexcept override {
+    set_weights(contacts, 0.5);
+    return weighted_force(contacts, K_);
+  }
+};
+
+double bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
+  return 0.5 * static_cast<double>(n) * depth;
+}
+
+}  // namespace
+
+AlgorithmEntry halved_entry() {
+  static constexpr ModelInfo kInfo = {.name = "halved",
+                                      .summary = "half of all penalty springs",
+                                      .formula = "c_i = 1/2",
+                                      .source = "a test",
+                                      .known_failure = "none that is known",
+                                      .parameters = kStiffnessAlone};
+  return {.info = &kInfo, .make_law = law_of<Halved>, .theory = {.force_bound = bound}, .creates_energy = true};
+}
+
+}  // namespace hapbench
+"""),
+        tree.edit("row(mcneely) row(static_coupling)", " row(halved)"),
+        tree.edit("    laws/equal_weights.cpp\n", "    laws/halved.cpp\n"),
+    }
 
 
 def add_environment(tree):
@@ -117,9 +162,51 @@ def add_device_field(tree):
     }
 
 
+def add_metric(tree):
+    return {
+        tree.edit("struct LostTorqueMetrics {\n", "  double sum = 0.0;  ///< of ||tau|| [N m]\n"),
+        tree.edit("  return {rows_in_contact_, mean,", "  return {sum_, rows_in_contact_, mean,", replace=True),
+        tree.edit("MetricList metric_list(const LostTorqueMetrics& m) {\n  return {",
+                  """{"lost_sum_Nm", "Nm", "sum of ||tau|| over the rows in contact", m.sum},\n          """),
+    }
+
+
+def add_command(tree):
+    return {
+        tree.write("scenarios/program/twice.cpp", """#include "scenarios/program/command.hpp"
+
+namespace hapbench {
+namespace {
+
+struct TwiceOptions {
+  std::string word;
+  OutputOptions output;
+};
+
+int twice(const TwiceOptions& options) {
+  print(options.output, options.word + " " + options.word + "\\n", Json(options.word));
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_twice(CommandLine& line) {
+  auto [command, options] = line.command("twice", "Print a word two times", twice);
+  command.add("word", options.word, "what to print").required();
+  add_output_options(command, options.output);
+}
+
+}  // namespace hapbench
+"""),
+        tree.edit("    add_validate;", "    add_twice,\n", before=True),
+        tree.edit("constexpr AddCommand* kCommands[] = {", "add_twice, "),
+        tree.edit("    sweep.cpp\n", "    twice.cpp\n"),
+    }
+
+
 def add_metric_section(tree):
-    observer = "results/observe/stillness.hpp"
-    (tree.folder / observer).write_text("""#pragma once
+    return {
+        tree.write("results/observe/stillness.hpp", """#pragma once
 
 #include "results/io/columns.hpp"
 #include "sim/loop/observer.hpp"
@@ -144,9 +231,7 @@ class StillnessObserver final : public Observer {
 };
 
 }  // namespace hapbench
-""")
-    return {
-        observer,
+"""),
         tree.edit('#include "results/observe/perception.hpp"\n#include "results/observe/target_metrics.hpp"\n',
                   '#include "results/observe/stillness.hpp"\n', before=True),
         tree.edit("const SectionKind kSections[] = {\n", """    {"stillness", [](const Scenario& s, bool) { return std::size_t{s.record.pose}; },
@@ -157,8 +242,9 @@ class StillnessObserver final : public Observer {
 
 
 # Each addition with the most files that it may touch.
-ADDITIONS = {"environment": (add_environment, 2), "tool": (add_tool, 2), "named file": (add_named_file, 2),
-             "device field": (add_device_field, 2), "metric section": (add_metric_section, 2)}
+ADDITIONS = {"law": (add_law, 3), "tool": (add_tool, 3), "environment": (add_environment, 3), "named file": (add_named_file, 2),
+             "device field": (add_device_field, 2), "metric": (add_metric, 2), "metric section": (add_metric_section, 2),
+             "command": (add_command, 3)}
 
 
 def scenario(**parts):
@@ -181,7 +267,7 @@ class Adding(unittest.TestCase):
         cls.scratch = Path(tempfile.mkdtemp(prefix="hapbench_adding_"))
         tree = Tree(cls.scratch / "tree")
         cls.touched = {thing: add(tree) for thing, (add, _) in ADDITIONS.items()}
-        build = Path(OPTIONS.build_dir or cls.scratch / "build").resolve()
+        build = cls.scratch / "build"
         configure = ["cmake", "-G", "Ninja", "-S", tree.folder, "-B", build, "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O0",
                      "-DCMAKE_UNITY_BUILD=ON", "-DCMAKE_UNITY_BUILD_BATCH_SIZE=24", "-DHAPBENCH_BUILD_TESTS=OFF",
                      "-DHAPBENCH_BUILD_PYTHON=OFF", "-DHAPBENCH_INSTALL=OFF", "-DHAPBENCH_WERROR=ON"]
@@ -246,7 +332,7 @@ class Adding(unittest.TestCase):
                            ("device.play_m", "a number >= 0 and <= 1 [m]"),
                            ("environment.type", "a row of points")):
             self.assertIn(text, self.hapbench("describe", name))
-        self.assertIn("device.play_m=", self.hapbench("completion", "bash"))
+        self.assertIn("device.play_m=", self.hapbench("complete", "run", "scene.json", "--set", "device.pl"))
 
     def test_a_named_file_is_read_checked_hashed_and_moved(self):
         self.write(hand={"type": "push", "force_N": 1, "file": "stroke.csv"})
@@ -265,6 +351,36 @@ class Adding(unittest.TestCase):
         self.hapbench("validate", "below/other.json")
         (self.folder / "stroke.csv").write_text("nothing\n")
         self.assertIn("/hand/file: ", self.hapbench("run", "scene.json", status=2))
+
+    def test_a_law_runs_by_its_name(self):
+        self.write()
+        first = {}
+        for law in ("halved", "summation"):
+            self.hapbench("run", "scene.json", "--set", f"rendering.algorithm={law}", "--out", law, "--quiet")
+            header, row = (line.split(",") for line in (self.folder / law / "trajectory.csv").read_text().splitlines()[:2])
+            first[law] = float(dict(zip(header, row))["fspring_z_N"])
+        self.assertGreater(first["halved"], 0)
+        self.assertEqual(first["halved"], first["summation"] / 2)
+        self.assertIn("c_i = 1/2", self.hapbench("describe", "halved"))
+        self.assertIn("half of all penalty springs", self.hapbench("list", "algorithms"))
+        self.assertIn('nearest valid name: "halved"', self.hapbench("run", "scene.json", "--set", "rendering.algorithm=halvd", status=2))
+        self.assertIn('"halved"', self.hapbench("describe", "schema"))
+        self.assertIn("halved", self.hapbench("compare", "scene.json", "--algorithms", "all", "--out", "all"))
+
+    def test_a_command_is_in_help_and_completion(self):
+        self.assertEqual(self.hapbench("twice", "this"), "this this\n")
+        for words in (["--help"], ["man"]):
+            self.assertIn("Print a word two times", self.hapbench(*words))
+        self.assertEqual(self.hapbench("complete", "tw"), "twice\n")
+
+    def test_a_metric_is_in_all_results(self):
+        self.write(record={"torque": True}, expect={"outcome": scenario()["expect"]["outcome"],
+                                                    "metrics": {"torque.lost_sum_Nm": {"min": 1e6}}})
+        self.assertIn("torque.lost_sum_Nm", self.hapbench("run", "scene.json", "--out", "out", status=3))
+        summary, columns = (json.loads((self.folder / "out" / name).read_text()) for name in ("summary.json", "columns.json"))
+        self.assertIn("lost_sum_Nm", summary["torque"])
+        self.assertIn("torque.lost_sum_Nm", json.dumps(columns))
+        self.assertIn("sum of ||tau||", self.hapbench("describe", "torque.lost_sum_Nm"))
 
     def test_a_section_of_metrics_is_in_all_results(self):
         self.write(record={"pose": True}, expect={"outcome": ["completes", "no_contact", "lost_contact"],
@@ -287,9 +403,10 @@ class Adding(unittest.TestCase):
         (self.folder / "stroke.csv").write_text(stroke)
         vary = ["--vary", "environment.height_m=0.001,0.002", "--vary", "tool.width_m=0.002,0.003"]
         self.hapbench("sweep", "scene.json", *vary, "--shard", "0/2", "--out", "sweep", "--quiet")
-        rows = (self.folder / "sweep/sweep_shard_0_of_2.csv").read_text().splitlines()
-        self.assertIn("environment.height_m,tool.width_m", rows[0])
-        self.assertEqual(len(rows), 3)
+        of_sweep, header, *rows = (self.folder / "sweep/sweep_shard_0_of_2.csv").read_text().splitlines()
+        self.assertIn("shard 0/2 of 4 runs", of_sweep)
+        self.assertIn("environment.height_m,tool.width_m", header)
+        self.assertEqual(len(rows), 2)
         self.assertIn("missing.csv", self.hapbench("sweep", "scene.json", "--vary", "hand.file=stroke.csv,missing.csv", "--out", "bad", status=2))
         (self.folder / "stroke.csv").write_text(stroke + "1,0,0,0,0,0,-1\n")
         self.hapbench("sweep", "scene.json", *vary, "--shard", "1/2", "--out", "sweep", "--quiet")
@@ -300,6 +417,5 @@ class Adding(unittest.TestCase):
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(add_help=False)
     parser.add_argument("--keep", action="store_true")
-    parser.add_argument("--build-dir")
     OPTIONS, rest = parser.parse_known_args()
     unittest.main(argv=[sys.argv[0], *rest])
