@@ -340,7 +340,8 @@ const DeviceField kDeviceLimitFields[] = {
      [](const DeviceLimitRow& r) -> Cell { return r.limit().unstable_alone; },
      DeviceField::In::json},
     {{"runs", "1", "runs of the search"}, [](const DeviceLimitRow& r) -> Cell { return r.limit().runs.size(); }},
-    {kInconsistentColumn, [](const DeviceLimitRow& r) -> Cell { return r.limit().inconsistent.size(); }}};
+    {kInconsistentColumn, [](const DeviceLimitRow& r) -> Cell { return r.limit().inconsistent.size(); }},
+    {kAstrayColumn, [](const DeviceLimitRow& r) -> Cell { return r.limit().inconsistent.size(); }}};
 
 /// A line of device_runs.csv.
 struct DeviceRunRow {

@@ -166,7 +166,8 @@ const LimitField kLimitFields[] = {
      [](const LimitRow& r) -> Cell { return r.limit.has_effect; },
      LimitField::In::json},
     {{"runs", "1", "runs of the search"}, [](const LimitRow& r) -> Cell { return r.limit.runs.size(); }},
-    {kInconsistentColumn, [](const LimitRow& r) -> Cell { return r.limit.inconsistent.size(); }}};
+    {kInconsistentColumn, [](const LimitRow& r) -> Cell { return r.limit.inconsistent.size(); }},
+    {kAstrayColumn, [](const LimitRow& r) -> Cell { return r.limit.inconsistent.size(); }}};
 
 /// {field} is the path of the field.
 constexpr Column kLimitRunColumns[] = {{"algorithm", "", "force algorithm"},
@@ -195,9 +196,10 @@ Json limits_json(const std::vector<FieldLimit>& limits, const LimitQuestion& que
   for (const LimitRow& row : rows_of(limits, question)) {
     Json& json = rows.emplace_back();
     add_row(json, kLimitFields, row);
-    json[kInconsistentColumn.name] = Json::array();
+    Json inconsistent = Json::array();
     for (const JudgedValue& run : row.limit.inconsistent)
-      json[kInconsistentColumn.name].push_back({{"value", run.value}, {"class", run_verdict_name(run.verdict)}});
+      inconsistent.push_back({{"value", run.value}, {"class", run_verdict_name(run.verdict)}});
+    json[kInconsistentColumn.name] = json[kAstrayColumn.name] = inconsistent;
   }
   return {{"field", question.path},
           {"side", side(question)},

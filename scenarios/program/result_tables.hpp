@@ -26,9 +26,10 @@ inline constexpr Column kStabilityMapColumns[] = {
 /// With one for each limit of the stiffness that is known (stiffness_limits.hpp).
 std::span<const Column> stability_boundary_columns();
 
-/// A column of the tables of `limit` and `compare --devices`.
+/// A column of the tables of `limit` and `compare --devices`, and its name before, which programs may still read.
 inline constexpr Column kInconsistentColumn = {
     "inconsistent_runs", "1", "runs that are unstable on the stable side of the limit, or stable beyond it"};
+inline constexpr Column kAstrayColumn = {"astray", "1", "the same as inconsistent_runs, by its former name"};
 
 // The columns of tables that are defined as fields in the sources of their commands.
 std::vector<Column> limit_columns();

@@ -284,7 +284,13 @@ TEST_F(CompareDevices, AnswersAsLimitDoes) {
     EXPECT_EQ(rows[i]["runs"], limits[i]["runs"]);
     EXPECT_LE(rows[i]["vibration_m_per_s"], 0.002);
     EXPECT_EQ(rows[i]["published_N_per_m"], 5000.0);
+    // Under the former name, too, for programs that read it.
+    EXPECT_EQ(limits[i].at("astray"), limits[i].at("inconsistent_runs"));
+    EXPECT_EQ(rows[i].at("astray"), rows[i].at("inconsistent_runs"));
+    EXPECT_EQ(rows[i].at("astray"), limits[i].at("astray").size());
   }
+  for (const char* name : {"out/device_limits.csv", "limit/limit.csv"})
+    EXPECT_TRUE(lines_of(test::read_file(directory_ / name))[0].ends_with(",runs,inconsistent_runs,astray")) << name;
 }
 
 TEST_F(CompareDevices, SummationRendersOneOverTheContactsOfAFlatWall) {
