@@ -41,8 +41,7 @@ void TrackingHand::reset() noexcept {
 Vec3 TrackingHand::force(double, const HandView& view) noexcept {
   if (!started_) intended_ = view.handle.position;
   started_ = true;
-  const Vec3& gauged = task_.rules().gauge ? view.spring_force : view.model_force;
-  task_.advance(view.tool.position, gauged.z(), dt_);
+  task_.advance(view.tool.position, view.spring_force.z(), view.model_force.z(), dt_);
   follow(look(view));
   hold_within_strength(view.handle);
   for (double& component : force_noise_) component = coloured(component);

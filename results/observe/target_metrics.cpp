@@ -5,10 +5,18 @@
 
 namespace hapbench {
 
-TargetMetricsObserver::TargetMetricsObserver(std::size_t subject, std::size_t trial, std::size_t targets) {
+TargetMetricsObserver::TargetMetricsObserver(std::size_t subject, std::size_t trial, const TargetTask& task)
+    : order_(task.order()), time_limit_(task.rules().time_limit) {
   current_.subject = subject;
   current_.trial = trial;
-  rows_.reserve(targets);
+  rows_.reserve(order_.size());
+}
+
+void TargetMetricsObserver::fail_rest() {
+  while (rows_.size() < order_.size()) {
+    const std::size_t target = rows_.size();
+    rows_.push_back({current_.subject, current_.trial, target, {order_[target], false, time_limit_}});
+  }
 }
 
 void TargetMetricsObserver::on_step(const StepRecord& record) noexcept {
@@ -25,7 +33,7 @@ void TargetMetricsObserver::on_step(const StepRecord& record) noexcept {
     current_.rows_on_target = 0;
     current_.model_force = current_.speed = 0.0;
   }
-  if (task.finished() || !task.on_target(record.tool.pose.position)) return;
+  if (task.finished() || !task.logs(record.tool.pose.position)) return;
   ++current_.rows_on_target;
   current_.model_force += record.force.rendered.norm();
   current_.speed += record.handle.velocity.norm();
@@ -109,10 +117,11 @@ MetricList metric_list(const std::vector<PlaceMetrics>& places) {
            metric_list(place.completion_time, "s",
                        "time until a target at this place was removed or the limit was reached, mean over subjects"));
     append(list, section + ".model_force_N",
-           metric_list(place.model_force, "N", "mean ||f|| of the rows on a target at this place, mean over subjects"));
+           metric_list(place.model_force, "N",
+                       "mean ||f|| of the rows logged at a target of this place, mean over subjects"));
     append(list, section + ".speed_m_per_s",
            metric_list(place.speed, "m/s",
-                       "mean speed of the handle in the rows on a target at this place, mean over subjects"));
+                       "mean speed of the handle in the rows logged at a target of this place, mean over subjects"));
   }
   return list;
 }

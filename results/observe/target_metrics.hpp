@@ -9,8 +9,8 @@
 
 namespace hapbench {
 
-/// Measurements of one target (thesis D.4). Model force and speed are means over the rows in which the tip was on the
-/// target, whether or not the subject pressed.
+/// Measurements of one target (thesis D.4). Model force and speed are means over the rows in which the tip was within
+/// TargetRules::logged of the target, whether or not the subject pressed.
 struct TargetRow {
   std::size_t subject = 0;  ///< from 0, as are trial and target
   std::size_t trial = 0;
@@ -24,16 +24,21 @@ struct TargetRow {
 /// Measures the targets of one trial while it runs.
 class TargetMetricsObserver final : public Observer {
  public:
-  /// Numbers of subject and trial, from 0, and the number of targets.
-  TargetMetricsObserver(std::size_t subject, std::size_t trial, std::size_t targets);
+  /// Numbers of subject and trial, from 0, and the task at its beginning.
+  TargetMetricsObserver(std::size_t subject, std::size_t trial, const TargetTask& task);
 
   /// Precondition: record.task is not null.
   void on_step(const StepRecord& record) noexcept override;
+
+  /// The trial has come to nothing: the targets that have not ended are not removed, and take the time limit.
+  void fail_rest();
 
   /// One row for each target that has ended.
   const std::vector<TargetRow>& rows() const noexcept { return rows_; }
 
  private:
+  std::vector<std::size_t> order_;  ///< place of each target
+  double time_limit_;
   TargetRow current_;  ///< sums where a finished row has means
   std::vector<TargetRow> rows_;
 };

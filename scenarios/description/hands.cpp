@@ -11,6 +11,7 @@ constexpr NumberRange kCoordinate = {-1000.0, 1000.0, "m"};
 constexpr NumberRange kAngle = {-6.3, 6.3, "rad"};  ///< a full turn either way
 
 constexpr Choice<TargetDisplay> kDisplays[] = {{"panel", TargetDisplay::panel}, {"height", TargetDisplay::height}};
+constexpr Choice<PressForce> kPressForces[] = {{"rendered", PressForce::rendered}, {"spring", PressForce::spring}};
 
 }  // namespace
 
@@ -78,7 +79,15 @@ static void describe(Fields& f, DragHandFields& hand) {
 static void describe(Fields& f, Gauge& gauge) {
   f.number("cutoff_Hz", gauge.cutoff, {0.0, 1e6, "Hz", true}, "of the low-pass of the spring force it shows");
   f.number("grace_s", gauge.grace, {0.0, 1000.0, "s"},
-           "how long it may show less than least_press_N without a break of the hold");
+           "how long it may show less than least_press_N without a break of the hold; without effect beside threshold");
+}
+
+static void describe(Fields& f, Threshold& threshold) {
+  f.choice("force", threshold.force, kPressForces, "force", "whose component along +z counts");
+  f.number("cutoff_Hz", threshold.cutoff, {0.0, 1e6, "Hz", true},
+           "of a first-order low-pass; null: every sample counts");
+  f.number("grace_s", threshold.grace, {0.0, 1000.0, "s"},
+           "how long it may be less than least_press_N without a break of the hold");
 }
 
 static void describe(Fields& f, TargetRules& task) {
@@ -89,8 +98,13 @@ static void describe(Fields& f, TargetRules& task) {
       [](Fields& p, Vec3& place) { p.vector3(place, kCoordinate); }, Presence::required);
   f.integer("targets_per_place", task.targets_per_place, {1, 1000}, "in one trial");
   f.number("tolerance_m", task.tolerance, {0.0, 1.0, "m", true}, "the tip is on the target within this distance");
-  f.number("least_press_N", task.least_press, {0.0, 1000.0, "N"}, "force along +z that activates the task");
+  f.number("logged_m", task.logged, {0.0, 1.0, "m", true},
+           "model force and speed are means over the rows within this distance of the target; null: tolerance_m");
+  f.number("least_press_N", task.least_press, {0.0, 1000.0, "N"},
+           "force along +z that activates the task and must last while it is held");
   f.object("gauge", task.gauge, "a display of the spring force; null: the rendered force, every sample of it");
+  f.object("threshold", task.threshold,
+           "what the task checks against least_press_N, apart from what the gauge shows; null: what the gauge shows");
   f.number("hold_s", task.hold, {0.0, 1000.0, "s", true}, "time on the target, without a break, that removes it");
   f.number("time_limit_s", task.time_limit, {0.0, 1000.0, "s", true},
            "from the activation until the target disappears");

@@ -64,7 +64,7 @@ std::unique_ptr<Observer> observe_perception(const TrialParts& p) {
 }
 
 std::unique_ptr<Observer> observe_targets(const TrialParts& p) {
-  return std::make_unique<TargetMetricsObserver>(p.subject, p.trial, p.simulation.hand->task()->targets());
+  return std::make_unique<TargetMetricsObserver>(p.subject, p.trial, *p.simulation.hand->task());
 }
 
 std::size_t target_places(const Scenario& scenario, bool) {

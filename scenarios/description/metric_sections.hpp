@@ -51,9 +51,9 @@ class SectionObservers {
 
   /// The observer of that type; null when the scenario does not ask for it.
   template <class Type>
-  const Type* find() const {
+  Type* find() const {
     for (const auto& observer : observers_) {
-      if (const auto* found = dynamic_cast<const Type*>(observer.get())) return found;
+      if (auto* found = dynamic_cast<Type*>(observer.get())) return found;
     }
     return nullptr;
   }

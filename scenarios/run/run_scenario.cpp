@@ -133,6 +133,10 @@ class TrialObservers {
       if (auto warning = scale_warning(scenario, *tool_, approach_->environment())) out.warnings.push_back(*warning);
     }
     if (open_edges_ && open_edges_->warning()) out.warnings.push_back(*open_edges_->warning());
+    // Who loses the drill fails the rest of the targets.
+    if (out.result.outcome == Outcome::diverges) {
+      if (auto* targets = sections_.find<TargetMetricsObserver>()) targets->fail_rest();
+    }
     out.passivity = passivity_.metrics();
     out.sections = std::move(sections_);
     out.recorders = std::move(recorders_);

@@ -15,8 +15,8 @@ struct HandleState {
 struct HandView {
   HandleState handle;
   ToolPose tool;                     ///< on the display
-  Vec3 model_force = Vec3::Zero();   ///< f_render of the previous step, for the force gauge [N]
-  Vec3 spring_force = Vec3::Zero();  ///< f_spring of the previous step, for the force gauge [N]
+  Vec3 model_force = Vec3::Zero();   ///< f_render of the previous step, for gauge and task [N]
+  Vec3 spring_force = Vec3::Zero();  ///< f_spring of the previous step, for gauge and task [N]
 };
 
 /// Model of the human hand: its force on the handle as a function of time and perception.

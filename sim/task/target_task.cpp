@@ -7,9 +7,9 @@
 namespace hapbench {
 namespace {
 
-/// Fraction of a value held for dt seconds that a first-order low-pass takes over.
-double low_pass_share(double cutoff, double dt) noexcept {
-  return -std::expm1(-2.0 * std::numbers::pi * cutoff * dt);
+/// Moves a first-order low-pass on by dt seconds, in which its input is held. Without a cutoff it takes the input over.
+void follow(double& output, double input, std::optional<double> cutoff, double dt) noexcept {
+  output = cutoff ? output - std::expm1(-2.0 * std::numbers::pi * *cutoff * dt) * (input - output) : input;
 }
 
 }  // namespace
@@ -26,7 +26,7 @@ void TargetTask::reset() noexcept {
   results_.clear();
   active_ = false;
   shown_ = held_ = 0.0;
-  reading_ = low_for_ = 0.0;
+  reading_ = checked_ = low_for_ = 0.0;
 }
 
 Vec3 TargetTask::error(const Vec3& tip) const noexcept {
@@ -34,8 +34,17 @@ Vec3 TargetTask::error(const Vec3& tip) const noexcept {
   return rules_.display == TargetDisplay::panel ? Vec3(error.x(), error.y(), 0.0) : Vec3(0.0, 0.0, error.z());
 }
 
-void TargetTask::advance(const Vec3& tip, double press, double dt) noexcept {
-  reading_ = rules_.gauge ? reading_ + low_pass_share(rules_.gauge->cutoff, dt) * (press - reading_) : press;
+void TargetTask::advance(const Vec3& tip, double spring, double rendered, double dt) noexcept {
+  if (rules_.gauge) {
+    follow(reading_, spring, rules_.gauge->cutoff, dt);
+  } else {
+    reading_ = rendered;
+  }
+  if (const auto& threshold = rules_.threshold) {
+    follow(checked_, threshold->force == PressForce::rendered ? rendered : spring, threshold->cutoff, dt);
+  } else {
+    checked_ = reading_;
+  }
   if (finished()) return;
   const bool pressed = is_pressed(dt);
   if (pressed && !active_) {
@@ -51,14 +60,15 @@ void TargetTask::advance(const Vec3& tip, double press, double dt) noexcept {
   }
 }
 
-/// True if the reading is at least least_press or, while a target is active, was so within the grace.
+/// True if the force is at least least_press or, while a target is active, was so within the grace.
 bool TargetTask::is_pressed(double dt) noexcept {
-  if (reading_ >= rules_.least_press) {
+  if (checked_ >= rules_.least_press) {
     low_for_ = 0.0;
     return true;
   }
   low_for_ += dt;
-  return active_ && rules_.gauge && low_for_ <= rules_.gauge->grace;
+  const double grace = rules_.threshold ? rules_.threshold->grace : rules_.gauge ? rules_.gauge->grace : 0.0;
+  return active_ && low_for_ <= grace;
 }
 
 void TargetTask::next_target(bool removed, double time) noexcept {

@@ -16,22 +16,38 @@ enum class TargetDisplay {
 };
 
 /// A force gauge as a display, on which a person cannot read single samples: the spring force along +z through a
-/// first-order low-pass. The thesis asks the subject to keep pressing; a short dip of the reading is tolerated.
+/// first-order low-pass. Unless the rules have a Threshold, its reading is also what the task checks.
 struct Gauge {
   double cutoff = 30.0;  ///< of the low-pass [Hz]
   double grace = 0.1;    ///< time for which the reading may stay below least_press without breaking the hold [s]
 };
 
+/// A force of the algorithm.
+enum class PressForce {
+  rendered,  ///< f_render, the model reaction force
+  spring     ///< f_spring
+};
+
+/// What the task checks, apart from what the gauge shows: a force along +z against least_press, every sample of it or
+/// of its first-order low-pass.
+struct Threshold {
+  PressForce force = PressForce::rendered;
+  std::optional<double> cutoff = {};  ///< of the low-pass [Hz]; none without
+  double grace = 0.0;                 ///< time below least_press that does not break the hold [s]
+};
+
 /// The rules of the man-machine experiments (thesis D.2.2, D.3.2).
 struct TargetRules {
   TargetDisplay display = TargetDisplay::panel;
-  std::vector<Vec3> places;             ///< where targets appear [m]; only the components on display count
-  std::uint64_t targets_per_place = 5;  ///< in one trial
-  double tolerance = 0.0002;            ///< the tip is on the target within this distance [m]
-  double least_press = 1.0;             ///< reading of the gauge that activates the task [N]
-  std::optional<Gauge> gauge = {};      ///< without one, every sample of the rendered force along +z counts
-  double hold = 1.0;                    ///< time on the target, without a break, that removes it [s]
-  double time_limit = 10.0;             ///< from the activation until the target disappears [s]
+  std::vector<Vec3> places;                 ///< where targets appear [m]; only the components on display count
+  std::uint64_t targets_per_place = 5;      ///< in one trial
+  double tolerance = 0.0002;                ///< the tip is on the target within this distance [m]
+  std::optional<double> logged = {};        ///< force and speed are logged within this distance [m]; without, tolerance
+  double least_press = 1.0;                 ///< force along +z that activates the task and keeps it so [N]
+  std::optional<Gauge> gauge = {};          ///< without one, the subject sees every sample of the rendered force
+  std::optional<Threshold> threshold = {};  ///< without one, the task checks what the subject sees
+  double hold = 1.0;                        ///< time on the target, without a break, that removes it [s]
+  double time_limit = 10.0;                 ///< from the activation until the target disappears [s]
 };
 
 /// The end of one target.
@@ -43,7 +59,7 @@ struct TargetResult {
 
 /// One trial: targets appear one at a time in a pseudo-random order, every place equally often. A target waits until
 /// the subject presses, which activates it and starts the time limit. It is removed when the tip has stayed on it and
-/// pressed for the holding time, apart from dips of the reading within the gauge's grace. A target that is not
+/// pressed for the holding time, apart from dips of the force within the grace. A target that is not
 /// activated also disappears after the time limit, so that a trial ends (our choice; the thesis does not say).
 /// Allocates in the constructor only.
 class TargetTask {
@@ -53,10 +69,9 @@ class TargetTask {
 
   /// Returns to the first target.
   void reset() noexcept;
-  /// Judges one sampling interval of dt seconds. At its end the tip is at `tip`, and `press` is the force along +z that
-  /// the gauge measures [N]: the spring force, or without a gauge the rendered force. Once the trial is finished, only
-  /// the gauge moves.
-  void advance(const Vec3& tip, double press, double dt) noexcept;
+  /// Judges one sampling interval of dt seconds. At its end the tip is at `tip`; `spring` and `rendered` are the
+  /// components of f_spring and f_render along +z [N]. Once the trial is finished, only the readings move.
+  void advance(const Vec3& tip, double spring, double rendered, double dt) noexcept;
   /// Reading of the gauge [N].
   double reading() const noexcept { return reading_; }
 
@@ -65,11 +80,14 @@ class TargetTask {
   std::size_t number() const noexcept { return results_.size(); }
   std::size_t place() const noexcept { return order_[number()]; }
   const TargetRules& rules() const noexcept { return rules_; }
-  std::size_t targets() const noexcept { return order_.size(); }
+  /// The place of each target, in the order in which they appear.
+  const std::vector<std::size_t>& order() const noexcept { return order_; }
 
   /// From the tip to the target, in the components on display [m]. Precondition: not finished.
   Vec3 error(const Vec3& tip) const noexcept;
   bool on_target(const Vec3& tip) const noexcept { return error(tip).norm() <= rules_.tolerance; }
+  /// True if force and speed of this row are logged. Precondition: not finished.
+  bool logs(const Vec3& tip) const noexcept { return error(tip).norm() <= rules_.logged.value_or(rules_.tolerance); }
   bool active() const noexcept { return active_; }
 
   /// Targets that have ended, in their order.
@@ -86,7 +104,8 @@ class TargetTask {
   double shown_ = 0.0;    ///< time since the target appeared or, once active, since its activation [s]
   double held_ = 0.0;     ///< time on the target without a break [s]
   double reading_ = 0.0;  ///< of the gauge [N]
-  double low_for_ = 0.0;  ///< time since the reading was last at least least_press [s]
+  double checked_ = 0.0;  ///< against least_press [N]
+  double low_for_ = 0.0;  ///< time since `checked_` was last at least least_press [s]
 };
 
 }  // namespace hapbench

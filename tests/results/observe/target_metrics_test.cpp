@@ -49,20 +49,65 @@ TEST(PlaceMetrics, PlacesAreKeptApart) {
   EXPECT_TRUE(place_metrics({}).empty());
 }
 
+TEST(TargetMetrics, ALostTrialFailsTheTargetsThatAreLeft) {
+  TargetRules rules;
+  rules.places = {Vec3(0, 0, 0), Vec3(1, 0, 0)};
+  rules.targets_per_place = 2;
+  TargetTask task(rules, 1);
+  TargetMetricsObserver observer(4, 5, task);
+  StepRecord record;
+  record.task = &task;
+  record.tool.pose.position = rules.places[task.place()];
+  task.advance(record.tool.pose.position, 2.0, 2.0, rules.hold);
+  observer.on_step(record);  // the first target is removed
+  observer.fail_rest();
+  ASSERT_EQ(observer.rows().size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const TargetRow& row = observer.rows()[i];
+    EXPECT_EQ(row.target, i);
+    EXPECT_EQ(row.result.place, task.order()[i]);
+    EXPECT_EQ(row.result.removed, i == 0);
+    EXPECT_EQ(row.result.time, i == 0 ? rules.hold : rules.time_limit);
+    EXPECT_EQ(row.subject, 4u);
+    EXPECT_EQ(row.trial, 5u);
+  }
+}
+
+TEST(TargetMetrics, ForceAndSpeedMayBeLoggedWithinAnotherDistanceThanTheTolerance) {
+  TargetRules rules;
+  rules.places = {Vec3(0, 0, 0)};
+  rules.targets_per_place = 1;
+  rules.tolerance = 0.0001;
+  rules.logged = 0.0003;
+  TargetTask task(rules, 1);
+  TargetMetricsObserver observer(0, 0, task);
+  StepRecord record;
+  record.task = &task;
+  for (const double x : {0.0, 0.0002, 0.0004, 0.0}) {
+    record.tool.pose.position = {x, 0, 0};
+    record.force.rendered = {0, 0, 1e4 * x};
+    task.advance(record.tool.pose.position, 2.0, 2.0, 1.0);
+    observer.on_step(record);
+  }
+  observer.fail_rest();
+  ASSERT_EQ(observer.rows().size(), 1u);
+  EXPECT_TRUE(observer.rows()[0].result.removed);
+}
+
 TEST(TargetMetrics, MeansAreOverTheRowsOnTheTarget) {
   TargetRules rules;
   rules.places = {Vec3(0, 0, 0)};
   rules.targets_per_place = 2;
   rules.hold = 3.0;
   TargetTask task(rules, 1);
-  TargetMetricsObserver observer(4, 5, task.targets());
+  TargetMetricsObserver observer(4, 5, task);
   StepRecord record;
   record.task = &task;
   const auto step = [&](double x, double force, double speed) {
     record.tool.pose.position = {x, 0, 0};
     record.force.rendered = {0, 0, force};
     record.handle.velocity = {0, speed, 0};
-    task.advance(record.tool.pose.position, 2.0, 1.0);
+    task.advance(record.tool.pose.position, 2.0, 2.0, 1.0);
     observer.on_step(record);
   };
   step(0.001, 100.0, 100.0);  // off the target

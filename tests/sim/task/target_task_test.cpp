@@ -21,7 +21,7 @@ TargetRules one_target() {
 }
 
 void advance(TargetTask& task, int samples, const Vec3& tip, double press) {
-  for (int i = 0; i < samples; ++i) task.advance(tip, press, kStep);
+  for (int i = 0; i < samples; ++i) task.advance(tip, press, press, kStep);
 }
 
 const Vec3 kOn{0, 0, 0}, kOff{0.001, 0, 0};
@@ -60,7 +60,7 @@ TEST(ForceGauge, ShowsAStepAsAFirstOrderLowPassDoes) {
   const double cutoff = 30.0, pi = std::numbers::pi;
   TargetTask task(with_gauge(cutoff, 0.1), 1);
   for (int i = 1; i <= kSecond; ++i) {
-    task.advance(kOff, 2.0, kStep);
+    task.advance(kOff, 2.0, 2.0, kStep);
     // 1024 roundings of a number of at most 2, each forgotten with the low-pass.
     ASSERT_NEAR(task.reading(), 2.0 * -std::expm1(-2.0 * pi * cutoff * i * kStep), 1e-13) << i;
   }
@@ -71,7 +71,7 @@ TEST(ForceGauge, ActivatesWhenTheStepResponseCrossesTheThreshold) {
   TargetTask task(with_gauge(30.0, 0.1), 1);
   const double crossing = std::log(1.6 / 0.6) / (2.0 * std::numbers::pi * 30.0) / kStep;
   for (int i = 1; i <= 20; ++i) {
-    task.advance(kOff, 1.6, kStep);
+    task.advance(kOff, 1.6, 1.6, kStep);
     ASSERT_EQ(task.active(), i >= crossing) << i;
   }
 }
@@ -135,6 +135,42 @@ TEST(ForceGauge, IsTheGivenForceWhenThereIsNone) {
   TargetTask task(one_target(), 1);
   advance(task, 1, kOff, 0.7);
   EXPECT_EQ(task.reading(), 0.7);
+}
+
+TEST(Threshold, IsCheckedWhateverTheGaugeShows) {
+  TargetRules rules = with_gauge(1e6, 0.1);
+  rules.threshold = Threshold{};
+  TargetTask task(rules, 1);
+  task.advance(kOn, 2.0, 0.999, kStep);
+  EXPECT_EQ(task.reading(), 2.0);
+  EXPECT_FALSE(task.active());
+  for (int i = 0; i < kSecond - 1; ++i) task.advance(kOn, 0.0, 1.0, kStep);
+  EXPECT_TRUE(task.active());
+  // A single sample breaks the hold, whatever the gauge's grace.
+  task.advance(kOn, 2.0, 0.999, kStep);
+  for (int i = 0; i < kSecond - 1; ++i) task.advance(kOn, 0.0, 1.0, kStep);
+  EXPECT_FALSE(task.finished());
+  task.advance(kOn, 0.0, 1.0, kStep);
+  EXPECT_TRUE(task.finished());
+}
+
+TEST(Threshold, MayBeOnTheSpringForceThroughALowPassWithAGrace) {
+  const int grace = 100;
+  TargetRules rules = one_target();
+  rules.threshold = Threshold{PressForce::spring, 30.0, grace * kStep};
+  // At 1.6 N the low-pass is below 1 N for ln(1.6 / 0.6) / (2 pi f) after a rise, 5 samples, and stays above 1 N for
+  // ln(1.6) / (2 pi f) after a fall, 2 samples: a dropout of n samples is below for n + 3.
+  for (const int dropout : {grace - 3, grace - 2}) {
+    TargetTask task(rules, 1);
+    int samples = 0;
+    for (; !task.active(); ++samples) task.advance(kOn, 1.6, 0.0, kStep);
+    EXPECT_EQ(samples, 6);
+    EXPECT_EQ(task.reading(), 0.0) << "without a gauge the rendered force is shown";
+    for (int i = 0; i < 200; ++i) task.advance(kOn, 1.6, 0.0, kStep);
+    for (int i = 0; i < dropout; ++i) task.advance(kOn, 0.0, 0.0, kStep);
+    while (!task.finished()) task.advance(kOn, 1.6, 0.0, kStep);
+    EXPECT_EQ(task.results()[0].time == 1.0, dropout + 3 <= grace) << dropout;
+  }
 }
 
 TEST(TargetTask, ATargetDisappearsTenSecondsAfterItsActivation) {
