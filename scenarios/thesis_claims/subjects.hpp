@@ -11,8 +11,8 @@
 
 /// The subjects of appendix D inferred from Tables A.1 and A.3, and what they do in the rest of it.
 ///
-/// Approximate Bayesian computation by rejection: a Latin hypercube of what the thesis does not say of its subjects and
-/// its task, evenly over ranges from the literature; one subject a sample, in both experiments with both algorithms.
+/// Approximate Bayesian computation by rejection: a Sobol sequence over what the thesis does not say of its subjects
+/// and its task, evenly in ranges from the literature; one subject a sample, in both experiments with both algorithms.
 /// The distance to the two tables is
 ///
 ///   d = sqrt(mean over their 16 means of min(|ours - published| / s, 5)^2),
@@ -55,7 +55,8 @@ double standardised_difference(const PublishedNumbers& published, const std::str
 /// Runs a sample. Depends on plan and number alone. Throws Stopped.
 SubjectSample run_subject(const SubjectsPlan& plan, std::size_t sample);
 
-/// All samples. Those that are done are in a journal, subjects.journal: the same plan goes on from there.
+/// All samples. Those that are done are in a journal, subjects.journal: the same plan, or one of more samples, goes
+/// on from there.
 struct SubjectsReport {
   std::vector<SubjectSample> samples;
   std::size_t done = 0;

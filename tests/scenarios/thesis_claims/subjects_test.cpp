@@ -25,8 +25,8 @@ TEST(Subjects, TheDistanceIsInSpreadsOfASingleSubjectAndEndsAtFive) {
   EXPECT_NEAR(standardised_difference(p, time, 5.78), 2.0 / s, 1e-12);
   EXPECT_EQ(standardised_difference(p, time, -1e3), 5.0);
   EXPECT_EQ(standardised_difference(p, time, std::nan("")), 5.0);
-  // All succeed, with no spread, printed as 1.0: what is left is the scatter of five targets, 1 / 20.
-  EXPECT_NEAR(standardised_difference(p, "D3.success.shaped_stiffness", 0.8), 0.2 / std::sqrt(0.05 + 0.05 * 0.05),
+  // All succeed, with no spread, printed as 1.0: what is left is the scatter of three targets, 1 / 12.
+  EXPECT_NEAR(standardised_difference(p, "D3.success.shaped_stiffness", 0.8), 0.2 / std::sqrt(0.25 / 3.0 + 0.05 * 0.05),
               1e-12);
 }
 
@@ -44,7 +44,7 @@ TEST(Subjects, SamplesLieInTheirRangesAndFillThem) {
       EXPECT_LE(values[i], high * (1 + 1e-3)) << field;
       lower_half += values[i] < middle ? 1 : 0;
     }
-    EXPECT_EQ(lower_half, 4) << field << ": one in each of eight strata";
+    EXPECT_EQ(lower_half, 4) << field << ": a net in base two";
     EXPECT_GT(std::string(source).size(), 5u);
   }
 }
