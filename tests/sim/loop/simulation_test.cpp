@@ -134,7 +134,7 @@ TEST(Simulation, EndsWithTheRowInWhichTheHandHasFinishedItsTask) {
   struct Worker final : Hand {
     void reset() noexcept override { task_.reset(); }
     Vec3 force(double, const HandView&) noexcept override {
-      task_.advance({0, 0, 0}, 2.0, 0.5);
+      task_.advance({0, 0, 0}, 2.0, 2.0, 0.5);
       return {0, 0, 0};
     }
     const TargetTask* task() const noexcept override { return &task_; }
