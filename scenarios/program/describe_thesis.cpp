@@ -19,14 +19,13 @@ namespace {
 
 Description describe_claim(const Json& claim) {
   const auto said = [&claim](const char* field) { return claim.at(field).get<std::string>(); };
-  std::string text = fmt::format("claim {}, verdict on record: {}\n{}\n", bold(stdout, said("id")), said("verdict"),
-                                 wrapped(said("claim")));
+  std::string text = fmt::format("claim {}, verdict on record: {}\n{}\n", bold(stdout, said("id")),
+                                 verdicts_text(claim), wrapped(said("claim")));
   const std::vector<std::string> scenarios = claim.at("scenarios");
-  for (const auto& [title, value] :
-       {std::pair{"place", said("place")}, std::pair{"published", said("published")},
-        std::pair{"measured", said("measured")}, std::pair{"rule", said("rule")}, std::pair{"why", said("why")},
-        std::pair{"robustness", robustness_text(claim.at("robustness"))},
-        std::pair{"scenarios", fmt::format("{}", fmt::join(scenarios, ", "))}})
+  for (const auto& [title, value] : {std::pair{"place", said("place")}, std::pair{"published", said("published")},
+                                     std::pair{"measured", said("measured")}, std::pair{"rule", said("rule")},
+                                     std::pair{"why", said("why")}, std::pair{"robustness", robustness_text(claim)},
+                                     std::pair{"scenarios", fmt::format("{}", fmt::join(scenarios, ", "))}})
     if (!value.empty()) text += entry(title, value, 2, 14);
   return {text + fmt::format("\njudge it again: hapbench reproduce --only {}\n", said("id")), claim};
 }

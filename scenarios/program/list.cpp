@@ -15,6 +15,7 @@
 #include "scenarios/program/describe.hpp"
 #include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/table.hpp"
+#include "scenarios/thesis_claims/ledger.hpp"
 #include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
@@ -25,9 +26,9 @@ struct Listed {
   std::string kind;  ///< such as "algorithm"
   std::string name;
   std::string summary;
-  std::string group = {};    ///< of a scenario
-  std::string source = {};   ///< of a scenario or a claim: its place in the thesis, or the source of its numbers
-  std::string verdict = {};  ///< of a claim
+  std::string group = {};   ///< of a scenario
+  std::string source = {};  ///< of a scenario or a claim: its place in the thesis, or the source of its numbers
+  Json claim = {};          ///< as in the ledger
 };
 
 Listed listed_scenario(const BundledScenario& bundled) {
@@ -58,7 +59,7 @@ std::vector<Listed> everything() {
                    .summary = claim.at("claim"),
                    .group = "",
                    .source = claim.at("place"),
-                   .verdict = claim.at("verdict")});
+                   .claim = claim});
   }
   return all;
 }
@@ -113,8 +114,9 @@ std::string scene_of(const std::string& name) {
 
 /// The line of a thing. Scenarios that are one scene under several algorithms share the line of the first.
 std::string entry_of(const std::vector<Listed>& all, const Listed& first) {
-  if (!first.verdict.empty())
-    return entry(fmt::format("{:<5}{}", first.name, first.verdict), first.summary, 2, kColumn, output_width());
+  if (!first.claim.is_null())
+    return entry(fmt::format("{:<5}{}", first.name, verdicts_text(first.claim)), first.summary, 2, kColumn,
+                 output_width());
   const std::string scene = scene_of(first.name);
   std::vector<std::string> algorithms;
   for (const Listed& thing : all) {
@@ -171,7 +173,10 @@ int list(const ListOptions& options) {
   for (const Listed& thing : all) {
     Json& entry = json.emplace_back(Json{{"kind", thing.kind}, {"name", thing.name}, {"summary", thing.summary}});
     if (!thing.group.empty()) entry.update({{"group", thing.group}, {"source", thing.source}});
-    if (!thing.verdict.empty()) entry.update({{"verdict", thing.verdict}, {"source", thing.source}});
+    if (!thing.claim.is_null()) {
+      entry.update(
+          {{"verdict", thing.claim.at("verdict")}, {"majority", thing.claim.at("majority")}, {"source", thing.source}});
+    }
   }
   print(options.output,
         list_text(all) + (of_everything ? "\"hapbench list metrics\" and \"list claims\" show more.\n" : ""), json);

@@ -126,8 +126,8 @@ class ThesisRuns {
 };
 
 /// Judges the claims by the thesis's runs, and notes in `read` which results that needs.
-std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const PublishedNumbers& published, ThesisRuns& runs,
-                               ResultsRead& read, bool progress) {
+std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const PublishedNumbers& published,
+                               const Choices& choices, ThesisRuns& runs, ResultsRead& read, bool progress) {
   std::set<std::string> used;  // scenarios of the current claim
   const auto provide = [&](const std::string& scenario, const std::string& part) {
     used.insert(scenario);
@@ -143,15 +143,14 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
     bar.show(judged.size());
     used.clear();
     Finding finding = claim.judge(claim.measure(evidence), published);
-    judged.push_back({claim, std::move(finding), {used.begin(), used.end()}});
+    const std::vector<std::string> scenarios(used.begin(), used.end());
+    judged.push_back({claim, std::move(finding), scenarios, choices.reach(scenarios, claim.rule)});
   }
   return judged;
 }
 
-/// The claims that samples can judge: those that a simulation can show and that do not concern run times.
 std::vector<JudgedClaim> to_judge_again(std::vector<JudgedClaim> judged) {
-  std::erase_if(judged,
-                [](const JudgedClaim& j) { return j.claim.timing || j.finding.verdict == Verdict::not_reproducible; });
+  std::erase_if(judged, [](const JudgedClaim& j) { return !j.can_be_sampled(); });
   return judged;
 }
 
@@ -184,7 +183,7 @@ SampledRobustness sample_robustness(const ReproduceOptions& options, const Robus
   std::vector<std::string> verdicts;
   for (const JudgedClaim& j : on_record) verdicts.emplace_back(verdict_name(j.finding.verdict));
   const std::vector<ClaimRobustness> robustness = robustness_of(plan, verdicts, report.verdicts);
-  const Json record = robustness_json(plan, robustness);
+  const Json record = robustness_json(plan, on_record, robustness);
   if (directory) {
     write_file_atomically(*directory / "robustness.csv", robustness_table(plan, report.verdicts));
     write_file_atomically(*directory / "robustness.json", json_text(record));
@@ -233,17 +232,18 @@ int reproduce(const ReproduceOptions& options) {
   const fs::path reference = installed_folder("results/reference");
   if (options.subjects > 0) return infer_subjects(options, PublishedNumbers(reference / "published"));
   const std::vector<Claim> claims = chosen_claims(options.only);
-  const PublishedNumbers published(reference / "published");
   const Choices choices(reference / "choices.json");
+  const PublishedNumbers published =
+      choices.with_numbers(PublishedNumbers(reference / "published"), choices.values_on_record());
   require_writable_directory(options.out);
   ThesisRuns runs(options);
   // Single claims run only the scenarios they need.
   if (options.only.empty()) runs.run_all(options.jobs, !options.output.quiet);
 
   ResultsRead read;
-  const std::vector<JudgedClaim> judged = judge(claims, published, runs, read, !options.output.quiet);
+  const std::vector<JudgedClaim> judged = judge(claims, published, choices, runs, read, !options.output.quiet);
   const std::optional<fs::path> ledger = ledger_file(options);
-  RobustnessOnRecord robustness(reference / "robustness.json", choices.hash());
+  RobustnessOnRecord robustness(reference / "robustness.json");
   if (options.samples > 0) {
     const std::vector<JudgedClaim> again = to_judge_again(judged);
     std::vector<Claim> sampled;
@@ -253,20 +253,19 @@ int reproduce(const ReproduceOptions& options) {
     const SampledRobustness sampled_robustness =
         sample_robustness(options, plan, again, ledger ? std::optional(ledger->parent_path()) : std::nullopt);
     if (sampled_robustness.signal != 0) return kStopped + sampled_robustness.signal;
-    robustness = RobustnessOnRecord(sampled_robustness.record, choices.hash());
+    robustness = RobustnessOnRecord(sampled_robustness.record);
   }
 
-  Table table({{"id", false}, {"verdict", false}, {"robustness", false}, {"measured", false}});
-  for (const JudgedClaim& j : judged) {
-    table.add({j.claim.id, std::string(verdict_name(j.finding.verdict)), robustness_text(robustness.of(j)),
-               j.finding.measured});
-  }
   const Json json = ledger_json(judged, published, robustness);
-  std::string text = table.text();
+  Table table({{"id", false}, {"verdict", false}, {"robustness", false}, {"measured", false}});
+  for (const Json& claim : json.at("claims"))
+    table.add({claim.at("id"), verdicts_text(claim), robustness_text(claim), claim.at("measured")});
+  std::string text = options.only.empty() ? wrapped(json.at("headline").get<std::string>()) + "\n\n" : "";
+  text += table.text();
   if (!options.only.empty()) text += claims_text(judged);
   if (ledger) {
     write_file_atomically(*ledger, json_text(json));
-    write_file_atomically(fs::path(*ledger).replace_extension(".md"), ledger_markdown(judged, published, robustness));
+    write_file_atomically(fs::path(*ledger).replace_extension(".md"), ledger_markdown(json));
     write_file_atomically(ledger->parent_path() / "choices.md", choices.markdown());
     text += fmt::format("\nledger in {}\n", ledger->string());
   } else {

@@ -81,6 +81,11 @@ void check_choice(const Fields& f, const OpenChoice& choice) {
       refuse(f, "scale", "got \"log\" beside options; allowed: \"log\" beside a range");
     }
   }
+  if (choice.fields.empty() && choice.options) {
+    const auto& options = *choice.options;
+    if (!std::all_of(options.begin(), options.end(), [](const auto& o) { return finite_number(o).has_value(); }))
+      refuse(f, "options", "got a text of a choice without fields; allowed: numbers");
+  }
   const bool times =
       std::any_of(choice.fields.begin(), choice.fields.end(), [](const ChosenField& c) { return c.times; });
   if (!times) return;
@@ -125,9 +130,8 @@ static void describe(Fields& f, OpenChoice& choice) {
   f.choice("scale", choice.scale, kScales, "scale", "of the range: values are sampled evenly in it");
   f.choice("chosen", choice.chosen, kChosen, "time", "before or after results were seen", Presence::required);
   f.text("why", choice.why, kLongest, "this value", Presence::required);
-  f.list(
-      "fields", choice.fields, {1, 100}, "that the choice sets", [](Fields& c, ChosenField& field) { c.object(field); },
-      Presence::required);
+  f.list("fields", choice.fields, {1, 100}, "that the choice sets; none: rules read the number by the choice's id",
+         [](Fields& c, ChosenField& field) { c.object(field); });
   if (f.reads()) check_choice(f, choice);
 }
 
@@ -248,6 +252,7 @@ class Changes {
 };
 
 std::string fields_text(const OpenChoice& choice) {
+  if (choice.fields.empty()) return "read by rules";
   std::vector<std::string> texts;
   for (const ChosenField& field : choice.fields) {
     texts.push_back(fmt::format("`{}{}` of {}", field.path, field.times ? " ×" : "", fmt::join(field.scenarios, ", ")));
@@ -278,6 +283,7 @@ Choices::Choices(const std::filesystem::path& file) {
     const Json json = parse_json(read_text_file(file, kLargestJsonFile));
     all_ = read_choices(json);
     hash_ = hash_text(hash_of(json_text(json)));
+    for (const Json& choice : json.at("choices")) texts_.push_back(json_text(choice));
   } catch (const InputError& error) {
     rethrow_with_file(error, file);
   }
@@ -309,6 +315,26 @@ std::vector<std::string> Choices::overrides(const Scenario& scenario, std::span<
     }
   }
   return changes.overrides();
+}
+
+PublishedNumbers Choices::with_numbers(PublishedNumbers published, std::span<const std::string> values) const {
+  for (std::size_t i = 0; i < all_.size(); ++i) {
+    if (all_[i].fields.empty()) published.set(all_[i].id, finite_number(values[i]).value());
+  }
+  return published;
+}
+
+std::string Choices::reach(std::span<const std::string> scenarios, const std::string& rule) const {
+  std::string reaching;
+  for (std::size_t i = 0; i < all_.size(); ++i) {
+    const std::string name = "<" + all_[i].id;
+    const bool sets = std::any_of(all_[i].fields.begin(), all_[i].fields.end(), [&](const ChosenField& field) {
+      return std::any_of(scenarios.begin(), scenarios.end(), [&](const auto& s) { return concerns(field, s); });
+    });
+    const bool named = rule.find(name + ">") != std::string::npos || rule.find(name + ".mean") != std::string::npos;
+    if (sets || (all_[i].fields.empty() && named)) reaching += texts_[i];
+  }
+  return reaching.empty() ? "" : hash_text(hash_of(reaching));
 }
 
 std::string Choices::markdown() const {

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/thesis_claims/evidence.hpp"
 
 /// Choices that the thesis leaves open and that the bundled scenarios make: results/reference/choices.json.
 /// The format of results/reference/choices.json.
@@ -37,7 +37,7 @@ struct OpenChoice {
   Scale scale = Scale::linear;                      ///< of the range
   Chosen chosen = Chosen::after;                    ///< before or after results were seen
   std::string why;
-  std::vector<ChosenField> fields;
+  std::vector<ChosenField> fields;  ///< none for a number that rules read by the choice's id
 };
 
 /// True when a pattern of a choice's scenarios matches this scenario's name; '*' stands for any characters.
@@ -64,11 +64,19 @@ class Choices {
   /// that it names, or a field to multiply is no number. Precondition: one value for each choice.
   std::vector<std::string> overrides(const Scenario& scenario, std::span<const std::string> values) const;
 
+  /// The published numbers and those of the choices without fields.
+  PublishedNumbers with_numbers(PublishedNumbers published, std::span<const std::string> values) const;
+
+  /// Hash of the choices that reach a claim: those that concern one of these scenarios, and numbers that the rule's
+  /// text names, as in <rule.easily>. Empty when none does.
+  std::string reach(std::span<const std::string> scenarios, const std::string& rule) const;
+
   /// A Markdown table for people.
   std::string markdown() const;
 
  private:
   std::vector<OpenChoice> all_;
+  std::vector<std::string> texts_;  ///< of the choices, as in the file
   std::string hash_;
 };
 

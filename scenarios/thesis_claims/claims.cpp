@@ -11,7 +11,9 @@ const VerdictText& text_of(Verdict verdict) {
       {"reproduced in kind", "direction or mechanism are the published ones, the numbers are not"},
       {"not reproduced", "neither, in this model of the device and the hand"},
       {"refuted", "it contradicts an exact result"},
-      {"not reproducible", "no simulation can show it: people or the trainer are needed"}};
+      {"not reproducible", "no simulation can show it: people or the trainer are needed"},
+      {"holds", "a finding of ours that the measurement shows"},
+      {"does not hold", "a finding of ours that the measurement does not show"}};
   return kTexts[static_cast<std::size_t>(verdict)];
 }
 

@@ -14,9 +14,11 @@
 namespace hapbench {
 
 /// The outcome of testing a published statement.
-enum class Verdict { reproduced, in_kind, not_reproduced, refuted, not_reproducible };
-inline constexpr std::array kVerdicts = {Verdict::reproduced, Verdict::in_kind, Verdict::not_reproduced,
-                                         Verdict::refuted, Verdict::not_reproducible};
+/// The last two are those of findings of ours.
+enum class Verdict { reproduced, in_kind, not_reproduced, refuted, not_reproducible, holds, does_not_hold };
+inline constexpr std::array kVerdicts = {Verdict::reproduced,   Verdict::in_kind,          Verdict::not_reproduced,
+                                         Verdict::refuted,      Verdict::not_reproducible, Verdict::holds,
+                                         Verdict::does_not_hold};
 
 /// A verdict in words.
 struct VerdictText {
@@ -30,6 +32,11 @@ inline std::string_view verdict_name(Verdict verdict) {
 
 /// The verdict of a rule for "reproduced" and a weaker one for "reproduced in kind".
 Verdict decide(bool reproduced, bool in_kind);
+
+/// The verdict on a finding of ours.
+inline Verdict found(bool holds) {
+  return holds ? Verdict::holds : Verdict::does_not_hold;
+}
 
 /// The result of judging a claim, computed from measured numbers.
 struct Finding {
@@ -64,7 +71,9 @@ std::string percent(double share);
 /// Six digits at most: "0.1", "15", "1e-9".
 std::string plain(double number);
 
-/// Its texts hold published numbers by id, which PublishedNumbers::fill puts in.
+/// Its texts hold published numbers by id, which PublishedNumbers::fill puts in. A threshold of ours that `measure` or
+/// `judge` compares with is a choice on record without fields, such as rule.easily; the rule's text names it in the
+/// same way, which also tells that the choice reaches the claim.
 struct Claim {
   const char* id;
   const char* place;      ///< in the thesis
@@ -76,24 +85,30 @@ struct Claim {
   /// Depends on its arguments alone.
   Finding (*judge)(const Measured& measured, const PublishedNumbers& published);
   bool timing = false;  ///< the finding holds times, so no two runs agree
+  bool ours = false;    ///< found on the way: no claim of the thesis, and not counted among those
   bool costly = false;  ///< takes long to measure: judged again for a part of a sample only (robustness.hpp)
 };
 
 /// All of them, in the order of the ledger.
 std::vector<Claim> all_claims();
 
+/// A threshold of ours: the choice rule.NAME.
+inline double threshold(const PublishedNumbers& numbers, const std::string& name) {
+  return numbers["rule." + name].mean;
+}
+
 /// The algorithm that the thesis proposes.
 inline constexpr const char* kProposedLaw = "shaped_stiffness";
 
 // By chapter.
-std::vector<Claim> chapter_1_penetration();           ///< V
+std::vector<Claim> chapter_1_penetration();           ///< V, S1, B1b
 std::vector<Claim> chapter_3_reduction();             ///< T1 to T3
 std::vector<Claim> chapter_3_cost();                  ///< T4, T5
 std::vector<Claim> chapter_3_stiffness_ratios();      ///< R
 std::vector<Claim> chapter_3_force_limit();           ///< L
 std::vector<Claim> chapter_3_ideal_trajectory();      ///< J
 std::vector<Claim> chapter_4_depths();                ///< G
-std::vector<Claim> chapter_4_discussion();            ///< B4, C1 to C4
+std::vector<Claim> chapter_4_discussion();            ///< B4, C1 to C4, C7
 std::vector<Claim> appendix_a_planar_peg();           ///< A1
 std::vector<Claim> appendix_a_springs();              ///< A2, A3
 std::vector<Claim> appendix_a_stability();            ///< A4

@@ -35,6 +35,8 @@ class PublishedNumbers {
   /// A part (mean, spread, at_least or at_most) may have a factor and a format, as <J1.depth.mean*1000:.2f>; without a
   /// format it is written as `plain` writes it (claims.hpp). Throws InputError for an id that is not there.
   std::string fill(const std::string& text) const;
+  /// Adds a number of ours that rules read as they read published ones: a threshold (choices.hpp).
+  void set(const std::string& id, double value) { numbers_[id].mean = value; }
 
  private:
   std::map<std::string, PublishedNumber> numbers_;

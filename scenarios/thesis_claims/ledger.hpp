@@ -16,10 +16,18 @@ struct JudgedClaim {
   Claim claim;
   Finding finding;
   std::vector<std::string> scenarios = {};  ///< bundled ones that it was measured with, in the order of their names
+  std::string reach = {};                   ///< of the choices, as Choices::reach has it; empty: none reaches it
+
+  /// Whether another reading of the choices could change the verdict: a simulation shows it, and a choice reaches it.
+  bool can_be_sampled() const {
+    return !claim.timing && finding.verdict != Verdict::not_reproducible && !reach.empty();
+  }
 };
 
-/// robustness.json: the counts of every claim, and the hash of the choices they are about.
-Json robustness_json(const RobustnessPlan& plan, const std::vector<ClaimRobustness>& claims);
+/// robustness.json: the counts of every claim, and the hash of the choices they are about. `judged` as the plan's
+/// claims.
+Json robustness_json(const RobustnessPlan& plan, const std::vector<JudgedClaim>& judged,
+                     const std::vector<ClaimRobustness>& claims);
 /// The same as a Markdown table.
 std::string robustness_markdown(const RobustnessPlan& plan, const std::vector<ClaimRobustness>& claims);
 
@@ -28,27 +36,32 @@ class RobustnessOnRecord {
  public:
   /// An empty record.
   RobustnessOnRecord() = default;
-  /// Takes the record if it is about the choices with this hash; a record of other choices counts as empty. Throws
-  /// InputError when it is no such record.
-  RobustnessOnRecord(const Json& record, const std::string& choices_hash);
+  /// Throws InputError when it is no such record.
+  explicit RobustnessOnRecord(const Json& record);
   /// The same from a file; empty when there is none.
-  RobustnessOnRecord(const std::filesystem::path& file, const std::string& choices_hash);
+  explicit RobustnessOnRecord(const std::filesystem::path& file);
 
-  /// The claim's counts if the recorded verdict is this one; else null.
+  /// The claim's counts if the recorded verdict is this one and the choices that reach it are the same; else null.
   Json of(const JudgedClaim& judged) const;
 
  private:
   std::map<std::string, Json> claims_;
 };
 
-/// The counts in words: "this verdict in 91 of 100 samples; decided by task2.hand_angle (S = 0.43)"; empty for null.
-std::string robustness_text(const Json& robustness);
-
-/// claims.json
+/// claims.json: the headline and the claims.
 Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published,
                  const RobustnessOnRecord& robustness);
-/// claims.md
-std::string ledger_markdown(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published,
-                            const RobustnessOnRecord& robustness);
+
+// Of claims as ledger_json has them.
+
+/// The recorded verdict, and in front of it that of most samples if it is another one.
+std::string verdicts_text(const Json& claim);
+/// Its entry "sureness", the counts in words: "this verdict in 91 of 100 samples; decided by task2.hand_angle (S =
+/// 0.43)"; or why there are none.
+std::string robustness_text(const Json& claim);
+/// How many verdicts another reasonable reading would leave as they are, and which it would not.
+std::string ledger_headline(const Json& claims);
+/// claims.md: the headline, the claims of the thesis, and what was found on the way.
+std::string ledger_markdown(const Json& ledger);
 
 }  // namespace hapbench

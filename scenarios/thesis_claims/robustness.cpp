@@ -131,7 +131,7 @@ class SampleRuns {
   SampleRuns(const RobustnessPlan& plan, std::size_t sample, const fs::path& directory)
       : directory_(directory),
         read_(plan.read),
-        evidence_{plan.published,
+        evidence_{plan.choices.with_numbers(plan.published, plan.values[sample]),
                   ResultFiles(directory, [this](const auto& scenario, const auto& part) { provide(scenario, part); }),
                   [&plan, sample](const Scenario& scenario) {
                     return plan.choices.overrides(scenario, plan.values[sample]);
@@ -235,7 +235,8 @@ SampleVerdicts judge_sample(const RobustnessPlan& plan, std::size_t sample, cons
       continue;
     }
     try {
-      judged.verdicts.emplace_back(verdict_name(claim.judge(claim.measure(runs.evidence()), plan.published).verdict));
+      judged.verdicts.emplace_back(
+          verdict_name(claim.judge(claim.measure(runs.evidence()), runs.evidence().published).verdict));
     } catch (const IoError&) {
       throw;  // a full disk says nothing about a claim
     } catch (const std::exception& error) {

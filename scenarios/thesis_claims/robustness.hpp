@@ -65,7 +65,7 @@ struct RobustnessPlan {
 
 inline constexpr std::uint64_t kRobustnessSeed = 1;
 
-/// The plan for so many samples. Claims about times are left out.
+/// The plan for so many samples. Claims about times are left out. `published` without the choices' numbers.
 RobustnessPlan plan_robustness(Choices choices, PublishedNumbers published, std::vector<Claim> claims, ResultsRead read,
                                std::size_t samples);
 

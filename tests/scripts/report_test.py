@@ -141,9 +141,16 @@ class Page(WithResults):
 
     def test_the_ledger_tells_how_robust_its_verdicts_are(self):
         page = self.full_page()
-        for text in ("this verdict in 64 of 64 samples<", "this verdict in 31 of 64 samples; decided by hand.angle (S = 0.43)",
-                     "this verdict in 31 of 64 samples; no single choice decides", "its first-order Sobol index S"):
+        for text in ("this verdict in 64 of 64 samples<", "the recorded verdict in 24", "depends on no recorded choice",
+                     "its first-order Sobol index S", "One verdict would survive."):
             self.assertIn(text, page)
+        # Where most samples have another verdict, that one comes first.
+        row = self.part(page, 'id="claim-C1"', "</tr>")
+        self.assertLess(row.index("not reproduced"), row.index("reproduced in kind"))
+        self.assertIn("in most samples", row)
+        # What was found on the way is counted apart.
+        self.assertIn('id="claim-C5"', self.part(page, 'id="findings-table"', "</table>"))
+        self.assertNotIn('id="claim-C5"', self.part(page, 'id="ledger-table"', "</table>"))
 
     def test_every_choice_on_record_is_there(self):
         choices = self.root / "choices.json"
@@ -277,7 +284,7 @@ class BadInput(WithResults):
     def test_claims(self):
         for value, said in (([], "got []"), ({"claims": 1}, "/claims: got 1; allowed: an array"),
                             ({"claims": [1]}, "/claims/0: got 1; allowed: an object"),
-                            ({"claims": [claim("refuted", robustness=1)]}, "/claims/0/robustness: got 1; allowed: an object"),
+                            ({"claims": [claim("refuted", majority=1)]}, '/claims/0/majority: got 1; allowed: "reproduced"'),
                             ({"claims": [claim("maybe")]}, '/claims/0/verdict: got "maybe"; allowed: "reproduced"')):
             file = self.written("claims.json", json.dumps(value))
             self.assertIn(said, self.refused(self.results, "--claims", file))

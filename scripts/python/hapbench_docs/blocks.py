@@ -67,14 +67,22 @@ def read(name):
     return json.loads((REFERENCE / name).read_text(encoding="utf-8"))
 
 
+def headline(_old=""):
+    """How many verdicts another reasonable reading would leave as they are."""
+    return wrapped([read("claims.json")["headline"]])
+
+
 def verdicts(_old=""):
-    """How many claims have which verdict, and which."""
-    claims = read("claims.json")["claims"]
-    lines = ["| verdict | claims | which |", "|---|---|---|"]
+    """How many claims have which verdict, on record and in most samples, and which; then what was found on the way."""
+    ledger = read("claims.json")["claims"]
+    claims = [claim for claim in ledger if not claim["ours"]]
+    lines = ["| verdict | recorded | in most samples | recorded are |", "|---|---|---|---|"]
     for verdict in VERDICTS:
         ids = [claim["id"] for claim in claims if claim["verdict"] == verdict]
-        lines.append(f"| {verdict} | {len(ids)} of {len(claims)} | {' '.join(ids)} |")
-    return "\n".join(lines)
+        most = sum((claim["majority"] or claim["verdict"]) == verdict for claim in claims)
+        lines.append(f"| {verdict} | {len(ids)} of {len(claims)} | {most} | {' '.join(ids)} |")
+    ours = [f"{claim['id']} {claim['claim']} ({claim['verdict']})" for claim in ledger if claim["ours"]]
+    return wrapped([*lines, "", f"Found on the way, and no claims of the thesis: {'; '.join(ours)}."])
 
 
 def experiments(_old=""):
@@ -90,23 +98,26 @@ def experiments(_old=""):
 
 
 def robustness(_old=""):
-    """How firmly the verdicts hold over the choices on record. Of claims whose verdict has changed since, it says so."""
-    record = read("robustness.json")
-    on_record = {claim["id"]: claim["verdict"] for claim in read("claims.json")["claims"]}
-    rows = [claim for claim in record["claims"] if claim["judged"]]
-    current = [claim for claim in rows if claim["on_record"] == on_record.get(claim["id"])]
-    always = [claim for claim in current if claim["holds"] == claim["judged"]]
-    lines = [f"Of {len(rows)} claims that were sampled, {len(current)} have the same verdict today; of these, {len(always)} hold it in "
-             "every sample. The others:", "", "| claim | verdict | this verdict in | decided by (first-order Sobol index) |", "|---|---|---|---|"]
-    for claim in current:
-        if claim in always:
-            continue
-        by = claim["decided_by"]
+    """How firmly the verdicts hold over the choices on record: first those that most samples do not have."""
+    record, claims = read("robustness.json"), read("claims.json")["claims"]
+    sampled = [claim for claim in claims if claim["robustness"]]
+    always = [claim for claim in sampled if claim["robustness"]["holds"] == claim["robustness"]["judged"]]
+    others = [claim for claim in sampled if claim not in always]
+    others.sort(key=lambda claim: claim["majority"] == claim["verdict"])
+    untouched = [claim["id"] for claim in claims if claim["sureness"] == "depends on no recorded choice"]
+    waiting = [claim["id"] for claim in claims if claim["sureness"] == "not sampled yet"]
+    lines = [f"On record are {record.get('samples', 0)} samples, of costly claims {record.get('costly_samples', 0)}. Of {len(sampled)} verdicts that "
+             f"were sampled, {len(always)} are the same in every sample. No recorded choice reaches {' '.join(untouched)}. The others, those "
+             "first that most samples do not have:",
+             "", "| claim | recorded | in most samples | recorded verdict in | decided by (first-order Sobol index) |", "|---|---|---|---|---|"]
+    for claim in others:
+        counts = claim["robustness"]
+        by = counts["decided_by"]
         decided = f"`{by['choice']}` ({by['index']:.2f})" if by else "no single choice"
-        lines.append(f"| {claim['id']} | {claim['on_record']} | {claim['holds']} of {claim['judged']} | {decided} |")
-    stale = [claim["id"] for claim in rows if claim not in current]
-    if stale:
-        lines += ["", f"To be sampled anew, since their verdict has changed: {', '.join(stale)}."]
+        majority = "the same" if claim["majority"] == claim["verdict"] else f"**{claim['majority']}**"
+        lines.append(f"| {claim['id']} | {claim['verdict']} | {majority} | {counts['holds']} of {counts['judged']} | {decided} |")
+    if waiting:
+        lines += ["", f"Not sampled since they or their choices changed: {' '.join(waiting)}."]
     return wrapped(lines)
 
 
@@ -142,4 +153,4 @@ def contact_sources(old, program, directory):
 
 
 # The tables that need no program.
-MAKERS = {"verdicts": verdicts, "experiments": experiments, "robustness": robustness}
+MAKERS = {"headline": headline, "verdicts": verdicts, "experiments": experiments, "robustness": robustness}

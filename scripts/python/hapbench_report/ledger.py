@@ -1,6 +1,6 @@
 """The ledger: what the thesis claims, what it publishes, what we measure, and the verdict; with the choices on record and the
 summary of the page."""
-from .json_input import InputError, load_object, member, number_or_none, objects, shown
+from .json_input import InputError, load_object, objects, shown
 from .links import claim_link
 from .markup import cell, command, counted, filters, folded, heading_cell, listed, table, text, typeset
 
@@ -11,30 +11,29 @@ VERDICTS = {
     "not reproduced": ("✗", "bad"),
     "refuted": ("⊘", "bad"),
     "not reproducible": ("–", "none"),
+    # Of findings of ours.
+    "holds": ("✓", "good"),
+    "does not hold": ("✗", "bad"),
 }
 
 
+class Claims(list):
+    """The ledger's claims; `headline` says how many verdicts another reading would leave as they are."""
+
+    headline = ""
+
+
 def load_claims(file):
-    claims = objects(load_object(file), "claims", file)
+    ledger = load_object(file)
+    claims = Claims(objects(ledger, "claims", file))
+    claims.headline = str(ledger.get("headline") or "")
     for i, claim in enumerate(claims):
         verdict = claim.get("verdict")
         if verdict not in VERDICTS:
             raise InputError(f"{file}: /claims/{i}/verdict: got {shown(verdict)}; allowed: {shown_verdicts()}")
-        if claim.get("robustness") is not None:
-            member(claim, "robustness", dict, file, f"/claims/{i}")
+        if claim.get("majority") not in (None, *VERDICTS):
+            raise InputError(f"{file}: /claims/{i}/majority: got {shown(claim['majority'])}; allowed: {shown_verdicts()}")
     return claims
-
-
-def robustness_text(claim):
-    """How a claim's verdict fares over the choices on record, as the ledger's Markdown says it."""
-    robustness = claim.get("robustness")
-    if not robustness:
-        return "not sampled: times of one machine" if claim.get("timing") else ""
-    holds, judged, decided_by = (robustness.get(key) for key in ("holds", "judged", "decided_by"))
-    text = f"this verdict in {holds} of {judged} samples"
-    if isinstance(decided_by, dict):
-        return f"{text}; decided by {decided_by.get('choice')} (S = {number_or_none(decided_by.get('index')) or 0:.2f})"
-    return text if holds == judged else f"{text}; no single choice decides"
 
 
 def load_choices(file):
@@ -46,8 +45,13 @@ def shown_verdicts():
     return ", ".join(f'"{verdict}"' for verdict in VERDICTS)
 
 
-def verdict_counts(claims):
-    return {verdict: sum(claim["verdict"] == verdict for claim in claims) for verdict in VERDICTS}
+def of_thesis(claims):
+    return [claim for claim in claims if not claim.get("ours")]
+
+
+def verdict_counts(claims, key="verdict"):
+    """How many claims of the thesis have which verdict: on record, or in most samples, where there are any."""
+    return {verdict: sum((claim.get(key) or claim["verdict"]) == verdict for claim in of_thesis(claims)) for verdict in VERDICTS}
 
 
 def verdict_mark(verdict):
@@ -55,10 +59,21 @@ def verdict_mark(verdict):
     return f'<span class="verdict {tone}">{mark} {text(verdict)}</span>'
 
 
+def verdict_marks(claim):
+    """The recorded verdict; in front of it that of most samples, if it is another one."""
+    recorded, majority = claim["verdict"], claim.get("majority")
+    if majority in (None, recorded):
+        return verdict_mark(recorded)
+    return f"{verdict_mark(majority)} in most samples<br>{verdict_mark(recorded)} recorded"
+
+
 def summary_section(runs, claims, figures, provenance):
     met = sum(run.expected for run in runs)
     tiles = [(len(runs), "run" if len(runs) == 1 else "runs"), (f"{met}/{len(runs)}", "ended as their scenario expects")]
-    tiles += [(count, verdict_mark(verdict)) for verdict, count in verdict_counts(claims).items() if count]
+    recorded, majority = verdict_counts(claims), verdict_counts(claims, "majority")
+    tiles += [(str(count) if count == majority[verdict] else f"{count} | {majority[verdict]}",
+               verdict_mark(verdict) + (" (recorded | in most samples)" if count != majority[verdict] else ""))
+              for verdict, count in recorded.items() if count or majority[verdict]]
     if figures:
         tiles.append((len(figures), '<a href="#figures">figures</a>'))
     items = "".join(f"<li><b>{text(value)}</b><span>{label}</span></li>" for value, label in tiles)
@@ -69,7 +84,12 @@ def summary_section(runs, claims, figures, provenance):
         "stability limits and the cost of a step come out. Everything here is compared with T. C. Lee, <cite>Rendering "
         "6-DOF Object-to-Object Interaction with 3-DOF Haptic Interfaces</cite> (“the thesis”); numbers such as Fig. A.2 or "
         f"3.3 are its figures and sections. Program of commit <code>{text(commits)}</code>.</p>"
-        f'<ul class="cards">{items}</ul>{warnings(runs)}{refusals(claims)}')
+        f'<ul class="cards">{items}</ul>{headline(claims)}{warnings(runs)}{refusals(claims)}')
+
+
+def headline(claims):
+    said = getattr(claims, "headline", "")
+    return f"<p>{typeset(said)}</p>" if said else ""
 
 
 def warnings(runs):
@@ -79,18 +99,19 @@ def warnings(runs):
 
 
 def refusals(claims):
-    """The claims that are not confirmed. They belong into the summary."""
-    items = "".join(f"<li>{verdict_mark(c['verdict'])} {claim_link(c)} ({text(c.get('place', ''))}): "
-                    f"{typeset(c.get('claim', ''))}</li>" for c in claims if VERDICTS[c["verdict"]][1] == "bad")
+    """The claims of the thesis that are not confirmed. They belong into the summary."""
+    items = "".join(f"<li>{verdict_marks(c)} {claim_link(c)} ({text(c.get('place', ''))}): "
+                    f"{typeset(c.get('claim', ''))}</li>" for c in of_thesis(claims) if VERDICTS[c["verdict"]][1] == "bad")
     return f"<p>What these runs do not confirm:</p><ul>{items}</ul>" if items else ""
 
 
 def ledger_section(claims, links):
     if not claims:
         return '<p class="note">No ledger was given (<code>--claims</code>).</p>'
-    rows = [claim_row(claim, links) for claim in claims]
+    rows = [claim_row(claim, links) for claim in of_thesis(claims)]
+    ours = [claim_row(claim, links) for claim in claims if claim.get("ours")]
     headings = [heading_cell(title) for title in ("Id", "Verdict", "Claim", "Published", "Measured", "Robustness")]
-    return ("<p>Each claim of the thesis, what it publishes, what the runs below give, and a verdict by a rule, which unfolds "
+    return (headline(claims) + "<p>Each claim of the thesis, what it publishes, what the runs below give, and a verdict by a rule, which unfolds "
             "with the figures and runs behind it. "
             "Hands are calibrated to mean and standard deviation of the raw colliding points; all else is a prediction. "
             "Robustness: how often the verdict is the same at points spread over the plausible ranges of everything the "
@@ -98,7 +119,9 @@ def ledger_section(claims, links):
             "and the choice that decides it, if one does, "
             "with its first-order Sobol index S.</p>"
             + filters("ledger-table", [("Verdict", 1)])
-            + table(headings, rows, "<b>The ledger</b>", "sortable stack", "ledger-table"))
+            + table(headings, rows, "<b>The ledger</b>", "sortable stack", "ledger-table")
+            + (table(headings, ours, "<b>Found on the way, and no claims of the thesis</b>", "sortable stack", "findings-table")
+               if ours else ""))
 
 
 def claim_row(claim, links):
@@ -106,12 +129,12 @@ def claim_row(claim, links):
     figures, runs = links.of_claim(claim)
     more = (f"<p><b>Rule</b> {typeset(claim.get('rule', ''))}</p>" + listed("Figures", figures) + listed("Runs", runs)
             + command(f"hapbench reproduce --only {claim.get('id', '')}"))
-    return [cell(f'<a id="claim-{id_}" href="#claim-{id_}">{id_}</a>', classes="id"), cell(verdict_mark(claim["verdict"])),
+    return [cell(f'<a id="claim-{id_}" href="#claim-{id_}">{id_}</a>', classes="id"), cell(verdict_marks(claim)),
             cell(f"{typeset(claim.get('claim', ''))}<p class=note>{links.place(str(claim.get('place', '')))}</p>"
                  + folded("Rule, figures, runs", more, classes="printed"), classes="prose"),
             cell(typeset(claim.get("published", ""))),
             cell(f"{typeset(claim.get('measured', ''))}<p class=note>{typeset(claim.get('why', ''))}</p>", classes="prose"),
-            cell(text(robustness_text(claim)))]
+            cell(text(claim.get("sureness") or ""))]
 
 
 def choices_section(choices):
