@@ -2,50 +2,54 @@
 
 #include <algorithm>
 
+#include "results/io/columns.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
+#include "scenarios/thesis_claims/measurements.hpp"
 
-/// Claims of 1.1 and 1.2: how far a drill pressed into the hole sinks in under other ways to merge forces.
+/// Claims of 1.1, 1.2 and B.3.1: how far a drill pressed into the hole sinks in under other ways to merge forces, and
+/// what their plain sum does. The hand's direction is that of task 2.
 namespace hapbench {
 namespace {
 
 constexpr double kPressedTilts[] = {0.35, 0.68, 1.0};  ///< [rad]
-/// "Easily penetrates" means at least this many times as deep as with the proposed algorithm.
-constexpr double kEasily = 2.0;
 /// Rows between evaluations of the depth: 4 ms.
 constexpr std::uint64_t kRowsBetweenLooks = 8;
 /// Rows before this time are ignored [s]: the start is not the resting place at every tilt.
 constexpr double kLanded = 0.5;
+constexpr const char* kAllPoints = "rendering.reduction=null";
 
 /// The largest depth of the drill in the block after it has landed, at each tilt [m]. The largest one, because a drill
 /// that pops through has left the block at the end.
-std::vector<double> penetrations(const Evidence& e, std::vector<std::string> overrides) {
-  std::vector<double> depths;
+MeasuredCase pressed(const Evidence& e, const std::string& name, const std::string& scene,
+                     std::vector<std::string> overrides) {
+  MeasuredCase m{name, {{"depth", {}}}};
   overrides.emplace_back();
   for (const double tilt : kPressedTilts) {
     overrides.back() = fmt::format("motion.orientation.tilt_rad={}", tilt);
-    const LoadedScenario loaded = e.load("press_into_hole", overrides);
+    const LoadedScenario loaded = e.load(scene, overrides);
     IdealTrajectoryObserver ideal(std::get<BlockEnvironment>(loaded.scenario.environment).block,
                                   make_cylinder(loaded.scenario.tool));
-    double& deepest = depths.emplace_back(0.0);
+    double& deepest = m.values["depth"].emplace_back(0.0);
     e.for_each_row(loaded, [&](const StepRecord& row) {
       if (row.step % kRowsBetweenLooks != 0 || row.time < kLanded) return;
       ideal.on_step(row);
       if (ideal.error()) deepest = std::max(deepest, ideal.error()->interpenetration);
     });
   }
-  return depths;
+  return m;
 }
 
-MeasuredCase pressed(const Evidence& e, const std::string& name, std::vector<std::string> overrides) {
-  return {name, {{"depth", penetrations(e, std::move(overrides))}}};
+/// Stiffness shaping with the reduction, as the thesis has it.
+MeasuredCase pressed_shaped(const Evidence& e) {
+  return pressed(e, kProposedLaw, "press_towards_rim", {});
 }
 
 std::string depths_text(const Measured& measured) {
   std::string text;
   for (const MeasuredCase& m : measured) {
-    append_item(text, fmt::format("{} ", m.name));
+    append_item(text, m.name + " ");
     for (std::size_t i = 0; i < std::size(kPressedTilts); ++i)
       text += fmt::format("{}{:.2f}", i == 0 ? "" : "/", 1e3 * m.all("depth")[i]);
   }
@@ -60,69 +64,97 @@ bool deeper(const MeasuredCase& a, const MeasuredCase& b, double factor) {
   return true;
 }
 
-// ---- V1: averaging.
+/// Whether the drill sinks in easily with the second case's law, beside shaping, the first one.
+Finding judge_sinking(const Measured& m, const PublishedNumbers& p) {
+  const bool easily = deeper(m.at(1), m.at(0), threshold(p, "easily")), more = deeper(m.at(1), m.at(0), 1.0);
+  return {decide(easily, more), depths_text(m),
+          fmt::format("with {} the drill sinks in {}", m.at(1).name,
+                      easily ? "easily"
+                      : more ? "further than with stiffness shaping, not easily"
+                             : "less than with stiffness shaping at some tilt")};
+}
+
+const char* const kSinkingRule =
+    "reproduced: pressed by the hand of task 2, with all points, at every tilt at least <rule.easily> times as deep as with "
+    "stiffness shaping; in kind: deeper at every tilt";
 
 Measured measure_averaging(const Evidence& e) {
-  return {pressed(e, "shaped_stiffness", {"rendering.algorithm=shaped_stiffness"}),
-          pressed(e, "mean", {"rendering.algorithm=mean"})};
+  return {pressed_shaped(e), pressed(e, "mean", "press_towards_rim", {"rendering.algorithm=mean", kAllPoints}),
+          pressed(e, "mean after the reduction", "press_towards_rim", {"rendering.algorithm=mean"})};
 }
 
-Finding judge_averaging(const Measured& m, const PublishedNumbers&) {
-  const bool easily = deeper(m.at(1), m.at(0), kEasily), more = deeper(m.at(1), m.at(0), 1.0);
-  return {
-      decide(easily, more), depths_text(m),
-      !more ? "averaging holds the drill as well at some tilt"
-            : fmt::format("the many points of the wall outvote the few of the rim{}",
-                          easily ? "" : fmt::format(", though not at every tilt {} times as deep", in_words(kEasily)))};
-}
+// ---- B1b: the depth of a drill that is turned in the hole, as B.3.1 has it, while it is near the hole [m].
 
-// ---- V2: virtual coupling, over its stiffness and the points it gets; then what it is at heart, least squares.
-
-constexpr double kCouplings[] = {0.25, 0.5, 1.0, 2.0};  ///< K_vc over K; from `kAsStiff` on no softer than a contact
-constexpr double kAsStiff = 1.0;
-
-Measured measure_coupling(const Evidence& e) {
-  Measured measured = {pressed(e, "shaped_stiffness", {"rendering.algorithm=shaped_stiffness"})};
-  const double stiffness = e.load("press_into_hole").scenario.rendering.stiffness;
-  const std::string unreduced = "rendering.reduction=null";
-  for (const double coupling : kCouplings) {
-    const std::vector<std::string> law = {"rendering.algorithm=virtual_coupling",
-                                          fmt::format("rendering.virtual_coupling_N_per_m={}", coupling * stiffness)};
-    const auto add = [&](const std::string& points, std::vector<std::string> more) {
-      more.insert(more.begin(), law.begin(), law.end());
-      MeasuredCase& m = measured.emplace_back(pressed(e, fmt::format("K_vc = {} K, {}", coupling, points), more));
-      m.values["coupling"] = {coupling};
-    };
-    add("reduced", {});
-    add("shared points", {unreduced, "environment.vertices=shared"});
-    add("points per cell", {unreduced, "environment.vertices=per_cell"});
+Measured measure_original(const Evidence& e) {
+  Measured measured;
+  for (const std::string law : {kProposedLaw, "original_averaging"}) {
+    const std::string overrides[] = {"rendering.algorithm=" + law};
+    const RunSummary summary = e.run("task2_held", overrides).summary;
+    const auto deepest = value_of(summary.section("ideal_trajectory")->metrics, "gentle.interpenetration_max_m");
+    measured.push_back({law, {{"depth", {number_of(deepest).value_or(0.0)}}}});
   }
-  measured.push_back(pressed(e, "least_squares", {"rendering.algorithm=least_squares", unreduced}));
   return measured;
 }
 
-Finding judge_coupling(const Measured& measured, const PublishedNumbers&) {
-  const MeasuredCase& shaped = measured.at(0);
-  bool easily = true, more = true, never = true;
-  for (const MeasuredCase& m : measured) {
-    if (!m.values.contains("coupling")) continue;
-    if (m["coupling"] == kAsStiff) {
-      easily = easily && deeper(m, shaped, kEasily);
-      more = more && deeper(m, shaped, 1.0);
-    }
-    if (m["coupling"] >= kAsStiff) never = never && deeper(shaped, m, 1.0);
+Finding judge_original(const Measured& m, const PublishedNumbers& p) {
+  const double times = m.at(1)["depth"] / m.at(0)["depth"];
+  return {decide(times >= threshold(p, "easily"), times > 1.0),
+          fmt::format("turned with 1 N, inside by at most {:.2f} mm, with stiffness shaping {:.2f} mm",
+                      1e3 * m.at(1)["depth"], 1e3 * m.at(0)["depth"]),
+          fmt::format("{:.2g} times as deep as with stiffness shaping", times)};
+}
+
+// ---- V2, V2b: virtual coupling as it stands on record, and of other stiffness; then what it is at heart, least
+// squares.
+
+constexpr double kCouplings[] = {5000.0, 20000.0, 40000.0};  ///< [N/m]
+
+Measured measure_coupling(const Evidence& e) {
+  return {pressed_shaped(e), pressed(e, "virtual coupling", "press_coupled", {})};
+}
+
+Measured measure_couplings(const Evidence& e) {
+  Measured measured = {pressed_shaped(e)};
+  for (const double coupling : kCouplings) {
+    measured.push_back(pressed(e, fmt::format("K_vc = {:g} N/m", coupling), "press_coupled",
+                               {fmt::format("rendering.virtual_coupling_N_per_m={}", coupling)}));
   }
-  Finding finding{decide(easily, more), depths_text(measured), ""};
-  if (never) finding.verdict = Verdict::refuted;
-  finding.why =
-      easily ? "the coupling lets the drill in"
-      : never
-          ? "as we read the law, the coupling's displacement is the translation that resolves all depths best, and more "
-            "points only bring every direction nearer to K; a coupling as stiff as a contact holds the drill better than "
-            "stiffness shaping, a softer one is what lets it in"
-          : "a coupling as stiff as a contact holds the drill about as well as stiffness shaping or better; a softer one lets "
-            "it in";
-  return finding;
+  measured.push_back(pressed(e, "least_squares", "press_coupled", {"rendering.algorithm=least_squares"}));
+  return measured;
+}
+
+Finding judge_couplings(const Measured& m, const PublishedNumbers&) {
+  const bool holds = deeper(m.at(1), m.at(2), 1.0) && deeper(m.at(2), m.at(3), 1.0);
+  return {found(holds), depths_text(m),
+          "the coupling's displacement is the translation that resolves all depths best; more points only bring every "
+          "direction nearer to K"};
+}
+
+// ---- S1: the plain sum of all points, in the planar peg and in the turn of task 2, beside stiffness shaping.
+
+Measured measure_summation(const Evidence& e) {
+  Measured measured;
+  for (const std::string scene : {"peg_in_hole_2d_frictionless_shaped_stiffness", "task2_held"}) {
+    for (const std::string law : {"summation", "shaped_stiffness"}) {
+      const std::string overrides[] = {"rendering.algorithm=" + law, kAllPoints, "record.ratio_iterations=[]",
+                                       "metrics.from_s=0"};
+      const RunSummary summary = e.run(scene, overrides).summary;
+      MeasuredCase& m =
+          measured.emplace_back(vibration(law + (scene == "task2_held" ? ", task 2" : ", planar peg"), summary));
+      m.values["diverges"] = {summary.result.outcome == Outcome::diverges ? 1.0 : 0.0};
+    }
+  }
+  return measured;
+}
+
+Finding judge_summation(const Measured& m, const PublishedNumbers& p) {
+  const auto unstable = [&](std::size_t i) {
+    return m.at(i)["diverges"] == 1.0 || vibrates_much_more(m.at(i), m.at(i + 1), p);
+  };
+  const bool peg = unstable(0), task = unstable(2);
+  return {decide(peg && task, peg || task), vibrations_text(m),
+          fmt::format("n points are up to n K: in the planar peg the sum is {}, in task 2 {}",
+                      peg ? "unstable" : "stable", task ? "unstable" : "stable")};
 }
 
 }  // namespace
@@ -133,23 +165,41 @@ std::vector<Claim> chapter_1_penetration() {
        .place = "1.1.2, 1.2, Fig. 2c",
        .claim = "averaging lets the drill easily penetrate in the hole",
        .published = "easily",
-       .rule = fmt::format(
-           "reproduced: pressed with 1 N, at every tilt at least {} times as deep as with stiffness shaping; in kind: "
-           "deeper",
-           in_words(kEasily)),
+       .rule = kSinkingRule,
        .measure = measure_averaging,
-       .judge = judge_averaging},
+       .judge = judge_sinking},
       {.id = "V2",
        .place = "1.1.2, 1.2, C.4, Fig. 2d",
        .claim = "so does virtual coupling",
        .published = "easily",
-       .rule = fmt::format(
-           "reproduced: with K_vc = K at every tilt at least {} times as deep as with stiffness shaping, whatever the "
-           "points; in kind: deeper; refuted: at every tilt less deep with every K_vc looked at from K on, whatever the "
-           "points",
-           in_words(kEasily)),
+       .rule = kSinkingRule,
        .measure = measure_coupling,
-       .judge = judge_coupling},
+       .judge = judge_sinking},
+      {.id = "V2b",
+       .place = "1.2, Fig. 2d",
+       .claim = "the stiffer a virtual coupling, the less the drill sinks in",
+       .published = "",
+       .rule = "holds: at every tilt",
+       .measure = measure_couplings,
+       .judge = judge_couplings,
+       .ours = true},
+      {.id = "S1",
+       .place = "1.1.2, 1.2, Fig. 2b, C.4",
+       .claim = "the sum of all points' forces becomes unstable",
+       .published = "instability",
+       .rule =
+           "reproduced: in the planar peg (Table A.1) and in task 2 it diverges, or its velocity varies <rule.vibrates> "
+           "times as much as with stiffness shaping, with the square of it times the power above 30 Hz; in kind: in one",
+       .measure = measure_summation,
+       .judge = judge_summation},
+      {.id = "B1b",
+       .place = "B.3.1",
+       .claim = "with the original algorithm the drill easily penetrates, as opposite walls cancel",
+       .published = "high penetration depth",
+       .rule =
+           "reproduced: turned in the hole, at least <rule.easily> times as deep as with stiffness shaping; in kind: deeper",
+       .measure = measure_original,
+       .judge = judge_original},
   };
 }
 

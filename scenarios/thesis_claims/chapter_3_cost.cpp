@@ -8,7 +8,6 @@
 #include "scenarios/batch/statistics.hpp"
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "sim/core/random.hpp"
 
 /// Claims of 2.8 and 3.4: what the points cost. Times of this machine, so no two ledgers agree in digits.
 namespace hapbench {
@@ -44,9 +43,7 @@ class DenseShaping {
   std::vector<double> matrix_, ratio_;
 };
 
-// ---- T4, T4b: one step's work for 1000 contacts [s].
-
-constexpr std::size_t kThousand = 1000;
+// ---- T4, T4b: one step's work for the most contacts of a task [s].
 
 /// Floating-point operations for n contacts: 5 for a scalar product, 1 for its square, 2 for a term of the ratio; with
 /// the tensor 12 to add u u^T, 17 for u^T S u and its quotient.
@@ -57,27 +54,29 @@ double tensor_operations(double n) {
   return n * (12.0 + (12.0 + 17.0) * kIterations);
 }
 
-/// Random contacts around a hole, no two of them alike.
-ContactBuffer thousand_contacts() {
-  ContactBuffer contacts(kThousand);
-  Random random(1);
-  for (std::size_t i = 0; i < kThousand; ++i) {
-    contacts.push(static_cast<std::uint32_t>(i), Vec3::Zero(), Vec3::UnitZ());
-    contacts.set_gradient(i, random.direction());
-    contacts.depth[i] = random.uniform(0.0, 1e-4);
-  }
-  contacts.pad();
+/// Contacts of task 3 with the drill upright and pressed against the wall, of the row that has most: the extreme case
+/// of 2.8, almost a thousand.
+ContactBuffer extreme_contacts(const Evidence& e) {
+  const std::string overrides[] = {"motion.orientation.tilt_rad=0", "hand.target.x_m.amplitude=0.002",
+                                   "hand.target.y_m.amplitude=0.002"};
+  const std::vector<ContactBuffer> sets =
+      contact_sets(drill_in_hole(e.load("task3_spin_signed_distance", overrides).scenario), 64);
+  const ContactBuffer& most = *std::max_element(
+      sets.begin(), sets.end(), [](const ContactBuffer& a, const ContactBuffer& b) { return a.size() < b.size(); });
+  ContactBuffer contacts(most.size());
+  contacts.assign(most);
   return contacts;
 }
 
-Measured measure_deadline(const Evidence&) {
-  const ContactBuffer all = thousand_contacts();
+Measured measure_deadline(const Evidence& e) {
+  const ContactBuffer all = extreme_contacts(e);
   ContactBuffer contacts = all;
   DenseShaping dense(all.size());
   const auto reduction = make_gradient_reduction({});
   reduction->prepare({});
   return {{"",
-           {{"matrix", {seconds_per_call(1, kRepetitions, [&] { dense.shape(contacts, kIterations); })}},
+           {{"points", {static_cast<double>(all.size())}},
+            {"matrix", {seconds_per_call(1, kRepetitions, [&] { dense.shape(contacts, kIterations); })}},
             {"tensor", {seconds_per_call(1, kRepetitions, [&] { shape_weights(contacts, kIterations); })}},
             {"reduced", {seconds_per_call(1, kRepetitions, [&] {
                contacts = all;
@@ -88,10 +87,10 @@ Measured measure_deadline(const Evidence&) {
 
 std::string deadline_text(const MeasuredCase& m, double deadline) {
   return fmt::format(
-      "1000 contacts: n × n matrix {:.0f} µs ({:.2g} operations), reduced first {:.0f} µs, tensor without reduction "
+      "{} contacts of task 3, upright and pressed hard: n × n matrix {:.0f} µs ({:.2g} operations), reduced first {:.0f} µs, tensor without reduction "
       "{:.1f} µs ({:.2g} operations); deadline {:.0f} µs",
-      1e6 * m["matrix"], dense_operations(kThousand), 1e6 * m["reduced"], 1e6 * m["tensor"],
-      tensor_operations(kThousand), 1e6 * deadline);
+      m["points"], 1e6 * m["matrix"], dense_operations(m["points"]), 1e6 * m["reduced"], 1e6 * m["tensor"],
+      tensor_operations(m["points"]), 1e6 * deadline);
 }
 
 Finding judge_dense_deadline(const Measured& measured, const PublishedNumbers& published) {
@@ -108,7 +107,7 @@ Finding judge_tensor_deadline(const Measured& measured, const PublishedNumbers& 
   const MeasuredCase& m = measured.at(0);
   const double deadline = published["T4.step"].mean;
   const bool met = m["tensor"] < deadline;
-  return {met ? Verdict::refuted : Verdict::reproduced, deadline_text(m, deadline),
+  return {found(met), deadline_text(m, deadline),
           met ? "through the 3 × 3 stiffness tensor all points are shaped in time without a reduction"
               : "without the reduction the tensor form misses the deadline, too"};
 }
@@ -169,7 +168,7 @@ std::vector<Claim> chapter_3_cost() {
       {.id = "T4",
        .place = "2.8, 3.1",
        .claim =
-           "in the thesis's dense form 1000 points cannot be rendered in 0.5 ms without the reduction, and can with it",
+           "in the thesis's dense form almost a thousand points cannot be rendered in 0.5 ms without the reduction, and can with it",
        .published = "<T4.step.mean*1000> ms",
        .rule = "reproduced: the n × n matrix misses the deadline, the reduction before it meets it",
        .measure = measure_deadline,
@@ -177,12 +176,13 @@ std::vector<Claim> chapter_3_cost() {
        .timing = true},
       {.id = "T4b",
        .place = "2.8, 3.1",
-       .claim = "so many points cannot be rendered in time without a reduction, whatever the form",
+       .claim = "through the 3 × 3 stiffness tensor so many points are shaped in time without a reduction",
        .published = "<T4.step.mean*1000> ms",
-       .rule = "refuted: the tensor form meets the deadline without a reduction",
+       .rule = "holds: the tensor form meets the deadline",
        .measure = measure_deadline,
        .judge = judge_tensor_deadline,
-       .timing = true},
+       .timing = true,
+       .ours = true},
       {.id = "T5",
        .place = "3.4, Fig. 4",
        .claim = "the iterations hardly load the loop, the reduction relieves it",

@@ -2,108 +2,83 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "results/io/columns.hpp"
+#include "results/observe/ideal_trajectory.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/measurements.hpp"
 
-/// Claim of 3.6: task 2 against the ideal trajectory. The same recording as T2 and R1.
+/// Claims of 3.6: the drill turned in the hole against the ideal trajectory.
 namespace hapbench {
 namespace {
 
-// ---- J1 [m]. A case for each density of the recording, whose taps beyond 2 N are too short for the drill to sink in
-// as far as it would; one for the same hand held firm; and some for directions of a firm hand, which the thesis does
-// not give.
+// ---- J1 [m]. A case for each force of a hand that presses with it all the time: taps beyond 2 N would be too short
+// for the drill to sink in as far as it does, and the recording of T2 has a single force. At most in kind: the thesis's
+// hand and forces are not published.
 
-/// "Around" a published number means at most this many times that number.
-constexpr double kAround = 1.2;
-constexpr double kDegrees[] = {0.0, 10.0, 20.0, 30.0, 40.0, 50.0};
-constexpr const char* kFirm = "the same hand held firm";
-constexpr const char* kDirection = "firm hand towards the rim by ";
-
-/// `number(key)` is the number of that name in the section ideal_trajectory of summary.json.
-template <class Number>
-MeasuredCase errors(const std::string& name, Number number) {
-  return {name,
-          {{"gentle_lateral_rms", {number("gentle.lateral_error_rms_m")}},
-           {"gentle_height", {number("gentle.height_error_mean_m")}},
-           {"gentle_interpenetration", {number("gentle.interpenetration_max_m")}},
-           {"firm_rows", {number("firm.rows")}},
-           {"firm_lateral", {number("firm.lateral_error_max_m")}},
-           {"firm_height", {number("firm.height_error_mean_m")}},
-           {"firm_interpenetration", {number("firm.interpenetration_max_m")}}}};
-}
-
-/// The errors of task 2 with other overrides.
-MeasuredCase firm_errors(const Evidence& e, const std::string& name, const std::vector<std::string>& overrides) {
-  const RunSummary summary = e.run("task2_rotate_signed_distance", overrides).summary;
-  const MetricList& metrics = summary.section("ideal_trajectory")->metrics;
-  return errors(name, [&metrics](const std::string& key) {
-    return number_of(value_of(metrics, key)).value_or(std::numeric_limits<double>::quiet_NaN());
-  });
-}
+constexpr double kForces[] = {0.2, 0.5, 1.0, 1.5, 1.9, 2.5, 3.5};  ///< [N]
 
 Measured measure_ideal_trajectory(const Evidence& e) {
   Measured measured;
-  for (const std::string density : {"signed_distance", "binary"}) {
-    measured.push_back(errors(density, [&](const std::string& key) {
-      return e.results.number("task2_rotate_" + density, "ideal_trajectory." + key);
-    }));
-  }
-  std::vector<std::string> overrides = kHandAboveLimit;
-  measured.push_back(firm_errors(e, kFirm, overrides));
-  overrides.emplace_back();
-  for (const double degrees : kDegrees) {
-    overrides.back() = fmt::format("hand.angle_rad={}", degrees * std::numbers::pi / 180.0);
-    measured.push_back(firm_errors(e, kDirection + plain(degrees), overrides));
+  for (const double force : kForces) {
+    const std::string overrides[] = {fmt::format("hand.force_N={}", force)};
+    const RunSummary summary = e.run("task2_held", overrides).summary;
+    const MetricList& metrics = summary.section("ideal_trajectory")->metrics;
+    const auto number = [&](const char* key) -> std::vector<double> {
+      const char* hand = force < kGentleForce ? "gentle." : "firm.";
+      return {number_of(value_of(metrics, std::string(hand) + key)).value_or(std::nan(""))};
+    };
+    measured.push_back({fmt::format("{} N", force),
+                        {{"force", {force}},
+                         {"height", number("height_error_mean_m")},
+                         {"lateral", number("lateral_error_max_m")},
+                         {"inside", number("interpenetration_max_m")}}});
   }
   return measured;
 }
 
-/// The reason why the rows beyond 2 N are not as published; empty if they are.
-std::string firm_deviation(const MeasuredCase& m, const PublishedNumbers& published) {
-  if (m["firm_rows"] == 0.0) return "no row in contact with more than 2 N";
-  if (m["firm_lateral"] > kAround * published["J1.lateral"].mean) return "off the line with more than 2 N";
-  if (m["firm_interpenetration"] > kAround * published["J1.depth"].mean) return "sinks in further";
-  return "";
-}
-
-/// The same for all rows of a recording.
-std::string deviation(const MeasuredCase& m, const PublishedNumbers& published) {
-  if (m["gentle_lateral_rms"] > published["J1.lateral"].mean) return "off the line below 2 N";
-  if (m["gentle_interpenetration"] > kAround * published["J1.depth"].mean) return "sinks in further below 2 N";
-  if (std::abs(m["firm_height"]) <= std::abs(m["gentle_height"])) return "no more offset in height above 2 N";
-  return firm_deviation(m, published);
-}
-
 Finding judge_ideal_trajectory(const Measured& measured, const PublishedNumbers& published) {
-  bool recordings = true, firm = true;
-  std::string text, why, directions;
+  const double around = threshold(published, "around"), split = published["J1.split"].mean;
+  const double depth = around * published["J1.depth"].mean, lateral = around * published["J1.lateral"].mean;
+  const MeasuredCase& gentlest = measured.front();
+  // No number is far off.
+  const bool follows = std::abs(gentlest["height"]) <= depth && gentlest["inside"] <= depth;
+  bool on_line = true, above = true;
+  std::string text, as_high;
   for (const MeasuredCase& m : measured) {
-    if (m.name.starts_with(kDirection)) {
-      if (firm_deviation(m, published).empty()) {
-        append_item(directions, m.name.substr(std::string(kDirection).size()), ", ");
-      }
-      continue;
-    }
-    const bool is_firm = m.name == kFirm;
-    const std::string problem = is_firm ? firm_deviation(m, published) : deviation(m, published);
-    (is_firm ? firm : recordings) &= problem.empty();
-    text += text.empty() ? m.name : "; " + m.name;
-    if (!is_firm) {
-      text += fmt::format(": below 2 N lateral error {:.2f} mm rms, height off by {:.2f} mm on average",
-                          1e3 * m["gentle_lateral_rms"], 1e3 * m["gentle_height"]);
-    }
-    text += fmt::format(
-        "{} above 2 N lateral error at most {:.2f} mm, inside by at most {:.2f} mm, height off by {:.2f} mm",
-        is_firm ? ":" : ",", 1e3 * m["firm_lateral"], 1e3 * m["firm_interpenetration"], 1e3 * m["firm_height"]);
-    append_item(why, fmt::format("{}: {}", m.name, problem.empty() ? "as published" : problem));
+    on_line = on_line && m["lateral"] <= lateral;
+    if (m["force"] > split) above = above && std::abs(m["height"]) > std::abs(gentlest["height"]);
+    if (m["force"] < split && !(std::abs(m["height"]) <= depth)) append_item(as_high, m.name, ", ");
+    append_item(text, fmt::format("{}: {:.2f}, {:.2f}, {:.2f}", m.name, 1e3 * m["height"], 1e3 * m["lateral"],
+                                  1e3 * m["inside"]));
   }
-  return {decide(recordings && firm, recordings), text,
-          fmt::format("{}. Of firm hands {} degrees from straight down it holds for {}", why, fmt::join(kDegrees, ", "),
-                      directions.empty() ? "none" : directions)};
+  return {decide(false, follows && on_line && above),
+          "height off on average, distance to the axis off at most, inside at most, in mm: " + text,
+          fmt::format("the gentlest hand {}; {}; the distance to the axis is {}", follows ? "follows" : "is off",
+                      as_high.empty() ? "the offset in height starts above 2 N"
+                                      : "the height is as far off below 2 N, with " + as_high,
+                      on_line ? "as published" : "further off")};
+}
+
+// ---- J2: the tilt at which the lower edge of the tip leaves the hole, by bisection.
+
+Measured measure_end_of_contact(const Evidence& e) {
+  const Scenario scenario = e.load("task2_held").scenario;
+  const BlockWithHole& block = std::get<BlockEnvironment>(scenario.environment).block;
+  const double radius = make_cylinder(scenario.tool).radius();
+  double touches = 0.6, leaves = 0.5 * std::numbers::pi;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (touches + leaves);
+    (ideal_place(block, radius, middle) ? touches : leaves) = middle;
+  }
+  return {{"", {{"tilt", {touches}}}}};
+}
+
+Finding judge_end_of_contact(const Measured& measured, const PublishedNumbers& published) {
+  const double tilt = measured.at(0)["tilt"], printed = published["J1.tilt"].at_most;
+  const bool same = std::abs(tilt - printed) < 5e-4;  // the printed digits
+  return {decide(same, false), fmt::format("{:.6f} rad", tilt),
+          same ? "π / 3 exactly, for a drill of half the hole's diameter" : "another tilt than printed"};
 }
 
 }  // namespace
@@ -117,13 +92,19 @@ std::vector<Claim> chapter_3_ideal_trajectory() {
            "hole's axis, and it sinks in a little",
        .published =
            "lateral error around <J1.lateral.mean*1000> mm, penetration at most around <J1.depth.mean*1000> mm; no number for the height",
-       .rule = fmt::format(
-           "reproduced: lateral error at most <J1.lateral.mean*1000> mm rms below 2 N and <J1.lateral.mean*{0}> mm above, "
-           "never further inside than <J1.depth.mean*{0}> mm, height further off above 2 N than below, at both densities, "
-           "and above 2 N the same when the hand is held firm; in kind: all but the last",
-           1e3 * kAround),
+       .rule =
+           "at most in kind, since hand and forces are not published: the gentlest hand off in height and inside by at most "
+           "<rule.around> times <J1.depth.mean*1000> mm, those above <J1.split> N further off in height than it, and every "
+           "hand's distance to the axis off by at most <rule.around> times <J1.lateral.mean*1000> mm",
        .measure = measure_ideal_trajectory,
        .judge = judge_ideal_trajectory},
+      {.id = "J2",
+       .place = "3.6, Fig. 7",
+       .claim = "the drill touches the side wall up to a tilt of 1.047 rad",
+       .published = "<J1.tilt.at_most> rad",
+       .rule = "reproduced: the printed digits",
+       .measure = measure_end_of_contact,
+       .judge = judge_end_of_contact},
   };
 }
 

@@ -17,25 +17,21 @@ MeasuredCase vibration(const std::string& name, const RunSummary& summary) {
            {"force_reversals", {static_cast<double>(metrics.force_reversals)}}}};
 }
 
-bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b) {
-  return a["velocity_variation"] >= kVibratesMore * b["velocity_variation"] &&
-         a["vibration_power"] >= kVibratesMore * kVibratesMore * b["vibration_power"];
+bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const PublishedNumbers& p) {
+  const double more = threshold(p, "vibrates");
+  return a["velocity_variation"] >= more * b["velocity_variation"] &&
+         a["vibration_power"] >= more * more * b["vibration_power"];
 }
 
 bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b) {
   return a["velocity_variation"] > b["velocity_variation"] && a["vibration_power"] > b["vibration_power"];
 }
 
-std::string vibration_rule() {
-  return fmt::format("reproduced: {} times the total variation of velocity and {} times the power above 30 Hz",
-                     in_words(kVibratesMore), plain(kVibratesMore * kVibratesMore));
-}
-
 std::string vibrations_text(const Measured& cases) {
   std::string text;
   for (const MeasuredCase& m : cases) {
     append_item(text,
-                fmt::format("{}: velocity varies by {:.3g} m/s, power above 30 Hz {:.2g} m²/s², {} force reversals",
+                fmt::format("{}: velocity varies by {:.3g} m/s, power above 30 Hz {:.2g} m²/s², {:.0f} force reversals",
                             m.name, m["velocity_variation"], m["vibration_power"], m["force_reversals"]));
   }
   return text;
@@ -58,8 +54,8 @@ void SwingDecay::add(double x) {
   ++rows_;
 }
 
-double SwingDecay::damping_ratio() const {
-  if (extremes_ < 2) return std::abs(last_) < kSmallest ? 1.0 : 0.0;
+std::optional<double> SwingDecay::damping_ratio() const {
+  if (extremes_ < 2) return std::nullopt;
   const double q = std::pow(last_extreme_ / first_extreme_, 1.0 / static_cast<double>(extremes_ - 1));
   if (q >= 1.0) return 0.0;
   const double log_q = std::log(q);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,15 +34,15 @@ inline const std::vector<std::string> kHandAboveLimit = {
 /// Total variation of the velocity [m/s], power of the velocity above 30 Hz [m^2/s^2] and reversals of the force.
 MeasuredCase vibration(const std::string& name, const RunSummary& summary);
 
-/// An algorithm vibrates, compared with a smooth one, if it has this many times the total variation and the square of
-/// it times the power.
-inline constexpr double kVibratesMore = 5.0;
-bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b);
+/// An algorithm vibrates, compared with a smooth one, if it has rule.vibrates times the total variation and the square
+/// of it times the power.
+bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const PublishedNumbers& p);
 /// True if `a` has more of both.
 bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b);
 
 /// The beginning of a rule that compares vibrations.
-std::string vibration_rule();
+inline constexpr const char* kVibrationRule =
+    "reproduced: <rule.vibrates> times the total variation of velocity, and the square of it times the power above 30 Hz,";
 std::string vibrations_text(const Measured& cases);
 
 /// Measures the damping ratio of a swing about zero from the ratio q of successive extremes,
@@ -53,8 +54,8 @@ class SwingDecay {
 
   /// Adds the coordinate of the next row [m].
   void add(double x);
-  /// From the first and the last extreme. With fewer than two extremes: 1 if the motion has come to zero, else 0.
-  double damping_ratio() const;
+  /// From the first and the last extreme; none with fewer than two, since a motion that never turns swings not.
+  std::optional<double> damping_ratio() const;
 
  private:
   double before_ = 0.0, last_ = 0.0;
