@@ -183,11 +183,15 @@ SampledRobustness sample_robustness(const ReproduceOptions& options, const Robus
   std::vector<std::string> verdicts;
   for (const JudgedClaim& j : on_record) verdicts.emplace_back(verdict_name(j.finding.verdict));
   const std::vector<ClaimRobustness> robustness = robustness_of(plan, verdicts, report.verdicts);
-  const Json record = robustness_json(plan, on_record, robustness);
+  // Samples of single claims leave those of the others as they are.
+  const bool some = directory && !options.only.empty() && fs::exists(*directory / "robustness.json");
+  const Json before =
+      some ? parse_json(read_text_file(*directory / "robustness.json", kLargestJsonFile)) : Json::object();
+  const Json record = robustness_json(plan, on_record, robustness, before);
   if (directory) {
-    write_file_atomically(*directory / "robustness.csv", robustness_table(plan, report.verdicts));
+    if (!some) write_file_atomically(*directory / "robustness.csv", robustness_table(plan, report.verdicts));
     write_file_atomically(*directory / "robustness.json", json_text(record));
-    write_file_atomically(*directory / "robustness.md", robustness_markdown(plan, robustness));
+    write_file_atomically(*directory / "robustness.md", robustness_markdown(record));
   }
   return {record};
 }
@@ -293,7 +297,8 @@ void add_reproduce(CommandLine& line) {
       .add(
           "--robustness", options.samples,
           "judge every claim again at this many samples of the choices on record (default: 256), appendix D at a quarter "
-          "of them; writes robustness.csv, .json and .md beside the ledger, if there is one")
+          "of them; writes robustness.csv, .json and .md beside the ledger, if there is one; with --only, .json and .md keep "
+          "what they have of other claims")
       .value_if_none("256")
       .range(4, 100'000);
   command

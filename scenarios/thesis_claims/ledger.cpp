@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <optional>
 
 namespace hapbench {
@@ -11,6 +12,10 @@ namespace hapbench {
 namespace fs = std::filesystem;
 
 namespace {
+
+std::string text_at(const Json& claim, const char* key) {
+  return claim.at(key).get<std::string>();
+}
 
 /// The verdict that most samples have; of several the one on record, if it is one of them.
 std::string majority_of(const ClaimRobustness& claim) {
@@ -28,7 +33,7 @@ std::string majority_of(const ClaimRobustness& claim) {
 }  // namespace
 
 Json robustness_json(const RobustnessPlan& plan, const std::vector<JudgedClaim>& judged,
-                     const std::vector<ClaimRobustness>& claims) {
+                     const std::vector<ClaimRobustness>& claims, const Json& before) {
   Json entries = Json::array();
   for (std::size_t i = 0; i < claims.size(); ++i) {
     const ClaimRobustness& claim = claims[i];
@@ -45,6 +50,10 @@ Json robustness_json(const RobustnessPlan& plan, const std::vector<JudgedClaim>&
                        {"verdicts", claim.verdicts},
                        {"decided_by", std::move(decided_by)}});
   }
+  for (const Json& old : before.value("claims", Json::array())) {
+    const auto same = [&old](const ClaimRobustness& claim) { return old.at("id") == claim.id; };
+    if (std::none_of(claims.begin(), claims.end(), same)) entries.push_back(old);
+  }
   return {{"choices", plan.choices.hash()},
           {"samples", plan.samples()},
           {"costly_samples", plan.costly_samples()},
@@ -52,22 +61,26 @@ Json robustness_json(const RobustnessPlan& plan, const std::vector<JudgedClaim>&
           {"claims", std::move(entries)}};
 }
 
-std::string robustness_markdown(const RobustnessPlan& plan, const std::vector<ClaimRobustness>& claims) {
+std::string robustness_markdown(const Json& record) {
   std::string text = fmt::format(
       "Every claim judged again at {} points of the ranges of the choices on record (choices.md), a Latin hypercube, the "
       "costly ones at {}. S is the first-order Sobol index of the choice that decides whether the verdict holds.\n\n"
       "| id | verdict on record | of most samples | judged | holds | reproduced | not measured | verdicts | decided by |\n"
       "|---|---|---|---|---|---|---|---|---|\n",
-      plan.samples(), plan.costly_samples());
-  for (const ClaimRobustness& claim : claims) {
+      record.at("samples").get<std::size_t>(), record.at("costly_samples").get<std::size_t>());
+  for (const Json& claim : record.at("claims")) {
+    const auto count = [&claim](const char* key) { return claim.at(key).get<std::size_t>(); };
     std::vector<std::string> verdicts;
-    for (const auto& [verdict, count] : claim.verdicts) verdicts.push_back(fmt::format("{} {}", verdict, count));
-    std::string decided_by = claim.holds < claim.judged ? "no single choice" : "";
-    if (claim.decided_by) decided_by = fmt::format("{} (S = {:.2f})", claim.decided_by->id, claim.decided_by->index);
-    const std::string majority = majority_of(claim);
-    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", claim.id, claim.on_record,
-                        majority == claim.on_record ? "the same" : "**" + majority + "**", claim.judged, claim.holds,
-                        claim.reproduced, claim.not_measured, fmt::join(verdicts, ", "), decided_by);
+    for (const auto& [verdict, samples] : claim.at("verdicts").items())
+      verdicts.push_back(fmt::format("{} {}", verdict, samples.get<std::size_t>()));
+    std::string decided_by = count("holds") < count("judged") ? "no single choice" : "";
+    if (const Json& by = claim.at("decided_by"); !by.is_null())
+      decided_by = fmt::format("{} (S = {:.2f})", text_at(by, "choice"), by.at("index").get<double>());
+    const bool same = claim.at("majority") == claim.at("on_record");
+    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", text_at(claim, "id"),
+                        text_at(claim, "on_record"), same ? "the same" : "**" + text_at(claim, "majority") + "**",
+                        count("judged"), count("holds"), count("reproduced"), count("not_measured"),
+                        fmt::join(verdicts, ", "), decided_by);
   }
   return text;
 }
@@ -128,10 +141,6 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
 }
 
 namespace {
-
-std::string text_at(const Json& claim, const char* key) {
-  return claim.at(key).get<std::string>();
-}
 
 /// The verdict of most samples, if it is not the one on record.
 std::optional<std::string> other_majority(const Json& claim) {

@@ -25,11 +25,11 @@ struct JudgedClaim {
 };
 
 /// robustness.json: the counts of every claim, and the hash of the choices they are about. `judged` as the plan's
-/// claims.
+/// claims. Of claims that are not among them, it keeps what such a record from before has.
 Json robustness_json(const RobustnessPlan& plan, const std::vector<JudgedClaim>& judged,
-                     const std::vector<ClaimRobustness>& claims);
+                     const std::vector<ClaimRobustness>& claims, const Json& before = Json::object());
 /// The same as a Markdown table.
-std::string robustness_markdown(const RobustnessPlan& plan, const std::vector<ClaimRobustness>& claims);
+std::string robustness_markdown(const Json& record);
 
 /// The record of robustness.json about claims, by id.
 class RobustnessOnRecord {

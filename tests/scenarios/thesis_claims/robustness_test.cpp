@@ -171,6 +171,8 @@ TEST_F(Robustness, GoesIntoTheLedgerWhileItIsAboutTheSameChoicesAndVerdict) {
   EXPECT_TRUE(on_record.of(moved).is_null()) << "the choices that reach it have changed since";
   EXPECT_TRUE(on_record.of(untouched).is_null()) << "samples say nothing of it";
   EXPECT_TRUE(RobustnessOnRecord(directory_ / "none.json").of(same).is_null());
+  // A record of other claims keeps it.
+  EXPECT_EQ(RobustnessOnRecord(robustness_json(p, {}, {}, record)).of(same), on_record.of(same));
 }
 
 /// A claim as the ledger has it, with counts unless they are null.
