@@ -51,7 +51,14 @@ constexpr Column kPrecisionColumns[] = {
     {"along_formula", "1", "the same in closed form"},
     {"across", "1", "stiffness across the wedge, in units of K"},
     {"across_formula", "1", "the same in closed form"},
-    {"lambda_max", "1", "largest eigenvalue of S"}};
+    {"lambda_max", "1", "largest eigenvalue of S"},
+    {"force_jump_max_N_per_um", "N/um",
+     "largest change of the force over a step of the prescribed stroke, per micrometre"},
+    {"force_change_max_N", "N", "the same change"},
+    {"force_change_fine_max_N", "N",
+     "the largest change over a tenth of the step: a tenth of it for a slope, as large for a jump"},
+    {"force_jump_max_N", "N", "the jump J by which both are J + slope * step"},
+    {"stiffness_over_step", "1", "force_jump_max_N_per_um in units of K"}};
 
 /// Those that every map fills.
 constexpr Column kEdgeColumns[] = {

@@ -74,12 +74,13 @@ extern const PrecisionStudy kReductionStudy;
 extern const PrecisionStudy kMergingStudy;
 extern const PrecisionStudy kAlgorithmsStudy;
 extern const PrecisionStudy kStiffnessStudy;
+extern const PrecisionStudy kForceJumpsStudy;
 extern const PrecisionStudy kQueryTimeStudy;
 extern const PrecisionStudy kContactSourcesStudy;
 
 inline constexpr std::array kPrecisionStudies = {
-    &kIntegratorsStudy, &kTimeStepStudy,   &kShapingStudy,   &kSpacingStudy,   &kReductionStudy,
-    &kMergingStudy,     &kAlgorithmsStudy, &kStiffnessStudy, &kQueryTimeStudy, &kContactSourcesStudy};
+    &kIntegratorsStudy, &kTimeStepStudy,  &kShapingStudy,    &kSpacingStudy,   &kReductionStudy,     &kMergingStudy,
+    &kAlgorithmsStudy,  &kStiffnessStudy, &kForceJumpsStudy, &kQueryTimeStudy, &kContactSourcesStudy};
 
 /// Calls `work` with every row of a run.
 template <class Work>
