@@ -13,6 +13,7 @@ namespace hapbench {
 namespace {
 
 constexpr std::int64_t kFiner = 10;
+constexpr double kNoJump = 0.01;
 
 /// The largest change of the force from a row to the next, and the way between the two.
 struct LargestChange {
@@ -39,9 +40,10 @@ PrecisionRow jumps_row(std::string setting, const Scenario& scenario, const std:
   finer.time.step /= static_cast<double>(kFiner);
   finer.time.steps *= kFiner;
   const LargestChange coarse = largest_change(scenario, shell), fine = largest_change(finer, shell);
-  // Of a jump J and a slope s over the steps h and h / r: J + s h, J + s h / r.
+  // Of a jump J and a slope s over the steps h and h / r: J + s h, J + s h / r. What is left of a curved slope is none.
   const auto r = static_cast<double>(kFiner);
-  const double jump = std::max(0.0, (r * fine.force - coarse.force) / (r - 1.0));
+  const double left = (r * fine.force - coarse.force) / (r - 1.0);
+  const double jump = left > kNoJump * fine.force ? left : 0.0;
   return {std::move(setting),
           std::string(outcome_name(coarse.outcome)),
           {1e-6 * coarse.per_way, coarse.force, fine.force, jump, coarse.per_way / scenario.rendering.stiffness},

@@ -32,9 +32,11 @@ def renewed(manual, scratch, program):
     makers = dict(blocks.MAKERS)
     if program:
         makers["session"] = lambda old: blocks.session(old, program, scratch)
+        makers["force_jumps"] = lambda old: blocks.force_jumps(old, program, scratch)
         makers["ideal_trajectory"] = lambda old: blocks.ideal_trajectory(old, program, scratch)
         makers["contact_sources"] = lambda old: blocks.contact_sources(old, program, scratch)
     text = blocks.renewed(manual.text, makers)
+    text = blocks.renewed(text, {"which_law": lambda _: blocks.which_law(text)})  # by the tables made just now
     if manual.file != table.MANUAL:
         return text
     text = table.spliced(text, table.markdown(table.record()))

@@ -24,6 +24,12 @@ COLUMNS = (
     ("interpenetration_max_m", "deepest in the wall [mm]", 1e3),
     ("force_step_max_N", "largest force step [N]", 1.0),
 )
+JUMP_COLUMNS = (
+    ("force_jump_max_N_per_um", "change over 1 µm [N/µm]", 1.0),
+    ("force_change_fine_max_N", "over 0.1 µm [N]", 1.0),
+    ("force_jump_max_N", "jump [N]", 1.0),
+    ("stiffness_over_step", "over 1 µm, in K", 1.0),
+)
 SOURCES = {"own": "ours", "fcl": "FCL", "bullet": "Bullet"}
 SCENES = (("T1", "poke_on_flat"), ("T2", "rotate_in_hole"), ("T3", "round_the_wall"))
 # The ideal trajectory of the hole means something in T2 only.
@@ -121,6 +127,39 @@ def robustness(_old=""):
     return wrapped(lines)
 
 
+def rows_of(text, block, column):
+    """Name of the algorithm -> number, of a column of a block's table; without rows of an algorithm with something else."""
+    table = next(found[3] for found in BLOCK.finditer(text) if found[2] == block)
+    rows = re.findall(r"^\| `(\w+)` \|(.*)\|$", table, re.M)
+    return {name: float(cells.split("|")[column]) for name, cells in rows if cells.split("|")[column].strip()}
+
+
+def ranking(values, unit):
+    """The best three and the worst, in words."""
+    def shown(name):
+        return f"`{name}` ({values[name]:.3g} {unit})"
+
+    best = sorted(values, key=values.get)
+    return f"{', '.join(map(shown, best[:3]))}; last {shown(best[-1])}"
+
+
+def which_law(text):
+    """Which algorithm when, by the tables of the same manual."""
+    steps = {}
+    for line in next(found[3] for found in BLOCK.finditer(text) if found[2] == "session").splitlines():
+        cells = line.split()
+        if len(cells) == 11 and cells[1] == "leaves_hole" and cells[5] != "-":
+            steps[cells[0]] = float(cells[5])
+    lines = []
+    for title, values, unit in (
+            ("Nearest to the ideal trajectory in height", rows_of(text, "ideal_trajectory", 0), "mm rms"),
+            ("Least deep in the wall", rows_of(text, "ideal_trajectory", 2), "mm"),
+            ("Least change of the force from step to step, peg in the hole", steps, "N, 99th percentile"),
+            ("Least jump of the force as contacts come and go", rows_of(text, "force_jumps", 2), "N")):
+        lines += [f"- {title}: {ranking(values, unit)}."]
+    return "\n".join(textwrap.fill(line, 110, subsequent_indent="  ") for line in lines)
+
+
 def wrapped(lines, width=110):
     """Sentences in lines of that width; tables stay."""
     return "\n".join(line if line.startswith("|") else "\n".join(textwrap.wrap(line, width)) for line in lines)
@@ -128,10 +167,19 @@ def wrapped(lines, width=110):
 
 def ideal_trajectory(old, program, directory):
     """Every algorithm against the ideal trajectory of task 2."""
-    found = json.loads(program.run(["precision", "algorithms", "--repetitions", "1", "--json"], directory))[0]["rows"]
-    lines = [f"| | {' | '.join(heading for _, heading, _ in COLUMNS)} |", "|---" * (len(COLUMNS) + 1) + "|"]
+    return study_table(old, program, directory, "algorithms", COLUMNS)
+
+
+def force_jumps(old, program, directory):
+    """How far every algorithm's force jumps as contacts come and go."""
+    return study_table(old, program, directory, "force_jumps", JUMP_COLUMNS)
+
+
+def study_table(old, program, directory, study, columns):
+    found = json.loads(program.run(["precision", study, "--repetitions", "1", "--json"], directory))[0]["rows"]
+    lines = [f"| | {' | '.join(heading for _, heading, _ in columns)} |", "|---" * (len(columns) + 1) + "|"]
     for row in found:
-        cells = (f"{factor * row[name]:.3g}" if row.get(name) is not None else "" for name, _, factor in COLUMNS)
+        cells = (f"{factor * row[name]:.3g}" if row.get(name) is not None else "" for name, _, factor in columns)
         lines.append(f"| `{row['setting'].replace(' + ', '` + `')}` | {' | '.join(cells)} |")
     return program.stamped("\n".join(lines), old)
 

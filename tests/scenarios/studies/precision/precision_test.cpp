@@ -218,6 +218,28 @@ TEST(PrecisionAlgorithms, HaveARowEachAndTheThesissTwoOneWithAngularDamping) {
   for (const PrecisionRow& row : result.rows) EXPECT_GT(row.seconds, 0.0) << row.setting;
 }
 
+/// Forces that are sums of continuous depths have slopes; weights that depend on which contacts there are make jumps.
+TEST(PrecisionForceJumps, TellAJumpFromASlope) {
+  const PrecisionResult result = kForceJumpsStudy.run(bundled("stroke_in_hole"), quick());
+  ASSERT_EQ(result.rows.size(), algorithms().size() + 1);  // the default with the reduction, too
+  enum Column { kPerMicrometre, kCoarse, kFine, kJump };
+  for (const PrecisionRow& row : result.rows) {
+    const auto value = [&row](Column column) { return row.values[column].value(); };
+    if (row.setting == "summation" || row.setting == "proxy") {
+      // Curvature over ten steps of a stroke of 2500: a tenth to a hundredth.
+      EXPECT_NEAR(value(kFine), 0.1 * value(kCoarse), 0.01 * 0.1 * value(kCoarse)) << row.setting;
+      EXPECT_EQ(value(kJump), 0.0) << row.setting;
+    }
+    if (row.setting == "proxy") EXPECT_NEAR(value(kPerMicrometre), 0.02, 1e-9) << "one spring of K";
+    if (row.setting == "least_squares" || row.setting == "exact_shaping") EXPECT_GT(value(kJump), 0.9 * value(kFine));
+  }
+}
+
+TEST(PrecisionForceJumps, RefuseAToolThatForcesMove) {
+  EXPECT_THROW(kForceJumpsStudy.run(bundled("poke_plane", {R"(motion.position={"type":"free"})"}), quick()),
+               InputError);
+}
+
 PrecisionResult study(const std::vector<std::string>& overrides = {}) {
   return kStiffnessStudy.run(bundled("wedge_stiffness", overrides), quick());
 }
