@@ -230,8 +230,12 @@ TEST(PrecisionForceJumps, TellAJumpFromASlope) {
       EXPECT_NEAR(value(kFine), 0.1 * value(kCoarse), 0.01 * 0.1 * value(kCoarse)) << row.setting;
       EXPECT_EQ(value(kJump), 0.0) << row.setting;
     }
-    if (row.setting == "proxy") EXPECT_NEAR(value(kPerMicrometre), 0.02, 1e-9) << "one spring of K";
-    if (row.setting == "least_squares" || row.setting == "exact_shaping") EXPECT_GT(value(kJump), 0.9 * value(kFine));
+    if (row.setting == "proxy") {
+      EXPECT_NEAR(value(kPerMicrometre), 0.02, 1e-9) << "one spring of K";
+    }
+    if (row.setting == "least_squares" || row.setting == "exact_shaping") {
+      EXPECT_GT(value(kJump), 0.9 * value(kFine)) << row.setting;
+    }
   }
 }
 
