@@ -307,29 +307,18 @@ Json unknowns_json(const SubjectsPlan& plan, std::span<const std::size_t> kept) 
   return all;
 }
 
-/// The nearest samples as the subjects of the thesis.
-class NearestSubjects {
- public:
-  NearestSubjects(const SubjectsPlan& plan, std::span<const std::size_t> samples, std::size_t jobs)
-      : plan_(plan), samples_(samples), jobs_(static_cast<unsigned>(jobs)) {}
-
-  /// The targets of all of them.
-  std::vector<TargetRow> run(const std::string& scenario, std::span<const std::string> overrides) const {
-    std::vector<std::vector<TargetRow>> of_each(samples_.size());
-    for_each_job(samples_.size(), {jobs_, ""}, [&](std::size_t i) {
-      of_each[i] = hapbench::run(plan_, samples_[i], scenario, overrides);
-      for (TargetRow& target : of_each[i]) target.subject = i;
-    });
-    std::vector<TargetRow> all;
-    for (const auto& rows : of_each) all.insert(all.end(), rows.begin(), rows.end());
-    return all;
-  }
-
- private:
-  const SubjectsPlan& plan_;
-  std::span<const std::size_t> samples_;
-  unsigned jobs_;
-};
+/// The targets of these samples as subjects 0, 1, …
+std::vector<TargetRow> run_all(const SubjectsPlan& plan, std::span<const std::size_t> samples, std::size_t jobs,
+                               const std::string& scenario, std::span<const std::string> overrides) {
+  std::vector<std::vector<TargetRow>> of_each(samples.size());
+  for_each_job(samples.size(), {static_cast<unsigned>(jobs), ""}, [&](std::size_t i) {
+    of_each[i] = run(plan, samples[i], scenario, overrides);
+    for (TargetRow& target : of_each[i]) target.subject = i;
+  });
+  std::vector<TargetRow> all;
+  for (const auto& rows : of_each) all.insert(all.end(), rows.begin(), rows.end());
+  return all;
+}
 
 TargetTable table_of(const std::vector<TargetRow>& rows) {
   TargetTable table;
@@ -410,11 +399,14 @@ Json subjects_json(const SubjectsPlan& plan, const std::vector<SubjectSample>& s
   const auto wanted = static_cast<std::size_t>(kKept * static_cast<double>(samples.size()));
   const std::span kept(order.data(), std::clamp(wanted, kSubjects, order.size()));
   const PublishedNumbers& published = plan.evidence.published;
-  const NearestSubjects subjects(plan, kept.first(kSubjects), jobs);
+  const auto run_nearest = [&, subjects = kept.first(kSubjects)](const std::string& scenario,
+                                                                 std::span<const std::string> overrides) {
+    return run_all(plan, subjects, jobs, scenario, overrides);
+  };
   Json beside = Json::array(), verdicts = Json::array();
   for (const char* task : {"vertical", "rotational"}) {
     std::map<std::string, std::vector<TargetRow>> rows;
-    for (const char* algorithm : kAlgorithms) rows[algorithm] = subjects.run(scenario_of(task, algorithm), {});
+    for (const char* algorithm : kAlgorithms) rows[algorithm] = run_nearest(scenario_of(task, algorithm), {});
     for (const Experiment& e : kExperiments) {
       if (std::string_view(e.task) != task) continue;
       for (const char* algorithm : kAlgorithms) compare(rows[algorithm], e, algorithm, published, beside);
@@ -423,10 +415,7 @@ Json subjects_json(const SubjectsPlan& plan, const std::vector<SubjectSample>& s
       verdicts.push_back(verdict_json(e.id, e.fitted, judge_experiment(measured, published, e.id, e.difference)));
     }
   }
-  const auto run_pilot = [&subjects](const std::string& scenario, std::span<const std::string> overrides) {
-    return subjects.run(scenario, overrides);
-  };
-  verdicts.push_back(verdict_json("D6", false, judge_pilots(measure_pilots(run_pilot), published)));
+  verdicts.push_back(verdict_json("D6", false, judge_pilots(measure_pilots(run_nearest), published)));
   Json chosen = Json::array(), traces = Json::array();
   for (const std::size_t sample : kept.first(kSubjects)) {
     chosen.push_back({{"sample", sample}, {"distance", samples[sample].distance}});
