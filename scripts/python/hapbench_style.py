@@ -131,6 +131,63 @@ def with_one_style(group):
     return f"<g{clip}{styles[0]}>\n{STYLE.sub('', marks)}"
 
 
+DISC = re.compile(r'<path id="(\w+)" d="M 0 ([\d.]+) \nC[^"]*z\n"')
+DISCS = re.compile(r'<g( clip-path="[^"]*")? style="([^"]*)">\s*((?:<use xlink:href="#(\w+)" x="[^"]*" y="[^"]*"/>\s*)+)</g>')
+
+
+def as_dots(svg):
+    """Discs drawn in a row as one path of dots with round ends."""
+    radii = dict(DISC.findall(svg))
+
+    def dots(group):
+        clip, look, uses, name = group.groups(default="")
+        look = dict(item.split(": ") for item in look.rstrip("; ").split("; "))
+        fill, stroke = look.pop("fill", "#000000"), look.pop("stroke", "none")
+        if name not in radii or len(set(re.findall(r"#(\w+)", uses))) > 1 or stroke not in ("none", fill):
+            return group[0]
+        width = 2 * float(radii[name]) + (float(look.pop("stroke-width", 1)) if stroke == fill else 0)
+        opacity = look.get("fill-opacity", look.get("opacity", "1"))
+        places = "".join(f"M{x} {y}h0" for x, y in re.findall(r'x="([^"]*)" y="([^"]*)"', uses))
+        return (f'<path d="{places}"{clip} style="fill: none; stroke: {fill}; stroke-opacity: {opacity}; stroke-linecap: round; '
+                f'stroke-width: {width:.2f}"/>')
+
+    return DISCS.sub(dots, svg)
+
+
+def without_bare_groups(svg):
+    """The same without groups that say nothing of what is in them."""
+    bare = []
+
+    def kept(tag):
+        if tag[0] != "</g>":
+            bare.append(tag[0] == "<g>")
+            return "" if bare[-1] else tag[0]
+        return "" if bare.pop() else tag[0]
+
+    return re.sub(r"<g(?: [^>]*)?>|</g>", kept, svg)
+
+
+def compact(svg):
+    """The same drawing for a repository, in half the bytes: places to a tenth of a point, styles that repeat as classes, short
+    identifiers, and nothing that only a reader of the source would see."""
+    svg = as_dots(re.sub(r"<!--.*?-->|<metadata>.*?</metadata>|<g[^>]*/>", "", svg, flags=re.S))
+    svg = PLACES.sub(lambda place: place[1] + re.sub(r"-?\d+\.\d+", lambda n: f"{round(float(n[0]), 1):g}", place[2]), svg)
+    svg = re.sub(r' transform="rotate\(-0 [^)]*\)"', "", svg)
+    names = set(re.findall(r'(?:href="#|url\(#)(\w+)', svg))
+    short = {name: f"i{number:x}" for number, name in enumerate(sorted(names, key=svg.index))}
+    svg = re.sub(r' id="(\w+)"', lambda i: f' id="{short[i[1]]}"' if i[1] in short else "", svg)
+    svg = re.sub(r"(?<=#)\w+(?=[\")])", lambda i: short.get(i[0], i[0]), svg)
+    styles = re.findall(r' style="([^"]*)"', svg)
+    often = {style: f"s{number:x}" for number, style in enumerate(dict.fromkeys(s for s in styles if styles.count(s) > 1))}
+    svg = re.sub(r' style="([^"]*)"', lambda s: f' class="{often[s[1]]}"' if s[1] in often else s[0], svg)
+    rules = "".join(f".{name}{{{style}}}" for style, name in often.items())
+    svg = re.sub(r"(<defs>\s*<style[^>]*>)", lambda d: d[1] + rules, svg, count=1)
+    svg = without_bare_groups(re.sub(r">\s+<", "><", svg))
+    svg = re.sub(r' d="([^"]*)"', lambda d: f' d="{re.sub(r"(?<=[LMCQ]) | (?=[LMCQz])|(?<=z) ", "", d[1]).strip()}"', re.sub(r"\s+", " ", svg))
+    svg = re.sub(r"(?<=\d)L(-?[\d.]+ -?[\d.]+)(?=[Lz\"])", r" \1", svg)  # what follows a place is a line
+    return re.sub(r"((?:<[^>]*>[^<]*){12})", "\\1\n", re.sub(r"\s+", " ", svg)).strip() + "\n"
+
+
 def reduced(time, low, high, spans):
     """The least of `low` and the greatest of `high` in each of so many equal spans of time that hold a row, and where
     the span begins; the rows themselves if they are no more. NaN only where a span has nothing else."""

@@ -2,13 +2,18 @@
 import glob
 import json
 import re
+import shutil
 import unittest
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
 from fixture import ENVIRONMENT, PROGRAM, SOURCE, hapbench as program, main, must, ran, scratch_folder
 
+import hapbench_style as style  # below scripts/python, which the fixture adds
+
 SVG = "{http://www.w3.org/2000/svg}"
+RECORD = SOURCE / "results" / "reference" / "figures"
+LARGEST = 60_000  # of a figure of the thesis on record [bytes]
 # Short runs of the same scenarios: what is tested is the drawing. They need not end as their scenarios expect.
 RUNS = (
     ("task[13]*", ["time.duration_s=1", "record.every=8"]),
@@ -66,6 +71,14 @@ def make_results(directory):
     hapbench(*("stability", "--map", "time_step,damping_ratio,device", "--algorithms", "shaped_stiffness", "--size", "3"),
              *("--integrators", "all", "--out", directory / "stability_integrators"))
     hapbench("compare", "--devices", "touch,omega.3", "--out", directory / "devices")
+    hapbench(*("sweep", "task2_rotate_signed_distance", "--vary=hand.force_N=0.2,3.5", "--set=time.duration_s=2", "--keep-runs"),
+             *('--set=record={"ideal_trajectory":true,"every":8}', "--out", directory / "hands"))
+    for task in ("vertical", "rotational"):
+        for algorithm in ("original_averaging", "shaped_stiffness"):
+            hapbench(*("sweep", f"{task}_peg_in_hole_{algorithm}", "--vary=hand.task.threshold.cutoff_Hz=null,30"),
+                     *("--vary=hand.task.threshold.grace_s=0,0.1", "--set=hand.trials=1", "--set=hand.task.time_limit_s=1"),
+                     *("--set=hand.task.targets_per_place=1", "--out", directory / "threshold" / f"{task}_{algorithm}"))
+    shutil.copytree(RECORD.parent, directory / "subjects", ignore=lambda _, names: [n for n in names if "subjects" not in n])
     (directory / "performance.json").write_text(json.dumps(performance()))
     timing = {
         "step_latency": {
@@ -141,6 +154,35 @@ class Figures(unittest.TestCase):
             self.assertRegex(redrawn, rf"(^|\s){re.escape(name)}(,|\s|$)")
         self.assertIn("A.4 (springs)", redrawn)
         self.assertIn("A.4 (root locus)", redrawn)
+
+    def test_those_of_the_thesis_are_on_record(self):
+        page = (RECORD / "figures.md").read_text(encoding="utf-8")
+        for entry in self.index():
+            if not entry["thesis_figure"]:
+                continue
+            with self.subTest(entry["id"]):
+                file = RECORD / entry["files"][0]
+                self.assertLess(file.stat().st_size, LARGEST)
+                self.assertIn(f"({file.name})", page)
+                self.assertIn(f"## Figure {entry['thesis_figure']}: {entry['title']}", page)
+        for name in re.findall(r"\((figure_\S+\.svg)\)", page):
+            self.assertTrue((RECORD / name).is_file(), name)
+
+    def test_a_compact_drawing_says_and_shows_the_same(self):
+        for entry in self.index():
+            with self.subTest(entry["id"]):
+                text = (self.drawn / entry["files"][0]).read_text(encoding="utf-8")
+                small = style.compact(text)
+                self.assertLess(len(small), 0.85 * len(text))
+                before, after = xml.fromstring(text), xml.fromstring(small)
+                said = [[t.text for t in root.iter(f"{SVG}text")] for root in (before, after)]
+                self.assertEqual(*said)
+                # Every mark is there, alone or as a dot of a row, and refers to something.
+                marks = sum(1 for _ in before.iter(f"{SVG}use"))
+                kept = sum(1 for _ in after.iter(f"{SVG}use")) + sum(p.get("d").count("h0") for p in after.iter(f"{SVG}path"))
+                self.assertEqual(kept, marks)
+                known = {e.get("id") for e in after.iter()}
+                self.assertLessEqual(set(re.findall(r'(?:href="#|url\(#)(\w+)', small)), known)
 
     def test_the_index_describes_the_files(self):
         for entry in self.index():

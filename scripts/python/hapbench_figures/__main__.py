@@ -24,6 +24,8 @@ def arguments(argv):
     parser.add_argument("--only", metavar="ID,…", help="draw these; an id stands for those that begin with it and a hyphen, too")
     parser.add_argument("--jobs", type=int, metavar="N", default=len(os.sched_getaffinity(0)), help="figures at once (default: one per "
                         "thread)")
+    parser.add_argument("--record", metavar="DIR", help="also copy the SVGs of the thesis's figures, and of ours that lie there, "
+                        "into DIR, with figures.md, a page of them all")
     parser.add_argument("--list", action="store_true", help="list the figures")
     chosen = parser.parse_args(argv)
     if not chosen.list and not (chosen.results and chosen.out):
@@ -60,6 +62,30 @@ def write_index(directory, entries):
     write(file, json.dumps({"figures": known}, indent=2, ensure_ascii=False) + "\n")
 
 
+PAGE = """# Figures on record
+
+Every figure of the thesis that a simulation can draw, and some of ours: made by `scripts/figures RESULTS --out DIR --record
+results/reference/figures` from what `scripts/reproduce` leaves.
+"""
+
+
+def record(directory, page):
+    """Copies figures into the directory `page` and writes figures.md about all that lie there."""
+    page.mkdir(parents=True, exist_ok=True)
+    text = PAGE
+    drawn = {e["id"]: e for e in json.loads((directory / "figures.json").read_text(encoding="utf-8"))["figures"]}
+    for figure in catalogue.FIGURES:
+        on_record = page / f"{figure.stem}.svg"
+        if figure.id not in drawn or not (figure.thesis or figure.page or on_record.is_file()):
+            continue
+        write(on_record, style.compact((directory / on_record.name).read_text(encoding="utf-8")))
+        name = f"Figure {figure.thesis}" if figure.thesis else "Ours"
+        text += f"\n## {name}: {figure.title}\n\n![{figure.title}]({on_record.name})\n\n{drawn[figure.id]['caption']}\n"
+        if figure.differs:
+            text += f"\nDiffers: {figure.differs}\n"
+    write(page / "figures.md", text)
+
+
 def show_progress(done, total):
     """A line that is written over, on a terminal."""
     if sys.stderr.isatty():
@@ -93,6 +119,8 @@ def main(argv=None):
         _, drawn, skipped, bad = zip(*sorted(outcomes, key=lambda outcome: outcome[0]))
         entries = [entry for entry in drawn if entry]
         write_index(directory, entries)
+        if chosen.record and entries:
+            record(directory, Path(chosen.record))
     except OSError as error:
         say_error(f"{error.filename}: {error.strerror}")
         return BAD_INPUT

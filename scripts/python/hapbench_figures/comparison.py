@@ -139,7 +139,8 @@ def paths(results, kind, published):
         ax.set_ylabel("y [mm]")
     return figure, ("Trajectory of a mass on 100 pairs of opposite springs and 10 upward ones, released at (-5, -5) mm, "
                     f"damping and force {published} Grey: stiffness shaping, for comparison. Settled means to stay within "
-                    "0.05 mm of the origin (+). Ours, parameters of Table A.3.")
+                    "0.05 mm of the origin (+). Ours, parameters of Table A.3; depths are signed, so that a spring pulls as well "
+                    "as it pushes, one of two readings of 2.3 (choice springs.signed).")
 
 
 def unlimited(results):

@@ -95,8 +95,9 @@ def implicit_plane(results):
     return figure, ("Damping of the original algorithm. Its spring force defines one implicit plane (plum); normal damping "
                     "(black) acts across it, tangential damping (petrol) along it, against the velocity (amber). (a) On a "
                     "flat the plane is parallel to the surface. (b) In a hole it is parallel to neither wall. (c) What "
-                    "damping remains across the walls while the peg is tilted, in units of B: u_x^2 of the rendered "
-                    "direction for the original, S_xx for stiffness shaping, which keeps about the B that it should. Ours: "
+                    "normal damping remains across the walls while the peg is tilted, in units of B: u_x^2 of the rendered "
+                    "direction for the original, S_xx for stiffness shaping, which keeps about the B that it should. The "
+                    "tangential damping of (b), which grows with the force, is left out of (c). Ours: "
                     "(a) from the formulas of B.2, (b, c) from hapbench's forces and tensors; the velocity is made up, "
                     "friction of Table A.1.")
 

@@ -123,9 +123,12 @@ def draw_peg(ax, peg, median=False, **keywords):
 def draw_segments(ax, contacts, colours, scale=1.0):
     """From each contact along its gradient, as long as its depth: where it is taken to leave the tool."""
     ends = contacts.point + scale * contacts.depth[:, None] * contacts.gradient
-    for start, end, colour in zip(contacts.point * MM, ends * MM, colours):
-        ax.plot([start[0], end[0]], [start[1], end[1]], color=colour, lw=1.0, zorder=4)
-    ax.scatter(*(contacts.point * MM).T, s=7, c=colours, zorder=5, linewidths=0)
+    for colour in dict.fromkeys(colours):
+        own = [c == colour for c in colours]
+        # One line with gaps, and one row of marks: an SVG of them is much smaller.
+        lines = np.stack([contacts.point[own], ends[own], np.full_like(ends[own], np.nan)], 1).reshape(-1, 2) * MM
+        ax.plot(*lines.T, color=colour, lw=1.0, zorder=4)
+        ax.plot(*(contacts.point[own] * MM).T, "o", ms=2.65, color=colour, mec="none", zorder=5)
 
 
 def draw_arrow(ax, start, vector, colour, label=None, at=(3, 3), **keywords):

@@ -13,6 +13,7 @@ TASKS = (
 DENSITIES = (("signed_distance", "signed distance"), ("binary", "binary"))
 ITERATIONS = (1, 2, 3, 4, 5, 10, 20, 40, 80, 160)
 BINS = 240  # of a time axis: more cannot be told apart at column width
+FEW_BINS = 38  # where thirty panels share a page
 HAND = ("Hands and paths are ours, calibrated to the published mean and standard deviation of the raw points and to nothing "
         "else.")
 
@@ -28,7 +29,7 @@ def ratios(results, task, iteration, density="signed_distance"):
     return {name: column[own] for name, column in table.items()}
 
 
-def thin(*columns, count=220):
+def thin(*columns, count=80):
     """So many rows, evenly spread."""
     pick = np.unique(np.linspace(0, len(columns[0]) - 1, count).astype(int))
     return [column[pick] for column in columns]
@@ -42,9 +43,9 @@ def published_count(ax, x, task, what):
     ax.errorbar([x], [published.value(id_)], yerr=error, **style.PUBLISHED, clip_on=False)
 
 
-def span(time, values):
-    """The begin of each of BINS spans of time, and the least and the greatest value in it."""
-    return style.reduced(time, values, values, BINS)
+def span(time, values, bins=BINS):
+    """The begin of each span of time, and the least and the greatest value in it."""
+    return style.reduced(time, values, values, bins)
 
 
 PERIOD = 1 / 2048  # of the trainer's loop [s]
@@ -97,7 +98,8 @@ def point_counts(results):
         loads[-1].set_ylabel("loop load [%]")
     style.note(axes[1, 1], 0.03, 0.98, "before the reduction", style.AMBER)
     style.note(axes[1, 1], 0.03, 0.06, "after", style.PETROL, va="bottom")
-    style.note(axes[0, 0], 0.03, 0.98, "loop load: black dots, right axis")
+    if any(loads):
+        style.note(axes[0, 0], 0.03, 0.98, "loop load: black dots, right axis")
     style.note(axes[1, 0], 0.97, 0.98, "published mean ± SD ◇", style.RED, ha="right")
     return figure, ("Colliding points before (amber dots) and after (petrol squares) the gradient-based reduction in the "
                     "three tasks of 3.2, for both densities of the block, and the loop load (black dots, right axis, "
@@ -227,7 +229,7 @@ def positions(results):
     def draw(ax, _, task):
         rows = trajectory(results, task)
         for column, name, colour, line in coordinates:
-            time, low, high = span(rows["time_s"], 1e3 * rows[column])
+            time, low, high = span(rows["time_s"], 1e3 * rows[column], 2 * FEW_BINS)
             ax.plot(time, (low + high) / 2, color=colour, ls=line, lw=1.1, label=name)
             ax.fill_between(time, low, high, color=colour, alpha=0.3, lw=0)
 
@@ -259,7 +261,8 @@ def model_force(results):
     axes[0, 0].text(0, 0.95 * limit, "published limit of the input force", color=style.RED, fontsize=7, va="top")
     return figure, ("Size of the model force (spring, damping and friction) over time in the three tasks, ours: range in "
                     f"each of {BINS} spans of time; the axis is linear up to 0.5 N. Dashed: the limit of the input force, 2 "
-                    f"N (3.5). {HAND}")
+                    f"N (3.5). {HAND} So task 2's presses with 0.19 N, a tenth of the model forces of appendix D, apart from three "
+                    "taps, which are its spikes.")
 
 
 def _ratio_over_time(results, column, colour, word):
@@ -267,7 +270,7 @@ def _ratio_over_time(results, column, colour, word):
 
     def draw(ax, i, task):
         rows = ratios(results, task, ITERATIONS[i])
-        time, low, high = span(rows["time_s"], rows[column])
+        time, low, high = span(rows["time_s"], rows[column], FEW_BINS)
         ax.fill_between(time, low, high, color=colour, alpha=0.75, lw=0.4, edgecolor=colour)
         ax.axhline(1, color=style.BLACK, lw=0.7, ls="--")
         once = published.entries()["R1.once"]["at_most" if column == "ratio_max" else "at_least"]
@@ -282,10 +285,12 @@ def _ratio_over_time(results, column, colour, word):
     figure.supylabel("stiffness ratio after so many iterations", fontsize=8)
     for ax in axes.flat:
         ax.set_ylim((0.95, 1.4) if above else (0.4, 1.05))
+        ax.locator_params(nbins=3)
+        ax.grid(False)
     style.note(axes[0, 0], 0.98, 0.3 if above else 0.1, f"published: {'1.3' if above else '0.8'}", style.RED, ha="right",
                va="bottom")
     return figure, (f"The {word} stiffness ratio of a step's contacts over time, after {', '.join(labels[:-1])} and "
-                    f"{labels[-1]} shaping iterations (rows), ours (signed-distance block): range in each of {BINS} spans "
+                    f"{labels[-1]} shaping iterations (rows), ours (signed-distance block): range in each of {FEW_BINS} spans "
                     f"of time; numbers: the {word} of all. Dotted: published {'upper' if above else 'lower'} end after one "
                     f"iteration (C.4.2). {HAND}")
 
