@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <ranges>
 
 #include "algorithms/registry.hpp"
 #include "device_model/device_presets.hpp"
@@ -146,8 +145,8 @@ Description describe_stability() {
       wrapped(fmt::format(
           "A run of {} steps is judged by its motion alone, quarter by quarter; the amplitude is the largest speed.",
           kMapSteps)));
-  for (const MotionClass motion : kMotionClasses | std::views::reverse)  // "all else" last
-    d.text += entry(motion_class_name(motion), text_of(motion).rule, 2, 13);
+  for (auto motion = kMotionClasses.rbegin(); motion != kMotionClasses.rend(); ++motion)  // "all else" last
+    d.text += entry(motion_class_name(*motion), text_of(*motion).rule, 2, 13);
   for (
       const char* paragraph :
       {"Limits count stable and dying out as stable: the tool comes to rest if the run goes on.",

@@ -129,10 +129,9 @@ WaitNotice::~WaitNotice() {
 
 void WaitNotice::show() {
   std::unique_lock lock(mutex_);
-  constexpr int kSilence = 2;  // seconds
   bool shown = false;
   for (int seconds = 1; !ended_.wait_for(lock, std::chrono::seconds(1), [this] { return done_; }); ++seconds) {
-    if (seconds < kSilence) continue;
+    if (std::chrono::seconds(seconds) < kSilence) continue;
     show_status(fmt::format("{} ... {} s", what_, seconds));
     shown = true;
   }
