@@ -293,7 +293,7 @@ TEST(Shard, SharesOutEveryRunOnce) {
       for (std::size_t index = 0; index < count; ++index) {
         const Shard shard{index, count};
         std::size_t own = 0;
-        for (std::size_t run = 0; run < runs; ++run) own += run % count == index ? 1 : 0;
+        for (std::size_t run = index; run < runs; run += count) ++own;
         EXPECT_EQ(shard.size(runs), own) << index << "/" << count << " of " << runs;
         sum += own;
       }

@@ -385,7 +385,7 @@ TEST_F(CompareDevices, LimitSaysThatAFieldHasNoEffect) {
                      file("limit")})
         .out;
   };
-  const char* filter = "device.velocity_filter={\"type\":\"low_pass\",\"cutoff_Hz\":100}";
+  const char* filter = R"(device.velocity_filter={"type":"low_pass","cutoff_Hz":100})";
   const std::string idle = "cutoff_Hz has no effect here: the handle moves alike in all ";
   EXPECT_NE(limit("device.velocity_filter.cutoff_Hz", filter).find(idle), std::string::npos);
   EXPECT_EQ(limit("rendering.stiffness_N_per_m", filter).find("no effect"), std::string::npos);
