@@ -53,6 +53,9 @@ bool remove_if_abandoned(const fs::path& path) {
 
 AtomicFile::AtomicFile(fs::path target)
     : target_(std::move(target)), buffer_(std::make_unique_for_overwrite<char[]>(kBufferSize)) {
+  // Renaming over a device or a pipe would replace it.
+  if (std::error_code unknown; fs::exists(target_, unknown) && !fs::is_regular_file(target_, unknown))
+    throw IoError("write", target_, std::make_error_code(std::errc::not_supported));
   // A clean-up may remove the file before it is locked; then create another one.
   for (struct stat status{}; status.st_nlink == 0;) {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -94,7 +97,7 @@ void AtomicFile::flush() noexcept {
   }
 }
 
-void AtomicFile::commit() {
+void AtomicFile::complete() {
   assert(descriptor_ >= 0);
   flush();
   // Network file systems report late errors on close; closing a duplicate asks for them and keeps the lock.
@@ -102,12 +105,20 @@ void AtomicFile::commit() {
     const int duplicate = ::dup(descriptor_);
     if (duplicate < 0 || ::close(duplicate) != 0) error_ = last_error();
   }
-  if (!error_ && ::rename(temporary_.c_str(), target_.c_str()) != 0) error_ = last_error();
-  if (error_) {
-    discard();
-    throw IoError("write", target_, error_);
-  }
+  throw_error();
+}
+
+void AtomicFile::commit() {
+  complete();
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) error_ = last_error();
+  throw_error();
   ::close(std::exchange(descriptor_, -1));
+}
+
+void AtomicFile::throw_error() {
+  if (!error_) return;
+  discard();
+  throw IoError("write", target_, error_);
 }
 
 void AtomicFile::discard() noexcept {

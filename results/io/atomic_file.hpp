@@ -51,8 +51,12 @@ class AtomicFile {
   /// are dropped.
   void append(std::string_view bytes) noexcept;
 
-  /// Writes what is left and renames; an existing target is replaced. Throws IoError for the first error since the
-  /// beginning (a full disk, say), and then leaves nothing behind. Call once, last.
+  /// Writes what is left, so that nothing but the renaming can fail any more. Throws IoError for the first error since
+  /// the beginning (a full disk, say), and then leaves nothing behind. Nothing may be appended after it.
+  void complete();
+
+  /// Completes the file and renames it; an existing target is replaced. Throws IoError as `complete`
+  /// does. Call once, last.
   void commit();
 
   /// False after the first error.
@@ -61,6 +65,7 @@ class AtomicFile {
 
  private:
   void flush() noexcept;
+  void throw_error();
   void discard() noexcept;
 
   std::filesystem::path target_;

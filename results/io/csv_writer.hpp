@@ -40,6 +40,8 @@ class CsvWriter {
   /// Writes a row of cells whose types are known only at run time.
   void cells(std::span<const Cell> cells);
 
+  /// As AtomicFile::complete.
+  void complete() { file_.complete(); }
   /// Puts the table under its final name. Throws IoError, also for the errors of earlier rows.
   void finish() { file_.commit(); }
 

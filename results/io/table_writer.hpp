@@ -86,6 +86,11 @@ class TableWriter {
     }
   }
 
+  /// As AtomicFile::complete.
+  void complete() {
+    if (csv_) csv_->complete();
+  }
+
   /// Puts a file under its final name. Throws IoError, also for the errors of earlier rows, or std::bad_alloc.
   void finish() {
     if (memory_ != nullptr) {

@@ -36,6 +36,8 @@ class Recorder final : public Observer {
   bool wants_springs() const noexcept override { return source_.wants_springs; }
   void on_step(const StepRecord& record) noexcept override;
 
+  /// As AtomicFile::complete.
+  void complete() { writer_.complete(); }
   /// After the run: puts the file under its final name. Throws IoError, also for the errors of earlier rows.
   void finish() { writer_.finish(); }
 

@@ -1,10 +1,14 @@
 #include "scenarios/run/run_scenario.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <nlohmann/json.hpp>
 
 #include "algorithms/registry.hpp"
@@ -227,6 +231,28 @@ fs::path trial_directory(const fs::path& directory, Trial trial, std::size_t tri
   return directory / fmt::format("{}{}_trial_{}", kTrialDirectory, trial.subject, trial.number);
 }
 
+/// Keeps two runs from writing into one folder: while one object holds a folder, another cannot be made, in any
+/// process. File systems without locks are not guarded.
+class FolderLock {
+ public:
+  /// Throws IoError.
+  explicit FolderLock(const fs::path& directory)
+      : descriptor_(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    ::close(descriptor_);
+    throw IoError("write, because another run writes to", directory,
+                  std::make_error_code(std::errc::device_or_resource_busy));
+  }
+  ~FolderLock() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
 void create_output(NewDirectories& directories, const fs::path& directory) {
   std::error_code error;
   directories.create(directory, error);
@@ -329,19 +355,26 @@ void finish_tables(RunTables& tables, const RunReport& report, const std::vector
 
 void write_results(const fs::path& directory, const Scenario& scenario, const RunReport& report,
                    const std::vector<TrialResult>& trials) {
+  std::vector<ResultTable> tables = record_tables(scenario.record);
+  if (has_targets(report)) tables.push_back(kTargetTable);
+  std::deque<AtomicFile> files;
+  const auto add = [&](const char* name, const std::string& text) {
+    files.emplace_back(directory / name).append(text);
+    files.back().complete();
+  };
+  add("scenario.effective.json", json_text(effective_scenario(scenario, directory)));
+  add("columns.json", json_text(columns_json(tables, metric_list(report.summary))));
+  if (scenario.record.timing) add("timing.json", timing_text(report.timing, instruction_set(), provenance()));
+  add("summary.json", summary_text(report.summary));
+  for (const TrialResult& trial : trials) {
+    for (const auto& recorder : trial.recorders) recorder->complete();
+  }
+  // All is on the disk under temporary names: only now do earlier results give way. The summary, which says that a run
+  // is there, is the first to go and the last to come.
   remove_files_of_earlier_runs(directory);
   finish_recorders(trials);
-  write_file_atomically(directory / "scenario.effective.json", json_text(effective_scenario(scenario, directory)));
-  std::vector<ResultTable> tables = record_tables(scenario.record);
-  if (has_targets(report)) {
-    write_target_table(directory / kTargetTable.file, report.targets);
-    tables.push_back(kTargetTable);
-  }
-  write_file_atomically(directory / "columns.json", json_text(columns_json(tables, metric_list(report.summary))));
-  if (scenario.record.timing) {
-    write_file_atomically(directory / "timing.json", timing_text(report.timing, instruction_set(), provenance()));
-  }
-  write_file_atomically(directory / "summary.json", summary_text(report.summary));
+  if (has_targets(report)) write_target_table(directory / kTargetTable.file, report.targets);
+  for (AtomicFile& file : files) file.commit();
 }
 
 }  // namespace
@@ -375,7 +408,11 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
   report.timing = timing;
   const std::vector<Trial> trials = trials_of(scenario);
   NewDirectories directories;
-  if (output) create_output(directories, *output);
+  std::optional<FolderLock> lock;
+  if (output) {
+    create_output(directories, *output);
+    lock.emplace(*output);
+  }
   if (tables != nullptr) tables->trials.resize(trials.size());
 
   std::optional<StepTimes> times;
