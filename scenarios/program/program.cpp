@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <clocale>
+#include <cstdio>
+#include <cstring>
 #include <exception>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -52,9 +56,25 @@ int fail(std::string_view what) {
   return kInternalFault;
 }
 
+/// Numbers are read and written without the language of a host such as Python, whose decimal point may be a comma.
+class PlainNumbers {
+ public:
+  PlainNumbers() : plain_(::newlocale(LC_ALL_MASK, "C", nullptr)), before_(::uselocale(plain_)) {}
+  ~PlainNumbers() {
+    ::uselocale(before_);
+    ::freelocale(plain_);
+  }
+  PlainNumbers(const PlainNumbers&) = delete;
+  PlainNumbers& operator=(const PlainNumbers&) = delete;
+
+ private:
+  locale_t plain_, before_;
+};
+
 }  // namespace
 
 int run_program(int argc, char** argv) {
+  const PlainNumbers plain_numbers;
   const Provenance program = provenance();
   CommandLine line(fmt::format("hapbench {} ({})", program.version, program.commit), version_json);
   for (AddCommand* add_command : kCommands) add_command(line);
@@ -68,7 +88,9 @@ int run_program(int argc, char** argv) {
 
 int run_program_to_exit(int argc, char** argv) {
   try {
-    return run_program(argc, argv);
+    const int status = run_program(argc, argv);
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+    return fail(fmt::format("cannot write standard output: {}", std::strerror(errno)));
   } catch (const InputError& error) {
     print_errors(error);
     return kBadInput;

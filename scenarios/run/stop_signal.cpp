@@ -1,5 +1,7 @@
 #include "scenarios/run/stop_signal.hpp"
 
+#include <unistd.h>
+
 #include <atomic>
 
 namespace hapbench {
@@ -11,8 +13,19 @@ constexpr int kSignals[] = {SIGINT, SIGTERM};
 std::atomic<int> received_signal{0};
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may not lock");
 
+/// Where nobody asks for the signal in time, such as in a loop of a plugin or a read from a pipe, it ends the process.
+constexpr unsigned kPatience = 2;  // [s]
+
+void end_process(int) {
+  const int signal = received_signal;
+  ::signal(signal, SIG_DFL);
+  ::raise(signal);
+}
+
 void note(int signal) {
   received_signal = signal;
+  ::signal(SIGALRM, end_process);
+  ::alarm(kPatience);
 }
 
 }  // namespace
@@ -29,6 +42,7 @@ StopSignal::StopSignal() {
 }
 
 StopSignal::~StopSignal() {
+  ::alarm(0);
   for (int i = 0; i < 2; ++i) ::sigaction(kSignals[i], &before_[i], nullptr);
   received_signal = 0;
 }

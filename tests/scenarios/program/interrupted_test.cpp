@@ -1,4 +1,8 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -70,6 +74,48 @@ TEST_F(KilledRun, LeavesTheResultsOfAnEarlierRunComplete) {
   auto after = test::files_below(out_);
   std::erase_if(after, [](const auto& file) { return file.first.ends_with(".tmp"); });
   EXPECT_EQ(after, before);
+}
+
+TEST(FailedWrite, LeavesTheResultsOfAnEarlierRun) {
+  const test::TemporaryDirectory directory;
+  const std::string out = (directory / "out").string();
+  EXPECT_EQ(hapbench({"run", "poke_plane", "--out", out}).status, 0);
+  const auto before = test::files_below(out);
+  // trajectory.csv does not fit, as on a full disk.
+  const ProgramRun again =
+      hapbench({"run", "poke_plane", "--set", "rendering.algorithm=mean", "--out", out}, {.file_limit = 50'000});
+  EXPECT_EQ(again.status, 1) << again.err;
+  EXPECT_EQ(test::files_below(out), before);
+}
+
+TEST(FailedWrite, OfStandardOutputIsAFailure) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  const ProgramRun list = test::run_program("/bin/sh", {"-c", test::hapbench_program().string() + " list >/dev/full"});
+  EXPECT_EQ(list.status, 1);
+  EXPECT_NE(list.err.find("cannot write standard output"), std::string::npos) << list.err;
+}
+
+TEST(FailedWrite, OfAFolderThatAnotherRunWritesTo) {
+  const test::TemporaryDirectory directory;
+  fs::create_directory(directory / "out");
+  const int folder = ::open((directory / "out").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  ASSERT_EQ(::flock(folder, LOCK_EX), 0);
+  const ProgramRun run = hapbench({"run", "poke_plane", "--out", (directory / "out").string()});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.err.find("another run writes to"), std::string::npos) << run.err;
+  EXPECT_TRUE(fs::is_empty(directory / "out"));
+  ::close(folder);
+}
+
+/// Where nobody asks whether to stop: the program waits for somebody to open the other end of a pipe.
+TEST(Stopped, WithinTwoSecondsWhereverItIs) {
+  const test::TemporaryDirectory directory;
+  const fs::path pipe = directory / "scenario.json";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  RunningProgram reader(test::hapbench_program(), {"validate", pipe.string()});
+  std::this_thread::sleep_for(
+      std::chrono::milliseconds(300));  // it is there, or has yet to come: stopped in both cases
+  EXPECT_EQ(reader.end_by(SIGTERM), -1);
 }
 
 /// Commands other than sweep that Ctrl-C ends while they compute.
