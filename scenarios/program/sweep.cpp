@@ -265,6 +265,11 @@ struct MergeOptions {
 
 int merge(const MergeOptions& options) {
   require_writable_file(options.out);
+  for (const std::string& file : options.files) {
+    std::error_code unknown;
+    if (fs::equivalent(file, options.out, unknown))
+      throw InputError(fmt::format("--out: got \"{}\", one of the tables to join; allowed: another file", options.out));
+  }
   const std::size_t shards = options.files.size();
   const std::size_t runs =
       merge_shard_tables(options.out, std::vector<fs::path>(options.files.begin(), options.files.end()));

@@ -184,6 +184,10 @@ std::string dry_run_text(const fs::path& array_file, const std::string& array, c
 SlurmJobs submit_to_slurm(const SweepPlan& plan, const SlurmOptions& options, const fs::path& given,
                           const std::vector<std::string>& sweep) {
   const fs::path directory = fs::absolute(given).lexically_normal();
+  // A line of a script ends with it, whatever quotes are around.
+  const std::string& text = directory.native();
+  if (std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 0x7f; }))
+    throw InputError("--out: got a path with a control character; allowed with --slurm: paths without");
   const std::vector<std::size_t> shards = missing_shards(plan, options, directory);
   const auto earlier = options.dry_run ? std::nullopt : read_jobs(directory);
   if (earlier && !queued_tasks(earlier->array).empty()) {
