@@ -136,7 +136,7 @@ Vec3 top_of_the_middle(const std::vector<SurfacePoint>& points, const Box& box, 
 /// The unit, of m, cm and mm, in which the length is nearest to a tooth's.
 double guessed_scale(double longest) {
   const auto misfit = [longest](double scale) { return std::abs(std::log(longest * scale / kToothLength)); };
-  return std::ranges::min({1.0, 0.01, 0.001}, {}, misfit);
+  return std::min({1.0, 0.01, 0.001}, [&misfit](double a, double b) { return misfit(a) < misfit(b); });
 }
 
 /// Rounds to the micrometre, as people write places.
