@@ -219,6 +219,14 @@ class Generated(unittest.TestCase):
             with self.subTest(str(manual.file)):
                 self.assertEqual(blocks.renewed(manual.text, blocks.MAKERS), manual.text, "renew it with scripts/docs --tables")
 
+    def test_which_law_when_is_what_the_tables_say(self):
+        text = (SOURCE / "algorithms/README.md").read_text(encoding="utf-8")
+        self.assertEqual(blocks.renewed(text, {"which_law": lambda _: blocks.which_law(text)}), text)
+        # Another table is another answer.
+        worse = text.replace("| `proxy` | 0.0831 |", "| `proxy` | 83.1 |")
+        self.assertNotEqual(text, worse)
+        self.assertNotIn("height: `proxy`", blocks.which_law(worse))
+
     def test_a_block_without_end_is_refused(self):
         with self.assertRaises(blocks.BlockError):
             blocks.renewed("<!-- generated: verdicts -->\n| a |\n", blocks.MAKERS)
