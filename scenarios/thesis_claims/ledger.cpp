@@ -202,9 +202,9 @@ std::string ledger_headline(const Json& claims) {
     }
   }
   std::string text = fmt::format(
-      "Of {} verdicts on claims of the thesis, {} would survive another reasonable reading: most samples of the choices on "
-      "record have them, too. ",
-      all, survive);
+      "Of {} verdicts on claims of the thesis, {} of the {} sampled would survive another reasonable reading: most samples "
+      "of the choices on record have them, too. ",
+      all, survive, survive + changes);
   if (!changed.empty()) text += fmt::format("{} would not: {}. ", changes, changed);
   text += fmt::format("{} depend on no recorded choice; {} are about times or cannot be simulated", untouched, other);
   return text + (waiting > 0 ? fmt::format("; {} have not been sampled yet.", waiting) : ".");

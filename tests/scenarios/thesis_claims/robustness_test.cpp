@@ -220,7 +220,7 @@ TEST(LedgerHeadline, CountsVerdictsThatAnotherReadingLeaves) {
                        entry("C", "reproduced", nullptr, false), entry("D", "reproduced", nullptr), ours};
   EXPECT_EQ(
       ledger_headline(claims),
-      "Of 4 verdicts on claims of the thesis, 1 would survive another reasonable reading: most samples of the choices "
+      "Of 4 verdicts on claims of the thesis, 1 of the 2 sampled would survive another reasonable reading: most samples of the choices "
       "on record have them, too. 1 would not: B (most samples: refuted; recorded: reproduced). 1 "
       "depend on no recorded choice; 0 are about times or cannot be simulated; 1 have not been sampled yet.");
 }
