@@ -454,6 +454,9 @@ TEST(ClaimRules, F2Tandpasta) {
 MeasuredCase rate(std::vector<double> original, std::vector<double> shaped) {
   return {"success rate", {{"original", std::move(original)}, {"shaped", std::move(shaped)}}};
 }
+MeasuredCase time(std::vector<double> original, std::vector<double> shaped) {
+  return {"completion time", {{"original", std::move(original)}, {"shaped", std::move(shaped)}}};
+}
 MeasuredCase speed(std::vector<double> original, std::vector<double> shaped) {
   return {"speed", {{"original", std::move(original)}, {"shaped", std::move(shaped)}}};
 }
@@ -465,18 +468,29 @@ TEST(ClaimRules, D1ToD4Experiments) {
   const MeasuredCase worse = rate({0.9, 1.0, 1.0}, {0.2, 0.3, 0.4}), far = rate({0.6, 0.65, 0.7}, {0.9, 1.0, 1.0});
   const MeasuredCase slower = speed({9e-3, 8e-3, 8.5e-3}, {2e-3, 2e-3, 2e-3});
   const MeasuredCase faster = speed({1, 1.1, 0.9}, {2, 2, 2});
-  expect_verdict("D1", Measured{better, slower}, Verdict::reproduced);
-  expect_verdict("D1", Measured{better, faster}, Verdict::in_kind);
-  expect_verdict("D1", Measured{far, slower}, Verdict::in_kind);
-  expect_verdict("D1", Measured{alike, slower}, Verdict::not_reproduced);
-  expect_verdict("D1", Measured{worse, slower}, Verdict::not_reproduced);
+  const auto side = [](Measured measured) {
+    measured.front().values["reached_at"] = {0.32e-3};
+    measured.front().values["wall_at"] = {0.5e-3};
+    return measured;
+  };
+  expect_verdict("D1", side({better, slower}), Verdict::reproduced);
+  expect_verdict("D1", side({better, faster}), Verdict::in_kind);
+  expect_verdict("D1", side({far, slower}), Verdict::in_kind);
+  expect_verdict("D1", side({alike, slower}), Verdict::not_reproduced);
+  expect_verdict("D1", side({worse, slower}), Verdict::not_reproduced);
   expect_verdict("D2", Measured{better}, Verdict::not_reproduced);
   expect_verdict("D2", Measured{alike}, Verdict::reproduced);
   // Both would be printed as 0.002: no difference, though it is significant; and one that would not.
   expect_verdict("D2", Measured{alike, speed({1.6e-3, 1.7e-3, 1.65e-3}, {2.1e-3, 2.2e-3, 2.15e-3})},
                  Verdict::reproduced);
   expect_verdict("D2", Measured{alike, speed({1.6e-3, 1.7e-3, 1.65e-3}, {3.1e-3, 3.2e-3, 3.15e-3})}, Verdict::in_kind);
+  // Completion times of D2: 6.09 ± 0.92 and 6.47 ± 1.17 s.
+  expect_verdict("D2", Measured{alike, time({5, 5.5, 6}, {5.5, 5, 6})}, Verdict::reproduced);
+  expect_verdict("D2", Measured{alike, time({3.6, 3.7, 3.8}, {3.8, 3.6, 3.7})}, Verdict::in_kind);
   expect_verdict("D4", Measured{better, slower}, Verdict::reproduced);
+  // The rate of D3 is printed as 1.0: its last digit is a tenth.
+  expect_verdict("D3", Measured{rate({0.0, 0.0, 0.1}, {1.0, 1.0, 0.9}), slower}, Verdict::reproduced);
+  expect_verdict("D3", Measured{rate({0.0, 0.0, 0.1}, {0.7, 0.7, 0.7}), slower}, Verdict::in_kind);
 }
 
 TEST(ClaimRules, D6Thresholds) {
