@@ -219,8 +219,7 @@ SubjectSample read_row(std::string_view text) {
 std::string definition(const SubjectsPlan& plan) {
   const Provenance p = provenance();
   if (p.commit == "unknown" || p.commit.ends_with("-dirty")) return "";
-  Json content = {
-      {"table", header()}, {"values", plan.values}, {"program", {p.commit, p.compiler, p.build_type, p.flags}}};
+  Json content = {{"table", header()}, {"seed", kSeed}, {"program", {p.commit, p.compiler, p.build_type, p.flags}}};
   for (const char* algorithm : kAlgorithms) {
     for (const char* task : {"vertical", "rotational"}) {
       const LoadedScenario loaded = plan.evidence.load(scenario_of(task, algorithm));

@@ -76,7 +76,7 @@ def make_results(directory):
     for task in ("vertical", "rotational"):
         for algorithm in ("original_averaging", "shaped_stiffness"):
             hapbench(*("sweep", f"{task}_peg_in_hole_{algorithm}", "--vary=hand.task.threshold.cutoff_Hz=null,30"),
-                     *("--vary=hand.task.threshold.grace_s=0,0.1", "--set=hand.trials=1", "--set=hand.task.time_limit_s=1"),
+                     *("--vary=hand.task.threshold.grace_s=0,0.01", "--set=hand.trials=1", "--set=hand.task.time_limit_s=1"),
                      *("--set=hand.task.targets_per_place=1", "--out", directory / "threshold" / f"{task}_{algorithm}"))
     shutil.copytree(RECORD.parent, directory / "subjects", ignore=lambda _, names: [n for n in names if "subjects" not in n])
     (directory / "performance.json").write_text(json.dumps(performance()))

@@ -14,7 +14,7 @@ SWEEP = "tilt_sweep_shaped_stiffness"
 # The same sweep and the wedge, under every algorithm.
 PEG, WEDGE = "stiffness/peg", "stiffness/wedge"
 TITLES = {"summation": "sum", "mean": "mean", "virtual_coupling": "coupling", "shaped_stiffness": "shaping"}
-DIRECTIONS = np.linspace(0, 2 * np.pi, 81)
+DIRECTIONS = np.linspace(0, 2 * np.pi, 73)
 # Half of a panel's side and the marks on it, in units of K.
 REACH, TICKS = 1.6, (-1, 0, 1)
 SUMMATION_REACH, SUMMATION_TICKS = 45, (-40, 0, 40)

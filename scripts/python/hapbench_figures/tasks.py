@@ -60,7 +60,7 @@ def loop_load(ax, results, task, duration):
         return None
     load = ax.twinx()
     time = (np.arange(len(medians)) + 0.5) * duration / len(medians)
-    load.plot(time, 100 * medians / PERIOD, ".", color=style.BLACK, ms=1.8)
+    load.plot(*thin(time, 100 * medians / PERIOD), ".", color=style.BLACK, ms=1.8)
     # Above the points, which share the panel.
     load.set(yscale="log", ylim=(1e-5, 2), yticks=[0.1, 1])
     load.set_yticklabels(["0.1", "1"])
