@@ -25,6 +25,10 @@ void add_face(std::vector<SurfacePoint>& points, const Vec3& a, const Vec3& b, c
   }
 }
 
+double length(double a, double b) {
+  return std::sqrt(a * a + b * b);
+}
+
 /// Length of a cone's wall from apex to mouth [m].
 double slant(const ConicalHole& cone) {
   return cone.depth / std::cos(cone.half_angle);
@@ -119,8 +123,31 @@ std::vector<SurfacePoint> surface_points(const ConicalHole& cone) {
   return points;
 }
 
+double signed_distance(const Plane&, const Vec3& q) {
+  return q.z();
+}
+
+double signed_distance(const Slot& slot, const Vec3& q) {
+  return slot.gap / 2 - std::abs(q.x());
+}
+
+double signed_distance(const Hole2d& hole, const Vec3& q) {
+  const double out = std::abs(q.x()) - hole.width / 2, below = -hole.depth - q.y();
+  if (q.y() >= 0.0) return out >= 0.0 ? q.y() : length(out, q.y());
+  if (out < 0.0 && below < 0.0) return -std::max(out, below);
+  const double to_hole = length(std::max(out, 0.0), std::max(below, 0.0));
+  return -(out >= 0.0 ? std::min(-q.y(), to_hole) : to_hole);
+}
+
+double signed_distance(const ConicalHole& cone, const Vec3& q) {
+  const double sine = std::sin(cone.half_angle), cosine = std::cos(cone.half_angle);
+  const double rho = length(q.x(), q.y()), z = q.z() + cone.depth;  // from the apex
+  const double inwards = sine * z - cosine * rho;
+  const double along = sine * rho + cosine * z, beyond = along - std::clamp(along, 0.0, slant(cone));
+  return std::copysign(length(inwards, beyond), inwards);
+}
+
 double signed_distance(const BlockWithHole& block, const Vec3& q) {
-  const auto length = [](double a, double b) { return std::sqrt(a * a + b * b); };
   const double R = block.hole_diameter / 2, H = block.hole_depth, z = q.z();
   // Distances beyond the faces; negative between them.
   const double x = std::abs(q.x()) - block.size.x() / 2, y = std::abs(q.y()) - block.size.y() / 2;

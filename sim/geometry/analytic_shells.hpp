@@ -55,6 +55,15 @@ std::vector<SurfacePoint> surface_points(const Plane& plane);
 std::vector<SurfacePoint> surface_points(const Slot& slot);
 std::vector<SurfacePoint> surface_points(const ConicalHole& cone);
 
+// Signed distances of the true surfaces [m], negative in the material: below the plane, behind the faces of the slot,
+// below the top of the planar hole and outside the hole, outside the cone. Exact; beyond the borders of these surfaces
+// (solid.hpp) they go on as flat as they were, the cone's as the distance to its mouth.
+
+double signed_distance(const Plane& plane, const Vec3& point);
+double signed_distance(const Slot& slot, const Vec3& point);
+double signed_distance(const Hole2d& hole, const Vec3& point);
+double signed_distance(const ConicalHole& cone, const Vec3& point);
+
 /// The validation object of thesis 3.2: a cuboid centred at x = y = 0 with its top face in z = 0, and a round blind
 /// hole down its middle.
 struct BlockWithHole {

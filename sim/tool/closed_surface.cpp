@@ -16,10 +16,6 @@ namespace {
 /// A closed surface that encloses less than this fraction of its bounding cube is flat up to rounding.
 constexpr double kFlat = 1e-12;
 
-bool before(const Vec3& a, const Vec3& b) {
-  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-}
-
 struct Edge {
   std::uint32_t low, high;  ///< its ends
   int direction;            ///< 1 from low to high
@@ -28,14 +24,8 @@ struct Edge {
 
 }  // namespace
 
-ClosedSurface::ClosedSurface(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles) {
-  weld(vertices, triangles);
-  if (triangles_.empty()) throw std::invalid_argument("the mesh has no triangles");
-  check_edges();
-  measure();
-}
-
-void ClosedSurface::weld(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles) {
+WeldedSurface welded(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles) {
+  WeldedSurface surface;
   std::vector<std::uint32_t> order(vertices.size()), place(vertices.size());
   std::iota(order.begin(), order.end(), 0u);
   for (std::uint32_t i : order) {
@@ -44,17 +34,27 @@ void ClosedSurface::weld(std::span<const Vec3> vertices, std::span<const Triangl
   }
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return before(vertices[a], vertices[b]); });
   for (const std::uint32_t i : order) {
-    if (vertices_.empty() || vertices_.back() != vertices[i]) vertices_.push_back(vertices[i]);
-    place[i] = static_cast<std::uint32_t>(vertices_.size() - 1);
+    if (surface.vertices.empty() || surface.vertices.back() != vertices[i]) surface.vertices.push_back(vertices[i]);
+    place[i] = static_cast<std::uint32_t>(surface.vertices.size() - 1);
   }
   for (const TriangleCorners& t : triangles) {
     if (std::max({t[0], t[1], t[2]}) >= vertices.size()) {
       throw std::invalid_argument("a triangle of the mesh names a vertex that it has not");
     }
-    const TriangleCorners welded{place[t[0]], place[t[1]], place[t[2]]};
-    const bool degenerate = welded[0] == welded[1] || welded[1] == welded[2] || welded[2] == welded[0];
-    if (!degenerate) triangles_.push_back(welded);
+    const TriangleCorners corners{place[t[0]], place[t[1]], place[t[2]]};
+    const bool degenerate = corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
+    if (!degenerate) surface.triangles.push_back(corners);
   }
+  return surface;
+}
+
+ClosedSurface::ClosedSurface(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles) {
+  auto [welded_vertices, welded_triangles] = welded(vertices, triangles);
+  vertices_ = std::move(welded_vertices);
+  triangles_ = std::move(welded_triangles);
+  if (triangles_.empty()) throw std::invalid_argument("the mesh has no triangles");
+  check_edges();
+  measure();
 }
 
 void ClosedSurface::check_edges() const {
@@ -113,39 +113,6 @@ void ClosedSurface::measure() {
 
 namespace {
 
-/// A crossing of the ray and a triangle, at which the winding number of the points above changes by `step`.
-struct Crossing {
-  double z;
-  int step;
-};
-
-/// Twice the area of the triangle of the edge from a to b and the ray at (x, y), positive to the left of the edge. The
-/// opposite edge gives exactly the negative number.
-double side_of_edge(const Vec3& a, const Vec3& b, double x, double y) {
-  const auto area = [x, y](const Vec3& from, const Vec3& to) {
-    return (to.x() - from.x()) * (y - from.y()) - (to.y() - from.y()) * (x - from.x());
-  };
-  return before(a, b) ? area(a, b) : -area(b, a);
-}
-
-/// Tests whether the ray passes to the left of the edge. A ray on the edge counts as moved slightly in x, and far less
-/// in y.
-bool left_of_edge(double side, const Vec3& a, const Vec3& b) {
-  if (side != 0.0) return side > 0.0;
-  return a.y() != b.y() ? b.y() < a.y() : b.x() > a.x();
-}
-
-std::optional<Crossing> crossing(const std::array<Vec3, 3>& t, double x, double y) {
-  const double a = side_of_edge(t[1], t[2], x, y), b = side_of_edge(t[2], t[0], x, y),
-               c = side_of_edge(t[0], t[1], x, y);
-  const bool left = left_of_edge(a, t[1], t[2]);
-  if (left_of_edge(b, t[2], t[0]) != left || left_of_edge(c, t[0], t[1]) != left) return {};
-  const double whole = a + b + c;
-  const double z = whole != 0.0 ? (a * t[0].z() + b * t[1].z() + c * t[2].z()) / whole : t[0].z();
-  // Seen from above, triangles that face up are counter-clockwise; there the ray leaves the solid.
-  return Crossing{z, left ? -1 : 1};
-}
-
 /// The range of nodes of a row within [low, high].
 std::pair<std::size_t, std::size_t> nodes_within(const GridNodes& nodes, int axis, double low, double high) {
   // One more on each side covers the rounding of the division.
@@ -175,7 +142,7 @@ std::vector<std::int8_t> winding_numbers(const ClosedSurface& surface, const Gri
       const auto [low, high] = std::minmax({corners[0].y(), corners[1].y(), corners[2].y()});
       const auto [first, last] = nodes_within(nodes, 1, low, high);
       for (std::size_t j = first; j < last; ++j) {
-        if (const auto met = crossing(corners, x, nodes.coordinate(1, j))) columns[j].push_back(*met);
+        if (const auto met = vertical_crossing(corners, x, nodes.coordinate(1, j))) columns[j].push_back(*met);
       }
     }
     for (std::size_t j = 0; j < nodes.count[1]; ++j) {

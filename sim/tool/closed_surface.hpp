@@ -7,10 +7,17 @@
 #include <vector>
 
 #include "sim/core/types.hpp"
+#include "sim/geometry/triangle_tree.hpp"
 
 namespace hapbench {
 
-using TriangleCorners = std::array<std::uint32_t, 3>;  ///< indices of its vertices
+/// Triangles whose vertices at the same place are one; those with two equal corners are left out.
+struct WeldedSurface {
+  std::vector<Vec3> vertices;
+  std::vector<TriangleCorners> triangles;
+};
+/// Throws std::invalid_argument if an index or a coordinate is invalid. O(n log n).
+WeldedSurface welded(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles);
 
 /// A surface that bounds a solid: triangles counter-clockwise from outside, which run along every edge equally often in
 /// either direction.
@@ -32,7 +39,6 @@ class ClosedSurface {
   double volume() const noexcept { return volume_; }  ///< [m^3], > 0
 
  private:
-  void weld(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles);
   void check_edges() const;
   void measure();
 
@@ -61,11 +67,10 @@ struct GridNodes {
 /// Winding number of the surface around each node: 0 outside, 1 inside a sound solid, concave or not; other values
 /// where parts overlap or are inside out.
 ///
-/// For a closed surface it is the sum of the signed crossings of any ray, here the ray from below along z, so one pass
-/// over each column of nodes suffices, without normals of edges and vertices. The signs of three edges decide whether a
-/// ray meets a triangle; they are computed identically for both triangles of an edge, and a ray through an edge counts
-/// as one slightly beside it. Runs on oneTBB's threads; the result does not depend on their number. Cost: triangles
-/// times the columns they cover, plus the nodes.
+/// For a closed surface it is the sum of the signed crossings of any ray, here the ray from below along z
+/// (vertical_crossing), so one pass over each column of nodes suffices, without normals of edges and vertices. Runs on
+/// oneTBB's threads; the result does not depend on their number. Cost: triangles times the columns they cover, plus the
+/// nodes.
 std::vector<std::int8_t> winding_numbers(const ClosedSurface& surface, const GridNodes& nodes);
 
 }  // namespace hapbench

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "sim/core/aligned.hpp"
-#include "sim/tool/triangle_tree.hpp"
+#include "sim/geometry/triangle_tree.hpp"
 
 namespace hapbench {
 namespace {
@@ -263,7 +263,7 @@ SignedDistanceGrid::SignedDistanceGrid(const ClosedSurface& surface, double spac
       volume_(surface.volume()),
       vertices_(surface.vertices()),
       hull_(corners_of(surface)) {
-  const TriangleTree tree(surface);
+  const TriangleTree tree(surface.vertices(), surface.triangles());
   thin_share_ = hapbench::thin_share(surface, tree, 2.0 * spacing);
   fill(surface, tree);
   classify();

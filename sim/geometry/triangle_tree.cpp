@@ -1,4 +1,4 @@
-#include "sim/tool/triangle_tree.hpp"
+#include "sim/geometry/triangle_tree.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -42,9 +42,61 @@ Pack squared_distance_to_box(const Vec3& low, const Vec3& high, const Packs& poi
   return dx * dx + dy * dy + dz * dz;
 }
 
+struct PlaceOfTriangle {
+  Vec3 from_a;
+  unsigned corners;  ///< as in TriangleTree::Nearest
+};
+
+/// The place of a triangle nearest to p, a point relative to its corner a, by the regions of the plane around it
+/// (C. Ericson, Real-Time Collision Detection, 2005, 5.1.5). A triangle without an area is nearest at a corner or side.
+PlaceOfTriangle nearest_place(const Vec3& p, const Vec3& ab, const Vec3& ac, double ab2, double abac, double ac2) {
+  const double along_ab = p.dot(ab), along_ac = p.dot(ac);
+  if (along_ab <= 0.0 && along_ac <= 0.0) return {Vec3::Zero(), 1u};
+  const double b_ab = along_ab - ab2, b_ac = along_ac - abac;  // the same from corner b
+  if (b_ab >= 0.0 && b_ac <= b_ab) return {ab, 2u};
+  const double c_ab = along_ab - abac, c_ac = along_ac - ac2;  // and from corner c
+  if (c_ac >= 0.0 && c_ab <= c_ac) return {ac, 4u};
+  const double at_c = along_ab * b_ac - b_ab * along_ac;
+  if (at_c <= 0.0 && along_ab >= 0.0 && b_ab <= 0.0) return {along_ab / ab2 * ab, 3u};
+  const double at_b = c_ab * along_ac - along_ab * c_ac;
+  if (at_b <= 0.0 && along_ac >= 0.0 && c_ac <= 0.0) return {along_ac / ac2 * ac, 5u};
+  const double at_a = b_ab * c_ac - c_ab * b_ac;
+  const double to_c = b_ac - b_ab, to_b = c_ab - c_ac;
+  if (at_a <= 0.0 && to_c >= 0.0 && to_b >= 0.0) return {ab + to_c / (to_c + to_b) * (ac - ab), 6u};
+  const double whole = at_a + at_b + at_c;
+  return {at_b / whole * ab + at_c / whole * ac, 7u};
+}
+
+/// Twice the area of the triangle of the edge from a to b and the line at (x, y), positive to the left of the edge. The
+/// opposite edge gives exactly the negative number.
+double side_of_edge(const Vec3& a, const Vec3& b, double x, double y) {
+  const auto area = [x, y](const Vec3& from, const Vec3& to) {
+    return (to.x() - from.x()) * (y - from.y()) - (to.y() - from.y()) * (x - from.x());
+  };
+  return before(a, b) ? area(a, b) : -area(b, a);
+}
+
+/// Tests whether the line passes to the left of the edge. A line on the edge counts as moved slightly in x, and far
+/// less in y.
+bool left_of_edge(double side, const Vec3& a, const Vec3& b) {
+  if (side != 0.0) return side > 0.0;
+  return a.y() != b.y() ? b.y() < a.y() : b.x() > a.x();
+}
+
 }  // namespace
 
-TriangleTree::Triangle::Triangle(const Vec3& a_, const Vec3& b, const Vec3& c)
+std::optional<Crossing> vertical_crossing(const std::array<Vec3, 3>& t, double x, double y) {
+  const double a = side_of_edge(t[1], t[2], x, y), b = side_of_edge(t[2], t[0], x, y),
+               c = side_of_edge(t[0], t[1], x, y);
+  const bool left = left_of_edge(a, t[1], t[2]);
+  if (left_of_edge(b, t[2], t[0]) != left || left_of_edge(c, t[0], t[1]) != left) return {};
+  const double whole = a + b + c;
+  const double z = whole != 0.0 ? (a * t[0].z() + b * t[1].z() + c * t[2].z()) / whole : t[0].z();
+  // Seen from above, triangles that face up are counter-clockwise; there an upward line leaves the solid.
+  return Crossing{z, left ? -1 : 1};
+}
+
+TriangleTree::Triangle::Triangle(std::uint32_t number_, const Vec3& a_, const Vec3& b, const Vec3& c)
     : a(a_),
       ab(b - a_),
       ac(c - a_),
@@ -54,17 +106,16 @@ TriangleTree::Triangle::Triangle(const Vec3& a_, const Vec3& b, const Vec3& c)
       ac2(ac.squaredNorm()),
       per_ab2(1.0 / ab2),
       per_bc2(1.0 / (c - b).squaredNorm()),
-      per_ac2(1.0 / ac2) {
+      per_ac2(1.0 / ac2),
+      number(number_) {
   const double area2 = ab2 * ac2 - abac * abac;
   per_area = area2 > 0.0 ? 1.0 / area2 : std::numeric_limits<double>::quiet_NaN();
 }
 
-TriangleTree::TriangleTree(const ClosedSurface& surface) {
-  triangles_.reserve(surface.triangles().size());
-  for (const TriangleCorners& t : surface.triangles()) {
-    const auto [a, b, c] = surface.corners(t);
-    triangles_.emplace_back(a, b, c);
-  }
+TriangleTree::TriangleTree(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles) {
+  triangles_.reserve(triangles.size());
+  for (const auto& [a, b, c] : triangles)
+    triangles_.emplace_back(static_cast<std::uint32_t>(triangles_.size()), vertices[a], vertices[b], vertices[c]);
   nodes_.push_back({Vec3::Zero(), Vec3::Zero(), 0, static_cast<std::uint32_t>(triangles_.size())});
   // Visits appended children, too.
   for (std::size_t node = 0; node < nodes_.size(); ++node) split(node);
@@ -133,6 +184,62 @@ void TriangleTree::lower_to_squared_distances(const double* x, const double* y, 
     stack[size++] = near;
   }
   simd::store(best, distances2);
+}
+
+std::optional<TriangleTree::Nearest> TriangleTree::nearest(const Vec3& point, double at_most) const noexcept {
+  struct Waiting {
+    double distance2;
+    std::uint32_t node;
+  };
+  std::array<Waiting, kStack> stack;
+  std::size_t size = 0;
+  Nearest best{at_most * at_most, 0, 0, Vec3::Zero()};
+  const auto to_box = [&](std::uint32_t node) {
+    const Vec3 inside = point.cwiseMax(nodes_[node].low).cwiseMin(nodes_[node].high);
+    return Waiting{(point - inside).squaredNorm(), node};
+  };
+  stack[size++] = to_box(0);
+  while (size > 0) {
+    const Waiting next = stack[--size];
+    if (next.distance2 >= best.distance2) continue;
+    const Node& node = nodes_[next.node];
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const Triangle& t = triangles_[i];
+      const PlaceOfTriangle place = nearest_place(point - t.a, t.ab, t.ac, t.ab2, t.abac, t.ac2);
+      const double distance2 = (point - t.a - place.from_a).squaredNorm();
+      if (distance2 < best.distance2) best = {distance2, t.number, place.corners, t.a + place.from_a};
+    }
+    if (node.count > 0) continue;
+    Waiting near = to_box(node.first), far = to_box(node.first + 1);
+    if (far.distance2 < near.distance2) std::swap(near, far);
+    stack[size++] = far;
+    stack[size++] = near;
+  }
+  if (best.corners == 0) return std::nullopt;
+  return best;
+}
+
+int TriangleTree::winding_number(const Vec3& point, std::span<const Vec3> vertices,
+                                 std::span<const TriangleCorners> triangles) const noexcept {
+  std::array<std::uint32_t, kStack> stack;
+  std::size_t size = 0;
+  stack[size++] = 0;
+  int above = 0;
+  while (size > 0) {
+    const Node& node = nodes_[stack[--size]];
+    const bool beside = (point.head<2>().array() < node.low.head<2>().array()).any() ||
+                        (point.head<2>().array() > node.high.head<2>().array()).any();
+    if (beside || point.z() >= node.high.z()) continue;
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const auto& [a, b, c] = triangles[triangles_[i].number];
+      const auto met = vertical_crossing({vertices[a], vertices[b], vertices[c]}, point.x(), point.y());
+      if (met && met->z > point.z()) above += met->step;
+    }
+    if (node.count > 0) continue;
+    stack[size++] = node.first;
+    stack[size++] = node.first + 1;
+  }
+  return -above;
 }
 
 double TriangleTree::first_hit(const Vec3& origin, const Vec3& direction, double from) const noexcept {

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "sim/contact/contact_buffer.hpp"
+#include "sim/geometry/solid.hpp"
+#include "sim/tool/tool_shape.hpp"
+
+namespace hapbench {
+
+/// How deep a tool is in a solid: the largest distance below its surface of any point of the tool, max(0, -phi) over
+/// the tool's body. Not the depth of a contact, which ends at the tool's half width and is 0 for a tool that is inside
+/// as a whole.
+///
+/// phi changes by at most the way between two points, so in a box of half diagonal R about c nothing is deeper than
+/// R - phi(c). Boxes that the tool meets are halved until none can hold a point deeper by more than the tolerance than
+/// the deepest one known. That one is improved from where it was found: -grad phi leads to the tool's foremost place in
+/// this direction, from which the way back is halved until the place is deeper; it begins at the tip centre. So the
+/// answer is the exact depth of some point of the tool, as a rule the deepest; none is deeper by more than the
+/// tolerance.
+///
+/// Allocates in the constructor only. Some 100 to 1000 distances.
+class InsideSearch {
+ public:
+  /// Both must outlive the search.
+  InsideSearch(const ToolShape& tool, const Solid& solid);
+
+  /// The depth [m]. None where the tip centre or the points that may be the deepest lie beyond the border of an open
+  /// surface. `known`: a depth that is known of another pose, which is the answer unless the tool is deeper.
+  std::optional<double> depth(const ToolPose& pose, double known = 0.0) noexcept;
+
+  /// 2 % of the tool's half width [m], and of the depth itself.
+  static constexpr double kTolerance = 0.02;
+  double tolerance(double depth) const noexcept { return kTolerance * (tool_.half_width() + depth); }
+
+ private:
+  struct Cell {
+    Vec3 centre, half;
+    double bound;  ///< of the depth in the cell [m]
+  };
+  void look(const ToolPose& pose, const Cell* parents, std::size_t count) noexcept;
+  bool into_tool(const ToolPose& pose, Vec3& point) noexcept;
+  void improve(const ToolPose& pose, Vec3 place) noexcept;
+
+  const ToolShape& tool_;
+  const Solid& solid_;
+  ContactBuffer points_;  ///< what the tool is asked about
+  ContactBuffer one_;
+  AlignedDoubles x_, y_, z_;  ///< an answer of the tool
+  std::vector<Cell> cells_;   ///< that may hold the deepest point, as a stack
+  double best_ = 0.0;
+  bool beyond_border_ = false;  ///< a point there may be deeper
+};
+
+}  // namespace hapbench

@@ -1,0 +1,277 @@
+#include "sim/geometry/solid.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include "sim/tool/closed_surface.hpp"
+
+namespace hapbench {
+
+Vec3 Solid::gradient(const Vec3& point, double step) const noexcept {
+  Vec3 gradient;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 aside = step * Vec3::Unit(k);
+    gradient[k] = at(point + aside).value - at(point - aside).value;
+  }
+  const double length = gradient.norm();
+  return length > 0.0 ? Vec3(gradient / length) : Vec3(Vec3::UnitZ());
+}
+
+namespace {
+
+constexpr double kFar = 1e3;  ///< beyond every scene [m]
+
+template <class Shape>
+class ShapeSolid final : public Solid {
+ public:
+  ShapeSolid(const Shape& shape, const Box& region) : Solid(region), shape_(shape) {}
+  SurfaceDistance at(const Vec3& q, double) const noexcept override {
+    return {signed_distance(shape_, q), is_known(q)};
+  }
+  double deepest_in(const Box& box) const noexcept override {
+    if constexpr (std::is_same_v<Shape, Slot>)
+      return std::max(-box.min.x(), box.max.x()) - shape_.gap / 2;
+    else if constexpr (std::is_same_v<Shape, ConicalHole>)
+      return Solid::deepest_in(box);
+    else  // below the flat top
+      return -(std::is_same_v<Shape, Hole2d> ? box.min.y() : box.min.z());
+  }
+
+ private:
+  bool is_known(const Vec3& q) const noexcept {
+    if constexpr (std::is_same_v<Shape, BlockWithHole>) return true;
+    if constexpr (std::is_same_v<Shape, ConicalHole>)
+      return q.head<2>().norm() <= shape_.depth * std::tan(shape_.half_angle);
+    const Vec3 low = region().min, high = region().max;
+    return q.x() >= low.x() && q.x() <= high.x() && q.y() >= low.y() && q.y() <= high.y() && q.z() >= low.z() &&
+           (!std::is_same_v<Shape, Slot> || q.z() <= high.z());
+  }
+
+  Shape shape_;
+};
+
+}  // namespace
+
+std::unique_ptr<const Solid> make_solid(const Plane& plane) {
+  const double half = plane.size / 2;
+  return std::make_unique<ShapeSolid<Plane>>(plane, Box{{-half, -half, -kFar}, {half, half, 0.0}});
+}
+
+std::unique_ptr<const Solid> make_solid(const Slot& slot) {
+  const double half = slot.length / 2;
+  return std::make_unique<ShapeSolid<Slot>>(slot, Box{{-kFar, -half, -slot.depth}, {kFar, half, 0.0}});
+}
+
+std::unique_ptr<const Solid> make_solid(const Hole2d& hole) {
+  const double half = hole.width / 2 + hole.mouth;
+  return std::make_unique<ShapeSolid<Hole2d>>(hole, Box{{-half, -kFar, -kFar}, {half, kFar, kFar}});
+}
+
+std::unique_ptr<const Solid> make_solid(const ConicalHole& cone) {
+  const double radius = cone.depth * std::tan(cone.half_angle);
+  return std::make_unique<ShapeSolid<ConicalHole>>(cone, Box{{-radius, -radius, -kFar}, {radius, radius, 0.0}});
+}
+
+std::unique_ptr<const Solid> make_solid(const BlockWithHole& block) {
+  const Vec3 half = block.size / 2;
+  return std::make_unique<ShapeSolid<BlockWithHole>>(
+      block, Box{{-half.x(), -half.y(), -block.size.z()}, {half.x(), half.y(), 0.0}});
+}
+
+namespace {
+
+class MeshSolid final : public Solid {
+ public:
+  MeshSolid(WeldedSurface surface, const Box& box)
+      : Solid(box), surface_(std::move(surface)), tree_(surface_.vertices, surface_.triangles) {
+    const std::vector<Side> sides = sides_by_edge();
+    for_each_edge(sides, [this](std::span<const Side> edge) {
+      int sum = 0;
+      for (const Side& side : edge) sum += side.direction;
+      closed_ = closed_ && sum == 0;
+    });
+    if (closed_) return;
+    set_region({Vec3::Constant(-kFar), Vec3::Constant(kFar)});
+    find_borders(sides);
+  }
+
+  SurfaceDistance at(const Vec3& q, double at_most) const noexcept override {
+    auto nearest = tree_.nearest(q, (1.0 + 1e-9) * at_most + 1e-12);
+    if (!nearest) nearest = tree_.nearest(q, std::numeric_limits<double>::infinity());
+    if (!nearest) return {kFar, false};  // not finite
+    const double distance = std::sqrt(nearest->distance2);
+    if (closed_) {
+      const bool out = beyond(q) || tree_.winding_number(q, surface_.vertices, surface_.triangles) <= 0;
+      return {out ? distance : -distance};
+    }
+    const auto [n, is_border] = feature(*nearest);
+    return {std::copysign(distance, (q - nearest->place).dot(n)), !is_border};
+  }
+
+ private:
+  const Vec3& place(std::size_t triangle, std::size_t corner) const {
+    return surface_.vertices[surface_.triangles[triangle][corner]];
+  }
+  Vec3 normal(std::size_t t) const {
+    return (place(t, 1) - place(t, 0)).cross(place(t, 2) - place(t, 0)).stableNormalized();
+  }
+  bool beyond(const Vec3& q) const {
+    return (q.array() < region().min.array()).any() || (q.array() > region().max.array()).any();
+  }
+
+  /// A side of a triangle.
+  struct Side {
+    std::uint32_t low, high;  ///< its vertices
+    std::uint32_t triangle, corner;
+    int direction;  ///< 1 from low to high
+  };
+  std::vector<Side> sides_by_edge() const {
+    std::vector<Side> sides;
+    sides.reserve(3 * surface_.triangles.size());
+    for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t) {
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = surface_.triangles[t][k], b = surface_.triangles[t][(k + 1) % 3];
+        sides.push_back({std::min(a, b), std::max(a, b), t, k, a < b ? 1 : -1});
+      }
+    }
+    std::sort(sides.begin(), sides.end(),
+              [](const Side& a, const Side& b) { return std::pair(a.low, a.high) < std::pair(b.low, b.high); });
+    return sides;
+  }
+  template <class Use>
+  static void for_each_edge(std::span<const Side> sides, const Use& use) {
+    for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
+      for (end = i; end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high;) ++end;
+      use(sides.subspan(i, end - i));
+    }
+  }
+
+  /// Finds the edges that only one triangle has, and the normals of all edges and vertices.
+  void find_borders(std::span<const Side> sides) {
+    vertex_normals_.assign(surface_.vertices.size(), Vec3::Zero());
+    border_vertices_.assign(surface_.vertices.size(), false);
+    edge_normals_.resize(surface_.triangles.size());
+    at_border_.assign(surface_.triangles.size(), 0);
+    for_each_edge(sides, [this](std::span<const Side> edge) {
+      Vec3 n = Vec3::Zero();
+      for (const Side& side : edge) n += normal(side.triangle);
+      for (const Side& side : edge) edge_normals_[side.triangle][side.corner] = n;
+      if (edge.size() > 1) return;
+      at_border_[edge[0].triangle] |= static_cast<std::uint8_t>(1u << edge[0].corner);
+      border_vertices_[edge[0].low] = border_vertices_[edge[0].high] = true;
+    });
+    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 &a = place(t, k), b = place(t, (k + 1) % 3), c = place(t, (k + 2) % 3);
+        const double angle = std::atan2((b - a).cross(c - a).norm(), (b - a).dot(c - a));
+        vertex_normals_[surface_.triangles[t][k]] += angle * normal(t);
+      }
+    }
+  }
+
+  struct Feature {
+    Vec3 normal;  ///< of any length
+    bool is_border;
+  };
+  /// The face, edge or vertex on which a place lies. The side of the surface on which a point lies is that of the mean
+  /// normal there, weighted by angles (J. A. Baerentzen and H. Aanaes, IEEE Trans. Vis. Comput. Graph. 11, 2005).
+  Feature feature(const TriangleTree::Nearest& nearest) const {
+    const std::size_t t = nearest.triangle;
+    switch (nearest.corners) {
+      case 7u:
+        return {normal(t), false};
+      case 3u:
+        return edge(t, 0);
+      case 6u:
+        return edge(t, 1);
+      case 5u:
+        return edge(t, 2);
+      default:
+        break;
+    }
+    const std::uint32_t v = surface_.triangles[t][nearest.corners >> 1u];
+    return {vertex_normals_[v], border_vertices_[v]};
+  }
+  Feature edge(std::size_t t, std::size_t k) const { return {edge_normals_[t][k], ((at_border_[t] >> k) & 1u) != 0}; }
+
+  WeldedSurface surface_;
+  TriangleTree tree_;
+  bool closed_ = true;
+  // Of an open surface:
+  std::vector<Vec3> vertex_normals_;
+  std::vector<bool> border_vertices_;
+  std::vector<std::uint8_t> at_border_;            ///< bit k of a triangle: its edge from corner k is the border
+  std::vector<std::array<Vec3, 3>> edge_normals_;  ///< sums over the triangles of each edge
+};
+
+class PointSolid final : public Solid {
+ public:
+  explicit PointSolid(const std::vector<SurfacePoint>& points)
+      : Solid({Vec3::Constant(-kFar), Vec3::Constant(kFar)}),
+        points_(points),
+        tree_(places(points), single_corners(points.size())),
+        spacing_(2.0 * usual_spacing()) {}
+
+  SurfaceDistance at(const Vec3& q, double at_most) const noexcept override {
+    auto nearest = tree_.nearest(q, (1.0 + 1e-9) * at_most + spacing_);
+    if (!nearest) nearest = tree_.nearest(q, std::numeric_limits<double>::infinity());
+    if (!nearest) return {kFar, false};  // not finite
+    const auto& [p, n] = points_[nearest->triangle];
+    const double h = n.dot(q - p);
+    const Vec3 along = q - p - h * n;
+    const double aside = along.norm(), beyond = std::max(0.0, aside * aside - spacing_ * spacing_);
+    const bool goes_on = beyond == 0.0 || tree_.nearest(p + 2.0 * spacing_ / aside * along, 1.5 * spacing_).has_value();
+    return {std::copysign(std::sqrt(h * h + beyond), h), goes_on};
+  }
+
+ private:
+  static std::vector<Vec3> places(const std::vector<SurfacePoint>& points) {
+    std::vector<Vec3> places;
+    for (const SurfacePoint& point : points) places.push_back(point.position);
+    return places;
+  }
+  static std::vector<TriangleCorners> single_corners(std::size_t count) {
+    std::vector<TriangleCorners> corners;
+    for (std::uint32_t i = 0; i < count; ++i) corners.push_back({i, i, i});
+    return corners;
+  }
+  /// The median distance of some points from their nearest neighbours.
+  double usual_spacing() const {
+    constexpr std::size_t kSome = 32;
+    std::vector<double> distances;
+    for (std::size_t i = 0; i < points_.size(); i += points_.size() / kSome + 1) {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (std::size_t j = 0; j < points_.size(); ++j) {
+        const double d = (points_[j].position - points_[i].position).squaredNorm();
+        if (d > 0.0) nearest = std::min(nearest, d);
+      }
+      if (std::isfinite(nearest)) distances.push_back(std::sqrt(nearest));
+    }
+    if (distances.empty()) return 0.0;
+    std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2),
+                     distances.end());
+    return distances[distances.size() / 2];
+  }
+
+  std::vector<SurfacePoint> points_;
+  TriangleTree tree_;
+  double spacing_;
+};
+
+}  // namespace
+
+std::unique_ptr<const Solid> make_solid(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles) {
+  WeldedSurface surface = welded(vertices, triangles);
+  Box box{surface.vertices.front(), surface.vertices.front()};
+  for (const Vec3& v : surface.vertices) box = {box.min.cwiseMin(v), box.max.cwiseMax(v)};
+  return std::make_unique<MeshSolid>(std::move(surface), box);
+}
+
+std::unique_ptr<const Solid> make_solid(const std::vector<SurfacePoint>& points) {
+  return std::make_unique<PointSolid>(points);
+}
+
+}  // namespace hapbench
