@@ -99,6 +99,22 @@ std::optional<HighPass> vibration_filter(double dt) {
   return HighPass(kVibrationCutoff, sampling_rate);
 }
 
+void LastQuarterVibration::add(std::uint64_t step, const Vec3& velocity) noexcept {
+  if (!high_pass_ || steps_ == 0) return;
+  if (const std::uint64_t quarter = step * 4 / steps_; quarter != quarter_) {
+    quarter_ = quarter;
+    rows_ = 0;
+    sum_ = 0.0;
+  }
+  if (step == 0) high_pass_->settle_at(velocity);
+  ++rows_;
+  sum_ += high_pass_->filter(velocity).squaredNorm();
+}
+
+std::optional<double> LastQuarterVibration::value() const noexcept {
+  return if_any(rows_ > 0, std::sqrt(sum_ / static_cast<double>(rows_)));
+}
+
 ContactForceObserver::ContactForceObserver(double dt, const SettlingRule& rule)
     : dt_(dt), settling_rows_(rows_in(rule.time, dt)), rows_away_(settling_rows_) {
   assert(dt > 0.0);

@@ -51,6 +51,22 @@ inline constexpr double kVibrationCutoff = 30.0;
 /// or less.
 std::optional<HighPass> vibration_filter(double dt);
 
+/// Root mean square of the handle's speed behind that high-pass in the last quarter of a run: what `limit` and
+/// `compare --devices` judge a run by.
+class LastQuarterVibration {
+ public:
+  /// Of a run of `steps` rows, `dt` seconds apart.
+  LastQuarterVibration(std::uint64_t steps, double dt) : steps_(steps), high_pass_(vibration_filter(dt)) {}
+  void add(std::uint64_t step, const Vec3& velocity) noexcept;
+  /// Over the quarter that was begun last [m/s]; none at 60 Hz or less and without rows.
+  std::optional<double> value() const noexcept;
+
+ private:
+  std::uint64_t steps_, quarter_ = 0, rows_ = 0;
+  std::optional<HighPass> high_pass_;
+  double sum_ = 0.0;
+};
+
 /// Settled contact shorter than this has no metrics [s]: one period of the cutoff, the slowest vibration. Otherwise a
 /// run that hammers, and so hardly settles, would look the calmest.
 inline constexpr double kLeastSettled = 1.0 / kVibrationCutoff;

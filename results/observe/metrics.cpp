@@ -71,7 +71,8 @@ void add(Hash64& hash, const Vec3& v) noexcept {
 
 }  // namespace
 
-MetricsObserver::MetricsObserver(double dt, const MetricsConfig& config) : contact_forces_(dt, config.settling) {
+MetricsObserver::MetricsObserver(double dt, const MetricsConfig& config)
+    : last_quarter_(config.steps, dt), contact_forces_(dt, config.settling) {
   assert(dt > 0.0);
   if (config.friction_limit) {
     metrics_.explicit_friction = ExplicitFriction{*config.friction_limit, 0, {}};
@@ -83,6 +84,7 @@ MetricsObserver::MetricsObserver(double dt, const MetricsConfig& config) : conta
 
 void MetricsObserver::on_step(const StepRecord& record) noexcept {
   add_motion(record.tool.pose.position, record.body_velocity());
+  last_quarter_.add(record.step, record.handle.velocity);
   add_contacts(record, add_force(record.force));
   ++metrics_.rows;
 
@@ -123,9 +125,8 @@ ForceChange MetricsObserver::add_force(const RenderedForce& force) noexcept {
 
 void MetricsObserver::add_contacts(const StepRecord& record, const ForceChange& change) noexcept {
   const auto phase = contact_forces_.add(record.force.rendered, change, record.colliding > 0);
-  if (reduction_) {
-    reduction_->add(*record.rendered, change.squared, phase == ContactForceObserver::Phase::settled);
-  }
+  settled_ = phase == ContactForceObserver::Phase::settled;
+  if (reduction_) reduction_->add(*record.rendered, change.squared, settled_);
   const std::uint64_t rendered = record.rendered->size();
   colliding_sum_ += record.colliding;
   rendered_sum_ += rendered;
@@ -147,6 +148,7 @@ Metrics MetricsObserver::metrics() const noexcept {
   m.force_step_max = std::sqrt(force_step_max_squared_);
   m.speed_max = std::sqrt(speed_max_squared_);
   m.state_hash = hash_.value();
+  m.last_quarter_vibration = last_quarter_.value();
   m.contact = contact_forces_.forces();
   if (reduction_) m.reduction = reduction_->jumps();
   if (m.rows == 0) return m;
@@ -175,6 +177,7 @@ Metrics merged(const std::vector<Metrics>& runs) noexcept {
     all.force_reversals += run.force_reversals;
     has_vibration = has_vibration && run.vibration_power;
     vibration += rows * run.vibration_power.value_or(0.0);
+    all.last_quarter_vibration = std::max(all.last_quarter_vibration, run.last_quarter_vibration);
     all.depth_max = std::max(all.depth_max, run.depth_max);
     if (run.ratio && !all.ratio) all.ratio = run.ratio;
     if (run.ratio) {
@@ -195,6 +198,8 @@ Metrics merged(const std::vector<Metrics>& runs) noexcept {
     }
     if (all.reduction && run.reduction) *all.reduction += *run.reduction;
     if (!all.reduction) all.reduction = run.reduction;
+    if (all.inside && run.inside) *all.inside += *run.inside;
+    if (!all.inside) all.inside = run.inside;
     all.final_position = run.final_position;
     hash.word(run.state_hash);
   }
@@ -221,6 +226,28 @@ MetricList reduction_list(const std::optional<ReductionJumps>& given) {
            jumps.step_max(), Better::less}};
 }
 
+MetricList inside_list(const Metrics& m) {
+  const InsideMetrics inside = m.inside.value_or(InsideMetrics{});
+  const auto rows = static_cast<double>(inside.rows);
+  return {
+      {"inside_max_m", "m",
+       "largest distance below the environment's surface of any point of the tool, at any depth; of the six "
+       "parts of the run with the deepest contact or tip centre, with record.inside of all recorded rows; that of some "
+       "point of the tool, as a rule the deepest; none of springs and beyond the border of an open surface",
+       inside.max, Better::less},
+      {"inside_settled_m", "m",
+       "median of that distance over up to twelve rows in settled contact, evenly spread, or with record.inside over all "
+       "recorded ones",
+       if_any(m.contact.settled >= kLeastSettled, inside.settled_median()).value_or(std::nullopt), Better::less},
+      {"centre_inside_share", "1",
+       "share of the rows with the tip centre below the surface; a flat tip's is when it is pressed in",
+       if_any(inside.rows > 0, static_cast<double>(inside.centre_inside) / rows), Better::less},
+      {"vibration_last_quarter_m_per_s", "m/s",
+       "root mean square of the handle's speed above 30 Hz in the last quarter of the run, by which limit and compare "
+       "--devices judge it; none at sampling rates of 60 Hz or less",
+       m.last_quarter_vibration, Better::less}};
+}
+
 }  // namespace
 
 MetricList metric_list(const Metrics& m) {
@@ -240,7 +267,9 @@ MetricList metric_list(const Metrics& m) {
        "mean ||v||^2 of all rows behind a high-pass (Butterworth, fourth order, 30 Hz); none at sampling rates of "
        "60 Hz or less",
        m.vibration_power, Better::less},
-      {"depth_max_m", "m", "largest penetration depth of a colliding point", m.depth_max, Better::less},
+      {"depth_max_m", "m",
+       "largest penetration depth of a colliding point: at most the tool's half width, however deep the tool is",
+       m.depth_max, Better::less},
       {"ratio_min", "1",
        "smallest stiffness ratio rho = u^T S u of a rendered contact: the combined stiffness along it, in units of K",
        if_any(m.ratio.has_value(), ratio.min)},
@@ -264,6 +293,7 @@ MetricList metric_list(const Metrics& m) {
       {"explicit_friction_first_step", "1", "the first of those rows", friction.first_step}};
   append(list, "", metric_list(m.contact));
   append(list, "", reduction_list(m.reduction));
+  append(list, "", inside_list(m));
   return list;
 }
 

@@ -8,6 +8,7 @@
 #include "results/io/columns.hpp"
 #include "results/observe/butterworth.hpp"
 #include "results/observe/contact_forces.hpp"
+#include "results/observe/inside.hpp"
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/core/hash.hpp"
 #include "sim/loop/integrators/table.hpp"
@@ -71,8 +72,10 @@ struct Metrics {
   double velocity_total_variation = 0.0;
   std::uint64_t force_reversals = 0;
   std::optional<double> vibration_power;  ///< nothing at a sampling rate of 60 Hz or less, or without rows
-  double depth_max = 0.0;                 ///< never negative
-  std::optional<RatioRange> ratio;        ///< of all rendered contacts; nothing without contact
+  /// Of the handle in the last quarter [m/s]; of several runs the largest.
+  std::optional<double> last_quarter_vibration = {};
+  double depth_max = 0.0;           ///< never negative
+  std::optional<RatioRange> ratio;  ///< of all rendered contacts; nothing without contact
   double colliding_mean = 0.0;
   std::uint64_t colliding_max = 0;
   double rendered_mean = 0.0;
@@ -84,6 +87,7 @@ struct Metrics {
   std::optional<ExplicitFriction> explicit_friction = {};  ///< nothing where friction cannot become unstable
   ContactForces contact = {};                              ///< forces of landings and of settled contact
   std::optional<ReductionJumps> reduction = {};            ///< nothing without a reduction
+  std::optional<InsideMetrics> inside = {};                ///< of an InsideObserver; nothing without a solid
   std::uint64_t state_hash = 0;                            ///< over the bit patterns of p, v and f_render of every row
 };
 
@@ -100,6 +104,7 @@ Metrics merged(const std::vector<Metrics>& runs) noexcept;
 struct MetricsConfig {
   std::optional<double> friction_limit = {};  ///< of explicit_friction_limit [N]
   SettlingRule settling = {};
+  std::uint64_t steps = 0;                       ///< of the run; 0: unknown, no vibration of its last quarter
   std::optional<std::size_t> most_reduced = {};  ///< the most contacts a row can have; none without a reduction
 };
 
@@ -113,6 +118,8 @@ class MetricsObserver final : public Observer {
   bool wants_ratio() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override;
 
+  /// True when the last row was in settled contact.
+  bool in_settled_contact() const noexcept { return settled_; }
   /// Metrics of the rows seen so far.
   Metrics metrics() const noexcept;
 
@@ -123,7 +130,9 @@ class MetricsObserver final : public Observer {
 
   Metrics metrics_;                    ///< everything that needs no final division
   std::optional<HighPass> high_pass_;  ///< none when the sampling rate is too low
+  LastQuarterVibration last_quarter_;
   ContactForceObserver contact_forces_;
+  bool settled_ = false;
   std::optional<ReductionJumpObserver> reduction_;
   double friction_limit_squared_ = std::numeric_limits<double>::infinity();
   Hash64 hash_;

@@ -56,20 +56,29 @@ constexpr Column kTrajectoryColumns[] = {
      "x of the lost torque: what the rendered contacts would exert on the tool about its tip's centre and the device "
      "cannot render, sum r_i x f_i, f_i contact i's share of f_spring"},
     {"ty_Nm", "Nm", "y of the lost torque"},
-    {"tz_Nm", "Nm", "z of the lost torque"}};
-constexpr std::size_t kPoseColumns = 4, kTorqueColumns = 3;
-constexpr auto kWithoutPose = [] {
-  constexpr std::size_t usual = std::size(kTrajectoryColumns) - kPoseColumns - kTorqueColumns;
-  std::array<Column, usual + kTorqueColumns> columns{};
-  std::copy(std::end(kTrajectoryColumns) - kTorqueColumns, std::end(kTrajectoryColumns),
-            std::copy_n(kTrajectoryColumns, usual, columns.begin()));
-  return columns;
-}();
+    {"tz_Nm", "Nm", "z of the lost torque"},
 
+    {"inside_m", "m",
+     "largest distance below the environment's surface of any point of the tool (inside_max_m); empty of springs and "
+     "beyond the border of an open surface"}};
+constexpr std::size_t kPoseColumns = 4, kTorqueColumns = 3, kInsideColumns = 1;
+constexpr std::size_t kExtraColumns = kPoseColumns + kTorqueColumns + kInsideColumns;
+
+/// The columns with some of the extras, a list for each choice of them.
 std::span<const Column> trajectory_columns(const TrajectoryExtras& extras) {
-  if (extras.torque && !extras.pose) return kWithoutPose;
-  const std::span<const Column> all = kTrajectoryColumns;
-  return all.first(all.size() - (extras.torque ? 0 : kTorqueColumns) - (extras.pose ? 0 : kPoseColumns));
+  static const auto kLists = [] {
+    std::array<std::vector<Column>, 8> lists;
+    for (std::size_t choice = 0; choice < lists.size(); ++choice) {
+      const auto* next = std::end(kTrajectoryColumns) - kExtraColumns;
+      lists[choice].assign(std::begin(kTrajectoryColumns), next);
+      for (std::size_t i = 0; const std::size_t count : {kPoseColumns, kTorqueColumns, kInsideColumns}) {
+        if (((choice >> i++) & 1u) != 0) lists[choice].insert(lists[choice].end(), next, next + count);
+        next += count;
+      }
+    }
+    return lists;
+  }();
+  return kLists[(extras.pose ? 1u : 0u) + (extras.torque ? 2u : 0u) + (extras.inside ? 4u : 0u)];
 }
 
 constexpr Column kContactColumns[] = {
@@ -169,7 +178,8 @@ std::array<double, 4> quaternion(const Mat3& rotation) noexcept {
 
 constinit const ResultTable kTrajectoryTable = {
     "trajectory.csv",
-    "one line per recorded row, before the tool moves on; qw to qz with record.pose, tx_Nm to tz_Nm with record.torque",
+    "one line per recorded row, before the tool moves on; qw to qz with record.pose, tx_Nm to tz_Nm with record.torque, "
+    "inside_m with record.inside",
     kTrajectoryColumns};
 constinit const ResultTable kContactTable = {
     "contacts.csv", "with record.contacts: one line per rendered contact of each recorded row", kContactColumns};
@@ -202,17 +212,18 @@ void Recorder::on_step(const StepRecord& record) noexcept {
 RowSource trajectory_rows(const TrajectoryExtras& extras) {
   const auto write = [extras](const StepRecord& r, TableWriter& table) {
     const auto ratio = r.rendered->empty() ? std::nullopt : std::optional(r.ratio);
-    std::array<double, kPoseColumns + kTorqueColumns> more;
+    std::array<std::optional<double>, kExtraColumns> more;
     std::size_t count = 0;
     const auto add = [&](const auto& values) {
       for (const double value : values) more[count++] = value;
     };
     if (extras.pose) add(quaternion(ToolPose{r.tool.pose.position, r.tool.pose.axis, r.roll}.rotation()));
     if (extras.torque) add(r.springs.moment);
+    if (extras.inside) more[count++] = extras.depths != nullptr ? extras.depths->depth() : std::nullopt;
     table.row(r.step, r.time, r.tool.pose.position, r.tool.velocity, r.tool.pose.axis, r.force.rendered, r.force.spring,
               r.hand.measured, r.hand.input, r.handle.position, r.colliding, r.rendered->size(), r.force.depth_max,
               ratio ? std::optional(ratio->min) : std::nullopt, ratio ? std::optional(ratio->max) : std::nullopt,
-              std::span<const double>(more.data(), count));
+              std::span<const std::optional<double>>(more.data(), count));
   };
   return {.columns = trajectory_columns(extras),
           .write = write,

@@ -9,6 +9,7 @@
 #include "results/observe/energy_ledger.hpp"
 #include "results/observe/force_fidelity.hpp"
 #include "results/observe/ideal_trajectory.hpp"
+#include "results/observe/inside.hpp"
 #include "results/observe/target_metrics.hpp"
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/loop/observer.hpp"
@@ -49,8 +50,10 @@ class Recorder final : public Observer {
 
 /// Optional columns of trajectory.csv.
 struct TrajectoryExtras {
-  bool pose = false;    ///< record.pose
-  bool torque = false;  ///< record.torque: SpringState::moment
+  bool pose = false;                       ///< record.pose
+  bool torque = false;                     ///< record.torque: SpringState::moment
+  bool inside = false;                     ///< record.inside: InsideObserver::depth
+  const InsideObserver* depths = nullptr;  ///< observes before the recorder; null where there is no inside
 };
 
 /// trajectory.csv: one line per row.

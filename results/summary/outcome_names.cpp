@@ -14,10 +14,18 @@ constexpr OutcomeInfo kOutcomes[] = {
      "all steps are done, but a tool that a hand of type drag was to lead further than two of its widths came less than "
      "one along the path",
      true},
+    {"stuck",
+     "all steps are done, but a tool that a hand of type drag leads stood still in the end while its target went on by "
+     "more than the tool's width: it came less than a tenth of that",
+     true},
     {"no_contact", "all steps are done, and the tool never touched the environment", true},
     {"lost_contact",
      "all steps are done, but a freely moving tool ended further from the environment's box than the box is wide and the "
      "tool reaches together",
+     true},
+    {"went_through",
+     "all steps are done, but a freely moving tool passed the surface: its tip centre came deeper than its half width, or "
+     "its core (half a width behind its tip) left the environment on another side than it had entered, or ended inside",
      true},
     {"diverges", "a value stopped being finite or left its bound (describe bounds)", true}};
 static_assert(static_cast<std::size_t>(Outcome::diverges) == std::size(kOutcomes) - 1);

@@ -92,7 +92,7 @@ struct League {
 League make_league(LeagueRuns runs);
 
 /// Metrics that leagues and maps show by default: what the hand feels, and how deep the tool sinks in.
-inline constexpr std::string_view kDefaultMetrics[] = {"force_rms_above_30Hz_N", "force_step_p99_N", "depth_max_m"};
+inline constexpr std::string_view kDefaultMetrics[] = {"force_rms_above_30Hz_N", "force_step_p99_N", "inside_max_m"};
 /// Defaults if every run has a reference force to compare with: magnitude, direction, artefacts, noise.
 inline constexpr std::string_view kFidelityMetrics[] = {"fidelity.force_error_relative",
                                                         "fidelity.force_direction_error_rad",

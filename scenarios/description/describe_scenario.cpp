@@ -407,6 +407,9 @@ static void describe(Fields& f, RecordFields& record) {
   f.boolean("torque", record.torque,
             "add the torque that is lost to trajectory.csv, tx_Nm,ty_Nm,tz_Nm, and its metrics: what the rendered "
             "contacts would exert about the tip centre and the device cannot render");
+  f.boolean("inside", record.inside,
+            "add how deep the tool is in the environment to trajectory.csv, inside_m, and take its metrics from every "
+            "recorded row");
 }
 
 static void describe(Fields& f, SettlingRule& metrics) {

@@ -215,6 +215,36 @@ Shell make_shell(const Scenario& scenario) {
   return make_shell(scenario, NamedFiles(scenario));
 }
 
+namespace {
+
+struct BuildSolid {
+  const NamedFiles& files;
+
+  std::shared_ptr<const Solid> operator()(const SpringsEnvironment&) const { return nullptr; }
+  std::shared_ptr<const Solid> operator()(const BlockEnvironment& block) const { return make_solid(block.block); }
+  std::shared_ptr<const Solid> operator()(const PointShellEnvironment&) const {
+    return make_solid(files.at(kEnvironmentFile).points());
+  }
+  std::shared_ptr<const Solid> operator()(const MeshEnvironment&) const {
+    const MeshFile& file = files.at(kEnvironmentFile).mesh();
+    const TriangleSoup mesh = file.triangles();
+    return make_solid(mesh.vertices, mesh.triangles, file.is_closed());
+  }
+  template <class Analytic>
+  std::shared_ptr<const Solid> operator()(const Analytic& shape) const {
+    return make_solid(shape);
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<const Solid> make_solid(const Scenario& scenario, const NamedFiles& files) {
+  const auto make = [&] { return std::visit(BuildSolid{files}, scenario.environment); };
+  if (files.find(kEnvironmentFile) == nullptr) return make();
+  const auto bytes = [](const Solid& solid) { return solid.bytes(); };
+  return shared_cache().get<Solid>("solid " + environment_content(scenario, files).dump(), make, bytes);
+}
+
 SpringSet make_springs(const Scenario& scenario) {
   const auto& fields = std::get<SpringsEnvironment>(scenario.environment);
   SpringSet springs;

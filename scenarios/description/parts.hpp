@@ -4,6 +4,7 @@
 
 #include "scenarios/description/named_files.hpp"
 #include "scenarios/description/scenario.hpp"
+#include "sim/geometry/solid.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/tool/cylinder.hpp"
 
@@ -27,6 +28,10 @@ std::uint64_t derived_seed(const Scenario& scenario, Trial trial, RandomUse use)
 /// Equal environments share one (SharedCache).
 std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const NamedFiles& files);
 std::shared_ptr<const PointShell> make_shell(const Scenario& scenario);
+
+/// The inside of the scenario's environment, of its true surface and not of the shell; null for springs. Equal
+/// environments share one (SharedCache).
+std::shared_ptr<const Solid> make_solid(const Scenario& scenario, const NamedFiles& files);
 
 /// The springs, those with random directions from the seed. Precondition: the environment is springs.
 SpringSet make_springs(const Scenario& scenario);

@@ -193,6 +193,7 @@ struct RecordFields {
   bool force_reference = false;
   bool pose = false;
   bool torque = false;
+  bool inside = false;
 };
 
 /// True when a run writes rows of its steps.

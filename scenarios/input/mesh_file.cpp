@@ -193,6 +193,10 @@ const std::vector<Vec3>& MeshFile::open_edges() const {
   return surface_->findings.open_edges;
 }
 
+bool MeshFile::is_closed() const {
+  return surface_->findings.open_edges.empty() && surface_->findings.crowded_edges.empty();
+}
+
 TriangleSoup MeshFile::triangles() const {
   const HalfEdgeMesh& mesh = surface_->mesh;
   TriangleSoup soup;

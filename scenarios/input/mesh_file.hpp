@@ -39,6 +39,9 @@ class MeshFile {
   /// Midpoints of the edges where the surface ends [m]; empty when it is closed.
   const std::vector<Vec3>& open_edges() const;
 
+  /// True when it has no such edges and none with more than two faces.
+  bool is_closed() const;
+
   /// Its triangles, all wound alike and outwards where the surface is closed [m].
   TriangleSoup triangles() const;
 

@@ -205,7 +205,11 @@ constexpr const char* kComparedMetrics[] = {"force_max_N",
                                             "force_rms_above_30Hz_N",
                                             "force_reversals_per_s",
                                             "reduction_changes",
-                                            "reduction_force_step_max_N"};
+                                            "reduction_force_step_max_N",
+                                            "inside_max_m",
+                                            "inside_settled_m",
+                                            "centre_inside_share",
+                                            "vibration_last_quarter_m_per_s"};
 
 }  // namespace
 

@@ -25,7 +25,7 @@ struct RunHeading {
 
 /// The figures that separate algorithms: the outcome, the share of rows in contact, the largest force of landings, then
 /// of settled contact the mean force, 99 % of the force steps, rms above 30 Hz and reversals per second; then the
-/// largest depth, the range of ratios, and what half of the steps take at most.
+/// largest depth below the surface, the range of ratios, and what half of the steps take at most.
 inline constexpr RunHeading kRunHeadings[] = {{"outcome", {"outcome"}, 0.0, false},
                                               {"con\n%", {"contact_share"}, 100.0},
                                               {"land.\nmax N", {"landing_force_max_N"}, 1.0},
@@ -33,7 +33,7 @@ inline constexpr RunHeading kRunHeadings[] = {{"outcome", {"outcome"}, 0.0, fals
                                               {"step\np99 N", {"force_step_p99_N"}, 1.0},
                                               {">30Hz\nrms N", {"force_rms_above_30Hz_N"}, 1.0},
                                               {"rev.\n1/s", {"force_reversals_per_s"}, 1.0},
-                                              {"depth\nmm", {"depth_max_m"}, 1e3},
+                                              {"depth\nmm", {"inside_max_m"}, 1e3},
                                               {"ratio", {"ratio_min", "ratio_max"}, 0.0, false},
                                               {"us/\nstep", {"step_p50_s"}}};
 

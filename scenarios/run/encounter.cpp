@@ -33,28 +33,33 @@ std::optional<std::string> short_path_warning(const DragHandFields& hand, double
 }
 
 DragCourseObserver::DragCourseObserver(const DragHand& hand, const DragHandFields& fields, double half_width)
-    : hand_(hand), fields_(fields), half_width_(half_width) {
+    : hand_(hand), fields_(fields) {
   course_.width = 2.0 * half_width;
 }
 
 void DragCourseObserver::on_step(const StepRecord& record) noexcept {
+  constexpr double kComes = 0.1;  // of the point's way, at least, where the tool does not stand
   const SurfacePath& path = hand_.path();
   DragCourse& c = course_;
   time_ = record.time;
   c.asked = std::min(hand_.drag().speed * record.time, path.length());
-  if (hand_.nearest() >= c.way + path.spacing()) {
-    c.way = hand_.nearest();
-    c.still_since = record.time;
-    asked_at_way_ = c.asked;
-  }
+  c.way = std::max(c.way, hand_.nearest());
   c.place = record.tool.pose.position;
-  if (!c.through && record.force.depth_max >= half_width_) c.through = record.time;
+  c.force = record.force.rendered.norm();
   if (record.colliding > 0) last_contact_ = record.time;
+  if (c.asked < static_cast<double>(stand_) * c.width / kStands) return;
+  const DragCourse::Stand now{record.time, c.asked, c.way}, before = stands_[stand_ % kStands];
+  stands_[stand_ % kStands] = now;
+  if (stand_++ < kStands) return;
+  if (now.way - before.way >= kComes * (now.asked - before.asked)) {
+    c.stuck.reset();
+  } else if (!c.stuck) {
+    c.stuck = before;
+  }
 }
 
 DragCourse DragCourseObserver::course() const {
   DragCourse course = course_;
-  course.asked_since = course.asked - asked_at_way_;
   const SurfacePoint foot = hand_.path().at(hand_.nearest());
   course.height = foot.normal.dot(course.place - foot.position);
   course.path = hand_.path().length();
@@ -65,21 +70,18 @@ DragCourse DragCourseObserver::course() const {
   return course;
 }
 
-std::vector<std::string> drag_warnings(const DragCourse& c) {
+std::vector<std::string> drag_warnings(const DragCourse& c, Outcome outcome) {
   std::vector<std::string> warnings;
-  if (c.through)
-    warnings.push_back(
-        fmt::format("the dragged tool has gone through the surface at {:.4g} s: the depth reached its half width, {}",
-                    *c.through, length_text(0.5 * c.width)));
-  if (c.lost) {
-    const std::string where = c.height < 0.0 ? "below it: it went through, or past an edge" : "above it";
+  if (c.lost && outcome != Outcome::went_through) {
+    const std::string where = c.height < 0.0 ? "below it, past an edge" : "above it";
     warnings.push_back(fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *c.lost,
                                    length_text(std::abs(c.height)), where));
-  } else if (c.stands_still()) {
+  } else if (c.stuck && outcome != Outcome::went_through) {
     warnings.push_back(
-        fmt::format("the dragged tool stood still since {:.4g} s, {} along the path of {} asked, at [{:.4g}, {:.4g}, "
-                    "{:.4g}] m in the end",
-                    c.still_since, length_text(c.way), length_text(c.asked), c.place.x(), c.place.y(), c.place.z()));
+        fmt::format("the dragged tool stood still since {:.4g} s, coming {} further while its target went on by {}; it "
+                    "was at [{:.4g}, {:.4g}, {:.4g}] m under a force of {:.3g} N in the end",
+                    c.stuck->time, length_text(c.way - c.stuck->way), length_text(c.asked - c.stuck->asked),
+                    c.place.x(), c.place.y(), c.place.z(), c.force));
   }
   if (c.short_path) {
     warnings.push_back(fmt::format("{}; the tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end", *c.short_path,
@@ -192,12 +194,62 @@ std::string size_and_place(const Box& box) {
 }  // namespace
 
 Outcome outcome_of(const Scenario& scenario, const Encounter& e) {
-  if (e.metrics.steps_in_contact == 0) return Outcome::no_contact;
   const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
+  if (is_free && e.passage && e.passage->went_through()) return Outcome::went_through;
+  if (e.metrics.steps_in_contact == 0) return Outcome::no_contact;
   const bool left = e.approach.last > diagonal(e.environment) + e.tool.reach();
   const bool lost = e.drag && e.drag->lost;
   if ((is_free && left) || lost) return Outcome::lost_contact;
-  return e.drag && e.drag->not_dragged() ? Outcome::not_dragged : Outcome::completes;
+  if (e.drag && e.drag->not_dragged()) return Outcome::not_dragged;
+  return e.drag && e.drag->stuck ? Outcome::stuck : Outcome::completes;
+}
+
+EncounterObservers::EncounterObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
+                                       const MetricsObserver* metrics) {
+  if (auto solid = make_solid(scenario, files)) {
+    const std::int64_t every = scenario.record.inside ? scenario.record.every : 0;
+    inside_.emplace(parts.tool, std::move(solid), metrics, static_cast<std::uint64_t>(every),
+                    static_cast<std::uint64_t>(scenario.time.steps));
+  }
+  if (parts.shell && parts.shell->size() > 0) approach_.emplace(parts.shell->bounds());
+  if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get()))
+    drag_.emplace(*hand, std::get<DragHandFields>(scenario.hand), parts.tool->half_width());
+}
+
+std::vector<Observer*> EncounterObservers::all() {
+  std::vector<Observer*> observers;
+  if (inside_) observers.push_back(&*inside_);
+  if (approach_) observers.push_back(&*approach_);
+  if (drag_) observers.push_back(&*drag_);
+  return observers;
+}
+
+Encounter EncounterObservers::encounter(const Metrics& metrics, const ToolShape& tool) const {
+  Encounter encounter{metrics, approach_->approach(), approach_->environment(), tool};
+  if (drag_) encounter.drag = drag_->course();
+  if (inside_) encounter.passage = inside_->passage();
+  return encounter;
+}
+
+Outcome EncounterObservers::outcome(const Scenario& scenario, const Metrics& metrics, const ToolShape& tool,
+                                    Outcome outcome) const {
+  if (!approach_ || outcome != Outcome::completes) return outcome;
+  return outcome_of(scenario, encounter(metrics, tool));
+}
+
+void EncounterObservers::judge(const Scenario& scenario, Metrics& metrics, const ToolShape& tool, Outcome& outcome,
+                               std::vector<std::string>& warnings) {
+  if (inside_) metrics.inside = inside_->metrics();
+  if (!approach_) return;
+  const Encounter seen = encounter(metrics, tool);
+  if (outcome == Outcome::completes) {
+    outcome = outcome_of(scenario, seen);
+    if (auto warning = warning_about(scenario, outcome, seen)) warnings.push_back(*warning);
+  }
+  if (seen.drag) {
+    for (std::string& warning : drag_warnings(*seen.drag, outcome)) warnings.push_back(std::move(warning));
+  }
+  if (auto warning = scale_warning(scenario, tool, seen.environment)) warnings.push_back(*warning);
 }
 
 std::optional<std::string> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
@@ -208,7 +260,40 @@ std::optional<std::string> scale_warning(const Scenario& scenario, const ToolSha
                      scale_question(scenario));
 }
 
+namespace {
+
+std::string millimetres(const Vec3& place) {
+  const Vec3 p = 1e3 * place;
+  return fmt::format("({:.3g}, {:.3g}, {:.3g}) mm", p.x(), p.y(), p.z());
+}
+
+/// How a tool passed the surface, as one sentence.
+std::string passage_text(const Passage& p, double half_width) {
+  const char* const begins =
+      p.began_inside ? "the tool began inside the environment" : "the tool went through the surface";
+  const std::string end =
+      p.left ? fmt::format("left on another side at {:.4g} s at {}", p.left->time, millimetres(p.left->place))
+      : p.last_depth > 0.0 ? fmt::format("{} below it in the end", length_text(p.last_depth))
+                           : std::string("not below it in the end");
+  if (p.deep) {
+    return fmt::format(
+        "{}: its tip centre was more than its half width, {}, below it at {:.4g} s at {}, {} at most, and {}", begins,
+        length_text(half_width), p.deep->time, millimetres(p.deep->place), length_text(p.deepest), end);
+  }
+  if (p.left) {
+    return fmt::format("{}: it entered at {} and left on another side, at {:.4g} s at {}", begins,
+                       millimetres(p.entered), p.left->time, millimetres(p.left->place));
+  }
+  return fmt::format("{}: its core ended inside, its tip centre {}", begins, end);
+}
+
+}  // namespace
+
 std::optional<std::string> warning_about(const Scenario& scenario, Outcome outcome, const Encounter& e) {
+  if (outcome == Outcome::went_through) {
+    const bool odd = out_of_proportion(e.tool, e.environment);
+    return passage_text(*e.passage, e.tool.half_width()) + (odd ? "; " + scale_question(scenario) : "");
+  }
   if (outcome == Outcome::no_contact) {
     return fmt::format("never in contact: the tip came as close as {} (at {:.4g} s) to the environment ({}){}",
                        length_text(e.approach.closest), e.approach.closest_time, size_and_place(e.environment),

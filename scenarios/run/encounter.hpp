@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -8,8 +9,10 @@
 #include "algorithms/rendering_config.hpp"
 #include "device_model/hands/drag_hand.hpp"
 #include "results/observe/approach.hpp"
+#include "results/observe/inside.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
+#include "scenarios/description/parts.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"
@@ -33,22 +36,23 @@ struct DragCourse {
   double asked = 0.0;         ///< way of the point that leads it [m]
   double path = 0.0;          ///< length of the path [m]
   double way = 0.0;           ///< furthest place on the path that the tool came to [m]
-  double still_since = 0.0;   ///< when it last came further by a spacing of the path [s]
-  double asked_since = 0.0;   ///< way of the point since then [m]
   Vec3 place = Vec3::Zero();  ///< of the tip, in the last row [m]
   double height = 0.0;        ///< of the tip over the path where that is nearest, in the last row [m]
   double width = 0.0;         ///< the tool's [m]
-  /// When the depth first reached the tool's half width: its axis is then in the surface.
-  std::optional<double> through;
+  double force = 0.0;         ///< size of the rendered force in the last row [N]
+  /// The point's and the tool's way at a time.
+  struct Stand {
+    double time = 0.0, asked = 0.0, way = 0.0;
+  };
+  /// When the tool came to stand for good: from there on it came less than a tenth of the point's way, over every width
+  /// of its own that the point went on.
+  std::optional<Stand> stuck;
   /// Time of the last contact, if the tool had no contact for the default settling time before the end although the
   /// hand pressed: after that long the next touch would be a landing.
   std::optional<double> lost;
 
   std::optional<std::string> short_path;  ///< short_path_warning
 
-  /// True when the point has moved on by more than the tool's width since the tool last came further. A tool that
-  /// follows comes as far as the point.
-  bool stands_still() const { return asked_since > width; }
   /// True when the tool came less than its width along a way of more than two widths: the spring that leads it lags by
   /// less.
   bool not_dragged() const { return way < width && to_cover > 2.0 * width; }
@@ -67,15 +71,16 @@ class DragCourseObserver final : public Observer {
  private:
   const DragHand& hand_;
   const DragHandFields& fields_;
-  double half_width_;
-  double asked_at_way_ = 0.0;  ///< way of the point when the tool last came further
-  double time_ = 0.0;          ///< of the last row
+  static constexpr std::size_t kStands = 4;
+  std::array<DragCourse::Stand, kStands> stands_{};  ///< a quarter of the tool's width of the point's way apart
+  std::size_t stand_ = 0;                            ///< how many there were
+  double time_ = 0.0;                                ///< of the last row
   std::optional<double> last_contact_;
   DragCourse course_;
 };
 
-/// Warnings that the tool stood still, went through the surface or lost it.
-std::vector<std::string> drag_warnings(const DragCourse& course);
+/// Warnings that the tool stood still or lost the surface, and of a path that ends early.
+std::vector<std::string> drag_warnings(const DragCourse& course, Outcome outcome);
 
 /// Notes when the tool touches an open mesh where it ends. Beyond such an edge there is nothing to touch, and a tool
 /// that reaches past it is held by too few points or by none.
@@ -105,20 +110,47 @@ struct Encounter {
   const Box& environment;  ///< around all points of the shell
   const ToolShape& tool;
   std::optional<DragCourse> drag = {};  ///< of a hand that drags
+  std::optional<Passage> passage = {};  ///< of an environment with an inside
 };
 
-/// The outcome of a run that completed, once it is known what it touched: `no_contact` when no row had a colliding
+/// The outcome of a run that completed, once it is known what it touched: `went_through` when a tool that moves freely
+/// passed the surface (Passage); `no_contact` when no row had a colliding
 /// point; `lost_contact` when a tool that moves freely ended further from the environment's box than the box is wide
 /// and the tool reaches together, as one does that was thrown out or pushed past, or when a dragged tool lost the
 /// surface; `not_dragged` when one came nowhere (DragCourse): it was pressed, and its calm numbers tell nothing of a
-/// drag; else `completes`.
+/// drag; `stuck` when it came to stand while its point went on; else `completes`.
 Outcome outcome_of(const Scenario& scenario, const Encounter& encounter);
+
+/// What decides the outcome of a run with a point shell, watched.
+class EncounterObservers {
+ public:
+  /// The parts must outlive them; `metrics`, if given, observes before.
+  EncounterObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
+                     const MetricsObserver* metrics = nullptr);
+
+  std::vector<Observer*> all();
+  /// Null without a solid.
+  const InsideObserver* inside() const { return inside_ ? &*inside_ : nullptr; }
+
+  /// The outcome of the run that ended with `outcome`, which stays unless it is `completes`.
+  Outcome outcome(const Scenario& scenario, const Metrics& metrics, const ToolShape& tool, Outcome outcome) const;
+  /// After the run: adds the depth to its metrics, finds its outcome and adds warnings about it.
+  void judge(const Scenario& scenario, Metrics& metrics, const ToolShape& tool, Outcome& outcome,
+             std::vector<std::string>& warnings);
+
+ private:
+  Encounter encounter(const Metrics& metrics, const ToolShape& tool) const;
+
+  std::optional<InsideObserver> inside_;
+  std::optional<ApproachObserver> approach_;
+  std::optional<DragCourseObserver> drag_;
+};
 
 /// For a tool from a mesh whose size is out of proportion with the environment's, a question about its scale.
 std::optional<std::string> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment);
 
-/// For those two outcomes, what happened and what the likely cause is; none for others, and none for a dragged tool
-/// that lost the surface within the environment's box, of which drag_warnings tells.
+/// For `went_through`, `no_contact` and `lost_contact`, what happened and what the likely cause is; none for others,
+/// and none for a dragged tool that lost the surface within the environment's box, of which drag_warnings tells.
 std::optional<std::string> warning_about(const Scenario& scenario, Outcome outcome, const Encounter& encounter);
 
 /// The expectations of the scenario that the run does not meet, one sentence each.

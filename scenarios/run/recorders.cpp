@@ -12,8 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TrajectoryExtras extras(const RecordFields& fields) {
-  return {.pose = fields.pose, .torque = fields.torque};
+TrajectoryExtras extras(const RecordFields& fields, const InsideObserver* inside = nullptr) {
+  return {.pose = fields.pose, .torque = fields.torque, .inside = fields.inside, .depths = inside};
 }
 
 Mat3 start_shaping(ContactBuffer& contacts) noexcept {
@@ -36,7 +36,7 @@ struct RecorderEntry {
 // reference that is not measured.
 const RecorderEntry kRecorders[] = {
     {kTrajectoryTable, [](const RecordFields& f) { return f.trajectory; },
-     [](const RecordedTrial& t) { return trajectory_rows(extras(t.fields)); }},
+     [](const RecordedTrial& t) { return trajectory_rows(extras(t.fields, t.inside)); }},
     {kContactTable, [](const RecordFields& f) { return f.contacts; },
      [](const RecordedTrial&) { return contact_rows(); }},
     {kStiffnessTable, [](const RecordFields& f) { return f.stiffness_tensor; },

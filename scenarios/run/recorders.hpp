@@ -9,6 +9,7 @@
 
 #include "results/io/columns.hpp"
 #include "results/io/table_writer.hpp"
+#include "results/observe/inside.hpp"
 #include "results/record/recorder.hpp"
 #include "scenarios/description/metric_sections.hpp"
 
@@ -19,6 +20,7 @@ struct RecordedTrial {
   const RecordFields& fields;
   std::size_t contact_capacity;  ///< the most contacts a row can have
   const SectionObservers& sections;
+  const InsideObserver* inside;  ///< null without a solid
 };
 
 /// The tables of a trial in memory, by the names that their files would have.

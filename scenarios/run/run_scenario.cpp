@@ -64,6 +64,7 @@ MetricsConfig metrics_config(const Scenario& scenario, const SimulationParts& pa
   MetricsConfig config;
   config.friction_limit = friction_limit(scenario, *parts.motion);
   config.settling = scenario.metrics;
+  config.steps = static_cast<std::uint64_t>(scenario.time.steps);
   if (scenario.rendering.reduction) config.most_reduced = parts.source->capacity();
   return config;
 }
@@ -86,6 +87,7 @@ class TrialObservers {
       : tool_(parts.tool),
         metrics_(scenario.time.step, metrics_config(scenario, parts)),
         passivity_(scenario.time.step, parts.motion->position_is_free()),
+        seen_(scenario, files, parts, &metrics_),
         sections_({.scenario = scenario,
                    .simulation = parts,
                    .reference = reference_force(scenario, files),
@@ -94,9 +96,8 @@ class TrialObservers {
     observers_.push_back(&metrics_);
     observers_.push_back(&passivity_);
     for (const auto& observer : sections_.all()) observers_.push_back(observer.get());
+    for (Observer* observer : seen_.all()) observers_.push_back(observer);
     if (parts.shell && parts.shell->size() > 0) {
-      approach_.emplace(parts.shell->bounds());
-      observers_.push_back(&*approach_);
       // Needs shell indices; FCL and Bullet contacts have none.
       if (std::holds_alternative<MeshEnvironment>(scenario.environment) &&
           scenario.rendering.contact_source == kOwnContacts &&
@@ -105,15 +106,11 @@ class TrialObservers {
         observers_.push_back(&*open_edges_);
       }
     }
-    if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get())) {
-      drag_.emplace(*hand, std::get<DragHandFields>(scenario.hand), parts.tool->half_width());
-      observers_.push_back(&*drag_);
-    }
   }
 
   /// Adds recorders for what the scenario asks for. Throws IoError.
   void record(const RecordFields& fields, const RecordTarget& target, std::size_t contact_capacity) {
-    recorders_ = make_recorders({fields, contact_capacity, sections_}, target);
+    recorders_ = make_recorders({fields, contact_capacity, sections_, seen_.inside()}, target);
     for (const auto& recorder : recorders_) observers_.push_back(recorder.get());
   }
 
@@ -124,18 +121,7 @@ class TrialObservers {
   void move_to(const Scenario& scenario, TrialResult& out) {
     out.tool = tool_;
     out.metrics = metrics_.metrics();
-    if (approach_ && out.result.outcome == Outcome::completes) {
-      Encounter encounter{out.metrics, approach_->approach(), approach_->environment(), *tool_};
-      if (drag_) encounter.drag = drag_->course();
-      out.result.outcome = outcome_of(scenario, encounter);
-      if (auto warning = warning_about(scenario, out.result.outcome, encounter)) out.warnings.push_back(*warning);
-    }
-    if (drag_) {
-      for (std::string& warning : drag_warnings(drag_->course())) out.warnings.push_back(std::move(warning));
-    }
-    if (approach_) {
-      if (auto warning = scale_warning(scenario, *tool_, approach_->environment())) out.warnings.push_back(*warning);
-    }
+    seen_.judge(scenario, out.metrics, *tool_, out.result.outcome, out.warnings);
     if (open_edges_ && open_edges_->warning()) out.warnings.push_back(*open_edges_->warning());
     // Who loses the drill fails the rest of the targets.
     if (out.result.outcome == Outcome::diverges) {
@@ -150,10 +136,9 @@ class TrialObservers {
   std::shared_ptr<const ToolShape> tool_;
   MetricsObserver metrics_;
   PassivityObserver passivity_;
+  EncounterObservers seen_;
   SectionObservers sections_;
-  std::optional<ApproachObserver> approach_;
   std::optional<OpenEdgeObserver> open_edges_;
-  std::optional<DragCourseObserver> drag_;
   std::vector<std::unique_ptr<Recorder>> recorders_;
   std::vector<Observer*> observers_;
 };

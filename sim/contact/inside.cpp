@@ -23,9 +23,12 @@ InsideSearch::InsideSearch(const ToolShape& tool, const Solid& solid)
   cells_.reserve(kMostCells);
 }
 
-std::optional<double> InsideSearch::depth(const ToolPose& pose, double known) noexcept {
+std::optional<double> InsideSearch::depth(const ToolPose& pose, double known, double tolerance) noexcept {
   best_ = known;
-  beyond_border_ = !solid_.at(pose.position).known;
+  tolerance_ = tolerance;
+  const SurfaceDistance tip = solid_.at(pose.position);
+  const LookedUp looked{pose.position, tip.value};
+  beyond_border_ = !tip.known;
   cells_.clear();
   improve(pose, pose.position);  // finds what is less deep than the tolerance, too
   const Box box = tool_.box_near(pose, 0.0, solid_.region());
@@ -33,13 +36,13 @@ std::optional<double> InsideSearch::depth(const ToolPose& pose, double known) no
   if ((low.array() <= high.array()).all()) {
     const Vec3 half = 0.5 * (high - low);
     // Halved once at first, so that the whole box need not be looked at.
-    cells_.push_back({0.5 * (low + high), half, half.norm() + tool_.reach()});
+    cells_.push_back({0.5 * (low + high), half, std::abs(tip.value) + 2.0 * tool_.reach(), looked});
   }
   for (std::size_t looks = 0; !cells_.empty() && looks < kMostLooks; looks += 2 * kAtOnce) {
     std::array<Cell, kAtOnce> parents;
     std::size_t count = 0;
     while (count < kAtOnce && !cells_.empty()) {
-      if (cells_.back().bound > best_ + tolerance(best_)) parents[count++] = cells_.back();
+      if (may_be_deepest(cells_.back().bound)) parents[count++] = cells_.back();
       cells_.pop_back();
     }
     look(pose, parents.data(), count);
@@ -77,10 +80,14 @@ void InsideSearch::look(const ToolPose& pose, const Cell* parents, std::size_t c
       place -= outside * gradient;
       if (!tool_.convex()) radius += outside;
     }
-    const SurfaceDistance phi = solid_.at(place);
+    // Nothing is deeper than the way to the surface that is known.
+    const double way = (place - cell.looked.place).norm();
+    if (!may_be_deepest(radius + way - cell.looked.value)) continue;
+    const SurfaceDistance phi = solid_.at(place, &cell.looked);
     if (phi.value >= radius) continue;
+    cell.looked = {place, phi.value};
     cell.bound = std::min(cell.bound, radius - phi.value);
-    if (!(cell.bound > best_ + tolerance(best_))) continue;
+    if (!may_be_deepest(cell.bound)) continue;
     if (phi.known) {
       if (-phi.value > best_ && (outside <= 0.0 || into_tool(pose, place))) improve(pose, place);
     } else if (radius < kCoarse * tool_.half_width()) {
@@ -109,16 +116,17 @@ bool InsideSearch::into_tool(const ToolPose& pose, Vec3& point) noexcept {
 void InsideSearch::improve(const ToolPose& pose, Vec3 place) noexcept {
   constexpr int kMoves = 8, kHalvings = 6;
   const PlaceArrays answer{x_.data(), y_.data(), z_.data()};
+  LookedUp last{place, solid_.at(place).value};
   const auto try_place = [&](Vec3 q) {
-    const SurfaceDistance phi = solid_.at(q);
-    if (!phi.known || !(-phi.value > best_) || !into_tool(pose, q)) return false;
-    const double depth = -solid_.at(q).value;
-    if (!(depth > best_)) return false;
-    best_ = depth;
+    if (!into_tool(pose, q)) return false;
+    const SurfaceDistance phi = solid_.at(q, &last);
+    last = {q, phi.value};
+    if (!phi.known || !(-phi.value > best_)) return false;
+    best_ = -phi.value;
     place = q;
     return true;
   };
-  try_place(place);
+  try_place(Vec3(place));
   for (int move = 0; move < kMoves; ++move) {
     one_.clear();
     one_.push(0, place, solid_.gradient(place, kDifference * tool_.half_width()));

@@ -28,18 +28,21 @@ class InsideSearch {
 
   /// The depth [m]. None where the tip centre or the points that may be the deepest lie beyond the border of an open
   /// surface. `known`: a depth that is known of another pose, which is the answer unless the tool is deeper.
-  std::optional<double> depth(const ToolPose& pose, double known = 0.0) noexcept;
+  /// `tolerance`: relative to the tool's half width; 2 % of the depth come on top.
+  std::optional<double> depth(const ToolPose& pose, double known = 0.0, double tolerance = kTolerance) noexcept;
 
-  /// 2 % of the tool's half width [m], and of the depth itself.
   static constexpr double kTolerance = 0.02;
-  double tolerance(double depth) const noexcept { return kTolerance * (tool_.half_width() + depth); }
 
  private:
   struct Cell {
     Vec3 centre, half;
-    double bound;  ///< of the depth in the cell [m]
+    double bound;     ///< of the depth in the cell [m]
+    LookedUp looked;  ///< in it or in a cell that it is a part of
   };
   void look(const ToolPose& pose, const Cell* parents, std::size_t count) noexcept;
+  bool may_be_deepest(double bound) const noexcept {
+    return bound > best_ + tolerance_ * tool_.half_width() + kTolerance * best_;
+  }
   bool into_tool(const ToolPose& pose, Vec3& point) noexcept;
   void improve(const ToolPose& pose, Vec3 place) noexcept;
 
@@ -49,7 +52,7 @@ class InsideSearch {
   ContactBuffer one_;
   AlignedDoubles x_, y_, z_;  ///< an answer of the tool
   std::vector<Cell> cells_;   ///< that may hold the deepest point, as a stack
-  double best_ = 0.0;
+  double best_ = 0.0, tolerance_ = kTolerance;
   bool beyond_border_ = false;  ///< a point there may be deeper
 };
 

@@ -22,13 +22,13 @@ Vec3 Solid::gradient(const Vec3& point, double step) const noexcept {
 
 namespace {
 
-constexpr double kFar = 1e3;  ///< beyond every scene [m]
+constexpr double kFar = 1e4;  ///< beyond every scene [m]
 
 template <class Shape>
 class ShapeSolid final : public Solid {
  public:
   ShapeSolid(const Shape& shape, const Box& region) : Solid(region), shape_(shape) {}
-  SurfaceDistance at(const Vec3& q, double) const noexcept override {
+  SurfaceDistance at(const Vec3& q, const LookedUp*) const noexcept override {
     return {signed_distance(shape_, q), is_known(q)};
   }
   double deepest_in(const Box& box) const noexcept override {
@@ -85,8 +85,9 @@ namespace {
 
 class MeshSolid final : public Solid {
  public:
-  MeshSolid(WeldedSurface surface, const Box& box)
+  MeshSolid(WeldedSurface surface, const Box& box, bool is_closed)
       : Solid(box), surface_(std::move(surface)), tree_(surface_.vertices, surface_.triangles) {
+    if (is_closed) return;
     const std::vector<Side> sides = sides_by_edge();
     for_each_edge(sides, [this](std::span<const Side> edge) {
       int sum = 0;
@@ -98,18 +99,28 @@ class MeshSolid final : public Solid {
     find_borders(sides);
   }
 
-  SurfaceDistance at(const Vec3& q, double at_most) const noexcept override {
-    auto nearest = tree_.nearest(q, (1.0 + 1e-9) * at_most + 1e-12);
-    if (!nearest) nearest = tree_.nearest(q, std::numeric_limits<double>::infinity());
+  SurfaceDistance at(const Vec3& q, const LookedUp* near) const noexcept override {
+    const auto nearest = nearest_triangle(q, near);
     if (!nearest) return {kFar, false};  // not finite
     const double distance = std::sqrt(nearest->distance2);
     if (closed_) {
+      if (near != nullptr && (q - near->place).norm() < std::abs(near->value))
+        return {std::copysign(distance, near->value)};
       const bool out = beyond(q) || tree_.winding_number(q, surface_.vertices, surface_.triangles) <= 0;
       return {out ? distance : -distance};
     }
     const auto [n, is_border] = feature(*nearest);
     return {std::copysign(distance, (q - nearest->place).dot(n)), !is_border};
   }
+  Vec3 gradient(const Vec3& q, double step) const noexcept override {
+    const auto nearest = nearest_triangle(q, nullptr);
+    if (!nearest) return Vec3::UnitZ();
+    const Vec3 away = q - nearest->place, n = normal(nearest->triangle);
+    // Nearer, the direction is rounding.
+    if (away.norm() < 1e-6 * step) return n;
+    return away.normalized() * (at(q, nullptr).value < 0.0 ? -1.0 : 1.0);
+  }
+  std::size_t bytes() const noexcept override { return 300 * surface_.triangles.size(); }
 
  private:
   const Vec3& place(std::size_t triangle, std::size_t corner) const {
@@ -117,6 +128,9 @@ class MeshSolid final : public Solid {
   }
   Vec3 normal(std::size_t t) const {
     return (place(t, 1) - place(t, 0)).cross(place(t, 2) - place(t, 0)).stableNormalized();
+  }
+  std::optional<TriangleTree::Nearest> nearest_triangle(const Vec3& q, const LookedUp* near) const {
+    return tree_.nearest(q, near == nullptr ? kFar : (1.0 + 1e-9) * (std::abs(near->value) + (q - near->place).norm()));
   }
   bool beyond(const Vec3& q) const {
     return (q.array() < region().min.array()).any() || (q.array() > region().max.array()).any();
@@ -215,9 +229,8 @@ class PointSolid final : public Solid {
         tree_(places(points), single_corners(points.size())),
         spacing_(2.0 * usual_spacing()) {}
 
-  SurfaceDistance at(const Vec3& q, double at_most) const noexcept override {
-    auto nearest = tree_.nearest(q, (1.0 + 1e-9) * at_most + spacing_);
-    if (!nearest) nearest = tree_.nearest(q, std::numeric_limits<double>::infinity());
+  SurfaceDistance at(const Vec3& q, const LookedUp*) const noexcept override {
+    const auto nearest = tree_.nearest(q, kFar);
     if (!nearest) return {kFar, false};  // not finite
     const auto& [p, n] = points_[nearest->triangle];
     const double h = n.dot(q - p);
@@ -226,6 +239,7 @@ class PointSolid final : public Solid {
     const bool goes_on = beyond == 0.0 || tree_.nearest(p + 2.0 * spacing_ / aside * along, 1.5 * spacing_).has_value();
     return {std::copysign(std::sqrt(h * h + beyond), h), goes_on};
   }
+  std::size_t bytes() const noexcept override { return 300 * points_.size(); }
 
  private:
   static std::vector<Vec3> places(const std::vector<SurfacePoint>& points) {
@@ -263,11 +277,18 @@ class PointSolid final : public Solid {
 
 }  // namespace
 
-std::unique_ptr<const Solid> make_solid(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles) {
-  WeldedSurface surface = welded(vertices, triangles);
+std::unique_ptr<const Solid> make_solid(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles,
+                                        bool is_closed) {
+  WeldedSurface surface;
+  if (is_closed) {
+    surface.vertices.assign(vertices.begin(), vertices.end());
+    surface.triangles.assign(triangles.begin(), triangles.end());
+  } else {
+    surface = welded(vertices, triangles);
+  }
   Box box{surface.vertices.front(), surface.vertices.front()};
   for (const Vec3& v : surface.vertices) box = {box.min.cwiseMin(v), box.max.cwiseMax(v)};
-  return std::make_unique<MeshSolid>(std::move(surface), box);
+  return std::make_unique<MeshSolid>(std::move(surface), box, is_closed);
 }
 
 std::unique_ptr<const Solid> make_solid(const std::vector<SurfacePoint>& points) {

@@ -19,21 +19,30 @@ struct SurfaceDistance {
   bool known = true;
 };
 
+/// A distance that was looked up at a place: the surface is no further from another place than that and the way there,
+/// and another place nearer than the surface is on the same side.
+struct LookedUp {
+  Vec3 place;
+  double value;
+};
+
 /// The inside of an environment: the signed distance phi of its true surface, of which the shell has only points. Exact
 /// for scenes in closed form and for meshes, about a point's distance to its neighbours wrong for mere points.
 /// Immutable; for several threads.
 class Solid {
  public:
   virtual ~Solid() = default;
-  /// Allocates nothing. `at_most`: a bound of |phi|, if one is known, which shortens the search [m].
-  virtual SurfaceDistance at(const Vec3& point,
-                             double at_most = std::numeric_limits<double>::infinity()) const noexcept = 0;
+  /// Allocates nothing. `near`: a look-up not far away, which shortens the search; null for none.
+  virtual SurfaceDistance at(const Vec3& point, const LookedUp* near = nullptr) const noexcept = 0;
   /// A box that contains all points that are known to be inside [m].
   const Box& region() const noexcept { return region_; }
+  /// In memory, about.
+  virtual std::size_t bytes() const noexcept { return 0; }
   /// No point of the box is deeper than this [m]: what is known without a look.
   virtual double deepest_in(const Box&) const noexcept { return std::numeric_limits<double>::infinity(); }
-  /// The unit gradient of phi by differences over `step` [m]: away from the surface where phi > 0, towards it inside.
-  Vec3 gradient(const Vec3& point, double step) const noexcept;
+  /// The unit gradient of phi, by differences over `step` [m] where nothing else tells: away from the surface where
+  /// phi > 0, towards it inside.
+  virtual Vec3 gradient(const Vec3& point, double step) const noexcept;
 
  protected:
   explicit Solid(const Box& region) : region_(region) {}
@@ -52,10 +61,12 @@ std::unique_ptr<const Solid> make_solid(const Hole2d& hole);
 std::unique_ptr<const Solid> make_solid(const ConicalHole& cone);
 std::unique_ptr<const Solid> make_solid(const BlockWithHole& block);
 
-/// The inside of a mesh. If it is closed, phi < 0 where it winds around a point at least once; if it is open, where the
+/// The inside of a mesh. `is_closed`: it has no border, and no edge has more than two triangles; false when it is not
+/// known. If it is closed, phi < 0 where it winds around a point at least once; if it is open, where the
 /// nearest place has its normal on the other side, and phi is known where that place is not on the border. A query
 /// takes some 0.3 us; O(n log n) to make.
-std::unique_ptr<const Solid> make_solid(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles);
+std::unique_ptr<const Solid> make_solid(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles,
+                                        bool is_closed = false);
 
 /// The inside of points with normals. With q - p = h n + t for the nearest point p and its normal n, phi has the sign
 /// of h and the size sqrt(h^2 + max(0, t^2 - s^2)), s being twice the usual distance of neighbours: t is the gap

@@ -113,31 +113,39 @@ TriangleTree::Triangle::Triangle(std::uint32_t number_, const Vec3& a_, const Ve
 }
 
 TriangleTree::TriangleTree(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles) {
-  triangles_.reserve(triangles.size());
-  for (const auto& [a, b, c] : triangles)
-    triangles_.emplace_back(static_cast<std::uint32_t>(triangles_.size()), vertices[a], vertices[b], vertices[c]);
-  nodes_.push_back({Vec3::Zero(), Vec3::Zero(), 0, static_cast<std::uint32_t>(triangles_.size())});
+  std::vector<Item> items;
+  items.reserve(triangles.size());
+  for (const auto& [i, j, k] : triangles) {
+    const Vec3 &a = vertices[i], b = vertices[j], c = vertices[k];
+    items.push_back(
+        {a + b + c, a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c), static_cast<std::uint32_t>(items.size())});
+  }
+  nodes_.push_back({Vec3::Zero(), Vec3::Zero(), 0, static_cast<std::uint32_t>(items.size())});
   // Visits appended children, too.
-  for (std::size_t node = 0; node < nodes_.size(); ++node) split(node);
+  for (std::size_t node = 0; node < nodes_.size(); ++node) split(node, items);
+  triangles_.reserve(items.size());
+  for (const Item& item : items) {
+    const auto& [i, j, k] = triangles[item.number];
+    triangles_.emplace_back(item.number, vertices[i], vertices[j], vertices[k]);
+  }
 }
 
 /// Halves the triangles of a node across their longest extent, unless a leaf holds them.
-void TriangleTree::split(std::size_t node) {
+void TriangleTree::split(std::size_t node, std::vector<Item>& items) {
   const auto [first, count] = std::pair(nodes_[node].first, nodes_[node].count);
-  const auto begin = triangles_.begin() + first, end = begin + count;
-  Vec3 low = begin->low(), high = begin->high();
-  std::for_each(begin, end, [&](const Triangle& t) {
-    low = low.cwiseMin(t.low());
-    high = high.cwiseMax(t.high());
+  const auto begin = items.begin() + first, end = begin + count;
+  Vec3 low = begin->low, high = begin->high;
+  std::for_each(begin, end, [&](const Item& item) {
+    low = low.cwiseMin(item.low);
+    high = high.cwiseMax(item.high);
   });
   nodes_[node].low = low;
   nodes_[node].high = high;
   if (count <= kLeaf) return;
   Eigen::Index axis = 0;
   (high - low).maxCoeff(&axis);
-  const auto middle = [axis](const Triangle& t) { return 3.0 * t.a[axis] + t.ab[axis] + t.ac[axis]; };
   std::nth_element(begin, begin + count / 2, end,
-                   [&](const Triangle& a, const Triangle& b) { return middle(a) < middle(b); });
+                   [axis](const Item& a, const Item& b) { return a.middle[axis] < b.middle[axis]; });
   nodes_[node].first = static_cast<std::uint32_t>(nodes_.size());
   nodes_[node].count = 0;
   nodes_.push_back({low, high, first, count / 2});

@@ -69,15 +69,18 @@ class TriangleTree {
     double per_area;                   ///< over the squared area of the parallelogram; NaN without an area
     std::uint32_t number;
     Triangle(std::uint32_t number, const Vec3& a, const Vec3& b, const Vec3& c);
-    Vec3 low() const { return a + ab.cwiseMin(ac).cwiseMin(0.0); }
-    Vec3 high() const { return a + ab.cwiseMax(ac).cwiseMax(0.0); }
   };
   /// A leaf holds triangles first … first + count - 1; an inner node has the children first and first + 1.
   struct Node {
     Vec3 low, high;
     std::uint32_t first, count;
   };
-  void split(std::size_t node);
+  /// A triangle while the tree is made.
+  struct Item {
+    Vec3 middle, low, high;  ///< the sum of its corners, and its box
+    std::uint32_t number;
+  };
+  void split(std::size_t node, std::vector<Item>& items);
 
   std::vector<Triangle> triangles_;
   std::vector<Node> nodes_;

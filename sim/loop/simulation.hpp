@@ -24,8 +24,10 @@ enum class Outcome {
   leaves_hole,      ///< when_tool_leaves_hole
   tool_horizontal,  ///< when_tool_is_horizontal
   not_dragged,      ///< all steps done, but a dragging hand did not move the tool (judged by scenarios/run)
+  stuck,            ///< all steps done, but a dragged tool came to stand (judged by scenarios/run)
   no_contact,       ///< all steps done, but the tool never touched the environment (judged by scenarios/run)
   lost_contact,     ///< all steps done, but the tool left the environment (judged by scenarios/run)
+  went_through,     ///< all steps done, but the tool passed the surface (judged by scenarios/run)
   diverges          ///< a value was not finite or left its bound
 };
 

@@ -122,6 +122,10 @@ TEST(Summary, TextHoldsEveryField) {
     "force_reversals_per_s": 6,
     "reduction_changes": 7,
     "reduction_force_step_max_N": 0.25,
+    "inside_max_m": null,
+    "inside_settled_m": null,
+    "centre_inside_share": null,
+    "vibration_last_quarter_m_per_s": null,
     "final_position_m": [0.5, -0.25, 0]
   },
   "passivity": {
@@ -276,8 +280,8 @@ TEST(OutcomeNames, LeadBackToTheirOutcomes) {
     ASSERT_TRUE(named) << outcome.name;
     EXPECT_EQ(outcome_name(*named), outcome.name);
   }
-  EXPECT_EQ(names, (std::vector<std::string_view>{"completes", "leaves_hole", "tool_horizontal", "not_dragged",
-                                                  "no_contact", "lost_contact", "diverges"}));
+  EXPECT_EQ(names, (std::vector<std::string_view>{"completes", "leaves_hole", "tool_horizontal", "not_dragged", "stuck",
+                                                  "no_contact", "lost_contact", "went_through", "diverges"}));
   EXPECT_EQ(outcome_name(Outcome::diverges), "diverges");
 }
 

@@ -71,7 +71,8 @@ TEST(Defaults, ThatHoldEverywhere) {
                    {"/integrator", R"({"type": "leapfrog"})"},
                    {"/record", R"({"trajectory": true, "every": 1, "ratio_iterations": [], "contacts": false,
                                    "stiffness_tensor": false, "timing": false, "energy": false, "ideal_trajectory": false,
-                                   "force_reference": false, "pose": false, "torque": false})"},
+                                   "force_reference": false, "pose": false, "torque": false,
+                                   "inside": false})"},
                    {"/rendering/reduction", "null"},
                    {"/metrics", R"({"from_s": null, "settling_s": 0.05})"},
                    {"/expect/outcome", R"(["completes", "leaves_hole", "tool_horizontal"])"}});

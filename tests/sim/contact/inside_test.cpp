@@ -111,7 +111,7 @@ TEST(Inside, AgreesWithADenseSampleOfTheTool) {
         EXPECT_EQ(sample, 0.0) << kind.name << " in " << place.name;
         continue;
       }
-      EXPECT_LE(sample, *depth + search.tolerance(*depth)) << kind.name << " in " << place.name;
+      EXPECT_LE(sample, *depth + InsideSearch::kTolerance * (width + *depth)) << kind.name << " in " << place.name;
       // A point of the tool may have no sample of the tool within half a diagonal only at sharp edges.
       EXPECT_LE(*depth, sample + 2.0 * std::sqrt(3.0) * step) << kind.name << " in " << place.name;
       most = std::max(most, sample - *depth);

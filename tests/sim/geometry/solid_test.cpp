@@ -64,6 +64,16 @@ TEST(Solid, OfAnalyticScenesHasTheDistanceToTheirPoints) {
   expect_distances_to_points(ConicalHole{0.5, 0.003, 0.00004}, 0.0016, false);
 }
 
+Vec3 test_gradient(const TriangleSoup& soup, const Vec3& q) {
+  constexpr double kStep = 1e-8;
+  Vec3 gradient;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 aside = kStep * Vec3::Unit(k);
+    gradient[k] = test::exact_distance(soup, q + aside) - test::exact_distance(soup, q - aside);
+  }
+  return gradient.normalized();
+}
+
 TEST(Solid, OfAClosedMeshHasItsExactDistance) {
   const TriangleSoup box = test::cube(0.005, {0.001, 0.0, 0.0}), cup = test::scaled(test::cup(24), 0.003);
   for (const TriangleSoup* soup : {&box, &cup}) {
@@ -72,8 +82,10 @@ TEST(Solid, OfAClosedMeshHasItsExactDistance) {
     for (int i = 0; i < 300; ++i) {
       const Vec3 q = random_point(random, 0.01);
       EXPECT_NEAR(solid->at(q).value, test::exact_distance(*soup, q), 1e-12) << q.transpose();
-      const double at_most = std::abs(test::exact_distance(*soup, q));
-      EXPECT_EQ(solid->at(q, at_most).value, solid->at(q).value);
+      const LookedUp near{q + random_point(random, 0.002), 0.0};
+      const LookedUp looked{near.place, solid->at(near.place).value};
+      EXPECT_EQ(solid->at(q, &looked).value, solid->at(q).value);
+      EXPECT_NEAR(solid->gradient(q, 1e-6).dot(test_gradient(*soup, q)), 1.0, 1e-6) << q.transpose();
       EXPECT_TRUE(solid->at(q).known);
     }
     // A line along edges and through vertices crosses the surface as one beside it.

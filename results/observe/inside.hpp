@@ -1,0 +1,109 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "sim/contact/inside.hpp"
+#include "sim/loop/observer.hpp"
+
+namespace hapbench {
+
+class MetricsObserver;
+
+/// How deep the tool was in the environment in a run, as metric_list(Metrics) documents it.
+struct InsideMetrics {
+  std::optional<double> max;    ///< [m]
+  std::vector<double> settled;  ///< of rows in settled contact [m]
+  std::uint64_t rows = 0;       ///< with the tip centre where the inside is known
+  std::uint64_t centre_inside = 0;
+
+  InsideMetrics& operator+=(const InsideMetrics& other);
+  std::optional<double> settled_median() const;
+};
+
+/// How the tool passed the surface in a run: by its tip centre, and by its core, the place half the tool's width within
+/// the body behind its tip (of a ball the tip centre, of a flat tip half a width behind it).
+struct Passage {
+  struct Event {
+    double time;  ///< [s]
+    Vec3 place;   ///< [m]
+  };
+  std::optional<Event> deep;  ///< when the tip centre first was deeper than the half width
+  double deepest = 0.0;       ///< of the tip centre in any row, within 2 % [m]
+  double last_depth = 0.0;    ///< of the tip centre in the last row [m]; negative outside
+  bool ends_inside = false;   ///< the core, in the last row
+  bool began_inside = false;  ///< the core, in the first row
+  /// When the core first left the solid on another side than it came, and where it had entered: the surface faces the
+  /// other way there, by more than a right angle.
+  std::optional<Event> left;
+  Vec3 entered = Vec3::Zero();  ///< [m]
+
+  bool went_through() const noexcept { return deep || left || ends_inside; }
+};
+
+/// Keeps poses of a run in a fixed memory: of some parts of equally many rows each the one with the
+/// largest key.
+class PoseSamples {
+ public:
+  struct Sample {
+    ToolPose pose;
+    double key;
+  };
+  explicit PoseSamples(std::size_t most) : most_(most) { samples_.reserve(most); }  ///< even
+  void add(const ToolPose& pose, double key) noexcept;
+  const std::vector<Sample>& all() const noexcept { return samples_; }
+
+ private:
+  std::size_t most_;
+  std::vector<Sample> samples_;
+  std::uint64_t rows_ = 0, rows_of_part_ = 1;
+};
+
+/// Watches how deep the tool is. A row costs some nanoseconds: a point cannot pass the surface before it has moved by
+/// its distance, so that few rows need a look; the deepest point of the tool is looked for after the run only, in the
+/// poses with the deepest contact or centre and in some rows in settled contact; or in
+/// every `every`-th row when that is asked for. Allocates in the constructor and after the run only.
+class InsideObserver final : public Observer {
+ public:
+  /// `metrics`, if given, observes before this and tells which rows are in settled contact. `every`: 0 for no rows; of
+  /// `steps` rows in all.
+  InsideObserver(std::shared_ptr<const ToolShape> tool, std::shared_ptr<const Solid> solid,
+                 const MetricsObserver* metrics = nullptr, std::uint64_t every = 0, std::uint64_t steps = 0);
+
+  void on_step(const StepRecord& record) noexcept override;
+
+  /// Of the last row, if it is one of the every `every`-th [m]; none where it is unknown.
+  const std::optional<double>& depth() const noexcept { return depth_; }
+  const Passage& passage() const noexcept { return passage_; }
+  /// After the run; looks for the deepest points.
+  InsideMetrics metrics();
+
+ private:
+  void follow_tip(const StepRecord& record) noexcept;
+  void follow_core(const Vec3& place, double time) noexcept;
+  void note_core(const Vec3& place, const SurfaceDistance& phi, double time) noexcept;
+
+  std::shared_ptr<const ToolShape> tool_;
+  std::shared_ptr<const Solid> solid_;
+  const MetricsObserver* settled_by_;
+  std::uint64_t every_;
+  InsideSearch search_;
+  std::optional<double> depth_;
+  InsideMetrics metrics_;
+  Passage passage_;
+  double back_;  ///< of the core behind the tip centre [m]
+
+  bool began_ = false;
+  Vec3 tip_looked_ = Vec3::Zero();  ///< where the tip centre's distance was last looked up
+  SurfaceDistance tip_phi_;
+  Vec3 core_ = Vec3::Zero();  ///< in the row before
+  double free_way_ = 0.0;     ///< of the core, on which it cannot meet the surface [m]
+  enum class Side { unknown, outside, inside } side_ = Side::unknown;
+  Vec3 outside_ = Vec3::Zero();  ///< where the core was last seen outside
+  std::optional<Vec3> entry_normal_;
+  PoseSamples deepest_, settled_;
+};
+
+}  // namespace hapbench
