@@ -142,8 +142,8 @@ std::string stiffness_text(double K) {
 
 std::string limit_text(const FieldLimit& limit) {
   if (!limit.value) return "none";
-  return fmt::format("{}{}{}", limit.beyond ? "" : "> ", stiffness_text(*limit.value),
-                     limit.inconsistent.empty() ? "" : " ~");
+  return fmt::format("{}{}{}{}", limit.other_beyond ? stiffness_text(*limit.other_value) + "-" : "",
+                     limit.beyond ? "" : "> ", stiffness_text(*limit.value), limit.inconsistent.empty() ? "" : " ~");
 }
 
 std::string damping_text(const RenderingConfig& rendering) {
@@ -153,13 +153,10 @@ std::string damping_text(const RenderingConfig& rendering) {
                      significant(rendering.damping_ratio), significant(rendering.mass));
 }
 
-/// States the question, what "stable" means here, and how B follows K.
+/// States the question and how B follows K.
 std::string question_text(const DeviceQuestion& question) {
-  std::string text = fmt::format(
-      "largest stable rendering.stiffness_N_per_m, to {:.3g} %\n"
-      "stable: at most {} m/s rms above {:.0f} Hz at the handle in the last quarter of a run, and not diverged, "
-      "thrown_out or no_contact\n",
-      100.0 * question.resolution, significant(question.most_vibration), kVibrationCutoff);
+  std::string text =
+      fmt::format("largest stable rendering.stiffness_N_per_m, to {:.3g} %\n", 100.0 * question.resolution);
   std::vector<std::string> rules;
   for (const ScenarioText& scene : question.scenes) {
     const Scenario scenario =
@@ -229,6 +226,8 @@ class Answers {
 
   std::string text() const {
     std::string text = question_text(question_) + "\n" + stiffness_table().text();
+    text += wrapped(rule_text(StabilityRule{.most_vibration = question_.most_vibration}, false), 0);
+    text += ends_text();
     text += "published: largest stable stiffness of a wall; \"hapbench describe DEVICE\" names its source\n";
     if (std::ranges::any_of(question_.devices, [](const auto& device) { return device.name.ends_with('*'); }))
       text += "*: a preset with numbers of --set, of which nothing is published\n";
@@ -246,6 +245,25 @@ class Answers {
 
  private:
   std::string title(std::size_t column) const { return scene(column) + "\n" + algorithm(column); }
+
+  /// What happens below a low end, and where nothing is stable.
+  std::string ends_text() const {
+    std::map<std::string, std::vector<std::string>> below, none;
+    const auto name = [this](const DeviceLimit& limit) {
+      return fmt::format("{} with {} in {}", question_.devices[limit.device].name, limit.limit.algorithm,
+                         scene_name(limit.scene));
+    };
+    for (const DeviceLimit& limit : limits_) {
+      if (!limit.limit.value) none[none_text(limit.limit)].push_back(name(limit));
+      if (limit.limit.other_beyond)
+        below[std::string(run_verdict_name(limit.limit.other_beyond->verdict))].push_back(name(limit));
+    }
+    std::string text;
+    for (const auto& [verdict, names] : below)
+      text += wrapped(fmt::format("a-b: stable from a on; below, {}: {}", verdict, fmt::join(names, ", ")), 0);
+    for (const auto& [why, names] : none) text += wrapped(fmt::format("{}: {}", fmt::join(names, ", "), why), 0);
+    return text;
+  }
 
   Table stiffness_table() const {
     std::vector<Table::Column> columns = {{"device", false}, {"pub-\nlished"}};
@@ -324,6 +342,12 @@ const DeviceField kDeviceLimitFields[] = {
      [](const DeviceLimitRow& r) { return r.limit().beyond ? Cell(r.limit().beyond->value) : Cell(); }},
     {{"class_beyond", "", "what became of the run there"},
      [](const DeviceLimitRow& r) -> Cell { return beyond_text(r.limit()); }},
+    {{"low_N_per_m", "N/m", "smallest stable K of the interval that the limit ends; empty when no run is stable"},
+     [](const DeviceLimitRow& r) { return cell_if(r.limit().other_value); }},
+    {{"below_N_per_m", "N/m", "the first K below that is not stable; empty when the range begins stable"},
+     [](const DeviceLimitRow& r) { return r.limit().other_beyond ? Cell(r.limit().other_beyond->value) : Cell(); }},
+    {{"class_below", "", "what became of the run there"},
+     [](const DeviceLimitRow& r) -> Cell { return other_beyond_text(r.limit()); }},
     {{"published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device"},
      [](const DeviceLimitRow& r) { return cell_if(r.device().published_stiffness); }},
     {{"vibration_m_per_s", "m/s", "at the limit: rms of the handle's speed above 30 Hz in the last quarter of the run"},
@@ -405,6 +429,19 @@ std::vector<Column> device_run_columns() {
 std::string beyond_text(const FieldLimit& limit) {
   if (limit.beyond) return std::string(run_verdict_name(limit.beyond->verdict));
   return limit.value ? "end of the range" : std::string(run_verdict_name(limit.runs.front().verdict));
+}
+
+std::string other_beyond_text(const FieldLimit& limit) {
+  if (limit.other_beyond) return std::string(run_verdict_name(limit.other_beyond->verdict));
+  return limit.value ? "end of the range" : "-";
+}
+
+std::string none_text(const FieldLimit& limit) {
+  std::map<RunVerdict, std::size_t> counts;
+  for (const JudgedValue& run : limit.runs) ++counts[run.verdict];
+  std::vector<std::string> texts;
+  for (const auto& [verdict, count] : counts) texts.push_back(fmt::format("{} {}", count, run_verdict_name(verdict)));
+  return fmt::format("none of {} values tried is stable: {}", limit.runs.size(), fmt::join(texts, ", "));
 }
 
 double vibration_of(const std::string& text) {

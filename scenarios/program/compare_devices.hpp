@@ -42,6 +42,10 @@ double resolution_of(const std::string& text);
 /// Names what lies beyond a limit: a class of motion or "end of the range"; without a limit, the class at the range's
 /// low end.
 std::string beyond_text(const FieldLimit& limit);
+/// The same of the other end of the interval of stable values.
+std::string other_beyond_text(const FieldLimit& limit);
+/// "none of 17 values tried is stable: 12 went_through, 5 vibrating".
+std::string none_text(const FieldLimit& limit);
 
 /// Finds the largest stable stiffness on each device, prints and writes the tables. Returns the exit status.
 int compare_devices(const CompareDevicesOptions& options);

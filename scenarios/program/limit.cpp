@@ -6,6 +6,7 @@
 #include "results/io/csv_writer.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
@@ -26,6 +27,7 @@ struct LimitOptions {
   std::string between;
   std::string resolution;
   std::string vibration;
+  std::vector<std::string> bounds;
   bool smallest = false;
   std::vector<std::string> algorithms;
   unsigned jobs = 0;  ///< 0: as many as the machine has
@@ -44,6 +46,24 @@ std::optional<Range> range_of(const std::string& text) {
   return Range{*from, *to};
 }
 
+/// "--bound name=most" or "--bound name=least:most".
+void add_bound(const std::string& text, LimitQuestion& question) {
+  const Words parts = parts_of(text, '=');
+  if (parts.size() == 2) {
+    require_names("--bound: got", {std::string(parts[0])}, metric_names());
+    const Words ends = parts_of(parts[1], ':');
+    const auto least = finite_number(ends.front()), most = finite_number(ends.back());
+    if (ends.size() <= 2 && least && most && *least <= *most) {
+      MetricBound& bound = question.bounds[std::string(parts[0])];
+      bound.max = *most;
+      if (ends.size() == 2) bound.min = *least;
+      return;
+    }
+  }
+  throw InputError(
+      fmt::format("--bound: got \"{}\"; allowed: metric=most or metric=least:most, as inside_settled_m=3e-4", text));
+}
+
 LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scenario) {
   if (options.field.find('=') != std::string::npos) {
     throw InputError(
@@ -53,6 +73,7 @@ LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scena
   question.smallest = options.smallest;
   if (!options.resolution.empty()) question.resolution = resolution_of(options.resolution);
   if (!options.vibration.empty()) question.most_vibration = vibration_of(options.vibration);
+  for (const std::string& bound : options.bounds) add_bound(bound, question);
   return question;
 }
 
@@ -60,33 +81,25 @@ const char* side(const LimitQuestion& question) {
   return question.smallest ? "smallest" : "largest";
 }
 
-/// States the question and what "stable" means here.
+/// States the question.
 std::string question_text(const LimitQuestion& question, const Scenario& scenario) {
   const std::string width = question.whole ? "1"
                             : question.range.logarithmic
                                 ? fmt::format("{} %", 100.0 * question.resolution)
                                 : fmt::format("{} % of the range", 100.0 * question.resolution);
   const auto end = [&question](double value) { return significant(question.whole ? std::round(value) : value); };
-  std::string text =
-      fmt::format("{}: {} stable {} between {} and {}, to {}; {} steps a run\n", scenario.name, side(question),
-                  question.path, end(question.range.from), end(question.range.to), width, scenario.time.steps);
-  if (question.most_vibration) {
-    return text + fmt::format(
-                      "stable: at most {} m/s rms above 30 Hz at the handle in the last quarter of a run, and not "
-                      "diverged, thrown_out or no_contact\n\n",
-                      significant(*question.most_vibration));
-  }
-  text += "stable: comes to rest or dies out; not: vibrating, diverged, thrown_out, no_contact\n";
-  if (is_moved(scenario)) text += "a script moves the tool: only what is above 30 Hz and 1 mm/s counts as motion\n";
-  return text + "\n";
+  return fmt::format("{}: {} stable {} between {} and {}, to {}; {} steps a run\n\n", scenario.name, side(question),
+                     question.path, end(question.range.from), end(question.range.to), width, scenario.time.steps);
 }
 
 std::string value_text(const std::optional<double>& value) {
   return !value ? "-" : std::isinf(*value) || *value == 0.0 ? "none" : significant(*value, 6);
 }
 
-Table table_of(const std::vector<FieldLimit>& limits) {
+Table table_of(const std::vector<FieldLimit>& limits, const LimitQuestion& question) {
   Table table({{"algorithm", false},
+               {question.smallest ? "high end" : "low end"},
+               {question.smallest ? "above it" : "below it", false},
                {"first edge"},
                {"beyond it", false},
                {"theory"},
@@ -95,7 +108,8 @@ Table table_of(const std::vector<FieldLimit>& limits) {
                {"inconsistent"}});
   for (const FieldLimit& limit : limits) {
     const auto difference = limit.difference();
-    table.add({limit.algorithm, limit.value ? significant(*limit.value, 6) : "none", beyond_text(limit),
+    table.add({limit.algorithm, limit.other_value ? significant(*limit.other_value, 6) : "none",
+               other_beyond_text(limit), limit.value ? significant(*limit.value, 6) : "none", beyond_text(limit),
                value_text(limit.theory), difference ? significant(100.0 * *difference, 2) : "-",
                std::to_string(limit.runs.size()), std::to_string(limit.inconsistent.size())});
   }
@@ -108,6 +122,7 @@ std::string remarks_text(const std::vector<FieldLimit>& limits, const LimitQuest
   constexpr std::size_t kMost = 4;
   std::string text;
   for (const FieldLimit& limit : limits) {
+    if (!limit.value) text += fmt::format("{}: {}\n", limit.algorithm, none_text(limit));
     if (limit.value && limit.own && !is_stable(limit.own->verdict)) {
       text +=
           fmt::format("{}: {} at the scenario's own {}: the edge is that of the first stable values from the {} end\n",
@@ -142,6 +157,13 @@ struct LimitRow {
 };
 using LimitField = Field<LimitRow>;
 
+Cell value_of(const std::optional<JudgedValue>& run) {
+  return run ? Cell(run->value) : Cell();
+}
+Cell class_of(const std::optional<JudgedValue>& run) {
+  return run ? Cell(std::string(run_verdict_name(run->verdict))) : Cell();
+}
+
 const LimitField kLimitFields[] = {
     {{"algorithm", "", "force algorithm"}, [](const LimitRow& r) -> Cell { return r.limit.algorithm; }},
     {{"field", "", "path of the field"},
@@ -157,6 +179,19 @@ const LimitField kLimitFields[] = {
      [](const LimitRow& r) { return r.limit.beyond ? Cell(r.limit.beyond->value) : Cell(); }},
     {{"class_beyond", "", "what became of the run there (describe stability)"},
      [](const LimitRow& r) -> Cell { return beyond_text(r.limit); }},
+    {{"low", "by field",
+      "the low end of the interval of stable values that the limit ends: its smallest stable value, to the resolution"},
+     [](const LimitRow& r) { return cell_if(r.question.smallest ? r.limit.value : r.limit.other_value); }},
+    {{"below", "by field", "the first value below that is not stable; empty when the range begins stable"},
+     [](const LimitRow& r) { return value_of(r.question.smallest ? r.limit.beyond : r.limit.other_beyond); }},
+    {{"class_below", "", "what became of the run there"},
+     [](const LimitRow& r) { return class_of(r.question.smallest ? r.limit.beyond : r.limit.other_beyond); }},
+    {{"high", "by field", "the high end of this interval"},
+     [](const LimitRow& r) { return cell_if(r.question.smallest ? r.limit.other_value : r.limit.value); }},
+    {{"above", "by field", "the first value above that is not stable; empty when the range ends stable"},
+     [](const LimitRow& r) { return value_of(r.question.smallest ? r.limit.other_beyond : r.limit.beyond); }},
+    {{"class_above", "", "what became of the run there"},
+     [](const LimitRow& r) { return class_of(r.question.smallest ? r.limit.other_beyond : r.limit.beyond); }},
     {{"theory", "by field", "the limit in theory; empty where there is none"},
      [](const LimitRow& r) { return cell_if(r.limit.theory); }},
     {{"unstable_without_contact", "", "true when hand and device alone are unstable beyond the edge"},
@@ -191,7 +226,7 @@ void write_limits(const fs::path& directory, const std::vector<FieldLimit>& limi
   runs.finish();
 }
 
-Json limits_json(const std::vector<FieldLimit>& limits, const LimitQuestion& question) {
+Json limits_json(const std::vector<FieldLimit>& limits, const LimitQuestion& question, bool moved) {
   Json rows = Json::array();
   for (const LimitRow& row : rows_of(limits, question)) {
     Json& json = rows.emplace_back();
@@ -206,6 +241,7 @@ Json limits_json(const std::vector<FieldLimit>& limits, const LimitQuestion& que
           {"from", question.range.from},
           {"to", question.range.to},
           {"resolution", question.resolution},
+          {"rule", rule_text(question, moved)},
           {"limits", std::move(rows)}};
 }
 
@@ -226,9 +262,10 @@ int limit(const LimitOptions& options) {
                                                       job_options(options.jobs, options.output, "limit"));
   write_limits(out, limits, question);
   print(options.output,
-        question_text(question, loaded.scenario) + table_of(limits).text() + remarks_text(limits, question) +
+        question_text(question, loaded.scenario) + table_of(limits, question).text() + "\n" +
+            wrapped(rule_text(question, is_moved(loaded.scenario)), 0) + remarks_text(limits, question) +
             fmt::format("\nresults in {}\n", out.string()),
-        limits_json(limits, question));
+        limits_json(limits, question, is_moved(loaded.scenario)));
   return kSuccess;
 }
 
@@ -262,18 +299,22 @@ void add_limit(CommandLine& line) {
               "relative width of the answer (default: 0.001); of the range when the range reaches 0 or below");
   command.add("--vibration", options.vibration,
               "judge stability by the handle's vibration: the largest allowed above 30 Hz [m/s rms]");
+  command.add("--bound", options.bounds,
+              "a stable run keeps metric=most or metric=least:most, too, as inside_settled_m=3e-4; repeatable");
   add_jobs(command, options.jobs, "algorithms at once (default: as many as the machine has threads)");
   command.add("--out", options.out, "directory of the results (default: results/out/limit_NAME)");
   add_overrides(command, options.overrides, "override a field of all runs: path=value");
   add_output_options(command, options.output);
   command.footer(
       "A run is stable when it comes to rest or dies out, the classes of \"hapbench describe stability\". It is not "
-      "stable when it vibrates, diverges, is thrown out (leaves the hole, or ends without contact beyond the shell's box "
-      "by more than the tool reaches) or touches nothing. Oscillations slower than a quarter of the run are not seen. "
+      "stable when it vibrates, diverges, goes through the surface, is thrown out (leaves the hole, or ends without contact "
+      "beyond the shell's box by more than the tool reaches), loses contact, is stuck, touches nothing, or does not keep a "
+      "--bound. Oscillations slower than a quarter of the run are not seen. "
       "The range is tried at 17 values. The first edge upwards of the scenario's own value (of the first stable value, "
-      "if that one is not stable; with --smallest downwards, from the high end) is bisected, and three values are tried "
-      "on either side of it, which may reveal an earlier edge. The column inconsistent counts unstable values on the stable "
-      "side and stable ones beyond the edge. Where the hand is an impedance, a run without environment tells whether "
+      "if that one is not stable; with --smallest downwards, from the high end) is bisected, then the other end of the "
+      "interval of stable values, below which a surface may be too soft; three values are tried "
+      "on either side of the first edge, which may reveal an earlier edge. The column inconsistent counts unstable values in the interval "
+      "and stable ones outside of it. Where the hand is an impedance, a run without environment tells whether "
       "hand and device alone are unstable beyond the edge. Where the springs stay in contact, the theoretical limit "
       "stands beside the edge. limit_runs.csv has every run.");
 }

@@ -66,29 +66,45 @@ class FieldWay {
 struct Edge {
   std::optional<double> stable;  ///< the last stable part
   std::optional<double> beyond;  ///< the first unstable part beyond it
+  std::optional<double> first;   ///< the first stable part of the interval that ends with `stable`
+  std::optional<double> before;  ///< the last unstable part before it
 };
 
 /// The edge behind the scenario's own value, or if that is not stable behind the first stable values of the way. With
-/// `beside`, tries values on either side of it, too, and goes on where one of them shows an edge before it.
+/// `beside`, tries values on either side of it, too, and goes on where one of them shows an edge before it; then finds
+/// the other end of the interval.
 Edge find_edge(const FieldWay& way, const std::function<bool(double)>& stable, bool beside) {
   std::map<double, bool> tried;
   const auto holds = [&](double part) { return tried[part] = stable(part); };
   for (int i = 0; i <= kIntervals; ++i) holds(static_cast<double>(i) / kIntervals);
   const std::optional<double> own = way.own();
   const double start = own && holds(*own) ? *own : 0.0;
+  const auto middle = [](double a, double b) { return 0.5 * (a + b); };
+  const auto apart = [&way](double a, double b) { return way.apart(a, b); };
+  const auto with_other_end = [&](Edge edge) {
+    if (!beside) return edge;
+    auto first = tried.find(*edge.stable);
+    while (first != tried.begin() && std::prev(first)->second) --first;
+    double high = first->first;
+    edge.first = high;
+    if (first == tried.begin()) return edge;
+    double low = std::prev(first)->first;
+    bisect(high, low, holds, middle, [&](double a, double b) { return apart(b, a); });
+    edge.first = high;
+    edge.before = low;
+    return edge;
+  };
   Edge edge;
   for (int round = 0; round < kRounds; ++round) {
     const auto is = [](bool wanted) { return [wanted](const auto& value) { return value.second == wanted; }; };
     const auto first = std::find_if(tried.lower_bound(start), tried.end(), is(true));
     if (first == tried.end()) return {};
     const auto end = std::find_if(first, tried.end(), is(false));
-    if (end == tried.end()) return {tried.rbegin()->first, {}};
+    if (end == tried.end()) return with_other_end({tried.rbegin()->first, {}, {}, {}});
     double low = std::prev(end)->first, high = end->first;
-    if (edge.stable == low) return edge;
-    bisect(
-        low, high, holds, [](double a, double b) { return 0.5 * (a + b); },
-        [&way](double a, double b) { return way.apart(a, b); });
-    edge = {low, high};
+    if (edge.stable == low) return with_other_end(edge);
+    bisect(low, high, holds, middle, apart);
+    edge = {low, high, {}, {}};
     if (!beside) return edge;
     const double before = std::max(first->first, low - 1.0 / kIntervals),
                  behind = std::min(1.0, high + 1.0 / kIntervals);
@@ -98,7 +114,7 @@ Edge find_edge(const FieldWay& way, const std::function<bool(double)>& stable, b
       holds(high + share * (behind - high));
     }
   }
-  return edge;
+  return with_other_end(edge);
 }
 
 /// Finds the limits of one scenario's algorithms.
@@ -124,10 +140,12 @@ class Search {
       limit.settled = runs.at(*limit.value).settled;
     }
     if (edge.beyond) limit.beyond = at_part(*edge.beyond);
+    if (edge.first) limit.other_value = way_.value(*edge.first);
+    if (edge.before) limit.other_beyond = at_part(*edge.before);
     if (way_.own()) limit.own = at_part(*way_.own());
     for (const auto& [value, run] : runs) {
       limit.runs.push_back({value, run.verdict});
-      if (limit.value && is_stable(run.verdict) != on_stable_side(value, limit))
+      if (limit.value && is_stable(run.verdict) != in_interval(value, limit))
         limit.inconsistent.push_back(limit.runs.back());
     }
     limit.has_effect = std::any_of(runs.begin(), runs.end(),
@@ -140,16 +158,15 @@ class Search {
   }
 
  private:
-  bool on_stable_side(double value, const FieldLimit& limit) const {
-    if (!limit.beyond) return true;
-    return question_.smallest ? value > limit.beyond->value : value < limit.beyond->value;
+  bool in_interval(double value, const FieldLimit& limit) const {
+    const auto is_before = [this](double a, double b) { return question_.smallest ? a > b : a < b; };
+    return (!limit.beyond || is_before(value, limit.beyond->value)) &&
+           (!limit.other_beyond || is_before(limit.other_beyond->value, value));
   }
 
   JudgedRun judged(const std::string& algorithm, double value) {
     const LoadedScenario loaded = at(algorithm, value);
-    return with_file(loaded, [&] {
-      return judged_run(loaded, make_shell(loaded.scenario, loaded.files), question_.most_vibration);
-    });
+    return with_file(loaded, [&] { return judged_run(loaded, make_shell(loaded.scenario, loaded.files), question_); });
   }
 
   LoadedScenario at(const std::string& algorithm, double value) const {

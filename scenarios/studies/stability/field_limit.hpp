@@ -14,8 +14,8 @@ namespace hapbench {
 
 struct ScenarioText;
 
-/// The question: which limit of which field.
-struct LimitQuestion {
+/// The question: which limit of which field, and by which rule a run is stable.
+struct LimitQuestion : StabilityRule {
   std::string path;                ///< of the field, dotted as in --set
   Range range;                     ///< where it may lie, from < to; both ends are tried
   std::optional<double> own = {};  ///< the scenario's value, if it lies in the range
@@ -23,8 +23,6 @@ struct LimitQuestion {
   bool smallest = false;
   /// Width at which bisection stops: relative to the value in a logarithmic range, to the range in a linear one.
   double resolution = 1e-3;
-  /// Most vibration of the handle above 30 Hz, which then decides what is stable [m/s rms] (judged_run.hpp).
-  std::optional<double> most_vibration = {};
   std::vector<std::string> warnings = {};  ///< of the scenario with the field given
 };
 
@@ -39,6 +37,9 @@ struct FieldLimit {
   std::string algorithm;
   std::optional<double> value;        ///< the last stable one; none when no run is stable
   std::optional<JudgedValue> beyond;  ///< the first one beyond it that is not; none when the range ends stable
+  /// The same at the other end of the interval of stable values around it, where the search began.
+  std::optional<double> other_value;
+  std::optional<JudgedValue> other_beyond;
   /// The same by the eigenvalues of a step, where the springs stay in contact; infinite (smallest: 0) when the whole
   /// range is stable, none where there is no theory or nothing is stable.
   std::optional<double> theory;
@@ -47,10 +48,9 @@ struct FieldLimit {
   /// Hand and device are unstable even where there is nothing to touch, at the value beyond, or without a limit at the
   /// first one. Only asked of a hand that feels the handle and needs no surface.
   bool unstable_alone = false;
-  bool has_effect = true;         ///< false when the handle moved alike, bit for bit, in all runs
-  std::vector<JudgedValue> runs;  ///< all, by value
-  std::vector<JudgedValue>
-      inconsistent;  ///< runs that are unstable on the stable side of the limit, or stable beyond it
+  bool has_effect = true;                 ///< false when the handle moved alike, bit for bit, in all runs
+  std::vector<JudgedValue> runs;          ///< all, by value
+  std::vector<JudgedValue> inconsistent;  ///< runs that are unstable in this interval, or stable outside of it
 
   /// value / theory - 1; none without either.
   std::optional<double> difference() const;
@@ -65,11 +65,10 @@ LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std
 
 /// Answers the question for each algorithm. The range is tried at 17 values and the scenario's own. From the own value
 /// on, or if that is not stable from the first stable one of the low end (smallest: the high end) on, the first edge is
-/// narrowed down by bisection, and three values on either side of it are tried besides; if they show an earlier edge,
-/// that is narrowed down instead, up to five times.
-/// Some 35 to 120 runs for each algorithm; the same whatever the number of threads.
-/// Throws InputError, with the file, for a scene without a free position or with fewer than 4 steps, and where
-/// vibration is asked for at a sampling rate of 60 Hz or less.
+/// narrowed down by bisection, as is then the other end of the interval; three values on either side of it are tried
+/// besides; if they show an earlier edge, that is narrowed down instead, up to five times. Some 35 to 120 runs for each
+/// algorithm; the same whatever the number of threads. Throws InputError, with the file, for a scene without a free
+/// position or with fewer than 4 steps, and where vibration is asked for at a sampling rate of 60 Hz or less.
 std::vector<FieldLimit> field_limits(const ScenarioText& scenario, const std::vector<std::string>& overrides,
                                      const std::vector<std::string>& algorithms, const LimitQuestion& question,
                                      const JobOptions& jobs);

@@ -1,12 +1,18 @@
 #include "scenarios/studies/stability/judged_run.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "results/observe/contact_forces.hpp"
 #include "results/observe/metrics.hpp"
+#include "results/summary/outcome_names.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/encounter.hpp"
+#include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/core/hash.hpp"
@@ -132,20 +138,15 @@ bool has_left(const LastPlace& last, const PointShell& shell, double reach) {
 class LastQuarter final : public Observer {
  public:
   explicit LastQuarter(const TimeFields& time)
-      : steps_(static_cast<std::uint64_t>(time.steps)), high_pass_(vibration_filter(time.step)) {}
+      : steps_(static_cast<std::uint64_t>(time.steps)), vibration_(steps_, time.step) {}
 
   void on_step(const StepRecord& record) noexcept override {
     if (const std::uint64_t quarter = record.step * 4 / steps_; quarter != quarter_) {
       quarter_ = quarter;
-      rows_ = rows_in_contact_ = contacts_ = 0;
-      speed_sum_ = 0.0;
+      rows_in_contact_ = contacts_ = 0;
       S_sum_.setZero();
     }
-    ++rows_;
-    if (high_pass_) {
-      if (record.step == 0) high_pass_->settle_at(record.handle.velocity);
-      speed_sum_ += high_pass_->filter(record.handle.velocity).squaredNorm();
-    }
+    vibration_.add(record.step, record.handle.velocity);
     if (record.rendered->size() == 0) return;
     ++rows_in_contact_;
     contacts_ += record.rendered->size();
@@ -154,7 +155,7 @@ class LastQuarter final : public Observer {
 
   SettledState state() const {
     SettledState state;
-    if (high_pass_ && rows_ > 0) state.vibration = std::sqrt(speed_sum_ / static_cast<double>(rows_));
+    state.vibration = vibration_.value();
     if (rows_in_contact_ == 0) return state;
     const auto rows = static_cast<double>(rows_in_contact_);
     state.contacts = static_cast<double>(contacts_) / rows;
@@ -164,9 +165,8 @@ class LastQuarter final : public Observer {
 
  private:
   std::uint64_t steps_;
-  std::optional<HighPass> high_pass_;
-  std::uint64_t quarter_ = 0, rows_ = 0, rows_in_contact_ = 0, contacts_ = 0;
-  double speed_sum_ = 0.0;
+  LastQuarterVibration vibration_;
+  std::uint64_t quarter_ = 0, rows_in_contact_ = 0, contacts_ = 0;
   Mat3 S_sum_ = Mat3::Zero();
 };
 
@@ -184,17 +184,62 @@ static_assert(static_cast<int>(RunVerdict::diverged) == static_cast<int>(MotionC
 
 }  // namespace
 
+namespace {
+
+/// The outcome after which a verdict is named, if it is one.
+std::optional<Outcome> outcome_of(RunVerdict verdict) {
+  switch (verdict) {
+    case RunVerdict::lost_contact:
+      return Outcome::lost_contact;
+    case RunVerdict::went_through:
+      return Outcome::went_through;
+    case RunVerdict::not_dragged:
+      return Outcome::not_dragged;
+    case RunVerdict::stuck:
+      return Outcome::stuck;
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace
+
 std::string_view run_verdict_name(RunVerdict verdict) noexcept {
+  if (const auto outcome = outcome_of(verdict)) return outcome_name(*outcome);
   if (verdict == RunVerdict::thrown_out) return "thrown_out";
   if (verdict == RunVerdict::no_contact) return "no_contact";
+  if (verdict == RunVerdict::beyond_bound) return "beyond_bound";
   return motion_class_name(static_cast<MotionClass>(verdict));
 }
 
 const char* run_verdict_meaning(RunVerdict verdict) noexcept {
+  if (const auto outcome = outcome_of(verdict)) return outcome_infos()[static_cast<std::size_t>(*outcome)].meaning;
   if (verdict == RunVerdict::thrown_out)
     return "the tool left the hole, or ended without contact beyond the environment's box by more than it reaches";
   if (verdict == RunVerdict::no_contact) return "the tool touched nothing in any row";
+  if (verdict == RunVerdict::beyond_bound) return "stable but for a metric that a --bound does not allow";
   return text_of(static_cast<MotionClass>(verdict)).meaning;
+}
+
+std::string rule_text(const StabilityRule& rule, bool moved) {
+  std::string text = rule.most_vibration
+                         ? fmt::format(
+                               "stable: at most {} m/s rms above {:.0f} Hz at the handle in the last quarter of "
+                               "a run",
+                               *rule.most_vibration, kVibrationCutoff)
+                         : std::string("stable: comes to rest or dies out");
+  if (!rule.most_vibration && moved)
+    text += ", as far as it is above 30 Hz and 1 mm/s, because a script moves the tool";
+  for (const auto& [metric, bound] : rule.bounds) {
+    if (bound.min) text += fmt::format(", {} >= {}", metric, *bound.min);
+    if (bound.max) text += fmt::format(", {} <= {}", metric, *bound.max);
+  }
+  std::vector<std::string_view> others;
+  for (const RunVerdict verdict : kRunVerdicts) {
+    const bool of_bounds = verdict == RunVerdict::beyond_bound;
+    if (!is_stable(verdict) && (!of_bounds || !rule.bounds.empty())) others.push_back(run_verdict_name(verdict));
+  }
+  return fmt::format("{}; not: {}", text, fmt::join(others, ", "));
 }
 
 bool is_moved(const Scenario& scenario) {
@@ -203,23 +248,55 @@ bool is_moved(const Scenario& scenario) {
   return std::visit(HandMoves{}, scenario.hand);
 }
 
-JudgedRun judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell,
-                     std::optional<double> most_vibration) {
+namespace {
+
+/// True when the run, made once more to its end, keeps all bounds.
+bool keeps(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
+           const std::map<std::string, MetricBound>& bounds) {
+  const RunReport report = run_with_shell(loaded, shell, std::nullopt, false);
+  ExpectFields expect;
+  expect.outcomes = {report.summary.result.outcome};
+  expect.metrics = bounds;
+  return unmet_expectations(expect, report.summary).empty();
+}
+
+/// The verdict of a run that did all its steps in view of what it touched; nothing when only its motion can tell.
+std::optional<RunVerdict> verdict_of(Outcome outcome) {
+  if (outcome == Outcome::no_contact) return RunVerdict::no_contact;
+  for (const RunVerdict verdict : kRunVerdicts) {
+    if (outcome_of(verdict) == outcome) return verdict;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+JudgedRun judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell, const StabilityRule& rule) {
   const Scenario& scenario = loaded.scenario;
   MotionClassifier classifier = classifier_of(scenario);
   LastPlace last;
   LastQuarter quarter(scenario.time);
   SimulationParts parts = assemble(scenario, loaded.files, shell, {});
-  const double reach = parts.tool->reach();
-  Simulation simulation(simulation_config(scenario), std::move(parts), {&classifier, &last, &quarter});
+  const std::shared_ptr<const ToolShape> tool = parts.tool;
+  EncounterObservers seen(scenario, loaded.files, parts);
+  std::vector<Observer*> observers = {&classifier, &last, &quarter};
+  for (Observer* observer : seen.all()) observers.push_back(observer);
+  Simulation simulation(simulation_config(scenario), std::move(parts), observers);
   const MotionClass motion = classify(simulation, classifier);
   const SettledState settled = quarter.state();
+  Metrics touched;
+  touched.steps_in_contact = last.touched ? 1 : 0;
+  const Outcome outcome = seen.outcome(scenario, touched, *tool, simulation.result().outcome);
   const auto verdict = [&] {
     if (motion == MotionClass::diverged) return RunVerdict::diverged;
+    if (outcome == Outcome::went_through) return RunVerdict::went_through;
     if (!last.touched) return RunVerdict::no_contact;
-    if (simulation.result().outcome == Outcome::leaves_hole) return RunVerdict::thrown_out;
-    if (shell && has_left(last, *shell, reach)) return RunVerdict::thrown_out;
-    return verdict_of(motion, settled, most_vibration);
+    if (outcome == Outcome::leaves_hole || (shell && has_left(last, *shell, tool->reach())))
+      return RunVerdict::thrown_out;
+    if (const auto known = verdict_of(outcome)) return *known;
+    const RunVerdict moved = verdict_of(motion, settled, rule.most_vibration);
+    return is_stable(moved) && !rule.bounds.empty() && !keeps(loaded, shell, rule.bounds) ? RunVerdict::beyond_bound
+                                                                                          : moved;
   };
   return {verdict(), settled, last.way.value()};
 }

@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "results/observe/butterworth.hpp"
@@ -94,10 +96,25 @@ class MotionClassifier final : public Observer {
 /// Steps the simulation, which `classifier` observes, until it ends or comes to rest. Throws Stopped (stop_signal.hpp).
 MotionClass classify(Simulation& simulation, const MotionClassifier& classifier);
 
-/// The classes of motion, and two ends of a run that no motion tells. run_verdict_meaning() explains each.
-enum class RunVerdict { stable, dying_out, vibrating, diverged, thrown_out, no_contact };
-inline constexpr std::array kRunVerdicts = {RunVerdict::stable,   RunVerdict::dying_out,  RunVerdict::vibrating,
-                                            RunVerdict::diverged, RunVerdict::thrown_out, RunVerdict::no_contact};
+/// The classes of motion, ends of a run that no motion tells, most of them outcomes of the same name, and a bound that
+/// is not kept. run_verdict_meaning() explains each.
+enum class RunVerdict {
+  stable,
+  dying_out,
+  vibrating,
+  diverged,
+  thrown_out,
+  no_contact,
+  lost_contact,
+  went_through,
+  not_dragged,
+  stuck,
+  beyond_bound
+};
+inline constexpr std::array kRunVerdicts = {RunVerdict::stable,       RunVerdict::dying_out,    RunVerdict::vibrating,
+                                            RunVerdict::diverged,     RunVerdict::thrown_out,   RunVerdict::no_contact,
+                                            RunVerdict::lost_contact, RunVerdict::went_through, RunVerdict::not_dragged,
+                                            RunVerdict::stuck,        RunVerdict::beyond_bound};
 
 /// "stable", "dying_out", ...
 std::string_view run_verdict_name(RunVerdict verdict) noexcept;
@@ -120,23 +137,34 @@ struct SettledState {
   double lambda_max = 0.0;  ///< largest eigenvalue of their mean S: the stiffness rendered, in units of K
 };
 
+/// What a run has to do to be stable: the one rule of limits, maps of devices and comparisons.
+struct StabilityRule {
+  /// Most vibration of the handle in the last quarter, which then decides between stable and vibrating whatever the
+  /// class of the motion [m/s rms]: a limit cycle that is too small to be felt is stable, and motion that is felt is
+  /// not, though it may die out; nothing is stable where no vibration is measured.
+  std::optional<double> most_vibration = {};
+  /// Bounds on metrics of summary.json; a metric without a value keeps none.
+  std::map<std::string, MetricBound> bounds = {};
+};
+
+/// The rule as one line; `moved`: a script moves the tool (is_moved).
+std::string rule_text(const StabilityRule& rule, bool moved);
+
 struct JudgedRun {
   RunVerdict verdict = RunVerdict::stable;
   SettledState settled;
   std::uint64_t way = 0;  ///< a hash of all positions of the handle: runs that differ in it moved differently
 };
 
-/// Runs the scenario's first trial, without records, and judges it. With `most_vibration` [m/s], the vibration of the
-/// settled state decides between stable and vibrating, whatever the class of the motion: a limit cycle that is too
-/// small to be felt is stable, and motion that is felt is not, though it may die out; nothing is stable where no
-/// vibration is measured. `shell` is make_shell of the scenario. Throws Stopped when a signal ends it. Precondition:
+/// Runs the scenario's first trial, without records, and judges it; where there are bounds and it is stable, runs it
+/// again for its metrics. `shell` is make_shell of the scenario. Throws Stopped when a signal ends it. Precondition:
 /// the position is free, and there are 4 steps or more.
 JudgedRun judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell,
-                     std::optional<double> most_vibration = {});
+                     const StabilityRule& rule = {});
 
 /// True when the tool vibrates or diverges without any environment, so that hand and device are to blame and not the
-/// contact; `most_vibration` as above. False for hands that do not feel the handle, and for those that need a surface
-/// to be there.
+/// contact; `most_vibration` as in the rule. False for hands that do not feel the handle, and for those that need a
+/// surface to be there.
 bool unstable_without_contact(const LoadedScenario& loaded, std::optional<double> most_vibration = {});
 
 }  // namespace hapbench

@@ -239,8 +239,7 @@ TEST(DescribeCommand, ExplainsTheWordsAndHeadingsThatResultsHave) {
   std::vector<std::string> words = {"reproduced in kind"};
   for (const OutcomeInfo& outcome : outcome_infos()) words.emplace_back(outcome.name);
   for (const MotionClass motion : kMotionClasses) words.emplace_back(motion_class_name(motion));
-  for (const RunVerdict verdict : {RunVerdict::thrown_out, RunVerdict::no_contact})
-    words.emplace_back(run_verdict_name(verdict));
+  for (const RunVerdict verdict : kRunVerdicts) words.emplace_back(run_verdict_name(verdict));
   for (const std::string& word : words) EXPECT_EQ(hapbench_here({"describe", word}).status, 0) << word;
   for (const RunHeading& heading : kRunHeadings)
     EXPECT_EQ(hapbench_here({"describe", heading.title}).status, 0) << heading.title;
@@ -290,9 +289,8 @@ TEST(DescribeCommand, ExplainsEveryColumnOfEveryFileOfARun) {
   const test::TemporaryDirectory directory;
   Json json = test::minimal_scenario("block_with_hole");
   json["initial"]["position_m"] = {0.003, 0.0, 0.0};  // on the flat
-  json["record"] = {
-      {"contacts", true}, {"stiffness_tensor", true}, {"energy", true},         {"ideal_trajectory", true},
-      {"pose", true},     {"torque", true},           {"ratio_iterations", {3}}};
+  json["record"] = {{"contacts", true}, {"stiffness_tensor", true}, {"energy", true}, {"ideal_trajectory", true},
+                    {"pose", true},     {"torque", true},           {"inside", true}, {"ratio_iterations", {3}}};
   test::write_plainly(directory / "a.json", json.dump());
   const std::string out = (directory / "out").string();
   ASSERT_EQ(hapbench({"run", (directory / "a.json").string(), "--out", out}).status, 0);

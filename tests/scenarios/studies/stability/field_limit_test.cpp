@@ -1,4 +1,5 @@
 #include "scenarios/studies/stability/field_limit.hpp"
+#include "scenarios/run/run_scenario.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +8,7 @@
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/run/run_scenario.hpp"
 
 namespace hapbench::field_limit_test {
 namespace {
@@ -137,7 +139,39 @@ TEST(FieldLimit, BeginsAtTheScenariosOwnValue) {
   ASSERT_TRUE(limit.value && limit.beyond && limit.own);
   EXPECT_DOUBLE_EQ(limit.own->value, 20000.0);
   EXPECT_LT(*limit.value, 20000.0);
-  EXPECT_EQ(limit.beyond->verdict, RunVerdict::thrown_out);
+  EXPECT_EQ(limit.beyond->verdict, RunVerdict::went_through);
+}
+
+TEST(FieldLimit, HasTwoEnds) {
+  const Words pressed = {R"(hand={"type":"force","z_N":-1})", "time.duration_s=0.5", "rendering.reduction=null"};
+  const ScenarioText scenario = read_scenario_text(find_scenario("poke_plane"));
+  LimitQuestion question = limit_question(scenario, pressed, "rendering.stiffness_N_per_m", {});
+  const FieldLimit limit = field_limits(scenario, pressed, {"mean"}, question, {}).front();
+  ASSERT_TRUE(limit.value && limit.other_value && limit.other_beyond);
+  EXPECT_EQ(limit.other_beyond->verdict, RunVerdict::went_through);
+  // A force of 1 N presses the flat tip 1 / K deep, and its half width is 0.5 mm: the landing goes deeper.
+  EXPECT_GT(*limit.other_value, 1.0 / 0.0005);
+  EXPECT_LT(limit.other_beyond->value, *limit.other_value);
+  EXPECT_LT(*limit.other_value, 1.01 * limit.other_beyond->value);
+  for (const JudgedValue& run : limit.inconsistent)
+    EXPECT_EQ(is_stable(run.verdict), run.value < limit.other_beyond->value || run.value > limit.value);
+
+  // A bound on the settled depth moves the low end to where a run has that depth.
+  question.bounds["inside_settled_m"].max = 1e-4;
+  const FieldLimit bounded = field_limits(scenario, pressed, {"mean"}, question, {}).front();
+  ASSERT_TRUE(bounded.other_value && bounded.other_beyond);
+  EXPECT_EQ(bounded.other_beyond->verdict, RunVerdict::beyond_bound);
+  const auto settled_at = [&](double stiffness) {
+    Words at = pressed;
+    at.emplace_back("rendering.algorithm=mean");
+    at.push_back("rendering.stiffness_N_per_m=" + std::to_string(stiffness));
+    return metric_of(run_scenario(load_scenario(scenario, at), std::nullopt, false).summary, "inside_settled_m")
+        .value();
+  };
+  EXPECT_LE(settled_at(*bounded.other_value), 1e-4);
+  EXPECT_GT(settled_at(bounded.other_beyond->value), 1e-4);
+  EXPECT_LT(*bounded.other_value, 1.01 * bounded.other_beyond->value);
+  EXPECT_EQ(*bounded.value, *limit.value);
 }
 
 TEST(FieldLimit, TellsAToolThatFallsThrough) {
@@ -148,7 +182,7 @@ TEST(FieldLimit, TellsAToolThatFallsThrough) {
                                {"mean"})
                                .front();
   EXPECT_FALSE(limit.value);
-  for (const JudgedValue& run : limit.runs) EXPECT_EQ(run.verdict, RunVerdict::thrown_out) << run.value;
+  for (const JudgedValue& run : limit.runs) EXPECT_EQ(run.verdict, RunVerdict::went_through) << run.value;
   const FieldLimit missed = ask({"poke_plane", "rendering.stiffness_N_per_m", {R"(hand={"type":"none"})"}}).front();
   for (const JudgedValue& run : missed.runs) EXPECT_EQ(run.verdict, RunVerdict::no_contact) << run.value;
 }
