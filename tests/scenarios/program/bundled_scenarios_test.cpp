@@ -30,7 +30,7 @@ std::vector<std::string> shortened(const Scenario& scenario) {
   if (scenario.time.steps <= kSteps) return {};
   std::vector<std::string> arguments = {
       "--set",
-      R"(expect={"outcome": ["completes", "leaves_hole", "tool_horizontal", "not_dragged", "no_contact", "lost_contact", "diverges"]})",
+      R"(expect={"outcome": ["completes", "leaves_hole", "tool_horizontal", "not_dragged", "stuck", "no_contact", "lost_contact", "went_through", "diverges"]})",
       "--set", fmt::format("time={{\"step_s\": {}, \"steps\": {}}}", scenario.time.step, kSteps)};
   if (std::holds_alternative<TrackingHandFields>(scenario.hand))
     arguments.insert(arguments.end(), {"--set", "hand.trials=1", "--set", "hand.subjects=[{}]"});

@@ -85,7 +85,7 @@ TEST_F(CompareCommand, WritesTheFilesOfEachSideBySideAndTheTable) {
       "vibration_power_above_30Hz_m2_per_s2,depth_max_m,ratio_min,ratio_max,steps_in_contact,contact_share,landings,"
       "landing_force_max_N,landing_force_step_max_N,settled_s,force_mean_in_contact_N,settled_force_max_N,"
       "force_step_p99_N,settled_force_step_max_N,force_rms_above_30Hz_N,force_reversals_per_s,reduction_changes,"
-      "reduction_force_step_max_N");
+      "reduction_force_step_max_N,inside_max_m,inside_settled_m,centre_inside_share,vibration_last_quarter_m_per_s");
   // The numbers are those of the summary.
   const Json summary = Json::parse(test::read_file(directory_ / "out/mean/summary.json"));
   const Json& metrics = summary["metrics"];
