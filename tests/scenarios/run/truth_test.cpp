@@ -1,0 +1,285 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "results/summary/outcome_names.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/studies/stability/judged_run.hpp"
+#include "tests/support/meshes.hpp"
+
+/// Scenes made to fool: soft, thin, inverted, open, tiny, huge, stuck, too fast. The truth about each is known from its
+/// geometry, and neither an outcome nor a class nor a depth may say otherwise.
+namespace hapbench::truth_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kRadius = 0.0005;
+constexpr double kUnknown = -1.0;
+
+/// The true depth of the tool with its tip centre at p; kUnknown where nobody can know.
+using Truth = std::function<double(const Vec3& p)>;
+
+/// A ball over the plane z = 0, whose shank points away from it.
+double ball_in_plane(const Vec3& p) {
+  return std::max(0.0, kRadius - p.z());
+}
+/// In a plate 0.2 mm thick below z = 0, wider than the tool's way, the depth is that of the tool's height nearest to
+/// the plate's middle; the tool reaches from the ball's lowest point to the shank's end.
+double ball_in_plate(const Vec3& p) {
+  const double neck = 0.3 * 2.0 * kRadius, end = std::sqrt(kRadius * kRadius - neck * neck) + 20.0 * neck;
+  const double height = std::clamp(-0.0001, p.z() - kRadius, p.z() + end);
+  return std::max(0.0, std::min(-height, height + 0.0002));
+}
+
+struct Case {
+  const char* name;
+  std::vector<std::string> changes;  ///< path=value of a ball pressed on a plane
+  std::vector<Outcome> outcomes;     ///< those that are true
+  Truth depth = ball_in_plane;
+  double tolerance = 1e-9;  ///< of the depth [m]
+};
+
+void write(const std::string& name, const TriangleSoup& soup) {
+  std::ofstream out(fs::path(testing::TempDir()) / name);
+  out.precision(17);
+  out << "OFF\n" << soup.vertices.size() << " " << soup.triangles.size() << " 0\n";
+  for (const Vec3& v : soup.vertices) out << v.x() << " " << v.y() << " " << v.z() << "\n";
+  for (const auto& t : soup.triangles) out << "3 " << t[0] << " " << t[1] << " " << t[2] << "\n";
+}
+
+TriangleSoup sheet() {
+  return test::sheet(40, 40, [](int i, int j) { return Vec3(0.0001 * i - 0.002, 0.0001 * j - 0.002, 0.0); });
+}
+
+Json base() {
+  return Json::parse(R"({
+    "time": {"step_s": 0.0005, "steps": 600},
+    "environment": {"type": "plane", "size_m": 0.01, "spacing_m": 0.0001},
+    "tool": {"type": "bur", "family": "ball", "diameter_m": 0.001},
+    "initial": {"position_m": [0, 0, 0.0006]},
+    "motion": {"orientation": {"up": [0, 0, 1]}},
+    "hand": {"type": "force", "z_N": -1},
+    "rendering": {"algorithm": "shaped_stiffness", "depth_model": "surface_normal", "reduction": null,
+                  "stiffness_N_per_m": 20000, "damping_ratio": 0.7, "mass_kg": 0.1},
+    "record": {"inside": true}
+  })");
+}
+
+LoadedScenario scene(const Case& c) {
+  Json json = base();
+  for (const std::string& change : c.changes) {
+    const std::size_t split = change.find('=');
+    std::string pointer = "/" + change.substr(0, split);
+    std::replace(pointer.begin(), pointer.end(), '.', '/');
+    json[Json::json_pointer(pointer)] = Json::parse(change.substr(split + 1));
+  }
+  return read_scenario(json, testing::TempDir());
+}
+
+const std::string kPlate = R"(environment={"type":"mesh","file":"plate.off","scale":1,"spacing_m":0.0001})";
+const std::string kCube = R"(environment={"type":"mesh","file":"cube.off","scale":1,"spacing_m":0.0001})";
+const std::string kSheet = R"(environment={"type":"mesh","file":"sheet.off","scale":1})";
+const std::string kInverted = R"(environment={"type":"mesh","file":"inverted.off","scale":1})";
+const std::string kPoints = R"(environment={"type":"point_shell","file":"points.csv"})";
+const std::string kCone =
+    R"(environment={"type":"conical_hole","half_angle_rad":0.5,"depth_m":0.003,"spacing_m":0.00005})";
+const std::string kBlock =
+    R"(environment={"type":"block_with_hole","size_m":[0.006,0.006,0.004],"hole_diameter_m":0.002,"hole_depth_m":0.002,"grid_m":0.0001})";
+const std::string kFlat = R"(tool={"type":"cylinder","diameter_m":0.001,"length_m":0.01})";
+const std::string kDrag =
+    R"(hand={"type":"drag","force_N":1,"direction":[1,0,0],"speed_m_per_s":0.01,"normal_damping_N_s_per_m":50})";
+
+double flat_in_plane(const Vec3& p) {
+  return std::max(0.0, -p.z());
+}
+
+/// A ball in the cone about z with its apex at z = -3 mm: the wall's normal leans by the half angle from the
+/// horizontal.
+double ball_in_cone(const Vec3& p) {
+  const double rho = p.head<2>().norm(), z = p.z() + 0.003;
+  return std::max(0.0, kRadius - (std::sin(0.5) * z - std::cos(0.5) * rho));
+}
+
+/// Beside the plane there is nothing to be inside of.
+double beside(const Vec3&) {
+  return kUnknown;
+}
+
+const std::vector<Outcome> kThrough = {Outcome::went_through}, kFine = {Outcome::completes},
+                           kMissed = {Outcome::no_contact};
+
+std::vector<Case> cases() {
+  const std::string soft = "rendering.stiffness_N_per_m=200";
+  std::vector<Case> all = {
+      {"firm", {}, kFine},
+      {"soft", {soft}, kThrough},
+      {"a little too soft", {"rendering.stiffness_N_per_m=1500"}, kThrough},
+      {"no stiffness to speak of", {"rendering.stiffness_N_per_m=0.001"}, kThrough},
+      {"pressed too hard", {"hand.z_N=-60"}, kThrough},
+      {"no hand", {R"(hand={"type":"none"})"}, kMissed},
+      {"pulled away", {"hand.z_N=0.01"}, kMissed},
+      {"began inside", {"initial.position_m=[0,0,-0.003]", R"(hand={"type":"none"})"}, kThrough},
+      {"began inside, pulled out", {"initial.position_m=[0,0,-0.003]", "hand.z_N=1"}, kThrough},
+      {"pressed in and pulled out",
+       {R"(hand.z_N={"type":"waypoints","points":[[0,-60],[0.1,-60],[0.101,20],[0.3,20]]})"},
+       kThrough},
+      {"beside the plane", {"initial.position_m=[0.02,0,0.0006]"}, kMissed, beside},
+      {"too fast", {"initial.velocity_m_per_s=[0,0,-8]"}, kThrough},
+      {"tiny",
+       {R"(environment={"type":"plane","size_m":1e-4,"spacing_m":1e-6})",
+        R"(tool={"type":"bur","family":"ball","diameter_m":1e-5})", "initial.position_m=[0,0,6e-6]", "hand.z_N=-0.01"},
+       kFine,
+       [](const Vec3& p) { return std::max(0.0, 5e-6 - p.z()); },
+       1e-13},
+      {"tiny and soft",
+       {R"(environment={"type":"plane","size_m":1e-4,"spacing_m":1e-6})",
+        R"(tool={"type":"bur","family":"ball","diameter_m":1e-5})", "initial.position_m=[0,0,6e-6]", "hand.z_N=-1"},
+       kThrough,
+       [](const Vec3& p) { return std::max(0.0, 5e-6 - p.z()); },
+       1e-13},
+      {"huge",
+       {R"(environment={"type":"plane","size_m":10,"spacing_m":0.1})",
+        R"(tool={"type":"bur","family":"ball","diameter_m":1})", "initial.position_m=[0,0,0.51]",
+        "rendering.mass_kg=100", "rendering.stiffness_N_per_m=2e5", "hand.z_N=-2000", "time.steps=2000"},
+       kFine,
+       [](const Vec3& p) { return std::max(0.0, 0.5 - p.z()); },
+       1e-7},
+      {"huge and soft",
+       {R"(environment={"type":"plane","size_m":10,"spacing_m":0.1})",
+        R"(tool={"type":"bur","family":"ball","diameter_m":1})", "initial.position_m=[0,0,0.51]",
+        "rendering.mass_kg=100", "rendering.stiffness_N_per_m=500", "hand.z_N=-2000", "time.steps=4000"},
+       kThrough,
+       [](const Vec3& p) { return std::max(0.0, 0.5 - p.z()); },
+       1e-7},
+      {"flat tip", {kFlat}, kFine, flat_in_plane},
+      {"flat tip, soft", {kFlat, soft}, kThrough, flat_in_plane},
+      {"a drill that leans",
+       {kFlat, "motion.orientation.tilt_rad=0.3", R"(motion.orientation.lean=[1,0,0])"},
+       kFine,
+       [](const Vec3& p) { return std::max(0.0, kRadius * std::sin(0.3) - p.z()); }},
+      {"thin plate", {kPlate}, kFine, ball_in_plate, 1e-5},
+      {"thin plate, soft", {kPlate, soft}, kThrough, ball_in_plate, 1e-5},
+      {"thin plate, too fast to touch", {kPlate, "initial.velocity_m_per_s=[0,0,-8]"}, kThrough, ball_in_plate, 1e-5},
+      {"cube", {kCube}, kFine},
+      {"cube, soft", {kCube, soft, "time.steps=150"}, kThrough, nullptr},
+      {"open sheet", {kSheet}, kFine},
+      {"open sheet, soft", {kSheet, soft}, kThrough},
+      {"open sheet, past its edge", {kSheet, "initial.position_m=[0.01,0,0.0006]"}, kMissed, beside},
+      {"open sheet, inside out", {kInverted}, kThrough, nullptr},
+      {"points", {kPoints}, kFine},
+      {"points, soft", {kPoints, soft}, kThrough},
+      {"points, past their edge", {kPoints, "initial.position_m=[0.01,0,0.0006]"}, kMissed, beside},
+      {"cone", {kCone, "initial.position_m=[0,0,-0.0015]"}, kFine, ball_in_cone, 1e-5},
+      {"cone, soft", {kCone, "initial.position_m=[0,0,-0.0015]", "rendering.stiffness_N_per_m=50"}, kThrough, nullptr},
+      {"block", {kBlock, "initial.position_m=[0.002,0,0.0006]"}, kFine},
+      {"block, soft", {kBlock, "initial.position_m=[0.002,0,0.0006]", soft, "time.steps=200"}, kThrough, nullptr},
+      {"dragged", {kDrag}, kFine},
+      {"dragged, soft", {kDrag, soft}, kThrough, nullptr},
+      {"dragged and held by friction",
+       {kDrag, "hand.speed_m_per_s=0.02", "initial.position_m=[-0.003,0,0.003]", "time.steps=1000",
+        R"(rendering.friction={"mu_s_N_s_per_m":0,"mu_f_s_per_m":1e6})", R"(integrator={"type":"implicit_euler"})"},
+       {Outcome::stuck, Outcome::not_dragged},
+       nullptr},
+      {"diverges",
+       {"rendering.stiffness_N_per_m=1e9"},
+       {Outcome::diverges, Outcome::lost_contact, Outcome::went_through},
+       nullptr},
+  };
+  for (const char* algorithm : {"summation", "mean", "least_squares", "proxy", "highest_depth", "exact_shaping"}) {
+    const std::string chosen = std::string("rendering.algorithm=\"") + algorithm + "\"";
+    all.push_back({algorithm, {chosen, "rendering.stiffness_N_per_m=1", "hand.z_N=-5"}, kThrough});
+  }
+  return all;
+}
+
+class ScenesMadeToFool : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    TriangleSoup plate = test::cube(1.0), cube = test::cube(0.004, {0.0, 0.0, -0.004});
+    for (Vec3& v : plate.vertices) v = {0.004 * v.x(), 0.004 * v.y(), 0.0001 * v.z() - 0.0001};
+    write("plate.off", plate);
+    write("cube.off", cube);
+    const TriangleSoup flat = sheet();
+    const auto [a, b, c] = flat.triangles[0];
+    const bool up = (flat.vertices[b] - flat.vertices[a]).cross(flat.vertices[c] - flat.vertices[a]).z() > 0.0;
+    write("sheet.off", up ? flat : test::reversed(flat));
+    write("inverted.off", up ? test::reversed(flat) : flat);
+    std::ofstream points(fs::path(testing::TempDir()) / "points.csv");
+    points << "x_m,y_m,z_m,nx,ny,nz\n";
+    for (const Vec3& v : flat.vertices) points << v.x() << "," << v.y() << ",0,0,0,1\n";
+  }
+};
+
+TEST_F(ScenesMadeToFool, GetTheirTrueOutcomeAndDepth) {
+  ASSERT_GE(cases().size(), 30u);
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    LoadedScenario loaded = scene(c);
+    loaded.scenario.record.every = 3;
+    RunTables tables;
+    const RunReport report = run_scenario(loaded, std::nullopt, false, &tables);
+    const Outcome outcome = report.summary.result.outcome;
+    EXPECT_NE(std::find(c.outcomes.begin(), c.outcomes.end(), outcome), c.outcomes.end())
+        << outcome_name(outcome) << (report.summary.warnings.empty() ? "" : ": " + report.summary.warnings[0]);
+    EXPECT_EQ(report.unmet.empty(), outcome == Outcome::completes);
+    EXPECT_TRUE(outcome == Outcome::diverges || report.summary.warnings.empty() == (outcome == Outcome::completes));
+    if (!c.depth) continue;
+    const MemoryTable& rows = tables.trials[0].at("trajectory.csv");
+    const std::size_t columns = rows.columns().size();
+    ASSERT_EQ(std::string(rows.columns().back().name), "inside_m");
+    double deepest = 0.0;
+    for (std::size_t i = 0; i < rows.rows(); ++i) {
+      const double* row = rows.numbers().data() + i * columns;
+      const double truth = c.depth({row[2], row[3], row[4]}), said = row[columns - 1];
+      if (truth == kUnknown) {
+        EXPECT_TRUE(std::isnan(said)) << "row " << i << ": " << said;
+        continue;
+      }
+      ASSERT_NEAR(said, truth, c.tolerance) << "row " << i << " at z = " << row[4];
+      deepest = std::max(deepest, truth);
+    }
+    const std::optional<double> max = report.summary.metrics.inside->max;
+    if (c.depth({0.0, 0.0, 0.0}) != kUnknown) {
+      EXPECT_NEAR(max.value_or(kUnknown), deepest, c.tolerance);
+    }
+  }
+}
+
+TEST_F(ScenesMadeToFool, AreSeenWithoutARecord) {
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    LoadedScenario loaded = scene(c);
+    const InsideMetrics exact = *run_scenario(loaded, std::nullopt, false).summary.metrics.inside;
+    loaded.scenario.record.inside = false;
+    const InsideMetrics few = *run_scenario(loaded, std::nullopt, false).summary.metrics.inside;
+    EXPECT_EQ(few.max.has_value(), exact.max.has_value());
+    EXPECT_EQ(few.centre_inside, exact.centre_inside);
+    if (!exact.max) continue;
+    const double width = loaded.scenario.tool.index() == 0 ? kRadius : 0.0;
+    EXPECT_LE(*few.max, *exact.max + 1e-12);
+    // The deepest row may be another one of its part of the run.
+    EXPECT_GE(*few.max, 0.9 * *exact.max - 0.02 * width);
+    if (exact.settled_median() && few.settled_median()) {
+      EXPECT_NEAR(*few.settled_median(), *exact.settled_median(), 0.2 * *exact.max);
+    }
+  }
+}
+
+TEST_F(ScenesMadeToFool, AreNotStable) {
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const LoadedScenario loaded = scene(c);
+    const RunVerdict verdict = judged_run(loaded, make_shell(loaded.scenario, loaded.files)).verdict;
+    const bool fine = std::find(c.outcomes.begin(), c.outcomes.end(), Outcome::completes) != c.outcomes.end();
+    EXPECT_TRUE(fine || !is_stable(verdict)) << run_verdict_name(verdict);
+    EXPECT_TRUE(!fine || is_stable(verdict) || verdict == RunVerdict::vibrating) << run_verdict_name(verdict);
+  }
+}
+
+}  // namespace
+}  // namespace hapbench::truth_test
