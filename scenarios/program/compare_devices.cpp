@@ -140,10 +140,11 @@ std::string stiffness_text(double K) {
   return unit < 1.0 ? significant(K, 3) : fmt::format("{:.0f}", std::round(K / unit) * unit);
 }
 
-std::string limit_text(const FieldLimit& limit) {
+std::string limit_text(const FieldLimit& limit, double resolution) {
   if (!limit.value) return "none";
-  return fmt::format("{}{}{}{}", limit.other_beyond ? stiffness_text(*limit.other_value) + "-" : "",
-                     limit.beyond ? "" : "> ", stiffness_text(*limit.value), limit.inconsistent.empty() ? "" : " ~");
+  return fmt::format("{}{}{}{}{}", limit.other_beyond ? stiffness_text(*limit.other_value) + "-" : "",
+                     limit.beyond ? "" : "> ", stiffness_text(*limit.value),
+                     limit.is_beyond_linear(resolution) ? "!" : "", limit.inconsistent.empty() ? "" : " ~");
 }
 
 std::string damping_text(const RenderingConfig& rendering) {
@@ -232,6 +233,14 @@ class Answers {
     if (std::ranges::any_of(question_.devices, [](const auto& device) { return device.name.ends_with('*'); }))
       text += "*: a preset with numbers of --set, of which nothing is published\n";
     text += delays_text(question_);
+    if (std::ranges::any_of(
+            limits_, [&](const DeviceLimit& limit) { return limit.limit.is_beyond_linear(question_.resolution); })) {
+      text += wrapped(
+          "!: beyond the edge of the loop of device, hand and surface, linear and in contact (linear_N_per_m in "
+          "device_limits.csv): bounces below 30 Hz, dry friction or the end of the run hold the tool, and one that rests on "
+          "the surface may not be stable",
+          0);
+    }
     if (std::ranges::any_of(limits_, [](const DeviceLimit& limit) { return !limit.limit.inconsistent.empty(); }))
       text += "~: some values below it are unstable, or some beyond it are stable: device_runs.csv\n";
     if (columns() == 1) return text;
@@ -272,7 +281,7 @@ class Answers {
     for (std::size_t d = 0; d < question_.devices.size(); ++d) {
       const auto& [name, json, has_place, published] = question_.devices[d];
       std::vector<std::string> cells = {name, published ? stiffness_text(*published) : "-"};
-      for (std::size_t c = 0; c < this->columns(); ++c) cells.push_back(limit_text(at(d, c)));
+      for (std::size_t c = 0; c < this->columns(); ++c) cells.push_back(limit_text(at(d, c), question_.resolution));
       table.add(std::move(cells));
     }
     return table;
@@ -356,6 +365,10 @@ const DeviceField kDeviceLimitFields[] = {
      [](const DeviceLimitRow& r) { return r.settled(r.limit().settled.contacts); }},
     {{"lambda_max", "1", "at the limit: largest eigenvalue of the mean S there"},
      [](const DeviceLimitRow& r) { return r.settled(r.limit().settled.lambda_max); }},
+    {{"linear_N_per_m", "N/m",
+      "largest K at which the loop of device, hand and surface is stable while they touch, without dry friction and "
+      "encoder, by its eigenvalues; a limit beyond it is held up by bounces, dry friction or the end of the run"},
+     [](const DeviceLimitRow& r) { return cell_if(r.limit().linear); }},
     {{"stiffness_ratio", "1", "K over that of the device in the first scene with the first algorithm"},
      [](const DeviceLimitRow& r) { return cell_if(r.ratio().stiffness); }},
     {{"rendered_ratio", "1", "the same of K lambda_max"},

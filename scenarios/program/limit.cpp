@@ -129,6 +129,21 @@ std::string remarks_text(const std::vector<FieldLimit>& limits, const LimitQuest
                       limit.algorithm, run_verdict_name(limit.own->verdict), significant(limit.own->value),
                       question.smallest ? "high" : "low");
     }
+    if (limit.theory_has_none) {
+      text += fmt::format("{}: by the eigenvalues of a step no value of the range is stable{}\n", limit.algorithm,
+                          limit.value ? ": the runs are too short for its growth" : "");
+    }
+    if (limit.is_beyond_linear(question.resolution)) {
+      text += fmt::format(
+          "{}: the loop of device, hand and surface, linear and in contact, is stable up to {} only: beyond it bounces, dry "
+          "friction or the end of the run hold the tool, and one that rests on the surface may not be stable\n",
+          limit.algorithm, significant(*limit.linear, 6));
+    }
+    if (limit.undecided > 0) {
+      text +=
+          fmt::format("{}: {} runs were too short to tell slow motion from rest, though made up to 64 times as long\n",
+                      limit.algorithm, limit.undecided);
+    }
     if (!limit.has_effect) {
       text += fmt::format("{}: {} has no effect here: the handle moves alike in all {} runs\n", limit.algorithm,
                           question.path, limit.runs.size());
@@ -194,6 +209,13 @@ const LimitField kLimitFields[] = {
      [](const LimitRow& r) { return class_of(r.question.smallest ? r.limit.other_beyond : r.limit.beyond); }},
     {{"theory", "by field", "the limit in theory; empty where there is none"},
      [](const LimitRow& r) { return cell_if(r.limit.theory); }},
+    {{"linear", "by field",
+      "of a device at what only pushes: the largest value at which the loop of device, hand and surface is stable while "
+      "they touch, without dry friction and encoder, by its eigenvalues; a limit beyond it is held up by bounces, dry "
+      "friction or the end of the run; empty where there is a theory or no device"},
+     [](const LimitRow& r) { return cell_if(r.limit.linear); }},
+    {{"undecided", "1", "runs that were too short to tell slow motion from rest, though lengthened"},
+     [](const LimitRow& r) -> Cell { return std::uint64_t{r.limit.undecided}; }},
     {{"unstable_without_contact", "", "true when hand and device alone are unstable beyond the edge"},
      [](const LimitRow& r) -> Cell { return r.limit.unstable_alone; },
      LimitField::In::json},

@@ -29,6 +29,11 @@ constexpr int kBeside = 3;      // values tried on either side of the edge, up t
 constexpr int kRounds = 6;      // of bisection, each towards an edge that values beside the last one showed
 constexpr int kDoublings = 10;  // from the scenario's value to either end of a range that nobody gave
 
+// Theory costs a thousandth of a run: it is scanned so much finer, and bisected to rounding whatever the runs'
+// resolution.
+constexpr int kTheoryIntervals = 256;
+constexpr double kTheoryResolution = 1e-12;
+
 std::string override_text(const std::string& path, double value, bool whole) {
   return whole ? fmt::format("{}={:.0f}", path, value) : fmt::format("{}={}", path, value);
 }
@@ -50,13 +55,14 @@ class FieldWay {
         logarithmic ? std::log(*question_.own / from) / std::log(to / from) : (*question_.own - from) / (to - from);
     return question_.smallest ? 1.0 - part : part;
   }
-  /// True while bisection has to go on between two parts.
-  bool apart(double a, double b) const {
+  /// True while bisection to this resolution (LimitQuestion) has to go on between two parts.
+  bool apart(double a, double b, double resolution) const {
     const double low = std::min(value(a), value(b)), high = std::max(value(a), value(b));
     if (question_.whole) return high - low > 1.0;
-    if (question_.range.logarithmic) return high > (1.0 + question_.resolution) * low;
-    return high - low > question_.resolution * (question_.range.to - question_.range.from);
+    if (question_.range.logarithmic) return high > (1.0 + resolution) * low;
+    return high - low > resolution * (question_.range.to - question_.range.from);
   }
+  double resolution() const { return question_.resolution; }
 
  private:
   const LimitQuestion& question_;
@@ -70,17 +76,16 @@ struct Edge {
   std::optional<double> before;  ///< the last unstable part before it
 };
 
-/// The edge behind the scenario's own value, or if that is not stable behind the first stable values of the way. With
-/// `beside`, tries values on either side of it, too, and goes on where one of them shows an edge before it; then finds
-/// the other end of the interval.
-Edge find_edge(const FieldWay& way, const std::function<bool(double)>& stable, bool beside) {
-  std::map<double, bool> tried;
+/// The edge behind the scenario's own value, or if that is not stable behind the first stable values of the way; of the
+/// parts `tried`, which hold at least both ends. With `beside`, tries values on either side of it, too, and goes on
+/// where one of them shows an edge before it; then finds the other end of the interval.
+Edge find_edge(const FieldWay& way, std::map<double, bool> tried, const std::function<bool(double)>& stable,
+               double resolution, bool beside) {
   const auto holds = [&](double part) { return tried[part] = stable(part); };
-  for (int i = 0; i <= kIntervals; ++i) holds(static_cast<double>(i) / kIntervals);
   const std::optional<double> own = way.own();
   const double start = own && holds(*own) ? *own : 0.0;
   const auto middle = [](double a, double b) { return 0.5 * (a + b); };
-  const auto apart = [&way](double a, double b) { return way.apart(a, b); };
+  const auto apart = [&](double a, double b) { return way.apart(a, b, resolution); };
   const auto with_other_end = [&](Edge edge) {
     if (!beside) return edge;
     auto first = tried.find(*edge.stable);
@@ -134,7 +139,12 @@ class Search {
           (known == runs.end() ? runs.emplace(value, judged(algorithm, value)).first : known)->second.verdict);
     };
     const auto at_part = [&](double part) { return JudgedValue{way_.value(part), runs.at(way_.value(part)).verdict}; };
-    const Edge edge = find_edge(way_, judge, true);
+    const Theory theory(*this, algorithm);
+    std::map<double, bool> tried;
+    for (int i = 0; i <= kIntervals; ++i) tried[static_cast<double>(i) / kIntervals] = {};
+    for (const double part : theory.islands()) tried[part] = {};
+    for (auto& [part, stable] : tried) stable = judge(part);
+    const Edge edge = find_edge(way_, std::move(tried), judge, way_.resolution(), true);
     if (edge.stable) {
       limit.value = way_.value(*edge.stable);
       limit.settled = runs.at(*limit.value).settled;
@@ -153,7 +163,12 @@ class Search {
     const JudgedValue suspect = limit.beyond ? *limit.beyond : limit.runs.front();
     limit.unstable_alone =
         !is_stable(suspect.verdict) && unstable_without_contact(at(algorithm, suspect.value), question_.most_vibration);
-    limit.theory = theory(algorithm);
+    limit.theory = theory.edge();
+    limit.theory_has_none = theory.has_none();
+    limit.undecided = static_cast<std::size_t>(
+        std::count_if(runs.begin(), runs.end(), [](const auto& run) { return run.second.undecided; }));
+    if (!limit.theory && limit.settled.lambda_max > 0.0 && !question_.smallest)
+      limit.linear = linear_edge(algorithm, limit.settled.lambda_max);
     return limit;
   }
 
@@ -176,15 +191,65 @@ class Search {
     return load_scenario(scenario_, overrides);
   }
 
-  std::optional<double> theory(const std::string& algorithm) const {
-    const auto stable = [&](double part) { return step_is_stable(at(algorithm, way_.value(part)).scenario); };
-    for (const double end : {0.0, 1.0}) {
-      if (!has_theory(at(algorithm, way_.value(end)).scenario)) return std::nullopt;
+  /// The edges by the eigenvalues of a step, along the whole way.
+  class Theory {
+   public:
+    Theory(const Search& search, const std::string& algorithm) : search_(search), algorithm_(algorithm) {
+      for (const double end : {0.0, 1.0}) {
+        if (!has_theory(search.at(algorithm, search.way_.value(end)).scenario)) return;
+      }
+      for (int i = 0; i <= kTheoryIntervals; ++i) {
+        const double part = static_cast<double>(i) / kTheoryIntervals;
+        tried_[part] = holds(part);
+      }
     }
-    const Edge edge = find_edge(way_, stable, false);
+
+    /// The middles of all stretches of stable values, for runs to try: a stretch may lie between the values of a scan.
+    std::vector<double> islands() const {
+      std::vector<double> middles;
+      for (auto from = tried_.begin(); from != tried_.end();) {
+        const auto unstable = [&](auto at) { return at == tried_.end() || !at->second; };
+        auto to = from;
+        while (!unstable(to)) ++to;
+        if (to != from) middles.push_back(0.5 * (from->first + std::prev(to)->first));
+        from = to == tried_.end() ? to : std::next(to);
+      }
+      return middles;
+    }
+    /// True where no value is stable.
+    bool has_none() const { return !tried_.empty() && islands().empty(); }
+    std::optional<double> edge() const {
+      if (tried_.empty()) return std::nullopt;
+      const Edge edge = find_edge(
+          search_.way_, tried_, [this](double part) { return holds(part); }, kTheoryResolution, false);
+      if (!edge.stable) return std::nullopt;
+      if (edge.beyond) return search_.way_.value(*edge.stable);
+      return search_.question_.smallest ? 0.0 : std::numeric_limits<double>::infinity();
+    }
+
+   private:
+    bool holds(double part) const { return step_is_stable(search_.at(algorithm_, search_.way_.value(part)).scenario); }
+
+    const Search& search_;
+    const std::string& algorithm_;
+    std::map<double, bool> tried_;
+  };
+
+  /// FieldLimit::linear
+  std::optional<double> linear_edge(const std::string& algorithm, double lambda) const {
+    const auto stable = [&](double part) {
+      return is_stable_step(device_loop(at(algorithm, way_.value(part)).scenario, lambda).state_matrix());
+    };
+    const Scenario first = at(algorithm, way_.value(0.0)).scenario;
+    if (!has_device(first) || device_loop(first, lambda).state_matrix().size() == 0) return std::nullopt;
+    std::map<double, bool> tried;
+    for (int i = 0; i <= 2 * kIntervals; ++i) {
+      const double part = 0.5 * i / kIntervals;
+      tried[part] = stable(part);
+    }
+    const Edge edge = find_edge(way_, std::move(tried), stable, 1e-6, false);
     if (!edge.stable) return std::nullopt;
-    if (edge.beyond) return way_.value(*edge.stable);
-    return question_.smallest ? 0.0 : std::numeric_limits<double>::infinity();
+    return edge.beyond ? way_.value(*edge.stable) : std::numeric_limits<double>::infinity();
   }
 
   /// True for springs that stay in contact, and devices whose loop is linear.
@@ -275,6 +340,10 @@ void check_sampling(const LoadedScenario& loaded) {
 }
 
 }  // namespace
+
+bool FieldLimit::is_beyond_linear(double resolution) const {
+  return value && linear && *value > (1.0 + resolution) * *linear;
+}
 
 std::optional<double> FieldLimit::difference() const {
   if (!value || !theory || !std::isfinite(*theory) || *theory == 0.0) return std::nullopt;

@@ -43,6 +43,11 @@ struct FieldLimit {
   /// The same by the eigenvalues of a step, where the springs stay in contact; infinite (smallest: 0) when the whole
   /// range is stable, none where there is no theory or nothing is stable.
   std::optional<double> theory;
+  bool theory_has_none = false;  ///< by theory no value of the range is stable
+  /// Of a device at what only pushes, where there is no theory: the edge of the loop of device, hand and the stiffness
+  /// rendered at the limit while it lasts, without dry friction and encoder; infinite when the whole range is stable. A
+  /// limit beyond it is held up by what that loop leaves out: a tool that bounces, dry friction, a run that ends.
+  std::optional<double> linear;
   SettledState settled;            ///< the run at `value`
   std::optional<JudgedValue> own;  ///< the run at the scenario's value, if that was in the range
   /// Hand and device are unstable even where there is nothing to touch, at the value beyond, or without a limit at the
@@ -52,6 +57,11 @@ struct FieldLimit {
   std::vector<JudgedValue> runs;          ///< all, by value
   std::vector<JudgedValue> inconsistent;  ///< runs that are unstable in this interval, or stable outside of it
 
+  /// Runs that were still too short, lengthened as they were, to tell slow growth from rest (judged_run.hpp).
+  std::size_t undecided = 0;
+
+  /// True where the limit lies beyond that of the linear loop by more than this, relative.
+  bool is_beyond_linear(double resolution) const;
   /// value / theory - 1; none without either.
   std::optional<double> difference() const;
 };

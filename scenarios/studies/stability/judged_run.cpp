@@ -69,6 +69,11 @@ bool MotionClassifier::oscillates_in(const Quarter& quarter) const noexcept {
   return std::any_of(quarter.turns.begin(), quarter.turns.end(), [](std::uint64_t n) { return n >= kTurns; });
 }
 
+bool MotionClassifier::is_undecided() const noexcept {
+  return !is_moved_ && !at_rest() && !oscillates_in(quarters_[3]) &&
+         quarters_[3].amplitude >= kLeft * quarters_[0].amplitude && quarters_[3].amplitude > 0.0;
+}
+
 MotionClass MotionClassifier::motion_class(Outcome outcome) const noexcept {
   if (outcome == Outcome::diverges) return MotionClass::diverged;
   const auto& q = quarters_;
@@ -271,7 +276,8 @@ std::optional<RunVerdict> verdict_of(Outcome outcome) {
 
 }  // namespace
 
-JudgedRun judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell, const StabilityRule& rule) {
+static JudgedRun judged_once(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
+                             std::optional<double> most_vibration) {
   const Scenario& scenario = loaded.scenario;
   MotionClassifier classifier = classifier_of(scenario);
   LastPlace last;
@@ -294,11 +300,27 @@ JudgedRun judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointSh
     if (outcome == Outcome::leaves_hole || (shell && has_left(last, *shell, tool->reach())))
       return RunVerdict::thrown_out;
     if (const auto known = verdict_of(outcome)) return *known;
-    const RunVerdict moved = verdict_of(motion, settled, rule.most_vibration);
-    return is_stable(moved) && !rule.bounds.empty() && !keeps(loaded, shell, rule.bounds) ? RunVerdict::beyond_bound
-                                                                                          : moved;
+    return verdict_of(motion, settled, most_vibration);
   };
-  return {verdict(), settled, last.way.value()};
+  JudgedRun run{verdict(), settled, last.way.value()};
+  run.undecided = is_stable(run.verdict) && classifier.is_undecided();
+  return run;
+}
+
+JudgedRun judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell, const StabilityRule& rule) {
+  constexpr int kLengthenings = 3;
+  constexpr std::int64_t kTimes = 4, kMostLengthened = 1'000'000;  // steps
+  JudgedRun run = judged_once(loaded, shell, rule.most_vibration);
+  LoadedScenario longer = loaded;
+  for (int i = 0; run.undecided && i < kLengthenings && longer.scenario.time.steps * kTimes <= kMostLengthened; ++i) {
+    longer.scenario.time.steps *= kTimes;
+    const std::uint64_t way = run.way;
+    run = judged_once(longer, shell, rule.most_vibration);
+    run.way = way;  // of the scenario's own length, as that of other runs
+  }
+  if (is_stable(run.verdict) && !rule.bounds.empty() && !keeps(loaded, shell, rule.bounds))
+    run.verdict = RunVerdict::beyond_bound;
+  return run;
 }
 
 bool unstable_without_contact(const LoadedScenario& loaded, std::optional<double> most_vibration) {

@@ -72,6 +72,9 @@ class MotionClassifier final : public Observer {
   /// True once the tool has come to rest to 1e-12 of its largest speed for 200 rows: what is left is rounding, and the
   /// run may be cut short.
   bool at_rest() const noexcept { return !is_moved_ && rows_at_rest_ >= kRowsAtRest; }
+  /// True for a complete run that neither came to rest nor lasted for an oscillation: it moves on in the last quarter,
+  /// by 1 % of the first one's amplitude or more, and turns at most once there. A longer one can tell.
+  bool is_undecided() const noexcept;
   /// Class of a complete run, or of one that was cut short because it came to rest.
   MotionClass motion_class(Outcome outcome) const noexcept;
 
@@ -154,11 +157,14 @@ struct JudgedRun {
   RunVerdict verdict = RunVerdict::stable;
   SettledState settled;
   std::uint64_t way = 0;  ///< a hash of all positions of the handle: runs that differ in it moved differently
+  /// Neither at rest nor long enough for an oscillation, after it was made four times as long up to three times.
+  bool undecided = false;
 };
 
-/// Runs the scenario's first trial, without records, and judges it; where there are bounds and it is stable, runs it
-/// again for its metrics. `shell` is make_shell of the scenario. Throws Stopped when a signal ends it. Precondition:
-/// the position is free, and there are 4 steps or more.
+/// Runs the scenario's first trial, without records, and judges it, longer where that is too short to tell and no
+/// script ends (JudgedRun::undecided); where there are bounds and it is stable, runs it again for its metrics. `shell`
+/// is make_shell of the scenario. Throws Stopped when a signal ends it. Precondition: the position is free, and there
+/// are 4 steps or more.
 JudgedRun judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell,
                      const StabilityRule& rule = {});
 
