@@ -270,7 +270,8 @@ TEST(MostPoints, BoundWhatAnyToolHasNearItAnywhere) {
                             size * random.uniform(0.02, 0.5));
     tightest = std::max(tightest, worst_part_of_bound(brick, size, random));
   }
-  EXPECT_GT(tightest, 0.5);  // the walks come close to the bound
+  // The walks come close to the bound; the thirtieth of them that a sanitized build makes need not.
+  if (HAPBENCH_TEST_SANITIZED == 0) EXPECT_GT(tightest, 0.5);
 }
 
 TEST(MostPoints, AreFewOfTheThesissBlockAndNoneOfAnEmptyShell) {
