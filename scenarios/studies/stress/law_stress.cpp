@@ -19,13 +19,20 @@ double log_uniform(Random& random, double low, double high) {
   return low * std::pow(high / low, random.uniform());
 }
 
+/// A vector in a random direction whose length is log-uniform. Its draws are statements of their own: compilers take
+/// the operands of a product in either order.
+Vec3 log_uniform_vector(Random& random, double low, double high) {
+  const Vec3 direction = random.direction();
+  return log_uniform(random, low, high) * direction;
+}
+
 bool chance(Random& random, double probability) {
   return random.uniform() < probability;
 }
 
 /// A unit vector that differs from u by 1e-16 (rounding) … 1.
 Vec3 nearly(Random& random, const Vec3& u) {
-  return (u + log_uniform(random, 1e-16, 1.0) * random.direction()).normalized();
+  return (u + log_uniform_vector(random, 1e-16, 1.0)).normalized();
 }
 
 Vec3 sign_of(Random& random, const Vec3& u) {
@@ -154,7 +161,7 @@ void draw_tool(Random& random, ContactSet& set) {
               chance(random, 0.5) ? Tip::round : Tip::flat};
   set.pose.axis = chance(random, 0.3) ? Vec3(0.0, 0.0, -1.0) : random.direction();
   if (chance(random, 0.5)) set.pose.position = scale * random.direction();
-  if (chance(random, 0.5)) set.velocity = log_uniform(random, 1e-12, 1e3) * random.direction();
+  if (chance(random, 0.5)) set.velocity = log_uniform_vector(random, 1e-12, 1e3);
 }
 
 void draw_rendering(Random& random, RenderingConfig& config) {

@@ -211,7 +211,9 @@ Trajectory TrajectoryDraws::random(Random& random) const {
     w.time = static_cast<double>(i) * leg;
     w.tilt = random.uniform(-bounds_.tilt, bounds_.tilt);
     w.azimuth = random.uniform(-1.0, 1.0) * bounds_.rate * bounds_.duration;
-    w.force = bounds_.force * random.uniform() * (planar_ ? random.direction_in_plane() : random.direction());
+    // In statements of their own: compilers take the operands of a product in either order.
+    const Vec3 direction = planar_ ? random.direction_in_plane() : random.direction();
+    w.force = bounds_.force * random.uniform() * direction;
   }
   return within_bounds(std::move(trajectory));
 }
@@ -221,7 +223,8 @@ Trajectory TrajectoryDraws::changed(Trajectory from, double step, Random& random
                                    bounds_.force};
   for (std::uint64_t changes = 1 + random.below(3); changes > 0; --changes) {
     const std::size_t i = random.below(kNumbers);
-    number(from[random.below(from.size())], i) += step * ranges[i] * random.normal();
+    const double change = step * ranges[i] * random.normal();
+    number(from[random.below(from.size())], i) += change;
   }
   return within_bounds(std::move(from));
 }
