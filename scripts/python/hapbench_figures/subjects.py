@@ -104,7 +104,7 @@ def inferred(results):
     axes[0, 1].set(xlabel="samples, nearest first", ylabel="distance", title="distance", ylim=(0, None))
     for ax, (name, label, scale) in zip((axes[0, 2], *axes[1]), MEASURES):
         beside_panel(ax, found["beside"], name, scale)
-        ax.set(title=label, **({"yscale": "log"} if name in ("force", "speed") else {}))
+        ax.set(title=label, **({"yscale": "log"} if name == "speed" else {}))
     for ax, trace in zip(axes[2], found["traces"]):
         trace_panel(ax, trace, -0.002, 1.0)
     axes[2, 2].axis("off")
