@@ -434,30 +434,20 @@ Json subjects_json(const SubjectsPlan& plan, const std::vector<SubjectSample>& s
 }
 
 std::string subjects_text(const Json& subjects) {
-  const auto text_of = [](const Json& value) {
-    return value.is_null() ? std::string("none") : fmt::format("{:.3g}", value.get<double>());
-  };
-  std::string text = fmt::format(
-      "{} samples, {} given up; posterior: the nearest {}, up to a distance of {:.3g}, the nearest {:.3g}\n\n",
-      subjects["samples"].get<int>(), subjects["given_up"].get<int>(), subjects["posterior"].get<int>(),
-      subjects["largest_distance"].get<double>(), subjects["subjects"][0]["distance"].get<double>());
-  for (const Json& u : subjects["unknowns"]) {
-    text += fmt::format("{:32} {:>8} ... {:<8} posterior {:>8} [{} ... {}]\n", u["field"].get<std::string>(),
-                        text_of(u["range"][0]), text_of(u["range"][1]), text_of(u["q50"]), text_of(u["q05"]),
-                        text_of(u["q95"]));
-  }
-  text += "\nthe nearest six as subjects, beside the published means; (*) what the distance is about\n\n";
-  for (const Json& b : subjects["beside"]) {
-    text +=
-        fmt::format("{:32} {:>6} ± {:<8} published {:>6} ± {:<8}{}{}\n", b["id"].get<std::string>(), text_of(b["mean"]),
-                    text_of(b["standard_error"]), text_of(b["published"]), text_of(b["published_standard_error"]),
-                    b["fitted"].get<bool>() ? " (*)" : "", b["within_reach"].get<bool>() ? "" : " out of reach");
-  }
+  std::string text =
+      fmt::format("{} samples, {} given up; posterior: the nearest {}, at a distance of {:.3g} to {:.3g}\n",
+                  subjects["samples"].get<int>(), subjects["given_up"].get<int>(), subjects["posterior"].get<int>(),
+                  subjects["subjects"][0]["distance"].get<double>(), subjects["largest_distance"].get<double>());
   for (const Json& v : subjects["verdicts"]) {
-    text += fmt::format("\n{}: {}; {}\n", v["id"].get<std::string>(), v["verdict"].get<std::string>(),
-                        v["why"].get<std::string>());
+    text += fmt::format("\n{} ({}): {}\n  {}\n  {}\n", v["id"].get<std::string>(),
+                        v["fitted"].get<bool>() ? "fitted" : "predicted", v["verdict"].get<std::string>(),
+                        v["measured"].get<std::string>(), v["why"].get<std::string>());
   }
-  return text;
+  std::string out;
+  for (const Json& b : subjects["beside"]) {
+    if (!b["within_reach"].get<bool>()) append_item(out, b["id"].get<std::string>(), ", ");
+  }
+  return text + "\nout of reach, by two standard errors of the difference: " + (out.empty() ? "nothing" : out) + "\n";
 }
 
 }  // namespace hapbench

@@ -185,7 +185,7 @@ def compact(svg):
     svg = without_bare_groups(re.sub(r">\s+<", "><", svg))
     svg = re.sub(r' d="([^"]*)"', lambda d: f' d="{re.sub(r"(?<=[LMCQ]) | (?=[LMCQz])|(?<=z) ", "", d[1]).strip()}"', re.sub(r"\s+", " ", svg))
     svg = re.sub(r"(?<=\d)L(-?[\d.]+ -?[\d.]+)(?=[Lz\"])", r" \1", svg)  # what follows a place is a line
-    return re.sub(r"((?:<[^>]*>[^<]*){12})", "\\1\n", re.sub(r"\s+", " ", svg)).strip() + "\n"
+    return re.sub(r"((?:[^>]*>){12,}?)(?=<(?:path|g|use|rect)[ >])", "\\1\n", svg).strip() + "\n"
 
 
 def reduced(time, low, high, spans):
