@@ -98,13 +98,6 @@ Json study_json(const PrecisionStudy& study, const PrecisionResult& result) {
   return {{"study", study.name}, {"rows", std::move(rows)}, {"orders", std::move(orders)}};
 }
 
-bool overrides_device(const std::vector<std::string>& overrides) {
-  return std::any_of(overrides.begin(), overrides.end(), [](const std::string& override) {
-    const std::string_view path = overridden_path(override);
-    return path == "device" || path.starts_with("device.");
-  });
-}
-
 /// The studies are about the rendering: in them an ideal device with the same force limit takes the place of others,
 /// which would add dynamics of their own. That must not be taken for a result about the device that somebody asked for.
 void refuse_device(const LoadedScenario& loaded, bool asked_for) {

@@ -186,6 +186,10 @@ std::vector<LoadedScenario> scenes_of(const StabilityOptions& options) {
     throw InputError(
         fmt::format("--search: got {} scenarios; allowed: one, whose scene is searched", options.scenarios.size()));
   }
+  if (overrides_device(options.overrides)) {
+    throw InputError(
+        "--set: got a field of device; allowed with --search: other fields, because it searches with an ideal device");
+  }
   const fs::path file = find_scenario(options.scenarios.front());
   std::vector<LoadedScenario> scenes;
   if (options.algorithms.empty()) scenes.push_back(load_scenario(file, options.overrides));
