@@ -255,6 +255,16 @@ class Answers {
  private:
   std::string title(std::size_t column) const { return scene(column) + "\n" + algorithm(column); }
 
+  /// The first three names, and how many more there are.
+  static std::string first_of(const std::vector<std::string>& names) {
+    constexpr std::size_t kMost = 3;
+    const std::size_t shown = std::min(kMost, names.size());
+    const std::string more =
+        names.size() > kMost ? fmt::format(" and {} more (device_limits.csv)", names.size() - kMost) : "";
+    return fmt::format("{}{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+                       more);
+  }
+
   /// What happens below a low end, and where nothing is stable.
   std::string ends_text() const {
     std::map<std::string, std::vector<std::string>> below, none;
@@ -269,8 +279,8 @@ class Answers {
     }
     std::string text;
     for (const auto& [verdict, names] : below)
-      text += wrapped(fmt::format("a-b: stable from a on; below, {}: {}", verdict, fmt::join(names, ", ")), 0);
-    for (const auto& [why, names] : none) text += wrapped(fmt::format("{}: {}", fmt::join(names, ", "), why), 0);
+      text += wrapped(fmt::format("a-b: stable from a on; below, {}: {}", verdict, first_of(names)), 0);
+    for (const auto& [why, names] : none) text += wrapped(fmt::format("{}: {}", first_of(names), why), 0);
     return text;
   }
 

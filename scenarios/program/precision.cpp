@@ -98,15 +98,22 @@ Json study_json(const PrecisionStudy& study, const PrecisionResult& result) {
   return {{"study", study.name}, {"rows", std::move(rows)}, {"orders", std::move(orders)}};
 }
 
-/// The studies are about the rendering: in them an ideal device with the same force limit takes the place of others,
-/// which would add dynamics of their own. That must not be taken for a result about the device that somebody asked for.
-void refuse_device(const LoadedScenario& loaded, bool asked_for) {
-  if (!asked_for || std::holds_alternative<IdealDeviceFields>(loaded.scenario.device)) return;
-  const auto limit = input_force_limit(loaded.scenario.device);
-  throw InputError(fmt::format(
-      "{}: /device/type: got another device; allowed for the studies: \"ideal\", because they measure the rendering "
-      "alone (--set 'device={{\"type\":\"ideal\"{}}}')",
-      loaded.file.string(), limit ? fmt::format(",\"force_limit_N\":{}", *limit) : ""));
+/// The studies are about the rendering: an ideal device with the same force limit takes the place of others, which
+/// would add dynamics of their own. That must not be taken for a result about a device that somebody asked for.
+void check_device(const LoadedScenario& loaded, bool overridden) {
+  const DeviceFields& device = loaded.scenario.device;
+  if (std::holds_alternative<IdealDeviceFields>(device)) return;
+  if (overridden || handle_moves_tool(device)) {
+    const auto limit = input_force_limit(device);
+    throw InputError(fmt::format(
+        "{}: /device/type: got another device; allowed for the studies: \"ideal\", because they measure the rendering "
+        "alone (--set 'device={{\"type\":\"ideal\"{}}}')",
+        loaded.file.string(), limit ? fmt::format(",\"force_limit_N\":{}", *limit) : ""));
+  }
+  print_note(
+      fmt::format("{}: the studies measure the rendering alone: an ideal device with the same force limit takes "
+                  "the place of the scene's",
+                  loaded.scenario.name));
 }
 
 int precision(const PrecisionCommandOptions& options) {
@@ -116,7 +123,8 @@ int precision(const PrecisionCommandOptions& options) {
     const std::string& given = options.scenario;
     scenarios.push_back(load_scenario(find_scenario(given.empty() ? study->scenario : given), options.overrides));
     print_warnings(check_named_files(scenarios.back()));
-    refuse_device(scenarios.back(), !given.empty() || overrides_device(options.overrides));
+    if (!given.empty() || overrides_device(options.overrides))
+      check_device(scenarios.back(), overrides_device(options.overrides));
   }
   const fs::path out = results_directory(
       options.out, options.scenario.empty() ? "precision" : "precision_" + scenarios.front().file.stem().string());
