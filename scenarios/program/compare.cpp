@@ -266,9 +266,10 @@ std::string league_text(const League& league) {
   return text +
          fmt::format(
              "\nall metrics and scenarios\n\n{}\n"
-             "ratio: to the best; in the last table the geometric mean of so many, none after a failure. wins: no\nother has a "
-             "better mean rank there. Closer than {} % share a rank. x: a run failed; it ranks behind all\nthat did not, "
-             "in the order of failures, and of the others the ones without such a number are last.\n{}",
+             "ratio: to the best; in the last table the geometric mean of so many, none after a failure. wins:\n"
+             "no other has a better mean rank there. Closer than {} % share a rank. x: a run failed; it ranks\n"
+             "behind all that did not, by the number of failures; of the others those without such a number are\n"
+             "last.\n{}",
              laws_text(league), 100.0 * kSameRank, spread_text(league));
 }
 

@@ -85,12 +85,24 @@ TEST(AtomicFile, InAMissingDirectoryThrowsNamingTheTarget) {
   }
 }
 
-TEST(AtomicFile, OverADirectoryThrowsAtCommitAndLeavesNoTemporary) {
+TEST(AtomicFile, OverWhatIsNoFileThrowsAndLeavesNoTemporary) {
   const TemporaryDirectory dir;
   std::filesystem::create_directory(dir / "a.csv");
-  AtomicFile file(dir / "a.csv");
-  EXPECT_THROW(file.commit(), IoError);
+  EXPECT_THROW(AtomicFile(dir / "a.csv"), IoError);
   EXPECT_EQ(dir.entries(), Names{"a.csv"});
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no device to refuse here";
+  EXPECT_THROW(AtomicFile("/dev/full"), IoError);
+}
+
+TEST(AtomicFile, IsCompleteBeforeItHasItsName) {
+  const TemporaryDirectory dir;
+  write_plainly(dir / "a.csv", "old");
+  AtomicFile file(dir / "a.csv");
+  file.append("new");
+  file.complete();
+  EXPECT_EQ(read_file(dir / "a.csv"), "old");
+  file.commit();
+  EXPECT_EQ(read_file(dir / "a.csv"), "new");
 }
 
 TEST(AtomicFile, ThatRunsOutOfSpaceThrowsAtCommitAndLeavesTheOldTarget) {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include "scenarios/input/mesh_file.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/results/files.hpp"
@@ -153,6 +155,11 @@ TEST_F(ShellCommand, RefusesADirectoryInPlaceOfItsFile) {
   EXPECT_NE(run.err.find("is a directory"), std::string::npos) << run.err;
 }
 
+/// The text without the files that its lines name in front of a JSON pointer.
+std::string without_files(const std::string& text) {
+  return std::regex_replace(text, std::regex("[^\n]*\\.json: /"), "/");
+}
+
 /// Runs `scenario`, then the effective scenario of that run, and compares all files.
 void expect_reproduced(const std::string& scenario, const fs::path& directory, const std::string& first,
                        const std::string& second, const std::vector<std::string>& ignored) {
@@ -161,7 +168,7 @@ void expect_reproduced(const std::string& scenario, const fs::path& directory, c
   const test::ProgramRun again = hapbench(
       {"run", (directory / first / "scenario.effective.json").string(), "--out", (directory / second).string()});
   EXPECT_EQ(again.status, 0) << again.err;
-  EXPECT_EQ(again.err, run.err);  // warnings about the run
+  EXPECT_EQ(without_files(again.err), without_files(run.err));  // warnings about the run
   test::expect_same_files(directory / first, directory / second, ignored);
 }
 
