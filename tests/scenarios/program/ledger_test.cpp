@@ -93,7 +93,7 @@ std::vector<Claim> claims_of(const Words& columns, std::size_t first) {
   return claims;
 }
 
-TEST(RobustnessOnRecord, IsWhatTheProgramMakesOfAFewSamples) {
+TEST(RobustnessOnRecord, IsWhatTheProgramMakesOfASample) {
   if (!fs::exists(kReference / "robustness.csv")) GTEST_SKIP() << "there is none";
   const Choices choices(kReference / "choices.json");
   const Json record = Json::parse(test::read_file(kReference / "robustness.json"));
@@ -104,11 +104,10 @@ TEST(RobustnessOnRecord, IsWhatTheProgramMakesOfAFewSamples) {
       plan_robustness(choices, PublishedNumbers(kReference / "published"), claims, {}, rows.size() - 1);
   ASSERT_EQ(robustness_table(plan, std::vector<std::vector<std::string>>(plan.samples())).find(rows[0] + "\n"), 0u);
   const test::TemporaryDirectory directory;
-  for (const std::size_t sample : {std::size_t{0}, plan.samples() - 1}) {
-    const SampleVerdicts judged = judge_sample(plan, sample, directory / "sample");
-    EXPECT_EQ(robustness_row(plan, sample, judged.verdicts), rows[1 + sample])
-        << "renew it with hapbench reproduce --robustness --ledger results/reference/claims.json";
-  }
+  const std::size_t sample = plan.samples() - 1;  // one takes a minute of a core
+  const SampleVerdicts judged = judge_sample(plan, sample, directory / "sample");
+  EXPECT_EQ(robustness_row(plan, sample, judged.verdicts), rows[1 + sample])
+      << "renew it with hapbench reproduce --robustness --ledger results/reference/claims.json";
 }
 
 /// A sample gets its verdicts as the ledger does.
