@@ -94,8 +94,13 @@ struct Metric {
 
   /// From a number, a count, one of them that need not exist, or a Value.
   template <class Given>
-  Metric(std::string name_, const char* unit_, const char* meaning_, const Given& given, Better better_ = Better::none)
-      : name(std::move(name_)), unit(unit_), meaning(meaning_), value(value_from(given)), better(better_) {}
+  Metric(std::string name_given, const char* unit_given, const char* meaning_given, const Given& given,
+         Better direction = Better::none)
+      : name(std::move(name_given)),
+        unit(unit_given),
+        meaning(meaning_given),
+        value(value_from(given)),
+        better(direction) {}
 
  private:
   static Value value_from(const Value& given) { return given; }
