@@ -232,7 +232,12 @@ struct BuildSolid {
   }
   template <class Analytic>
   std::shared_ptr<const Solid> operator()(const Analytic& shape) const {
-    return make_solid(shape);
+    // Without a signed distance of its kind, nothing is known of an environment's inside.
+    if constexpr (requires { make_solid(shape); }) {
+      return make_solid(shape);
+    } else {
+      return nullptr;
+    }
   }
 };
 
