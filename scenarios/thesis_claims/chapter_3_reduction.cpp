@@ -120,11 +120,11 @@ const char* const kCountsRule =
 
 // ---- T2b: the raw counts of task 2 over the force of a constant hand.
 
-constexpr double kForces[] = {0.2, 0.5, 1.0, 1.8};  ///< [N]; the last one is about that of appendix D
+constexpr double kHeldForces[] = {0.2, 0.5, 1.0, 1.8};  ///< [N]; the last one is about that of appendix D
 
 Measured measure_hands(const Evidence& e) {
   Measured measured;
-  for (const double force : kForces) {
+  for (const double force : kHeldForces) {
     const std::string overrides[] = {fmt::format("hand.force_N={}", force)};
     double rows = 0.0, raw = 0.0, kept = 0.0;
     e.for_each_row(e.load("task2_held", overrides), [&](const StepRecord& row) {

@@ -34,7 +34,7 @@ constexpr double kLargestDifference = 5.0;   ///< beyond, nothing more is learnt
 constexpr double kGiveUp = 2.0;              ///< least distance of a sample that is not run to its end
 constexpr double kKept = 0.05;               ///< share of the samples that are the posterior
 constexpr double kOutOfReach = 2.0;          ///< standard errors of the difference
-constexpr const char* kAlgorithms[] = {"shaped_stiffness", "original_averaging"};
+constexpr const char* kTrialAlgorithms[] = {"shaped_stiffness", "original_averaging"};
 
 constexpr SubjectUnknown kUnknowns[] = {
     {"subjects.0.motor_noise_N", 0.02, 0.15, true,
@@ -72,10 +72,10 @@ struct Measure {
   const char* name;  ///< part of the id
   SubjectMean PlaceMetrics::*mean;
 };
-constexpr Measure kMeasures[] = {{"success", &PlaceMetrics::success_rate},
-                                 {"time", &PlaceMetrics::completion_time},
-                                 {"force", &PlaceMetrics::model_force},
-                                 {"speed", &PlaceMetrics::speed}};
+constexpr Measure kTrialMeasures[] = {{"success", &PlaceMetrics::success_rate},
+                                      {"time", &PlaceMetrics::completion_time},
+                                      {"force", &PlaceMetrics::model_force},
+                                      {"speed", &PlaceMetrics::speed}};
 
 std::string scenario_of(const char* task, const char* algorithm) {
   return fmt::format("{}_peg_in_hole_{}", task, algorithm);
@@ -139,15 +139,15 @@ SubjectsPlan plan_subjects(PublishedNumbers published, std::size_t samples) {
           finite_number(number(Range{u.low, u.high, u.logarithmic}.value_at(points.at(sample, i)))).value());
     }
   }
-  plan.block = plan.evidence.shell(plan.evidence.load(scenario_of("vertical", kAlgorithms[0])));
+  plan.block = plan.evidence.shell(plan.evidence.load(scenario_of("vertical", kTrialAlgorithms[0])));
   return plan;
 }
 
 std::vector<std::string> subject_measures() {
   std::vector<std::string> ids;
-  for (const char* algorithm : kAlgorithms) {
+  for (const char* algorithm : kTrialAlgorithms) {
     for (const Experiment& e : kExperiments) {
-      for (const Measure& m : kMeasures) {
+      for (const Measure& m : kTrialMeasures) {
         if (e.fitted) ids.push_back(fmt::format("{}.{}.{}", e.id, m.name, algorithm));
       }
     }
@@ -170,11 +170,11 @@ SubjectSample run_subject(const SubjectsPlan& plan, std::size_t sample) {
   double sum = 0.0;
   std::size_t next = 0;
   // Stiffness shaping first: its runs are short, and hands that miss the targets with it are given up soon.
-  for (const char* algorithm : kAlgorithms) {
+  for (const char* algorithm : kTrialAlgorithms) {
     for (const Experiment& e : kExperiments) {
       if (!e.fitted) continue;
       const auto places = place_metrics(run(plan, sample, scenario_of(e.task, algorithm), overrides));
-      for (const Measure& m : kMeasures) {
+      for (const Measure& m : kTrialMeasures) {
         const SubjectMean& mean = places.at(e.place).*m.mean;
         if (mean.subjects > 0) result.measured[next] = mean.mean;
         sum += std::pow(standardised_difference(plan.evidence.published, ids[next], result.measured[next]), 2);
@@ -220,7 +220,7 @@ std::string definition(const SubjectsPlan& plan) {
   const Provenance p = provenance();
   if (p.commit == "unknown" || p.commit.ends_with("-dirty")) return "";
   Json content = {{"table", header()}, {"seed", kSeed}, {"program", {p.commit, p.compiler, p.build_type, p.flags}}};
-  for (const char* algorithm : kAlgorithms) {
+  for (const char* algorithm : kTrialAlgorithms) {
     for (const char* task : {"vertical", "rotational"}) {
       const LoadedScenario loaded = plan.evidence.load(scenario_of(task, algorithm));
       content["scenarios"].push_back(scenario_hash(loaded.scenario, loaded.files));
@@ -336,7 +336,7 @@ TargetTable table_of(const std::vector<TargetRow>& rows) {
 void compare(const std::vector<TargetRow>& rows, const Experiment& e, const char* algorithm,
              const PublishedNumbers& published, Json& beside) {
   const auto places = place_metrics(rows);
-  for (const Measure& m : kMeasures) {
+  for (const Measure& m : kTrialMeasures) {
     const std::string id = fmt::format("{}.{}.{}", e.id, m.name, algorithm);
     const PublishedNumber& p = published[id];
     const SubjectMean& mean = places.at(e.place).*m.mean;
@@ -405,10 +405,10 @@ Json subjects_json(const SubjectsPlan& plan, const std::vector<SubjectSample>& s
   Json beside = Json::array(), verdicts = Json::array();
   for (const char* task : {"vertical", "rotational"}) {
     std::map<std::string, std::vector<TargetRow>> rows;
-    for (const char* algorithm : kAlgorithms) rows[algorithm] = run_nearest(scenario_of(task, algorithm), {});
+    for (const char* algorithm : kTrialAlgorithms) rows[algorithm] = run_nearest(scenario_of(task, algorithm), {});
     for (const Experiment& e : kExperiments) {
       if (std::string_view(e.task) != task) continue;
-      for (const char* algorithm : kAlgorithms) compare(rows[algorithm], e, algorithm, published, beside);
+      for (const char* algorithm : kTrialAlgorithms) compare(rows[algorithm], e, algorithm, published, beside);
       const Measured measured = measure_experiment(table_of(rows["original_averaging"]),
                                                    table_of(rows["shaped_stiffness"]), static_cast<double>(e.place));
       verdicts.push_back(verdict_json(e.id, e.fitted, judge_experiment(measured, published, e.id, e.difference)));
@@ -419,7 +419,7 @@ Json subjects_json(const SubjectsPlan& plan, const std::vector<SubjectSample>& s
   for (const std::size_t sample : kept.first(kSubjects)) {
     chosen.push_back({{"sample", sample}, {"distance", samples[sample].distance}});
   }
-  for (const char* algorithm : kAlgorithms) traces.push_back(trace(plan, kept[0], algorithm));
+  for (const char* algorithm : kTrialAlgorithms) traces.push_back(trace(plan, kept[0], algorithm));
   return {{"samples", samples.size()},
           {"given_up", samples.size() - order.size()},
           {"posterior", kept.size()},
