@@ -9,7 +9,7 @@
  *     hapbench --plugin ./libmy_law.so run drag_molar --set rendering.algorithm=my_law
  *
  * then has its law in every command. Units N, m. Functions may be called from several threads at once, those of one law
- * by one thread at a time. Nothing may be thrown; `evaluate` and `springs` should not allocate. */
+ * by one thread at a time. What is thrown counts as an error; `evaluate` and `springs` should not allocate. */
 
 #define HAPBENCH_PLUGIN_VERSION 1u
 

@@ -2,17 +2,47 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdio>
+#include <cstring>
+#include <exception>
 #include <limits>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "algorithms/plugin/plugin_call.hpp"
+
 namespace hapbench {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kMostParameters = 1000;
+
+/// Numbers before and after what a plugin writes. No computation gives this signalling NaN.
+struct Canaries {
+  static constexpr std::size_t kCount = 8;
+  double values[kCount];
+
+  Canaries() { std::fill_n(values, kCount, std::bit_cast<double>(std::uint64_t{0x7ff4deadc0ffee00})); }
+  void write(double* to) const noexcept { std::memcpy(to, values, sizeof values); }
+  bool are_at(const double* from) const noexcept { return std::memcmp(from, values, sizeof values) == 0; }
+};
+const Canaries kCanaries;
+
+/// The force of a law that has failed.
+LawForce no_force() {
+  return {Vec3::Constant(kNaN), Mat3::Zero()};
+}
+
+struct GuardedForce {
+  Canaries before;
+  HapbenchForce answer{{kNaN, kNaN, kNaN}, {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}};
+  Canaries after;
+
+  bool intact() const noexcept { return kCanaries.are_at(before.values) && kCanaries.are_at(after.values); }
+};
 
 HapbenchContacts view_of(const ContactBuffer& c) {
   return {.n = c.size(),
@@ -56,18 +86,40 @@ PluginLaw::PluginLaw(const HapbenchPlugin& plugin, double stiffness, std::vector
 }
 
 PluginLaw::~PluginLaw() {
-  if (law_ != nullptr && plugin_.destroy != nullptr) plugin_.destroy(law_);
+  destroy();
+}
+
+void PluginLaw::destroy() noexcept {
+  if (law_ != nullptr && plugin_.destroy != nullptr) runs("destroy", [this] { plugin_.destroy(law_); });
+  law_ = nullptr;
 }
 
 void PluginLaw::prepare(std::size_t capacity) {
-  if (law_ != nullptr && plugin_.destroy != nullptr) plugin_.destroy(law_);
-  law_ = plugin_.create(parameters_.data(), K_, capacity);
+  destroy();
+  guarded_weights_.resize(capacity + 2 * Canaries::kCount);
+  runs("create", [this, capacity] { law_ = plugin_.create(parameters_.data(), K_, capacity); });
 }
 
 void PluginLaw::reset() noexcept {
   ForceLaw::reset();
   fault_[0] = '\0';
-  if (law_ != nullptr && plugin_.reset != nullptr) plugin_.reset(law_);
+  if (law_ != nullptr && plugin_.reset != nullptr) runs("reset", [this] { plugin_.reset(law_); });
+}
+
+template <class Call>
+bool PluginLaw::runs(const char* function, const Call& call) noexcept {
+  std::array<char, 200> problem{};
+  try {
+    const PluginCall running(plugin_.name, function);
+    call();
+    return true;
+  } catch (const std::exception& thrown) {
+    std::snprintf(problem.data(), problem.size(), "throws in %s: %s", function, thrown.what());
+  } catch (...) {
+    std::snprintf(problem.data(), problem.size(), "throws in %s", function);
+  }
+  failed(problem.data());
+  return false;
 }
 
 LawForce PluginLaw::failed(const char* problem) noexcept {
@@ -75,11 +127,13 @@ LawForce PluginLaw::failed(const char* problem) noexcept {
   // The text is printed in one line and written as JSON, whatever the plugin answers.
   for (char& c : fault_) c = c == '\0' || (c >= ' ' && c <= '~') ? c : '?';
   note_fault(fault_.data());
-  return {Vec3::Constant(kNaN), Mat3::Zero()};
+  return no_force();
 }
 
 LawForce PluginLaw::failed(int error) noexcept {
-  const char* text = plugin_.error_text != nullptr ? plugin_.error_text(law_, error) : nullptr;
+  const char* text = nullptr;
+  if (plugin_.error_text != nullptr && !runs("error_text", [&] { text = plugin_.error_text(law_, error); }))
+    return no_force();
   std::array<char, 200> problem{};
   std::snprintf(problem.data(), problem.size(), "reports error %d%s%s", error, text != nullptr ? ": " : "",
                 text != nullptr ? text : "");
@@ -88,15 +142,25 @@ LawForce PluginLaw::failed(int error) noexcept {
 
 LawForce PluginLaw::evaluate(ContactBuffer& contacts) noexcept {
   if (contacts.empty()) return {};
-  if (fault() != nullptr) return {Vec3::Constant(kNaN), Mat3::Zero()};
+  if (fault() != nullptr) return no_force();
   if (law_ == nullptr) return failed("could not be created with these parameters");
+  const std::size_t n = contacts.size();
+  double* weights = guarded_weights_.data() + Canaries::kCount;
+  kCanaries.write(weights - Canaries::kCount);
+  kCanaries.write(weights + n);
   // Pre-fills with NaN to detect outputs that the plugin did not write.
-  set_weights(contacts, gives_weights_ ? kNaN : 1.0 / static_cast<double>(contacts.size()));
-  HapbenchForce answer{{kNaN, kNaN, kNaN}, {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}};
+  std::fill_n(weights, n, gives_weights_ ? kNaN : 1.0 / static_cast<double>(n));
+  GuardedForce guarded;
   const HapbenchContacts view = view_of(contacts);
-  if (const int error = plugin_.evaluate(law_, &view, contacts.weight.data(), &answer); error != 0)
-    return failed(error);
-  const LawForce force = gives_weights_ ? weighted_force(contacts, K_) : force_of(answer);
+  int error = 0;
+  if (!runs("evaluate", [&] { error = plugin_.evaluate(law_, &view, weights, &guarded.answer); })) return no_force();
+  if (error != 0) return failed(error);
+  if (!kCanaries.are_at(weights - Canaries::kCount) || !kCanaries.are_at(weights + n))
+    return failed("writes beyond its weights, of which there is one for each contact");
+  if (!guarded.intact()) return failed("writes beyond its answer");
+  set_weights(contacts, 0.0);
+  std::copy_n(weights, n, contacts.weight.begin());
+  const LawForce force = gives_weights_ ? weighted_force(contacts, K_) : force_of(guarded.answer);
   // A weight that is not finite makes the tensor not finite, too.
   if (!force.spring.allFinite()) return failed("gives a force that is not finite");
   if (!force.S.allFinite()) return failed("gives a stiffness that is not finite");
@@ -108,7 +172,13 @@ SpringState PluginLaw::spring_state(const ContactBuffer& contacts, const Vec3& s
   if (plugin_.springs != nullptr) {
     SpringState state;
     const HapbenchContacts view = view_of(contacts);
-    plugin_.springs(law_, &view, tip.data(), &state.energy, state.moment.data());
+    try {
+      const PluginCall running(plugin_.name, "springs");
+      plugin_.springs(law_, &view, tip.data(), &state.energy, state.moment.data());
+    } catch (...) {
+      note_fault((std::string(plugin_.name) + " throws in springs").c_str());
+      state.energy = kNaN;
+    }
     return state;
   }
   return SingleSpringLaw::spring_state(contacts, spring, tip);
@@ -120,6 +190,9 @@ AlgorithmEntry plugin_entry(const HapbenchPlugin& plugin, AlgorithmOrigin origin
   if (plugin.gives != HAPBENCH_WEIGHTS && plugin.gives != HAPBENCH_FORCE)
     throw std::invalid_argument("\"gives\" is " + std::to_string(plugin.gives) +
                                 "; allowed: HAPBENCH_WEIGHTS or HAPBENCH_FORCE");
+  if (plugin.parameter_count > kMostParameters)
+    throw std::invalid_argument("it has " + std::to_string(plugin.parameter_count) + " parameters; allowed: at most " +
+                                std::to_string(kMostParameters));
   if (plugin.parameter_count > 0 && plugin.parameters == nullptr)
     throw std::invalid_argument("its table of parameters is missing");
   const ModelInfo info = {.name = plugin.name,

@@ -11,7 +11,8 @@
 namespace hapbench {
 
 /// A law behind the C interface. It reads the contacts of the step in place. A step adds one indirect call and a check
-/// that the answer is finite; it does not allocate.
+/// that the answer is finite and that nothing beyond it was written; it does not allocate. What the plugin throws is a
+/// fault like an error that it reports.
 class PluginLaw final : public SingleSpringLaw {
  public:
   /// `plugin` must outlive the law; `parameters` are in its order.
@@ -30,10 +31,16 @@ class PluginLaw final : public SingleSpringLaw {
  private:
   LawForce failed(const char* problem) noexcept;
   LawForce failed(int error) noexcept;
+  /// Calls `call`, which runs the plugin's function of that name; an exception is a fault. Returns whether none came.
+  template <class Call>
+  bool runs(const char* function, const Call& call) noexcept;
+  void destroy() noexcept;
 
   const HapbenchPlugin& plugin_;
   std::vector<double> parameters_;
   void* law_ = nullptr;
+  /// The plugin's weights, between canaries that find writes beyond them.
+  std::vector<double> guarded_weights_;
   std::array<char, 256> fault_{};  ///< empty without a fault
 };
 

@@ -7,9 +7,11 @@
 #include <cfenv>
 #include <map>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 
+#include "algorithms/plugin/plugin_call.hpp"
 #include "algorithms/plugin/plugin_law.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/installed_folder.hpp"
@@ -79,6 +81,32 @@ std::string hash_of_file(const fs::path& file) {
   }
 }
 
+/// Texts of a plugin go to terminals, pages and JSON. Throws std::invalid_argument for control characters, of which a
+/// terminal's commands are made, and for what is no UTF-8.
+void require_printable(const AlgorithmEntry& entry) {
+  const auto require = [](std::string_view text, const std::string& what) {
+    bool printable = true;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      const auto byte = static_cast<unsigned char>(text[i]);
+      const bool c1 = byte == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
+      printable = printable && byte >= 0x20 && byte != 0x7f && !c1;
+    }
+    // As JSON, in which what is no UTF-8 is the replacement character.
+    const std::string shown = Json(std::string(text)).dump(-1, ' ', true, Json::error_handler_t::replace);
+    if (!printable || shown.find("\\ufffd") != std::string::npos)
+      throw std::invalid_argument(what + " has characters that cannot be printed: " + shown);
+  };
+  const ModelInfo& info = *entry.info;
+  require(info.summary, "its summary");
+  require(info.formula, "its formula");
+  require(info.source, "its source");
+  require(info.known_failure, "its known failure");
+  for (const OwnParameter& p : entry.own_parameters) {
+    require(p.meaning, fmt::format("the meaning of parameter \"{}\"", p.name));
+    require(p.range.unit, fmt::format("the unit of parameter \"{}\"", p.name));
+  }
+}
+
 /// The table of a library, which stays open because its functions may be called at any time. Throws InputError.
 template <class Table>
 const Table& opened(const fs::path& file, int flags, const Interface& wanted) {
@@ -94,7 +122,12 @@ const Table& opened(const fs::path& file, int flags, const Interface& wanted) {
   if (symbol == nullptr)
     fail_in_file(
         file, fmt::format("is no {}: it has no function \"{}\" ({})", wanted.kind, wanted.entry_point, wanted.header));
-  const Table* table = reinterpret_cast<const Table* (*)(std::uint32_t)>(symbol)(wanted.version);
+  const Table* table = nullptr;
+  try {
+    table = reinterpret_cast<const Table* (*)(std::uint32_t)>(symbol)(wanted.version);
+  } catch (...) {
+    fail_in_file(file, fmt::format("throws in \"{}\"", wanted.entry_point));
+  }
   if (table == nullptr)
     fail_in_file(file, fmt::format("does not support version {} of the interface; allowed: built with the {} of this "
                                    "program",
@@ -123,9 +156,11 @@ void load_plugin(const fs::path& given) {
   if (std::any_of(plugins().begin(), plugins().end(), is_this)) return;
   const std::shared_ptr<void> guarded = loading_guard()();
   const std::string hash = hash_of_file(file);
+  const PluginCall loading(file.c_str(), "loading");
   const auto& plugin = opened<HapbenchPlugin>(file, RTLD_NOW | RTLD_LOCAL, kLaws);
   try {
     AlgorithmEntry entry = plugin_entry(plugin, {file.filename().string(), hash});
+    require_printable(entry);
     const std::string name = entry.info->name;
     for (const LoadedPlugin& other : plugins()) {
       if (other.algorithm == name)

@@ -4,6 +4,8 @@
 
 #include <atomic>
 
+#include "algorithms/plugin/plugin_call.hpp"
+
 namespace hapbench {
 
 namespace {
@@ -13,11 +15,12 @@ constexpr int kSignals[] = {SIGINT, SIGTERM};
 std::atomic<int> received_signal{0};
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may not lock");
 
-/// Where nobody asks for the signal in time, such as in a loop of a plugin or a read from a pipe, it ends the process.
+/// Time after which a signal that nobody has asked for ends the process: a plugin may loop, a pipe may never deliver.
 constexpr unsigned kPatience = 2;  // [s]
 
 void end_process(int) {
   const int signal = received_signal;
+  write_running_plugins();
   ::signal(signal, SIG_DFL);
   ::raise(signal);
 }

@@ -1,11 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <csignal>
+#include <cstdlib>
 #include <limits>
 #include <stdexcept>
 
 #include "algorithms/penalty_rendering.hpp"
 #include "algorithms/plugin/law_plugin.hpp"
+#include "algorithms/plugin/plugin_call.hpp"
 #include "algorithms/plugin/plugin_law.hpp"
 #include "algorithms/registry.hpp"
 #include "results/allocations/allocations.hpp"
@@ -218,6 +221,75 @@ TEST_F(APluginLaw, SaysWhatIsNoForce) {
   EXPECT_EQ(fault_of(kForce), "from_outside gives a stiffness that is not finite");
   script = {.creates = false};
   EXPECT_EQ(fault_of(kMean), "from_outside could not be created with these parameters");
+}
+
+TEST_F(APluginLaw, MayThrowAnywhere) {
+  HapbenchPlugin plugin = kMean;
+  plugin.evaluate = [](void*, const HapbenchContacts*, double*, HapbenchForce*) -> int {
+    throw std::runtime_error("no force today");
+  };
+  EXPECT_EQ(fault_of(plugin), "from_outside throws in evaluate: no force today");
+  plugin = kMean;
+  plugin.reset = [](void*) { throw 1; };
+  EXPECT_EQ(fault_of(plugin), "from_outside throws in reset");
+  plugin = kMean;
+  plugin.create = [](const double*, double, std::size_t) -> void* { throw 1; };
+  EXPECT_EQ(fault_of(plugin), "from_outside could not be created with these parameters");
+  plugin = kForce;
+  plugin.springs = [](void*, const HapbenchContacts*, const double*, double*, double*) { throw 1; };
+  const ContactBuffer contacts = test::contacts_of({Vec3::UnitX()});
+  EXPECT_TRUE(std::isnan(PluginLaw(plugin, kK, {}).spring_state(contacts, Vec3::Zero(), kTip).energy));
+  plugin = kMean;
+  plugin.destroy = [](void*) { throw 1; };
+  take_plugin_faults();
+  EXPECT_EQ(fault_of(plugin), "");
+  EXPECT_EQ(take_plugin_faults().first, "from_outside throws in destroy");
+}
+
+TEST_F(APluginLaw, DoesNotWriteBeyondWhatItIsGiven) {
+  static std::ptrdiff_t place;
+  HapbenchPlugin plugin = kMean;
+  plugin.evaluate = [](void*, const HapbenchContacts* contacts, double* weights, HapbenchForce*) {
+    std::fill_n(weights, contacts->n, 0.25);
+    volatile double* anywhere = weights;  // what a compiler cannot see through, as in a library of its own
+    anywhere[place] = 0.0;
+    return 0;
+  };
+  place = 2;
+  EXPECT_EQ(fault_of(plugin), "") << "the last of three contacts";
+  for (const std::ptrdiff_t beyond : {3, 10, -1, -8}) {
+    place = beyond;
+    EXPECT_EQ(fault_of(plugin), "from_outside writes beyond its weights, of which there is one for each contact");
+  }
+  plugin.gives = HAPBENCH_FORCE;
+  plugin.evaluate = [](void*, const HapbenchContacts*, double*, HapbenchForce* answer) {
+    *answer = {{1, 0, 0}, {1, 0, 0, 1, 0, 1}};
+    volatile double* anywhere = answer->force;
+    anywhere[place] = 0.0;
+    return 0;
+  };
+  place = 8;
+  EXPECT_EQ(fault_of(plugin), "");
+  for (const std::ptrdiff_t beyond : {9, -1}) {
+    place = beyond;
+    EXPECT_EQ(fault_of(plugin), "from_outside writes beyond its answer");
+  }
+}
+
+using APluginLawDeathTest = APluginLaw;
+TEST_F(APluginLawDeathTest, IsNamedWhenItEndsTheProcess) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  HapbenchPlugin plugin = kMean;
+  const auto run = [&plugin] {
+    name_plugins_that_end_the_process(17);
+    fault_of(plugin);
+  };
+  plugin.evaluate = [](void*, const HapbenchContacts*, double*, HapbenchForce*) -> int { std::exit(0); };
+  EXPECT_EXIT(run(), testing::ExitedWithCode(17), "the plugin from_outside ended the program in evaluate");
+  plugin.evaluate = [](void*, const HapbenchContacts*, double*, HapbenchForce*) -> int { std::abort(); };
+  EXPECT_DEATH(run(), "the plugin from_outside aborted in evaluate");
+  plugin.reset = [](void*) { std::raise(SIGSEGV); };
+  EXPECT_DEATH(run(), "the plugin from_outside crashed in reset");
 }
 
 TEST_F(APluginLaw, IsNotAskedAgainAfterAnErrorUntilAReset) {

@@ -61,5 +61,12 @@ const HapbenchPlugin* hapbench_plugin(uint32_t version) {
   if (is("no create")) plugin.create = NULL;
   if (is("no evaluate")) plugin.evaluate = NULL;
   if (is("gives")) plugin.gives = 5;
+  if (is("many")) plugin.parameter_count = (size_t)1 << 40;
+  if (is("escape")) plugin.summary = "red: \033[31m";
+  if (is("csi"))
+    plugin.source =
+        "\xc2\x9b"
+        "31m";
+  parameters[0].meaning = is("latin") ? "caf\xe9" : "scales nothing";
   return &plugin;
 }

@@ -69,6 +69,11 @@ TEST(LoadPlugin, SaysWhatIsWrongWithAPlugin) {
   EXPECT_EQ(hostile("twice"), unusable + "parameter \"gain\" is there twice");
   EXPECT_EQ(hostile("default"), unusable + "parameter \"bias\": its default is out of its range");
   EXPECT_EQ(hostile("range"), unusable + "parameter \"bias\": a range needs two finite ends, the lower first");
+  EXPECT_EQ(hostile("many"), unusable + "it has 1099511627776 parameters; allowed: at most 1000");
+  const std::string unprintable = " has characters that cannot be printed: ";
+  EXPECT_EQ(hostile("escape"), unusable + "its summary" + unprintable + "\"red: \\u001b[31m\"");
+  EXPECT_EQ(hostile("csi"), unusable + "its source" + unprintable + "\"\\u009b31m\"");
+  EXPECT_EQ(hostile("latin"), unusable + "the meaning of parameter \"gain\"" + unprintable + "\"caf\\ufffd\"");
   EXPECT_EQ(algorithms().size(), before);
 }
 
