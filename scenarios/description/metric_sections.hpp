@@ -33,7 +33,7 @@ std::vector<std::string> metric_names();
 /// The same with unit and meaning, without values.
 MetricList metrics_without_values(std::size_t places = 2);
 
-/// What the observers of a trial are made from.
+/// The inputs from which the observers of a trial are made.
 struct TrialParts {
   const Scenario& scenario;
   const SimulationParts& simulation;

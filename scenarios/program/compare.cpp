@@ -236,7 +236,7 @@ std::string spread_text(const League& league) {
   return text;
 }
 
-/// Where some seeds failed: which seeds the means are over.
+/// Names the seeds that the means are over, in a scenario in which some runs failed.
 std::string failed_seeds_text(const League& league, std::size_t scenario) {
   const std::size_t seeds = league.runs.seeds, common = league.common[scenario].size();
   std::vector<std::string> failed;

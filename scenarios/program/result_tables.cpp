@@ -13,7 +13,7 @@
 namespace hapbench {
 namespace {
 
-/// Of all studies; the columns of one are those that it computes.
+/// The columns of all studies; a study writes those that it computes.
 constexpr Column kPrecisionColumns[] = {
     {"setting", "", "what the row is of"},
     {"outcome", "", "how its run ended"},
@@ -60,7 +60,7 @@ constexpr Column kPrecisionColumns[] = {
     {"force_jump_max_N", "N", "the jump J by which both are J + slope * step"},
     {"stiffness_over_step", "1", "force_jump_max_N_per_um in units of K"}};
 
-/// Those that every map fills.
+/// The columns that every map fills.
 constexpr Column kEdgeColumns[] = {
     {"algorithm", "", "force algorithm"},
     {"{x}", "by name", "x of the map"},

@@ -121,7 +121,7 @@ struct Encounter {
 /// drag; `stuck` when it came to stand while its point went on; else `completes`.
 Outcome outcome_of(const Scenario& scenario, const Encounter& encounter);
 
-/// What decides the outcome of a run with a point shell, watched.
+/// Watches a run with a point shell for all that decides its outcome.
 class EncounterObservers {
  public:
   /// The parts must outlive them; `metrics`, if given, observes before.

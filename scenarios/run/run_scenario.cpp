@@ -123,7 +123,7 @@ class TrialObservers {
     out.metrics = metrics_.metrics();
     seen_.judge(scenario, out.metrics, *tool_, out.result.outcome, out.warnings);
     if (open_edges_ && open_edges_->warning()) out.warnings.push_back(*open_edges_->warning());
-    // Who loses the drill fails the rest of the targets.
+    // A subject who loses the drill fails the rest of the targets.
     if (out.result.outcome == Outcome::diverges) {
       if (auto* targets = sections_.find<TargetMetricsObserver>()) targets->fail_rest();
     }

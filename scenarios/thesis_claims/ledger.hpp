@@ -52,7 +52,7 @@ class RobustnessOnRecord {
 Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published,
                  const RobustnessOnRecord& robustness);
 
-// Of claims as ledger_json has them.
+// The functions below take a claim as ledger_json writes it.
 
 /// The recorded verdict, and in front of it that of most samples if it is another one.
 std::string verdicts_text(const Json& claim);

@@ -31,8 +31,8 @@ constexpr std::uint64_t kSeed = 1;
 constexpr std::size_t kSubjects = 6;         ///< D.1.3
 constexpr std::size_t kTargetsPerPlace = 3;  ///< of a sample
 constexpr double kLargestDifference = 5.0;   ///< beyond, nothing more is learnt
-constexpr double kGiveUp = 2.0;              ///< least distance of a sample that is not run to its end
-constexpr double kKept = 0.05;               ///< share of the samples that are the posterior
+constexpr double kGiveUp = 2.0;              ///< a sample at this distance is not run to its end
+constexpr double kKept = 0.05;               ///< the posterior, as a share of the samples
 constexpr double kOutOfReach = 2.0;          ///< standard errors of the difference
 constexpr const char* kTrialAlgorithms[] = {"shaped_stiffness", "original_averaging"};
 
@@ -60,7 +60,7 @@ constexpr SubjectUnknown kUnknowns[] = {
 struct Experiment {
   const char *id, *task;
   std::size_t place;
-  bool difference;  ///< published
+  bool difference;  ///< the thesis publishes the difference of the algorithms, too
   bool fitted;
 };
 constexpr Experiment kExperiments[] = {{"D1", "vertical", 1, true, true},
@@ -81,11 +81,17 @@ std::string scenario_of(const char* task, const char* algorithm) {
   return fmt::format("{}_peg_in_hole_{}", task, algorithm);
 }
 
+/// Numbers of the record have the digits that people read.
 std::string number(double value) {
-  return std::isnan(value) ? "" : fmt::format("{:.4g}", value);
+  return std::isfinite(value) ? fmt::format("{:.4g}", value) : "";
 }
 
-/// A run of a sample's subject.
+Json rounded(double value) {
+  const std::optional<double> read = finite_number(number(value));
+  return read ? Json(*read) : Json();
+}
+
+/// The scenario with the sample's subject in it.
 LoadedScenario load(const SubjectsPlan& plan, std::size_t sample, const std::string& scenario,
                     std::span<const std::string> more) {
   std::vector<std::string> overrides = {"hand.subjects=[{}]", fmt::format("seed={}", sample + 1)};
@@ -111,14 +117,6 @@ std::vector<std::size_t> nearest(const std::vector<SubjectSample>& samples) {
   std::stable_sort(order.begin(), order.end(),
                    [&samples](std::size_t a, std::size_t b) { return samples[a].distance < samples[b].distance; });
   return order;
-}
-
-double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  const double place = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const double above = values[std::min(below + 1, values.size() - 1)];
-  return std::lerp(values[below], above, place - static_cast<double>(below));
 }
 
 }  // namespace
@@ -281,12 +279,6 @@ std::string subjects_table(const SubjectsPlan& plan, const std::vector<SubjectSa
 
 namespace {
 
-/// Numbers of the record have the digits that people read.
-Json rounded(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  return finite_number(fmt::format("{:.4g}", value)).value();
-}
-
 /// The prior and the posterior of each unknown.
 Json unknowns_json(const SubjectsPlan& plan, std::span<const std::size_t> kept) {
   Json all = Json::array();
@@ -299,9 +291,9 @@ Json unknowns_json(const SubjectsPlan& plan, std::span<const std::size_t> kept) 
                    {"scale", u.logarithmic ? "log" : "linear"},
                    {"source", u.source},
                    {"nearest", plan.values[kept[0]][i]},
-                   {"q05", rounded(quantile(values, 0.05))},
-                   {"q50", rounded(quantile(values, 0.5))},
-                   {"q95", rounded(quantile(values, 0.95))}});
+                   {"q05", rounded(quantile_of(values, 0.05))},
+                   {"q50", rounded(quantile_of(values, 0.5))},
+                   {"q95", rounded(quantile_of(values, 0.95))}});
   }
   return all;
 }
@@ -332,7 +324,7 @@ TargetTable table_of(const std::vector<TargetRow>& rows) {
   return table;
 }
 
-/// A row for each published mean.
+/// Adds a row for each published mean.
 void compare(const std::vector<TargetRow>& rows, const Experiment& e, const char* algorithm,
              const PublishedNumbers& published, Json& beside) {
   const auto places = place_metrics(rows);

@@ -23,7 +23,7 @@
 /// samples.
 namespace hapbench {
 
-/// What the thesis does not say, and what it may be.
+/// A property of the subjects or their task that the thesis does not give, with the range that the literature allows.
 struct SubjectUnknown {
   const char* field;  ///< below "hand", as in --set
   double low, high;   ///< in the unit of the field's name
@@ -32,7 +32,7 @@ struct SubjectUnknown {
 };
 std::span<const SubjectUnknown> subject_unknowns();
 
-/// The inputs of an inference. Threads may share it.
+/// The inputs of an inference. Threads may share a plan.
 struct SubjectsPlan {
   Evidence evidence;
   std::vector<std::vector<double>> values;  ///< of each sample, one for each unknown
@@ -42,7 +42,7 @@ struct SubjectsPlan {
 };
 SubjectsPlan plan_subjects(PublishedNumbers published, std::size_t samples);
 
-/// The ids of the published means that the distance is about, and the columns of a sample.
+/// The ids of the published means that enter the distance; they are the columns of a sample, too.
 std::vector<std::string> subject_measures();
 
 /// One sample's measures, in their order; NaN where there is none.
@@ -55,8 +55,8 @@ double standardised_difference(const PublishedNumbers& published, const std::str
 /// Runs a sample. Depends on plan and number alone. Throws Stopped.
 SubjectSample run_subject(const SubjectsPlan& plan, std::size_t sample);
 
-/// All samples. Those that are done are in a journal, subjects.journal: the same plan, or one of more samples, goes
-/// on from there.
+/// The result of run_subjects. Finished samples stand in subjects.journal, so that the same plan, or one of more
+/// samples, goes on from there.
 struct SubjectsReport {
   std::vector<SubjectSample> samples;
   std::size_t done = 0;
@@ -73,7 +73,7 @@ std::string subjects_table(const SubjectsPlan& plan, const std::vector<SubjectSa
 /// published, the verdicts on them, and traces of trials of the nearest. Runs them. Throws Stopped, and InputError when
 /// fewer than six samples were run to their end.
 Json subjects_json(const SubjectsPlan& plan, const std::vector<SubjectSample>& samples, std::size_t jobs);
-/// The same for people.
+/// subjects.json as text for a terminal.
 std::string subjects_text(const Json& subjects);
 
 }  // namespace hapbench

@@ -214,7 +214,7 @@ class MeshSolid final : public Solid {
   WeldedSurface surface_;
   TriangleTree tree_;
   bool closed_ = true;
-  // Of an open surface:
+  // Filled for an open surface only:
   std::vector<Vec3> vertex_normals_;
   std::vector<bool> border_vertices_;
   std::vector<std::uint8_t> at_border_;            ///< bit k of a triangle: its edge from corner k is the border

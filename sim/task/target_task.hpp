@@ -28,11 +28,11 @@ enum class PressForce {
   spring     ///< f_spring
 };
 
-/// What the task checks, apart from what the gauge shows: a force along +z against least_press, every sample of it or
-/// of its first-order low-pass.
+/// The force along +z that the task compares with least_press, sample by sample or after a first-order low-pass. The
+/// gauge that the subject sees may show another one.
 struct Threshold {
   PressForce force = PressForce::rendered;
-  std::optional<double> cutoff = {};  ///< of the low-pass [Hz]; none without
+  std::optional<double> cutoff = {};  ///< corner of the low-pass [Hz]; without it every sample counts
   double grace = 0.0;                 ///< time below least_press that does not break the hold [s]
 };
 

@@ -40,7 +40,8 @@ PrecisionRow jumps_row(std::string setting, const Scenario& scenario, const std:
   finer.time.step /= static_cast<double>(kFiner);
   finer.time.steps *= kFiner;
   const LargestChange coarse = largest_change(scenario, shell), fine = largest_change(finer, shell);
-  // Of a jump J and a slope s over the steps h and h / r: J + s h, J + s h / r. What is left of a curved slope is none.
+  // A jump J on a slope s gives J + s h with the step h and J + s h / r with h / r; J is what is left at h = 0. A
+  // curved slope leaves a remainder below kNoJump, which is no jump.
   const auto r = static_cast<double>(kFiner);
   const double left = (r * fine.force - coarse.force) / (r - 1.0);
   const double jump = left > kNoJump * fine.force ? left : 0.0;

@@ -91,7 +91,7 @@ static PrecisionResult study_time_step(const Scenario& given, const PrecisionOpt
   result.columns = {"step_s", "error_final_" + unit, "error_rms_" + unit, "error_max_" + unit};
   if (ideal) result.columns.emplace_back("ideal_height_error_rms_m");
   result.timed = "step";
-  // Of each run and the next finer one: distances that do not hang on the reference.
+  // Differences between each run and the next finer one do not depend on the reference.
   std::vector<double> steps, differences;
   std::vector<Vec3> coarser;
   for (const double factor : kFactors) {

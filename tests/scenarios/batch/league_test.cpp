@@ -37,6 +37,13 @@ TEST(StandardDeviation, IsThatOfASample) {
   EXPECT_EQ(standard_error({}), 0.0);
 }
 
+TEST(Statistics, QuantilesInterpolateBetweenRanks) {
+  EXPECT_EQ(quantile_of({7.0}, 0.95), 7.0);
+  EXPECT_EQ(quantile_of({4.0, 1.0, 3.0, 2.0}, 0.5), 2.5);
+  EXPECT_EQ(quantile_of({4.0, 1.0, 3.0, 2.0}, 0.25), 1.75);  // numpy.quantile
+  EXPECT_EQ(quantile_of({4.0, 1.0, 3.0, 2.0}, 1.0), 4.0);
+}
+
 TEST(CriticalT, FallsWithTheDegreesOfFreedom) {
   EXPECT_EQ(critical_t(0), kInfinity);
   for (std::size_t degrees = 1; degrees < 10; ++degrees) EXPECT_GT(critical_t(degrees), critical_t(degrees + 1));
