@@ -24,7 +24,7 @@ std::vector<Description> describe_results(const std::string& name);
 /// The names it knows.
 std::vector<std::string> result_names();
 
-/// The outcome, the class of motion, the verdict or the number of timing.json of that name.
+/// The outcome, the class of motion, the verdict or the number of timing.json of that name; "words" for all of them.
 std::vector<Description> describe_word(const std::string& name);
 /// The names it knows.
 std::vector<std::string> described_words();

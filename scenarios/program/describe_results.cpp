@@ -134,6 +134,15 @@ std::vector<Word> all_words() {
   return all;
 }
 
+Description describe_words() {
+  Description d{"words that the program prints\n\n", {{"kind", "words"}, {"words", Json::array()}}};
+  for (const Word& word : all_words()) {
+    d.text += fmt::format("  {} ({})\n{}", word.name, word.kind, wrapped(word.meaning, 6));
+    d.json["words"].push_back({{"kind", word.kind}, {"name", word.name}, {"meaning", word.meaning}});
+  }
+  return d;
+}
+
 /// A heading in lower case, without blanks and line breaks.
 std::string plain(std::string_view text) {
   std::string plain = lower_case(text);
@@ -144,6 +153,7 @@ std::string plain(std::string_view text) {
 }  // namespace
 
 std::vector<Description> describe_word(const std::string& name) {
+  if (name == "words") return {describe_words()};
   std::vector<Description> found;
   for (const Word& word : all_words()) {
     if (name != word.name) continue;
@@ -169,7 +179,7 @@ std::vector<Description> describe_heading(const std::string& name) {
 }
 
 std::vector<std::string> described_words() {
-  std::vector<std::string> names;
+  std::vector<std::string> names = {"words"};
   for (const Word& word : all_words()) names.emplace_back(word.name);
   return names;
 }
