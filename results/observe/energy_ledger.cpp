@@ -39,6 +39,7 @@ void EnergyLedger::on_step(const StepRecord& record) noexcept {
     add_step(record);
   } else {
     kinetic_at_start_ = balance_.kinetic;
+    balance_.device = record.device;
   }
   keep(record);
 }
