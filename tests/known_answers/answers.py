@@ -1,0 +1,186 @@
+"""Known answers: rows that compare what hapbench prints with a closed form or with a computation that shares no code with it, and
+with what a naive reading of the field's meaning would print, which must be refused. Scenes yield their rows from few runs."""
+import csv
+import json
+import math
+import re
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
+from fixture import PROGRAM, SOURCE, ran  # noqa: E402  (the path comes first)
+
+SCENES = {}
+
+
+@dataclass(frozen=True)
+class Within:
+    """A tolerance with its derivation; the relative part is of the largest known value of a series."""
+    why: str
+    relative: float = 0.0
+    absolute: float = 0.0
+
+
+EXACT = Within("the same number, text or count")
+ROUNDING = Within("sums of products of numbers known to 1e-15, cancelled by less than 1e3", relative=1e-12, absolute=1e-18)
+
+
+@dataclass(frozen=True)
+class Answer:
+    scene: str
+    field: str
+    known_by: str
+    within: Within
+    known: object
+    printed: object
+    naive: tuple = None  # what it says, and the value
+
+    def accepts(self, value):
+        return same(value, self.known, self.within)
+
+    def faults(self):
+        if not self.accepts(self.printed):
+            yield f"{self.field} in {self.scene}: printed {shown(self.printed)}, known {shown(self.known)} ({self.known_by})"
+        if self.naive and self.accepts(self.naive[1]):
+            yield f"{self.field} in {self.scene}: does not tell the naive answer ({self.naive[0]}) from {shown(self.known)}"
+
+
+def shown(value):
+    return f"{len(value)} values {value[:3]} ..." if isinstance(value, (list, np.ndarray)) and len(value) > 6 else repr(value)
+
+
+def same(value, known, within):
+    if known is None or value is None or isinstance(known, (str, bool)):
+        return value is None if known is None else type(value) is type(known) and value == known
+    if isinstance(known, (list, tuple)) and any(isinstance(k, (str, type(None))) for k in known):
+        return len(value) == len(known) and all(same(v, k, within) for v, k in zip(value, known))
+    value, known = np.asarray(value, float), np.asarray(known, float)
+    if value.shape != known.shape or not np.array_equal(np.isnan(value), np.isnan(known)):
+        return False
+    value, known = value[~np.isnan(known)], known[~np.isnan(known)]  # empty cells
+    return bool(np.all(np.abs(value - known) <= within.absolute + within.relative * np.max(np.abs(known), initial=0.0)))
+
+
+class Table:
+    """A CSV file; columns as arrays of numbers (NaN for empty cells) or lists of texts."""
+
+    def __init__(self, file):
+        with open(file, encoding="utf-8", newline="") as lines:
+            self.rows = list(csv.DictReader(lines))
+        self.names = list(self.rows[0]) if self.rows else []
+
+    def __getitem__(self, name):
+        texts = [row[name] for row in self.rows]
+        try:
+            return np.array([float(text) if text else math.nan for text in texts])
+        except ValueError:
+            return texts
+
+    def vectors(self, *names):
+        return np.column_stack([self[name] for name in names])
+
+
+class Run:
+    """The results of `hapbench run`."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+
+    def table(self, name="trajectory.csv"):
+        return Table(self.folder / name)
+
+    def metric(self, name):
+        found = self.summary if name.split(".")[0] in self.summary else self.summary["metrics"]
+        position = re.fullmatch(r"final_position_m\.([xyz])", name)
+        if position:
+            return found["final_position_m"]["xyz".index(position[1])]
+        for part in name.split("."):
+            found = found[part]
+        return found
+
+
+class Bench:
+    """Where a scene works: its folder, the program, and the answers it has found."""
+
+    def __init__(self, scene, folder):
+        self.scene, self.folder, self.answers, self.printed = scene, folder, [], []
+        folder.mkdir(parents=True, exist_ok=True)
+
+    def scenario(self, name, **fields):
+        file = self.folder / f"{name}.json"
+        file.write_text(json.dumps({"name": name, **fields}), encoding="utf-8")
+        return file
+
+    def write(self, name, header, rows):
+        lines = "".join(",".join(repr(float(x)) for x in row) + "\n" for row in rows)
+        (self.folder / name).write_text(header + "\n" + lines, encoding="ascii")
+        return name
+
+    def hapbench(self, *words, statuses=(0,)):
+        done = ran(PROGRAM, *words, cwd=self.folder)
+        assert done.returncode in statuses, (words, done.returncode, done.stderr)
+        return done.stdout
+
+    def json(self, *words, statuses=(0,)):
+        found = json.loads(self.hapbench(*words, "--json", statuses=statuses))
+        self.printed.append((words[0], found))
+        return found
+
+    def run(self, scenario, *words, out=None, statuses=(0,)):
+        out = self.folder / (out or f"out_{Path(scenario).stem}")
+        self.hapbench("run", scenario, "--out", out, "--quiet", *words, statuses=statuses)
+        run = Run(out)
+        self.printed.append(("run", run.summary))
+        return run
+
+    def add(self, field, printed, known, known_by, within=ROUNDING, naive=None):
+        plain = {np.float64: float, np.int64: int, np.bool_: bool}
+        known, printed = (plain.get(type(v), lambda x: x)(v) for v in (known, printed))
+        self.answers.append(Answer(self.scene, field, known_by, within, known, printed, naive))
+
+    def metrics(self, run, table):
+        """Rows (metric, known value, how it is known, tolerance, naive answer, its value); the last two may be left out."""
+        for name, known, known_by, within, *naive in table:
+            self.add(re.sub(r"^targets\.\d+", "targets.PLACE", name), run.metric(name), known, known_by, within, tuple(naive) or None)
+
+    def columns(self, file, table, rows):
+        """The same for the columns of a file, whose known values are series."""
+        for name, known, known_by, within, *naive in rows:
+            known = np.broadcast_to(known, len(table.rows)) if np.ndim(known) == 0 and not isinstance(known, str) else known
+            known = [known] * len(table.rows) if isinstance(known, str) else known
+            self.add(f"{file}:{name}", table[name], known, known_by, within, tuple(naive) or None)
+
+
+def scene(function):
+    """A function of a Bench that adds answers; its documentation says what is known about it."""
+    SCENES[function.__name__] = function
+    return function
+
+
+def profile(given, t):
+    """A profile of a scenario at the times t, by its definition."""
+    if not isinstance(given, dict):
+        return np.full_like(t, float(given))
+    if given["type"] == "ramp":
+        return given["start"] + given["rate_per_s"] * t
+    if given["type"] == "sine":
+        return given.get("mean", 0) + given["amplitude"] * np.sin(2 * np.pi * t / given["period_s"] + given.get("phase_rad", 0))
+    times, values = np.transpose(given["points"])
+    if given.get("interpolation", "linear") == "linear":
+        return np.interp(t, times, values)
+    piece = np.clip(np.searchsorted(times, t, side="right") - 1, 0, len(times) - 2)
+    part = np.clip((t - times[piece]) / (times[piece + 1] - times[piece]), 0, 1)
+    return values[piece] + (values[piece + 1] - values[piece]) * (1 - np.cos(np.pi * part)) / 2
+
+
+def norms(vectors):
+    return np.linalg.norm(vectors, axis=-1)
+
+
+def rms(vectors):
+    vectors = np.asarray(vectors)
+    return math.sqrt(np.mean(np.sum(vectors.reshape(len(vectors), -1) ** 2, axis=-1)))

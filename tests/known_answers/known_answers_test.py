@@ -1,0 +1,63 @@
+"""Every printed field has a known answer: tests/known_answers/README.md. With --write as last word renews that page."""
+import sys
+import unittest
+
+import of_places  # noqa: F401  (registers scenes)
+import of_runs  # noqa: F401
+from answers import SCENES, Answer, Bench, Within
+from fixture import main, scratch_folder
+from page import OPEN, PAGE, open_fields, printed_fields, text_of
+
+FOUND = {}
+
+
+def benches(folder):
+    """Each scene's bench, once."""
+    for name, work in SCENES.items():
+        if name not in FOUND:
+            FOUND[name] = Bench(name, folder / name)
+            work(FOUND[name])
+    return FOUND
+
+
+def answers():
+    return [answer for bench in benches(scratch_folder(unittest)).values() for answer in bench.answers]
+
+
+class KnownAnswers(unittest.TestCase):
+    def test_what_is_printed_is_known_and_no_naive_answer(self):
+        for answer in answers():
+            with self.subTest(field=answer.field, scene=answer.scene):
+                self.assertEqual(list(answer.faults()), [])
+
+    def test_every_field_has_one_that_a_naive_answer_fails(self):
+        fields = printed_fields(benches(scratch_folder(unittest)).values())
+        lacking = open_fields(fields, answers())
+        listed = OPEN.read_text(encoding="utf-8").split("\n")[:-1]
+        self.assertEqual(sorted(set(lacking) - set(listed)), [], "a printed field without a row in a scene of tests/known_answers")
+        self.assertEqual(sorted(set(listed) - set(lacking)), [], f"they have rows now or are not printed: take them out of {OPEN.name}")
+
+    def test_rows_are_of_printed_fields(self):
+        fields = set(printed_fields(benches(scratch_folder(unittest)).values()))
+        self.assertEqual(sorted({answer.field for answer in answers()} - fields), [])
+
+    def test_the_page_is_current(self):
+        self.assertEqual(PAGE.read_text(encoding="utf-8"), text_of(answers()), "renew it with --write")
+
+    def test_a_wrong_number_is_found(self):
+        within = Within("", relative=1e-6)
+        wrong = Answer("x", "y", "", within, 1.0, 1.0 + 1e-5, ("", 1.0 + 1e-7))
+        self.assertEqual(len(list(wrong.faults())), 2)
+        self.assertEqual(list(Answer("x", "y", "", within, 1.0, 1.0 + 1e-7, ("", 1.1)).faults()), [])
+        self.assertEqual(len(list(Answer("x", "y", "", within, "stable", "vibrating").faults())), 1)
+        self.assertEqual(len(list(Answer("x", "y", "", within, 1.0, None).faults())), 1)
+
+
+if __name__ == "__main__":
+    if sys.argv[-1] == "--write":
+        lacking = open_fields(printed_fields(benches(scratch_folder(unittest)).values()), answers())
+        OPEN.write_text("".join(f"{field}\n" for field in lacking), encoding="utf-8")
+        PAGE.write_text(text_of(answers()), encoding="utf-8")
+        unittest.doModuleCleanups()
+    else:
+        main()

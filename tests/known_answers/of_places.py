@@ -1,0 +1,139 @@
+"""Scenes whose answers are places: the ideal trajectory of a hole, depth below a surface, targets of subjects, and how runs end."""
+import math
+
+import numpy as np
+
+from answers import EXACT, ROUNDING, Within, norms, rms, scene
+
+R, r, H = 1e-3, 0.5e-3, 5e-3  # radii of hole and tool, depth of the hole [m]
+
+
+def depth_in_block(q):
+    """Distance of points to the surface of a half space z < 0 with a hole, 0 outside of it."""
+    out, below = np.hypot(q[..., 0], q[..., 1]) - R, -H - q[..., 2]
+    hole = np.where((out > 0) & (below > 0), np.hypot(out, below), np.maximum(out, below))
+    return np.minimum(hole, -q[..., 2])
+
+
+def interpenetration(tip, tilt):
+    """The deepest point of the tool's solid, by ever finer grids about the deepest points of a coarse one."""
+    axis, e1, e2 = -np.array([math.sin(tilt), 0, math.cos(tilt)]), np.array([math.cos(tilt), 0, -math.sin(tilt)]), np.array([0, 1.0, 0])
+
+    def depth(angle, up):  # of points of the side: inside the tip's flat none is deepest
+        turned = np.cos(angle)[..., None] * e1 + np.sin(angle)[..., None] * e2
+        return depth_in_block(tip + r * turned - np.clip(up, 0, 0.01)[..., None] * axis)
+
+    def zoomed(angle, up, wide, long):
+        for _ in range(14):  # the grid about the deepest point is a fifth as wide each time
+            grid = np.meshgrid(np.linspace(angle - wide, angle + wide, 41), np.linspace(up - long, up + long, 41))
+            found = depth(*grid)
+            at = np.unravel_index(np.argmax(found), found.shape)
+            angle, up, wide, long = grid[0][at], grid[1][at], wide / 5, long / 5
+        return found[at]
+
+    lines = np.linspace(0, 2 * np.pi, 181)
+    grid = np.meshgrid(lines, np.linspace(0, 0.01, 1001))
+    found = depth(*grid)
+    along, deepest = found.argmax(axis=0), found.max(axis=0)
+    hills = [i for i in range(181) if deepest[i] >= max(deepest[i - 1], deepest[(i + 1) % 181])]
+    return max(0.0, *(zoomed(lines[i], grid[1][along[i], i], lines[1], 2e-5) for i in hills))
+
+
+@scene
+def beside_the_ideal(bench):
+    """A drill led beside 3.6's ideal trajectory by offsets that are chosen, half of the rows with a gentle hand, some without an ideal."""
+    n, dt = 24, 0.001
+    tilt = np.r_[np.linspace(0.35, 0.95, 20), 1.10, 1.15, 1.2, 1.25]  # contact with the wall ends at 60 degrees
+    t, has = np.arange(n) * dt, tilt < math.pi / 3
+    c, s = np.cos(tilt), np.sin(tilt)
+    ideal = np.column_stack([-R + r * c, (r * (1 + c * c) - 2 * R * c) / s])
+    has &= (ideal[:, 1] + r * s < 0) & (ideal[:, 1] - r * s > -H)
+    off = np.column_stack([2e-5 * np.sin(1.0 + np.arange(n)), 3e-5 * np.cos(2 * np.arange(n)) - 1.5e-5])
+    place = ideal + off
+    bench.write("beside.csv", "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z",
+                np.column_stack([t, place[:, 0], 0 * t, place[:, 1], -s, 0 * t, -c]))
+    push = 1.2 + 80 * t
+    run = bench.run(bench.scenario(
+        "beside_the_ideal", time={"step_s": dt, "steps": n}, record={"ideal_trajectory": True},
+        environment={"type": "block_with_hole", "size_m": [0.006, 0.006, 0.006], "hole_diameter_m": 2 * R, "hole_depth_m": H, "grid_m": 0.0002,
+                     "density": "signed_distance"},
+        tool={"diameter_m": 2 * r, "length_m": 0.01, "tip": "flat"}, motion={"position": {"type": "file", "file": "beside.csv"}},
+        hand={"type": "force", "x_N": {"type": "ramp", "start": 1.2, "rate_per_s": 80.0}},
+        rendering={"algorithm": "mean", "stiffness_N_per_m": 1000}))
+    deep = np.array([interpenetration(np.array([p[0], 0, p[1]]), a) for p, a in zip(place, tilt)])
+    searched = Within("a grid ends within 1e-10 of the deepest place, ours within 1e-8 rad of 0.5 mm", absolute=2e-11)
+    split = Within("a row's place is the file's, whose axes are unit vectors to 1e-16", relative=1e-10, absolute=1e-16)
+    table = []
+    for name, rows, wrong in (("gentle", has & (push < 2), has), ("firm", has & (push >= 2), has)):
+        height, side = off[rows, 1], off[rows, 0]
+        table += [(f"ideal_trajectory.{name}.{field}", known, how, within, naive, value) for field, known, how, within, naive, value in (
+            ("rows", int(rows.sum()), "tilts with an ideal, hand below and from 2 N", EXACT, "of both hands", int(wrong.sum())),
+            ("height_error_mean_m", height.mean(), "the offset", split, "mean of |error|", np.abs(height).mean()),
+            ("height_error_rms_m", rms(height), "the offset", split, "of both hands", rms(off[wrong, 1])),
+            ("height_error_min_m", height.min(), "the offset", split, "least |error|", np.abs(height).min()),
+            ("height_error_max_m", height.max(), "the offset", split, "largest |error|", np.abs(height).max() + (height.max() == np.abs(height).max())),
+            ("lateral_error_mean_m", side.mean(), "the offset", split, "against the lean", -side.mean()),
+            ("lateral_error_rms_m", rms(side), "the offset", split, "of both hands", rms(off[wrong, 0])),
+            ("lateral_error_max_m", np.abs(side).max(), "largest |offset|", split, "signed", side.max() - (side.max() == np.abs(side).max())),
+            ("interpenetration_mean_m", deep[rows].mean(), "search on the exact shapes", searched, "of both hands", deep[wrong].mean()),
+            ("interpenetration_max_m", deep[rows].max(), "search on the exact shapes", searched, "the mean", deep[rows].mean()))]
+    bench.metrics(run, table)
+    bench.metrics(run, [("ideal_trajectory.rows_without_ideal", int((~has).sum()), "tilts beyond 60 degrees", EXACT, "none", 0)])
+    k = np.flatnonzero(has)
+    bench.columns("ideal_trajectory.csv", run.table("ideal_trajectory.csv"), [
+        ("step", k, "rows with an ideal", EXACT, "counted anew", k + 1), ("time_s", t[k], "k dt", EXACT, "after the step", t[k] + dt),
+        ("tilt_rad", tilt[k], "of the file", split, "from the horizontal", math.pi / 2 - tilt[k]),
+        ("height_m", place[k, 1], "of the file", split, "ideal", ideal[k, 1]), ("ideal_height_m", ideal[k, 1], "3.6's formula", split, "actual", place[k, 1]),
+        ("lateral_m", place[k, 0], "of the file", split, "ideal", ideal[k, 0]), ("ideal_lateral_m", ideal[k, 0], "-R + r cos a", split, "actual", place[k, 0]),
+        ("interpenetration_m", deep[k], "search on the exact shapes", searched, "height error", -off[k, 1]),
+        ("hand_force_N", push[k], "the ramp", ROUNDING, "capped at 2 N", np.minimum(2, push[k]))])
+
+
+@scene
+def pressed_ball(bench):
+    """A ball of 1 mm pressed 3 mm into a plane: its depth is radius less height, whatever its width; a contact's ends at the radius."""
+    n, dt, a = 600, 0.001, 0.5e-3
+    z = np.interp(np.arange(n) * dt, [0, 0.1, 0.3, 0.5, 0.6], [1e-3, 2e-4, -3e-3 + a, -1e-3, 1e-3])
+    run = bench.run(bench.scenario(
+        "pressed_ball", time={"step_s": dt, "steps": n}, environment={"type": "plane", "size_m": 0.008, "spacing_m": 0.0001},
+        tool={"type": "bur", "family": "ball", "diameter_m": 2 * a}, record={"inside": True},
+        motion={"position": {"type": "prescribed", "x_m": 0, "y_m": 0, "z_m": {"type": "waypoints", "points": [
+            [0, 1e-3], [0.1, 2e-4], [0.3, -3e-3 + a], [0.5, -1e-3], [0.6, 1e-3]]}}},
+        rendering={"algorithm": "mean", "stiffness_N_per_m": 1000}), statuses=(0, 3))
+    inside = np.maximum(0, a - z)
+    touching = run.table()["colliding"] > 0
+    first = int(np.flatnonzero(touching)[0])
+    settled = touching & (np.arange(n) >= first + 50)
+    half = Within("2 % of the half width is promised", absolute=0.02 * a)
+    bench.metrics(run, [
+        ("inside_max_m", inside.max(), "radius less height", half, "the half width, where a contact's depth ends", a),
+        ("inside_settled_m", float(np.median(inside[settled])), "radius less height, median of settled rows", half, "median over all rows",
+         float(np.median(inside))),
+        ("centre_inside_share", np.mean(z < 0), "height below 0", ROUNDING, "rows in contact", touching.mean()),
+        ("depth_max_m", a, "a ball is no deeper than its radius at a point of the plane", Within("a grid of 0.1 mm: a point lies within 0.07 mm of "
+         "the axis, and is less deep by half its distance squared over the radius", absolute=5e-6), "how deep the tool is", inside.max())])
+    bench.columns("trajectory.csv", run.table(), [("inside_m", inside, "radius less height", half, "depth of the deepest contact",
+                                                    run.table()["depth_max_m"])])
+
+
+@scene
+def subjects(bench):
+    """Subjects on targets: means and their standard errors are over subjects, each by the mean of its own targets."""
+    run = bench.run("vertical_peg_in_hole_shaped_stiffness", "--set", "hand.trials=1", "--set", "expect={}",
+                    "--set", "hand.task.time_limit_s=3", out="subjects", statuses=(0, 3))
+    table, rows = run.table("targets.csv"), []
+    for place in (0, 1):
+        for field, column in (("success_rate", "removed"), ("completion_time_s", "time_s"), ("model_force_N", "model_force_N"),
+                              ("speed_m_per_s", "speed_m_per_s")):
+            at, value = table["place"] == place, table[column]
+            known = at & ~np.isnan(value)
+            means = np.array([value[known & (table["subject"] == subject)].mean() for subject in np.unique(table["subject"][known])])
+            pooled = value[known]
+            name = f"targets.{place}.{field}"
+            spread = means.std(ddof=1) / math.sqrt(len(means))
+            rows += [(f"{name}.mean", means.mean(), "of the subjects' means in targets.csv", ROUNDING,
+                      *(("of all targets", pooled.mean()) if abs(pooled.mean() - means.mean()) > 1e-9 else ())),
+                     (f"{name}.standard_error", spread, "sample deviation over root of subjects", ROUNDING, "with n in place of n - 1",
+                      means.std() / math.sqrt(len(means))),
+                     (f"{name}.subjects", len(means), "subjects with a value", EXACT, "targets", len(pooled))]
+    bench.metrics(run, rows)

@@ -1,0 +1,74 @@
+"""The fields that hapbench prints, by its own word, and the page that lists the answers to each."""
+import json
+import re
+from pathlib import Path
+
+from answers import PROGRAM, SCENES, ran
+
+HERE = Path(__file__).resolve().parent
+PAGE, OPEN = HERE / "README.md", HERE / "open_fields.txt"
+HEAD = """# Known answers
+
+What each printed field is compared with: a closed form, or a computation that shares no code with hapbench (numpy, scipy), within a
+tolerance that a sentence derives; and what a naive reading of the field would give, which the same comparison must refuse. A scene is
+a function in `of_*.py`: a few runs, and rows of field, known answer and tolerance. The list of fields is the program's own: metrics,
+columns and words of `hapbench describe`, and the keys that commands print with `--json`. A new field without a row fails
+`known_answers_test.py`, unless it stands in `open_fields.txt`, which is to shrink. This page is made by
+
+    python3 tests/known_answers/known_answers_test.py build/release/bin/hapbench --write
+"""
+# Members of JSON that say where and how, not what.
+NO_ANSWERS = {"provenance", "name", "algorithm", "scenario"}
+
+
+def described(what):
+    done = ran(PROGRAM, "describe", what, "--json")
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def keys_of(data):
+    if isinstance(data, list):
+        return set().union(*map(keys_of, data))
+    if not isinstance(data, dict):
+        return set()
+    return set().union(*({key} | keys_of(value) for key, value in data.items() if key not in NO_ANSWERS))
+
+
+def printed_fields(benches):
+    """Metrics, columns as FILE:COLUMN, words as "WORD (KIND)", and keys of JSON that are neither as "COMMAND --json: KEY"."""
+    metrics = [metric["name"] for metric in described("metrics")[0]["metrics"]]
+    known, fields = {part for name in metrics for part in name.split(".")} | {"metrics", "passivity"}, [
+        re.sub(r"^targets\.\d+", "targets.PLACE", name) for name in metrics]
+    for table in described("columns"):
+        names = [column["name"] for column in table["columns"]]
+        known |= set(names)
+        fields += [f"{table['name']}:{name}" for name in names if table["name"] not in ("sweep.csv", "comparison.csv") or name not in metrics]
+    fields += [f"{word['name']} ({word['kind']})" for word in described("words")["words"]]
+    for command, key in sorted({(command, key) for bench in benches for command, data in bench.printed for key in keys_of(data)}):
+        if key not in known:
+            fields.append(f"{command} --json: {key}")
+    return list(dict.fromkeys(fields))
+
+
+def open_fields(fields, answers):
+    """Those without an answer that refuses a naive one."""
+    answered = {answer.field for answer in answers if answer.naive}
+    return [field for field in fields if field not in answered]
+
+
+def text_of(answers):
+    """The page. Rows that say the same of several fields are one line."""
+    lines = {}
+    for answer in answers:
+        key = (answer.scene, answer.known_by, answer.within.why, answer.naive[0] if answer.naive else "")
+        lines.setdefault(key, []).append(answer.field)
+    text, last = HEAD, None
+    for (scene, known_by, why, naive), fields in lines.items():
+        if scene != last:
+            text += f"\n## {scene}\n\n{SCENES[scene].__doc__}\n\n| fields | known by | within | naive answer, refused |\n|---|---|---|---|\n"
+            last = scene
+        names = ", ".join(f"`{name}`" for name in dict.fromkeys(fields))
+        text += "| " + " | ".join(cell.replace("|", "\\|") for cell in (names, known_by, why, naive)) + " |\n"
+    without = [f"`{field}`" for field in OPEN.read_text(encoding="utf-8").split("\n")[:-1]]
+    return text + "\n## Fields without a known answer\n\n" + (", ".join(without) + ".\n" if without else "None.\n")
