@@ -63,8 +63,16 @@ void check_springs(const SpringsEnvironment& springs, const std::string& at) {
                    "got false; allowed: true with \"bilateral\": false, whose depths are positive as they are");
 }
 
+double expected_points(const BlockEnvironment& block) {
+  const Vec3& size = block.block.size;
+  const double area = 2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
+  const double copies = block.vertices == BlockVertices::per_cell ? kCellsOfVertex : 1.0;
+  return copies * area / (block.grid * block.grid);
+}
+
 void check_block(const BlockEnvironment& environment, const std::string& at) {
-  const auto& [block, grid, density, vertices] = environment;
+  const BlockWithHole& block = environment.block;
+  const double grid = environment.grid;
   const Vec3& size = block.size;
   // Cells smaller than this cannot be numbered; thinner walls have no nodes on both sides.
   const double longest = 1e5 * grid, thinnest = 3.0 * grid;
@@ -72,9 +80,7 @@ void check_block(const BlockEnvironment& environment, const std::string& at) {
     throw InputError(InputError::Kind::relation, at + "/" + field, problem);
   };
   if (size.maxCoeff() > longest) fail("grid_m", fmt::format("got {}; allowed: at least size_m / 1e5", grid));
-  const double area = 2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
-  const double copies = vertices == BlockVertices::per_cell ? kCellsOfVertex : 1.0;
-  refuse_too_many(copies * area / (grid * grid), at, "shell points (from size_m, grid_m and vertices)");
+  refuse_too_many(expected_points(environment), at, "shell points (from size_m, grid_m and vertices)");
   if (block.hole_diameter > std::min(size.x(), size.y()) - 2.0 * thinnest || block.hole_diameter < thinnest) {
     fail("hole_diameter_m",
          fmt::format("got {}; allowed: at least 3 grid_m, leaving walls of 3 grid_m", block.hole_diameter));
@@ -171,6 +177,27 @@ void describe(Fields& f, Environment& environment) {
 
 namespace {
 
+/// Most memory that a run's shell and its search take at a time [B], measured for shells of a million points; the
+/// differences are what making them takes.
+struct ExpectedMemory {
+  const NamedFiles& files;
+
+  double operator()(const SpringsEnvironment& springs) const {
+    double count = static_cast<double>(springs.random.count);
+    for (const SpringGroup& group : springs.groups) count += static_cast<double>(group.count);
+    return 300.0 * count;
+  }
+  double operator()(const PointShellEnvironment&) const {
+    return 300.0 * static_cast<double>(files.at(kEnvironmentFile).points().size());
+  }
+  double operator()(const MeshEnvironment&) const { return 120.0 * files.at(kEnvironmentFile).mesh().refined_faces(); }
+  double operator()(const BlockEnvironment& block) const { return 150.0 * expected_points(block); }
+  template <class Analytic>
+  double operator()(const Analytic& shape) const {
+    return 310.0 * point_count(shape);
+  }
+};
+
 /// Builds the shell of each type of environment.
 struct Build {
   const NamedFiles& files;
@@ -202,6 +229,10 @@ struct Build {
 };
 
 }  // namespace
+
+double expected_memory(const Scenario& scenario, const NamedFiles& files) {
+  return std::visit(ExpectedMemory{files}, scenario.environment);
+}
 
 Shell make_shell(const Scenario& scenario, const NamedFiles& files) {
   if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return nullptr;

@@ -93,10 +93,11 @@ std::vector<std::string> warnings_about(const MeshFindings& found, const fs::pat
   return warnings;
 }
 
+/// A triangle mesh has half as many vertices as faces, more only in so far as it is open.
+constexpr double kMostFaces = 2.0 * kMostPoints;
+
 /// Refuses a spacing for which refining the mesh would take too much memory.
 void check_spacing(const HalfEdgeMesh& mesh, double spacing, const fs::path& file) {
-  // A triangle mesh has half as many vertices as faces, more only in so far as it is open.
-  constexpr double kMostFaces = 2.0 * kMostPoints;
   if (refined_face_count(mesh, spacing, kMostFaces) <= kMostFaces) return;
   fail_in_file(file, fmt::format("spacing_m {} would need more than {:.0g} points; allowed: a wider spacing", spacing,
                                  kMostPoints));
@@ -195,6 +196,11 @@ const std::vector<Vec3>& MeshFile::open_edges() const {
 
 bool MeshFile::is_closed() const {
   return surface_->findings.open_edges.empty() && surface_->findings.crowded_edges.empty();
+}
+
+double MeshFile::refined_faces() const {
+  return sampling_.spacing ? refined_face_count(surface_->mesh, *sampling_.spacing, kMostFaces)
+                           : static_cast<double>(surface_->mesh.n_faces());
 }
 
 TriangleSoup MeshFile::triangles() const {

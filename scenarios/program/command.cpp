@@ -17,6 +17,7 @@
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/memory_limit.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/table.hpp"

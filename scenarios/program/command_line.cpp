@@ -11,6 +11,7 @@
 #include "algorithms/plugin/plugin_law.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/memory_limit.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/program/command.hpp"
 
@@ -101,7 +102,7 @@ CommandLine::CommandLine(const std::string& version, std::function<std::string()
   }));
   app_->get_option("--version")->description("print the version; with --json also what it was built from");
   app_->get_option("--help")->description("print this help; with a command, that command's help");
-  add_plugin_option(*app_);
+  add_common_options(*app_);
   app_->require_subcommand(1);
   app_->footer(
       "Exit status: 0 success, 1 internal fault, 2 bad input or usage, 3 a run did not end as its scenario expects, "
@@ -110,8 +111,14 @@ CommandLine::CommandLine(const std::string& version, std::function<std::string()
 
 CommandLine::~CommandLine() = default;
 
-/// The program and each command have this option, so that it may stand before or behind the command.
-void CommandLine::add_plugin_option(CLI::App& app) {
+/// The program and each command have these options, so that they may stand before or behind the command.
+void CommandLine::add_common_options(CLI::App& app) {
+  const auto limit = [](const std::uint64_t& bytes) { limit_memory(static_cast<double>(bytes)); };
+  app.add_option_function<std::uint64_t>(
+         "--memory", limit,
+         "most memory that may be taken, such as 8G (default: three quarters of what is "
+         "free)")
+      ->transform(CLI::AsSizeValue(false));
   const auto add = [this](const std::vector<std::string>& files) {
     plugins_.insert(plugins_.end(), files.begin(), files.end());
   };
@@ -125,7 +132,7 @@ void CommandLine::add_plugin_option(CLI::App& app) {
 Command CommandLine::command(const std::string& name, const std::string& summary) {
   CLI::App* app = app_->add_subcommand(name, summary);
   app->get_option("--help")->description("print this help");
-  add_plugin_option(*app);
+  add_common_options(*app);
   return Command(app, state_);
 }
 

@@ -153,7 +153,7 @@ class CommandLine {
   std::vector<CommandText> texts() const;
 
  private:
-  void add_plugin_option(CLI::App& app);
+  void add_common_options(CLI::App& app);
 
   std::unique_ptr<CLI::App> app_;
   CommandLineState state_;

@@ -132,7 +132,7 @@ WordList completions(const std::vector<CommandText>& texts, const WordList& word
   WordList found;
   if (joined.size() == 1) {
     WordList names;
-    if (!joined.back().empty()) names = {"--help", "--version", "--plugin"};
+    if (!joined.back().empty()) names = {"--help", "--version", "--plugin", "--memory"};
     for (auto command = texts.begin() + 1; command != texts.end(); ++command) names.push_back(command->name);
     found = beginning_with(joined.back(), "", names);
   } else {

@@ -13,6 +13,7 @@
 #include "results/io/atomic_file.hpp"
 #include "results/summary/provenance.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/memory_limit.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
@@ -97,7 +98,8 @@ int run_program_to_exit(int argc, char** argv) {
   } catch (const IoError& error) {
     return fail(error.what());
   } catch (const std::bad_alloc&) {
-    return fail("out of memory");
+    return fail(fmt::format("out of memory: {} are allowed, three quarters of what was free or what --memory sets",
+                            bytes_text(memory_limit())));
   } catch (const std::exception& error) {
     return fail(one_line(fmt::format("internal fault: {}", error.what())));
   }

@@ -8,6 +8,7 @@
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/parts.hpp"
+#include "scenarios/input/memory_limit.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -18,6 +19,8 @@
 
 namespace hapbench {
 namespace {
+
+constexpr double kProgramMemory = 15e6;  ///< of a run with next to no environment [B]
 
 struct ValidateOptions {
   std::vector<std::string> files;
@@ -54,7 +57,8 @@ std::string facts_text(const Scenario& scenario, const SceneFacts& facts) {
   text += fmt::format("  run          {} steps of {:.4g} ms = {:.4g} s", scenario.time.steps, 1e3 * scenario.time.step,
                       duration);
   if (facts.trials > 1) text += fmt::format(", {} trials", facts.trials);
-  return text + fmt::format("\n  writes       about {}\n", bytes_text(expected_output_bytes(scenario)));
+  return text + fmt::format("\n  writes       about {}; takes about {} of memory\n",
+                            bytes_text(expected_output_bytes(scenario)), bytes_text(kProgramMemory + facts.memory));
 }
 
 Json box_json(const Box& box) {
@@ -65,7 +69,8 @@ Json facts_json(const Scenario& scenario, const SceneFacts& facts) {
   Json json = {{"steps", scenario.time.steps},
                {"duration_s", scenario.time.step * static_cast<double>(scenario.time.steps)},
                {"trials", facts.trials},
-               {"expected_output_bytes", expected_output_bytes(scenario)}};
+               {"expected_output_bytes", expected_output_bytes(scenario)},
+               {"expected_memory_bytes", kProgramMemory + facts.memory}};
   json["tool"] = {{"type", facts.tool.type},
                   {"half_width_m", facts.tool.half_width},
                   {"reach_m", facts.tool.reach},

@@ -11,6 +11,7 @@
 #include "device_model/hands/tracking_hand.hpp"
 #include "device_model/ideal_device.hpp"
 #include "device_model/impedance_device.hpp"
+#include "scenarios/input/memory_limit.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "sim/core/random.hpp"
@@ -121,6 +122,7 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
         InputError::Kind::relation, file_of(loaded, "/record/force_reference").string() + ": /record/force_reference",
         fmt::format("got true; allowed: false, because {} has no columns mfx_N,mfy_N,mfz_N", file->path().string()));
   }
+  with_file(loaded, [&] { require_memory(expected_memory(scenario, loaded.files), "/environment: its points"); });
   std::vector<std::string> warnings = named_file_warnings(loaded);
   for (std::string& warning : warnings) {
     const std::string pointer = warning.substr(0, warning.find(": "));

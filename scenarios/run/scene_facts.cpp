@@ -63,6 +63,7 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   const auto tool = make_tool(scenario, loaded.files);
   facts.tool = tool_facts(scenario, loaded.files, *tool);
   facts.warnings = tool_warnings(scenario.rendering, *tool);
+  facts.memory = expected_memory(scenario, loaded.files);
   const auto shell = make_shell(scenario, loaded.files);
   throw_if_stopped();  // that may have taken seconds
   if (!shell || shell->size() == 0) return facts;
@@ -115,11 +116,6 @@ std::string place_text(const Box& box) {
   const Vec3 a = box.min * unit.per_metre, b = box.max * unit.per_metre;
   return fmt::format("x {:.3g} ... {:.3g}, y {:.3g} ... {:.3g}, z {:.3g} ... {:.3g} {}", a.x(), b.x(), a.y(), b.y(),
                      a.z(), b.z(), unit.name);
-}
-
-std::string bytes_text(double bytes) {
-  if (bytes < 1e6) return fmt::format("{:.0f} kB", std::ceil(1e-3 * bytes));
-  return bytes < 1e9 ? fmt::format("{:.3g} MB", 1e-6 * bytes) : fmt::format("{:.3g} GB", 1e-9 * bytes);
 }
 
 }  // namespace hapbench

@@ -41,6 +41,7 @@ struct SceneFacts {
   ToolFacts tool;
   std::optional<bool> is_closed;  ///< of a mesh
   std::size_t trials = 1;
+  double memory = 0.0;                ///< expected_memory [B]
   std::vector<std::string> warnings;  ///< about the tool, and the way of its drag, in this scene
 };
 
@@ -56,8 +57,5 @@ std::string length_text(double metres);
 std::string size_text(const Box& box);
 /// The place of a box in one unit, as in "x -6.74 ... 6.76, y -7.3 ... 9.4, z -3.3 ... 3.3 mm".
 std::string place_text(const Box& box);
-
-/// An amount of data, as in "271 MB".
-std::string bytes_text(double bytes);
 
 }  // namespace hapbench
