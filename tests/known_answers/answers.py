@@ -55,8 +55,10 @@ def shown(value):
 def same(value, known, within):
     if known is None or value is None or isinstance(known, (str, bool)):
         return value is None if known is None else type(value) is type(known) and value == known
+    if isinstance(known, (list, tuple)) and len(value) != len(known):
+        return False
     if isinstance(known, (list, tuple)) and any(isinstance(k, (str, type(None))) for k in known):
-        return len(value) == len(known) and all(same(v, k, within) for v, k in zip(value, known))
+        return all(same(v, k, within) for v, k in zip(value, known))
     value, known = np.asarray(value, float), np.asarray(known, float)
     if value.shape != known.shape or not np.array_equal(np.isnan(value), np.isnan(known)):
         return False
@@ -141,6 +143,13 @@ class Bench:
         plain = {np.float64: float, np.int64: int, np.bool_: bool}
         known, printed = (plain.get(type(v), lambda x: x)(v) for v in (known, printed))
         self.answers.append(Answer(self.scene, field, known_by, within, known, printed, naive))
+
+    def proven(self, field, file, test, said, refused):
+        """A row that a test in C++ is: it holds both texts, what is known and what is refused."""
+        suite, name = test.split(".")
+        body = re.search(rf"TEST(_F)?\({suite}, {name}\) {{(.*?)\n}}", (SOURCE / file).read_text(encoding="utf-8"), re.S)
+        found = body[2] if body else ""
+        self.add(field, said in found and refused in found, True, f"the test {test}", EXACT, ("another case of the same test", False))
 
     def metrics(self, run, table):
         """Rows (metric, known value, how it is known, tolerance, naive answer, its value); the last two may be left out."""

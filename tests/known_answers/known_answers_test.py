@@ -2,8 +2,10 @@
 import sys
 import unittest
 
-import of_places  # noqa: F401  (registers scenes)
+import of_ends  # noqa: F401  (registers scenes)
+import of_places  # noqa: F401
 import of_runs  # noqa: F401
+import of_tables  # noqa: F401
 from answers import SCENES, Answer, Bench, Within
 from fixture import main, scratch_folder
 from page import OPEN, PAGE, open_fields, printed_fields, text_of

@@ -1,9 +1,10 @@
 """Scenes whose answers are places: the ideal trajectory of a hole, depth below a surface, targets of subjects, and how runs end."""
 import math
+import re
 
 import numpy as np
 
-from answers import EXACT, ROUNDING, Within, norms, rms, scene
+from answers import EXACT, ROUNDING, SOURCE, Within, norms, rms, scene
 
 R, r, H = 1e-3, 0.5e-3, 5e-3  # radii of hole and tool, depth of the hole [m]
 
@@ -117,6 +118,45 @@ def pressed_ball(bench):
 
 
 @scene
+def counted(bench):
+    """A ball that comes down on a plane of 81 x 81 points for seven rows and goes: the work of it with and without skips, and the tool."""
+    fields = dict(
+        time={"step_s": 0.001, "steps": 600}, environment={"type": "plane", "size_m": 0.008, "spacing_m": 0.0001},
+        tool={"type": "bur", "family": "ball", "diameter_m": 0.001}, motion={"position": {"type": "prescribed", "x_m": 0, "y_m": 0, "z_m": {
+            "type": "waypoints", "points": [[0, 0.01], [0.3, 0.0004], [0.6, 0.01]]}}},
+        rendering={"algorithm": "shaped_stiffness", "iterations": 4, "stiffness_N_per_m": 1000})
+    skipping = bench.run(bench.scenario("counted", **fields))
+    full = bench.run(bench.scenario("counted", **fields), "--no-skip", out="full")
+    work, least = full.summary["work"], skipping.summary["work"]
+    rows = 2 * math.floor(0.0001 / 0.000032) + 1  # 0.032 mm a row, contact below 0.5 mm
+    for key, known, naive in (("queries", 600, 600 * 81), ("points_tested", 600 * 81 * 81, least["points_tested"]),
+                              ("lists_rebuilt", 0, least["lists_rebuilt"]), ("steps_skipped", 0, least["steps_skipped"]),
+                              ("iterations", 4 * 600, 4 * rows)):
+        bench.add(f"run --json: {key}", work[key], known, "without skips every row tests every point and shapes", EXACT, ("with skips", naive))
+    bench.add("run --json: iterations", least["iterations"], 4 * rows, "with skips only rows in contact shape", EXACT, ("all rows", 2400))
+    bench.add("run --json: state_hash", skipping.summary["state_hash"], full.summary["state_hash"], "skips change no bit", EXACT,
+              ("another run's", bench.run(bench.scenario("counted", **fields), "--set", "rendering.stiffness_N_per_m=1001", out="x").summary["state_hash"]))
+    tool, line = full.summary["tool"], np.array(full.summary["tool"]["outline_m"])
+    corner = line[2:] - line[1:-1], line[1:-1] - line[:-2]
+    turns = corner[0][:, 0] * corner[1][:, 1] - corner[0][:, 1] * corner[1][:, 0]
+    ball = line[line[:, 0] > -0.0004]
+    for key, printed, known, how, within, naive in (
+            ("half_width_m", tool["half_width_m"], 0.0005, "radius of the ball", ROUNDING, 0.001),
+            ("reach_m", tool["reach_m"], norms(line).max(), "furthest point of the outline", ROUNDING, -line[:, 0].min()),
+            ("convex", tool["convex"], bool(np.all(turns <= 1e-15) or np.all(turns >= -1e-15)), "turns of the outline", EXACT, True),
+            ("outline_m", norms(ball), np.full(len(ball), 0.0005), "a circle below the neck", ROUNDING, ball[:, 1])):
+        bench.add(f"run --json: {key}", printed, known, how, within, ("of another measure", naive))
+    bench.add("run --json: allocations", least["allocations"], 0, "a step allocates nothing (tests/algorithms/allocation_test)", EXACT, ("one a row", 600))
+    bench.add("run --json: warnings", full.summary["warnings"], [], "nothing is odd", EXACT, ("some", ["no expectation"]))
+    for word, test, said, refused in (
+            ("step_p50_s", "StepLatency.PercentilesAreThoseOfNearestRank", "thousand.p50, 500u", "seven.p50, 4u"),
+            ("step_p99_s", "StepLatency.PercentilesAreThoseOfNearestRank", "thousand.p99, 990u", "seven.p99_9, 7u")):
+        bench.proven(f"{word} (number of timing.json)", "tests/results/observe/step_times_test.cpp", test, said, refused)
+    bench.proven("run --json: steps_controlled", "tests/algorithms/stages/passivity_controller_test.cpp",
+                 "PassivityController.ChangesARunOnlyIfItWouldCreateEnergy", "EXPECT_GT(held.controlled, 0u)", "EXPECT_EQ(held.controlled, 0u)")
+
+
+@scene
 def subjects(bench):
     """Subjects on targets: means and their standard errors are over subjects, each by the mean of its own targets."""
     run = bench.run("vertical_peg_in_hole_shaped_stiffness", "--set", "hand.trials=1", "--set", "expect={}",
@@ -131,9 +171,64 @@ def subjects(bench):
             pooled = value[known]
             name = f"targets.{place}.{field}"
             spread = means.std(ddof=1) / math.sqrt(len(means))
+            removed, weight = table["removed"][known] == 1, table["rows_on_target"][known]
+            wrong = {"success_rate": ("of subjects who removed all", np.mean(means == 1)),
+                     "completion_time_s": ("of removed targets alone", pooled[removed].mean())}.get(
+                         field, ("weighted by rows", np.sum(weight * pooled) / weight.sum()))
             rows += [(f"{name}.mean", means.mean(), "of the subjects' means in targets.csv", ROUNDING,
-                      *(("of all targets", pooled.mean()) if abs(pooled.mean() - means.mean()) > 1e-9 else ())),
+                      *(wrong if place == 0 or field[0] in "ms" and field != "success_rate" else ())),
                      (f"{name}.standard_error", spread, "sample deviation over root of subjects", ROUNDING, "with n in place of n - 1",
                       means.std() / math.sqrt(len(means))),
                      (f"{name}.subjects", len(means), "subjects with a value", EXACT, "targets", len(pooled))]
     bench.metrics(run, rows)
+
+
+@scene
+def one_subject(bench):
+    """A subject's targets by the rule: held for 1 s without a break within 0.2 mm while the rendered force is 1 N, until 1.5 s have passed."""
+    run = bench.run("vertical_peg_in_hole_shaped_stiffness", "--set", "hand.subjects=[{}]", "--set", "hand.trials=1", "--set", "expect={}", "--set",
+                    "hand.task.time_limit_s=1.5", "--set", "hand.task.targets_per_place=3", "--set", "record.trajectory=true", out="one", statuses=(0, 3))
+    table, rows = run.table("targets.csv"), run.table()
+    place = np.array([[0, 0], [0.00052, 0]])
+    order = table["place"].astype(int)  # drawn
+    dt, tip, f = 1 / 2048, rows.vectors("px_m", "py_m"), rows.vectors("fx_N", "fy_N", "fz_N")
+    found, active, shown, held, on = [], False, 0, 0, []
+    for k in range(len(tip)):
+        if len(found) == len(order):
+            break
+        pressed, near = f[k, 2] >= 1, np.hypot(*(place[order[len(found)]] - tip[k])) <= 0.0002
+        if pressed and not active:
+            active, shown = True, 0
+        shown, held = shown + 1, held + 1 if pressed and near else 0
+        removed = held >= 2048
+        on += [k] if near else []
+        if removed or shown >= 3072:
+            found.append((removed, shown * dt, on))
+            active, shown, held, on = False, 0, 0, []
+    how = "the rule on the rows of trajectory.csv"
+    counts = np.array([len(on) for _, _, on in found])
+    known = [("subject", np.zeros(6), "one", EXACT, "from 1", np.ones(6)), ("trial", np.zeros(6), "one", EXACT, "from 1", np.ones(6)),
+             ("target", np.arange(6), "in order", EXACT, "from 1", np.arange(6) + 1),
+             ("removed", [float(r) for r, _, _ in found], how, EXACT, "all", np.ones(6)),
+             ("time_s", [t for _, t, _ in found], how, ROUNDING, "the hold", np.ones(6)),
+             ("rows_on_target", counts, how, EXACT, "with the last", counts + 1),
+             ("model_force_N", [norms(f[on]).mean() for _, _, on in found], how, ROUNDING, "its vertical part", [f[on, 2].mean() for _, _, on in found])]
+    bench.columns("targets.csv", table, known)
+    bench.proven("targets.csv:speed_m_per_s", "tests/results/observe/target_metrics_test.cpp", "TargetMetrics.MeansAreOverTheRowsOnTheTarget",
+                 "EXPECT_EQ(row.speed, 5.0)", "step(0.001, 100.0, 100.0);  // off the target")
+    first = sorted(order) == [0, 0, 0, 1, 1, 1]
+    bench.add("targets.csv:place", first, True, "three of each place, in an order that is drawn", EXACT, ("any", False))
+
+
+@scene
+def verdicts(bench):
+    """Verdicts on claims, by tests that give the rules of claims numbers beside their thresholds, for each verdict and for another."""
+    for word, test, said, refused in (
+            ("reproduced", "T1FlatReduction", "counts(40, 10, 1, 0, 1)}, Verdict::reproduced", "Verdict::not_reproduced"),
+            ("not reproduced", "T1FlatReduction", "counts(40, 10, 1.1, 0, 2)}, Verdict::not_reproduced", "Verdict::reproduced"),
+            ("reproduced in kind", "T2AndT3ReducedPoints", "Verdict::in_kind", "Verdict::reproduced"),
+            ("refuted", "R1bRatioLimit", '{"last_max", 1.3}, {"limit_max", 1.3}}, Verdict::refuted', "Verdict::reproduced"),
+            ("holds", "T2bHands", "hand(55), hand(56)}, Verdict::holds", "Verdict::does_not_hold"),
+            ("does not hold", "T2bHands", "hand(56), hand(57)}, Verdict::does_not_hold", "Verdict::holds"),
+            ("not reproducible", "C4AndD5AreNotForASimulation", "Verdict::not_reproducible", "")):
+        bench.proven(f"{word} (verdict on a claim)", "tests/scenarios/thesis_claims/claims_test.cpp", f"ClaimRules.{test}", said, refused)

@@ -28,26 +28,35 @@ def described(what):
 
 
 def keys_of(data):
+    """Keys of values, and keys of objects and lists of objects, which only group them."""
     if isinstance(data, list):
-        return set().union(*map(keys_of, data))
+        found = [keys_of(value) for value in data]
+        return set().union(*(keys for keys, _ in found)), set().union(*(groups for _, groups in found))
     if not isinstance(data, dict):
-        return set()
-    return set().union(*({key} | keys_of(value) for key, value in data.items() if key not in NO_ANSWERS))
+        return set(), set()
+    members = {key: value for key, value in data.items() if key not in NO_ANSWERS}
+    groups = {key for key, value in members.items() if isinstance(value, dict) or isinstance(value, list) and any(isinstance(v, dict) for v in value)}
+    within = [keys_of(members[key]) for key in groups]
+    return (set(members) - groups).union(*(keys for keys, _ in within)), groups.union(*(more for _, more in within))
 
 
 def printed_fields(benches):
     """Metrics, columns as FILE:COLUMN, words as "WORD (KIND)", and keys of JSON that are neither as "COMMAND --json: KEY"."""
     metrics = [metric["name"] for metric in described("metrics")[0]["metrics"]]
-    known, fields = {part for name in metrics for part in name.split(".")} | {"metrics", "passivity"}, [
-        re.sub(r"^targets\.\d+", "targets.PLACE", name) for name in metrics]
+    parts = {part for name in metrics for part in name.split(".")}
+    fields, columns = [re.sub(r"^targets\.\d+", "targets.PLACE", name) for name in metrics], set()
     for table in described("columns"):
         names = [column["name"] for column in table["columns"]]
-        known |= set(names)
-        fields += [f"{table['name']}:{name}" for name in names if table["name"] not in ("sweep.csv", "comparison.csv") or name not in metrics]
+        columns |= set(names)
+        shared = table["name"] in ("sweep.csv", "comparison.csv")
+        fields += [f"{table['name']}:{name}" for name in names if not shared or name not in metrics]
+        fields += [f"{table['name']}:metrics"] if shared else []
     fields += [f"{word['name']} ({word['kind']})" for word in described("words")["words"]]
-    for command, key in sorted({(command, key) for bench in benches for command, data in bench.printed for key in keys_of(data)}):
-        if key not in known:
-            fields.append(f"{command} --json: {key}")
+    found = [(command, *keys_of(data)) for bench in benches for command, data in bench.printed]
+    groups = {(command, key) for command, _, grouping in found for key in grouping}
+    keys = {(command, key) for command, leaves, _ in found for key in leaves if key not in parts} - groups
+    of_runs = {key for command, key in keys if command == "run"}
+    fields += [f"{command} --json: {key}" for command, key in sorted(keys) if command == "run" or key not in columns | of_runs]
     return list(dict.fromkeys(fields))
 
 
