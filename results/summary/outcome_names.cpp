@@ -21,7 +21,8 @@ constexpr OutcomeInfo kOutcomes[] = {
     {"no_contact", "all steps are done, and the tool never touched the environment", true},
     {"lost_contact",
      "all steps are done, but a freely moving tool ended further from the environment's box than the box is wide and the "
-     "tool reaches together",
+     "tool reaches together; or a hand of type drag pressed its tool on where there was no surface, past an edge or a hole: "
+     "no contact in the last 0.05 s or longer",
      true},
     {"went_through",
      "all steps are done, but a freely moving tool passed the surface: its tip centre came deeper than its half width, or "

@@ -15,8 +15,8 @@
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/program/compare_devices.hpp"
+#include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/program/table.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/recorders.hpp"
 #include "scenarios/run/stop_signal.hpp"
@@ -143,20 +143,23 @@ std::string rank_cell(const Standing& standing, bool failed) {
   return standing.rank ? fmt::format("{}{}", *standing.rank, sign) : "- ";
 }
 
-std::vector<Table::Column> standing_columns(const League& league, Detail detail) {
-  const std::size_t scenarios = league.runs.scenarios.size();
+std::vector<Table::Column> standing_columns(std::size_t scenarios, Detail detail) {
   std::vector<Table::Column> columns = {{"algorithm", false}};
   for (std::size_t s = 0; s < scenarios; ++s) {
-    columns.push_back({scenarios > 1 ? letter(s) + " " : "rank "});
+    columns.push_back({scenarios > 1 ? letter(s) + " " : "rank ", true,
+                       scenarios > 1
+                           ? "of compare: rank in the scenario that has this letter above the table; x: a run "
+                             "failed, *: differs from the best by more than the spread over the seeds, ~: does not"
+                           : "rank"});
     if (detail == Detail::rank) continue;
-    columns.push_back({"ratio"});
-    if (detail == Detail::spread) columns.insert(columns.end(), {{"mean"}, {"spread"}});
+    columns.push_back({"ratio", true, "ratio_to_best"});
+    if (detail == Detail::spread) columns.insert(columns.end(), {{"mean", true, "mean"}, {"spread", true, "spread"}});
   }
   return columns;
 }
 
 Table standings(const League& league, std::size_t metric, Detail detail) {
-  Table table(standing_columns(league, detail));
+  Table table(standing_columns(league.runs.scenarios.size(), detail));
   for (std::size_t a = 0; a < league.runs.algorithms.size(); ++a) {
     std::vector<std::string> cells = {league.runs.algorithms[a]};
     for (std::size_t s = 0; s < league.runs.scenarios.size(); ++s) {
@@ -202,9 +205,20 @@ std::string fails_text(const League& league, const LawStanding& law) {
   return text.size() <= kLongest ? text : fmt::format("{}", fmt::join(counts, "; "));
 }
 
+std::vector<Table::Column> law_columns() {
+  return {
+      {"algorithm", false},
+      {"mean rank", true, "mean of the algorithm's ranks over all metrics and scenarios, with those after failures"},
+      {"ratio", true,
+       "under all metrics and scenarios: geometric mean of the ratios to the best; none after a failure"},
+      {"of", true, "of compare: number of ratios in the geometric mean"},
+      {"wins", false, "letters of the scenarios in which no algorithm has a better mean rank, or how many they are"},
+      {"fails", false, "outcomes that count as failures, with the letters of their scenarios, or how many they are"}};
+}
+
 std::string laws_text(const League& league) {
   constexpr std::size_t kMostLetters = 12;
-  Table table({{"algorithm", false}, {"mean rank"}, {"ratio"}, {"of"}, {"wins", false}, {"fails", false}});
+  Table table(law_columns());
   for (const LawStanding& law : league.laws) {
     table.add({league.runs.algorithms[law.algorithm], significant(law.mean_rank, 3), significant(law.mean_ratio, 3),
                std::to_string(law.ratios),
@@ -354,6 +368,10 @@ int compare(const CompareOptions& options) {
 }
 
 }  // namespace
+
+std::vector<Table::Column> league_headings() {
+  return joined_headings({standing_columns(26, Detail::rank), standing_columns(1, Detail::spread), law_columns()});
+}
 
 void add_compare(CommandLine& line) {
   auto [command, options] =

@@ -285,7 +285,7 @@ class Answers {
   }
 
   Table stiffness_table() const {
-    std::vector<Table::Column> columns = {{"device", false}, {"pub-\nlished"}};
+    std::vector<Table::Column> columns = device_headings();
     for (std::size_t c = 0; c < this->columns(); ++c) columns.push_back({title(c)});
     Table table(columns, kDeviceGap);
     for (std::size_t d = 0; d < question_.devices.size(); ++d) {
@@ -447,6 +447,10 @@ std::vector<Column> device_limit_columns() {
 
 std::vector<Column> device_run_columns() {
   return columns_of(kDeviceRunFields);
+}
+
+std::vector<Table::Column> device_headings() {
+  return {{"device", false}, {"pub-\nlished", true, "published_N_per_m"}};
 }
 
 std::string beyond_text(const FieldLimit& limit) {

@@ -202,6 +202,7 @@ std::vector<std::string> described_names() {
   for (const std::string& name : result_names()) names.push_back(name);
   for (const std::string& name : described_words()) names.push_back(name);
   for (const Claim& claim : all_claims()) names.emplace_back(claim.id);
+  for (const std::string& choice : choice_names()) names.push_back(choice);
   for (const std::string& path : scenario_field_paths()) names.push_back(path);
   return names;
 }
@@ -270,6 +271,7 @@ Description describe_name(const std::string& name) {
   for (Description& word : describe_word(name)) add(std::move(word));
   if (meanings.empty()) meanings = describe_heading(name);
   if (meanings.empty()) meanings = describe_thesis(name);
+  if (meanings.empty()) meanings = describe_choice(name);
   if (meanings.empty()) meanings = describe_fields_called(name);
   if (!meanings.empty()) return joined(meanings);
   for (const BundledScenario& bundled : bundled_scenarios()) {
@@ -300,14 +302,14 @@ void add_describe(CommandLine& line) {
   auto [command, options] = line.command(
       "describe",
       "Explain an algorithm, a depth model, an integrator, an environment, a field, a scenario, a metric, a column or "
-      "file of the results, a word or heading that the program prints, a claim or a place of the thesis",
+      "file of the results, a word or heading that the program prints, a claim, a choice on record or a place of the thesis",
       describe);
   command
       .add("name", options.name,
            "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
            "\"choices_schema\", \"stability\"; a metric or a column, \"metrics\" or \"columns\" for all of them, a "
-           "heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5 or a place such as "
-           "\"Fig. A.2\"")
+           "heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5, a choice such as "
+           "planar.first_tilt or a place such as \"Fig. A.2\"")
       .words(described_names)
       .required();
   add_output_options(command, options.output);

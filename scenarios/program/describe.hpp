@@ -29,14 +29,19 @@ std::vector<Description> describe_word(const std::string& name);
 /// The names it knows.
 std::vector<std::string> described_words();
 
-/// The metrics under a heading of the tables of runs, such as ">30Hz rms N" or its first line, ">30Hz". Ignores case
-/// and blanks.
+/// What stands under a heading of a printed table, such as ">30Hz rms N" or its first line, ">30Hz". Ignores case and
+/// blanks.
 std::vector<Description> describe_heading(const std::string& name);
 
 /// The claim of that id, in either case; or the bundled scenarios and claims that name that place of the thesis, as
 /// "A.2", "Fig. A.2", "Table A.1" or "section 3.4". A place includes its parts: 3.4 includes 3.4.1, Fig. 2 includes
 /// Fig. 2c. Throws InputError.
 std::vector<Description> describe_thesis(const std::string& name);
+
+/// The choice on record of that id, such as planar.first_tilt. Throws InputError.
+std::vector<Description> describe_choice(const std::string& name);
+/// The ids of all choices on record. Throws InputError.
+std::vector<std::string> choice_names();
 
 /// The claims of results/reference/claims.json (thesis_claims/ledger.hpp). Throws InputError.
 Json claims_on_record();

@@ -118,12 +118,20 @@ constexpr const char* kOutcome = "outcome of a run";
 constexpr const char* kMotion = "class of motion, of limit and stability";
 constexpr const char* kTime = "number of timing.json";
 constexpr const char* kVerdict = "verdict on a claim";
+constexpr const char* kStiffness = "stiffness, of compare --devices";
 
 /// Words that no enumeration has.
 constexpr Word kWords[] = {
     {"step_p50_s", kTime, "what half of the steps take at most, each by itself, without observers and recorders [s]"},
     {"step_p99_s", kTime, "what 99 % of the steps take at most, each by itself, without observers and recorders [s]"},
-};
+    {"1 / lambda_max(S)", kStiffness,
+     "how many contacts along one direction would be as stiff as one of K, for the mean S at the limit: 1 means that the "
+     "hand meets K itself at most, 0.1 that ten springs add up along some direction"},
+    {"K lambda_max", kStiffness,
+     "the stiffness that the hand meets along the stiffest direction: K times the largest eigenvalue of the mean S"},
+    {"quantum", "number of import",
+     "the step in which the recorded places come along an axis, seen in their differences (its row resolution, quantum_m of "
+     "--json); K times it is the step of force that the recording alone makes"}};
 
 std::vector<Word> all_words() {
   std::vector<Word> all(std::begin(kWords), std::end(kWords));
@@ -166,14 +174,18 @@ std::vector<Description> describe_word(const std::string& name) {
 
 std::vector<Description> describe_heading(const std::string& name) {
   std::vector<Description> found;
-  for (const RunHeading& heading : kRunHeadings) {
+  for (const Table::Column& heading : printed_headings()) {
     const std::string_view title = heading.title, first = title.substr(0, title.find('\n'));
-    if (plain(name) != plain(title) && plain(name) != plain(first)) continue;
-    for (const char* shown : heading.shows) {
-      if (shown == nullptr) continue;
-      const std::vector<Description> results = describe_results(shown), words = describe_word(shown);
-      found.push_back(results.empty() ? words.front() : results.front());  // of a metric, before columns
+    if (heading.meaning.empty() || (plain(name) != plain(title) && plain(name) != plain(first))) continue;
+    std::vector<Description> meant = describe_results(heading.meaning);  // of a metric, before columns
+    if (meant.empty()) meant = describe_word(heading.meaning);
+    if (meant.empty()) {
+      meant.push_back({fmt::format("heading \"{}\"\n{}", title.substr(0, title.find_last_not_of(' ') + 1),
+                                   wrapped(heading.meaning)),
+                       {{"kind", "heading"}, {"name", title}, {"meaning", heading.meaning}}});
     }
+    const auto same = [&meant](const Description& other) { return other.text == meant.front().text; };
+    if (std::none_of(found.begin(), found.end(), same)) found.push_back(std::move(meant.front()));
   }
   return found;
 }

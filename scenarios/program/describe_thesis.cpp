@@ -111,13 +111,65 @@ Description describe_place(const Place& place) {
 
 }  // namespace
 
-Json claims_on_record() {
-  const std::filesystem::path file = installed_folder("results/reference") / "claims.json";
+namespace {
+
+/// A list of results/reference/LIST.json.
+Json on_record(const std::string& list) {
+  const std::filesystem::path file = installed_folder("results/reference") / (list + ".json");
   try {
-    return parse_json(read_text_file(file, kLargestJsonFile)).at("claims");
+    return parse_json(read_text_file(file, kLargestJsonFile)).at(list);
   } catch (const InputError& error) {
     rethrow_with_file(error, file);
   }
+}
+
+/// Numbers of an array are the ends of a range.
+std::string plain_text(const Json& value) {
+  if (!value.is_array()) return value.is_string() ? value.get<std::string>() : value.dump();
+  std::vector<std::string> texts;
+  for (const Json& one : value) texts.push_back(plain_text(one));
+  return fmt::format("{}", fmt::join(texts, value.front().is_number() ? " ... " : ", "));
+}
+
+Description describe_choice(const Json& choice) {
+  std::string text = fmt::format("choice {}, on record\n{}\n", bold(stdout, plain_text(choice.at("id"))),
+                                 wrapped(plain_text(choice.at("what"))));
+  const std::string unit = choice.value("unit", "");
+  text += entry("value", plain_text(choice.at("value")) + (unit.empty() ? "" : " " + unit), 2, 14);
+  for (const auto& [title, field] :
+       {std::pair{"the thesis", "thesis"}, std::pair{"plausible", "range"}, std::pair{"options", "options"},
+        std::pair{"scale", "scale"}, std::pair{"why", "why"}})
+    if (choice.contains(field)) text += entry(title, plain_text(choice.at(field)), 2, 14);
+  text += entry("chosen", fmt::format("{} results were seen", plain_text(choice.at("chosen"))), 2, 14);
+  for (const Json& field : choice.value("fields", Json::array())) {
+    const std::vector<std::string> scenes = field.at("scenarios");
+    text += entry("sets",
+                  fmt::format("{}{} of {}", plain_text(field.at("path")), field.value("times", false) ? " (times)" : "",
+                              fmt::join(scenes, ", ")),
+                  2, 14);
+  }
+  return {
+      text +
+          "\nwhat it does to the verdicts: results/reference/robustness.md; \"hapbench reproduce --robustness\" samples it\n",
+      choice};
+}
+
+}  // namespace
+
+Json claims_on_record() {
+  return on_record("claims");
+}
+
+std::vector<Description> describe_choice(const std::string& name) {
+  for (const Json& choice : on_record("choices"))
+    if (choice.at("id") == name) return {describe_choice(choice)};
+  return {};
+}
+
+std::vector<std::string> choice_names() {
+  std::vector<std::string> names;
+  for (const Json& choice : on_record("choices")) names.push_back(choice.at("id"));
+  return names;
 }
 
 std::vector<Description> describe_thesis(const std::string& name) {

@@ -8,12 +8,35 @@
 #include "scenarios/batch/result_folders.hpp"
 #include "scenarios/batch/run_difference.hpp"
 #include "scenarios/program/command.hpp"
-#include "scenarios/program/table.hpp"
+#include "scenarios/program/result_tables.hpp"
 
 namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kInFirst = "of diff: the value in the first folder, RUN_A; its line A names it";
+constexpr const char* kInSecond = "of diff: the value in the second folder, RUN_B; its line B names it";
+
+const std::vector<Table::Column> kFieldDifferenceHeadings = {
+    {"field", false, "of diff: a field in which the scenarios differ"}, {"A", true, kInFirst}, {"B", true, kInSecond}};
+const std::vector<Table::Column> kResultDifferenceHeadings = {
+    {"result", false, "of diff: a metric, or another entry of summary.json"},
+    {"A", true, kInFirst},
+    {"B", true, kInSecond},
+    {"relative", true, "|A - B| over the larger of |A| and |B|"}};
+const std::vector<Table::Column> kColumnDifferenceHeadings = {
+    {"column", false, "of diff: a column of trajectory.csv or sweep.csv that differs"},
+    {"largest difference", true, "largest |A - B| of the column"},
+    {"in row", true, "where the largest difference is, from 0"},
+    {"relative to the largest", true, "the largest difference over the column's largest magnitude"}};
+const std::vector<Table::Column> kRunDifferenceHeadings = {
+    {"run", false, "of diff: folder of a run, below A and B"},
+    {"is", false, "equal, or differs by more than the tolerance"},
+    {"fields", true, "number of fields in which the scenarios differ, which do not count"},
+    {"results", true, "number of metrics and other results that differ"},
+    {"largest relative", true, "largest relative difference of these"},
+    {"from row", true, "first row of trajectory.csv that differs, from 0"}};
 
 struct DiffOptions {
   std::string a;
@@ -35,7 +58,7 @@ std::string shown_size(double value) {
 
 std::string fields_text(const RunDifference& run) {
   if (run.fields.empty()) return "";
-  Table table({{"field", false}, {"A"}, {"B"}});
+  Table table(kFieldDifferenceHeadings);
   for (const NamedDifference& field : run.fields) {
     table.add({field.name, cut_value(field.values.a), cut_value(field.values.b)});
   }
@@ -43,7 +66,7 @@ std::string fields_text(const RunDifference& run) {
 }
 
 std::string metrics_text(const RunDifference& run, double tolerance) {
-  Table table({{"result", false}, {"A"}, {"B"}, {"relative"}});
+  Table table(kResultDifferenceHeadings);
   std::size_t within = 0;
   for (const NamedDifference& metric : run.metrics) {
     const CellDifference& values = metric.values;
@@ -73,7 +96,7 @@ std::string columns_text(const char* name, const TableDifference& difference) {
     return fmt::format("{}: {}, the same{}\n{}", name, rows, whole ? "" : " as far as both go", columns);
   }
   const FirstDifference& first = *difference.first;
-  Table table({{"column", false}, {"largest difference"}, {"in row"}, {"relative to the largest"}});
+  Table table(kColumnDifferenceHeadings);
   for (const ColumnDifference& column : difference.columns) {
     table.add({column.column, shown_size(column.largest), std::to_string(column.row), shown_size(column.relative)});
   }
@@ -160,7 +183,7 @@ struct Report {
 };
 
 void compare_all_runs(const DiffOptions& options, const ResultPairs& pairs, Report& report) {
-  Table table({{"run", false}, {"is", false}, {"fields"}, {"results"}, {"largest relative"}, {"from row"}});
+  Table table(kRunDifferenceHeadings);
   for (const fs::path& path : pairs.runs) {
     const RunDifference run = compare_runs(fs::path(options.a) / path, fs::path(options.b) / path);
     report.beyond |= run.is_beyond(options.tolerance);
@@ -213,6 +236,11 @@ int diff(const DiffOptions& options) {
 }
 
 }  // namespace
+
+std::vector<Table::Column> diff_headings() {
+  return joined_headings(
+      {kFieldDifferenceHeadings, kResultDifferenceHeadings, kColumnDifferenceHeadings, kRunDifferenceHeadings});
+}
 
 void add_diff(CommandLine& line) {
   auto [command, options] =

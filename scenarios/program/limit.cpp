@@ -97,15 +97,7 @@ std::string value_text(const std::optional<double>& value) {
 }
 
 Table table_of(const std::vector<FieldLimit>& limits, const LimitQuestion& question) {
-  Table table({{"algorithm", false},
-               {question.smallest ? "high end" : "low end"},
-               {question.smallest ? "above it" : "below it", false},
-               {"first edge"},
-               {"beyond it", false},
-               {"theory"},
-               {"off theory %"},
-               {"runs"},
-               {"inconsistent"}});
+  Table table(limit_headings(question.smallest));
   for (const FieldLimit& limit : limits) {
     const auto difference = limit.difference();
     table.add({limit.algorithm, limit.other_value ? significant(*limit.other_value, 6) : "none",
@@ -295,6 +287,23 @@ int limit(const LimitOptions& options) {
 
 std::vector<Column> limit_columns() {
   return columns_of(kLimitFields);
+}
+
+std::vector<Table::Column> limit_headings(bool smallest) {
+  return {
+      {"algorithm", false},
+      {smallest ? "high end" : "low end", true, smallest ? "high" : "low"},
+      {smallest ? "above it" : "below it", false,
+       smallest ? "what becomes of the run at the first value above the high end; \"end of the range\": none was tried"
+                : "what becomes of the run at the first value below the low end; \"end of the range\": none was tried"},
+      {"first edge", true, "limit"},
+      {"beyond it", false,
+       "what becomes of the run at the first unstable value beyond the first edge, a class of motion; \"end of the "
+       "range\": no value up to there is unstable"},
+      {"theory"},
+      {"off theory %", true, "first edge / theory - 1, in percent; of stability --map the largest along the edge"},
+      {"runs"},
+      {"inconsistent", true, kInconsistentColumn.name}};
 }
 
 std::span<const Column> limit_run_columns() {

@@ -11,7 +11,7 @@
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/command.hpp"
-#include "scenarios/program/table.hpp"
+#include "scenarios/program/result_tables.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/studies/precision/measure.hpp"
@@ -60,9 +60,8 @@ void write_study(const fs::path& directory, const PrecisionStudy& study, const P
 }
 
 std::string study_text(const PrecisionStudy& study, const PrecisionResult& result) {
-  std::vector<Table::Column> columns = {{"setting", false}, {"outcome", false}};
-  for (const std::string& column : result.columns) columns.push_back({column});
-  columns.push_back({"us/" + result.timed});
+  std::vector<Table::Column> columns = precision_headings(result.timed);
+  for (const std::string& column : result.columns) columns.insert(columns.end() - 1, {column});
   Table table(columns);
   for (const PrecisionRow& row : result.rows) {
     std::vector<std::string> cells = {row.setting, row.outcome};
@@ -154,6 +153,10 @@ int precision(const PrecisionCommandOptions& options) {
 }
 
 }  // namespace
+
+std::vector<Table::Column> precision_headings(const std::string& timed) {
+  return {{"setting", false}, {"outcome", false}, {"us/" + timed, true, "seconds_per_" + timed}};
+}
 
 void add_precision(CommandLine& line) {
   auto [command, options] = line.command("precision", "Measure run time against error, one row per setting", precision,

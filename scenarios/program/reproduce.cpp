@@ -15,7 +15,7 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
-#include "scenarios/program/table.hpp"
+#include "scenarios/program/result_tables.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
@@ -261,7 +261,7 @@ int reproduce(const ReproduceOptions& options) {
   }
 
   const Json json = ledger_json(judged, published, robustness);
-  Table table({{"id", false}, {"verdict", false}, {"robustness", false}, {"measured", false}});
+  Table table(claim_headings());
   for (const Json& claim : json.at("claims"))
     table.add({claim.at("id"), verdicts_text(claim), robustness_text(claim), claim.at("measured")});
   std::string text = options.only.empty() ? wrapped(json.at("headline").get<std::string>()) + "\n\n" : "";
@@ -280,6 +280,14 @@ int reproduce(const ReproduceOptions& options) {
 }
 
 }  // namespace
+
+std::vector<Table::Column> claim_headings() {
+  return {{"id", false, "id of a claim, which describe explains"},
+          {"verdict", false, "on the claim; where most samples of the choices have another one, that in brackets"},
+          {"robustness", false,
+           "the share of the samples of the choices on record in which the verdict is the same, and what decides it"},
+          {"measured", false, "what the claim's verdict is about"}};
+}
 
 void add_reproduce(CommandLine& line) {
   auto [command, options] = line.command("reproduce", "Run the thesis's experiments and judge its claims", reproduce,

@@ -121,6 +121,19 @@ std::span<const Column> stability_boundary_columns() {
   return kColumns;
 }
 
+std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::Column>>& tables) {
+  std::vector<Table::Column> all;
+  for (const std::vector<Table::Column>& table : tables) all.insert(all.end(), table.begin(), table.end());
+  return all;
+}
+
+std::vector<Table::Column> printed_headings() {
+  return joined_headings({run_headings(), league_headings(), limit_headings(false), limit_headings(true),
+                          device_headings(), stability_headings(), precision_headings("step"),
+                          precision_headings("call"), diff_headings(), sweep_headings(), shard_headings(),
+                          claim_headings()});
+}
+
 std::vector<DescribedTable> result_tables() {
   std::vector<DescribedTable> tables;
   for (const ResultTable& table : record_tables()) tables.push_back({table.file, table.holds, all(table.columns)});

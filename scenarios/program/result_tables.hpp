@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "results/io/columns.hpp"
+#include "scenarios/program/table.hpp"
 
 /// The columns of the tables that commands write beside the files of single runs. Those who write them take their
 /// headers from here.
@@ -39,6 +40,25 @@ std::vector<Column> device_run_columns();
 std::vector<Column> stability_limit_columns();
 std::vector<Column> root_locus_columns();
 std::vector<Column> stress_columns();
+
+// The headings of printed tables, from which the tables are made; without those that are names of fields, metrics,
+// scenes or algorithms.
+std::vector<Table::Column> claim_headings();
+std::vector<Table::Column> device_headings();
+std::vector<Table::Column> diff_headings();
+std::vector<Table::Column> league_headings();
+std::vector<Table::Column> limit_headings(bool smallest);
+std::vector<Table::Column> map_headings();
+std::vector<Table::Column> precision_headings(const std::string& timed);
+std::vector<Table::Column> run_headings();
+std::vector<Table::Column> latency_headings();
+std::vector<Table::Column> shard_headings();
+std::vector<Table::Column> stability_headings();
+std::vector<Table::Column> sweep_headings();
+
+std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::Column>>& tables);
+/// All of them, also those whose titles are names that `describe` knows.
+std::vector<Table::Column> printed_headings();
 
 /// The header of a stability map's table.
 std::string map_header(std::span<const Column> columns, const std::string& x, const std::string& y);

@@ -12,6 +12,7 @@
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
+#include "scenarios/program/result_tables.hpp"
 
 namespace hapbench {
 namespace {
@@ -146,13 +147,32 @@ std::string unsettled_text(std::span<const RunReport> reports) {
       "\n{}", wrapped(fmt::format("\"-\": under 1/30 s of settled contact ({}){}", fmt::join(names, ", "), advice), 0));
 }
 
+const std::vector<Table::Column> kTargetHeadings = {{"place", true, "number of the target, from 0"},
+                                                    {"success rate", true, "targets.0.success_rate.mean"},
+                                                    {"completion s", true, "targets.0.completion_time_s.mean"},
+                                                    {"model force N", true, "targets.0.model_force_N.mean"},
+                                                    {"speed mm/s", true, "targets.0.speed_m_per_s.mean"}};
+
+std::vector<Table::Column> latency_headings() {
+  std::vector<Table::Column> columns = {{"step latency", false, "of run --latency: the scene whose steps were timed"},
+                                        {"steps"}};
+  for (const char* part : {"p50", "p95", "p99", "p99.9"})
+    columns.push_back({fmt::format("{} us", part), true,
+                       fmt::format("what {} % of the steps take at most, each by itself [us]", part + 1)});
+  columns.push_back({"max us", true, "the longest step [us]"});
+  for (const double deadline : kStepDeadlines)
+    columns.push_back({fmt::format("> {:.3f} ms", 1e3 * deadline), true, "number of steps that took longer"});
+  columns.push_back({"clock us", true, "what reading the clock takes, which is within each step's time [us]"});
+  return columns;
+}
+
 std::string targets_text(const RunReport& report) {
   if (report.summary.section("targets") == nullptr) return "";
   const auto cell = [](const SubjectMean& m, int digits) {
     return m.subjects == 0 ? "-"
                            : fmt::format("{} +- {}", significant(m.mean, digits), significant(m.standard_error, 2));
   };
-  Table table({{"place"}, {"success rate"}, {"completion s"}, {"model force N"}, {"speed mm/s"}});
+  Table table(kTargetHeadings);
   for (const PlaceMetrics& place : place_metrics(report.targets)) {
     SubjectMean speed = place.speed;
     speed.mean *= 1e3;
@@ -164,11 +184,7 @@ std::string targets_text(const RunReport& report) {
 }
 
 Table latency_table() {
-  std::vector<Table::Column> columns = {
-      {"step latency", false}, {"steps"}, {"p50 us"}, {"p95 us"}, {"p99 us"}, {"p99.9 us"}, {"max us"}};
-  for (const double deadline : kStepDeadlines) columns.push_back({fmt::format("> {:.3f} ms", 1e3 * deadline)});
-  columns.push_back({"clock us"});
-  return Table(columns);
+  return Table(latency_headings());
 }
 
 std::vector<std::string> latency_cells(const std::string& name, const StepLatency& latency) {
@@ -180,6 +196,15 @@ std::vector<std::string> latency_cells(const std::string& name, const StepLatenc
   for (const std::uint64_t misses : latency.misses) cells.push_back(std::to_string(misses));
   add_time(latency.overhead);
   return cells;
+}
+
+std::vector<Table::Column> run_headings() {
+  std::vector<Table::Column> headings = joined_headings({kTargetHeadings, latency_headings()});
+  for (const RunHeading& heading : kRunHeadings) {
+    for (const char* shown : heading.shows)
+      if (shown != nullptr) headings.push_back({heading.title, heading.number, shown});
+  }
+  return headings;
 }
 
 namespace {

@@ -80,8 +80,12 @@ std::string limit_text(double limit) {
   return std::isinf(limit) ? "none" : significant(limit, 6);
 }
 
+const std::vector<Table::Column> kLimitHeadings = {
+    {"limit", false}, {"analytic"},    {"eigenvalues", true, "eigenvalue"},
+    {"simulation"},   {"unit", false}, {"B there N s/m", true, "damping_at_limit_N_s_per_m"}};
+
 std::string limits_text(const LoadedScenario& loaded, const std::vector<StabilityLimit>& limits) {
-  Table table({{"limit", false}, {"analytic"}, {"eigenvalues"}, {"simulation"}, {"unit", false}, {"B there N s/m"}});
+  Table table(kLimitHeadings);
   for (const StabilityLimit& limit : limits) {
     table.add({limit.name, limit_text(limit.analytic.value_or(std::nan(""))), limit_text(limit.eigenvalue),
                limit_text(limit.simulation), limit.unit, significant(limit.damping_at_limit, 5)});
@@ -151,20 +155,22 @@ const Field<StressCounts> kStressFields[] = {
      [](const StressCounts& c) { return is_bad(c) ? Cell(c.first_bad) : Cell(); },
      Field<StressCounts>::In::json}};
 
+const std::vector<Table::Column> kStressHeadings = {{"algorithm", false},
+                                                    {"sets"},
+                                                    {"in contact", true, "in_contact"},
+                                                    {"non-finite", true, "non_finite"},
+                                                    {"out of bound", true, "out_of_bound"},
+                                                    {"points dropped", true, "points_dropped"},
+                                                    {"largest |f|/(K d)", true, "largest_force_per_K_d"},
+                                                    {"of its bound", true, "largest_share_of_bound"}};
+
 int stress(const StabilityOptions& options) {
   const fs::path out = results_directory(options.out, "stability_stress");
   require_writable_directory(out);
   const std::vector<StressCounts> all = stress_laws(options.count, options.seed, options.job_options("stress"));
   write_csv(out / "stability_stress.csv", kStressFields, all);
 
-  Table table({{"algorithm", false},
-               {"sets"},
-               {"in contact"},
-               {"non-finite"},
-               {"out of bound"},
-               {"points dropped"},
-               {"largest |f|/(K d)"},
-               {"of its bound"}});
+  Table table(kStressHeadings);
   Json json = Json::array();
   int status = kSuccess;
   for (const StressCounts& c : all) {
@@ -238,20 +244,23 @@ Json found_json(const std::string& algorithm, const StabilityOptions& options, c
           {"scenario", file.string()}};
 }
 
+const std::vector<Table::Column> kSearchHeadings = {
+    {"algorithm", false},
+    {"at rest", true, "of stability --search: the objective of a hand that does not move"},
+    {"found", true, "the objective of the worst motion that was found"},
+    {"minimised", true, "the objective of that motion after waypoints were left out that add little to it"},
+    {"waypoints", true, "of the minimised motion"},
+    {"duration s", true, "of the minimised motion [s]"},
+    {"outcome", false},
+    {"runs"},
+    {"scenario", false, "of stability --search: the file of the found scene, which \"hapbench run\" repeats"}};
+
 int search(const StabilityOptions& options) {
   const std::vector<LoadedScenario> scenes = scenes_of(options);
   const fs::path out = results_directory(options.out, "stability_search");
   require_writable_directory(out);
 
-  Table table({{"algorithm", false},
-               {"at rest"},
-               {"found"},
-               {"minimised"},
-               {"waypoints"},
-               {"duration s"},
-               {"outcome", false},
-               {"runs"},
-               {"scenario", false}});
+  Table table(kSearchHeadings);
   Json json = Json::array();
   for (const LoadedScenario& scene : scenes) {
     const std::string& algorithm = scene.scenario.rendering.algorithm;
@@ -336,6 +345,10 @@ std::vector<std::string> StabilityOptions::chosen_algorithms() const {
 
 JobOptions StabilityOptions::job_options(const std::string& label) const {
   return hapbench::job_options(jobs, output, label);
+}
+
+std::vector<Table::Column> stability_headings() {
+  return joined_headings({kLimitHeadings, kStressHeadings, kSearchHeadings, map_headings()});
 }
 
 std::vector<Column> stability_limit_columns() {

@@ -200,21 +200,25 @@ std::vector<std::string> cells_of(const MapResult& result) {
 
 }  // namespace
 
+std::vector<Table::Column> map_headings() {
+  return {{"map", false, "a map of stability --map; \"hapbench describe stability\" has all of them"},
+          {"algorithm", false},
+          {"integrator", false},
+          {"stable"},
+          {"dying out", true, "dying_out"},
+          {"vibrating"},
+          {"diverged"},
+          {"off theory %"},
+          {"no theory", true, "number of places along x at which there is no limit in theory; no_theory says why"}};
+}
+
 int stability_maps_command(const StabilityOptions& options) {
   const std::vector<const StabilityMap*> maps = chosen_maps(options);
   const std::vector<MapSubject> subjects = chosen_subjects(options);
   const fs::path out = results_directory(options.out, "stability_maps");
   require_writable_directory(out);
 
-  Table table({{"map", false},
-               {"algorithm", false},
-               {"integrator", false},
-               {"stable"},
-               {"dying out"},
-               {"vibrating"},
-               {"diverged"},
-               {"off theory %"},
-               {"no theory"}});
+  Table table(map_headings());
   const bool draw = options.chosen_algorithms().size() == 1 || maps.size() * subjects.size() <= kMostDrawn;
   std::string drawings;
   Json json = Json::array();

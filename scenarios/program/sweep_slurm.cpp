@@ -16,8 +16,8 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/sweep.hpp"
-#include "scenarios/program/table.hpp"
 
 namespace hapbench {
 namespace {
@@ -297,6 +297,13 @@ std::string count_text(std::optional<std::size_t> count) {
 
 }  // namespace
 
+std::vector<Table::Column> shard_headings() {
+  return {{"shard", false, "i/n: the runs whose index leaves the remainder i on division by n"},
+          {"state", false, "of a shard: done, running, waiting, failed or missing"},
+          {"runs done", true, "runs of the shard with a row"},
+          {"of", true, "of sweep --status: number of the shard's runs"}};
+}
+
 SweepStatus sweep_status(const fs::path& directory) {
   const SlurmJobs jobs = read_jobs(directory).value_or(SlurmJobs());
   const std::size_t count = jobs.shards > 0 ? jobs.shards : shards_in(directory);
@@ -311,7 +318,7 @@ SweepStatus sweep_status(const fs::path& directory) {
   const bool merged = fs::exists(directory / "sweep.csv", ignored);
   std::array<std::size_t, kStateNames.size()> counts{};
   std::size_t done = 0;
-  Table table({{"shard", false}, {"state", false}, {"runs done"}, {"of"}});
+  Table table(shard_headings());
   Json list = Json::array();
   for (ShardStatus& shard : shards) {
     const auto size = runs ? std::optional(shard.shard.size(*runs)) : std::nullopt;

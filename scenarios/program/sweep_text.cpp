@@ -12,9 +12,9 @@
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/program/sweep.hpp"
-#include "scenarios/program/table.hpp"
 
 namespace hapbench {
 namespace {
@@ -177,11 +177,17 @@ std::string chosen_metric(const SweepPlan& plan, const std::string& asked_for) {
   return std::string(*std::find_if(std::begin(kDefaultMetrics), std::end(kDefaultMetrics) - 1, has));
 }
 
+std::vector<Table::Column> sweep_headings() {
+  return {{"outcome", false},
+          {"runs", true, "of sweep: number of the runs with this outcome"},
+          {"as expected", true, "number of these that ended as the scenario's expect says"}};
+}
+
 std::string summary_text(const SweepPlan& plan, const SweepReport& report, const std::string& metric) {
   std::string text = grid_text(plan, report.rows, metric);
   if (plan.points.axes().size() == 1 && report.counts.runs <= kMostRowsShown)
     text = runs_text(plan, report.rows) + "\n";
-  Table table({{"outcome", false}, {"runs"}, {"as expected"}});
+  Table table(sweep_headings());
   for (const auto& [outcome, count] : report.counts.outcomes) {
     table.add({outcome, std::to_string(count.runs), std::to_string(count.expected)});
   }

@@ -35,10 +35,10 @@ std::string bold(std::FILE* stream, std::string_view text);
 /// text left. A title may have two lines.
 class Table {
  public:
-  /// One column: its title, and whether its cells are numbers.
   struct Column {
     std::string title;
-    bool number = true;
+    bool number = true;        ///< aligned as one
+    std::string meaning = {};  ///< for `describe`: a name that it knows or a sentence; empty: it knows the title itself
   };
 
   /// `gap`: blanks between columns.
