@@ -58,10 +58,10 @@ Finding judge_peg_motion(const Measured& measured, const PublishedNumbers& p) {
   return {
       decide(vibrates_much_more(original, shaped, p), vibrates_more(original, shaped)), vibrations_text(shown),
       fmt::format("without friction the original algorithm's velocity varies {:.3g} times as much, with the trainer's "
-                  "friction {:.3g} times; of {} tilts and speeds without friction it vibrates much more at {} and "
-                  "more at {}",
+                  "friction {:.3g} times; of {} pairs of first tilt and turn rate without friction it vibrates more "
+                  "than stiffness shaping in {}, and much more in {} of these",
                   original["velocity_variation"] / shaped["velocity_variation"],
-                  measured.at(2)["velocity_variation"] / measured.at(3)["velocity_variation"], pairs, much_more, more)};
+                  measured.at(2)["velocity_variation"] / measured.at(3)["velocity_variation"], pairs, more, much_more)};
 }
 
 }  // namespace
