@@ -230,6 +230,7 @@ class Answers {
     text += wrapped(rule_text(StabilityRule{.most_vibration = question_.most_vibration}, false), 0);
     text += ends_text();
     text += "published: largest stable stiffness of a wall; \"hapbench describe DEVICE\" names its source\n";
+    text += kWhichStiffness;
     if (std::ranges::any_of(question_.devices, [](const auto& device) { return device.name.ends_with('*'); }))
       text += "*: a preset with numbers of --set, of which nothing is published\n";
     text += delays_text(question_);
@@ -247,7 +248,9 @@ class Answers {
     const std::string reference = fmt::format("{} in {}", algorithm(0), scene(0));
     text += fmt::format("\nover the device's K of {} (in brackets 1 / lambda_max(S), and contacts, at the limit)\n\n",
                         reference);
-    text += ratio_table().text() + fmt::format("\nleast ... largest of the devices, over {}:\n", reference);
+    text += ratio_table().text();
+    if (question_.devices.size() == 1) return text;
+    text += fmt::format("\nleast ... largest of the devices, over {}:\n", reference);
     for (std::size_t c = 1; c < columns(); ++c) text += spreads_text(c);
     return text;
   }

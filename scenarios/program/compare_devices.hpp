@@ -47,6 +47,10 @@ std::string other_beyond_text(const FieldLimit& limit);
 /// "none of 17 values tried is stable: 12 went_through, 5 vibrating".
 std::string none_text(const FieldLimit& limit);
 
+/// A line for whoever finds different stiffnesses by `limit`, by the maps and by `compare --devices`.
+inline constexpr const char* kWhichStiffness =
+    "why K differs between compare --devices, limit and stability --map: device_model/README.md, \"Which K to quote?\"\n";
+
 /// Finds the largest stable stiffness on each device, prints and writes the tables. Returns the exit status.
 int compare_devices(const CompareDevicesOptions& options);
 

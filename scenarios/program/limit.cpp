@@ -275,9 +275,11 @@ int limit(const LimitOptions& options) {
   const std::vector<FieldLimit> limits = field_limits(scenario, options.overrides, algorithms, question,
                                                       job_options(options.jobs, options.output, "limit"));
   write_limits(out, limits, question);
+  const bool on_device = std::holds_alternative<ImpedanceDeviceConfig>(loaded.scenario.device);
   print(options.output,
         question_text(question, loaded.scenario) + table_of(limits, question).text() + "\n" +
             wrapped(rule_text(question, is_moved(loaded.scenario)), 0) + remarks_text(limits, question) +
+            (on_device && question.path == "rendering.stiffness_N_per_m" ? kWhichStiffness : "") +
             fmt::format("\nresults in {}\n", out.string()),
         limits_json(limits, question, is_moved(loaded.scenario)));
   return kSuccess;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include <algorithm>
 #include <array>
@@ -9,6 +10,7 @@
 
 #include "results/io/csv_writer.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/program/compare_devices.hpp"
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
@@ -221,6 +223,7 @@ int stability_maps_command(const StabilityOptions& options) {
   Table table(map_headings());
   const bool draw = options.chosen_algorithms().size() == 1 || maps.size() * subjects.size() <= kMostDrawn;
   std::string drawings;
+  std::set<std::string> without_theory;
   Json json = Json::array();
   for (const StabilityMap* map : maps) {
     std::vector<MapResult> results;
@@ -229,6 +232,8 @@ int stability_maps_command(const StabilityOptions& options) {
       results.push_back(stability_map(*map, subject, options.size, jobs));
       table.add(cells_of(results.back()));
       json.push_back(result_json(results.back()));
+      for (const BoundaryPoint& p : results.back().boundary)
+        if (!p.no_theory.empty()) without_theory.insert(fmt::format("no theory in {}: {}", map->name, p.no_theory));
     }
     drawings += drawings_of(results, draw);
     write_points(out, *map, results);
@@ -236,7 +241,12 @@ int stability_maps_command(const StabilityOptions& options) {
   }
   if (!draw)
     drawings += fmt::format("more than {} maps are not drawn; --algorithms NAME draws those of one\n\n", kMostDrawn);
-  print(options.output, drawings + table.text() + fmt::format("\nmaps in {}\n", out.string()), json);
+  std::string remarks;
+  for (const std::string& remark : without_theory) remarks += wrapped(remark, 0);
+  if (std::any_of(maps.begin(), maps.end(),
+                  [](const StabilityMap* map) { return map->name == std::string_view("z_width"); }))
+    remarks += kWhichStiffness;
+  print(options.output, drawings + table.text() + remarks + fmt::format("\nmaps in {}\n", out.string()), json);
   return kSuccess;
 }
 
