@@ -4,8 +4,10 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/league.hpp"
 #include "scenarios/batch/parallel_for.hpp"
+#include "scenarios/batch/read_sweep.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/metric_sections.hpp"
@@ -25,6 +27,7 @@ struct SweepCommand {
   std::string sample;
   std::uint64_t seed = 1;
   std::string metric;
+  std::vector<std::string> where;
   std::string out;
   std::vector<std::string> overrides;
   std::int64_t jobs = 0;  ///< 0: one per thread of the machine
@@ -151,25 +154,80 @@ int submit(const SweepCommand& command, const SweepPlan& plan, const SweepOption
   return kSuccess;
 }
 
+/// Prints the rows that a finished sweep has, as far as they keep the conditions of --where.
+void print_sweep(const SweepCommand& command, const SweepPlan& plan, const SweepReport& report) {
+  const std::string metric = chosen_metric(plan, command.metric);
+  if (command.output.json) return print(command.output, "", summary_json(plan, report));
+  std::string text = summary_text(plan, report, metric);
+  if (!command.where.empty()) {
+    text += fmt::format("{} of {} runs have {}\n", report.counts.runs, plan.points.size(),
+                        fmt::join(command.where, " and "));
+  }
+  const std::string folder = report.table.parent_path().string();
+  const bool sampled = plan.points.sampling() && plan.points.axes().size() > 1;
+  if (sampled || !command.metric.empty()) {
+    text += fmt::format("\"hapbench plot {} --metric {}\" draws it{}\n", folder, metric,
+                        sampled ? " and tells how much each field matters" : "");
+  }
+  print(command.output, text, {});
+}
+
+/// Prints the sweep of a folder, without a run.
+int reprint(const SweepCommand& command) {
+  const bool runs = !command.vary.empty() || !command.overrides.empty() || !command.sample.empty() ||
+                    !command.out.empty() || !command.shard.empty() || command.resume || command.keep_runs ||
+                    command.print || command.slurm.shards > 0;
+  if (runs) {
+    throw InputError(fmt::format(
+        "{}: holds a finished sweep, which is printed again; allowed beside it: --where, --metric, --json, --quiet",
+        command.scenario));
+  }
+  const SweepOnRecord found = read_sweep(command.scenario, command.where);
+  print_sweep(command, found.plan, found.report);
+  return kSuccess;
+}
+
+/// Whoever starts an interrupted sweep anew must know that its finished runs are lost.
+void check_journal(const SweepPlan& plan, const SweepOptions& options) {
+  const fs::path file = options.directory / (stem_of(options.shard) + ".journal");
+  const std::size_t rows = Journal::count_rows(file);
+  if (options.resume || rows == 0 || Journal::is_being_written(file)) return;
+  if (Journal::is_of(file, journal_title(plan, options.part(), options.keep_runs))) {
+    fail_in_file(file,
+                 fmt::format("holds {} finished runs of this sweep, which was interrupted; allowed: --resume to go on "
+                             "from there, another --out, or to begin anew without this file",
+                             rows));
+  }
+  print_note(
+      fmt::format("{}: {} finished runs of another sweep, which was interrupted, are discarded", file.string(), rows));
+}
+
 int sweep(const SweepCommand& command) {
   if (!command.status.empty()) {
     const SweepStatus status = sweep_status(command.status);
     print(command.output, status.text, status.json);
     return kSuccess;
   }
+  std::error_code ignored;
+  if (fs::is_regular_file(fs::path(command.scenario) / "sweep.csv", ignored)) return reprint(command);
   if (command.scenario.empty() || command.vary.empty()) {
-    throw InputError("sweep: got no scenario or no --vary; allowed: both, or --status FOLDER alone");
+    throw InputError(
+        "sweep: got no scenario or no --vary; allowed: both, the folder of a finished sweep, or --status FOLDER alone");
   }
+  if (!command.where.empty() && (!command.shard.empty() || command.slurm.shards > 0))
+    throw InputError(
+        "--where: got it for a shard; allowed: for a whole sweep, or \"hapbench sweep FOLDER\" of the merged one");
   // All input is checked before anything runs or is written.
   const fs::path file = find_scenario(command.scenario);
   if (command.print) return print_row(command, file);
   const SweepOptions options = sweep_options(command, file);
   const SweepPlan plan =
       plan_sweep(read_scenario_text(file), command.overrides, points_of(command), options.jobs, options.progress);
-  const std::string metric = chosen_metric(plan, command.metric);
+  chosen_metric(plan, command.metric);  // throws if there is none of that name
   print_some_warnings(plan.warnings);
   require_writable_directory(options.directory);
   if (command.slurm.shards > 0) return submit(command, plan, options);
+  check_journal(plan, options);
 
   const SweepReport report = run_sweep(plan, options);
   if (report.signal != 0) {
@@ -177,14 +235,8 @@ int sweep(const SweepCommand& command) {
                            options.part().size(plan.points.size())));
     return kStopped + report.signal;
   }
-  if (command.output.json) {
-    print(command.output, "", summary_json(plan, report));
-  } else {
-    const std::string picture = command.metric.empty() ? ""
-                                                       : fmt::format("\"hapbench plot {} --metric {}\" draws it\n",
-                                                                     options.directory.string(), metric);
-    print(command.output, summary_text(plan, report, metric) + picture, {});
-  }
+  const SweepReport kept = command.where.empty() ? report : read_sweep(options.directory, command.where).report;
+  print_sweep(command, plan, kept);
   return verdict(plan, report);
 }
 
@@ -223,7 +275,10 @@ void add_shard_options(Command& command, SweepCommand& options) {
 void add_sweep(CommandLine& line) {
   auto [command, options] =
       line.command("sweep", "Run one scenario over a grid or a sample of values of any fields, in parallel", sweep);
-  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario").words(all_scenarios);
+  command
+      .add("scenario", options.scenario,
+           "scenario file, or name of a bundled scenario; or the folder of a finished sweep, which is printed again")
+      .words(all_scenarios);
   command
       .add(
           "--vary", options.vary,
@@ -239,9 +294,14 @@ void add_sweep(CommandLine& line) {
   command.add("--seed", options.seed, "seed of the sample (default: 1)").needs(sample);
   command
       .add("--metric", options.metric,
-           "the column of sweep.csv that a sweep of two fields shows as table and map (default: " +
+           "the column of sweep.csv that is shown, by which runs are ordered (default: " +
                std::string(kDefaultMetrics[0]) + ")")
       .words([] { return metric_names(); });
+  command
+      .add("--where", options.where,
+           "print only the runs with this: a column of sweep.csv, one of < <= > >= = !=, and a number or a text, as "
+           "'inside_max_m<3e-4'; several must all hold")
+      .repeatable();
   command.add("--out", options.out, "directory of sweep.csv (default: results/out/sweep_NAME)");
   add_overrides(command, options.overrides, "override a field of all runs: path=value");
   add_run_options(command, options);
@@ -249,7 +309,8 @@ void add_sweep(CommandLine& line) {
   add_output_options(command, options.output);
   command.footer(
       "sweep.csv has a row for each run: index, the varied fields, outcome (\"error\" when it could not be computed), "
-      "expected, steps, every metric, state_hash. Shards write sweep_shard_I_of_N.csv; \"hapbench merge\" joins them. "
+      "expected, steps, every metric, state_hash. \"hapbench sweep FOLDER\" prints it again, without a run. Shards write "
+      "sweep_shard_I_of_N.csv; \"hapbench merge\" joins them. "
       "Ctrl-C stops after the runs that are under way.\n"
       "Exit status: 0 success, 1 a run could not be computed, 2 bad input or usage, 3 a run did not end as expected, "
       "130 stopped by Ctrl-C.");

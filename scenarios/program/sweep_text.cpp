@@ -26,10 +26,31 @@ bool has_metric(const SweepPlan& plan, std::string_view name) {
   return std::find(plan.metrics.begin(), plan.metrics.end(), name) != plan.metrics.end();
 }
 
-/// The runs of a single axis, with the headings that run and compare have.
-std::string runs_text(const SweepPlan& plan, const std::vector<SweepRow>& rows) {
+std::string shown_value(const std::string& text) {
+  const auto number = finite_number(text);
+  return number ? significant(*number, 6) : text;
+}
+
+bool has_failed(const SweepRow& row) {
+  return row.outcome == kErrorOutcome || is_failure(row.outcome);
+}
+
+/// The runs with the headings that run and compare have.
+std::string runs_text(const SweepPlan& plan, std::span<const SweepRow> rows) {
+  const std::vector<Axis>& axes = plan.points.axes();
   std::vector<RunHeading> metrics;
-  std::vector<Table::Column> columns = {{plan.points.axes()[0].path}, {"outcome", false}};
+  std::vector<Table::Column> columns;
+  if (axes.size() == 1) {
+    columns = {{axes[0].path}};
+  } else {
+    columns = {{"index"}};
+    for (const Axis& axis : axes) {
+      std::string title = axis.path;
+      if (const std::size_t dot = title.rfind('.'); dot != std::string::npos) title.insert(dot + 1, "\n");
+      columns.push_back({title});
+    }
+  }
+  columns.push_back({"outcome", false});
   for (const RunHeading& heading : kRunHeadings) {
     if (heading.factor == 0.0 || !has_metric(plan, heading.shows[0])) continue;
     metrics.push_back(heading);
@@ -37,7 +58,13 @@ std::string runs_text(const SweepPlan& plan, const std::vector<SweepRow>& rows) 
   }
   Table table(columns);
   for (const SweepRow& row : rows) {
-    std::vector<std::string> cells = {plan.points.value(row.run, 0), row.outcome};
+    std::vector<std::string> cells;
+    if (axes.size() > 1) cells.push_back(std::to_string(row.run));
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      const std::string value = plan.points.value(row.run, a);
+      cells.push_back(plan.points.sampling() ? shown_value(value) : value);
+    }
+    cells.push_back(row.outcome);
     for (const RunHeading& heading : metrics) {
       const double value = row.number(plan, heading.shows[0]).value_or(std::numeric_limits<double>::quiet_NaN());
       cells.push_back(significant(heading.factor * value, 3));
@@ -65,7 +92,7 @@ class Grid {
         across_(plan.points.axes()[first_down_ ? 1 : 0]),
         down_(plan.points.axes()[first_down_ ? 0 : 1]) {
     for (const SweepRow& row : rows) {
-      const bool failed = row.outcome == kErrorOutcome || is_failure(row.outcome);
+      const bool failed = has_failed(row);
       cells_.push_back({failed ? std::nullopt : row.number(plan, metric), failed ? row.outcome : ""});
     }
   }
@@ -84,11 +111,6 @@ class Grid {
   const Axis& down_;
   std::vector<GridCell> cells_;
 };
-
-std::string shown_value(const std::string& text) {
-  const auto number = finite_number(text);
-  return number ? significant(*number, 6) : text;
-}
 
 std::string table_text(const Grid& grid) {
   std::vector<Table::Column> columns = {
@@ -166,6 +188,23 @@ std::string grid_text(const SweepPlan& plan, const std::vector<SweepRow>& rows, 
   return text;
 }
 
+/// The rows with the least of the metric, failures last; for a single axis all rows.
+std::string listed_text(const SweepPlan& plan, std::vector<SweepRow> rows, const std::string& metric) {
+  constexpr std::size_t kMostListed = 20;
+  const bool single = plan.points.axes().size() == 1;
+  if (rows.empty() || (single && rows.size() > kMostRowsShown)) return "";
+  const auto key = [&](const SweepRow& row) {
+    const auto value = single ? finite_number(plan.points.value(row.run, 0)) : row.number(plan, metric);
+    return value.value_or(std::numeric_limits<double>::infinity());
+  };
+  if (!single || plan.points.sampling())
+    std::ranges::stable_sort(rows, {}, [&](const SweepRow& row) { return std::pair(has_failed(row), key(row)); });
+  if (single) return runs_text(plan, rows) + "\n";
+  const std::size_t shown = std::min(kMostListed, rows.size());
+  return fmt::format("{} of {} runs, least {} first\n\n{}\n", shown, rows.size(), metric,
+                     runs_text(plan, std::span(rows).first(shown)));
+}
+
 }  // namespace
 
 std::string chosen_metric(const SweepPlan& plan, const std::string& asked_for) {
@@ -185,8 +224,7 @@ std::vector<Table::Column> sweep_headings() {
 
 std::string summary_text(const SweepPlan& plan, const SweepReport& report, const std::string& metric) {
   std::string text = grid_text(plan, report.rows, metric);
-  if (plan.points.axes().size() == 1 && report.counts.runs <= kMostRowsShown)
-    text = runs_text(plan, report.rows) + "\n";
+  if (text.empty()) text = listed_text(plan, report.rows, metric);
   Table table(sweep_headings());
   for (const auto& [outcome, count] : report.counts.outcomes) {
     table.add({outcome, std::to_string(count.runs), std::to_string(count.expected)});

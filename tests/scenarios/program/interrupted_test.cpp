@@ -1,4 +1,5 @@
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -259,8 +260,25 @@ TEST_F(InterruptedSweep, GoesOnAfterATornLineWhateverTheJobs) {
   expect_same_as_uninterrupted("out");
 }
 
-TEST_F(InterruptedSweep, BeginsAnewWithoutResume) {
+TEST_F(InterruptedSweep, WithoutResumeTellsOfTheRunsThatItWouldDiscard) {
   leave_killed_sweep(20);
+  const auto left = test::files_below(directory_ / "out");
+  const ProgramRun refused = hapbench(words("out"));
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find(fmt::format("sweep.journal: holds {} finished runs of this sweep", journal_rows("out"))),
+            std::string::npos)
+      << refused.err;
+  EXPECT_EQ(test::files_below(directory_ / "out"), left);
+  // Nobody can go on with the runs of another sweep.
+  const ProgramRun other = hapbench(words("out", {"--set", "seed=7"}));
+  EXPECT_EQ(other.status, 0);
+  EXPECT_NE(other.err.find("finished runs of another sweep, which was interrupted, are discarded"), std::string::npos)
+      << other.err;
+}
+
+TEST_F(InterruptedSweep, BeginsAnewWithoutItsJournal) {
+  leave_killed_sweep(20);
+  fs::remove(directory_ / "out/sweep.journal");
   const ProgramRun end = hapbench(words("out"));
   EXPECT_EQ(end.out.find("done before"), std::string::npos);
   expect_same_as_uninterrupted("out");

@@ -78,6 +78,67 @@ TEST_F(SweepCommand, HasTheNumbersOfTheRunsAlone) {
   }
 }
 
+TEST_F(SweepCommand, IsPrintedAgainFromItsFolder) {
+  const std::string out = (directory_ / "a").string();
+  for (const Words& sample :
+       {Words{}, Words{"--sample", "sobol:16", "--seed", "3", "--vary", "rendering.mass_kg=0.1:0.2"}}) {
+    Words words = {"sweep", "springs_limited_mean", "--set", "expect={}", "--out", out};
+    if (sample.empty()) {
+      words.insert(words.end(), {"--vary", "rendering.mass_kg=0.1:0.2:4", "--vary", "seed=1,2"});
+    } else {
+      words.insert(words.end(), {"--vary", "rendering.stiffness_N_per_m=1e3:1e4:log"});
+    }
+    words.insert(words.end(), sample.begin(), sample.end());
+    const ProgramRun first = hapbench(words), again = hapbench({"sweep", out});
+    ASSERT_EQ(first.status, 0) << first.err;
+    EXPECT_EQ(again.out, first.out);
+    EXPECT_EQ(again.err, "");
+    words.emplace_back("--json");
+    EXPECT_EQ(hapbench({"sweep", out, "--json"}).out, hapbench(words).out);
+  }
+}
+
+TEST_F(SweepCommand, PrintsTheRunsThatKeepConditions) {
+  ASSERT_EQ(sweep("a").status, 0);
+  const std::string out = (directory_ / "a").string();
+  const auto lines = lines_of(table("a"));
+  const Words names = cells_of(lines[0]);
+  const auto column = [&](const char* name) { return std::find(names.begin(), names.end(), name) - names.begin(); };
+  std::vector<int> expected;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const Words cells = cells_of(lines[i]);
+    const auto force = test::number_in(cells[static_cast<std::size_t>(column("force_max_N"))]);
+    if (force < 3.0 && cells[3] != "mean") expected.push_back(static_cast<int>(i) - 1);
+  }
+  ASSERT_GT(expected.size(), 1u);
+  ASSERT_LT(expected.size(), 16u);
+  const Words where = {"--where", "force_max_N<3", "--where", "rendering.algorithm!=mean"};
+  Words words = {"sweep", out, "--json"};
+  words.insert(words.end(), where.begin(), where.end());
+  std::vector<int> kept;
+  const Json found = Json::parse(hapbench(words).out);
+  for (const Json& row : found["rows"]) kept.push_back(row["index"]);
+  EXPECT_EQ(kept, expected);
+  // Asked for at once, or of the table: the same.
+  words[2] = "--wide";
+  const ProgramRun again = hapbench(words), first = sweep("a", where);
+  EXPECT_EQ(first.out, again.out);
+  EXPECT_NE(again.out.find(std::to_string(expected.size()) +
+                           " of 24 runs have force_max_N<3 and rendering.algorithm!=mean\n"),
+            std::string::npos)
+      << again.out;
+  for (const auto& [condition, said] :
+       {std::pair{"force_max<3", "nearest valid name: \"force_max_N\""},
+        std::pair{"force_max_N~3", "one of < <= > >= = !="}, std::pair{"outcome<completes", "a number"}}) {
+    const ProgramRun refused = hapbench({"sweep", out, "--where", condition});
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_NE(refused.err.find(said), std::string::npos) << refused.err;
+  }
+  EXPECT_EQ(hapbench({"sweep", out, "--vary", "seed=1,2"}).status, 2);
+  test::write_plainly(directory_ / "a/sweep.csv", lines[0] + "\n" + lines[2] + "\n0,1,2,3\n");
+  EXPECT_NE(hapbench({"sweep", out}).err.find("allowed: rows of this sweep"), std::string::npos);
+}
+
 TEST_F(SweepCommand, KeepsTheRunsAsRunWritesThem) {
   // Byte for byte, the counted allocations of a run beside others included.
   EXPECT_EQ(sweep("a", {"--keep-runs", "--jobs", "4"}).status, 0);
