@@ -123,7 +123,7 @@ class Import(Given):
 
 class Recordings(Given):
     def test_columns_are_taken_by_number_name_and_alone(self):
-        rows, fast = "7,0,1,2,3\n8,1,1.5,2,3\n", {"max_speed": 10}
+        rows, fast = "7,0,1,2,3\n8,1,1.5,2,3\n", {"max_speed": 10, "max_gap": 1}
         named = "n,t,x,y,z\n" + rows
         for data, columns, place in ((rows, "time=2,position=3", [1.5, 2, 3]), (named, "time=t,position=x", [1.5, 2, 3]),
                                      (named.replace(",", ";"), "time=t,px=z,py=x,pz=4", [3, 1.5, 2])):
@@ -133,6 +133,27 @@ class Recordings(Given):
                          '"tip_x"; the file has 1 t, 2 tip_x, 3 tip_yy, 4 tip_z$')
         self.assertEqual(self.refusal(STRAIGHT, "time=1,position=3"),
                          "rec.csv: columns: position: takes columns 3 ... 5; the file has 1, 2, 3, 4")
+
+    def test_clocks_of_other_units_are_refused(self):
+        even = "".join(f"{1999 * i},{1e-5 * i},0,0\n" for i in range(5))  # [us]
+        self.assertEqual(self.refusal(even), "rec.csv: got intervals of 1999 s in the median; allowed: 0.5 s (--max-gap); are times "
+                         "in other units? (--scale time=1e-06)")
+        self.assertEqual(self.refusal(even, scale="time=1e-6"), "")
+        # Four times the median are no gap, but longer than allowed.
+        slow = "0,0,0,0\n0.2,0.001,0,0\n0.4,0.002,0,0\n1.2,0.003,0,0\n"
+        self.assertEqual(self.refusal(slow), "rec.csv, line 3: a gap of 0.8 s follows; allowed: 0.5 s (--max-gap)")
+        self.assertEqual(self.report(slow, max_gap=0.8).gaps, [])
+
+    def test_the_mean_direction_of_the_tip_shows_a_wrong_order(self):
+        # Two turns about x, by 0.2 +- 0.1 rad, written w first.
+        rows = "".join(f"{0.01 * i},0,0,0,{math.cos(a / 2)!r},{math.sin(a / 2)!r},0,0\n" for i, a in enumerate((0.1, 0.3)))
+        layout = ("--columns", "time=1,position=2,orientation=5", "--out", self.root / "s.csv", "--json")
+        report = json.loads(hapbench("import", self.write(rows), "--orientation", "quat_wxyz", *layout))
+        np.testing.assert_allclose(report["tip_direction"], [0, math.sin(0.2), -math.cos(0.2)], atol=1e-12)
+        self.assertAlmostEqual(report["tip_direction_spread_rad"], 0.1, delta=1e-8)
+        wrong = run("import", self.write(rows), "--orientation", "quat_xyzw", *layout)
+        self.assertIn("the tip points upwards in the mean", wrong.stderr)
+        self.assertGreater(json.loads(wrong.stdout)["tip_direction"][2], 0.5)
 
     def test_units_and_frames_are_put_right(self):
         report = self.report("5e6,1,2,3,1,0,2\n5.1e6,1,2,4,1,0,2\n", "time=1,position=2,force=5", frame="x,-z,y", shift="0.5,0,0",

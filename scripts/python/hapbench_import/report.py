@@ -1,6 +1,11 @@
 """The report of an import, as a table for people and as JSON."""
+import math
+
 import numpy as np
 
+from .samples import DOWN
+
+USUAL_RATES = (1.0, 1e5)  # of recordings [Hz]
 
 
 def table_of(report, stiffness):
@@ -20,6 +25,8 @@ def table_of(report, stiffness):
         ("speed", f"{report.speed_max:.4g} m/s at most, 99 % below {report.speed_p99:.4g} m/s"),
         ("pose", f"quaternions; norms were within {read.unit_deviation:.1e} of 1" if stroke.has_roll
          else "the axis alone; the roll is unknown"),
+        ("tip points", f"along [{', '.join(f'{part + 0.0:.3g}' for part in _direction(stroke)[0])}] in the mean, within "
+                       f"{math.degrees(_direction(stroke)[1]):.3g} degrees of it"),
         ("resolution", ", ".join(f"{axis} {'none' if step is None else f'{1e6 * step:.4g} um'}"
                                  for axis, step in zip("xyz", report.resolution)))]
     if coarsest is not None:
@@ -43,6 +50,7 @@ def json_of(report, stiffness):
         "interval_s": {"min": clock.interval_min, "median": clock.interval_median, "max": clock.interval_max},
         "gaps": len(report.gaps), "box_m": [end.tolist() for end in _box(report.stroke)],
         "speed_p99_m_per_s": report.speed_p99, "speed_max_m_per_s": report.speed_max, "has_roll": report.stroke.has_roll,
+        "tip_direction": _direction(report.stroke)[0].tolist(), "tip_direction_spread_rad": _direction(report.stroke)[1],
         "unit_deviation": read.unit_deviation, "quantum_m": report.resolution,
         "quantum_force_N": None if coarsest is None else stiffness * coarsest, "force_min_N": least, "force_max_N": most,
         "smoothing": report.smoothing, "warnings": _warnings(report)}
@@ -65,7 +73,21 @@ def _warnings(report):
     if longest > 3.0 or longest < 1e-5:
         warnings.append(f"the tip's places are within {longest:.4g} m, which is no stroke of a hand: is the scale right? "
                         "(--scale position=0.001 is for millimetres)")
+    if not USUAL_RATES[0] <= report.rate <= USUAL_RATES[1]:
+        warnings.append(f"{report.rate:.4g} samples a second are no usual rate: is the scale of time right? (--scale time=1e-3 is for "
+                        "milliseconds)")
+    if _direction(report.stroke)[0][2] > 0.5:
+        warnings.append("the tip points upwards in the mean: are --orientation (the order of a quaternion), --tip-axis and --frame right?")
     return warnings
+
+
+def _direction(stroke):
+    """The mean direction out of the tip, and the largest angle to it [rad]."""
+    axes = stroke.turn.apply(DOWN)
+    mean = axes.mean(axis=0)
+    length = np.linalg.norm(mean)
+    mean = mean / length if length > 1e-9 else axes[0]
+    return mean, float(np.arccos(np.clip(axes @ mean, -1.0, 1.0)).max())
 
 
 def _box(stroke):

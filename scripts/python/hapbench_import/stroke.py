@@ -71,13 +71,17 @@ def usual_rate(clock, samples):
 
 
 def gaps_in(read, clock, longest):
+    """The gaps to bridge. Intervals longer than `longest` [s] are refused, however many there are."""
+    if clock.interval_median > longest:
+        factor = next((unit for unit in (1e-3, 1e-6, 1e-9) if clock.interval_median * unit <= longest), 1e-9)
+        fail(f"got intervals of {clock.interval_median:.4g} s in the median; allowed: {longest:g} s (--max-gap); are times in "
+             f"other units? (--scale time={factor:g})", read.recording.file)
     intervals = np.diff(read.samples.time)
-    gaps = [(i, float(intervals[i])) for i in np.flatnonzero(intervals >= LONG_INTERVALS * clock.interval_median).tolist()]
-    faults = [(read.recording.place(read.kept[i]), f"a gap of {duration:.4g} s follows; allowed: {longest:g} s (--max-gap)")
-              for i, duration in gaps if duration > longest]
+    faults = [(read.recording.place(read.kept[i]), f"a gap of {intervals[i]:.4g} s follows; allowed: {longest:g} s (--max-gap)")
+              for i in np.flatnonzero(intervals > longest).tolist()]
     if faults:
         raise Faults(faults[:MOST_FAULTS])
-    return gaps
+    return [(i, float(intervals[i])) for i in np.flatnonzero(intervals >= LONG_INTERVALS * clock.interval_median).tolist()]
 
 
 def resolution_of(values):
