@@ -127,6 +127,11 @@ void AtomicFile::discard() noexcept {
 }
 
 void write_file_atomically(const fs::path& target, std::string_view contents) {
+  try {
+    remove_stale_temporaries(target.parent_path().empty() ? "." : target.parent_path());
+  } catch (const IoError&) {
+    // A folder that may be written but not listed.
+  }
   AtomicFile file(target);
   file.append(contents);
   file.commit();

@@ -76,7 +76,7 @@ class AtomicFile {
   std::error_code error_;
 };
 
-/// The whole contents at once. Throws IoError.
+/// The whole contents at once, after remove_stale_temporaries. Throws IoError.
 void write_file_atomically(const std::filesystem::path& target, std::string_view contents);
 
 /// Removes the temporaries of AtomicFile that killed processes left in `directory` and returns how many. Temporaries

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <nlohmann/json.hpp>
 
 #include "results/io/atomic_file.hpp"
@@ -103,21 +104,25 @@ void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& j
     rows.set_failed(run);
     if (!report.failed || run < report.failed->run) report.failed = FailedRun{run, problem};
   };
+  std::exception_ptr cannot_write;  ///< further runs could not be kept either; --resume goes on
   const auto next = [&, run = runs.begin()]() mutable -> std::optional<std::size_t> {
     while (run != runs.end() && rows.has(*run)) ++run;
-    return run == runs.end() || StopSignal::received() != 0 ? std::nullopt : std::optional(*run++);
+    return run == runs.end() || cannot_write || StopSignal::received() != 0 ? std::nullopt : std::optional(*run++);
   };
   const auto work = [&](std::size_t run) -> Delivery {
     try {
       return [&deliver, run, finished = compute(plan, options, run)] { deliver(run, finished); };
     } catch (const Stopped&) {
       return {};  // --resume computes it
+    } catch (const IoError&) {
+      return [&cannot_write, error = std::current_exception()] { cannot_write = error; };
     } catch (const std::exception& error) {
       return [&deliver_failure, run, problem = std::string(error.what())] { deliver_failure(run, problem); };
     }
   };
   parallel_for(next, options.jobs, work);
   journal.flush();
+  if (cannot_write) std::rethrow_exception(cannot_write);
   report.done = rows.count();
   if (report.done < rows.size()) report.signal = StopSignal::received();
 }

@@ -2,6 +2,7 @@
 long."""
 import argparse
 import difflib
+import fcntl
 import os
 import sys
 import threading
@@ -39,8 +40,11 @@ def write(file, data):
         file.parent.mkdir(parents=True, exist_ok=True)
         scratch = file.with_name(f".{file.name}.{os.getpid()}.tmp")
         try:
-            scratch.write_bytes(data if isinstance(data, bytes) else data.encode())
-            scratch.replace(file)
+            with scratch.open("wb") as open_scratch:
+                fcntl.flock(open_scratch, fcntl.LOCK_EX)  # or the program takes it for one that a killed process has left
+                open_scratch.write(data if isinstance(data, bytes) else data.encode())
+                open_scratch.flush()
+                scratch.replace(file)
         finally:
             scratch.unlink(missing_ok=True)
     except OSError as error:

@@ -41,9 +41,9 @@ def report(words):
     file = options.out or common_folder(options.runs) / "report.html"
     if file.suffix not in (".html", ".htm"):
         raise InputError(f"--out {file}: got \"{file.suffix}\"; allowed: .html")
-    write(file, page.encode())
+    write(file, page.encode(errors="replace"))  # a path need not be UTF-8
     if not options.quiet:
-        print(f"page of {len(runs)} run{'s' if len(runs) > 1 else ''} in {file}, {len(page.encode()) / 1e6:.1f} MB")
+        print(f"page of {len(runs)} run{'s' if len(runs) > 1 else ''} in {file}, {file.stat().st_size / 1e6:.1f} MB")
 
 
 def sections(runs, names, words):

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <fstream>
 
 #include "algorithms/registry.hpp"
 #include "results/summary/outcome_names.hpp"
@@ -41,6 +42,21 @@ class PegSweep : public testing::Test {
 };
 
 class SweepCommand : public PegSweep {};
+
+/// A disk that is full, as far as the sweep can see: a file stands where the folder of a run should be.
+TEST_F(SweepCommand, StartsNoFurtherRunsWhereTheyCannotBeKept) {
+  fs::create_directories(directory_ / "a" / "runs");
+  std::ofstream(directory_ / "a" / "runs" / "000000") << "in the way";
+  const ProgramRun stopped = sweep("a", {"--keep-runs", "--jobs", "1"});
+  EXPECT_EQ(stopped.status, 1);
+  EXPECT_NE(stopped.err.find("000000"), std::string::npos) << stopped.err;
+  EXPECT_FALSE(fs::exists(directory_ / "a" / "sweep.csv"));
+  EXPECT_FALSE(fs::exists(directory_ / "a" / "runs" / "000001"));
+  fs::remove(directory_ / "a" / "runs" / "000000");
+  EXPECT_EQ(sweep("a", {"--keep-runs", "--resume"}).status, 0);
+  sweep("b");
+  EXPECT_EQ(table("a"), table("b"));
+}
 
 TEST_F(SweepCommand, HasTheNumbersOfTheRunsAlone) {
   const ProgramRun run = sweep("a");
