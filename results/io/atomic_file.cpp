@@ -67,6 +67,14 @@ AtomicFile::AtomicFile(fs::path target)
   }
 }
 
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
+    : target_(std::move(other.target_)),
+      temporary_(std::move(other.temporary_)),
+      buffer_(std::move(other.buffer_)),
+      used_(other.used_),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      error_(other.error_) {}
+
 AtomicFile::~AtomicFile() {
   if (descriptor_ >= 0) discard();
 }
@@ -108,11 +116,24 @@ void AtomicFile::complete() {
   throw_error();
 }
 
+std::error_code AtomicFile::rename() {
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) return last_error();
+  ::close(std::exchange(descriptor_, -1));
+  return {};
+}
+
 void AtomicFile::commit() {
   complete();
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) error_ = last_error();
+  error_ = rename();
   throw_error();
-  ::close(std::exchange(descriptor_, -1));
+}
+
+void AtomicFile::commit(FileSet* together) {
+  if (together == nullptr) {
+    commit();
+  } else {
+    together->take(std::move(*this));
+  }
 }
 
 void AtomicFile::throw_error() {
@@ -124,6 +145,39 @@ void AtomicFile::throw_error() {
 void AtomicFile::discard() noexcept {
   ::unlink(temporary_.c_str());
   ::close(std::exchange(descriptor_, -1));
+}
+
+void FileSet::write(const fs::path& target, std::string_view contents) {
+  files_.emplace_back(target).append(contents);
+}
+
+void FileSet::commit() {
+  for (AtomicFile& file : files_) file.complete();
+  // Earlier files step aside under temporary names, so that they can come back.
+  struct Aside {
+    fs::path name, place;
+  };
+  std::vector<Aside> aside;
+  std::size_t placed = 0;
+  const auto undo_and_throw = [&](const fs::path& at, const std::error_code& error) {
+    while (placed > 0) ::unlink(files_[--placed].target().c_str());
+    for (auto file = aside.rbegin(); file != aside.rend(); ++file) ::rename(file->place.c_str(), file->name.c_str());
+    throw IoError("write", at, error);
+  };
+  const auto set_aside = [&](const fs::path& name) {
+    const fs::path place = temporary_name(name);
+    if (::rename(name.c_str(), place.c_str()) == 0) {
+      aside.push_back({name, place});
+    } else if (errno != ENOENT && errno != ENOTDIR) {
+      undo_and_throw(name, last_error());
+    }
+  };
+  for (const fs::path& name : removed_) set_aside(name);
+  for (const AtomicFile& file : files_) set_aside(file.target());
+  for (; placed < files_.size(); ++placed) {
+    if (const std::error_code error = files_[placed].rename(); error) undo_and_throw(files_[placed].target(), error);
+  }
+  for (const Aside& file : aside) ::unlink(file.place.c_str());
 }
 
 void write_file_atomically(const fs::path& target, std::string_view contents) {

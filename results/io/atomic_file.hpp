@@ -29,6 +29,8 @@ class IoError : public std::runtime_error {
   std::error_code reason_;
 };
 
+class FileSet;
+
 /// A file that appears under its final name complete or not at all.
 ///
 /// Bytes go to a hidden temporary of a random name in the same directory; `commit` gives it its final name. Several
@@ -44,8 +46,8 @@ class AtomicFile {
   explicit AtomicFile(std::filesystem::path target);
   /// Without `commit`: removes the temporary, leaves what is at the target.
   ~AtomicFile();
-  AtomicFile(const AtomicFile&) = delete;
-  AtomicFile& operator=(const AtomicFile&) = delete;
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile& operator=(AtomicFile&&) = delete;
 
   /// Adds bytes through a buffer of fixed size. Allocates nothing. The first error is kept for `commit`; bytes after it
   /// are dropped.
@@ -58,14 +60,19 @@ class AtomicFile {
   /// Completes the file and renames it; an existing target is replaced. Throws IoError as `complete`
   /// does. Call once, last.
   void commit();
+  /// Leaves that to a set of files, if there is one. Call once, last.
+  void commit(FileSet* together);
 
   /// False after the first error.
   bool good() const noexcept { return !error_; }
   const std::filesystem::path& target() const noexcept { return target_; }
 
  private:
+  friend FileSet;
+
   void flush() noexcept;
   void throw_error();
+  std::error_code rename();
   void discard() noexcept;
 
   std::filesystem::path target_;
@@ -74,6 +81,25 @@ class AtomicFile {
   std::size_t used_ = 0;
   int descriptor_ = -1;
   std::error_code error_;
+};
+
+/// Files that replace earlier ones together: when one of them cannot be written, all earlier ones stay. A killed
+/// process leaves a mixture if it dies between the first and the last renaming, which takes microseconds a file.
+class FileSet {
+ public:
+  /// The file gets its final name with the others.
+  void take(AtomicFile file) { files_.push_back(std::move(file)); }
+  /// The whole contents of a file. Throws IoError.
+  void write(const std::filesystem::path& target, std::string_view contents);
+  /// The file, if there is one, goes with the others' replacement. Files go in this order and before any comes, which
+  /// come in the order in which they were taken.
+  void remove(std::filesystem::path file) { removed_.push_back(std::move(file)); }
+  /// Throws IoError, after which everything is as it was. Call once, last.
+  void commit();
+
+ private:
+  std::vector<AtomicFile> files_;
+  std::vector<std::filesystem::path> removed_;
 };
 
 /// The whole contents at once, after remove_stale_temporaries. Throws IoError.

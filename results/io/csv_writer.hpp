@@ -40,10 +40,9 @@ class CsvWriter {
   /// Writes a row of cells whose types are known only at run time.
   void cells(std::span<const Cell> cells);
 
-  /// As AtomicFile::complete.
-  void complete() { file_.complete(); }
-  /// Puts the table under its final name. Throws IoError, also for the errors of earlier rows.
-  void finish() { file_.commit(); }
+  /// Puts the table under its final name, or leaves that to a set of files. Throws IoError, also for the errors of
+  /// earlier rows.
+  void finish(FileSet* together = nullptr) { file_.commit(together); }
 
  private:
   void put(double value) noexcept;
@@ -63,9 +62,10 @@ class CsvWriter {
   std::size_t cells_ = 0;  ///< of the row being written
 };
 
-/// Writes a table of fields, a line for each row. Throws IoError.
+/// Writes a table of fields, a line for each row; `together` as in CsvWriter::finish. Throws IoError.
 template <class Row, std::size_t size>
-void write_csv(const std::filesystem::path& file, const Field<Row> (&fields)[size], const std::vector<Row>& rows) {
+void write_csv(const std::filesystem::path& file, const Field<Row> (&fields)[size], const std::vector<Row>& rows,
+               FileSet* together = nullptr) {
   CsvWriter csv(file, columns_of(fields));
   std::vector<Cell> cells;
   for (const Row& row : rows) {
@@ -75,7 +75,7 @@ void write_csv(const std::filesystem::path& file, const Field<Row> (&fields)[siz
     }
     csv.cells(cells);
   }
-  csv.finish();
+  csv.finish(together);
 }
 
 }  // namespace hapbench

@@ -86,17 +86,13 @@ class TableWriter {
     }
   }
 
-  /// As AtomicFile::complete.
-  void complete() {
-    if (csv_) csv_->complete();
-  }
-
-  /// Puts a file under its final name. Throws IoError, also for the errors of earlier rows, or std::bad_alloc.
-  void finish() {
+  /// Puts a file under its final name, or leaves that to a set of files. Throws IoError, also for the errors of earlier
+  /// rows, or std::bad_alloc.
+  void finish(FileSet* together = nullptr) {
     if (memory_ != nullptr) {
       memory_->require_complete();
     } else {
-      csv_->finish();
+      csv_->finish(together);
     }
   }
 

@@ -311,7 +311,7 @@ RowSource force_reference_rows(const ForceFidelityObserver& observer) {
   return {.columns = kForceReferenceColumns, .write = write};
 }
 
-void write_target_table(TableTarget target, const std::vector<TargetRow>& rows) {
+void write_target_table(TableTarget target, const std::vector<TargetRow>& rows, FileSet* together) {
   TableWriter table(std::move(target), kTargetColumns);
   for (const TargetRow& row : rows) {
     const bool any = row.rows_on_target > 0;
@@ -319,7 +319,7 @@ void write_target_table(TableTarget target, const std::vector<TargetRow>& rows) 
               std::uint64_t{row.result.place}, std::uint64_t{row.result.removed}, row.result.time, row.rows_on_target,
               any ? std::optional(row.model_force) : std::nullopt, any ? std::optional(row.speed) : std::nullopt);
   }
-  table.finish();
+  table.finish(together);
 }
 
 }  // namespace hapbench

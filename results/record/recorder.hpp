@@ -37,10 +37,9 @@ class Recorder final : public Observer {
   bool wants_springs() const noexcept override { return source_.wants_springs; }
   void on_step(const StepRecord& record) noexcept override;
 
-  /// As AtomicFile::complete.
-  void complete() { writer_.complete(); }
-  /// After the run: puts the file under its final name. Throws IoError, also for the errors of earlier rows.
-  void finish() { writer_.finish(); }
+  /// After the run: puts the file under its final name, or leaves that to a set of files. Throws IoError, also for the
+  /// errors of earlier rows.
+  void finish(FileSet* together = nullptr) { writer_.finish(together); }
 
  private:
   RowSource source_;
@@ -87,7 +86,7 @@ RowSource ideal_trajectory_rows(const IdealTrajectoryObserver& observer);
 RowSource force_reference_rows(const ForceFidelityObserver& observer);
 
 /// targets.csv: the result of every target of every subject's trials, in that order. Throws IoError.
-void write_target_table(TableTarget target, const std::vector<TargetRow>& rows);
+void write_target_table(TableTarget target, const std::vector<TargetRow>& rows, FileSet* together = nullptr);
 
 /// The tables above with all their columns.
 extern const ResultTable kTrajectoryTable, kContactTable, kStiffnessTable, kRatioTable, kEnergyTable,

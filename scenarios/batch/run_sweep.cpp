@@ -168,14 +168,17 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
   compute_rows(plan, options, journal, rows, report);
   if (report.signal != 0) return report;
   report.table = options.directory / (stem + ".csv");
-  write_file_atomically(options.directory / (stem + ".json"), json_text(sweep_description(plan, options.part())));
-  write_sweep_table(report.table, plan, options.shard, [&](std::size_t run) {
+  FileSet files;
+  files.write(options.directory / (stem + ".json"), json_text(sweep_description(plan, options.part())));
+  const auto row_of = [&](std::size_t run) {
     std::string text = rows.row(run, journal);
     SweepRow row = parse_row(plan, text).value();
     report.counts.add(row);
     if (rows.size() <= SweepReport::kMostRows) report.rows.push_back(std::move(row));
     return text;
-  });
+  };
+  write_sweep_table(report.table, plan, options.shard, row_of, files);
+  files.commit();
   journal.remove();
   return report;
 }

@@ -279,13 +279,13 @@ bool ShardRows::read_piece() {
 // ---- Tables
 
 void write_sweep_table(const fs::path& file, const SweepPlan& plan, const std::optional<Shard>& shard,
-                       const std::function<std::string(std::size_t)>& row) {
+                       const std::function<std::string(std::size_t)>& row, FileSet& files) {
   const Shard part = shard.value_or(Shard{});
   AtomicFile out(file);
   if (shard) append_line(out, title_line(part, plan.points.size(), plan.definition));
   append_line(out, sweep_header(plan));
   for (std::size_t run = part.index; run < plan.points.size(); run += part.count) append_line(out, row(run));
-  out.commit();
+  files.take(std::move(out));
 }
 
 Json sweep_description(const SweepPlan& plan, const Shard& shard) {
@@ -328,13 +328,15 @@ std::size_t merge_shard_tables(const fs::path& file, std::span<const fs::path> f
   append_line(out, shards[0].title().header);
   for (std::size_t run = 0; run < titles[0].runs; ++run) append_line(out, shards[run % shards.size()].next().value());
   for (ShardRows& shard : shards) shard.next();  // refuses anything after the last row
+  FileSet both;
+  both.take(std::move(out));
   const fs::path description = description_of(titles[0].file);
   if (std::error_code ignored; fs::is_regular_file(description, ignored)) {
     Json json = parse_json(read_text_file(description, kLargestJsonFile));
     json[kShardField] = shard_text({});
-    write_file_atomically(description_of(file), json_text(json));
+    both.write(description_of(file), json_text(json));
   }
-  out.commit();
+  both.commit();
   return titles[0].runs;
 }
 

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "results/io/atomic_file.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/batch/sweep_plan.hpp"
 
@@ -121,10 +122,10 @@ class ShardRows {
   std::size_t run_ = 0;  ///< of the next row
 };
 
-/// Writes the table of a sweep, or of a shard if one is given. `row` is called for the shard's runs in order. Throws
-/// IoError.
+/// Adds the table of a sweep, or of a shard if one is given, to the files. `row` is called for the shard's runs in
+/// order. Throws IoError.
 void write_sweep_table(const std::filesystem::path& file, const SweepPlan& plan, const std::optional<Shard>& shard,
-                       const std::function<std::string(std::size_t run)>& row);
+                       const std::function<std::string(std::size_t run)>& row, FileSet& files);
 
 /// The JSON file beside a table, which says what the table is about.
 Json sweep_description(const SweepPlan& plan, const Shard& shard);

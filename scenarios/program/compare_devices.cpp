@@ -418,8 +418,10 @@ Json write(const fs::path& directory, const DeviceQuestion& question, const std:
     add_row(json.emplace_back(), kDeviceLimitFields, row);
     for (const JudgedValue& run : row.limit().runs) runs.push_back({row, run});
   }
-  write_csv(directory / "device_limits.csv", kDeviceLimitFields, rows);
-  write_csv(directory / "device_runs.csv", kDeviceRunFields, runs);
+  FileSet files;
+  write_csv(directory / "device_limits.csv", kDeviceLimitFields, rows, &files);
+  write_csv(directory / "device_runs.csv", kDeviceRunFields, runs, &files);
+  files.commit();
   return {{"most_vibration_m_per_s", question.most_vibration},
           {"resolution", question.resolution},
           {"reference", {{"scenario", answers.scene_name(0)}, {"algorithm", question.algorithms.front()}}},

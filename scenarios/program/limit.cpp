@@ -230,14 +230,16 @@ std::vector<LimitRow> rows_of(const std::vector<FieldLimit>& limits, const Limit
 }
 
 void write_limits(const fs::path& directory, const std::vector<FieldLimit>& limits, const LimitQuestion& question) {
-  write_csv(directory / "limit.csv", kLimitFields, rows_of(limits, question));
+  FileSet files;
+  write_csv(directory / "limit.csv", kLimitFields, rows_of(limits, question), &files);
   CsvWriter runs(directory / "limit_runs.csv",
                  fmt::format(fmt::runtime(header_of(kLimitRunColumns)), fmt::arg("field", question.path)));
   for (const FieldLimit& limit : limits) {
     for (const JudgedValue& run : limit.runs)
       runs.row(std::string_view(limit.algorithm), run.value, run_verdict_name(run.verdict));
   }
-  runs.finish();
+  runs.finish(&files);
+  files.commit();
 }
 
 Json limits_json(const std::vector<FieldLimit>& limits, const LimitQuestion& question, bool moved) {

@@ -55,8 +55,10 @@ void write_study(const fs::path& directory, const PrecisionStudy& study, const P
     errors += "\n";
     times += fmt::format("{},{}\n", row.setting, row.seconds);
   }
-  write_file_atomically(directory / fmt::format("precision_{}.csv", study.name), errors);
-  write_file_atomically(directory / fmt::format("precision_{}_timing.csv", study.name), times);
+  FileSet files;
+  files.write(directory / fmt::format("precision_{}.csv", study.name), errors);
+  files.write(directory / fmt::format("precision_{}_timing.csv", study.name), times);
+  files.commit();
 }
 
 std::string study_text(const PrecisionStudy& study, const PrecisionResult& result) {

@@ -189,9 +189,11 @@ SampledRobustness sample_robustness(const ReproduceOptions& options, const Robus
       some ? parse_json(read_text_file(*directory / "robustness.json", kLargestJsonFile)) : Json::object();
   const Json record = robustness_json(plan, on_record, robustness, before);
   if (directory) {
-    if (!some) write_file_atomically(*directory / "robustness.csv", robustness_table(plan, report.verdicts));
-    write_file_atomically(*directory / "robustness.json", json_text(record));
-    write_file_atomically(*directory / "robustness.md", robustness_markdown(record));
+    FileSet files;
+    if (!some) files.write(*directory / "robustness.csv", robustness_table(plan, report.verdicts));
+    files.write(*directory / "robustness.json", json_text(record));
+    files.write(*directory / "robustness.md", robustness_markdown(record));
+    files.commit();
   }
   return {record};
 }
@@ -226,8 +228,10 @@ int infer_subjects(const ReproduceOptions& options, PublishedNumbers published) 
     return kStopped + report.signal;
   }
   const Json json = subjects_json(plan, report.samples, options.jobs);
-  write_file_atomically(out / "subjects.csv", subjects_table(plan, report.samples));
-  write_file_atomically(out / "subjects.json", json_text(json));
+  FileSet files;
+  files.write(out / "subjects.csv", subjects_table(plan, report.samples));
+  files.write(out / "subjects.json", json_text(json));
+  files.commit();
   print(options.output, subjects_text(json) + fmt::format("\nsamples and posterior in {}\n", out.string()), json);
   return kSuccess;
 }
@@ -268,9 +272,11 @@ int reproduce(const ReproduceOptions& options) {
   text += table.text();
   if (!options.only.empty()) text += claims_text(judged);
   if (ledger) {
-    write_file_atomically(*ledger, json_text(json));
-    write_file_atomically(fs::path(*ledger).replace_extension(".md"), ledger_markdown(json));
-    write_file_atomically(ledger->parent_path() / "choices.md", choices.markdown());
+    FileSet files;
+    files.write(*ledger, json_text(json));
+    files.write(fs::path(*ledger).replace_extension(".md"), ledger_markdown(json));
+    files.write(ledger->parent_path() / "choices.md", choices.markdown());
+    files.commit();
     text += fmt::format("\nledger in {}\n", ledger->string());
   } else {
     text += "\nno ledger is written of single claims without --ledger FILE\n";

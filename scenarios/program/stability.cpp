@@ -122,10 +122,11 @@ int limits(const StabilityOptions& options) {
     const LoadedScenario& loaded = scenarios[i];
     const std::vector<StabilityLimit>& limits = all_limits[i];
     const fs::path& directory = directories[i];
-    write_csv(directory / "limits.csv", kStabilityLimitFields, limits);
-    write_csv(directory / "root_locus.csv", kRootLocusFields, root_locus(loaded.scenario, limits));
-    write_file_atomically(directory / "scenario.effective.json",
-                          json_text(effective_scenario(loaded.scenario, directory)));
+    FileSet files;
+    write_csv(directory / "limits.csv", kStabilityLimitFields, limits, &files);
+    write_csv(directory / "root_locus.csv", kRootLocusFields, root_locus(loaded.scenario, limits), &files);
+    files.write(directory / "scenario.effective.json", json_text(effective_scenario(loaded.scenario, directory)));
+    files.commit();
     text += limits_text(loaded, limits) + fmt::format("\nroot locus in {}\n", (directory / "root_locus.csv").string());
     json.push_back(limits_json(loaded, limits));
   }

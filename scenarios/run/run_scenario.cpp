@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <deque>
 #include <nlohmann/json.hpp>
 
 #include "algorithms/registry.hpp"
@@ -245,17 +244,28 @@ void create_output(NewDirectories& directories, const fs::path& directory) {
   remove_stale_temporaries(directory);
 }
 
-/// Removes optional files that an earlier run with other settings may have left: they would not belong to this run.
-void remove_files_of_earlier_runs(const fs::path& directory) {
+std::vector<fs::path> trial_directories(const fs::path& directory) {
   std::error_code ignored;
-  std::vector<std::string> files = {"summary.json", "columns.json", kTargetTable.file, "timing.json"};
-  for (const ResultTable& table : record_tables()) files.emplace_back(table.file);
-  for (const std::string& name : files) fs::remove(directory / name, ignored);
+  std::vector<fs::path> found;
   for (const auto& entry : fs::directory_iterator(directory, ignored)) {
-    if (!entry.is_directory(ignored) || !entry.path().filename().string().starts_with(kTrialDirectory)) continue;
-    remove_files_of_earlier_runs(entry.path());
-    fs::remove(entry.path(), ignored);  // unless somebody keeps other files there
+    if (entry.is_directory(ignored) && entry.path().filename().string().starts_with(kTrialDirectory))
+      found.push_back(entry.path());
   }
+  return found;
+}
+
+/// Removes optional files that an earlier run with other settings may have left: they would not belong to this run.
+void remove_earlier_run(const fs::path& directory, FileSet& files) {
+  for (const char* name : {"summary.json", "columns.json", kTargetTable.file, "timing.json"})
+    files.remove(directory / name);
+  for (const ResultTable& table : record_tables()) files.remove(directory / table.file);
+  for (const fs::path& trial : trial_directories(directory)) remove_earlier_run(trial, files);
+}
+
+/// Those that this run has not written to, unless somebody keeps other files there.
+void remove_empty_trials(const fs::path& directory) {
+  std::error_code ignored;
+  for (const fs::path& trial : trial_directories(directory)) fs::remove(trial, ignored);
 }
 
 /// The result of all trials: the outcome is the worst of them.
@@ -323,9 +333,9 @@ void add_step_times(const std::vector<TrialResult>& trials, RunTiming& timing) {
   if (all.size() >= 100) timing.step_p99 = 1e-9 * static_cast<double>(latency.p99);
 }
 
-void finish_recorders(const std::vector<TrialResult>& trials) {
+void finish_recorders(const std::vector<TrialResult>& trials, FileSet* files) {
   for (const TrialResult& trial : trials) {
-    for (const auto& recorder : trial.recorders) recorder->finish();
+    for (const auto& recorder : trial.recorders) recorder->finish(files);
   }
 }
 
@@ -334,7 +344,7 @@ bool has_targets(const RunReport& report) {
 }
 
 void finish_tables(RunTables& tables, const RunReport& report, const std::vector<TrialResult>& trials) {
-  finish_recorders(trials);
+  finish_recorders(trials, nullptr);
   if (has_targets(report)) write_target_table(&tables.targets.emplace(kTargetTable.columns), report.targets);
 }
 
@@ -342,24 +352,18 @@ void write_results(const fs::path& directory, const Scenario& scenario, const Ru
                    const std::vector<TrialResult>& trials) {
   std::vector<ResultTable> tables = record_tables(scenario.record);
   if (has_targets(report)) tables.push_back(kTargetTable);
-  std::deque<AtomicFile> files;
-  const auto add = [&](const char* name, const std::string& text) {
-    files.emplace_back(directory / name).append(text);
-    files.back().complete();
-  };
+  FileSet files;
+  remove_earlier_run(directory, files);
+  finish_recorders(trials, &files);
+  if (has_targets(report)) write_target_table(directory / kTargetTable.file, report.targets, &files);
+  const auto add = [&](const char* name, const std::string& text) { files.write(directory / name, text); };
   add("scenario.effective.json", json_text(effective_scenario(scenario, directory)));
   add("columns.json", json_text(columns_json(tables, metric_list(report.summary))));
   if (scenario.record.timing) add("timing.json", timing_text(report.timing, instruction_set(), provenance()));
+  // The summary, which says that a run is there, is the first to go and the last to come.
   add("summary.json", summary_text(report.summary));
-  for (const TrialResult& trial : trials) {
-    for (const auto& recorder : trial.recorders) recorder->complete();
-  }
-  // All is on the disk under temporary names: only now do earlier results give way. The summary, which says that a run
-  // is there, is the first to go and the last to come.
-  remove_files_of_earlier_runs(directory);
-  finish_recorders(trials);
-  if (has_targets(report)) write_target_table(directory / kTargetTable.file, report.targets);
-  for (AtomicFile& file : files) file.commit();
+  files.commit();
+  remove_empty_trials(directory);
 }
 
 }  // namespace
@@ -368,8 +372,11 @@ void remove_run(const fs::path& directory) {
   std::error_code ignored;
   if (!fs::is_directory(directory, ignored)) return;
   remove_stale_temporaries(directory);
-  remove_files_of_earlier_runs(directory);
-  fs::remove(directory / "scenario.effective.json", ignored);
+  FileSet files;
+  remove_earlier_run(directory, files);
+  files.remove(directory / "scenario.effective.json");
+  files.commit();
+  remove_empty_trials(directory);
 }
 
 RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,

@@ -198,6 +198,49 @@ void kill_a_writer_of(const std::filesystem::path& target) {
   ASSERT_TRUE(WIFSIGNALED(status));
 }
 
+TEST(FileSet, ReplacesFilesTogether) {
+  const TemporaryDirectory dir;
+  write_plainly(dir / "a", "old a");
+  write_plainly(dir / "gone", "old");
+  FileSet files;
+  files.remove(dir / "gone");
+  files.remove(dir / "never there");
+  files.write(dir / "a", "new a");
+  files.write(dir / "b", "new b");
+  EXPECT_EQ(test::read_file(dir / "a"), "old a");
+  files.commit();
+  EXPECT_EQ(dir.entries(), (Names{"a", "b"}));
+  EXPECT_EQ(test::read_file(dir / "a"), "new a");
+}
+
+TEST(FileSet, LeavesEverythingAsItWasWhenAFileCannotComeIn) {
+  const TemporaryDirectory dir;
+  write_plainly(dir / "a", "old a");
+  write_plainly(dir / "gone", "still here");
+  std::filesystem::create_directory(dir / "later");
+  FileSet files;
+  files.remove(dir / "gone");
+  files.write(dir / "a", "new a");
+  files.write(dir / "b", "new b");
+  files.write(dir / "later/c", "new c");
+  std::filesystem::remove_all(dir / "later");
+  try {
+    files.commit();
+    FAIL();
+  } catch (const IoError& error) {
+    EXPECT_EQ(error.path(), dir / "later/c");
+  }
+  EXPECT_EQ(test::read_file(dir / "a"), "old a");
+  EXPECT_EQ(test::read_file(dir / "gone"), "still here");
+  EXPECT_FALSE(std::filesystem::exists(dir / "b"));
+}
+
+TEST(FileSet, LeavesNothingWhenItIsNotCommitted) {
+  const TemporaryDirectory dir;
+  FileSet().write(dir / "a", "never");
+  EXPECT_EQ(dir.entries(), Names{});
+}
+
 TEST(StaleTemporaries, OfAKilledProcessAreRemoved) {
   const TemporaryDirectory dir;
   kill_a_writer_of(dir / "trajectory.csv");
