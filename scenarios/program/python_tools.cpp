@@ -23,6 +23,7 @@ struct PictureOptions {
   std::vector<std::string> runs;
   std::string quantities;
   std::string metric;
+  std::vector<std::string> where;
   std::string from;
   std::string to;
   std::string out;
@@ -68,6 +69,7 @@ int become(const std::string& tool, const PictureOptions& options) {
   ToolCommand command(tool, options.quiet);
   command.add("--y", options.quantities);
   command.add("--metric", options.metric);
+  for (const std::string& condition : options.where) command.add("--where", condition);
   command.add("--from", options.from);
   command.add("--to", options.to);
   command.add("--out", options.out);
@@ -117,6 +119,8 @@ void add_plot(CommandLine& line) {
              "FILE.svg, .png or .pdf (default: plot.svg in the folder of the runs)");
   command.add("--y", options.quantities, "the quantities to draw, separated by commas (below)");
   command.add("--metric", options.metric, "for a sweep: the column of sweep.csv to draw");
+  command.add("--where", options.where, "for a sweep: only runs with this, as 'inside_max_m<3e-4' (sweep --help)")
+      .repeatable();
   command.add("--from", options.from, "time from which to draw [s]");
   command.add("--to", options.to, "time up to which to draw [s]");
   command.flag("--no-sketch", options.no_sketch, "print no sketch, only write the picture");
@@ -129,6 +133,8 @@ void add_plot(CommandLine& line) {
       "algorithm have colours of their own. Triangles mark the first touch. A peak of more than three times the range "
       "of settled contact is cut off, and its value written there. Of long runs the least and the greatest value for "
       "each pixel are drawn, so that no spike is lost.\n"
+      "Of a sampled sweep the metric is drawn over each field, with how much each matters: Spearman's rank correlation and "
+      "the first-order Sobol index.\n"
       "  hapbench plot results/out/compare_drag --y force,depth --out drag.png");
 }
 

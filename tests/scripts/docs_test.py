@@ -101,7 +101,8 @@ class Bench:
         given = list(command.words[1:])
         if given[0] == "sweep" and "--slurm" in given:
             given.append("--dry-run")
-        shorter = [] if given[0] == "sweep" and {"--row", "--status"} & set(given) else SHORTER.get(given[0], [])
+        runs = given[0] != "sweep" or "--vary" in given and "--row" not in given
+        shorter = SHORTER.get(given[0], []) if runs else []
         found = []
         for word in given:
             found += sorted(map(str, self.matches(word))) if "*" in word and "=" not in word else [word]

@@ -15,6 +15,8 @@ from hapbench.columns import header, read_columns
 from hapbench_pictures.given import given_runs, labels, named
 from hapbench_pictures.panels import looks
 from hapbench_pictures.plot import legend_columns, legend_of, plot
+from hapbench_pictures.sensitivity import adjusted_share, sensitivity
+from hapbench_pictures.sweep_plot import Sweep
 
 setUpModule = make_runs
 
@@ -155,6 +157,78 @@ class Plot(Given):
         picture = (folder / "plot.svg").read_text()
         for text in ("diverges", "no value"):
             self.assertIn(text, picture)
+
+    def test_what_matters_in_a_sample_of_three_fields(self):
+        """The place of a tool that is led along x = a + b t: shares of the variance in closed form, through a sweep's table."""
+        scene, folder, steps, period = self.root / "led.json", self.root / "led", 101, 1e-3
+        scene.write_text(json.dumps({
+            "time": {"step_s": period, "steps": steps}, "environment": {"type": "plane", "size_m": 0.01, "spacing_m": 0.001},
+            "motion": {"position": {"type": "prescribed", "x_m": {"type": "ramp", "start": 0, "rate_per_s": 0}, "y_m": 0, "z_m": 0.05}},
+            "expect": {"outcome": "no_contact"}}))
+        hapbench("sweep", scene, "--vary", "motion.position.x_m.start=0:0.01", "--vary", "motion.position.x_m.rate_per_s=0.1:0.3",
+                 "--vary", "rendering.stiffness_N_per_m=1e3:1e5:log", "--sample", "lhs:200", "--out", folder, "--quiet")
+        said = hapbench("plot", folder, "--metric", "final_position_m.x")
+        found = {line.split()[0]: [float(word) for word in line.split()[1:]] for line in said.splitlines()
+                 if line.startswith(("motion.", "rendering.")) and len(line.split()) == 4}
+        # Of numbers equally spread over a range of width w the variance is w^2 / 12.
+        variance = np.array([0.01, 0.2 * (steps - 1) * period]) ** 2 / 12
+        for name, truth in zip(("start", "rate_per_s"), variance / variance.sum()):
+            rank, share, error = found[f"motion.position.x_m.{name}"]
+            # The jackknife's standard error is too large for a Latin hypercube, and 0.005 is what rounding may add.
+            self.assertLess(abs(share - truth), 2 * error + 0.005, name)
+            self.assertLess(error, 0.07)
+            # Of a sum of two equally spread numbers the ranks go with the larger one more than with the smaller one.
+            self.assertAlmostEqual(rank, np.sqrt(truth), delta=0.1)
+        rank, share, error = found["rendering.stiffness_N_per_m"]
+        self.assertLess(abs(share), 2 * error + 0.005)
+        self.assertLess(abs(rank), 3 / np.sqrt(200))
+        self.assertIn("final position m.x over stiffness K [N/m]", said)
+        self.assertRegex(said, r" 10\d\d \.\.\. \(logarithmic\) 9\.\d+e\+04")
+        picture = (folder / "plot.svg").read_text()
+        for text in ("start", "stiffness K [N/m]", "S\u2081"):
+            self.assertIn(text, picture)
+        some = hapbench("plot", folder, "--metric", "final_position_m.x", "--where", "motion.position.x_m.start<0.005")
+        self.assertIn(" over 100 runs", " ".join(some.split()))
+
+    def test_first_order_indices_of_a_function_that_is_known(self):
+        """Ishigami's, whose third variable acts together with the first alone; the last one's place is the logarithm's, and a
+        list of texts adds to it. Analytic variances: Sobol and Levitan 1999."""
+        random, n, pi = np.random.default_rng(7), 1000, np.pi
+        x = random.uniform(-pi, pi, (3, n))
+        texts = [["low", "middle", "high"][i] for i in random.integers(0, 3, n)]
+        y = np.sin(x[0]) + 7 * np.sin(x[1]) ** 2 + 0.1 * x[2] ** 4 * np.sin(x[0]) + np.array([{"low": -2, "middle": 0, "high": 2}[t] for t in texts])
+        own = [0.5 * (1 + 0.1 * pi ** 4 / 5) ** 2, 49 / 8, 0.0, 8 / 3]
+        total = sum(own) + 0.01 * pi ** 8 * (1 / 18 - 1 / 50)
+        columns = [(x[0], (x[0] + pi) / (2 * pi)), (x[1], (x[1] + pi) / (2 * pi)), (x[2], (x[2] + pi) / (2 * pi)), (texts, None)]
+        for (column, place), variance in zip(columns, own):
+            found = sensitivity(column, place, y)
+            # Six cosines leave 0.1 % of sin(x) out. Of independent points the jackknife's standard error is about the true one.
+            self.assertLess(abs(found.first_order - variance / total), 3 * found.error + 1e-3)
+            self.assertLess(found.error, 0.035)
+        # The jackknife in closed form is the one by leaving out, row by row.
+        some = y[:40]
+        functions = np.column_stack([np.ones(40), np.cos(pi * np.outer(columns[0][1][:40], [1, 2]))])
+        share, error = adjusted_share(functions, some)
+        left = [adjusted_share(np.delete(functions, i, 0), np.delete(some, i))[0] for i in range(40)]
+        self.assertAlmostEqual(error, np.sqrt(39 / 40 * ((left - np.mean(left)) ** 2).sum()), places=12)
+        slope = np.linalg.lstsq(functions, some, rcond=None)[0]
+        plain = 1 - ((some - functions @ slope) ** 2).sum() / ((some - some.mean()) ** 2).sum()
+        self.assertAlmostEqual(share, 1 - (1 - plain) * 39 / 37, places=12)
+        self.assertIsNone(sensitivity(texts[:10], None, y[:10]))
+        self.assertIsNone(sensitivity(x[0], columns[0][1], np.ones(n)))
+
+    def test_axes_are_as_they_were_varied(self):
+        for values, logarithmic in (("1e3:1e5:5", False), ("1e3:4e3:5:log", True), ("1000,2000,3000", False), ("10,100,50000", True)):
+            folder = self.root / "varied"
+            hapbench("sweep", "springs_limited_mean", "--vary", f"rendering.stiffness_N_per_m={values}", "--set", "time.steps=20", "--set",
+                     "expect={}", "--out", folder, "--quiet")
+            self.assertEqual(Sweep(folder, None).is_logarithmic(0), logarithmic, values)
+        hapbench("sweep", "springs_limited_mean", "--vary", "rendering.stiffness_N_per_m=1e3:1e5", "--sample", "random:9", "--set",
+                 "time.steps=20", "--set", "expect={}", "--out", folder, "--quiet")
+        self.assertFalse(Sweep(folder, None).is_logarithmic(0))
+        numbers = [float(line.split()[0]) for line in hapbench("plot", folder).splitlines()[1:10]]
+        self.assertEqual(numbers, sorted(numbers))
+        self.assertTrue(all(len(f"{number:.6g}") <= 8 for number in numbers), numbers)
 
     def test_maps_and_limits(self):
         maps, limit = self.root / "maps", self.root / "limit"

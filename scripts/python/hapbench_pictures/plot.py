@@ -31,6 +31,7 @@ def arguments(words):
     parser.add_argument("runs", nargs="+", metavar="RUN")
     parser.add_argument("--y", type=lambda text: [name.strip() for name in text.split(",") if name.strip()], default=[])
     parser.add_argument("--metric")
+    parser.add_argument("--where", action="append", default=[])
     parser.add_argument("--from", dest="start", metavar="T")
     parser.add_argument("--to", dest="end", metavar="T")
     parser.add_argument("--out", type=Path)
@@ -44,7 +45,7 @@ def plot(words):
     sweep = given_sweep(options.runs)
     study = given_study(options.runs)
     if study:
-        refuse(options, ("--y", "--metric", "--from", "--to"), f"{study} holds stability maps or limits; allowed for it: --out")
+        refuse(options, ("--y", "--metric", "--where", "--from", "--to"), f"{study} holds stability maps or limits; allowed for it: --out")
     folder = study.parent if study and study.is_file() else common_folder(options.runs)
     file = options.out or folder / "plot.svg"
     if file.suffix not in KINDS:
@@ -54,8 +55,8 @@ def plot(words):
         return
     if sweep:
         figure, lines = of_sweep(sweep, options)
-    elif options.metric:
-        raise InputError("--metric: is for a sweep's folder; allowed for runs: --y")
+    elif options.metric or options.where:
+        raise InputError(f"{'--metric' if options.metric else '--where'}: is for a sweep's folder; allowed for runs: --y")
     else:
         figure, lines = of_runs(options)
     for line in lines:
@@ -65,7 +66,7 @@ def plot(words):
 
 def refuse(options, names, why):
     """Options that what is drawn has no use for."""
-    given = {"--y": options.y, "--metric": options.metric, "--from": options.start, "--to": options.end}
+    given = {"--y": options.y, "--metric": options.metric, "--where": options.where, "--from": options.start, "--to": options.end}
     unused = next((name for name in names if given[name]), None)
     if unused:
         raise InputError(f"{unused}: {why}")
@@ -113,8 +114,8 @@ def of_runs(options):
 
 
 def of_sweep(folder, options):
-    refuse(options, ("--y", "--from", "--to"), f"{folder} is a sweep; allowed for it: --metric")
-    sweep = Sweep(folder, options.metric)
+    refuse(options, ("--y", "--from", "--to"), f"{folder} is a sweep; allowed for it: --metric, --where")
+    sweep = Sweep(folder, options.metric, options.where)
     return draw_sweep(sweep), [] if options.no_sketch or options.quiet else sketch_sweep(sweep, this_terminal())
 
 

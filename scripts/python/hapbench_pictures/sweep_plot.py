@@ -1,16 +1,24 @@
-"""A sweep's table as a picture: a metric over one varied field, or over two as curves or a heat map."""
+"""A sweep's table as a picture: a metric over one varied field; over two as curves or a heat map; of a sample, or over more
+fields, points over each of them, with how much each matters."""
+import operator
+import re
+import textwrap
+from dataclasses import replace
+
 import numpy as np
 from matplotlib import colors
 from matplotlib.patches import Patch, Rectangle
 
 from hapbench.columns import read_records
-from hapbench_figures.stability import edges, is_geometric
+from hapbench_figures.stability import edges
 from hapbench_command import nearest
 from hapbench_looks import look
 from hapbench_report.json_input import InputError, at, load_object
-from hapbench_style import SETTINGS, plt
+from hapbench_style import PETROL, SETTINGS, plt
 
 from .given import axis
+from .sensitivity import LEAST_ROWS, MOST_COSINES, sensitivity
+from .sketch import HEIGHT, MARGIN, Canvas
 
 USUAL = ("force_rms_above_30Hz_N", "force_max_N")
 FAILURES = ("diverges", "error")
@@ -21,18 +29,34 @@ MOST_TICKS = 12
 SHADES = {True: " ░▒▓█", False: " .:+#"}
 
 
+SIGNS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "=": operator.eq, "!=": operator.ne}
+PANELS_WIDE = 3
+
+
+def keeps(row, condition):
+    """Whether a row keeps a condition such as "inside_max_m<3e-4", as `hapbench sweep --where` has it."""
+    parts = re.fullmatch(r"([^<>=!]+)(<=|>=|!=|<|>|=)(.+)", condition)
+    if not parts or not (is_number(parts[3]) or parts[2] in ("=", "!=")):
+        raise InputError(f"--where: got \"{condition}\"; allowed: a column, one of {' '.join(SIGNS)}, and a number or a text")
+    name, sign, value = parts.groups()
+    if name not in row:
+        raise InputError(f"--where: got \"{name}\"; allowed: a column of sweep.csv{nearest(name, list(row))}")
+    if is_number(value):
+        return is_number(row[name]) and SIGNS[sign](float(row[name]), float(value))
+    return SIGNS[sign](row[name], value)
+
+
 class Sweep:
-    def __init__(self, folder, metric):
+    def __init__(self, folder, metric, where=()):
         file = folder / "sweep.csv"
-        self.rows = read_records(file)
+        rows = read_records(file)
+        self.rows = [row for row in rows if all(keeps(row, condition) for condition in where)]
         if not self.rows:
-            raise InputError(f"{file}: holds no row")
+            raise InputError(f"{file}: holds no row{' with ' + ' and '.join(where) if rows else ''}")
         names = list(self.rows[0])
-        plan = folder / "sweep.json"
-        self.fields = [entry["path"] for entry in (at(load_object(plan), "/vary") or [])] if plan.is_file() else \
-            names[1:names.index("outcome")]
-        if not 1 <= len(self.fields) <= 2:
-            raise InputError(f"{folder}: {len(self.fields)} fields are varied ({', '.join(self.fields)}); allowed: one or two")
+        plan = load_object(folder / "sweep.json") if (folder / "sweep.json").is_file() else {}
+        self.axes = at(plan, "/vary") or [{"path": name} for name in names[1:names.index("outcome")]]
+        self.fields, self.sampled = [entry["path"] for entry in self.axes], "sample" in plan
         metrics = [name for name in names[names.index("outcome") + 1:] if any(is_number(row[name]) for row in self.rows)]
         self.metric = metric or next((name for name in USUAL if name in metrics), metrics[0])
         if self.metric not in metrics:
@@ -62,6 +86,36 @@ class Sweep:
     def axis(self, i):
         return axis(self.fields[i], self.fields)
 
+    def is_logarithmic(self, i):
+        """As the field was varied: in equal ratios or steps; a list of other values by its span."""
+        if "scale" in self.axes[i]:
+            return self.axes[i]["scale"] == "log"
+        values = np.unique(self.column(self.fields[i]))
+        if len(values) < 3:
+            return spread_logarithmically(values)
+        even = [np.allclose(np.diff(of), of[-1] - of[-2], rtol=1e-6) for of in (values, np.log(values) if values[0] > 0 else values)]
+        return even[1] if values[0] > 0 and even[0] != even[1] else not even[0] and spread_logarithmically(values)
+
+    def sensitivities(self):
+        """One for each field, over the runs that have the metric; None where there is none."""
+        y = self.metric_values
+        ok = np.isfinite(y)
+        found = []
+        for i, entry in enumerate(self.axes):
+            column = self.column(self.fields[i])
+            column = [value for value, yes in zip(column, ok) if yes] if isinstance(column, list) else column[ok]
+            place = None
+            if "range" in entry and len(column):
+                place = np.log(column) if self.is_logarithmic(i) else column
+                place = (place - place.min()) / (np.ptp(place) or 1.0)
+            found.append(sensitivity(column, place, y[ok]))
+        return found
+
+    @property
+    def is_cloud(self):
+        """Whether its points are on no grid that a picture shows."""
+        return len(self.fields) > 2 or self.sampled and len(self.fields) > 1
+
 
 def is_number(text):
     try:
@@ -77,6 +131,8 @@ def spread_logarithmically(values):
 
 def draw_sweep(sweep):
     with plt.rc_context(SETTINGS):
+        if sweep.is_cloud:
+            return draw_cloud(sweep)
         figure, ax = plt.subplots(figsize=(6.0, 3.8))
         ax.set_title(sweep.name)
         columns = [sweep.column(field) for field in sweep.fields]
@@ -86,6 +142,58 @@ def draw_sweep(sweep):
         else:
             draw_curves(ax, sweep, columns, texts)
         return figure
+
+
+def draw_cloud(sweep):
+    """The metric over each field; over two fields of numbers also in colours over both."""
+    columns, values, failed = [sweep.column(field) for field in sweep.fields], sweep.metric_values, sweep.failed
+    both = len(columns) == 2 and not any(isinstance(column, list) for column in columns)
+    panels = len(columns) + both
+    wide = min(PANELS_WIDE, panels)
+    high = -(-panels // wide)
+    figure, axes = plt.subplots(high, wide, figsize=(0.6 + 2.6 * wide, 0.4 + 2.5 * high), squeeze=False)
+    figure.suptitle(sweep.name, x=0.01, ha="left", fontsize=9, weight="bold")
+    found = sweep.sensitivities() if sweep.sampled else [None] * len(columns)
+    for i, (ax, column) in enumerate(zip(axes.flat, columns)):
+        x, names = places_of(column)
+        ax.plot(x, values, ls="", marker="o", ms=2.5, alpha=0.7, color=PETROL)
+        if failed.any():
+            ax.plot(x[failed], np.zeros(failed.sum()), ls="", marker="x", color=FAILED["edgecolor"],
+                    transform=ax.get_xaxis_transform(), clip_on=False, label=sweep.how_failed)
+        if names:
+            ax.set_xticks(range(len(names)), [name.replace("_", "\n") for name in names])
+        elif sweep.is_logarithmic(i):
+            ax.set_xscale("log")
+        if spread_logarithmically(values):
+            ax.set_yscale("log")
+        if found[i]:
+            ax.set_title(sensitivity_text(found[i]), fontsize=7.5)
+        ax.set(xlabel=sweep.axis(i), ylabel="" if i % wide else axis(sweep.metric))
+    if failed.any():
+        axes[0, 0].legend()
+    if both:
+        draw_map(figure, axes.flat[len(columns)], sweep, columns)
+    for ax in axes.flat[panels:]:
+        ax.axis("off")
+    return figure
+
+
+def places_of(column):
+    """Where the values are along an axis, and of texts their names."""
+    if not isinstance(column, list):
+        return column, None
+    names = list(dict.fromkeys(column))
+    return np.array([names.index(value) for value in column], float), names
+
+
+def sensitivity_text(found):
+    rank = "" if found.rank is None else f"rank {found.rank:+.2f}, "
+    return f"{rank}S\u2081 {hundredths(found.first_order)} ± {hundredths(found.error)}"
+
+
+def hundredths(number):
+    """Two places behind the point, and no "-0.00"."""
+    return f"{round(number, 2) + 0.0:.2f}"
 
 
 def draw_curves(ax, sweep, columns, texts):
@@ -109,7 +217,7 @@ def draw_curves(ax, sweep, columns, texts):
         ax.legend()
     if over not in texts:
         integer_ticks(ax.xaxis, columns[over])
-    if over not in texts and spread_logarithmically(columns[over]):
+    if over not in texts and sweep.is_logarithmic(over):
         ax.set_xscale("log")
     if spread_logarithmically(sweep.metric_values):
         ax.set_yscale("log")
@@ -145,8 +253,8 @@ def draw_map(figure, ax, sweep, columns):
                ((sweep.how_failed, FAILED, failed.any()), ("no value", NO_VALUE, without.any())) if any_]
     if entries:
         ax.legend(handles=entries, loc="lower right", bbox_to_anchor=(1, 1), ncol=2, borderaxespad=0.2)
-    for set_scale, of, column in ((ax.set_xscale, ax.xaxis, columns[1]), (ax.set_yscale, ax.yaxis, columns[0])):
-        if is_geometric(np.unique(column)):
+    for i, set_scale, of, column in ((1, ax.set_xscale, ax.xaxis, columns[1]), (0, ax.set_yscale, ax.yaxis, columns[0])):
+        if sweep.is_logarithmic(i):
             set_scale("log")
         integer_ticks(of, column)
     ax.set(xlabel=sweep.axis(1), ylabel=sweep.axis(0))
@@ -165,22 +273,70 @@ def on_grid(columns, values):
 
 
 def sketch_sweep(sweep, terminal):
-    """The lines to print: a bar for each value, or shades over two fields."""
+    """The lines to print: a bar for each value, or shades over two fields; of a cloud points over each."""
+    if sweep.is_cloud:
+        return sketch_cloud(sweep, terminal)
     columns, values = [sweep.column(field) for field in sweep.fields], sweep.metric_values
     if len(columns) == 2 and not any(isinstance(column, list) for column in columns):
         grid = on_grid(columns, values)
         if grid is not None:
             return shaded(sweep, grid, on_grid(columns, sweep.failed.astype(float))[2] == 1, terminal)
-    labels = [", ".join(row[field] for field in sweep.fields) for row in sweep.rows]
+    order = np.lexsort([places_of(column)[0] for column in reversed(columns)])
+    rows, values = [sweep.rows[i] for i in order], values[order]
+    labels = [", ".join(f"{float(row[field]):.6g}" if is_number(row[field]) else row[field] for field in sweep.fields) for row in rows]
     wide = min(40, max(map(len, labels)))
     most = np.nanmax(np.abs(values), initial=0.0) or 1.0
     full, room = "█" if terminal.unicode else "#", terminal.width - wide - 14
     lines = [f"{', '.join(map(sweep.axis, range(len(sweep.fields))))}: {axis(sweep.metric)}"]
-    for label, value, row in zip(labels, values, sweep.rows):
+    for label, value, row in zip(labels, values, rows):
         bar = full * int(round(max(0.0, abs(value) / most) * room)) if np.isfinite(value) else row["outcome"]
         number = f"{value:.4g}" if np.isfinite(value) else "?"
         lines.append(f"{label[:wide]:<{wide}} {number:>11} {bar}")
     return lines
+
+
+def sketch_cloud(sweep, terminal):
+    values, failed, lines = sweep.metric_values, sweep.failed, []
+    bend = np.log if spread_logarithmically(values) else np.asarray
+    ok = np.isfinite(values)
+    low, high = (values[ok].min(), values[ok].max()) if ok.any() else (0.0, 0.0)
+    span = float(bend(high) - bend(low)) or 1.0
+    found = sweep.sensitivities() if sweep.sampled else [None] * len(sweep.fields)
+    for i, field in enumerate(sweep.fields):
+        x, names = places_of(sweep.column(field))
+        canvas = Canvas(terminal.width - MARGIN, HEIGHT, replace(terminal, colour=False), False)
+        bent = np.log(x) if not names and sweep.is_logarithmic(i) else x
+        across = (bent - bent.min()) / (np.ptp(bent) or 1.0) * (canvas.columns - 1)
+        for column, value in zip(across[ok], values[ok]):
+            dot = int(round(float(bend(value) - bend(low)) / span * (canvas.rows - 1)))
+            canvas.column(int(round(column)), dot, dot, 0)
+        ends = {0: f"{high:.3g}", canvas.height - 1: f"{low:.3g}"}
+        lines += [f"{axis(sweep.metric)}{' (logarithmic)' if bend is np.log else ''} over {sweep.axis(i)}"]
+        lines += [f"{ends.get(y, ''):>{MARGIN - 2}} |{canvas.line(y, [None])}" for y in range(canvas.height)]
+        first, last = (names[0], names[-1]) if names else (f"{x.min():.4g}", f"{x.max():.4g}")
+        between = " ... " if names or not sweep.is_logarithmic(i) else " ... (logarithmic) "
+        lines += [" " * MARGIN + (", ".join(names) if names else first + between + last), ""]
+    return lines + sensitivity_table(sweep, found, ok.sum(), failed.sum(), terminal)
+
+
+def sensitivity_table(sweep, found, runs, failed, terminal):
+    """How much each field matters, the most first, and how that was told."""
+    if not sweep.sampled:
+        return []
+    without = f"; {failed} failed" if failed else ""
+    if not any(found):
+        return [f"how much each field matters cannot be told from {runs} runs with this metric{without}; needed: {LEAST_ROWS}, of several values"]
+    wide = max(map(len, sweep.fields))
+    lines = [f"{'how much each field matters':{wide}}  rank correlation  first order    +-"]
+    for field, of in sorted(zip(sweep.fields, found), key=lambda pair: -(pair[1].first_order if pair[1] else -1)):
+        numbers = ["-" if number is None else hundredths(number) for number in (of.rank, of.first_order, of.error)] if of else "---"
+        lines.append(f"{field:{wide}}  {numbers[0]:>16}  {numbers[1]:>11}  {numbers[2]:>4}")
+    together = hundredths(sum(of.first_order for of in found if of))
+    return [*lines, *textwrap.wrap(
+        f"rank correlation: Spearman's; first order: Sobol's index, the share of the variance of {sweep.metric} that the field explains "
+        f"alone; together {together}, the rest is fields that act together, and what depends on none. By regression on at most "
+        f"{MOST_COSINES} cosines of the field's place in its range, or on the values of a list, over {runs} runs{without}; +-: standard "
+        "error, by jackknife", terminal.width)]
 
 
 def shaded(sweep, grid, failed, terminal):
