@@ -75,6 +75,49 @@ class OwnPage(Page):
         # A Hann-windowed sinc of eight samples to a side: its ripple is below 0.5 % in the pass band.
         self.assertLess(worst[1], 5e-3)
 
+    def test_begins_with_numbers(self):
+        first = self.js("[...document.querySelectorAll('#summary table tbody tr')].map((row) => [...row.cells].map((c) => c.textContent))")
+        self.assertEqual(len(first), 4)
+        self.assertRegex(" ".join(first[0]), r"^original averaging\b.* completes .*%.* \d")
+        # No name goes on in another line within a word.
+        broken = """[...document.querySelectorAll('#summary .name, #metrics .name')].flatMap((cell) =>
+          [...cell.childNodes].filter((n) => n.nodeType === 3).flatMap((node) =>
+            [...node.textContent.matchAll(/[^ _/]+/g)].filter((word) => {
+              const range = document.createRange();
+              range.setStart(node, word.index);
+              range.setEnd(node, word.index + word[0].length);
+              return range.getClientRects().length > 1;
+            }).map((word) => word[0])))"""
+        for width in (1280, 500):
+            self.browser.size(width, 900)
+            self.assertEqual(self.js(broken), [])
+
+    def test_space_plays_what_fills_the_window(self):
+        playing = "document.getElementById('replay-player').dataset.playing"
+        scrolled = "Math.round(scrollY)"
+        self.js("document.querySelector('.sides').scrollIntoView({block: 'center'})")
+        before = self.js(scrolled)
+        self.browser.key(" ", "Space", " ")
+        self.assertEqual(self.js(playing), "true")
+        self.browser.key(" ", "Space", " ")
+        self.assertEqual((self.js(playing), self.js(scrolled)), ("false", before))
+        # At the top of the page space scrolls, as anywhere.
+        self.js("scrollTo(0, 0)")
+        self.browser.key(" ", "Space", " ")
+        self.browser.wait_for(f"{scrolled} > 0")
+        self.assertEqual(self.js(playing), "false")
+
+    def test_pages_go_on_and_back(self):
+        self.js("document.querySelector('.view').focus()")
+        self.js("player.seek(0)")
+        row = "Number(document.querySelector('.side').dataset.row)"
+        steps = []
+        for key in ("ArrowRight", "PageDown", "PageUp", "ArrowLeft"):
+            self.browser.key(key)
+            steps.append(self.js("player.finest.rowAt(player.time)"))
+        self.assertEqual(steps, [1, 51, 1, 0])
+        self.assertEqual(self.js(row), 0)
+
     def test_a_link_leads_back(self):
         self.choose("#replay-views", "1")
         self.choose(".side select", "2")

@@ -39,6 +39,10 @@ def scene(i, members):
     speed = min(SPEEDS, key=lambda speed: abs(np.log(speed / max(longest / WATCHED_S, 1e-9))))
     if any(len(recording.columns["time_s"]) > LONGEST for recording in recordings):
         said = f"{said} Sound: the first {LONGEST} recorded rows of each run.".strip()
+    thinned_out = [recording for recording in recordings if len(recording.shown) < len(recording.columns["time_s"])]
+    if thinned_out:
+        drawn, every = (sum(map(len, of)) for of in zip(*((r.shown, r.columns["time_s"]) for r in thinned_out)))
+        said = f"{said} {drawn} of {every} recorded rows are drawn, every peak among them.".strip()
     names = list(dict.fromkeys(run.name for run in runs))
     return packed_scene(recordings, shell, labels, id=names[0] if i == 0 else f"{names[0]}-{i + 1}",
                         title=", ".join(names), speed=speed, scenario=names[0], note=said)

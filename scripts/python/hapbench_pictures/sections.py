@@ -3,12 +3,13 @@ import json
 import shlex
 
 from hapbench_report.json_input import at, number_or_none
-from hapbench_report.markup import cell, columns, command, heading_cell, number, number_cell, table, text
+from hapbench_report.markup import cell, columns, command, heading_cell, named, number, number_cell, table, text
 from hapbench_report.runs import plugin_text, provenance_of, provenance_section
 
 from .given import differing
 
-MOST_CARDS = 6
+MOST_FIRST = 12  # runs in the first table
+FIRST = ("force_mean_in_contact_N", "force_max_N", "force_step_p99_N", "force_rms_above_30Hz_N", "inside_max_m")
 # Metrics of summary.json in the first table, as far as any run has them. Those that separate algorithms come first.
 METRICS = ("landings", "landing_force_max_N", "force_mean_in_contact_N", "force_step_p99_N", "settled_force_step_max_N",
            "force_rms_above_30Hz_N", "force_reversals_per_s", "force_max_N", "velocity_total_variation_m_per_s", "depth_max_m",
@@ -16,17 +17,33 @@ METRICS = ("landings", "landing_force_max_N", "force_mean_in_contact_N", "force_
 
 
 def summary_section(runs, labels):
-    cards = run_cards(runs, labels) if len(runs) <= MOST_CARDS else outcome_cards(runs, labels)
+    first = first_table(runs, labels) if len(runs) <= MOST_FIRST else f"<ul class=cards>{outcome_cards(runs, labels)}</ul>"
     names = list(dict.fromkeys(run.name for run in runs))
     descriptions = list(dict.fromkeys(str(run.scenario.get("description") or "") for run in runs))
     about = "".join(f"<p class=lead>{text(words)}</p>" for words in descriptions[:3] if words)
-    return f"<h1>{text(', '.join(names))}</h1>{about}<ul class=cards>{cards}</ul>"
+    return f"<h1>{named(', '.join(names))}</h1>{about}{first}"
 
 
-def run_cards(runs, labels):
-    return "".join(
-        card(run.outcome, run.expected, f"{label}{'' if run.expected else ', not as its scenario expects'}; in contact "
-             f"{percent(contact_share(run))} of {number(at(run.summary, '/duration_s'), 4)} s") for run, label in zip(runs, labels))
+def first_table(runs, labels):
+    shown = [name for name in FIRST if any(run.metric(name) is not None for run in runs)]
+    return table(*metric_rows(runs, labels, "metrics", shown, (heading_cell("Outcome"), [outcome_cell(run) for run in runs]),
+                              (heading_cell("In contact", True), [cell(contact_text(run), contact_share(run) or 0, "number") for run in runs])),
+                 classes="sortable")
+
+
+def outcome_cell(run):
+    """What a copy of a bundled scenario inherits may surprise its owner."""
+    how = text(run.outcome.replace("_", " ") or "–")
+    if run.expected:
+        return cell(how)
+    wanted = at(run.scenario, "/expect/outcome") or "other results"
+    wanted = " or ".join(map(str, wanted)) if isinstance(wanted, list) else wanted
+    return cell(f'<b class=bad>{how}</b><br><span class=note>its field <code>expect</code> names {text(wanted)}; a scenario that was copied '
+                "keeps that field, <code>--set expect={}</code> drops it</span>")
+
+
+def contact_text(run):
+    return f"{percent(contact_share(run))} of {number(at(run.summary, '/duration_s'), 4)} s"
 
 
 def outcome_cards(runs, labels):
@@ -34,13 +51,9 @@ def outcome_cards(runs, labels):
     ways = {}
     for run, label in zip(runs, labels):
         ways.setdefault((run.outcome, run.expected), []).append(label)
-    return "".join(card(outcome, expected, f"{len(names)} of {len(runs)} runs{'' if expected else ', not as expected'}: "
-                        f"{', '.join(names)}") for (outcome, expected), names in ways.items())
-
-
-def card(outcome, expected, words):
-    return (f"<li><b class={'good' if expected else 'bad'}>{text(outcome.replace('_', ' ') or '–')}</b>"
-            f"<span>{text(words)}</span></li>")
+    return "".join(f"<li><b>{len(names)} of {len(runs)}</b><span class={'good' if expected else 'bad'}>{text(outcome.replace('_', ' ') or '–')}"
+                   f"{'' if expected else ', not as expected'}</span><span>: {named(', '.join(names))}</span></li>"
+                   for (outcome, expected), names in ways.items())
 
 
 def contact_share(run):
@@ -65,7 +78,7 @@ def metric_rows(runs, labels, section, names, *beside):
     """Headings and rows of a table of metrics, a row for each run; `beside`: pairs of a heading and its cells."""
     values = [[number_or_none(run.sections.get(section, {}).get(name)) for name in names] for run in runs]
     headings, cells = columns(names, values)
-    rows = [[cell(text(label), classes="name"), *(of[i] for _, of in beside), *own] for i, (label, own) in enumerate(zip(labels, cells))]
+    rows = [[cell(named(label), classes="name"), *(of[i] for _, of in beside), *own] for i, (label, own) in enumerate(zip(labels, cells))]
     return [heading_cell("Run"), *(heading for heading, _ in beside), *headings], rows
 
 

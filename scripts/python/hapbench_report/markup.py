@@ -21,6 +21,11 @@ def text(value):
     return html.escape(str(value), quote=True)
 
 
+def named(value):
+    """A name as text that may go on in another line behind an underscore or a slash, and nowhere within a word."""
+    return re.sub(r"([_/])(?=\w)", r"\1<wbr>", text(value))
+
+
 # A number's exponent, or the minus before a number that begins a word.
 EXPONENT = re.compile(r"(?<=\d)e([+-]?)0*(\d+)\b")
 MINUS = re.compile(r"(?<![\w.)])-(?=\d)")
@@ -120,7 +125,7 @@ def in_colour(one, shown):
 
 
 def algorithm_name(algorithm):
-    return in_colour(look(algorithm), text(algorithm))
+    return in_colour(look(algorithm), named(algorithm))
 
 
 def column(name, values=()):

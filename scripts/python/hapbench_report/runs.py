@@ -7,7 +7,7 @@ from pathlib import Path
 from hapbench import results
 
 from .json_input import at, member, number_or_none
-from .markup import (algorithm_name, cell, columns, command, counted, filters, folded, heading_cell, listed, number_cell, table,
+from .markup import (algorithm_name, cell, columns, command, counted, filters, folded, heading_cell, listed, named, number_cell, table,
                      text)
 
 # Written for the replay, not as results of their own.
@@ -88,7 +88,7 @@ def runs_section(runs):
     rows = []
     for run, measured in zip(runs, cells):
         outcome = text(run.outcome.replace("_", " ")) + ("" if run.expected else ' <b class="bad">✗ unexpected</b>')
-        rows.append([cell(text(part_of(run))), cell(f'<a href="#{run.anchor}">{text(run.name)}</a>', classes="name"),
+        rows.append([cell(named(part_of(run))), cell(f'<a href="#{run.anchor}">{named(run.name)}</a>', classes="name"),
                      cell(algorithm_name(run.algorithm), classes="name"), cell(outcome), number_cell(at(run.summary, "/steps")), *measured])
     headings = [*map(heading_cell, ("Part", "Scenario", "Algorithm", "Outcome")), heading_cell("Steps", True), *numbers]
     return ("<p>Click a heading to sort; scenarios lead to parameters, provenance and the command.</p>"

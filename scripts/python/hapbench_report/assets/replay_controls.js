@@ -24,6 +24,7 @@ function listenToPlayer(player) {
   on("#replay-clip", "click", () => (player.clip ? player.pause() : startClip(player)));
   find("#replay-clip").disabled = !Clip.possible;
   player.root.addEventListener("keydown", (event) => onKey(player, event));
+  document.addEventListener("keydown", (event) => onSpaceOutside(player, event));
   new ResizeObserver(() => player.draw()).observe(player.root);
   document.addEventListener("themechange", () => player.draw());
   addEventListener("hashchange", () => openMoment(player));
@@ -53,7 +54,7 @@ function onKey(player, event) {
   if (tag === "SELECT" || range || (tag !== "CANVAS" && target !== player.slider && key === " ")) return;
   if (event.ctrlKey || event.metaKey || event.altKey) return;
   const turn = {ArrowLeft: [-12, 0], ArrowRight: [12, 0], ArrowUp: [0, -12], ArrowDown: [0, 12]}[key];
-  const jump = {ArrowLeft: -1, ArrowRight: 1, PageDown: -50, PageUp: 50}[key];
+  const jump = {ArrowLeft: -1, ArrowRight: 1, PageUp: -50, PageDown: 50}[key];
   const zoom = {"+": 1.2, "=": 1.2, "-": 1 / 1.2}[key];
   if (key === " ") player.toggle();
   else if (event.shiftKey && turn) player.camera.drag(...turn);
@@ -65,6 +66,16 @@ function onKey(player, event) {
   else return;
   event.preventDefault();
   player.draw();
+}
+
+/** Where nothing else has the focus, space plays the replay that fills the middle of the window, instead of scrolling. */
+function onSpaceOutside(player, event) {
+  const idle = event.target === document.body || event.target.id === "main";
+  if (!idle || event.key !== " " || event.shiftKey || event.ctrlKey || event.metaKey || event.altKey) return;
+  const {top, bottom} = player.root.getBoundingClientRect();
+  if (top > innerHeight / 2 || bottom < innerHeight / 2) return;
+  event.preventDefault();
+  player.toggle();
 }
 
 // Sound.
