@@ -298,7 +298,11 @@ std::vector<Table::Column> claim_headings() {
 void add_reproduce(CommandLine& line) {
   auto [command, options] = line.command("reproduce", "Run the thesis's experiments and judge its claims", reproduce,
                                          "finished runs are kept, and the same command continues from there");
-  command.add("--only", options.only, "ids of claims, separated by commas; \"hapbench list claims\" shows them")
+  command
+      .add(
+          "--only", options.only,
+          "ids of claims, separated by commas; \"hapbench list claims\" shows them, and scripts/reproduce --only draws their "
+          "figures, too")
       .words(claim_ids)
       .comma_separated();
   command.add("--out", options.out, "directory of the results (default: results/out/reproduce)");

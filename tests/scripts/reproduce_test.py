@@ -53,6 +53,41 @@ class Reproduce(unittest.TestCase):
         self.assertEqual(self.run_with(program, HAPBENCH_PLUGIN_PATH="/plugins")[0], 0)
         self.assertEqual(self.run_with(program, "--only", "T1", HAPBENCH_PLUGIN_PATH="/plugins")[0], 0)
 
+    def test_a_figure_after_what_it_needs(self):
+        """Figures that miss a scene of the thesis, what a part makes, and a map; the program writes what it is asked for."""
+        out = "results/out/reproduce"
+        needs = {"2": "thesis/wedge/trajectory.csv", "A.4-root-locus": "stability/limits.csv",
+                 "stability-z_width": "stability_devices/stability_map_z_width.csv", "proxy": "proxy/proxy/summary.json"}
+        self.put("scripts/figures", "#!/bin/sh\necho \"$@\" >> asked\n" + "".join(
+            f'[ -e {out}/{file} ] || echo "figures: skipped {name} (no {file.replace("_devices/", "_maps/")})" >&2\n'
+            for name, file in needs.items()) + "exit 0\n")
+        makes = "".join(f"*\" --out {out}/{folder}\"*) mkdir -p {out}/{file.rpartition('/')[0]}; touch {out}/{file};;\n"
+                        for folder, file in (("thesis/wedge", needs["2"]), ("stability", needs["A.4-root-locus"]), ("proxy", needs["proxy"]))
+                        ).replace('stability"*', 'stability "*')
+        maps = f"*z_width*) mkdir -p {out}/stability_devices; touch {out}/{needs['stability-z_width']};;\n"
+        program = f'#!/bin/sh\necho "$@" >> ran\ncase "$* " in\n{maps}{makes}esac\n'
+        status, said, err = self.run_with(program, "--figure", ",".join(needs))
+        self.assertEqual(status, 0, err)
+        ran = (self.root / "ran").read_text().splitlines()
+        self.assertIn(f"run wedge --out {out}/thesis/wedge", ran)
+        self.assertEqual(len(ran), 4, ran)  # each once, and nothing else
+        self.assertEqual((self.root / "asked").read_text().splitlines(), 2 * [f"{out} --out {out}/figures --only {','.join(needs)}"])
+        # What nothing makes is told, and ends the attempts.
+        self.put("scripts/figures", '#!/bin/sh\necho "figures: skipped 2 (no nowhere/x.csv)" >&2\nexit 1\n')
+        status, said, err = self.run_with(NOTHING, "--figure", "2")
+        self.assertEqual(status, 1)
+        self.assertIn("no part of scripts/reproduce makes nowhere/x.csv", err)
+        self.assertIn("skipped 2", said)
+
+    def test_a_claim_with_its_figures(self):
+        self.put("scripts/figures", '#!/bin/sh\necho "drawn: $*"\n')
+        program = '#!/bin/sh\n[ "$1" != describe ] || printf \'{\\n  "place": "2.4, Fig. A.2, Fig. 2c, Table A.1",\\n  "why": "Fig. 9"\\n}\\n\'\n'
+        status, out, err = self.run_with(program, "--only", "A1")
+        self.assertEqual(status, 0, err)
+        self.assertIn("drawn: results/out/reproduce --out results/out/reproduce/figures --only A.2,2\n", out)
+        # A claim that names none.
+        self.assertNotIn("drawn", self.run_with(NOTHING, "--only", "T4")[1])
+
     def test_an_unknown_argument(self):
         status, _, err = self.run_with(NOTHING, "--no-such")
         self.assertEqual((status, err.count("\n")), (2, 1))

@@ -132,6 +132,8 @@ def main(argv=None):
         return INTERRUPTED
     for line in filter(None, skipped):
         print(f"figures: skipped {line}", file=sys.stderr)
+    if any(skipped):
+        print("figures: \"scripts/reproduce --figure ID\" makes what a figure needs, and draws it", file=sys.stderr)
     for line in filter(None, dict.fromkeys(bad)):
         say_error(line)
     print(f"{len(entries)} figures in {directory}, {time.monotonic() - started:.0f} s")

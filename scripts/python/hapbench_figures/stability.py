@@ -224,7 +224,7 @@ def map_file(results, name, of_integrators):
         found = MapFile(results, path)
         if (len(found.integrators) > 1) == of_integrators:
             return found
-    raise MissingResult(f"no stability_map_{name}.csv{' of several integrators' if of_integrators else ''}")
+    raise MissingResult(f"no {'stability_integrators' if of_integrators else 'stability_maps'}/stability_map_{name}.csv")
 
 
 def class_legend(figure, maps, **place):
