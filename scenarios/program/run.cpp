@@ -74,7 +74,7 @@ int run(const RunOptions& options) {
       summaries.back()["step_latency"] = step_latency_json(*report.timing.latency);
     }
     for (const std::string& unmet : report.unmet) {
-      print_error(fmt::format("{}: {}", scenarios[i].file.string(), unmet));
+      print_error(fmt::format("{}: {} (field expect; --set expect={{}} drops it)", scenarios[i].file.string(), unmet));
       status = kUnexpectedOutcome;
     }
   }
