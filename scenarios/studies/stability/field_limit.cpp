@@ -247,7 +247,7 @@ class Search {
       const double part = 0.5 * i / kIntervals;
       tried[part] = stable(part);
     }
-    const Edge edge = find_edge(way_, std::move(tried), stable, 1e-6, false);
+    const Edge edge = find_edge(way_, std::move(tried), stable, kTheoryResolution, false);
     if (!edge.stable) return std::nullopt;
     return edge.beyond ? way_.value(*edge.stable) : std::numeric_limits<double>::infinity();
   }
