@@ -23,8 +23,7 @@ double paired_t(const std::vector<double>& a, const std::vector<double>& b);
 
 /// Significance level of critical_t.
 inline constexpr double kSignificance = 0.05;
-/// Two-sided 5 % quantile of Student's t for 1 … 10 degrees of freedom; infinite for 0. For more than 10 it returns the
-/// value for 10, which makes a test slightly stricter.
+/// Two-sided 5 % quantile of Student's t, to 5e-4; infinite for 0 degrees of freedom.
 double critical_t(std::size_t degrees);
 
 }  // namespace hapbench

@@ -44,10 +44,13 @@ TEST(Statistics, QuantilesInterpolateBetweenRanks) {
   EXPECT_EQ(quantile_of({4.0, 1.0, 3.0, 2.0}, 1.0), 4.0);
 }
 
-TEST(CriticalT, FallsWithTheDegreesOfFreedom) {
+TEST(CriticalT, IsStudentsQuantileForAnyDegreesOfFreedom) {
   EXPECT_EQ(critical_t(0), kInfinity);
-  for (std::size_t degrees = 1; degrees < 10; ++degrees) EXPECT_GT(critical_t(degrees), critical_t(degrees + 1));
-  EXPECT_EQ(critical_t(50), critical_t(10));
+  for (std::size_t degrees = 1; degrees < 50; ++degrees) EXPECT_GT(critical_t(degrees), critical_t(degrees + 1));
+  // scipy.stats.t.ppf(0.975, n); the table has three decimals.
+  for (const auto& [degrees, t] :
+       {std::pair{1u, 12.7062}, {10u, 2.2281}, {11u, 2.2010}, {15u, 2.1314}, {29u, 2.0452}, {99u, 1.9842}})
+    EXPECT_NEAR(critical_t(degrees), t, 5e-4) << degrees;
 }
 
 TEST(MeanOf, IsNoNumberWithoutValues) {
