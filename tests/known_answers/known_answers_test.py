@@ -1,11 +1,16 @@
 """Every printed field has a known answer: tests/known_answers/README.md. With --write as last word renews that page."""
+import re
 import sys
 import unittest
 
-import of_ends  # noqa: F401  (registers scenes)
+import of_batches  # noqa: F401  (registers scenes)
+import of_ends  # noqa: F401
+import of_energy  # noqa: F401
+import of_forces  # noqa: F401
+import of_limits  # noqa: F401
 import of_places  # noqa: F401
+import of_precision  # noqa: F401
 import of_runs  # noqa: F401
-import of_tables  # noqa: F401
 from answers import SCENES, Answer, Bench, Within
 from fixture import main, scratch_folder
 from page import OPEN, PAGE, open_fields, printed_fields, text_of
@@ -42,6 +47,16 @@ class KnownAnswers(unittest.TestCase):
     def test_rows_are_of_printed_fields(self):
         fields = set(printed_fields(benches(scratch_folder(unittest)).values()))
         self.assertEqual(sorted({answer.field for answer in answers()} - fields), [])
+
+    def test_columns_of_files_are_described(self):
+        fields = {field for field in printed_fields(benches(scratch_folder(unittest)).values()) if ":" in field}
+        for bench in FOUND.values():
+            for file in bench.folder.rglob("*.csv"):
+                name = re.sub(r"precision_[a-z_]+\.csv", "precision_STUDY.csv", file.name.replace("_timing", ""))
+                header = file.read_text(encoding="utf-8").split("\n")[0].split(",")
+                if f"{name}:{header[0]}" in fields and f"{name}:metrics" not in fields:
+                    varied = {column for column in header if "." in column and name == "limit_runs.csv"}
+                    self.assertEqual({f"{name}:{column}" for column in set(header) - varied} - fields, set())
 
     def test_the_page_is_current(self):
         self.assertEqual(PAGE.read_text(encoding="utf-8"), text_of(answers()), "renew it with --write")

@@ -3,12 +3,11 @@ import math
 
 import numpy as np
 
-from answers import EXACT, ROUNDING, Table, Within, norms, scene
-from of_tables import PLAIN
+from answers import EXACT, ROUNDING, Table, Within, scene
+from physics import PLAIN, SPRING, bisected, motion_class, step_matrix
 
 FLAT = {"type": "plane", "size_m": 0.1, "spacing_m": 0.001}
 BALL = {"type": "bur", "family": "ball", "diameter_m": 0.004}
-SPRING = {"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 1}]}
 
 
 @scene
@@ -77,42 +76,6 @@ def divergence(bench, run):
     for key, known, naive in (("step", k, k - 1), ("time_s", k * dt, k), ("magnitude", size, bound), ("bound", bound, size)):
         bench.add(f"run --json: {key}", told[key], known, "recurrence against the bounds", grown, ("the row before, or the other", naive))
     bench.add("run --json: quantity", told["quantity"], quantity, "recurrence against the bounds", EXACT, ("the first thing checked", "force"))
-
-
-def step_matrix(K, B, M, dt):
-    """x, v after a step of leapfrog."""
-    return np.array([[1 - K * dt * dt / M, dt - B * dt * dt / M], [-K * dt / M, 1 - B * dt / M]])
-
-
-def motion_class(v):
-    """By `describe stability`: quarter by quarter, amplitude the largest speed; v one column a component."""
-    n = len(v)
-    size = norms(v)
-    quarters = [range(math.ceil(i * n / 4), math.ceil((i + 1) * n / 4)) for i in range(4)]
-    amplitude = [size[q].max() for q in map(list, quarters)]
-    rest = size <= 1e-12 * np.maximum.accumulate(size)
-    if any(rest[i:i + 200].all() for i in range(n - 199)):
-        return "stable"
-    turns = 0
-    for component in v.T:
-        moving = np.flatnonzero(component)
-        changed = moving[1:][component[moving[1:]] * component[moving[:-1]] < 0]
-        turns = max(turns, int(np.sum(changed >= quarters[3][0])))
-    if turns < 2:
-        return "stable"
-    if all(b > 1.01 * a for a, b in zip(amplitude, amplitude[1:])):
-        return "diverged"
-    if amplitude[3] < 0.01 * amplitude[0]:
-        return "stable"
-    return "dying_out" if amplitude[2] < 0.9 * amplitude[1] and amplitude[3] < 0.9 * amplitude[2] else "vibrating"
-
-
-def bisected(holds, low, high):
-    """The edge between `low`, where it holds, and `high`, where it does not, to rounding."""
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if holds(middle) else (low, middle)
-    return low
 
 
 @scene

@@ -1,10 +1,9 @@
 """Scenes whose answers are places: the ideal trajectory of a hole, depth below a surface, targets of subjects, and how runs end."""
 import math
-import re
 
 import numpy as np
 
-from answers import EXACT, ROUNDING, SOURCE, Within, norms, rms, scene
+from answers import EXACT, ROUNDING, Within, norms, rms, scene
 
 R, r, H = 1e-3, 0.5e-3, 5e-3  # radii of hole and tool, depth of the hole [m]
 

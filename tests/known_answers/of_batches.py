@@ -1,13 +1,13 @@
-"""Scenes behind the tables of compare, sweep, diff, limit and stability: recomputed from single runs, or from the eigenvalues of a loop."""
+"""Scenes behind the tables of compare, sweep and diff: recomputed from the summaries of single runs."""
 import math
 
 import numpy as np
-from scipy import linalg, stats
+from scipy import stats
 
-from answers import EXACT, ROUNDING, Run, Table, Within, scene
+from answers import EXACT, ROUNDING, Run, Table, scene
+from physics import PLAIN
 
 UP = {"type": "springs", "groups": [{"direction": [0, 1, 0], "count": 2}]}
-PLAIN = {"stiffness_N_per_m": 1000, "damping_ratio": 0, "mass_kg": 0.1, "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}
 LAWS = ["mean", "virtual_coupling", "summation", "shaped_stiffness"]
 BY = ["force_step_p99_N", "velocity_total_variation_m_per_s", "contact_share"]
 SEEDS = 14
@@ -41,7 +41,7 @@ def league(bench):
     table = Table(out / "league.csv")
     known = {name: [] for name in table.names}
     naive = {name: [] for name in ("failed", "mean", "spread", "rank", "ratio_to_best", "beyond_spread", "common_seeds", "seeds")}
-    ranks, ratios, wins = {law: [] for law in LAWS}, {law: [] for law in LAWS}, {law: [] for law in LAWS}
+    ranks, ratios = {law: [] for law in LAWS}, {law: [] for law in LAWS}
     for s, law, metric, failed, common, values in rows_of(table, runs, scenes):
         bad = {name: sum(failed[name]) for name in LAWS}
         means = {name: np.mean(v) for name, v in values.items() if not any(x is None for x in v)}
@@ -163,104 +163,6 @@ def swept_words(bench, base, runs):
               "first cell that differs", EXACT, ("the time", "time_s"))
     bench.add("diff --json: unshared", len(other["runs"]["."]["unshared"]), 0, "the same metrics", EXACT, ("what differs", len(results)))
     bench.add("diff --json: tolerance", [same["tolerance"], within["tolerance"]], [0.0, 1e-9], "as given", EXACT, ("a default", [1e-9, 1e-9]))
-
-
-class HeldLoop:
-    """The handle of an impedance device on a spring and damper that hold their force over each period: an exact linear map."""
-
-    def __init__(self, m, b, T, K, B, delay=0):
-        whole = int(delay)
-        part = delay - whole
-        A, size = np.array([[0, 1.0], [0, -b / m]]), 3 + whole + (part > 0)
-        # State: x, v, x of the last sample, forces under way (the newest first).
-        E = lambda t: linalg.expm(np.block([[A, np.array([[0], [1 / m]])], [np.zeros((1, 3))]]) * t)
-        force = np.zeros(size)
-        force[0], force[2] = -K - B / T, B / T
-        forces = [force] + [np.eye(size)[3 + i] for i in range(size - 3)]
-        first, rest = forces[-1] if part else forces[whole], forces[whole]  # until the newer one arrives, and after it
-        step = np.eye(size)
-        for t, held in ((part * T, first), ((1 - part) * T, rest)):
-            if t > 0:
-                X, moved = E(t), np.zeros((size, size))
-                moved[:2] = X[:2, :2] @ step[:2] + np.outer(X[:2, 2], held)
-                step = np.vstack([moved[:2], step[2:]])
-        step[2] = np.eye(size)[0]
-        for i in range(3, size):
-            step[i] = forces[i - 3]
-        self.matrix = step
-
-    def radius(self):
-        return np.abs(np.linalg.eigvals(self.matrix)).max()
-
-
-@scene
-def limit_of_handle(bench):
-    """B of a wall that is stiffer than its handle allows without damping: an island of stable values, by the eigenvalues of the held loop."""
-    from of_ends import bisected
-    m, b, T, K = 0.1, 0.5, 0.001, 4000.0
-    base = bench.scenario("limit_of_handle", time={"step_s": T, "steps": 8000}, initial={"position_m": [1e-3, 0, 0]},
-                          environment={"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 1}]},
-                          device={"type": "impedance", "handle_mass_kg": m, "viscous_N_s_per_m": b},
-                          rendering={**PLAIN, "algorithm": "summation", "stiffness_N_per_m": K})
-    row = bench.json("limit", base, "--vary", "rendering.damping_N_s_per_m", "--between", "0.01:10000", "--resolution", "1e-4", "--out", "B")["limits"][0]
-    rests = lambda B: HeldLoop(m, b, T, K, B).radius() < 0.9 ** (4 / 8000)
-    bounded = lambda B: HeldLoop(m, b, T, K, B).radius() < 1
-    inside = next(B for B in np.geomspace(0.01, 1e4, 400) if rests(B))
-    low, high, theory = bisected(lambda B: not rests(B), 0.01, inside), bisected(rests, inside, 1e4), bisected(bounded, inside, 1e4)
-    fine = Within("bisection ends at 1e-4; beside the edges motion decays by a tenth a quarter only once its slowest part is alone", relative=5e-4)
-    for name, known, within, naive in (("limit", high, fine, 2 * m / T), ("low", low, fine, 0.01), ("high", high, fine, 2 * m / T),
-                                       ("theory", theory, Within("bisected to 1e-12", relative=3e-12), 2 * m / T)):
-        bench.add(f"limit.csv:{name}", row[name], known, "eigenvalues of the held loop", within, ("of leapfrog, or the end of the range", naive))
-
-
-@scene
-def limits_of_springs(bench):
-    """The limits of one spring under leapfrog (thesis A.3), and its root locus."""
-    M, dt, zeta = 0.1, 0.0005, 0.7
-    base = bench.scenario("limits_of_springs", time={"step_s": dt, "steps": 400}, initial={"position_m": [1e-3, 0, 0]},
-                          environment={"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 2}]},
-                          rendering={**PLAIN, "algorithm": "summation", "damping_ratio": zeta, "stiffness_N_per_m": 20000})
-    bench.json("stability", base, "--out", "limits")
-    table, locus = Table(bench.folder / "limits" / "limits.csv"), Table(bench.folder / "limits" / "root_locus.csv")
-    lam, K = 2.0, 20000.0
-    # 4 - 2 lam B dt / M - lam K dt^2 / M = 0 with B = 2 zeta sqrt(K M): a quadratic in s = sqrt(K) dt / sqrt(M).
-    s = -2 * zeta + math.sqrt(4 * zeta ** 2 + 4 / lam)
-    known = {"stiffness_undamped": (4 * M / (lam * dt ** 2), "N/m", 0.0), "damping_alone": (2 * M / (lam * dt), "N s/m", 2 * M / (lam * dt)),
-             "stiffness_damped": (M * s * s / dt ** 2, "N/m", 2 * zeta * s * M / dt), "time_step": (s * math.sqrt(M / K), "s", 2 * zeta * math.sqrt(K * M))}
-    cases = list(known)
-    value = [known[c][0] for c in cases]
-    exact, runs = Within("rounding of a quadratic's root", relative=1e-12), Within("bisection ends at 1e-3 of the value at most", relative=1e-3)
-    single = [2 * value[0], 2 * value[1], 433731.0, 2 * value[3]]
-    wrong = ("of a single spring", single)
-    bench.columns("limits.csv", table, [
-        ("analytic", value, "4 - 2 lam B dt / M - lam K dt^2 / M = 0", exact, *wrong), ("simulation", value, "the same", runs, *wrong),
-        ("eigenvalue", value, "the same", Within("bisection on eigenvalues, ends at 1e-9", relative=1e-8), *wrong),
-        ("damping_at_limit_N_s_per_m", [known[c][2] for c in cases], "B from zeta there", Within("as the limit", relative=1e-8), "of the scenario's K",
-         [2 * zeta * math.sqrt(K * M)] * 4), ("lambda_max", np.full(4, lam), "two springs side by side", ROUNDING, "one", np.ones(4))])
-    bench.add("limits.csv:case", table["case"], cases, "in this order", EXACT, ("the other way round", cases[::-1]))
-    bench.add("limits.csv:unit", table["unit"], [known[c][1] for c in cases], "of what grows", EXACT, ("N/m", ["N/m"] * 4))
-    at = [(c, v) for c, v in zip(locus["case"], locus["value"])]
-
-    def matrix(case, v):
-        k, B, t = {"stiffness_undamped": (v, 0, dt), "damping_alone": (0, v, dt), "stiffness_damped": (v, 2 * zeta * math.sqrt(v * M), dt),
-                   "time_step": (K, 2 * zeta * math.sqrt(K * M), v)}[case]
-        k, B = lam * k, lam * B
-        return np.array([[1 - k * t * t / M, t - B * t * t / M], [-k * t / M, 1 - B * t / M]])
-
-    known = [np.linalg.eigvals(matrix(c, v)) for c, v in at]
-    near = Within("an eigenvalue near a double one is known to the root of rounding", absolute=5e-8)
-    first, second = locus["first_real"] + 1j * locus["first_imaginary"], locus["second_real"] + 1j * locus["second_imaginary"]
-    sums, products = np.array([k.sum().real for k in known]), np.array([k.prod().real for k in known])
-    for name, ours, theirs, wrong in (("first_real", (first + second).real, sums, products), ("second_real", (first * second).real, products, sums),
-                                      ("first_imaginary", np.abs(first.imag), [abs(k[0].imag) for k in known], np.full(len(at), 0.5)),
-                                      ("second_imaginary", np.abs(second.imag), [abs(k[1].imag) for k in known], np.full(len(at), 0.5))):
-        bench.add(f"root_locus.csv:{name}", ours, theirs, "trace, determinant and imaginary parts of numpy's", near, ("of another", wrong))
-    bench.add("root_locus.csv:spectral_radius", locus["spectral_radius"], [np.abs(k).max() for k in known], "numpy's eigenvalues", near,
-              ("least modulus", [np.abs(k).min() for k in known]))
-    bench.add("root_locus.csv:case", list(dict.fromkeys(locus["case"])), cases, "as in limits.csv", EXACT, ("the other way round", cases[::-1]))
-    ends = [max(v for c, v in at if c == case) for case in cases]
-    bench.add("root_locus.csv:value", ends, [1.25 * v for v in value], "up to 1.25 of the limit", Within("as the limit", relative=1e-8),
-              ("up to the limit", value))
 
 
 @scene

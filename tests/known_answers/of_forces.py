@@ -1,0 +1,112 @@
+"""Scenes behind the comparison with a reference force, and what a person would notice of it."""
+import math
+
+import numpy as np
+from scipy import signal
+
+from answers import EXACT, ROUNDING, Within, norms, profile, rms, scene
+from physics import FILTERED, STEPPED, high_pass
+
+
+# Not periodic: one lag alone fits.
+STEPS = [[0, 0], [0.1, -1e-3], [0.18, -0.4e-3], [0.3, -1.6e-3], [0.36, -1.1e-3], [0.52, -2e-3], [0.6, -0.3e-3], [0.8, -0.9e-3], [1, -0.5e-3]]
+
+
+@scene
+def late_force(bench):
+    """A force that follows the reference by 30 ms, with a part across it; perception's thresholds of the same run."""
+    K, dt, n, late = 1000.0, 0.0005, 2000, 0.03
+    reference = {"z_N": {"type": "waypoints", "points": [[max(0, s - late), -K * z] for s, z in STEPS[1:]]}, "x_N": 0.05}
+    path = {"x_m": {"type": "sine", "mean": 0, "amplitude": 4e-5, "period_s": 0.01, "phase_rad": 0.4}, "y_m": 0,
+            "z_m": {"type": "waypoints", "points": [[0, 0], *STEPS[1:]]}}
+    run = bench.run(bench.scenario(
+        "late_force", time={"step_s": dt, "steps": n}, motion={"position": {"type": "prescribed", **path}}, reference_force=reference,
+        environment={"type": "springs", "groups": [{"direction": [0, 0, -1], "count": 1}, {"direction": [1, 0, 0], "count": 1}]},
+        record={"force_reference": True}, perception={},
+        rendering={"algorithm": "summation", "stiffness_N_per_m": K, "damping_ratio": 0.5, "mass_kg": 0.01,
+                   "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}))
+    t, B = np.arange(n) * dt, math.sqrt(K * 0.01)
+    p = np.column_stack([profile(path[a], t) for a in ("x_m", "y_m", "z_m")])
+    v = np.diff(p, axis=0, prepend=[2 * p[0] - p[1]]) / dt
+    spring = -K * p
+    f = spring - B * v
+    m = np.column_stack([np.full(n, 0.05), np.zeros(n), profile(reference["z_N"], t)])
+    error, size = f - m, norms(m)
+    unit = spring / np.maximum(1e-300, norms(spring))[:, None]
+    along = np.sum(error * unit, axis=1)
+    line = m / size[:, None]
+    across = f - np.sum(f * line, axis=1)[:, None] * line
+    both = (size > 0.1) & (norms(f) > 0.1)
+    angles = np.arccos(np.clip(np.sum(f * m, axis=1) / size / norms(f), -1, 1))
+    shifts = np.arange(-200, 201)
+
+    def fits(s):
+        a, b = m[max(0, -s):n - max(0, s)], f[max(0, s):n - max(0, -s)]
+        a, b = a - a.mean(axis=0), b - b.mean(axis=0)
+        return np.sum(a * b) / math.sqrt(np.sum(a * a) * np.sum(b * b))
+
+    lags = np.array([fits(s) for s in shifts])
+    lag = shifts[np.argmax(lags)] * dt
+    formula = "METHOD's f and the profile"
+    fifth = Within("a lag is told to a row", absolute=0.5 * dt)
+    bench.metrics(run, [
+        ("fidelity.rows", n, "every row has a reference", EXACT, "rows of both above 0.1 N", int(both.sum())),
+        ("fidelity.reference_force_rms_N", rms(m), formula, STEPPED, "of z alone", rms(m[:, 2])),
+        ("fidelity.force_error_rms_N", rms(error), formula, STEPPED, "difference of the norms", rms(norms(f) - size)),
+        ("fidelity.force_error_relative", rms(error) / rms(m), formula, STEPPED, "over the rendered force", rms(error) / rms(f)),
+        ("fidelity.force_error_normal_rms_N", rms(along), "along f_spring", STEPPED, "along f",
+         rms(np.sum(error * f, axis=1) / norms(f))),
+        ("fidelity.force_error_tangential_rms_N", rms(error - along[:, None] * unit), "across f_spring", STEPPED, "across f_m",
+         rms(error - np.sum(error * line, axis=1)[:, None] * line)),
+        ("fidelity.force_artefact_share", rms(across) / rms(f), "across f_m over f", STEPPED, "over f_m", rms(across) / rms(m)),
+        ("fidelity.direction_rows", int(both.sum()), "rows of both above 0.1 N", EXACT, "all rows", n),
+        ("fidelity.force_direction_error_rad", angles[both].mean(), "mean angle, by the cosine", Within("a cosine loses half the digits near 0",
+         relative=1e-7), "over all rows", angles.mean()),
+        ("fidelity.force_lag_s", lag, "numpy's correlation at every shift", fifth, "with the other sign", -lag),
+        ("fidelity.force_lag_period_s", None, "the path repeats nothing", EXACT, "the ripple's period", 0.01)])
+    table = run.table("force_reference.csv")
+    bench.columns("force_reference.csv", table, [
+        ("step", np.arange(n), "0, 1, ...", EXACT, "from 1", np.arange(n) + 1), ("time_s", t, "k dt", EXACT, "after the step", t + dt)] + [
+        (f"mf{x}_N", m[:, i], "the profile", ROUNDING, "f", f[:, i] + (x == "y")) for i, x in enumerate("xyz")] + [
+        (f"force_error_{x}_N", error[:, i], formula, STEPPED, "f_m - f", -error[:, i] + (x == "y")) for i, x in enumerate("xyz")])
+    perceived(bench, run, f, m, v, dt)
+
+
+def perceived(bench, run, f, m, v, dt):
+    """Thresholds by their sources: 10 % of a force or of 0.5 N; 0.15 um at 250 Hz."""
+    jnd = lambda force: 0.1 * np.maximum(force, 0.5)
+    noticed = norms(f - m) > jnd(norms(m))
+    fast = high_pass(f, dt, start=np.zeros(3))
+    square = signal.lfilter([-math.expm1(-30 * dt)], [1, -math.exp(-30 * dt)], np.sum(fast ** 2, axis=1))
+    felt = np.sqrt(2 * square) > jnd(norms(f - fast))
+    at_once = norms(fast) > jnd(norms(f - fast))
+    acceleration = np.r_[np.zeros((1, 3)), np.diff(v, axis=0) / dt]
+    band = lambda kind, cut, x: signal.sosfilt(signal.butter(4, cut, kind, fs=1 / dt, output="sos"), x, axis=0)
+    low, high = 40.0, 400.0
+    tactile = rms(band("low", high, band("high", low, acceleration)))
+    threshold = 0.15e-6 * (2 * math.pi * 250) ** 2 / math.sqrt(2)
+    bench.metrics(run, [
+        ("perception.error_noticed_share", noticed.mean(), "10 % of f_m or of 0.5 N", ROUNDING, "10 % of f_m alone",
+         np.mean(norms(f - m) > 0.1 * norms(m))),
+        ("perception.vibration_noticed_share", felt.mean(), "amplitude by the mean square over 1/30 s", ROUNDING, "instants beyond it",
+         at_once.mean()),
+        ("perception.tactile_acceleration_rms_m_per_s2", tactile, "scipy's band of 40 to 400 Hz", FILTERED, "unfiltered", rms(acceleration)),
+        ("perception.tactile_acceleration_over_threshold", tactile / threshold, "over 0.15 um (2 pi 250 Hz)^2 / sqrt 2", FILTERED,
+         "over the amplitude, not its rms", tactile / threshold / math.sqrt(2))])
+
+
+@scene
+def periodic_force(bench):
+    """A force in phase with a reference of 20 Hz: of many lags the nearest, and their spacing."""
+    run = bench.run(bench.scenario(
+        "periodic_force", time={"step_s": 0.0005, "steps": 2000}, reference_force={"z_N": {"type": "sine", "mean": 2, "amplitude": 1, "period_s": 0.05}},
+        environment={"type": "springs", "groups": [{"direction": [0, 0, -1], "count": 1}]},
+        motion={"position": {"type": "prescribed", "x_m": 0, "y_m": 0, "z_m": {"type": "sine", "mean": -2e-3, "amplitude": 1e-3, "period_s": 0.05,
+                                                                              "phase_rad": math.pi - 0.4}}},
+        rendering={"algorithm": "summation", "stiffness_N_per_m": 1000, "damping_ratio": 0,
+                   "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}))
+    # -z follows by 0.4 rad.
+    lag = Within("a parabola through three rows of a cosine finds its top to (omega dt)^2 / 24 of a row", absolute=1e-6)
+    bench.metrics(run, [
+        ("fidelity.force_lag_s", 0.4 / (2 * math.pi) * 0.05, "phase over angular frequency", lag, "a period earlier", -0.05 + 0.4 / (2 * math.pi) * 0.05),
+        ("fidelity.force_lag_period_s", 0.05, "the sine's", lag, "half of it", 0.025)])

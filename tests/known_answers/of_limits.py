@@ -1,0 +1,278 @@
+"""Scenes behind the tables of limit, stability and compare --devices: the eigenvalues and the motion of linear recurrences."""
+import math
+
+import numpy as np
+
+from answers import EXACT, ROUNDING, Table, Within, scene
+from physics import PLAIN, HeldLoop, bisected, class_of, grows, high_pass, motion_of, step_matrix
+
+
+@scene
+def limit_of_handle(bench):
+    """B of a wall that is stiffer than its handle allows without damping: an island of stable values, by the eigenvalues of the held loop."""
+    m, b, T, K = 0.1, 0.5, 0.001, 4000.0
+    base = bench.scenario("limit_of_handle", time={"step_s": T, "steps": 8000}, initial={"position_m": [1e-3, 0, 0]},
+                          environment={"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 1}]},
+                          device={"type": "impedance", "handle_mass_kg": m, "viscous_N_s_per_m": b},
+                          rendering={**PLAIN, "algorithm": "summation", "stiffness_N_per_m": K})
+    row = bench.json("limit", base, "--vary", "rendering.damping_N_s_per_m", "--between", "0.01:10000", "--resolution", "1e-4", "--out", "B")["limits"][0]
+    rests = lambda B: HeldLoop(m, b, T, K, B).radius() < 0.9 ** (4 / 8000)
+    bounded = lambda B: HeldLoop(m, b, T, K, B).radius() < 1
+    inside = next(B for B in np.geomspace(0.01, 1e4, 400) if rests(B))
+    low, high, theory = bisected(lambda B: not rests(B), 0.01, inside), bisected(rests, inside, 1e4), bisected(bounded, inside, 1e4)
+    fine = Within("bisection ends at 1e-4; beside the edges motion decays by a tenth a quarter only once its slowest part is alone", relative=5e-4)
+    for name, known, within, naive in (("limit", high, fine, 2 * m / T), ("low", low, fine, 0.01), ("high", high, fine, 2 * m / T),
+                                       ("theory", theory, Within("bisected to 1e-12", relative=3e-12), 2 * m / T)):
+        bench.add(f"limit.csv:{name}", row[name], known, "eigenvalues of the held loop", within, ("of leapfrog, or the end of the range", naive))
+
+
+@scene
+def limits_of_springs(bench):
+    """The limits of one spring under leapfrog (thesis A.3), and its root locus."""
+    M, dt, zeta = 0.1, 0.0005, 0.7
+    base = bench.scenario("limits_of_springs", time={"step_s": dt, "steps": 400}, initial={"position_m": [1e-3, 0, 0]},
+                          environment={"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 2}]},
+                          rendering={**PLAIN, "algorithm": "summation", "damping_ratio": zeta, "stiffness_N_per_m": 20000})
+    bench.json("stability", base, "--out", "limits")
+    table, locus = Table(bench.folder / "limits" / "limits.csv"), Table(bench.folder / "limits" / "root_locus.csv")
+    lam, K = 2.0, 20000.0
+    # 4 - 2 lam B dt / M - lam K dt^2 / M = 0 with B = 2 zeta sqrt(K M): a quadratic in s = sqrt(K) dt / sqrt(M).
+    s = -2 * zeta + math.sqrt(4 * zeta ** 2 + 4 / lam)
+    known = {"stiffness_undamped": (4 * M / (lam * dt ** 2), "N/m", 0.0), "damping_alone": (2 * M / (lam * dt), "N s/m", 2 * M / (lam * dt)),
+             "stiffness_damped": (M * s * s / dt ** 2, "N/m", 2 * zeta * s * M / dt), "time_step": (s * math.sqrt(M / K), "s", 2 * zeta * math.sqrt(K * M))}
+    cases = list(known)
+    value = [known[c][0] for c in cases]
+    exact, runs = Within("rounding of a quadratic's root", relative=1e-12), Within("bisection ends at 1e-3 of the value at most", relative=1e-3)
+    single = [2 * value[0], 2 * value[1], 433731.0, 2 * value[3]]
+    wrong = ("of a single spring", single)
+    bench.columns("limits.csv", table, [
+        ("analytic", value, "4 - 2 lam B dt / M - lam K dt^2 / M = 0", exact, *wrong), ("simulation", value, "the same", runs, *wrong),
+        ("eigenvalue", value, "the same", Within("bisection on eigenvalues, ends at 1e-9", relative=1e-8), *wrong),
+        ("damping_at_limit_N_s_per_m", [known[c][2] for c in cases], "B from zeta there", Within("as the limit", relative=1e-8), "of the scenario's K",
+         [2 * zeta * math.sqrt(K * M)] * 4), ("lambda_max", np.full(4, lam), "two springs side by side", ROUNDING, "one", np.ones(4))])
+    bench.add("limits.csv:case", table["case"], cases, "in this order", EXACT, ("the other way round", cases[::-1]))
+    bench.add("limits.csv:unit", table["unit"], [known[c][1] for c in cases], "of what grows", EXACT, ("N/m", ["N/m"] * 4))
+    at = [(c, v) for c, v in zip(locus["case"], locus["value"])]
+
+    def matrix(case, v):
+        k, B, t = {"stiffness_undamped": (v, 0, dt), "damping_alone": (0, v, dt), "stiffness_damped": (v, 2 * zeta * math.sqrt(v * M), dt),
+                   "time_step": (K, 2 * zeta * math.sqrt(K * M), v)}[case]
+        k, B = lam * k, lam * B
+        return np.array([[1 - k * t * t / M, t - B * t * t / M], [-k * t / M, 1 - B * t / M]])
+
+    known = [np.linalg.eigvals(matrix(c, v)) for c, v in at]
+    near = Within("an eigenvalue near a double one is known to the root of rounding", absolute=5e-8)
+    first, second = locus["first_real"] + 1j * locus["first_imaginary"], locus["second_real"] + 1j * locus["second_imaginary"]
+    sums, products = np.array([k.sum().real for k in known]), np.array([k.prod().real for k in known])
+    for name, ours, theirs, wrong in (("first_real", (first + second).real, sums, products), ("second_real", (first * second).real, products, sums),
+                                      ("first_imaginary", np.abs(first.imag), [abs(k[0].imag) for k in known], np.full(len(at), 0.5)),
+                                      ("second_imaginary", np.abs(second.imag), [abs(k[1].imag) for k in known], np.full(len(at), 0.5))):
+        bench.add(f"root_locus.csv:{name}", ours, theirs, "trace, determinant and imaginary parts of numpy's", near, ("of another", wrong))
+    bench.add("root_locus.csv:spectral_radius", locus["spectral_radius"], [np.abs(k).max() for k in known], "numpy's eigenvalues", near,
+              ("least modulus", [np.abs(k).min() for k in known]))
+    bench.add("root_locus.csv:case", list(dict.fromkeys(locus["case"])), cases, "as in limits.csv", EXACT, ("the other way round", cases[::-1]))
+    ends = [max(v for c, v in at if c == case) for case in cases]
+    bench.add("root_locus.csv:value", ends, [1.25 * v for v in value], "up to 1.25 of the limit", Within("as the limit", relative=1e-8),
+              ("up to the limit", value))
+
+
+HANDS = [(0, 0), *((m, k) for m in (0.1, 0.2, 0.5) for k in (100, 300, 1000))]
+
+
+@scene
+def maps(bench):
+    """Maps of parallel springs under leapfrog and of a handle at a wall: each class by the linear recurrence, each edge by its eigenvalues."""
+    size = 5
+    bench.json("stability", "--map", "contacts,z_width", "--algorithms", "summation", "--size", size, "--out", "maps")
+    bench.hapbench("stability", "--map", "z_width", "--algorithms", "summation", "--size", "3", "--set", "device.viscous_N_s_per_m=0", "--out", "bare")
+    M, dt, zeta = 0.1, 0.0005, 0.7
+    steps = lambda n, K: step_matrix(n * K, n * 2 * zeta * math.sqrt(K * M), M, dt)
+    handle = lambda B, K, b=0.5, more=0.0, spring=0.0: HeldLoop(0.1 + more, b, 0.001, K, B, spring=spring).matrix
+    wall, start = {"x": np.geomspace(0.1, 150, size), "y": np.geomspace(1e2, 1e5, size)}, 0.6e-3
+    counts = np.round(np.geomspace(1, 100, size))
+    radius = lambda matrix: np.abs(np.linalg.eigvals(matrix)).max()
+    at_rest = lambda matrix: np.eye(len(matrix))[0] * start + (np.eye(len(matrix))[2] * start if len(matrix) > 2 else 0)
+    edge_of = lambda at, low, high: bisected(lambda K: radius(at(K)) < 1, low, high)
+    swings = lambda at, low, high: bisected(lambda K: class_of(at(K), at_rest(at(K))) != "diverged", low, high, 1e-5)
+    for name, xs, ys, matrix, x_name in (("contacts", counts, np.geomspace(1e3, 1e7, size), steps, "contacts"),
+                                         ("z_width", wall["x"], wall["y"], handle, "wall_damping_N_s_per_m")):
+        points, edges = (Table(bench.folder / "maps" / f"stability_{kind}_{name}.csv") for kind in ("map", "boundary"))
+        grid = [(x, y) for x in xs for y in ys]
+        classes = [class_of(matrix(*at), at_rest(matrix(*at))) for at in grid]
+        spectral = ["stable" if radius(matrix(*at)) < 1 else "diverged" for at in grid]
+        lam = [at[0] if name == "contacts" else 1.0 for at in grid]
+        margin = [4 - 2 * n * 2 * zeta * math.sqrt(K * M) * dt / M - n * K * dt ** 2 / M for n, K in grid] if name == "contacts" else [math.nan] * 25
+        how = "recurrence and its eigenvalues"
+        for column, known, naive in (("{x}", [x for x, _ in grid], [y for _, y in grid]), ("{y}", [y for _, y in grid], [x for x, _ in grid]),
+                                     ("lambda_max", lam, np.full(25, 2.0)), ("stability_margin", margin, [4 - K * dt ** 2 / M for _, K in grid])):
+            given = {"{x}": x_name, "{y}": "stiffness_N_per_m"}.get(column, column)
+            bench.add(f"stability_map_NAME.csv:{column}", points[given], known, how, ROUNDING, ("of the other axis, or undamped", naive))
+        bench.add("stability_map_NAME.csv:class", points["class"], classes, "the rule on the recurrence", EXACT,
+                  ("by the eigenvalues", spectral) if classes != spectral else None)
+        theory = [edge_of(lambda K: matrix(x, K), 1.0, 1e9) if radius(matrix(x, 1.0)) < 1 else 0.0 for x in xs]
+        runs = [swings(lambda K: matrix(x, K), t / 2, 2 * t) for x, t in zip(xs, theory)]
+        close = Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8)
+        fine = Within("bisection on runs ends at 0.1 %", relative=1e-3)
+        kinds = [("{x}", xs, EXACT, ys), ("analytic_{y}", theory, close, [4 * M / dt ** 2] * 5), ("simulation_{y}", runs, fine, [4 * M / dt ** 2] * 5)]
+        for column, known, within, naive in kinds:
+            bench.add(f"stability_boundary_NAME.csv:{column}", edges[column.format(x=x_name, y="stiffness_N_per_m")], known, how,
+                      ROUNDING if within is EXACT else within, ("of an undamped spring", naive))
+        both = edges["simulation_stiffness_N_per_m"] / edges["analytic_stiffness_N_per_m"] - 1
+        bench.add("stability_boundary_NAME.csv:relative_difference", edges["relative_difference"], both, "simulation over analytic, less 1",
+                  Within("rounding of numbers near 1", absolute=1e-15), ("over the simulation", 1 - 1 / (1 + both) + 1e-9))
+        for kind, table in (("map", points), ("boundary", edges)):
+            for column, known, naive in (("algorithm", "summation", "mean"), ("integrator", "leapfrog", "rk4"), ("overrides", "", "none")):
+                bench.add(f"stability_{kind}_NAME.csv:{column}", sorted(set(table.rows[i][column] for i in range(len(table.rows)))), [known],
+                          "as asked", EXACT, ("another", [naive]))
+    limits_of_walls(bench, Table(bench.folder / "maps" / "stability_boundary_z_width.csv"), Table(bench.folder / "bare" / "stability_boundary_z_width.csv"),
+                    wall["x"], handle, edge_of)
+    bench.hapbench("stability", "--map", "friction_quantisation,encoder_step", "--algorithms", "summation", "--size", "4", "--out", "dry")
+    dry = Table(bench.folder / "dry" / "stability_map_friction_quantisation.csv")
+    # Abbott, Okamura; Diolaiti et al.: below 2 b / (K T) = 1 the samples make more energy than b takes from large motion, below
+    # 2 c / (K q) = 1 the steps of the encoder more than dry friction takes from small motion.
+    far = ["diverged" if x < 1 else "vibrating" if y < 1 else "stable" for x, y in zip(dry["2b_over_KT"], dry["2c_over_Kq"])]
+    bench.add("stability_map_NAME.csv:class_from_far", dry["class_from_far"], far, "2 b > K T and 2 c > K q", EXACT, ("from near", dry["class"]))
+    table, q = Table(bench.folder / "dry" / "stability_boundary_encoder_step.csv"), np.geomspace(1e-6, 1e-3, 4)
+    passive = np.minimum(2 * 0.5 / 0.001, 2 * 0.02 / q)
+    bench.add("stability_boundary_NAME.csv:passive_abbott_okamura_{y}", table["passive_abbott_okamura_stiffness_N_per_m"], passive,
+              "min(2 b / T, 2 c / q)", ROUNDING, ("2 b / T alone", np.full(4, 1000.0)))
+    bench.add("stability_boundary_NAME.csv:no_theory", [bool(text) for text in table["no_theory"]], [True] * 4, "dry friction is not linear", EXACT,
+              ("linear", [False] * 4))
+
+
+def limits_of_walls(bench, table, bare, xs, handle, edge_of):
+    b, T, m, how = 0.5, 0.001, 0.1, "theory's own formula"
+    theta = np.linspace(1e-5, np.pi, 200001)
+    p, r = T * np.sin(0.5 * theta) / (2 * np.sin(0.5 * theta)), -np.cos(theta)  # no delay, no filter
+    delayed = [max(0.0, ((b - B * r) / p).min()) for B in xs]
+    gil = [max(0.0, (b + B) / (T / 2)) if (b + B) * T / m <= 0.15 else math.nan for B in xs]
+    worst = [min(edge_of(lambda K: handle(B, K, more=mass, spring=k), 1.0, 1e9) if np.abs(np.linalg.eigvals(handle(B, 1.0, more=mass, spring=k))).max() < 1
+                 else 0.0 for mass, k in HANDS) for B in xs]
+    scanned = Within("a grid of 2e5 angles, square of the step", relative=1e-8, absolute=1e-6)
+    for column, known, within, naive in (
+            ("passive_colgate_schenkel", [max(0.0, 2 * (b - B) / T) for B in xs], ROUNDING, [2 * (b + B) / T for B in xs]),
+            ("passive_with_delay", delayed, scanned, [2 * b / T] * 5), ("stable_gil_hulin", gil, ROUNDING, [(b + B) * 2 / T for B in xs]),
+            ("worst_hand", worst, Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8), [1.0] * 5)):
+        bench.add(f"stability_boundary_NAME.csv:{column}_{{y}}", table[f"{column}_stiffness_N_per_m"], known, how, within,
+                  ("without its range, sign or hand", naive))
+    beta = np.geomspace(0.1, 150, 3) * T / m
+    bench.add("stability_boundary_NAME.csv:exact_undamped_handle_{y}", bare["exact_undamped_handle_stiffness_N_per_m"],
+              np.maximum(0, 2 * beta * (2 - beta) / (2 + beta) * m / T ** 2), "K T^2/m < 2 beta (2 - beta) / (2 + beta)", ROUNDING,
+              ("4 beta", 4 * beta * m / T ** 2))
+    bench.add("stability_boundary_NAME.csv:overrides", bare["overrides"], ["device.viscous_N_s_per_m=0"] * 3, "as --set gave it", EXACT, ("none", [""] * 3))
+
+
+@scene
+def devices(bench):
+    """The stiffness of two springs, and of a wall that only pushes, on a handle: by the held loop's motion behind scipy's filter."""
+    m, b, T, B, n, resolution, most = 0.1, 0.5, 0.001, 2.0, 2000, 1e-3, 1e-3
+    (bench.folder / "mine.json").write_text('{"type":"impedance","handle_mass_kg":0.1,"viscous_N_s_per_m":0.5}', encoding="utf-8")
+    common = dict(time={"step_s": T, "steps": n}, initial={"position_m": [1e-3, 0, 0]}, device={"type": "impedance", "preset": "omega.3"},
+                  rendering={**PLAIN, "algorithm": "summation", "damping_N_s_per_m": B})
+    del common["rendering"]["mass_kg"], common["rendering"]["damping_ratio"]
+    bench.scenario("both_ways", environment={"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 2}]}, **common)
+    hand = {"type": "mass_spring_damper", "mass_kg": 0.2, "stiffness_N_per_m": 300, "damping_N_s_per_m": 2, "target": {"x_m": 0.01, "y_m": 0, "z_m": 0}}
+    bench.scenario("pushes", environment={"type": "springs", "bilateral": False, "groups": [{"direction": [1, 0, 0], "count": 1}]}, hand=hand, **common)
+    printed = bench.json("compare", "both_ways.json", "pushes.json", "--devices", "mine.json,omega.3", "--algorithms", "summation,mean", "--resolution",
+                         resolution, "--out", "d")
+    table, runs = Table(bench.folder / "d" / "device_limits.csv"), Table(bench.folder / "d" / "device_runs.csv")
+    cell = {(row["device"], row["scenario"], row["algorithm"]): row for row in table.rows}
+    number = lambda row, name: float(row[name]) if row[name] else math.nan
+
+    def vibration(K, lam):
+        matrix = HeldLoop(m, b, T, lam * K, lam * B).matrix
+        v = motion_of(matrix, np.eye(len(matrix))[0] * 1e-3 + np.eye(len(matrix))[2] * 1e-3, n)
+        return math.inf if v is None else math.sqrt(np.mean(high_pass(v, T)[3 * n // 4:] ** 2))
+
+    laws, keys = (("summation", 2.0), ("mean", 1.0)), [("mine", "both_ways", "summation"), ("mine", "both_ways", "mean")]
+    edges = [bisected(lambda K: vibration(K, lam) <= most, 100.0, 1e5, 1e-7) for _, lam in laws]
+    theory = [bisected(lambda K: HeldLoop(m, b, T, lam * K, lam * B).radius() < 1, 100.0, 1e5) for _, lam in laws]
+    fine = Within("bisection ends at a relative width of 1e-3", relative=1e-3)
+    limits = [number(cell[key], "limit_N_per_m") for key in keys]
+    tried = [[float(row["rendering.stiffness_N_per_m"]) for row in runs.rows if (row["device"], row["scenario"], row["algorithm"]) == key] for key in keys]
+    judged = [["stable" if vibration(K, lam) <= most else "diverged" if grows(HeldLoop(m, b, T, lam * K, lam * B).matrix, n) else "vibrating"
+               for K in values] for (_, lam), values in zip(laws, tried)]
+    says = [[row["class"] for row in runs.rows if (row["device"], row["scenario"], row["algorithm"]) == key] for key in keys]
+    beyond = [min(K for K in values if K > limit) for values, limit in zip(tried, limits)]
+    how = "handle's speed above 30 Hz by the held loop and scipy"
+    exact = [("limit_N_per_m", edges, fine, "edge of the eigenvalues", theory), ("beyond_N_per_m", beyond, EXACT, "the limit", limits),
+             ("low_N_per_m", [min(v) for v in tried], EXACT, "the limit", limits), ("below_N_per_m", [math.nan] * 2, EXACT, "0", [0.0] * 2),
+             ("vibration_m_per_s", [vibration(K, lam) for K, (_, lam) in zip(limits, laws)], Within("filter and recurrence in another order, over 2000 "
+              "rows near the edge", relative=1e-6), "that is allowed", [most] * 2), ("contacts", [2.0, 2.0], EXACT, "by stiffness", [2.0, 1.0]),
+             ("lambda_max", [2.0, 1.0], ROUNDING, "of each spring", [1.0, 1.0]),
+             ("stiffness_ratio", [1.0, limits[1] / limits[0]], ROUNDING, "the other way round", [1.0, limits[0] / limits[1]]),
+             ("rendered_ratio", [1.0, limits[1] / limits[0] / 2], ROUNDING, "of K", [1.0, limits[1] / limits[0]]),
+             ("runs", [len(v) for v in tried], EXACT, "of the scan", [17.0, 17.0]), ("inconsistent_runs", [0.0] * 2, EXACT, "beyond", [1.0] * 2),
+             ("astray", [0.0] * 2, EXACT, "beyond", [1.0] * 2)]
+    for name, known, within, naive, value in exact:
+        bench.add(f"device_limits.csv:{name}", [number(cell[key], name) for key in keys], known, how, within, (naive, value))
+    classes = [j[v.index(x)] for j, v, x in zip(judged, tried, beyond)]
+    bench.add("device_limits.csv:class_beyond", [cell[key]["class_beyond"] for key in keys], classes, how, EXACT, ("diverged", ["diverged"] * 2))
+    bench.add("device_limits.csv:class_below", [cell[key]["class_below"] for key in keys], ["end of the range"] * 2, "stable at the low end", EXACT,
+              ("no value", [""] * 2))
+    bench.add("device_runs.csv:class", says[0] + says[1], judged[0] + judged[1], how, EXACT, ("by the eigenvalues", [
+        "stable" if K < edge else "diverged" for values, edge in zip(tried, theory) for K in values]))
+    bench.add("device_runs.csv:rendering.stiffness_N_per_m", [len(set(v)) for v in tried], [len(v) for v in tried], "each once", EXACT, ("of the scan", [17, 17]))
+    order = [(d, s, a) for d in ("mine", "omega.3") for s in ("both_ways", "pushes") for a in ("summation", "mean")]
+    for i, name in enumerate(("device", "scenario", "algorithm")):
+        bench.add(f"device_limits.csv:{name}", table[name], [key[i] for key in order], "devices, scenes, algorithms", EXACT, ("reversed", [key[i] for key in order[::-1]]))
+        bench.add(f"device_runs.csv:{name}", list(dict.fromkeys(runs[name])), list(dict.fromkeys(key[i] for key in order)), "devices, scenes, algorithms",
+                  EXACT, ("reversed", list(dict.fromkeys(key[i] for key in order[::-1]))))
+    of_maker = [number(row, "published_N_per_m") for row in table.rows]
+    bench.add("device_limits.csv:published_N_per_m", of_maker, [math.nan] * 4 + [5000.0] * 4, "CHAI3D's largest stiffness for an omega.3", EXACT,
+              ("its maker's closed loop", [math.nan] * 4 + [14500.0] * 4))
+    pushed = ("mine", "pushes", "summation")
+    linear = bisected(lambda K: HeldLoop(m + 0.2, b + 2, T, K, B, spring=300).radius() < 1, 100.0, 1e6)
+    close = Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8)
+    bench.add("device_limits.csv:linear_N_per_m", number(cell[pushed], "linear_N_per_m"), linear, "eigenvalues of the held loop with the hand", close,
+              ("without the hand", 2 * theory[0]))
+    row = bench.json("limit", "pushes.json", "--vary", "rendering.stiffness_N_per_m", "--set", 'device={"type":"impedance","handle_mass_kg":0.1,"viscous_N_s_per_m":0.5}',
+                     "--resolution", "0.1", "--out", "l")["limits"][0]
+    bench.add("limit.csv:linear", row["linear"], linear, "eigenvalues of the held loop with the hand", close, ("without the hand", 2 * theory[0]))
+    bench.add("compare --json: most_vibration_m_per_s", printed["most_vibration_m_per_s"], most, "default", EXACT, ("of the tip", 1e-2))
+    alone = {(r["device"], r["scenario"]): r["unstable_without_contact"] for r in printed["limits"]}
+    bench.add("compare --json: unstable_without_contact", alone["mine", "pushes"], False, "handle and hand are passive", EXACT, ("with the wall", True))
+    bench.add("compare --json: resolution", printed["resolution"], resolution, "as asked", EXACT, ("default", 0.01))
+
+
+@scene
+def undamped_map(bench):
+    """Without damping a spring swings for ever up to its limit: bounded, and not stable."""
+    printed = bench.json("stability", "--map", "damping_ratio", "--algorithms", "summation", "--size", "4", "--out", "m")[0]
+    table = Table(bench.folder / "m" / "stability_map_damping_ratio.csv")
+    at = [step_matrix(K, 2 * zeta * math.sqrt(K * 0.1), 0.1, 0.0005) for zeta in (0, 1, 2, 3) for K in np.geomspace(1e3, 1e7, 4)]
+    classes = [class_of(matrix, np.array([0.6e-3, 0])) for matrix in at]
+    bounded = ["stable" if np.abs(np.linalg.eigvals(matrix)).max() < 1 + 1e-9 else "diverged" for matrix in at]
+    bench.add("stability_map_NAME.csv:class", table["class"], classes, "the rule on the recurrence", EXACT, ("bounded is stable", bounded))
+    for name in ("stable", "dying_out", "vibrating", "diverged"):
+        bench.add(f"stability --json: {name}", printed[name], classes.count(name), "cells of that class", EXACT, ("edges, too", classes.count(name) + 4))
+    bench.add("stability --json: map", printed["map"], "damping_ratio", "as asked", EXACT, ("all", "all"))
+    walls = bench.json("stability", "--map", "z_width", "--algorithms", "summation", "--size", "3", "--out", "w")[0]["boundary"]
+    encoder = bench.json("stability", "--map", "encoder_step", "--algorithms", "summation", "--size", "2", "--out", "e")[0]["boundary"]
+    for axis, told, known in (("damping_ratio", printed["boundary"], [0.0, 1, 2, 3]), ("encoder_step_m", encoder, [1e-6, 1e-3])):
+        bench.add(f"stability --json: {axis}", [row[axis] for row in told], known, "the axis", ROUNDING, ("in the middle of cells", np.add(known, 0.5)))
+    table = Table(bench.folder / "w" / "stability_boundary_z_width.csv")
+    number = lambda x: math.nan if x is None else x
+    bench.add("stability --json: wall_damping_N_s_per_m", [row["wall_damping_N_s_per_m"] for row in walls], np.geomspace(0.1, 150, 3), "the axis", ROUNDING,
+              ("linear", np.linspace(0.1, 150, 3)))
+    for name in ("worst_hand", *walls[0]["limits"]):
+        values = [number(row.get(name, row["limits"].get(name))) for row in walls]
+        bench.add(f"stability --json: {name}", values, table[f"{name}_stiffness_N_per_m"], "as in the table, whose answers are known", EXACT,
+                  ("one that applies nowhere, or everywhere", np.full(3, 1.0)))
+    stressed(bench)
+
+
+def stressed(bench):
+    bench.hapbench("stability", "--stress", "--count", "2000", "--out", "s")
+    table = Table(bench.folder / "s" / "stability_stress.csv")
+    rows = [table["algorithm"].index(law) for law in ("mean", "highest_depth", "mcneely")]
+    bench.add("stability_stress.csv:algorithm", len(set(table["algorithm"])), len(table.rows), "each once", EXACT, ("some twice", len(table.rows) - 1))
+    reached = Within("sums of up to 137 equal springs, rounded", relative=1e-13)
+    # Parallel springs of one depth are among the sets: as stiff as one, and under the rule of 10 / N as ten.
+    bench.add("stability_stress.csv:largest_force_per_K_d", table["largest_force_per_K_d"][rows], [1.0, 1.0, 10.0], "parallel springs of one depth", reached,
+              ("the bound of shaping", [1.366] * 3))
+    bench.add("stability_stress.csv:largest_share_of_bound", table["largest_share_of_bound"][rows], [1.0] * 3, "which reach the bounds", reached,
+              ("of mcneely's in K d", [1.0, 1.0, 10.0]))
+    tests = "tests/scenarios/studies/stress/law_stress_test.cpp"
+    for name in ("sets", "in_contact", "non_finite", "out_of_bound", "points_dropped"):
+        bench.proven(f"stability_stress.csv:{name}", tests, "LawStress.NoForceIsInfiniteOrOutOfBound", f"c.{name}", "first_bad")
