@@ -194,7 +194,11 @@ struct ExpectedMemory {
   double operator()(const BlockEnvironment& block) const { return 150.0 * expected_points(block); }
   template <class Analytic>
   double operator()(const Analytic& shape) const {
-    return 310.0 * point_count(shape);
+    if constexpr (requires { point_count(shape); }) {
+      return 310.0 * point_count(shape);
+    } else {
+      return 310.0 * static_cast<double>(surface_points(shape).size());
+    }
   }
 };
 
