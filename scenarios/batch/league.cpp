@@ -248,15 +248,17 @@ bool is_failure(std::string_view outcome) {
   return known && outcome_infos()[static_cast<std::size_t>(*known)].is_failure;
 }
 
+bool have_reference(std::span<const RunReport> runs) {
+  const auto has = [](const RunReport& run) { return run.summary.section("fidelity") != nullptr; };
+  return std::all_of(runs.begin(), runs.end(), has);
+}
+
 LeagueRuns league_runs(const BatchPlan& plan, const BatchReport& report, const std::vector<std::string>& metrics) {
   LeagueRuns league;
   league.scenarios = plan.names;
   league.algorithms = plan.definition.algorithms;
-  const bool all_have_reference = std::all_of(report.runs.begin(), report.runs.end(), [](const RunReport& run) {
-    return run.summary.section("fidelity") != nullptr;
-  });
   const std::span<const std::string_view> usual =
-      all_have_reference ? std::span<const std::string_view>(kFidelityMetrics) : kDefaultMetrics;
+      have_reference(report.runs) ? std::span<const std::string_view>(kFidelityMetrics) : kDefaultMetrics;
   league.metrics = metrics.empty() ? std::vector<std::string>(usual.begin(), usual.end()) : metrics;
   const MetricList known = metrics_without_values();
   for (const std::string& name : league.metrics) {

@@ -103,6 +103,9 @@ std::string default_metrics_text();
 /// Returns true for the name of an outcome after which a run's metrics say nothing about its algorithm (OutcomeInfo).
 bool is_failure(std::string_view outcome);
 
+/// True when every run has a reference force.
+bool have_reference(std::span<const RunReport> runs);
+
 /// The runs of a finished batch with the given metrics (names of metric_list). If `metrics` is empty, they are
 /// kFidelityMetrics if every run has a reference force, otherwise kDefaultMetrics. A run has failed if its outcome is a
 /// failure or is not one that its scenario expects.

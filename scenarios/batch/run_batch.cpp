@@ -24,8 +24,13 @@ constexpr std::uint64_t kJitterStream = 0x6a697474;
 LoadedScenario load(const BatchPlan& plan, std::size_t scenario, std::size_t algorithm) {
   std::vector<std::string> overrides = plan.definition.overrides;
   overrides.push_back("rendering.algorithm=" + plan.definition.algorithms[algorithm]);
+  if (!plan.scenario_overrides.empty()) {
+    const std::vector<std::string>& own = plan.scenario_overrides[scenario];
+    overrides.insert(overrides.end(), own.begin(), own.end());
+  }
   LoadedScenario loaded = load_scenario(plan.scenarios[scenario], overrides);
   loaded.scenario.rendering.skips = plan.definition.skips;
+  loaded.scenario.time.stride = plan.stride;
   return loaded;
 }
 
@@ -85,7 +90,9 @@ RunReport run_one(const BatchPlan& plan, const BatchOptions& options, std::size_
   const auto start = std::chrono::steady_clock::now();
   const auto shell = make_shell(loaded.scenario, loaded.files);
   timing.shell = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  RunReport report = run_with_shell(loaded, shell, options.directory / run_directory(plan, number), false, timing);
+  const auto output =
+      options.directory ? std::optional(*options.directory / run_directory(plan, number)) : std::nullopt;
+  RunReport report = run_with_shell(loaded, shell, output, false, timing);
   report.targets.clear();  // they are in the run's files, and a batch may have very many
   return report;
 }

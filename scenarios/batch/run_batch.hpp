@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 #include "scenarios/description/load_scenario.hpp"
@@ -32,6 +34,9 @@ struct BatchPlan {
   std::vector<ScenarioText> scenarios;
   std::vector<std::string> names;     ///< unique names of the scenarios' files, without extension
   std::vector<std::string> warnings;  ///< without duplicates
+  /// Of each scenario, after those of all runs; none when empty.
+  std::vector<std::vector<std::string>> scenario_overrides;
+  std::int64_t stride = 1;  ///< TimeFields::stride of all runs
 
   std::size_t size() const { return scenarios.size() * definition.algorithms.size() * definition.seeds; }
   BatchRun run(std::size_t number) const;
@@ -54,9 +59,9 @@ std::filesystem::path run_directory(const BatchPlan& plan, std::size_t number);
 std::filesystem::path scenario_directory(const BatchPlan& plan, std::size_t scenario);
 
 struct BatchOptions {
-  std::filesystem::path directory;  ///< for all files; must exist
-  std::size_t jobs = 1;             ///< runs at once
-  bool progress = false;            ///< allow a progress bar
+  std::optional<std::filesystem::path> directory;  ///< for all files, must exist; none: nothing is written
+  std::size_t jobs = 1;                            ///< runs at once
+  bool progress = false;                           ///< allow a progress bar
 };
 
 struct BatchReport {

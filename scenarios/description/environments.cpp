@@ -162,12 +162,13 @@ static void describe(Fields& f, PointShellEnvironment& shell) {
 }
 
 static void describe(Fields& f, MeshEnvironment& mesh) {
-  f.file(mesh.file, {FileContent::Kind::mesh, {mesh.scale, mesh.spacing}},
+  f.file(mesh.file, {FileContent::Kind::mesh, {mesh.scale, mesh.spacing, mesh.flip}},
          "surface as OBJ, PLY, STL or OFF, ASCII or binary; relative to the scenario file");
   f.number("scale", mesh.scale, {0.0, 1e6, "m", true}, "length of the file's unit: 0.001 for millimetres",
            Presence::required);
   f.number("spacing_m", mesh.spacing, kLength,
            "resamples: no edge longer, one point in a cube of this size; null: the mesh's own vertices");
+  f.boolean("flip_normals", mesh.flip, "turns an open surface's normals round, which a scan may have inside out");
   f.number("grid_m", mesh.grid, kLength, "cell of the local average; null: no grid");
 }
 

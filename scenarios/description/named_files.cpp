@@ -182,9 +182,9 @@ const std::string& NamedFile::hash() {
 const NamedFile::Contents& NamedFile::contents() {
   if (contents_) return *contents_;
   check_extension();
-  const std::string key =
-      fmt::format("file {} as {}, scale {}, spacing {}: {}", hash(), static_cast<int>(content_.kind),
-                  content_.sampling.scale, content_.sampling.spacing.value_or(0.0), path_.string());
+  const std::string key = fmt::format("file {} as {}, scale {}, spacing {}, flip {}: {}", hash(),
+                                      static_cast<int>(content_.kind), content_.sampling.scale,
+                                      content_.sampling.spacing.value_or(0.0), content_.sampling.flip, path_.string());
   const auto parse = [this] {
     if (bytes_.empty()) read();
     return std::make_shared<const Contents>(parsed());

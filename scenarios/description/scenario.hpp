@@ -36,6 +36,9 @@ struct TimeFields {
   double step = 0.0005;    ///< [s]
   std::int64_t steps = 1;  ///< rows
   std::vector<StopCondition> stop_when;
+  /// Steps from one row that the metrics take in to the next, so that finer steps are measured as often as coarse ones.
+  /// Not a field of the file.
+  std::int64_t stride = 1;
 };
 
 struct SpringGroup {
@@ -72,6 +75,7 @@ struct MeshEnvironment {
   double scale = 1.0;             ///< [m] for each unit of the file
   std::optional<double> spacing;  ///< resampled to this [m]
   std::optional<double> grid;     ///< cell of the local average [m]
+  bool flip = false;              ///< an open surface's outside is its inside
 };
 using Environment = std::variant<SpringsEnvironment, Hole2d, Plane, Slot, BlockEnvironment, PointShellEnvironment,
                                  MeshEnvironment, ConicalHole>;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/mesh_formats.hpp"
@@ -108,7 +109,12 @@ CheckedMesh surface_in(std::string_view bytes, const fs::path& file, const MeshS
   TriangleSoup soup = triangles_in(bytes, file);
   check_indices(soup, file);
   scale_and_check(soup, sampling.scale, file);
+  if (sampling.flip) {
+    for (auto& corners : soup.triangles) std::swap(corners[1], corners[2]);
+  }
   CheckedMesh surface = connect(soup, file);
+  if (sampling.flip && surface.findings.open_edges.empty())
+    fail_in_file(file, "is closed, so that its outside is known; allowed: flip_normals of an open surface only");
   const std::size_t vertices = surface.mesh.n_vertices();
   if (static_cast<double>(vertices) > kMostPoints)
     fail_in_file(file, fmt::format("has {} vertices; allowed: at most {:.0g}", vertices, kMostPoints));

@@ -15,6 +15,7 @@
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/program/compare_devices.hpp"
+#include "scenarios/program/ranking_text.hpp"
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/encounter.hpp"
@@ -26,11 +27,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kRankingFile = "ranking.csv";
+
 struct CompareOptions {
   std::vector<std::string> metrics;
   unsigned seeds = 1;
   double jitter = 0.0;
   bool html = false;
+  bool check = false;
   Skips skips = Skips::on;
   CompareDevicesOptions common;  ///< all others, most of which a comparison of algorithms has, too
 };
@@ -62,14 +66,20 @@ fs::path directory_of(const CompareOptions& options, const BatchPlan& plan) {
   return results_directory(options.common.out, plan.names.size() > 1 ? "compare" : "compare_" + plan.names[0]);
 }
 
+/// A page always says whether the ranking holds.
+bool checks_ranking(const CompareOptions& options) {
+  return options.check || options.html;
+}
+
 /// Makes the directories and removes the results of an earlier comparison from them.
-void prepare(const fs::path& out, const BatchPlan& plan, bool league) {
+void prepare(const fs::path& out, const BatchPlan& plan, bool league, bool ranking) {
   ResultList results;
   for (std::size_t i = 0; i < plan.size(); ++i) results.runs.push_back(run_directory(plan, i));
   for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
     results.tables.push_back(scenario_directory(plan, s) / "comparison.csv");
   }
   if (league) results.tables.emplace_back("league.csv");
+  if (ranking) results.tables.emplace_back(kRankingFile);
   for (const fs::path& run : results.runs) require_writable_directory(out / run);
   replace_earlier_results(out, results);
 }
@@ -97,12 +107,28 @@ std::span<const RunReport> reports_of(const BatchPlan& plan, const BatchReport& 
   return std::span(report.runs).subspan(scenario * each, each);
 }
 
-/// The table of one scenario's runs.
+/// How far the forces of one scenario's runs are from those of its reference; empty without.
+std::string fidelity_text(std::span<const RunReport> reports) {
+  if (!have_reference(reports)) return "";
+  const auto own = std::span(kFidelityMetrics).first(std::size(kFidelityMetrics) - 1);  // the last is in every table
+  std::vector<Table::Column> columns = {{"algorithm", false}};
+  for (const std::string_view metric : own) columns.push_back({std::string(metric.substr(metric.find('.') + 1))});
+  Table table(columns);
+  for (const RunReport& report : reports) {
+    std::vector<std::string> cells = {report.summary.algorithm};
+    for (const std::string_view metric : own)
+      cells.push_back(significant(number_of(value_of(metric_list(report.summary), metric)), 3));
+    table.add(std::move(cells));
+  }
+  return "\nagainst the reference force\n\n" + table.text();
+}
+
+/// The tables of one scenario's runs.
 std::string comparison_text(std::span<const RunReport> reports) {
   RunTable table({"algorithm"});
   for (const RunReport& report : reports) table.add({report.summary.algorithm}, report);
-  return fmt::format("{}\n\n{}{}{}", reports.front().summary.name, table.text(), unsettled_text(reports),
-                     step_time_text(reports));
+  return fmt::format("{}\n\n{}{}{}{}", reports.front().summary.name, table.text(), unsettled_text(reports),
+                     fidelity_text(reports), step_time_text(reports));
 }
 
 /// Names the algorithms of a single scenario whose definition fixes a depth model, if others use another one. Each of
@@ -302,6 +328,19 @@ Json summaries_json(const BatchPlan& plan, const BatchReport& report, bool leagu
   return summaries;
 }
 
+/// Repeats the comparison more finely. Without a league its columns are those of the printed table.
+RankingCheck ranking_of(const CompareOptions& options, const BatchPlan& plan, const BatchReport& report) {
+  std::vector<std::string> metrics = options.metrics;
+  if (!wants_league(options, plan)) {
+    metrics = compared_metrics();
+    if (have_reference(report.runs)) metrics.insert(metrics.end(), kFidelityMetrics, std::end(kFidelityMetrics) - 1);
+  }
+  BatchOptions batch;
+  batch.jobs = options.common.jobs > 0 ? options.common.jobs : available_threads();
+  batch.progress = !options.common.output.quiet;
+  return check_ranking(plan, make_league(league_runs(plan, report, metrics)), batch);
+}
+
 /// Reports runs that diverge although their scenario does not expect it, the only expectation that concerns every
 /// algorithm: all of a single comparison, the first of a batch. Returns the exit status.
 int verdict(const BatchPlan& plan, const BatchReport& report, bool league) {
@@ -337,12 +376,15 @@ int compare(const CompareOptions& options) {
   const BatchPlan plan = plan_of(options);
   const fs::path out = directory_of(options, plan);
   print_warnings(plan.warnings);
-  prepare(out, plan, wants_league(options, plan));
+  prepare(out, plan, wants_league(options, plan), checks_ranking(options));
   announce_large_output(expected_bytes(plan));
 
+  std::optional<RankingCheck> ranking;
   const BatchReport report = [&] {
     try {
-      return run_batch(plan, batch_options(options, plan, out));
+      BatchReport runs = run_batch(plan, batch_options(options, plan, out));
+      if (checks_ranking(options)) ranking = ranking_of(options, plan, runs);
+      return runs;
     } catch (const Stopped&) {
       forget_results_if_none(out);
       throw;
@@ -352,16 +394,22 @@ int compare(const CompareOptions& options) {
     print_warnings(run_warnings(reports_of(plan, report, s)));
     write_comparison(out / scenario_directory(plan, s) / "comparison.csv", reports_of(plan, report, s), options.seeds);
   }
-  const std::string where = fmt::format("\nresults in {}\n", out.string());
+  std::string last = fmt::format("\nresults in {}\n", out.string());
+  if (ranking) {
+    write_ranking(out / kRankingFile, *ranking);
+    last = ranking_text(*ranking) + last;
+  }
   Json json = summaries_json(plan, report, wants_league(options, plan));
   if (wants_league(options, plan)) {
     const League league = make_league(league_runs(plan, report, options.metrics));
     write_league(out / "league.csv", league);
     Json batch = {{"runs", std::move(json)}};
     batch.update(league_json(league));
-    print(options.common.output, league_text(league) + where, batch);
+    if (ranking) batch["ranking"] = ranking_json(*ranking);
+    print(options.common.output, league_text(league) + last, batch);
   } else {
-    print(options.common.output, comparison_text(report.runs) + own_depth_models_text(plan) + where, json);
+    if (options.check) json = {{"runs", std::move(json)}, {"ranking", ranking_json(*ranking)}};
+    print(options.common.output, comparison_text(report.runs) + own_depth_models_text(plan) + last, json);
   }
   if (options.html) write_report(out, options.common.output.quiet || options.common.output.json);
   return verdict(plan, report, wants_league(options, plan));
@@ -426,13 +474,18 @@ void add_compare(CommandLine& line) {
   add_overrides(command, common.overrides);
   command.flag("--html", options.html, "also write OUT/report.html: curves, replay, metrics, commands")
       .excludes(devices);
+  command
+      .flag("--check", options.check,
+            "also repeat it at half the distance of the shell's points and at half the step, and say of each metric "
+            "whether the ranking holds, drifts or flips (\"hapbench describe flips\"); --html does")
+      .excludes(devices);
   add_skip_option(command, options.skips);
   add_output_options(command, common.output);
   command.footer(
       "Files go to OUT/[SCENARIO/]ALGORITHM[/seed_K], the parts in brackets where there are several, and "
       "comparison.csv of each scenario beside them. Several scenarios or seeds, or --by, give a league: rank, ratio to "
       "the best, mean and spread over the seeds, whether a difference exceeds the spread, and where each algorithm wins "
-      "and fails; league.csv has all of it. A run fails when it diverges, has no contact or loses it, goes through the "
+      "and fails; league.csv has all of it; ranking.csv has the numbers of --check, which are measured at the same times with both steps. A run fails when it diverges, has no contact or loses it, goes through the "
       "surface, is not dragged or stuck, or "
       "ends otherwise than its scenario allows; it ranks behind all others. The results of an earlier comparison in OUT "
       "are removed, other files are not.\n"

@@ -5,6 +5,7 @@
 #include "device_model/theory/stiffness_limits.hpp"
 #include "results/record/recorder.hpp"
 #include "scenarios/batch/league.hpp"
+#include "scenarios/batch/ranking_check.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/program/run_table.hpp"
@@ -148,6 +149,9 @@ std::vector<DescribedTable> result_tables() {
   tables.push_back({"league.csv",
                     "of compare with several scenarios or seeds: one line per scenario, algorithm and metric",
                     league_columns()});
+  tables.push_back({"ranking.csv",
+                    "of compare --check or --html: one line per scenario, halved spacing or step, metric and algorithm",
+                    ranking_columns()});
   tables.push_back(
       {"device_limits.csv", "of compare --devices: one line per device, scene and algorithm", device_limit_columns()});
   tables.push_back({"device_runs.csv", "of compare --devices: one line per run", device_run_columns()});

@@ -234,7 +234,10 @@ constexpr const char* kComparedMetrics[] = {"force_max_N",
                                             "inside_max_m",
                                             "inside_settled_m",
                                             "centre_inside_share",
-                                            "vibration_last_quarter_m_per_s"};
+                                            "vibration_last_quarter_m_per_s",
+                                            "fidelity.force_error_relative",
+                                            "fidelity.force_direction_error_rad",
+                                            "fidelity.force_artefact_share"};
 
 }  // namespace
 

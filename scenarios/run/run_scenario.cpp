@@ -63,7 +63,7 @@ MetricsConfig metrics_config(const Scenario& scenario, const SimulationParts& pa
   MetricsConfig config;
   config.friction_limit = friction_limit(scenario, *parts.motion);
   config.settling = scenario.metrics;
-  config.steps = static_cast<std::uint64_t>(scenario.time.steps);
+  config.steps = static_cast<std::uint64_t>(scenario.time.steps / scenario.time.stride);
   if (scenario.rendering.reduction) config.most_reduced = parts.source->capacity();
   return config;
 }
@@ -79,12 +79,32 @@ std::shared_ptr<const ReferenceForce> reference_force(const Scenario& scenario, 
   return nullptr;
 }
 
+/// Shows another observer every so manieth row, as one of a run with so much longer steps.
+class RowsApart final : public Observer {
+ public:
+  RowsApart(Observer& observer, std::int64_t stride)
+      : observer_(observer), stride_(static_cast<std::uint64_t>(stride)) {}
+
+  bool wants_ratio() const noexcept override { return observer_.wants_ratio(); }
+  void on_step(const StepRecord& record) noexcept override {
+    if (record.step % stride_ != 0) return;
+    StepRecord row = record;
+    row.step /= stride_;
+    observer_.on_step(row);
+  }
+
+ private:
+  Observer& observer_;
+  std::uint64_t stride_;
+};
+
 /// The observers of a trial: only those that the scenario asks for.
 class TrialObservers {
  public:
   TrialObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts, Trial trial)
       : tool_(parts.tool),
-        metrics_(scenario.time.step, metrics_config(scenario, parts)),
+        metrics_(scenario.time.step * static_cast<double>(scenario.time.stride), metrics_config(scenario, parts)),
+        metrics_rows_(metrics_, scenario.time.stride),
         passivity_(scenario.time.step, parts.motion->position_is_free()),
         seen_(scenario, files, parts, &metrics_),
         sections_({.scenario = scenario,
@@ -92,7 +112,7 @@ class TrialObservers {
                    .reference = reference_force(scenario, files),
                    .subject = trial.subject,
                    .trial = trial.number}) {
-    observers_.push_back(&metrics_);
+    observers_.push_back(scenario.time.stride == 1 ? static_cast<Observer*>(&metrics_) : &metrics_rows_);
     observers_.push_back(&passivity_);
     for (const auto& observer : sections_.all()) observers_.push_back(observer.get());
     for (Observer* observer : seen_.all()) observers_.push_back(observer);
@@ -134,6 +154,7 @@ class TrialObservers {
  private:
   std::shared_ptr<const ToolShape> tool_;
   MetricsObserver metrics_;
+  RowsApart metrics_rows_;
   PassivityObserver passivity_;
   EncounterObservers seen_;
   SectionObservers sections_;

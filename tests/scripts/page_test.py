@@ -48,6 +48,18 @@ class Page(Given):
         for text in ("in contact 4.9 % of the run &lt;b&gt;", "landing force max<br><span class=unit>N</span>", "7.25", "force rms above 30Hz", "0.125"):
             self.assertTrue(text in page, text)
 
+    def test_a_comparison_says_whether_its_ranking_holds(self):
+        out = self.root / "checked"
+        hapbench("compare", "peg_in_hole_2d_shaped_stiffness", "--algorithms", "mean,shaped_stiffness", "--set", "time.steps=300",
+                 "--html", "--out", out, "--quiet")
+        section = re.search(r'<section id="ranking".*?</section>', (out / "report.html").read_text(), re.S)[0]
+        rows = [line.split(",") for line in (out / "ranking.csv").read_text().splitlines()[1:]]
+        self.assertEqual(len(re.findall("<tr", section)), 1 + len(rows) / 2)
+        for verdict in {row[7] for row in rows}:
+            self.assertIn(verdict, section)
+        self.assertIn("environment.spacing_m 0.1 mm -&gt; 50 um", section)
+        self.assertIn("not checked", self.page(self.root / "peg"))
+
     def test_the_commands_repeat_the_run(self):
         page = self.page(self.root / "springs")
         command = re.search(r"hapbench (run [^\n<]*scenario.effective.json\S*) --out", page)[1]

@@ -1,7 +1,9 @@
 """The sections of a page of runs that are text and tables."""
 import json
 import shlex
+from pathlib import Path
 
+from hapbench.columns import read_records
 from hapbench_report.json_input import at, number_or_none
 from hapbench_report.markup import cell, columns, command, heading_cell, named, number, number_cell, table, text
 from hapbench_report.runs import plugin_text, provenance_of, provenance_section
@@ -10,6 +12,7 @@ from .given import differing
 
 MOST_FIRST = 12  # runs in the first table
 FIRST = ("force_mean_in_contact_N", "force_max_N", "force_step_p99_N", "force_rms_above_30Hz_N", "inside_max_m")
+COMPARISON, LEAGUE, RANKING = "comparison.csv", "league.csv", "ranking.csv"
 # Metrics of summary.json in the first table, as far as any run has them. Those that separate algorithms come first.
 METRICS = ("landings", "landing_force_max_N", "force_mean_in_contact_N", "force_step_p99_N", "settled_force_step_max_N",
            "force_rms_above_30Hz_N", "force_reversals_per_s", "force_max_N", "velocity_total_variation_m_per_s", "depth_max_m",
@@ -100,6 +103,44 @@ def every_metric(runs, labels):
              *(metric_cell(run.sections.get(section, {}).get(name)) for run in runs)] for section, name in names]
     headings = [heading_cell("Section"), heading_cell("Metric"), *(heading_cell(text(label), True) for label in labels)]
     return table(headings, rows, "All metrics")
+
+
+def ranking_section(words):
+    """Whether the rankings of the comparisons among the folders hold when they are sampled twice as finely."""
+    found = ""
+    for folder in map(Path, words):
+        if (folder / RANKING).is_file():
+            found += ranking_table(read_records(folder / RANKING))
+        elif (folder / COMPARISON).is_file() or (folder / LEAGUE).is_file():
+            found += f"<p class=note>{text(folder)}: not checked; <code>hapbench compare --check</code> does.</p>"
+    return found
+
+
+def ranking_table(records):
+    """A row for each metric and what was halved, beside the verdict the numbers of each algorithm."""
+    rows = {}
+    for record in records:
+        rows.setdefault((record["scenario"], record["halved"], record["change"], record["metric"], record["verdict"],
+                         record["best_before"], record["best_after"]), {})[record["algorithm"]] = record
+    laws = list(dict.fromkeys(record["algorithm"] for record in records if record["algorithm"]))
+    cells = []
+    for (scenario, halved, change, metric, verdict, before, after), of in rows.items():
+        kind = {"holds": "good", "flips": "bad"}.get(verdict)
+        best = before.replace("_", " ") + (f" → {after.replace('_', ' ')}" if after != before else "")
+        cells.append([cell(text(scenario)), cell(text(change)), cell(f"<code>{text(metric)}</code>" if metric else ""),
+                      cell(f"<b class={kind}>{text(verdict)}</b>" if kind else text(verdict)), cell(text(best)),
+                      *(cell(moved(of.get(law)), classes="number") for law in laws)])
+    headings = [*map(heading_cell, ("Scenario", "Halved", "Metric", "Ranking", "Best")),
+                *(heading_cell(text(law.replace("_", " ")), True) for law in laws)]
+    return table(headings, cells, "<b>Sampled twice as finely</b> Holds: no two algorithms change their order, and no number moves by "
+                 "more than 10 %; drifts: a number does; flips: two more than 10 % apart both times change their order, one that "
+                 "fails being the worst", "sortable")
+
+
+def moved(record):
+    if record is None:
+        return ""
+    return " → ".join(number(float(record[key]), 3) if record[key] else "–" for key in ("before", "after"))
 
 
 def metric_cell(value):

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "algorithms/registry.hpp"
 #include "device_model/device_presets.hpp"
@@ -85,17 +86,18 @@ TEST_F(CompareCommand, WritesTheFilesOfEachSideBySideAndTheTable) {
       "vibration_power_above_30Hz_m2_per_s2,depth_max_m,ratio_min,ratio_max,steps_in_contact,contact_share,landings,"
       "landing_force_max_N,landing_force_step_max_N,settled_s,force_mean_in_contact_N,settled_force_max_N,"
       "force_step_p99_N,settled_force_step_max_N,force_rms_above_30Hz_N,force_reversals_per_s,reduction_changes,"
-      "reduction_force_step_max_N,inside_max_m,inside_settled_m,centre_inside_share,vibration_last_quarter_m_per_s");
+      "reduction_force_step_max_N,inside_max_m,inside_settled_m,centre_inside_share,vibration_last_quarter_m_per_s,"
+      "fidelity.force_error_relative,fidelity.force_direction_error_rad,fidelity.force_artefact_share");
   // The numbers are those of the summary.
   const Json summary = Json::parse(test::read_file(directory_ / "out/mean/summary.json"));
   const Json& metrics = summary["metrics"];
-  const auto cells = cells_of(lines[1]);
+  const auto cells = cells_of(lines[1] + ' ');  // whose last cells are empty
   EXPECT_EQ(cells[0], "mean");
   EXPECT_EQ(cells[1], summary["outcome"]);
   EXPECT_EQ(cells[2], std::to_string(summary["steps"].get<int>()));
   const auto names = cells_of(lines[0]);
   ASSERT_EQ(cells.size(), names.size());
-  for (std::size_t i = 3; i < names.size(); ++i) {
+  for (std::size_t i = 3; i < names.size() && !names[i].starts_with("fidelity."); ++i) {
     const Json& metric = metrics.at(names[i]);
     const auto number = metric.is_null() ? std::nullopt : std::optional(metric.get<double>());
     EXPECT_EQ(cells[i].empty() ? std::nullopt : std::optional(test::number_in(cells[i])), number) << names[i];
@@ -138,6 +140,42 @@ TEST_F(CompareCommand, ExitsWith3WhenOneDivergesUnexpectedly) {
   EXPECT_EQ(run.status, 3);
   EXPECT_NE(run.err.find("summation diverges at step "), std::string::npos) << run.err;
   EXPECT_EQ(lines_of(run.err).size(), 1u);
+}
+
+/// A bur along a molar's fissure, resampled to 0.25 mm, as `new` once guessed: summation, whose stiffness grows with
+/// the number of points, is the smoothest there and hammers at half of that.
+TEST_F(CompareCommand, SaysThatTheSamplingMakesTheWinner) {
+  const Words words = {
+      "compare", "bur_fissure", "--set", "environment.spacing_m=0.00025", "--algorithms", "shaped_stiffness,summation",
+      "--out",   out_};
+  const auto with = [&words](const Words& more) {
+    Words all = words;
+    all.insert(all.end(), more.begin(), more.end());
+    return hapbench(all);
+  };
+  const Json json = with({"--check", "--json"}).json();
+  ASSERT_EQ(json["runs"].size(), 2u);
+  std::set<std::string> metrics;
+  for (const Json& row : json["ranking"]) {
+    metrics.insert(row["metric"]);
+    if (row["metric"] != "force_step_p99_N" || row["halved"] != "spacing") continue;
+    EXPECT_EQ(row["verdict"], "flips") << row;
+    EXPECT_EQ(row["best_before"], "summation");
+    EXPECT_EQ(row["best_after"], "shaped_stiffness");
+  }
+  EXPECT_EQ(metrics.size(), 7u) << "the numbers of the printed table";
+  EXPECT_EQ(lines_of(test::read_file(directory_ / "out/ranking.csv")).size(), 1u + 2 * 7 * 2);
+  // The table is about the runs in the folder.
+  const ProgramRun text = with({});
+  EXPECT_EQ(text.out.find("does the ranking hold?"), std::string::npos);
+  EXPECT_FALSE(fs::exists(directory_.path() / "out/ranking.csv"));
+  EXPECT_NE(with({"--check"}).out.find("\nforce_step_p99_N         spacing   flips"), std::string::npos);
+}
+
+TEST_F(CompareCommand, ComparesWithTheMeasuredForce) {
+  const ProgramRun run = hapbench({"compare", "recorded_wipe", "--algorithms", "mean,proxy", "--out", out_});
+  EXPECT_NE(run.out.find("\nagainst the reference force\n"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("force_error_relative  force_direction_error_rad  force_artefact_share\n"), std::string::npos);
 }
 
 /// Comparisons of several scenarios or seeds.

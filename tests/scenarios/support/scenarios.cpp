@@ -157,7 +157,7 @@ std::vector<NamedScenario> rich_scenarios() {
       "hand": {"type": "force", "z_N": -1}})")},
           {"scanned_cube", Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 10},
-      "environment": {"type": "mesh", "file": "cube.obj", "scale": 0.001, "spacing_m": 0.0003, "grid_m": 0.0005},
+      "environment": {"type": "mesh", "file": "cube.obj", "scale": 0.001, "flip_normals": false, "spacing_m": 0.0003, "grid_m": 0.0005},
       "initial": {"position_m": [0, 0, 0.0049]},
       "rendering": {"local_average": true}})")}};
 }
