@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <regex>
 #include <set>
 
@@ -69,6 +70,7 @@ TEST(Headings, OfEveryTableAreKnownToDescribe) {
       {"compare", "springs_limited_mean", "--algorithms", "mean,summation", "--out", "c"},
       {"compare", "springs_limited_mean", "--algorithms", "mean,summation", "--set", "seed=2", "--out", "d"},
       {"diff", "c", "d"},
+      {"compare", "recorded_wipe", "--algorithms", "mean,summation"},
       {"compare", "springs_limited_mean", "--algorithms", "mean,summation", "--seeds", "2"},
       {"compare", "springs_limited_mean", "springs_limited_summation", "--algorithms", "mean,summation"},
       {"compare", "tap_wall", "--devices", "touch,ideal", "--set", "time.steps=200", "--resolution", "0.5"},
@@ -95,7 +97,13 @@ TEST(Headings, OfEveryTableAreKnownToDescribe) {
     EXPECT_FALSE(found.empty()) << words[0] << " " << words[1] << " prints no table:\n" << run.out;
     titles.insert(found.begin(), found.end());
   }
-  EXPECT_GT(titles.size(), 70u);
+  for (const auto& file : std::filesystem::recursive_directory_iterator(directory.path())) {
+    const std::string name = file.path().filename().string();
+    // The worst motion found is a scenario.
+    if (!file.is_regular_file() || name.starts_with("worst_")) continue;
+    EXPECT_TRUE(is_described(name)) << file.path();
+  }
+  EXPECT_GT(titles.size(), 80u);
   for (const auto& [upper, lower] : titles) EXPECT_TRUE(is_described(upper, lower)) << upper << " / " << lower;
 }
 
@@ -105,7 +113,9 @@ TEST(Headings, OfEveryListHaveAMeaning) {
 }
 
 TEST(Words, OfTheOutputsAreKnownToDescribe) {
-  for (const char* word : {"league.csv", "1 / lambda_max(S)", "K lambda_max", "quantum", "planar.first_tilt", "C5"})
+  for (const char* word :
+       {"league.csv", "sweep.json", "sweep_shard_0_of_2.csv", "precision_shaping_timing.csv",
+        "stability_map_z_width.csv", "1 / lambda_max(S)", "K lambda_max", "quantum", "planar.first_tilt", "C5"})
     EXPECT_TRUE(is_described(word)) << word;
   const std::string choice = test::hapbench({"describe", "planar.first_tilt"}).out;
   EXPECT_NE(choice.find("0.02 ... 0.2"), std::string::npos) << choice;
