@@ -182,7 +182,7 @@ class Plot(Given):
         rank, share, error = found["rendering.stiffness_N_per_m"]
         self.assertLess(abs(share), 2 * error + 0.005)
         self.assertLess(abs(rank), 3 / np.sqrt(200))
-        self.assertIn("final position m.x over stiffness K [N/m]", said)
+        self.assertIn("\nx over stiffness K [N/m]\n", said)
         self.assertRegex(said, r" 10\d\d \.\.\. \(logarithmic\) 9\.\d+e\+04")
         picture = (folder / "plot.svg").read_text()
         for text in ("start", "stiffness K [N/m]", "S\u2081"):
