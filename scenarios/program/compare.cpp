@@ -107,28 +107,12 @@ std::span<const RunReport> reports_of(const BatchPlan& plan, const BatchReport& 
   return std::span(report.runs).subspan(scenario * each, each);
 }
 
-/// How far the forces of one scenario's runs are from those of its reference; empty without.
-std::string fidelity_text(std::span<const RunReport> reports) {
-  if (!have_reference(reports)) return "";
-  const auto own = std::span(kFidelityMetrics).first(std::size(kFidelityMetrics) - 1);  // the last is in every table
-  std::vector<Table::Column> columns = {{"algorithm", false}};
-  for (const std::string_view metric : own) columns.push_back({std::string(metric.substr(metric.find('.') + 1))});
-  Table table(columns);
-  for (const RunReport& report : reports) {
-    std::vector<std::string> cells = {report.summary.algorithm};
-    for (const std::string_view metric : own)
-      cells.push_back(significant(number_of(value_of(metric_list(report.summary), metric)), 3));
-    table.add(std::move(cells));
-  }
-  return "\nagainst the reference force\n\n" + table.text();
-}
-
 /// The tables of one scenario's runs.
 std::string comparison_text(std::span<const RunReport> reports) {
   RunTable table({"algorithm"});
   for (const RunReport& report : reports) table.add({report.summary.algorithm}, report);
-  return fmt::format("{}\n\n{}{}{}{}", reports.front().summary.name, table.text(), unsettled_text(reports),
-                     fidelity_text(reports), step_time_text(reports));
+  return fmt::format("{}\n\n{}{}{}{}", reports.front().summary.name, table.text(), fidelity_text(reports),
+                     unsettled_text(reports), step_time_text(reports));
 }
 
 /// Names the algorithms of a single scenario whose definition fixes a depth model, if others use another one. Each of

@@ -81,8 +81,8 @@ int run(const RunOptions& options) {
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
   const std::string latency_text = options.latency ? "\n" + latencies.text() : "";
   print(options.output,
-        table.text() + unsettled_text(reports) + step_time_text(reports) + targets + latency_text +
-            fmt::format("\nresults in {}\n", where.string()),
+        table.text() + fidelity_text(reports) + unsettled_text(reports) + step_time_text(reports) + targets +
+            latency_text + fmt::format("\nresults in {}\n", where.string()),
         summaries);
   return status;
 }

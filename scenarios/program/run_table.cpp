@@ -198,12 +198,34 @@ std::vector<std::string> latency_cells(const std::string& name, const StepLatenc
   return cells;
 }
 
+std::string fidelity_text(std::span<const RunReport> reports) {
+  const bool one_scenario = reports.front().summary.name == reports.back().summary.name;
+  std::vector<Table::Column> columns = {{one_scenario ? "algorithm" : "scenario", false}};
+  for (const RunHeading& heading : kFidelityHeadings) columns.push_back({heading.title});
+  Table table(columns);
+  bool any = false;
+  for (const RunReport& report : reports) {
+    if (report.summary.section("fidelity") == nullptr) continue;
+    any = true;
+    const MetricList metrics = metric_list(report.summary);
+    std::vector<std::string> cells = {distinct_name(report, reports)};
+    for (const RunHeading& heading : kFidelityHeadings) {
+      const auto value = number_of(value_of(metrics, heading.shows[0]));
+      cells.push_back(cell(value ? std::optional(heading.factor * *value) : std::nullopt));
+    }
+    table.add(std::move(cells));
+  }
+  return any ? fmt::format("\nrendered force against the reference, measured or ideal\n\n{}", table.text()) : "";
+}
+
 std::vector<Table::Column> run_headings() {
   std::vector<Table::Column> headings = joined_headings({kTargetHeadings, latency_headings()});
-  for (const RunHeading& heading : kRunHeadings) {
+  const auto add = [&headings](const RunHeading& heading) {
     for (const char* shown : heading.shows)
       if (shown != nullptr) headings.push_back({heading.title, heading.number, shown});
-  }
+  };
+  for (const RunHeading& heading : kRunHeadings) add(heading);
+  for (const RunHeading& heading : kFidelityHeadings) add(heading);
   return headings;
 }
 

@@ -37,6 +37,15 @@ inline constexpr RunHeading kRunHeadings[] = {{"outcome", {"outcome"}, 0.0, fals
                                               {"ratio", {"ratio_min", "ratio_max"}, 0.0, false},
                                               {"us/\nstep", {"step_p50_s"}}};
 
+/// Those of runs with a reference force: measured with the stroke, or ideal.
+inline constexpr RunHeading kFidelityHeadings[] = {
+    {"error\n%", {"fidelity.force_error_relative"}, 100.0},
+    {"normal\nrms N", {"fidelity.force_error_normal_rms_N"}, 1.0},
+    {"tangential\nrms N", {"fidelity.force_error_tangential_rms_N"}, 1.0},
+    {"direction\ndeg", {"fidelity.force_direction_error_rad"}, 57.295779513082323},
+    {"artefacts\n%", {"fidelity.force_artefact_share"}, 100.0},
+    {"lag\nms", {"fidelity.force_lag_s"}, 1e3}};
+
 /// A printed table of runs under kRunHeadings. Its width does not depend on the times in it.
 class RunTable {
  public:
@@ -59,6 +68,9 @@ std::string unsettled_text(std::span<const RunReport> reports);
 /// The tables of thesis D.4 for a report with targets: mean and standard error over subjects, a line for each place.
 /// Empty for other reports.
 std::string targets_text(const RunReport& report);
+
+/// A table of the rendered force against the reference, for the reports that have one; empty without any.
+std::string fidelity_text(std::span<const RunReport> reports);
 
 /// The warnings of runs that were made side by side. Warnings that differ only in numbers appear once, with the numbers
 /// of the first run and the names of the other algorithms.
