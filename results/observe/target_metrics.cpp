@@ -97,9 +97,9 @@ std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows) {
 
 namespace {
 
-MetricList metric_list(const SubjectMean& m, const char* unit, const char* meaning) {
+MetricList metric_list(const SubjectMean& m, const char* unit, const char* meaning, Better better = Better::none) {
   const bool any = m.subjects > 0;
-  return {{"mean", unit, meaning, if_any(any, m.mean)},
+  return {{"mean", unit, meaning, if_any(any, m.mean), better},
           {"standard_error", unit, "standard error of that mean, over subjects", if_any(any, m.standard_error)},
           {"subjects", "1", "subjects that have a value", m.subjects}};
 }
@@ -112,10 +112,11 @@ MetricList metric_list(const std::vector<PlaceMetrics>& places) {
     const std::string section = std::to_string(place.place);
     append(list, section + ".success_rate",
            metric_list(place.success_rate, "1",
-                       "share of the targets at this place that were removed, mean over subjects"));
+                       "share of the targets at this place that were removed, mean over subjects", Better::more));
     append(list, section + ".completion_time_s",
            metric_list(place.completion_time, "s",
-                       "time until a target at this place was removed or the limit was reached, mean over subjects"));
+                       "time until a target at this place was removed or the limit was reached, mean over subjects",
+                       Better::less));
     append(list, section + ".model_force_N",
            metric_list(place.model_force, "N",
                        "mean ||f|| of the rows logged at a target of this place, mean over subjects"));
