@@ -87,7 +87,10 @@ class ScenarioStandings {
       Standing standing;
       const std::vector<double> numbers = known(values_[a]);
       if (!numbers.empty()) standing.mean = mean_of(numbers);
-      if (numbers.size() >= 2 && league.seeds_matter[scenario]) standing.spread = standard_deviation(numbers);
+      if (numbers.size() >= 2 && league.seeds_matter[scenario]) {
+        standing.spread = standard_deviation(numbers);
+        standing.standard_error = standard_error(numbers);
+      }
       standings_.push_back(standing);
     }
     if (better_ == Better::none) return;

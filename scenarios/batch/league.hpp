@@ -45,6 +45,7 @@ inline constexpr double kSameRank = 1e-3;
 struct Standing {
   std::optional<double> mean;    ///< none when its runs failed or no run has the metric
   std::optional<double> spread;  ///< sample standard deviation; none for one seed or if seeds change nothing
+  std::optional<double> standard_error = {};  ///< of the mean: spread / sqrt(common seeds); none without a spread
   /// 1 + the number of better algorithms. Those without failures come first, ordered by their means; means within
   /// kSameRank of the first of a group share its rank, and algorithms without a mean come last of these (a tool that is
   /// thrown out at once has no settled force). The others follow by their number of failed seeds. None if no algorithm

@@ -178,7 +178,8 @@ Table standings(const League& league, std::size_t metric, Detail detail) {
       if (detail == Detail::rank) continue;
       cells.push_back(significant(standing.ratio_to_best, 3));
       if (detail == Detail::spread) {
-        cells.insert(cells.end(), {significant(standing.mean, 4), significant(standing.spread, 2)});
+        cells.insert(cells.end(), {standing.mean ? deserved(*standing.mean, standing.standard_error) : "-",
+                                   significant(standing.spread, 2)});
       }
     }
     table.add(std::move(cells));

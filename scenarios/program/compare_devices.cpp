@@ -134,16 +134,16 @@ void print_all_warnings(const DeviceQuestion& question) {
 
 constexpr std::size_t kDeviceGap = 1;  // three scenes and two algorithms then fit into kTableWidth
 
-/// Three digits, without an exponent.
-std::string stiffness_text(double K) {
-  const double unit = std::pow(10.0, std::floor(std::log10(K)) - 2.0);
-  return unit < 1.0 ? significant(K, 3) : fmt::format("{:.0f}", std::round(K / unit) * unit);
+/// As the width of the search allows, or with three digits.
+std::string stiffness_text(double K, const std::optional<double>& tolerance = {}) {
+  return deserved(K, tolerance ? tolerance : K * 5e-3);
 }
 
 std::string limit_text(const FieldLimit& limit, double resolution) {
   if (!limit.value) return "none";
-  return fmt::format("{}{}{}{}{}", limit.other_beyond ? stiffness_text(*limit.other_value) + "-" : "",
-                     limit.beyond ? "" : "> ", stiffness_text(*limit.value),
+  return fmt::format("{}{}{}{}{}",
+                     limit.other_beyond ? stiffness_text(*limit.other_value, limit.other_tolerance()) + "-" : "",
+                     limit.beyond ? "" : "> ", stiffness_text(*limit.value, limit.tolerance()),
                      limit.is_beyond_linear(resolution) ? "!" : "", limit.inconsistent.empty() ? "" : " ~");
 }
 
@@ -370,6 +370,12 @@ const DeviceField kDeviceLimitFields[] = {
      [](const DeviceLimitRow& r) { return r.limit().other_beyond ? Cell(r.limit().other_beyond->value) : Cell(); }},
     {{"class_below", "", "what became of the run there"},
      [](const DeviceLimitRow& r) -> Cell { return other_beyond_text(r.limit()); }},
+    {{"limit_tolerance_N_per_m", "N/m", "how far beyond the limit the edge may lie"},
+     [](const DeviceLimitRow& r) { return cell_if(r.limit().tolerance()); },
+     DeviceField::In::json},
+    {{"low_tolerance_N_per_m", "N/m", "how far below the low end the edge may lie"},
+     [](const DeviceLimitRow& r) { return cell_if(r.limit().other_tolerance()); },
+     DeviceField::In::json},
     {{"published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device"},
      [](const DeviceLimitRow& r) { return cell_if(r.device().published_stiffness); }},
     {{"vibration_m_per_s", "m/s", "at the limit: rms of the handle's speed above 30 Hz in the last quarter of the run"},

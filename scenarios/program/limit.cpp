@@ -96,14 +96,22 @@ std::string value_text(const std::optional<double>& value) {
   return !value ? "-" : std::isinf(*value) || *value == 0.0 ? "none" : significant(*value, 6);
 }
 
+/// In percent; "0" where it is within the width of the search.
+std::string difference_text(double difference, const std::optional<double>& width) {
+  return width && std::abs(difference) <= *width ? "0" : deserved(difference, width, 2);
+}
+
 Table table_of(const std::vector<FieldLimit>& limits, const LimitQuestion& question) {
   Table table(limit_headings(question.smallest));
   for (const FieldLimit& limit : limits) {
     const auto difference = limit.difference();
-    table.add({limit.algorithm, limit.other_value ? significant(*limit.other_value, 6) : "none",
-               other_beyond_text(limit), limit.value ? significant(*limit.value, 6) : "none", beyond_text(limit),
-               value_text(limit.theory), difference ? significant(100.0 * *difference, 2) : "-",
-               std::to_string(limit.runs.size()), std::to_string(limit.inconsistent.size())});
+    const auto tolerance = limit.tolerance(), other = limit.other_tolerance();
+    const auto width = tolerance ? std::optional(100.0 * *tolerance / std::abs(*limit.value)) : std::nullopt;
+    table.add({limit.algorithm, limit.other_value ? deserved(*limit.other_value, other, 6) : "none",
+               other_beyond_text(limit), limit.value ? deserved(*limit.value, tolerance, 6) : "none",
+               beyond_text(limit), value_text(limit.theory),
+               difference ? difference_text(100.0 * *difference, width) : "-", std::to_string(limit.runs.size()),
+               std::to_string(limit.inconsistent.size())});
   }
   return table;
 }
@@ -206,6 +214,15 @@ const LimitField kLimitFields[] = {
       "they touch, without dry friction and encoder, by its eigenvalues; a limit beyond it is held up by bounces, dry "
       "friction or the end of the run; empty where there is a theory or no device"},
      [](const LimitRow& r) { return cell_if(r.limit.linear); }},
+    {{"limit_tolerance", "by field", "how far beyond the limit the edge may lie: beyond - limit"},
+     [](const LimitRow& r) { return cell_if(r.limit.tolerance()); },
+     LimitField::In::json},
+    {{"low_tolerance", "by field", "the same of the low end"},
+     [](const LimitRow& r) { return cell_if(r.question.smallest ? r.limit.tolerance() : r.limit.other_tolerance()); },
+     LimitField::In::json},
+    {{"high_tolerance", "by field", "the same of the high end"},
+     [](const LimitRow& r) { return cell_if(r.question.smallest ? r.limit.other_tolerance() : r.limit.tolerance()); },
+     LimitField::In::json},
     {{"undecided", "1", "runs that were too short to tell slow motion from rest, though lengthened"},
      [](const LimitRow& r) -> Cell { return std::uint64_t{r.limit.undecided}; }},
     {{"unstable_without_contact", "", "true when hand and device alone are unstable beyond the edge"},

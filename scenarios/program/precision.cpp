@@ -67,14 +67,19 @@ std::string study_text(const PrecisionStudy& study, const PrecisionResult& resul
   Table table(columns);
   for (const PrecisionRow& row : result.rows) {
     std::vector<std::string> cells = {row.setting, row.outcome};
-    for (const auto& value : row.values) cells.push_back(significant(value));
+    for (std::size_t i = 0; i < row.values.size(); ++i) {
+      const auto& value = row.values[i];
+      const bool of_reference = row.tolerance && value && result.columns[i].starts_with("error_");
+      cells.push_back(of_reference ? deserved(*value, *row.tolerance * *value) : significant(value));
+    }
     cells.push_back(significant(1e6 * row.seconds, 3));
     table.add(std::move(cells));
   }
   std::string text = fmt::format("{}: {}\n\n{}", study.name, study.summary, table.text());
   for (const ObservedOrder& order : result.orders) {
     text += fmt::format("order of {} between the finest two, {}: {} +- {} (change from the two before)\n", order.error,
-                        order.series, significant(order.order.value, 3), significant(order.order.uncertainty, 2));
+                        order.series, deserved(order.order.value, 0.1 * order.order.uncertainty, 3),
+                        significant(order.order.uncertainty, 2));
   }
   return text + "\n";
 }
@@ -86,6 +91,7 @@ Json study_json(const PrecisionStudy& study, const PrecisionResult& result) {
     for (std::size_t i = 0; i < result.columns.size(); ++i) {
       json[result.columns[i]] = or_null(row.values[i]);
     }
+    if (row.tolerance) json["error_tolerance_relative"] = *row.tolerance;
     json["seconds_per_" + result.timed] = row.seconds;
     rows.push_back(std::move(json));
   }

@@ -39,6 +39,11 @@ const Field<StabilityLimit> kStabilityLimitFields[] = {
     {{"eigenvalue", "unit", "by bisection on the eigenvalues of a step"},
      [](const StabilityLimit& l) -> Cell { return l.eigenvalue; }},
     {{"simulation", "unit", "by bisection on runs"}, [](const StabilityLimit& l) -> Cell { return l.simulation; }},
+    {{"simulation_tolerance", "unit", "how far beyond `simulation` the edge may lie"},
+     [](const StabilityLimit& l) {
+       return std::isfinite(l.simulation) ? Cell(kLimitTolerance * l.simulation) : Cell();
+     },
+     Field<StabilityLimit>::In::json},
     {{"damping_at_limit_N_s_per_m", "N s/m", "B at the limit"},
      [](const StabilityLimit& l) -> Cell { return l.damping_at_limit; }},
     {{"lambda_max", "1", "largest eigenvalue of S: stiffness of the springs in units of K"},
@@ -75,9 +80,9 @@ std::string disagreement_text(const std::vector<StabilityLimit>& limits) {
   return "";
 }
 
-/// A limit for people; "none" where nothing is unstable.
-std::string limit_text(double limit) {
-  return std::isinf(limit) ? "none" : significant(limit, 6);
+/// A limit for people; "none" where nothing is unstable. `tolerance`: relative, if not of rounding.
+std::string limit_text(double limit, double tolerance = 0.0) {
+  return std::isinf(limit) ? "none" : deserved(limit, tolerance * limit, 6);
 }
 
 const std::vector<Table::Column> kLimitHeadings = {
@@ -88,7 +93,7 @@ std::string limits_text(const LoadedScenario& loaded, const std::vector<Stabilit
   Table table(kLimitHeadings);
   for (const StabilityLimit& limit : limits) {
     table.add({limit.name, limit_text(limit.analytic.value_or(std::nan(""))), limit_text(limit.eigenvalue),
-               limit_text(limit.simulation), limit.unit, significant(limit.damping_at_limit, 5)});
+               limit_text(limit.simulation, kLimitTolerance), limit.unit, significant(limit.damping_at_limit, 5)});
   }
   const RenderingConfig& rendering = loaded.scenario.rendering;
   return fmt::format("{}: {}, {}, M = {} kg, dt = {} s, zeta = {}, lambda_max(S) = {}\n\n{}", loaded.scenario.name,

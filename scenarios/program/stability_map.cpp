@@ -168,13 +168,15 @@ Json result_json(const MapResult& result) {
   for (const BoundaryPoint& p : result.boundary) {
     Json limits = Json::object();
     for (std::size_t i = 0; i < p.limits.size(); ++i) limits[stiffness_limits()[i].name] = or_null(p.limits[i]);
-    rows.push_back({{result.map->x.name, p.x},
-                    {"analytic", or_null(p.analytic)},
-                    {"simulation", p.simulation},
-                    {"relative_difference", or_null(p.difference())},
-                    {"no_theory", p.no_theory},
-                    {"worst_hand", or_null(p.worst_hand)},
-                    {"limits", std::move(limits)}});
+    rows.push_back(
+        {{result.map->x.name, p.x},
+         {"analytic", or_null(p.analytic)},
+         {"simulation", p.simulation},
+         {"simulation_tolerance", or_null(if_any(std::isfinite(p.simulation), kMapPrecision * p.simulation))},
+         {"relative_difference", or_null(p.difference())},
+         {"no_theory", p.no_theory},
+         {"worst_hand", or_null(p.worst_hand)},
+         {"limits", std::move(limits)}});
   }
   Json json = {{"map", result.map->name},
                {"algorithm", result.subject.algorithm},
@@ -195,7 +197,7 @@ std::vector<std::string> cells_of(const MapResult& result) {
   for (const MotionClass motion : kMotionClasses) {
     cells.push_back(std::to_string(count_of(result, motion)));
   }
-  cells.push_back(difference ? significant(100.0 * *difference, 2) : "-");
+  cells.push_back(difference ? deserved(100.0 * *difference, 100.0 * kMapPrecision, 2) : "-");
   cells.push_back(std::to_string(without));
   return cells;
 }

@@ -191,6 +191,18 @@ std::string significant(const std::optional<double>& value, int digits) {
   return value ? significant(*value, digits) : "-";
 }
 
+std::string deserved(double value, const std::optional<double>& tolerance, int digits) {
+  const double size = std::abs(value);
+  if (!tolerance || !(*tolerance > 0.0 && *tolerance < size) || !std::isfinite(size)) return significant(value, digits);
+  const int last = static_cast<int>(std::floor(std::log10(*tolerance)));
+  if (size < 1e-4 || last < -12) {
+    const int deserve = static_cast<int>(std::floor(std::log10(size))) - last + 1;
+    return significant(value, std::clamp(deserve, 1, 12));
+  }
+  const double unit = std::pow(10.0, last);
+  return last < 0 ? fmt::format("{:.{}f}", value, -last) : fmt::format("{:.0f}", std::round(value / unit) * unit);
+}
+
 std::string character_map(const MapColumns& columns, const std::string& row_name,
                           const std::vector<std::string>& row_labels,
                           const std::function<char(std::size_t column, std::size_t row)>& cell) {

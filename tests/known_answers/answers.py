@@ -129,7 +129,9 @@ class Bench:
 
     def json(self, *words, statuses=(0,)):
         found = json.loads(self.hapbench(*words, "--json", statuses=statuses))
-        self.printed.append((words[0], found))
+        of_runs = words[0] == "compare" and (isinstance(found, list) or "runs" in found)
+        self.printed.append((words[0], {key: found[key] for key in found if key != "runs"} if of_runs and isinstance(found, dict) else
+                             [] if of_runs else found))
         return found
 
     def run(self, scenario, *words, out=None, statuses=(0,)):

@@ -42,6 +42,7 @@ def league(bench):
     known = {name: [] for name in table.names}
     naive = {name: [] for name in ("failed", "mean", "spread", "rank", "ratio_to_best", "beyond_spread", "common_seeds", "seeds")}
     ranks, ratios = {law: [] for law in LAWS}, {law: [] for law in LAWS}
+    number = lambda x: math.nan if x is None else float(x)
     for s, law, metric, failed, common, values in rows_of(table, runs, scenes):
         bad = {name: sum(failed[name]) for name in LAWS}
         means = {name: np.mean(v) for name, v in values.items() if not any(x is None for x in v)}
@@ -64,7 +65,6 @@ def league(bench):
         outcomes = [runs[s, law, k].summary["outcome"] for k in range(SEEDS)]
         counts = [f"{name} {outcomes.count(name)}" for name in dict.fromkeys(outcomes)]
         ratio = means[law] / means[best] if ranked and law in sure else None
-        number = lambda x: math.nan if x is None else float(x)
         for name, value in (
                 ("scenario", s), ("algorithm", law), ("metric", metric), ("seeds", SEEDS), ("failed", bad[law]),
                 ("outcome", outcomes[0] if len(counts) == 1 else "; ".join(counts)), ("mean", number(means.get(law))),
@@ -88,6 +88,9 @@ def league(bench):
     for name in table.names:
         wrong = (says[name], naive[name]) if name in naive else ("in another order", list(reversed(known[name])))
         bench.add(f"league.csv:{name}", table[name], known[name], how, ROUNDING if name in ("mean", "spread", "ratio_to_best") else EXACT, wrong)
+    errors = [number(row["standard_error"]) for row in printed["standings"]]
+    bench.add("compare --json: standard_error", errors, np.array(known["spread"]) / np.sqrt(np.array(known["common_seeds"], float)),
+              "spread over the root of the common seeds", ROUNDING, ("over all seeds", np.array(known["spread"]) / math.sqrt(SEEDS)))
     laws_of(bench, printed["laws"], ranks, ratios, scenes)
 
 
@@ -161,6 +164,7 @@ def swept_words(bench, base, runs):
     bench.add("diff --json: reordered", told["reordered"], False, "the same columns", EXACT, ("rows differ", True))
     bench.add("diff --json: column", told["first"]["column"], next(name for name in a.names if a.rows[first][name] != b.rows[first][name]),
               "first cell that differs", EXACT, ("the time", "time_s"))
+    bench.add("diff --json: rows", told["rows"], [300, 300], "lines", EXACT, ("with the header", [301, 301]))
     bench.add("diff --json: unshared", len(other["runs"]["."]["unshared"]), 0, "the same metrics", EXACT, ("what differs", len(results)))
     bench.add("diff --json: tolerance", [same["tolerance"], within["tolerance"]], [0.0, 1e-9], "as given", EXACT, ("a default", [1e-9, 1e-9]))
 
@@ -180,8 +184,6 @@ def compared(bench):
     values = [[math.nan if run.metric(name) is None else float(run.metric(name)) for name in shared] for run in runs]
     bench.add("comparison.csv:metrics", [[table[name][i] for name in shared] for i in range(3)], values, "of the summaries, the same digits", EXACT,
               ("of the next law", values[1:] + values[:1]))
-    seeded = bench.json("compare", base, "--algorithms", "mean", "--seeds", "3", "--out", "s")
-    bench.add("compare --json: seed", [run["seed"] for run in seeded["runs"]], [0, 1, 2], "of the three", EXACT, ("all of the scenario", [0, 0, 0]))
     assert len(printed) == 3
     points = np.array([[1e-3, 2e-3, 3e-3, 0, 0, 1], [-4e-3, 5e-3, 0, 0.6, 0, 0.8], [7e-3, -8e-3, 9e-3, 0, -1, 0]])
     bench.write("points.csv", "x_m,y_m,z_m,nx,ny,nz", points)

@@ -127,6 +127,10 @@ def limit_of_spring(bench):
     for name, known, within, naive in cells:
         bench.add(f"limit.csv:{name}", table[name][0], known, "rule on the recurrence, and the eigenvalues",
                   within, ("of the eigenvalues alone, or the value beside", naive))
+    for key, known, naive in (("limit_tolerance", beyond - limit, resolution * limit), ("high_tolerance", beyond - limit, resolution * limit),
+                              ("low_tolerance", low - below, resolution * low)):
+        bench.add(f"limit --json: {key}", row[key], known, "from the last stable value to the next tried", ROUNDING, ("the resolution asked", naive))
+    digits(bench, base, field)
     for key, known, naive in (("from", 1e3, 1.0), ("to", 1e7, 1e6), ("resolution", resolution, 1e-3), ("has_effect", True, False),
                               ("unstable_without_contact", False, True)):
         bench.add(f"limit --json: {key}", printed[key] if key in printed else row[key], known, "as asked; one spring, and no device", EXACT,
@@ -135,6 +139,18 @@ def limit_of_spring(bench):
     unmoved = bench.json("limit", base, "--vary", "rendering.iterations", "--between", "1:9", "--out", "none")["limits"][0]
     bench.add("limit --json: has_effect", unmoved["has_effect"], False, "summation has no iterations", EXACT, ("as a limit was found", True))
     bound_and_through(bench, base, field)
+
+
+def digits(bench, base, field):
+    """The table prints a limit down to the leading digit of the width within which the edge lies."""
+    for resolution in (0.1, 1e-3, 1e-5):
+        ask = ("limit", base, "--vary", field, "--between", "1e5:1e7", "--resolution", resolution, "--out", "digits")
+        row, text = bench.json(*ask)["limits"][0], bench.hapbench(*ask)
+        cell = next(line for line in text.splitlines() if line.startswith("summation")).split("  ")
+        place = 10.0 ** math.floor(math.log10(row["limit_tolerance"]))
+        known = f"{round(row['limit'] / place) * place:.{max(0, -round(math.log10(place)))}f}"
+        bench.add("limit.csv:limit", known in [part.strip() for part in cell], True, "the table's digits are those of the width", EXACT,
+                  ("six digits", f"{row['limit']:.6g}" in [part.strip() for part in cell]))
 
 
 def bound_and_through(bench, base, field):

@@ -33,7 +33,9 @@ def limits_of_springs(bench):
     base = bench.scenario("limits_of_springs", time={"step_s": dt, "steps": 400}, initial={"position_m": [1e-3, 0, 0]},
                           environment={"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 2}]},
                           rendering={**PLAIN, "algorithm": "summation", "damping_ratio": zeta, "stiffness_N_per_m": 20000})
-    bench.json("stability", base, "--out", "limits")
+    printed = bench.json("stability", base, "--out", "limits")[0]["limits"]
+    bench.add("stability --json: simulation_tolerance", [row["simulation_tolerance"] for row in printed], [1e-4 * row["simulation"] for row in printed],
+              "bisection on runs ends at 1e-4", ROUNDING, ("of maps", [1e-3 * row["simulation"] for row in printed]))
     table, locus = Table(bench.folder / "limits" / "limits.csv"), Table(bench.folder / "limits" / "root_locus.csv")
     lam, K = 2.0, 20000.0
     # 4 - 2 lam B dt / M - lam K dt^2 / M = 0 with B = 2 zeta sqrt(K M): a quadratic in s = sqrt(K) dt / sqrt(M).
@@ -206,6 +208,12 @@ def devices(bench):
              ("astray", [0.0] * 2, EXACT, "beyond", [1.0] * 2)]
     for name, known, within, naive, value in exact:
         bench.add(f"device_limits.csv:{name}", [number(cell[key], name) for key in keys], known, how, within, (naive, value))
+    told = {(row["device"], row["scenario"], row["algorithm"]): row for row in printed["limits"]}
+    widths = [x - limit for x, limit in zip(beyond, limits)]
+    bench.add("compare --json: limit_tolerance_N_per_m", [told[key]["limit_tolerance_N_per_m"] for key in keys], widths, "from the limit to the next tried",
+              ROUNDING, ("the resolution asked", [resolution * limit for limit in limits]))
+    bench.add("compare --json: low_tolerance_N_per_m", [told[key]["low_tolerance_N_per_m"] for key in keys], [None, None], "the range begins stable", EXACT,
+              ("the resolution", [resolution] * 2))
     classes = [j[v.index(x)] for j, v, x in zip(judged, tried, beyond)]
     bench.add("device_limits.csv:class_beyond", [cell[key]["class_beyond"] for key in keys], classes, how, EXACT, ("diverged", ["diverged"] * 2))
     bench.add("device_limits.csv:class_below", [cell[key]["class_below"] for key in keys], ["end of the range"] * 2, "stable at the low end", EXACT,

@@ -94,6 +94,10 @@ def time_step(bench):
         column(bench, table, range(6), name, [measure(run - runs[-1]) for run in runs[:-1]], how, close, "against the exact solution",
                [measure(run - exact) for run in runs[:-1]])
     column(bench, table, range(6), "step_s", dt * factors, "the scene's times 4 to 1/8", ROUNDING, "from the scene's on", dt / 2.0 ** np.arange(6))
+    # The reference's own error over the row's, at the order that is seen.
+    order = order_of(dt * factors[1:], [rms(a - b) for a, b in zip(runs[:5], runs[1:6])])[0]
+    bench.add("precision --json: error_tolerance_relative", [row["error_tolerance_relative"] for row in printed["rows"]],
+              (128 * factors) ** -order, "(h_ref / h)^p", Within("as the order", relative=1e-4), ("of first order", 1 / (128 * factors)))
     differences = [rms(a - b) for a, b in zip(runs[:5], runs[1:6])]
     add_order(bench, printed, "leapfrog", dt * factors[1:], differences, order_of(dt * factors, [rms(run - runs[-1]) for run in runs[:-1]])[0])
     swing = {"type": "sine", "mean": 0, "amplitude": 1e-3, "period_s": 0.1}

@@ -52,9 +52,9 @@ def printed_fields(benches):
         fields += [f"{table['name']}:{name}" for name in names if not shared or name not in metrics]
         fields += [f"{table['name']}:metrics"] if shared else []
     fields += [f"{word['name']} ({word['kind']})" for word in described("words")["words"]]
-    found = [(command, *keys_of(data)) for bench in benches for command, data in bench.printed]
+    found = [(command, *keys_of(data)) for bench in benches for command, data in bench.printed]  # runs of compare are those of run
     groups = {(command, key) for command, _, grouping in found for key in grouping}
-    keys = {(command, key) for command, leaves, _ in found for key in leaves if key not in parts} - groups
+    keys = {(command, key) for command, leaves, _ in found for key in leaves if key not in parts or command != "run"} - groups
     of_runs = {key for command, key in keys if command == "run"}
     fields += [f"{command} --json: {key}" for command, key in sorted(keys) if command == "run" or key not in columns | of_runs]
     return list(dict.fromkeys(fields))

@@ -24,6 +24,7 @@ struct PrecisionRow {
   std::string outcome;
   std::vector<std::optional<double>> values;  ///< one for each column of the study; empty where there is no value
   double seconds = 0.0;  ///< per step or call: the least of the repetitions, timed apart from the errors
+  std::optional<double> tolerance = {};  ///< relative, of the errors: what the reference's own error makes of them
 };
 
 /// The power of x with which errors fall, log(e_2 / e_3) / log(x_2 / x_3) at the two finest of a series.

@@ -345,6 +345,14 @@ bool FieldLimit::is_beyond_linear(double resolution) const {
   return value && linear && *value > (1.0 + resolution) * *linear;
 }
 
+std::optional<double> FieldLimit::tolerance() const {
+  return value && beyond ? std::optional(std::abs(beyond->value - *value)) : std::nullopt;
+}
+
+std::optional<double> FieldLimit::other_tolerance() const {
+  return other_value && other_beyond ? std::optional(std::abs(other_beyond->value - *other_value)) : std::nullopt;
+}
+
 std::optional<double> FieldLimit::difference() const {
   if (!value || !theory || !std::isfinite(*theory) || *theory == 0.0) return std::nullopt;
   return *value / *theory - 1.0;

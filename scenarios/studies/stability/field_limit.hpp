@@ -64,6 +64,9 @@ struct FieldLimit {
   bool is_beyond_linear(double resolution) const;
   /// value / theory - 1; none without either.
   std::optional<double> difference() const;
+  /// How far the edge may lie beyond the value: from there to the next one that is not stable; none without one.
+  std::optional<double> tolerance() const;
+  std::optional<double> other_tolerance() const;
 };
 
 /// The question about a field in a range, or by default between a thousandth and a thousandfold (2^10) of the

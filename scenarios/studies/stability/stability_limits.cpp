@@ -14,17 +14,15 @@ namespace hapbench {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-/// Relative width at which bisection stops. On runs: a hundredth of the 1 % within which the three ways must agree. On
-/// eigenvalues, which cost nothing: close to rounding.
-constexpr double kPrecision = 1e-4;
+/// The same on eigenvalues, which cost nothing: close to rounding.
 constexpr double kEigenvaluePrecision = 1e-10;
 /// A probe is cut short as unstable when it has grown by this factor; a stable one swings to 1 / sqrt of its relative
-/// distance to the limit, at most 1e2 at kPrecision.
+/// distance to the limit, at most 1e2 at kLimitTolerance.
 constexpr double kBlownUp = 1e6;
 /// Steps of one probe, and how much the largest energy of the last quarter may exceed that of the quarter before. A run
 /// that is unstable by a factor 1 + e per step multiplies its energy by 1 + 10 000 e, so the limit is found where e
-/// passes 1e-6; a stable run repeats its largest energy much closer, because it beats in 1 / sqrt(kPrecision) steps or
-/// fewer.
+/// passes 1e-6; a stable run repeats its largest energy much closer, because it beats in 1 / sqrt(kLimitTolerance)
+/// steps or fewer.
 constexpr std::int64_t kProbeSteps = 20'000;
 constexpr double kLateGrowth = 1.01;
 constexpr int kLocusPoints = 400;
@@ -169,7 +167,7 @@ std::vector<StabilityLimit> stability_limits(const Scenario& scenario) {
     limit.eigenvalue = eigenvalue_limit(limit.which, scenario, lambda, probes.start);
     limit.damping_at_limit = problem.at(limit.limit()).B;
     const auto run = [&](double value) { return simulation_stays_bounded(scenario, problem.at(value), stiffest); };
-    limit.simulation = largest_stable(probes.start, kPrecision, run, probes.largest);
+    limit.simulation = largest_stable(probes.start, kLimitTolerance, run, probes.largest);
   }
   return limits;
 }

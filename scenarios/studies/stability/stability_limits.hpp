@@ -18,6 +18,9 @@
 /// larger (DeviceLoop).
 namespace hapbench {
 
+/// Relative width at which bisection on runs stops: a hundredth of the 1 % within which the three ways must agree.
+inline constexpr double kLimitTolerance = 1e-4;
+
 /// The largest stable value of one case, found three ways; infinite when nothing up to 1e15, or 1e6 s, is unstable.
 struct StabilityLimit {
   StabilityCase which;

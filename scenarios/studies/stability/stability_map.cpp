@@ -13,9 +13,6 @@
 namespace hapbench {
 namespace {
 
-/// A twentieth of the 2 % within which theory and runs must agree.
-constexpr double kMapPrecision = 1e-3;
-
 /// An edge is looked for up to this factor beyond a map's range. Further out, from K dt^2 / M = 6e8 on, the rounding of
 /// a step of implicit_midpoint, which damps nothing there, grows.
 constexpr double kBeyondTheMap = 1e4;

@@ -84,6 +84,9 @@ struct MapPoint {
   std::optional<MotionClass> motion_from_far;
 };
 
+/// Relative width at which the bisection on runs stops: a twentieth of the 2 % within which theory and runs must agree.
+inline constexpr double kMapPrecision = 1e-3;
+
 /// The edge of the stable runs at one x, as the map defines it (MapEdge).
 struct BoundaryPoint {
   double x = 0.0;

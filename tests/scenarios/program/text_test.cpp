@@ -98,6 +98,24 @@ TEST(SignificantDigits, OfWhatHasNoValueAreADash) {
   EXPECT_EQ(significant(std::numeric_limits<double>::infinity(), 3), "-");
 }
 
+TEST(Deserved, EndsWithTheLeadingDigitOfTheTolerance) {
+  EXPECT_EQ(deserved(1537235.0, 154.0), "1537200");
+  EXPECT_EQ(deserved(433731.6, 0.5), "433731.6");
+  EXPECT_EQ(deserved(3718.0, 37.0), "3720");
+  EXPECT_EQ(deserved(-0.012345, 0.0006), "-0.0123");
+  EXPECT_EQ(deserved(1.0, 0.0012), "1.000") << "zeros say as much as other digits";
+  EXPECT_EQ(deserved(1.23456e-6, 2e-9), "1.235e-06");
+}
+
+TEST(Deserved, HasItsUsualDigitsWithoutAToleranceOrBeneathIt) {
+  EXPECT_EQ(deserved(1.0 / 3.0, {}, 3), "0.333");
+  EXPECT_EQ(deserved(1.0 / 3.0, 0.0, 3), "0.333");
+  EXPECT_EQ(deserved(1.0 / 3.0, std::nan(""), 3), "0.333");
+  EXPECT_EQ(deserved(0.5, 2.0), "0.5");
+  EXPECT_EQ(deserved(0.0, 1e-3), "0");
+  EXPECT_EQ(deserved(std::nan(""), 1e-3), "-");
+}
+
 TEST(CharacterMap, HasTheFirstRowBelow) {
   const auto cell = [](std::size_t column, std::size_t row) { return row == 0 ? 'a' : column == 1 ? 'c' : 'b'; };
   EXPECT_EQ(character_map({"x", 2, "1", "9"}, "y", {"low", "high"}, cell),
