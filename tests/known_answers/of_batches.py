@@ -122,7 +122,7 @@ def swept(bench):
                           hand={"type": "force", "y_N": -0.5}, rendering={"algorithm": "mean", **PLAIN, "damping_ratio": 0.1},
                           expect={"outcome": "completes"})
     field, values = "rendering.stiffness_N_per_m", [500.0, 1000.0, 2000.0, 4e6]
-    bench.hapbench("sweep", base, "--vary", f"{field}=500,1000,2000,4e6", "--out", "sweep", statuses=(0, 3))
+    told = bench.json("sweep", base, "--vary", f"{field}=500,1000,2000,4e6", "--out", "sweep", statuses=(0, 3))
     table = Table(bench.folder / "sweep" / "sweep.csv")
     runs = [bench.run(base, "--set", f"{field}={value}", out=f"run_{i}", statuses=(0, 3)) for i, value in enumerate(values)]
     of = lambda key: [run.summary[key] for run in runs]
@@ -131,6 +131,11 @@ def swept(bench):
                               ("expected", [str(x).lower() for x in of("expected")], ("all", ["true"] * 4)),
                               ("steps", of("steps"), ("asked", [300] * 4)), ("state_hash", of("state_hash"), ("of the first", [of("state_hash")[0]] * 4))):
         bench.add(f"sweep.csv:{key}", table[key], known, "single runs with --set", EXACT, naive)
+    # 4e6 N/m is ten times 4 M / dt^2.
+    for key, known, naive in (("unexpected", 1, 0), ("completes", 3, 4), ("diverges", 1, 0), ("file", "sweep/sweep.csv", "sweep.csv")):
+        bench.add(f"sweep --json: {key}", told.get(key, told["outcomes"].get(key)), known, "one of four is unstable", EXACT, ("those that complete, or all", naive))
+    bench.add("sweep --json: definition", told["definition"] != bench.json("sweep", base, "--vary", f"{field}=500,1001", "--out", "other")["definition"], True,
+              "another sweep has another", EXACT, ("of the scenario alone", False))
     shared = [name for name in table.names if name in runs[0].summary["metrics"]]
     bench.add("sweep.csv:metrics", [table[name][1] for name in shared],
               [math.nan if runs[1].metric(name) is None else runs[1].metric(name) for name in shared], "a single run, the same digits", EXACT,
