@@ -110,3 +110,33 @@ def periodic_force(bench):
     bench.metrics(run, [
         ("fidelity.force_lag_s", 0.4 / (2 * math.pi) * 0.05, "phase over angular frequency", lag, "a period earlier", -0.05 + 0.4 / (2 * math.pi) * 0.05),
         ("fidelity.force_lag_period_s", 0.05, "the sine's", lag, "half of it", 0.025)])
+
+
+@scene
+def recorded_force(bench):
+    """A stroke with a force measured in its middle: between samples both are linear, and rows beyond the measurement have no reference."""
+    K, dt, n = 500.0, 0.001, 1000
+    t = np.array([0.1, 0.25, 0.45, 0.7])
+    place, force = np.array([0, -1e-3, -3e-3, -2e-3]), np.array([[0, 0, 0.1], [0.1, 0, 0.6], [0.2, -0.1, 1.4], [0, 0, 1.1]])
+    bench.write("stroke.csv", "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z,mfx_N,mfy_N,mfz_N",
+                np.column_stack([t, 0 * t, 0 * t, place, 0 * t, 0 * t, 0 * t - 1, force]))
+    run = bench.run(bench.scenario(
+        "recorded_force", time={"step_s": dt, "steps": n}, motion={"position": {"type": "file", "file": "stroke.csv"}}, record={"force_reference": True},
+        environment={"type": "springs", "groups": [{"direction": [0, 0, -1], "count": 1}]},
+        rendering={"algorithm": "summation", "stiffness_N_per_m": K, "damping_ratio": 0, "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}))
+    at = np.arange(n) * dt
+    m = np.column_stack([np.interp(at, t, force[:, i]) for i in range(3)])
+    f = np.column_stack([0 * at, 0 * at, -K * np.interp(at, t, place)])
+    has = (at >= t[0]) & (at <= t[-1])
+    error = (f - m)[has]
+    how = "linear between the samples"
+    bench.metrics(run, [
+        ("fidelity.rows", int(has.sum()), "rows from the first sample to the last", EXACT, "all rows", n),
+        ("fidelity.reference_force_rms_N", rms(m[has]), how, STEPPED, "over all rows", rms(m)),
+        ("fidelity.force_error_rms_N", rms(error), how, STEPPED, "over all rows", rms(f - m)),
+        ("fidelity.force_artefact_share", rms(f[has] - np.sum(f * m, axis=1)[has, None] * m[has] / np.sum(m * m, axis=1)[has, None]) / rms(f[has]),
+         "across f_m over f", STEPPED, "over all rows", rms(error) / rms(f))])
+    table = run.table("force_reference.csv")
+    bench.columns("force_reference.csv", table, [
+        (f"mf{x}_N", np.where(has, m[:, i], np.nan), how, STEPPED, "held beyond", m[:, i]) for i, x in enumerate("xyz")] + [
+        (f"force_error_{x}_N", np.where(has, (f - m)[:, i], np.nan), how, STEPPED, "held beyond", (f - m)[:, i]) for i, x in enumerate("xyz")])

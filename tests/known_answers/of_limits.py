@@ -54,6 +54,11 @@ def limits_of_springs(bench):
          [2 * zeta * math.sqrt(K * M)] * 4), ("lambda_max", np.full(4, lam), "two springs side by side", ROUNDING, "one", np.ones(4))])
     bench.add("limits.csv:case", table["case"], cases, "in this order", EXACT, ("the other way round", cases[::-1]))
     bench.add("limits.csv:unit", table["unit"], [known[c][1] for c in cases], "of what grows", EXACT, ("N/m", ["N/m"] * 4))
+    bench.hapbench("stability", base, "--out", "rk4", "--set", "integrator.type=rk4", "--set", "rendering.damping_ratio=0")
+    # |1 + z + z^2/2 + z^3/6 + z^4/24| = 1 at z = i 2 sqrt 2, and on the real axis at the root of z^3/24 + z^2/6 + z/2 + 1.
+    real = -np.roots([1 / 24, 1 / 6, 1 / 2, 1]).real[np.abs(np.roots([1 / 24, 1 / 6, 1 / 2, 1]).imag) < 1e-9][0]
+    bench.add("limits.csv:analytic", Table(bench.folder / "rk4" / "limits.csv")["analytic"][:2], [8 * M / (lam * dt ** 2), real * M / (lam * dt)],
+              "polynomial of Runge and Kutta's method", Within("roots of a polynomial, and ours bisected", relative=1e-10), ("leapfrog's", value[:2]))
     at = [(c, v) for c, v in zip(locus["case"], locus["value"])]
 
     def matrix(case, v):
@@ -126,6 +131,13 @@ def maps(bench):
             for column, known, naive in (("algorithm", "summation", "mean"), ("integrator", "leapfrog", "rk4"), ("overrides", "", "none")):
                 bench.add(f"stability_{kind}_NAME.csv:{column}", sorted(set(table.rows[i][column] for i in range(len(table.rows)))), [known],
                           "as asked", EXACT, ("another", [naive]))
+    bench.hapbench("stability", "--map", "delay,hand", "--algorithms", "summation", "--size", "6", "--out", "more")
+    for name, x_name, loop in (("delay", "delay_samples", lambda x, K: HeldLoop(0.1, 0.5, 0.001, K, 5.0, delay=x)),
+                               ("hand", "hand_stiffness_N_per_m", lambda x, K: HeldLoop(0.3, 2.5, 0.001, K, 5.0, spring=x))):
+        table = Table(bench.folder / "more" / f"stability_boundary_{name}.csv")
+        edges = [bisected(lambda K: loop(x, K).radius() < 1, 1.0, 1e6) for x in table[x_name]]
+        bench.add("stability_boundary_NAME.csv:analytic_{y}", table["analytic_stiffness_N_per_m"], edges, "eigenvalues, delays of whole and broken samples",
+                  close, ("without", [edge_of(lambda K: handle(5.0, K), 1.0, 1e6)] * 6))
     limits_of_walls(bench, Table(bench.folder / "maps" / "stability_boundary_z_width.csv"), Table(bench.folder / "bare" / "stability_boundary_z_width.csv"),
                     wall["x"], handle, edge_of)
     bench.hapbench("stability", "--map", "friction_quantisation,encoder_step", "--algorithms", "summation", "--size", "4", "--out", "dry")
