@@ -71,7 +71,10 @@ class KnownAnswers(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    if sys.argv[-1] == "--write":
+    if sys.argv[-1] == "--print":
+        print(text_of(answers()), end="")
+        unittest.doModuleCleanups()
+    elif sys.argv[-1] == "--write":
         lacking = open_fields(printed_fields(benches(scratch_folder(unittest)).values()), answers())
         OPEN.write_text("".join(f"{field}\n" for field in lacking), encoding="utf-8")
         PAGE.write_text(text_of(answers()), encoding="utf-8")

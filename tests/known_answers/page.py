@@ -13,10 +13,15 @@ What each printed field is compared with: a closed form, or a computation that s
 tolerance that a sentence derives; and what a naive reading of the field would give, which the same comparison must refuse. A scene is
 a function in `of_*.py`: a few runs, and rows of field, known answer and tolerance. The list of fields is the program's own: metrics,
 columns and words of `hapbench describe`, and the keys that commands print with `--json`. A new field without a row fails
-`known_answers_test.py`, unless it stands in `open_fields.txt`, which is to shrink. This page is made by
+`known_answers_test.py`, unless it stands in `open_fields.txt`, which is to shrink. `scripts/docs` makes this page, and
 
     python3 tests/known_answers/known_answers_test.py build/release/bin/hapbench --write
+
+it and `open_fields.txt`.
+
+<!-- generated: known_answers by scripts/docs -->
 """
+TAIL = "\n<!-- /generated -->\n"
 # Members of JSON that say where and how, not what.
 NO_ANSWERS = {"provenance", "name", "algorithm", "scenario"}
 
@@ -80,4 +85,4 @@ def text_of(answers):
         names = ", ".join(f"`{name}`" for name in dict.fromkeys(fields))
         text += "| " + " | ".join(cell.replace("|", "\\|") for cell in (names, known_by, why, naive)) + " |\n"
     without = [f"`{field}`" for field in OPEN.read_text(encoding="utf-8").split("\n")[:-1]]
-    return text + "\n## Fields without a known answer\n\n" + (", ".join(without) + ".\n" if without else "None.\n")
+    return text + "\n## Fields without a known answer\n\n" + (", ".join(without) + ".\n" if without else "None.\n") + TAIL
