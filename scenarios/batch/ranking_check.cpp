@@ -117,7 +117,11 @@ struct PointDistanceOf {
   }
   template <class Analytic>
   std::optional<PointDistance> operator()(const Analytic& shape) const {
-    return {{"spacing_m", shape.spacing}};
+    if constexpr (requires { shape.spacing; }) {
+      return {{"spacing_m", shape.spacing}};
+    } else {
+      return std::nullopt;
+    }
   }
 };
 
@@ -125,7 +129,7 @@ FinerScene with_half_spacing(const LoadedScenario& loaded) {
   const Environment& environment = loaded.scenario.environment;
   if (std::holds_alternative<SpringsEnvironment>(environment)) return {{}, "springs have no points"};
   const auto distance = std::visit(PointDistanceOf{loaded.files}, environment);
-  if (!distance) return {{}, "the points of environment.file are what they are; only a finer file could tell"};
+  if (!distance) return {{}, "no field sets the distance of the environment's points; only a finer file could tell"};
   const double half = 0.5 * distance->metres;
   return {{fmt::format("environment.{}={}", distance->field, half)},
           fmt::format("environment.{} {}{} -> {}", distance->field, distance->is_given ? "" : "none, about ",

@@ -1,0 +1,144 @@
+#include <unistd.h>
+
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "scenarios/batch/journal.hpp"
+#include "scenarios/batch/sweep_table.hpp"
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/description/parts.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/mesh_file.hpp"
+#include "scenarios/input/motion_file.hpp"
+#include "scenarios/run/run_scenario.hpp"
+
+/// libFuzzer's targets: each reader of files from outside, fed with bytes of libFuzzer's choice (scripts/fuzz). It
+/// reads them or refuses them by an InputError of one line; whatever else happens is a finding.
+namespace hapbench::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void finding(const std::string& what) {
+  std::fprintf(stderr, "finding: %s\n", what.c_str());
+  std::abort();
+}
+
+void require(bool holds, const char* what) {
+  if (!holds) finding(what);
+}
+
+/// A file with these bytes, in memory where the system has such a folder.
+const fs::path& file_with(std::string_view bytes) {
+  static const fs::path file = (fs::is_directory("/dev/shm") ? fs::path("/dev/shm") : fs::temp_directory_path()) /
+                               ("hapbench-fuzz-" + std::to_string(::getpid()));
+  std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return file;
+}
+
+const fs::path kBundled = fs::path(HAPBENCH_SCENARIOS) / "examples";
+
+/// What is accepted is a scenario: its effective form reads as itself.
+void read_scenario_text(std::string_view text) {
+  const Json effective = effective_scenario(read_scenario(parse_json(std::string(text)), kBundled).scenario, kBundled);
+  require(effective_scenario(read_scenario(effective, kBundled).scenario, kBundled) == effective,
+          "an effective scenario reads as another one");
+}
+
+/// The same, and its first steps.
+void run_scenario_text(std::string_view text) {
+  LoadedScenario loaded = read_scenario(parse_json(std::string(text)), kBundled);
+  // Larger ones are only slower.
+  constexpr double kMostMemory = 3e7;
+  constexpr std::int64_t kMostSteps = 20;
+  if (expected_memory(loaded.scenario, loaded.files) > kMostMemory) return;
+  loaded.scenario.time.steps = std::min(loaded.scenario.time.steps, kMostSteps);
+  run_scenario(loaded, std::nullopt, false);
+}
+
+void require_points(const std::vector<SurfacePoint>& points) {
+  require(!points.empty(), "no points");
+  for (const SurfacePoint& point : points) {
+    require(point.position.cwiseAbs().maxCoeff() <= 1000.0, "a point beyond 1 km");
+    require(std::abs(point.normal.norm() - 1.0) <= 1e-12, "a normal that is not unit");
+  }
+}
+
+template <const char* name>
+void read_mesh(std::string_view bytes) {
+  require_points(MeshFile(bytes, name, {}).points());
+}
+
+template <const char* name>
+void read_shell(std::string_view bytes) {
+  require_points(point_shell_in(bytes, name));
+}
+
+void read_stroke(std::string_view text) {
+  const auto [motion, force] = stroke_in(text, "stroke.csv");
+  require(std::abs(motion.axis_at(1e9).norm() - 1.0) <= 1e-12, "an axis that is not unit");
+}
+
+void read_journal(std::string_view text) {
+  std::size_t rows = 0;
+  Journal journal(file_with(text), "fuzz", true, [&rows](Journal::Place, std::string_view) { ++rows; });
+  require(Journal::count_rows(journal.file()) >= rows, "a row that is not counted");
+}
+
+void read_shard(std::string_view text) {
+  ShardRows rows(file_with(text), 64);
+  while (rows.next()) {
+  }
+}
+
+constexpr char kObj[] = "x.obj", kPly[] = "x.ply", kStl[] = "x.stl", kOff[] = "x.off", kCsv[] = "x.csv";
+
+struct Target {
+  std::string_view name;
+  void (*read)(std::string_view bytes);
+};
+constexpr std::array kTargets = {
+    Target{"scenario", read_scenario_text}, Target{"run", run_scenario_text},      Target{"mesh_obj", read_mesh<kObj>},
+    Target{"mesh_ply", read_mesh<kPly>},    Target{"mesh_stl", read_mesh<kStl>},   Target{"mesh_off", read_mesh<kOff>},
+    Target{"shell_csv", read_shell<kCsv>},  Target{"shell_ply", read_shell<kPly>}, Target{"stroke", read_stroke},
+    Target{"journal", read_journal},        Target{"shard", read_shard},
+};
+
+/// The target that FUZZ_TARGET names.
+const Target& target() {
+  const char* name = std::getenv("FUZZ_TARGET");
+  for (const Target& t : kTargets) {
+    if (name != nullptr && t.name == name) return t;
+  }
+  std::fprintf(stderr, "FUZZ_TARGET:");
+  for (const Target& t : kTargets) std::fprintf(stderr, " %s", t.name.data());
+  std::fprintf(stderr, "\n");
+  std::exit(2);
+}
+
+}  // namespace
+}  // namespace hapbench::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace hapbench;
+  static const fuzz::Target& target = fuzz::target();
+  try {
+    target.read({reinterpret_cast<const char*>(data), size});
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    fuzz::require(message.find_first_of(std::string("\n\r\0\x1b", 4)) == std::string::npos,
+                  "a message of several lines");
+    fuzz::require(message.size() < 5000, "a message of more than 5000 characters");
+  } catch (const std::exception& error) {
+    fuzz::finding(error.what());
+  }
+  return 0;
+}
